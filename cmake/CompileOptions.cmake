@@ -1,0 +1,43 @@
+# One set of flags for every translation unit: Eigen's alignment depends on the instruction set, and
+# Simbody's class layout on NDEBUG. Debian's Simbody is built without NDEBUG, so no build type defines it
+# here; EIGEN_NO_DEBUG removes Eigen's index checks from optimised builds instead, and assert() stays.
+set(CMAKE_CXX_STANDARD 17) # Simbody 3.7's headers do not compile as C++20
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif()
+set(CMAKE_CXX_FLAGS_RELEASE "-O3 -DEIGEN_NO_DEBUG")
+set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O2 -g -DEIGEN_NO_DEBUG")
+
+if(TWINMAP_NATIVE)
+  add_compile_options(-march=native)
+else()
+  add_compile_options(-march=x86-64-v3)
+endif()
+add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual)
+if(TWINMAP_WARNINGS_AS_ERRORS)
+  add_compile_options(-Werror)
+endif()
+
+set(TWINMAP_SANITIZE "" CACHE STRING "Sanitizers, as in -fsanitize=..., or empty")
+if(TWINMAP_SANITIZE)
+  add_compile_options(-fsanitize=${TWINMAP_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${TWINMAP_SANITIZE})
+endif()
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${CCACHE_PROGRAM}")
+endif()
+
+# twinmap_add_library(<target> SOURCES <files...> [PUBLIC <targets...>] [PRIVATE <targets...>]):
+# a static library whose headers are included by their path from the project's root.
+function(twinmap_add_library target)
+  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  add_library(${target} STATIC ${ARG_SOURCES})
+  target_include_directories(${target} PUBLIC "${PROJECT_SOURCE_DIR}")
+  target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
+endfunction()

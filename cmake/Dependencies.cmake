@@ -1,0 +1,12 @@
+# Every package comes from the distribution; scripts/install-dependencies lists them by name.
+find_package(Eigen3 3.4 REQUIRED)
+find_package(NLopt REQUIRED)
+find_package(OpenMP REQUIRED COMPONENTS CXX)
+find_package(Boost 1.74 REQUIRED)
+find_package(Simbody 3.7 REQUIRED)
+find_package(yaml-cpp 0.7 REQUIRED)
+find_package(muparser 2.3 REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(spdlog REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(HDF5 REQUIRED COMPONENTS C)
