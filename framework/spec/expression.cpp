@@ -1,0 +1,117 @@
+#include "framework/spec/expression.hpp"
+
+#include <muParser.h>
+
+#include <algorithm>
+#include <boost/math/constants/constants.hpp>
+#include <charconv>
+#include <cmath>
+
+#include "framework/spec/nearest_name.hpp"
+
+namespace twinmap {
+namespace {
+
+bool hasAssignment(const std::string& text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '=') {
+      continue;
+    }
+    const char before = i > 0 ? text[i - 1] : ' ';
+    const char after = i + 1 < text.size() ? text[i + 1] : ' ';
+    const bool comparison = after == '=' || before == '=' || before == '<' || before == '>' || before == '!';
+    if (!comparison) {
+      return true;
+    }
+  }
+  return false;
+}
+
+std::unique_ptr<mu::Parser> makeParser(const Expression& expression) {
+  if (hasAssignment(expression.text)) {
+    throw ExperimentError(expression.where, expression.text, "must not assign; write '==' to compare");
+  }
+  auto parser = std::make_unique<mu::Parser>();
+  parser->DefineConst("pi", boost::math::constants::pi<double>());
+  parser->SetExpr(expression.text);
+  return parser;
+}
+
+[[noreturn]] void throwSyntaxError(const Expression& expression, const mu::Parser::exception_type& error) {
+  throw ExperimentError(expression.where, expression.text, "is not a valid expression: " + error.GetMsg());
+}
+
+}  // namespace
+
+int ExpressionScope::define(const std::string& name, double value) {
+  if (contains(name)) {
+    throw std::invalid_argument("the name '" + name + "' is defined twice");
+  }
+  names_.push_back(name);
+  values_.push_back(value);
+  return static_cast<int>(names_.size()) - 1;
+}
+
+bool ExpressionScope::contains(const std::string& name) const {
+  return std::find(names_.begin(), names_.end(), name) != names_.end();
+}
+
+CompiledExpression ExpressionScope::compile(const Expression& expression) {
+  double literal = 0.0;
+  if (parseLiteral(expression.text, literal)) {
+    return CompiledExpression(literal);
+  }
+  for (const std::string& used : getUsedNames(expression)) {
+    if (!contains(used)) {
+      throw ExperimentError(expression.where, expression.text,
+                            "uses the unknown name '" + used + "'" + suggestName(used, names_));
+    }
+  }
+  std::unique_ptr<mu::Parser> parser = makeParser(expression);
+  try {
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      parser->DefineVar(names_[i], &values_[i]);
+    }
+    parser->Eval();  // builds the byte code, so that later evaluations only run it
+  } catch (const mu::Parser::exception_type& error) {
+    throwSyntaxError(expression, error);
+  }
+  return CompiledExpression(std::move(parser), expression.where);
+}
+
+CompiledExpression::CompiledExpression(double literal) : literal_(literal) {}
+CompiledExpression::CompiledExpression(std::unique_ptr<mu::Parser> parser, SourceLocation where)
+    : parser_(std::move(parser)), where_(std::move(where)) {}
+CompiledExpression::CompiledExpression(CompiledExpression&&) noexcept = default;
+CompiledExpression& CompiledExpression::operator=(CompiledExpression&&) noexcept = default;
+CompiledExpression::~CompiledExpression() = default;
+
+double CompiledExpression::calc() const {
+  return parser_ ? parser_->Eval() : literal_;
+}
+
+std::vector<std::string> getUsedNames(const Expression& expression) {
+  std::unique_ptr<mu::Parser> parser = makeParser(expression);
+  std::vector<std::string> names;
+  try {
+    for (const auto& [name, address] : parser->GetUsedVar()) {
+      names.push_back(name);
+    }
+  } catch (const mu::Parser::exception_type& error) {
+    throwSyntaxError(expression, error);
+  }
+  return names;
+}
+
+bool parseLiteral(const std::string& text, double& value) {
+  const char* first = text.data() + (text.rfind('+', 0) == 0 ? 1 : 0);
+  const char* last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(first, last, value);
+  return error == std::errc() && end == last && first != last && std::isfinite(value);
+}
+
+bool isReservedName(const std::string& name) {
+  return name == "t" || name == "pi";
+}
+
+}  // namespace twinmap

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "framework/spec/excitation_spec.hpp"
+#include "framework/spec/simulation_spec.hpp"
+#include "framework/spec/system_spec.hpp"
+
+namespace twinmap {
+
+/// What the relative error of a parameter is relative to: its true value, or the width of its bounds.
+enum class RelativeTo { kValue, kRange };
+
+/// An updating parameter: to be inferred from a response, sampled within its bounds for training.
+struct ParameterSpec {
+  Name name;
+  double lower = 0.0, upper = 0.0;  ///< in `unit`
+  std::string unit;                 ///< coherent SI unit, "" if not stated
+  std::string description;
+  RelativeTo relative_to = RelativeTo::kValue;
+};
+
+/// A named value of the model; may use parameters and the constants declared before it.
+struct ConstantSpec {
+  Name name;
+  Expression value;
+  std::string unit;
+  std::string description;
+};
+
+/// Everything that determines a trajectory but the parameter point.
+struct ModelSpec {
+  std::vector<ParameterSpec> parameters;
+  std::vector<ConstantSpec> constants;
+  SystemSpec system;
+  std::vector<SignalSpec> excitation;
+  InitialSpec initial;
+  std::vector<OutputSpec> outputs;
+  SimulationSpec simulation;
+};
+
+}  // namespace twinmap
