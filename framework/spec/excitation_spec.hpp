@@ -13,7 +13,8 @@ struct PulseSpec {
 
 /// amplitude * sin(2 pi frequency t' + phase) with t' = t - start, for start <= t < end, 0 elsewhere.
 struct SineSpec {
-  Expression amplitude, frequency, phase, start, end;
+  Expression amplitude, frequency, phase, start;
+  Expression end{"", {}};
 };
 
 enum class SweepKind { kLinear, kLogarithmic };
@@ -29,7 +30,8 @@ struct ChirpSpec {
 struct MultisineSpec {
   Expression amplitude;
   std::vector<Expression> frequencies, phases;
-  Expression start, end;
+  Expression start;
+  Expression end{"", {}};
 };
 
 enum class TableInterpolation { kLinear, kHold };

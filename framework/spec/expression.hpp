@@ -17,8 +17,9 @@ namespace twinmap {
 /// A number of the experiment file: a literal ("3.3") or an expression of named values ("m1 * L^2 / 12").
 /// The grammar is muParser's: + - * / ^, comparisons, ?:, sin, cos, tan, exp, log, sqrt, abs, sign, min, max
 /// ..., and the constant pi. Assignments are refused.
+/// An empty text stands for "not given" where that is allowed.
 struct Expression {
-  std::string text;
+  std::string text = "0";
   SourceLocation where;
 };
 

@@ -12,10 +12,16 @@ namespace twinmap {
 /// What the relative error of a parameter is relative to: its true value, or the width of its bounds.
 enum class RelativeTo { kValue, kRange };
 
+/// A closed interval, lower < upper, both finite.
+struct Bounds {
+  double lower = 0.0, upper = 0.0;
+  SourceLocation where;
+};
+
 /// An updating parameter: to be inferred from a response, sampled within its bounds for training.
 struct ParameterSpec {
   Name name;
-  double lower = 0.0, upper = 0.0;  ///< in `unit`
+  Bounds bounds;            ///< in `unit`
   std::string unit;                 ///< coherent SI unit, "" if not stated
   std::string description;
   RelativeTo relative_to = RelativeTo::kValue;

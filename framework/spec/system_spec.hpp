@@ -34,9 +34,9 @@ struct FrameSpec {
 
 struct JointSpec {
   JointType type = JointType::kWeld;
-  Name parent;                      ///< "ground" or a body declared before
+  Name parent{"ground", {}};        ///< "ground" or a body declared before
   std::optional<Expression3> axis;  ///< joint axis in the joint frame; only for 1-axis joints
-  Expression pitch;                 ///< m/rad, screw only
+  Expression pitch{"", {}};         ///< m/rad, screw only
   std::vector<Name> coordinates;    ///< one name per coordinate, unique in the system
   FrameSpec in_parent;              ///< joint frame fixed to the parent
   FrameSpec in_body;                ///< joint frame fixed to the body

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <algorithm>
+
+#include "framework/spec/excitation_spec.hpp"
+#include "framework/spec/fields.hpp"
+
+namespace twinmap {
+
+template <>
+struct EnumNames<SweepKind> {
+  static constexpr EnumName<SweepKind> values[] = {{"linear", SweepKind::kLinear},
+                                                   {"logarithmic", SweepKind::kLogarithmic}};
+};
+
+template <>
+struct EnumNames<TableInterpolation> {
+  static constexpr EnumName<TableInterpolation> values[] = {{"linear", TableInterpolation::kLinear},
+                                                            {"hold", TableInterpolation::kHold}};
+};
+
+template <class Fields>
+void describe(Fields& f, PulseSpec& s) {
+  f.required("amplitude", s.amplitude, "value for start <= t < end, 0 elsewhere");
+  f.required("start", s.start, "s");
+  f.required("end", s.end, "s");
+}
+
+template <class Fields>
+void describe(Fields& f, SineSpec& s) {
+  f.required("amplitude", s.amplitude, "amplitude * sin(2 pi frequency (t - start) + phase)");
+  f.required("frequency", s.frequency, "Hz");
+  f.optional("phase", s.phase, "rad");
+  f.optional("start", s.start, "s; 0 before");
+  f.optional("end", s.end, "s; 0 after; without it, to the end of the simulation");
+}
+
+template <class Fields>
+void describe(Fields& f, ChirpSpec& s) {
+  f.required("amplitude", s.amplitude, "of a sine with a sweeping frequency");
+  f.required("start_frequency", s.start_frequency, "Hz, at start");
+  f.required("end_frequency", s.end_frequency, "Hz, at end");
+  f.optional("start", s.start, "s; 0 before");
+  f.required("end", s.end, "s; 0 after");
+  f.optional("sweep", s.sweep, "how the frequency grows");
+}
+
+template <class Fields>
+void describe(Fields& f, MultisineSpec& s) {
+  f.required("amplitude", s.amplitude, "of each sine");
+  f.required("frequencies", s.frequencies, "Hz");
+  f.optional("phases", s.phases, "rad; Schroeder's phases if absent");
+  f.optional("start", s.start, "s; 0 before");
+  f.optional("end", s.end, "s; 0 after; without it, to the end of the simulation");
+  f.rule(!s.frequencies.empty(), "must list at least one of frequencies");
+  f.rule(s.phases.empty() || s.phases.size() == s.frequencies.size(),
+         "must give as many phases as frequencies, or none");
+}
+
+template <class Fields>
+void describe(Fields& f, TableSpec& s) {
+  f.required("times", s.times, "s, strictly increasing");
+  f.required("values", s.values, "one for each time; the signal is 0 outside the table");
+  f.optional("interpolation", s.interpolation, "between the times");
+  f.rule(s.times.size() >= 2, "must give at least 2 times");
+  f.rule(s.times.size() == s.values.size(), "must give as many values as times");
+  f.rule(std::is_sorted(s.times.begin(), s.times.end(), std::less_equal<>()),
+         "must give strictly increasing times");
+}
+
+template <class Fields>
+void describe(Fields& f, SignalSpec& s) {
+  f.optional("unit", s.unit, "unit of the signal");
+  f.optional("pulses", s.pulses, "constant within an interval");
+  f.optional("sines", s.sines, "single frequencies");
+  f.optional("chirps", s.chirps, "sweeping frequencies");
+  f.optional("multisines", s.multisines, "sums of sines");
+  f.optional("tables", s.tables, "piecewise linear or piecewise constant");
+  f.rule(s.pulses.size() + s.sines.size() + s.chirps.size() + s.multisines.size() + s.tables.size() > 0,
+         "must have at least one of pulses, sines, chirps, multisines, tables");
+}
+
+}  // namespace twinmap

@@ -1,0 +1,173 @@
+#pragma once
+
+#include "framework/spec/describe_excitation.hpp"
+#include "framework/spec/describe_system.hpp"
+#include "framework/spec/experiment_spec.hpp"
+#include "framework/spec/fields.hpp"
+
+namespace twinmap {
+
+template <>
+struct EnumNames<RelativeTo> {
+  static constexpr EnumName<RelativeTo> values[] = {{"value", RelativeTo::kValue},
+                                                    {"range", RelativeTo::kRange}};
+};
+
+template <>
+struct EnumNames<Integrator> {
+  static constexpr EnumName<Integrator> values[] = {
+      {"dopri5", Integrator::kDopri5},
+      {"runge_kutta_merson", Integrator::kRungeKuttaMerson},
+      {"cpodes", Integrator::kCpodes},
+  };
+};
+
+template <>
+struct EnumNames<TransformStep> {
+  static constexpr EnumName<TransformStep> values[] = {{"z_score", TransformStep::kZScore}};
+};
+
+template <>
+struct EnumNames<DesignMethod> {
+  static constexpr EnumName<DesignMethod> values[] = {
+      {"latin_hypercube", DesignMethod::kLatinHypercube},
+      {"sobol", DesignMethod::kSobol},
+      {"uniform", DesignMethod::kUniform},
+  };
+};
+
+template <>
+struct EnumNames<GpCovariance> {
+  static constexpr EnumName<GpCovariance> values[] = {
+      {"squared_exponential", GpCovariance::kSquaredExponential}};
+};
+
+template <>
+struct EnumNames<GpMean> {
+  static constexpr EnumName<GpMean> values[] = {{"constant", GpMean::kConstant}, {"zero", GpMean::kZero}};
+};
+
+template <>
+struct EnumNames<LengthScales> {
+  static constexpr EnumName<LengthScales> values[] = {
+      {"shared", LengthScales::kShared},
+      {"per_output", LengthScales::kPerOutput},
+      {"per_feature", LengthScales::kPerFeature},
+  };
+};
+
+template <class Fields>
+void describe(Fields& f, ParameterSpec& s) {
+  f.required("bounds", s.bounds, "[lower, upper]; the parameter box is sampled within");
+  f.optional("unit", s.unit, "coherent SI unit, such as N s/m; shown in tables and checked where it is used");
+  f.optional("description", s.description, "for people");
+  f.optional("relative_to", s.relative_to, "what relative errors are relative to: the value, or upper - lower");
+  f.rule(s.relative_to == RelativeTo::kRange || s.bounds.lower > 0.0 || s.bounds.upper < 0.0,
+         "has bounds that contain 0, where a relative error is undefined; give 'relative_to: range'");
+}
+
+template <class Fields>
+void describe(Fields& f, ConstantSpec& s) {
+  f.required("value", s.value, "number, or expression of parameters and constants declared before");
+  f.optional("unit", s.unit, "coherent SI unit; checked where the constant is used");
+  f.optional("description", s.description, "for people");
+}
+
+template <class Fields>
+void describe(Fields& f, SimulationSpec& s) {
+  f.required("duration", s.duration, "simulated time; s", kPositive);
+  f.optional("integrator", s.integrator, "dopri5, or one of Simbody's as a cross-check");
+  f.optional("relative_tolerance", s.relative_tolerance, "local error per step, relative", kPositive);
+  f.optional("absolute_tolerance", s.absolute_tolerance, "local error per step, absolute", kPositive);
+  f.optional("max_steps", s.max_steps, "per sample; more is a failure", kCount);
+  f.optional("max_wall_time", s.max_wall_time, "per sample; more is a failure; s", kPositive);
+  f.optional("allowed_failures", s.allowed_failures,
+             "fraction of the training or test samples that may fail before the run does", kFraction);
+}
+
+template <class Fields>
+void describe(Fields& f, SamplesFeatureSpec& s) {
+  f.required("outputs", s.outputs, "outputs to sample");
+  f.required("start", s.start, "time of the first sample; s", kNonNegative);
+  f.required("interval", s.interval, "time between samples; s", kPositive);
+  f.required("count", s.count, "samples of each output", kCount);
+  f.rule(!s.outputs.empty(), "must name at least one of outputs");
+}
+
+template <class Fields>
+void describe(Fields& f, FeatureSpec& s) {
+  f.optional("samples", s.samples, "equidistant samples of outputs");
+  f.rule(s.samples.has_value(), "must give a kind of feature: samples");
+}
+
+template <class Fields>
+void describe(Fields& f, NoiseSpec& s) {
+  f.optional("scale", s.scale, "multiplies every stddev", kNonNegative);
+  f.requiredMap("stddev", s.stddev, "standard deviation of each output's noise, in the output's unit");
+}
+
+template <class Fields>
+void describe(Fields& f, PointSetSpec& s) {
+  f.optional("method", s.method, "how the parameter box is sampled");
+  f.optional("samples", s.samples, "number of points", kCount);
+}
+
+template <class Fields>
+void describe(Fields& f, DesignSpec& s) {
+  f.optional("train", s.train, "points to train on");
+  f.optional("test", s.test, "points to test on");
+}
+
+template <class Fields>
+void describe(Fields& f, GpBoundsSpec& s) {
+  f.optional("length_scale", s.length_scale, "times the median distance of the training inputs");
+  f.optional("signal_stddev", s.signal_stddev, "times the target's standard deviation");
+  f.optional("noise_stddev", s.noise_stddev, "times the target's standard deviation");
+  for (const Bounds* bounds : {&s.length_scale, &s.signal_stddev, &s.noise_stddev}) {
+    f.rule(bounds->lower > 0.0, "must give lower bounds above 0");
+  }
+}
+
+template <class Fields>
+void describe(Fields& f, GpMapSpec& s) {
+  f.optional("covariance", s.covariance, "covariance function");
+  f.optional("mean", s.mean, "mean function; its coefficients are integrated out");
+  f.optional("length_scales", s.length_scales, "one for all features, per output, or per feature");
+  f.optional("starts", s.starts, "optimisations of the marginal likelihood, from different points", kCount);
+  f.optional("max_evaluations", s.max_evaluations, "of the marginal likelihood, per start", kCount);
+  f.optional("bounds", s.bounds, "of the hyperparameters");
+}
+
+template <class Fields>
+void describe(Fields& f, InverseMapSpec& s) {
+  f.optional("gp", s.gp, "one Gaussian process per parameter");
+}
+
+template <class Fields>
+void describe(Fields& f, ReportSpec& s) {
+  f.optional("over", s.over, "two parameters: axes of the pictures of the inferred standard deviation");
+  f.rule(s.over.empty() || s.over.size() == 2, "must name two parameters in 'over'");
+}
+
+template <class Fields>
+void describe(Fields& f, ExperimentSpec& s) {
+  f.required("name", s.name, "letters, digits, '_', '-' and '.'; names the run's folder");
+  f.optional("description", s.description, "for people");
+  f.optional("seed", s.seed, "all randomness follows from it");
+  f.requiredMap("parameters", s.model.parameters, "the updating parameters");
+  f.optionalMap("constants", s.model.constants, "named values for expressions");
+  f.required("system", s.model.system, "the multibody model");
+  f.optionalMap("excitation", s.model.excitation, "named signals for forces and moments");
+  f.optional("initial", s.model.initial, "initial condition");
+  f.requiredMap("outputs", s.model.outputs, "what is measured");
+  f.required("simulation", s.model.simulation, "how it is integrated");
+  f.required("features", s.features, "what the inverse map sees of the response");
+  f.optional("transform", s.transform, "steps from features to the inputs of the inverse map");
+  f.required("noise", s.noise, "measurement noise, on training and test features");
+  f.optional("design", s.design, "where the parameter box is sampled");
+  f.optional("inverse_map", s.inverse_map, "from features to parameters");
+  f.optional("report", s.report, "what the report shows");
+  f.rule(!s.features.empty(), "must list at least one of features");
+}
+
+}  // namespace twinmap

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/spec/model_spec.hpp"
+
+namespace twinmap {
+
+/// Equidistant samples of outputs: times start + i * interval (s), i = 0 .. count - 1.
+struct SamplesFeatureSpec {
+  std::vector<Name> outputs;
+  double start = 0.0;
+  double interval = 0.0;
+  int count = 0;
+};
+
+/// One kind of feature; exactly one member is set.
+struct FeatureSpec {
+  std::optional<SamplesFeatureSpec> samples;
+};
+
+/// Steps from features to the inputs of the inverse map, fitted on the training features.
+enum class TransformStep { kZScore };
+
+struct OutputNoiseSpec {
+  Name name;            ///< an output
+  double stddev = 0.0;  ///< in the output's unit
+};
+
+/// Independent normal noise on every sample of every output, in training and test alike.
+struct NoiseSpec {
+  double scale = 1.0;  ///< multiplies every stddev
+  std::vector<OutputNoiseSpec> stddev;
+};
+
+enum class DesignMethod { kLatinHypercube, kSobol, kUniform };
+
+/// Points in the parameter box.
+struct PointSetSpec {
+  DesignMethod method = DesignMethod::kLatinHypercube;
+  int samples = 0;
+};
+
+struct DesignSpec {
+  PointSetSpec train{DesignMethod::kLatinHypercube, 250};
+  PointSetSpec test{DesignMethod::kUniform, 500};
+};
+
+enum class GpCovariance { kSquaredExponential };
+enum class GpMean { kConstant, kZero };
+enum class LengthScales { kShared, kPerOutput, kPerFeature };
+
+/// Bounds of the hyperparameters during training, relative to the natural scale of each.
+struct GpBoundsSpec {
+  Bounds length_scale{1e-2, 1e3, {}};   ///< times the median distance of the training inputs
+  Bounds signal_stddev{1e-2, 1e2, {}};  ///< times the standard deviation of the target
+  Bounds noise_stddev{1e-4, 1e1, {}};   ///< times the standard deviation of the target
+};
+
+/// One Gaussian process per parameter, hyperparameters by maximum marginal likelihood.
+struct GpMapSpec {
+  GpCovariance covariance = GpCovariance::kSquaredExponential;
+  GpMean mean = GpMean::kConstant;
+  LengthScales length_scales = LengthScales::kShared;
+  int starts = 4;
+  int max_evaluations = 200;  ///< of the marginal likelihood, per start
+  GpBoundsSpec bounds;
+};
+
+struct InverseMapSpec {
+  GpMapSpec gp;
+};
+
+struct ReportSpec {
+  std::vector<Name> over;  ///< two parameters: axes of the pictures of the inferred sd; default the last two
+};
+
+/// A whole experiment, as described by one YAML file.
+struct ExperimentSpec {
+  Name name;
+  std::string description;
+  std::uint64_t seed = 1;
+  ModelSpec model;
+  std::vector<FeatureSpec> features;
+  std::vector<TransformStep> transform{TransformStep::kZScore};
+  NoiseSpec noise;
+  DesignSpec design;
+  InverseMapSpec inverse_map;
+  ReportSpec report;
+};
+
+}  // namespace twinmap

@@ -1,0 +1,73 @@
+#include "framework/spec/units.hpp"
+
+#include <udunits2.h>
+
+#include <memory>
+
+namespace twinmap {
+namespace {
+
+struct FreeSystem {
+  void operator()(ut_system* system) const { ut_free_system(system); }
+};
+struct FreeUnit {
+  void operator()(ut_unit* unit) const { ut_free(unit); }
+};
+
+/// UDUNITS' own database of SI units, read once; not thread safe, as units are checked before any thread.
+const ut_system& getUnitSystem() {
+  static const std::unique_ptr<ut_system, FreeSystem> kSystem([] {
+    ut_set_error_message_handler(ut_ignore);
+    return ut_read_xml(nullptr);
+  }());
+  if (kSystem == nullptr) {
+    throw std::runtime_error("the units database of UDUNITS-2 cannot be read; is libudunits2-data installed?");
+  }
+  return *kSystem;
+}
+
+void addPower(Dimension& dimension, const ut_unit* base, int power) {
+  const std::string symbol = ut_get_symbol(base, UT_ASCII);
+  if (symbol != "rad" && power != 0) {
+    dimension[symbol] = power;
+  }
+}
+
+ut_status visitBase(const ut_unit* base, void* dimension) {
+  addPower(*static_cast<Dimension*>(dimension), base, 1);
+  return UT_SUCCESS;
+}
+
+ut_status visitProduct(const ut_unit*, int count, const ut_unit* const* bases, const int* powers,
+                       void* dimension) {
+  for (int i = 0; i < count; ++i) {
+    addPower(*static_cast<Dimension*>(dimension), bases[i], powers[i]);
+  }
+  return UT_SUCCESS;
+}
+
+// Scaled, shifted, logarithmic and time-since units are not coherent.
+ut_status visitScaled(const ut_unit*, double, const ut_unit*, double, void*) { return UT_BAD_ARG; }
+ut_status visitTimestamp(const ut_unit*, const ut_unit*, double, void*) { return UT_BAD_ARG; }
+ut_status visitLogarithm(const ut_unit*, double, const ut_unit*, void*) { return UT_BAD_ARG; }
+
+}  // namespace
+
+Dimension parseUnit(const std::string& unit, const SourceLocation& where) {
+  Dimension dimension;
+  if (unit.empty() || unit == "-") {
+    return dimension;
+  }
+  const std::unique_ptr<ut_unit, FreeUnit> parsed(
+      ut_parse(&getUnitSystem(), unit.c_str(), UT_UTF8));
+  if (parsed == nullptr) {
+    throw ExperimentError(where, unit, "is not a unit; write units like N s/m, kg m^2, rad/s");
+  }
+  const ut_visitor visitor{visitBase, visitProduct, visitScaled, visitTimestamp, visitLogarithm};
+  if (ut_accept_visitor(parsed.get(), &visitor, &dimension) != UT_SUCCESS) {
+    throw ExperimentError(where, unit, "is not a coherent SI unit; give the value in m, kg, s, N, rad ...");
+  }
+  return dimension;
+}
+
+}  // namespace twinmap
