@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "framework/spec/nearest_name.hpp"
+#include "framework/spec/write_value.hpp"
 
 namespace twinmap {
 namespace {
@@ -35,9 +36,11 @@ void checkSamples(const SamplesFeatureSpec& samples, const ModelSpec& model) {
   constexpr double kRounding = 1e-9;
   const double last = samples.start + (samples.count - 1) * samples.interval;
   if (last > model.simulation.duration * (1.0 + kRounding)) {
-    throw ExperimentError(samples.outputs.front().where, "",
-                          "samples up to t = " + std::to_string(last) + " s, but simulation.duration is " +
-                              std::to_string(model.simulation.duration) + " s");
+    SourceLocation where = samples.outputs.front().where;
+    where.key_path = where.key_path.substr(0, where.key_path.rfind(".outputs"));
+    throw ExperimentError(where, "",
+                          "samples up to t = " + toText(last) + " s, but simulation.duration is " +
+                              toText(model.simulation.duration) + " s");
   }
 }
 

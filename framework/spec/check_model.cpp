@@ -266,6 +266,8 @@ class ModelCheck {
 
 }  // namespace
 
-void checkModel(const ModelSpec& model) { ModelCheck(model).run(); }
+void checkModel(const ModelSpec& model) {
+  ModelCheck(model).run();
+}
 
 }  // namespace twinmap

@@ -3,6 +3,7 @@
 #include <muParser.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "framework/spec/nearest_name.hpp"
@@ -26,10 +27,26 @@ bool isFunctionName(const std::string& name) {
   return kParser.GetFunDef().count(name) > 0;
 }
 
+/// Whether the expression has a number that may carry a unit of its own (7850 * area * length): one that is
+/// not an exponent.
+bool hasFreeNumber(const std::string& text) {
+  const auto is_word = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '.'; };
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool begins_word = is_word(text[i]) && (i == 0 || !is_word(text[i - 1]));
+    if (!begins_word || std::isalpha(static_cast<unsigned char>(text[i])) != 0 || text[i] == '_') {
+      continue;
+    }
+    const std::size_t before = text.substr(0, i).find_last_not_of(' ');
+    if (before == std::string::npos || text[before] != '^') {
+      return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
-void CheckScope::define(const Name& name, const std::optional<Dimension>& dimension,
-                        double reference_value) {
+void CheckScope::define(const Name& name, const std::optional<Dimension>& dimension, double reference_value) {
   requireIdentifier(name);
   if (isReservedName(name.text) || isFunctionName(name.text)) {
     throw ExperimentError(name.where, name.text, "is reserved in expressions; choose another name");
@@ -50,13 +67,15 @@ void CheckScope::defineTime() {
 }
 
 std::optional<Dimension> CheckScope::readUnit(const std::string& unit, const SourceLocation& where) {
-  return unit.empty() ? std::nullopt : std::make_optional(parseUnit(unit, where));
+  SourceLocation unit_where = where;
+  unit_where.key_path += ".unit";
+  return unit.empty() ? std::nullopt : std::make_optional(parseUnit(unit, unit_where));
 }
 
 double CheckScope::check(const Expression& expression, const std::string& unit) const {
   const double value = calcScaled(expression, false);
   const std::vector<std::string> used = getUsedNames(expression);
-  if (unit.empty() || used.empty() || !isUnitStated(used)) {
+  if (unit.empty() || used.empty() || !isUnitStated(used) || hasFreeNumber(expression.text)) {
     return value;
   }
   const double change = calcUnitChange(parseUnit(unit, expression.where));
@@ -86,8 +105,7 @@ bool CheckScope::isUnitStated(const std::vector<std::string>& names) const {
 double CheckScope::calcScaled(const Expression& expression, bool scaled) const {
   ExpressionScope scope;
   for (std::size_t i = 0; i < names_.size(); ++i) {
-    const double change =
-        scaled && symbols_[i].dimension ? calcUnitChange(*symbols_[i].dimension) : 1.0;
+    const double change = scaled && symbols_[i].dimension ? calcUnitChange(*symbols_[i].dimension) : 1.0;
     scope.define(names_[i], change * symbols_[i].reference_value);
   }
   return scope.compile(expression).calc();

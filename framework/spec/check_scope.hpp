@@ -19,12 +19,13 @@ class CheckScope {
   /// Adds the time t in s, which only force laws know.
   void defineTime();
 
-  /// The dimension of a stated unit; none for "".
+  /// The dimension of the unit stated for what is declared at `where`; none for "".
   static std::optional<Dimension> readUnit(const std::string& unit, const SourceLocation& where);
 
-  /// Compiles `expression` and, if every name in it has a unit, checks that it comes out in `unit` ("": no
-  /// check): a physical expression scales with the units of its names (dimensional homogeneity). Returns the
-  /// value at the reference point. Throws ExperimentError.
+  /// Compiles `expression` and checks that it comes out in `unit`: a physical expression scales with the
+  /// units of its names (dimensional homogeneity). Not checked where `unit` is "", where a name has no unit,
+  /// and where a number may carry one (all but exponents). Returns the value at the reference point. Throws
+  /// ExperimentError.
   double check(const Expression& expression, const std::string& unit) const;
   void check(const Expression3& expressions, const std::string& unit) const;
 

@@ -61,7 +61,8 @@ void describe(Fields& f, ParameterSpec& s) {
   f.required("bounds", s.bounds, "[lower, upper]; the parameter box is sampled within");
   f.optional("unit", s.unit, "coherent SI unit, such as N s/m; shown in tables and checked where it is used");
   f.optional("description", s.description, "for people");
-  f.optional("relative_to", s.relative_to, "what relative errors are relative to: the value, or upper - lower");
+  f.optional("relative_to", s.relative_to,
+             "what relative errors are relative to: the value, or upper - lower");
   f.rule(s.relative_to == RelativeTo::kRange || s.bounds.lower > 0.0 || s.bounds.upper < 0.0,
          "has bounds that contain 0, where a relative error is undefined; give 'relative_to: range'");
 }

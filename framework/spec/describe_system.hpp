@@ -47,7 +47,8 @@ void describe(Fields& f, JointSpec& s) {
   f.required("type", s.type, "kind of joint");
   f.optional("parent", s.parent, "ground, or a body declared before");
   f.optional("coordinates", s.coordinates, "a name for each coordinate of the joint");
-  f.optional("axis", s.axis, "joint axis in the joint frame (slider x, pin, screw and cylinder z by default)");
+  f.optional("axis", s.axis,
+             "joint axis in the joint frame (slider x, pin, screw and cylinder z by default)");
   f.optional("pitch", s.pitch, "screw: translation per rotation; m/rad");
   f.optional("in_parent", s.in_parent, "joint frame, fixed to the parent");
   f.optional("in_body", s.in_body, "joint frame, fixed to the body");

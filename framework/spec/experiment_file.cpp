@@ -7,11 +7,23 @@
 #include "framework/spec/write_value.hpp"
 
 namespace twinmap {
+namespace {
+
+/// Defaults that depend on other values.
+void resolveDefaults(ExperimentSpec& experiment) {
+  const std::vector<ParameterSpec>& parameters = experiment.model.parameters;
+  if (experiment.report.over.empty() && parameters.size() >= 2) {
+    experiment.report.over = {parameters[parameters.size() - 2].name, parameters.back().name};
+  }
+}
+
+}  // namespace
 
 ExperimentSpec readExperiment(const YamlNode& root) {
   ExperimentSpec experiment;
   readValue(root, experiment);
   checkExperiment(experiment);
+  resolveDefaults(experiment);
   return experiment;
 }
 
@@ -23,6 +35,8 @@ ExperimentSpec loadExperiment(const std::string& path, const std::vector<std::st
   return readExperiment(root);
 }
 
-std::string writeExperiment(const ExperimentSpec& experiment) { return writeYaml(writeValue(experiment)); }
+std::string writeExperiment(const ExperimentSpec& experiment) {
+  return writeYaml(writeValue(experiment));
+}
 
 }  // namespace twinmap

@@ -1,47 +1,74 @@
 #include "framework/spec/joint_type.hpp"
 
-namespace twinmap {
+#include <stdexcept>
 
-const std::vector<CoordinateKind>& getCoordinateKinds(JointType type) {
-  using Kinds = std::vector<CoordinateKind>;
-  constexpr CoordinateKind kR = CoordinateKind::kRotation;
-  constexpr CoordinateKind kT = CoordinateKind::kTranslation;
-  static const Kinds kNone{}, kOneR{kR}, kOneT{kT}, kRT{kR, kT}, kRR{kR, kR}, kRTT{kR, kT, kT};
-  static const Kinds kThreeT{kT, kT, kT}, kThreeR{kR, kR, kR}, kSix{kR, kR, kR, kT, kT, kT};
+namespace twinmap {
+namespace {
+
+constexpr JointCoordinate kLength{CoordinateKind::kTranslation, true};
+constexpr JointCoordinate kAngle{CoordinateKind::kRotation, true};
+constexpr JointCoordinate kAngleWithoutForce{CoordinateKind::kRotation, false};
+
+}  // namespace
+
+const std::vector<JointCoordinate>& getJointCoordinates(JointType type) {
+  using Coordinates = std::vector<JointCoordinate>;
+  static const Coordinates none;
+  static const Coordinates length{kLength};
+  static const Coordinates angle{kAngle};
+  static const Coordinates two_angles{kAngle, kAngle};
+  static const Coordinates angle_and_length{kAngle, kLength};
+  static const Coordinates angle_and_two_lengths{kAngle, kLength, kLength};
+  static const Coordinates three_lengths{kLength, kLength, kLength};
+  static const Coordinates three_angles{kAngle, kAngle, kAngle};
+  static const Coordinates ball{kAngleWithoutForce, kAngleWithoutForce, kAngleWithoutForce};
+  static const Coordinates bushing{kAngle, kAngle, kAngle, kLength, kLength, kLength};
+  static const Coordinates free{
+      kAngleWithoutForce, kAngleWithoutForce, kAngleWithoutForce, kLength, kLength, kLength};
   switch (type) {
     case JointType::kWeld:
-      return kNone;
+      return none;
     case JointType::kSlider:
-      return kOneT;
+      return length;
     case JointType::kPin:
     case JointType::kScrew:
-      return kOneR;
+      return angle;
+    case JointType::kUniversal:
+      return two_angles;
     case JointType::kCylinder:
     case JointType::kBendStretch:
-      return kRT;
-    case JointType::kUniversal:
-      return kRR;
+      return angle_and_length;
     case JointType::kPlanar:
-      return kRTT;
+      return angle_and_two_lengths;
     case JointType::kTranslation:
-      return kThreeT;
+      return three_lengths;
     case JointType::kGimbal:
+      return three_angles;
     case JointType::kBall:
-      return kThreeR;
+      return ball;
     case JointType::kBushing:
+      return bushing;
     case JointType::kFree:
-      return kSix;
+      return free;
   }
-  return kNone;
+  throw std::logic_error("unknown joint type");
 }
 
-int getCoordinateCount(JointType type) { return static_cast<int>(getCoordinateKinds(type).size()); }
+int getCoordinateCount(JointType type) {
+  return static_cast<int>(getJointCoordinates(type).size());
+}
 
 bool hasAxis(JointType type) {
   return type == JointType::kSlider || type == JointType::kPin || type == JointType::kScrew ||
          type == JointType::kCylinder;
 }
 
-const char* getUnit(CoordinateKind kind) { return kind == CoordinateKind::kRotation ? "rad" : "m"; }
+const char* getUnit(CoordinateKind kind) {
+  return kind == CoordinateKind::kTranslation ? "m" : "rad";
+}
+
+const char* getSpeedUnit(CoordinateKind kind) {
+  return kind == CoordinateKind::kTranslation ? "m/s" : "rad/s";
+}
 
 }  // namespace twinmap

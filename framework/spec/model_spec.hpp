@@ -21,8 +21,8 @@ struct Bounds {
 /// An updating parameter: to be inferred from a response, sampled within its bounds for training.
 struct ParameterSpec {
   Name name;
-  Bounds bounds;            ///< in `unit`
-  std::string unit;                 ///< coherent SI unit, "" if not stated
+  Bounds bounds;     ///< in `unit`
+  std::string unit;  ///< coherent SI unit, "" if not stated
   std::string description;
   RelativeTo relative_to = RelativeTo::kValue;
 };

@@ -60,7 +60,8 @@ void readValue(const YamlNode& node, double& value, const NumberRule& rule) {
   double number = 0.0;
   const bool is_number =
       node.kind == YamlNode::Kind::kScalar && !node.quoted && parseLiteral(node.scalar, number);
-  const bool in_range = number <= rule.maximum && (rule.minimum_allowed ? number >= rule.minimum : number > rule.minimum);
+  const bool in_range =
+      number <= rule.maximum && (rule.minimum_allowed ? number >= rule.minimum : number > rule.minimum);
   if (!is_number || !in_range) {
     throw ExperimentError(node.where, text, rule.text);
   }
@@ -80,7 +81,9 @@ void readValue(const YamlNode& node, std::uint64_t& value) {
   value = static_cast<std::uint64_t>(readInteger(node, kSeed));
 }
 
-void readValue(const YamlNode& node, std::string& value) { value = requireScalar(node, "a text"); }
+void readValue(const YamlNode& node, std::string& value) {
+  value = requireScalar(node, "a text");
+}
 
 void readValue(const YamlNode& node, Expression& value) {
   const std::string text = trim(requireScalar(node, "a number or an expression"));
@@ -110,9 +113,13 @@ void readValue(const YamlNode& node, Bounds& value) {
   value = {ends[0], ends[1], node.where};
 }
 
-void readValue(const YamlNode& node, OutputNoiseSpec& value) { readValue(node, value.stddev, kNonNegative); }
+void readValue(const YamlNode& node, OutputNoiseSpec& value) {
+  readValue(node, value.stddev, kNonNegative);
+}
 
-void readValue(const YamlNode& node, NamedExpression& value) { readValue(node, value.value); }
+void readValue(const YamlNode& node, NamedExpression& value) {
+  readValue(node, value.value);
+}
 
 void readValue(const YamlNode& node, ConstantSpec& value) {
   if (node.kind == YamlNode::Kind::kScalar) {
@@ -154,8 +161,9 @@ void FieldReader::requireNoUnknownKeys() const {
       for (const std::string& key : known_) {
         listed += (listed.empty() ? "" : ", ") + key;
       }
-      throw ExperimentError(entry.key_where, entry.key,
-                            "is not a key here" + suggestName(entry.key, known_) + " (known: " + listed + ")");
+      throw ExperimentError(
+          entry.key_where, entry.key,
+          "is not a key here" + suggestName(entry.key, known_) + " (known: " + listed + ")");
     }
   }
 }

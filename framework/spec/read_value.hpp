@@ -84,7 +84,8 @@ void readEnum(const YamlNode& node, Enum& value) {
     names.emplace_back(name.text);
     listed += (listed.empty() ? "" : ", ") + names.back();
   }
-  throw ExperimentError(node.where, node.scalar, "must be one of " + listed + suggestName(node.scalar, names));
+  throw ExperimentError(node.where, node.scalar,
+                        "must be one of " + listed + suggestName(node.scalar, names));
 }
 
 template <class T>
@@ -113,7 +114,8 @@ void readValue(const YamlNode& node, std::vector<T>& values) {
 template <class T, std::size_t N>
 void readValue(const YamlNode& node, std::array<T, N>& values) {
   if (node.kind != YamlNode::Kind::kSequence || node.items.size() != N) {
-    throw ExperimentError(node.where, describeValue(node), "must be a list of " + std::to_string(N) + " values");
+    throw ExperimentError(node.where, describeValue(node),
+                          "must be a list of " + std::to_string(N) + " values");
   }
   for (std::size_t i = 0; i < N; ++i) {
     readValue(node.items[i], values[i]);

@@ -21,7 +21,8 @@ const ut_system& getUnitSystem() {
     return ut_read_xml(nullptr);
   }());
   if (kSystem == nullptr) {
-    throw std::runtime_error("the units database of UDUNITS-2 cannot be read; is libudunits2-data installed?");
+    throw std::runtime_error(
+        "the units database of UDUNITS-2 cannot be read; is libudunits2-data installed?");
   }
   return *kSystem;
 }
@@ -47,9 +48,15 @@ ut_status visitProduct(const ut_unit*, int count, const ut_unit* const* bases, c
 }
 
 // Scaled, shifted, logarithmic and time-since units are not coherent.
-ut_status visitScaled(const ut_unit*, double, const ut_unit*, double, void*) { return UT_BAD_ARG; }
-ut_status visitTimestamp(const ut_unit*, const ut_unit*, double, void*) { return UT_BAD_ARG; }
-ut_status visitLogarithm(const ut_unit*, double, const ut_unit*, void*) { return UT_BAD_ARG; }
+ut_status visitScaled(const ut_unit*, double, const ut_unit*, double, void*) {
+  return UT_BAD_ARG;
+}
+ut_status visitTimestamp(const ut_unit*, const ut_unit*, double, void*) {
+  return UT_BAD_ARG;
+}
+ut_status visitLogarithm(const ut_unit*, double, const ut_unit*, void*) {
+  return UT_BAD_ARG;
+}
 
 }  // namespace
 
@@ -58,8 +65,7 @@ Dimension parseUnit(const std::string& unit, const SourceLocation& where) {
   if (unit.empty() || unit == "-") {
     return dimension;
   }
-  const std::unique_ptr<ut_unit, FreeUnit> parsed(
-      ut_parse(&getUnitSystem(), unit.c_str(), UT_UTF8));
+  const std::unique_ptr<ut_unit, FreeUnit> parsed(ut_parse(&getUnitSystem(), unit.c_str(), UT_UTF8));
   if (parsed == nullptr) {
     throw ExperimentError(where, unit, "is not a unit; write units like N s/m, kg m^2, rad/s");
   }

@@ -11,16 +11,32 @@ std::string toText(double value) {
   return error == std::errc() ? std::string(text, end) : std::string();
 }
 
-YamlNode writeValue(double value) { return makeScalar(toText(value)); }
-YamlNode writeValue(int value) { return makeScalar(std::to_string(value)); }
-YamlNode writeValue(std::uint64_t value) { return makeScalar(std::to_string(value)); }
-YamlNode writeValue(const std::string& value) { return makeScalar(value, true); }
-YamlNode writeValue(const Expression& value) { return makeScalar(value.text); }
-YamlNode writeValue(const Name& value) { return makeScalar(value.text); }
+YamlNode writeValue(double value) {
+  return makeScalar(toText(value));
+}
+YamlNode writeValue(int value) {
+  return makeScalar(std::to_string(value));
+}
+YamlNode writeValue(std::uint64_t value) {
+  return makeScalar(std::to_string(value));
+}
+YamlNode writeValue(const std::string& value) {
+  return makeScalar(value, true);
+}
+YamlNode writeValue(const Expression& value) {
+  return makeScalar(value.text);
+}
+YamlNode writeValue(const Name& value) {
+  return makeScalar(value.text);
+}
 YamlNode writeValue(const Bounds& value) {
   return writeSequence(std::array<double, 2>{value.lower, value.upper});
 }
-YamlNode writeValue(const OutputNoiseSpec& value) { return writeValue(value.stddev); }
-YamlNode writeValue(const NamedExpression& value) { return writeValue(value.value); }
+YamlNode writeValue(const OutputNoiseSpec& value) {
+  return writeValue(value.stddev);
+}
+YamlNode writeValue(const NamedExpression& value) {
+  return writeValue(value.value);
+}
 
 }  // namespace twinmap

@@ -97,7 +97,9 @@ template <class T>
 bool isGiven(const std::vector<T>& values) {
   return !values.empty();
 }
-inline bool isGiven(const Expression& value) { return !value.text.empty(); }
+inline bool isGiven(const Expression& value) {
+  return !value.text.empty();
+}
 
 template <class T, class... Rule>
 void FieldWriter::required(const char* key, const T& value, const char*, const Rule&...) {

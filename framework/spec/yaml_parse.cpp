@@ -159,7 +159,8 @@ YamlNode parseYaml(const std::string& text, const std::string& file) {
     parser.HandleNextDocument(builder);
     TreeBuilder rest(file);
     if (parser.HandleNextDocument(rest)) {
-      throw ExperimentError(rest.takeRoot().where, "", "starts a second document; one file is one experiment");
+      throw ExperimentError(rest.takeRoot().where, "",
+                            "starts a second document; one file is one experiment");
     }
   } catch (const YAML::Exception& error) {
     throw ExperimentError(locate(file, error.mark), "", "is not valid YAML: " + error.msg);

@@ -7,7 +7,9 @@
 namespace twinmap {
 namespace {
 
-bool isScalar(const YamlNode& node) { return node.kind == YamlNode::Kind::kScalar; }
+bool isScalar(const YamlNode& node) {
+  return node.kind == YamlNode::Kind::kScalar;
+}
 
 /// Lists of scalars and leaf maps of at most three scalars read best on one line.
 bool fitsOneLine(const YamlNode& node) {
