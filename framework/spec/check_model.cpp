@@ -7,24 +7,25 @@
 namespace twinmap {
 namespace {
 
-/// A coordinate of the system and its unit.
+/// A coordinate of the system, its unit, and whether forces may act on it directly.
 struct Coordinate {
   Name name;
   std::string unit;
+  bool takes_forces;
 };
 
 std::vector<Coordinate> collectCoordinates(const SystemSpec& system) {
   std::vector<Coordinate> coordinates;
   for (const BodySpec& body : system.bodies) {
-    const std::vector<CoordinateKind>& kinds = getCoordinateKinds(body.joint.type);
-    if (body.joint.coordinates.size() != kinds.size()) {
+    const std::vector<JointCoordinate>& expected = getJointCoordinates(body.joint.type);
+    if (body.joint.coordinates.size() != expected.size()) {
       throw ExperimentError(body.name.where, body.name.text,
                             "has " + std::to_string(body.joint.coordinates.size()) +
                                 " names in joint.coordinates, but its type of joint has " +
-                                std::to_string(kinds.size()) + " coordinates");
+                                std::to_string(expected.size()) + " coordinates");
     }
-    for (std::size_t i = 0; i < kinds.size(); ++i) {
-      coordinates.push_back({body.joint.coordinates[i], getUnit(kinds[i])});
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      coordinates.push_back({body.joint.coordinates[i], getUnit(expected[i].kind), expected[i].takes_forces});
     }
   }
   return coordinates;
@@ -120,15 +121,15 @@ class ModelCheck {
 
   void checkCoordinateElements() const {
     for (const SpringSpec& spring : model_.system.springs) {
-      const std::string unit = findUnit(spring.coordinate);
+      const std::string unit = findForcedUnit(spring.coordinate);
       constants_.check(spring.stiffness, unit == "m" ? "N/m" : "N m/rad");
       constants_.check(spring.rest, unit);
     }
     for (const DamperSpec& damper : model_.system.dampers) {
-      constants_.check(damper.damping, findUnit(damper.coordinate) == "m" ? "N s/m" : "N m s/rad");
+      constants_.check(damper.damping, findForcedUnit(damper.coordinate) == "m" ? "N s/m" : "N m s/rad");
     }
     for (const ForceLawSpec& law : model_.system.force_laws) {
-      dynamics_.check(law.force, findUnit(law.coordinate) == "m" ? "N" : "N m");
+      dynamics_.check(law.force, findForcedUnit(law.coordinate) == "m" ? "N" : "N m");
     }
   }
 
@@ -244,17 +245,30 @@ class ModelCheck {
     }
   }
 
-  /// The coordinate's unit; throws where there is no such coordinate.
-  std::string findUnit(const Name& name) const {
+  const Coordinate& find(const Name& name) const {
     std::vector<std::string> names;
     for (const Coordinate& coordinate : coordinates_) {
       if (coordinate.name.text == name.text) {
-        return coordinate.unit;
+        return coordinate;
       }
       names.push_back(coordinate.name.text);
     }
     requireKnown(name, names, "a coordinate");
-    return "";
+    throw std::logic_error("a coordinate is known by name, but not listed");
+  }
+
+  std::string findUnit(const Name& name) const { return find(name).unit; }
+
+  /// The unit of a coordinate on which a force acts.
+  std::string findForcedUnit(const Name& name) const {
+    const Coordinate& coordinate = find(name);
+    if (!coordinate.takes_forces) {
+      throw ExperimentError(
+          name.where, name.text,
+          "is an angle of a ball or free joint, whose speeds are an angular velocity; use a "
+          "bushing or an applied moment instead");
+    }
+    return coordinate.unit;
   }
 
   const ModelSpec& model_;
