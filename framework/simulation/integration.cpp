@@ -1,0 +1,161 @@
+#include "framework/simulation/integration.hpp"
+
+#include <algorithm>
+#include <boost/numeric/odeint/stepper/controlled_runge_kutta.hpp>
+#include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
+#include <cmath>
+#include <limits>
+
+namespace twinmap {
+namespace {
+
+namespace odeint = boost::numeric::odeint;
+using State = OdeProblem::State;
+using Dopri5 = odeint::runge_kutta_dopri5<State>;
+using ControlledDopri5 = odeint::controlled_runge_kutta<Dopri5>;
+
+bool isFinite(const State& x) {
+  return std::all_of(x.begin(), x.end(), [](double value) { return std::isfinite(value); });
+}
+
+/// Root mean square of values / (absolute + relative |x|).
+double calcScaledNorm(const State& values, const State& x, const IntegrationOptions& options) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double scale = options.absolute_tolerance + options.relative_tolerance * std::abs(x[i]);
+    sum += values[i] * values[i] / (scale * scale);
+  }
+  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(values.size(), 1)));
+}
+
+State addScaled(const State& x, double factor, const State& direction) {
+  State sum(x);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    sum[i] += factor * direction[i];
+  }
+  return sum;
+}
+
+class Integration {
+ public:
+  Integration(OdeProblem& problem, State x, const Eigen::VectorXd& output_times,
+              const IntegrationOptions& options)
+      : problem_(problem),
+        output_times_(output_times),
+        options_(options),
+        guard_(options),
+        stepper_(
+            ControlledDopri5::error_checker_type(options.absolute_tolerance, options.relative_tolerance)),
+        x_(std::move(x)),
+        dxdt_(x_.size()),
+        x_new_(x_.size()),
+        dxdt_new_(x_.size()),
+        x_out_(x_.size()) {}
+
+  IntegrationReport run(const std::vector<double>& boundaries) {
+    for (std::size_t i = 0; i + 1 < boundaries.size() && report_.failure.empty(); ++i) {
+      runPhase(boundaries[i], boundaries[i + 1]);
+    }
+    if (report_.failure.empty()) {
+      recordRemaining(boundaries.back());
+    }
+    return report_;
+  }
+
+ private:
+  void calcDerivative(const State& x, State& dxdt, double t) { problem_.calcDerivative(t, x, dxdt); }
+
+  void runPhase(double begin, double end) {
+    problem_.beginPhase(begin);
+    calcDerivative(x_, dxdt_, begin);
+    if (!isFinite(x_) || !isFinite(dxdt_)) {
+      report_.failure = describeAt("state became non-finite", begin);
+      return;
+    }
+    t_ = begin;
+    double dt = calcFirstStep(end - begin);
+    while (t_ < end && report_.failure.empty()) {
+      dt = step(dt, end);
+    }
+  }
+
+  /// Hairer, Norsett, Wanner I, II.4, algorithm for the starting step size.
+  double calcFirstStep(double length) {
+    const double d0 = calcScaledNorm(x_, x_, options_);
+    const double d1 = calcScaledNorm(dxdt_, x_, options_);
+    const double h0 = std::min(d0 < 1e-5 || d1 < 1e-5 ? 1e-6 : 0.01 * d0 / d1, length);
+    calcDerivative(addScaled(x_, h0, dxdt_), dxdt_new_, t_ + h0);
+    const double d2 = calcScaledNorm(addScaled(dxdt_new_, -1.0, dxdt_), x_, options_) / h0;
+    const double largest = std::max(d1, d2);
+    const double h1 = largest <= 1e-15 ? std::max(1e-6, 1e-3 * h0) : std::pow(0.01 / largest, 0.2);
+    const double h = std::min(100.0 * h0, h1);
+    return std::isfinite(h) ? h : h0;
+  }
+
+  /// Tries one step of size dt at most; returns the size to try next.
+  double step(double dt, double end) {
+    report_.failure = guard_.check(report_.steps, t_);
+    if (!report_.failure.empty()) {
+      return dt;
+    }
+    const bool last = t_ + 1.01 * dt >= end;
+    const double planned = last ? end - t_ : std::min(dt, 0.5 * (end - t_));
+    double t_new = t_;
+    double proposed = planned;
+    ++report_.steps;
+    const auto f = [this](const State& x, State& dxdt, double t) { calcDerivative(x, dxdt, t); };
+    const bool accepted =
+        stepper_.try_step(f, x_, dxdt_, t_new, x_new_, dxdt_new_, proposed) == odeint::success;
+    if (accepted && isFinite(x_new_) && isFinite(dxdt_new_)) {
+      accept(last ? end : t_new);
+      return std::max(proposed, planned);
+    }
+    ++report_.rejected;
+    return shrink(accepted || !std::isfinite(proposed) ? 0.1 * planned : proposed);
+  }
+
+  double shrink(double dt) {
+    if (dt <= 8.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(t_), 1e-9)) {
+      const bool finite = isFinite(x_new_) && isFinite(dxdt_new_);
+      report_.failure = describeAt(finite ? "step size became too small" : "state became non-finite", t_);
+    }
+    return dt;
+  }
+
+  void accept(double t_new) {
+    for (; next_output_ < output_times_.size() && output_times_[next_output_] < t_new; ++next_output_) {
+      const double t = output_times_[next_output_];
+      stepper_.stepper().calc_state(t, x_out_, x_, dxdt_, t_, x_new_, dxdt_new_, t_new);
+      problem_.recordOutput(static_cast<int>(next_output_), t, x_out_);
+    }
+    x_.swap(x_new_);
+    dxdt_.swap(dxdt_new_);
+    t_ = t_new;
+  }
+
+  void recordRemaining(double end) {
+    for (; next_output_ < output_times_.size(); ++next_output_) {
+      problem_.recordOutput(static_cast<int>(next_output_), end, x_);
+    }
+  }
+
+  OdeProblem& problem_;
+  const Eigen::VectorXd& output_times_;
+  const IntegrationOptions& options_;
+  IntegrationGuard guard_;
+  ControlledDopri5 stepper_;
+  IntegrationReport report_;
+  double t_ = 0.0;
+  State x_, dxdt_, x_new_, dxdt_new_, x_out_;
+  Eigen::Index next_output_ = 0;
+};
+
+}  // namespace
+
+IntegrationReport integrateDopri5(OdeProblem& problem, OdeProblem::State x,
+                                  const std::vector<double>& boundaries, const Eigen::VectorXd& output_times,
+                                  const IntegrationOptions& options) {
+  return Integration(problem, std::move(x), output_times, options).run(boundaries);
+}
+
+}  // namespace twinmap

@@ -1,0 +1,29 @@
+#include <cstdio>
+
+#include "framework/simulation/integration.hpp"
+
+namespace twinmap {
+
+std::string describeAt(const std::string& what, double t) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", t);
+  return what + " at t = " + text + " s";
+}
+
+IntegrationGuard::IntegrationGuard(const IntegrationOptions& options)
+    : options_(options), start_(std::chrono::steady_clock::now()) {}
+
+std::string IntegrationGuard::check(int steps, double t) const {
+  if (steps >= options_.max_steps) {
+    return describeAt("step limit of " + std::to_string(options_.max_steps) + " reached", t);
+  }
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
+  if (elapsed.count() > options_.max_wall_time) {
+    char limit[32];
+    std::snprintf(limit, sizeof limit, "%g", options_.max_wall_time);
+    return describeAt("wall-time limit of " + std::string(limit) + " s reached", t);
+  }
+  return "";
+}
+
+}  // namespace twinmap

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "framework/simulation/simulator.hpp"
+
+namespace twinmap {
+
+struct GeneratorOptions {
+  int threads = 0;     ///< 0: as many as OpenMP offers
+  int batch_size = 1;  ///< samples handed to the simulator at once; larger only for back ends that vectorise
+  /// Called with the number of samples done so far, from any thread but one at a time.
+  std::function<void(int done)> progress;
+};
+
+/// Clean responses of a set of parameter points, one column a sample.
+struct Trajectories {
+  Eigen::MatrixXd parameters;          ///< parameters x n
+  Eigen::MatrixXd responses;           ///< outputs * times x n, output by output; NaN where a sample failed
+  std::vector<SampleStatus> statuses;  ///< n
+  Eigen::VectorXd times;               ///< s
+  std::vector<std::string> output_names, output_units;
+
+  int getSampleCount() const { return static_cast<int>(parameters.cols()); }
+  int calcFailureCount() const;
+};
+
+/// Simulates every column of `parameters` on a pool of threads. The result is bitwise the same for any number
+/// of threads and any batch size. A sample that fails keeps its place. `prototype` is cloned, not used. An
+/// exception of a simulator (a bug or a wrong experiment, never a numerical failure) stops the generation and
+/// is thrown again. Throws std::invalid_argument for a batch size below 1 or a negative number of threads.
+Trajectories generateSamples(const Simulator& prototype, const Eigen::MatrixXd& parameters,
+                             const GeneratorOptions& options = {});
+
+}  // namespace twinmap
