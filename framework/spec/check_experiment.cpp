@@ -4,7 +4,7 @@
 #include <cctype>
 
 #include "framework/spec/nearest_name.hpp"
-#include "framework/spec/write_value.hpp"
+#include "framework/spec/number_text.hpp"
 
 namespace twinmap {
 namespace {

@@ -56,8 +56,8 @@ enum class LengthScales { kShared, kPerOutput, kPerFeature };
 /// Bounds of the hyperparameters during training, relative to the natural scale of each.
 struct GpBoundsSpec {
   Bounds length_scale{1e-2, 1e3, {}};   ///< times the median distance of the training inputs
-  Bounds signal_stddev{1e-2, 1e2, {}};  ///< times the standard deviation of the target
-  Bounds noise_stddev{1e-4, 1e1, {}};   ///< times the standard deviation of the target
+  Bounds signal_stddev{1e-2, 1e3, {}};  ///< times the standard deviation of the target
+  Bounds noise_stddev{1e-5, 3.0, {}};   ///< times the standard deviation of the target
 };
 
 /// One Gaussian process per parameter, hyperparameters by maximum marginal likelihood.

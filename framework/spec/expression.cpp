@@ -4,10 +4,9 @@
 
 #include <algorithm>
 #include <boost/math/constants/constants.hpp>
-#include <charconv>
-#include <cmath>
 
 #include "framework/spec/nearest_name.hpp"
+#include "framework/spec/number_text.hpp"
 
 namespace twinmap {
 namespace {
@@ -101,13 +100,6 @@ std::vector<std::string> getUsedNames(const Expression& expression) {
     throwSyntaxError(expression, error);
   }
   return names;
-}
-
-bool parseLiteral(const std::string& text, double& value) {
-  const char* first = text.data() + (text.rfind('+', 0) == 0 ? 1 : 0);
-  const char* last = text.data() + text.size();
-  const auto [end, error] = std::from_chars(first, last, value);
-  return error == std::errc() && end == last && first != last && std::isfinite(value);
 }
 
 bool isReservedName(const std::string& name) {

@@ -80,9 +80,6 @@ class CompiledExpression {
 /// The names that `expression` uses, in order of appearance. Throws ExperimentError on a syntax error.
 std::vector<std::string> getUsedNames(const Expression& expression);
 
-/// The number, if `text` is a plain decimal literal ("3.3", "-1e-3"); inf and nan are not.
-bool parseLiteral(const std::string& text, double& value);
-
 /// Names predefined in every expression, which therefore cannot name anything else: t (time in s) and pi.
 bool isReservedName(const std::string& name);
 

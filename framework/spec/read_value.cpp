@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "framework/spec/describe_experiment.hpp"
+#include "framework/spec/number_text.hpp"
 
 namespace twinmap {
 namespace {

@@ -1,15 +1,6 @@
 #include "framework/spec/write_value.hpp"
 
-#include <charconv>
-
 namespace twinmap {
-
-std::string toText(double value) {
-  constexpr std::size_t kLongest = 32;
-  char text[kLongest];
-  const auto [end, error] = std::to_chars(text, text + kLongest, value);
-  return error == std::errc() ? std::string(text, end) : std::string();
-}
 
 YamlNode writeValue(double value) {
   return makeScalar(toText(value));

@@ -8,12 +8,10 @@
 
 #include "framework/spec/experiment_spec.hpp"
 #include "framework/spec/fields.hpp"
+#include "framework/spec/number_text.hpp"
 #include "framework/spec/yaml_node.hpp"
 
 namespace twinmap {
-
-/// The shortest decimal text that reads back as the same number.
-std::string toText(double value);
 
 YamlNode writeValue(double value);
 YamlNode writeValue(int value);

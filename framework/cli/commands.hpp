@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace twinmap {
+
+/// What every command that reads an experiment takes.
+struct ExperimentArguments {
+  std::string file;
+  std::vector<std::string> overrides;  ///< "key.path=value"
+};
+
+struct SimulateArguments {
+  ExperimentArguments experiment;  ///< parameters.NAME=VALUE among the overrides sets the point
+  std::string csv;                 ///< "": standard output
+  bool noise = false;
+};
+
+struct RunArguments {
+  ExperimentArguments experiment;
+  std::string folder;  ///< "": results/NAME
+  int threads = 1;
+  std::string command_line;
+};
+
+// One file a subcommand. Results go to stdout, progress and warnings to stderr. Each throws ExperimentError
+// for wrong input and any other std::exception for a failure.
+
+/// Validates an experiment and prints it with all defaults.
+void check(const ExperimentArguments& arguments);
+
+/// Simulates once and writes a CSV: t, then each output by its name.
+void simulate(const SimulateArguments& arguments);
+
+/// Runs an experiment and prints its table.
+void run(const RunArguments& arguments);
+
+}  // namespace twinmap

@@ -1,0 +1,115 @@
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
+#include <thread>
+#include <twinmap/build_info.hpp>
+
+#include "framework/cli/commands.hpp"
+#include "framework/spec/source_location.hpp"
+
+namespace {
+
+constexpr int kFailed = 1;
+constexpr int kWrongInput = 2;
+
+std::string joinArguments(int count, char** arguments) {
+  std::string line = "twinmap";
+  for (int i = 1; i < count; ++i) {
+    const std::string argument = arguments[i];
+    const bool plain = argument.find_first_of(" '\"[]{}$*?;&|<>()") == std::string::npos;
+    line += plain ? " " + argument : " '" + argument + "'";
+  }
+  return line;
+}
+
+void setUpLog() {
+  auto log = spdlog::stderr_color_mt("twinmap");
+  log->set_pattern("%^twinmap:%$ %v");
+  spdlog::set_default_logger(log);
+}
+
+void addExperiment(CLI::App& command, twinmap::ExperimentArguments& arguments) {
+  command.add_option("FILE", arguments.file, "Experiment file (YAML)")->required()->option_text(" ");
+  command
+      .add_option("key.path=value", arguments.overrides,
+                  "Overrides of values in the file: noise.scale=2 design.train.samples=500 "
+                  "'parameters.k_y.bounds=[4, 16]'")
+      ->option_text(" ");
+}
+
+void addCheck(CLI::App& app, twinmap::ExperimentArguments& arguments) {
+  CLI::App* command =
+      app.add_subcommand("check", "Validate an experiment and print it with all defaults; simulate nothing");
+  addExperiment(*command, arguments);
+  command->callback([&arguments] { twinmap::check(arguments); });
+}
+
+void addSimulate(CLI::App& app, twinmap::SimulateArguments& arguments) {
+  CLI::App* command = app.add_subcommand(
+      "simulate",
+      "Simulate once and write the outputs at the features' times as CSV. The parameters are at "
+      "the centre of their bounds, unless given as parameters.NAME=VALUE");
+  addExperiment(*command, arguments.experiment);
+  command->add_option("--csv", arguments.csv, "Write to this file instead of the standard output")
+      ->type_name("OUT");
+  command->add_flag("--noise", arguments.noise, "Add the experiment's measurement noise");
+  command->callback([&arguments] { twinmap::simulate(arguments); });
+}
+
+void addRun(CLI::App& app, twinmap::RunArguments& arguments) {
+  constexpr int kMostThreads = 1024;
+  CLI::App* command =
+      app.add_subcommand("run", "Simulate, train, infer, and write tables, maps and the report");
+  addExperiment(*command, arguments.experiment);
+  command->add_option("--out", arguments.folder, "Folder for the results (default: results/NAME)")
+      ->type_name("DIR");
+  command
+      ->add_option("--threads", arguments.threads,
+                   "Threads (default: all cores); results do not depend on them")
+      ->type_name("N")
+      ->check(CLI::Range(1, kMostThreads));
+  command->callback([&arguments] { twinmap::run(arguments); });
+}
+
+int runCommand(int count, char** arguments) {
+  CLI::App app(
+      "twinmap keeps digital twins true: it simulates a model for many parameter sets, trains maps "
+      "from features of the response to the parameters, and infers parameters with their standard "
+      "deviation.");
+  app.set_version_flag("--version", std::string("twinmap ") + twinmap::kVersion);
+  app.require_subcommand(1);
+  app.footer("Exit codes: 0 done, 1 failed, 2 wrong usage or wrong experiment file.");
+
+  twinmap::ExperimentArguments check;
+  twinmap::SimulateArguments simulate;
+  twinmap::RunArguments run;
+  run.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  run.command_line = joinArguments(count, arguments);
+  addCheck(app, check);
+  addSimulate(app, simulate);
+  addRun(app, run);
+  try {
+    app.parse(count, arguments);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kWrongInput;
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  setUpLog();
+  try {
+    return runCommand(count, arguments);
+  } catch (const twinmap::ExperimentError& error) {
+    std::cerr << "twinmap: error: " << error.what() << "\n";
+    return kWrongInput;
+  } catch (const std::exception& error) {
+    std::cerr << "twinmap: error: " << error.what() << "\n";
+    return kFailed;
+  }
+}

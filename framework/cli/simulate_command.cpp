@@ -1,0 +1,106 @@
+#include <algorithm>
+#include <iostream>
+
+#include "framework/cli/commands.hpp"
+#include "framework/features/feature_extractor.hpp"
+#include "framework/features/noise.hpp"
+#include "framework/multibody/multibody_simulator.hpp"
+#include "framework/report/escape.hpp"
+#include "framework/spec/check_experiment.hpp"
+#include "framework/spec/experiment_file.hpp"
+#include "framework/spec/number_text.hpp"
+#include "framework/store/atomic_file.hpp"
+
+namespace twinmap {
+namespace {
+
+/// A parameter's value for this simulation: "parameters.k_y=7.5".
+struct ParameterValue {
+  Name name;
+  double value;
+};
+
+/// Takes the parameter values out of the overrides.
+std::vector<ParameterValue> takeParameterValues(std::vector<std::string>& overrides) {
+  const std::string prefix = "parameters.";
+  std::vector<ParameterValue> values;
+  std::vector<std::string> others;
+  for (const std::string& text : overrides) {
+    const std::size_t equals = text.find('=');
+    const std::string name = text.substr(0, equals).substr(std::min(prefix.size(), text.size()));
+    const bool is_value = text.rfind(prefix, 0) == 0 && equals != std::string::npos &&
+                          name.find_first_of(".[") == std::string::npos;
+    if (!is_value) {
+      others.push_back(text);
+      continue;
+    }
+    const SourceLocation where{"command line", 0, 0, prefix + name};
+    double value = 0.0;
+    if (!parseLiteral(text.substr(equals + 1), value)) {
+      throw ExperimentError(where, text.substr(equals + 1), "must be a number");
+    }
+    values.push_back({{name, where}, value});
+  }
+  overrides = others;
+  return values;
+}
+
+Eigen::VectorXd makePoint(const std::vector<ParameterSpec>& parameters,
+                          const std::vector<ParameterValue>& values) {
+  const std::vector<std::string> names = collectNames(parameters);
+  Eigen::VectorXd point(parameters.size());
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    point[static_cast<Eigen::Index>(p)] = 0.5 * (parameters[p].bounds.lower + parameters[p].bounds.upper);
+  }
+  for (const ParameterValue& given : values) {
+    requireKnown(given.name, names, "a parameter");
+    point[std::find(names.begin(), names.end(), given.name.text) - names.begin()] = given.value;
+  }
+  return point;
+}
+
+std::string makeCsv(const MultibodySimulator& simulator, const Eigen::VectorXd& response) {
+  const Eigen::VectorXd& times = simulator.getTimes();
+  std::string csv = "t";
+  for (const std::string& name : simulator.getOutputNames()) {
+    csv += "," + escapeCsv(name);
+  }
+  csv += "\n";
+  for (Eigen::Index i = 0; i < times.size(); ++i) {
+    csv += toText(times[i]);
+    for (Eigen::Index row = i; row < response.size(); row += times.size()) {
+      csv += "," + toText(response[row]);
+    }
+    csv += "\n";
+  }
+  return csv;
+}
+
+}  // namespace
+
+void simulate(const SimulateArguments& arguments) {
+  std::vector<std::string> overrides = arguments.experiment.overrides;
+  const std::vector<ParameterValue> values = takeParameterValues(overrides);
+  const ExperimentSpec experiment = loadExperiment(arguments.experiment.file, overrides);
+  const Eigen::MatrixXd point = makePoint(experiment.model.parameters, values);
+  MultibodySimulator simulator(experiment.model, collectTimes(experiment.features));
+  Eigen::MatrixXd response(
+      simulator.getTimes().size() * static_cast<Eigen::Index>(simulator.getOutputNames().size()), 1);
+  SampleStatus status;
+  simulator.simulate(point, response, &status);
+  if (!status.ok) {
+    throw std::runtime_error("the simulation failed: " + status.reason);
+  }
+  if (arguments.noise) {
+    response = addNoise(response, collectNoiseStddev(experiment.noise, experiment.model.outputs),
+                        RandomStream(experiment.seed, RandomPurpose::kSingleNoise));
+  }
+  const std::string csv = makeCsv(simulator, response);
+  if (arguments.csv.empty()) {
+    std::cout << csv;
+  } else {
+    writeTextFile(arguments.csv, csv);
+  }
+}
+
+}  // namespace twinmap

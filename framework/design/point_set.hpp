@@ -1,0 +1,23 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "framework/design/random.hpp"
+#include "framework/spec/experiment_spec.hpp"
+
+namespace twinmap {
+
+/// Points in the unit cube, one column per point (dimensions x points), from the stream
+/// (seed, purpose). Latin hypercube: each of the n equal slices of each dimension holds one point (McKay et
+/// al. 1979). Sobol: the sequence rotated by one random shift per dimension (Cranley-Patterson), so that a
+/// longer set begins with the shorter one. Uniform: independent. O(dimensions n log n).
+Eigen::MatrixXd sampleUnitCube(const PointSetSpec& spec, int dimensions, std::uint64_t seed,
+                               RandomPurpose purpose);
+
+/// The same, scaled to the parameters' bounds (parameters x points).
+Eigen::MatrixXd samplePoints(const PointSetSpec& spec, const std::vector<ParameterSpec>& parameters,
+                             std::uint64_t seed, RandomPurpose purpose);
+
+}  // namespace twinmap

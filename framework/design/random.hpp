@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+
+namespace twinmap {
+
+/// What random numbers are for. Each purpose has its own stream, so that asking more of one changes no other.
+enum class RandomPurpose : std::uint64_t {
+  kTrainDesign = 1,
+  kTestDesign = 2,
+  kTrainNoise = 3,
+  kTestNoise = 4,
+  kSingleNoise = 5,  // one simulation on request
+};
+
+/// Counter-based random numbers (Philox 4x64-10, Salmon et al. 2011): a number depends on
+/// (seed, purpose, sample, channel) alone, never on the order or the thread of the calls.
+class RandomStream {
+ public:
+  RandomStream(std::uint64_t seed, RandomPurpose purpose) : seed_(seed), purpose_(purpose) {}
+
+  /// Uniform on the open interval (0, 1).
+  double calcUniform(std::uint64_t sample, std::uint64_t channel) const;
+
+  /// Standard normal, by the inverse of its distribution function at calcUniform().
+  double calcNormal(std::uint64_t sample, std::uint64_t channel) const;
+
+ private:
+  std::uint64_t seed_;
+  RandomPurpose purpose_;
+};
+
+}  // namespace twinmap

@@ -1,0 +1,186 @@
+#include "framework/experiment.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <functional>
+
+#include "framework/design/point_set.hpp"
+#include "framework/features/feature_extractor.hpp"
+#include "framework/features/noise.hpp"
+#include "framework/inverse_map/gp_map.hpp"
+#include "framework/multibody/multibody_simulator.hpp"
+#include "framework/report/html_report.hpp"
+#include "framework/report/tables.hpp"
+#include "framework/simulation/sample_generator.hpp"
+#include "framework/spec/check_experiment.hpp"
+#include "framework/spec/experiment_file.hpp"
+#include "framework/store/atomic_file.hpp"
+#include "framework/store/maps_file.hpp"
+#include "framework/store/provenance.hpp"
+#include "framework/store/samples_file.hpp"
+
+namespace twinmap {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The successful samples of a set, as the inverse map sees them.
+struct LabelledFeatures {
+  std::vector<int> samples;    ///< indices in the set
+  Eigen::MatrixXd features;    ///< d x n, noisy
+  Eigen::MatrixXd parameters;  ///< p x n
+};
+
+/// Runs a stage, logs it and notes its wall time.
+template <class Stage>
+auto timeStage(const std::string& name, std::vector<StageTime>& times, const Stage& stage) {
+  const auto start = std::chrono::steady_clock::now();
+  auto result = stage();
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  times.push_back({name, elapsed.count()});
+  spdlog::info("{}: {:.2f} s", name, elapsed.count());
+  return result;
+}
+
+std::vector<FailedSample> collectFailures(const std::string& set, const Trajectories& trajectories) {
+  std::vector<FailedSample> failures;
+  for (std::size_t i = 0; i < trajectories.statuses.size(); ++i) {
+    if (!trajectories.statuses[i].ok) {
+      failures.push_back({set, static_cast<int>(i), trajectories.parameters.col(static_cast<Eigen::Index>(i)),
+                          trajectories.statuses[i].reason});
+    }
+  }
+  return failures;
+}
+
+void requireFewFailures(const std::vector<FailedSample>& failures, const std::string& set, int samples,
+                        double allowed_fraction, const fs::path& folder) {
+  int failed = 0;
+  const FailedSample* first = nullptr;
+  for (const FailedSample& failure : failures) {
+    if (failure.set == set) {
+      first = first == nullptr ? &failure : first;
+      ++failed;
+    }
+  }
+  if (failed > allowed_fraction * samples || samples - failed < 2) {
+    throw std::runtime_error(fmt::format(
+        "{} of {} {} samples could not be simulated, more than simulation.allowed_failures = {} permits; the "
+        "first is sample {}: {}; all are listed in {}",
+        failed, samples, set, allowed_fraction, first->sample, first->reason,
+        (folder / "failures.csv").string()));
+  }
+}
+
+LabelledFeatures makeFeatures(const Trajectories& trajectories, const FeatureExtractor& extractor,
+                              const Eigen::VectorXd& noise_stddev, const RandomStream& noise) {
+  LabelledFeatures labelled;
+  for (std::size_t i = 0; i < trajectories.statuses.size(); ++i) {
+    if (trajectories.statuses[i].ok) {
+      labelled.samples.push_back(static_cast<int>(i));
+    }
+  }
+  const Eigen::MatrixXd features = extractor.extract(addNoise(trajectories.responses, noise_stddev, noise));
+  labelled.features = features(Eigen::all, labelled.samples);
+  labelled.parameters = trajectories.parameters(Eigen::all, labelled.samples);
+  return labelled;
+}
+
+RunSummary startSummary(const ExperimentSpec& experiment) {
+  RunSummary run;
+  run.name = experiment.name.text;
+  run.description = experiment.description;
+  run.parameters = experiment.model.parameters;
+  run.train_samples = experiment.design.train.samples;
+  run.test_samples = experiment.design.test.samples;
+  const std::vector<std::string> names = collectNames(experiment.model.parameters);
+  for (const Name& axis : experiment.report.over) {
+    run.axes.push_back(static_cast<int>(std::find(names.begin(), names.end(), axis.text) - names.begin()));
+  }
+  return run;
+}
+
+void writeResults(const fs::path& folder, const RunSummary& run) {
+  writeTextFile(folder / "metrics.csv", makeMetricsCsv(run));
+  writeTextFile(folder / "predictions.csv", makePredictionsCsv(run));
+  writeTextFile(folder / "table.md", makeMarkdownTable(run));
+  writeTextFile(folder / "table.tex", makeLatexTable(run));
+  writeTextFile(folder / "report.html", makeHtmlReport(run));
+}
+
+Provenance makeProvenance(const ExperimentSpec& experiment, const RunOptions& options,
+                          const RunSummary& run) {
+  Provenance provenance{
+      options.command, experiment.seed, options.threads, {}, static_cast<int>(run.failures.size())};
+  for (const StageTime& time : run.times) {
+    provenance.stage_seconds.emplace_back(time.stage, time.seconds);
+  }
+  return provenance;
+}
+
+}  // namespace
+
+RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& options) {
+  const ModelSpec& model = experiment.model;
+  const std::uint64_t seed = experiment.seed;
+  RunSummary run = startSummary(experiment);
+  fs::create_directories(options.folder);
+  writeTextFile(options.folder / "resolved.yaml", writeExperiment(experiment));
+
+  const Eigen::MatrixXd train_points =
+      samplePoints(experiment.design.train, model.parameters, seed, RandomPurpose::kTrainDesign);
+  const Eigen::MatrixXd test_points =
+      samplePoints(experiment.design.test, model.parameters, seed, RandomPurpose::kTestDesign);
+
+  const MultibodySimulator simulator(model, collectTimes(experiment.features));
+  GeneratorOptions generator;
+  generator.threads = options.threads;
+  const auto simulate = [&](const std::string& set, const Eigen::MatrixXd& points) {
+    const std::string stage = fmt::format("simulate {} {} samples", points.cols(), set);
+    const Trajectories trajectories =
+        timeStage(stage, run.times, [&] { return generateSamples(simulator, points, generator); });
+    const std::vector<FailedSample> failures = collectFailures(set, trajectories);
+    run.failures.insert(run.failures.end(), failures.begin(), failures.end());
+    return trajectories;
+  };
+  const Trajectories train = simulate("train", train_points);
+  const Trajectories test = simulate("test", test_points);
+  writeSamplesFile(options.folder / "samples.h5", model, train, test);
+  writeTextFile(options.folder / "failures.csv", makeFailuresCsv(run));
+  for (const auto& [set, samples] : {std::pair("train", run.train_samples), {"test", run.test_samples}}) {
+    requireFewFailures(run.failures, set, samples, model.simulation.allowed_failures, options.folder);
+  }
+
+  const FeatureExtractor extractor(experiment.features, train.output_names, train.times);
+  const Eigen::VectorXd noise = collectNoiseStddev(experiment.noise, model.outputs);
+  const LabelledFeatures training = makeFeatures(train, extractor, noise, {seed, RandomPurpose::kTrainNoise});
+  const LabelledFeatures testing = makeFeatures(test, extractor, noise, {seed, RandomPurpose::kTestNoise});
+
+  const GpMapTraining trained = timeStage("train the inverse map", run.times, [&] {
+    return trainGpMap(experiment.inverse_map.gp, experiment.transform, extractor.getInfos(),
+                      collectNames(model.parameters), training.features, training.parameters,
+                      options.threads);
+  });
+  run.warnings = trained.warnings;
+  std::vector<std::string> feature_names;
+  for (const FeatureInfo& info : extractor.getInfos()) {
+    feature_names.push_back(info.name);
+  }
+  writeMapsFile(options.folder / "maps.h5", {model.parameters, feature_names, trained.map});
+
+  run.test_indices = testing.samples;
+  run.truth = testing.parameters;
+  run.predictions =
+      timeStage("infer the test samples", run.times, [&] { return trained.map.predict(testing.features); });
+  run.metrics = calcMetrics(model.parameters, run.truth, run.predictions);
+  for (const auto& process : trained.map.processes) {
+    run.nlml.push_back(process->nlml());
+  }
+  writeResults(options.folder, run);
+  writeTextFile(options.folder / "provenance.json",
+                makeProvenanceJson(makeProvenance(experiment, options, run)));
+  return run;
+}
+
+}  // namespace twinmap

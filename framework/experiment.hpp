@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "framework/report/run_summary.hpp"
+#include "framework/spec/experiment_spec.hpp"
+
+namespace twinmap {
+
+struct RunOptions {
+  std::filesystem::path folder;  ///< created if missing; files of an earlier run are replaced one by one
+  int threads = 1;               ///< results do not depend on it
+  std::string command;           ///< the command line, for provenance.json
+};
+
+/// Runs an experiment from design to report and leaves in the folder: resolved.yaml, samples.h5,
+/// failures.csv, maps.h5, predictions.csv, metrics.csv, table.md, table.tex, report.html, provenance.json.
+/// Progress goes to the log. Throws std::runtime_error if more samples fail than
+/// simulation.allowed_failures permits (samples.h5 and failures.csv are there then), if a map cannot be
+/// trained, or if a file cannot be written.
+RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& options);
+
+}  // namespace twinmap

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "framework/evaluation/metrics.hpp"
+#include "framework/features/feature_extractor.hpp"
+#include "framework/features/feature_transform.hpp"
+#include "framework/spec/experiment_spec.hpp"
+#include "kernels/gp/gaussian_process.hpp"
+#include "kernels/gp/training.hpp"
+
+namespace twinmap {
+
+/// An inverse map: features -> parameters with standard deviation, by one Gaussian process per parameter on
+/// the standardised parameter (p - offset) / scale. A fitted, immutable value.
+struct GpMap {
+  FeatureTransform transform;
+  Eigen::VectorXd target_offset;                                      ///< p, mean of the training parameters
+  Eigen::VectorXd target_scale;                                       ///< p, their standard deviation
+  std::vector<std::shared_ptr<const gp::GaussianProcess>> processes;  ///< one per parameter, same inputs
+
+  /// Features (d x m, untransformed) -> predictions (p x m each). The standard deviation is the predictive
+  /// one, likelihood noise included: the spread of the parameter given the features.
+  Predictions predict(const Eigen::MatrixXd& features) const;
+};
+
+/// A trained map and what a person should know about the training.
+struct GpMapTraining {
+  GpMap map;
+  std::vector<std::string> warnings;  ///< "parameter 'd_y': ..."; empty if every process converged
+};
+
+/// Trains the map on features (d x n) and parameters (p x n) of the same samples, n >= 2. The result does not
+/// depend on `threads`. Throws std::runtime_error naming the parameter whose process cannot be trained.
+GpMapTraining trainGpMap(const GpMapSpec& spec, const std::vector<TransformStep>& transform,
+                         const std::vector<FeatureInfo>& infos,
+                         const std::vector<std::string>& parameter_names, const Eigen::MatrixXd& features,
+                         const Eigen::MatrixXd& parameters, int threads);
+
+}  // namespace twinmap

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+namespace twinmap {
+
+/// The shortest decimal text that reads back as the same number; "nan", "inf".
+std::string toText(double value);
+
+/// Rounded to `digits` significant digits, for people: "0.9374", "1.3e-05".
+std::string toShortText(double value, int digits);
+
+/// The number, if `text` is a plain decimal literal ("3.3", "-1e-3"); inf and nan are not.
+bool parseLiteral(const std::string& text, double& value);
+
+}  // namespace twinmap

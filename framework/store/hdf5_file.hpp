@@ -1,0 +1,67 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace twinmap {
+
+/// A small face on HDF5: datasets of numbers and texts by path ("/train/parameters"), groups made on the way,
+/// no time stamps, so that equal content gives equal bytes. Throws std::runtime_error naming file and
+/// dataset. HDF5 is not thread safe: one thread at a time.
+///
+/// Arrays are in C order. An Eigen matrix with one column per sample (d x n) is the C-order array (n, d),
+/// written without a copy.
+class Hdf5Writer {
+ public:
+  explicit Hdf5Writer(const std::filesystem::path& path);
+  Hdf5Writer(const Hdf5Writer&) = delete;
+  Hdf5Writer& operator=(const Hdf5Writer&) = delete;
+  ~Hdf5Writer();
+
+  /// `values` holds the product of `shape` numbers in C order.
+  void write(const std::string& dataset, const double* values, const std::vector<std::size_t>& shape);
+  /// d x n -> (n, d).
+  void writeSamples(const std::string& dataset, const Eigen::MatrixXd& columns);
+  void write(const std::string& dataset, const Eigen::VectorXd& values);
+  void write(const std::string& dataset, double value);
+  void write(const std::string& dataset, const std::vector<std::int64_t>& values);
+  void write(const std::string& dataset, const std::vector<std::string>& texts);
+  /// A text attached to a dataset or group (also "/").
+  void writeAttribute(const std::string& object, const std::string& name, const std::string& text);
+
+  /// Flushes and closes; throws if that fails. The destructor closes without a word.
+  void close();
+
+ private:
+  std::int64_t createDataset(const std::string& dataset, std::int64_t type, std::int64_t space);
+
+  std::string path_;
+  std::int64_t file_ = -1;
+};
+
+/// Reads what Hdf5Writer writes.
+class Hdf5Reader {
+ public:
+  explicit Hdf5Reader(const std::filesystem::path& path);
+  Hdf5Reader(const Hdf5Reader&) = delete;
+  Hdf5Reader& operator=(const Hdf5Reader&) = delete;
+  ~Hdf5Reader();
+
+  std::vector<std::size_t> readShape(const std::string& dataset) const;
+  /// (n, d) -> d x n; a vector (n) -> n x 1; a number -> 1 x 1.
+  Eigen::MatrixXd readSamples(const std::string& dataset) const;
+  Eigen::VectorXd readVector(const std::string& dataset) const;
+  double readNumber(const std::string& dataset) const;
+  std::vector<std::int64_t> readIntegers(const std::string& dataset) const;
+  std::vector<std::string> readTexts(const std::string& dataset) const;
+  std::string readAttribute(const std::string& object, const std::string& name) const;
+
+ private:
+  std::string path_;
+  std::int64_t file_ = -1;
+};
+
+}  // namespace twinmap

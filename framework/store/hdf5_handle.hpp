@@ -1,0 +1,37 @@
+#pragma once
+
+#include <hdf5.h>
+
+#include <stdexcept>
+#include <string>
+
+namespace twinmap {
+
+/// Owns an HDF5 identifier and the function that closes it.
+class Hdf5Handle {
+ public:
+  using Close = herr_t (*)(hid_t);
+
+  Hdf5Handle(hid_t id, Close close, const std::string& what) : id_(id), close_(close) {
+    if (id < 0) {
+      throw std::runtime_error(what);
+    }
+  }
+  Hdf5Handle(const Hdf5Handle&) = delete;
+  Hdf5Handle& operator=(const Hdf5Handle&) = delete;
+  ~Hdf5Handle() { close_(id_); }
+
+  hid_t get() const { return id_; }
+
+ private:
+  hid_t id_;
+  Close close_;
+};
+
+inline void requireHdf5(herr_t status, const std::string& what) {
+  if (status < 0) {
+    throw std::runtime_error(what);
+  }
+}
+
+}  // namespace twinmap

@@ -1,0 +1,65 @@
+#include "framework/store/provenance.hpp"
+
+#include <sys/utsname.h>
+
+#include <chrono>
+#include <ctime>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+#include <twinmap/build_info.hpp>
+
+namespace twinmap {
+namespace {
+
+std::string makeDate() {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  char text[32];
+  std::strftime(text, sizeof(text), "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
+}
+
+std::string readCpuModel() {
+  std::ifstream file("/proc/cpuinfo");
+  std::string line;
+  while (std::getline(file, line)) {
+    if (line.rfind("model name", 0) == 0) {
+      return line.substr(line.find(':') + 2);
+    }
+  }
+  return "unknown";
+}
+
+std::string readOperatingSystem() {
+  utsname name{};
+  return uname(&name) == 0 ? std::string(name.sysname) + " " + name.release + " " + name.machine : "unknown";
+}
+
+}  // namespace
+
+std::string makeProvenanceJson(const Provenance& provenance) {
+  nlohmann::ordered_json json;
+  json["date"] = makeDate();
+  json["command"] = provenance.command;
+  json["version"] = kVersion;
+  json["seed"] = provenance.seed;
+  json["threads"] = provenance.threads;
+  json["failed_samples"] = provenance.failed_samples;
+  for (const auto& [stage, seconds] : provenance.stage_seconds) {
+    json["seconds"][stage] = seconds;
+  }
+  json["build"] = {{"compiler", kCompiler}, {"type", kBuildType}, {"instruction_set", kInstructionSet}};
+  json["libraries"] = {{"Eigen", kEigenVersion},      {"Simbody", kSimbodyVersion},
+                       {"NLopt", kNloptVersion},      {"Boost", kBoostVersion},
+                       {"yaml-cpp", kYamlCppVersion}, {"muParser", kMuparserVersion},
+                       {"HDF5", kHdf5Version}};
+  json["machine"] = {{"cpu", readCpuModel()},
+                     {"cores", std::thread::hardware_concurrency()},
+                     {"system", readOperatingSystem()}};
+  constexpr int kIndent = 2;
+  return json.dump(kIndent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace twinmap

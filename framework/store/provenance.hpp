@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace twinmap {
+
+/// How a run came about.
+struct Provenance {
+  std::string command;  ///< the command line
+  std::uint64_t seed = 0;
+  int threads = 0;
+  std::vector<std::pair<std::string, double>> stage_seconds;  ///< wall time of each stage, in order
+  int failed_samples = 0;
+};
+
+/// provenance.json: the above with date (UTC), version, compiler, libraries, CPU and operating system.
+std::string makeProvenanceJson(const Provenance& provenance);
+
+}  // namespace twinmap

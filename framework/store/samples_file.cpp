@@ -1,0 +1,44 @@
+#include "framework/store/samples_file.hpp"
+
+#include "framework/spec/check_experiment.hpp"
+#include "framework/store/atomic_file.hpp"
+#include "framework/store/hdf5_file.hpp"
+#include "framework/store/parameters_group.hpp"
+
+namespace twinmap {
+namespace {
+
+void writeSet(Hdf5Writer& file, const std::string& group, const Trajectories& set) {
+  const auto samples = static_cast<std::size_t>(set.responses.cols());
+  const auto times = static_cast<std::size_t>(set.times.size());
+  file.writeSamples(group + "/parameters", set.parameters);
+  file.write(group + "/responses", set.responses.data(), {samples, set.output_names.size(), times});
+  std::vector<std::int64_t> ok;
+  std::vector<std::string> reasons;
+  for (const SampleStatus& status : set.statuses) {
+    ok.push_back(status.ok ? 1 : 0);
+    reasons.push_back(status.reason);
+  }
+  file.write(group + "/ok", ok);
+  file.write(group + "/reason", reasons);
+}
+
+}  // namespace
+
+void writeSamplesFile(const std::filesystem::path& path, const ModelSpec& model, const Trajectories& train,
+                      const Trajectories& test) {
+  writeAtomically(path, [&](const std::filesystem::path& temporary) {
+    Hdf5Writer file(temporary);
+    file.writeAttribute("/", "format", "twinmap samples 1");
+    writeParametersGroup(file, model.parameters);
+    file.write("/outputs/name", train.output_names);
+    file.write("/outputs/unit", train.output_units);
+    file.write("/times", train.times);
+    file.writeAttribute("/times", "unit", "s");
+    writeSet(file, "/train", train);
+    writeSet(file, "/test", test);
+    file.close();
+  });
+}
+
+}  // namespace twinmap
