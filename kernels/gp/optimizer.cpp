@@ -1,0 +1,96 @@
+#include "kernels/gp/optimizer.hpp"
+
+#include <nlopt.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+
+namespace twinmap::gp {
+namespace {
+
+// Returned where K cannot be factorised: worse than any NLML, yet finite, so that the line search backs off.
+constexpr double kRejected = 1e10;
+
+struct Search {
+  const TrainingSet& set;
+  const Eigen::VectorXd& target;
+  const SearchBox& box;
+  LikelihoodWorkspace& workspace;
+  Eigen::VectorXd gradient;
+  SearchResult result;
+};
+
+double add_prior(const SearchBox& box, const Eigen::VectorXd& point, double nlml, Eigen::VectorXd& gradient) {
+  const Eigen::VectorXd deviation = point - box.prior_mean;
+  gradient += box.prior_precision.cwiseProduct(deviation);
+  return nlml + 0.5 * deviation.dot(box.prior_precision.cwiseProduct(deviation));
+}
+
+void keep_best(Search& search, const Eigen::VectorXd& point, double nlml, double objective) {
+  if (!(objective < search.result.objective)) return;
+  search.result.end = point;
+  search.result.nlml = nlml;
+  search.result.objective = objective;
+}
+
+// The objective per sample: it keeps the first step, which L-BFGS takes along the gradient, of order one.
+double evaluate(unsigned count, const double* values, double* gradient, void* data) {
+  Search& search = *static_cast<Search*>(data);
+  const double scale = 1.0 / static_cast<double>(search.set.size());
+  const Eigen::VectorXd point = Eigen::Map<const Eigen::VectorXd>(values, count);
+  const LikelihoodEvaluation evaluation = evaluate_likelihood_gradient(
+      search.set, search.target, from_log(search.set.structure(), point), search.workspace, search.gradient);
+  ++search.result.evaluations;
+  search.result.largest_jitter = std::max(search.result.largest_jitter, evaluation.jitter);
+  double objective = kRejected;
+  if (evaluation.ok) {
+    objective = add_prior(search.box, point, evaluation.nlml, search.gradient);
+    keep_best(search, point, evaluation.nlml, objective);
+  }
+  if (gradient) Eigen::Map<Eigen::VectorXd>(gradient, count) = scale * search.gradient;
+  return scale * objective;
+}
+
+const char* describe(nlopt_result code) {
+  switch (code) {
+    case NLOPT_SUCCESS:
+      return "converged";
+    case NLOPT_FTOL_REACHED:
+      return "the last step gained less than the tolerance";
+    case NLOPT_XTOL_REACHED:
+      return "the last step was too small to matter";
+    case NLOPT_MAXEVAL_REACHED:
+      return "evaluation limit reached";
+    case NLOPT_ROUNDOFF_LIMITED:
+      return "rounding errors stopped the progress";
+    default:
+      return "the line search found no further progress";
+  }
+}
+
+}  // namespace
+
+SearchResult search(const TrainingSet& set, const Eigen::VectorXd& target, const Eigen::VectorXd& start,
+                    const SearchBox& box, int max_evaluations, double tolerance,
+                    LikelihoodWorkspace& workspace) {
+  Search search{set, target, box, workspace, Eigen::VectorXd::Zero(start.size()), {}};
+  search.result.objective = std::numeric_limits<double>::infinity();
+  search.result.nlml = std::numeric_limits<double>::infinity();
+  Eigen::VectorXd point = start.cwiseMax(box.lower).cwiseMin(box.upper);
+  search.result.end = point;
+  const std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)> optimizer(
+      nlopt_create(NLOPT_LD_LBFGS, static_cast<unsigned>(start.size())), &nlopt_destroy);
+  nlopt_set_min_objective(optimizer.get(), &evaluate, &search);
+  nlopt_set_lower_bounds(optimizer.get(), box.lower.data());
+  nlopt_set_upper_bounds(optimizer.get(), box.upper.data());
+  nlopt_set_maxeval(optimizer.get(), max_evaluations);
+  nlopt_set_ftol_abs(optimizer.get(), tolerance / static_cast<double>(set.size()));
+  double least = 0.0;
+  const nlopt_result code = nlopt_optimize(optimizer.get(), point.data(), &least);
+  search.result.stop_reason = describe(code);
+  search.result.converged = code != NLOPT_MAXEVAL_REACHED && std::isfinite(search.result.objective);
+  return search.result;
+}
+
+}  // namespace twinmap::gp

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+
+#include "kernels/gp/marginal_likelihood.hpp"
+
+namespace twinmap::gp {
+
+/// Where a search may go, and from where; all in log-hyperparameters.
+struct SearchBox {
+  Eigen::VectorXd lower;
+  Eigen::VectorXd upper;
+  /// A normal prior on each log-hyperparameter; precision 0 means none.
+  Eigen::VectorXd prior_mean;
+  Eigen::VectorXd prior_precision;
+};
+
+struct SearchResult {
+  Eigen::VectorXd end;
+  double nlml = 0.0;
+  double objective = 0.0;  ///< +infinity if no evaluation succeeded
+  int evaluations = 0;
+  double largest_jitter = 0.0;
+  bool converged = false;
+  std::string stop_reason;
+};
+
+/// One local search for the least NLML (plus prior) by NLopt's L-BFGS, from `start` clamped into the box.
+/// Returns the best point evaluated. Deterministic. Cost: up to max_evaluations of n^3 flops.
+SearchResult search(const TrainingSet& set, const Eigen::VectorXd& target, const Eigen::VectorXd& start,
+                    const SearchBox& box, int max_evaluations, double tolerance,
+                    LikelihoodWorkspace& workspace);
+
+}  // namespace twinmap::gp

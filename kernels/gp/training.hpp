@@ -1,0 +1,102 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kernels/gp/gaussian_process.hpp"
+#include "kernels/gp/model.hpp"
+
+namespace twinmap::gp {
+
+/// Bounds as multiples of a scale taken from the data.
+struct RelativeBounds {
+  double lower;
+  double upper;
+};
+
+/// log(l / median distance) ~ N(log_mean, log_stddev^2); its negative log density is added to the NLML.
+struct LengthScalePrior {
+  double log_mean = 0.0;    ///< 0: the median distance itself
+  double log_stddev = 2.0;  ///< 2: a factor of 7, weak enough to yield to a few dozen samples
+};
+
+struct TrainingOptions {
+  /// Local searches per target; the best NLML wins. 4: from the median distance with noise start_noise, and
+  /// three spread around it (one warm-started from the shared optimum if there are several groups), which
+  /// found the same optimum from every corner of the two-beam problem.
+  int starts = 4;
+  /// NLML + gradient evaluations per start. A start takes some 20 to 40; 200 ends only the hopeless.
+  int max_evaluations = 200;
+  /// A start ends when a step gains less than this many nats. 1e-4 changes no prediction visibly.
+  double tolerance = 1e-4;
+  /// Noise stddev of the first start over the target's: large enough to see the signal through, small enough
+  /// not to fall into the noise-only optimum.
+  double start_noise = 0.3;
+  /// Times the median distance between samples (overall, or of the group where that is further out).
+  RelativeBounds length_scale{1e-2, 1e3};
+  /// Times the target's stddev. A smooth map seen over a small part of its length scale needs a large signal.
+  RelativeBounds signal_stddev{1e-2, 1e3};
+  /// Times the target's stddev. The lower bound keeps K's condition number below 1 / epsilon.
+  RelativeBounds noise_stddev{1e-5, 3.0};
+  /// Absolute; above 1000 the rational quadratic is the squared exponential to rounding.
+  RelativeBounds shape{1e-2, 1e3};
+  /// Times the target's stddev over the inputs' root mean square distance from their mean.
+  RelativeBounds linear_stddev{1e-4, 1e3};
+  /// None: maximum likelihood, as in the paper. Worth setting with many length scales and few samples.
+  std::optional<LengthScalePrior> length_scale_prior;
+  /// Targets x starts run in parallel; the result does not depend on the number.
+  int threads = 1;
+};
+
+/// One local search.
+struct StartReport {
+  Hyperparameters start;
+  Hyperparameters end;
+  double nlml = 0.0;       ///< nats, +infinity if no evaluation succeeded
+  double objective = 0.0;  ///< NLML plus the prior's negative log density
+  int evaluations = 0;
+  double largest_jitter = 0.0;  ///< over all evaluations
+  bool noise_only = false;      ///< explains the target no better than pure noise does
+  bool converged = false;
+  std::string stop_reason;
+};
+
+struct TrainingReport {
+  std::vector<StartReport> starts;
+  int best_start = -1;
+  int evaluations = 0;                ///< of all starts, those of the shared warm start included
+  double noise_only_nlml = 0.0;       ///< the least NLML without a signal, for comparison
+  std::vector<std::string> at_bound;  ///< e.g. "noise_stddev at its lower bound 1e-05"
+  double condition = 0.0;             ///< estimated 1-norm condition number of K + (s_n^2 + jitter) I
+  double jitter = 0.0;                ///< squared target units, of the final factor
+};
+
+enum class TrainingStatus {
+  kConverged,
+  kEvaluationLimit,  ///< usable; the best start hit max_evaluations
+  kNoiseOnly,        ///< usable, but every start found the target to be noise: the features say nothing
+  kConstantTarget,   ///< no process: the target does not vary
+  kFailed            ///< no process: no start had a finite NLML
+};
+const char* to_string(TrainingStatus status);
+
+struct TrainingResult {
+  TrainingStatus status = TrainingStatus::kFailed;
+  std::string message;                        ///< for a person: what happened and why
+  std::shared_ptr<const GaussianProcess> gp;  ///< null where the status says so
+  TrainingReport report;
+};
+
+/// Trains one process per row of `targets` (t x n) on the same inputs (d x n): hyperparameters by least NLML,
+/// NLopt's L-BFGS on their logarithms within bounds, from several deterministic starts. Results are bitwise
+/// the same for any number of threads. Throws std::invalid_argument for input that cannot be meant: NaN,
+/// sizes that do not fit, n < 2, all inputs equal, options out of range. A constant target is a status.
+/// Cost per evaluation: n^3 flops; memory per thread: 2.5 n^2 doubles.
+std::vector<TrainingResult> train(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                                  const Eigen::Ref<const Eigen::MatrixXd>& targets,
+                                  const ModelStructure& structure, const TrainingOptions& options = {});
+
+}  // namespace twinmap::gp

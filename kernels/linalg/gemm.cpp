@@ -1,0 +1,159 @@
+// The product by packed panels and a register tile, after Goto and van de Geijn, "Anatomy of high-performance
+// matrix multiplication", ACM TOMS 34 (2008). One panel of B stays in L3, one block of A in L2, one sliver of
+// B in L1; the register tile is kTileRows x kTileCols.
+#include "kernels/linalg/gemm.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "kernels/linalg/packet.hpp"
+
+namespace twinmap::linalg {
+namespace {
+
+constexpr Index kTileVectors = 3;
+constexpr Index kTileCols = kLanes;  // 24 (AVX-512) or 12 (AVX2) sums in registers
+constexpr Index kTileRows = kLanes * kTileVectors;
+constexpr Index kBlockDepth = 256;
+constexpr Index kBlockRows = 8 * kTileRows;
+constexpr Index kBlockCols = 1024;
+
+Index round_up(Index value, Index multiple) {
+  return (value + multiple - 1) / multiple * multiple;
+}
+
+// Packs a into slivers of `width` rows, depth-major: sliver s holds a(s*width + r, p) at [p*width + r].
+// Rows beyond a's are zero. alpha is folded in here.
+void pack(ConstView a, Index width, double alpha, double* packed) {
+  for (Index first = 0; first < a.rows; first += width) {
+    const Index rows = std::min(width, a.rows - first);
+    for (Index p = 0; p < a.cols; ++p, packed += width) {
+      const double* source = a.data + first * a.row_stride + p * a.col_stride;
+      for (Index r = 0; r < rows; ++r) packed[r] = alpha * source[r * a.row_stride];
+      for (Index r = rows; r < width; ++r) packed[r] = 0.0;
+    }
+  }
+}
+
+// The same where a's rows are contiguous in memory: whole slivers are copied by vector.
+void pack_unit_stride(ConstView a, Index width, double alpha, double* packed) {
+  const Index whole = a.rows / width * width;
+  for (Index first = 0; first < whole; first += width) {
+    for (Index p = 0; p < a.cols; ++p, packed += width) {
+      const double* source = a.data + first + p * a.col_stride;
+      for (Index r = 0; r < width; ++r) packed[r] = alpha * source[r];
+    }
+  }
+  if (whole < a.rows) pack(a.block(whole, 0, a.rows - whole, a.cols), width, alpha, packed);
+}
+
+// Where the depth runs along memory, each row is read as a stream.
+void pack_unit_depth(ConstView a, Index width, double alpha, double* packed) {
+  for (Index first = 0; first < a.rows; first += width, packed += width * a.cols) {
+    const Index rows = std::min(width, a.rows - first);
+    for (Index r = 0; r < rows; ++r) {
+      const double* source = a.data + (first + r) * a.row_stride;
+      for (Index p = 0; p < a.cols; ++p) packed[p * width + r] = alpha * source[p];
+    }
+    for (Index r = rows; r < width; ++r) {
+      for (Index p = 0; p < a.cols; ++p) packed[p * width + r] = 0.0;
+    }
+  }
+}
+
+template <Index kWidth>
+void pack_slivers(ConstView a, double alpha, double* packed) {
+  if (a.row_stride == 1) return pack_unit_stride(a, kWidth, alpha, packed);
+  if (a.col_stride == 1) return pack_unit_depth(a, kWidth, alpha, packed);
+  pack(a, kWidth, alpha, packed);
+}
+
+struct Tile {
+  Packet column[kTileCols][kTileVectors];
+};
+
+// tile = sum over p of (left sliver at p) (right sliver at p)'
+inline void multiply_slivers(Index depth, const double* left, const double* right, Tile& tile) {
+  Packet sum[kTileCols][kTileVectors] = {};
+  for (Index p = 0; p < depth; ++p, left += kTileRows, right += kTileCols) {
+    Packet rows[kTileVectors];
+    for (Index v = 0; v < kTileVectors; ++v) rows[v] = *reinterpret_cast<const Packet*>(left + v * kLanes);
+#pragma GCC unroll 8
+    for (Index j = 0; j < kTileCols; ++j) {
+#pragma GCC unroll 3
+      for (Index v = 0; v < kTileVectors; ++v) sum[j][v] += rows[v] * right[j];
+    }
+  }
+  for (Index j = 0; j < kTileCols; ++j) {
+    for (Index v = 0; v < kTileVectors; ++v) tile.column[j][v] = sum[j][v];
+  }
+}
+
+void store_whole(const Tile& tile, bool accumulate, View c) {
+  for (Index j = 0; j < kTileCols; ++j) {
+    for (Index v = 0; v < kTileVectors; ++v) {
+      double* target = c.col(j) + v * kLanes;
+      store(target, accumulate ? load(target) + tile.column[j][v] : tile.column[j][v]);
+    }
+  }
+}
+
+void store_edge(const Tile& tile, bool accumulate, View c) {
+  for (Index j = 0; j < c.cols; ++j) {
+    double values[kTileRows];
+    std::memcpy(values, tile.column[j], sizeof(values));
+    for (Index i = 0; i < c.rows; ++i) c(i, j) = accumulate ? c(i, j) + values[i] : values[i];
+  }
+}
+
+// One packed block of A times one packed panel of B. Element (0, 0) of c lies diagonal_offset rows below the
+// diagonal of the whole result.
+void multiply_block(Index depth, const double* left, const double* right, bool accumulate, View c,
+                    Index diagonal_offset, Part part) {
+  for (Index j = 0; j < c.cols; j += kTileCols) {
+    const Index cols = std::min(kTileCols, c.cols - j);
+    for (Index i = 0; i < c.rows; i += kTileRows) {
+      const Index rows = std::min(kTileRows, c.rows - i);
+      if (part == Part::kLower && i + rows - 1 + diagonal_offset < j) continue;
+      Tile tile;
+      multiply_slivers(depth, left + i * depth, right + j * depth, tile);
+      const View target = c.block(i, j, rows, cols);
+      if (rows == kTileRows && cols == kTileCols) {
+        store_whole(tile, accumulate, target);
+      } else {
+        store_edge(tile, accumulate, target);
+      }
+    }
+  }
+}
+
+void clear(View c) {
+  for (Index j = 0; j < c.cols; ++j) std::fill_n(c.col(j), c.rows, 0.0);
+}
+
+}  // namespace
+
+GemmScratch::GemmScratch()
+    : left_(kBlockDepth * round_up(kBlockRows, kTileRows)),
+      right_(kBlockDepth * round_up(kBlockCols, kTileCols)) {}
+
+void gemm(double alpha, ConstView a, ConstView b, double beta, View c, GemmScratch& scratch, Part part) {
+  if (a.cols == 0 && beta == 0.0) clear(c);
+  for (Index j = 0; j < c.cols; j += kBlockCols) {
+    const Index cols = std::min(kBlockCols, c.cols - j);
+    for (Index p = 0; p < a.cols; p += kBlockDepth) {
+      const Index depth = std::min(kBlockDepth, a.cols - p);
+      const bool accumulate = beta != 0.0 || p > 0;
+      pack_slivers<kTileCols>(b.block(p, j, depth, cols).transposed(), 1.0, scratch.right());
+      for (Index i = 0; i < c.rows; i += kBlockRows) {
+        const Index rows = std::min(kBlockRows, c.rows - i);
+        if (part == Part::kLower && i + rows - 1 < j) continue;
+        pack_slivers<kTileRows>(a.block(i, p, rows, depth), alpha, scratch.left());
+        multiply_block(depth, scratch.left(), scratch.right(), accumulate, c.block(i, j, rows, cols), i - j,
+                       part);
+      }
+    }
+  }
+}
+
+}  // namespace twinmap::linalg

@@ -1,0 +1,114 @@
+#include "kernels/linalg/packed_lower.hpp"
+
+#include <algorithm>
+
+#include "kernels/linalg/packet.hpp"
+#include "kernels/linalg/triangular.hpp"
+
+namespace twinmap::linalg {
+namespace {
+
+constexpr Index kTile = PackedLower::kTile;
+constexpr Index kTileElements = kTile * kTile;
+constexpr Index kVectors = kTile / kLanes;
+
+struct Rows {
+  Packet part[kVectors];
+};
+
+inline Rows load_rows(const double* source) {
+  Rows rows;
+  for (Index v = 0; v < kVectors; ++v) rows.part[v] = load(source + v * kLanes);
+  return rows;
+}
+
+inline void store_rows(double* target, const Rows& rows) {
+  for (Index v = 0; v < kVectors; ++v) store(target + v * kLanes, rows.part[v]);
+}
+
+// sum -= tile x
+inline void subtract_product(const double* tile, const double* x, Rows& sum) {
+  for (Index j = 0; j < kTile; ++j, tile += kTile) {
+    for (Index v = 0; v < kVectors; ++v) sum.part[v] -= load(tile + v * kLanes) * x[j];
+  }
+}
+
+// The tile's inverse, padded with zeros.
+void store_inverse(ConstView block, double* tile, TriangularScratch& scratch) {
+  for (Index j = 0; j < block.cols; ++j) {
+    for (Index i = j; i < block.rows; ++i) tile[i + j * kTile] = block(i, j);
+  }
+  invert_lower({tile, block.rows, block.cols, kTile}, scratch);
+}
+
+}  // namespace
+
+PackedLower::PackedLower(ConstView lower)
+    : blocks_((lower.rows + kTile - 1) / kTile),
+      tiles_(Eigen::VectorXd::Zero(blocks_ * (blocks_ + 1) / 2 * kTileElements)) {
+  TriangularScratch scratch(kTile);
+  double* tile = tiles_.data();
+  for (Index r = 0; r < lower.rows; r += kTile) {
+    const Index rows = std::min(kTile, lower.rows - r);
+    for (Index c = 0; c < r; c += kTile, tile += kTileElements) {
+      for (Index j = 0; j < kTile; ++j) {
+        for (Index i = 0; i < rows; ++i) tile[i + j * kTile] = lower(r + i, c + j);
+      }
+    }
+    store_inverse(lower.block(r, r, rows, rows), tile, scratch);
+    tile += kTileElements;
+  }
+}
+
+void PackedLower::solve(double* x) const {
+  const double* tile = tiles_.data();
+  for (Index r = 0; r < blocks_; ++r) {
+    Rows sum = load_rows(x + r * kTile);
+    for (Index c = 0; c < r; ++c, tile += kTileElements) subtract_product(tile, x + c * kTile, sum);
+    double right[kTile];
+    store_rows(right, sum);
+    Rows negative = {};
+    subtract_product(tile, right, negative);
+    tile += kTileElements;
+    for (Index v = 0; v < kVectors; ++v) negative.part[v] = -negative.part[v];
+    store_rows(x + r * kTile, negative);
+  }
+}
+
+PackedSamples::PackedSamples(const Eigen::MatrixXd& samples)
+    : features_(samples.rows()),
+      chunks_((samples.cols() + kChunk - 1) / kChunk),
+      values_(Eigen::VectorXd::Zero(features_ * chunks_ * kChunk)) {
+  for (Index i = 0; i < samples.cols(); ++i) {
+    for (Index f = 0; f < features_; ++f) {
+      values_((i / kChunk * features_ + f) * kChunk + i % kChunk) = samples(f, i);
+    }
+  }
+}
+
+void PackedSamples::squared_distances(const double* point, Index first, Index last, double* squares) const {
+  for (Index chunk = 0; chunk < chunks_; ++chunk) {
+    const double* source = values_.data() + (chunk * features_ + first) * kChunk;
+    Rows sum = {};
+    for (Index f = first; f < last; ++f, source += kChunk) {
+      for (Index v = 0; v < kVectors; ++v) {
+        const Packet difference = load(source + v * kLanes) - point[f];
+        sum.part[v] += difference * difference;
+      }
+    }
+    store_rows(squares + chunk * kChunk, sum);
+  }
+}
+
+void PackedSamples::add_product(const double* weights, double* values) const {
+  const double* source = values_.data();
+  for (Index chunk = 0; chunk < chunks_; ++chunk) {
+    Rows sum = load_rows(values + chunk * kChunk);
+    for (Index f = 0; f < features_; ++f, source += kChunk) {
+      for (Index v = 0; v < kVectors; ++v) sum.part[v] += load(source + v * kLanes) * weights[f];
+    }
+    store_rows(values + chunk * kChunk, sum);
+  }
+}
+
+}  // namespace twinmap::linalg

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "kernels/linalg/view.hpp"
+
+namespace twinmap::linalg {
+
+/// A lower triangular matrix laid out for one forward solve after another: square tiles of kTile, row of
+/// tiles by row of tiles, each tile column-major, in the order in which the solve reads them; the tiles on
+/// the diagonal hold their inverse. One solve then streams the factor once, with the sums in registers.
+class PackedLower {
+ public:
+  static constexpr Index kTile = 32;
+
+  PackedLower() = default;
+  /// lower: n x n, nonzero diagonal; only its lower triangle is read. Cost: n^2 copies.
+  explicit PackedLower(ConstView lower);
+
+  /// n rounded up to whole tiles.
+  Index padded_size() const { return blocks_ * kTile; }
+
+  /// x = L^-1 x, where x has padded_size() entries; those beyond n must be and remain zero.
+  /// Cost: n^2 flops; reads 4 n^2 bytes.
+  void solve(double* x) const;
+
+ private:
+  Index blocks_ = 0;
+  Eigen::VectorXd tiles_;
+};
+
+/// Inputs laid out for distances to one point after another: samples in chunks of kChunk, feature by feature
+/// within a chunk.
+class PackedSamples {
+ public:
+  static constexpr Index kChunk = 32;
+
+  PackedSamples() = default;
+  /// samples: d x n. Samples beyond n, up to a whole chunk, are zero.
+  explicit PackedSamples(const Eigen::MatrixXd& samples);
+
+  Index padded_size() const { return chunks_ * kChunk; }
+
+  /// squares(i) = sum over features f in [first, last) of (sample_fi - point_f)^2. Cost: 3 n (last - first).
+  void squared_distances(const double* point, Index first, Index last, double* squares) const;
+
+  /// values(i) += sum over features of sample_fi weights_f. Cost: 2 n d.
+  void add_product(const double* weights, double* values) const;
+
+ private:
+  Index features_ = 0;
+  Index chunks_ = 0;
+  Eigen::VectorXd values_;
+};
+
+}  // namespace twinmap::linalg

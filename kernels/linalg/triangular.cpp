@@ -1,0 +1,223 @@
+// Recursive blocked algorithms on the lower triangle: each halves the matrix, so that almost all flops are
+// matrix products of the largest possible size.
+#include "kernels/linalg/triangular.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/linalg/packet.hpp"
+
+namespace twinmap::linalg {
+namespace {
+
+constexpr Index kBase = 32;   // below this order, plain loops over columns
+constexpr Index kPanel = 64;  // triangular operands of products are cut into panels of this width
+constexpr Index kChunkVectors = 4;
+
+Index half_of(Index n) {
+  return (n / 2 + kBase - 1) / kBase * kBase;
+}
+
+// target -= sum over i < count of columns(:, i) weights(i), on kVectors packets of rows.
+template <Index kVectors>
+void subtract_columns_chunk(const double* columns, Index stride, const double* weights, Index weight_stride,
+                            Index count, double* target) {
+  Packet sum[kVectors];
+  for (Index v = 0; v < kVectors; ++v) sum[v] = load(target + v * kLanes);
+  for (Index i = 0; i < count; ++i, columns += stride, weights += weight_stride) {
+    for (Index v = 0; v < kVectors; ++v) sum[v] -= load(columns + v * kLanes) * *weights;
+  }
+  for (Index v = 0; v < kVectors; ++v) store(target + v * kLanes, sum[v]);
+}
+
+void subtract_columns(ConstView columns, const double* weights, Index weight_stride, double* target) {
+  constexpr Index kChunk = kChunkVectors * kLanes;
+  const double* source = columns.data;
+  const Index stride = columns.col_stride;
+  Index row = 0;
+  for (; row + kChunk <= columns.rows; row += kChunk) {
+    subtract_columns_chunk<kChunkVectors>(source + row, stride, weights, weight_stride, columns.cols,
+                                          target + row);
+  }
+  for (; row + kLanes <= columns.rows; row += kLanes) {
+    subtract_columns_chunk<1>(source + row, stride, weights, weight_stride, columns.cols, target + row);
+  }
+  for (; row < columns.rows; ++row) {
+    double sum = target[row];
+    for (Index i = 0; i < columns.cols; ++i) sum -= source[row + i * stride] * weights[i * weight_stride];
+    target[row] = sum;
+  }
+}
+
+void scale(double factor, double* values, Index count) {
+  for (Index i = 0; i < count; ++i) values[i] *= factor;
+}
+
+bool factorize_small(View a) {
+  for (Index j = 0; j < a.rows; ++j) {
+    const Index rows = a.rows - j;
+    subtract_columns(a.block(j, 0, rows, j), &a(j, 0), a.stride, &a(j, j));
+    const double pivot = a(j, j);
+    if (!(pivot > 0.0) || !std::isfinite(pivot)) return false;
+    scale(1.0 / std::sqrt(pivot), &a(j, j), rows);
+  }
+  return true;
+}
+
+void solve_small(ConstView lower, View b) {
+  for (Index j = 0; j < b.cols; ++j) {
+    subtract_columns(b.block(0, 0, b.rows, j), &lower.data[j], lower.col_stride, b.col(j));
+    scale(1.0 / lower(j, j), b.col(j), b.rows);
+  }
+}
+
+// The sum over i of a(i) b(i), in an order that depends on the count only.
+double dot(const double* a, const double* b, Index count) {
+  Packet sums[kChunkVectors] = {};
+  Index i = 0;
+  for (; i + kChunkVectors * kLanes <= count; i += kChunkVectors * kLanes) {
+    for (Index v = 0; v < kChunkVectors; ++v) sums[v] += load(a + i + v * kLanes) * load(b + i + v * kLanes);
+  }
+  const Packet packet = (sums[0] + sums[1]) + (sums[2] + sums[3]);
+  double sum = 0.0;
+  for (Index lane = 0; lane < kLanes; ++lane) sum += packet[lane];
+  for (; i < count; ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+// Column j of the inverse from the trailing columns: X(j+1:, j) = -X(j+1:, j+1:) L(j+1:, j) / L(j, j), from
+// the last column to the first.
+void invert_small(View lower) {
+  double column[kBase];
+  for (Index j = lower.rows - 1; j >= 0; --j) {
+    const Index rows = lower.rows - j - 1;
+    const double inverse_pivot = 1.0 / lower(j, j);
+    std::copy_n(lower.col(j) + j + 1, rows, column);
+    std::fill_n(lower.col(j) + j + 1, rows, 0.0);
+    subtract_columns(lower.block(j + 1, j + 1, rows, rows), column, 1, lower.col(j) + j + 1);
+    scale(inverse_pivot, lower.col(j) + j + 1, rows);
+    lower(j, j) = inverse_pivot;
+    std::fill_n(lower.col(j), j, 0.0);
+  }
+}
+
+void copy(ConstView from, View to) {
+  for (Index j = 0; j < to.cols; ++j) std::copy_n(from.data + j * from.col_stride, to.rows, to.col(j));
+}
+
+// product = b L, skipping the zeros above L's diagonal.
+void multiply_lower_from_right(ConstView b, ConstView lower, View product, GemmScratch& scratch) {
+  const Index n = lower.rows;
+  for (Index j = 0; j < n; j += kPanel) {
+    const Index width = std::min(kPanel, n - j);
+    gemm(1.0, b.block(0, j, b.rows, n - j), lower.block(j, j, n - j, width), 0.0,
+         product.block(0, j, b.rows, width), scratch);
+  }
+}
+
+// product = -L b.
+void multiply_negative_lower_from_left(ConstView lower, ConstView b, View product, GemmScratch& scratch) {
+  const Index n = lower.rows;
+  for (Index i = 0; i < n; i += kPanel) {
+    const Index height = std::min(kPanel, n - i);
+    gemm(-1.0, lower.block(i, 0, height, i + height), b.block(0, 0, i + height, b.cols), 0.0,
+         product.block(i, 0, height, b.cols), scratch);
+  }
+}
+
+// b = L' b, panel by panel from the top: a panel's result needs only rows not yet overwritten.
+void multiply_transposed_lower_from_left(ConstView lower, View b, TriangularScratch& scratch) {
+  const Index n = lower.rows;
+  for (Index i = 0; i < n; i += kPanel) {
+    const Index height = std::min(kPanel, n - i);
+    const View product = scratch.block(height, b.cols);
+    gemm(1.0, lower.block(i, i, n - i, height).transposed(), b.block(i, 0, n - i, b.cols), 0.0, product,
+         scratch.gemm());
+    copy(product, b.block(i, 0, height, b.cols));
+  }
+}
+
+}  // namespace
+
+TriangularScratch::TriangularScratch(Index size)
+    : block_(padded(std::max(size, kPanel)) * std::max(half_of(size) + kBase, kPanel)) {}
+
+View TriangularScratch::block(Index rows, Index cols) {
+  return {block_.data(), rows, cols, padded(rows)};
+}
+
+bool factorize_cholesky(View a, TriangularScratch& scratch) {
+  if (a.rows <= kBase) return factorize_small(a);
+  const Index top = half_of(a.rows);
+  const Index bottom = a.rows - top;
+  const View a11 = a.block(0, 0, top, top);
+  const View a21 = a.block(top, 0, bottom, top);
+  const View a22 = a.block(top, top, bottom, bottom);
+  if (!factorize_cholesky(a11, scratch)) return false;
+  solve_transposed_from_right(a11, a21, scratch);
+  gemm(-1.0, a21, a21.transposed(), 1.0, a22, scratch.gemm(), Part::kLower);
+  return factorize_cholesky(a22, scratch);
+}
+
+void solve_transposed_from_right(ConstView lower, View b, TriangularScratch& scratch) {
+  if (b.cols <= kBase) return solve_small(lower, b);
+  const Index left = half_of(b.cols);
+  const Index right = b.cols - left;
+  const View b1 = b.block(0, 0, b.rows, left);
+  const View b2 = b.block(0, left, b.rows, right);
+  solve_transposed_from_right(lower.block(0, 0, left, left), b1, scratch);
+  gemm(-1.0, b1, lower.block(left, 0, right, left).transposed(), 1.0, b2, scratch.gemm());
+  solve_transposed_from_right(lower.block(left, left, right, right), b2, scratch);
+}
+
+void solve_lower(ConstView lower, double* x) {
+  const Index n = lower.rows;
+  for (Index first = 0; first < n; first += kBase) {
+    const Index end = std::min(first + kBase, n);
+    for (Index j = first; j < end; ++j) {
+      x[j] /= lower(j, j);
+      for (Index i = j + 1; i < end; ++i) x[i] -= lower(i, j) * x[j];
+    }
+    subtract_columns(lower.block(end, first, n - end, end - first), x + first, 1, x + end);
+  }
+}
+
+void solve_lower_transposed(ConstView lower, double* x) {
+  for (Index j = lower.rows - 1; j >= 0; --j) {
+    const Index rest = lower.rows - j - 1;
+    x[j] = (x[j] - dot(lower.data + (j + 1) + j * lower.col_stride, x + j + 1, rest)) / lower(j, j);
+  }
+}
+
+void invert_lower(View lower, TriangularScratch& scratch) {
+  if (lower.rows <= kBase) return invert_small(lower);
+  const Index top = half_of(lower.rows);
+  const Index bottom = lower.rows - top;
+  const View l11 = lower.block(0, 0, top, top);
+  const View l21 = lower.block(top, 0, bottom, top);
+  const View l22 = lower.block(top, top, bottom, bottom);
+  invert_lower(l11, scratch);
+  invert_lower(l22, scratch);
+  const View product = scratch.block(bottom, top);
+  multiply_lower_from_right(l21, l11, product, scratch.gemm());
+  multiply_negative_lower_from_left(l22, product, l21, scratch.gemm());
+  for (Index j = top; j < lower.cols; ++j) std::fill_n(lower.col(j), top, 0.0);
+}
+
+void multiply_transposed_by_self(View lower, TriangularScratch& scratch) {
+  if (lower.rows <= kBase) {
+    const View product = scratch.block(lower.rows, lower.rows);
+    gemm(1.0, lower.transposed(), lower, 0.0, product, scratch.gemm());
+    return copy(product, lower);
+  }
+  const Index top = half_of(lower.rows);
+  const Index bottom = lower.rows - top;
+  const View m21 = lower.block(top, 0, bottom, top);
+  const View m22 = lower.block(top, top, bottom, bottom);
+  multiply_transposed_by_self(lower.block(0, 0, top, top), scratch);
+  gemm(1.0, m21.transposed(), m21, 1.0, lower.block(0, 0, top, top), scratch.gemm(), Part::kLower);
+  multiply_transposed_lower_from_left(m22, m21, scratch);
+  multiply_transposed_by_self(m22, scratch);
+}
+
+}  // namespace twinmap::linalg
