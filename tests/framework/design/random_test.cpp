@@ -1,0 +1,59 @@
+#include "framework/design/random.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+namespace twinmap {
+namespace {
+
+TEST(RandomStream, NumbersDependOnTheKeyAlone) {
+  const RandomStream stream(1, RandomPurpose::kTrainNoise);
+  const double value = stream.calcUniform(3, 5);
+  stream.calcUniform(4, 5);
+  EXPECT_EQ(stream.calcUniform(3, 5), value);
+  std::set<double> others{value, stream.calcUniform(5, 3), stream.calcUniform(3, 6),
+                          RandomStream(2, RandomPurpose::kTrainNoise).calcUniform(3, 5),
+                          RandomStream(1, RandomPurpose::kTestNoise).calcUniform(3, 5)};
+  EXPECT_EQ(others.size(), 5u);
+}
+
+// Philox 4x64-10 with counter 0 and key 0 begins with 0x16554d9eca36314c: known-answer test of Random123.
+TEST(RandomStream, IsPhilox) {
+  const double expected = static_cast<double>(0x16554d9eca36314cULL) * 0x1p-64;
+  EXPECT_NEAR(RandomStream(0, static_cast<RandomPurpose>(0)).calcUniform(0, 0), expected, 1e-15);
+}
+
+TEST(RandomStream, UniformAndNormalHaveTheirMoments) {
+  constexpr int kCount = 100000;
+  const RandomStream stream(7, RandomPurpose::kTrainNoise);
+  double uniform_sum = 0, normal_sum = 0, normal_squares = 0, normal_fourths = 0;
+  for (int i = 0; i < kCount; ++i) {
+    const double u = stream.calcUniform(i, 0), z = stream.calcNormal(i, 1);
+    ASSERT_GT(u, 0.0);
+    ASSERT_LT(u, 1.0);
+    uniform_sum += u;
+    normal_sum += z;
+    normal_squares += z * z;
+    normal_fourths += z * z * z * z;
+  }
+  // Four standard errors of each mean.
+  const double root = std::sqrt(kCount);
+  EXPECT_NEAR(uniform_sum / kCount, 0.5, 4 * std::sqrt(1.0 / 12) / root);
+  EXPECT_NEAR(normal_sum / kCount, 0.0, 4 / root);
+  EXPECT_NEAR(normal_squares / kCount, 1.0, 4 * std::sqrt(2.0) / root);
+  EXPECT_NEAR(normal_fourths / kCount, 3.0, 4 * std::sqrt(96.0) / root);
+}
+
+// The normal is the quantile of the uniform at the same key.
+TEST(RandomStream, NormalIsTheQuantileOfTheUniform) {
+  const RandomStream stream(3, RandomPurpose::kTestNoise);
+  for (int i = 0; i < 1000; ++i) {
+    const double z = stream.calcNormal(i, 2);
+    EXPECT_NEAR(0.5 * std::erfc(-z / std::sqrt(2.0)), stream.calcUniform(i, 2), 1e-14);
+  }
+}
+
+}  // namespace
+}  // namespace twinmap

@@ -1,0 +1,54 @@
+#include "framework/features/feature_extractor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace twinmap {
+namespace {
+
+FeatureSpec makeSamples(std::vector<Name> outputs, double start, double interval, int count) {
+  FeatureSpec feature;
+  feature.samples = SamplesFeatureSpec{std::move(outputs), start, interval, count};
+  return feature;
+}
+
+TEST(FeatureExtractor, TimesAreSortedAndUnique) {
+  const Eigen::VectorXd times =
+      collectTimes({makeSamples({{"a", {}}}, 0.5, 0.5, 3), makeSamples({{"b", {}}}, 0.0, 0.25, 3)});
+  EXPECT_EQ(times, (Eigen::VectorXd(5) << 0.0, 0.25, 0.5, 1.0, 1.5).finished());
+}
+
+TEST(FeatureExtractor, PicksOutputsAtTheirTimes) {
+  const std::vector<FeatureSpec> features{makeSamples({{"b", {}}}, 1.0, 1.0, 2),
+                                          makeSamples({{"a", {}}, {"b", {}}}, 0.0, 2.0, 2)};
+  const Eigen::VectorXd times = collectTimes(features);  // 0, 1, 2
+  const FeatureExtractor extractor(features, {"a", "b"}, times);
+  Eigen::MatrixXd responses(6, 2);
+  responses << 1, 10, 2, 20, 3, 30, 4, 40, 5, 50, 6, 60;  // a at 0, 1, 2, then b
+  Eigen::MatrixXd expected(6, 2);
+  expected << 5, 50, 6, 60, 1, 10, 3, 30, 4, 40, 6, 60;
+  EXPECT_EQ(extractor.extract(responses), expected);
+  EXPECT_EQ(extractor.getInfos()[0].name, "b(1 s)");
+  EXPECT_EQ(extractor.getInfos()[3].output, 0);
+  EXPECT_DOUBLE_EQ(extractor.getInfos()[3].time, 2.0);
+}
+
+TEST(FeatureExtractor, AFailedSampleStaysInItsColumn) {
+  const std::vector<FeatureSpec> features{makeSamples({{"a", {}}}, 0.0, 1.0, 2)};
+  Eigen::MatrixXd responses(2, 3);
+  responses << 1, std::nan(""), 3, 4, std::nan(""), 6;
+  const Eigen::MatrixXd extracted =
+      FeatureExtractor(features, {"a"}, collectTimes(features)).extract(responses);
+  EXPECT_TRUE(extracted.col(1).array().isNaN().all());
+  EXPECT_EQ(extracted.col(2), responses.col(2));
+}
+
+TEST(FeatureExtractor, RefusesWhatTheResponsesLack) {
+  const std::vector<FeatureSpec> features{makeSamples({{"a", {}}}, 0.0, 1.0, 2)};
+  EXPECT_THROW(FeatureExtractor(features, {"b"}, collectTimes(features)), std::invalid_argument);
+  EXPECT_THROW(FeatureExtractor(features, {"a"}, Eigen::VectorXd::Zero(1)), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace twinmap

@@ -1,0 +1,47 @@
+#include "framework/features/noise.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace twinmap {
+namespace {
+
+constexpr int kTimes = 50;
+const Eigen::Vector2d kStddev(0.1, 3.0);
+
+TEST(Noise, HasEachOutputsStandardDeviation) {
+  constexpr int kSamples = 400;
+  const Eigen::MatrixXd clean = Eigen::MatrixXd::Constant(2 * kTimes, kSamples, 7.0);
+  const Eigen::MatrixXd noise = addNoise(clean, kStddev, {1, RandomPurpose::kTrainNoise}) - clean;
+  for (int output = 0; output < 2; ++output) {
+    const auto block = noise.middleRows(output * kTimes, kTimes).array();
+    const double relative = std::sqrt(block.square().mean()) / kStddev[output];
+    EXPECT_NEAR(relative, 1.0, 4 / std::sqrt(2.0 * block.size()));
+  }
+}
+
+TEST(Noise, OfASampleDoesNotDependOnTheOthers) {
+  const Eigen::MatrixXd clean = Eigen::MatrixXd::Random(2 * kTimes, 6);
+  const RandomStream stream(1, RandomPurpose::kTrainNoise);
+  const Eigen::MatrixXd noisy = addNoise(clean, kStddev, stream);
+  EXPECT_EQ(addNoise(clean.leftCols(3), kStddev, stream), noisy.leftCols(3));
+  Eigen::MatrixXd with_failure = clean;
+  with_failure.col(1).setConstant(std::nan(""));
+  EXPECT_EQ(addNoise(with_failure, kStddev, stream).rightCols(4), noisy.rightCols(4));
+}
+
+TEST(Noise, ScaleMultipliesEveryOutputAndZeroIsNone) {
+  std::vector<OutputSpec> outputs(2);
+  outputs[0].name = {"y", {}};
+  outputs[1].name = {"theta", {}};
+  NoiseSpec spec;
+  spec.scale = 2.0;
+  spec.stddev = {{{"theta", {}}, 3.0}, {{"y", {}}, 0.1}};
+  EXPECT_EQ(collectNoiseStddev(spec, outputs), Eigen::Vector2d(0.2, 6.0));
+  const Eigen::MatrixXd clean = Eigen::MatrixXd::Random(2 * kTimes, 3);
+  EXPECT_EQ(addNoise(clean, Eigen::Vector2d::Zero(), {1, RandomPurpose::kTrainNoise}), clean);
+}
+
+}  // namespace
+}  // namespace twinmap

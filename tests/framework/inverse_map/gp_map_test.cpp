@@ -1,0 +1,89 @@
+#include "framework/inverse_map/gp_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace twinmap {
+namespace {
+
+/// Two parameters seen through four features (two outputs at two times), smooth and almost noise-free.
+struct Problem {
+  Eigen::MatrixXd parameters, features;
+  std::vector<FeatureInfo> infos{
+      {"a(0 s)", 0, 0.0}, {"a(1 s)", 0, 1.0}, {"b(0 s)", 1, 0.0}, {"b(1 s)", 1, 1.0}};
+  std::vector<std::string> names{"p", "q"};
+};
+
+Problem makeProblem(int samples, std::uint64_t seed) {
+  Problem problem;
+  const RandomStream random(seed, RandomPurpose::kTrainDesign);
+  problem.parameters.resize(2, samples);
+  problem.features.resize(4, samples);
+  for (int i = 0; i < samples; ++i) {
+    const double p = 1000 + 200 * random.calcUniform(i, 0), q = 1e-4 * (1 + random.calcUniform(i, 1));
+    problem.parameters.col(i) << p, q;
+    const double a = (p - 1000) / 200, b = q / 1e-4 - 1;
+    problem.features.col(i) << std::sin(a) + b, 5 * std::exp(a - b), 0.01 * a * b, b * b + 0.3 * a;
+    for (int f = 0; f < 4; ++f) {
+      problem.features(f, i) += 1e-4 * random.calcNormal(i, 10 + f);
+    }
+  }
+  return problem;
+}
+
+GpMapTraining trainOn(const Problem& problem, const GpMapSpec& spec = {}, int threads = 1) {
+  return trainGpMap(spec, {TransformStep::kZScore}, problem.infos, problem.names, problem.features,
+                    problem.parameters, threads);
+}
+
+TEST(GpMap, InfersParametersInTheirOwnUnits) {
+  const GpMapTraining training = trainOn(makeProblem(80, 1));
+  const Problem test = makeProblem(50, 2);
+  const Predictions predictions = training.map.predict(test.features);
+  EXPECT_TRUE(training.warnings.empty());
+  const Eigen::MatrixXd error = predictions.mean - test.parameters;
+  EXPECT_LT(error.row(0).cwiseAbs().mean(), 1.0);   // of a range of 200
+  EXPECT_LT(error.row(1).cwiseAbs().mean(), 1e-6);  // of a range of 1e-4
+  const Eigen::ArrayXXd z = error.array() / predictions.stddev.array();
+  EXPECT_LT(std::sqrt(z.square().mean()), 2.0);
+  EXPECT_GT(std::sqrt(z.square().mean()), 0.5);
+}
+
+TEST(GpMap, LengthScalesAreGroupedAsTheSpecSays) {
+  const Problem problem = makeProblem(40, 1);
+  GpMapSpec spec;
+  spec.length_scales = LengthScales::kPerOutput;
+  const auto groups = trainOn(problem, spec).map.processes[0]->structure().length_scale_groups;
+  EXPECT_EQ(groups, (std::vector<int>{0, 0, 1, 1}));
+  spec.length_scales = LengthScales::kPerFeature;
+  EXPECT_EQ(trainOn(problem, spec).map.processes[0]->hyperparameters().length_scales.size(), 4);
+  spec.length_scales = LengthScales::kShared;
+  EXPECT_EQ(trainOn(problem, spec).map.processes[0]->hyperparameters().length_scales.size(), 1);
+}
+
+TEST(GpMap, TheResultDoesNotDependOnTheThreads) {
+  const Problem problem = makeProblem(60, 3);
+  const Predictions expected = trainOn(problem).map.predict(problem.features);
+  for (const int threads : {2, 3, 5}) {
+    const Predictions predictions = trainOn(problem, {}, threads).map.predict(problem.features);
+    EXPECT_EQ(predictions.mean, expected.mean) << threads;
+    EXPECT_EQ(predictions.stddev, expected.stddev) << threads;
+  }
+}
+
+TEST(GpMap, FeaturesThatSayNothingGiveAWarningAndThePriorsSpread) {
+  Problem problem = makeProblem(60, 4);
+  const RandomStream random(9, RandomPurpose::kTrainNoise);
+  for (Eigen::Index i = 0; i < problem.features.size(); ++i) {
+    problem.features.data()[i] = random.calcNormal(i, 0);
+  }
+  const GpMapTraining training = trainOn(problem);
+  ASSERT_FALSE(training.warnings.empty());
+  EXPECT_NE(training.warnings[0].find("parameter '"), std::string::npos);
+  const Predictions predictions = training.map.predict(problem.features);
+  EXPECT_NEAR(predictions.stddev(0, 0) / training.map.target_scale[0], 1.0, 0.3);
+}
+
+}  // namespace
+}  // namespace twinmap

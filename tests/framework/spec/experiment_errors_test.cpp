@@ -1,0 +1,145 @@
+// Every kind of mistake in an experiment file gives one error that names its place, its value and the rule.
+#include <gtest/gtest.h>
+
+#include "framework/spec/experiment_file.hpp"
+
+namespace twinmap {
+namespace {
+
+const std::string kTable1 = std::string(TWINMAP_SOURCE_DIR) + "/experiments/two_beam/table1.yaml";
+
+struct Mistake {
+  std::string name;
+  std::string override_text;
+  std::vector<std::string> expected;  ///< parts of the message
+};
+
+class ExperimentErrors : public testing::TestWithParam<Mistake> {};
+
+TEST_P(ExperimentErrors, AreNamed) {
+  try {
+    loadExperiment(kTable1, {GetParam().override_text});
+    FAIL() << "accepted " << GetParam().override_text;
+  } catch (const ExperimentError& error) {
+    for (const std::string& part : GetParam().expected) {
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos)
+          << "'" << part << "' is not in: " << error.what();
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, ExperimentErrors,
+    testing::Values(
+        Mistake{"UnknownKey",
+                "noise.scal=1",
+                {"noise.scal:", "'scal' is not a key here", "did you mean 'scale'?"}},
+        Mistake{"UnknownTopLevelKey", "nose=1", {"nose", "did you mean 'noise'?"}},
+        Mistake{"MissingKey",
+                "system.springs=[{coordinate: y}]",
+                {"system.springs[0]", "needs the key 'stiffness'"}},
+        Mistake{"MisspelledRequiredKey",
+                "system.springs=[{coordinate: y, stifness: 1}]",
+                {"system.springs[0].stifness", "did you mean 'stiffness'?"}},
+        Mistake{
+            "TextForNumber", "noise.scale=loud", {"noise.scale", "'loud'", "must be a number, 0 or above"}},
+        Mistake{"QuotedNumber", "noise.scale=\"2\"", {"noise.scale", "must be a number"}},
+        Mistake{"NegativeNumber", "noise.stddev.y=-1", {"noise.stddev.y", "'-1'", "0 or above"}},
+        Mistake{"ZeroDuration", "simulation.duration=0", {"simulation.duration", "above 0"}},
+        Mistake{"NotANumber", "simulation.duration=.nan", {"simulation.duration", "'.nan'"}},
+        Mistake{"Infinite", "noise.scale=.inf", {"noise.scale", "'.inf'"}},
+        Mistake{"Octal", "design.train.samples=010", {"design.train.samples", "octal"}},
+        Mistake{"FractionalCount", "design.train.samples=1.5", {"design.train.samples", "whole number"}},
+        Mistake{"HugeCount", "design.train.samples=1e30", {"design.train.samples", "'1e30'"}},
+        Mistake{"ListForNumber", "noise.scale=[1, 2]", {"noise.scale", "'a list'"}},
+        Mistake{"NothingForMap", "noise=", {"noise", "'nothing'", "must be a map"}},
+        Mistake{"UnknownEnum",
+                "inverse_map.gp.length_scales=per_feat",
+                {"must be one of shared, per_output, per_feature", "did you mean 'per_feature'?"}},
+        Mistake{"BoundsSwapped",
+                "parameters.k_y.bounds=[15, 5]",
+                {"parameters.k_y.bounds", "'[15, 5]'", "lower below"}},
+        Mistake{
+            "BoundsEqual", "parameters.k_y.bounds=[5, 5]", {"parameters.k_y.bounds", "lower below upper"}},
+        Mistake{"BoundsOfThree",
+                "parameters.k_y.bounds=[1, 2, 3]",
+                {"parameters.k_y.bounds", "list of 2 values"}},
+        Mistake{
+            "BoundsContainZero", "parameters.k_y.bounds=[-1, 1]", {"parameters.k_y", "relative_to: range"}},
+        Mistake{"UnknownUnit",
+                "parameters.k_y.unit=Nm/quux",
+                {"parameters.k_y.unit", "'Nm/quux'", "is not a unit"}},
+        Mistake{"IncoherentUnit", "parameters.k_y.unit=N/mm", {"parameters.k_y.unit", "coherent SI"}},
+        Mistake{"ContradictingUnit",
+                "parameters.k_y.unit=kg",
+                {"table1.yaml:35:34: system.springs[0].stiffness", "'k_y'", "does not come out in N/m"}},
+        Mistake{"UnknownNameInExpression",
+                "system.springs[0].stiffness=2*k_x",
+                {"system.springs[0].stiffness", "unknown name 'k_x'", "did you mean 'k_y'?"}},
+        Mistake{"CoordinateInMass",
+                "system.bodies.beam1.mass=y",
+                {"system.bodies.beam1.mass", "unknown name 'y'"}},
+        Mistake{"LaterConstant", "constants.m1=y_COM", {"constants.m1", "unknown name 'y_COM'"}},
+        Mistake{"UnknownCoordinate",
+                "system.springs[0].coordinate=thet",
+                {"'thet' is not a coordinate", "'theta'"}},
+        Mistake{"UnknownBody",
+                "system.applied_forces[0].body=beam3",
+                {"'beam3' is not a body", "did you mean 'beam"}},
+        Mistake{"UnknownOutput",
+                "features[0].samples.outputs=[y, phi]",
+                {"features[0].samples.outputs[1]", "'phi'"}},
+        Mistake{"RepeatedOutput", "features[0].samples.outputs=[y, y]", {"listed twice"}},
+        Mistake{"ParentDeclaredLater", "system.bodies.beam1.joint.parent=beam2", {"declared before"}},
+        Mistake{
+            "WrongNumberOfCoordinates", "system.bodies.beam1.joint.type=planar", {"beam1", "3 coordinates"}},
+        Mistake{"AxisOfPlanarJoint",
+                "system.bodies.beam1.joint={type: planar, axis: [1, 0, 0], coordinates: [y, a, b]}",
+                {"only slider, pin, screw and cylinder"}},
+        Mistake{"ScrewWithoutPitch", "system.bodies.beam2.joint.type=screw", {"needs joint.pitch"}},
+        Mistake{"SpringOnBallAngle",
+                "system={bodies: {b: {mass: 1, joint: {type: ball, coordinates: [y, theta, c]}}}, springs: "
+                "[{coordinate: theta, stiffness: 1}]}",
+                {"system.springs[0].coordinate", "use a bushing"}},
+        Mistake{"TakenName", "parameters.y={bounds: [1, 2]}", {"'y' is taken"}},
+        Mistake{"ReservedName", "constants.sin=1", {"'sin' is reserved"}},
+        Mistake{"Assignment", "system.applied_forces[0].force[1]=F=3", {"must not assign"}},
+        Mistake{"Syntax",
+                "system.applied_forces[0].force[1]=F +* 3",
+                {"system.applied_forces[0].force[1]", "not a valid"}},
+        Mistake{"TwoOutputsInOne", "outputs.y={coordinate: y, speed: y}", {"outputs.y", "exactly one"}},
+        Mistake{"NoiseMissing", "noise.stddev={y: 1}", {"outputs.theta", "has no noise"}},
+        Mistake{"NoiseOfNothing", "noise.stddev.z=1", {"noise.stddev.z", "is not an output"}},
+        Mistake{"FeaturesBeyondTheEnd",
+                "features[0].samples.count=101",
+                {"features[0].samples", "simulation.duration is 5 s"}},
+        Mistake{"NoFeatures", "features=[]", {"features"}},
+        Mistake{"OneTestSample", "design.test.samples=1", {"design", "at least 2"}},
+        Mistake{"UnknownAxis", "report.over=[k_y, k_z]", {"report.over[1]", "did you mean 'k_y'?"}},
+        Mistake{"NameIsAPath", "name=a/b", {"'a/b' names the run's folder"}},
+        Mistake{"SpeedsAtEquilibrium", "initial.speeds={y: 1}", {"initial", "must not give speeds"}},
+        Mistake{"MultisinePhases",
+                "excitation.F={multisines: [{amplitude: 1, frequencies: [1, 2], phases: [0]}]}",
+                {"excitation.F.multisines[0]", "as many phases"}},
+        Mistake{"TableNotIncreasing",
+                "excitation.F={tables: [{times: [0, 0], values: [1, 2]}]}",
+                {"excitation.F.tables[0]", "strictly increasing"}},
+        Mistake{"IndexOutOfRange", "system.springs[9].stiffness=1", {"[9] of a list with 2 items"}},
+        Mistake{"MalformedPath", "system..springs=1", {"malformed key path"}},
+        Mistake{"NoOverride", "noise.scale", {"is not an override"}}),
+    [](const testing::TestParamInfo<Mistake>& info) { return info.param.name; });
+
+TEST(ExperimentErrors, NameFileLineAndColumn) {
+  YamlNode root = parseYaml("name: x\nparameters:\n  a: {bounds: [2, 1]}\n", "some.yaml");
+  try {
+    readExperiment(root);
+    FAIL();
+  } catch (const ExperimentError& error) {
+    EXPECT_STREQ(
+        error.what(),
+        "some.yaml:3:15: parameters.a.bounds: '[2, 1]' must be [lower, upper] with lower below upper");
+  }
+}
+
+}  // namespace
+}  // namespace twinmap

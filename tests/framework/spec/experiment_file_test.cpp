@@ -1,0 +1,81 @@
+#include "framework/spec/experiment_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include "framework/spec/joint_type.hpp"
+
+namespace twinmap {
+namespace {
+
+const std::string kTable1 = std::string(TWINMAP_SOURCE_DIR) + "/experiments/two_beam/table1.yaml";
+
+TEST(ExperimentFile, ReadsTheTwoBeamExperiment) {
+  const ExperimentSpec experiment = loadExperiment(kTable1);
+  EXPECT_EQ(experiment.name.text, "two_beam_table1");
+  ASSERT_EQ(experiment.model.parameters.size(), 4u);
+  EXPECT_EQ(experiment.model.parameters[1].name.text, "d_theta");
+  EXPECT_EQ(experiment.model.parameters[1].unit, "N m s/rad");
+  EXPECT_DOUBLE_EQ(experiment.model.parameters[1].bounds.upper, 2.25e-4);
+  EXPECT_EQ(experiment.model.system.bodies[1].joint.type, JointType::kPin);
+  EXPECT_EQ(experiment.model.system.bodies[0].joint.parent.text, "ground");
+  EXPECT_EQ(experiment.model.system.gravity[2].text, "-g");
+  EXPECT_DOUBLE_EQ(experiment.noise.stddev[1].stddev, 0.015);
+  EXPECT_EQ(experiment.features[0].samples->count, 100);
+  EXPECT_EQ(experiment.inverse_map.gp.length_scales, LengthScales::kShared);
+}
+
+TEST(ExperimentFile, ResolvedExperimentReadsBackAsItself) {
+  const std::string resolved = writeExperiment(loadExperiment(kTable1));
+  const std::string again = writeExperiment(readExperiment(parseYaml(resolved, "resolved.yaml")));
+  EXPECT_EQ(again, resolved);
+  EXPECT_NE(resolved.find("relative_tolerance"), std::string::npos);
+}
+
+TEST(ExperimentFile, OverridesReplaceAddAndIndex) {
+  const ExperimentSpec experiment =
+      loadExperiment(kTable1, {"seed=7", "noise.scale=1e-1", "parameters.k_y.bounds=[4, 16]",
+                               "system.springs[1].rest=0.25", "inverse_map.gp.length_scales=per_output",
+                               "system.force_laws=[{coordinate: y, force: -3*y^3 - tanh(y_dot/0.01)}]"});
+  EXPECT_EQ(experiment.seed, 7u);
+  EXPECT_DOUBLE_EQ(experiment.noise.scale, 0.1);
+  EXPECT_DOUBLE_EQ(experiment.model.parameters[2].bounds.lower, 4.0);
+  EXPECT_EQ(experiment.model.system.springs[1].rest.text, "0.25");
+  EXPECT_EQ(experiment.inverse_map.gp.length_scales, LengthScales::kPerOutput);
+  EXPECT_EQ(experiment.model.system.force_laws.size(), 1u);
+}
+
+TEST(ExperimentFile, TheLastOverrideOfAKeyWins) {
+  EXPECT_EQ(loadExperiment(kTable1, {"seed=7", "seed=8"}).seed, 8u);
+}
+
+TEST(ExperimentFile, ReportAxesDefaultToTheLastTwoParameters) {
+  const ExperimentSpec experiment = loadExperiment(kTable1, {"report={}"});
+  ASSERT_EQ(experiment.report.over.size(), 2u);
+  EXPECT_EQ(experiment.report.over[0].text, "k_y");
+  EXPECT_EQ(experiment.report.over[1].text, "k_theta");
+}
+
+TEST(ExperimentFile, EveryJointTypeIsReadWithItsCoordinates) {
+  const std::vector<std::pair<std::string, std::string>> joints{{"weld", "[]"},
+                                                                {"slider", "[a]"},
+                                                                {"pin", "[a]"},
+                                                                {"cylinder", "[a, b]"},
+                                                                {"universal", "[a, b]"},
+                                                                {"bend_stretch", "[a, b]"},
+                                                                {"planar", "[a, b, c]"},
+                                                                {"translation", "[a, b, c]"},
+                                                                {"gimbal", "[a, b, c]"},
+                                                                {"ball", "[a, b, c]"},
+                                                                {"bushing", "[a, b, c, d, e, f]"},
+                                                                {"free", "[a, b, c, d, e, f]"}};
+  for (const auto& [type, coordinates] : joints) {
+    EXPECT_NO_THROW(loadExperiment(kTable1, {"system.bodies.extra={mass: 1, joint: {type: " + type +
+                                             ", coordinates: " + coordinates + "}}"}))
+        << type;
+  }
+  EXPECT_NO_THROW(loadExperiment(
+      kTable1, {"system.bodies.extra={mass: 1, joint: {type: screw, pitch: 0.1, coordinates: [a]}}"}));
+}
+
+}  // namespace
+}  // namespace twinmap

@@ -1,0 +1,75 @@
+#include "framework/spec/yaml_node.hpp"
+
+#include <gtest/gtest.h>
+
+namespace twinmap {
+namespace {
+
+std::string getError(const std::string& text) {
+  try {
+    parseYaml(text, "f.yaml");
+  } catch (const ExperimentError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(YamlNode, KeepsOrderAndPlaces) {
+  const YamlNode root = parseYaml("b: 1\na:\n  - x: [2, '3']\n", "f.yaml");
+  ASSERT_EQ(root.entries.size(), 2u);
+  EXPECT_EQ(root.entries[0].key, "b");
+  const YamlNode& list = root.find("a")->items.at(0).find("x")->items.at(1);
+  EXPECT_EQ(list.scalar, "3");
+  EXPECT_TRUE(list.quoted);
+  EXPECT_EQ(list.where.line, 3);
+  EXPECT_EQ(list.where.column, 12);
+  EXPECT_EQ(list.where.key_path, "a[0].x[1]");
+}
+
+TEST(YamlNode, ExpandsAliases) {
+  const YamlNode root = parseYaml("a: &k {v: 1}\nb: *k\n", "f.yaml");
+  EXPECT_EQ(root.find("b")->find("v")->scalar, "1");
+  EXPECT_EQ(root.find("b")->find("v")->where.key_path, "b.v");
+}
+
+TEST(YamlNode, RefusesWhatWouldBeMisread) {
+  EXPECT_EQ(getError("a: 1\nb: 2\na: 3\n"), "f.yaml:3:1: 'a' is given twice in the same map");
+  EXPECT_NE(getError("a: &k {v: 1}\nb: {<<: *k}\n").find("merge key"), std::string::npos);
+  EXPECT_NE(getError("a: !!int 3\n").find("is a tag"), std::string::npos);
+  EXPECT_NE(getError("a: 1\n---\nb: 2\n").find("second document"), std::string::npos);
+  EXPECT_NE(getError("[1, 2]: 3\n").find("cannot be a key"), std::string::npos);
+  EXPECT_NE(getError(std::string("a: \0b", 5)).find("binary"), std::string::npos);
+  EXPECT_EQ(getError("a: [1, 2\n").rfind("f.yaml:2:", 0), 0u);
+}
+
+TEST(YamlNode, RefusesDeepNestingAndAliasBombs) {
+  EXPECT_NE(getError(std::string(100000, '[')), "");
+  EXPECT_NE(getError("a: &a [*a]\n"), "");
+  std::string bomb = "x0: &x0 [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]\n";
+  for (int i = 1; i < 10; ++i) {
+    const std::string last = "*x" + std::to_string(i - 1);
+    bomb += "x" + std::to_string(i) + ": &x" + std::to_string(i) + " [";
+    for (int k = 0; k < 9; ++k) {
+      bomb += last + ", ";
+    }
+    bomb += last + "]\n";
+  }
+  EXPECT_NE(getError(bomb).find("more than a million values"), std::string::npos);
+}
+
+TEST(YamlNode, WrittenYamlParsesToTheSameTree) {
+  const std::string text = "a: 1\nb: [x, \"5\", '#no comment']\nc: {d: \"k: v\", e: [{f: 1}, {g: []}]}\n";
+  const YamlNode root = parseYaml(text, "f.yaml");
+  const std::string written = writeYaml(root);
+  EXPECT_EQ(writeYaml(parseYaml(written, "f.yaml")), written);
+  EXPECT_EQ(parseYaml(written, "f.yaml").find("c")->find("d")->scalar, "k: v");
+  EXPECT_TRUE(parseYaml(written, "f.yaml").find("b")->items[1].quoted);
+}
+
+TEST(YamlNode, NamesTheFileThatCannotBeRead) {
+  EXPECT_THROW(loadYaml("/no/such/file.yaml"), ExperimentError);
+  EXPECT_THROW(loadYaml("/"), ExperimentError);
+}
+
+}  // namespace
+}  // namespace twinmap

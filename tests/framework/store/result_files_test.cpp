@@ -1,0 +1,102 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "framework/store/hdf5_file.hpp"
+#include "framework/store/maps_file.hpp"
+#include "framework/store/provenance.hpp"
+#include "framework/store/samples_file.hpp"
+#include "tests/framework/temporary_folder.hpp"
+
+namespace twinmap {
+namespace {
+
+std::vector<ParameterSpec> makeParameters() {
+  std::vector<ParameterSpec> parameters(2);
+  parameters[0].name = {"k", {}};
+  parameters[0].unit = "N/m";
+  parameters[0].bounds = {1, 2, {}};
+  parameters[1].name = {"d", {}};
+  parameters[1].bounds = {3, 4, {}};
+  return parameters;
+}
+
+Trajectories makeTrajectories(int samples) {
+  Trajectories set;
+  set.parameters = Eigen::MatrixXd::Random(2, samples);
+  set.responses = Eigen::MatrixXd::Random(6, samples);
+  set.statuses.resize(samples);
+  set.times = Eigen::Vector3d(0.1, 0.2, 0.3);
+  set.output_names = {"y", "theta"};
+  set.output_units = {"m", "rad"};
+  return set;
+}
+
+TEST(SamplesFile, HoldsBothSetsWithTheirFailures) {
+  const TemporaryFolder folder;
+  ModelSpec model;
+  model.parameters = makeParameters();
+  Trajectories train = makeTrajectories(4);
+  train.statuses[2] = {false, "body 'b': mass = 0 kg must be positive"};
+  train.responses.col(2).setConstant(std::nan(""));
+  const Trajectories test = makeTrajectories(3);
+  writeSamplesFile(folder / "samples.h5", model, train, test);
+  const Hdf5Reader file(folder / "samples.h5");
+  EXPECT_EQ(file.readTexts("/parameters/name"), (std::vector<std::string>{"k", "d"}));
+  EXPECT_EQ(file.readTexts("/outputs/unit"), (std::vector<std::string>{"m", "rad"}));
+  EXPECT_EQ(file.readShape("/train/responses"), (std::vector<std::size_t>{4, 2, 3}));
+  EXPECT_EQ(file.readSamples("/train/parameters"), train.parameters);
+  EXPECT_EQ(file.readSamples("/train/responses").col(3), train.responses.col(3));
+  EXPECT_EQ(file.readSamples("/test/responses"), test.responses);
+  EXPECT_EQ(file.readIntegers("/train/ok"), (std::vector<std::int64_t>{1, 1, 0, 1}));
+  EXPECT_EQ(file.readTexts("/train/reason")[2], train.statuses[2].reason);
+}
+
+TEST(MapsFile, ARestoredMapPredictsTheSameBits) {
+  const TemporaryFolder folder;
+  const Eigen::MatrixXd features = Eigen::MatrixXd::Random(3, 30);
+  Eigen::MatrixXd values(2, 30);
+  values.row(0) = features.row(0).array().sin() + 1.5;
+  values.row(1) = features.row(1).cwiseProduct(features.row(2));
+  const std::vector<FeatureInfo> infos{{"y(0 s)", 0, 0.0}, {"y(1 s)", 0, 1.0}, {"z(0 s)", 1, 0.0}};
+  for (const LengthScales length_scales : {LengthScales::kShared, LengthScales::kPerOutput}) {
+    GpMapSpec spec;
+    spec.length_scales = length_scales;
+    const GpMapTraining training =
+        trainGpMap(spec, {TransformStep::kZScore}, infos, {"k", "d"}, features, values, 1);
+    writeMapsFile(folder / "maps.h5", {makeParameters(), {"a", "b", "c"}, training.map});
+    const StoredMap stored = readMapsFile(folder / "maps.h5");
+    EXPECT_EQ(stored.feature_names, (std::vector<std::string>{"a", "b", "c"}));
+    EXPECT_EQ(stored.parameters[0].unit, "N/m");
+    const Eigen::MatrixXd at = Eigen::MatrixXd::Random(3, 10);
+    const Predictions expected = training.map.predict(at), restored = stored.map.predict(at);
+    EXPECT_EQ(restored.mean, expected.mean);
+    EXPECT_EQ(restored.stddev, expected.stddev);
+  }
+}
+
+TEST(MapsFile, RefusesOtherFiles) {
+  const TemporaryFolder folder;
+  ModelSpec model;
+  model.parameters = makeParameters();
+  writeSamplesFile(folder / "samples.h5", model, makeTrajectories(2), makeTrajectories(2));
+  EXPECT_THROW(readMapsFile(folder / "samples.h5"), std::runtime_error);
+}
+
+TEST(Provenance, SaysHowTheRunCameAbout) {
+  const nlohmann::json json =
+      nlohmann::json::parse(makeProvenanceJson({"twinmap run \"x\" \xff", 7, 2, {{"simulate", 1.5}}, 3}));
+  EXPECT_EQ(json["seed"], 7);
+  EXPECT_EQ(json["threads"], 2);
+  EXPECT_EQ(json["seconds"]["simulate"], 1.5);
+  EXPECT_EQ(json["failed_samples"], 3);
+  for (const auto& [library, version] : json["libraries"].items()) {
+    EXPECT_NE(version, "") << library;
+  }
+  EXPECT_NE(json["build"]["compiler"], "");
+  EXPECT_NE(json["machine"]["cpu"], "");
+}
+
+}  // namespace
+}  // namespace twinmap
