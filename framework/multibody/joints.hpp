@@ -1,0 +1,19 @@
+#pragma once
+
+#include <Simbody.h>
+
+#include "framework/simulation/number_evaluator.hpp"
+#include "framework/spec/system_spec.hpp"
+
+namespace twinmap {
+
+/// A frame fixed to a body from its origin (m) and body-fixed x-y-z angles (rad).
+SimTK::Transform calcFrame(const FrameSpec& frame, NumberEvaluator& numbers, const std::string& owner);
+
+/// Adds a body to Simbody's tree by its joint. The joint frames of parent and body coincide where all
+/// coordinates are 0. A joint with an axis moves along or about that axis of the joint frame; by default
+/// Simbody's own: x for a slider, z for the others. Throws SimulationFailure for an axis of no length.
+void addMobilizer(SimTK::MobilizedBody parent, const SimTK::Body& body, const BodySpec& spec,
+                  NumberEvaluator& numbers);
+
+}  // namespace twinmap

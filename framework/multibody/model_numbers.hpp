@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "framework/simulation/number_evaluator.hpp"
+#include "framework/spec/model_spec.hpp"
+
+namespace twinmap {
+
+/// The parameters and constants of a model as named values, and the numbers that follow from them.
+class ModelNumbers {
+ public:
+  /// `model` must outlive the object unchanged. Throws ExperimentError for a name declared twice or a
+  /// constant that does not compile.
+  explicit ModelNumbers(const ModelSpec& model);
+
+  /// Sets the parameters (in the model's order) and computes the constants. Throws SimulationFailure for a
+  /// value that is not finite.
+  void update(const Eigen::Ref<const Eigen::VectorXd>& parameters);
+
+  const ExpressionScope& getScope() const { return scope_; }
+  NumberEvaluator& updNumbers() { return numbers_; }
+
+ private:
+  const ModelSpec& model_;
+  ExpressionScope scope_;
+  NumberEvaluator numbers_{scope_};
+  std::vector<CompiledExpression> constants_;
+};
+
+/// Defines `name` in `scope`. Throws ExperimentError if it exists already or is reserved.
+int defineName(ExpressionScope& scope, const Name& name);
+
+/// The parameter point at the centre of the bounds.
+Eigen::VectorXd calcBoxCenter(const ModelSpec& model);
+
+}  // namespace twinmap

@@ -1,0 +1,178 @@
+#include "framework/multibody/multibody_simulator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "framework/multibody/run_sample.hpp"
+#include "framework/spec/nearest_name.hpp"
+
+namespace twinmap {
+namespace {
+
+/// What all clones share.
+struct SharedModel {
+  ModelSpec model;
+  Eigen::VectorXd times;
+  std::vector<std::string> output_names, output_units;
+  Eigen::VectorXd box_center;  ///< coordinates of the equilibrium there, if the spec asks for it
+};
+
+void checkTimes(const Eigen::VectorXd& times, double duration) {
+  for (Eigen::Index i = 0; i < times.size(); ++i) {
+    const bool inside = times[i] >= 0.0 && times[i] <= duration;
+    if (!inside || (i > 0 && times[i] <= times[i - 1])) {
+      throw ExperimentError("sample time " + std::to_string(times[i]) +
+                            " s must lie within the simulation's duration and after the one before");
+    }
+  }
+}
+
+void checkSimulation(const SimulationSpec& simulation) {
+  if (!(simulation.duration > 0.0) || !std::isfinite(simulation.duration)) {
+    throw ExperimentError("simulation.duration must be positive");
+  }
+  if (!(simulation.relative_tolerance > 0.0) || !(simulation.absolute_tolerance > 0.0)) {
+    throw ExperimentError("simulation.relative_tolerance and absolute_tolerance must be positive");
+  }
+}
+
+int findParameter(const ModelSpec& model, const Name& name) {
+  std::vector<std::string> names;
+  for (const ParameterSpec& parameter : model.parameters) {
+    names.push_back(parameter.name.text);
+  }
+  const auto found = std::find(names.begin(), names.end(), name.text);
+  if (found == names.end()) {
+    throw ExperimentError(name.where, name.text, "is not a parameter" + suggestName(name.text, names));
+  }
+  return static_cast<int>(found - names.begin());
+}
+
+/// The box centre with the values that replace it; those may use the centre's parameters and constants.
+Eigen::VectorXd calcEquilibriumPoint(ModelContext& context) {
+  Eigen::VectorXd point = calcBoxCenter(context.model);
+  const std::optional<EquilibriumSpec>& equilibrium = context.model.initial.equilibrium;
+  if (equilibrium) {
+    for (const NamedExpression& value : equilibrium->parameters) {
+      const std::string owner = "initial.equilibrium";
+      point[findParameter(context.model, value.name)] =
+          context.numbers.updNumbers().calc(value.value, {owner, value.name.text.c_str(), ""});
+    }
+  }
+  return point;
+}
+
+/// Builds everything at the box centre, so that all expressions are compiled and all names are known.
+void buildAtBoxCenter(ModelContext& context) {
+  const LoadedSystem system(context, false);
+  const Outputs outputs(context.model.outputs, context.names, context.numbers.updNumbers());
+  calcInitialValues(context);
+}
+
+Eigen::VectorXd solveBoxCenter(ModelContext& context) {
+  context.numbers.update(calcEquilibriumPoint(context));
+  LoadedSystem system(context, false);
+  return solveEquilibrium(system, calcInitialValues(context).coordinates);
+}
+
+}  // namespace
+
+class MultibodySimulator::Impl {
+ public:
+  Impl(const ModelSpec& model, Eigen::VectorXd times)
+      : Impl(std::make_shared<SharedModel>(SharedModel{model, std::move(times), {}, {}, {}})) {}
+
+  explicit Impl(std::shared_ptr<SharedModel> shared) : shared_(std::move(shared)), context_(shared_->model) {}
+
+  /// Completes what the clones share.
+  void prepare() {
+    checkSimulation(shared_->model.simulation);
+    checkTimes(shared_->times, shared_->model.simulation.duration);
+    shared_->output_units = twinmap::getOutputUnits(shared_->model.outputs, context_.names);
+    for (const OutputSpec& output : shared_->model.outputs) {
+      shared_->output_names.push_back(output.name.text);
+    }
+    try {
+      context_.numbers.update(calcBoxCenter(shared_->model));
+      buildAtBoxCenter(context_);
+      const std::optional<EquilibriumSpec>& equilibrium = shared_->model.initial.equilibrium;
+      if (equilibrium && equilibrium->at == EquilibriumAt::kBoxCenter) {
+        shared_->box_center = solveBoxCenter(context_);
+      }
+    } catch (const SimulationFailure& failure) {
+      throw ExperimentError(std::string("at the centre of the parameter box: ") + failure.what());
+    }
+  }
+
+  SampleStatus simulateOne(const Eigen::Ref<const Eigen::VectorXd>& parameters,
+                           Eigen::Ref<Eigen::VectorXd> response) {
+    SampleStatus status;
+    try {
+      status.reason = run(parameters, response);
+      if (status.reason.empty() && !response.allFinite()) {
+        status.reason = "an output became non-finite";
+      }
+    } catch (const SimulationFailure& failure) {
+      status.reason = failure.what();
+    } catch (const SimTK::Exception::Base& error) {
+      status.reason = std::string("Simbody: ") + error.getMessage();
+    }
+    status.ok = status.reason.empty();
+    if (!status.ok) {
+      response.setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
+    return status;
+  }
+
+  const std::shared_ptr<SharedModel>& getShared() const { return shared_; }
+
+ private:
+  std::string run(const Eigen::Ref<const Eigen::VectorXd>& parameters, Eigen::Ref<Eigen::VectorXd> response) {
+    const SimulationSpec& simulation = shared_->model.simulation;
+    const bool own = simulation.integrator == Integrator::kDopri5;
+    context_.numbers.update(parameters);
+    LoadedSystem system(context_, !own);
+    const Outputs outputs(shared_->model.outputs, context_.names, context_.numbers.updNumbers());
+    const InitialState initial = calcInitialState(context_, system, shared_->box_center);
+    const SampleRun sample{system,     context_.excitation, outputs,        initial,
+                           simulation, shared_->times,      response.data()};
+    return own ? runDopri5(sample) : runSimbody(sample);
+  }
+
+  std::shared_ptr<SharedModel> shared_;
+  ModelContext context_;
+};
+
+MultibodySimulator::MultibodySimulator(const ModelSpec& model, Eigen::VectorXd times)
+    : impl_(std::make_unique<Impl>(model, std::move(times))) {
+  impl_->prepare();
+}
+
+MultibodySimulator::MultibodySimulator(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+MultibodySimulator::~MultibodySimulator() = default;
+
+const std::vector<std::string>& MultibodySimulator::getOutputNames() const {
+  return impl_->getShared()->output_names;
+}
+
+const std::vector<std::string>& MultibodySimulator::getOutputUnits() const {
+  return impl_->getShared()->output_units;
+}
+
+const Eigen::VectorXd& MultibodySimulator::getTimes() const {
+  return impl_->getShared()->times;
+}
+
+void MultibodySimulator::simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                                  Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
+  for (Eigen::Index i = 0; i < parameters.cols(); ++i) {
+    statuses[i] = impl_->simulateOne(parameters.col(i), responses.col(i));
+  }
+}
+
+std::unique_ptr<Simulator> MultibodySimulator::clone() const {
+  return std::unique_ptr<Simulator>(new MultibodySimulator(std::make_unique<Impl>(impl_->getShared())));
+}
+
+}  // namespace twinmap

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "framework/simulation/simulator.hpp"
+#include "framework/spec/model_spec.hpp"
+
+namespace twinmap {
+
+/// Simulates a multibody system that is described by data. Simbody builds the equations of motion anew for
+/// every sample; the default integrator is a Dormand-Prince 5(4) pair with dense output.
+class MultibodySimulator final : public Simulator {
+ public:
+  /// `times`: where the outputs are sampled, s, strictly increasing within [0, duration].
+  /// The model is built once at the centre of the parameter box, with the equilibrium if it is asked for
+  /// there. Throws ExperimentError for anything wrong with the model that no parameter set can cure: unknown
+  /// or doubled names, expressions that do not compile, springs, dampers or force laws on coordinates that
+  /// take none, times out of range, a system that cannot exist at the box centre.
+  MultibodySimulator(const ModelSpec& model, Eigen::VectorXd times);
+  ~MultibodySimulator() override;
+
+  const std::vector<std::string>& getOutputNames() const override;
+  const std::vector<std::string>& getOutputUnits() const override;
+  const Eigen::VectorXd& getTimes() const override;
+
+  void simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters, Eigen::Ref<Eigen::MatrixXd> responses,
+                SampleStatus* statuses) override;
+  std::unique_ptr<Simulator> clone() const override;
+
+ private:
+  class Impl;
+  explicit MultibodySimulator(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace twinmap
