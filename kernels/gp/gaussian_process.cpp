@@ -6,6 +6,7 @@
 
 #include "kernels/gp/cross_covariance.hpp"
 #include "kernels/gp/training_set.hpp"
+#include "kernels/linalg/flush_denormals.hpp"
 #include "kernels/linalg/triangular.hpp"
 
 namespace twinmap::gp {
@@ -70,6 +71,7 @@ Prediction GaussianProcess::predict(const Eigen::Ref<const MatrixXd>& inputs) co
                                 " features; the process was trained on " + std::to_string(feature_count()));
   }
   check_inputs(inputs, "GaussianProcess::predict inputs");
+  const linalg::FlushDenormals flush;
   Prediction prediction;
   prediction.mean.resize(inputs.cols());
   prediction.latent_variance.resize(inputs.cols());

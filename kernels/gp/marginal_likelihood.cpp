@@ -5,6 +5,7 @@
 
 #include "kernels/covariance/columns.hpp"
 #include "kernels/covariance/radial.hpp"
+#include "kernels/linalg/flush_denormals.hpp"
 
 namespace twinmap::gp {
 
@@ -193,6 +194,7 @@ LikelihoodWorkspace::LikelihoodWorkspace(const TrainingSet& set)
 LikelihoodEvaluation evaluate_likelihood(const TrainingSet& set, const Eigen::VectorXd& target,
                                          const Hyperparameters& hyperparameters,
                                          LikelihoodWorkspace& workspace) {
+  const linalg::FlushDenormals flush;
   LikelihoodEvaluation evaluation;
   evaluation.nlml = std::numeric_limits<double>::infinity();
   if (!factorize(set, hyperparameters, workspace, evaluation.jitter)) return evaluation;
@@ -213,6 +215,7 @@ LikelihoodEvaluation evaluate_likelihood(const TrainingSet& set, const Eigen::Ve
 LikelihoodEvaluation evaluate_likelihood_gradient(const TrainingSet& set, const Eigen::VectorXd& target,
                                                   const Hyperparameters& hyperparameters,
                                                   LikelihoodWorkspace& workspace, Eigen::VectorXd& gradient) {
+  const linalg::FlushDenormals flush;
   const LikelihoodEvaluation evaluation = evaluate_likelihood(set, target, hyperparameters, workspace);
   gradient.setZero();
   if (!evaluation.ok) return evaluation;

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "kernels/covariance/radial.hpp"
+#include "kernels/linalg/flush_denormals.hpp"
 #include "kernels/linalg/triangular.hpp"
 
 namespace twinmap::gp {
@@ -111,6 +112,7 @@ OnlinePredictor::Workspace::Workspace(const OnlinePredictor& predictor) {
 void OnlinePredictor::predict(const ConstVectorRef& x, Eigen::Ref<VectorXd> mean, Eigen::Ref<VectorXd> stddev,
                               Workspace& workspace) const {
   assert(x.size() == feature_count() && mean.size() == target_count() && stddev.size() == target_count());
+  const linalg::FlushDenormals flush;
   if (shares_distances_) {
     workspace.point = x - center_;
     shared_samples_.squared_distances(workspace.point.data(), 0, feature_count(), workspace.distances.data());

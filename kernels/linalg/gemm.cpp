@@ -11,11 +11,15 @@
 namespace twinmap::linalg {
 namespace {
 
+#ifdef __AVX512F__
+constexpr Index kTileVectors = 2;
+#else
 constexpr Index kTileVectors = 3;
-constexpr Index kTileCols = kLanes;  // 24 (AVX-512) or 12 (AVX2) sums in registers
+#endif
+constexpr Index kTileCols = kLanes;  // 16 (AVX-512) or 12 (AVX2) sums in registers; 32 rows are whole tiles
 constexpr Index kTileRows = kLanes * kTileVectors;
 constexpr Index kBlockDepth = 256;
-constexpr Index kBlockRows = 8 * kTileRows;
+constexpr Index kBlockRows = 12 * kTileRows;
 constexpr Index kBlockCols = 1024;
 
 Index round_up(Index value, Index multiple) {
@@ -47,18 +51,22 @@ void pack_unit_stride(ConstView a, Index width, double alpha, double* packed) {
   if (whole < a.rows) pack(a.block(whole, 0, a.rows - whole, a.cols), width, alpha, packed);
 }
 
-// Where the depth runs along memory, each row is read as a stream.
+// Where the depth runs along memory, square blocks are transposed in registers.
 void pack_unit_depth(ConstView a, Index width, double alpha, double* packed) {
-  for (Index first = 0; first < a.rows; first += width, packed += width * a.cols) {
-    const Index rows = std::min(width, a.rows - first);
-    for (Index r = 0; r < rows; ++r) {
-      const double* source = a.data + (first + r) * a.row_stride;
-      for (Index p = 0; p < a.cols; ++p) packed[p * width + r] = alpha * source[p];
+  const Index whole = a.rows / width * width;
+  const Index depth = a.cols / kLanes * kLanes;
+  for (Index first = 0; first < whole; first += width, packed += width * a.cols) {
+    const double* source = a.data + first * a.row_stride;
+    for (Index p = 0; p < depth; p += kLanes) {
+      for (Index r = 0; r < width; r += kLanes) {
+        copy_transposed(source + r * a.row_stride + p, a.row_stride, packed + p * width + r, width);
+      }
     }
-    for (Index r = rows; r < width; ++r) {
-      for (Index p = 0; p < a.cols; ++p) packed[p * width + r] = 0.0;
-    }
+    pack(a.block(first, depth, width, a.cols - depth), width, 1.0, packed + depth * width);
+    if (alpha == 1.0) continue;
+    for (Index i = 0; i < width * a.cols; ++i) packed[i] *= alpha;
   }
+  if (whole < a.rows) pack(a.block(whole, 0, a.rows - whole, a.cols), width, alpha, packed);
 }
 
 template <Index kWidth>

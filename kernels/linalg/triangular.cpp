@@ -3,6 +3,7 @@
 #include "kernels/linalg/triangular.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "kernels/linalg/packet.hpp"
@@ -11,7 +12,7 @@ namespace twinmap::linalg {
 namespace {
 
 constexpr Index kBase = 32;   // below this order, plain loops over columns
-constexpr Index kPanel = 64;  // triangular operands of products are cut into panels of this width
+constexpr Index kPanel = 64;  // triangular operands up to this order are multiplied with their zeros
 constexpr Index kChunkVectors = 4;
 
 Index half_of(Index n) {
@@ -105,42 +106,57 @@ void copy(ConstView from, View to) {
   for (Index j = 0; j < to.cols; ++j) std::copy_n(from.data + j * from.col_stride, to.rows, to.col(j));
 }
 
-// product = b L, skipping the zeros above L's diagonal.
-void multiply_lower_from_right(ConstView b, ConstView lower, View product, GemmScratch& scratch) {
-  const Index n = lower.rows;
-  for (Index j = 0; j < n; j += kPanel) {
-    const Index width = std::min(kPanel, n - j);
-    gemm(1.0, b.block(0, j, b.rows, n - j), lower.block(j, j, n - j, width), 0.0,
-         product.block(0, j, b.rows, width), scratch);
+// b = b L, in place: the left columns need the right ones before these are overwritten.
+void multiply_lower_from_right(ConstView lower, View b, TriangularScratch& scratch) {
+  if (lower.rows <= kPanel) {
+    const View product = scratch.block(b.rows, b.cols);
+    gemm(1.0, b, lower, 0.0, product, scratch.gemm());
+    return copy(product, b);
   }
+  const Index left = half_of(lower.rows);
+  const Index right = lower.rows - left;
+  const View b1 = b.block(0, 0, b.rows, left);
+  const View b2 = b.block(0, left, b.rows, right);
+  multiply_lower_from_right(lower.block(0, 0, left, left), b1, scratch);
+  gemm(1.0, b2, lower.block(left, 0, right, left), 1.0, b1, scratch.gemm());
+  multiply_lower_from_right(lower.block(left, left, right, right), b2, scratch);
 }
 
-// product = -L b.
-void multiply_negative_lower_from_left(ConstView lower, ConstView b, View product, GemmScratch& scratch) {
-  const Index n = lower.rows;
-  for (Index i = 0; i < n; i += kPanel) {
-    const Index height = std::min(kPanel, n - i);
-    gemm(-1.0, lower.block(i, 0, height, i + height), b.block(0, 0, i + height, b.cols), 0.0,
-         product.block(i, 0, height, b.cols), scratch);
+// b = sign L b, in place, the bottom rows first.
+void multiply_lower_from_left(double sign, ConstView lower, View b, TriangularScratch& scratch) {
+  if (lower.rows <= kPanel) {
+    const View product = scratch.block(b.rows, b.cols);
+    gemm(sign, lower, b, 0.0, product, scratch.gemm());
+    return copy(product, b);
   }
+  const Index top = half_of(lower.rows);
+  const Index bottom = lower.rows - top;
+  const View b1 = b.block(0, 0, top, b.cols);
+  const View b2 = b.block(top, 0, bottom, b.cols);
+  multiply_lower_from_left(sign, lower.block(top, top, bottom, bottom), b2, scratch);
+  gemm(sign, lower.block(top, 0, bottom, top), b1, 1.0, b2, scratch.gemm());
+  multiply_lower_from_left(sign, lower.block(0, 0, top, top), b1, scratch);
 }
 
-// b = L' b, panel by panel from the top: a panel's result needs only rows not yet overwritten.
+// b = L' b, in place, the top rows first.
 void multiply_transposed_lower_from_left(ConstView lower, View b, TriangularScratch& scratch) {
-  const Index n = lower.rows;
-  for (Index i = 0; i < n; i += kPanel) {
-    const Index height = std::min(kPanel, n - i);
-    const View product = scratch.block(height, b.cols);
-    gemm(1.0, lower.block(i, i, n - i, height).transposed(), b.block(i, 0, n - i, b.cols), 0.0, product,
-         scratch.gemm());
-    copy(product, b.block(i, 0, height, b.cols));
+  if (lower.rows <= kPanel) {
+    const View product = scratch.block(b.rows, b.cols);
+    gemm(1.0, lower.transposed(), b, 0.0, product, scratch.gemm());
+    return copy(product, b);
   }
+  const Index top = half_of(lower.rows);
+  const Index bottom = lower.rows - top;
+  const View b1 = b.block(0, 0, top, b.cols);
+  const View b2 = b.block(top, 0, bottom, b.cols);
+  multiply_transposed_lower_from_left(lower.block(0, 0, top, top), b1, scratch);
+  gemm(1.0, lower.block(top, 0, bottom, top).transposed(), b2, 1.0, b1, scratch.gemm());
+  multiply_transposed_lower_from_left(lower.block(top, top, bottom, bottom), b2, scratch);
 }
 
 }  // namespace
 
-TriangularScratch::TriangularScratch(Index size)
-    : block_(padded(std::max(size, kPanel)) * std::max(half_of(size) + kBase, kPanel)) {}
+TriangularScratch::TriangularScratch(Index size) : block_(padded(std::max(size, kPanel)) * kPanel) {}
 
 View TriangularScratch::block(Index rows, Index cols) {
   return {block_.data(), rows, cols, padded(rows)};
@@ -198,9 +214,8 @@ void invert_lower(View lower, TriangularScratch& scratch) {
   const View l22 = lower.block(top, top, bottom, bottom);
   invert_lower(l11, scratch);
   invert_lower(l22, scratch);
-  const View product = scratch.block(bottom, top);
-  multiply_lower_from_right(l21, l11, product, scratch.gemm());
-  multiply_negative_lower_from_left(l22, product, l21, scratch.gemm());
+  multiply_lower_from_right(l11, l21, scratch);
+  multiply_lower_from_left(-1.0, l22, l21, scratch);
   for (Index j = top; j < lower.cols; ++j) std::fill_n(lower.col(j), top, 0.0);
 }
 

@@ -10,7 +10,7 @@ class TriangularScratch {
  public:
   explicit TriangularScratch(Index size);
   GemmScratch& gemm() { return gemm_; }
-  /// rows x cols of scratch, rows <= size and cols <= size / 2 rounded up to a whole block.
+  /// rows x cols of scratch, one of them at most 64 and the other at most `size`.
   View block(Index rows, Index cols);
 
  private:
