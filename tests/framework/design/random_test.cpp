@@ -26,17 +26,20 @@ TEST(RandomStream, IsPhilox) {
 }
 
 TEST(RandomStream, UniformAndNormalHaveTheirMoments) {
-  constexpr int kCount = 100000;
-  const RandomStream stream(7, RandomPurpose::kTrainNoise);
+  constexpr int kSeeds = 20, kSamples = 50000;
+  constexpr double kCount = kSeeds * kSamples;
   double uniform_sum = 0, normal_sum = 0, normal_squares = 0, normal_fourths = 0;
-  for (int i = 0; i < kCount; ++i) {
-    const double u = stream.calcUniform(i, 0), z = stream.calcNormal(i, 1);
-    ASSERT_GT(u, 0.0);
-    ASSERT_LT(u, 1.0);
-    uniform_sum += u;
-    normal_sum += z;
-    normal_squares += z * z;
-    normal_fourths += z * z * z * z;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    const RandomStream stream(seed, RandomPurpose::kTrainNoise);
+    for (int i = 0; i < kSamples; ++i) {
+      const double u = stream.calcUniform(i, 0), z = stream.calcNormal(i, 1);
+      ASSERT_GT(u, 0.0);
+      ASSERT_LT(u, 1.0);
+      uniform_sum += u;
+      normal_sum += z;
+      normal_squares += z * z;
+      normal_fourths += z * z * z * z;
+    }
   }
   // Four standard errors of each mean.
   const double root = std::sqrt(kCount);

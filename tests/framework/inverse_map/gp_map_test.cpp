@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "framework/design/random.hpp"
+
 namespace twinmap {
 namespace {
 
@@ -81,7 +83,9 @@ TEST(GpMap, FeaturesThatSayNothingGiveAWarningAndThePriorsSpread) {
   const GpMapTraining training = trainOn(problem);
   ASSERT_FALSE(training.warnings.empty());
   EXPECT_NE(training.warnings[0].find("parameter '"), std::string::npos);
-  const Predictions predictions = training.map.predict(problem.features);
+  Eigen::MatrixXd unseen(4, 1);
+  unseen << 0.3, -0.2, 0.1, 0.5;
+  const Predictions predictions = training.map.predict(unseen);
   EXPECT_NEAR(predictions.stddev(0, 0) / training.map.target_scale[0], 1.0, 0.3);
 }
 

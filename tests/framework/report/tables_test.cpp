@@ -25,7 +25,7 @@ RunSummary makeRun() {
   run.test_samples = 3;
   run.test_indices = {0, 2};
   run.truth = (Eigen::MatrixXd(2, 2) << 6, 12, 1.8e-4, 2.1e-4).finished();
-  run.predictions.mean = run.truth * 1.01;
+  run.predictions.mean = run.truth * 1.5;
   run.predictions.stddev = (Eigen::MatrixXd(2, 2) << 0.1, 0.2, 1e-6, 3e-6).finished();
   run.metrics = calcMetrics(run.parameters, run.truth, run.predictions);
   run.nlml = {-100.5, 3};
@@ -43,26 +43,26 @@ TEST(Tables, MetricsCsvBeginsWithThePapersColumns) {
 
 TEST(Tables, PredictionsKeepTheSamplesIndices) {
   const std::string csv = makePredictionsCsv(makeRun());
-  EXPECT_EQ(csv.rfind("sample,parameter,true,inferred,stddev\n0,k_y,6,6.06,0.1\n0,d,", 0), 0u);
+  EXPECT_EQ(csv.rfind("sample,parameter,true,inferred,stddev\n0,k_y,6,9,0.1\n0,d,", 0), 0u);
   EXPECT_NE(csv.find("\n2,k_y,12,"), std::string::npos);
   EXPECT_EQ(csv.find("\n1,"), std::string::npos);
 }
 
 TEST(Tables, FailuresCarryTheirValuesAndReason) {
   EXPECT_EQ(makeFailuresCsv(makeRun()),
-            "set,sample,k_y,d,reason\ntest,1,7,0.0002,\"step limit, \"\"t\"\" = 1\"\n");
+            "set,sample,k_y,d,reason\ntest,1,7,2e-04,\"step limit, \"\"t\"\" = 1\"\n");
 }
 
 TEST(Tables, MarkdownAndLatexEscapeAndAlign) {
   const std::string markdown = makeMarkdownTable(makeRun());
   EXPECT_EQ(
       markdown,
-      "| parameter | unit         |    lower |    upper | bias % |   sd % | MARE % | coverage 95 % |\n"
-      "|-----------|--------------|---------:|---------:|-------:|-------:|-------:|--------------:|\n"
-      "| k_y       | N/m          |        5 |       15 | 1.0000 | 0.0000 | 1.0000 |         1.000 |\n"
-      "| d         | a,b\\|c&lt;i> | 0.000175 | 0.000225 | 1.0000 | 0.0000 | 1.0000 |         1.000 |\n");
+      "| parameter | unit         |    lower |    upper |  bias % |   sd % |  MARE % | coverage 95 % |\n"
+      "|-----------|--------------|---------:|---------:|--------:|-------:|--------:|--------------:|\n"
+      "| k_y       | N/m          |        5 |       15 | 50.0000 | 0.0000 | 50.0000 |         0.000 |\n"
+      "| d         | a,b\\|c&lt;i> | 0.000175 | 0.000225 | 50.0000 | 0.0000 | 50.0000 |         0.000 |\n");
   const std::string latex = makeLatexTable(makeRun());
-  EXPECT_NE(latex.find("k\\_y & N/m & 5 & 15 & 1.0000"), std::string::npos);
+  EXPECT_NE(latex.find("k\\_y & N/m & 5 & 15 & 50.0000"), std::string::npos);
   EXPECT_NE(latex.find("bias \\% &"), std::string::npos);
   EXPECT_NE(latex.find("\\bottomrule"), std::string::npos);
 }

@@ -127,7 +127,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"IndexOutOfRange", "system.springs[9].stiffness=1", {"[9] of a list with 2 items"}},
         Mistake{"MalformedPath", "system..springs=1", {"malformed key path"}},
         Mistake{"NoOverride", "noise.scale", {"is not an override"}}),
-    [](const testing::TestParamInfo<Mistake>& info) { return info.param.name; });
+    [](const testing::TestParamInfo<Mistake>& mistake) { return mistake.param.name; });
 
 TEST(ExperimentErrors, NameFileLineAndColumn) {
   YamlNode root = parseYaml("name: x\nparameters:\n  a: {bounds: [2, 1]}\n", "some.yaml");

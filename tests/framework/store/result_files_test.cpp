@@ -27,7 +27,7 @@ Trajectories makeTrajectories(int samples) {
   set.parameters = Eigen::MatrixXd::Random(2, samples);
   set.responses = Eigen::MatrixXd::Random(6, samples);
   set.statuses.resize(samples);
-  set.times = Eigen::Vector3d(0.1, 0.2, 0.3);
+  set.times = Eigen::VectorXd::LinSpaced(3, 0.1, 0.3);
   set.output_names = {"y", "theta"};
   set.output_units = {"m", "rad"};
   return set;
