@@ -11,6 +11,8 @@ namespace {
 
 // Returned where K cannot be factorised: worse than any NLML, yet finite, so that the line search backs off.
 constexpr double kRejected = 1e10;
+// In log-hyperparameters: a factor of e.
+constexpr double kFirstStep = 1.0;
 
 struct Search {
   const TrainingSet& set;
@@ -18,6 +20,7 @@ struct Search {
   const SearchBox& box;
   LikelihoodWorkspace& workspace;
   Eigen::VectorXd gradient;
+  double scale;
   SearchResult result;
 };
 
@@ -34,22 +37,31 @@ void keep_best(Search& search, const Eigen::VectorXd& point, double nlml, double
   search.result.objective = objective;
 }
 
-// The objective per sample: it keeps the first step, which L-BFGS takes along the gradient, of order one.
-double evaluate(unsigned count, const double* values, double* gradient, void* data) {
-  Search& search = *static_cast<Search*>(data);
-  const double scale = 1.0 / static_cast<double>(search.set.size());
-  const Eigen::VectorXd point = Eigen::Map<const Eigen::VectorXd>(values, count);
+double calc_objective(Search& search, const Eigen::VectorXd& point) {
   const LikelihoodEvaluation evaluation = evaluate_likelihood_gradient(
       search.set, search.target, from_log(search.set.structure(), point), search.workspace, search.gradient);
   ++search.result.evaluations;
   search.result.largest_jitter = std::max(search.result.largest_jitter, evaluation.jitter);
-  double objective = kRejected;
-  if (evaluation.ok) {
-    objective = add_prior(search.box, point, evaluation.nlml, search.gradient);
-    keep_best(search, point, evaluation.nlml, objective);
-  }
-  if (gradient) Eigen::Map<Eigen::VectorXd>(gradient, count) = scale * search.gradient;
-  return scale * objective;
+  if (!evaluation.ok) return kRejected;
+  const double objective = add_prior(search.box, point, evaluation.nlml, search.gradient);
+  keep_best(search, point, evaluation.nlml, objective);
+  return objective;
+}
+
+double evaluate(unsigned count, const double* values, double* gradient, void* data) {
+  Search& search = *static_cast<Search*>(data);
+  const double objective = calc_objective(search, Eigen::Map<const Eigen::VectorXd>(values, count));
+  if (gradient) Eigen::Map<Eigen::VectorXd>(gradient, count) = search.scale * search.gradient;
+  return search.scale * objective;
+}
+
+// L-BFGS takes its first step along the gradient as it is. Scaling the objective makes that step at most
+// kFirstStep long; unscaled, it leaps over the valley into the plateau where everything is noise.
+double calc_scale(Search& search, const Eigen::VectorXd& point) {
+  calc_objective(search, point);
+  const double steepest = search.gradient.norm();
+  const double per_sample = 1.0 / static_cast<double>(search.set.size());
+  return steepest > 0.0 ? std::min(per_sample, kFirstStep / steepest) : per_sample;
 }
 
 const char* describe(nlopt_result code) {
@@ -74,18 +86,19 @@ const char* describe(nlopt_result code) {
 SearchResult search(const TrainingSet& set, const Eigen::VectorXd& target, const Eigen::VectorXd& start,
                     const SearchBox& box, int max_evaluations, double tolerance,
                     LikelihoodWorkspace& workspace) {
-  Search search{set, target, box, workspace, Eigen::VectorXd::Zero(start.size()), {}};
+  Search search{set, target, box, workspace, Eigen::VectorXd::Zero(start.size()), 1.0, {}};
   search.result.objective = std::numeric_limits<double>::infinity();
   search.result.nlml = std::numeric_limits<double>::infinity();
   Eigen::VectorXd point = start.cwiseMax(box.lower).cwiseMin(box.upper);
   search.result.end = point;
+  search.scale = calc_scale(search, point);
   const std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)> optimizer(
       nlopt_create(NLOPT_LD_LBFGS, static_cast<unsigned>(start.size())), &nlopt_destroy);
   nlopt_set_min_objective(optimizer.get(), &evaluate, &search);
   nlopt_set_lower_bounds(optimizer.get(), box.lower.data());
   nlopt_set_upper_bounds(optimizer.get(), box.upper.data());
-  nlopt_set_maxeval(optimizer.get(), max_evaluations);
-  nlopt_set_ftol_abs(optimizer.get(), tolerance / static_cast<double>(set.size()));
+  nlopt_set_maxeval(optimizer.get(), std::max(1, max_evaluations - 1));
+  nlopt_set_ftol_abs(optimizer.get(), tolerance * search.scale);
   double least = 0.0;
   const nlopt_result code = nlopt_optimize(optimizer.get(), point.data(), &least);
   search.result.stop_reason = describe(code);

@@ -58,9 +58,9 @@ std::vector<std::vector<double>> calc_pair_distances(const TrainingSet& set) {
 
 // Start number k: multiples of the median distance and of the target's stddev. Beyond the table, a
 // low-discrepancy (golden ratio) sequence over the same ranges.
-std::array<double, 2> spread(int k, double start_noise) {
+std::array<double, 2> spread(int k, const TrainingOptions& options) {
   constexpr std::array<std::array<double, 2>, 4> kTable{{{1.0, 0.0}, {3.0, 0.03}, {0.5, 0.1}, {8.0, 0.5}}};
-  if (k == 0) return {1.0, start_noise};
+  if (k == 0) return {options.start_length_scale, options.start_noise};
   if (k < 4) return kTable[k];
   const double u = std::fmod(0.7548776662466927 * k, 1.0);
   const double v = std::fmod(0.5698402909980532 * k, 1.0);
@@ -83,7 +83,8 @@ DataScales calc_data_scales(const TrainingSet& set) {
   const MatrixXd centered = set.inputs().colwise() - calc_center(set.inputs());
   scales.root_mean_square = std::sqrt(centered.squaredNorm() / static_cast<double>(set.size()));
   if (scales.median_distance == 0.0) scales.median_distance = scales.root_mean_square;
-  if (!(scales.median_distance > 0.0) || !std::isfinite(scales.median_distance)) {
+  const bool all_equal = (set.inputs().colwise() - set.inputs().col(0)).cwiseAbs().maxCoeff() == 0.0;
+  if (all_equal || !(scales.median_distance > 0.0) || !std::isfinite(scales.median_distance)) {
     throw std::invalid_argument("train: the training inputs are all equal (or overflow when squared)");
   }
   scales.group_distances.resize(groups);
@@ -119,7 +120,7 @@ std::vector<VectorXd> make_starts(const TrainingSet& set, const DataScales& scal
                                   const TrainingOptions& options, int count) {
   std::vector<VectorXd> starts;
   for (int k = 0; k < count; ++k) {
-    const auto [length_factor, noise_factor] = spread(k, options.start_noise);
+    const auto [length_factor, noise_factor] = spread(k, options);
     Hyperparameters start;
     start.length_scales = length_factor * scales.group_distances;
     start.signal_stddev = target_stddev;

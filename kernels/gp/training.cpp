@@ -20,9 +20,9 @@ using Eigen::VectorXd;
 
 namespace {
 
-// A fit within this many nats of pure noise has found no signal: one hyperparameter more gains half a nat by
-// chance alone, and a true signal gains of the order of n.
-constexpr double kNoiseOnlyMargin = 2.0;
+// A fit within this many nats of pure noise has found no signal: the best of many length scales gains two or
+// four by chance, and a true signal gains of the order of n.
+constexpr double kNoiseOnlyMargin = 5.0;
 
 // What one target needs, and the results of its searches.
 struct TargetJob {
@@ -50,6 +50,8 @@ void check_options(const TrainingOptions& options) {
   require(options.max_evaluations >= 1, "max_evaluations must be at least 1");
   require(options.tolerance > 0.0, "tolerance must be positive");
   require(options.start_noise > 0.0 && std::isfinite(options.start_noise), "start_noise must be positive");
+  require(options.start_length_scale > 0.0 && std::isfinite(options.start_length_scale),
+          "start_length_scale must be positive");
   require(options.threads >= 1, "threads must be at least 1");
   require_bounds(options.length_scale, "length_scale");
   require_bounds(options.signal_stddev, "signal_stddev");

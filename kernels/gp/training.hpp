@@ -35,6 +35,8 @@ struct TrainingOptions {
   /// Noise stddev of the first start over the target's: large enough to see the signal through, small enough
   /// not to fall into the noise-only optimum.
   double start_noise = 0.3;
+  /// Length scales of the first start over the median distance between samples.
+  double start_length_scale = 1.0;
   /// Times the median distance between samples (overall, or of the group where that is further out).
   RelativeBounds length_scale{1e-2, 1e3};
   /// Times the target's stddev. A smooth map seen over a small part of its length scale needs a large signal.
