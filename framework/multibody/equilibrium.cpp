@@ -40,8 +40,7 @@ class EquilibriumSolver {
  private:
   Eigen::VectorXd calcAccelerations(const Eigen::VectorXd& q) {
     setState(system_, {q, Eigen::VectorXd::Zero(q.size())}, state_);
-    const SimTK::Vector& udot = system_.calcUDot(state_, 0.0);
-    return Eigen::Map<const Eigen::VectorXd>(&udot[0], udot.size());
+    return system_.calcUDot(state_, 0.0);
   }
 
   Eigen::MatrixXd calcJacobian(const Eigen::VectorXd& q) {

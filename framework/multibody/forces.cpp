@@ -13,9 +13,8 @@ constexpr double kCoincident = 1e-12;
 void addGravity(const Vec3& gravity, ForceSum& sum) {
   const int bodies = sum.getTree().getMatter().getNumBodies();
   for (int i = 1; i < bodies && gravity.normSqr() > 0.0; ++i) {
-    const MobilizedBody& body = sum.getBody(i);
-    const SimTK::MassProperties& properties = body.getBodyMassProperties(sum.getState());
-    sum.addForce({i, properties.getMassCenter()}, properties.getMass() * gravity);
+    const SimTK::SpatialInertia& inertia = sum.getBody(i).getBodySpatialInertiaInGround(sum.getState());
+    sum.addAt(i, inertia.getMassCenter(), inertia.getMass() * gravity);
   }
 }
 
@@ -48,8 +47,11 @@ void addPull(const Station& from, const Station& to, const Vec3& pull, ForceSum&
 }  // namespace
 
 void ForceSum::addForce(const Station& station, const Vec3& force) {
-  const Vec3 arm = getBody(station.body).expressVectorInGroundFrame(state_, station.point);
-  body_forces_[station.body] += SimTK::SpatialVec(SimTK::cross(arm, force), force);
+  addAt(station.body, getBody(station.body).expressVectorInGroundFrame(state_, station.point), force);
+}
+
+void ForceSum::addAt(int body, const Vec3& arm, const Vec3& force) {
+  forces_.on_bodies[body] += SimTK::SpatialVec(SimTK::cross(arm, force), force);
 }
 
 void addPassiveForces(const PassiveForces& forces, ForceSum& sum) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "framework/multibody/body_tree.hpp"
+#include "framework/multibody/tree_dynamics.hpp"
 
 namespace twinmap {
 
@@ -18,15 +19,15 @@ struct Station {
 /// Sums forces on bodies (at their origins, in the ground frame) and on speeds.
 class ForceSum {
  public:
-  ForceSum(const BodyTree& tree, const SimTK::State& state, SimTK::Vector_<SimTK::SpatialVec>& body_forces,
-           SimTK::Vector& mobility_forces)
-      : tree_(tree), state_(state), body_forces_(body_forces), mobility_forces_(mobility_forces) {}
+  ForceSum(const BodyTree& tree, const SimTK::State& state, SystemForces& forces)
+      : tree_(tree), state_(state), forces_(forces) {}
 
   /// Forces and moments in the ground frame.
   void addForce(const Station& station, const SimTK::Vec3& force);
-  void addMoment(int body, const SimTK::Vec3& moment) { body_forces_[body][0] += moment; }
+  void addAt(int body, const SimTK::Vec3& arm, const SimTK::Vec3& force);  ///< arm: from the origin
+  void addMoment(int body, const SimTK::Vec3& moment) { forces_.on_bodies[body][0] += moment; }
   void addOnCoordinate(int coordinate, double force) {
-    mobility_forces_[tree_.getSlots()[coordinate].u] += force;
+    forces_.on_speeds[tree_.getSlots()[coordinate].u] += force;
   }
 
   const BodyTree& getTree() const { return tree_; }
@@ -36,8 +37,7 @@ class ForceSum {
  private:
   const BodyTree& tree_;
   const SimTK::State& state_;
-  SimTK::Vector_<SimTK::SpatialVec>& body_forces_;
-  SimTK::Vector& mobility_forces_;
+  SystemForces& forces_;
 };
 
 struct CoordinateSpring {

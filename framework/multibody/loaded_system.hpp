@@ -1,7 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <memory>
+#include <optional>
 #include <vector>
 
 #include "framework/multibody/expression_loads.hpp"
@@ -30,25 +30,20 @@ class LoadedSystem {
 
   const BodyTree& getTree() const { return tree_; }
 
-  /// Sums all forces at time t and a state that is realized to Velocity; overwrites both vectors.
-  void calcForces(const SimTK::State& state, double t, SimTK::Vector_<SimTK::SpatialVec>& body_forces,
-                  SimTK::Vector& mobility_forces);
+  /// Sums all forces at time t and a state that is realized to Velocity. Valid until the next call.
+  const SystemForces& calcForces(const SimTK::State& state, double t);
 
-  /// u' of M(q) u' = f(t, q, u) - c(q, u) at a state that is realized to Velocity; without excitation's time
-  /// when muted. Valid until the next call. Throws SimulationFailure if the mass matrix is singular.
-  /// Cost: one mass matrix, one inverse dynamics and a Cholesky solve, which for up to some twenty
-  /// coordinates is cheaper than Simbody's realize(Acceleration) and agrees with it to rounding.
-  const SimTK::Vector& calcUDot(const SimTK::State& state, double t);
+  /// u' at time t and a state that is realized to Velocity. Valid until the next call. Throws
+  /// SimulationFailure if the mass matrix is singular.
+  const Eigen::VectorXd& calcUDot(const SimTK::State& state, double t);
 
  private:
   ModelContext& context_;
   BodyTree tree_;
   PassiveForces passive_;
   std::vector<double> signals_;
-  SimTK::Vector_<SimTK::SpatialVec> body_forces_;
-  SimTK::Vector mobility_forces_, residual_, udot_;
-  const SimTK::Vector zero_udot_;  ///< empty: Simbody takes it as zero
-  SimTK::Matrix mass_matrix_;
+  SystemForces forces_;
+  std::optional<TreeDynamics> dynamics_;
 };
 
 }  // namespace twinmap

@@ -78,8 +78,9 @@ void Outputs::calc(LoadedSystem& system, const SimTK::State& state, double t, do
                    std::ptrdiff_t stride) const {
   SimTK::Vector_<SimTK::SpatialVec> accelerations;
   if (needs_accelerations_) {
-    system.getTree().getMatter().calcBodyAccelerationFromUDot(state, system.calcUDot(state, t),
-                                                              accelerations);
+    const Eigen::VectorXd& udot = system.calcUDot(state, t);
+    const SimTK::Vector view(static_cast<int>(udot.size()), udot.data(), true);
+    system.getTree().getMatter().calcBodyAccelerationFromUDot(state, view, accelerations);
   }
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     const Output& output = outputs_[i];

@@ -16,10 +16,10 @@ class MultibodyOde : public OdeProblem {
   void calcDerivative(double t, const State& x, State& dxdt) override {
     setState(x);
     system_.realize(state_, SimTK::Stage::Velocity);
-    const SimTK::Vector& udot = run_.system.calcUDot(state_, t);
+    const Eigen::VectorXd& udot = run_.system.calcUDot(state_, t);
     const SimTK::Vector& qdot = state_.getQDot();
     std::copy_n(qdot.getContiguousScalarData(), qdot.size(), dxdt.begin());
-    std::copy_n(udot.getContiguousScalarData(), udot.size(), dxdt.begin() + qdot.size());
+    std::copy_n(udot.data(), udot.size(), dxdt.begin() + qdot.size());
   }
 
   void recordOutput(int index, double t, const State& x) override {
