@@ -1,0 +1,219 @@
+"""The twinmap command from outside: exit codes, messages, and what a run leaves in its folder."""
+import csv
+import filecmp
+import json
+import os
+import statistics
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+TWINMAP = os.environ["TWINMAP"]
+TABLE1 = os.path.join(os.environ["TWINMAP_SOURCE_DIR"], "experiments/two_beam/table1.yaml")
+SMALL = ["design.train.samples=40", "design.test.samples=20"]
+RESULTS = ["failures.csv", "maps.h5", "metrics.csv", "predictions.csv", "resolved.yaml", "samples.h5", "table.md",
+           "table.tex"]
+
+
+def call(*arguments):
+    return subprocess.run([TWINMAP, *map(str, arguments)], capture_output=True, text=True, timeout=300)
+
+
+def read_csv(path):
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+class TestCase(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="twinmap_cli_")
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def run_experiment(self, name, *arguments, file=TABLE1, small=SMALL):
+        result = call("run", file, *small, *arguments, "--out", self.folder / name)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return result
+
+
+class Check(TestCase):
+    def test_prints_the_resolved_experiment_which_checks_as_itself(self):
+        resolved = call("check", TABLE1, "noise.scale=2")
+        self.assertEqual(resolved.returncode, 0, resolved.stderr)
+        self.assertIn("  scale: 2\n", resolved.stdout)
+        path = self.folder / "resolved.yaml"
+        path.write_text(resolved.stdout)
+        self.assertEqual(call("check", path).stdout, resolved.stdout)
+
+
+class ExitCodes(TestCase):
+    def assert_wrong_input(self, *arguments, message):
+        result = call(*arguments)
+        self.assertEqual(result.returncode, 2, result)
+        self.assertIn(message, result.stderr + result.stdout)
+
+    def test_wrong_usage_and_wrong_experiments_are_2(self):
+        self.assert_wrong_input(message="subcommand is required")
+        self.assert_wrong_input("run", message="FILE is required")
+        self.assert_wrong_input("run", TABLE1, "--threads", "0", message="--threads")
+        self.assert_wrong_input("check", TABLE1, "--bogus", message="--bogus")
+        self.assert_wrong_input("check", "/no/such/file.yaml", message="/no/such/file.yaml")
+        self.assert_wrong_input("check", TABLE1, "noise.scal=1", message="did you mean 'scale'?")
+        self.assert_wrong_input("simulate", TABLE1, "parameters.k_z=1", message="did you mean 'k_y'?")
+        self.assert_wrong_input("simulate", TABLE1, "parameters.k_y=much", message="'much' must be a number")
+
+    def test_help_and_version_are_0(self):
+        for arguments in (["--help"], ["--version"], ["run", "--help"], ["simulate", "--help"]):
+            self.assertEqual(call(*arguments).returncode, 0)
+
+    def test_failures_are_1(self):
+        result = call("simulate", TABLE1, "simulation.max_steps=3")
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertIn("step limit", result.stderr)
+        result = call("run", TABLE1, *SMALL, "simulation.max_steps=3", "--out", self.folder / "run")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("40 of 40 train samples could not be simulated", result.stderr)
+        self.assertEqual(len(read_csv(self.folder / "run/failures.csv")), 60)
+        result = call("run", TABLE1, *SMALL, "--out", "/proc/no/such")
+        self.assertEqual(result.returncode, 1)
+
+
+class Simulate(TestCase):
+    def test_writes_the_outputs_at_the_features_times(self):
+        result = call("simulate", TABLE1, "parameters.k_y=7.5")
+        rows = list(csv.reader(result.stdout.splitlines()))
+        self.assertEqual(rows[0], ["t", "y", "theta"])
+        times = [float(row[0]) for row in rows[1:]]
+        np.testing.assert_allclose(times, 0.05 * np.arange(1, 101), rtol=1e-14)
+        self.assertEqual(result.stderr, "")
+
+    def test_parameters_default_to_the_box_centre(self):
+        centre = ["parameters.k_y=10", "parameters.d_y=1", "parameters.d_theta=2e-4", "parameters.k_theta=0.036"]
+        self.assertEqual(call("simulate", TABLE1).stdout, call("simulate", TABLE1, *centre).stdout)
+        self.assertNotEqual(call("simulate", TABLE1).stdout, call("simulate", TABLE1, "parameters.d_y=1.1").stdout)
+
+    def test_noise_and_csv_are_as_asked(self):
+        out = self.folder / "out.csv"
+        self.assertEqual(call("simulate", TABLE1, "--noise", "--csv", out).stdout, "")
+        read = lambda lines: np.array([[float(x) for x in row] for row in list(csv.reader(lines))[1:]])
+        noise = read(out.read_text().splitlines()) - read(call("simulate", TABLE1).stdout.splitlines())
+        np.testing.assert_allclose(noise[:, 1:].std(axis=0), [5e-5, 0.015], rtol=0.3)
+
+
+class Run(TestCase):
+    def test_results_are_bitwise_the_same_for_any_number_of_threads(self):
+        for threads in (1, 2, 3, 5):
+            self.run_experiment(f"t{threads}", "--threads", threads)
+        for threads in (2, 3, 5):
+            _, different, missing = filecmp.cmpfiles(self.folder / "t1", self.folder / f"t{threads}", RESULTS,
+                                                     shallow=False)
+            self.assertEqual((different, missing), ([], []), threads)
+
+    def test_the_resolved_experiment_gives_the_same_results(self):
+        self.run_experiment("a", "seed=3")
+        self.run_experiment("b", file=self.folder / "a/resolved.yaml", small=[])
+        _, different, missing = filecmp.cmpfiles(self.folder / "a", self.folder / "b", RESULTS, shallow=False)
+        self.assertEqual((different, missing), ([], []))
+
+    def test_metrics_follow_from_the_predictions(self):
+        result = self.run_experiment("run")
+        self.assertIn("| k_theta ", result.stdout)
+        predictions = read_csv(self.folder / "run/predictions.csv")
+        self.assertEqual(len(predictions), 4 * 20)
+        for row in read_csv(self.folder / "run/metrics.csv"):
+            mine = [p for p in predictions if p["parameter"] == row["parameter"]]
+            errors = [100 * (float(p["inferred"]) / float(p["true"]) - 1) for p in mine]
+            covered = [abs(float(p["inferred"]) - float(p["true"])) < 1.959964 * float(p["stddev"]) for p in mine]
+            self.assertAlmostEqual(float(row["bias_pct"]), statistics.mean(errors), 9)
+            self.assertAlmostEqual(float(row["sd_pct"]), statistics.stdev(errors), 9)
+            self.assertAlmostEqual(float(row["mare_pct"]), statistics.mean(map(abs, errors)), 9)
+            self.assertAlmostEqual(float(row["coverage95"]), statistics.mean(covered), 9)
+
+    def test_maps_file_is_enough_to_predict(self):
+        """docs/file-formats.md as numpy: without noise, features are the clean responses of samples.h5."""
+        for length_scales in ("shared", "per_output"):
+            self.run_experiment("run", "noise.scale=0", f"inverse_map.gp.length_scales={length_scales}",
+                                "inverse_map.gp.bounds.noise_stddev=[0.01, 1]")
+            with h5py.File(self.folder / "run/samples.h5") as samples:
+                features = samples["test/responses"][:].reshape(20, -1)
+            rows = read_csv(self.folder / "run/predictions.csv")
+            with h5py.File(self.folder / "run/maps.h5") as maps:
+                self.assertEqual(features.shape[1], len(maps["features/name"]))
+                x = (features - maps["transform/offset"][:]) / maps["transform/scale"][:]
+                for p, name in enumerate(maps["parameters/name"].asstr()[:]):
+                    mean, stddev = predict(maps["maps"][name], maps["training_inputs"][:], x)
+                    offset, scale = maps["target/offset"][p], maps["target/scale"][p]
+                    mine = [row for row in rows if row["parameter"] == name]
+                    np.testing.assert_allclose(offset + scale * mean, [float(r["inferred"]) for r in mine], rtol=1e-8)
+                    np.testing.assert_allclose(scale * stddev, [float(r["stddev"]) for r in mine], rtol=1e-6)
+
+    def test_samples_file_is_readable_and_named(self):
+        self.run_experiment("run")
+        with h5py.File(self.folder / "run/samples.h5") as file:
+            self.assertEqual(list(file["outputs/name"].asstr()), ["y", "theta"])
+            self.assertEqual(list(file["outputs/unit"].asstr()), ["m", "rad"])
+            self.assertEqual(file["train/responses"].shape, (40, 2, 100))
+            self.assertEqual(file["train/parameters"].shape, (40, 4))
+            self.assertTrue(np.isfinite(file["train/responses"]).all())
+            lower, upper = file["parameters/lower"][:], file["parameters/upper"][:]
+            points = file["train/parameters"][:]
+            slices = np.sort(np.floor(40 * (points - lower) / (upper - lower)).astype(int), axis=0)
+            self.assertTrue((slices == np.arange(40)[:, None]).all())  # a Latin hypercube
+
+    def test_failed_samples_are_reported_and_shift_no_other(self):
+        heavy = ["parameters.m={bounds: [-0.5, 6], unit: kg, relative_to: range}", "constants.m1=m",
+                 "simulation.allowed_failures=0.5"]
+        result = self.run_experiment("run", *heavy)
+        self.assertIn("could not be simulated", result.stderr)
+        failures = read_csv(self.folder / "run/failures.csv")
+        self.assertGreater(len(failures), 0)
+        with h5py.File(self.folder / "run/samples.h5") as file:
+            for group in ("train", "test"):
+                mass = file[f"{group}/parameters"][:, 4]
+                ok = file[f"{group}/ok"][:].astype(bool)
+                np.testing.assert_array_equal(ok, mass > 0)
+                np.testing.assert_array_equal(ok, np.isfinite(file[f"{group}/responses"]).all(axis=(1, 2)))
+                listed = [int(f["sample"]) for f in failures if f["set"] == group]
+                self.assertEqual(listed, list(np.flatnonzero(~ok)))
+            true_mass = file["test/parameters"][:, 4]
+        for failure in failures:
+            self.assertIn("mass", failure["reason"])
+        for row in read_csv(self.folder / "run/predictions.csv"):
+            if row["parameter"] == "m":
+                self.assertEqual(float(row["true"]), true_mass[int(row["sample"])])
+        self.assertIn(f"{len(failures)} could not be simulated", (self.folder / "run/report.html").read_text())
+        self.assertEqual(json.loads((self.folder / "run/provenance.json").read_text())["failed_samples"], len(failures))
+
+    def test_provenance_says_how(self):
+        self.run_experiment("run", "--threads", 2)
+        provenance = json.loads((self.folder / "run/provenance.json").read_text())
+        self.assertEqual(provenance["threads"], 2)
+        self.assertEqual(provenance["seed"], 1)
+        self.assertIn("design.train.samples=40", provenance["command"])
+        self.assertEqual(len(provenance["seconds"]), 4)
+        self.assertEqual([p.name for p in (self.folder / "run").glob("*.tmp")], [])
+
+
+def predict(group, inputs, x):
+    """Mean and standard deviation of the standardised parameter, from docs/file-formats.md."""
+    assert group.attrs["covariance"] == "squared_exponential" and group.attrs["mean"] == "constant"
+    groups = group["length_scale_groups"][:]
+    scales = group["length_scales"][:][groups if groups.size else np.zeros(inputs.shape[1], int)]
+    distance = ((x[:, None, :] - inputs[None, :, :]) / scales) ** 2
+    signal, noise = group["signal_stddev"][()], group["noise_stddev"][()]
+    k = signal**2 * np.exp(-0.5 * distance.sum(axis=2))
+    mean = k @ group["alpha"][:] + group["mean_coefficients"][0]
+    factor = group["factor"][:]
+    v = np.linalg.solve(factor, k.T)
+    basis = np.linalg.solve(factor, np.ones(len(inputs)))
+    gap = 1 - basis @ v
+    variance = signal**2 - (v**2).sum(axis=0) + gap**2 / (basis @ basis) + noise**2
+    return mean, np.sqrt(variance)
+
+
+if __name__ == "__main__":
+    unittest.main()
