@@ -24,11 +24,18 @@ void BodyTree::realize() {
   state_ = system_.realizeTopology();
   matter_.setUseEulerAngles(state_, true);
   system_.realizeModel(state_);
+  system_.realize(state_, SimTK::Stage::Time);
   for (const CoordinatePlace& place : names_.getCoordinates()) {
     const SimTK::MobilizedBody& body = getBody(place.body);
     slots_.push_back({static_cast<int>(body.getFirstQIndex(state_)) + place.local,
                       static_cast<int>(body.getFirstUIndex(state_)) + place.local});
   }
+}
+
+void BodyTree::realizeVelocity(const SimTK::State& state) const {
+  const SimTK::Subsystem::Guts& matter = matter_.getSubsystemGuts();
+  matter.realizeSubsystemPosition(state);
+  matter.realizeSubsystemVelocity(state);
 }
 
 }  // namespace twinmap

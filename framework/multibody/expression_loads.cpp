@@ -71,7 +71,7 @@ void ExpressionLoads::update(const ExpressionScope& values, NumberEvaluator& num
 
 void ExpressionLoads::setValues(double t, const std::vector<double>& signals, const ForceSum& sum) {
   const SimTK::Vector& q = sum.getState().getQ();
-  const SimTK::Vector& qdot = sum.getState().getQDot();
+  const SimTK::Vector& qdot = sum.getTree().getMatter().getQDot(sum.getState());
   const std::vector<BodyTree::Slot>& slots = sum.getTree().getSlots();
   for (std::size_t i = 0; i < slots.size(); ++i) {
     scope_.upd(first_coordinate_ + static_cast<int>(i)) = q[slots[i].q];

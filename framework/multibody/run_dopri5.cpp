@@ -7,7 +7,7 @@ namespace {
 class MultibodyOde : public OdeProblem {
  public:
   MultibodyOde(const SampleRun& run, SimTK::State& state)
-      : run_(run), system_(run.system.getTree().getSystem()), state_(state) {
+      : run_(run), tree_(run.system.getTree()), state_(state) {
     run_.excitation.mute();
   }
 
@@ -15,16 +15,16 @@ class MultibodyOde : public OdeProblem {
 
   void calcDerivative(double t, const State& x, State& dxdt) override {
     setState(x);
-    system_.realize(state_, SimTK::Stage::Velocity);
+    tree_.realizeVelocity(state_);
     const Eigen::VectorXd& udot = run_.system.calcUDot(state_, t);
-    const SimTK::Vector& qdot = state_.getQDot();
+    const SimTK::Vector& qdot = tree_.getMatter().getQDot(state_);
     std::copy_n(qdot.getContiguousScalarData(), qdot.size(), dxdt.begin());
     std::copy_n(udot.data(), udot.size(), dxdt.begin() + qdot.size());
   }
 
   void recordOutput(int index, double t, const State& x) override {
     setState(x);
-    system_.realize(state_, run_.outputs.getNeededStage());
+    tree_.getSystem().realize(state_, run_.outputs.getNeededStage());
     run_.record(index, t, state_);
   }
 
@@ -37,7 +37,7 @@ class MultibodyOde : public OdeProblem {
   }
 
   const SampleRun& run_;
-  const SimTK::MultibodySystem& system_;
+  const BodyTree& tree_;
   SimTK::State& state_;
 };
 

@@ -8,7 +8,7 @@
 namespace twinmap {
 
 struct IntegrationOptions {
-  double relative_tolerance = 1e-7;  ///< local error per step, relative to the state
+  double relative_tolerance = 3e-7;  ///< local error per step, relative to the state
   double absolute_tolerance = 1e-9;  ///< and absolute, in the state's own units
   int max_steps = 100000;            ///< tried steps of all phases together
   double max_wall_time = 60.0;       ///< s

@@ -7,7 +7,7 @@ enum class Integrator { kDopri5, kRungeKuttaMerson, kCpodes };
 struct SimulationSpec {
   double duration = 0.0;  ///< s, > 0; required
   Integrator integrator = Integrator::kDopri5;
-  double relative_tolerance = 1e-7;  ///< local error per step, relative to the state
+  double relative_tolerance = 3e-7;  ///< local error per step, relative to the state
   double absolute_tolerance = 1e-9;  ///< and absolute, in the state's own units
   int max_steps = 100000;            ///< per sample; more is reported as a failure
   double max_wall_time = 60.0;       ///< s per sample; more is reported as a failure
