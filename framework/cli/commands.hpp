@@ -30,6 +30,9 @@ struct RunArguments {
 /// Validates an experiment and prints it with all defaults.
 void check(const ExperimentArguments& arguments);
 
+/// Prints the JSON schema of experiment files.
+void printSchema();
+
 /// Simulates once and writes a CSV: t, then each output by its name.
 void simulate(const SimulateArguments& arguments);
 

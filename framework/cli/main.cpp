@@ -74,6 +74,12 @@ void addRun(CLI::App& app, twinmap::RunArguments& arguments) {
   command->callback([&arguments] { twinmap::run(arguments); });
 }
 
+void addSchema(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "schema", "Print the JSON schema of experiment files, with which editors complete and explain keys");
+  command->callback([] { twinmap::printSchema(); });
+}
+
 int runCommand(int count, char** arguments) {
   CLI::App app(
       "twinmap keeps digital twins true: it simulates a model for many parameter sets, trains maps "
@@ -91,6 +97,7 @@ int runCommand(int count, char** arguments) {
   addCheck(app, check);
   addSimulate(app, simulate);
   addRun(app, run);
+  addSchema(app);
   try {
     app.parse(count, arguments);
   } catch (const CLI::ParseError& error) {

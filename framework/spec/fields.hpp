@@ -51,7 +51,7 @@ const char* getEnumText(Enum value) {
 ///   }
 ///
 /// and visitors with these members that read YAML into it (FieldReader), write it out (FieldWriter) and
-/// derive the JSON schema (FieldSchema), so that a key is named in one place.
+/// derive the JSON schema (json_schema.cpp), so that a key is named in one place.
 ///   required, optional         a value; an optional one keeps its default when absent
 ///   requiredMap, optionalMap   a vector of structs with a Name `name`, written as a map from name to struct
 ///   rule                       a condition over several fields

@@ -26,7 +26,7 @@ LIBRARIES = {
     r"muParser.*": {"spec"},
     r"udunits2.*": {"spec"},
     r"hdf5.*": {"store"},
-    r"nlohmann/.*": {"store", "report"},
+    r"nlohmann/.*": {"spec", "store", "report"},
     r"CLI/.*": {"cli"},
     r"nlopt.*": {"kernels"},
     r"spdlog/.*": {"flow", "cli"},

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import h5py
 import numpy as np
+import yaml
 
 TWINMAP = os.environ["TWINMAP"]
 TABLE1 = os.path.join(os.environ["TWINMAP_SOURCE_DIR"], "experiments/two_beam/table1.yaml")
@@ -52,6 +53,30 @@ class Check(TestCase):
         path = self.folder / "resolved.yaml"
         path.write_text(resolved.stdout)
         self.assertEqual(call("check", path).stdout, resolved.stdout)
+
+
+class Schema(TestCase):
+    def test_knows_every_key_of_a_resolved_experiment(self):
+        schema = json.loads(call("schema").stdout)
+        experiment = yaml.safe_load(call("check", TABLE1).stdout)
+        self.assertEqual(unknown_keys(experiment, schema, ""), [])
+        self.assertEqual(unknown_keys({"noise": {"scal": 1}}, schema, ""), ["noise.scal"])
+
+
+def unknown_keys(value, schema, path):
+    """Paths of the keys that the schema does not name."""
+    if isinstance(value, list):
+        return [key for item in value for key in unknown_keys(item, schema.get("items", {}), path + "[]")]
+    if not isinstance(value, dict):
+        return []
+    options = [option for option in [schema, *schema.get("anyOf", [])] if option.get("type") == "object"]
+    if not options:
+        return [path]
+    unknown = []
+    for key, item in value.items():
+        below = options[0].get("properties", {}).get(key, options[0]["additionalProperties"])
+        unknown += unknown_keys(item, below, f"{path}.{key}".strip(".")) if below else [f"{path}.{key}".strip(".")]
+    return unknown
 
 
 class ExitCodes(TestCase):

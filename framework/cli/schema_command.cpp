@@ -1,0 +1,12 @@
+#include <iostream>
+
+#include "framework/cli/commands.hpp"
+#include "framework/spec/json_schema.hpp"
+
+namespace twinmap {
+
+void printSchema() {
+  std::cout << makeJsonSchema();
+}
+
+}  // namespace twinmap

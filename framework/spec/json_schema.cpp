@@ -1,0 +1,150 @@
+#include "framework/spec/json_schema.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "framework/spec/describe_experiment.hpp"
+
+namespace twinmap {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// One overload for each type of value, like readValue.
+Json makeSchema(const double&) {
+  return {{"type", "number"}};
+}
+Json makeSchema(const int&) {
+  return {{"type", "integer"}};
+}
+Json makeSchema(const std::uint64_t&) {
+  return {{"type", "integer"}, {"minimum", 0}};
+}
+Json makeSchema(const std::string&) {
+  return {{"type", "string"}};
+}
+Json makeSchema(const Name&) {
+  return {{"type", "string"}};
+}
+Json makeSchema(const Expression&) {
+  return {{"type", {"number", "string"}}};
+}
+Json makeSchema(const OutputNoiseSpec&) {
+  return {{"type", "number"}, {"minimum", 0}};
+}
+Json makeSchema(const NamedExpression&) {
+  return makeSchema(Expression{});
+}
+Json makeSchema(const Bounds&) {
+  return {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 2}, {"maxItems", 2}};
+}
+
+template <class T>
+Json makeStructSchema();
+template <class T>
+Json makeSchema(const std::vector<T>&);
+template <class T, std::size_t N>
+Json makeSchema(const std::array<T, N>&);
+template <class T>
+Json makeSchema(const std::optional<T>&);
+template <class T>
+Json makeSchema(const T&);
+
+Json makeSchema(const ConstantSpec&) {
+  return {{"anyOf", Json::array({makeSchema(Expression{}), makeStructSchema<ConstantSpec>()})}};
+}
+template <class T>
+Json makeSchema(const std::vector<T>&) {
+  return {{"type", "array"}, {"items", makeSchema(T{})}};
+}
+template <class T, std::size_t N>
+Json makeSchema(const std::array<T, N>&) {
+  return {{"type", "array"}, {"items", makeSchema(T{})}, {"minItems", N}, {"maxItems", N}};
+}
+template <class T>
+Json makeSchema(const std::optional<T>&) {
+  return makeSchema(T{});
+}
+template <class T>
+Json makeSchema(const T&) {
+  if constexpr (std::is_enum_v<T>) {
+    Json names = Json::array();
+    for (const EnumName<T>& name : EnumNames<T>::values) {
+      names.push_back(name.text);
+    }
+    return {{"enum", names}};
+  } else {
+    return makeStructSchema<T>();
+  }
+}
+
+void addRule(Json& schema, const NumberRule& rule) {
+  if (std::isfinite(rule.minimum)) {
+    schema[rule.minimum_allowed ? "minimum" : "exclusiveMinimum"] = rule.minimum;
+  }
+  if (std::isfinite(rule.maximum)) {
+    schema["maximum"] = rule.maximum;
+  }
+}
+
+/// Collects the fields of a struct into the schema of an object (see fields.hpp).
+class FieldSchema {
+ public:
+  template <class T, class... Rule>
+  void required(const char* key, const T& value, const char* what, const Rule&... rule) {
+    required_.push_back(key);
+    optional(key, value, what, rule...);
+  }
+  template <class T, class... Rule>
+  void optional(const char* key, const T& value, const char* what, const Rule&... rule) {
+    Json schema = makeSchema(value);
+    (addRule(schema, rule), ...);
+    add(key, std::move(schema), what);
+  }
+  template <class T>
+  void requiredMap(const char* key, const std::vector<T>& values, const char* what) {
+    required_.push_back(key);
+    optionalMap(key, values, what);
+  }
+  template <class T>
+  void optionalMap(const char* key, const std::vector<T>&, const char* what) {
+    add(key, {{"type", "object"}, {"additionalProperties", makeSchema(T{})}}, what);
+  }
+  void rule(bool, const char*) const {}
+
+  Json makeObject() const {
+    Json object{{"type", "object"}, {"additionalProperties", false}, {"properties", properties_}};
+    if (!required_.empty()) {
+      object["required"] = required_;
+    }
+    return object;
+  }
+
+ private:
+  void add(const char* key, Json schema, const char* what) {
+    schema["description"] = what;
+    properties_[key] = std::move(schema);
+  }
+
+  Json properties_ = Json::object();
+  std::vector<std::string> required_;
+};
+
+template <class T>
+Json makeStructSchema() {
+  FieldSchema fields;
+  T value{};
+  describe(fields, value);
+  return fields.makeObject();
+}
+
+}  // namespace
+
+std::string makeJsonSchema() {
+  Json schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "twinmap experiment"}};
+  schema.update(makeStructSchema<ExperimentSpec>());
+  constexpr int kIndent = 2;
+  return schema.dump(kIndent) + "\n";
+}
+
+}  // namespace twinmap
