@@ -13,7 +13,7 @@ struct LeaveOneOut {
   Eigen::VectorXd stddev;       ///< of that prediction, noise included
   Eigen::VectorXd log_density;  ///< of y_i under it, nats
   double total_log_density = 0.0;
-  double coverage95 = 0.0;      ///< fraction of |residual| <= 1.96 stddev
+  double coverage95 = 0.0;  ///< fraction of |residual| <= 1.96 stddev
   double root_mean_square = 0.0;
 };
 

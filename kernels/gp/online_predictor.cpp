@@ -14,74 +14,75 @@ namespace twinmap::gp {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using ConstVectorRef = Eigen::Ref<const VectorXd>;
 
 namespace {
 
-bool can_share_distances(const std::vector<const GaussianProcess*>& processes) {
-  const GaussianProcess& first = *processes.front();
-  return std::all_of(processes.begin(), processes.end(), [&](const GaussianProcess* process) {
-    return process->parts().inputs == first.parts().inputs && group_count(process->structure()) == 1 &&
-           !process->structure().linear_term;
-  });
+bool share_inputs(const GaussianProcess& one, const GaussianProcess& other) {
+  return one.parts().inputs == other.parts().inputs ||
+         (one.sample_count() == other.sample_count() && one.inputs() == other.inputs());
 }
 
-std::vector<const GaussianProcess*> pointers_to(
-    const std::vector<std::shared_ptr<const GaussianProcess>>& processes) {
-  std::vector<const GaussianProcess*> pointers;
-  for (const auto& process : processes) pointers.push_back(process.get());
-  return pointers;
-}
-
-std::vector<const GaussianProcess*> pointers_to(const std::vector<GaussianProcess>& processes) {
-  std::vector<const GaussianProcess*> pointers;
-  for (const auto& process : processes) pointers.push_back(&process);
-  return pointers;
+void check(const std::vector<const GaussianProcess*>& processes) {
+  if (processes.empty()) throw std::invalid_argument("OnlinePredictor: there are no processes");
+  for (const GaussianProcess* process : processes) {
+    if (process == nullptr) {
+      throw std::invalid_argument("OnlinePredictor: a process is null; its training failed");
+    }
+    if (process->feature_count() != processes.front()->feature_count()) {
+      throw std::invalid_argument("OnlinePredictor: the processes differ in their number of features");
+    }
+  }
 }
 
 }  // namespace
 
 OnlinePredictor::OnlinePredictor(const std::vector<std::shared_ptr<const GaussianProcess>>& processes) {
-  add_targets(pointers_to(processes));
+  std::vector<const GaussianProcess*> pointers;
+  for (const auto& process : processes) pointers.push_back(process.get());
+  build(pointers);
 }
 
 OnlinePredictor::OnlinePredictor(const std::vector<GaussianProcess>& processes) {
-  add_targets(pointers_to(processes));
+  std::vector<const GaussianProcess*> pointers;
+  for (const auto& process : processes) pointers.push_back(&process);
+  build(pointers);
 }
 
-void OnlinePredictor::add_targets(const std::vector<const GaussianProcess*>& processes) {
-  if (processes.empty()) throw std::invalid_argument("OnlinePredictor: there are no processes");
-  for (const GaussianProcess* process : processes) {
-    if (process == nullptr)
-      throw std::invalid_argument("OnlinePredictor: a process is null (training failed)");
-    if (process->feature_count() != processes.front()->feature_count()) {
-      throw std::invalid_argument("OnlinePredictor: the processes differ in their number of features");
+void OnlinePredictor::build(const std::vector<const GaussianProcess*>& processes) {
+  check(processes);
+  feature_count_ = processes.front()->feature_count();
+  const auto total = static_cast<Index>(processes.size());
+  for (Index first = 0; first < total;) {
+    Index count = 1;
+    while (count < kBatch && first + count < total &&
+           share_inputs(*processes[first], *processes[first + count])) {
+      ++count;
     }
+    batches_.push_back(make_batch(processes, first, count));
+    first += count;
   }
-  center_ = processes.front()->center();
-  shares_distances_ = can_share_distances(processes);
-  if (shares_distances_) {
-    shared_samples_ = linalg::PackedSamples(processes.front()->inputs().colwise() - center_);
-  }
-  for (const GaussianProcess* process : processes) {
-    targets_.push_back(make_target(*process, shares_distances_));
-  }
+  for (const GaussianProcess* process : processes) targets_.push_back(make_target(*process));
 }
 
-OnlinePredictor::Target OnlinePredictor::make_target(const GaussianProcess& process, bool shares_distances) {
+OnlinePredictor::Batch OnlinePredictor::make_batch(const std::vector<const GaussianProcess*>& processes,
+                                                   Index first, Index count) {
+  const GaussianProcess& process = *processes[first];
+  Batch batch;
+  batch.first = first;
+  batch.count = count;
+  batch.center = process.center();
+  batch.samples = linalg::PackedSamples(process.inputs().colwise() - batch.center);
+  batch.weights = MatrixXd::Zero(count == 1 ? 1 : kBatch, process.feature_count());
+  for (Index t = 0; t < count; ++t) {
+    batch.weights.row(t) = processes[first + t]->inverse_length_scales().cwiseAbs2().transpose();
+  }
+  return batch;
+}
+
+OnlinePredictor::Target OnlinePredictor::make_target(const GaussianProcess& process) {
   Target target;
   target.structure = process.structure();
   target.hyperparameters = process.hyperparameters();
-  target.center = process.center();
-  target.inverse_length_scales = process.inverse_length_scales();
-  if (process.structure().linear_term) {
-    const double linear_stddev = process.hyperparameters().linear_stddev;
-    target.linear_weights = linear_stddev * linear_stddev * target.inverse_length_scales.array().pow(-2.0);
-  }
-  if (!shares_distances) {
-    target.samples = linalg::PackedSamples(target.inverse_length_scales.asDiagonal() *
-                                           (process.inputs().colwise() - target.center));
-  }
   target.factor = linalg::PackedLower(linalg::view_of(process.factor()));
   target.sample_count = process.sample_count();
   const Index padding = target.factor.padded_size();
@@ -102,69 +103,63 @@ OnlinePredictor::Workspace::Workspace(const OnlinePredictor& predictor) {
     coefficients = std::max(coefficients, target.mean_coefficients.size());
   }
   point.setZero(predictor.feature_count());
-  distances.setZero(predictor.shared_samples_.padded_size());
-  scaled.setZero(largest);
+  linear.setZero(predictor.feature_count());
+  distances.setZero(largest, kBatch);
   covariance.setZero(largest);
   weight.setZero(largest);
   error.setZero(coefficients);
 }
 
-void OnlinePredictor::predict(const ConstVectorRef& x, Eigen::Ref<VectorXd> mean, Eigen::Ref<VectorXd> stddev,
-                              Workspace& workspace) const {
+void OnlinePredictor::predict(const Eigen::Ref<const VectorXd>& x, Eigen::Ref<VectorXd> mean,
+                              Eigen::Ref<VectorXd> stddev, Workspace& workspace) const {
   assert(x.size() == feature_count() && mean.size() == target_count() && stddev.size() == target_count());
   const linalg::FlushDenormals flush;
-  if (shares_distances_) {
-    workspace.point = x - center_;
-    shared_samples_.squared_distances(workspace.point.data(), 0, feature_count(), workspace.distances.data());
-  }
-  for (Index t = 0; t < target_count(); ++t) {
-    const Target& target = targets_[t];
-    const double signal_stddev = target.hyperparameters.signal_stddev;
-    const double noise_stddev = target.hyperparameters.noise_stddev;
-    calc_covariance(target, x, workspace);
-    auto covariance = workspace.covariance.head(target.factor.padded_size());
-    double variance = signal_stddev * signal_stddev;
-    if (target.structure.linear_term) {
-      variance += (workspace.point.array().square() * target.linear_weights.array()).sum();
+  for (const Batch& batch : batches_) {
+    workspace.point = x - batch.center;
+    if (batch.count == 1) {
+      batch.samples.weighted_distances<1>(workspace.point.data(), batch.weights.data(),
+                                          workspace.distances.data());
+    } else {
+      batch.samples.weighted_distances<kBatch>(workspace.point.data(), batch.weights.data(),
+                                               workspace.distances.data());
     }
-    mean(t) = covariance.dot(target.alpha);
-    target.factor.solve(covariance.data());
-    variance = apply_mean(target, x, variance - covariance.squaredNorm(), mean(t), workspace);
-    stddev(t) = std::sqrt(std::max(variance, 0.0) + noise_stddev * noise_stddev);
+    for (Index t = batch.first; t < batch.first + batch.count; ++t) {
+      predict_target(t, batch, mean(t), stddev(t), workspace);
+    }
   }
 }
 
-void OnlinePredictor::calc_covariance(const Target& target, const ConstVectorRef& x,
-                                      Workspace& workspace) const {
+void OnlinePredictor::predict_target(Index index, const Batch& batch, double& mean, double& stddev,
+                                     Workspace& workspace) const {
+  const Target& target = targets_[index];
+  const Hyperparameters& h = target.hyperparameters;
   const Index size = target.factor.padded_size();
-  if (shares_distances_) {
-    const double inverse = target.inverse_length_scales(0);
-    workspace.scaled.head(size) = inverse * inverse * workspace.distances;
-  } else {
-    workspace.point = (x - target.center).cwiseProduct(target.inverse_length_scales);
-    target.samples.squared_distances(workspace.point.data(), 0, feature_count(), workspace.scaled.data());
-  }
   AlignedColumn covariance(workspace.covariance.data(), size);
-  evaluate_radial(target.structure.covariance, target.hyperparameters.shape,
-                  ConstAlignedColumn(workspace.scaled.data(), size), covariance,
+  const ConstAlignedColumn distances(workspace.distances.data() + (index - batch.first) * size, size);
+  evaluate_radial(target.structure.covariance, h.shape, distances, covariance,
                   AlignedColumn(workspace.weight.data(), size));
-  covariance *= target.hyperparameters.signal_stddev * target.hyperparameters.signal_stddev;
+  double variance = h.signal_stddev * h.signal_stddev;
+  covariance *= variance;
   if (target.structure.linear_term) {
-    workspace.point.array() *= target.linear_weights.array();
-    target.samples.add_product(workspace.point.data(), covariance.data());
-    workspace.point.array() /= target.linear_weights.array();
+    workspace.linear = h.linear_stddev * h.linear_stddev * workspace.point;
+    batch.samples.add_product(workspace.linear.data(), covariance.data());
+    variance += workspace.linear.dot(workspace.point);
   }
   covariance.tail(size - target.sample_count).setZero();
+  mean = covariance.matrix().dot(target.alpha);
+  target.factor.solve(covariance.data());
+  variance = apply_mean(target, variance - covariance.matrix().squaredNorm(), mean, workspace);
+  stddev = std::sqrt(std::max(variance, 0.0) + h.noise_stddev * h.noise_stddev);
 }
 
 // Adds h(x)'b to the mean and e'A^-1 e to the variance.
-double OnlinePredictor::apply_mean(const Target& target, const ConstVectorRef& x, double variance,
-                                   double& mean, Workspace& workspace) const {
+double OnlinePredictor::apply_mean(const Target& target, double variance, double& mean,
+                                   Workspace& workspace) {
   const Index count = target.mean_coefficients.size();
   if (count == 0) return variance;
   const auto whitened = workspace.covariance.head(target.factor.padded_size());
   for (Index k = 0; k < count; ++k) {
-    const double basis = k == 0 ? 1.0 : x(k - 1) - target.center(k - 1);
+    const double basis = k == 0 ? 1.0 : workspace.point(k - 1);
     mean += basis * target.mean_coefficients(k);
     workspace.error(k) = basis - target.whitened_basis.col(k).dot(whitened);
   }

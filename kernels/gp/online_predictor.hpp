@@ -21,9 +21,9 @@ class OnlinePredictor {
 
    private:
     friend class OnlinePredictor;
-    Eigen::VectorXd point;       // x - c, or that divided by the length scales
-    Eigen::VectorXd distances;   // unscaled, shared by the targets
-    Eigen::VectorXd scaled;      // q
+    Eigen::VectorXd point;       // x - c
+    Eigen::VectorXd linear;      // s_l^2 (x - c)
+    Eigen::MatrixXd distances;   // q, one column per target
     Eigen::VectorXd covariance;  // k, then v
     Eigen::VectorXd weight;
     Eigen::VectorXd error;  // e
@@ -34,7 +34,7 @@ class OnlinePredictor {
   explicit OnlinePredictor(const std::vector<std::shared_ptr<const GaussianProcess>>& processes);
   explicit OnlinePredictor(const std::vector<GaussianProcess>& processes);
 
-  Eigen::Index feature_count() const { return center_.size(); }
+  Eigen::Index feature_count() const { return feature_count_; }
   Eigen::Index target_count() const { return static_cast<Eigen::Index>(targets_.size()); }
 
   /// x: d features, finite (NaN in, NaN out). Writes the mean and the stddev (noise included) of each target.
@@ -47,10 +47,6 @@ class OnlinePredictor {
   struct Target {
     ModelStructure structure;
     Hyperparameters hyperparameters;
-    Eigen::VectorXd center;
-    Eigen::VectorXd inverse_length_scales;
-    Eigen::VectorXd linear_weights;  // s_l^2 l_f^2 of each feature; empty without the linear term
-    linalg::PackedSamples samples;   // (X - c) / l; empty where the shared distances serve
     linalg::PackedLower factor;
     Eigen::VectorXd alpha;           // padded with zeros
     Eigen::MatrixXd whitened_basis;  // V, rows padded with zeros
@@ -58,18 +54,27 @@ class OnlinePredictor {
     Eigen::VectorXd mean_coefficients;
     Eigen::Index sample_count = 0;
   };
+  // Targets predicted from one pass over the inputs they share: up to kBatch of them.
+  struct Batch {
+    Eigen::Index first = 0;
+    Eigen::Index count = 0;
+    Eigen::VectorXd center;  // c
+    linalg::PackedSamples samples;
+    Eigen::MatrixXd weights;  // 1 / l^2: kBatch or 1 rows, a column per feature
+  };
+  static constexpr Eigen::Index kBatch = 4;
 
-  void add_targets(const std::vector<const GaussianProcess*>& processes);
-  static Target make_target(const GaussianProcess& process, bool shares_distances);
-  void calc_covariance(const Target& target, const Eigen::Ref<const Eigen::VectorXd>& x,
-                       Workspace& workspace) const;
-  double apply_mean(const Target& target, const Eigen::Ref<const Eigen::VectorXd>& x, double variance,
-                    double& mean, Workspace& workspace) const;
+  void build(const std::vector<const GaussianProcess*>& processes);
+  static Target make_target(const GaussianProcess& process);
+  static Batch make_batch(const std::vector<const GaussianProcess*>& processes, Eigen::Index first,
+                          Eigen::Index count);
+  void predict_target(Eigen::Index index, const Batch& batch, double& mean, double& stddev,
+                      Workspace& workspace) const;
+  static double apply_mean(const Target& target, double variance, double& mean, Workspace& workspace);
 
   std::vector<Target> targets_;
-  Eigen::VectorXd center_;
-  bool shares_distances_ = false;
-  linalg::PackedSamples shared_samples_;  // X - c
+  std::vector<Batch> batches_;
+  Eigen::Index feature_count_ = 0;
 };
 
 }  // namespace twinmap::gp

@@ -86,19 +86,27 @@ PackedSamples::PackedSamples(const Eigen::MatrixXd& samples)
   }
 }
 
-void PackedSamples::squared_distances(const double* point, Index first, Index last, double* squares) const {
-  for (Index chunk = 0; chunk < chunks_; ++chunk) {
-    const double* source = values_.data() + (chunk * features_ + first) * kChunk;
-    Rows sum = {};
-    for (Index f = first; f < last; ++f, source += kChunk) {
-      for (Index v = 0; v < kVectors; ++v) {
-        const Packet difference = load(source + v * kLanes) - point[f];
-        sum.part[v] += difference * difference;
+template <int kWeightings>
+void PackedSamples::weighted_distances(const double* point, const double* weights, double* squares) const {
+  const double* source = values_.data();
+  for (Index first = 0; first < padded_size(); first += kChunk) {
+    for (Index v = 0; v < kVectors; ++v) {
+      const double* sample = source + v * kLanes;
+      const double* weight = weights;
+      Packet sum[kWeightings] = {};
+      for (Index f = 0; f < features_; ++f, sample += kChunk, weight += kWeightings) {
+        const Packet difference = load(sample) - point[f];
+        const Packet square = difference * difference;
+        for (int t = 0; t < kWeightings; ++t) sum[t] += square * weight[t];
       }
+      for (int t = 0; t < kWeightings; ++t) store(squares + t * padded_size() + first + v * kLanes, sum[t]);
     }
-    store_rows(squares + chunk * kChunk, sum);
+    source += features_ * kChunk;
   }
 }
+
+template void PackedSamples::weighted_distances<1>(const double*, const double*, double*) const;
+template void PackedSamples::weighted_distances<4>(const double*, const double*, double*) const;
 
 void PackedSamples::add_product(const double* weights, double* values) const {
   const double* source = values_.data();

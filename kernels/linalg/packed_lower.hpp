@@ -41,8 +41,12 @@ class PackedSamples {
 
   Index padded_size() const { return chunks_ * kChunk; }
 
-  /// squares(i) = sum over features f in [first, last) of (sample_fi - point_f)^2. Cost: 3 n (last - first).
-  void squared_distances(const double* point, Index first, Index last, double* squares) const;
+  /// Distances under several weightings at once:
+  ///   squares(i, t) = sum over features f of weights(t, f) (sample_fi - point_f)^2,   t < kWeightings,
+  /// with weights column-major (kWeightings x d) and squares' columns padded_size() apart.
+  /// Cost: 2 n d (1 + kWeightings) flops; kWeightings is 1 or 4.
+  template <int kWeightings>
+  void weighted_distances(const double* point, const double* weights, double* squares) const;
 
   /// values(i) += sum over features of sample_fi weights_f. Cost: 2 n d.
   void add_product(const double* weights, double* values) const;

@@ -15,8 +15,8 @@ using Eigen::VectorXd;
 
 class LeaveOneOutOf : public testing::TestWithParam<MeanFunction> {};
 
-// Against fits to the other samples. Features far from linear terms: the linear mean's basis shifts its centre
-// with the sample left out, which the integrated coefficients absorb exactly.
+// Against fits to the other samples. Features far from linear terms: the linear mean's basis shifts its
+// centre with the sample left out, which the integrated coefficients absorb exactly.
 TEST_P(LeaveOneOutOf, every_sample_equals_a_fit_without_it) {
   const int n = 25;
   const MatrixXd inputs = test::random_matrix(2, n, 1);
@@ -45,7 +45,8 @@ TEST_P(LeaveOneOutOf, every_sample_equals_a_fit_without_it) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Means, LeaveOneOutOf,
-                         testing::Values(MeanFunction::kZero, MeanFunction::kConstant, MeanFunction::kLinear));
+                         testing::Values(MeanFunction::kZero, MeanFunction::kConstant,
+                                         MeanFunction::kLinear));
 
 }  // namespace
 }  // namespace twinmap::gp
