@@ -2,8 +2,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
-#include <functional>
 
 #include "framework/design/point_set.hpp"
 #include "framework/features/feature_extractor.hpp"
@@ -11,6 +11,7 @@
 #include "framework/inverse_map/gp_map.hpp"
 #include "framework/multibody/multibody_simulator.hpp"
 #include "framework/report/html_report.hpp"
+#include "framework/report/stddev_figure.hpp"
 #include "framework/report/tables.hpp"
 #include "framework/simulation/sample_generator.hpp"
 #include "framework/spec/check_experiment.hpp"
@@ -107,6 +108,14 @@ void writeResults(const fs::path& folder, const RunSummary& run) {
   writeTextFile(folder / "table.md", makeMarkdownTable(run));
   writeTextFile(folder / "table.tex", makeLatexTable(run));
   writeTextFile(folder / "report.html", makeHtmlReport(run));
+  if (run.axes.empty()) {
+    return;
+  }
+  fs::create_directories(folder / "figures");
+  for (std::size_t p = 0; p < run.parameters.size(); ++p) {
+    writeTextFile(folder / "figures" / ("stddev_" + run.parameters[p].name.text + ".svg"),
+                  makeStddevFigure(run, static_cast<int>(p)));
+  }
 }
 
 Provenance makeProvenance(const ExperimentSpec& experiment, const RunOptions& options,

@@ -10,7 +10,7 @@ namespace twinmap {
 namespace {
 
 constexpr const char* kStyle = R"(
-:root { color-scheme: light dark; }
+:root { color-scheme: light dark; --paper: transparent; }
 body { font: 16px/1.5 system-ui, sans-serif; max-width: 1000px; margin: 2rem auto; padding: 0 1rem; }
 h1 { font-size: 1.6rem; margin-bottom: 0.2rem; }
 h2 { font-size: 1.15rem; margin-top: 2.2rem; }

@@ -123,9 +123,10 @@ std::string makeStddevFigure(const RunSummary& run, int parameter) {
   const auto values = run.predictions.stddev.row(parameter);
   const Interval stddev{values.minCoeff(), values.maxCoeff()};
   const std::string title = "Inferred standard deviation of " + makeLabel(run.parameters[parameter]);
+  const std::string background = "<rect width=\"100%\" height=\"100%\" fill=\"var(--paper, #fff)\"/>\n";
   return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + number(kWidth) + " " + number(kHeight) +
          "\" role=\"img\" aria-label=\"" + escapeHtml(title) +
-         "\" font-family=\"system-ui, sans-serif\" font-size=\"11\" fill=\"currentColor\">\n" +
+         "\" font-family=\"system-ui, sans-serif\" font-size=\"11\" fill=\"currentColor\">\n" + background +
          makeText(kLeft, 18, "start", title, " font-size=\"13\" font-weight=\"600\"") +
          makeAxes(run.parameters[run.axes[0]], run.parameters[run.axes[1]]) +
          makePoints(run, parameter, stddev) + makeColorBar(stddev) + "</svg>\n";
