@@ -61,14 +61,13 @@ Eigen::VectorXd makePoint(const std::vector<ParameterSpec>& parameters,
 
 std::string makeCsv(const MultibodySimulator& simulator, const Eigen::VectorXd& response) {
   const Eigen::VectorXd& times = simulator.getTimes();
-  constexpr int kTimeDigits = 15;  // 0.15, not 0.15000000000000002
   std::string csv = "t";
   for (const std::string& name : simulator.getOutputNames()) {
     csv += "," + escapeCsv(name);
   }
   csv += "\n";
   for (Eigen::Index i = 0; i < times.size(); ++i) {
-    csv += toShortText(times[i], kTimeDigits);
+    csv += toText(times[i]);
     for (Eigen::Index row = i; row < response.size(); row += times.size()) {
       csv += "," + toText(response[row]);
     }

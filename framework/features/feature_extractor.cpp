@@ -7,7 +7,7 @@
 namespace twinmap {
 namespace {
 
-double calcTime(const SamplesFeatureSpec& samples, int i) {
+double calcSampleTime(const SamplesFeatureSpec& samples, int i) {
   return samples.start + i * samples.interval;
 }
 
@@ -39,7 +39,7 @@ Eigen::VectorXd collectTimes(const std::vector<FeatureSpec>& features) {
   std::vector<double> times;
   for (const FeatureSpec& feature : features) {
     for (int i = 0; i < feature.samples->count; ++i) {
-      times.push_back(calcTime(*feature.samples, i));
+      times.push_back(calcSampleTime(*feature.samples, i));
     }
   }
   std::sort(times.begin(), times.end());
@@ -54,7 +54,7 @@ FeatureExtractor::FeatureExtractor(const std::vector<FeatureSpec>& features,
     for (const Name& output : feature.samples->outputs) {
       const Eigen::Index index = findIndex(output_names, output.text);
       for (int i = 0; i < feature.samples->count; ++i) {
-        const double time = calcTime(*feature.samples, i);
+        const double time = calcSampleTime(*feature.samples, i);
         infos_.push_back({makeName(output.text, time), static_cast<int>(index), time});
         rows_.push_back(index * times.size() + findTime(times, time));
       }

@@ -33,9 +33,8 @@ void checkSamples(const SamplesFeatureSpec& samples, const ModelSpec& model) {
       throw ExperimentError(output.where, output.text, "is listed twice");
     }
   }
-  constexpr double kRounding = 1e-9;
-  const double last = samples.start + (samples.count - 1) * samples.interval;
-  if (last > model.simulation.duration * (1.0 + kRounding)) {
+  const double last = calcSampleTime(samples, samples.count - 1);
+  if (last > model.simulation.duration) {
     SourceLocation where = samples.outputs.front().where;
     where.key_path = where.key_path.substr(0, where.key_path.rfind(".outputs"));
     throw ExperimentError(where, "",

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -9,13 +10,20 @@
 
 namespace twinmap {
 
-/// Equidistant samples of outputs: times start + i * interval (s), i = 0 .. count - 1.
+/// Equidistant samples of outputs.
 struct SamplesFeatureSpec {
   std::vector<Name> outputs;
   double start = 0.0;
   double interval = 0.0;
   int count = 0;
 };
+
+/// Time of sample i = 0 .. count - 1: start + i * interval in whole picoseconds (s), so that 3 * 0.05 is 0.15
+/// and a last sample at the end of the simulation is not beyond it.
+inline double calcSampleTime(const SamplesFeatureSpec& samples, int i) {
+  constexpr double kPicosecond = 1e12;
+  return std::round((samples.start + i * samples.interval) * kPicosecond) / kPicosecond;
+}
 
 /// One kind of feature; exactly one member is set.
 struct FeatureSpec {

@@ -19,6 +19,12 @@ TEST(FeatureExtractor, TimesAreSortedAndUnique) {
   EXPECT_EQ(times, (Eigen::VectorXd(5) << 0.0, 0.25, 0.5, 1.0, 1.5).finished());
 }
 
+TEST(FeatureExtractor, TimesAreWhatPeopleWrite) {
+  const Eigen::VectorXd times = collectTimes({makeSamples({{"a", {}}}, 0.1, 0.1, 30)});
+  EXPECT_EQ(times[2], 0.3);
+  EXPECT_EQ(times[29], 3.0);
+}
+
 TEST(FeatureExtractor, PicksOutputsAtTheirTimes) {
   const std::vector<FeatureSpec> features{makeSamples({{"b", {}}}, 1.0, 1.0, 2),
                                           makeSamples({{"a", {}}, {"b", {}}}, 0.0, 2.0, 2)};
