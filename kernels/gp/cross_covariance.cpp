@@ -24,7 +24,7 @@ void add_linear_term(const ModelStructure& structure, const Hyperparameters& hyp
 }  // namespace
 
 MatrixXd calc_cross_covariance(const ModelStructure& structure, const Hyperparameters& hyperparameters,
-                               const MatrixXd& left, const MatrixXd& right) {
+                               const MatrixXd& left, const MatrixXd& right, MatrixXd* weights) {
   const Index rows = linalg::padded(left.cols());
   const double variance = hyperparameters.signal_stddev * hyperparameters.signal_stddev;
   MatrixXd covariance = MatrixXd::Zero(rows, right.cols());
@@ -33,6 +33,7 @@ MatrixXd calc_cross_covariance(const ModelStructure& structure, const Hyperparam
   linalg::gemm(-2.0, linalg::view_of(left).transposed(), linalg::view_of(right), 0.0, view, scratch);
   Eigen::ArrayXd left_norms = Eigen::ArrayXd::Zero(rows);
   left_norms.head(left.cols()) = left.colwise().squaredNorm().transpose();
+  if (weights) weights->resize(left.cols(), right.cols());
   Eigen::ArrayXd q(rows);
   Eigen::ArrayXd weight(rows);
   for (Index j = 0; j < right.cols(); ++j) {
@@ -41,6 +42,7 @@ MatrixXd calc_cross_covariance(const ModelStructure& structure, const Hyperparam
     evaluate_radial(structure.covariance, hyperparameters.shape, ConstAlignedColumn(q.data(), rows), column,
                     AlignedColumn(weight.data(), rows));
     column *= variance;
+    if (weights) weights->col(j) = variance * weight.head(left.cols());
   }
   if (structure.linear_term) add_linear_term(structure, hyperparameters, left, right, view, scratch);
   covariance.conservativeResize(left.cols(), Eigen::NoChange);

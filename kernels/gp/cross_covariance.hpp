@@ -7,9 +7,11 @@
 namespace twinmap::gp {
 
 /// cov(f(x_i), f(z_j)) for inputs already centred: m x n from `left` (d x m) and `right` (d x n), both given
-/// divided by their length scales; the linear term multiplies them back. Cost: 2 m n d flops.
+/// divided by their length scales; the linear term multiplies them back. `weights`, if given, becomes
+/// -2 dcov/dq (see evaluate_radial). Cost: 2 m n d flops.
 Eigen::MatrixXd calc_cross_covariance(const ModelStructure& structure, const Hyperparameters& hyperparameters,
-                                      const Eigen::MatrixXd& left, const Eigen::MatrixXd& right);
+                                      const Eigen::MatrixXd& left, const Eigen::MatrixXd& right,
+                                      Eigen::MatrixXd* weights = nullptr);
 
 /// cov(f(x), f(x)) of each column of `inputs` (centred and divided by the length scales).
 Eigen::VectorXd calc_prior_variance(const ModelStructure& structure, const Hyperparameters& hyperparameters,

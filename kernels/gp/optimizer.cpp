@@ -15,10 +15,9 @@ constexpr double kRejected = 1e10;
 constexpr double kFirstStep = 1.0;
 
 struct Search {
-  const TrainingSet& set;
-  const Eigen::VectorXd& target;
+  const Objective& objective;
+  Eigen::Index samples;
   const SearchBox& box;
-  LikelihoodWorkspace& workspace;
   Eigen::VectorXd gradient;
   double scale;
   SearchResult result;
@@ -38,8 +37,7 @@ void keep_best(Search& search, const Eigen::VectorXd& point, double nlml, double
 }
 
 double calc_objective(Search& search, const Eigen::VectorXd& point) {
-  const LikelihoodEvaluation evaluation = evaluate_likelihood_gradient(
-      search.set, search.target, from_log(search.set.structure(), point), search.workspace, search.gradient);
+  const LikelihoodEvaluation evaluation = search.objective(point, search.gradient);
   ++search.result.evaluations;
   search.result.largest_jitter = std::max(search.result.largest_jitter, evaluation.jitter);
   if (!evaluation.ok) return kRejected;
@@ -60,7 +58,7 @@ double evaluate(unsigned count, const double* values, double* gradient, void* da
 double calc_scale(Search& search, const Eigen::VectorXd& point) {
   calc_objective(search, point);
   const double steepest = search.gradient.norm();
-  const double per_sample = 1.0 / static_cast<double>(search.set.size());
+  const double per_sample = 1.0 / static_cast<double>(search.samples);
   return steepest > 0.0 ? std::min(per_sample, kFirstStep / steepest) : per_sample;
 }
 
@@ -83,10 +81,9 @@ const char* describe(nlopt_result code) {
 
 }  // namespace
 
-SearchResult search(const TrainingSet& set, const Eigen::VectorXd& target, const Eigen::VectorXd& start,
-                    const SearchBox& box, int max_evaluations, double tolerance,
-                    LikelihoodWorkspace& workspace) {
-  Search search{set, target, box, workspace, Eigen::VectorXd::Zero(start.size()), 1.0, {}};
+SearchResult minimize(const Objective& objective, Eigen::Index samples, const Eigen::VectorXd& start,
+                      const SearchBox& box, int max_evaluations, double tolerance) {
+  Search search{objective, samples, box, Eigen::VectorXd::Zero(start.size()), 1.0, {}};
   search.result.objective = std::numeric_limits<double>::infinity();
   search.result.nlml = std::numeric_limits<double>::infinity();
   Eigen::VectorXd point = start.cwiseMax(box.lower).cwiseMin(box.upper);
@@ -104,6 +101,15 @@ SearchResult search(const TrainingSet& set, const Eigen::VectorXd& target, const
   search.result.stop_reason = describe(code);
   search.result.converged = code != NLOPT_MAXEVAL_REACHED && std::isfinite(search.result.objective);
   return search.result;
+}
+
+SearchResult search(const TrainingSet& set, const Eigen::VectorXd& target, const Eigen::VectorXd& start,
+                    const SearchBox& box, int max_evaluations, double tolerance,
+                    LikelihoodWorkspace& workspace) {
+  const Objective objective = [&](const Eigen::VectorXd& point, Eigen::VectorXd& gradient) {
+    return evaluate_likelihood_gradient(set, target, from_log(set.structure(), point), workspace, gradient);
+  };
+  return minimize(objective, set.size(), start, box, max_evaluations, tolerance);
 }
 
 }  // namespace twinmap::gp

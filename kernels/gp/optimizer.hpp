@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <string>
 
 #include "kernels/gp/marginal_likelihood.hpp"
@@ -26,8 +27,17 @@ struct SearchResult {
   std::string stop_reason;
 };
 
-/// One local search for the least NLML (plus prior) by NLopt's L-BFGS, from `start` clamped into the box.
-/// Returns the best point evaluated. Deterministic. Cost: up to max_evaluations of n^3 flops.
+/// What is minimised, and its gradient at a point, both without the prior.
+using Objective =
+    std::function<LikelihoodEvaluation(const Eigen::VectorXd& point, Eigen::VectorXd& gradient)>;
+
+/// One local search for the least objective (plus prior) by NLopt's L-BFGS, from `start` clamped into the
+/// box, until a step gains less than `tolerance` nats. `samples`, their number, sets the objective's size.
+/// Returns the best point evaluated. Deterministic.
+SearchResult minimize(const Objective& objective, Eigen::Index samples, const Eigen::VectorXd& start,
+                      const SearchBox& box, int max_evaluations, double tolerance);
+
+/// The same for the exact NLML. Cost: up to max_evaluations of n^3 flops.
 SearchResult search(const TrainingSet& set, const Eigen::VectorXd& target, const Eigen::VectorXd& start,
                     const SearchBox& box, int max_evaluations, double tolerance,
                     LikelihoodWorkspace& workspace);

@@ -1,0 +1,59 @@
+#include "kernels/sparse/inducing_points.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/gp/cross_covariance.hpp"
+#include "kernels/gp/training_set.hpp"
+
+namespace twinmap::gp {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr Index kCandidatesPerPoint = 8;
+constexpr double kDetermined = 1e-10;  // of the prior variance: below, a point adds nothing but rounding
+
+MatrixXd select(const Eigen::Ref<const MatrixXd>& inputs, const std::vector<Index>& indices) {
+  MatrixXd selected(inputs.rows(), static_cast<Index>(indices.size()));
+  for (Index i = 0; i < selected.cols(); ++i) selected.col(i) = inputs.col(indices[i]);
+  return selected;
+}
+
+}  // namespace
+
+std::vector<Index> spread_indices(Index size, Index count) {
+  std::vector<Index> indices(std::min(size, count));
+  for (Index i = 0; i < static_cast<Index>(indices.size()); ++i) {
+    indices[i] = i * size / static_cast<Index>(indices.size());
+  }
+  return indices;
+}
+
+MatrixXd choose_inducing_points(const Eigen::Ref<const MatrixXd>& inputs, const ModelStructure& structure,
+                                const Hyperparameters& hyperparameters, Index count) {
+  const MatrixXd candidates = select(inputs, spread_indices(inputs.cols(), kCandidatesPerPoint * count));
+  const VectorXd scales = length_scale_of_features(structure, hyperparameters, inputs.rows());
+  const MatrixXd scaled = scales.cwiseInverse().asDiagonal() * (candidates.colwise() - calc_center(inputs));
+  VectorXd variance = calc_prior_variance(structure, hyperparameters, scaled);
+  const double least = kDetermined * variance.maxCoeff();
+  MatrixXd factor(candidates.cols(), std::min(count, candidates.cols()));
+  std::vector<Index> pivots;
+  for (Index k = 0; k < factor.cols(); ++k) {
+    Index pivot = 0;
+    if (variance.maxCoeff(&pivot) <= least) break;
+    auto column = factor.col(k);
+    column = calc_cross_covariance(structure, hyperparameters, scaled, scaled.col(pivot));
+    for (Index j = 0; j < k; ++j) column -= factor(pivot, j) * factor.col(j);
+    column /= std::sqrt(variance(pivot));
+    variance = (variance - column.cwiseAbs2()).cwiseMax(0.0);
+    variance(pivot) = 0.0;
+    pivots.push_back(pivot);
+  }
+  return select(candidates, pivots);
+}
+
+}  // namespace twinmap::gp

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "kernels/gp/gaussian_process.hpp"
+#include "kernels/gp/model.hpp"
+#include "kernels/sparse/variational_bound.hpp"
+
+namespace twinmap::gp {
+
+/// Everything a fitted sparse process consists of; what a file has to hold to restore it exactly.
+struct SparseGaussianProcessParts {
+  ModelStructure structure;
+  Hyperparameters hyperparameters;
+  Eigen::VectorXd center;    ///< c, the mean training input
+  Eigen::MatrixXd inducing;  ///< Z, d x m
+  VariationalPosterior posterior;
+};
+
+/// A Gaussian process summarised by m inducing inputs; immutable. With k = cov(f(Z), f(x)), a = L^-1 k:
+///   mean             k'w + h(x)'b
+///   latent variance  k(x, x) - a'a + |L_B^-1 a|^2 + |R^-1 e|^2,   e = h(x) - V_h' L_B^-1 a / s_n.
+class SparseGaussianProcess {
+ public:
+  /// Throws std::invalid_argument if the parts do not fit each other or a number is not finite.
+  explicit SparseGaussianProcess(SparseGaussianProcessParts parts);
+
+  const SparseGaussianProcessParts& parts() const { return parts_; }
+  const Hyperparameters& hyperparameters() const { return parts_.hyperparameters; }
+  Eigen::Index feature_count() const { return parts_.inducing.rows(); }
+  Eigen::Index inducing_count() const { return parts_.inducing.cols(); }
+
+  /// inputs: d x k, finite (else std::invalid_argument). Cost: 2 k m (m + d) flops.
+  Prediction predict(const Eigen::Ref<const Eigen::MatrixXd>& inputs) const;
+
+ private:
+  void predict_block(const Eigen::Ref<const Eigen::MatrixXd>& inputs, Eigen::Index first,
+                     Prediction& prediction) const;
+
+  SparseGaussianProcessParts parts_;
+  Eigen::VectorXd inverse_length_scales_;
+  Eigen::MatrixXd scaled_inducing_;
+};
+
+}  // namespace twinmap::gp

@@ -1,0 +1,104 @@
+#include "kernels/sparse/sparse_training.hpp"
+
+#include <omp.h>
+
+#include <stdexcept>
+#include <utility>
+
+#include "kernels/gp/optimizer.hpp"
+#include "kernels/gp/starts.hpp"
+#include "kernels/gp/training_set.hpp"
+#include "kernels/sparse/inducing_points.hpp"
+
+namespace twinmap::gp {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+void check_options(const SparseOptions& sparse, const ModelStructure& structure) {
+  const auto require = [](bool condition, const char* rule) {
+    if (!condition) throw std::invalid_argument(std::string("SparseOptions: ") + rule);
+  };
+  require(sparse.inducing >= 1, "inducing must be at least 1");
+  require(sparse.subset >= 2, "subset must be at least 2");
+  require(sparse.refine_evaluations >= 0, "refine_evaluations must not be negative");
+  require(!structure.linear_term, "sparse processes have no linear covariance term; use a linear mean");
+}
+
+MatrixXd select_columns(const Eigen::Ref<const MatrixXd>& matrix, const std::vector<Index>& indices) {
+  MatrixXd selected(matrix.rows(), static_cast<Index>(indices.size()));
+  for (Index i = 0; i < selected.cols(); ++i) selected.col(i) = matrix.col(indices[i]);
+  return selected;
+}
+
+// The search box of the subset's scales, so that both searches know the same bounds.
+Hyperparameters refine(const VariationalBound& bound, const MatrixXd& subset, const VectorXd& target,
+                       const ModelStructure& structure, const TrainingOptions& options, int evaluations,
+                       const Hyperparameters& start, SparseTrainingResult& result) {
+  const TrainingSet set(subset, structure);
+  const double stddev = std::sqrt((target.array() - target.mean()).square().mean());
+  const SearchBox box = make_search_box(set, calc_data_scales(set), stddev, options);
+  const Objective objective = [&](const VectorXd& point, VectorXd& gradient) {
+    return bound.evaluate(from_log(structure, point), gradient);
+  };
+  const SearchResult found =
+      minimize(objective, target.size(), to_log(structure, start), box, evaluations, options.tolerance);
+  result.refine_evaluations = found.evaluations;
+  return std::isfinite(found.objective) ? from_log(structure, found.end) : start;
+}
+
+void fit_sparse(const MatrixXd& inputs, const VectorXd& target, const MatrixXd& subset,
+                const ModelStructure& structure, const TrainingOptions& options, const SparseOptions& sparse,
+                const Hyperparameters& start, SparseTrainingResult& result) {
+  SparseGaussianProcessParts parts{structure, start, calc_center(inputs), {}, {}};
+  parts.inducing = choose_inducing_points(inputs, structure, start, sparse.inducing);
+  const VariationalBound bound(inputs, target, parts.inducing, structure);
+  if (bound.calc_posterior(start, parts.posterior)) result.subset_bound = parts.posterior.bound;
+  if (sparse.refine_evaluations > 0) {
+    parts.hyperparameters =
+        refine(bound, subset, target, structure, options, sparse.refine_evaluations, start, result);
+  }
+  if (!bound.calc_posterior(parts.hyperparameters, parts.posterior)) {
+    result.status = TrainingStatus::kFailed;
+    result.message =
+        "the inducing inputs' covariance is not positive definite: raise the noise's lower bound";
+    return;
+  }
+  result.bound = parts.posterior.bound;
+  result.gp = std::make_shared<const SparseGaussianProcess>(std::move(parts));
+}
+
+}  // namespace
+
+std::vector<SparseTrainingResult> train_sparse(const Eigen::Ref<const MatrixXd>& inputs,
+                                               const Eigen::Ref<const MatrixXd>& targets,
+                                               const ModelStructure& structure,
+                                               const TrainingOptions& options, const SparseOptions& sparse) {
+  check_options(sparse, structure);
+  check_inputs(inputs, "train_sparse: inputs");
+  check_inputs(targets, "train_sparse: targets");
+  if (targets.cols() != inputs.cols()) {
+    throw std::invalid_argument("train_sparse: the targets have " + std::to_string(targets.cols()) +
+                                " columns for " + std::to_string(inputs.cols()) + " training samples");
+  }
+  const std::vector<Index> indices = spread_indices(inputs.cols(), sparse.subset);
+  const MatrixXd all = inputs, subset = select_columns(inputs, indices);
+  const auto exact = train(subset, select_columns(targets, indices), structure, options);
+  std::vector<SparseTrainingResult> results(exact.size());
+  const int count = static_cast<int>(exact.size());
+#pragma omp parallel for schedule(dynamic, 1) num_threads(std::max(1, std::min(options.threads, count)))
+  for (int t = 0; t < count; ++t) {
+    results[t].status = exact[t].status;
+    results[t].message = exact[t].message;
+    results[t].subset_report = exact[t].report;
+    if (!exact[t].gp) continue;
+    const VectorXd target = targets.row(t).transpose();
+    fit_sparse(all, target, subset, structure, options, sparse, exact[t].gp->hyperparameters(), results[t]);
+  }
+  return results;
+}
+
+}  // namespace twinmap::gp
