@@ -8,6 +8,12 @@ namespace {
 
 gp::CovarianceFunction toKernel(GpCovariance covariance) {
   switch (covariance) {
+    case GpCovariance::kMatern32:
+      return gp::CovarianceFunction::kMatern32;
+    case GpCovariance::kMatern52:
+      return gp::CovarianceFunction::kMatern52;
+    case GpCovariance::kRationalQuadratic:
+      return gp::CovarianceFunction::kRationalQuadratic;
     case GpCovariance::kSquaredExponential:
       break;
   }
@@ -15,7 +21,15 @@ gp::CovarianceFunction toKernel(GpCovariance covariance) {
 }
 
 gp::MeanFunction toKernel(GpMean mean) {
-  return mean == GpMean::kZero ? gp::MeanFunction::kZero : gp::MeanFunction::kConstant;
+  switch (mean) {
+    case GpMean::kZero:
+      return gp::MeanFunction::kZero;
+    case GpMean::kLinear:
+      return gp::MeanFunction::kLinear;
+    case GpMean::kConstant:
+      break;
+  }
+  return gp::MeanFunction::kConstant;
 }
 
 /// Groups of features that share a length scale, numbered from 0 without gaps; empty for one group.
@@ -84,6 +98,7 @@ GpMapTraining trainGpMap(const GpMapSpec& spec, const std::vector<TransformStep>
   gp::ModelStructure structure;
   structure.covariance = toKernel(spec.covariance);
   structure.length_scale_groups = makeGroups(spec.length_scales, infos);
+  structure.linear_term = spec.linear_term;
   structure.mean = toKernel(spec.mean);
   const std::vector<gp::TrainingResult> results =
       gp::train(map.transform.apply(features), targets, structure, toKernel(spec, threads));

@@ -39,12 +39,17 @@ struct EnumNames<DesignMethod> {
 template <>
 struct EnumNames<GpCovariance> {
   static constexpr EnumName<GpCovariance> values[] = {
-      {"squared_exponential", GpCovariance::kSquaredExponential}};
+      {"squared_exponential", GpCovariance::kSquaredExponential},
+      {"matern32", GpCovariance::kMatern32},
+      {"matern52", GpCovariance::kMatern52},
+      {"rational_quadratic", GpCovariance::kRationalQuadratic},
+  };
 };
 
 template <>
 struct EnumNames<GpMean> {
-  static constexpr EnumName<GpMean> values[] = {{"constant", GpMean::kConstant}, {"zero", GpMean::kZero}};
+  static constexpr EnumName<GpMean> values[] = {
+      {"constant", GpMean::kConstant}, {"zero", GpMean::kZero}, {"linear", GpMean::kLinear}};
 };
 
 template <>
@@ -132,6 +137,7 @@ void describe(Fields& f, GpBoundsSpec& s) {
 template <class Fields>
 void describe(Fields& f, GpMapSpec& s) {
   f.optional("covariance", s.covariance, "covariance function");
+  f.optional("linear_term", s.linear_term, "adds a linear term to the covariance function");
   f.optional("mean", s.mean, "mean function; its coefficients are integrated out");
   f.optional("length_scales", s.length_scales, "one for all features, per output, or per feature");
   f.optional("starts", s.starts, "optimisations of the marginal likelihood, from different points", kCount);

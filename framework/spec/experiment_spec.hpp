@@ -57,8 +57,8 @@ struct DesignSpec {
   PointSetSpec test{DesignMethod::kUniform, 500};
 };
 
-enum class GpCovariance { kSquaredExponential };
-enum class GpMean { kConstant, kZero };
+enum class GpCovariance { kSquaredExponential, kMatern32, kMatern52, kRationalQuadratic };
+enum class GpMean { kConstant, kZero, kLinear };
 enum class LengthScales { kShared, kPerOutput, kPerFeature };
 
 /// Bounds of the hyperparameters during training, relative to the natural scale of each.
@@ -71,6 +71,7 @@ struct GpBoundsSpec {
 /// One Gaussian process per parameter, hyperparameters by maximum marginal likelihood.
 struct GpMapSpec {
   GpCovariance covariance = GpCovariance::kSquaredExponential;
+  bool linear_term = false;  ///< adds a linear covariance term
   GpMean mean = GpMean::kConstant;
   LengthScales length_scales = LengthScales::kShared;
   int starts = 4;

@@ -82,6 +82,14 @@ void readValue(const YamlNode& node, std::uint64_t& value) {
   value = static_cast<std::uint64_t>(readInteger(node, kSeed));
 }
 
+void readValue(const YamlNode& node, bool& value) {
+  const bool is_plain = node.kind == YamlNode::Kind::kScalar && !node.quoted;
+  if (!is_plain || (node.scalar != "true" && node.scalar != "false")) {
+    throw ExperimentError(node.where, describeValue(node), "must be true or false");
+  }
+  value = node.scalar == "true";
+}
+
 void readValue(const YamlNode& node, std::string& value) {
   value = requireScalar(node, "a text");
 }

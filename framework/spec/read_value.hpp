@@ -22,6 +22,8 @@ void readValue(const YamlNode& node, double& value, const NumberRule& rule = kAn
 void readValue(const YamlNode& node, int& value, const NumberRule& rule = kAnyNumber);
 /// Whole numbers from 0 to 2^53.
 void readValue(const YamlNode& node, std::uint64_t& value);
+/// true or false; yes, no, on, off and numbers are refused.
+void readValue(const YamlNode& node, bool& value);
 void readValue(const YamlNode& node, std::string& value);
 void readValue(const YamlNode& node, Expression& value);
 void readValue(const YamlNode& node, Name& value);

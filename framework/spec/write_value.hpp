@@ -15,6 +15,7 @@ namespace twinmap {
 
 YamlNode writeValue(double value);
 YamlNode writeValue(int value);
+YamlNode writeValue(bool value);
 YamlNode writeValue(std::uint64_t value);
 YamlNode writeValue(const std::string& value);
 YamlNode writeValue(const Expression& value);

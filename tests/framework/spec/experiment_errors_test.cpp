@@ -51,6 +51,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"Octal", "design.train.samples=010", {"design.train.samples", "octal"}},
         Mistake{"FractionalCount", "design.train.samples=1.5", {"design.train.samples", "whole number"}},
         Mistake{"HugeCount", "design.train.samples=1e30", {"design.train.samples", "'1e30'"}},
+        Mistake{"YesForTrue", "inverse_map.gp.linear_term=yes", {"'yes' must be true or false"}},
         Mistake{"ListForNumber", "noise.scale=[1, 2]", {"noise.scale", "'a list'"}},
         Mistake{"NothingForMap", "noise=", {"noise", "'nothing'", "must be a map"}},
         Mistake{"UnknownEnum",

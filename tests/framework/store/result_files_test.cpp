@@ -60,9 +60,14 @@ TEST(MapsFile, ARestoredMapPredictsTheSameBits) {
   values.row(0) = features.row(0).array().sin() + 1.5;
   values.row(1) = features.row(1).cwiseProduct(features.row(2));
   const std::vector<FeatureInfo> infos{{"y(0 s)", 0, 0.0}, {"y(1 s)", 0, 1.0}, {"z(0 s)", 1, 0.0}};
-  for (const LengthScales length_scales : {LengthScales::kShared, LengthScales::kPerOutput}) {
-    GpMapSpec spec;
-    spec.length_scales = length_scales;
+  std::vector<GpMapSpec> specs(4);
+  specs[1].length_scales = LengthScales::kPerOutput;
+  specs[2].covariance = GpCovariance::kRationalQuadratic;
+  specs[2].mean = GpMean::kLinear;
+  specs[3].covariance = GpCovariance::kMatern52;
+  specs[3].linear_term = true;
+  specs[3].mean = GpMean::kZero;
+  for (const GpMapSpec& spec : specs) {
     const GpMapTraining training =
         trainGpMap(spec, {TransformStep::kZScore}, infos, {"k", "d"}, features, values, 1);
     writeMapsFile(folder / "maps.h5", {makeParameters(), {"a", "b", "c"}, training.map});
