@@ -7,10 +7,6 @@
 namespace twinmap {
 namespace {
 
-double calcSampleTime(const SamplesFeatureSpec& samples, int i) {
-  return samples.start + i * samples.interval;
-}
-
 std::string makeName(const std::string& output, double time) {
   char text[32];
   std::snprintf(text, sizeof(text), "(%.6g s)", time);
