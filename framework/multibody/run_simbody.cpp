@@ -5,9 +5,6 @@
 namespace twinmap {
 namespace {
 
-/// Simbody returns to us after this many steps at most, so that the limits can be checked.
-constexpr int kStepsBetweenChecks = 100;
-
 std::unique_ptr<SimTK::Integrator> makeIntegrator(const SampleRun& run) {
   const SimTK::MultibodySystem& system = run.system.getTree().getSystem();
   if (run.simulation.integrator == Integrator::kCpodes) {
@@ -45,7 +42,7 @@ class SimbodyRun {
     const std::unique_ptr<SimTK::Integrator> integrator = makeIntegrator(run_);
     integrator->setAccuracy(run_.simulation.relative_tolerance);
     integrator->setFinalTime(end);
-    integrator->setInternalStepLimit(kStepsBetweenChecks);
+    integrator->setReturnEveryInternalStep(true);  // so that the limits can be checked
     state_.setTime(begin);
     integrator->initialize(state_);
     while (failure_.empty() && next_ < run_.times.size() && run_.times[next_] < end) {
