@@ -34,7 +34,7 @@ void evaluate(benchmark::State& state) {
   const gp::ModelStructure structure = make_structure(features, per_feature);
   const gp::Hyperparameters hyperparameters = make_hyperparameters(features, per_feature);
   const gp::TrainingSet set(problem.inputs, structure);
-  gp::LikelihoodWorkspace workspace(set);
+  gp::LikelihoodWorkspace workspace(set, static_cast<int>(state.range(3)));
   VectorXd gradient(gp::HyperparameterLayout(structure).count);
   const VectorXd target = problem.targets.row(0).transpose();
   for (auto _ : state) {

@@ -45,13 +45,13 @@ void SquaredDistances::store_groups() {
 }
 
 void SquaredDistances::calc(const Eigen::VectorXd& length_scales, linalg::View q, Workspace& workspace,
-                            linalg::GemmScratch& scratch) const {
+                            linalg::TriangularScratch& scratch) const {
   if (is_stored()) return calc_from_groups(length_scales, q);
   calc_from_product(length_scales, q, workspace, scratch);
 }
 
 void SquaredDistances::contract(const Eigen::VectorXd& length_scales, linalg::View t, Workspace& workspace,
-                                linalg::GemmScratch& scratch, Eigen::VectorXd& sums) const {
+                                linalg::TriangularScratch& scratch, Eigen::VectorXd& sums) const {
   if (is_stored()) return contract_groups(length_scales, t, sums);
   contract_product(t, workspace, scratch, sums);
 }
@@ -67,7 +67,7 @@ void SquaredDistances::calc_from_groups(const Eigen::VectorXd& length_scales, li
 }
 
 void SquaredDistances::calc_from_product(const Eigen::VectorXd& length_scales, linalg::View q,
-                                         Workspace& workspace, linalg::GemmScratch& scratch) const {
+                                         Workspace& workspace, linalg::TriangularScratch& scratch) const {
   const Index n = size();
   const Index d = inputs_.rows();
   for (Index f = 0; f < d; ++f) workspace.feature_sums(f) = 1.0 / length_scales(groups_[f]);
@@ -76,7 +76,7 @@ void SquaredDistances::calc_from_product(const Eigen::VectorXd& length_scales, l
     workspace.squared_norms(i) = workspace.scaled.col(i).squaredNorm();
   }
   const linalg::ConstView z{workspace.scaled.data(), d, n, 1, workspace.scaled.rows()};
-  linalg::gemm(-2.0, z.transposed(), z, 0.0, q, scratch, linalg::Part::kLower);
+  scratch.multiply(-2.0, z.transposed(), z, 0.0, q, linalg::Part::kLower);
   for (Index j = 0; j < n; ++j) {
     AlignedColumn column = lower_column(q, j);
     column += ConstAlignedColumn(workspace.squared_norms.data() + first_of_line(j), column.size());
@@ -94,16 +94,16 @@ void SquaredDistances::contract_groups(const Eigen::VectorXd& length_scales, lin
   }
 }
 
-void SquaredDistances::contract_product(linalg::View t, Workspace& workspace, linalg::GemmScratch& scratch,
-                                        Eigen::VectorXd& sums) const {
+void SquaredDistances::contract_product(linalg::View t, Workspace& workspace,
+                                        linalg::TriangularScratch& scratch, Eigen::VectorXd& sums) const {
   const Index n = size();
   const Index d = inputs_.rows();
   const linalg::ConstView z{workspace.scaled.data(), d, n, 1, workspace.scaled.rows()};
   const linalg::View product{workspace.product.data(), d, n, workspace.product.rows()};
   for (Index j = 0; j < n; j += kPanel) {
     const Index width = std::min(kPanel, n - j);
-    linalg::gemm(1.0, z.block(0, j, d, n - j), t.block(j, j, n - j, width), 0.0,
-                 product.block(0, j, d, width), scratch);
+    scratch.multiply(1.0, z.block(0, j, d, n - j), t.block(j, j, n - j, width), 0.0,
+                     product.block(0, j, d, width));
   }
   workspace.row_sums.setZero();
   for (Index j = 0; j < n; ++j) {

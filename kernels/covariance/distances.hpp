@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "kernels/linalg/gemm.hpp"
+#include "kernels/linalg/triangular.hpp"
 #include "kernels/linalg/view.hpp"
 
 namespace twinmap::gp {
@@ -37,23 +37,23 @@ class SquaredDistances {
   /// Writes q's strict lower triangle; the diagonal, the rows above it in the same cache line and the padding
   /// rows become zero. q: n x n within columns of padded(n) rows. Cost: n^2 G / 2 or n^2 d flops.
   void calc(const Eigen::VectorXd& length_scales, linalg::View q, Workspace& workspace,
-            linalg::GemmScratch& scratch) const;
+            linalg::TriangularScratch& scratch) const;
 
   /// sums(g) = sum over i > j of T_ij D_g,ij / l_g^2, for T strictly lower triangular with zeros elsewhere,
   /// by
   ///   sum_{i>j} T_ij (z_i - z_j)^2 = sum_i r_i z_i^2 - 2 z' T z,   r = (T + T') 1.
   /// Must follow calc with the same length scales and workspace. Cost: n^2 G or n^2 d flops.
   void contract(const Eigen::VectorXd& length_scales, linalg::View t, Workspace& workspace,
-                linalg::GemmScratch& scratch, Eigen::VectorXd& sums) const;
+                linalg::TriangularScratch& scratch, Eigen::VectorXd& sums) const;
 
  private:
   bool is_stored() const { return group_count_ <= kMaxStoredGroups; }
   void store_groups();
   void calc_from_groups(const Eigen::VectorXd& length_scales, linalg::View q) const;
   void calc_from_product(const Eigen::VectorXd& length_scales, linalg::View q, Workspace& workspace,
-                         linalg::GemmScratch& scratch) const;
+                         linalg::TriangularScratch& scratch) const;
   void contract_groups(const Eigen::VectorXd& length_scales, linalg::View t, Eigen::VectorXd& sums) const;
-  void contract_product(linalg::View t, Workspace& workspace, linalg::GemmScratch& scratch,
+  void contract_product(linalg::View t, Workspace& workspace, linalg::TriangularScratch& scratch,
                         Eigen::VectorXd& sums) const;
 
   Eigen::MatrixXd inputs_;  // d x n

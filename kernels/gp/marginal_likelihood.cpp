@@ -6,6 +6,7 @@
 #include "kernels/covariance/columns.hpp"
 #include "kernels/covariance/radial.hpp"
 #include "kernels/linalg/flush_denormals.hpp"
+#include "kernels/linalg/parallel.hpp"
 
 namespace twinmap::gp {
 
@@ -32,31 +33,36 @@ void add_linear_term(const TrainingSet& set, double linear_stddev, linalg::View 
   column += linear_stddev * linear_stddev * lower_column(set.gram(), j);
 }
 
-// K's lower triangle into factor, dK's weights beside it; q is copied out column by column.
-void calc_covariance(const TrainingSet& set, const Hyperparameters& hyperparameters, double diagonal,
-                     LikelihoodWorkspace& workspace) {
+// Column j of K in place of q's, of dK's weights, and of the shape's derivative.
+void calc_covariance_column(const TrainingSet& set, const Hyperparameters& hyperparameters, double diagonal,
+                            Index j, int thread, LikelihoodWorkspace& workspace) {
   const ModelStructure& structure = set.structure();
   const double variance = hyperparameters.signal_stddev * hyperparameters.signal_stddev;
   const linalg::View factor = factor_view(workspace);
-  const linalg::View weights = weights_view(workspace);
-  set.distances().calc(hyperparameters.length_scales, factor, workspace.distances, workspace.scratch.gemm());
-  for (Index j = 0; j < set.size(); ++j) {
-    AlignedColumn value = lower_column(factor, j);
-    AlignedColumn weight = lower_column(weights, j);
-    AlignedColumn q(workspace.squared_distance.data(), value.size());
-    const ConstAlignedColumn q_read(q.data(), q.size());
-    q = value;
-    evaluate_radial(structure.covariance, hyperparameters.shape, q_read, value, weight);
-    value *= variance;
-    weight *= variance;
-    if (has_shape(structure.covariance)) {
-      AlignedColumn derivative(workspace.shape_derivative.col(j).data() + first_of_line(j), value.size());
-      evaluate_shape_derivative(hyperparameters.shape, q_read, derivative);
-      derivative *= variance;
-    }
-    if (structure.linear_term) add_linear_term(set, hyperparameters.linear_stddev, factor, j);
-    factor(j, j) += diagonal;
+  AlignedColumn value = lower_column(factor, j);
+  AlignedColumn weight = lower_column(weights_view(workspace), j);
+  AlignedColumn q(workspace.squared_distance.col(thread).data(), value.size());
+  const ConstAlignedColumn q_read(q.data(), q.size());
+  q = value;
+  evaluate_radial(structure.covariance, hyperparameters.shape, q_read, value, weight);
+  value *= variance;
+  weight *= variance;
+  if (has_shape(structure.covariance)) {
+    AlignedColumn derivative(workspace.shape_derivative.col(j).data() + first_of_line(j), value.size());
+    evaluate_shape_derivative(hyperparameters.shape, q_read, derivative);
+    derivative *= variance;
   }
+  if (structure.linear_term) add_linear_term(set, hyperparameters.linear_stddev, factor, j);
+  factor(j, j) += diagonal;
+}
+
+void calc_covariance(const TrainingSet& set, const Hyperparameters& hyperparameters, double diagonal,
+                     LikelihoodWorkspace& workspace) {
+  set.distances().calc(hyperparameters.length_scales, factor_view(workspace), workspace.distances,
+                       workspace.scratch);
+  linalg::parallel_for(workspace.scratch.threads(), set.size(), 16, [&](Index j, int thread) {
+    calc_covariance_column(set, hyperparameters, diagonal, j, thread, workspace);
+  });
 }
 
 double mean_diagonal(const TrainingSet& set, const Hyperparameters& hyperparameters) {
@@ -122,8 +128,7 @@ double calc_inverse_minus_corrections(LikelihoodWorkspace& workspace) {
   const linalg::ConstView corrections = linalg::view_of(workspace.corrections);
   linalg::invert_lower(factor, workspace.scratch);
   linalg::multiply_transposed_by_self(factor, workspace.scratch);
-  linalg::gemm(-1.0, corrections, corrections.transposed(), 1.0, factor, workspace.scratch.gemm(),
-               linalg::Part::kLower);
+  workspace.scratch.multiply(-1.0, corrections, corrections.transposed(), 1.0, factor, linalg::Part::kLower);
   double trace = 0.0;
   for (Index j = 0; j < factor.cols; ++j) trace += factor(j, j);
   return trace;
@@ -145,10 +150,10 @@ double half_trace_with(LikelihoodWorkspace& workspace, const Eigen::MatrixXd& ma
 void multiply_weights(LikelihoodWorkspace& workspace) {
   const linalg::View factor = factor_view(workspace);
   const linalg::View weights = weights_view(workspace);
-  for (Index j = 0; j < factor.cols; ++j) {
+  linalg::parallel_for(workspace.scratch.threads(), factor.cols, 16, [&](Index j, int) {
     lower_column(weights, j) *= lower_column(factor, j);
     clear_outside_strict_lower(weights, j);
-  }
+  });
 }
 
 void calc_gradient(const TrainingSet& set, const Eigen::VectorXd& target,
@@ -171,23 +176,23 @@ void calc_gradient(const TrainingSet& set, const Eigen::VectorXd& target,
   if (layout.shape >= 0) gradient(layout.shape) = half_trace_with(workspace, workspace.shape_derivative);
   multiply_weights(workspace);
   set.distances().contract(hyperparameters.length_scales, weights_view(workspace), workspace.distances,
-                           workspace.scratch.gemm(), workspace.group_sums);
+                           workspace.scratch, workspace.group_sums);
   gradient.head(layout.signal) = workspace.group_sums;
 }
 
 }  // namespace
 
-LikelihoodWorkspace::LikelihoodWorkspace(const TrainingSet& set)
+LikelihoodWorkspace::LikelihoodWorkspace(const TrainingSet& set, int threads)
     : factor(Eigen::MatrixXd::Zero(padded(set.size()), set.size())),
       weights(Eigen::MatrixXd::Zero(padded(set.size()), set.size())),
       corrections(set.size(), 1 + set.mean_basis().cols()),
       whitened_basis(set.size(), set.mean_basis().cols()),
       basis_factor(set.mean_basis().cols(), set.mean_basis().cols()),
       mean_coefficients(set.mean_basis().cols()),
-      squared_distance(padded(set.size())),
+      squared_distance(padded(set.size()), threads),
       group_sums(set.distances().group_count()),
       distances(set.distances()),
-      scratch(std::max(set.size(), set.mean_basis().cols())) {
+      scratch(std::max(set.size(), set.mean_basis().cols()), threads) {
   if (has_shape(set.structure().covariance)) shape_derivative.setZero(padded(set.size()), set.size());
 }
 

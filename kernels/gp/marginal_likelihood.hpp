@@ -8,10 +8,12 @@
 
 namespace twinmap::gp {
 
-/// Buffers of one thread: 2 n^2 doubles (3 n^2 for the rational quadratic) and some n^2 / 2 of scratch. After
-/// construction, evaluations with it allocate nothing.
+/// Buffers of one evaluation at a time: 2 n^2 doubles (3 n^2 for the rational quadratic) and some n^2 / 2 of
+/// scratch. After construction, evaluations with it allocate nothing.
 struct LikelihoodWorkspace {
-  explicit LikelihoodWorkspace(const TrainingSet& set);
+  /// threads: the team that shares one evaluation's algebra; it pays from n = 1500 or so on, and changes no
+  /// bit of the result.
+  explicit LikelihoodWorkspace(const TrainingSet& set, int threads = 1);
 
   Eigen::MatrixXd factor;            ///< q, then K, then L, then K^-1, then W; padded(n) x n, lower
   Eigen::MatrixXd weights;           ///< dK_ij / dq_ij up to -2, then T = W .* weights; strictly lower

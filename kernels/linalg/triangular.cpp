@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "kernels/linalg/packet.hpp"
+#include "kernels/linalg/parallel.hpp"
 
 namespace twinmap::linalg {
 namespace {
@@ -14,6 +15,8 @@ namespace {
 constexpr Index kBase = 32;   // below this order, plain loops over columns
 constexpr Index kPanel = 64;  // triangular operands up to this order are multiplied with their zeros
 constexpr Index kChunkVectors = 4;
+constexpr double kTeamFlops = 2e7;  // half a millisecond: a hundred times what waking a team costs
+constexpr Index kStripsPerThread = 4;
 
 Index half_of(Index n) {
   return (n / 2 + kBase - 1) / kBase * kBase;
@@ -72,6 +75,18 @@ void solve_small(ConstView lower, View b) {
   }
 }
 
+// b = b L^-T by one thread; the rows of b are independent of each other.
+void solve_rows(ConstView lower, View b, GemmScratch& scratch) {
+  if (b.cols <= kBase) return solve_small(lower, b);
+  const Index left = half_of(b.cols);
+  const Index right = b.cols - left;
+  const View b1 = b.block(0, 0, b.rows, left);
+  const View b2 = b.block(0, left, b.rows, right);
+  solve_rows(lower.block(0, 0, left, left), b1, scratch);
+  gemm(-1.0, b1, lower.block(left, 0, right, left).transposed(), 1.0, b2, scratch);
+  solve_rows(lower.block(left, left, right, right), b2, scratch);
+}
+
 // The sum over i of a(i) b(i), in an order that depends on the count only.
 double dot(const double* a, const double* b, Index count) {
   Packet sums[kChunkVectors] = {};
@@ -110,7 +125,7 @@ void copy(ConstView from, View to) {
 void multiply_lower_from_right(ConstView lower, View b, TriangularScratch& scratch) {
   if (lower.rows <= kPanel) {
     const View product = scratch.block(b.rows, b.cols);
-    gemm(1.0, b, lower, 0.0, product, scratch.gemm());
+    scratch.multiply(1.0, b, lower, 0.0, product);
     return copy(product, b);
   }
   const Index left = half_of(lower.rows);
@@ -118,7 +133,7 @@ void multiply_lower_from_right(ConstView lower, View b, TriangularScratch& scrat
   const View b1 = b.block(0, 0, b.rows, left);
   const View b2 = b.block(0, left, b.rows, right);
   multiply_lower_from_right(lower.block(0, 0, left, left), b1, scratch);
-  gemm(1.0, b2, lower.block(left, 0, right, left), 1.0, b1, scratch.gemm());
+  scratch.multiply(1.0, b2, lower.block(left, 0, right, left), 1.0, b1);
   multiply_lower_from_right(lower.block(left, left, right, right), b2, scratch);
 }
 
@@ -126,7 +141,7 @@ void multiply_lower_from_right(ConstView lower, View b, TriangularScratch& scrat
 void multiply_lower_from_left(double sign, ConstView lower, View b, TriangularScratch& scratch) {
   if (lower.rows <= kPanel) {
     const View product = scratch.block(b.rows, b.cols);
-    gemm(sign, lower, b, 0.0, product, scratch.gemm());
+    scratch.multiply(sign, lower, b, 0.0, product);
     return copy(product, b);
   }
   const Index top = half_of(lower.rows);
@@ -134,7 +149,7 @@ void multiply_lower_from_left(double sign, ConstView lower, View b, TriangularSc
   const View b1 = b.block(0, 0, top, b.cols);
   const View b2 = b.block(top, 0, bottom, b.cols);
   multiply_lower_from_left(sign, lower.block(top, top, bottom, bottom), b2, scratch);
-  gemm(sign, lower.block(top, 0, bottom, top), b1, 1.0, b2, scratch.gemm());
+  scratch.multiply(sign, lower.block(top, 0, bottom, top), b1, 1.0, b2);
   multiply_lower_from_left(sign, lower.block(0, 0, top, top), b1, scratch);
 }
 
@@ -142,7 +157,7 @@ void multiply_lower_from_left(double sign, ConstView lower, View b, TriangularSc
 void multiply_transposed_lower_from_left(ConstView lower, View b, TriangularScratch& scratch) {
   if (lower.rows <= kPanel) {
     const View product = scratch.block(b.rows, b.cols);
-    gemm(1.0, lower.transposed(), b, 0.0, product, scratch.gemm());
+    scratch.multiply(1.0, lower.transposed(), b, 0.0, product);
     return copy(product, b);
   }
   const Index top = half_of(lower.rows);
@@ -150,13 +165,30 @@ void multiply_transposed_lower_from_left(ConstView lower, View b, TriangularScra
   const View b1 = b.block(0, 0, top, b.cols);
   const View b2 = b.block(top, 0, bottom, b.cols);
   multiply_transposed_lower_from_left(lower.block(0, 0, top, top), b1, scratch);
-  gemm(1.0, lower.block(top, 0, bottom, top).transposed(), b2, 1.0, b1, scratch.gemm());
+  scratch.multiply(1.0, lower.block(top, 0, bottom, top).transposed(), b2, 1.0, b1);
   multiply_transposed_lower_from_left(lower.block(top, top, bottom, bottom), b2, scratch);
 }
 
 }  // namespace
 
-TriangularScratch::TriangularScratch(Index size) : block_(padded(std::max(size, kPanel)) * kPanel) {}
+TriangularScratch::TriangularScratch(Index size, int threads)
+    : gemm_(threads), block_(padded(std::max(size, kPanel)) * kPanel) {}
+
+// Strips of columns; more strips than threads, because with kLower they differ in work.
+void TriangularScratch::multiply(double alpha, ConstView a, ConstView b, double beta, View c, Part part) {
+  const double flops =
+      2.0 * static_cast<double>(c.rows) * static_cast<double>(c.cols) * static_cast<double>(a.cols);
+  if (threads() == 1 || flops < kTeamFlops) return linalg::gemm(alpha, a, b, beta, c, gemm(), part);
+  const Index width =
+      std::max(kPanel, (c.cols / (kStripsPerThread * threads()) + kPanel - 1) / kPanel * kPanel);
+  parallel_for(threads(), (c.cols + width - 1) / width, 1, [&](Index strip, int thread) {
+    const Index col = strip * width;
+    const Index cols = std::min(width, c.cols - col);
+    const Index row = part == Part::kLower ? col : 0;
+    linalg::gemm(alpha, a.block(row, 0, a.rows - row, a.cols), b.block(0, col, b.rows, cols), beta,
+                 c.block(row, col, c.rows - row, cols), gemm_[thread], part);
+  });
+}
 
 View TriangularScratch::block(Index rows, Index cols) {
   return {block_.data(), rows, cols, padded(rows)};
@@ -171,19 +203,21 @@ bool factorize_cholesky(View a, TriangularScratch& scratch) {
   const View a22 = a.block(top, top, bottom, bottom);
   if (!factorize_cholesky(a11, scratch)) return false;
   solve_transposed_from_right(a11, a21, scratch);
-  gemm(-1.0, a21, a21.transposed(), 1.0, a22, scratch.gemm(), Part::kLower);
+  scratch.multiply(-1.0, a21, a21.transposed(), 1.0, a22, Part::kLower);
   return factorize_cholesky(a22, scratch);
 }
 
 void solve_transposed_from_right(ConstView lower, View b, TriangularScratch& scratch) {
-  if (b.cols <= kBase) return solve_small(lower, b);
-  const Index left = half_of(b.cols);
-  const Index right = b.cols - left;
-  const View b1 = b.block(0, 0, b.rows, left);
-  const View b2 = b.block(0, left, b.rows, right);
-  solve_transposed_from_right(lower.block(0, 0, left, left), b1, scratch);
-  gemm(-1.0, b1, lower.block(left, 0, right, left).transposed(), 1.0, b2, scratch.gemm());
-  solve_transposed_from_right(lower.block(left, left, right, right), b2, scratch);
+  const double flops =
+      static_cast<double>(b.rows) * static_cast<double>(b.cols) * static_cast<double>(b.cols);
+  if (scratch.threads() == 1 || flops < kTeamFlops) return solve_rows(lower, b, scratch.gemm());
+  const Index strips = kStripsPerThread * scratch.threads();
+  const Index height = std::max(kPanel, (b.rows / strips + kPanel - 1) / kPanel * kPanel);
+  parallel_for(scratch.threads(), (b.rows + height - 1) / height, 1, [&](Index strip, int thread) {
+    const Index row = strip * height;
+    const View rows = b.block(row, 0, std::min(height, b.rows - row), b.cols);
+    solve_rows(lower, rows, scratch.gemm(thread));
+  });
 }
 
 void solve_lower(ConstView lower, double* x) {
@@ -222,7 +256,7 @@ void invert_lower(View lower, TriangularScratch& scratch) {
 void multiply_transposed_by_self(View lower, TriangularScratch& scratch) {
   if (lower.rows <= kBase) {
     const View product = scratch.block(lower.rows, lower.rows);
-    gemm(1.0, lower.transposed(), lower, 0.0, product, scratch.gemm());
+    scratch.multiply(1.0, lower.transposed(), lower, 0.0, product);
     return copy(product, lower);
   }
   const Index top = half_of(lower.rows);
@@ -230,7 +264,7 @@ void multiply_transposed_by_self(View lower, TriangularScratch& scratch) {
   const View m21 = lower.block(top, 0, bottom, top);
   const View m22 = lower.block(top, top, bottom, bottom);
   multiply_transposed_by_self(lower.block(0, 0, top, top), scratch);
-  gemm(1.0, m21.transposed(), m21, 1.0, lower.block(0, 0, top, top), scratch.gemm(), Part::kLower);
+  scratch.multiply(1.0, m21.transposed(), m21, 1.0, lower.block(0, 0, top, top), Part::kLower);
   multiply_transposed_lower_from_left(m22, m21, scratch);
   multiply_transposed_by_self(m22, scratch);
 }

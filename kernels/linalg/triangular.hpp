@@ -1,20 +1,29 @@
 #pragma once
 
+#include <vector>
+
 #include "kernels/linalg/gemm.hpp"
 #include "kernels/linalg/view.hpp"
 
 namespace twinmap::linalg {
 
-/// Buffers of one thread's blocked factorisations of matrices up to `size`; nothing below allocates.
+/// Buffers of blocked factorisations of matrices up to `size`, and the team of threads that shares their
+/// products; nothing below allocates. Every element of a product is summed in an order that depends on the
+/// sizes only, so the number of threads changes no bit of a result.
 class TriangularScratch {
  public:
-  explicit TriangularScratch(Index size);
-  GemmScratch& gemm() { return gemm_; }
+  explicit TriangularScratch(Index size, int threads = 1);
+  GemmScratch& gemm(int thread = 0) { return gemm_[thread]; }
+  int threads() const { return static_cast<int>(gemm_.size()); }
+
+  /// gemm(alpha, a, b, beta, c), by the whole team where it is large enough to be worth it.
+  void multiply(double alpha, ConstView a, ConstView b, double beta, View c, Part part = Part::kAll);
+
   /// rows x cols of scratch, one of them at most 64 and the other at most `size`.
   View block(Index rows, Index cols);
 
  private:
-  GemmScratch gemm_;
+  std::vector<GemmScratch> gemm_;  // one per thread
   Eigen::VectorXd block_;
 };
 

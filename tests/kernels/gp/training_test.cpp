@@ -88,6 +88,28 @@ TEST(Training, is_bitwise_the_same_for_any_number_of_threads_and_alignment) {
   }
 }
 
+// Large matrices are factorised by a team; the smallest that is checked here spans several strips of it.
+TEST(Likelihood, is_bitwise_the_same_for_any_size_of_the_team) {
+  const int n = 700;
+  const MatrixXd inputs = random_matrix(6, n, 30);
+  const VectorXd target = test::smooth_target(inputs, 0.1, 31);
+  for (int groups : {1, 6}) {
+    const ModelStructure structure{CovarianceFunction::kMatern52, test::cyclic_groups(6, groups), false,
+                                   MeanFunction::kLinear};
+    const TrainingSet set(inputs, structure);
+    const Hyperparameters hyperparameters{VectorXd::Constant(groups, 1.5), 1.0, 0.1, 1.0, 1.0};
+    LikelihoodWorkspace alone(set);
+    VectorXd expected(groups + 2), gradient(groups + 2);
+    const double nlml = evaluate_likelihood_gradient(set, target, hyperparameters, alone, expected).nlml;
+    for (int threads : {2, 3, 5}) {
+      LikelihoodWorkspace team(set, threads);
+      EXPECT_EQ(evaluate_likelihood_gradient(set, target, hyperparameters, team, gradient).nlml, nlml);
+      EXPECT_EQ(gradient, expected);
+      EXPECT_EQ(team.corrections, alone.corrections);
+    }
+  }
+}
+
 TEST(Training, recognises_pure_noise) {
   const MatrixXd inputs = random_matrix(3, 100, 5);
   const MatrixXd noise = random_matrix(1, 100, 6);
