@@ -85,6 +85,12 @@ class MultibodySimulator::Impl {
 
   explicit Impl(std::shared_ptr<SharedModel> shared) : shared_(std::move(shared)), context_(shared_->model) {}
 
+  /// Compiles all expressions now, while clones are made one after the other.
+  void compileAll() {
+    context_.numbers.update(calcBoxCenter(shared_->model));
+    buildAtBoxCenter(context_);
+  }
+
   /// Completes what the clones share.
   void prepare() {
     checkSimulation(shared_->model.simulation);
@@ -94,8 +100,7 @@ class MultibodySimulator::Impl {
       shared_->output_names.push_back(output.name.text);
     }
     try {
-      context_.numbers.update(calcBoxCenter(shared_->model));
-      buildAtBoxCenter(context_);
+      compileAll();
       const std::optional<EquilibriumSpec>& equilibrium = shared_->model.initial.equilibrium;
       if (equilibrium && equilibrium->at == EquilibriumAt::kBoxCenter) {
         shared_->box_center = solveBoxCenter(context_);
@@ -172,7 +177,9 @@ void MultibodySimulator::simulate(const Eigen::Ref<const Eigen::MatrixXd>& param
 }
 
 std::unique_ptr<Simulator> MultibodySimulator::clone() const {
-  return std::unique_ptr<Simulator>(new MultibodySimulator(std::make_unique<Impl>(impl_->getShared())));
+  auto impl = std::make_unique<Impl>(impl_->getShared());
+  impl->compileAll();
+  return std::unique_ptr<Simulator>(new MultibodySimulator(std::move(impl)));
 }
 
 }  // namespace twinmap

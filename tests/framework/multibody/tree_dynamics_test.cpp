@@ -98,50 +98,62 @@ INSTANTIATE_TEST_SUITE_P(AllTypes, EveryJoint,
                                            JointType::kTranslation, JointType::kGimbal, JointType::kBall,
                                            JointType::kBushing, JointType::kFree));
 
-TEST(Bushing, AgreesWithSimbodysLinearBushing) {
+/// Two free bodies joined by a bushing.
+ModelSpec makeBushedBodies() {
   ModelSpec model = makeModel(1.0);
   const Expression3 moments = ex3("0.02", "0.03", "0.04");
   model.system.bodies = {body("one", "2", ex3("0.1", "0", "0.2"), moments,
                               joint(JointType::kFree, makeNames("p", JointType::kFree))),
                          body("two", "1", ex3("0", "0.2", "0"), moments,
                               joint(JointType::kFree, makeNames("q", JointType::kFree)))};
-  BushingSpec spec;
-  spec.from = {name("one"), {ex3("0.1", "0.2", "0.3"), ex3("0.3", "0.1", "-0.2")}};
-  spec.to = {name("two"), {ex3("-0.2", "0.1", "0"), ex3("0.1", "0.2", "0.2")}};
-  spec.stiffness = {ex("1"), ex("2"), ex("3"), ex("40"), ex("50"), ex("60")};
-  spec.damping = {ex("0.1"), ex("0.2"), ex("0.3"), ex("4"), ex("5"), ex("6")};
-  model.system.bushings = {spec};
+  BushingSpec bushing;
+  bushing.from = {name("one"), {ex3("0.1", "0.2", "0.3"), ex3("0.3", "0.1", "-0.2")}};
+  bushing.to = {name("two"), {ex3("-0.2", "0.1", "0"), ex3("0.1", "0.2", "0.2")}};
+  bushing.stiffness = {ex("1"), ex("2"), ex("3"), ex("40"), ex("50"), ex("60")};
+  bushing.damping = {ex("0.1"), ex("0.2"), ex("0.3"), ex("4"), ex("5"), ex("6")};
+  model.system.bushings = {bushing};
+  return model;
+}
+
+SimTK::Transform makeFrame(const SimTK::Vec3& point, const SimTK::Vec3& angles) {
+  SimTK::Rotation rotation;
+  rotation.setRotationToBodyFixedXYZ(angles);
+  return SimTK::Transform(rotation, point);
+}
+
+/// Forces of Simbody's own element for makeBushedBodies() at the same coordinates and speeds.
+SimTK::Vector_<SimTK::SpatialVec> calcLinearBushing(const SimTK::State& at) {
+  using SimTK::Vec3;
+  SimTK::MultibodySystem system;
+  SimTK::SimbodyMatterSubsystem matter(system);
+  SimTK::GeneralForceSubsystem forces(system);
+  const SimTK::Body::Rigid unit(SimTK::MassProperties(1.0, Vec3(0.0), SimTK::Inertia(1.0)));
+  const SimTK::MobilizedBody::Free one(matter.updGround(), unit), two(matter.updGround(), unit);
+  const SimTK::Transform from = makeFrame(Vec3(0.1, 0.2, 0.3), Vec3(0.3, 0.1, -0.2));
+  const SimTK::Transform to = makeFrame(Vec3(-0.2, 0.1, 0.0), Vec3(0.1, 0.2, 0.2));
+  SimTK::Force::LinearBushing(forces, one, from, two, to, SimTK::Vec6(1, 2, 3, 40, 50, 60),
+                              SimTK::Vec6(0.1, 0.2, 0.3, 4, 5, 6));
+  SimTK::State state = system.realizeTopology();
+  matter.setUseEulerAngles(state, true);
+  system.realizeModel(state);
+  state.updQ() = at.getQ();
+  state.updU() = at.getU();
+  system.realize(state, SimTK::Stage::Dynamics);
+  return system.getRigidBodyForces(state, SimTK::Stage::Dynamics);
+}
+
+TEST(Bushing, AgreesWithSimbodysLinearBushing) {
+  const ModelSpec model = makeBushedBodies();
   ModelContext context(model);
   context.numbers.update(Eigen::VectorXd());
   LoadedSystem system(context, false);
   SimTK::State state = system.getTree().getDefaultState();
   setState(system, makeRandomState(context, 11), state);
   const SystemForces own = system.calcForces(state, 0.0);
-
-  SimTK::MultibodySystem reference;
-  SimTK::SimbodyMatterSubsystem matter(reference);
-  SimTK::GeneralForceSubsystem forces(reference);
-  const SimTK::Body::Rigid unit(SimTK::MassProperties(1.0, SimTK::Vec3(0.0), SimTK::Inertia(1.0)));
-  SimTK::MobilizedBody::Free one(matter.Ground(), unit), two(matter.Ground(), unit);
-  const auto frame = [](double x, double y, double z, double a, double b, double c) {
-    SimTK::Rotation rotation;
-    rotation.setRotationToBodyFixedXYZ(SimTK::Vec3(a, b, c));
-    return SimTK::Transform(rotation, SimTK::Vec3(x, y, z));
-  };
-  const SimTK::Force::LinearBushing bushing(
-      forces, one, frame(0.1, 0.2, 0.3, 0.3, 0.1, -0.2), two, frame(-0.2, 0.1, 0.0, 0.1, 0.2, 0.2),
-      SimTK::Vec6(1, 2, 3, 40, 50, 60), SimTK::Vec6(0.1, 0.2, 0.3, 4, 5, 6));
-  SimTK::State reference_state = reference.realizeTopology();
-  matter.setUseEulerAngles(reference_state, true);
-  reference.realizeModel(reference_state);
-  reference_state.updQ() = state.getQ();
-  reference_state.updU() = state.getU();
-  reference.realize(reference_state, SimTK::Stage::Dynamics);
-  const SimTK::Vector_<SimTK::SpatialVec>& expected =
-      reference.getRigidBodyForces(reference_state, SimTK::Stage::Dynamics);
-  for (int body = 1; body <= 2; ++body) {
-    EXPECT_LT((own.on_bodies[body][0] - expected[body][0]).norm(), 1e-12 * expected[body][0].norm());
-    EXPECT_LT((own.on_bodies[body][1] - expected[body][1]).norm(), 1e-12 * expected[body][1].norm());
+  const SimTK::Vector_<SimTK::SpatialVec> expected = calcLinearBushing(state);
+  for (int i = 1; i <= 2; ++i) {
+    EXPECT_LT((own.on_bodies[i][0] - expected[i][0]).norm(), 1e-12 * expected[i][0].norm());
+    EXPECT_LT((own.on_bodies[i][1] - expected[i][1]).norm(), 1e-12 * expected[i][1].norm());
   }
 }
 
