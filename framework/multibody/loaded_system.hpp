@@ -27,6 +27,8 @@ class LoadedSystem {
   /// Builds the system for the current values of the context's numbers, with muted excitation.
   /// `for_simbody`: make the forces visible to Simbody's own integrators. Throws SimulationFailure.
   LoadedSystem(ModelContext& context, bool for_simbody);
+  LoadedSystem(const LoadedSystem&) = delete;
+  LoadedSystem& operator=(const LoadedSystem&) = delete;
 
   const BodyTree& getTree() const { return tree_; }
 

@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "framework/multibody/run_sample.hpp"
 
 namespace twinmap {
@@ -14,6 +18,10 @@ class MultibodyOde : public OdeProblem {
   void beginPhase(double begin) override { run_.excitation.beginPhase(begin); }
 
   void calcDerivative(double t, const State& x, State& dxdt) override {
+    if (!std::all_of(x.begin(), x.end(), [](double value) { return std::isfinite(value); })) {
+      std::fill(dxdt.begin(), dxdt.end(), std::numeric_limits<double>::quiet_NaN());
+      return;  // nothing that Simbody should see; the step is rejected
+    }
     setState(x);
     tree_.realizeVelocity(state_);
     const Eigen::VectorXd& udot = run_.system.calcUDot(state_, t);

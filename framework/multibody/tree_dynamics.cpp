@@ -21,7 +21,7 @@ double calcPower(const SpatialVec& velocity, const SpatialVec& force) {
 void factorize(Eigen::MatrixXd& matrix) {
   for (Eigen::Index j = 0; j < matrix.rows(); ++j) {
     const double pivot = matrix(j, j) - matrix.row(j).head(j).squaredNorm();
-    if (!(pivot > kSingularPivot * matrix(j, j))) {
+    if (pivot <= kSingularPivot * matrix(j, j)) {  // false for NaN, which the integrator sees and rejects
       throw SimulationFailure("the mass matrix is singular: a body without inertia can move freely");
     }
     matrix(j, j) = std::sqrt(pivot);

@@ -45,6 +45,8 @@ class Excitation {
   /// `signals` must outlive the excitation unchanged. Throws ExperimentError for a table whose times decrease
   /// or whose columns differ in length, and for a multisine whose phases do not match its frequencies.
   explicit Excitation(const std::vector<SignalSpec>& signals);
+  Excitation(const Excitation&) = delete;
+  Excitation& operator=(const Excitation&) = delete;
 
   /// Evaluates all numbers for a parameter set and mutes the signals. Throws SimulationFailure for a number
   /// that is not finite, an end that is not after its start, or a frequency that is not positive.

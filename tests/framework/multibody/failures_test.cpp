@@ -65,6 +65,20 @@ TEST(Failures, InstabilityIsReportedWithItsTime) {
   EXPECT_NE(reason.find(" at t = 0."), std::string::npos) << reason;
 }
 
+TEST(Failures, BlowUpOfARotationIsReportedAsSuch) {
+  ModelSpec model = makeModel(2.0);
+  model.system.bodies = {
+      body("arm", "1", ex3("0.1", "0.2", "0"), ex3("1", "1", "1"), joint(JointType::kPin, {"turn"})),
+      body("tip", "1", ex3("0.1", "0", "0.3"), ex3("1", "1", "1"),
+           joint(JointType::kUniversal, {"a", "b"}, "arm"))};
+  model.system.force_laws = {law("turn", "exp(turn)")};
+  start(model, "turn", "5");
+  model.outputs = {coordinateOutput("turn")};
+  const std::string reason = getReason(model);
+  EXPECT_EQ(reason.find("singular"), std::string::npos) << reason;
+  EXPECT_NE(reason.find(" at t = 0."), std::string::npos) << reason;
+}
+
 TEST(Failures, ForceThatBecomesNonFiniteIsReported) {
   ModelSpec model = makeOscillator();
   model.system.force_laws = {law("x", "sqrt(0.5 - t)")};
