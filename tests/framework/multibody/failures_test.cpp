@@ -202,6 +202,15 @@ TEST(WrongInput, SystemThatCannotExistAtTheBoxCenterIsRefused) {
             "at the centre of the parameter box: body 'block': mass = -0.5 kg must be positive");
 }
 
+TEST(WrongInput, MatricesOfTheWrongShapeAreRefused) {
+  MultibodySimulator simulator(makeOscillator(), Eigen::Vector2d(0.5, 1.0));
+  Eigen::MatrixXd good(2, 1), bad(3, 1);
+  SampleStatus status;
+  EXPECT_THROW(simulator.simulate(Eigen::MatrixXd::Ones(2, 1), good, &status), std::invalid_argument);
+  EXPECT_THROW(simulator.simulate(Eigen::MatrixXd::Ones(3, 1), bad, &status), std::invalid_argument);
+  EXPECT_NO_THROW(simulator.simulate(Eigen::MatrixXd::Ones(3, 1), good, &status));
+}
+
 TEST(WrongInput, TimesMustIncreaseWithinTheDuration) {
   const ModelSpec model = makeOscillator();
   EXPECT_THROW(MultibodySimulator(model, Eigen::Vector2d(0.5, 0.5)), ExperimentError);
