@@ -183,8 +183,8 @@ RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& opt
   run.predictions =
       timeStage("infer the test samples", run.times, [&] { return trained.map.predict(testing.features); });
   run.metrics = calcMetrics(model.parameters, run.truth, run.predictions);
-  for (const auto& process : trained.map.processes) {
-    run.nlml.push_back(process->nlml());
+  for (const Process& process : trained.map.processes) {
+    run.nlml.push_back(getNlml(process));
   }
   writeResults(options.folder, run);
   writeTextFile(options.folder / "provenance.json",

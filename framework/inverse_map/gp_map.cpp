@@ -3,6 +3,9 @@
 #include <map>
 #include <stdexcept>
 
+#include "kernels/gp/training.hpp"
+#include "kernels/sparse/sparse_training.hpp"
+
 namespace twinmap {
 namespace {
 
@@ -63,6 +66,31 @@ gp::TrainingOptions toKernel(const GpMapSpec& spec, int threads) {
   return options;
 }
 
+gp::ModelStructure makeStructure(const GpMapSpec& spec, const std::vector<FeatureInfo>& infos) {
+  gp::ModelStructure structure;
+  structure.covariance = toKernel(spec.covariance);
+  structure.length_scale_groups = makeGroups(spec.length_scales, infos);
+  structure.linear_term = spec.linear_term;
+  structure.mean = toKernel(spec.mean);
+  return structure;
+}
+
+/// Keeps the processes of training results and what a person should know about them.
+template <class Result>
+void keepResults(const std::vector<Result>& results, const std::vector<std::string>& parameter_names,
+                 GpMapTraining& training) {
+  for (std::size_t p = 0; p < results.size(); ++p) {
+    if (results[p].gp == nullptr) {
+      throw std::runtime_error("the map of parameter '" + parameter_names[p] +
+                               "' cannot be trained: " + results[p].message);
+    }
+    training.map.processes.emplace_back(results[p].gp);
+    if (results[p].status != gp::TrainingStatus::kConverged) {
+      training.warnings.push_back("parameter '" + parameter_names[p] + "': " + results[p].message);
+    }
+  }
+}
+
 Eigen::VectorXd calcStddev(const Eigen::MatrixXd& rows, const Eigen::VectorXd& mean) {
   const Eigen::MatrixXd centered = rows.colwise() - mean;
   return (centered.rowwise().squaredNorm() / (static_cast<double>(rows.cols()) - 1.0)).cwiseSqrt();
@@ -70,13 +98,21 @@ Eigen::VectorXd calcStddev(const Eigen::MatrixXd& rows, const Eigen::VectorXd& m
 
 }  // namespace
 
+double getNlml(const Process& process) {
+  if (const auto* exact = std::get_if<std::shared_ptr<const gp::GaussianProcess>>(&process)) {
+    return (*exact)->nlml();
+  }
+  return std::get<std::shared_ptr<const gp::SparseGaussianProcess>>(process)->parts().posterior.bound;
+}
+
 Predictions GpMap::predict(const Eigen::MatrixXd& features) const {
   const Eigen::MatrixXd inputs = transform.apply(features);
   const auto parameters = static_cast<Eigen::Index>(processes.size());
   Predictions predictions{Eigen::MatrixXd(parameters, features.cols()),
                           Eigen::MatrixXd(parameters, features.cols())};
   for (Eigen::Index p = 0; p < parameters; ++p) {
-    const gp::Prediction standardised = processes[p]->predict(inputs);
+    const gp::Prediction standardised =
+        std::visit([&](const auto& process) { return process->predict(inputs); }, processes[p]);
     predictions.mean.row(p) = target_offset[p] + target_scale[p] * standardised.mean.transpose().array();
     predictions.stddev.row(p) = target_scale[p] * standardised.stddev().transpose();
   }
@@ -95,23 +131,14 @@ GpMapTraining trainGpMap(const GpMapSpec& spec, const std::vector<TransformStep>
   const Eigen::MatrixXd targets =
       (parameters.colwise() - map.target_offset).array().colwise() / map.target_scale.array();
 
-  gp::ModelStructure structure;
-  structure.covariance = toKernel(spec.covariance);
-  structure.length_scale_groups = makeGroups(spec.length_scales, infos);
-  structure.linear_term = spec.linear_term;
-  structure.mean = toKernel(spec.mean);
-  const std::vector<gp::TrainingResult> results =
-      gp::train(map.transform.apply(features), targets, structure, toKernel(spec, threads));
-
-  for (std::size_t p = 0; p < results.size(); ++p) {
-    if (results[p].gp == nullptr) {
-      throw std::runtime_error("the map of parameter '" + parameter_names[p] +
-                               "' cannot be trained: " + results[p].message);
-    }
-    map.processes.push_back(results[p].gp);
-    if (results[p].status != gp::TrainingStatus::kConverged) {
-      training.warnings.push_back("parameter '" + parameter_names[p] + "': " + results[p].message);
-    }
+  const Eigen::MatrixXd inputs = map.transform.apply(features);
+  const gp::ModelStructure structure = makeStructure(spec, infos);
+  const gp::TrainingOptions options = toKernel(spec, threads);
+  if (spec.approximation == GpApproximation::kSgpr) {
+    const gp::SparseOptions sparse{spec.inducing, spec.subset, spec.refine_evaluations};
+    keepResults(gp::train_sparse(inputs, targets, structure, options, sparse), parameter_names, training);
+  } else {
+    keepResults(gp::train(inputs, targets, structure, options), parameter_names, training);
   }
   return training;
 }

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <memory>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "framework/evaluation/metrics.hpp"
@@ -10,17 +11,24 @@
 #include "framework/features/feature_transform.hpp"
 #include "framework/spec/experiment_spec.hpp"
 #include "kernels/gp/gaussian_process.hpp"
-#include "kernels/gp/training.hpp"
+#include "kernels/sparse/sparse_gaussian_process.hpp"
 
 namespace twinmap {
+
+/// One parameter's process: exact, or sparse on inducing inputs.
+using Process = std::variant<std::shared_ptr<const gp::GaussianProcess>,
+                             std::shared_ptr<const gp::SparseGaussianProcess>>;
+
+/// Its negative log marginal likelihood, or the variational bound on it from above; nats.
+double getNlml(const Process& process);
 
 /// An inverse map: features -> parameters with standard deviation, by one Gaussian process per parameter on
 /// the standardised parameter (p - offset) / scale. A fitted, immutable value.
 struct GpMap {
   FeatureTransform transform;
-  Eigen::VectorXd target_offset;                                      ///< p, mean of the training parameters
-  Eigen::VectorXd target_scale;                                       ///< p, their standard deviation
-  std::vector<std::shared_ptr<const gp::GaussianProcess>> processes;  ///< one per parameter, same inputs
+  Eigen::VectorXd target_offset;   ///< p, mean of the training parameters
+  Eigen::VectorXd target_scale;    ///< p, their standard deviation
+  std::vector<Process> processes;  ///< one per parameter; exact ones share their training inputs
 
   /// Features (d x m, untransformed) -> predictions (p x m each). The standard deviation is the predictive
   /// one, likelihood noise included: the spread of the parameter given the features.

@@ -53,6 +53,12 @@ struct EnumNames<GpMean> {
 };
 
 template <>
+struct EnumNames<GpApproximation> {
+  static constexpr EnumName<GpApproximation> values[] = {{"exact", GpApproximation::kExact},
+                                                         {"sgpr", GpApproximation::kSgpr}};
+};
+
+template <>
 struct EnumNames<LengthScales> {
   static constexpr EnumName<LengthScales> values[] = {
       {"shared", LengthScales::kShared},
@@ -142,7 +148,13 @@ void describe(Fields& f, GpMapSpec& s) {
   f.optional("length_scales", s.length_scales, "one for all features, per output, or per feature");
   f.optional("starts", s.starts, "optimisations of the marginal likelihood, from different points", kCount);
   f.optional("max_evaluations", s.max_evaluations, "of the marginal likelihood, per start", kCount);
+  f.optional("approximation", s.approximation, "exact, or sgpr: sparse on inducing inputs, for many samples");
+  f.optional("inducing", s.inducing, "sgpr: inducing inputs", kCount);
+  f.optional("subset", s.subset, "sgpr: samples on which an exact process finds the hyperparameters", kCount);
+  f.optional("refine_evaluations", s.refine_evaluations, "sgpr: of the bound over all samples", kCountOrNone);
   f.optional("bounds", s.bounds, "of the hyperparameters");
+  f.rule(s.approximation == GpApproximation::kExact || !s.linear_term,
+         "must not have a linear_term with 'approximation: sgpr'");
 }
 
 template <class Fields>

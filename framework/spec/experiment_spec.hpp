@@ -59,6 +59,8 @@ struct DesignSpec {
 
 enum class GpCovariance { kSquaredExponential, kMatern32, kMatern52, kRationalQuadratic };
 enum class GpMean { kConstant, kZero, kLinear };
+/// Exact, or the variational sparse approximation on inducing inputs (SGPR; Titsias 2009).
+enum class GpApproximation { kExact, kSgpr };
 enum class LengthScales { kShared, kPerOutput, kPerFeature };
 
 /// Bounds of the hyperparameters during training, relative to the natural scale of each.
@@ -76,6 +78,10 @@ struct GpMapSpec {
   LengthScales length_scales = LengthScales::kShared;
   int starts = 4;
   int max_evaluations = 200;  ///< of the marginal likelihood, per start
+  GpApproximation approximation = GpApproximation::kExact;
+  int inducing = 500;           ///< sgpr: inducing inputs
+  int subset = 1000;            ///< sgpr: samples on which an exact process finds the hyperparameters
+  int refine_evaluations = 40;  ///< sgpr: of the variational bound over all samples; 0 for none
   GpBoundsSpec bounds;
 };
 

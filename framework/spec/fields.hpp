@@ -19,6 +19,7 @@ inline constexpr NumberRule kAnyNumber{};
 inline constexpr NumberRule kPositive{0.0, kInfinity, false, "must be a number above 0"};
 inline constexpr NumberRule kNonNegative{0.0, kInfinity, true, "must be a number, 0 or above"};
 inline constexpr NumberRule kFraction{0.0, 1.0, true, "must be a fraction from 0 to 1"};
+inline constexpr NumberRule kCountOrNone{0.0, 1e7, true, "must be a whole number from 0 to 10000000"};
 inline constexpr NumberRule kCount{1.0, 1e7, true, "must be a whole number from 1 to 10000000"};
 
 template <class Enum>

@@ -11,6 +11,8 @@ namespace twinmap {
 namespace {
 
 constexpr const char* kFormat = "twinmap maps 1";
+constexpr const char* kExact = "exact";
+constexpr const char* kSgpr = "sgpr";
 
 const char* toText(gp::MeanFunction mean) {
   switch (mean) {
@@ -38,22 +40,45 @@ std::vector<std::int64_t> toIntegers(const std::vector<int>& values) {
   return {values.begin(), values.end()};
 }
 
-void writeProcess(Hdf5Writer& file, const std::string& group, const gp::GaussianProcessParts& parts) {
-  const gp::Hyperparameters& hyperparameters = parts.hyperparameters;
+void writeStructure(Hdf5Writer& file, const std::string& group, const gp::ModelStructure& structure,
+                    const gp::Hyperparameters& hyperparameters) {
   file.write(group + "/length_scales", hyperparameters.length_scales);
-  file.write(group + "/length_scale_groups", toIntegers(parts.structure.length_scale_groups));
+  file.write(group + "/length_scale_groups", toIntegers(structure.length_scale_groups));
   file.write(group + "/signal_stddev", hyperparameters.signal_stddev);
   file.write(group + "/noise_stddev", hyperparameters.noise_stddev);
   file.write(group + "/shape", hyperparameters.shape);
   file.write(group + "/linear_stddev", hyperparameters.linear_stddev);
+  file.writeAttribute(group, "covariance", gp::to_string(structure.covariance));
+  file.writeAttribute(group, "mean", toText(structure.mean));
+  file.writeAttribute(group, "linear_term", structure.linear_term ? "true" : "false");
+}
+
+void writeProcess(Hdf5Writer& file, const std::string& group, const gp::GaussianProcess& process) {
+  const gp::GaussianProcessParts& parts = process.parts();
+  writeStructure(file, group, parts.structure, parts.hyperparameters);
   file.write(group + "/mean_coefficients", parts.mean_coefficients);
   file.write(group + "/alpha", parts.alpha);
   file.writeSamples(group + "/factor", parts.factor.transpose());
   file.write(group + "/nlml", parts.nlml);
   file.write(group + "/jitter", parts.jitter);
-  file.writeAttribute(group, "covariance", gp::to_string(parts.structure.covariance));
-  file.writeAttribute(group, "mean", toText(parts.structure.mean));
-  file.writeAttribute(group, "linear_term", parts.structure.linear_term ? "true" : "false");
+  file.writeAttribute(group, "approximation", kExact);
+}
+
+void writeProcess(Hdf5Writer& file, const std::string& group, const gp::SparseGaussianProcess& process) {
+  const gp::SparseGaussianProcessParts& parts = process.parts();
+  const gp::VariationalPosterior& posterior = parts.posterior;
+  writeStructure(file, group, parts.structure, parts.hyperparameters);
+  file.write(group + "/center", parts.center);
+  file.writeSamples(group + "/inducing", parts.inducing);
+  file.writeSamples(group + "/inducing_factor", posterior.inducing_factor.transpose());
+  file.writeSamples(group + "/correction_factor", posterior.correction_factor.transpose());
+  file.write(group + "/weights", posterior.weights);
+  file.writeSamples(group + "/whitened_basis", posterior.whitened_basis.transpose());
+  file.writeSamples(group + "/basis_factor", posterior.basis_factor.transpose());
+  file.write(group + "/mean_coefficients", posterior.mean_coefficients);
+  file.write(group + "/bound", posterior.bound);
+  file.write(group + "/jitter", posterior.jitter);
+  file.writeAttribute(group, "approximation", kSgpr);
 }
 
 gp::ModelStructure readStructure(const Hdf5Reader& file, const std::string& group) {
@@ -72,15 +97,21 @@ gp::ModelStructure readStructure(const Hdf5Reader& file, const std::string& grou
   return structure;
 }
 
-std::shared_ptr<const gp::GaussianProcess> readProcess(const Hdf5Reader& file, const std::string& group,
-                                                       std::shared_ptr<const Eigen::MatrixXd> inputs) {
+gp::Hyperparameters readHyperparameters(const Hdf5Reader& file, const std::string& group) {
+  gp::Hyperparameters hyperparameters;
+  hyperparameters.length_scales = file.readVector(group + "/length_scales");
+  hyperparameters.signal_stddev = file.readNumber(group + "/signal_stddev");
+  hyperparameters.noise_stddev = file.readNumber(group + "/noise_stddev");
+  hyperparameters.shape = file.readNumber(group + "/shape");
+  hyperparameters.linear_stddev = file.readNumber(group + "/linear_stddev");
+  return hyperparameters;
+}
+
+Process readExact(const Hdf5Reader& file, const std::string& group,
+                  std::shared_ptr<const Eigen::MatrixXd> inputs) {
   gp::GaussianProcessParts parts;
   parts.structure = readStructure(file, group);
-  parts.hyperparameters.length_scales = file.readVector(group + "/length_scales");
-  parts.hyperparameters.signal_stddev = file.readNumber(group + "/signal_stddev");
-  parts.hyperparameters.noise_stddev = file.readNumber(group + "/noise_stddev");
-  parts.hyperparameters.shape = file.readNumber(group + "/shape");
-  parts.hyperparameters.linear_stddev = file.readNumber(group + "/linear_stddev");
+  parts.hyperparameters = readHyperparameters(file, group);
   parts.inputs = std::move(inputs);
   parts.mean_coefficients = file.readVector(group + "/mean_coefficients");
   parts.alpha = file.readVector(group + "/alpha");
@@ -88,6 +119,34 @@ std::shared_ptr<const gp::GaussianProcess> readProcess(const Hdf5Reader& file, c
   parts.nlml = file.readNumber(group + "/nlml");
   parts.jitter = file.readNumber(group + "/jitter");
   return std::make_shared<const gp::GaussianProcess>(std::move(parts));
+}
+
+Process readSparse(const Hdf5Reader& file, const std::string& group) {
+  gp::SparseGaussianProcessParts parts;
+  parts.structure = readStructure(file, group);
+  parts.hyperparameters = readHyperparameters(file, group);
+  parts.center = file.readVector(group + "/center");
+  parts.inducing = file.readSamples(group + "/inducing");
+  gp::VariationalPosterior& posterior = parts.posterior;
+  posterior.inducing_factor = file.readSamples(group + "/inducing_factor").transpose();
+  posterior.correction_factor = file.readSamples(group + "/correction_factor").transpose();
+  posterior.weights = file.readVector(group + "/weights");
+  posterior.whitened_basis = file.readSamples(group + "/whitened_basis").transpose();
+  posterior.basis_factor = file.readSamples(group + "/basis_factor").transpose();
+  posterior.mean_coefficients = file.readVector(group + "/mean_coefficients");
+  posterior.bound = file.readNumber(group + "/bound");
+  posterior.jitter = file.readNumber(group + "/jitter");
+  return std::make_shared<const gp::SparseGaussianProcess>(std::move(parts));
+}
+
+/// An exact process, which has the training inputs that all exact ones share; null if all are sparse.
+const gp::GaussianProcess* findExact(const GpMap& map) {
+  for (const Process& process : map.processes) {
+    if (const auto* exact = std::get_if<std::shared_ptr<const gp::GaussianProcess>>(&process)) {
+      return exact->get();
+    }
+  }
+  return nullptr;
 }
 
 }  // namespace
@@ -102,9 +161,12 @@ void writeMapsFile(const std::filesystem::path& path, const StoredMap& stored) {
     file.write("/transform/scale", stored.map.transform.scale);
     file.write("/target/offset", stored.map.target_offset);
     file.write("/target/scale", stored.map.target_scale);
-    file.writeSamples("/training_inputs", stored.map.processes.front()->inputs());
+    if (const gp::GaussianProcess* exact = findExact(stored.map)) {
+      file.writeSamples("/training_inputs", exact->inputs());
+    }
     for (std::size_t p = 0; p < stored.parameters.size(); ++p) {
-      writeProcess(file, "/maps/" + stored.parameters[p].name.text, stored.map.processes[p]->parts());
+      const std::string group = "/maps/" + stored.parameters[p].name.text;
+      std::visit([&](const auto& process) { writeProcess(file, group, *process); }, stored.map.processes[p]);
     }
     file.close();
   });
@@ -121,9 +183,14 @@ StoredMap readMapsFile(const std::filesystem::path& path) {
   stored.map.transform = {file.readVector("/transform/offset"), file.readVector("/transform/scale")};
   stored.map.target_offset = file.readVector("/target/offset");
   stored.map.target_scale = file.readVector("/target/scale");
-  const auto inputs = std::make_shared<const Eigen::MatrixXd>(file.readSamples("/training_inputs"));
+  std::shared_ptr<const Eigen::MatrixXd> inputs;
   for (const ParameterSpec& parameter : stored.parameters) {
-    stored.map.processes.push_back(readProcess(file, "/maps/" + parameter.name.text, inputs));
+    const std::string group = "/maps/" + parameter.name.text;
+    const bool sparse = file.readAttribute(group, "approximation") == kSgpr;
+    if (!sparse && inputs == nullptr) {
+      inputs = std::make_shared<const Eigen::MatrixXd>(file.readSamples("/training_inputs"));
+    }
+    stored.map.processes.push_back(sparse ? readSparse(file, group) : readExact(file, group, inputs));
   }
   return stored;
 }

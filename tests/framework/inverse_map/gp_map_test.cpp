@@ -56,12 +56,26 @@ TEST(GpMap, LengthScalesAreGroupedAsTheSpecSays) {
   const Problem problem = makeProblem(40, 1);
   GpMapSpec spec;
   spec.length_scales = LengthScales::kPerOutput;
-  const auto groups = trainOn(problem, spec).map.processes[0]->structure().length_scale_groups;
-  EXPECT_EQ(groups, (std::vector<int>{0, 0, 1, 1}));
+  const auto train_first = [&] {
+    return std::get<std::shared_ptr<const gp::GaussianProcess>>(trainOn(problem, spec).map.processes[0]);
+  };
+  EXPECT_EQ(train_first()->structure().length_scale_groups, (std::vector<int>{0, 0, 1, 1}));
   spec.length_scales = LengthScales::kPerFeature;
-  EXPECT_EQ(trainOn(problem, spec).map.processes[0]->hyperparameters().length_scales.size(), 4);
+  EXPECT_EQ(train_first()->hyperparameters().length_scales.size(), 4);
   spec.length_scales = LengthScales::kShared;
-  EXPECT_EQ(trainOn(problem, spec).map.processes[0]->hyperparameters().length_scales.size(), 1);
+  EXPECT_EQ(train_first()->hyperparameters().length_scales.size(), 1);
+}
+
+TEST(GpMap, ASparseMapWithEnoughInducingInputsInfersLikeTheExactOne) {
+  const Problem problem = makeProblem(80, 1), test = makeProblem(50, 2);
+  GpMapSpec spec;
+  spec.approximation = GpApproximation::kSgpr;
+  spec.inducing = 60;
+  const Predictions sparse = trainOn(problem, spec).map.predict(test.features);
+  const Predictions exact = trainOn(problem).map.predict(test.features);
+  const Eigen::ArrayXXd difference = (sparse.mean - exact.mean).array() / exact.stddev.array();
+  EXPECT_LT(difference.abs().maxCoeff(), 0.3);
+  EXPECT_NEAR((sparse.stddev.array() / exact.stddev.array()).mean(), 1.0, 0.1);
 }
 
 TEST(GpMap, TheResultDoesNotDependOnTheThreads) {

@@ -60,13 +60,15 @@ TEST(MapsFile, ARestoredMapPredictsTheSameBits) {
   values.row(0) = features.row(0).array().sin() + 1.5;
   values.row(1) = features.row(1).cwiseProduct(features.row(2));
   const std::vector<FeatureInfo> infos{{"y(0 s)", 0, 0.0}, {"y(1 s)", 0, 1.0}, {"z(0 s)", 1, 0.0}};
-  std::vector<GpMapSpec> specs(4);
+  std::vector<GpMapSpec> specs(5);
   specs[1].length_scales = LengthScales::kPerOutput;
   specs[2].covariance = GpCovariance::kRationalQuadratic;
   specs[2].mean = GpMean::kLinear;
   specs[3].covariance = GpCovariance::kMatern52;
   specs[3].linear_term = true;
   specs[3].mean = GpMean::kZero;
+  specs[4].approximation = GpApproximation::kSgpr;
+  specs[4].inducing = 10;
   for (const GpMapSpec& spec : specs) {
     const GpMapTraining training =
         trainGpMap(spec, {TransformStep::kZScore}, infos, {"k", "d"}, features, values, 1);
