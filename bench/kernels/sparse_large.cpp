@@ -56,7 +56,7 @@ int main(int argc, char** argv) {
 
   double start = seconds();
   const auto results = gp::train_sparse(inputs, targets, structure, options, sparse);
-  std::cout << "sparse: " << seconds() - start << " s, peak " << peak_gibibytes() << " GiB\n";
+  std::cout << "sparse: " << seconds() - start << " s, peak " << peak_gibibytes() << " GiB" << std::endl;
   for (int t = 0; t < 4; ++t) {
     const auto prediction = results[t].gp->predict(tests);
     std::cout << "  target " << t << ": error " << error_of(prediction, truth, t) << ", coverage "
@@ -71,7 +71,7 @@ int main(int argc, char** argv) {
   const auto exact =
       gp::train(inputs.leftCols(exact_samples), targets.leftCols(exact_samples), structure, options);
   std::cout << "exact on " << exact_samples << ": " << seconds() - start << " s, peak " << peak_gibibytes()
-            << " GiB\n";
+            << " GiB" << std::endl;
   for (int t = 0; t < 4; ++t) {
     const auto prediction = exact[t].gp->predict(tests);
     std::cout << "  target " << t << ": error " << error_of(prediction, truth, t) << ", coverage "

@@ -18,6 +18,10 @@ using Eigen::VectorXd;
 
 namespace {
 
+// Inducing inputs chosen, hyperparameters refined, and both once more: the better hyperparameters choose
+// better.
+constexpr int kRounds = 2;
+
 void check_options(const SparseOptions& sparse, const ModelStructure& structure) {
   const auto require = [](bool condition, const char* rule) {
     if (!condition) throw std::invalid_argument(std::string("SparseOptions: ") + rule);
@@ -46,7 +50,7 @@ Hyperparameters refine(const VariationalBound& bound, const MatrixXd& subset, co
   };
   const SearchResult found =
       minimize(objective, target.size(), to_log(structure, start), box, evaluations, options.tolerance);
-  result.refine_evaluations = found.evaluations;
+  result.refine_evaluations += found.evaluations;
   return std::isfinite(found.objective) ? from_log(structure, found.end) : start;
 }
 
@@ -54,14 +58,20 @@ void fit_sparse(const MatrixXd& inputs, const VectorXd& target, const MatrixXd& 
                 const ModelStructure& structure, const TrainingOptions& options, const SparseOptions& sparse,
                 const Hyperparameters& start, SparseTrainingResult& result) {
   SparseGaussianProcessParts parts{structure, start, calc_center(inputs), {}, {}};
-  parts.inducing = choose_inducing_points(inputs, structure, start, sparse.inducing);
-  const VariationalBound bound(inputs, target, parts.inducing, structure);
-  if (bound.calc_posterior(start, parts.posterior)) result.subset_bound = parts.posterior.bound;
-  if (sparse.refine_evaluations > 0) {
-    parts.hyperparameters =
-        refine(bound, subset, target, structure, options, sparse.refine_evaluations, start, result);
+  bool definite = true;
+  for (int round = 0; round < kRounds && definite; ++round) {
+    parts.inducing = choose_inducing_points(inputs, structure, parts.hyperparameters, sparse.inducing);
+    const VariationalBound bound(inputs, target, parts.inducing, structure);
+    if (round == 0 && bound.calc_posterior(start, parts.posterior))
+      result.subset_bound = parts.posterior.bound;
+    const int evaluations = sparse.refine_evaluations / kRounds;
+    if (evaluations > 0) {
+      parts.hyperparameters =
+          refine(bound, subset, target, structure, options, evaluations, parts.hyperparameters, result);
+    }
+    definite = bound.calc_posterior(parts.hyperparameters, parts.posterior);
   }
-  if (!bound.calc_posterior(parts.hyperparameters, parts.posterior)) {
+  if (!definite) {
     result.status = TrainingStatus::kFailed;
     result.message =
         "the inducing inputs' covariance is not positive definite: raise the noise's lower bound";
