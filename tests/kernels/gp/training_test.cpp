@@ -176,7 +176,7 @@ TEST(Training, a_restored_process_predicts_the_same_bits) {
   EXPECT_EQ(restored.predict(tests).variance, result.gp->predict(tests).variance);
 }
 
-// Whatever the first start, the same best likelihood. (Single searches reach it from 60 of the 64 corners:
+// Whatever the first start, the same best likelihood. (Single searches reach it from 62 of the 64 corners:
 // d_y has a second optimum 0.8 nats away, which is why there are several starts.)
 TEST(TwoBeams, every_first_start_leads_to_the_same_likelihood) {
   const test::TwoBeamData data = test::make_two_beam_data(250, 1);
