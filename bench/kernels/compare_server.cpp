@@ -24,7 +24,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 template <typename Action>
-double seconds_of(const Action& action) {
+double secondsOf(const Action& action) {
   const auto start = std::chrono::steady_clock::now();
   action();
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -36,11 +36,11 @@ double quantile(std::vector<double>& values, double level) {
   return values[rank];
 }
 
-void write_data(std::istream& arguments) {
+void writeData(std::istream& arguments) {
   std::string path;
   int n = 0, features = 0;
   arguments >> path >> n >> features;
-  const Problem problem = make_problem(n, features);
+  const Problem problem = makeProblem(n, features);
   std::ofstream file(path, std::ios::binary);
   for (const MatrixXd* matrix : {&problem.inputs, &problem.targets}) {
     file.write(reinterpret_cast<const char*>(matrix->data()),
@@ -52,9 +52,9 @@ void write_data(std::istream& arguments) {
 void evaluate(std::istream& arguments) {
   int n = 0, features = 0, per_feature = 0, repeats = 0;
   arguments >> n >> features >> per_feature >> repeats;
-  const Problem problem = make_problem(n, features);
-  const gp::ModelStructure structure = make_structure(features, per_feature != 0);
-  const gp::Hyperparameters hyperparameters = make_hyperparameters(features, per_feature != 0);
+  const Problem problem = makeProblem(n, features);
+  const gp::ModelStructure structure = makeStructure(features, per_feature != 0);
+  const gp::Hyperparameters hyperparameters = makeHyperparameters(features, per_feature != 0);
   const gp::TrainingSet set(problem.inputs, structure);
   gp::LikelihoodWorkspace workspace(set);
   VectorXd gradient(gp::HyperparameterLayout(structure).count);
@@ -63,8 +63,8 @@ void evaluate(std::istream& arguments) {
   double nlml = 0.0;
   for (int i = 0; i < repeats; ++i) {
     times.push_back(
-        1e3 * seconds_of([&] {
-          nlml = gp::evaluate_likelihood_gradient(set, target, hyperparameters, workspace, gradient).nlml;
+        1e3 * secondsOf([&] {
+          nlml = gp::evaluateLikelihoodGradient(set, target, hyperparameters, workspace, gradient).nlml;
         }));
   }
   std::cout << quantile(times, 0.5) << ' ' << nlml;
@@ -74,24 +74,23 @@ void train(std::istream& arguments) {
   int n = 0, features = 0;
   gp::TrainingOptions options;
   arguments >> n >> features >> options.starts >> options.threads;
-  const Problem problem = make_problem(n, features);
+  const Problem problem = makeProblem(n, features);
   std::vector<gp::TrainingResult> results;
-  std::cout << seconds_of([&] {
-    results = gp::train(problem.inputs, problem.targets, make_structure(features, false), options);
-  });
-  for (const gp::TrainingResult& result : results) std::cout << ' ' << result.gp->nlml();
+  std::cout << secondsOf(
+      [&] { results = gp::train(problem.inputs, problem.targets, makeStructure(features, false), options); });
+  for (const gp::TrainingResult& result : results) std::cout << ' ' << result.gp->getNlml();
 }
 
-void predict_online(std::istream& arguments) {
+void predictOnline(std::istream& arguments) {
   int n = 0, features = 0, per_feature = 0, repeats = 0;
   arguments >> n >> features >> per_feature >> repeats;
-  const Problem problem = make_problem(n, features);
+  const Problem problem = makeProblem(n, features);
   gp::TrainingOptions options;
   options.starts = 1;
   options.max_evaluations = 3;  // the time does not depend on the hyperparameters
   std::vector<std::shared_ptr<const gp::GaussianProcess>> processes;
   for (const auto& result :
-       gp::train(problem.inputs, problem.targets, make_structure(features, per_feature != 0), options)) {
+       gp::train(problem.inputs, problem.targets, makeStructure(features, per_feature != 0), options)) {
     processes.push_back(result.gp);
   }
   const gp::OnlinePredictor predictor(processes);
@@ -100,7 +99,7 @@ void predict_online(std::istream& arguments) {
   std::vector<double> times;
   for (int i = 0; i < repeats; ++i) {
     const VectorXd x = problem.inputs.col(i % n);
-    times.push_back(1e6 * seconds_of([&] { predictor.predict(x, mean, stddev, workspace); }));
+    times.push_back(1e6 * secondsOf([&] { predictor.predict(x, mean, stddev, workspace); }));
   }
   std::cout << quantile(times, 0.5) << ' ' << quantile(times, 0.99);
 }
@@ -114,10 +113,10 @@ int main() {
     std::istringstream arguments(line);
     std::string command;
     arguments >> command;
-    if (command == "data") twinmap::bench::write_data(arguments);
+    if (command == "data") twinmap::bench::writeData(arguments);
     if (command == "evaluate") twinmap::bench::evaluate(arguments);
     if (command == "train") twinmap::bench::train(arguments);
-    if (command == "online") twinmap::bench::predict_online(arguments);
+    if (command == "online") twinmap::bench::predictOnline(arguments);
     std::cout << std::endl;
   }
 }

@@ -15,22 +15,22 @@ struct Problem {
   Eigen::MatrixXd targets;  // 4 x n
 };
 
-inline Problem make_problem(int samples, int features, std::uint64_t seed = 1) {
-  const test::TwoBeamData data = test::make_two_beam_data(samples, seed);
-  const Eigen::MatrixXd scored = test::z_scored(data.features);
-  Problem problem{Eigen::MatrixXd(features, samples), test::z_scored(data.parameters)};
+inline Problem makeProblem(int samples, int features, std::uint64_t seed = 1) {
+  const test::TwoBeamData data = test::makeTwoBeamData(samples, seed);
+  const Eigen::MatrixXd scored = test::zScored(data.features);
+  Problem problem{Eigen::MatrixXd(features, samples), test::zScored(data.parameters)};
   for (int f = 0; f < features; ++f) problem.inputs.row(f) = scored.row(f * 200 / features);
   return problem;
 }
 
-inline gp::ModelStructure make_structure(int features, bool per_feature) {
+inline gp::ModelStructure makeStructure(int features, bool per_feature) {
   gp::ModelStructure structure;
   structure.mean = gp::MeanFunction::kZero;  // as in scikit-learn
-  if (per_feature) structure.length_scale_groups = gp::one_group_per_feature(features);
+  if (per_feature) structure.length_scale_groups = gp::oneGroupPerFeature(features);
   return structure;
 }
 
-inline gp::Hyperparameters make_hyperparameters(int features, bool per_feature) {
+inline gp::Hyperparameters makeHyperparameters(int features, bool per_feature) {
   gp::Hyperparameters hyperparameters;
   hyperparameters.length_scales =
       Eigen::VectorXd::Constant(per_feature ? features : 1, std::sqrt(1.5 * features));

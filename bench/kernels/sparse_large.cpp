@@ -23,17 +23,17 @@ double seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-double peak_gibibytes() {
+double peakGibibytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<double>(usage.ru_maxrss) / 1048576.0;
 }
 
-double error_of(const gp::Prediction& prediction, const MatrixXd& truth, int target) {
+double errorOf(const gp::Prediction& prediction, const MatrixXd& truth, int target) {
   return std::sqrt((prediction.mean - truth.row(target).transpose()).squaredNorm() / double(truth.cols()));
 }
 
-double coverage_of(const gp::Prediction& prediction, const MatrixXd& truth, int target) {
+double coverageOf(const gp::Prediction& prediction, const MatrixXd& truth, int target) {
   const Eigen::ArrayXd error = (prediction.mean - truth.row(target).transpose()).array().abs();
   return (error <= 1.96 * prediction.stddev().array()).cast<double>().mean();
 }
@@ -43,25 +43,25 @@ double coverage_of(const gp::Prediction& prediction, const MatrixXd& truth, int 
 int main(int argc, char** argv) {
   const auto argument = [&](int i, int otherwise) { return argc > i ? std::atoi(argv[i]) : otherwise; };
   const int n = argument(1, 16000);
-  const bench::Problem all = bench::make_problem(n + kTests, kFeatures);
+  const bench::Problem all = bench::makeProblem(n + kTests, kFeatures);
   const MatrixXd inputs = all.inputs.leftCols(n), targets = all.targets.leftCols(n);
   const MatrixXd tests = all.inputs.rightCols(kTests), truth = all.targets.rightCols(kTests);
   gp::TrainingOptions options;
   options.threads = 2;
   gp::ModelStructure structure;
-  structure.length_scale_groups = gp::one_group_per_feature(kFeatures);
+  structure.length_scale_groups = gp::oneGroupPerFeature(kFeatures);
   gp::SparseOptions sparse;
   sparse.inducing = argument(2, 500);
   sparse.subset = argument(3, 1000);
 
   double start = seconds();
-  const auto results = gp::train_sparse(inputs, targets, structure, options, sparse);
-  std::cout << "sparse: " << seconds() - start << " s, peak " << peak_gibibytes() << " GiB" << std::endl;
+  const auto results = gp::trainSparse(inputs, targets, structure, options, sparse);
+  std::cout << "sparse: " << seconds() - start << " s, peak " << peakGibibytes() << " GiB" << std::endl;
   for (int t = 0; t < 4; ++t) {
     const auto prediction = results[t].gp->predict(tests);
-    std::cout << "  target " << t << ": error " << error_of(prediction, truth, t) << ", coverage "
-              << coverage_of(prediction, truth, t) << ", bound " << results[t].subset_bound << " -> "
-              << results[t].bound << ", inducing " << results[t].gp->inducing_count() << "\n";
+    std::cout << "  target " << t << ": error " << errorOf(prediction, truth, t) << ", coverage "
+              << coverageOf(prediction, truth, t) << ", bound " << results[t].subset_bound << " -> "
+              << results[t].bound << ", inducing " << results[t].gp->getInducingCount() << "\n";
   }
   const int exact_samples = argument(4, 4000);
   if (exact_samples == 0) return 0;
@@ -70,11 +70,11 @@ int main(int argc, char** argv) {
   options.max_evaluations = 40;
   const auto exact =
       gp::train(inputs.leftCols(exact_samples), targets.leftCols(exact_samples), structure, options);
-  std::cout << "exact on " << exact_samples << ": " << seconds() - start << " s, peak " << peak_gibibytes()
+  std::cout << "exact on " << exact_samples << ": " << seconds() - start << " s, peak " << peakGibibytes()
             << " GiB" << std::endl;
   for (int t = 0; t < 4; ++t) {
     const auto prediction = exact[t].gp->predict(tests);
-    std::cout << "  target " << t << ": error " << error_of(prediction, truth, t) << ", coverage "
-              << coverage_of(prediction, truth, t) << "\n";
+    std::cout << "  target " << t << ": error " << errorOf(prediction, truth, t) << ", coverage "
+              << coverageOf(prediction, truth, t) << "\n";
   }
 }

@@ -100,9 +100,9 @@ Eigen::VectorXd calcStddev(const Eigen::MatrixXd& rows, const Eigen::VectorXd& m
 
 double getNlml(const Process& process) {
   if (const auto* exact = std::get_if<std::shared_ptr<const gp::GaussianProcess>>(&process)) {
-    return (*exact)->nlml();
+    return (*exact)->getNlml();
   }
-  return std::get<std::shared_ptr<const gp::SparseGaussianProcess>>(process)->parts().posterior.bound;
+  return std::get<std::shared_ptr<const gp::SparseGaussianProcess>>(process)->getParts().posterior.bound;
 }
 
 Predictions GpMap::predict(const Eigen::MatrixXd& features) const {
@@ -136,7 +136,7 @@ GpMapTraining trainGpMap(const GpMapSpec& spec, const std::vector<TransformStep>
   const gp::TrainingOptions options = toKernel(spec, threads);
   if (spec.approximation == GpApproximation::kSgpr) {
     const gp::SparseOptions sparse{spec.inducing, spec.subset, spec.refine_evaluations};
-    keepResults(gp::train_sparse(inputs, targets, structure, options, sparse), parameter_names, training);
+    keepResults(gp::trainSparse(inputs, targets, structure, options, sparse), parameter_names, training);
   } else {
     keepResults(gp::train(inputs, targets, structure, options), parameter_names, training);
   }

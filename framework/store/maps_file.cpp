@@ -48,13 +48,13 @@ void writeStructure(Hdf5Writer& file, const std::string& group, const gp::ModelS
   file.write(group + "/noise_stddev", hyperparameters.noise_stddev);
   file.write(group + "/shape", hyperparameters.shape);
   file.write(group + "/linear_stddev", hyperparameters.linear_stddev);
-  file.writeAttribute(group, "covariance", gp::to_string(structure.covariance));
+  file.writeAttribute(group, "covariance", gp::toString(structure.covariance));
   file.writeAttribute(group, "mean", toText(structure.mean));
   file.writeAttribute(group, "linear_term", structure.linear_term ? "true" : "false");
 }
 
 void writeProcess(Hdf5Writer& file, const std::string& group, const gp::GaussianProcess& process) {
-  const gp::GaussianProcessParts& parts = process.parts();
+  const gp::GaussianProcessParts& parts = process.getParts();
   writeStructure(file, group, parts.structure, parts.hyperparameters);
   file.write(group + "/mean_coefficients", parts.mean_coefficients);
   file.write(group + "/alpha", parts.alpha);
@@ -65,7 +65,7 @@ void writeProcess(Hdf5Writer& file, const std::string& group, const gp::Gaussian
 }
 
 void writeProcess(Hdf5Writer& file, const std::string& group, const gp::SparseGaussianProcess& process) {
-  const gp::SparseGaussianProcessParts& parts = process.parts();
+  const gp::SparseGaussianProcessParts& parts = process.getParts();
   const gp::VariationalPosterior& posterior = parts.posterior;
   writeStructure(file, group, parts.structure, parts.hyperparameters);
   file.write(group + "/center", parts.center);
@@ -87,7 +87,7 @@ gp::ModelStructure readStructure(const Hdf5Reader& file, const std::string& grou
       file.readAttribute(group, "covariance"),
       {gp::CovarianceFunction::kSquaredExponential, gp::CovarianceFunction::kMatern32,
        gp::CovarianceFunction::kMatern52, gp::CovarianceFunction::kRationalQuadratic},
-      gp::to_string);
+      gp::toString);
   structure.mean = parseEnum<gp::MeanFunction>(
       file.readAttribute(group, "mean"),
       {gp::MeanFunction::kZero, gp::MeanFunction::kConstant, gp::MeanFunction::kLinear}, toText);
@@ -162,7 +162,7 @@ void writeMapsFile(const std::filesystem::path& path, const StoredMap& stored) {
     file.write("/target/offset", stored.map.target_offset);
     file.write("/target/scale", stored.map.target_scale);
     if (const gp::GaussianProcess* exact = findExact(stored.map)) {
-      file.writeSamples("/training_inputs", exact->inputs());
+      file.writeSamples("/training_inputs", exact->getInputs());
     }
     for (std::size_t p = 0; p < stored.parameters.size(); ++p) {
       const std::string group = "/maps/" + stored.parameters[p].name.text;

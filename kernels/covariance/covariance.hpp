@@ -11,9 +11,9 @@ namespace twinmap::gp {
 enum class CovarianceFunction { kSquaredExponential, kMatern32, kMatern52, kRationalQuadratic };
 
 /// The name used in files and messages: squared_exponential, matern32, matern52, rational_quadratic.
-const char* to_string(CovarianceFunction covariance);
+const char* toString(CovarianceFunction covariance);
 
 /// True where the function has the shape hyperparameter a.
-bool has_shape(CovarianceFunction covariance);
+bool hasShape(CovarianceFunction covariance);
 
 }  // namespace twinmap::gp

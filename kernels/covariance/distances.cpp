@@ -18,11 +18,11 @@ constexpr Index kPanel = 128;  // columns of the triangular operand taken at a t
 
 SquaredDistances::SquaredDistances(const Eigen::MatrixXd& inputs, std::vector<int> groups, int group_count)
     : inputs_(inputs), groups_(std::move(groups)), group_count_(group_count) {
-  if (is_stored()) store_groups();
+  if (isStored()) storeGroups();
 }
 
 SquaredDistances::Workspace::Workspace(const SquaredDistances& distances) {
-  if (distances.is_stored()) return;
+  if (distances.isStored()) return;
   const Index n = distances.size();
   const Index d = distances.inputs_.rows();
   scaled.setZero(padded(d), n);
@@ -32,7 +32,7 @@ SquaredDistances::Workspace::Workspace(const SquaredDistances& distances) {
   feature_sums.setZero(padded(d));
 }
 
-void SquaredDistances::store_groups() {
+void SquaredDistances::storeGroups() {
   const Index n = size();
   const Eigen::MatrixXd by_sample = inputs_.transpose();  // a feature's values are contiguous
   stored_.assign(group_count_, Eigen::MatrixXd::Zero(padded(n), n));
@@ -46,28 +46,28 @@ void SquaredDistances::store_groups() {
 
 void SquaredDistances::calc(const Eigen::VectorXd& length_scales, linalg::View q, Workspace& workspace,
                             linalg::TriangularScratch& scratch) const {
-  if (is_stored()) return calc_from_groups(length_scales, q);
-  calc_from_product(length_scales, q, workspace, scratch);
+  if (isStored()) return calcFromGroups(length_scales, q);
+  calcFromProduct(length_scales, q, workspace, scratch);
 }
 
 void SquaredDistances::contract(const Eigen::VectorXd& length_scales, linalg::View t, Workspace& workspace,
                                 linalg::TriangularScratch& scratch, Eigen::VectorXd& sums) const {
-  if (is_stored()) return contract_groups(length_scales, t, sums);
-  contract_product(t, workspace, scratch, sums);
+  if (isStored()) return contractGroups(length_scales, t, sums);
+  contractProduct(t, workspace, scratch, sums);
 }
 
-void SquaredDistances::calc_from_groups(const Eigen::VectorXd& length_scales, linalg::View q) const {
+void SquaredDistances::calcFromGroups(const Eigen::VectorXd& length_scales, linalg::View q) const {
   for (Index j = 0; j < size(); ++j) {
-    AlignedColumn column = lower_column(q, j);
-    column = lower_column(stored_[0], j) / (length_scales(0) * length_scales(0));
+    AlignedColumn column = lowerColumn(q, j);
+    column = lowerColumn(stored_[0], j) / (length_scales(0) * length_scales(0));
     for (int g = 1; g < group_count_; ++g) {
-      column += lower_column(stored_[g], j) / (length_scales(g) * length_scales(g));
+      column += lowerColumn(stored_[g], j) / (length_scales(g) * length_scales(g));
     }
   }
 }
 
-void SquaredDistances::calc_from_product(const Eigen::VectorXd& length_scales, linalg::View q,
-                                         Workspace& workspace, linalg::TriangularScratch& scratch) const {
+void SquaredDistances::calcFromProduct(const Eigen::VectorXd& length_scales, linalg::View q,
+                                       Workspace& workspace, linalg::TriangularScratch& scratch) const {
   const Index n = size();
   const Index d = inputs_.rows();
   for (Index f = 0; f < d; ++f) workspace.feature_sums(f) = 1.0 / length_scales(groups_[f]);
@@ -78,24 +78,24 @@ void SquaredDistances::calc_from_product(const Eigen::VectorXd& length_scales, l
   const linalg::ConstView z{workspace.scaled.data(), d, n, 1, workspace.scaled.rows()};
   scratch.multiply(-2.0, z.transposed(), z, 0.0, q, linalg::Part::kLower);
   for (Index j = 0; j < n; ++j) {
-    AlignedColumn column = lower_column(q, j);
-    column += ConstAlignedColumn(workspace.squared_norms.data() + first_of_line(j), column.size());
+    AlignedColumn column = lowerColumn(q, j);
+    column += ConstAlignedColumn(workspace.squared_norms.data() + firstOfLine(j), column.size());
     column = (column + workspace.squared_norms(j)).max(0.0);
-    clear_outside_strict_lower(q, j);
+    clearOutsideStrictLower(q, j);
   }
 }
 
-void SquaredDistances::contract_groups(const Eigen::VectorXd& length_scales, linalg::View t,
-                                       Eigen::VectorXd& sums) const {
+void SquaredDistances::contractGroups(const Eigen::VectorXd& length_scales, linalg::View t,
+                                      Eigen::VectorXd& sums) const {
   for (int g = 0; g < group_count_; ++g) {
     double sum = 0.0;
-    for (Index j = 0; j < size(); ++j) sum += (lower_column(t, j) * lower_column(stored_[g], j)).sum();
+    for (Index j = 0; j < size(); ++j) sum += (lowerColumn(t, j) * lowerColumn(stored_[g], j)).sum();
     sums(g) = sum / (length_scales(g) * length_scales(g));
   }
 }
 
-void SquaredDistances::contract_product(linalg::View t, Workspace& workspace,
-                                        linalg::TriangularScratch& scratch, Eigen::VectorXd& sums) const {
+void SquaredDistances::contractProduct(linalg::View t, Workspace& workspace,
+                                       linalg::TriangularScratch& scratch, Eigen::VectorXd& sums) const {
   const Index n = size();
   const Index d = inputs_.rows();
   const linalg::ConstView z{workspace.scaled.data(), d, n, 1, workspace.scaled.rows()};
@@ -109,7 +109,7 @@ void SquaredDistances::contract_product(linalg::View t, Workspace& workspace,
   for (Index j = 0; j < n; ++j) {
     const Eigen::Map<const Eigen::VectorXd> below(t.col(j) + j, n - j);
     workspace.row_sums.tail(n - j) += below;
-    workspace.row_sums(j) += lower_column(t, j).sum();
+    workspace.row_sums(j) += lowerColumn(t, j).sum();
   }
   workspace.feature_sums.setZero();
   for (Index i = 0; i < n; ++i) {

@@ -22,7 +22,7 @@ class SquaredDistances {
   SquaredDistances(const Eigen::MatrixXd& inputs, std::vector<int> groups, int group_count);
 
   Eigen::Index size() const { return inputs_.cols(); }
-  int group_count() const { return group_count_; }
+  int getGroupCount() const { return group_count_; }
 
   /// Buffers of one thread.
   struct Workspace {
@@ -47,14 +47,14 @@ class SquaredDistances {
                 linalg::TriangularScratch& scratch, Eigen::VectorXd& sums) const;
 
  private:
-  bool is_stored() const { return group_count_ <= kMaxStoredGroups; }
-  void store_groups();
-  void calc_from_groups(const Eigen::VectorXd& length_scales, linalg::View q) const;
-  void calc_from_product(const Eigen::VectorXd& length_scales, linalg::View q, Workspace& workspace,
-                         linalg::TriangularScratch& scratch) const;
-  void contract_groups(const Eigen::VectorXd& length_scales, linalg::View t, Eigen::VectorXd& sums) const;
-  void contract_product(linalg::View t, Workspace& workspace, linalg::TriangularScratch& scratch,
-                        Eigen::VectorXd& sums) const;
+  bool isStored() const { return group_count_ <= kMaxStoredGroups; }
+  void storeGroups();
+  void calcFromGroups(const Eigen::VectorXd& length_scales, linalg::View q) const;
+  void calcFromProduct(const Eigen::VectorXd& length_scales, linalg::View q, Workspace& workspace,
+                       linalg::TriangularScratch& scratch) const;
+  void contractGroups(const Eigen::VectorXd& length_scales, linalg::View t, Eigen::VectorXd& sums) const;
+  void contractProduct(linalg::View t, Workspace& workspace, linalg::TriangularScratch& scratch,
+                       Eigen::VectorXd& sums) const;
 
   Eigen::MatrixXd inputs_;  // d x n
   std::vector<int> groups_;

@@ -5,18 +5,18 @@
 namespace twinmap::gp {
 namespace {
 
-void evaluate_squared_exponential(ConstAlignedColumn q, AlignedColumn value, AlignedColumn weight) {
+void evaluateSquaredExponential(ConstAlignedColumn q, AlignedColumn value, AlignedColumn weight) {
   value = (-0.5 * q).exp();
   weight = value;
 }
 
-void evaluate_matern32(ConstAlignedColumn q, AlignedColumn value, AlignedColumn weight) {
+void evaluateMatern32(ConstAlignedColumn q, AlignedColumn value, AlignedColumn weight) {
   weight = (-(3.0 * q).sqrt()).exp();
   value = (1.0 + (3.0 * q).sqrt()) * weight;
   weight *= 3.0;
 }
 
-void evaluate_matern52(ConstAlignedColumn q, AlignedColumn value, AlignedColumn weight) {
+void evaluateMatern52(ConstAlignedColumn q, AlignedColumn value, AlignedColumn weight) {
   weight = (-(5.0 * q).sqrt()).exp();
   value = 5.0 / 3.0 * q * weight;
   weight = (1.0 + (5.0 * q).sqrt()) * weight;
@@ -24,8 +24,8 @@ void evaluate_matern52(ConstAlignedColumn q, AlignedColumn value, AlignedColumn 
   weight *= 5.0 / 3.0;
 }
 
-void evaluate_rational_quadratic(double shape, ConstAlignedColumn q, AlignedColumn value,
-                                 AlignedColumn weight) {
+void evaluateRationalQuadratic(double shape, ConstAlignedColumn q, AlignedColumn value,
+                               AlignedColumn weight) {
   weight = 1.0 + q / (2.0 * shape);
   value = (-shape * weight.log()).exp();
   weight = value / weight;
@@ -33,7 +33,7 @@ void evaluate_rational_quadratic(double shape, ConstAlignedColumn q, AlignedColu
 
 }  // namespace
 
-const char* to_string(CovarianceFunction covariance) {
+const char* toString(CovarianceFunction covariance) {
   switch (covariance) {
     case CovarianceFunction::kSquaredExponential:
       return "squared_exponential";
@@ -47,25 +47,25 @@ const char* to_string(CovarianceFunction covariance) {
   return "unknown";
 }
 
-bool has_shape(CovarianceFunction covariance) {
+bool hasShape(CovarianceFunction covariance) {
   return covariance == CovarianceFunction::kRationalQuadratic;
 }
 
-void evaluate_radial(CovarianceFunction covariance, double shape, ConstAlignedColumn squared_distance,
-                     AlignedColumn value, AlignedColumn weight) {
+void evaluateRadial(CovarianceFunction covariance, double shape, ConstAlignedColumn squared_distance,
+                    AlignedColumn value, AlignedColumn weight) {
   switch (covariance) {
     case CovarianceFunction::kSquaredExponential:
-      return evaluate_squared_exponential(squared_distance, value, weight);
+      return evaluateSquaredExponential(squared_distance, value, weight);
     case CovarianceFunction::kMatern32:
-      return evaluate_matern32(squared_distance, value, weight);
+      return evaluateMatern32(squared_distance, value, weight);
     case CovarianceFunction::kMatern52:
-      return evaluate_matern52(squared_distance, value, weight);
+      return evaluateMatern52(squared_distance, value, weight);
     case CovarianceFunction::kRationalQuadratic:
-      return evaluate_rational_quadratic(shape, squared_distance, value, weight);
+      return evaluateRationalQuadratic(shape, squared_distance, value, weight);
   }
 }
 
-void evaluate_shape_derivative(double shape, ConstAlignedColumn squared_distance, AlignedColumn derivative) {
+void evaluateShapeDerivative(double shape, ConstAlignedColumn squared_distance, AlignedColumn derivative) {
   const auto base = 1.0 + squared_distance / (2.0 * shape);
   derivative = (-shape * base.log()).exp() * (0.5 * squared_distance / base - shape * base.log());
 }

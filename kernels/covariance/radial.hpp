@@ -13,10 +13,10 @@ using ConstAlignedColumn = Eigen::Map<const Eigen::ArrayXd, Eigen::AlignedMax>;
 
 /// From q = r^2 (>= 0): value = k(q) and weight = -2 dk/dq, both finite at q = 0. With q_g the share of
 /// length scale l_g in q, dk / dlog l_g = weight q_g. None may overlap.
-void evaluate_radial(CovarianceFunction covariance, double shape, ConstAlignedColumn squared_distance,
-                     AlignedColumn value, AlignedColumn weight);
+void evaluateRadial(CovarianceFunction covariance, double shape, ConstAlignedColumn squared_distance,
+                    AlignedColumn value, AlignedColumn weight);
 
 /// dk / dlog a of the rational quadratic.
-void evaluate_shape_derivative(double shape, ConstAlignedColumn squared_distance, AlignedColumn derivative);
+void evaluateShapeDerivative(double shape, ConstAlignedColumn squared_distance, AlignedColumn derivative);
 
 }  // namespace twinmap::gp

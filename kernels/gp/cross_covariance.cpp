@@ -11,26 +11,26 @@ using Eigen::MatrixXd;
 namespace {
 
 // s_l^2 x'z, from inputs multiplied back by their length scales.
-void add_linear_term(const ModelStructure& structure, const Hyperparameters& hyperparameters,
-                     const MatrixXd& left, const MatrixXd& right, linalg::View covariance,
-                     linalg::GemmScratch& scratch) {
-  const Eigen::VectorXd scales = length_scale_of_features(structure, hyperparameters, left.rows());
+void addLinearTerm(const ModelStructure& structure, const Hyperparameters& hyperparameters,
+                   const MatrixXd& left, const MatrixXd& right, linalg::View covariance,
+                   linalg::GemmScratch& scratch) {
+  const Eigen::VectorXd scales = lengthScaleOfFeatures(structure, hyperparameters, left.rows());
   const MatrixXd x = scales.asDiagonal() * left;
   const MatrixXd z = scales.asDiagonal() * right;
   const double variance = hyperparameters.linear_stddev * hyperparameters.linear_stddev;
-  linalg::gemm(variance, linalg::view_of(x).transposed(), linalg::view_of(z), 1.0, covariance, scratch);
+  linalg::gemm(variance, linalg::viewOf(x).transposed(), linalg::viewOf(z), 1.0, covariance, scratch);
 }
 
 }  // namespace
 
-MatrixXd calc_cross_covariance(const ModelStructure& structure, const Hyperparameters& hyperparameters,
-                               const MatrixXd& left, const MatrixXd& right, MatrixXd* weights) {
+MatrixXd calcCrossCovariance(const ModelStructure& structure, const Hyperparameters& hyperparameters,
+                             const MatrixXd& left, const MatrixXd& right, MatrixXd* weights) {
   const Index rows = linalg::padded(left.cols());
   const double variance = hyperparameters.signal_stddev * hyperparameters.signal_stddev;
   MatrixXd covariance = MatrixXd::Zero(rows, right.cols());
   const linalg::View view{covariance.data(), left.cols(), right.cols(), rows};
   linalg::GemmScratch scratch;
-  linalg::gemm(-2.0, linalg::view_of(left).transposed(), linalg::view_of(right), 0.0, view, scratch);
+  linalg::gemm(-2.0, linalg::viewOf(left).transposed(), linalg::viewOf(right), 0.0, view, scratch);
   Eigen::ArrayXd left_norms = Eigen::ArrayXd::Zero(rows);
   left_norms.head(left.cols()) = left.colwise().squaredNorm().transpose();
   if (weights) weights->resize(left.cols(), right.cols());
@@ -39,22 +39,22 @@ MatrixXd calc_cross_covariance(const ModelStructure& structure, const Hyperparam
   for (Index j = 0; j < right.cols(); ++j) {
     AlignedColumn column(covariance.col(j).data(), rows);
     q = (column + left_norms + right.col(j).squaredNorm()).max(0.0);
-    evaluate_radial(structure.covariance, hyperparameters.shape, ConstAlignedColumn(q.data(), rows), column,
-                    AlignedColumn(weight.data(), rows));
+    evaluateRadial(structure.covariance, hyperparameters.shape, ConstAlignedColumn(q.data(), rows), column,
+                   AlignedColumn(weight.data(), rows));
     column *= variance;
     if (weights) weights->col(j) = variance * weight.head(left.cols());
   }
-  if (structure.linear_term) add_linear_term(structure, hyperparameters, left, right, view, scratch);
+  if (structure.linear_term) addLinearTerm(structure, hyperparameters, left, right, view, scratch);
   covariance.conservativeResize(left.cols(), Eigen::NoChange);
   return covariance;
 }
 
-Eigen::VectorXd calc_prior_variance(const ModelStructure& structure, const Hyperparameters& hyperparameters,
-                                    const MatrixXd& inputs) {
+Eigen::VectorXd calcPriorVariance(const ModelStructure& structure, const Hyperparameters& hyperparameters,
+                                  const MatrixXd& inputs) {
   const double variance = hyperparameters.signal_stddev * hyperparameters.signal_stddev;
   Eigen::VectorXd prior = Eigen::VectorXd::Constant(inputs.cols(), variance);
   if (!structure.linear_term) return prior;
-  const Eigen::VectorXd scales = length_scale_of_features(structure, hyperparameters, inputs.rows());
+  const Eigen::VectorXd scales = lengthScaleOfFeatures(structure, hyperparameters, inputs.rows());
   const double linear_variance = hyperparameters.linear_stddev * hyperparameters.linear_stddev;
   for (Index i = 0; i < inputs.cols(); ++i) {
     prior(i) += linear_variance * inputs.col(i).cwiseProduct(scales).squaredNorm();
@@ -62,8 +62,8 @@ Eigen::VectorXd calc_prior_variance(const ModelStructure& structure, const Hyper
   return prior;
 }
 
-Eigen::VectorXd length_scale_of_features(const ModelStructure& structure,
-                                         const Hyperparameters& hyperparameters, Index feature_count) {
+Eigen::VectorXd lengthScaleOfFeatures(const ModelStructure& structure, const Hyperparameters& hyperparameters,
+                                      Index feature_count) {
   if (structure.length_scale_groups.empty()) {
     return Eigen::VectorXd::Constant(feature_count, hyperparameters.length_scales(0));
   }

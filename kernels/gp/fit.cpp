@@ -13,26 +13,26 @@ std::shared_ptr<const GaussianProcess> fit(const Eigen::Ref<const MatrixXd>& inp
                                            const ModelStructure& structure,
                                            const Hyperparameters& hyperparameters) {
   const TrainingSet set(inputs, structure);
-  check_hyperparameters(structure, hyperparameters);
+  checkHyperparameters(structure, hyperparameters);
   if (target.size() != inputs.cols()) {
     throw std::invalid_argument("fit: the target has " + std::to_string(target.size()) + " values for " +
                                 std::to_string(inputs.cols()) + " training samples");
   }
-  check_inputs(target, "fit: target");
+  checkInputs(target, "fit: target");
   LikelihoodWorkspace workspace(set);
-  const LikelihoodEvaluation evaluation = evaluate_likelihood(set, target, hyperparameters, workspace);
+  const LikelihoodEvaluation evaluation = evaluateLikelihood(set, target, hyperparameters, workspace);
   if (!evaluation.ok) throw std::runtime_error("fit: the covariance matrix is not positive definite");
-  return make_gaussian_process(set, hyperparameters, evaluation, workspace);
+  return makeGaussianProcess(set, hyperparameters, evaluation, workspace);
 }
 
-std::shared_ptr<const GaussianProcess> make_gaussian_process(const TrainingSet& set,
-                                                             const Hyperparameters& hyperparameters,
-                                                             const LikelihoodEvaluation& evaluation,
-                                                             const LikelihoodWorkspace& workspace) {
+std::shared_ptr<const GaussianProcess> makeGaussianProcess(const TrainingSet& set,
+                                                           const Hyperparameters& hyperparameters,
+                                                           const LikelihoodEvaluation& evaluation,
+                                                           const LikelihoodWorkspace& workspace) {
   GaussianProcessParts parts;
-  parts.structure = set.structure();
+  parts.structure = set.getStructure();
   parts.hyperparameters = hyperparameters;
-  parts.inputs = set.shared_inputs();
+  parts.inputs = set.sharedInputs();
   parts.alpha = workspace.corrections.col(0);
   parts.factor = workspace.factor.topRows(set.size()).triangularView<Eigen::Lower>();
   parts.mean_coefficients = workspace.mean_coefficients;

@@ -17,9 +17,9 @@ std::shared_ptr<const GaussianProcess> fit(const Eigen::Ref<const Eigen::MatrixX
                                            const Hyperparameters& hyperparameters);
 
 /// The fitted process from what a successful evaluate_likelihood left in the workspace.
-std::shared_ptr<const GaussianProcess> make_gaussian_process(const TrainingSet& set,
-                                                             const Hyperparameters& hyperparameters,
-                                                             const LikelihoodEvaluation& evaluation,
-                                                             const LikelihoodWorkspace& workspace);
+std::shared_ptr<const GaussianProcess> makeGaussianProcess(const TrainingSet& set,
+                                                           const Hyperparameters& hyperparameters,
+                                                           const LikelihoodEvaluation& evaluation,
+                                                           const LikelihoodWorkspace& workspace);
 
 }  // namespace twinmap::gp

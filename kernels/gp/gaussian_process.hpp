@@ -28,7 +28,7 @@ struct Prediction {
   /// The standard deviation to report with an inferred parameter: that of the parameter given the features,
   /// sqrt(variance). The likelihood's noise belongs to it, since it stands for what the features cannot tell.
   Eigen::VectorXd stddev() const { return variance.cwiseSqrt(); }
-  Eigen::VectorXd latent_stddev() const { return latent_variance.cwiseSqrt(); }
+  Eigen::VectorXd calcLatentStddev() const { return latent_variance.cwiseSqrt(); }
 };
 
 /// A fitted Gaussian process; immutable. At a point x, with k = cov(f(X), f(x)) and v = L^-1 k (Rasmussen and
@@ -41,30 +41,30 @@ class GaussianProcess {
   /// Throws std::invalid_argument if the parts do not fit each other or a number is not finite.
   explicit GaussianProcess(GaussianProcessParts parts);
 
-  const ModelStructure& structure() const { return parts_.structure; }
-  const Hyperparameters& hyperparameters() const { return parts_.hyperparameters; }
-  const Eigen::MatrixXd& inputs() const { return *parts_.inputs; }
-  const Eigen::VectorXd& alpha() const { return parts_.alpha; }
-  const Eigen::MatrixXd& factor() const { return parts_.factor; }
-  const Eigen::VectorXd& mean_coefficients() const { return parts_.mean_coefficients; }
-  double nlml() const { return parts_.nlml; }
-  const GaussianProcessParts& parts() const { return parts_; }
-  Eigen::Index feature_count() const { return parts_.inputs->rows(); }
-  Eigen::Index sample_count() const { return parts_.inputs->cols(); }
+  const ModelStructure& getStructure() const { return parts_.structure; }
+  const Hyperparameters& getHyperparameters() const { return parts_.hyperparameters; }
+  const Eigen::MatrixXd& getInputs() const { return *parts_.inputs; }
+  const Eigen::VectorXd& getAlpha() const { return parts_.alpha; }
+  const Eigen::MatrixXd& getFactor() const { return parts_.factor; }
+  const Eigen::VectorXd& getMeanCoefficients() const { return parts_.mean_coefficients; }
+  double getNlml() const { return parts_.nlml; }
+  const GaussianProcessParts& getParts() const { return parts_; }
+  Eigen::Index getFeatureCount() const { return parts_.inputs->rows(); }
+  Eigen::Index getSampleCount() const { return parts_.inputs->cols(); }
   /// c, the mean training input.
-  const Eigen::VectorXd& center() const { return center_; }
+  const Eigen::VectorXd& getCenter() const { return center_; }
   /// 1 / l of each feature.
-  const Eigen::VectorXd& inverse_length_scales() const { return inverse_length_scales_; }
+  const Eigen::VectorXd& getInverseLengthScales() const { return inverse_length_scales_; }
   /// V = L^-1 H', n x p, and the lower Cholesky factor R of A = V'V.
-  const Eigen::MatrixXd& whitened_basis() const { return whitened_basis_; }
-  const Eigen::MatrixXd& basis_factor() const { return basis_factor_; }
+  const Eigen::MatrixXd& getWhitenedBasis() const { return whitened_basis_; }
+  const Eigen::MatrixXd& getBasisFactor() const { return basis_factor_; }
 
   /// inputs: d x m, finite (else std::invalid_argument). Cost: m n (n + 2 d) flops.
   Prediction predict(const Eigen::Ref<const Eigen::MatrixXd>& inputs) const;
 
  private:
-  void predict_block(const Eigen::Ref<const Eigen::MatrixXd>& inputs, Eigen::Index first,
-                     Prediction& prediction) const;
+  void predictBlock(const Eigen::Ref<const Eigen::MatrixXd>& inputs, Eigen::Index first,
+                    Prediction& prediction) const;
 
   GaussianProcessParts parts_;
   Eigen::VectorXd center_;

@@ -17,18 +17,18 @@ constexpr double kLogTwoPi = 1.8378770664093454836;
 constexpr double kNormalQuantile975 = 1.959963984540054;
 
 // P's diagonal: the squared column norms of L^-1 less the squared row norms of U = L^-T V R^-T.
-VectorXd calc_precision_diagonal(const GaussianProcess& process) {
-  const Index n = process.sample_count();
+VectorXd calcPrecisionDiagonal(const GaussianProcess& process) {
+  const Index n = process.getSampleCount();
   linalg::TriangularScratch scratch(n);
-  MatrixXd inverse = process.factor();
-  linalg::invert_lower(linalg::view_of(inverse), scratch);
+  MatrixXd inverse = process.getFactor();
+  linalg::invertLower(linalg::viewOf(inverse), scratch);
   VectorXd diagonal = inverse.colwise().squaredNorm();
-  if (process.whitened_basis().cols() == 0) return diagonal;
-  MatrixXd correction = process.whitened_basis();
-  linalg::solve_transposed_from_right(linalg::view_of(process.basis_factor()), linalg::view_of(correction),
-                                      scratch);
+  if (process.getWhitenedBasis().cols() == 0) return diagonal;
+  MatrixXd correction = process.getWhitenedBasis();
+  linalg::solveTransposedFromRight(linalg::viewOf(process.getBasisFactor()), linalg::viewOf(correction),
+                                   scratch);
   for (Index k = 0; k < correction.cols(); ++k) {
-    linalg::solve_lower_transposed(linalg::view_of(process.factor()), correction.col(k).data());
+    linalg::solveLowerTransposed(linalg::viewOf(process.getFactor()), correction.col(k).data());
     diagonal -= correction.col(k).cwiseAbs2();
   }
   return diagonal;
@@ -36,18 +36,18 @@ VectorXd calc_precision_diagonal(const GaussianProcess& process) {
 
 }  // namespace
 
-LeaveOneOut calc_leave_one_out(const GaussianProcess& process) {
+LeaveOneOut calcLeaveOneOut(const GaussianProcess& process) {
   // A sample that alone determines a coefficient of the mean has precision 0: its stddev is huge, not NaN.
-  const VectorXd precision = calc_precision_diagonal(process).cwiseMax(std::numeric_limits<double>::min());
+  const VectorXd precision = calcPrecisionDiagonal(process).cwiseMax(std::numeric_limits<double>::min());
   LeaveOneOut result;
-  result.residual = process.alpha().cwiseQuotient(precision);
+  result.residual = process.getAlpha().cwiseQuotient(precision);
   result.stddev = precision.cwiseSqrt().cwiseInverse();
-  const Eigen::ArrayXd standardised = process.alpha().array() / precision.array().sqrt();
+  const Eigen::ArrayXd standardised = process.getAlpha().array() / precision.array().sqrt();
   result.log_density = -0.5 * (standardised.square() - precision.array().log() + kLogTwoPi);
   result.total_log_density = result.log_density.sum();
   const double covered = (standardised.abs() <= kNormalQuantile975).cast<double>().sum();
-  result.coverage95 = covered / static_cast<double>(process.sample_count());
-  result.root_mean_square = std::sqrt(result.residual.squaredNorm() / double(process.sample_count()));
+  result.coverage95 = covered / static_cast<double>(process.getSampleCount());
+  result.root_mean_square = std::sqrt(result.residual.squaredNorm() / double(process.getSampleCount()));
   return result;
 }
 

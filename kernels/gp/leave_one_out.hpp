@@ -20,6 +20,6 @@ struct LeaveOneOut {
 /// In closed form from one factor (Rasmussen and Williams eqs. 5.10 to 5.12, with the mean integrated out):
 ///   residual_i = alpha_i / P_ii,   variance_i = 1 / P_ii,   P = K^-1 - K^-1 H' A^-1 H K^-1.
 /// Jitter counts as noise. Cost: n^3 / 3 flops.
-LeaveOneOut calc_leave_one_out(const GaussianProcess& process);
+LeaveOneOut calcLeaveOneOut(const GaussianProcess& process);
 
 }  // namespace twinmap::gp

@@ -41,16 +41,16 @@ struct LikelihoodEvaluation {
 /// Leaves L, alpha, b and A's factor in the workspace. Where K is not positive definite to rounding, jitter
 /// is added from 1e-14 of the diagonal on, tenfold at a time up to 1e-6. Cost: n^3 / 3 + O(n^2 (p + G)) flops
 /// and n^2 / 2 exponentials.
-LikelihoodEvaluation evaluate_likelihood(const TrainingSet& set, const Eigen::VectorXd& target,
-                                         const Hyperparameters& hyperparameters,
-                                         LikelihoodWorkspace& workspace);
+LikelihoodEvaluation evaluateLikelihood(const TrainingSet& set, const Eigen::VectorXd& target,
+                                        const Hyperparameters& hyperparameters,
+                                        LikelihoodWorkspace& workspace);
 
 /// The same with the gradient in the log-hyperparameters, in to_log's order (eq. 5.9 with
 /// W = K^-1 - U U' - alpha alpha', U U' the mean's correction): dNLML/dt = 1/2 tr(W dK/dt). The signal's and
 /// the noise's derivatives need only tr(W), because tr(W K) = n - p - alpha'y. W replaces L in the workspace.
 /// `gradient` must have the layout's size; it is zero if the evaluation is not ok. Cost: n^3 flops.
-LikelihoodEvaluation evaluate_likelihood_gradient(const TrainingSet& set, const Eigen::VectorXd& target,
-                                                  const Hyperparameters& hyperparameters,
-                                                  LikelihoodWorkspace& workspace, Eigen::VectorXd& gradient);
+LikelihoodEvaluation evaluateLikelihoodGradient(const TrainingSet& set, const Eigen::VectorXd& target,
+                                                const Hyperparameters& hyperparameters,
+                                                LikelihoodWorkspace& workspace, Eigen::VectorXd& gradient);
 
 }  // namespace twinmap::gp

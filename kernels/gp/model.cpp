@@ -9,7 +9,7 @@
 namespace twinmap::gp {
 namespace {
 
-void require_positive(double value, const std::string& name) {
+void requirePositive(double value, const std::string& name) {
   if (value > 0.0 && std::isfinite(value)) return;
   std::ostringstream message;
   message << "hyperparameter " << name << " is " << value << "; it must be positive and finite";
@@ -18,18 +18,18 @@ void require_positive(double value, const std::string& name) {
 
 }  // namespace
 
-std::vector<int> one_group_per_feature(int feature_count) {
+std::vector<int> oneGroupPerFeature(int feature_count) {
   std::vector<int> groups(feature_count);
   std::iota(groups.begin(), groups.end(), 0);
   return groups;
 }
 
-int group_count(const ModelStructure& structure) {
+int getGroupCount(const ModelStructure& structure) {
   const auto& groups = structure.length_scale_groups;
   return groups.empty() ? 1 : 1 + *std::max_element(groups.begin(), groups.end());
 }
 
-int mean_coefficient_count(const ModelStructure& structure, Eigen::Index feature_count) {
+int getMeanCoefficientCount(const ModelStructure& structure, Eigen::Index feature_count) {
   switch (structure.mean) {
     case MeanFunction::kZero:
       return 0;
@@ -42,12 +42,12 @@ int mean_coefficient_count(const ModelStructure& structure, Eigen::Index feature
 }
 
 HyperparameterLayout::HyperparameterLayout(const ModelStructure& structure)
-    : signal(group_count(structure)), noise(signal + 1), shape(-1), linear(-1), count(noise + 1) {
-  if (has_shape(structure.covariance)) shape = count++;
+    : signal(getGroupCount(structure)), noise(signal + 1), shape(-1), linear(-1), count(noise + 1) {
+  if (hasShape(structure.covariance)) shape = count++;
   if (structure.linear_term) linear = count++;
 }
 
-Eigen::VectorXd to_log(const ModelStructure& structure, const Hyperparameters& hyperparameters) {
+Eigen::VectorXd toLog(const ModelStructure& structure, const Hyperparameters& hyperparameters) {
   const HyperparameterLayout layout(structure);
   Eigen::VectorXd values(layout.count);
   values.head(layout.signal) = hyperparameters.length_scales;
@@ -58,7 +58,7 @@ Eigen::VectorXd to_log(const ModelStructure& structure, const Hyperparameters& h
   return values.unaryExpr([](double value) { return std::log(value); });
 }
 
-Hyperparameters from_log(const ModelStructure& structure, const Eigen::VectorXd& log_hyperparameters) {
+Hyperparameters fromLog(const ModelStructure& structure, const Eigen::VectorXd& log_hyperparameters) {
   const HyperparameterLayout layout(structure);
   const Eigen::VectorXd values = log_hyperparameters.unaryExpr([](double value) { return std::exp(value); });
   Hyperparameters hyperparameters;
@@ -70,7 +70,7 @@ Hyperparameters from_log(const ModelStructure& structure, const Eigen::VectorXd&
   return hyperparameters;
 }
 
-std::vector<std::string> hyperparameter_names(const ModelStructure& structure) {
+std::vector<std::string> getHyperparameterNames(const ModelStructure& structure) {
   const HyperparameterLayout layout(structure);
   std::vector<std::string> names;
   for (int g = 0; g < layout.signal; ++g) names.push_back("length_scale[" + std::to_string(g) + "]");
@@ -80,7 +80,7 @@ std::vector<std::string> hyperparameter_names(const ModelStructure& structure) {
   return names;
 }
 
-void check_structure(const ModelStructure& structure, Eigen::Index feature_count) {
+void checkStructure(const ModelStructure& structure, Eigen::Index feature_count) {
   const auto& groups = structure.length_scale_groups;
   if (groups.empty()) return;
   if (static_cast<Eigen::Index>(groups.size()) != feature_count) {
@@ -95,7 +95,7 @@ void check_structure(const ModelStructure& structure, Eigen::Index feature_count
     }
     used[groups[i]] = true;
   }
-  for (int g = 0; g < group_count(structure); ++g) {
+  for (int g = 0; g < getGroupCount(structure); ++g) {
     if (!used[g]) {
       throw std::invalid_argument("length_scale_groups never uses group " + std::to_string(g) +
                                   "; groups count from 0 without gaps");
@@ -103,23 +103,23 @@ void check_structure(const ModelStructure& structure, Eigen::Index feature_count
   }
 }
 
-void check_hyperparameters(const ModelStructure& structure, const Hyperparameters& hyperparameters) {
-  const Eigen::Index groups = group_count(structure);
+void checkHyperparameters(const ModelStructure& structure, const Hyperparameters& hyperparameters) {
+  const Eigen::Index groups = getGroupCount(structure);
   if (hyperparameters.length_scales.size() != groups) {
     throw std::invalid_argument("hyperparameters have " +
                                 std::to_string(hyperparameters.length_scales.size()) +
                                 " length scales; the structure has " + std::to_string(groups) + " groups");
   }
   for (Eigen::Index g = 0; g < groups; ++g) {
-    require_positive(hyperparameters.length_scales(g), "length_scale[" + std::to_string(g) + "]");
+    requirePositive(hyperparameters.length_scales(g), "length_scale[" + std::to_string(g) + "]");
   }
-  require_positive(hyperparameters.signal_stddev, "signal_stddev");
-  require_positive(hyperparameters.noise_stddev, "noise_stddev");
-  if (has_shape(structure.covariance)) require_positive(hyperparameters.shape, "shape");
-  if (structure.linear_term) require_positive(hyperparameters.linear_stddev, "linear_stddev");
+  requirePositive(hyperparameters.signal_stddev, "signal_stddev");
+  requirePositive(hyperparameters.noise_stddev, "noise_stddev");
+  if (hasShape(structure.covariance)) requirePositive(hyperparameters.shape, "shape");
+  if (structure.linear_term) requirePositive(hyperparameters.linear_stddev, "linear_stddev");
 }
 
-void check_inputs(const Eigen::Ref<const Eigen::MatrixXd>& inputs, const char* caller) {
+void checkInputs(const Eigen::Ref<const Eigen::MatrixXd>& inputs, const char* caller) {
   for (Eigen::Index sample = 0; sample < inputs.cols(); ++sample) {
     for (Eigen::Index feature = 0; feature < inputs.rows(); ++feature) {
       if (std::isfinite(inputs(feature, sample))) continue;

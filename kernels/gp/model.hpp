@@ -36,15 +36,15 @@ struct Hyperparameters {
 };
 
 /// One group of a structure per feature: the features 0 ... d-1, each with its own length scale.
-std::vector<int> one_group_per_feature(int feature_count);
+std::vector<int> oneGroupPerFeature(int feature_count);
 
-int group_count(const ModelStructure& structure);
-int mean_coefficient_count(const ModelStructure& structure, Eigen::Index feature_count);
+int getGroupCount(const ModelStructure& structure);
+int getMeanCoefficientCount(const ModelStructure& structure, Eigen::Index feature_count);
 
 /// The hyperparameters that the structure uses, as logarithms: length scales, signal, noise, then shape, then
 /// linear stddev.
-Eigen::VectorXd to_log(const ModelStructure& structure, const Hyperparameters& hyperparameters);
-Hyperparameters from_log(const ModelStructure& structure, const Eigen::VectorXd& log_hyperparameters);
+Eigen::VectorXd toLog(const ModelStructure& structure, const Hyperparameters& hyperparameters);
+Hyperparameters fromLog(const ModelStructure& structure, const Eigen::VectorXd& log_hyperparameters);
 /// Where to_log puts what follows the length scales.
 struct HyperparameterLayout {
   explicit HyperparameterLayout(const ModelStructure& structure);
@@ -55,11 +55,11 @@ struct HyperparameterLayout {
   int count;
 };
 /// Their names in the same order: length_scale[0], ..., signal_stddev, noise_stddev, shape, linear_stddev.
-std::vector<std::string> hyperparameter_names(const ModelStructure& structure);
+std::vector<std::string> getHyperparameterNames(const ModelStructure& structure);
 
 /// Throw std::invalid_argument naming the offending value and the broken rule.
-void check_structure(const ModelStructure& structure, Eigen::Index feature_count);
-void check_hyperparameters(const ModelStructure& structure, const Hyperparameters& hyperparameters);
-void check_inputs(const Eigen::Ref<const Eigen::MatrixXd>& inputs, const char* caller);
+void checkStructure(const ModelStructure& structure, Eigen::Index feature_count);
+void checkHyperparameters(const ModelStructure& structure, const Hyperparameters& hyperparameters);
+void checkInputs(const Eigen::Ref<const Eigen::MatrixXd>& inputs, const char* caller);
 
 }  // namespace twinmap::gp

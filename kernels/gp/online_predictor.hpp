@@ -34,11 +34,11 @@ class OnlinePredictor {
   explicit OnlinePredictor(const std::vector<std::shared_ptr<const GaussianProcess>>& processes);
   explicit OnlinePredictor(const std::vector<GaussianProcess>& processes);
 
-  Eigen::Index feature_count() const { return feature_count_; }
-  Eigen::Index target_count() const { return static_cast<Eigen::Index>(targets_.size()); }
+  Eigen::Index getFeatureCount() const { return feature_count_; }
+  Eigen::Index getTargetCount() const { return static_cast<Eigen::Index>(targets_.size()); }
 
   /// x: d features, finite (NaN in, NaN out). Writes the mean and the stddev (noise included) of each target.
-  /// The vectors must have feature_count() and target_count() entries: checked by assert only.
+  /// The vectors must have getFeatureCount() and getTargetCount() entries: checked by assert only.
   /// Cost per target: n^2 + 3 n d flops and n exponentials.
   void predict(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::Ref<Eigen::VectorXd> mean,
                Eigen::Ref<Eigen::VectorXd> stddev, Workspace& workspace) const;
@@ -65,12 +65,12 @@ class OnlinePredictor {
   static constexpr Eigen::Index kBatch = 4;
 
   void build(const std::vector<const GaussianProcess*>& processes);
-  static Target make_target(const GaussianProcess& process);
-  static Batch make_batch(const std::vector<const GaussianProcess*>& processes, Eigen::Index first,
-                          Eigen::Index count);
-  void predict_target(Eigen::Index index, const Batch& batch, double& mean, double& stddev,
-                      Workspace& workspace) const;
-  static double apply_mean(const Target& target, double variance, double& mean, Workspace& workspace);
+  static Target makeTarget(const GaussianProcess& process);
+  static Batch makeBatch(const std::vector<const GaussianProcess*>& processes, Eigen::Index first,
+                         Eigen::Index count);
+  void predictTarget(Eigen::Index index, const Batch& batch, double& mean, double& stddev,
+                     Workspace& workspace) const;
+  static double applyMean(const Target& target, double variance, double& mean, Workspace& workspace);
 
   std::vector<Target> targets_;
   std::vector<Batch> batches_;

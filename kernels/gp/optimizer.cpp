@@ -23,40 +23,40 @@ struct Search {
   SearchResult result;
 };
 
-double add_prior(const SearchBox& box, const Eigen::VectorXd& point, double nlml, Eigen::VectorXd& gradient) {
+double addPrior(const SearchBox& box, const Eigen::VectorXd& point, double nlml, Eigen::VectorXd& gradient) {
   const Eigen::VectorXd deviation = point - box.prior_mean;
   gradient += box.prior_precision.cwiseProduct(deviation);
   return nlml + 0.5 * deviation.dot(box.prior_precision.cwiseProduct(deviation));
 }
 
-void keep_best(Search& search, const Eigen::VectorXd& point, double nlml, double objective) {
+void keepBest(Search& search, const Eigen::VectorXd& point, double nlml, double objective) {
   if (!(objective < search.result.objective)) return;
   search.result.end = point;
   search.result.nlml = nlml;
   search.result.objective = objective;
 }
 
-double calc_objective(Search& search, const Eigen::VectorXd& point) {
+double calcObjective(Search& search, const Eigen::VectorXd& point) {
   const LikelihoodEvaluation evaluation = search.objective(point, search.gradient);
   ++search.result.evaluations;
   search.result.largest_jitter = std::max(search.result.largest_jitter, evaluation.jitter);
   if (!evaluation.ok) return kRejected;
-  const double objective = add_prior(search.box, point, evaluation.nlml, search.gradient);
-  keep_best(search, point, evaluation.nlml, objective);
+  const double objective = addPrior(search.box, point, evaluation.nlml, search.gradient);
+  keepBest(search, point, evaluation.nlml, objective);
   return objective;
 }
 
 double evaluate(unsigned count, const double* values, double* gradient, void* data) {
   Search& search = *static_cast<Search*>(data);
-  const double objective = calc_objective(search, Eigen::Map<const Eigen::VectorXd>(values, count));
+  const double objective = calcObjective(search, Eigen::Map<const Eigen::VectorXd>(values, count));
   if (gradient) Eigen::Map<Eigen::VectorXd>(gradient, count) = search.scale * search.gradient;
   return search.scale * objective;
 }
 
 // L-BFGS takes its first step along the gradient as it is. Scaling the objective makes that step at most
 // kFirstStep long; unscaled, it leaps over the valley into the plateau where everything is noise.
-double calc_scale(Search& search, const Eigen::VectorXd& point) {
-  calc_objective(search, point);
+double calcScale(Search& search, const Eigen::VectorXd& point) {
+  calcObjective(search, point);
   const double steepest = search.gradient.norm();
   const double per_sample = 1.0 / static_cast<double>(search.samples);
   return steepest > 0.0 ? std::min(per_sample, kFirstStep / steepest) : per_sample;
@@ -88,7 +88,7 @@ SearchResult minimize(const Objective& objective, Eigen::Index samples, const Ei
   search.result.nlml = std::numeric_limits<double>::infinity();
   Eigen::VectorXd point = start.cwiseMax(box.lower).cwiseMin(box.upper);
   search.result.end = point;
-  search.scale = calc_scale(search, point);
+  search.scale = calcScale(search, point);
   const std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)> optimizer(
       nlopt_create(NLOPT_LD_LBFGS, static_cast<unsigned>(start.size())), &nlopt_destroy);
   nlopt_set_min_objective(optimizer.get(), &evaluate, &search);
@@ -107,7 +107,7 @@ SearchResult search(const TrainingSet& set, const Eigen::VectorXd& target, const
                     const SearchBox& box, int max_evaluations, double tolerance,
                     LikelihoodWorkspace& workspace) {
   const Objective objective = [&](const Eigen::VectorXd& point, Eigen::VectorXd& gradient) {
-    return evaluate_likelihood_gradient(set, target, from_log(set.structure(), point), workspace, gradient);
+    return evaluateLikelihoodGradient(set, target, fromLog(set.getStructure(), point), workspace, gradient);
   };
   return minimize(objective, set.size(), start, box, max_evaluations, tolerance);
 }

@@ -16,7 +16,7 @@ namespace {
 constexpr Index kMedianSamples = 128;
 constexpr double kLogTwoPi = 1.8378770664093454836;
 
-MatrixXd spaced_samples(const MatrixXd& inputs) {
+MatrixXd spacedSamples(const MatrixXd& inputs) {
   const Index count = std::min(kMedianSamples, inputs.cols());
   MatrixXd samples(inputs.rows(), count);
   for (Index i = 0; i < count; ++i) samples.col(i) = inputs.col(i * inputs.cols() / count);
@@ -30,16 +30,16 @@ double median(std::vector<double> values) {
 }
 
 // The median of the distances that are not zero; 0 if all are.
-double median_nonzero_root(std::vector<double> squares) {
+double medianNonzeroRoot(std::vector<double> squares) {
   squares.erase(std::remove(squares.begin(), squares.end(), 0.0), squares.end());
   return squares.empty() ? 0.0 : std::sqrt(median(std::move(squares)));
 }
 
 // Entry g: the squared distances of all pairs within group g; the last entry: over all features.
-std::vector<std::vector<double>> calc_pair_distances(const TrainingSet& set) {
-  const MatrixXd samples = spaced_samples(set.inputs());
-  const auto& groups = set.structure().length_scale_groups;
-  const int count = group_count(set.structure());
+std::vector<std::vector<double>> calcPairDistances(const TrainingSet& set) {
+  const MatrixXd samples = spacedSamples(set.getInputs());
+  const auto& groups = set.getStructure().length_scale_groups;
+  const int count = getGroupCount(set.getStructure());
   std::vector<std::vector<double>> squares(count + 1);
   VectorXd of_group(count);
   for (Index i = 0; i < samples.cols(); ++i) {
@@ -67,57 +67,57 @@ std::array<double, 2> spread(int k, const TrainingOptions& options) {
   return {0.3 * std::pow(10.0 / 0.3, u), 0.03 * std::pow(0.7 / 0.03, v)};
 }
 
-void set_bounds(SearchBox& box, int index, double lower_scale, double upper_scale,
-                const RelativeBounds& bounds) {
+void setBounds(SearchBox& box, int index, double lower_scale, double upper_scale,
+               const RelativeBounds& bounds) {
   box.lower(index) = std::log(lower_scale * bounds.lower);
   box.upper(index) = std::log(upper_scale * bounds.upper);
 }
 
 }  // namespace
 
-DataScales calc_data_scales(const TrainingSet& set) {
-  auto squares = calc_pair_distances(set);
-  const int groups = group_count(set.structure());
+DataScales calcDataScales(const TrainingSet& set) {
+  auto squares = calcPairDistances(set);
+  const int groups = getGroupCount(set.getStructure());
   DataScales scales;
-  scales.median_distance = median_nonzero_root(squares.back());
-  const MatrixXd centered = set.inputs().colwise() - calc_center(set.inputs());
+  scales.median_distance = medianNonzeroRoot(squares.back());
+  const MatrixXd centered = set.getInputs().colwise() - calcCenter(set.getInputs());
   scales.root_mean_square = std::sqrt(centered.squaredNorm() / static_cast<double>(set.size()));
   if (scales.median_distance == 0.0) scales.median_distance = scales.root_mean_square;
-  const bool all_equal = (set.inputs().colwise() - set.inputs().col(0)).cwiseAbs().maxCoeff() == 0.0;
+  const bool all_equal = (set.getInputs().colwise() - set.getInputs().col(0)).cwiseAbs().maxCoeff() == 0.0;
   if (all_equal || !(scales.median_distance > 0.0) || !std::isfinite(scales.median_distance)) {
     throw std::invalid_argument("train: the training inputs are all equal (or overflow when squared)");
   }
   scales.group_distances.resize(groups);
   for (int g = 0; g < groups; ++g) {
-    const double own = std::sqrt(static_cast<double>(groups)) * median_nonzero_root(squares[g]);
+    const double own = std::sqrt(static_cast<double>(groups)) * medianNonzeroRoot(squares[g]);
     scales.group_distances(g) = own > 0.0 ? own : scales.median_distance;
   }
   return scales;
 }
 
-SearchBox make_search_box(const TrainingSet& set, const DataScales& scales, double target_stddev,
-                          const TrainingOptions& options) {
-  const HyperparameterLayout layout(set.structure());
+SearchBox makeSearchBox(const TrainingSet& set, const DataScales& scales, double target_stddev,
+                        const TrainingOptions& options) {
+  const HyperparameterLayout layout(set.getStructure());
   SearchBox box{VectorXd(layout.count), VectorXd(layout.count), VectorXd::Zero(layout.count),
                 VectorXd::Zero(layout.count)};
   for (int g = 0; g < layout.signal; ++g) {
     const double own = scales.group_distances(g);
-    set_bounds(box, g, std::min(own, scales.median_distance), std::max(own, scales.median_distance),
-               options.length_scale);
+    setBounds(box, g, std::min(own, scales.median_distance), std::max(own, scales.median_distance),
+              options.length_scale);
     if (!options.length_scale_prior) continue;
     box.prior_mean(g) = std::log(own) + options.length_scale_prior->log_mean;
     box.prior_precision(g) = std::pow(options.length_scale_prior->log_stddev, -2);
   }
-  set_bounds(box, layout.signal, target_stddev, target_stddev, options.signal_stddev);
-  set_bounds(box, layout.noise, target_stddev, target_stddev, options.noise_stddev);
-  if (layout.shape >= 0) set_bounds(box, layout.shape, 1.0, 1.0, options.shape);
+  setBounds(box, layout.signal, target_stddev, target_stddev, options.signal_stddev);
+  setBounds(box, layout.noise, target_stddev, target_stddev, options.noise_stddev);
+  if (layout.shape >= 0) setBounds(box, layout.shape, 1.0, 1.0, options.shape);
   const double slope = target_stddev / scales.root_mean_square;
-  if (layout.linear >= 0) set_bounds(box, layout.linear, slope, slope, options.linear_stddev);
+  if (layout.linear >= 0) setBounds(box, layout.linear, slope, slope, options.linear_stddev);
   return box;
 }
 
-std::vector<VectorXd> make_starts(const TrainingSet& set, const DataScales& scales, double target_stddev,
-                                  const TrainingOptions& options, int count) {
+std::vector<VectorXd> makeStarts(const TrainingSet& set, const DataScales& scales, double target_stddev,
+                                 const TrainingOptions& options, int count) {
   std::vector<VectorXd> starts;
   for (int k = 0; k < count; ++k) {
     const auto [length_factor, noise_factor] = spread(k, options);
@@ -126,13 +126,13 @@ std::vector<VectorXd> make_starts(const TrainingSet& set, const DataScales& scal
     start.signal_stddev = target_stddev;
     start.noise_stddev = noise_factor * target_stddev;
     start.linear_stddev = 0.5 * target_stddev / scales.root_mean_square;
-    starts.push_back(to_log(set.structure(), start));
+    starts.push_back(toLog(set.getStructure(), start));
   }
   return starts;
 }
 
-double calc_noise_only_nlml(const TrainingSet& set, const VectorXd& target) {
-  const MatrixXd& basis = set.mean_basis();
+double calcNoiseOnlyNlml(const TrainingSet& set, const VectorXd& target) {
+  const MatrixXd& basis = set.meanBasis();
   const Index p = basis.cols();
   const double free_samples = static_cast<double>(set.size() - p);
   double residual = target.squaredNorm();
@@ -140,15 +140,15 @@ double calc_noise_only_nlml(const TrainingSet& set, const VectorXd& target) {
   if (p > 0) {
     MatrixXd normal(p, p);
     linalg::TriangularScratch scratch(p);
-    const linalg::ConstView h = linalg::view_of(basis);
-    linalg::gemm(1.0, h.transposed(), h, 0.0, linalg::view_of(normal), scratch.gemm());
-    if (!linalg::factorize_cholesky(linalg::view_of(normal), scratch)) {
+    const linalg::ConstView h = linalg::viewOf(basis);
+    linalg::gemm(1.0, h.transposed(), h, 0.0, linalg::viewOf(normal), scratch.gemm());
+    if (!linalg::factorizeCholesky(linalg::viewOf(normal), scratch)) {
       throw std::invalid_argument(
           "train: a linear mean needs linearly independent features; some are constant or combinations");
     }
     VectorXd projected(p);
     for (Index k = 0; k < p; ++k) projected(k) = basis.col(k).dot(target);
-    linalg::solve_lower(linalg::view_of(normal), projected.data());
+    linalg::solveLower(linalg::viewOf(normal), projected.data());
     residual -= projected.squaredNorm();
     for (Index k = 0; k < p; ++k) log_determinant += std::log(normal(k, k));
   }

@@ -17,18 +17,18 @@ struct DataScales {
 
 /// Medians over the pairs of at most 128 evenly spaced samples. Throws std::invalid_argument if all inputs
 /// are equal. A group of constant features takes the overall median.
-DataScales calc_data_scales(const TrainingSet& set);
+DataScales calcDataScales(const TrainingSet& set);
 
-SearchBox make_search_box(const TrainingSet& set, const DataScales& scales, double target_stddev,
-                          const TrainingOptions& options);
+SearchBox makeSearchBox(const TrainingSet& set, const DataScales& scales, double target_stddev,
+                        const TrainingOptions& options);
 
 /// The log-hyperparameters of the first `count` starts: the median distance with start_noise, then spread
 /// deterministically over length scales of 0.3 to 10 medians and noise of 0.03 to 0.7.
-std::vector<Eigen::VectorXd> make_starts(const TrainingSet& set, const DataScales& scales,
-                                         double target_stddev, const TrainingOptions& options, int count);
+std::vector<Eigen::VectorXd> makeStarts(const TrainingSet& set, const DataScales& scales,
+                                        double target_stddev, const TrainingOptions& options, int count);
 
 /// The least NLML of a target that is pure noise about the mean function:
 ///   RSS / (2 s^2) + (n - p) log s + 1/2 log|H H'| + (n - p)/2 log(2 pi),   s^2 = RSS / (n - p).
-double calc_noise_only_nlml(const TrainingSet& set, const Eigen::VectorXd& target);
+double calcNoiseOnlyNlml(const TrainingSet& set, const Eigen::VectorXd& target);
 
 }  // namespace twinmap::gp

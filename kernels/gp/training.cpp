@@ -38,7 +38,7 @@ struct TargetJob {
   int warm_start_evaluations = 0;
 };
 
-void check_options(const TrainingOptions& options) {
+void checkOptions(const TrainingOptions& options) {
   const auto require = [](bool condition, const char* rule) {
     if (!condition) throw std::invalid_argument(std::string("TrainingOptions: ") + rule);
   };
@@ -66,16 +66,16 @@ void check_options(const TrainingOptions& options) {
   require(options.length_scale_prior->log_stddev > 0.0, "the prior's log_stddev must be positive");
 }
 
-void check_targets(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
-                   const Eigen::Ref<const Eigen::MatrixXd>& targets) {
+void checkTargets(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                  const Eigen::Ref<const Eigen::MatrixXd>& targets) {
   if (targets.cols() != inputs.cols()) {
-    throw std::invalid_argument("train: the targets have " + std::to_string(targets.cols()) +
-                                " columns for " + std::to_string(inputs.cols()) + " training samples");
+    throw std::invalid_argument("train: the targets have " + std::to_string(targets.cols()) + " columns for " +
+                                std::to_string(inputs.cols()) + " training samples");
   }
-  check_inputs(targets, "train: targets");
+  checkInputs(targets, "train: targets");
 }
 
-std::vector<TargetJob> make_jobs(const Eigen::Ref<const Eigen::MatrixXd>& targets) {
+std::vector<TargetJob> makeJobs(const Eigen::Ref<const Eigen::MatrixXd>& targets) {
   std::vector<TargetJob> jobs(targets.rows());
   for (Index t = 0; t < targets.rows(); ++t) {
     TargetJob& job = jobs[t];
@@ -89,7 +89,7 @@ std::vector<TargetJob> make_jobs(const Eigen::Ref<const Eigen::MatrixXd>& target
 
 // All searches of all targets: side by side, each by one thread, or for large matrices one after another,
 // each by all threads (one workspace instead of many). The result is the same for any number of threads.
-void run_searches(const TrainingSet& set, const TrainingOptions& options, std::vector<TargetJob>& jobs) {
+void runSearches(const TrainingSet& set, const TrainingOptions& options, std::vector<TargetJob>& jobs) {
   struct Task {
     TargetJob* job;
     std::size_t start;
@@ -119,46 +119,46 @@ void run_searches(const TrainingSet& set, const TrainingOptions& options, std::v
   }
 }
 
-void prepare_searches(const TrainingSet& set, const TrainingOptions& options, int starts,
-                      std::vector<TargetJob>& jobs) {
-  const DataScales scales = calc_data_scales(set);
+void prepareSearches(const TrainingSet& set, const TrainingOptions& options, int starts,
+                     std::vector<TargetJob>& jobs) {
+  const DataScales scales = calcDataScales(set);
   for (TargetJob& job : jobs) {
     job.starts.clear();
     if (job.constant) continue;
-    job.box = make_search_box(set, scales, job.stddev, options);
-    job.starts = make_starts(set, scales, job.stddev, options, starts);
+    job.box = makeSearchBox(set, scales, job.stddev, options);
+    job.starts = makeStarts(set, scales, job.stddev, options, starts);
   }
 }
 
-const SearchResult& best_of(const std::vector<SearchResult>& results) {
+const SearchResult& bestOf(const std::vector<SearchResult>& results) {
   return *std::min_element(results.begin(), results.end(),
                            [](const auto& a, const auto& b) { return a.objective < b.objective; });
 }
 
 // With several groups, the last of the starts begins where a shared length scale ended.
-void add_warm_starts(const TrainingSet& set, const TrainingOptions& options, std::vector<TargetJob>& jobs) {
-  ModelStructure shared = set.structure();
+void addWarmStarts(const TrainingSet& set, const TrainingOptions& options, std::vector<TargetJob>& jobs) {
+  ModelStructure shared = set.getStructure();
   shared.length_scale_groups.clear();
-  const TrainingSet shared_set(set.inputs(), shared);
+  const TrainingSet shared_set(set.getInputs(), shared);
   std::vector<TargetJob> shared_jobs = jobs;
-  prepare_searches(shared_set, options, std::min(options.starts, 2), shared_jobs);
-  run_searches(shared_set, options, shared_jobs);
+  prepareSearches(shared_set, options, std::min(options.starts, 2), shared_jobs);
+  runSearches(shared_set, options, shared_jobs);
   for (std::size_t t = 0; t < jobs.size(); ++t) {
     if (jobs[t].constant) continue;
     for (const SearchResult& result : shared_jobs[t].results) {
       jobs[t].warm_start_evaluations += result.evaluations;
     }
-    Hyperparameters warm = from_log(shared, best_of(shared_jobs[t].results).end);
-    warm.length_scales = VectorXd::Constant(group_count(set.structure()), warm.length_scales(0));
-    jobs[t].starts.back() = to_log(set.structure(), warm);
+    Hyperparameters warm = fromLog(shared, bestOf(shared_jobs[t].results).end);
+    warm.length_scales = VectorXd::Constant(getGroupCount(set.getStructure()), warm.length_scales(0));
+    jobs[t].starts.back() = toLog(set.getStructure(), warm);
   }
 }
 
-StartReport report_start(const ModelStructure& structure, const VectorXd& start, const SearchResult& result,
-                         double noise_only_nlml) {
+StartReport reportStart(const ModelStructure& structure, const VectorXd& start, const SearchResult& result,
+                        double noise_only_nlml) {
   StartReport report;
-  report.start = from_log(structure, start);
-  report.end = from_log(structure, result.end);
+  report.start = fromLog(structure, start);
+  report.end = fromLog(structure, result.end);
   report.nlml = result.nlml;
   report.objective = result.objective;
   report.evaluations = result.evaluations;
@@ -170,7 +170,7 @@ StartReport report_start(const ModelStructure& structure, const VectorXd& start,
 }
 
 // The least objective among the starts that found a signal; among all if none did.
-int choose_start(const std::vector<StartReport>& starts) {
+int chooseStart(const std::vector<StartReport>& starts) {
   int best = -1;
   for (int k = 0; k < static_cast<int>(starts.size()); ++k) {
     if (!std::isfinite(starts[k].objective)) continue;
@@ -182,9 +182,9 @@ int choose_start(const std::vector<StartReport>& starts) {
   return best;
 }
 
-std::vector<std::string> describe_bounds(const ModelStructure& structure, const SearchBox& box,
-                                         const VectorXd& point) {
-  const std::vector<std::string> names = hyperparameter_names(structure);
+std::vector<std::string> describeBounds(const ModelStructure& structure, const SearchBox& box,
+                                        const VectorXd& point) {
+  const std::vector<std::string> names = getHyperparameterNames(structure);
   std::vector<std::string> at_bound;
   const auto add = [&](Index i, const char* side, double bound) {
     std::ostringstream text;
@@ -199,7 +199,7 @@ std::vector<std::string> describe_bounds(const ModelStructure& structure, const 
   return at_bound;
 }
 
-void set_status(TrainingResult& result, TrainingStatus status, const std::string& message) {
+void setStatus(TrainingResult& result, TrainingStatus status, const std::string& message) {
   result.status = status;
   result.message = message;
 }
@@ -207,53 +207,53 @@ void set_status(TrainingResult& result, TrainingStatus status, const std::string
 void judge(TrainingResult& result) {
   const StartReport& best = result.report.starts[result.report.best_start];
   if (best.noise_only) {
-    return set_status(result, TrainingStatus::kNoiseOnly,
-                      "every start found the target to be pure noise: the features do not explain it");
+    return setStatus(result, TrainingStatus::kNoiseOnly,
+                     "every start found the target to be pure noise: the features do not explain it");
   }
   if (!best.converged) {
-    return set_status(result, TrainingStatus::kEvaluationLimit,
-                      "the best start stopped after " + std::to_string(best.evaluations) +
-                          " evaluations: " + best.stop_reason);
+    return setStatus(result, TrainingStatus::kEvaluationLimit,
+                     "the best start stopped after " + std::to_string(best.evaluations) +
+                         " evaluations: " + best.stop_reason);
   }
-  set_status(result, TrainingStatus::kConverged, best.stop_reason);
+  setStatus(result, TrainingStatus::kConverged, best.stop_reason);
 }
 
 TrainingResult finish(const TrainingSet& set, const TargetJob& job, LikelihoodWorkspace& workspace) {
   TrainingResult result;
   if (job.constant) {
-    set_status(result, TrainingStatus::kConstantTarget,
-               "the target is constant over the training samples: there is nothing to infer");
+    setStatus(result, TrainingStatus::kConstantTarget,
+              "the target is constant over the training samples: there is nothing to infer");
     return result;
   }
   TrainingReport& report = result.report;
-  report.noise_only_nlml = calc_noise_only_nlml(set, job.values);
+  report.noise_only_nlml = calcNoiseOnlyNlml(set, job.values);
   report.evaluations = job.warm_start_evaluations;
   for (std::size_t k = 0; k < job.starts.size(); ++k) {
     report.starts.push_back(
-        report_start(set.structure(), job.starts[k], job.results[k], report.noise_only_nlml));
+        reportStart(set.getStructure(), job.starts[k], job.results[k], report.noise_only_nlml));
     report.evaluations += job.results[k].evaluations;
   }
-  report.best_start = choose_start(report.starts);
+  report.best_start = chooseStart(report.starts);
   const LikelihoodEvaluation evaluation =
       report.best_start < 0
           ? LikelihoodEvaluation{}
-          : evaluate_likelihood(set, job.values, report.starts[report.best_start].end, workspace);
+          : evaluateLikelihood(set, job.values, report.starts[report.best_start].end, workspace);
   if (!evaluation.ok) {
-    set_status(result, TrainingStatus::kFailed,
-               "no start had a positive definite covariance matrix: raise the noise's lower bound");
+    setStatus(result, TrainingStatus::kFailed,
+              "no start had a positive definite covariance matrix: raise the noise's lower bound");
     return result;
   }
-  report.at_bound = describe_bounds(set.structure(), job.box, job.results[report.best_start].end);
+  report.at_bound = describeBounds(set.getStructure(), job.box, job.results[report.best_start].end);
   report.jitter = evaluation.jitter;
-  result.gp = make_gaussian_process(set, report.starts[report.best_start].end, evaluation, workspace);
-  report.condition = linalg::estimate_condition(linalg::view_of(result.gp->factor()));
+  result.gp = makeGaussianProcess(set, report.starts[report.best_start].end, evaluation, workspace);
+  report.condition = linalg::estimateCondition(linalg::viewOf(result.gp->getFactor()));
   judge(result);
   return result;
 }
 
 }  // namespace
 
-const char* to_string(TrainingStatus status) {
+const char* toString(TrainingStatus status) {
   switch (status) {
     case TrainingStatus::kConverged:
       return "converged";
@@ -272,13 +272,13 @@ const char* to_string(TrainingStatus status) {
 std::vector<TrainingResult> train(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                                   const Eigen::Ref<const Eigen::MatrixXd>& targets,
                                   const ModelStructure& structure, const TrainingOptions& options) {
-  check_options(options);
-  check_targets(inputs, targets);
+  checkOptions(options);
+  checkTargets(inputs, targets);
   const TrainingSet set(inputs, structure);
-  std::vector<TargetJob> jobs = make_jobs(targets);
-  prepare_searches(set, options, options.starts, jobs);
-  if (group_count(structure) > 1) add_warm_starts(set, options, jobs);
-  run_searches(set, options, jobs);
+  std::vector<TargetJob> jobs = makeJobs(targets);
+  prepareSearches(set, options, options.starts, jobs);
+  if (getGroupCount(structure) > 1) addWarmStarts(set, options, jobs);
+  runSearches(set, options, jobs);
   LikelihoodWorkspace workspace(set, set.size() > kTeamSamples ? options.threads : 1);
   std::vector<TrainingResult> results;
   for (const TargetJob& job : jobs) results.push_back(finish(set, job, workspace));

@@ -83,7 +83,7 @@ enum class TrainingStatus {
   kConstantTarget,   ///< no process: the target does not vary
   kFailed            ///< no process: no start had a finite NLML
 };
-const char* to_string(TrainingStatus status);
+const char* toString(TrainingStatus status);
 
 struct TrainingResult {
   TrainingStatus status = TrainingStatus::kFailed;

@@ -18,14 +18,14 @@ class TrainingSet {
   TrainingSet(const Eigen::Ref<const Eigen::MatrixXd>& inputs, const ModelStructure& structure);
 
   Eigen::Index size() const { return inputs_->cols(); }
-  const ModelStructure& structure() const { return structure_; }
-  const Eigen::MatrixXd& inputs() const { return *inputs_; }
-  std::shared_ptr<const Eigen::MatrixXd> shared_inputs() const { return inputs_; }
+  const ModelStructure& getStructure() const { return structure_; }
+  const Eigen::MatrixXd& getInputs() const { return *inputs_; }
+  std::shared_ptr<const Eigen::MatrixXd> sharedInputs() const { return inputs_; }
   const SquaredDistances& distances() const { return *distances_; }
   /// (x_i - c)'(x_j - c) for i >= j, padded(n) x n; empty without the linear term.
   const Eigen::MatrixXd& gram() const { return gram_; }
   /// H', n x p: row i is h(x_i)'.
-  const Eigen::MatrixXd& mean_basis() const { return mean_basis_; }
+  const Eigen::MatrixXd& meanBasis() const { return mean_basis_; }
 
  private:
   ModelStructure structure_;
@@ -36,9 +36,9 @@ class TrainingSet {
 };
 
 /// c, the mean of the columns.
-Eigen::VectorXd calc_center(const Eigen::Ref<const Eigen::MatrixXd>& inputs);
+Eigen::VectorXd calcCenter(const Eigen::Ref<const Eigen::MatrixXd>& inputs);
 
 /// h(x)' of each column of the centred inputs x - c, as rows: n x p.
-Eigen::MatrixXd calc_mean_basis(MeanFunction mean, const Eigen::MatrixXd& centered);
+Eigen::MatrixXd calcMeanBasis(MeanFunction mean, const Eigen::MatrixXd& centered);
 
 }  // namespace twinmap::gp

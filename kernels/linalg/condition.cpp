@@ -11,13 +11,13 @@ namespace {
 constexpr int kHagerSteps = 5;  // it stops after two or three in practice
 
 // x = (L L')^-1 x
-void apply_inverse(ConstView lower, Eigen::VectorXd& x) {
-  solve_lower(lower, x.data());
-  solve_lower_transposed(lower, x.data());
+void applyInverse(ConstView lower, Eigen::VectorXd& x) {
+  solveLower(lower, x.data());
+  solveLowerTransposed(lower, x.data());
 }
 
 // The largest column sum of |L| |L'|: at least the norm of L L', and equal to it for nonnegative factors.
-double bound_norm(ConstView lower) {
+double boundNorm(ConstView lower) {
   const Index n = lower.rows;
   Eigen::VectorXd row_weights = Eigen::VectorXd::Zero(n);
   for (Index j = 0; j < n; ++j) {
@@ -28,17 +28,17 @@ double bound_norm(ConstView lower) {
   return row_weights.maxCoeff();
 }
 
-double estimate_inverse_norm(ConstView lower) {
+double estimateInverseNorm(ConstView lower) {
   const Index n = lower.rows;
   Eigen::VectorXd x = Eigen::VectorXd::Constant(n, 1.0 / static_cast<double>(n));
   double norm = 0.0;
   for (int step = 0; step < kHagerSteps; ++step) {
-    apply_inverse(lower, x);
+    applyInverse(lower, x);
     const double found = x.lpNorm<1>();
     if (found <= norm) break;
     norm = found;
     x = x.unaryExpr([](double value) { return value >= 0.0 ? 1.0 : -1.0; });
-    apply_inverse(lower, x);
+    applyInverse(lower, x);
     Index largest = 0;
     x.cwiseAbs().maxCoeff(&largest);
     x.setZero();
@@ -49,9 +49,9 @@ double estimate_inverse_norm(ConstView lower) {
 
 }  // namespace
 
-double estimate_condition(ConstView lower) {
+double estimateCondition(ConstView lower) {
   if (lower.rows == 0) return 1.0;
-  return bound_norm(lower) * estimate_inverse_norm(lower);
+  return boundNorm(lower) * estimateInverseNorm(lower);
 }
 
 }  // namespace twinmap::linalg

@@ -22,7 +22,7 @@ constexpr Index kBlockDepth = 256;
 constexpr Index kBlockRows = 12 * kTileRows;
 constexpr Index kBlockCols = 1024;
 
-Index round_up(Index value, Index multiple) {
+Index roundUp(Index value, Index multiple) {
   return (value + multiple - 1) / multiple * multiple;
 }
 
@@ -40,7 +40,7 @@ void pack(ConstView a, Index width, double alpha, double* packed) {
 }
 
 // The same where a's rows are contiguous in memory: whole slivers are copied by vector.
-void pack_unit_stride(ConstView a, Index width, double alpha, double* packed) {
+void packUnitStride(ConstView a, Index width, double alpha, double* packed) {
   const Index whole = a.rows / width * width;
   for (Index first = 0; first < whole; first += width) {
     for (Index p = 0; p < a.cols; ++p, packed += width) {
@@ -52,14 +52,14 @@ void pack_unit_stride(ConstView a, Index width, double alpha, double* packed) {
 }
 
 // Where the depth runs along memory, square blocks are transposed in registers.
-void pack_unit_depth(ConstView a, Index width, double alpha, double* packed) {
+void packUnitDepth(ConstView a, Index width, double alpha, double* packed) {
   const Index whole = a.rows / width * width;
   const Index depth = a.cols / kLanes * kLanes;
   for (Index first = 0; first < whole; first += width, packed += width * a.cols) {
     const double* source = a.data + first * a.row_stride;
     for (Index p = 0; p < depth; p += kLanes) {
       for (Index r = 0; r < width; r += kLanes) {
-        copy_transposed(source + r * a.row_stride + p, a.row_stride, packed + p * width + r, width);
+        copyTransposed(source + r * a.row_stride + p, a.row_stride, packed + p * width + r, width);
       }
     }
     pack(a.block(first, depth, width, a.cols - depth), width, 1.0, packed + depth * width);
@@ -70,9 +70,9 @@ void pack_unit_depth(ConstView a, Index width, double alpha, double* packed) {
 }
 
 template <Index kWidth>
-void pack_slivers(ConstView a, double alpha, double* packed) {
-  if (a.row_stride == 1) return pack_unit_stride(a, kWidth, alpha, packed);
-  if (a.col_stride == 1) return pack_unit_depth(a, kWidth, alpha, packed);
+void packSlivers(ConstView a, double alpha, double* packed) {
+  if (a.row_stride == 1) return packUnitStride(a, kWidth, alpha, packed);
+  if (a.col_stride == 1) return packUnitDepth(a, kWidth, alpha, packed);
   pack(a, kWidth, alpha, packed);
 }
 
@@ -81,7 +81,7 @@ struct Tile {
 };
 
 // tile = sum over p of (left sliver at p) (right sliver at p)'
-inline void multiply_slivers(Index depth, const double* left, const double* right, Tile& tile) {
+inline void multiplySlivers(Index depth, const double* left, const double* right, Tile& tile) {
   Packet sum[kTileCols][kTileVectors] = {};
   for (Index p = 0; p < depth; ++p, left += kTileRows, right += kTileCols) {
     Packet rows[kTileVectors];
@@ -97,7 +97,7 @@ inline void multiply_slivers(Index depth, const double* left, const double* righ
   }
 }
 
-void store_whole(const Tile& tile, bool accumulate, View c) {
+void storeWhole(const Tile& tile, bool accumulate, View c) {
   for (Index j = 0; j < kTileCols; ++j) {
     for (Index v = 0; v < kTileVectors; ++v) {
       double* target = c.col(j) + v * kLanes;
@@ -106,7 +106,7 @@ void store_whole(const Tile& tile, bool accumulate, View c) {
   }
 }
 
-void store_edge(const Tile& tile, bool accumulate, View c) {
+void storeEdge(const Tile& tile, bool accumulate, View c) {
   for (Index j = 0; j < c.cols; ++j) {
     double values[kTileRows];
     std::memcpy(values, tile.column[j], sizeof(values));
@@ -116,20 +116,20 @@ void store_edge(const Tile& tile, bool accumulate, View c) {
 
 // One packed block of A times one packed panel of B. Element (0, 0) of c lies diagonal_offset rows below the
 // diagonal of the whole result.
-void multiply_block(Index depth, const double* left, const double* right, bool accumulate, View c,
-                    Index diagonal_offset, Part part) {
+void multiplyBlock(Index depth, const double* left, const double* right, bool accumulate, View c,
+                   Index diagonal_offset, Part part) {
   for (Index j = 0; j < c.cols; j += kTileCols) {
     const Index cols = std::min(kTileCols, c.cols - j);
     for (Index i = 0; i < c.rows; i += kTileRows) {
       const Index rows = std::min(kTileRows, c.rows - i);
       if (part == Part::kLower && i + rows - 1 + diagonal_offset < j) continue;
       Tile tile;
-      multiply_slivers(depth, left + i * depth, right + j * depth, tile);
+      multiplySlivers(depth, left + i * depth, right + j * depth, tile);
       const View target = c.block(i, j, rows, cols);
       if (rows == kTileRows && cols == kTileCols) {
-        store_whole(tile, accumulate, target);
+        storeWhole(tile, accumulate, target);
       } else {
-        store_edge(tile, accumulate, target);
+        storeEdge(tile, accumulate, target);
       }
     }
   }
@@ -142,8 +142,8 @@ void clear(View c) {
 }  // namespace
 
 GemmScratch::GemmScratch()
-    : left_(kBlockDepth * round_up(kBlockRows, kTileRows)),
-      right_(kBlockDepth * round_up(kBlockCols, kTileCols)) {}
+    : left_(kBlockDepth * roundUp(kBlockRows, kTileRows)),
+      right_(kBlockDepth * roundUp(kBlockCols, kTileCols)) {}
 
 void gemm(double alpha, ConstView a, ConstView b, double beta, View c, GemmScratch& scratch, Part part) {
   if (a.cols == 0 && beta == 0.0) clear(c);
@@ -152,13 +152,13 @@ void gemm(double alpha, ConstView a, ConstView b, double beta, View c, GemmScrat
     for (Index p = 0; p < a.cols; p += kBlockDepth) {
       const Index depth = std::min(kBlockDepth, a.cols - p);
       const bool accumulate = beta != 0.0 || p > 0;
-      pack_slivers<kTileCols>(b.block(p, j, depth, cols).transposed(), 1.0, scratch.right());
+      packSlivers<kTileCols>(b.block(p, j, depth, cols).transposed(), 1.0, scratch.right());
       for (Index i = 0; i < c.rows; i += kBlockRows) {
         const Index rows = std::min(kBlockRows, c.rows - i);
         if (part == Part::kLower && i + rows - 1 < j) continue;
-        pack_slivers<kTileRows>(a.block(i, p, rows, depth), alpha, scratch.left());
-        multiply_block(depth, scratch.left(), scratch.right(), accumulate, c.block(i, j, rows, cols), i - j,
-                       part);
+        packSlivers<kTileRows>(a.block(i, p, rows, depth), alpha, scratch.left());
+        multiplyBlock(depth, scratch.left(), scratch.right(), accumulate, c.block(i, j, rows, cols), i - j,
+                      part);
       }
     }
   }

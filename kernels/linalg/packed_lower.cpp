@@ -16,29 +16,29 @@ struct Rows {
   Packet part[kVectors];
 };
 
-inline Rows load_rows(const double* source) {
+inline Rows loadRows(const double* source) {
   Rows rows;
   for (Index v = 0; v < kVectors; ++v) rows.part[v] = load(source + v * kLanes);
   return rows;
 }
 
-inline void store_rows(double* target, const Rows& rows) {
+inline void storeRows(double* target, const Rows& rows) {
   for (Index v = 0; v < kVectors; ++v) store(target + v * kLanes, rows.part[v]);
 }
 
 // sum -= tile x
-inline void subtract_product(const double* tile, const double* x, Rows& sum) {
+inline void subtractProduct(const double* tile, const double* x, Rows& sum) {
   for (Index j = 0; j < kTile; ++j, tile += kTile) {
     for (Index v = 0; v < kVectors; ++v) sum.part[v] -= load(tile + v * kLanes) * x[j];
   }
 }
 
 // The tile's inverse, padded with zeros.
-void store_inverse(ConstView block, double* tile, TriangularScratch& scratch) {
+void storeInverse(ConstView block, double* tile, TriangularScratch& scratch) {
   for (Index j = 0; j < block.cols; ++j) {
     for (Index i = j; i < block.rows; ++i) tile[i + j * kTile] = block(i, j);
   }
-  invert_lower({tile, block.rows, block.cols, kTile}, scratch);
+  invertLower({tile, block.rows, block.cols, kTile}, scratch);
 }
 
 }  // namespace
@@ -55,7 +55,7 @@ PackedLower::PackedLower(ConstView lower)
         for (Index i = 0; i < rows; ++i) tile[i + j * kTile] = lower(r + i, c + j);
       }
     }
-    store_inverse(lower.block(r, r, rows, rows), tile, scratch);
+    storeInverse(lower.block(r, r, rows, rows), tile, scratch);
     tile += kTileElements;
   }
 }
@@ -63,15 +63,15 @@ PackedLower::PackedLower(ConstView lower)
 void PackedLower::solve(double* x) const {
   const double* tile = tiles_.data();
   for (Index r = 0; r < blocks_; ++r) {
-    Rows sum = load_rows(x + r * kTile);
-    for (Index c = 0; c < r; ++c, tile += kTileElements) subtract_product(tile, x + c * kTile, sum);
+    Rows sum = loadRows(x + r * kTile);
+    for (Index c = 0; c < r; ++c, tile += kTileElements) subtractProduct(tile, x + c * kTile, sum);
     double right[kTile];
-    store_rows(right, sum);
+    storeRows(right, sum);
     Rows negative = {};
-    subtract_product(tile, right, negative);
+    subtractProduct(tile, right, negative);
     tile += kTileElements;
     for (Index v = 0; v < kVectors; ++v) negative.part[v] = -negative.part[v];
-    store_rows(x + r * kTile, negative);
+    storeRows(x + r * kTile, negative);
   }
 }
 
@@ -87,9 +87,9 @@ PackedSamples::PackedSamples(const Eigen::MatrixXd& samples)
 }
 
 template <int kWeightings>
-void PackedSamples::weighted_distances(const double* point, const double* weights, double* squares) const {
+void PackedSamples::weightedDistances(const double* point, const double* weights, double* squares) const {
   const double* source = values_.data();
-  for (Index first = 0; first < padded_size(); first += kChunk) {
+  for (Index first = 0; first < paddedSize(); first += kChunk) {
     for (Index v = 0; v < kVectors; ++v) {
       const double* sample = source + v * kLanes;
       const double* weight = weights;
@@ -99,23 +99,23 @@ void PackedSamples::weighted_distances(const double* point, const double* weight
         const Packet square = difference * difference;
         for (int t = 0; t < kWeightings; ++t) sum[t] += square * weight[t];
       }
-      for (int t = 0; t < kWeightings; ++t) store(squares + t * padded_size() + first + v * kLanes, sum[t]);
+      for (int t = 0; t < kWeightings; ++t) store(squares + t * paddedSize() + first + v * kLanes, sum[t]);
     }
     source += features_ * kChunk;
   }
 }
 
-template void PackedSamples::weighted_distances<1>(const double*, const double*, double*) const;
-template void PackedSamples::weighted_distances<4>(const double*, const double*, double*) const;
+template void PackedSamples::weightedDistances<1>(const double*, const double*, double*) const;
+template void PackedSamples::weightedDistances<4>(const double*, const double*, double*) const;
 
-void PackedSamples::add_product(const double* weights, double* values) const {
+void PackedSamples::addProduct(const double* weights, double* values) const {
   const double* source = values_.data();
   for (Index chunk = 0; chunk < chunks_; ++chunk) {
-    Rows sum = load_rows(values + chunk * kChunk);
+    Rows sum = loadRows(values + chunk * kChunk);
     for (Index f = 0; f < features_; ++f, source += kChunk) {
       for (Index v = 0; v < kVectors; ++v) sum.part[v] += load(source + v * kLanes) * weights[f];
     }
-    store_rows(values + chunk * kChunk, sum);
+    storeRows(values + chunk * kChunk, sum);
   }
 }
 

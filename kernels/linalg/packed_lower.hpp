@@ -18,9 +18,9 @@ class PackedLower {
   explicit PackedLower(ConstView lower);
 
   /// n rounded up to whole tiles.
-  Index padded_size() const { return blocks_ * kTile; }
+  Index paddedSize() const { return blocks_ * kTile; }
 
-  /// x = L^-1 x, where x has padded_size() entries; those beyond n must be and remain zero.
+  /// x = L^-1 x, where x has paddedSize() entries; those beyond n must be and remain zero.
   /// Cost: n^2 flops; reads 4 n^2 bytes.
   void solve(double* x) const;
 
@@ -39,17 +39,17 @@ class PackedSamples {
   /// samples: d x n. Samples beyond n, up to a whole chunk, are zero.
   explicit PackedSamples(const Eigen::MatrixXd& samples);
 
-  Index padded_size() const { return chunks_ * kChunk; }
+  Index paddedSize() const { return chunks_ * kChunk; }
 
   /// Distances under several weightings at once:
   ///   squares(i, t) = sum over features f of weights(t, f) (sample_fi - point_f)^2,   t < kWeightings,
-  /// with weights column-major (kWeightings x d) and squares' columns padded_size() apart.
+  /// with weights column-major (kWeightings x d) and squares' columns paddedSize() apart.
   /// Cost: 2 n d (1 + kWeightings) flops; kWeightings is 1 or 4.
   template <int kWeightings>
-  void weighted_distances(const double* point, const double* weights, double* squares) const;
+  void weightedDistances(const double* point, const double* weights, double* squares) const;
 
   /// values(i) += sum over features of sample_fi weights_f. Cost: 2 n d.
-  void add_product(const double* weights, double* values) const;
+  void addProduct(const double* weights, double* values) const;
 
  private:
   Index features_ = 0;

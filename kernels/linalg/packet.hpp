@@ -24,7 +24,7 @@ inline void store(double* target, Packet value) {
 
 /// Copies the kLanes x kLanes block whose row r is contiguous at source + r * stride, transposed: its column
 /// p becomes contiguous at target + p * target_stride.
-inline void copy_transposed(const double* source, Index stride, double* target, Index target_stride) {
+inline void copyTransposed(const double* source, Index stride, double* target, Index target_stride) {
   Packet row[kLanes];
   for (Index r = 0; r < kLanes; ++r) row[r] = load(source + r * stride);
 #ifdef __AVX512F__

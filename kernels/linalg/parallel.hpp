@@ -9,7 +9,7 @@ namespace twinmap::linalg {
 /// Calls action(index, thread) for every index below `count`, in chunks dealt to `threads` threads as they
 /// become free. With one thread it is a plain loop: a nested OpenMP region of one would allocate.
 template <typename Action>
-void parallel_for(int threads, Index count, Index chunk, const Action& action) {
+void parallelFor(int threads, Index count, Index chunk, const Action& action) {
   if (threads == 1) {
     for (Index i = 0; i < count; ++i) action(i, 0);
     return;

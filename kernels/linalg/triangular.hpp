@@ -30,23 +30,23 @@ class TriangularScratch {
 /// Factorises the symmetric positive definite a = L L' in place; reads and writes the lower triangle (what
 /// lies above the diagonal is overwritten with finite rubbish). False if a pivot is not positive and finite:
 /// a is then destroyed. Cost: n^3 / 3 flops.
-[[nodiscard]] bool factorize_cholesky(View a, TriangularScratch& scratch);
+[[nodiscard]] bool factorizeCholesky(View a, TriangularScratch& scratch);
 
 /// b = b L^-T for lower triangular L (n x n) and b (m x n). Cost: m n^2 flops.
-void solve_transposed_from_right(ConstView lower, View b, TriangularScratch& scratch);
+void solveTransposedFromRight(ConstView lower, View b, TriangularScratch& scratch);
 
 /// x = L^-1 x for one vector. Cost: n^2 flops.
-void solve_lower(ConstView lower, double* x);
+void solveLower(ConstView lower, double* x);
 
 /// x = L^-T x for one vector. Cost: n^2 flops.
-void solve_lower_transposed(ConstView lower, double* x);
+void solveLowerTransposed(ConstView lower, double* x);
 
 /// Replaces the lower triangular L by its inverse, and what lies above the diagonal by zeros.
 /// Cost: n^3 / 3 flops.
-void invert_lower(View lower, TriangularScratch& scratch);
+void invertLower(View lower, TriangularScratch& scratch);
 
 /// Replaces the lower triangular M (zeros above) by the lower triangle of M' M. With M = L^-1 this is the
 /// inverse of L L'. Cost: n^3 / 3 flops.
-void multiply_transposed_by_self(View lower, TriangularScratch& scratch);
+void multiplyTransposedBySelf(View lower, TriangularScratch& scratch);
 
 }  // namespace twinmap::linalg

@@ -38,10 +38,10 @@ struct View {
   ConstView transposed() const { return ConstView(*this).transposed(); }
 };
 
-inline View view_of(Eigen::MatrixXd& matrix) {
+inline View viewOf(Eigen::MatrixXd& matrix) {
   return {matrix.data(), matrix.rows(), matrix.cols(), matrix.rows()};
 }
-inline ConstView view_of(const Eigen::MatrixXd& matrix) {
+inline ConstView viewOf(const Eigen::MatrixXd& matrix) {
   return {matrix.data(), matrix.rows(), matrix.cols(), 1, matrix.rows()};
 }
 

@@ -25,7 +25,7 @@ MatrixXd select(const Eigen::Ref<const MatrixXd>& inputs, const std::vector<Inde
 
 }  // namespace
 
-std::vector<Index> spread_indices(Index size, Index count) {
+std::vector<Index> spreadIndices(Index size, Index count) {
   std::vector<Index> indices(std::min(size, count));
   for (Index i = 0; i < static_cast<Index>(indices.size()); ++i) {
     indices[i] = i * size / static_cast<Index>(indices.size());
@@ -33,12 +33,12 @@ std::vector<Index> spread_indices(Index size, Index count) {
   return indices;
 }
 
-MatrixXd choose_inducing_points(const Eigen::Ref<const MatrixXd>& inputs, const ModelStructure& structure,
-                                const Hyperparameters& hyperparameters, Index count) {
-  const MatrixXd candidates = select(inputs, spread_indices(inputs.cols(), kCandidatesPerPoint * count));
-  const VectorXd scales = length_scale_of_features(structure, hyperparameters, inputs.rows());
-  const MatrixXd scaled = scales.cwiseInverse().asDiagonal() * (candidates.colwise() - calc_center(inputs));
-  VectorXd variance = calc_prior_variance(structure, hyperparameters, scaled);
+MatrixXd chooseInducingPoints(const Eigen::Ref<const MatrixXd>& inputs, const ModelStructure& structure,
+                              const Hyperparameters& hyperparameters, Index count) {
+  const MatrixXd candidates = select(inputs, spreadIndices(inputs.cols(), kCandidatesPerPoint * count));
+  const VectorXd scales = lengthScaleOfFeatures(structure, hyperparameters, inputs.rows());
+  const MatrixXd scaled = scales.cwiseInverse().asDiagonal() * (candidates.colwise() - calcCenter(inputs));
+  VectorXd variance = calcPriorVariance(structure, hyperparameters, scaled);
   const double least = kDetermined * variance.maxCoeff();
   MatrixXd factor(candidates.cols(), std::min(count, candidates.cols()));
   std::vector<Index> pivots;
@@ -46,7 +46,7 @@ MatrixXd choose_inducing_points(const Eigen::Ref<const MatrixXd>& inputs, const 
     Index pivot = 0;
     if (variance.maxCoeff(&pivot) <= least) break;
     auto column = factor.col(k);
-    column = calc_cross_covariance(structure, hyperparameters, scaled, scaled.col(pivot));
+    column = calcCrossCovariance(structure, hyperparameters, scaled, scaled.col(pivot));
     for (Index j = 0; j < k; ++j) column -= factor(pivot, j) * factor.col(j);
     column /= std::sqrt(variance(pivot));
     variance = (variance - column.cwiseAbs2()).cwiseMax(0.0);

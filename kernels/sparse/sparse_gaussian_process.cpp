@@ -14,7 +14,7 @@ namespace twinmap::gp {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using linalg::view_of;
+using linalg::viewOf;
 
 namespace {
 
@@ -24,14 +24,14 @@ void require(bool condition, const char* message) {
   if (!condition) throw std::invalid_argument(std::string("SparseGaussianProcess: ") + message);
 }
 
-void check_parts(const SparseGaussianProcessParts& parts) {
+void checkParts(const SparseGaussianProcessParts& parts) {
   const VariationalPosterior& posterior = parts.posterior;
   const Index m = parts.inducing.cols(), d = parts.inducing.rows();
-  const Index p = mean_coefficient_count(parts.structure, d);
+  const Index p = getMeanCoefficientCount(parts.structure, d);
   require(m > 0 && d > 0, "there are no inducing inputs");
-  check_structure(parts.structure, d);
-  check_hyperparameters(parts.structure, parts.hyperparameters);
-  check_inputs(parts.inducing, "SparseGaussianProcess inducing inputs");
+  checkStructure(parts.structure, d);
+  checkHyperparameters(parts.structure, parts.hyperparameters);
+  checkInputs(parts.inducing, "SparseGaussianProcess inducing inputs");
   require(parts.center.size() == d && parts.center.allFinite(), "the centre needs one number per feature");
   require(posterior.inducing_factor.rows() == m && posterior.inducing_factor.cols() == m &&
               posterior.correction_factor.rows() == m && posterior.correction_factor.cols() == m,
@@ -49,47 +49,47 @@ void check_parts(const SparseGaussianProcessParts& parts) {
 }  // namespace
 
 SparseGaussianProcess::SparseGaussianProcess(SparseGaussianProcessParts parts) : parts_(std::move(parts)) {
-  check_parts(parts_);
+  checkParts(parts_);
   inverse_length_scales_ =
-      length_scale_of_features(parts_.structure, parts_.hyperparameters, feature_count()).cwiseInverse();
+      lengthScaleOfFeatures(parts_.structure, parts_.hyperparameters, getFeatureCount()).cwiseInverse();
   scaled_inducing_ = inverse_length_scales_.asDiagonal() * (parts_.inducing.colwise() - parts_.center);
 }
 
 Prediction SparseGaussianProcess::predict(const Eigen::Ref<const MatrixXd>& inputs) const {
-  require(inputs.rows() == feature_count(), "the inputs have another number of features than the process");
-  check_inputs(inputs, "SparseGaussianProcess::predict inputs");
+  require(inputs.rows() == getFeatureCount(), "the inputs have another number of features than the process");
+  checkInputs(inputs, "SparseGaussianProcess::predict inputs");
   const linalg::FlushDenormals flush;
   Prediction prediction;
   prediction.mean.resize(inputs.cols());
   prediction.latent_variance.resize(inputs.cols());
   for (Index first = 0; first < inputs.cols(); first += kBlock) {
-    predict_block(inputs.middleCols(first, std::min(kBlock, inputs.cols() - first)), first, prediction);
+    predictBlock(inputs.middleCols(first, std::min(kBlock, inputs.cols() - first)), first, prediction);
   }
   const double noise_stddev = parts_.hyperparameters.noise_stddev;
   prediction.variance = prediction.latent_variance.array() + noise_stddev * noise_stddev;
   return prediction;
 }
 
-void SparseGaussianProcess::predict_block(const Eigen::Ref<const MatrixXd>& inputs, Index first,
-                                          Prediction& prediction) const {
+void SparseGaussianProcess::predictBlock(const Eigen::Ref<const MatrixXd>& inputs, Index first,
+                                         Prediction& prediction) const {
   const VariationalPosterior& posterior = parts_.posterior;
   const MatrixXd centered = inputs.colwise() - parts_.center;
   const MatrixXd scaled = inverse_length_scales_.asDiagonal() * centered;
-  MatrixXd a = calc_cross_covariance(parts_.structure, parts_.hyperparameters, scaled, scaled_inducing_);
+  MatrixXd a = calcCrossCovariance(parts_.structure, parts_.hyperparameters, scaled, scaled_inducing_);
   VectorXd mean = VectorXd::Zero(inputs.cols());
-  for (Index j = 0; j < inducing_count(); ++j) mean += posterior.weights(j) * a.col(j);
-  VectorXd variance = calc_prior_variance(parts_.structure, parts_.hyperparameters, scaled);
+  for (Index j = 0; j < getInducingCount(); ++j) mean += posterior.weights(j) * a.col(j);
+  VectorXd variance = calcPriorVariance(parts_.structure, parts_.hyperparameters, scaled);
   linalg::TriangularScratch scratch(inputs.cols());
-  linalg::solve_transposed_from_right(view_of(posterior.inducing_factor), view_of(a), scratch);
-  for (Index j = 0; j < inducing_count(); ++j) variance -= a.col(j).cwiseAbs2();
-  linalg::solve_transposed_from_right(view_of(posterior.correction_factor), view_of(a), scratch);
-  for (Index j = 0; j < inducing_count(); ++j) variance += a.col(j).cwiseAbs2();
+  linalg::solveTransposedFromRight(viewOf(posterior.inducing_factor), viewOf(a), scratch);
+  for (Index j = 0; j < getInducingCount(); ++j) variance -= a.col(j).cwiseAbs2();
+  linalg::solveTransposedFromRight(viewOf(posterior.correction_factor), viewOf(a), scratch);
+  for (Index j = 0; j < getInducingCount(); ++j) variance += a.col(j).cwiseAbs2();
   if (posterior.mean_coefficients.size() > 0) {
-    MatrixXd error = calc_mean_basis(parts_.structure.mean, centered);
+    MatrixXd error = calcMeanBasis(parts_.structure.mean, centered);
     for (Index k = 0; k < error.cols(); ++k) mean += posterior.mean_coefficients(k) * error.col(k);
-    linalg::gemm(-1.0 / parts_.hyperparameters.noise_stddev, view_of(a), view_of(posterior.whitened_basis),
-                 1.0, view_of(error), scratch.gemm());
-    linalg::solve_transposed_from_right(view_of(posterior.basis_factor), view_of(error), scratch);
+    linalg::gemm(-1.0 / parts_.hyperparameters.noise_stddev, viewOf(a), viewOf(posterior.whitened_basis), 1.0,
+                 viewOf(error), scratch.gemm());
+    linalg::solveTransposedFromRight(viewOf(posterior.basis_factor), viewOf(error), scratch);
     for (Index k = 0; k < error.cols(); ++k) variance += error.col(k).cwiseAbs2();
   }
   prediction.mean.segment(first, inputs.cols()) = mean;

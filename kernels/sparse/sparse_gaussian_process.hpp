@@ -25,17 +25,17 @@ class SparseGaussianProcess {
   /// Throws std::invalid_argument if the parts do not fit each other or a number is not finite.
   explicit SparseGaussianProcess(SparseGaussianProcessParts parts);
 
-  const SparseGaussianProcessParts& parts() const { return parts_; }
-  const Hyperparameters& hyperparameters() const { return parts_.hyperparameters; }
-  Eigen::Index feature_count() const { return parts_.inducing.rows(); }
-  Eigen::Index inducing_count() const { return parts_.inducing.cols(); }
+  const SparseGaussianProcessParts& getParts() const { return parts_; }
+  const Hyperparameters& getHyperparameters() const { return parts_.hyperparameters; }
+  Eigen::Index getFeatureCount() const { return parts_.inducing.rows(); }
+  Eigen::Index getInducingCount() const { return parts_.inducing.cols(); }
 
   /// inputs: d x k, finite (else std::invalid_argument). Cost: 2 k m (m + d) flops.
   Prediction predict(const Eigen::Ref<const Eigen::MatrixXd>& inputs) const;
 
  private:
-  void predict_block(const Eigen::Ref<const Eigen::MatrixXd>& inputs, Eigen::Index first,
-                     Prediction& prediction) const;
+  void predictBlock(const Eigen::Ref<const Eigen::MatrixXd>& inputs, Eigen::Index first,
+                    Prediction& prediction) const;
 
   SparseGaussianProcessParts parts_;
   Eigen::VectorXd inverse_length_scales_;

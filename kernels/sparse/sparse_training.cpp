@@ -22,7 +22,7 @@ namespace {
 // better.
 constexpr int kRounds = 2;
 
-void check_options(const SparseOptions& sparse, const ModelStructure& structure) {
+void checkOptions(const SparseOptions& sparse, const ModelStructure& structure) {
   const auto require = [](bool condition, const char* rule) {
     if (!condition) throw std::invalid_argument(std::string("SparseOptions: ") + rule);
   };
@@ -32,7 +32,7 @@ void check_options(const SparseOptions& sparse, const ModelStructure& structure)
   require(!structure.linear_term, "sparse processes have no linear covariance term; use a linear mean");
 }
 
-MatrixXd select_columns(const Eigen::Ref<const MatrixXd>& matrix, const std::vector<Index>& indices) {
+MatrixXd selectColumns(const Eigen::Ref<const MatrixXd>& matrix, const std::vector<Index>& indices) {
   MatrixXd selected(matrix.rows(), static_cast<Index>(indices.size()));
   for (Index i = 0; i < selected.cols(); ++i) selected.col(i) = matrix.col(indices[i]);
   return selected;
@@ -44,32 +44,32 @@ Hyperparameters refine(const VariationalBound& bound, const MatrixXd& subset, co
                        const Hyperparameters& start, SparseTrainingResult& result) {
   const TrainingSet set(subset, structure);
   const double stddev = std::sqrt((target.array() - target.mean()).square().mean());
-  const SearchBox box = make_search_box(set, calc_data_scales(set), stddev, options);
+  const SearchBox box = makeSearchBox(set, calcDataScales(set), stddev, options);
   const Objective objective = [&](const VectorXd& point, VectorXd& gradient) {
-    return bound.evaluate(from_log(structure, point), gradient);
+    return bound.evaluate(fromLog(structure, point), gradient);
   };
   const SearchResult found =
-      minimize(objective, target.size(), to_log(structure, start), box, evaluations, options.tolerance);
+      minimize(objective, target.size(), toLog(structure, start), box, evaluations, options.tolerance);
   result.refine_evaluations += found.evaluations;
-  return std::isfinite(found.objective) ? from_log(structure, found.end) : start;
+  return std::isfinite(found.objective) ? fromLog(structure, found.end) : start;
 }
 
-void fit_sparse(const MatrixXd& inputs, const VectorXd& target, const MatrixXd& subset,
-                const ModelStructure& structure, const TrainingOptions& options, const SparseOptions& sparse,
-                const Hyperparameters& start, SparseTrainingResult& result) {
-  SparseGaussianProcessParts parts{structure, start, calc_center(inputs), {}, {}};
+void fitSparse(const MatrixXd& inputs, const VectorXd& target, const MatrixXd& subset,
+               const ModelStructure& structure, const TrainingOptions& options, const SparseOptions& sparse,
+               const Hyperparameters& start, SparseTrainingResult& result) {
+  SparseGaussianProcessParts parts{structure, start, calcCenter(inputs), {}, {}};
   bool definite = true;
   for (int round = 0; round < kRounds && definite; ++round) {
-    parts.inducing = choose_inducing_points(inputs, structure, parts.hyperparameters, sparse.inducing);
+    parts.inducing = chooseInducingPoints(inputs, structure, parts.hyperparameters, sparse.inducing);
     const VariationalBound bound(inputs, target, parts.inducing, structure);
-    if (round == 0 && bound.calc_posterior(start, parts.posterior))
+    if (round == 0 && bound.calcPosterior(start, parts.posterior))
       result.subset_bound = parts.posterior.bound;
     const int evaluations = sparse.refine_evaluations / kRounds;
     if (evaluations > 0) {
       parts.hyperparameters =
           refine(bound, subset, target, structure, options, evaluations, parts.hyperparameters, result);
     }
-    definite = bound.calc_posterior(parts.hyperparameters, parts.posterior);
+    definite = bound.calcPosterior(parts.hyperparameters, parts.posterior);
   }
   if (!definite) {
     result.status = TrainingStatus::kFailed;
@@ -83,20 +83,20 @@ void fit_sparse(const MatrixXd& inputs, const VectorXd& target, const MatrixXd& 
 
 }  // namespace
 
-std::vector<SparseTrainingResult> train_sparse(const Eigen::Ref<const MatrixXd>& inputs,
-                                               const Eigen::Ref<const MatrixXd>& targets,
-                                               const ModelStructure& structure,
-                                               const TrainingOptions& options, const SparseOptions& sparse) {
-  check_options(sparse, structure);
-  check_inputs(inputs, "train_sparse: inputs");
-  check_inputs(targets, "train_sparse: targets");
+std::vector<SparseTrainingResult> trainSparse(const Eigen::Ref<const MatrixXd>& inputs,
+                                              const Eigen::Ref<const MatrixXd>& targets,
+                                              const ModelStructure& structure, const TrainingOptions& options,
+                                              const SparseOptions& sparse) {
+  checkOptions(sparse, structure);
+  checkInputs(inputs, "train_sparse: inputs");
+  checkInputs(targets, "train_sparse: targets");
   if (targets.cols() != inputs.cols()) {
     throw std::invalid_argument("train_sparse: the targets have " + std::to_string(targets.cols()) +
                                 " columns for " + std::to_string(inputs.cols()) + " training samples");
   }
-  const std::vector<Index> indices = spread_indices(inputs.cols(), sparse.subset);
-  const MatrixXd all = inputs, subset = select_columns(inputs, indices);
-  const auto exact = train(subset, select_columns(targets, indices), structure, options);
+  const std::vector<Index> indices = spreadIndices(inputs.cols(), sparse.subset);
+  const MatrixXd all = inputs, subset = selectColumns(inputs, indices);
+  const auto exact = train(subset, selectColumns(targets, indices), structure, options);
   std::vector<SparseTrainingResult> results(exact.size());
   const int count = static_cast<int>(exact.size());
 #pragma omp parallel for schedule(dynamic, 1) num_threads(std::max(1, std::min(options.threads, count)))
@@ -106,7 +106,7 @@ std::vector<SparseTrainingResult> train_sparse(const Eigen::Ref<const MatrixXd>&
     results[t].subset_report = exact[t].report;
     if (!exact[t].gp) continue;
     const VectorXd target = targets.row(t).transpose();
-    fit_sparse(all, target, subset, structure, options, sparse, exact[t].gp->hyperparameters(), results[t]);
+    fitSparse(all, target, subset, structure, options, sparse, exact[t].gp->getHyperparameters(), results[t]);
   }
   return results;
 }

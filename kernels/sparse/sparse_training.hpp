@@ -37,10 +37,10 @@ struct SparseTrainingResult {
 /// Structures with a linear covariance term, and options out of range, are std::invalid_argument, as is what
 /// train refuses. Results do not depend on the number of threads.
 /// Cost: train on the subset, then 5 n m^2 flops per refining evaluation; memory O(m^2 + m d) per thread.
-std::vector<SparseTrainingResult> train_sparse(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
-                                               const Eigen::Ref<const Eigen::MatrixXd>& targets,
-                                               const ModelStructure& structure,
-                                               const TrainingOptions& options = {},
-                                               const SparseOptions& sparse = {});
+std::vector<SparseTrainingResult> trainSparse(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                                              const Eigen::Ref<const Eigen::MatrixXd>& targets,
+                                              const ModelStructure& structure,
+                                              const TrainingOptions& options = {},
+                                              const SparseOptions& sparse = {});
 
 }  // namespace twinmap::gp

@@ -14,7 +14,7 @@ namespace twinmap::gp {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using linalg::view_of;
+using linalg::viewOf;
 
 namespace {
 
@@ -23,33 +23,33 @@ constexpr double kLogTwoPi = 1.8378770664093454836;
 constexpr double kFirstJitter = 1e-10;  // relative to s_f^2; K_uu has no noise to keep it definite
 constexpr double kLastJitter = 1e-5;
 
-MatrixXd lower_part(const MatrixXd& matrix) {
+MatrixXd lowerPart(const MatrixXd& matrix) {
   return matrix.triangularView<Eigen::Lower>();
 }
 
-MatrixXd symmetric_from_lower(const MatrixXd& matrix) {
+MatrixXd symmetricFromLower(const MatrixXd& matrix) {
   return matrix.selfadjointView<Eigen::Lower>();
 }
 
 MatrixXd multiply(linalg::ConstView a, linalg::ConstView b, linalg::GemmScratch& scratch) {
   MatrixXd product(a.rows, b.cols);
-  linalg::gemm(1.0, a, b, 0.0, view_of(product), scratch);
+  linalg::gemm(1.0, a, b, 0.0, viewOf(product), scratch);
   return product;
 }
 
 // columns = L^-T columns
-void solve_columns_transposed(const MatrixXd& lower, Eigen::Ref<MatrixXd> columns) {
+void solveColumnsTransposed(const MatrixXd& lower, Eigen::Ref<MatrixXd> columns) {
   for (Index k = 0; k < columns.cols(); ++k) {
-    linalg::solve_lower_transposed(view_of(lower), columns.col(k).data());
+    linalg::solveLowerTransposed(viewOf(lower), columns.col(k).data());
   }
 }
 
 // sums(g) += sum over i, j and the features of group g of T_ij (x_fi - z_fj)^2, x and z in length scales.
-void add_contraction(const MatrixXd& t, const MatrixXd& x, const MatrixXd& z, const std::vector<int>& groups,
-                     linalg::GemmScratch& scratch, VectorXd& sums) {
+void addContraction(const MatrixXd& t, const MatrixXd& x, const MatrixXd& z, const std::vector<int>& groups,
+                    linalg::GemmScratch& scratch, VectorXd& sums) {
   const VectorXd row_sums = t.rowwise().sum();
   const VectorXd column_sums = t.colwise().sum().transpose();
-  const MatrixXd product = multiply(view_of(x), view_of(t), scratch);
+  const MatrixXd product = multiply(viewOf(x), viewOf(t), scratch);
   for (Index f = 0; f < x.rows(); ++f) {
     sums(groups.empty() ? 0 : groups[f]) += row_sums.dot(x.row(f).cwiseAbs2().transpose()) +
                                             column_sums.dot(z.row(f).cwiseAbs2().transpose()) -
@@ -73,27 +73,27 @@ VariationalBound::VariationalBound(const MatrixXd& inputs, const VectorXd& targe
       target_(target),
       inducing_(inducing),
       structure_(structure),
-      center_(calc_center(inputs)) {
+      center_(calcCenter(inputs)) {
   if (structure.linear_term) {
     throw std::invalid_argument("sparse processes have no linear covariance term; use a linear mean instead");
   }
 }
 
-MatrixXd VariationalBound::scaled_block(const Hyperparameters& hyperparameters, Index first) const {
+MatrixXd VariationalBound::scaledBlock(const Hyperparameters& hyperparameters, Index first) const {
   const Index count = std::min(kBlock, inputs_.cols() - first);
-  const VectorXd scales = length_scale_of_features(structure_, hyperparameters, inputs_.rows());
+  const VectorXd scales = lengthScaleOfFeatures(structure_, hyperparameters, inputs_.rows());
   return scales.cwiseInverse().asDiagonal() * (inputs_.middleCols(first, count).colwise() - center_);
 }
 
-MatrixXd VariationalBound::scaled_inducing(const Hyperparameters& hyperparameters) const {
-  const VectorXd scales = length_scale_of_features(structure_, hyperparameters, inputs_.rows());
+MatrixXd VariationalBound::scaledInducing(const Hyperparameters& hyperparameters) const {
+  const VectorXd scales = lengthScaleOfFeatures(structure_, hyperparameters, inputs_.rows());
   return scales.cwiseInverse().asDiagonal() * (inducing_.colwise() - center_);
 }
 
-MatrixXd VariationalBound::right_hand_sides(Index first) const {
+MatrixXd VariationalBound::rightHandSides(Index first) const {
   const Index count = std::min(kBlock, inputs_.cols() - first);
   const MatrixXd centered = inputs_.middleCols(first, count).colwise() - center_;
-  const MatrixXd basis = calc_mean_basis(structure_.mean, centered);
+  const MatrixXd basis = calcMeanBasis(structure_.mean, centered);
   MatrixXd right(count, 1 + basis.cols());
   right << target_.segment(first, count), basis;
   return right;
@@ -102,68 +102,68 @@ MatrixXd VariationalBound::right_hand_sides(Index first) const {
 VariationalBound::Sums VariationalBound::accumulate(const Hyperparameters& hyperparameters,
                                                     const MatrixXd& inducing_factor) const {
   const Index m = inducing_.cols();
-  const Index columns = 1 + mean_coefficient_count(structure_, inputs_.rows());
+  const Index columns = 1 + getMeanCoefficientCount(structure_, inputs_.rows());
   Sums sums{MatrixXd::Zero(m, m), MatrixXd::Zero(m, columns), MatrixXd::Zero(columns, columns), {}};
   linalg::TriangularScratch scratch(std::max(m, kBlock));
-  const MatrixXd z = scaled_inducing(hyperparameters);
+  const MatrixXd z = scaledInducing(hyperparameters);
   for (Index first = 0; first < inputs_.cols(); first += kBlock) {
-    const MatrixXd x = scaled_block(hyperparameters, first);
-    MatrixXd a = calc_cross_covariance(structure_, hyperparameters, x, z);  // K_fu, then A' of the block
-    linalg::solve_transposed_from_right(view_of(inducing_factor), view_of(a), scratch);
-    const MatrixXd right = right_hand_sides(first);
-    const linalg::ConstView a_view = view_of(a), right_view = view_of(right);
-    linalg::gemm(1.0, a_view.transposed(), a_view, 1.0, view_of(sums.aa), scratch.gemm(),
+    const MatrixXd x = scaledBlock(hyperparameters, first);
+    MatrixXd a = calcCrossCovariance(structure_, hyperparameters, x, z);  // K_fu, then A' of the block
+    linalg::solveTransposedFromRight(viewOf(inducing_factor), viewOf(a), scratch);
+    const MatrixXd right = rightHandSides(first);
+    const linalg::ConstView a_view = viewOf(a), right_view = viewOf(right);
+    linalg::gemm(1.0, a_view.transposed(), a_view, 1.0, viewOf(sums.aa), scratch.gemm(),
                  linalg::Part::kLower);
-    linalg::gemm(1.0, a_view.transposed(), right_view, 1.0, view_of(sums.ar), scratch.gemm());
-    linalg::gemm(1.0, right_view.transposed(), right_view, 1.0, view_of(sums.rr), scratch.gemm());
+    linalg::gemm(1.0, a_view.transposed(), right_view, 1.0, viewOf(sums.ar), scratch.gemm());
+    linalg::gemm(1.0, right_view.transposed(), right_view, 1.0, viewOf(sums.rr), scratch.gemm());
   }
   return sums;
 }
 
-bool VariationalBound::factorize_inducing(const Hyperparameters& hyperparameters,
-                                          VariationalPosterior& posterior) const {
+bool VariationalBound::factorizeInducing(const Hyperparameters& hyperparameters,
+                                         VariationalPosterior& posterior) const {
   const double signal_variance = hyperparameters.signal_stddev * hyperparameters.signal_stddev;
-  const MatrixXd z = scaled_inducing(hyperparameters);
-  const MatrixXd prior = calc_cross_covariance(structure_, hyperparameters, z, z);
+  const MatrixXd z = scaledInducing(hyperparameters);
+  const MatrixXd prior = calcCrossCovariance(structure_, hyperparameters, z, z);
   linalg::TriangularScratch scratch(z.cols());
   for (double relative = kFirstJitter; relative < 2.0 * kLastJitter; relative *= 10.0) {
     posterior.jitter = relative * signal_variance;
     posterior.inducing_factor = prior;
     posterior.inducing_factor.diagonal().array() += posterior.jitter;
-    if (!linalg::factorize_cholesky(view_of(posterior.inducing_factor), scratch)) continue;
-    posterior.inducing_factor = lower_part(posterior.inducing_factor);
+    if (!linalg::factorizeCholesky(viewOf(posterior.inducing_factor), scratch)) continue;
+    posterior.inducing_factor = lowerPart(posterior.inducing_factor);
     return true;
   }
   return false;
 }
 
-bool VariationalBound::factorize_correction(double noise_stddev, Sums& sums,
-                                            VariationalPosterior& posterior) const {
+bool VariationalBound::factorizeCorrection(double noise_stddev, Sums& sums,
+                                           VariationalPosterior& posterior) const {
   linalg::TriangularScratch scratch(inducing_.cols());
   posterior.correction_factor = sums.aa / (noise_stddev * noise_stddev);
   posterior.correction_factor.diagonal().array() += 1.0;
-  if (!linalg::factorize_cholesky(view_of(posterior.correction_factor), scratch)) return false;
-  posterior.correction_factor = lower_part(posterior.correction_factor);
+  if (!linalg::factorizeCholesky(viewOf(posterior.correction_factor), scratch)) return false;
+  posterior.correction_factor = lowerPart(posterior.correction_factor);
   sums.v = sums.ar / noise_stddev;
   for (Index k = 0; k < sums.v.cols(); ++k) {
-    linalg::solve_lower(view_of(posterior.correction_factor), sums.v.col(k).data());
+    linalg::solveLower(viewOf(posterior.correction_factor), sums.v.col(k).data());
   }
   return true;
 }
 
 // Generalised least squares on `products`, whose element (u, v) is u'P^-1 v of the columns of R; b and R go
 // into the posterior. Returns the quadratic term; NaN if the basis is rank deficient.
-double VariationalBound::fit_mean(const MatrixXd& products, VariationalPosterior& posterior) {
+double VariationalBound::fitMean(const MatrixXd& products, VariationalPosterior& posterior) {
   const Index p = products.cols() - 1;
   posterior.basis_factor = products.bottomRightCorner(p, p);
   posterior.mean_coefficients = products.bottomLeftCorner(p, 1);
   if (p == 0) return products(0, 0);
   linalg::TriangularScratch scratch(p);
-  if (!linalg::factorize_cholesky(view_of(posterior.basis_factor), scratch)) return std::nan("");
-  posterior.basis_factor = lower_part(posterior.basis_factor);
-  linalg::solve_lower(view_of(posterior.basis_factor), posterior.mean_coefficients.data());
+  if (!linalg::factorizeCholesky(viewOf(posterior.basis_factor), scratch)) return std::nan("");
+  posterior.basis_factor = lowerPart(posterior.basis_factor);
+  linalg::solveLower(viewOf(posterior.basis_factor), posterior.mean_coefficients.data());
   const double explained = posterior.mean_coefficients.squaredNorm();
-  linalg::solve_lower_transposed(view_of(posterior.basis_factor), posterior.mean_coefficients.data());
+  linalg::solveLowerTransposed(viewOf(posterior.basis_factor), posterior.mean_coefficients.data());
   return products(0, 0) - explained;
 }
 
@@ -172,36 +172,36 @@ bool VariationalBound::solve(const Hyperparameters& hyperparameters, Variational
                              Sums& sums) const {
   const double noise_stddev = hyperparameters.noise_stddev;
   const double noise_variance = noise_stddev * noise_stddev;
-  if (!factorize_inducing(hyperparameters, posterior)) return false;
+  if (!factorizeInducing(hyperparameters, posterior)) return false;
   sums = accumulate(hyperparameters, posterior.inducing_factor);
-  if (!factorize_correction(noise_stddev, sums, posterior)) return false;
+  if (!factorizeCorrection(noise_stddev, sums, posterior)) return false;
   linalg::GemmScratch scratch;
-  const MatrixXd explained = multiply(view_of(sums.v).transposed(), view_of(sums.v), scratch);
-  const double quadratic = fit_mean((sums.rr - explained) / noise_variance, posterior);
+  const MatrixXd explained = multiply(viewOf(sums.v).transposed(), viewOf(sums.v), scratch);
+  const double quadratic = fitMean((sums.rr - explained) / noise_variance, posterior);
   const auto n = static_cast<double>(inputs_.cols());
   const auto p = static_cast<double>(posterior.mean_coefficients.size());
   posterior.bound = 0.5 * quadratic + n * std::log(noise_stddev) + 0.5 * (n - p) * kLogTwoPi +
                     posterior.correction_factor.diagonal().array().log().sum() +
                     posterior.basis_factor.diagonal().array().log().sum() +
-                    0.5 * missed_variance(hyperparameters, sums) / noise_variance;
+                    0.5 * missedVariance(hyperparameters, sums) / noise_variance;
   posterior.whitened_basis = sums.v.rightCols(posterior.mean_coefficients.size());
   posterior.weights = (sums.v.col(0) - posterior.whitened_basis * posterior.mean_coefficients) / noise_stddev;
-  solve_columns_transposed(posterior.correction_factor, posterior.weights);
+  solveColumnsTransposed(posterior.correction_factor, posterior.weights);
   return std::isfinite(posterior.bound);
 }
 
 // n s_f^2 - tr Q: what the inducing inputs leave undetermined.
-double VariationalBound::missed_variance(const Hyperparameters& hyperparameters, const Sums& sums) const {
+double VariationalBound::missedVariance(const Hyperparameters& hyperparameters, const Sums& sums) const {
   const double signal_variance = hyperparameters.signal_stddev * hyperparameters.signal_stddev;
   return std::max(0.0, static_cast<double>(inputs_.cols()) * signal_variance - sums.aa.trace());
 }
 
-bool VariationalBound::calc_posterior(const Hyperparameters& hyperparameters,
-                                      VariationalPosterior& posterior) const {
+bool VariationalBound::calcPosterior(const Hyperparameters& hyperparameters,
+                                     VariationalPosterior& posterior) const {
   const linalg::FlushDenormals flush;
   Sums sums;
   if (!solve(hyperparameters, posterior, sums)) return false;
-  solve_columns_transposed(posterior.inducing_factor, posterior.weights);
+  solveColumnsTransposed(posterior.inducing_factor, posterior.weights);
   return true;
 }
 
@@ -228,60 +228,59 @@ VariationalBound::Gradients::Gradients(const VariationalPosterior& posterior, do
       inverse_b(posterior.correction_factor) {
   const Index m = solutions.rows(), p = solutions.cols() - 1;
   solutions << posterior.weights, posterior.whitened_basis / noise_stddev;
-  solve_columns_transposed(posterior.correction_factor, solutions.rightCols(p));
+  solveColumnsTransposed(posterior.correction_factor, solutions.rightCols(p));
   ac = solutions;
   if (p > 0) {
-    linalg::solve_transposed_from_right(view_of(posterior.basis_factor), view_of(ac).block(0, 1, m, p),
-                                        scratch);
+    linalg::solveTransposedFromRight(viewOf(posterior.basis_factor), viewOf(ac).block(0, 1, m, p), scratch);
   }
-  linalg::invert_lower(view_of(inverse_factor), scratch);
-  linalg::invert_lower(view_of(inverse_b), scratch);
-  linalg::multiply_transposed_by_self(view_of(inverse_b), scratch);
-  inverse_b = symmetric_from_lower(inverse_b);
+  linalg::invertLower(viewOf(inverse_factor), scratch);
+  linalg::invertLower(viewOf(inverse_b), scratch);
+  linalg::multiplyTransposedBySelf(viewOf(inverse_b), scratch);
+  inverse_b = symmetricFromLower(inverse_b);
   const MatrixXd shrinkage = (inverse_b - MatrixXd::Identity(m, m)) / (noise_stddev * noise_stddev);
-  e = multiply(view_of(shrinkage), view_of(inverse_factor), scratch.gemm());
-  d = multiply(view_of(ac).transposed(), view_of(inverse_factor), scratch.gemm());
+  e = multiply(viewOf(shrinkage), viewOf(inverse_factor), scratch.gemm());
+  d = multiply(viewOf(ac).transposed(), viewOf(inverse_factor), scratch.gemm());
 }
 
-void VariationalBound::add_samples(const Hyperparameters& hyperparameters,
-                                   const VariationalPosterior& posterior, const MatrixXd& z, Index first,
-                                   linalg::TriangularScratch& scratch, Gradients& gradients) const {
+void VariationalBound::addSamples(const Hyperparameters& hyperparameters,
+                                  const VariationalPosterior& posterior, const MatrixXd& z, Index first,
+                                  linalg::TriangularScratch& scratch, Gradients& gradients) const {
   const double noise_variance = hyperparameters.noise_stddev * hyperparameters.noise_stddev;
   const Index p = posterior.mean_coefficients.size();
-  const MatrixXd x = scaled_block(hyperparameters, first);
+  const MatrixXd x = scaledBlock(hyperparameters, first);
   MatrixXd weights;
-  MatrixXd a = calc_cross_covariance(structure_, hyperparameters, x, z, &weights);
-  linalg::solve_transposed_from_right(view_of(posterior.inducing_factor), view_of(a), scratch);
+  MatrixXd a = calcCrossCovariance(structure_, hyperparameters, x, z, &weights);
+  linalg::solveTransposedFromRight(viewOf(posterior.inducing_factor), viewOf(a), scratch);
   const VectorXd target = target_.segment(first, x.cols());
-  MatrixXd c = right_hand_sides(first);  // becomes C's rows of this block
+  MatrixXd c = rightHandSides(first);  // becomes C's rows of this block
   c.col(0) -= c.rightCols(p) * posterior.mean_coefficients;
-  linalg::gemm(-1.0, view_of(a), view_of(gradients.solutions), 1.0, view_of(c), scratch.gemm());
+  linalg::gemm(-1.0, viewOf(a), viewOf(gradients.solutions), 1.0, viewOf(c), scratch.gemm());
   c /= noise_variance;
   if (p > 0) {
-    linalg::solve_transposed_from_right(view_of(posterior.basis_factor), view_of(c).block(0, 1, c.rows(), p),
-                                        scratch);
+    linalg::solveTransposedFromRight(viewOf(posterior.basis_factor), viewOf(c).block(0, 1, c.rows(), p),
+                                     scratch);
   }
   gradients.alpha_times_target += c.col(0).dot(target);
   gradients.squared_corrections += c.squaredNorm();
-  MatrixXd t = multiply(view_of(a), view_of(gradients.e), scratch.gemm());
-  linalg::gemm(-1.0, view_of(c), view_of(gradients.d), 1.0, view_of(t), scratch.gemm());
+  MatrixXd t = multiply(viewOf(a), viewOf(gradients.e), scratch.gemm());
+  linalg::gemm(-1.0, viewOf(c), viewOf(gradients.d), 1.0, viewOf(t), scratch.gemm());
   t.array() *= weights.array();
-  add_contraction(t, x, z, structure_.length_scale_groups, scratch.gemm(), gradients.group_sums);
+  addContraction(t, x, z, structure_.length_scale_groups, scratch.gemm(), gradients.group_sums);
 }
 
-void VariationalBound::add_inducing(const Hyperparameters& hyperparameters, const MatrixXd& aa,
-                                    const MatrixXd& z, linalg::GemmScratch& scratch,
-                                    Gradients& gradients) const {
+void VariationalBound::addInducing(const Hyperparameters& hyperparameters, const MatrixXd& aa,
+                                   const MatrixXd& z, linalg::GemmScratch& scratch,
+                                   Gradients& gradients) const {
   const double noise_variance = hyperparameters.noise_stddev * hyperparameters.noise_stddev;
   const MatrixXd b_less_two = aa / noise_variance - MatrixXd::Identity(aa.rows(), aa.cols());
-  const MatrixXd inner = symmetric_from_lower(b_less_two) + gradients.inverse_b +
-                         multiply(view_of(gradients.ac), view_of(gradients.ac).transposed(), scratch);
-  const MatrixXd half = multiply(view_of(inner), view_of(gradients.inverse_factor), scratch);
-  MatrixXd t = 0.5 * multiply(view_of(gradients.inverse_factor).transposed(), view_of(half), scratch);
+  const MatrixXd inner = symmetricFromLower(b_less_two) + gradients.inverse_b +
+                         multiply(viewOf(gradients.ac), viewOf(gradients.ac).transposed(), scratch);
+  const MatrixXd half = multiply(viewOf(inner), viewOf(gradients.inverse_factor), scratch);
+  MatrixXd t = 0.5 * multiply(viewOf(gradients.inverse_factor).transposed(), viewOf(half), scratch);
   MatrixXd weights;
-  (void)calc_cross_covariance(structure_, hyperparameters, z, z, &weights);
+  (void)calcCrossCovariance(structure_, hyperparameters, z, z, &weights);
   t.array() *= weights.array();
-  add_contraction(t, z, z, structure_.length_scale_groups, scratch, gradients.group_sums);
+  addContraction(t, z, z, structure_.length_scale_groups, scratch, gradients.group_sums);
 }
 
 LikelihoodEvaluation VariationalBound::evaluate(const Hyperparameters& hyperparameters,
@@ -296,17 +295,17 @@ LikelihoodEvaluation VariationalBound::evaluate(const Hyperparameters& hyperpara
 
   linalg::TriangularScratch scratch(std::max(inducing_.cols(), kBlock));
   Gradients gradients(posterior, hyperparameters.noise_stddev, scratch);
-  gradients.group_sums = VectorXd::Zero(group_count(structure_));
-  const MatrixXd z = scaled_inducing(hyperparameters);
+  gradients.group_sums = VectorXd::Zero(getGroupCount(structure_));
+  const MatrixXd z = scaledInducing(hyperparameters);
   for (Index first = 0; first < inputs_.cols(); first += kBlock) {
-    add_samples(hyperparameters, posterior, z, first, scratch, gradients);
+    addSamples(hyperparameters, posterior, z, first, scratch, gradients);
   }
-  add_inducing(hyperparameters, sums.aa, z, scratch.gemm(), gradients);
+  addInducing(hyperparameters, sums.aa, z, scratch.gemm(), gradients);
 
   // With tr(W P) = n - p - alpha'y, W = P^-1 - C C'.
   const HyperparameterLayout layout(structure_);
   const double noise_variance = hyperparameters.noise_stddev * hyperparameters.noise_stddev;
-  const double missed = missed_variance(hyperparameters, sums) / noise_variance;
+  const double missed = missedVariance(hyperparameters, sums) / noise_variance;
   const auto undetermined = static_cast<double>(inputs_.cols() - inducing_.cols());
   const auto free_samples = static_cast<double>(inputs_.cols() - posterior.mean_coefficients.size());
   const double trace =

@@ -34,7 +34,7 @@ class VariationalBound {
                    const Eigen::MatrixXd& inducing, const ModelStructure& structure);
 
   /// False if K_uu or B is not positive definite. Cost: 2 n m^2 flops.
-  bool calc_posterior(const Hyperparameters& hyperparameters, VariationalPosterior& posterior) const;
+  bool calcPosterior(const Hyperparameters& hyperparameters, VariationalPosterior& posterior) const;
 
   /// F and its gradient in the log-hyperparameters (to_log's order), the inducing inputs fixed. The shape of
   /// a rational quadratic is held. Cost: 5 n m^2 flops.
@@ -44,20 +44,20 @@ class VariationalBound {
   struct Sums;
   struct Gradients;
   Sums accumulate(const Hyperparameters& hyperparameters, const Eigen::MatrixXd& inducing_factor) const;
-  Eigen::MatrixXd scaled_block(const Hyperparameters& hyperparameters, Eigen::Index first) const;
-  Eigen::MatrixXd scaled_inducing(const Hyperparameters& hyperparameters) const;
-  Eigen::MatrixXd right_hand_sides(Eigen::Index first) const;
-  bool factorize_inducing(const Hyperparameters& hyperparameters, VariationalPosterior& posterior) const;
-  bool factorize_correction(double noise_stddev, Sums& sums, VariationalPosterior& posterior) const;
-  static double fit_mean(const Eigen::MatrixXd& products, VariationalPosterior& posterior);
-  double missed_variance(const Hyperparameters& hyperparameters, const Sums& sums) const;
+  Eigen::MatrixXd scaledBlock(const Hyperparameters& hyperparameters, Eigen::Index first) const;
+  Eigen::MatrixXd scaledInducing(const Hyperparameters& hyperparameters) const;
+  Eigen::MatrixXd rightHandSides(Eigen::Index first) const;
+  bool factorizeInducing(const Hyperparameters& hyperparameters, VariationalPosterior& posterior) const;
+  bool factorizeCorrection(double noise_stddev, Sums& sums, VariationalPosterior& posterior) const;
+  static double fitMean(const Eigen::MatrixXd& products, VariationalPosterior& posterior);
+  double missedVariance(const Hyperparameters& hyperparameters, const Sums& sums) const;
   bool solve(const Hyperparameters& hyperparameters, VariationalPosterior& posterior, Sums& sums) const;
-  void add_samples(const Hyperparameters& hyperparameters, const VariationalPosterior& posterior,
-                   const Eigen::MatrixXd& scaled_inducing, Eigen::Index first,
-                   linalg::TriangularScratch& scratch, Gradients& gradients) const;
-  void add_inducing(const Hyperparameters& hyperparameters, const Eigen::MatrixXd& aa,
-                    const Eigen::MatrixXd& scaled_inducing, linalg::GemmScratch& scratch,
-                    Gradients& gradients) const;
+  void addSamples(const Hyperparameters& hyperparameters, const VariationalPosterior& posterior,
+                  const Eigen::MatrixXd& scaled_inducing, Eigen::Index first,
+                  linalg::TriangularScratch& scratch, Gradients& gradients) const;
+  void addInducing(const Hyperparameters& hyperparameters, const Eigen::MatrixXd& aa,
+                   const Eigen::MatrixXd& scaled_inducing, linalg::GemmScratch& scratch,
+                   Gradients& gradients) const;
 
   const Eigen::MatrixXd& inputs_;
   const Eigen::VectorXd& target_;

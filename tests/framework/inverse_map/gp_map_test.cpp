@@ -59,11 +59,11 @@ TEST(GpMap, LengthScalesAreGroupedAsTheSpecSays) {
   const auto train_first = [&] {
     return std::get<std::shared_ptr<const gp::GaussianProcess>>(trainOn(problem, spec).map.processes[0]);
   };
-  EXPECT_EQ(train_first()->structure().length_scale_groups, (std::vector<int>{0, 0, 1, 1}));
+  EXPECT_EQ(train_first()->getStructure().length_scale_groups, (std::vector<int>{0, 0, 1, 1}));
   spec.length_scales = LengthScales::kPerFeature;
-  EXPECT_EQ(train_first()->hyperparameters().length_scales.size(), 4);
+  EXPECT_EQ(train_first()->getHyperparameters().length_scales.size(), 4);
   spec.length_scales = LengthScales::kShared;
-  EXPECT_EQ(train_first()->hyperparameters().length_scales.size(), 1);
+  EXPECT_EQ(train_first()->getHyperparameters().length_scales.size(), 1);
 }
 
 // Titsias' approximation is exact where every training input is an inducing input.

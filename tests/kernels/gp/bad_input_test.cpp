@@ -13,14 +13,14 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using test::random_matrix;
+using test::randomMatrix;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // The message of the std::invalid_argument that `action` throws; empty if it throws none.
 template <typename Action>
-std::string message_of(const Action& action) {
+std::string messageOf(const Action& action) {
   try {
     action();
   } catch (const std::invalid_argument& error) {
@@ -31,107 +31,107 @@ std::string message_of(const Action& action) {
 
 class BadInput : public testing::Test {
  protected:
-  std::string train_message(const ModelStructure& structure = {}, const TrainingOptions& options = {}) const {
-    return message_of([&] { (void)train(inputs_, targets_, structure, options); });
+  std::string trainMessage(const ModelStructure& structure = {}, const TrainingOptions& options = {}) const {
+    return messageOf([&] { (void)train(inputs_, targets_, structure, options); });
   }
-  void expect_finite(const TrainingResult& result) const {
+  void expectFinite(const TrainingResult& result) const {
     ASSERT_TRUE(result.gp) << result.message;
     const Prediction prediction = result.gp->predict(inputs_);
     EXPECT_TRUE(prediction.mean.allFinite() && prediction.variance.allFinite());
     EXPECT_TRUE(std::isfinite(result.report.condition));
   }
-  MatrixXd inputs_ = random_matrix(3, 30, 1);
-  MatrixXd targets_ = test::smooth_target(inputs_, 0.1, 2).transpose();
+  MatrixXd inputs_ = randomMatrix(3, 30, 1);
+  MatrixXd targets_ = test::smoothTarget(inputs_, 0.1, 2).transpose();
 };
 
-TEST_F(BadInput, not_a_number_names_its_place) {
+TEST_F(BadInput, NotANumberNamesItsPlace) {
   inputs_(2, 7) = kNan;
-  EXPECT_EQ(train_message(), "training inputs: row 2 of sample 7 is nan; every value must be finite");
+  EXPECT_EQ(trainMessage(), "training inputs: row 2 of sample 7 is nan; every value must be finite");
   inputs_(2, 7) = 0.0;
   targets_(0, 5) = kInfinity;
-  EXPECT_EQ(train_message(), "train: targets: row 0 of sample 5 is inf; every value must be finite");
+  EXPECT_EQ(trainMessage(), "train: targets: row 0 of sample 5 is inf; every value must be finite");
 }
 
-TEST_F(BadInput, sizes_that_do_not_fit) {
-  EXPECT_NE(message_of([&] { (void)train(inputs_, targets_.leftCols(29), {}); }).find("29 columns for 30"),
+TEST_F(BadInput, SizesThatDoNotFit) {
+  EXPECT_NE(messageOf([&] { (void)train(inputs_, targets_.leftCols(29), {}); }).find("29 columns for 30"),
             std::string::npos);
   ModelStructure structure;
   structure.length_scale_groups = {0, 1};
-  EXPECT_NE(train_message(structure).find("2 entries for 3 features"), std::string::npos);
+  EXPECT_NE(trainMessage(structure).find("2 entries for 3 features"), std::string::npos);
   structure.length_scale_groups = {0, 2, 2};
-  EXPECT_NE(train_message(structure).find("never uses group 1"), std::string::npos);
+  EXPECT_NE(trainMessage(structure).find("never uses group 1"), std::string::npos);
   structure.length_scale_groups = {0, -1, 0};
-  EXPECT_NE(train_message(structure).find("[1] is -1"), std::string::npos);
+  EXPECT_NE(trainMessage(structure).find("[1] is -1"), std::string::npos);
 }
 
-TEST_F(BadInput, too_few_samples) {
+TEST_F(BadInput, TooFewSamples) {
   inputs_ = inputs_.leftCols(1).eval();
   targets_ = targets_.leftCols(1).eval();
-  EXPECT_NE(train_message().find("at least 2"), std::string::npos);
+  EXPECT_NE(trainMessage().find("at least 2"), std::string::npos);
   ModelStructure structure;
   structure.mean = MeanFunction::kLinear;
-  EXPECT_NE(train_message(structure).find("at least 5"), std::string::npos);
+  EXPECT_NE(trainMessage(structure).find("at least 5"), std::string::npos);
 }
 
-TEST_F(BadInput, two_samples_are_enough) {
+TEST_F(BadInput, TwoSamplesAreEnough) {
   inputs_ = inputs_.leftCols(2).eval();
   targets_ = targets_.leftCols(2).eval();
-  expect_finite(train(inputs_, targets_, {})[0]);
+  expectFinite(train(inputs_, targets_, {})[0]);
 }
 
-TEST_F(BadInput, equal_inputs) {
+TEST_F(BadInput, EqualInputs) {
   inputs_.setConstant(4.2);
-  EXPECT_NE(train_message().find("all equal"), std::string::npos);
+  EXPECT_NE(trainMessage().find("all equal"), std::string::npos);
 }
 
-TEST_F(BadInput, a_constant_feature_does_no_harm) {
+TEST_F(BadInput, AConstantFeatureDoesNoHarm) {
   inputs_.row(1).setConstant(-3.0);
   ModelStructure structure;
-  expect_finite(train(inputs_, targets_, structure)[0]);
-  structure.length_scale_groups = one_group_per_feature(3);
-  expect_finite(train(inputs_, targets_, structure)[0]);
+  expectFinite(train(inputs_, targets_, structure)[0]);
+  structure.length_scale_groups = oneGroupPerFeature(3);
+  expectFinite(train(inputs_, targets_, structure)[0]);
   structure.mean = MeanFunction::kLinear;
-  EXPECT_NE(train_message(structure).find("linearly independent"), std::string::npos);
+  EXPECT_NE(trainMessage(structure).find("linearly independent"), std::string::npos);
 }
 
-TEST_F(BadInput, duplicate_points_do_no_harm) {
+TEST_F(BadInput, DuplicatePointsDoNoHarm) {
   inputs_.rightCols(15) = inputs_.leftCols(15).eval();
   targets_.rightCols(15) = targets_.leftCols(15).eval();
-  expect_finite(train(inputs_, targets_, {})[0]);
+  expectFinite(train(inputs_, targets_, {})[0]);
 }
 
-TEST_F(BadInput, a_constant_target_is_a_status_and_does_not_shift_the_others) {
+TEST_F(BadInput, AConstantTargetIsAStatusAndDoesNotShiftTheOthers) {
   MatrixXd both(2, 30);
   both << MatrixXd::Constant(1, 30, 7.0), targets_;
   const auto results = train(inputs_, both, {});
   EXPECT_EQ(results[0].status, TrainingStatus::kConstantTarget);
   EXPECT_FALSE(results[0].gp);
-  EXPECT_EQ(results[1].gp->alpha(), train(inputs_, targets_, {})[0].gp->alpha());
+  EXPECT_EQ(results[1].gp->getAlpha(), train(inputs_, targets_, {})[0].gp->getAlpha());
 }
 
-TEST_F(BadInput, extreme_units_do_no_harm) {
+TEST_F(BadInput, ExtremeUnitsDoNoHarm) {
   inputs_ *= 1e-9;
   targets_ *= 1e12;
-  expect_finite(train(inputs_, targets_, {})[0]);
+  expectFinite(train(inputs_, targets_, {})[0]);
 }
 
-TEST_F(BadInput, options_out_of_range) {
+TEST_F(BadInput, OptionsOutOfRange) {
   TrainingOptions options;
   options.noise_stddev = {1.0, 0.5};
-  EXPECT_NE(train_message({}, options).find("noise_stddev is [1, 0.5]"), std::string::npos);
+  EXPECT_NE(trainMessage({}, options).find("noise_stddev is [1, 0.5]"), std::string::npos);
   options = {};
   options.threads = 0;
-  EXPECT_NE(train_message({}, options).find("threads"), std::string::npos);
+  EXPECT_NE(trainMessage({}, options).find("threads"), std::string::npos);
   options = {};
   options.starts = 0;
-  EXPECT_NE(train_message({}, options).find("starts"), std::string::npos);
+  EXPECT_NE(trainMessage({}, options).find("starts"), std::string::npos);
 }
 
-TEST_F(BadInput, hyperparameters_that_are_not_positive_and_finite) {
+TEST_F(BadInput, HyperparametersThatAreNotPositiveAndFinite) {
   Hyperparameters hyperparameters;
   hyperparameters.length_scales = VectorXd::Ones(1);
   const auto fit_message = [&] {
-    return message_of([&] { (void)fit(inputs_, targets_.row(0).transpose(), {}, hyperparameters); });
+    return messageOf([&] { (void)fit(inputs_, targets_.row(0).transpose(), {}, hyperparameters); });
   };
   EXPECT_EQ(fit_message(), "");
   hyperparameters.noise_stddev = kNan;
@@ -143,32 +143,32 @@ TEST_F(BadInput, hyperparameters_that_are_not_positive_and_finite) {
   EXPECT_NE(fit_message().find("2 length scales"), std::string::npos);
 }
 
-TEST_F(BadInput, prediction_at_points_that_do_not_fit) {
+TEST_F(BadInput, PredictionAtPointsThatDoNotFit) {
   const auto gp = train(inputs_, targets_, {})[0].gp;
-  EXPECT_NE(message_of([&] { (void)gp->predict(MatrixXd::Zero(2, 1)); }).find("2 features"),
+  EXPECT_NE(messageOf([&] { (void)gp->predict(MatrixXd::Zero(2, 1)); }).find("2 features"),
             std::string::npos);
-  EXPECT_NE(message_of([&] { (void)gp->predict(MatrixXd::Constant(3, 1, kNan)); }).find("nan"),
+  EXPECT_NE(messageOf([&] { (void)gp->predict(MatrixXd::Constant(3, 1, kNan)); }).find("nan"),
             std::string::npos);
   EXPECT_EQ(gp->predict(MatrixXd::Zero(3, 0)).mean.size(), 0);
 }
 
-TEST_F(BadInput, an_online_predictor_of_nothing) {
+TEST_F(BadInput, AnOnlinePredictorOfNothing) {
   const std::vector<std::shared_ptr<const GaussianProcess>> none, null(1);
-  EXPECT_NE(message_of([&] { OnlinePredictor predictor(none); }), "");
-  EXPECT_NE(message_of([&] { OnlinePredictor predictor(null); }).find("null"), std::string::npos);
+  EXPECT_NE(messageOf([&] { OnlinePredictor predictor(none); }), "");
+  EXPECT_NE(messageOf([&] { OnlinePredictor predictor(null); }).find("null"), std::string::npos);
 }
 
-TEST_F(BadInput, parts_that_do_not_fit_each_other) {
-  const GaussianProcessParts good = train(inputs_, targets_, {})[0].gp->parts();
+TEST_F(BadInput, PartsThatDoNotFitEachOther) {
+  const GaussianProcessParts good = train(inputs_, targets_, {})[0].gp->getParts();
   GaussianProcessParts parts = good;
   parts.alpha.conservativeResize(29);
-  EXPECT_NE(message_of([&] { GaussianProcess gp(parts); }).find("alpha"), std::string::npos);
+  EXPECT_NE(messageOf([&] { GaussianProcess gp(parts); }).find("alpha"), std::string::npos);
   parts = good;
   parts.factor(3, 3) = kNan;
-  EXPECT_NE(message_of([&] { GaussianProcess gp(parts); }).find("finite"), std::string::npos);
+  EXPECT_NE(messageOf([&] { GaussianProcess gp(parts); }).find("finite"), std::string::npos);
   parts = good;
   parts.mean_coefficients.resize(0);
-  EXPECT_NE(message_of([&] { GaussianProcess gp(parts); }).find("mean"), std::string::npos);
+  EXPECT_NE(messageOf([&] { GaussianProcess gp(parts); }).find("mean"), std::string::npos);
 }
 
 }  // namespace

@@ -17,14 +17,14 @@ class LeaveOneOutOf : public testing::TestWithParam<MeanFunction> {};
 
 // Against fits to the other samples. Features far from linear terms: the linear mean's basis shifts its
 // centre with the sample left out, which the integrated coefficients absorb exactly.
-TEST_P(LeaveOneOutOf, every_sample_equals_a_fit_without_it) {
+TEST_P(LeaveOneOutOf, EverySampleEqualsAFitWithoutIt) {
   const int n = 25;
-  const MatrixXd inputs = test::random_matrix(2, n, 1);
-  const VectorXd target = test::smooth_target(inputs, 0.2, 2);
+  const MatrixXd inputs = test::randomMatrix(2, n, 1);
+  const VectorXd target = test::smoothTarget(inputs, 0.2, 2);
   ModelStructure structure;
   structure.mean = GetParam();
   const Hyperparameters hyperparameters{VectorXd::Constant(1, 0.9), 1.2, 0.2, 1.0, 1.0};
-  const LeaveOneOut result = calc_leave_one_out(*fit(inputs, target, structure, hyperparameters));
+  const LeaveOneOut result = calcLeaveOneOut(*fit(inputs, target, structure, hyperparameters));
   int covered = 0;
   for (int i = 0; i < n; ++i) {
     MatrixXd others(2, n - 1);

@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using test::random_matrix;
+using test::randomMatrix;
 
 // Five-point differences: the truncation error is of order step^4, the rounding error eps |NLML| / step.
 double difference(const TrainingSet& set, const VectorXd& target, VectorXd point, int index,
@@ -19,7 +19,7 @@ double difference(const TrainingSet& set, const VectorXd& target, VectorXd point
   const double middle = point(index);
   const auto at = [&](double offset) {
     point(index) = middle + offset * kStep;
-    return evaluate_likelihood(set, target, from_log(set.structure(), point), workspace).nlml;
+    return evaluateLikelihood(set, target, fromLog(set.getStructure(), point), workspace).nlml;
   };
   return (8.0 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12.0 * kStep);
 }
@@ -33,11 +33,11 @@ struct GradientCase {
 
 class Gradient : public testing::TestWithParam<GradientCase> {};
 
-TEST_P(Gradient, equals_finite_differences) {
+TEST_P(Gradient, EqualsFiniteDifferences) {
   const int d = 7, n = 60;
-  const MatrixXd inputs = random_matrix(d, n, 11);
-  const VectorXd target = test::smooth_target(inputs, 0.2, 12);
-  ModelStructure structure{GetParam().covariance, test::cyclic_groups(d, GetParam().groups),
+  const MatrixXd inputs = randomMatrix(d, n, 11);
+  const VectorXd target = test::smoothTarget(inputs, 0.2, 12);
+  ModelStructure structure{GetParam().covariance, test::cyclicGroups(d, GetParam().groups),
                            GetParam().linear_term, GetParam().mean};
   const TrainingSet set(inputs, structure);
   LikelihoodWorkspace workspace(set);
@@ -45,17 +45,17 @@ TEST_P(Gradient, equals_finite_differences) {
   hyperparameters.length_scales = VectorXd::LinSpaced(GetParam().groups, 0.8, 2.5);
   hyperparameters.shape = 0.7;
   hyperparameters.linear_stddev = 0.4;
-  const VectorXd point = to_log(structure, hyperparameters);
+  const VectorXd point = toLog(structure, hyperparameters);
   VectorXd gradient(point.size());
-  ASSERT_TRUE(evaluate_likelihood_gradient(set, target, hyperparameters, workspace, gradient).ok);
+  ASSERT_TRUE(evaluateLikelihoodGradient(set, target, hyperparameters, workspace, gradient).ok);
   for (int i = 0; i < point.size(); ++i) {
     const double expected = difference(set, target, point, i, workspace);
     EXPECT_NEAR(gradient(i), expected, 1e-6 * std::max(0.1, std::abs(expected)))
-        << hyperparameter_names(structure)[i];
+        << getHyperparameterNames(structure)[i];
   }
 }
 
-std::vector<GradientCase> all_cases() {
+std::vector<GradientCase> allCases() {
   std::vector<GradientCase> cases;
   for (auto covariance : {CovarianceFunction::kSquaredExponential, CovarianceFunction::kMatern32,
                           CovarianceFunction::kMatern52, CovarianceFunction::kRationalQuadratic}) {
@@ -68,10 +68,10 @@ std::vector<GradientCase> all_cases() {
   return cases;
 }
 
-INSTANTIATE_TEST_SUITE_P(AllStructures, Gradient, testing::ValuesIn(all_cases()));
+INSTANTIATE_TEST_SUITE_P(AllStructures, Gradient, testing::ValuesIn(allCases()));
 
 // Two samples at distance r, zero mean: K = [[s^2 + v, c], [c, s^2 + v]], c = s^2 exp(-r^2 / (2 l^2)).
-TEST(Likelihood, of_two_samples_by_hand) {
+TEST(Likelihood, OfTwoSamplesByHand) {
   MatrixXd inputs(1, 2);
   inputs << 0.0, 1.5;
   const VectorXd target = Eigen::Vector2d(0.7, -0.2);
@@ -82,38 +82,38 @@ TEST(Likelihood, of_two_samples_by_hand) {
   const double determinant = diagonal * diagonal - off * off;
   const double quadratic = (diagonal * (0.49 + 0.04) + 2.0 * off * 0.7 * 0.2) / determinant;
   const double expected = 0.5 * quadratic + 0.5 * std::log(determinant) + std::log(2.0 * M_PI);
-  EXPECT_NEAR(fit(inputs, target, structure, hyperparameters)->nlml(), expected, 1e-13);
+  EXPECT_NEAR(fit(inputs, target, structure, hyperparameters)->getNlml(), expected, 1e-13);
 }
 
-TEST(Likelihood, of_an_integrated_constant_mean_ignores_an_offset_of_the_target) {
-  const MatrixXd inputs = random_matrix(3, 40, 1);
-  const VectorXd target = test::smooth_target(inputs, 0.1, 2);
+TEST(Likelihood, OfAnIntegratedConstantMeanIgnoresAnOffsetOfTheTarget) {
+  const MatrixXd inputs = randomMatrix(3, 40, 1);
+  const VectorXd target = test::smoothTarget(inputs, 0.1, 2);
   const Hyperparameters hyperparameters{VectorXd::Constant(1, 1.0), 1.0, 0.2, 1.0, 1.0};
   const auto one = fit(inputs, target, {}, hyperparameters);
   const auto other = fit(inputs, target.array() + 5.0, {}, hyperparameters);
-  EXPECT_NEAR(one->nlml(), other->nlml(), 1e-9);
-  EXPECT_NEAR(other->mean_coefficients()(0) - one->mean_coefficients()(0), 5.0, 1e-10);
+  EXPECT_NEAR(one->getNlml(), other->getNlml(), 1e-9);
+  EXPECT_NEAR(other->getMeanCoefficients()(0) - one->getMeanCoefficients()(0), 5.0, 1e-10);
 }
 
-TEST(Likelihood, of_duplicate_points_without_noise_reports_its_jitter) {
-  MatrixXd inputs = random_matrix(2, 20, 3);
+TEST(Likelihood, OfDuplicatePointsWithoutNoiseReportsItsJitter) {
+  MatrixXd inputs = randomMatrix(2, 20, 3);
   inputs.rightCols(10) = inputs.leftCols(10);
-  const VectorXd target = test::smooth_target(inputs, 0.0, 4);
+  const VectorXd target = test::smoothTarget(inputs, 0.0, 4);
   const Hyperparameters hyperparameters{VectorXd::Constant(1, 1.0), 1.0, 1e-12, 1.0, 1.0};
   const auto gp = fit(inputs, target, {}, hyperparameters);
-  EXPECT_GT(gp->parts().jitter, 0.0);
-  EXPECT_LE(gp->parts().jitter, 1e-6);
+  EXPECT_GT(gp->getParts().jitter, 0.0);
+  EXPECT_LE(gp->getParts().jitter, 1e-6);
   EXPECT_TRUE(gp->predict(inputs).variance.allFinite());
 }
 
-TEST(Likelihood, is_the_same_for_products_and_stored_distances) {
-  const MatrixXd inputs = random_matrix(6, 70, 5);
-  const VectorXd target = test::smooth_target(inputs, 0.1, 6);
+TEST(Likelihood, IsTheSameForProductsAndStoredDistances) {
+  const MatrixXd inputs = randomMatrix(6, 70, 5);
+  const VectorXd target = test::smoothTarget(inputs, 0.1, 6);
   ModelStructure shared, separate;
-  separate.length_scale_groups = one_group_per_feature(6);
+  separate.length_scale_groups = oneGroupPerFeature(6);
   const auto one = fit(inputs, target, shared, {VectorXd::Constant(1, 1.3), 1.0, 0.1, 1.0, 1.0});
   const auto six = fit(inputs, target, separate, {VectorXd::Constant(6, 1.3), 1.0, 0.1, 1.0, 1.0});
-  EXPECT_NEAR(one->nlml(), six->nlml(), 1e-9);
+  EXPECT_NEAR(one->getNlml(), six->getNlml(), 1e-9);
 }
 
 }  // namespace

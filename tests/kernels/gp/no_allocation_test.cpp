@@ -64,46 +64,45 @@ class NoAllocation : public testing::Test {
 };
 
 template <typename Action>
-long allocations_of(const Action& action) {
+long allocationsOf(const Action& action) {
   const long before = allocation_count;
   action();
   return allocation_count - before;
 }
 
-TEST_F(NoAllocation, the_counter_counts) {
-  EXPECT_GT(allocations_of([] { VectorXd::Zero(1000).eval(); }), 0);
+TEST_F(NoAllocation, TheCounterCounts) {
+  EXPECT_GT(allocationsOf([] { VectorXd::Zero(1000).eval(); }), 0);
 }
 
-TEST_F(NoAllocation, in_an_evaluation_of_the_likelihood_and_its_gradient) {
-  const MatrixXd inputs = test::random_matrix(20, 300, 1);
-  const VectorXd target = test::smooth_target(inputs, 0.1, 2);
+TEST_F(NoAllocation, InAnEvaluationOfTheLikelihoodAndItsGradient) {
+  const MatrixXd inputs = test::randomMatrix(20, 300, 1);
+  const VectorXd target = test::smoothTarget(inputs, 0.1, 2);
   for (auto covariance : {CovarianceFunction::kSquaredExponential, CovarianceFunction::kMatern32,
                           CovarianceFunction::kMatern52, CovarianceFunction::kRationalQuadratic}) {
     for (auto mean : {MeanFunction::kZero, MeanFunction::kConstant, MeanFunction::kLinear}) {
       for (int groups : {1, 3, 20}) {
-        const ModelStructure structure{covariance, test::cyclic_groups(20, groups), groups == 3, mean};
+        const ModelStructure structure{covariance, test::cyclicGroups(20, groups), groups == 3, mean};
         const TrainingSet set(inputs, structure);
         LikelihoodWorkspace workspace(set);
         Hyperparameters hyperparameters;
         hyperparameters.length_scales = VectorXd::Constant(groups, 3.0);
         VectorXd gradient(HyperparameterLayout(structure).count);
-        EXPECT_EQ(allocations_of([&] {
-                    evaluate_likelihood_gradient(set, target, hyperparameters, workspace, gradient);
-                  }),
+        EXPECT_EQ(allocationsOf(
+                      [&] { evaluateLikelihoodGradient(set, target, hyperparameters, workspace, gradient); }),
                   0)
-            << to_string(covariance) << " groups " << groups << " mean " << static_cast<int>(mean);
+            << toString(covariance) << " groups " << groups << " mean " << static_cast<int>(mean);
       }
     }
   }
 }
 
-TEST_F(NoAllocation, in_an_online_prediction) {
-  const MatrixXd inputs = test::random_matrix(20, 300, 1);
-  const VectorXd target = test::smooth_target(inputs, 0.1, 2);
+TEST_F(NoAllocation, InAnOnlinePrediction) {
+  const MatrixXd inputs = test::randomMatrix(20, 300, 1);
+  const VectorXd target = test::smoothTarget(inputs, 0.1, 2);
   for (auto mean : {MeanFunction::kZero, MeanFunction::kConstant, MeanFunction::kLinear}) {
     for (int groups : {1, 20}) {
       for (bool linear_term : {false, true}) {
-        const ModelStructure structure{CovarianceFunction::kMatern52, test::cyclic_groups(20, groups),
+        const ModelStructure structure{CovarianceFunction::kMatern52, test::cyclicGroups(20, groups),
                                        linear_term, mean};
         Hyperparameters hyperparameters;
         hyperparameters.length_scales = VectorXd::Constant(groups, 3.0);
@@ -112,7 +111,7 @@ TEST_F(NoAllocation, in_an_online_prediction) {
         OnlinePredictor::Workspace workspace(predictor);
         VectorXd mean_out(2), stddev_out(2);
         const VectorXd x = inputs.col(3);
-        EXPECT_EQ(allocations_of([&] { predictor.predict(x, mean_out, stddev_out, workspace); }), 0);
+        EXPECT_EQ(allocationsOf([&] { predictor.predict(x, mean_out, stddev_out, workspace); }), 0);
       }
     }
   }

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using test::random_matrix;
+using test::randomMatrix;
 
 struct Problem {
   MatrixXd inputs;
@@ -23,20 +23,20 @@ struct Problem {
   Hyperparameters hyperparameters;
 };
 
-Problem arbitrary_problem() {
+Problem arbitraryProblem() {
   const int d = *rc::gen::inRange(2, 7);
   const int n = *rc::gen::inRange(12, 60);
   const auto seed = *rc::gen::arbitrary<std::uint32_t>();
   Problem problem;
-  problem.inputs = random_matrix(d, n, seed);
-  problem.target = test::smooth_target(problem.inputs, 0.1, seed + 1);
-  problem.tests = 2.0 * random_matrix(d, 20, seed + 2);
+  problem.inputs = randomMatrix(d, n, seed);
+  problem.target = test::smoothTarget(problem.inputs, 0.1, seed + 1);
+  problem.tests = 2.0 * randomMatrix(d, 20, seed + 2);
   problem.structure.covariance = static_cast<CovarianceFunction>(*rc::gen::inRange(0, 4));
   problem.structure.mean = static_cast<MeanFunction>(*rc::gen::inRange(0, 3));
   problem.structure.linear_term = *rc::gen::arbitrary<bool>();
   const int groups = *rc::gen::inRange(1, d + 1);
-  problem.structure.length_scale_groups = test::cyclic_groups(d, groups);
-  problem.hyperparameters.length_scales = 1.2 * VectorXd::Ones(groups) + random_matrix(groups, 1, seed + 3);
+  problem.structure.length_scale_groups = test::cyclicGroups(d, groups);
+  problem.hyperparameters.length_scales = 1.2 * VectorXd::Ones(groups) + randomMatrix(groups, 1, seed + 3);
   problem.hyperparameters.signal_stddev = 0.1 * *rc::gen::inRange(1, 30);
   problem.hyperparameters.noise_stddev = 0.01 * *rc::gen::inRange(1, 100);
   problem.hyperparameters.shape = 0.1 * *rc::gen::inRange(1, 50);
@@ -48,8 +48,8 @@ Prediction predict(const Problem& problem) {
       ->predict(problem.tests);
 }
 
-RC_GTEST_PROP(GaussianProcess, variance_lies_between_zero_and_the_prior, ()) {
-  Problem problem = arbitrary_problem();
+RC_GTEST_PROP(GaussianProcess, VarianceLiesBetweenZeroAndThePrior, ()) {
+  Problem problem = arbitraryProblem();
   problem.structure.mean = MeanFunction::kZero;  // a flat mean's prior variance is infinite
   const Hyperparameters& h = problem.hyperparameters;
   const VectorXd center = problem.inputs.rowwise().mean();
@@ -66,8 +66,8 @@ RC_GTEST_PROP(GaussianProcess, variance_lies_between_zero_and_the_prior, ()) {
   }
 }
 
-RC_GTEST_PROP(GaussianProcess, does_not_depend_on_the_order_of_the_samples, ()) {
-  Problem problem = arbitrary_problem();
+RC_GTEST_PROP(GaussianProcess, DoesNotDependOnTheOrderOfTheSamples, ()) {
+  Problem problem = arbitraryProblem();
   const Prediction before = predict(problem);
   std::vector<int> order(problem.target.size());
   std::iota(order.begin(), order.end(), 0);
@@ -85,8 +85,8 @@ RC_GTEST_PROP(GaussianProcess, does_not_depend_on_the_order_of_the_samples, ()) 
   RC_ASSERT((before.variance - after.variance).cwiseAbs().maxCoeff() < tolerance * 10.0);
 }
 
-RC_GTEST_PROP(GaussianProcess, does_not_depend_on_the_order_of_features_or_a_shift, ()) {
-  Problem problem = arbitrary_problem();
+RC_GTEST_PROP(GaussianProcess, DoesNotDependOnTheOrderOfFeaturesOrAShift, ()) {
+  Problem problem = arbitraryProblem();
   const Prediction before = predict(problem);
   Problem changed = problem;
   changed.inputs = problem.inputs.colwise().reverse().array() + 3.0;
@@ -97,8 +97,8 @@ RC_GTEST_PROP(GaussianProcess, does_not_depend_on_the_order_of_features_or_a_shi
   RC_ASSERT((before.variance - after.variance).cwiseAbs().maxCoeff() < 1e-7);
 }
 
-RC_GTEST_PROP(GaussianProcess, interpolates_without_noise, ()) {
-  Problem problem = arbitrary_problem();
+RC_GTEST_PROP(GaussianProcess, InterpolatesWithoutNoise, ()) {
+  Problem problem = arbitraryProblem();
   problem.hyperparameters.noise_stddev = 1e-5;
   problem.hyperparameters.signal_stddev = 1.0;
   problem.tests = problem.inputs;
@@ -106,15 +106,15 @@ RC_GTEST_PROP(GaussianProcess, interpolates_without_noise, ()) {
   // At a training point the posterior mean misses by s_n^2 alpha, and its variance is below s_n^2.
   const auto gp = fit(problem.inputs, problem.target, problem.structure, problem.hyperparameters);
   const VectorXd miss = (prediction.mean - problem.target).cwiseAbs();
-  const double noise_variance = 1e-10 + gp->parts().jitter;
+  const double noise_variance = 1e-10 + gp->getParts().jitter;
   // Both to the rounding of k'alpha: eps |k|_1 |alpha|_1.
-  const double rounding = 1e-14 * gp->alpha().lpNorm<1>() * problem.hyperparameters.signal_stddev;
-  RC_ASSERT((miss.array() <= noise_variance * gp->alpha().cwiseAbs().array() + rounding + 1e-9).all());
+  const double rounding = 1e-14 * gp->getAlpha().lpNorm<1>() * problem.hyperparameters.signal_stddev;
+  RC_ASSERT((miss.array() <= noise_variance * gp->getAlpha().cwiseAbs().array() + rounding + 1e-9).all());
   RC_ASSERT(prediction.latent_variance.maxCoeff() <= noise_variance + 1e-9);
 }
 
-RC_GTEST_PROP(OnlinePredictor, agrees_with_the_batch_prediction, ()) {
-  Problem problem = arbitrary_problem();
+RC_GTEST_PROP(OnlinePredictor, AgreesWithTheBatchPrediction, ()) {
+  Problem problem = arbitraryProblem();
   const auto one = fit(problem.inputs, problem.target, problem.structure, problem.hyperparameters);
   const auto two = fit(problem.inputs, -2.0 * problem.target, problem.structure, problem.hyperparameters);
   const OnlinePredictor predictor({one, two});

@@ -13,53 +13,53 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using test::random_matrix;
+using test::randomMatrix;
 
-MatrixXd two_targets(const MatrixXd& inputs) {
+MatrixXd twoTargets(const MatrixXd& inputs) {
   MatrixXd targets(2, inputs.cols());
-  targets.row(0) = test::smooth_target(inputs, 0.1, 21).transpose();
+  targets.row(0) = test::smoothTarget(inputs, 0.1, 21).transpose();
   targets.row(1) = 3.0 + inputs.row(2).array() * inputs.row(0).array();
   return targets;
 }
 
-TEST(Training, recovers_the_hyperparameters_of_a_drawn_function) {
+TEST(Training, RecoversTheHyperparametersOfADrawnFunction) {
   const int n = 300;
-  const MatrixXd inputs = 3.0 * random_matrix(2, n, 1);
+  const MatrixXd inputs = 3.0 * randomMatrix(2, n, 1);
   ModelStructure structure;
   structure.mean = MeanFunction::kZero;
   const Hyperparameters truth{VectorXd::Constant(1, 1.0), 2.0, 0.3, 1.0, 1.0};
   // A draw: L times normal numbers (twelve uniform ones summed), L from any target.
   const auto prior = fit(inputs, VectorXd::Zero(n), structure, truth);
   VectorXd normal = VectorXd::Zero(n);
-  for (int k = 0; k < 12; ++k) normal += 0.5 * random_matrix(n, 1, 100 + k);
-  const VectorXd target = prior->factor() * normal;
+  for (int k = 0; k < 12; ++k) normal += 0.5 * randomMatrix(n, 1, 100 + k);
+  const VectorXd target = prior->getFactor() * normal;
   const auto results = train(inputs, target.transpose(), structure);
   ASSERT_EQ(results[0].status, TrainingStatus::kConverged) << results[0].message;
-  const Hyperparameters& found = results[0].gp->hyperparameters();
+  const Hyperparameters& found = results[0].gp->getHyperparameters();
   EXPECT_NEAR(found.length_scales(0), 1.0, 0.15);
   EXPECT_NEAR(found.noise_stddev, 0.3, 0.06);
   EXPECT_NEAR(found.signal_stddev, 2.0, 1.0);
 }
 
-TEST(Training, ends_where_the_gradient_vanishes) {
-  const MatrixXd inputs = random_matrix(4, 80, 2);
-  const VectorXd target = test::smooth_target(inputs, 0.2, 3);
+TEST(Training, EndsWhereTheGradientVanishes) {
+  const MatrixXd inputs = randomMatrix(4, 80, 2);
+  const VectorXd target = test::smoothTarget(inputs, 0.2, 3);
   const auto result = train(inputs, target.transpose(), {})[0];
   ASSERT_TRUE(result.gp);
   const TrainingSet set(inputs, {});
   LikelihoodWorkspace workspace(set);
   VectorXd gradient(3);
-  evaluate_likelihood_gradient(set, target, result.gp->hyperparameters(), workspace, gradient);
+  evaluateLikelihoodGradient(set, target, result.gp->getHyperparameters(), workspace, gradient);
   EXPECT_LT(gradient.cwiseAbs().maxCoeff(), 0.1);
   EXPECT_EQ(workspace.corrections.allFinite(), true);
 }
 
-void expect_equal(const TrainingResult& one, const TrainingResult& other) {
+void expectEqual(const TrainingResult& one, const TrainingResult& other) {
   ASSERT_TRUE(one.gp && other.gp);
-  EXPECT_EQ(one.gp->alpha(), other.gp->alpha());
-  EXPECT_EQ(one.gp->factor(), other.gp->factor());
-  EXPECT_EQ(one.gp->nlml(), other.gp->nlml());
-  EXPECT_EQ(one.gp->hyperparameters().length_scales, other.gp->hyperparameters().length_scales);
+  EXPECT_EQ(one.gp->getAlpha(), other.gp->getAlpha());
+  EXPECT_EQ(one.gp->getFactor(), other.gp->getFactor());
+  EXPECT_EQ(one.gp->getNlml(), other.gp->getNlml());
+  EXPECT_EQ(one.gp->getHyperparameters().length_scales, other.gp->getHyperparameters().length_scales);
   EXPECT_EQ(one.report.condition, other.report.condition);
   ASSERT_EQ(one.report.starts.size(), other.report.starts.size());
   for (std::size_t k = 0; k < one.report.starts.size(); ++k) {
@@ -68,12 +68,12 @@ void expect_equal(const TrainingResult& one, const TrainingResult& other) {
   }
 }
 
-TEST(Training, is_bitwise_the_same_for_any_number_of_threads_and_alignment) {
-  const MatrixXd inputs = random_matrix(6, 90, 4);
-  const MatrixXd targets = two_targets(inputs);
+TEST(Training, IsBitwiseTheSameForAnyNumberOfThreadsAndAlignment) {
+  const MatrixXd inputs = randomMatrix(6, 90, 4);
+  const MatrixXd targets = twoTargets(inputs);
   for (int groups : {1, 2, 6}) {
     ModelStructure structure;
-    structure.length_scale_groups = test::cyclic_groups(6, groups);
+    structure.length_scale_groups = test::cyclicGroups(6, groups);
     TrainingOptions options;
     const auto expected = train(inputs, targets, structure, options);
     for (int threads : {2, 3, 5}) {
@@ -83,48 +83,48 @@ TEST(Training, is_bitwise_the_same_for_any_number_of_threads_and_alignment) {
       Eigen::Map<MatrixXd> shifted(moved.data() + threads, inputs.rows(), inputs.cols());
       shifted = inputs;
       const auto actual = train(shifted, targets, structure, options);
-      for (std::size_t t = 0; t < 2; ++t) expect_equal(expected[t], actual[t]);
+      for (std::size_t t = 0; t < 2; ++t) expectEqual(expected[t], actual[t]);
     }
   }
 }
 
 // Large matrices are factorised by a team; the smallest that is checked here spans several strips of it.
-TEST(Likelihood, is_bitwise_the_same_for_any_size_of_the_team) {
+TEST(Likelihood, IsBitwiseTheSameForAnySizeOfTheTeam) {
   const int n = 700;
-  const MatrixXd inputs = random_matrix(6, n, 30);
-  const VectorXd target = test::smooth_target(inputs, 0.1, 31);
+  const MatrixXd inputs = randomMatrix(6, n, 30);
+  const VectorXd target = test::smoothTarget(inputs, 0.1, 31);
   for (int groups : {1, 6}) {
-    const ModelStructure structure{CovarianceFunction::kMatern52, test::cyclic_groups(6, groups), false,
+    const ModelStructure structure{CovarianceFunction::kMatern52, test::cyclicGroups(6, groups), false,
                                    MeanFunction::kLinear};
     const TrainingSet set(inputs, structure);
     const Hyperparameters hyperparameters{VectorXd::Constant(groups, 1.5), 1.0, 0.1, 1.0, 1.0};
     LikelihoodWorkspace alone(set);
     VectorXd expected(groups + 2), gradient(groups + 2);
-    const double nlml = evaluate_likelihood_gradient(set, target, hyperparameters, alone, expected).nlml;
+    const double nlml = evaluateLikelihoodGradient(set, target, hyperparameters, alone, expected).nlml;
     for (int threads : {2, 3, 5}) {
       LikelihoodWorkspace team(set, threads);
-      EXPECT_EQ(evaluate_likelihood_gradient(set, target, hyperparameters, team, gradient).nlml, nlml);
+      EXPECT_EQ(evaluateLikelihoodGradient(set, target, hyperparameters, team, gradient).nlml, nlml);
       EXPECT_EQ(gradient, expected);
       EXPECT_EQ(team.corrections, alone.corrections);
     }
   }
 }
 
-TEST(Training, recognises_pure_noise) {
-  const MatrixXd inputs = random_matrix(3, 100, 5);
-  const MatrixXd noise = random_matrix(1, 100, 6);
+TEST(Training, RecognisesPureNoise) {
+  const MatrixXd inputs = randomMatrix(3, 100, 5);
+  const MatrixXd noise = randomMatrix(1, 100, 6);
   const auto result = train(inputs, noise, {})[0];
   EXPECT_EQ(result.status, TrainingStatus::kNoiseOnly) << result.message;
   for (const StartReport& start : result.report.starts) EXPECT_TRUE(start.noise_only);
   ASSERT_TRUE(result.gp);
-  const Prediction prediction = result.gp->predict(random_matrix(3, 1, 16));
+  const Prediction prediction = result.gp->predict(randomMatrix(3, 1, 16));
   const double stddev = std::sqrt((noise.array() - noise.mean()).square().mean());
   EXPECT_NEAR(prediction.stddev()(0), stddev, 0.1 * stddev);
 }
 
-TEST(Training, does_not_accept_a_start_that_ends_in_pure_noise) {
-  const MatrixXd inputs = random_matrix(5, 60, 7);
-  const VectorXd target = test::smooth_target(inputs, 0.4, 8);
+TEST(Training, DoesNotAcceptAStartThatEndsInPureNoise) {
+  const MatrixXd inputs = randomMatrix(5, 60, 7);
+  const VectorXd target = test::smoothTarget(inputs, 0.4, 8);
   const auto result = train(inputs, target.transpose(), {})[0];
   ASSERT_GE(result.report.best_start, 0);
   const StartReport& best = result.report.starts[result.report.best_start];
@@ -133,8 +133,8 @@ TEST(Training, does_not_accept_a_start_that_ends_in_pure_noise) {
   for (const StartReport& start : result.report.starts) EXPECT_LE(best.nlml, start.nlml);
 }
 
-TEST(Training, reports_what_sits_at_a_bound) {
-  const MatrixXd inputs = random_matrix(2, 50, 9);
+TEST(Training, ReportsWhatSitsAtABound) {
+  const MatrixXd inputs = randomMatrix(2, 50, 9);
   const VectorXd target = inputs.row(0).transpose();  // exactly linear and noise-free
   const auto result = train(inputs, target.transpose(), {})[0];
   ASSERT_TRUE(result.gp);
@@ -142,45 +142,45 @@ TEST(Training, reports_what_sits_at_a_bound) {
   EXPECT_TRUE(result.gp->predict(inputs).mean.isApprox(target, 1e-3));
 }
 
-TEST(Training, a_prior_draws_the_length_scale_towards_it) {
-  const MatrixXd inputs = random_matrix(2, 40, 10);
-  const VectorXd target = test::smooth_target(inputs, 0.1, 11);
+TEST(Training, APriorDrawsTheLengthScaleTowardsIt) {
+  const MatrixXd inputs = randomMatrix(2, 40, 10);
+  const VectorXd target = test::smoothTarget(inputs, 0.1, 11);
   TrainingOptions options;
   const double free =
-      train(inputs, target.transpose(), {}, options)[0].gp->hyperparameters().length_scales(0);
+      train(inputs, target.transpose(), {}, options)[0].gp->getHyperparameters().length_scales(0);
   options.length_scale_prior = LengthScalePrior{2.0, 0.01};
   const double bound =
-      train(inputs, target.transpose(), {}, options)[0].gp->hyperparameters().length_scales(0);
+      train(inputs, target.transpose(), {}, options)[0].gp->getHyperparameters().length_scales(0);
   EXPECT_GT(bound, 1.5 * free);
 }
 
-TEST(Training, one_length_scale_per_feature_finds_the_features_that_matter) {
-  const MatrixXd inputs = random_matrix(6, 120, 12);
-  const VectorXd target = test::smooth_target(inputs, 0.05, 13);  // of features 0 and 1
+TEST(Training, OneLengthScalePerFeatureFindsTheFeaturesThatMatter) {
+  const MatrixXd inputs = randomMatrix(6, 120, 12);
+  const VectorXd target = test::smoothTarget(inputs, 0.05, 13);  // of features 0 and 1
   ModelStructure structure;
-  structure.length_scale_groups = one_group_per_feature(6);
+  structure.length_scale_groups = oneGroupPerFeature(6);
   const auto result = train(inputs, target.transpose(), structure)[0];
   ASSERT_EQ(result.status, TrainingStatus::kConverged);
-  const VectorXd scales = result.gp->hyperparameters().length_scales;
+  const VectorXd scales = result.gp->getHyperparameters().length_scales;
   EXPECT_GT(scales.tail(4).minCoeff(), 2.0 * scales.head(2).maxCoeff());
 }
 
-TEST(Training, a_restored_process_predicts_the_same_bits) {
-  const MatrixXd inputs = random_matrix(3, 50, 14);
-  const auto result = train(inputs, two_targets(inputs), {})[1];
-  GaussianProcessParts parts = result.gp->parts();
+TEST(Training, ARestoredProcessPredictsTheSameBits) {
+  const MatrixXd inputs = randomMatrix(3, 50, 14);
+  const auto result = train(inputs, twoTargets(inputs), {})[1];
+  GaussianProcessParts parts = result.gp->getParts();
   parts.inputs = std::make_shared<const MatrixXd>(inputs);
   const GaussianProcess restored(parts);
-  const MatrixXd tests = random_matrix(3, 300, 15);
+  const MatrixXd tests = randomMatrix(3, 300, 15);
   EXPECT_EQ(restored.predict(tests).mean, result.gp->predict(tests).mean);
   EXPECT_EQ(restored.predict(tests).variance, result.gp->predict(tests).variance);
 }
 
 // Whatever the first start, the same best likelihood. (Single searches reach it from 62 of the 64 corners:
 // d_y has a second optimum 0.8 nats away, which is why there are several starts.)
-TEST(TwoBeams, every_first_start_leads_to_the_same_likelihood) {
-  const test::TwoBeamData data = test::make_two_beam_data(250, 1);
-  const MatrixXd features = test::z_scored(data.features);
+TEST(TwoBeams, EveryFirstStartLeadsToTheSameLikelihood) {
+  const test::TwoBeamData data = test::makeTwoBeamData(250, 1);
+  const MatrixXd features = test::zScored(data.features);
   MatrixXd nlml(4, 16);
   int corner = 0;
   for (double noise : {0.03, 0.1, 0.3, 0.7}) {
@@ -191,7 +191,7 @@ TEST(TwoBeams, every_first_start_leads_to_the_same_likelihood) {
       const auto results = train(features, data.parameters, {}, options);
       for (int t = 0; t < 4; ++t) {
         ASSERT_EQ(results[t].status, TrainingStatus::kConverged) << results[t].message;
-        nlml(t, corner) = results[t].gp->nlml();
+        nlml(t, corner) = results[t].gp->getNlml();
       }
       ++corner;
     }

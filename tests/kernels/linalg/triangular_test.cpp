@@ -15,14 +15,14 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using test::random_matrix;
+using test::randomMatrix;
 
-MatrixXd positive_definite(Index n) {
-  const MatrixXd x = random_matrix(n, n + 3, 7 + n);
+MatrixXd positiveDefinite(Index n) {
+  const MatrixXd x = randomMatrix(n, n + 3, 7 + n);
   return x * x.transpose() / double(n) + 0.1 * MatrixXd::Identity(n, n);
 }
 
-MatrixXd lower_part(const MatrixXd& matrix) {
+MatrixXd lowerPart(const MatrixXd& matrix) {
   return matrix.triangularView<Eigen::Lower>();
 }
 
@@ -31,13 +31,13 @@ double tolerance(Index n) {
   return 50.0 * static_cast<double>(n) * std::numeric_limits<double>::epsilon();
 }
 
-TEST(Gemm, multiplies_a_hand_sized_case) {
+TEST(Gemm, MultipliesAHandSizedCase) {
   MatrixXd a(2, 2), b(2, 2), c(2, 2);
   a << 1, 2, 3, 4;
   b << 5, 6, 7, 8;
   c << 1, 1, 1, 1;
   GemmScratch scratch;
-  gemm(2.0, view_of(a), view_of(b), 1.0, view_of(c), scratch);
+  gemm(2.0, viewOf(a), viewOf(b), 1.0, viewOf(c), scratch);
   MatrixXd expected(2, 2);
   expected << 39, 45, 87, 101;
   EXPECT_EQ(c, expected);
@@ -45,18 +45,17 @@ TEST(Gemm, multiplies_a_hand_sized_case) {
 
 class GemmSizes : public testing::TestWithParam<std::array<int, 3>> {};
 
-TEST_P(GemmSizes, agrees_with_eigen_for_every_transposition) {
+TEST_P(GemmSizes, AgreesWithEigenForEveryTransposition) {
   const auto [m, n, k] = GetParam();
-  const MatrixXd a = random_matrix(m, k, 1), b = random_matrix(k, n, 2), at = a.transpose(),
-                 bt = b.transpose();
+  const MatrixXd a = randomMatrix(m, k, 1), b = randomMatrix(k, n, 2), at = a.transpose(), bt = b.transpose();
   const MatrixXd expected = a * b;
   GemmScratch scratch;
-  for (const ConstView left : {view_of(a), view_of(at).transposed()}) {
-    for (const ConstView right : {view_of(b), view_of(bt).transposed()}) {
+  for (const ConstView left : {viewOf(a), viewOf(at).transposed()}) {
+    for (const ConstView right : {viewOf(b), viewOf(bt).transposed()}) {
       MatrixXd c = MatrixXd::Constant(m, n, std::numeric_limits<double>::quiet_NaN());
-      gemm(1.0, left, right, 0.0, view_of(c), scratch);
+      gemm(1.0, left, right, 0.0, viewOf(c), scratch);
       EXPECT_LT((c - expected).cwiseAbs().maxCoeff(), tolerance(k));
-      gemm(-0.5, left, right, 1.0, view_of(c), scratch);
+      gemm(-0.5, left, right, 1.0, viewOf(c), scratch);
       EXPECT_LT((c - 0.5 * expected).cwiseAbs().maxCoeff(), tolerance(k));
     }
   }
@@ -69,78 +68,78 @@ INSTANTIATE_TEST_SUITE_P(Shapes, GemmSizes,
 
 class Triangular : public testing::TestWithParam<int> {};
 
-TEST_P(Triangular, factor_inverse_and_product_fulfil_their_definitions) {
+TEST_P(Triangular, FactorInverseAndProductFulfilTheirDefinitions) {
   const Index n = GetParam();
-  const MatrixXd k = positive_definite(n);
+  const MatrixXd k = positiveDefinite(n);
   TriangularScratch scratch(n);
   MatrixXd factor = k;
-  ASSERT_TRUE(factorize_cholesky(view_of(factor), scratch));
-  const MatrixXd lower = lower_part(factor);
+  ASSERT_TRUE(factorizeCholesky(viewOf(factor), scratch));
+  const MatrixXd lower = lowerPart(factor);
   EXPECT_LT((lower * lower.transpose() - k).norm() / k.norm(), tolerance(n));
   MatrixXd inverse = lower;
-  invert_lower(view_of(inverse), scratch);
-  EXPECT_EQ(inverse, lower_part(inverse)) << "zeros above the diagonal";
+  invertLower(viewOf(inverse), scratch);
+  EXPECT_EQ(inverse, lowerPart(inverse)) << "zeros above the diagonal";
   EXPECT_LT((inverse * lower - MatrixXd::Identity(n, n)).norm(), 100 * tolerance(n));
   MatrixXd product = inverse;
-  multiply_transposed_by_self(view_of(product), scratch);
+  multiplyTransposedBySelf(viewOf(product), scratch);
   const MatrixXd expected = inverse.transpose() * inverse;
-  EXPECT_LT(lower_part(product - expected).norm() / expected.norm(), tolerance(n));
+  EXPECT_LT(lowerPart(product - expected).norm() / expected.norm(), tolerance(n));
 }
 
-TEST_P(Triangular, solves_agree_with_the_factor) {
+TEST_P(Triangular, SolvesAgreeWithTheFactor) {
   const Index n = GetParam();
-  MatrixXd factor = positive_definite(n);
+  MatrixXd factor = positiveDefinite(n);
   TriangularScratch scratch(n);
-  ASSERT_TRUE(factorize_cholesky(view_of(factor), scratch));
-  const MatrixXd lower = lower_part(factor);
-  const VectorXd x = random_matrix(n, 1, 3);
+  ASSERT_TRUE(factorizeCholesky(viewOf(factor), scratch));
+  const MatrixXd lower = lowerPart(factor);
+  const VectorXd x = randomMatrix(n, 1, 3);
   VectorXd forward = x, backward = x;
-  solve_lower(view_of(lower), forward.data());
-  solve_lower_transposed(view_of(lower), backward.data());
+  solveLower(viewOf(lower), forward.data());
+  solveLowerTransposed(viewOf(lower), backward.data());
   EXPECT_LT((lower * forward - x).norm(), tolerance(n));
   EXPECT_LT((lower.transpose() * backward - x).norm(), tolerance(n));
-  MatrixXd right = random_matrix(37, n, 4);
+  MatrixXd right = randomMatrix(37, n, 4);
   const MatrixXd b = right;
-  solve_transposed_from_right(view_of(lower), view_of(right), scratch);
+  solveTransposedFromRight(viewOf(lower), viewOf(right), scratch);
   EXPECT_LT((right * lower.transpose() - b).norm(), 10 * tolerance(n));
-  const PackedLower packed(view_of(lower));
-  VectorXd padded_x = VectorXd::Zero(packed.padded_size());
+  const PackedLower packed(viewOf(lower));
+  VectorXd padded_x = VectorXd::Zero(packed.paddedSize());
   padded_x.head(n) = x;
   packed.solve(padded_x.data());
   EXPECT_LT((padded_x.head(n) - forward).norm(), 10 * tolerance(n));
-  EXPECT_EQ(padded_x.tail(packed.padded_size() - n).norm(), 0.0);
+  EXPECT_EQ(padded_x.tail(packed.paddedSize() - n).norm(), 0.0);
 }
 
-TEST_P(Triangular, condition_estimate_lies_within_a_factor_of_the_truth) {
+TEST_P(Triangular, ConditionEstimateLiesWithinAFactorOfTheTruth) {
   const Index n = GetParam();
-  const MatrixXd k = positive_definite(n);
+  const MatrixXd k = positiveDefinite(n);
   const MatrixXd lower = Eigen::LLT<MatrixXd>(k).matrixL();
   const double truth =
       k.cwiseAbs().colwise().sum().maxCoeff() * k.inverse().cwiseAbs().colwise().sum().maxCoeff();
-  const double estimate = estimate_condition(view_of(lower));
+  const double estimate = estimateCondition(viewOf(lower));
   EXPECT_GT(estimate, truth / 3.0);
   EXPECT_LT(estimate, truth * static_cast<double>(n) + 1e-9);
 }
 
 INSTANTIATE_TEST_SUITE_P(Orders, Triangular, testing::Values(1, 2, 5, 31, 32, 33, 64, 100, 129, 250, 391));
 
-TEST(Cholesky, refuses_indefinite_and_not_a_number) {
+TEST(Cholesky, RefusesIndefiniteAndNotANumber) {
   TriangularScratch scratch(4);
   MatrixXd indefinite = -MatrixXd::Identity(3, 3);
-  EXPECT_FALSE(factorize_cholesky(view_of(indefinite), scratch));
+  EXPECT_FALSE(factorizeCholesky(viewOf(indefinite), scratch));
   MatrixXd not_a_number = MatrixXd::Identity(3, 3);
   not_a_number(2, 1) = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(factorize_cholesky(view_of(not_a_number), scratch));
+  EXPECT_FALSE(factorizeCholesky(viewOf(not_a_number), scratch));
 }
 
-TEST(Cholesky, factorizes_a_hand_sized_case) {
+TEST(Cholesky, FactorizesAHandSizedCase) {
   MatrixXd k(3, 3);
   k << 4, 0, 0, 12, 37, 0, -16, -43, 98;
   TriangularScratch scratch(3);
-  ASSERT_TRUE(factorize_cholesky(view_of(k), scratch));
+  ASSERT_TRUE(factorizeCholesky(viewOf(k), scratch));
   MatrixXd expected(3, 3);
   expected << 2, 0, 0, 6, 1, 0, -8, 5, 3;
-  EXPECT_LT((lower_part(k) - expected).norm(), 1e-13);
+  EXPECT_LT((lowerPart(k) - expected).norm(), 1e-13);
 }
 
 }  // namespace

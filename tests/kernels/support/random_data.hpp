@@ -10,7 +10,7 @@
 namespace twinmap::test {
 
 /// Uniform on [-1, 1], the same on every platform.
-inline Eigen::MatrixXd random_matrix(Eigen::Index rows, Eigen::Index cols, std::uint64_t seed) {
+inline Eigen::MatrixXd randomMatrix(Eigen::Index rows, Eigen::Index cols, std::uint64_t seed) {
   std::mt19937_64 engine(seed);
   Eigen::MatrixXd matrix(rows, cols);
   for (Eigen::Index j = 0; j < cols; ++j) {
@@ -22,8 +22,8 @@ inline Eigen::MatrixXd random_matrix(Eigen::Index rows, Eigen::Index cols, std::
 }
 
 /// A smooth function of the first two features plus noise of the given size.
-inline Eigen::VectorXd smooth_target(const Eigen::MatrixXd& inputs, double noise, std::uint64_t seed) {
-  const Eigen::MatrixXd disturbance = random_matrix(1, inputs.cols(), seed);
+inline Eigen::VectorXd smoothTarget(const Eigen::MatrixXd& inputs, double noise, std::uint64_t seed) {
+  const Eigen::MatrixXd disturbance = randomMatrix(1, inputs.cols(), seed);
   Eigen::VectorXd target(inputs.cols());
   for (Eigen::Index i = 0; i < inputs.cols(); ++i) {
     target(i) = std::sin(2.0 * inputs(0, i)) + inputs(1, i) * inputs(1, i) + noise * disturbance(0, i);
@@ -32,7 +32,7 @@ inline Eigen::VectorXd smooth_target(const Eigen::MatrixXd& inputs, double noise
 }
 
 /// Feature f in group f % count.
-inline std::vector<int> cyclic_groups(int features, int count) {
+inline std::vector<int> cyclicGroups(int features, int count) {
   std::vector<int> groups(features);
   for (int f = 0; f < features; ++f) groups[f] = f % count;
   return groups;

@@ -25,7 +25,7 @@ constexpr TwoBeamParameters kTwoBeamUpper{1.1, 2.25e-4, 15.0, 0.045};
 /// The state (y, theta, y', theta') and its derivative.
 using TwoBeamState = std::array<double, 4>;
 
-inline TwoBeamState two_beam_derivative(const TwoBeamState& state, const TwoBeamParameters& p, bool pulse) {
+inline TwoBeamState twoBeamDerivative(const TwoBeamState& state, const TwoBeamParameters& p, bool pulse) {
   constexpr double m1 = 3.3, m2 = 0.13, y_com = 0.034, z_com = 0.022, inertia = 1.3e-4, g = 9.81;
   const double c = std::cos(state[1]), s = std::sin(state[1]);
   const double a = y_com * s + z_com * c, b = y_com * c - z_com * s;
@@ -37,23 +37,23 @@ inline TwoBeamState two_beam_derivative(const TwoBeamState& state, const TwoBeam
           (m11 * moment - m12 * force) / determinant};
 }
 
-inline TwoBeamState two_beam_step(const TwoBeamState& x, const TwoBeamParameters& p, bool pulse, double h) {
+inline TwoBeamState twoBeamStep(const TwoBeamState& x, const TwoBeamParameters& p, bool pulse, double h) {
   const auto shifted = [&](const TwoBeamState& k, double factor) {
     TwoBeamState result;
     for (int i = 0; i < 4; ++i) result[i] = x[i] + factor * k[i];
     return result;
   };
-  const TwoBeamState k1 = two_beam_derivative(x, p, pulse);
-  const TwoBeamState k2 = two_beam_derivative(shifted(k1, h / 2), p, pulse);
-  const TwoBeamState k3 = two_beam_derivative(shifted(k2, h / 2), p, pulse);
-  const TwoBeamState k4 = two_beam_derivative(shifted(k3, h), p, pulse);
+  const TwoBeamState k1 = twoBeamDerivative(x, p, pulse);
+  const TwoBeamState k2 = twoBeamDerivative(shifted(k1, h / 2), p, pulse);
+  const TwoBeamState k3 = twoBeamDerivative(shifted(k2, h / 2), p, pulse);
+  const TwoBeamState k4 = twoBeamDerivative(shifted(k3, h), p, pulse);
   TwoBeamState next;
   for (int i = 0; i < 4; ++i) next[i] = x[i] + h / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i]);
   return next;
 }
 
 /// theta at rest for the centre of the parameter box.
-inline double two_beam_equilibrium() {
+inline double twoBeamEquilibrium() {
   double theta = 0.0;
   for (int i = 0; i < 20; ++i) {
     const double c = std::cos(theta), s = std::sin(theta), weight = 0.13 * 9.81;
@@ -63,7 +63,7 @@ inline double two_beam_equilibrium() {
 }
 
 /// n samples of the box: a Latin hypercube if `stratified`, else uniform. Noise: 5e-5 m and 0.015 rad.
-inline TwoBeamData make_two_beam_data(int n, std::uint64_t seed, bool stratified = true) {
+inline TwoBeamData makeTwoBeamData(int n, std::uint64_t seed, bool stratified = true) {
   std::mt19937_64 engine(seed);
   const auto uniform = [&] { return (static_cast<double>(engine() >> 11) + 0.5) * 0x1p-53; };
   const auto normal = [&] { return std::sqrt(-2 * std::log(uniform())) * std::cos(2 * M_PI * uniform()); };
@@ -77,7 +77,7 @@ inline TwoBeamData make_two_beam_data(int n, std::uint64_t seed, bool stratified
       data.parameters(k, i) = kTwoBeamLower[k] + u * (kTwoBeamUpper[k] - kTwoBeamLower[k]);
     }
   }
-  const double rest = two_beam_equilibrium();
+  const double rest = twoBeamEquilibrium();
   constexpr int kSteps = 16;  // of 3.1 ms between samples: errors far below the noise
   for (int i = 0; i < n; ++i) {
     const Eigen::Vector4d column = data.parameters.col(i);
@@ -85,7 +85,7 @@ inline TwoBeamData make_two_beam_data(int n, std::uint64_t seed, bool stratified
     TwoBeamState state{0.0, rest, 0.0, 0.0};
     for (int sample = 0; sample < 100; ++sample) {
       const bool pulse = sample == 4;  // 0.2 s <= t < 0.25 s
-      for (int step = 0; step < kSteps; ++step) state = two_beam_step(state, p, pulse, 0.05 / kSteps);
+      for (int step = 0; step < kSteps; ++step) state = twoBeamStep(state, p, pulse, 0.05 / kSteps);
       data.features(sample, i) = state[0] / 5e-5 + normal();
       data.features(100 + sample, i) = state[1] / 0.015 + normal();
     }
@@ -94,7 +94,7 @@ inline TwoBeamData make_two_beam_data(int n, std::uint64_t seed, bool stratified
 }
 
 /// Every feature to zero mean and unit variance.
-inline Eigen::MatrixXd z_scored(const Eigen::MatrixXd& features) {
+inline Eigen::MatrixXd zScored(const Eigen::MatrixXd& features) {
   Eigen::MatrixXd scored = features.colwise() - features.rowwise().mean();
   for (Eigen::Index f = 0; f < scored.rows(); ++f) {
     scored.row(f) /= std::sqrt(scored.row(f).squaredNorm() / static_cast<double>(scored.cols()));
