@@ -76,7 +76,7 @@ struct GpMapSpec {
   bool linear_term = false;  ///< adds a linear covariance term
   GpMean mean = GpMean::kConstant;
   LengthScales length_scales = LengthScales::kShared;
-  int starts = 4;
+  int starts = 2;
   int max_evaluations = 200;  ///< of the marginal likelihood, per start
   GpApproximation approximation = GpApproximation::kExact;
   int inducing = 500;           ///< sgpr: inducing inputs

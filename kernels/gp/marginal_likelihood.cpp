@@ -182,6 +182,11 @@ void calcGradient(const TrainingSet& set, const Eigen::VectorXd& target,
 
 }  // namespace
 
+int getTeamSize(const TrainingSet& set, int threads) {
+  constexpr Eigen::Index kTeamSamples = 1500;
+  return set.size() > kTeamSamples ? threads : 1;
+}
+
 LikelihoodWorkspace::LikelihoodWorkspace(const TrainingSet& set, int threads)
     : factor(Eigen::MatrixXd::Zero(padded(set.size()), set.size())),
       weights(Eigen::MatrixXd::Zero(padded(set.size()), set.size())),

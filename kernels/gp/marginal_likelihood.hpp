@@ -8,6 +8,10 @@
 
 namespace twinmap::gp {
 
+/// Threads that share one evaluation: all above n = 1500 (2 n^2 doubles, 36 MB a thread, would be too much
+/// for each), below it one.
+int getTeamSize(const TrainingSet& set, int threads);
+
 /// Buffers of one evaluation at a time: 2 n^2 doubles (3 n^2 for the rational quadratic) and some n^2 / 2 of
 /// scratch. After construction, evaluations with it allocate nothing.
 struct LikelihoodWorkspace {

@@ -119,10 +119,10 @@ void OnlinePredictor::predict(const Eigen::Ref<const VectorXd>& x, Eigen::Ref<Ve
     workspace.point = x - batch.center;
     if (batch.count == 1) {
       batch.samples.weightedDistances<1>(workspace.point.data(), batch.weights.data(),
-                                          workspace.distances.data());
+                                         workspace.distances.data());
     } else {
       batch.samples.weightedDistances<kBatch>(workspace.point.data(), batch.weights.data(),
-                                               workspace.distances.data());
+                                              workspace.distances.data());
     }
     for (Index t = batch.first; t < batch.first + batch.count; ++t) {
       predictTarget(t, batch, mean(t), stddev(t), workspace);

@@ -14,13 +14,23 @@ constexpr double kRejected = 1e10;
 // In log-hyperparameters: a factor of e.
 constexpr double kFirstStep = 1.0;
 
+// A search has joined a known optimum within a factor 1.6 in every hyperparameter and half a nat above it, or
+// where it is as good to a hundredth of a nat (where a hyperparameter hardly matters, distance says nothing).
+constexpr double kJoinedDistance = 0.5;
+constexpr double kEqualNats = 0.01;
+constexpr double kJoinedNats = 0.5;
+
 struct Search {
   const Objective& objective;
   Eigen::Index samples;
   const SearchBox& box;
+  const SearchResult* known;
   Eigen::VectorXd gradient;
-  double scale;
+  double scale = 1.0;
   SearchResult result;
+  Eigen::VectorXd last_point;  // evaluated last, with its objective: L-BFGS asks for its start again
+  double last_objective = 0.0;
+  nlopt_opt optimizer = nullptr;
 };
 
 double addPrior(const SearchBox& box, const Eigen::VectorXd& point, double nlml, Eigen::VectorXd& gradient) {
@@ -36,6 +46,13 @@ void keepBest(Search& search, const Eigen::VectorXd& point, double nlml, double 
   search.result.objective = objective;
 }
 
+bool hasJoined(const Search& search, const Eigen::VectorXd& point, double objective) {
+  if (search.known == nullptr) return false;
+  const double above = objective - search.known->objective;
+  const bool near = (point - search.known->end).cwiseAbs().maxCoeff() < kJoinedDistance;
+  return std::abs(above) < kEqualNats || (near && above < kJoinedNats);
+}
+
 double calcObjective(Search& search, const Eigen::VectorXd& point) {
   const LikelihoodEvaluation evaluation = search.objective(point, search.gradient);
   ++search.result.evaluations;
@@ -48,7 +65,13 @@ double calcObjective(Search& search, const Eigen::VectorXd& point) {
 
 double evaluate(unsigned count, const double* values, double* gradient, void* data) {
   Search& search = *static_cast<Search*>(data);
-  const double objective = calcObjective(search, Eigen::Map<const Eigen::VectorXd>(values, count));
+  const Eigen::Map<const Eigen::VectorXd> point(values, count);
+  if (point != search.last_point) {
+    search.last_objective = calcObjective(search, point);
+    search.last_point = point;
+  }
+  const double objective = search.last_objective;
+  if (hasJoined(search, point, objective)) nlopt_force_stop(search.optimizer);
   if (gradient) Eigen::Map<Eigen::VectorXd>(gradient, count) = search.scale * search.gradient;
   return search.scale * objective;
 }
@@ -56,7 +79,8 @@ double evaluate(unsigned count, const double* values, double* gradient, void* da
 // L-BFGS takes its first step along the gradient as it is. Scaling the objective makes that step at most
 // kFirstStep long; unscaled, it leaps over the valley into the plateau where everything is noise.
 double calcScale(Search& search, const Eigen::VectorXd& point) {
-  calcObjective(search, point);
+  search.last_objective = calcObjective(search, point);
+  search.last_point = point;
   const double steepest = search.gradient.norm();
   const double per_sample = 1.0 / static_cast<double>(search.samples);
   return steepest > 0.0 ? std::min(per_sample, kFirstStep / steepest) : per_sample;
@@ -72,6 +96,8 @@ const char* describe(nlopt_result code) {
       return "the last step was too small to matter";
     case NLOPT_MAXEVAL_REACHED:
       return "evaluation limit reached";
+    case NLOPT_FORCED_STOP:
+      return "joined the first start's optimum";
     case NLOPT_ROUNDOFF_LIMITED:
       return "rounding errors stopped the progress";
     default:
@@ -82,8 +108,10 @@ const char* describe(nlopt_result code) {
 }  // namespace
 
 SearchResult minimize(const Objective& objective, Eigen::Index samples, const Eigen::VectorXd& start,
-                      const SearchBox& box, int max_evaluations, double tolerance) {
-  Search search{objective, samples, box, Eigen::VectorXd::Zero(start.size()), 1.0, {}};
+                      const SearchBox& box, int max_evaluations, double tolerance,
+                      const SearchResult* known) {
+  Search search{objective, samples, box, known, Eigen::VectorXd::Zero(start.size()),
+                1.0,       {},      {},  0.0,   nullptr};
   search.result.objective = std::numeric_limits<double>::infinity();
   search.result.nlml = std::numeric_limits<double>::infinity();
   Eigen::VectorXd point = start.cwiseMax(box.lower).cwiseMin(box.upper);
@@ -91,6 +119,7 @@ SearchResult minimize(const Objective& objective, Eigen::Index samples, const Ei
   search.scale = calcScale(search, point);
   const std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)> optimizer(
       nlopt_create(NLOPT_LD_LBFGS, static_cast<unsigned>(start.size())), &nlopt_destroy);
+  search.optimizer = optimizer.get();
   nlopt_set_min_objective(optimizer.get(), &evaluate, &search);
   nlopt_set_lower_bounds(optimizer.get(), box.lower.data());
   nlopt_set_upper_bounds(optimizer.get(), box.upper.data());
@@ -105,11 +134,11 @@ SearchResult minimize(const Objective& objective, Eigen::Index samples, const Ei
 
 SearchResult search(const TrainingSet& set, const Eigen::VectorXd& target, const Eigen::VectorXd& start,
                     const SearchBox& box, int max_evaluations, double tolerance,
-                    LikelihoodWorkspace& workspace) {
+                    LikelihoodWorkspace& workspace, const SearchResult* known) {
   const Objective objective = [&](const Eigen::VectorXd& point, Eigen::VectorXd& gradient) {
     return evaluateLikelihoodGradient(set, target, fromLog(set.getStructure(), point), workspace, gradient);
   };
-  return minimize(objective, set.size(), start, box, max_evaluations, tolerance);
+  return minimize(objective, set.size(), start, box, max_evaluations, tolerance, known);
 }
 
 }  // namespace twinmap::gp

@@ -32,14 +32,16 @@ using Objective =
     std::function<LikelihoodEvaluation(const Eigen::VectorXd& point, Eigen::VectorXd& gradient)>;
 
 /// One local search for the least objective (plus prior) by NLopt's L-BFGS, from `start` clamped into the
-/// box, until a step gains less than `tolerance` nats. `samples`, their number, sets the objective's size.
-/// Returns the best point evaluated. Deterministic.
+/// box, until a step gains less than `tolerance` nats, or, with the result of another search as `known`,
+/// until it has come so near that it can only end in the same optimum. `samples`, their number, sets the
+/// objective's size. Returns the best point evaluated. Deterministic.
 SearchResult minimize(const Objective& objective, Eigen::Index samples, const Eigen::VectorXd& start,
-                      const SearchBox& box, int max_evaluations, double tolerance);
+                      const SearchBox& box, int max_evaluations, double tolerance,
+                      const SearchResult* known = nullptr);
 
 /// The same for the exact NLML. Cost: up to max_evaluations of n^3 flops.
 SearchResult search(const TrainingSet& set, const Eigen::VectorXd& target, const Eigen::VectorXd& start,
                     const SearchBox& box, int max_evaluations, double tolerance,
-                    LikelihoodWorkspace& workspace);
+                    LikelihoodWorkspace& workspace, const SearchResult* known = nullptr);
 
 }  // namespace twinmap::gp

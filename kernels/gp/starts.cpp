@@ -156,4 +156,9 @@ double calcNoiseOnlyNlml(const TrainingSet& set, const VectorXd& target) {
   return 0.5 * free_samples * (std::log(residual / free_samples) + 1.0 + kLogTwoPi) + log_determinant;
 }
 
+bool isNoiseOnly(double nlml, double noise_only_nlml) {
+  constexpr double kMargin = 5.0;
+  return !(nlml < noise_only_nlml - kMargin);
+}
+
 }  // namespace twinmap::gp

@@ -31,4 +31,8 @@ std::vector<Eigen::VectorXd> makeStarts(const TrainingSet& set, const DataScales
 ///   RSS / (2 s^2) + (n - p) log s + 1/2 log|H H'| + (n - p)/2 log(2 pi),   s^2 = RSS / (n - p).
 double calcNoiseOnlyNlml(const TrainingSet& set, const Eigen::VectorXd& target);
 
+/// Whether a fit has found no signal: it gains less than 5 nats on pure noise. The best of many length scales
+/// gains two or four by chance, and a true signal gains of the order of n. Also true for NaN.
+bool isNoiseOnly(double nlml, double noise_only_nlml);
+
 }  // namespace twinmap::gp

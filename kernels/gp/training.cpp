@@ -1,15 +1,12 @@
 #include "kernels/gp/training.hpp"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <sstream>
 #include <stdexcept>
 
 #include "kernels/gp/fit.hpp"
-#include "kernels/gp/optimizer.hpp"
+#include "kernels/gp/multi_start.hpp"
 #include "kernels/gp/starts.hpp"
 #include "kernels/linalg/condition.hpp"
 
@@ -19,24 +16,6 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 namespace {
-
-// A fit within this many nats of pure noise has found no signal: the best of many length scales gains two or
-// four by chance, and a true signal gains of the order of n.
-constexpr double kNoiseOnlyMargin = 5.0;
-
-// Above this many samples the threads share one factorisation: n = 1500 takes 2 n^2 doubles, 36 MB, a thread.
-constexpr Eigen::Index kTeamSamples = 1500;
-
-// What one target needs, and the results of its searches.
-struct TargetJob {
-  VectorXd values;
-  double stddev = 0.0;
-  bool constant = false;
-  SearchBox box;
-  std::vector<VectorXd> starts;
-  std::vector<SearchResult> results;
-  int warm_start_evaluations = 0;
-};
 
 void checkOptions(const TrainingOptions& options) {
   const auto require = [](bool condition, const char* rule) {
@@ -69,89 +48,10 @@ void checkOptions(const TrainingOptions& options) {
 void checkTargets(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                   const Eigen::Ref<const Eigen::MatrixXd>& targets) {
   if (targets.cols() != inputs.cols()) {
-    throw std::invalid_argument("train: the targets have " + std::to_string(targets.cols()) + " columns for " +
-                                std::to_string(inputs.cols()) + " training samples");
+    throw std::invalid_argument("train: the targets have " + std::to_string(targets.cols()) +
+                                " columns for " + std::to_string(inputs.cols()) + " training samples");
   }
   checkInputs(targets, "train: targets");
-}
-
-std::vector<TargetJob> makeJobs(const Eigen::Ref<const Eigen::MatrixXd>& targets) {
-  std::vector<TargetJob> jobs(targets.rows());
-  for (Index t = 0; t < targets.rows(); ++t) {
-    TargetJob& job = jobs[t];
-    job.values = targets.row(t).transpose();
-    const double mean = job.values.mean();
-    job.stddev = std::sqrt((job.values.array() - mean).square().mean());
-    job.constant = !(job.stddev > 1e-13 * std::max(std::abs(mean), job.values.cwiseAbs().maxCoeff()));
-  }
-  return jobs;
-}
-
-// All searches of all targets: side by side, each by one thread, or for large matrices one after another,
-// each by all threads (one workspace instead of many). The result is the same for any number of threads.
-void runSearches(const TrainingSet& set, const TrainingOptions& options, std::vector<TargetJob>& jobs) {
-  struct Task {
-    TargetJob* job;
-    std::size_t start;
-  };
-  std::vector<Task> tasks;
-  for (TargetJob& job : jobs) {
-    job.results.assign(job.starts.size(), {});
-    for (std::size_t k = 0; k < job.starts.size(); ++k) tasks.push_back({&job, k});
-  }
-  const auto run = [&](const Task& task, LikelihoodWorkspace& workspace) {
-    TargetJob& job = *task.job;
-    job.results[task.start] = search(set, job.values, job.starts[task.start], job.box,
-                                     options.max_evaluations, options.tolerance, workspace);
-  };
-  if (set.size() > kTeamSamples) {
-    LikelihoodWorkspace workspace(set, options.threads);
-    for (const Task& task : tasks) run(task, workspace);
-    return;
-  }
-  const int count = static_cast<int>(tasks.size());
-  const int threads = std::max(1, std::min(options.threads, count));
-#pragma omp parallel num_threads(threads)
-  {
-    LikelihoodWorkspace workspace(set);
-#pragma omp for schedule(dynamic, 1)
-    for (int i = 0; i < count; ++i) run(tasks[i], workspace);
-  }
-}
-
-void prepareSearches(const TrainingSet& set, const TrainingOptions& options, int starts,
-                     std::vector<TargetJob>& jobs) {
-  const DataScales scales = calcDataScales(set);
-  for (TargetJob& job : jobs) {
-    job.starts.clear();
-    if (job.constant) continue;
-    job.box = makeSearchBox(set, scales, job.stddev, options);
-    job.starts = makeStarts(set, scales, job.stddev, options, starts);
-  }
-}
-
-const SearchResult& bestOf(const std::vector<SearchResult>& results) {
-  return *std::min_element(results.begin(), results.end(),
-                           [](const auto& a, const auto& b) { return a.objective < b.objective; });
-}
-
-// With several groups, the last of the starts begins where a shared length scale ended.
-void addWarmStarts(const TrainingSet& set, const TrainingOptions& options, std::vector<TargetJob>& jobs) {
-  ModelStructure shared = set.getStructure();
-  shared.length_scale_groups.clear();
-  const TrainingSet shared_set(set.getInputs(), shared);
-  std::vector<TargetJob> shared_jobs = jobs;
-  prepareSearches(shared_set, options, std::min(options.starts, 2), shared_jobs);
-  runSearches(shared_set, options, shared_jobs);
-  for (std::size_t t = 0; t < jobs.size(); ++t) {
-    if (jobs[t].constant) continue;
-    for (const SearchResult& result : shared_jobs[t].results) {
-      jobs[t].warm_start_evaluations += result.evaluations;
-    }
-    Hyperparameters warm = fromLog(shared, bestOf(shared_jobs[t].results).end);
-    warm.length_scales = VectorXd::Constant(getGroupCount(set.getStructure()), warm.length_scales(0));
-    jobs[t].starts.back() = toLog(set.getStructure(), warm);
-  }
 }
 
 StartReport reportStart(const ModelStructure& structure, const VectorXd& start, const SearchResult& result,
@@ -163,7 +63,7 @@ StartReport reportStart(const ModelStructure& structure, const VectorXd& start, 
   report.objective = result.objective;
   report.evaluations = result.evaluations;
   report.largest_jitter = result.largest_jitter;
-  report.noise_only = !(result.nlml < noise_only_nlml - kNoiseOnlyMargin);
+  report.noise_only = isNoiseOnly(result.nlml, noise_only_nlml);
   report.converged = result.converged;
   report.stop_reason = result.stop_reason;
   return report;
@@ -218,32 +118,33 @@ void judge(TrainingResult& result) {
   setStatus(result, TrainingStatus::kConverged, best.stop_reason);
 }
 
-TrainingResult finish(const TrainingSet& set, const TargetJob& job, LikelihoodWorkspace& workspace) {
+TrainingResult finish(const TrainingSet& set, const TargetSearches& searches,
+                      LikelihoodWorkspace& workspace) {
   TrainingResult result;
-  if (job.constant) {
+  if (searches.constant) {
     setStatus(result, TrainingStatus::kConstantTarget,
               "the target is constant over the training samples: there is nothing to infer");
     return result;
   }
   TrainingReport& report = result.report;
-  report.noise_only_nlml = calcNoiseOnlyNlml(set, job.values);
-  report.evaluations = job.warm_start_evaluations;
-  for (std::size_t k = 0; k < job.starts.size(); ++k) {
+  report.noise_only_nlml = calcNoiseOnlyNlml(set, searches.values);
+  report.evaluations = searches.warm_start_evaluations;
+  for (std::size_t k = 0; k < searches.starts.size(); ++k) {
     report.starts.push_back(
-        reportStart(set.getStructure(), job.starts[k], job.results[k], report.noise_only_nlml));
-    report.evaluations += job.results[k].evaluations;
+        reportStart(set.getStructure(), searches.starts[k], searches.results[k], report.noise_only_nlml));
+    report.evaluations += searches.results[k].evaluations;
   }
   report.best_start = chooseStart(report.starts);
   const LikelihoodEvaluation evaluation =
       report.best_start < 0
           ? LikelihoodEvaluation{}
-          : evaluateLikelihood(set, job.values, report.starts[report.best_start].end, workspace);
+          : evaluateLikelihood(set, searches.values, report.starts[report.best_start].end, workspace);
   if (!evaluation.ok) {
     setStatus(result, TrainingStatus::kFailed,
               "no start had a positive definite covariance matrix: raise the noise's lower bound");
     return result;
   }
-  report.at_bound = describeBounds(set.getStructure(), job.box, job.results[report.best_start].end);
+  report.at_bound = describeBounds(set.getStructure(), searches.box, searches.results[report.best_start].end);
   report.jitter = evaluation.jitter;
   result.gp = makeGaussianProcess(set, report.starts[report.best_start].end, evaluation, workspace);
   report.condition = linalg::estimateCondition(linalg::viewOf(result.gp->getFactor()));
@@ -275,13 +176,10 @@ std::vector<TrainingResult> train(const Eigen::Ref<const Eigen::MatrixXd>& input
   checkOptions(options);
   checkTargets(inputs, targets);
   const TrainingSet set(inputs, structure);
-  std::vector<TargetJob> jobs = makeJobs(targets);
-  prepareSearches(set, options, options.starts, jobs);
-  if (getGroupCount(structure) > 1) addWarmStarts(set, options, jobs);
-  runSearches(set, options, jobs);
-  LikelihoodWorkspace workspace(set, set.size() > kTeamSamples ? options.threads : 1);
+  const std::vector<TargetSearches> searches = searchAllStarts(set, targets, options);
+  LikelihoodWorkspace workspace(set, getTeamSize(set, options.threads));
   std::vector<TrainingResult> results;
-  for (const TargetJob& job : jobs) results.push_back(finish(set, job, workspace));
+  for (const TargetSearches& target : searches) results.push_back(finish(set, target, workspace));
   return results;
 }
 
