@@ -1,4 +1,4 @@
-// Issue 3, number 5: four two-beam maps from 16000 samples, 15 features, m = 500, on 2 threads, against an
+// Four two-beam maps from 16000 samples, 15 features, m = 500, on 2 threads, against an
 // exact process on 4000 of the samples. Prints times, the peak memory and the root mean square test errors.
 //   kernels_sparse_large [samples] [inducing] [subset] [exact samples]
 #include <sys/resource.h>

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "kernels/linalg/openblas.hpp"
 #include "kernels/linalg/packet.hpp"
 
 namespace twinmap::linalg {
@@ -146,6 +147,9 @@ GemmScratch::GemmScratch()
       right_(kBlockDepth * roundUp(kBlockCols, kTileCols)) {}
 
 void gemm(double alpha, ConstView a, ConstView b, double beta, View c, GemmScratch& scratch, Part part) {
+#ifdef TWINMAP_OPENBLAS
+  if (a.cols >= kOpenblasDepth) return multiplyByOpenblas(alpha, a, b, beta, c, part);
+#endif
   if (a.cols == 0 && beta == 0.0) clear(c);
   for (Index j = 0; j < c.cols; j += kBlockCols) {
     const Index cols = std::min(kBlockCols, c.cols - j);

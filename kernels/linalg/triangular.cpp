@@ -17,6 +17,11 @@ constexpr Index kPanel = 64;  // triangular operands up to this order are multip
 constexpr Index kChunkVectors = 4;
 constexpr double kTeamFlops = 2e7;  // half a millisecond: a hundred times what waking a team costs
 constexpr Index kStripsPerThread = 4;
+#ifdef TWINMAP_OPENBLAS
+constexpr bool kSharesProducts = false;  // see openblas.hpp
+#else
+constexpr bool kSharesProducts = true;
+#endif
 
 Index halfOf(Index n) {
   return (n / 2 + kBase - 1) / kBase * kBase;
@@ -41,7 +46,7 @@ void subtractColumns(ConstView columns, const double* weights, Index weight_stri
   Index row = 0;
   for (; row + kChunk <= columns.rows; row += kChunk) {
     subtractColumnsChunk<kChunkVectors>(source + row, stride, weights, weight_stride, columns.cols,
-                                          target + row);
+                                        target + row);
   }
   for (; row + kLanes <= columns.rows; row += kLanes) {
     subtractColumnsChunk<1>(source + row, stride, weights, weight_stride, columns.cols, target + row);
@@ -172,7 +177,7 @@ void multiplyTransposedLowerFromLeft(ConstView lower, View b, TriangularScratch&
 }  // namespace
 
 TriangularScratch::TriangularScratch(Index size, int threads)
-    : gemm_(threads), block_(padded(std::max(size, kPanel)) * kPanel) {}
+    : gemm_(kSharesProducts ? threads : 1), block_(padded(std::max(size, kPanel)) * kPanel) {}
 
 // Strips of columns; more strips than threads, because with kLower they differ in work.
 void TriangularScratch::multiply(double alpha, ConstView a, ConstView b, double beta, View c, Part part) {

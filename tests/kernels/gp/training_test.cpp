@@ -90,7 +90,7 @@ TEST(Training, IsBitwiseTheSameForAnyNumberOfThreadsAndAlignment) {
 
 // Large matrices are factorised by a team; the smallest that is checked here spans several strips of it.
 TEST(Likelihood, IsBitwiseTheSameForAnySizeOfTheTeam) {
-  const int n = 700;
+  const int n = 1100;
   const MatrixXd inputs = randomMatrix(6, n, 30);
   const VectorXd target = test::smoothTarget(inputs, 0.1, 31);
   for (int groups : {1, 6}) {
