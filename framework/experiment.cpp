@@ -102,9 +102,33 @@ RunSummary startSummary(const ExperimentSpec& experiment) {
   return run;
 }
 
+std::string join(const std::vector<std::string>& texts) {
+  std::string joined;
+  for (const std::string& text : texts) {
+    joined += (joined.empty() ? "" : "; ") + text;
+  }
+  return joined;
+}
+
+std::vector<TrainingStart> summarizeTraining(const std::vector<std::string>& parameters,
+                                             const std::vector<gp::TrainingReport>& reports) {
+  std::vector<TrainingStart> rows;
+  for (std::size_t p = 0; p < reports.size(); ++p) {
+    for (std::size_t k = 0; k < reports[p].starts.size(); ++k) {
+      const gp::StartReport& start = reports[p].starts[k];
+      const bool best = static_cast<int>(k) == reports[p].best_start;
+      rows.push_back({parameters[p], static_cast<int>(k), best, start.nlml, start.evaluations,
+                      start.noise_only, start.stop_reason, best ? join(reports[p].at_bound) : "",
+                      reports[p].condition, reports[p].jitter});
+    }
+  }
+  return rows;
+}
+
 void writeResults(const fs::path& folder, const RunSummary& run) {
   writeTextFile(folder / "metrics.csv", makeMetricsCsv(run));
   writeTextFile(folder / "predictions.csv", makePredictionsCsv(run));
+  writeTextFile(folder / "training.csv", makeTrainingCsv(run));
   writeTextFile(folder / "table.md", makeMarkdownTable(run));
   writeTextFile(folder / "table.tex", makeLatexTable(run));
   writeTextFile(folder / "report.html", makeHtmlReport(run));
@@ -172,6 +196,7 @@ RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& opt
                       options.threads);
   });
   run.warnings = trained.warnings;
+  run.training = summarizeTraining(collectNames(model.parameters), trained.reports);
   std::vector<std::string> feature_names;
   for (const FeatureInfo& info : extractor.getInfos()) {
     feature_names.push_back(info.name);

@@ -15,10 +15,9 @@ struct RunOptions {
 };
 
 /// Runs an experiment from design to report and leaves in the folder: resolved.yaml, samples.h5,
-/// failures.csv, maps.h5, predictions.csv, metrics.csv, table.md, table.tex, report.html, figures/*.svg,
-/// provenance.json.
-/// Progress goes to the log. Throws std::runtime_error if more samples fail than
-/// simulation.allowed_failures permits (samples.h5 and failures.csv are there then), if a map cannot be
+/// failures.csv, maps.h5, predictions.csv, metrics.csv, training.csv, table.md, table.tex, report.html,
+/// figures/*.svg, provenance.json. Progress goes to the log. Throws std::runtime_error if more samples fail
+/// than simulation.allowed_failures permits (samples.h5 and failures.csv are there then), if a map cannot be
 /// trained, or if a file cannot be written.
 RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& options);
 

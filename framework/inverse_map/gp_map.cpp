@@ -3,7 +3,6 @@
 #include <map>
 #include <stdexcept>
 
-#include "kernels/gp/training.hpp"
 #include "kernels/sparse/sparse_training.hpp"
 
 namespace twinmap {
@@ -62,6 +61,9 @@ gp::TrainingOptions toKernel(const GpMapSpec& spec, int threads) {
   options.length_scale = toKernel(spec.bounds.length_scale);
   options.signal_stddev = toKernel(spec.bounds.signal_stddev);
   options.noise_stddev = toKernel(spec.bounds.noise_stddev);
+  if (spec.length_scale_prior) {
+    options.length_scale_prior = {spec.length_scale_prior->log_mean, spec.length_scale_prior->log_stddev};
+  }
   options.threads = threads;
   return options;
 }
@@ -75,6 +77,13 @@ gp::ModelStructure makeStructure(const GpMapSpec& spec, const std::vector<Featur
   return structure;
 }
 
+const gp::TrainingReport& getReport(const gp::TrainingResult& result) {
+  return result.report;
+}
+const gp::TrainingReport& getReport(const gp::SparseTrainingResult& result) {
+  return result.subset_report;
+}
+
 /// Keeps the processes of training results and what a person should know about them.
 template <class Result>
 void keepResults(const std::vector<Result>& results, const std::vector<std::string>& parameter_names,
@@ -85,6 +94,7 @@ void keepResults(const std::vector<Result>& results, const std::vector<std::stri
                                "' cannot be trained: " + results[p].message);
     }
     training.map.processes.emplace_back(results[p].gp);
+    training.reports.push_back(getReport(results[p]));
     if (results[p].status != gp::TrainingStatus::kConverged) {
       training.warnings.push_back("parameter '" + parameter_names[p] + "': " + results[p].message);
     }

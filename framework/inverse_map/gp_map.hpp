@@ -11,6 +11,7 @@
 #include "framework/features/feature_transform.hpp"
 #include "framework/spec/experiment_spec.hpp"
 #include "kernels/gp/gaussian_process.hpp"
+#include "kernels/gp/training.hpp"
 #include "kernels/sparse/sparse_gaussian_process.hpp"
 
 namespace twinmap {
@@ -38,7 +39,8 @@ struct GpMap {
 /// A trained map and what a person should know about the training.
 struct GpMapTraining {
   GpMap map;
-  std::vector<std::string> warnings;  ///< "parameter 'd_y': ..."; empty if every process converged
+  std::vector<gp::TrainingReport> reports;  ///< one per parameter; of a sparse process, that of its subset
+  std::vector<std::string> warnings;        ///< "parameter 'd_y': ..."; empty if every process converged
 };
 
 /// Trains the map on features (d x n) and parameters (p x n) of the same samples, n >= 2. The result does not

@@ -17,6 +17,20 @@ struct FailedSample {
   std::string reason;
 };
 
+/// One search for the hyperparameters of a parameter's process.
+struct TrainingStart {
+  std::string parameter;
+  int start = 0;
+  bool best = false;
+  double nlml = 0.0;  ///< nats, at its end
+  int evaluations = 0;
+  bool noise_only = false;  ///< ended where the features say nothing
+  std::string stop_reason;
+  std::string at_bound;    ///< of the best start: hyperparameters at a bound
+  double condition = 0.0;  ///< of the best start: estimated condition number of the covariance matrix
+  double jitter = 0.0;  ///< of the best start: added to its diagonal, in units of the standardised parameter
+};
+
 /// Wall time of one stage of a run.
 struct StageTime {
   std::string stage;
@@ -36,6 +50,7 @@ struct RunSummary {
   Predictions predictions;        ///< p x n
   std::vector<ParameterMetrics> metrics;
   std::vector<double> nlml;  ///< one per parameter, nats
+  std::vector<TrainingStart> training;
   std::vector<std::string> warnings;
   std::vector<FailedSample> failures;
   std::vector<StageTime> times;

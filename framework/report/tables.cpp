@@ -118,6 +118,18 @@ std::string makeFailuresCsv(const RunSummary& run) {
   return makeCsv(rows);
 }
 
+std::string makeTrainingCsv(const RunSummary& run) {
+  std::vector<Row> rows{{"parameter", "start", "best", "nlml", "evaluations", "noise_only", "stop_reason",
+                         "at_bound", "condition", "jitter"}};
+  for (const TrainingStart& start : run.training) {
+    rows.push_back({start.parameter, std::to_string(start.start), start.best ? "1" : "0", toText(start.nlml),
+                    std::to_string(start.evaluations), start.noise_only ? "1" : "0", start.stop_reason,
+                    start.at_bound, start.best ? toText(start.condition) : "",
+                    start.best ? toText(start.jitter) : ""});
+  }
+  return makeCsv(rows);
+}
+
 std::string makeMarkdownTable(const RunSummary& run) {
   std::vector<Row> rows{makeHeader()};
   for (std::size_t p = 0; p < run.parameters.size(); ++p) {

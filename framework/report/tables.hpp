@@ -16,6 +16,10 @@ std::string makePredictionsCsv(const RunSummary& run);
 /// failures.csv: set, sample, each parameter's value, reason.
 std::string makeFailuresCsv(const RunSummary& run);
 
+/// training.csv: parameter, start, best, nlml, evaluations, noise_only, stop_reason; of the best start also
+/// at_bound, condition, jitter.
+std::string makeTrainingCsv(const RunSummary& run);
+
 /// The paper's table for people: Markdown (columns aligned, so that it reads well as plain text) and LaTeX
 /// (booktabs).
 std::string makeMarkdownTable(const RunSummary& run);

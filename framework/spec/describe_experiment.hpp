@@ -141,11 +141,18 @@ void describe(Fields& f, GpBoundsSpec& s) {
 }
 
 template <class Fields>
+void describe(Fields& f, LengthScalePriorSpec& s) {
+  f.optional("log_mean", s.log_mean, "mean of log(length scale / median distance)");
+  f.optional("log_stddev", s.log_stddev, "standard deviation of the same", kPositive);
+}
+
+template <class Fields>
 void describe(Fields& f, GpMapSpec& s) {
   f.optional("covariance", s.covariance, "covariance function");
   f.optional("linear_term", s.linear_term, "adds a linear term to the covariance function");
   f.optional("mean", s.mean, "mean function; its coefficients are integrated out");
   f.optional("length_scales", s.length_scales, "one for all features, per output, or per feature");
+  f.optional("length_scale_prior", s.length_scale_prior, "log-normal prior; without it, maximum likelihood");
   f.optional("starts", s.starts, "optimisations of the marginal likelihood, from different points", kCount);
   f.optional("max_evaluations", s.max_evaluations, "of the marginal likelihood, per start", kCount);
   f.optional("approximation", s.approximation, "exact, or sgpr: sparse on inducing inputs, for many samples");

@@ -70,12 +70,19 @@ struct GpBoundsSpec {
   Bounds noise_stddev{1e-5, 3.0, {}};   ///< times the standard deviation of the target
 };
 
+/// A log-normal prior on each length scale l: log(l / median distance) ~ N(log_mean, log_stddev^2).
+struct LengthScalePriorSpec {
+  double log_mean = 0.0;
+  double log_stddev = 2.0;
+};
+
 /// One Gaussian process per parameter, hyperparameters by maximum marginal likelihood.
 struct GpMapSpec {
   GpCovariance covariance = GpCovariance::kSquaredExponential;
   bool linear_term = false;  ///< adds a linear covariance term
   GpMean mean = GpMean::kConstant;
   LengthScales length_scales = LengthScales::kShared;
+  std::optional<LengthScalePriorSpec> length_scale_prior;  ///< none: maximum likelihood
   int starts = 2;
   int max_evaluations = 200;  ///< of the marginal likelihood, per start
   GpApproximation approximation = GpApproximation::kExact;

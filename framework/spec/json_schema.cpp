@@ -20,7 +20,9 @@ Json makeSchema(const int&) {
 Json makeSchema(const std::uint64_t&) {
   return {{"type", "integer"}, {"minimum", 0}};
 }
-Json makeSchema(const bool&) { return {{"type", "boolean"}}; }
+Json makeSchema(const bool&) {
+  return {{"type", "boolean"}};
+}
 Json makeSchema(const std::string&) {
   return {{"type", "string"}};
 }

@@ -8,7 +8,9 @@ YamlNode writeValue(double value) {
 YamlNode writeValue(int value) {
   return makeScalar(std::to_string(value));
 }
-YamlNode writeValue(bool value) { return makeScalar(value ? "true" : "false"); }
+YamlNode writeValue(bool value) {
+  return makeScalar(value ? "true" : "false");
+}
 YamlNode writeValue(std::uint64_t value) {
   return makeScalar(std::to_string(value));
 }

@@ -17,7 +17,7 @@ TWINMAP = os.environ["TWINMAP"]
 TABLE1 = os.path.join(os.environ["TWINMAP_SOURCE_DIR"], "experiments/two_beam/table1.yaml")
 SMALL = ["design.train.samples=40", "design.test.samples=20"]
 RESULTS = ["failures.csv", "maps.h5", "metrics.csv", "predictions.csv", "resolved.yaml", "samples.h5", "table.md",
-           "table.tex"]
+           "table.tex", "training.csv"]
 
 
 def call(*arguments):
@@ -219,6 +219,17 @@ class Run(TestCase):
                 self.assertEqual(float(row["true"]), true_mass[int(row["sample"])])
         self.assertIn(f"{len(failures)} could not be simulated", (self.folder / "run/report.html").read_text())
         self.assertEqual(json.loads((self.folder / "run/provenance.json").read_text())["failed_samples"], len(failures))
+
+    def test_training_is_reported_start_by_start(self):
+        self.run_experiment("run", "inverse_map.gp.starts=3", "inverse_map.gp.length_scale_prior={log_stddev: 1}")
+        rows = read_csv(self.folder / "run/training.csv")
+        self.assertEqual([(r["parameter"], r["start"]) for r in rows if r["parameter"] == "k_y"],
+                         [("k_y", "0"), ("k_y", "1"), ("k_y", "2")])
+        nlml = {r["parameter"]: float(r["nlml"]) for r in read_csv(self.folder / "run/metrics.csv")}
+        for row in rows:
+            if row["best"] == "1":
+                self.assertAlmostEqual(float(row["nlml"]), nlml[row["parameter"]], 6)
+                self.assertGreater(float(row["condition"]), 1)
 
     def test_provenance_says_how(self):
         self.run_experiment("run", "--threads", 2)
