@@ -26,13 +26,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The successful samples of a set, as the inverse map sees them.
-struct LabelledFeatures {
-  std::vector<int> samples;    ///< indices in the set
-  Eigen::MatrixXd features;    ///< d x n, noisy
-  Eigen::MatrixXd parameters;  ///< p x n
-};
-
 /// Runs a stage, logs it and notes its wall time.
 template <class Stage>
 auto timeStage(const std::string& name, std::vector<StageTime>& times, const Stage& stage) {
@@ -74,17 +67,34 @@ void requireFewFailures(const std::vector<FailedSample>& failures, const std::st
   }
 }
 
-LabelledFeatures makeFeatures(const Trajectories& trajectories, const FeatureExtractor& extractor,
-                              const Eigen::VectorXd& noise_stddev, const RandomStream& noise) {
-  LabelledFeatures labelled;
+std::vector<int> findSuccessful(const Trajectories& trajectories) {
+  std::vector<int> samples;
   for (std::size_t i = 0; i < trajectories.statuses.size(); ++i) {
     if (trajectories.statuses[i].ok) {
-      labelled.samples.push_back(static_cast<int>(i));
+      samples.push_back(static_cast<int>(i));
     }
   }
-  const Eigen::MatrixXd features = extractor.extract(addNoise(trajectories.responses, noise_stddev, noise));
-  labelled.features = features(Eigen::all, labelled.samples);
-  labelled.parameters = trajectories.parameters(Eigen::all, labelled.samples);
+  return samples;
+}
+
+/// The given samples as the inverse map sees them: `replicates` draws of the noise each, draw by draw.
+LabelledFeatures makeFeatures(const Trajectories& trajectories, const std::vector<int>& samples,
+                              const FeatureExtractor& extractor, const Eigen::VectorXd& noise_of_output,
+                              const RandomStream& noise, int replicates) {
+  LabelledFeatures labelled;
+  const auto count = static_cast<Eigen::Index>(samples.size());
+  labelled.features.resize(static_cast<Eigen::Index>(extractor.getInfos().size()), count * replicates);
+  for (int r = 0; r < replicates; ++r) {
+    const Eigen::MatrixXd noisy = addNoise(trajectories.responses, noise_of_output, noise, r);
+    labelled.features.middleCols(r * count, count) = extractor.extract(noisy)(Eigen::all, samples);
+  }
+  labelled.parameters =
+      Eigen::MatrixXd(trajectories.parameters(Eigen::all, samples)).replicate(1, replicates);
+  labelled.replicates = replicates;
+  labelled.noise_stddev.resize(labelled.features.rows());
+  for (std::size_t f = 0; f < extractor.getInfos().size(); ++f) {
+    labelled.noise_stddev[static_cast<Eigen::Index>(f)] = noise_of_output[extractor.getInfos()[f].output];
+  }
   return labelled;
 }
 
@@ -187,13 +197,16 @@ RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& opt
 
   const FeatureExtractor extractor(experiment.features, train.output_names, train.times);
   const Eigen::VectorXd noise = collectNoiseStddev(experiment.noise, model.outputs);
-  const LabelledFeatures training = makeFeatures(train, extractor, noise, {seed, RandomPurpose::kTrainNoise});
-  const LabelledFeatures testing = makeFeatures(test, extractor, noise, {seed, RandomPurpose::kTestNoise});
+  run.test_indices = findSuccessful(test);
+  const LabelledFeatures training =
+      makeFeatures(train, findSuccessful(train), extractor, noise, {seed, RandomPurpose::kTrainNoise},
+                   experiment.noise.replicates.value_or(1));
+  const LabelledFeatures testing =
+      makeFeatures(test, run.test_indices, extractor, noise, {seed, RandomPurpose::kTestNoise}, 1);
 
   const GpMapTraining trained = timeStage("train the inverse map", run.times, [&] {
     return trainGpMap(experiment.inverse_map.gp, experiment.transform, extractor.getInfos(),
-                      collectNames(model.parameters), training.features, training.parameters,
-                      options.threads);
+                      collectNames(model.parameters), training, options.threads);
   });
   run.warnings = trained.warnings;
   run.training = summarizeTraining(collectNames(model.parameters), trained.reports);
@@ -203,7 +216,6 @@ RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& opt
   }
   writeMapsFile(options.folder / "maps.h5", {model.parameters, feature_names, trained.map});
 
-  run.test_indices = testing.samples;
   run.truth = testing.parameters;
   run.predictions =
       timeStage("infer the test samples", run.times, [&] { return trained.map.predict(testing.features); });

@@ -8,17 +8,17 @@
 
 namespace twinmap {
 
-double RandomStream::calcUniform(std::uint64_t sample, std::uint64_t channel) const {
-  const r123::Philox4x64::ctr_type counter{{sample, channel, 0, 0}};
+double RandomStream::calcUniform(std::uint64_t sample, std::uint64_t channel, std::uint64_t replicate) const {
+  const r123::Philox4x64::ctr_type counter{{sample, channel, replicate, 0}};
   const r123::Philox4x64::key_type key{{seed_, static_cast<std::uint64_t>(purpose_)}};
   return r123::u01fixedpt<double>(r123::Philox4x64()(counter, key)[0]);
 }
 
-double RandomStream::calcNormal(std::uint64_t sample, std::uint64_t channel) const {
+double RandomStream::calcNormal(std::uint64_t sample, std::uint64_t channel, std::uint64_t replicate) const {
   using boost::math::policies::make_policy;
   const auto in_double = make_policy(boost::math::policies::promote_double<false>());
   return -boost::math::constants::root_two<double>() *
-         boost::math::erfc_inv(2.0 * calcUniform(sample, channel), in_double);
+         boost::math::erfc_inv(2.0 * calcUniform(sample, channel, replicate), in_double);
 }
 
 }  // namespace twinmap

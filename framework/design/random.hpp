@@ -14,16 +14,16 @@ enum class RandomPurpose : std::uint64_t {
 };
 
 /// Counter-based random numbers (Philox 4x64-10, Salmon et al. 2011): a number depends on
-/// (seed, purpose, sample, channel) alone, never on the order or the thread of the calls.
+/// (seed, purpose, sample, channel, replicate) alone, never on the order or the thread of the calls.
 class RandomStream {
  public:
   RandomStream(std::uint64_t seed, RandomPurpose purpose) : seed_(seed), purpose_(purpose) {}
 
   /// Uniform on the open interval (0, 1).
-  double calcUniform(std::uint64_t sample, std::uint64_t channel) const;
+  double calcUniform(std::uint64_t sample, std::uint64_t channel, std::uint64_t replicate = 0) const;
 
   /// Standard normal, by the inverse of its distribution function at calcUniform().
-  double calcNormal(std::uint64_t sample, std::uint64_t channel) const;
+  double calcNormal(std::uint64_t sample, std::uint64_t channel, std::uint64_t replicate = 0) const;
 
  private:
   std::uint64_t seed_;

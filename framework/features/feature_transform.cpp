@@ -1,40 +1,102 @@
 #include "framework/features/feature_transform.hpp"
 
 #include <cmath>
+#include <stdexcept>
+
+#include "framework/features/principal_components.hpp"
 
 namespace twinmap {
 namespace {
 
-FeatureTransform fitZScore(const Eigen::MatrixXd& features) {
-  FeatureTransform transform;
-  transform.offset = features.rowwise().mean();
-  const Eigen::MatrixXd centered = features.colwise() - transform.offset;
-  transform.scale = (centered.rowwise().squaredNorm() / (features.cols() - 1.0)).cwiseSqrt();
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+AffineStep fitZScore(const MatrixXd& features) {
+  const VectorXd mean = features.rowwise().mean();
+  const MatrixXd centered = features.colwise() - mean;
+  const VectorXd stddev =
+      (centered.rowwise().squaredNorm() / (static_cast<double>(features.cols()) - 1.0)).cwiseSqrt();
   constexpr double kRounding = 1e-14;  // a feature that varies by less relative to its mean is constant
-  const Eigen::ArrayXd smallest = kRounding * transform.offset.array().abs();
-  transform.scale = (transform.scale.array() > smallest).select(transform.scale, 1.0);
-  return transform;
+  const Eigen::ArrayXd smallest = kRounding * mean.array().abs();
+  return {mean, (stddev.array() > smallest).select(stddev, 1.0), {}};
 }
 
-/// `first`, then `second`.
-FeatureTransform compose(const FeatureTransform& first, const FeatureTransform& second) {
-  return {first.offset + first.scale.cwiseProduct(second.offset), first.scale.cwiseProduct(second.scale)};
+AffineStep fitWhiten(const VectorXd& noise_stddev) {
+  if (!(noise_stddev.minCoeff() > 0.0)) {
+    throw std::invalid_argument("whiten: the noise of a feature is 0");
+  }
+  return {VectorXd::Zero(noise_stddev.size()), noise_stddev, {}};
+}
+
+Eigen::Index chooseRank(const PrincipalComponentsSpec& spec, const PrincipalComponents& components,
+                        Eigen::Index samples) {
+  const Eigen::Index most = components.variances.size();
+  if (spec.components) {
+    if (*spec.components > most) {
+      throw std::invalid_argument("principal_components: asked for " + std::to_string(*spec.components) +
+                                  " of " + std::to_string(most));
+    }
+    return *spec.components;
+  }
+  const double edge = calcMarchenkoPasturEdge(components.directions.rows(), samples);
+  const double total = components.variances.sum();
+  double explained = 0.0;
+  Eigen::Index rank = 0;
+  while (rank < most && (spec.explained_variance ? explained < *spec.explained_variance * total
+                                                 : components.variances[rank] > edge)) {
+    explained += components.variances[rank];
+    ++rank;
+  }
+  return std::max<Eigen::Index>(rank, 1);
+}
+
+AffineStep fitPrincipalComponents(const PrincipalComponentsSpec& spec, const MatrixXd& features) {
+  const VectorXd mean = features.rowwise().mean();
+  const PrincipalComponents components = calcPrincipalComponents(features.colwise() - mean);
+  const Eigen::Index rank = chooseRank(spec, components, features.cols());
+  return {mean, VectorXd::Ones(mean.size()), components.directions.leftCols(rank).transpose()};
+}
+
+AffineStep fitStep(const TransformStepSpec& step, const MatrixXd& features, const VectorXd& noise_stddev) {
+  if (step.z_score) {
+    return fitZScore(features);
+  }
+  if (step.whiten) {
+    return fitWhiten(noise_stddev);
+  }
+  return fitPrincipalComponents(*step.principal_components, features);
 }
 
 }  // namespace
 
-Eigen::MatrixXd FeatureTransform::apply(const Eigen::MatrixXd& features) const {
-  return (features.colwise() - offset).array().colwise() / scale.array();
+MatrixXd AffineStep::apply(const MatrixXd& features) const {
+  const MatrixXd scaled = (features.colwise() - offset).array().colwise() / scale.array();
+  if (projection.size() == 0) {
+    return scaled;
+  }
+  return projection * scaled;
 }
 
-FeatureTransform fitTransform(const std::vector<TransformStep>& steps, const Eigen::MatrixXd& features) {
-  FeatureTransform transform{Eigen::VectorXd::Zero(features.rows()), Eigen::VectorXd::Ones(features.rows())};
-  for (const TransformStep step : steps) {
-    switch (step) {
-      case TransformStep::kZScore:
-        transform = compose(transform, fitZScore(transform.apply(features)));
-        break;
+MatrixXd FeatureTransform::apply(const MatrixXd& features) const {
+  MatrixXd inputs = features;
+  for (const AffineStep& step : steps) {
+    inputs = step.apply(inputs);
+  }
+  return inputs;
+}
+
+FeatureTransform fitTransform(const std::vector<TransformStepSpec>& steps, const MatrixXd& features,
+                              const VectorXd& noise_stddev) {
+  FeatureTransform transform;
+  MatrixXd inputs = features;
+  VectorXd noise = noise_stddev;  // of the inputs; of no interest behind a projection
+  for (const TransformStepSpec& step : steps) {
+    const AffineStep fitted = fitStep(step, inputs, noise);
+    inputs = fitted.apply(inputs);
+    if (fitted.projection.size() == 0) {
+      noise = noise.cwiseQuotient(fitted.scale);
     }
+    transform.steps.push_back(fitted);
   }
   return transform;
 }

@@ -7,18 +7,36 @@
 
 namespace twinmap {
 
-/// From features to the inputs of the inverse map: (x - offset) / scale, element by element. Fitted once, on
-/// the training features, then a plain value.
-struct FeatureTransform {
-  Eigen::VectorXd offset;  ///< d, in the features' units
-  Eigen::VectorXd scale;   ///< d, > 0
+/// x -> P (x - offset) / scale, the division element by element; without P where it is empty.
+struct AffineStep {
+  Eigen::VectorXd offset;      ///< d
+  Eigen::VectorXd scale;       ///< d, > 0
+  Eigen::MatrixXd projection;  ///< P, k x d, or empty
 
-  /// Features (d x n) -> inputs (d x n).
+  /// d x n -> k x n (or d x n).
   Eigen::MatrixXd apply(const Eigen::MatrixXd& features) const;
 };
 
-/// Fits the steps to training features (d x n, n >= 2). Z-score: offset is the mean, scale the standard
-/// deviation (1/(n-1)); a constant feature has scale 1, so that it says nothing instead of NaN.
-FeatureTransform fitTransform(const std::vector<TransformStep>& steps, const Eigen::MatrixXd& features);
+/// From features to the inputs of the inverse map: affine steps one after another. Fitted once, on the
+/// training features, then a plain value.
+struct FeatureTransform {
+  std::vector<AffineStep> steps;
+
+  /// Features (d x n) -> inputs (k x n).
+  Eigen::MatrixXd apply(const Eigen::MatrixXd& features) const;
+};
+
+/// Fits the steps to training features (d x n, n >= 2), whose noise has the given standard deviations (d).
+/// - z_score: offset is the mean, scale the standard deviation (1/(n-1)); a constant feature has scale 1, so
+///   that it says nothing instead of NaN.
+/// - whiten: scale is the noise's standard deviation, which must be above 0.
+/// - principal_components: eigenvectors of the sample covariance (1/(n-1)), largest first, each with its
+///   largest loading positive. By default those whose eigenvalue stands above the Marchenko-Pastur edge
+///   (1 + sqrt(d / n))^2, the largest of unit noise alone; at least one is kept.
+///
+/// Cost: min(d, n)^3 + d n min(d, n) flops for principal components. Throws std::invalid_argument where noise
+/// is 0 or more components are asked for than there are.
+FeatureTransform fitTransform(const std::vector<TransformStepSpec>& steps, const Eigen::MatrixXd& features,
+                              const Eigen::VectorXd& noise_stddev);
 
 }  // namespace twinmap

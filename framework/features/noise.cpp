@@ -20,11 +20,12 @@ Eigen::VectorXd collectNoiseStddev(const NoiseSpec& noise, const std::vector<Out
 }
 
 Eigen::MatrixXd addNoise(const Eigen::MatrixXd& responses, const Eigen::VectorXd& stddev_of_output,
-                         const RandomStream& random) {
+                         const RandomStream& random, int replicate) {
   const Eigen::Index times = responses.rows() / stddev_of_output.size();
   return Eigen::MatrixXd::NullaryExpr(
       responses.rows(), responses.cols(), [&](Eigen::Index row, Eigen::Index sample) {
-        return responses(row, sample) + stddev_of_output[row / times] * random.calcNormal(sample, row);
+        return responses(row, sample) +
+               stddev_of_output[row / times] * random.calcNormal(sample, row, replicate);
       });
 }
 

@@ -11,8 +11,8 @@ namespace twinmap {
 Eigen::VectorXd collectNoiseStddev(const NoiseSpec& noise, const std::vector<OutputSpec>& outputs);
 
 /// Responses (outputs * times x n, output by output) plus independent normal noise. The noise of a response
-/// depends on the stream, its column and its row alone.
+/// depends on the stream, its column, its row and the replicate alone.
 Eigen::MatrixXd addNoise(const Eigen::MatrixXd& responses, const Eigen::VectorXd& stddev_of_output,
-                         const RandomStream& random);
+                         const RandomStream& random, int replicate = 0);
 
 }  // namespace twinmap

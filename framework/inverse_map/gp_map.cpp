@@ -1,6 +1,7 @@
 #include "framework/inverse_map/gp_map.hpp"
 
 #include <map>
+#include <numeric>
 #include <stdexcept>
 
 #include "kernels/sparse/sparse_training.hpp"
@@ -34,18 +35,19 @@ gp::MeanFunction toKernel(GpMean mean) {
   return gp::MeanFunction::kConstant;
 }
 
-/// Groups of features that share a length scale, numbered from 0 without gaps; empty for one group.
-std::vector<int> makeGroups(LengthScales length_scales, const std::vector<FeatureInfo>& infos) {
+/// Groups of inputs that share a length scale, numbered from 0 without gaps; empty for one group. Without a
+/// projection, inputs are features.
+std::vector<int> makeGroups(LengthScales length_scales, const std::vector<FeatureInfo>& infos, int inputs) {
   std::vector<int> groups;
-  if (length_scales == LengthScales::kShared) {
-    return groups;
-  }
-  std::map<int, int> group_of_output;
-  for (const FeatureInfo& info : infos) {
-    const int next_output = static_cast<int>(group_of_output.size());
-    const int output_group = group_of_output.emplace(info.output, next_output).first->second;
-    const bool per_output = length_scales == LengthScales::kPerOutput;
-    groups.push_back(per_output ? output_group : static_cast<int>(groups.size()));
+  if (length_scales == LengthScales::kPerFeature) {
+    groups.resize(inputs);
+    std::iota(groups.begin(), groups.end(), 0);
+  } else if (length_scales == LengthScales::kPerOutput) {
+    std::map<int, int> group_of_output;
+    for (const FeatureInfo& info : infos) {
+      const int next = static_cast<int>(group_of_output.size());
+      groups.push_back(group_of_output.emplace(info.output, next).first->second);
+    }
   }
   return groups;
 }
@@ -68,10 +70,10 @@ gp::TrainingOptions toKernel(const GpMapSpec& spec, int threads) {
   return options;
 }
 
-gp::ModelStructure makeStructure(const GpMapSpec& spec, const std::vector<FeatureInfo>& infos) {
+gp::ModelStructure makeStructure(const GpMapSpec& spec, const std::vector<FeatureInfo>& infos, int inputs) {
   gp::ModelStructure structure;
   structure.covariance = toKernel(spec.covariance);
-  structure.length_scale_groups = makeGroups(spec.length_scales, infos);
+  structure.length_scale_groups = makeGroups(spec.length_scales, infos, inputs);
   structure.linear_term = spec.linear_term;
   structure.mean = toKernel(spec.mean);
   return structure;
@@ -99,6 +101,23 @@ void keepResults(const std::vector<Result>& results, const std::vector<std::stri
       training.warnings.push_back("parameter '" + parameter_names[p] + "': " + results[p].message);
     }
   }
+}
+
+/// The hyperparameters of each target on the first of the replicates; none if a target cannot be trained.
+std::vector<gp::Hyperparameters> findHyperparameters(const Eigen::MatrixXd& inputs,
+                                                     const Eigen::MatrixXd& targets, int replicates,
+                                                     const gp::ModelStructure& structure,
+                                                     const gp::TrainingOptions& options) {
+  const Eigen::Index first = inputs.cols() / replicates;
+  std::vector<gp::Hyperparameters> found;
+  for (const gp::TrainingResult& result :
+       gp::train(inputs.leftCols(first), targets.leftCols(first), structure, options)) {
+    if (result.gp == nullptr) {
+      return {};
+    }
+    found.push_back(result.gp->getHyperparameters());
+  }
+  return found;
 }
 
 Eigen::VectorXd calcStddev(const Eigen::MatrixXd& rows, const Eigen::VectorXd& mean) {
@@ -129,21 +148,24 @@ Predictions GpMap::predict(const Eigen::MatrixXd& features) const {
   return predictions;
 }
 
-GpMapTraining trainGpMap(const GpMapSpec& spec, const std::vector<TransformStep>& transform,
+GpMapTraining trainGpMap(const GpMapSpec& spec, const std::vector<TransformStepSpec>& transform,
                          const std::vector<FeatureInfo>& infos,
-                         const std::vector<std::string>& parameter_names, const Eigen::MatrixXd& features,
-                         const Eigen::MatrixXd& parameters, int threads) {
+                         const std::vector<std::string>& parameter_names, const LabelledFeatures& samples,
+                         int threads) {
   GpMapTraining training;
   GpMap& map = training.map;
-  map.transform = fitTransform(transform, features);
-  map.target_offset = parameters.rowwise().mean();
-  map.target_scale = calcStddev(parameters, map.target_offset);
+  map.transform = fitTransform(transform, samples.features, samples.noise_stddev);
+  map.target_offset = samples.parameters.rowwise().mean();
+  map.target_scale = calcStddev(samples.parameters, map.target_offset);
   const Eigen::MatrixXd targets =
-      (parameters.colwise() - map.target_offset).array().colwise() / map.target_scale.array();
+      (samples.parameters.colwise() - map.target_offset).array().colwise() / map.target_scale.array();
 
-  const Eigen::MatrixXd inputs = map.transform.apply(features);
-  const gp::ModelStructure structure = makeStructure(spec, infos);
-  const gp::TrainingOptions options = toKernel(spec, threads);
+  const Eigen::MatrixXd inputs = map.transform.apply(samples.features);
+  const gp::ModelStructure structure = makeStructure(spec, infos, static_cast<int>(inputs.rows()));
+  gp::TrainingOptions options = toKernel(spec, threads);
+  if (samples.replicates > 1) {
+    options.warm_starts = findHyperparameters(inputs, targets, samples.replicates, structure, options);
+  }
   if (spec.approximation == GpApproximation::kSgpr) {
     const gp::SparseOptions sparse{spec.inducing, spec.subset, spec.refine_evaluations};
     keepResults(gp::trainSparse(inputs, targets, structure, options, sparse), parameter_names, training);

@@ -43,11 +43,25 @@ struct GpMapTraining {
   std::vector<std::string> warnings;        ///< "parameter 'd_y': ..."; empty if every process converged
 };
 
-/// Trains the map on features (d x n) and parameters (p x n) of the same samples, n >= 2. The result does not
+/// Training samples, one column each; several draws of the noise (replicates) stand draw by draw.
+struct LabelledFeatures {
+  Eigen::MatrixXd features;      ///< d x n, noisy
+  Eigen::MatrixXd parameters;    ///< p x n
+  Eigen::VectorXd noise_stddev;  ///< d, of the features
+  int replicates = 1;
+};
+
+/// Trains the map on features and parameters of the same samples, n >= 2.
+///
+/// Replicates share their parameters exactly, and the marginal likelihood knows nothing of that: its best
+/// optimum may recognise the simulation instead of inferring the parameter. So the hyperparameters are found
+/// on the first draw, and only the optimum that leads to is followed with all draws.
+///
+/// The result does not
 /// depend on `threads`. Throws std::runtime_error naming the parameter whose process cannot be trained.
-GpMapTraining trainGpMap(const GpMapSpec& spec, const std::vector<TransformStep>& transform,
+GpMapTraining trainGpMap(const GpMapSpec& spec, const std::vector<TransformStepSpec>& transform,
                          const std::vector<FeatureInfo>& infos,
-                         const std::vector<std::string>& parameter_names, const Eigen::MatrixXd& features,
-                         const Eigen::MatrixXd& parameters, int threads);
+                         const std::vector<std::string>& parameter_names, const LabelledFeatures& samples,
+                         int threads);
 
 }  // namespace twinmap

@@ -23,11 +23,6 @@ struct EnumNames<Integrator> {
 };
 
 template <>
-struct EnumNames<TransformStep> {
-  static constexpr EnumName<TransformStep> values[] = {{"z_score", TransformStep::kZScore}};
-};
-
-template <>
 struct EnumNames<DesignMethod> {
   static constexpr EnumName<DesignMethod> values[] = {
       {"latin_hypercube", DesignMethod::kLatinHypercube},
@@ -113,8 +108,33 @@ void describe(Fields& f, FeatureSpec& s) {
 }
 
 template <class Fields>
+void describe(Fields&, ZScoreSpec&) {}
+
+template <class Fields>
+void describe(Fields&, WhitenSpec&) {}
+
+template <class Fields>
+void describe(Fields& f, PrincipalComponentsSpec& s) {
+  f.optional("components", s.components, "how many", kCount);
+  f.optional("explained_variance", s.explained_variance, "as many as explain this fraction", kFraction);
+  f.rule(!s.components || !s.explained_variance, "must give components or explained_variance, not both");
+}
+
+template <class Fields>
+void describe(Fields& f, TransformStepSpec& s) {
+  f.optional("z_score", s.z_score, "each feature minus its mean, over its standard deviation");
+  f.optional("whiten", s.whiten, "each feature over the standard deviation of its noise");
+  f.optional("principal_components", s.principal_components,
+             "projection on the directions of largest variance; by default those above the noise");
+  f.rule(s.z_score.has_value() + s.whiten.has_value() + s.principal_components.has_value() == 1,
+         "must be one of z_score, whiten, principal_components");
+}
+
+template <class Fields>
 void describe(Fields& f, NoiseSpec& s) {
   f.optional("scale", s.scale, "multiplies every stddev", kNonNegative);
+  f.optional("replicates", s.replicates,
+             "noise draws per training simulation (default: 4, fewer for more than 500 samples)", kCount);
   f.requiredMap("stddev", s.stddev, "standard deviation of each output's noise, in the output's unit");
 }
 

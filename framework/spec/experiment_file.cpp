@@ -1,5 +1,7 @@
 #include "framework/spec/experiment_file.hpp"
 
+#include <algorithm>
+
 #include "framework/spec/check_experiment.hpp"
 #include "framework/spec/describe_experiment.hpp"
 #include "framework/spec/overrides.hpp"
@@ -15,6 +17,16 @@ void resolveDefaults(ExperimentSpec& experiment) {
   if (experiment.report.over.empty() && parameters.size() >= 2) {
     experiment.report.over = {parameters[parameters.size() - 2].name, parameters.back().name};
   }
+  if (experiment.transform.empty()) {
+    experiment.transform.resize(2);
+    experiment.transform[0].whiten.emplace();
+    experiment.transform[1].principal_components.emplace();
+  }
+  if (!experiment.noise.replicates) {
+    constexpr int kMostReplicates = 4, kMostColumns = 2000;
+    experiment.noise.replicates =
+        std::clamp(kMostColumns / experiment.design.train.samples, 1, kMostReplicates);
+  }
 }
 
 }  // namespace
@@ -22,8 +34,8 @@ void resolveDefaults(ExperimentSpec& experiment) {
 ExperimentSpec readExperiment(const YamlNode& root) {
   ExperimentSpec experiment;
   readValue(root, experiment);
-  checkExperiment(experiment);
   resolveDefaults(experiment);
+  checkExperiment(experiment);
   return experiment;
 }
 

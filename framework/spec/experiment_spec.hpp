@@ -30,8 +30,27 @@ struct FeatureSpec {
   std::optional<SamplesFeatureSpec> samples;
 };
 
-/// Steps from features to the inputs of the inverse map, fitted on the training features.
-enum class TransformStep { kZScore };
+/// Each feature minus its mean, over its standard deviation.
+struct ZScoreSpec {};
+
+/// Each feature over the standard deviation of its noise, so that noise has unit variance in every direction.
+struct WhitenSpec {};
+
+/// Principal components of the training features, those of largest variance. How many: as given, or enough to
+/// explain a fraction of the variance, or by default those that stand above the noise of whitened features.
+struct PrincipalComponentsSpec {
+  std::optional<int> components;
+  std::optional<double> explained_variance;
+};
+
+/// One step from features to the inputs of the inverse map, fitted on the training features; exactly one
+/// member is set.
+struct TransformStepSpec {
+  std::optional<ZScoreSpec> z_score;
+  std::optional<WhitenSpec> whiten;
+  std::optional<PrincipalComponentsSpec> principal_components;
+  SourceLocation where;
+};
 
 struct OutputNoiseSpec {
   Name name;            ///< an output
@@ -40,7 +59,8 @@ struct OutputNoiseSpec {
 
 /// Independent normal noise on every sample of every output, in training and test alike.
 struct NoiseSpec {
-  double scale = 1.0;  ///< multiplies every stddev
+  double scale = 1.0;             ///< multiplies every stddev
+  std::optional<int> replicates;  ///< noise draws per training simulation; default 4, fewer for many samples
   std::vector<OutputNoiseSpec> stddev;
 };
 
@@ -81,7 +101,7 @@ struct GpMapSpec {
   GpCovariance covariance = GpCovariance::kSquaredExponential;
   bool linear_term = false;  ///< adds a linear covariance term
   GpMean mean = GpMean::kConstant;
-  LengthScales length_scales = LengthScales::kShared;
+  LengthScales length_scales = LengthScales::kPerFeature;  ///< after a projection: per component
   std::optional<LengthScalePriorSpec> length_scale_prior;  ///< none: maximum likelihood
   int starts = 2;
   int max_evaluations = 200;  ///< of the marginal likelihood, per start
@@ -107,7 +127,7 @@ struct ExperimentSpec {
   std::uint64_t seed = 1;
   ModelSpec model;
   std::vector<FeatureSpec> features;
-  std::vector<TransformStep> transform{TransformStep::kZScore};
+  std::vector<TransformStepSpec> transform;  ///< default: whiten, principal_components
   NoiseSpec noise;
   DesignSpec design;
   InverseMapSpec inverse_map;

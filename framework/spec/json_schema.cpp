@@ -53,6 +53,10 @@ Json makeSchema(const std::optional<T>&);
 template <class T>
 Json makeSchema(const T&);
 
+Json makeSchema(const TransformStepSpec&) {
+  const Json names{{"enum", {"z_score", "whiten", "principal_components"}}};
+  return {{"anyOf", Json::array({names, makeStructSchema<TransformStepSpec>()})}};
+}
 Json makeSchema(const ConstantSpec&) {
   return {{"anyOf", Json::array({makeSchema(Expression{}), makeStructSchema<ConstantSpec>()})}};
 }

@@ -130,6 +130,19 @@ void readValue(const YamlNode& node, NamedExpression& value) {
   readValue(node, value.value);
 }
 
+void readValue(const YamlNode& node, TransformStepSpec& value) {
+  value.where = node.where;
+  if (node.kind != YamlNode::Kind::kScalar) {
+    readStruct(node, value);
+    return;
+  }
+  YamlNode map = makeMap();
+  map.where = node.where;
+  map.entries.push_back({node.scalar, node.where, makeMap()});
+  map.entries.back().value.where = node.where;
+  readStruct(map, value);
+}
+
 void readValue(const YamlNode& node, ConstantSpec& value) {
   if (node.kind == YamlNode::Kind::kScalar) {
     readValue(node, value.value);
@@ -157,13 +170,13 @@ const YamlNode& FieldReader::takeRequired(const char* key, const char* what) {
   return *node;
 }
 
-void FieldReader::rule(bool holds, const char* text) const {
-  if (!holds) {
-    throw ExperimentError(map_.where, "", text);
+void FieldReader::rule(bool holds, const char* text) {
+  if (!holds && broken_rule_ == nullptr) {
+    broken_rule_ = text;
   }
 }
 
-void FieldReader::requireNoUnknownKeys() const {
+void FieldReader::finish() const {
   for (const YamlEntry& entry : map_.entries) {
     if (std::find(known_.begin(), known_.end(), entry.key) == known_.end()) {
       std::string listed;
@@ -174,6 +187,9 @@ void FieldReader::requireNoUnknownKeys() const {
           entry.key_where, entry.key,
           "is not a key here" + suggestName(entry.key, known_) + " (known: " + listed + ")");
     }
+  }
+  if (broken_rule_ != nullptr) {
+    throw ExperimentError(map_.where, "", broken_rule_);
   }
 }
 

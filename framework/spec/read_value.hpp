@@ -31,6 +31,8 @@ void readValue(const YamlNode& node, Name& value);
 void readValue(const YamlNode& node, Bounds& value);
 void readValue(const YamlNode& node, OutputNoiseSpec& value);
 void readValue(const YamlNode& node, NamedExpression& value);
+/// A scalar names a step with its defaults.
+void readValue(const YamlNode& node, TransformStepSpec& value);
 /// A scalar is the constant's value.
 void readValue(const YamlNode& node, ConstantSpec& value);
 
@@ -53,10 +55,11 @@ class FieldReader {
   void requiredMap(const char* key, std::vector<T>& values, const char* /*what*/);
   template <class T>
   void optionalMap(const char* key, std::vector<T>& values, const char* /*what*/);
-  void rule(bool holds, const char* text) const;
+  void rule(bool holds, const char* text);
 
-  /// Throws for a key that no field asked for, with the nearest known one.
-  void requireNoUnknownKeys() const;
+  /// Throws for a key that no field asked for, with the nearest known one; then for the first broken rule,
+  /// which a misspelt key may have caused.
+  void finish() const;
 
  private:
   const YamlNode* take(const char* key);
@@ -64,13 +67,14 @@ class FieldReader {
 
   const YamlNode& map_;
   std::vector<std::string> known_;
+  const char* broken_rule_ = nullptr;
 };
 
 template <class T>
 void readStruct(const YamlNode& node, T& value) {
   FieldReader fields(node);
   describe(fields, value);
-  fields.requireNoUnknownKeys();
+  fields.finish();
 }
 
 template <class Enum>
@@ -99,9 +103,9 @@ void readValue(const YamlNode& node, T& value) {
   }
 }
 
-template <class T>
-void readValue(const YamlNode& node, std::optional<T>& value) {
-  readValue(node, value.emplace());
+template <class T, class... Rule>
+void readValue(const YamlNode& node, std::optional<T>& value, const Rule&... rule) {
+  readValue(node, value.emplace(), rule...);
 }
 
 template <class T>

@@ -47,8 +47,8 @@ std::vector<std::size_t> Hdf5Reader::readShape(const std::string& dataset) const
 Eigen::MatrixXd Hdf5Reader::readSamples(const std::string& dataset) const {
   const Hdf5Handle data = openDataset(file_, path_, dataset);
   const std::vector<std::size_t> shape = getShape(data);
-  const std::size_t rows = shape.size() < 2 ? countValues(shape) : countValues(shape) / shape[0];
   const std::size_t columns = shape.size() < 2 ? 1 : shape[0];
+  const std::size_t rows = columns == 0 ? 0 : countValues(shape) / columns;
   Eigen::MatrixXd values(rows, columns);
   requireHdf5(H5Dread(data.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
               path_ + ": " + dataset + " cannot be read");

@@ -139,6 +139,32 @@ Process readSparse(const Hdf5Reader& file, const std::string& group) {
   return std::make_shared<const gp::SparseGaussianProcess>(std::move(parts));
 }
 
+std::string getStepGroup(std::size_t step) {
+  return "/transform/" + std::to_string(step);
+}
+
+void writeTransform(Hdf5Writer& file, const FeatureTransform& transform) {
+  file.write("/transform/steps", static_cast<double>(transform.steps.size()));
+  for (std::size_t i = 0; i < transform.steps.size(); ++i) {
+    const AffineStep& step = transform.steps[i];
+    file.write(getStepGroup(i) + "/offset", step.offset);
+    file.write(getStepGroup(i) + "/scale", step.scale);
+    file.writeSamples(getStepGroup(i) + "/projection", step.projection.transpose());
+  }
+}
+
+FeatureTransform readTransform(const Hdf5Reader& file) {
+  FeatureTransform transform;
+  transform.steps.resize(static_cast<std::size_t>(file.readNumber("/transform/steps")));
+  for (std::size_t i = 0; i < transform.steps.size(); ++i) {
+    AffineStep& step = transform.steps[i];
+    step.offset = file.readVector(getStepGroup(i) + "/offset");
+    step.scale = file.readVector(getStepGroup(i) + "/scale");
+    step.projection = file.readSamples(getStepGroup(i) + "/projection").transpose();
+  }
+  return transform;
+}
+
 /// An exact process, which has the training inputs that all exact ones share; null if all are sparse.
 const gp::GaussianProcess* findExact(const GpMap& map) {
   for (const Process& process : map.processes) {
@@ -157,8 +183,7 @@ void writeMapsFile(const std::filesystem::path& path, const StoredMap& stored) {
     file.writeAttribute("/", "format", kFormat);
     writeParametersGroup(file, stored.parameters);
     file.write("/features/name", stored.feature_names);
-    file.write("/transform/offset", stored.map.transform.offset);
-    file.write("/transform/scale", stored.map.transform.scale);
+    writeTransform(file, stored.map.transform);
     file.write("/target/offset", stored.map.target_offset);
     file.write("/target/scale", stored.map.target_scale);
     if (const gp::GaussianProcess* exact = findExact(stored.map)) {
@@ -180,7 +205,7 @@ StoredMap readMapsFile(const std::filesystem::path& path) {
   StoredMap stored;
   stored.parameters = readParametersGroup(file);
   stored.feature_names = file.readTexts("/features/name");
-  stored.map.transform = {file.readVector("/transform/offset"), file.readVector("/transform/scale")};
+  stored.map.transform = readTransform(file);
   stored.map.target_offset = file.readVector("/target/offset");
   stored.map.target_scale = file.readVector("/target/scale");
   std::shared_ptr<const Eigen::MatrixXd> inputs;

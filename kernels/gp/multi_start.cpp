@@ -123,6 +123,13 @@ std::vector<TargetSearches> searchAllStarts(const TrainingSet& set, const Eigen:
                                             const TrainingOptions& options) {
   std::vector<TargetSearches> all = makeTargets(targets);
   chooseStarts(set, options, options.starts, all);
+  if (!options.warm_starts.empty()) {
+    for (std::size_t t = 0; t < all.size(); ++t) {
+      if (!all[t].constant) all[t].starts = {toLog(set.getStructure(), options.warm_starts[t])};
+    }
+    runTasks(set, options, makeTasks(all, 0, 1));
+    return all;
+  }
   if (getGroupCount(set.getStructure()) > 1) addWarmStarts(set, options, all);
   searchStarts(set, options, all);
   return all;

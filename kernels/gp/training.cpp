@@ -54,6 +54,15 @@ void checkTargets(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
   checkInputs(targets, "train: targets");
 }
 
+void checkWarmStarts(Eigen::Index targets, const ModelStructure& structure,
+                     const std::vector<Hyperparameters>& warm_starts) {
+  if (!warm_starts.empty() && static_cast<Eigen::Index>(warm_starts.size()) != targets) {
+    throw std::invalid_argument("TrainingOptions: warm_starts has " + std::to_string(warm_starts.size()) +
+                                " entries for " + std::to_string(targets) + " targets");
+  }
+  for (const Hyperparameters& start : warm_starts) checkHyperparameters(structure, start);
+}
+
 StartReport reportStart(const ModelStructure& structure, const VectorXd& start, const SearchResult& result,
                         double noise_only_nlml) {
   StartReport report;
@@ -175,6 +184,7 @@ std::vector<TrainingResult> train(const Eigen::Ref<const Eigen::MatrixXd>& input
                                   const ModelStructure& structure, const TrainingOptions& options) {
   checkOptions(options);
   checkTargets(inputs, targets);
+  checkWarmStarts(targets.rows(), structure, options.warm_starts);
   const TrainingSet set(inputs, structure);
   const std::vector<TargetSearches> searches = searchAllStarts(set, targets, options);
   LikelihoodWorkspace workspace(set, getTeamSize(set, options.threads));

@@ -28,6 +28,9 @@ struct TrainingOptions {
   /// from far off it (with several groups: from the optimum of a shared length scale). They found the best of
   /// 8 starts on the two-beam targets of 20 seeds, and of seed 1 from 16 other first starts.
   int starts = 2;
+  /// One per target: a single search from here replaces the starts. For hyperparameters known from similar
+  /// data.
+  std::vector<Hyperparameters> warm_starts;
   /// NLML + gradient evaluations per start. A start takes some 20 to 40; 200 ends only the hopeless.
   int max_evaluations = 200;
   /// A start ends when a step gains less than this many nats. 1e-4 would change no prediction visibly; 1e-6

@@ -175,7 +175,7 @@ class Run(TestCase):
             rows = read_csv(self.folder / "run/predictions.csv")
             with h5py.File(self.folder / "run/maps.h5") as maps:
                 self.assertEqual(features.shape[1], len(maps["features/name"]))
-                x = (features - maps["transform/offset"][:]) / maps["transform/scale"][:]
+                x = transform(maps, features)
                 for p, name in enumerate(maps["parameters/name"].asstr()[:]):
                     mean, stddev = predict(maps["maps"][name], maps["training_inputs"][:], x)
                     offset, scale = maps["target/offset"][p], maps["target/scale"][p]
@@ -239,6 +239,15 @@ class Run(TestCase):
         self.assertIn("design.train.samples=40", provenance["command"])
         self.assertEqual(len(provenance["seconds"]), 4)
         self.assertEqual([p.name for p in (self.folder / "run").glob("*.tmp")], [])
+
+
+def transform(maps, features):
+    for i in range(int(maps["transform/steps"][()])):
+        step = maps[f"transform/{i}"]
+        features = (features - step["offset"][:]) / step["scale"][:]
+        if step["projection"].size:
+            features = features @ step["projection"][:].T
+    return features
 
 
 def predict(group, inputs, x):

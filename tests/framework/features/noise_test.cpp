@@ -31,6 +31,13 @@ TEST(Noise, OfASampleDoesNotDependOnTheOthers) {
   EXPECT_EQ(addNoise(with_failure, kStddev, stream).rightCols(4), noisy.rightCols(4));
 }
 
+TEST(Noise, ReplicatesAreOtherDraws) {
+  const Eigen::MatrixXd clean = Eigen::MatrixXd::Zero(2 * kTimes, 4);
+  const RandomStream stream(1, RandomPurpose::kTrainNoise);
+  EXPECT_EQ(addNoise(clean, kStddev, stream, 0), addNoise(clean, kStddev, stream));
+  EXPECT_GT((addNoise(clean, kStddev, stream, 1) - addNoise(clean, kStddev, stream)).norm(), 1.0);
+}
+
 TEST(Noise, ScaleMultipliesEveryOutputAndZeroIsNone) {
   std::vector<OutputSpec> outputs(2);
   outputs[0].name = {"y", {}};

@@ -15,6 +15,7 @@ struct Problem {
   std::vector<FeatureInfo> infos{
       {"a(0 s)", 0, 0.0}, {"a(1 s)", 0, 1.0}, {"b(0 s)", 1, 0.0}, {"b(1 s)", 1, 1.0}};
   std::vector<std::string> names{"p", "q"};
+  int replicates = 1;
 };
 
 Problem makeProblem(int samples, std::uint64_t seed, double noise_stddev = 1e-4) {
@@ -35,8 +36,19 @@ Problem makeProblem(int samples, std::uint64_t seed, double noise_stddev = 1e-4)
 }
 
 GpMapTraining trainOn(const Problem& problem, const GpMapSpec& spec = {}, int threads = 1) {
-  return trainGpMap(spec, {TransformStep::kZScore}, problem.infos, problem.names, problem.features,
-                    problem.parameters, threads);
+  TransformStepSpec z_score;
+  z_score.z_score.emplace();
+  const Eigen::VectorXd noise = Eigen::VectorXd::Ones(problem.features.rows());
+  return trainGpMap(spec, {z_score}, problem.infos, problem.names,
+                    {problem.features, problem.parameters, noise, problem.replicates}, threads);
+}
+
+/// Root mean square of the error of 200 other samples, relative to the parameters' spread.
+double calcError(const Problem& problem, double noise_stddev) {
+  const Problem test = makeProblem(200, 99, noise_stddev);
+  const GpMap map = trainOn(problem).map;
+  const Eigen::ArrayXXd error = (map.predict(test.features).mean - test.parameters).array();
+  return std::sqrt((error.colwise() / map.target_scale.array()).square().mean());
 }
 
 TEST(GpMap, InfersParametersInTheirOwnUnits) {
@@ -79,6 +91,26 @@ TEST(GpMap, ASparseMapOnAllInputsIsTheExactOne) {
   const Eigen::ArrayXXd difference = (sparse.mean - exact.mean).array() / exact.stddev.array();
   EXPECT_LT(difference.abs().maxCoeff(), 1e-2);
   EXPECT_LT((sparse.stddev.array() / exact.stddev.array() - 1.0).abs().maxCoeff(), 1e-2);
+}
+
+// Four draws of the noise of 60 samples: the likelihood would best be served by recognising the samples,
+// which infers nothing; the map must get better instead.
+TEST(GpMap, ReplicatesHelpAndAreNotRecognised) {
+  constexpr int kSamples = 60, kReplicates = 4;
+  constexpr double kNoise = 0.02;
+  Problem problem = makeProblem(kSamples, 5, kNoise);
+  const double error_of_one = calcError(problem, kNoise);
+  const Problem clean = makeProblem(kSamples, 5, 0.0);
+  problem.replicates = kReplicates;
+  problem.parameters = clean.parameters.replicate(1, kReplicates).eval();
+  problem.features = clean.features.replicate(1, kReplicates).eval();
+  const RandomStream random(6, RandomPurpose::kTrainNoise);
+  for (Eigen::Index i = 0; i < problem.features.cols(); ++i) {
+    for (int f = 0; f < 4; ++f) {
+      problem.features(f, i) += kNoise * random.calcNormal(i, f);
+    }
+  }
+  EXPECT_LT(calcError(problem, kNoise), 1.05 * error_of_one);
 }
 
 TEST(GpMap, TheResultDoesNotDependOnTheThreads) {

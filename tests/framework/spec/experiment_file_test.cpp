@@ -55,6 +55,26 @@ TEST(ExperimentFile, ReportAxesDefaultToTheLastTwoParameters) {
   EXPECT_EQ(experiment.report.over[1].text, "k_theta");
 }
 
+TEST(ExperimentFile, DefaultsAreWhitenedComponentsAndReplicates) {
+  const ExperimentSpec experiment =
+      loadExperiment(kTable1, {"transform=[]", "noise={stddev: {y: 1, theta: 1}}"});
+  ASSERT_EQ(experiment.transform.size(), 2u);
+  EXPECT_TRUE(experiment.transform[0].whiten);
+  EXPECT_TRUE(experiment.transform[1].principal_components);
+  EXPECT_EQ(experiment.noise.replicates, 4);
+  EXPECT_EQ(loadExperiment(kTable1, {"noise={stddev: {y: 1, theta: 1}}", "design.train.samples=1000"})
+                .noise.replicates,
+            2);
+}
+
+TEST(ExperimentFile, WhiteningNeedsNoise) {
+  EXPECT_THROW(loadExperiment(kTable1, {"transform=[whiten]", "noise.scale=0"}), ExperimentError);
+  EXPECT_THROW(loadExperiment(kTable1, {"transform=[whiten]", "noise.stddev.y=0"}), ExperimentError);
+  EXPECT_THROW(loadExperiment(kTable1, {"transform=[whiten, principal_components]",
+                                        "inverse_map.gp.length_scales=per_output"}),
+               ExperimentError);
+}
+
 TEST(ExperimentFile, EveryJointTypeIsReadWithItsCoordinates) {
   const std::vector<std::pair<std::string, std::string>> joints{{"weld", "[]"},
                                                                 {"slider", "[a]"},

@@ -60,7 +60,11 @@ TEST(MapsFile, ARestoredMapPredictsTheSameBits) {
   values.row(0) = features.row(0).array().sin() + 1.5;
   values.row(1) = features.row(1).cwiseProduct(features.row(2));
   const std::vector<FeatureInfo> infos{{"y(0 s)", 0, 0.0}, {"y(1 s)", 0, 1.0}, {"z(0 s)", 1, 0.0}};
+  std::vector<TransformStepSpec> transform(2);
+  transform[0].z_score.emplace();
+  transform[1].principal_components = PrincipalComponentsSpec{3, {}};
   std::vector<GpMapSpec> specs(5);
+  specs[0].length_scales = LengthScales::kShared;
   specs[1].length_scales = LengthScales::kPerOutput;
   specs[2].covariance = GpCovariance::kRationalQuadratic;
   specs[2].mean = GpMean::kLinear;
@@ -71,7 +75,7 @@ TEST(MapsFile, ARestoredMapPredictsTheSameBits) {
   specs[4].inducing = 10;
   for (const GpMapSpec& spec : specs) {
     const GpMapTraining training =
-        trainGpMap(spec, {TransformStep::kZScore}, infos, {"k", "d"}, features, values, 1);
+        trainGpMap(spec, transform, infos, {"k", "d"}, {features, values, Eigen::VectorXd::Ones(3)}, 1);
     writeMapsFile(folder / "maps.h5", {makeParameters(), {"a", "b", "c"}, training.map});
     const StoredMap stored = readMapsFile(folder / "maps.h5");
     EXPECT_EQ(stored.feature_names, (std::vector<std::string>{"a", "b", "c"}));

@@ -1,0 +1,48 @@
+#include "framework/features/principal_components.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+void fixSigns(MatrixXd& directions) {
+  for (Index k = 0; k < directions.cols(); ++k) {
+    Index largest = 0;
+    directions.col(k).cwiseAbs().maxCoeff(&largest);
+    if (directions(largest, k) < 0.0) {
+      directions.col(k) *= -1.0;
+    }
+  }
+}
+
+}  // namespace
+
+PrincipalComponents calcPrincipalComponents(const MatrixXd& centered) {
+  const bool tall = centered.rows() > centered.cols();
+  const double degrees_of_freedom = static_cast<double>(centered.cols()) - 1.0;
+  const MatrixXd products =
+      tall ? MatrixXd(centered.transpose() * centered) : MatrixXd(centered * centered.transpose());
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(products / degrees_of_freedom);
+  PrincipalComponents components;
+  components.variances = eigen.eigenvalues().reverse().cwiseMax(0.0);
+  components.directions = eigen.eigenvectors().rowwise().reverse();
+  if (tall) {
+    components.directions = centered * components.directions;
+    components.directions.colwise().normalize();
+  }
+  fixSigns(components.directions);
+  return components;
+}
+
+double calcMarchenkoPasturEdge(Index dimensions, Index samples) {
+  const double ratio = static_cast<double>(dimensions) / static_cast<double>(samples);
+  return std::pow(1.0 + std::sqrt(ratio), 2);
+}
+
+}  // namespace twinmap

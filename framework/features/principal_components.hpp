@@ -1,0 +1,20 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace twinmap {
+
+/// Directions of the variance of data, largest first.
+struct PrincipalComponents {
+  Eigen::MatrixXd directions;  ///< d x min(d, n), orthonormal columns, each with its largest entry positive
+  Eigen::VectorXd variances;   ///< min(d, n), descending, with 1/(n-1)
+};
+
+/// Of centred data (d x n, rows of zero mean, n >= 2), by the eigenvectors of the smaller of X X' and X' X.
+PrincipalComponents calcPrincipalComponents(const Eigen::MatrixXd& centered);
+
+/// The upper edge (1 + sqrt(d / n))^2 of the eigenvalues of the sample covariance of n samples of unit white
+/// noise in d dimensions (Marchenko and Pastur 1967).
+double calcMarchenkoPasturEdge(Eigen::Index dimensions, Eigen::Index samples);
+
+}  // namespace twinmap
