@@ -2,6 +2,7 @@
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/parser.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -149,8 +150,11 @@ class TreeBuilder : public YAML::EventHandler {
 }  // namespace
 
 YamlNode parseYaml(const std::string& text, const std::string& file) {
-  if (text.find('\0') != std::string::npos) {
-    throw ExperimentError({file, 0, 0, ""}, "", "is a binary file, not YAML");
+  const std::size_t nul = text.find('\0');
+  if (nul != std::string::npos) {
+    const auto line = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(nul), '\n');
+    throw ExperimentError({file, static_cast<int>(line) + 1, 1, ""}, "",
+                          "has a NUL byte in this line: a binary file, not YAML");
   }
   std::istringstream stream(text);
   TreeBuilder builder(file);
@@ -166,6 +170,9 @@ YamlNode parseYaml(const std::string& text, const std::string& file) {
     throw ExperimentError(locate(file, error.mark), "", "is not valid YAML: " + error.msg);
   }
   YamlNode root = builder.takeRoot();
+  if (root.kind == YamlNode::Kind::kNull) {
+    root.where = {file, 1, 1, ""};
+  }
   setKeyPaths(root, "");
   return root;
 }

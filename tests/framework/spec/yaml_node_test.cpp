@@ -42,6 +42,11 @@ TEST(YamlNode, RefusesWhatWouldBeMisread) {
   EXPECT_EQ(getError("a: [1, 2\n").rfind("f.yaml:2:", 0), 0u);
 }
 
+TEST(YamlNode, AnEmptyFileHasAPlaceToo) {
+  EXPECT_EQ(parseYaml("", "f.yaml").where.file, "f.yaml");
+  EXPECT_EQ(getError(std::string("a: 1\nb: \0", 9)).rfind("f.yaml:2:1: has a NUL byte", 0), 0u);
+}
+
 TEST(YamlNode, RefusesDeepNestingAndAliasBombs) {
   EXPECT_NE(getError(std::string(100000, '[')), "");
   EXPECT_NE(getError("a: &a [*a]\n"), "");
