@@ -106,9 +106,9 @@ struct GpMapSpec {
   int starts = 2;
   int max_evaluations = 200;  ///< of the marginal likelihood, per start
   GpApproximation approximation = GpApproximation::kExact;
-  int inducing = 500;           ///< sgpr: inducing inputs
-  int subset = 1000;            ///< sgpr: samples on which an exact process finds the hyperparameters
-  int refine_evaluations = 40;  ///< sgpr: of the variational bound over all samples; 0 for none
+  int inducing = 500;            ///< sgpr: inducing inputs
+  int subset = 1000;             ///< sgpr: samples on which an exact process finds the hyperparameters
+  int refine_evaluations = 100;  ///< sgpr: of the variational bound over all samples; 0 for none
   GpBoundsSpec bounds;
 };
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstring>
+
 #include "kernels/linalg/view.hpp"
 
 namespace twinmap::linalg {
@@ -12,14 +14,15 @@ constexpr Index kLanes = 4;
 
 /// One vector register of doubles (a GCC and clang extension: + - * / act on every lane).
 using Packet = double __attribute__((vector_size(kLanes * sizeof(double)), may_alias));
-using UnalignedPacket =
-    double __attribute__((vector_size(kLanes * sizeof(double)), may_alias, aligned(sizeof(double))));
 
+/// From and to any address; one unaligned move. (clang ignores a smaller alignment of a vector type's alias.)
 inline Packet load(const double* source) {
-  return *reinterpret_cast<const UnalignedPacket*>(source);
+  Packet packet;
+  std::memcpy(&packet, source, sizeof(packet));
+  return packet;
 }
 inline void store(double* target, Packet value) {
-  *reinterpret_cast<UnalignedPacket*>(target) = value;
+  std::memcpy(target, &value, sizeof(value));
 }
 
 /// Copies the kLanes x kLanes block whose row r is contiguous at source + r * stride, transposed: its column
