@@ -26,7 +26,7 @@ struct LikelihoodWorkspace {
   Eigen::MatrixXd whitened_basis;    ///< L^-1 H', n x p
   Eigen::MatrixXd basis_factor;      ///< lower Cholesky factor of A = H K^-1 H', p x p
   Eigen::VectorXd mean_coefficients;  ///< b, p
-  Eigen::VectorXd squared_distance;   ///< one column of q
+  Eigen::MatrixXd squared_distance;   ///< one column of q for each thread
   Eigen::VectorXd group_sums;
   SquaredDistances::Workspace distances;
   linalg::TriangularScratch scratch;
