@@ -120,6 +120,14 @@ std::string join(const std::vector<std::string>& texts) {
   return joined;
 }
 
+std::vector<std::string> collectNames(const std::vector<FeatureInfo>& infos) {
+  std::vector<std::string> names;
+  for (const FeatureInfo& info : infos) {
+    names.push_back(info.name);
+  }
+  return names;
+}
+
 std::vector<TrainingStart> summarizeTraining(const std::vector<std::string>& parameters,
                                              const std::vector<gp::TrainingReport>& reports) {
   std::vector<TrainingStart> rows;
@@ -162,67 +170,77 @@ Provenance makeProvenance(const ExperimentSpec& experiment, const RunOptions& op
   return provenance;
 }
 
-}  // namespace
+struct SimulatedSets {
+  Trajectories train, test;
+};
 
-RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& options) {
+/// Simulates both sets and writes them with their failures; throws if too many failed.
+SimulatedSets simulateSets(const ExperimentSpec& experiment, const RunOptions& options, RunSummary& run) {
   const ModelSpec& model = experiment.model;
-  const std::uint64_t seed = experiment.seed;
-  RunSummary run = startSummary(experiment);
-  fs::create_directories(options.folder);
-  writeTextFile(options.folder / "resolved.yaml", writeExperiment(experiment));
-
-  const Eigen::MatrixXd train_points =
-      samplePoints(experiment.design.train, model.parameters, seed, RandomPurpose::kTrainDesign);
-  const Eigen::MatrixXd test_points =
-      samplePoints(experiment.design.test, model.parameters, seed, RandomPurpose::kTestDesign);
-
   const MultibodySimulator simulator(model, collectTimes(experiment.features));
   GeneratorOptions generator;
   generator.threads = options.threads;
-  const auto simulate = [&](const std::string& set, const Eigen::MatrixXd& points) {
-    const std::string stage = fmt::format("simulate {} {} samples", points.cols(), set);
-    const Trajectories trajectories =
-        timeStage(stage, run.times, [&] { return generateSamples(simulator, points, generator); });
+  const auto simulate = [&](const std::string& set, const PointSetSpec& design, RandomPurpose purpose) {
+    const Eigen::MatrixXd points = samplePoints(design, model.parameters, experiment.seed, purpose);
+    Trajectories trajectories =
+        timeStage(fmt::format("simulate {} {} samples", points.cols(), set), run.times,
+                  [&] { return generateSamples(simulator, points, generator); });
     const std::vector<FailedSample> failures = collectFailures(set, trajectories);
     run.failures.insert(run.failures.end(), failures.begin(), failures.end());
     return trajectories;
   };
-  const Trajectories train = simulate("train", train_points);
-  const Trajectories test = simulate("test", test_points);
-  writeSamplesFile(options.folder / "samples.h5", model, train, test);
+  const SimulatedSets sets{simulate("train", experiment.design.train, RandomPurpose::kTrainDesign),
+                           simulate("test", experiment.design.test, RandomPurpose::kTestDesign)};
+  writeSamplesFile(options.folder / "samples.h5", model, sets.train, sets.test);
   writeTextFile(options.folder / "failures.csv", makeFailuresCsv(run));
-  for (const auto& [set, samples] : {std::pair("train", run.train_samples), {"test", run.test_samples}}) {
-    requireFewFailures(run.failures, set, samples, model.simulation.allowed_failures, options.folder);
-  }
+  requireFewFailures(run.failures, "train", run.train_samples, model.simulation.allowed_failures,
+                     options.folder);
+  requireFewFailures(run.failures, "test", run.test_samples, model.simulation.allowed_failures,
+                     options.folder);
+  return sets;
+}
 
-  const FeatureExtractor extractor(experiment.features, train.output_names, train.times);
-  const Eigen::VectorXd noise = collectNoiseStddev(experiment.noise, model.outputs);
-  run.test_indices = findSuccessful(test);
-  const LabelledFeatures training =
-      makeFeatures(train, findSuccessful(train), extractor, noise, {seed, RandomPurpose::kTrainNoise},
-                   experiment.noise.replicates.value_or(1));
-  const LabelledFeatures testing =
-      makeFeatures(test, run.test_indices, extractor, noise, {seed, RandomPurpose::kTestNoise}, 1);
-
+/// Trains the map on the training samples and writes it.
+GpMap trainMap(const ExperimentSpec& experiment, const LabelledFeatures& training,
+               const std::vector<FeatureInfo>& infos, const RunOptions& options, RunSummary& run) {
+  const std::vector<std::string> parameter_names = collectNames(experiment.model.parameters);
   const GpMapTraining trained = timeStage("train the inverse map", run.times, [&] {
-    return trainGpMap(experiment.inverse_map.gp, experiment.transform, extractor.getInfos(),
-                      collectNames(model.parameters), training, options.threads);
+    return trainGpMap(experiment.inverse_map.gp, experiment.transform, infos, parameter_names, training,
+                      options.threads);
   });
   run.warnings = trained.warnings;
-  run.training = summarizeTraining(collectNames(model.parameters), trained.reports);
-  std::vector<std::string> feature_names;
-  for (const FeatureInfo& info : extractor.getInfos()) {
-    feature_names.push_back(info.name);
-  }
-  writeMapsFile(options.folder / "maps.h5", {model.parameters, feature_names, trained.map});
-
-  run.truth = testing.parameters;
-  run.predictions =
-      timeStage("infer the test samples", run.times, [&] { return trained.map.predict(testing.features); });
-  run.metrics = calcMetrics(model.parameters, run.truth, run.predictions);
+  run.training = summarizeTraining(parameter_names, trained.reports);
   for (const Process& process : trained.map.processes) {
     run.nlml.push_back(getNlml(process));
   }
+  writeMapsFile(options.folder / "maps.h5", {experiment.model.parameters, collectNames(infos), trained.map});
+  return trained.map;
+}
+
+}  // namespace
+
+RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& options) {
+  RunSummary run = startSummary(experiment);
+  fs::create_directories(options.folder);
+  writeTextFile(options.folder / "resolved.yaml", writeExperiment(experiment));
+
+  const SimulatedSets sets = simulateSets(experiment, options, run);
+
+  const FeatureExtractor extractor(experiment.features, sets.train.output_names, sets.train.times);
+  const Eigen::VectorXd noise = collectNoiseStddev(experiment.noise, experiment.model.outputs);
+  run.test_indices = findSuccessful(sets.test);
+  const LabelledFeatures training =
+      makeFeatures(sets.train, findSuccessful(sets.train), extractor, noise,
+                   {experiment.seed, RandomPurpose::kTrainNoise}, experiment.noise.replicates.value_or(1));
+  const LabelledFeatures testing = makeFeatures(sets.test, run.test_indices, extractor, noise,
+                                                {experiment.seed, RandomPurpose::kTestNoise}, 1);
+
+  const GpMap map = trainMap(experiment, training, extractor.getInfos(), options, run);
+
+  run.truth = testing.parameters;
+  run.predictions =
+      timeStage("infer the test samples", run.times, [&] { return map.predict(testing.features); });
+  run.metrics = calcMetrics(experiment.model.parameters, run.truth, run.predictions);
   writeResults(options.folder, run);
   writeTextFile(options.folder / "provenance.json",
                 makeProvenanceJson(makeProvenance(experiment, options, run)));
