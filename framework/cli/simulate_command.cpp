@@ -4,6 +4,7 @@
 #include "framework/cli/commands.hpp"
 #include "framework/features/feature_extractor.hpp"
 #include "framework/features/noise.hpp"
+#include "framework/multibody/model_numbers.hpp"
 #include "framework/multibody/multibody_simulator.hpp"
 #include "framework/report/escape.hpp"
 #include "framework/spec/check_experiment.hpp"
@@ -45,13 +46,9 @@ std::vector<ParameterValue> takeParameterValues(std::vector<std::string>& overri
   return values;
 }
 
-Eigen::VectorXd makePoint(const std::vector<ParameterSpec>& parameters,
-                          const std::vector<ParameterValue>& values) {
-  const std::vector<std::string> names = collectNames(parameters);
-  Eigen::VectorXd point(parameters.size());
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    point[static_cast<Eigen::Index>(p)] = 0.5 * (parameters[p].bounds.lower + parameters[p].bounds.upper);
-  }
+Eigen::VectorXd makePoint(const ModelSpec& model, const std::vector<ParameterValue>& values) {
+  const std::vector<std::string> names = collectNames(model.parameters);
+  Eigen::VectorXd point = calcBoxCenter(model);
   for (const ParameterValue& given : values) {
     requireKnown(given.name, names, "a parameter");
     point[std::find(names.begin(), names.end(), given.name.text) - names.begin()] = given.value;
@@ -82,7 +79,7 @@ void simulate(const SimulateArguments& arguments) {
   std::vector<std::string> overrides = arguments.experiment.overrides;
   const std::vector<ParameterValue> values = takeParameterValues(overrides);
   const ExperimentSpec experiment = loadExperiment(arguments.experiment.file, overrides);
-  const Eigen::MatrixXd point = makePoint(experiment.model.parameters, values);
+  const Eigen::MatrixXd point = makePoint(experiment.model, values);
   MultibodySimulator simulator(experiment.model, collectTimes(experiment.features));
   Eigen::MatrixXd response(
       simulator.getTimes().size() * static_cast<Eigen::Index>(simulator.getOutputNames().size()), 1);

@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "framework/multibody/run_sample.hpp"
-#include "framework/spec/nearest_name.hpp"
+#include "framework/spec/check_experiment.hpp"
 
 namespace twinmap {
 namespace {
@@ -48,15 +48,9 @@ void checkShapes(const SharedModel& shared, const Eigen::Ref<const Eigen::Matrix
 }
 
 int findParameter(const ModelSpec& model, const Name& name) {
-  std::vector<std::string> names;
-  for (const ParameterSpec& parameter : model.parameters) {
-    names.push_back(parameter.name.text);
-  }
-  const auto found = std::find(names.begin(), names.end(), name.text);
-  if (found == names.end()) {
-    throw ExperimentError(name.where, name.text, "is not a parameter" + suggestName(name.text, names));
-  }
-  return static_cast<int>(found - names.begin());
+  const std::vector<std::string> names = collectNames(model.parameters);
+  requireKnown(name, names, "a parameter");
+  return static_cast<int>(std::find(names.begin(), names.end(), name.text) - names.begin());
 }
 
 /// The box centre with the values that replace it; those may use the centre's parameters and constants.

@@ -13,7 +13,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kLogTwoPi = 1.8378770664093454836;
 constexpr double kNormalQuantile975 = 1.959963984540054;
 
 // P's diagonal: the squared column norms of L^-1 less the squared row norms of U = L^-T V R^-T.

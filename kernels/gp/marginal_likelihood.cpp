@@ -15,7 +15,6 @@ using linalg::padded;
 
 namespace {
 
-constexpr double kLogTwoPi = 1.8378770664093454836;
 constexpr double kFirstJitter = 1e-14;  // relative to the diagonal: below rounding, cannot change a result
 constexpr double kLastJitter = 1e-6;    // beyond it the model itself would be another one
 

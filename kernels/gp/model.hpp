@@ -8,6 +8,9 @@
 
 namespace twinmap::gp {
 
+/// log(2 pi), of every normal density.
+inline constexpr double kLogTwoPi = 1.8378770664093454836;
+
 /// The prior mean m(x) = h(x)' b. The coefficients b have a flat prior and are integrated out (Rasmussen and
 /// Williams section 2.7), so they are no hyperparameters. h is empty, [1], or [1; x - c] with c the mean
 /// training input.

@@ -14,7 +14,6 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr Index kMedianSamples = 128;
-constexpr double kLogTwoPi = 1.8378770664093454836;
 
 MatrixXd spacedSamples(const MatrixXd& inputs) {
   const Index count = std::min(kMedianSamples, inputs.cols());

@@ -18,8 +18,7 @@ using linalg::viewOf;
 
 namespace {
 
-constexpr Index kBlock = 512;  // samples at a time
-constexpr double kLogTwoPi = 1.8378770664093454836;
+constexpr Index kBlock = 512;           // samples at a time
 constexpr double kFirstJitter = 1e-10;  // relative to s_f^2; K_uu has no noise to keep it definite
 constexpr double kLastJitter = 1e-5;
 
