@@ -1,37 +1,23 @@
 #include "framework/design/point_set.hpp"
 
-#include <algorithm>
 #include <boost/random/sobol.hpp>
 #include <cmath>
-#include <numeric>
+#include <cstring>
+
+#include "framework/design/nested_latin_hypercube.hpp"
+#include "framework/design/slices.hpp"
 
 namespace twinmap {
 namespace {
 
 using Eigen::MatrixXd;
 
-/// Ranks of n random numbers: a random permutation of 0 .. n - 1.
-std::vector<int> samplePermutation(int n, const RandomStream& random, int channel) {
-  std::vector<double> keys(n);
-  for (int i = 0; i < n; ++i) {
-    keys[i] = random.calcUniform(i, channel);
-  }
-  std::vector<int> order(n);
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](int a, int b) { return keys[a] < keys[b]; });
-  std::vector<int> rank(n);
-  for (int i = 0; i < n; ++i) {
-    rank[order[i]] = i;
-  }
-  return rank;
-}
-
 MatrixXd sampleLatinHypercube(int dimensions, int n, const RandomStream& random) {
   MatrixXd points(dimensions, n);
   for (int d = 0; d < dimensions; ++d) {
-    const std::vector<int> slice = samplePermutation(n, random, 2 * d);
+    const std::vector<int> slice = makePermutation(n, random, 2 * d);
     for (int i = 0; i < n; ++i) {
-      points(d, i) = (slice[i] + random.calcUniform(i, 2 * d + 1)) / n;
+      points(d, i) = placeInSlice(slice[i], n, random.calcUniform(i, 2 * d + 1));
     }
   }
   return points;
@@ -63,6 +49,8 @@ MatrixXd sampleUnitCube(const PointSetSpec& spec, int dimensions, std::uint64_t 
   switch (spec.method) {
     case DesignMethod::kLatinHypercube:
       return sampleLatinHypercube(dimensions, spec.samples, random);
+    case DesignMethod::kNestedLatinHypercube:
+      return sampleNestedLatinHypercube(dimensions, spec.samples, spec.smallest.value_or(1), random);
     case DesignMethod::kSobol:
       return sampleSobol(dimensions, spec.samples, random);
     case DesignMethod::kUniform:
@@ -80,6 +68,27 @@ MatrixXd samplePoints(const PointSetSpec& spec, const std::vector<ParameterSpec>
     points.row(p).array() = bounds.lower + (bounds.upper - bounds.lower) * points.row(p).array();
   }
   return points;
+}
+
+bool isExtendedBy(const PointSetSpec& small, const PointSetSpec& large) {
+  if (small.method != large.method || small.samples > large.samples) {
+    return false;
+  }
+  switch (small.method) {
+    case DesignMethod::kLatinHypercube:
+      return small.samples == large.samples;
+    case DesignMethod::kNestedLatinHypercube:
+      return small.smallest.value_or(1) == large.smallest.value_or(1);
+    case DesignMethod::kSobol:
+    case DesignMethod::kUniform:
+      break;
+  }
+  return true;
+}
+
+bool isPrefix(const MatrixXd& small, const MatrixXd& large) {
+  return small.rows() == large.rows() && small.cols() <= large.cols() &&
+         (small.size() == 0 || std::memcmp(small.data(), large.data(), small.size() * sizeof(double)) == 0);
 }
 
 }  // namespace twinmap

@@ -26,6 +26,7 @@ template <>
 struct EnumNames<DesignMethod> {
   static constexpr EnumName<DesignMethod> values[] = {
       {"latin_hypercube", DesignMethod::kLatinHypercube},
+      {"nested_latin_hypercube", DesignMethod::kNestedLatinHypercube},
       {"sobol", DesignMethod::kSobol},
       {"uniform", DesignMethod::kUniform},
   };
@@ -142,6 +143,11 @@ template <class Fields>
 void describe(Fields& f, PointSetSpec& s) {
   f.optional("method", s.method, "how the parameter box is sampled");
   f.optional("samples", s.samples, "number of points", kCount);
+  f.optional("smallest", s.smallest,
+             "nested_latin_hypercube: a Latin hypercube at this size and 2, 4, 8 ... times it (default 1)",
+             kCount);
+  f.rule(!s.smallest || s.method == DesignMethod::kNestedLatinHypercube,
+         "must give smallest with 'method: nested_latin_hypercube' only");
 }
 
 template <class Fields>

@@ -64,17 +64,19 @@ struct NoiseSpec {
   std::vector<OutputNoiseSpec> stddev;
 };
 
-enum class DesignMethod { kLatinHypercube, kSobol, kUniform };
+enum class DesignMethod { kLatinHypercube, kNestedLatinHypercube, kSobol, kUniform };
 
 /// Points in the parameter box.
 struct PointSetSpec {
   DesignMethod method = DesignMethod::kLatinHypercube;
   int samples = 0;
+  std::optional<int>
+      smallest;  ///< nested_latin_hypercube: Latin at this size and 2, 4, 8 ... times it; default 1
 };
 
 struct DesignSpec {
-  PointSetSpec train{DesignMethod::kLatinHypercube, 250};
-  PointSetSpec test{DesignMethod::kUniform, 500};
+  PointSetSpec train{DesignMethod::kLatinHypercube, 250, {}};
+  PointSetSpec test{DesignMethod::kUniform, 500, {}};
 };
 
 enum class GpCovariance { kSquaredExponential, kMatern32, kMatern52, kRationalQuadratic };

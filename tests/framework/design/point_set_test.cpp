@@ -10,7 +10,7 @@ namespace {
 using Eigen::MatrixXd;
 
 MatrixXd sample(DesignMethod method, int samples, std::uint64_t seed = 1) {
-  return sampleUnitCube({method, samples}, 3, seed, RandomPurpose::kTrainDesign);
+  return sampleUnitCube({method, samples, {}}, 3, seed, RandomPurpose::kTrainDesign);
 }
 
 TEST(PointSet, LatinHypercubeHasOnePointInEachSlice) {
@@ -44,8 +44,8 @@ TEST(PointSet, SobolFillsTheCubeEvenly) {
 }
 
 TEST(PointSet, PointsStayInTheCubeAndChangeWithTheSeed) {
-  for (const DesignMethod method :
-       {DesignMethod::kLatinHypercube, DesignMethod::kSobol, DesignMethod::kUniform}) {
+  for (const DesignMethod method : {DesignMethod::kLatinHypercube, DesignMethod::kNestedLatinHypercube,
+                                    DesignMethod::kSobol, DesignMethod::kUniform}) {
     const MatrixXd points = sample(method, 100);
     EXPECT_GE(points.minCoeff(), 0.0);
     EXPECT_LT(points.maxCoeff(), 1.0);
@@ -57,7 +57,7 @@ TEST(PointSet, IsScaledToTheBounds) {
   std::vector<ParameterSpec> parameters(2);
   parameters[0].bounds = {5.0, 15.0, {}};
   parameters[1].bounds = {-1e-4, 1e-4, {}};
-  const PointSetSpec spec{DesignMethod::kUniform, 50};
+  const PointSetSpec spec{DesignMethod::kUniform, 50, {}};
   const MatrixXd unit = sampleUnitCube(spec, 2, 1, RandomPurpose::kTestDesign);
   const MatrixXd points = samplePoints(spec, parameters, 1, RandomPurpose::kTestDesign);
   EXPECT_TRUE(points.row(0).isApprox(MatrixXd((5.0 + 10.0 * unit.row(0).array()).matrix()), 1e-15));
