@@ -57,9 +57,9 @@ Eigen::VectorXd makePoint(const ModelSpec& model, const std::vector<ParameterVal
 }
 
 std::string makeCsv(const MultibodySimulator& simulator, const Eigen::VectorXd& response) {
-  const Eigen::VectorXd& times = simulator.getTimes();
+  const Eigen::VectorXd& times = simulator.getLayout().times;
   std::string csv = "t";
-  for (const std::string& name : simulator.getOutputNames()) {
+  for (const std::string& name : simulator.getLayout().output_names) {
     csv += "," + escapeCsv(name);
   }
   csv += "\n";
@@ -81,15 +81,14 @@ void simulate(const SimulateArguments& arguments) {
   const ExperimentSpec experiment = loadExperiment(arguments.experiment.file, overrides);
   const Eigen::MatrixXd point = makePoint(experiment.model, values);
   MultibodySimulator simulator(experiment.model, collectTimes(experiment.features));
-  Eigen::MatrixXd response(
-      simulator.getTimes().size() * static_cast<Eigen::Index>(simulator.getOutputNames().size()), 1);
+  Eigen::MatrixXd response(simulator.getLayout().getRowCount(), 1);
   SampleStatus status;
   simulator.simulate(point, response, &status);
   if (!status.ok) {
     throw std::runtime_error("the simulation failed: " + status.reason);
   }
   if (arguments.noise) {
-    response = addNoise(response, collectNoiseStddev(experiment.noise, experiment.model.outputs),
+    response = addNoise(response, calcNoiseStddev(experiment.noise, simulator.getLayout()),
                         RandomStream(experiment.seed, RandomPurpose::kSingleNoise));
   }
   const std::string csv = makeCsv(simulator, response);

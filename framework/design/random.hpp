@@ -10,7 +10,9 @@ enum class RandomPurpose : std::uint64_t {
   kTestDesign = 2,
   kTrainNoise = 3,
   kTestNoise = 4,
-  kSingleNoise = 5,  // one simulation on request
+  kSingleNoise = 5,      // one simulation on request
+  kNoiseCovariance = 6,  // how noise propagates into features that are not linear
+  kPosterior = 7,
 };
 
 /// Counter-based random numbers (Philox 4x64-10, Salmon et al. 2011): a number depends on

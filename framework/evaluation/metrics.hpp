@@ -4,15 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "framework/inverse_map/predictions.hpp"
 #include "framework/spec/model_spec.hpp"
 
 namespace twinmap {
-
-/// Inferred parameters (p x n each): the mean and the standard deviation of a normal distribution.
-struct Predictions {
-  Eigen::MatrixXd mean;
-  Eigen::MatrixXd stddev;
-};
 
 /// How well one parameter is inferred over a test set. Relative errors are e = (inferred - true) / true, or
 /// relative to upper - lower where the parameter says so; z = (inferred - true) / stddev.

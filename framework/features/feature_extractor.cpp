@@ -1,32 +1,14 @@
 #include "framework/features/feature_extractor.hpp"
 
 #include <algorithm>
-#include <cstdio>
-#include <stdexcept>
+
+#include "framework/features/sampled_outputs.hpp"
 
 namespace twinmap {
 namespace {
 
-std::string makeName(const std::string& output, double time) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "(%.6g s)", time);
-  return output + text;
-}
-
-Eigen::Index findIndex(const std::vector<std::string>& names, const std::string& name) {
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) {
-    throw std::invalid_argument("feature of an unknown output '" + name + "'");
-  }
-  return found - names.begin();
-}
-
-Eigen::Index findTime(const Eigen::VectorXd& times, double time) {
-  const double* found = std::lower_bound(times.data(), times.data() + times.size(), time);
-  if (found == times.data() + times.size() || *found != time) {
-    throw std::invalid_argument("feature at a time that the responses lack");
-  }
-  return found - times.data();
+std::shared_ptr<const FeatureBlock> makeBlock(const FeatureSpec& feature, const ResponseLayout& layout) {
+  return makeSamplesBlock(*feature.samples, layout);
 }
 
 }  // namespace
@@ -43,23 +25,28 @@ Eigen::VectorXd collectTimes(const std::vector<FeatureSpec>& features) {
   return Eigen::Map<Eigen::VectorXd>(times.data(), static_cast<Eigen::Index>(times.size()));
 }
 
-FeatureExtractor::FeatureExtractor(const std::vector<FeatureSpec>& features,
-                                   const std::vector<std::string>& output_names,
-                                   const Eigen::VectorXd& times) {
+FeatureExtractor::FeatureExtractor(const std::vector<FeatureSpec>& features, const ResponseLayout& layout) {
   for (const FeatureSpec& feature : features) {
-    for (const Name& output : feature.samples->outputs) {
-      const Eigen::Index index = findIndex(output_names, output.text);
-      for (int i = 0; i < feature.samples->count; ++i) {
-        const double time = calcSampleTime(*feature.samples, i);
-        infos_.push_back({makeName(output.text, time), static_cast<int>(index), time});
-        rows_.push_back(index * times.size() + findTime(times, time));
-      }
-    }
+    blocks_.push_back(makeBlock(feature, layout));
+    const std::vector<FeatureInfo>& infos = blocks_.back()->getInfos();
+    infos_.insert(infos_.end(), infos.begin(), infos.end());
   }
 }
 
+bool FeatureExtractor::isLinear() const {
+  return std::all_of(blocks_.begin(), blocks_.end(),
+                     [](const auto& block) { return block->findMatrix() != nullptr; });
+}
+
 Eigen::MatrixXd FeatureExtractor::extract(const Eigen::MatrixXd& responses) const {
-  return responses(rows_, Eigen::all);
+  Eigen::MatrixXd features(getFeatureCount(), responses.cols());
+  Eigen::Index row = 0;
+  for (const auto& block : blocks_) {
+    const auto rows = static_cast<Eigen::Index>(block->getInfos().size());
+    block->extract(responses, features.middleRows(row, rows));
+    row += rows;
+  }
+  return features;
 }
 
 }  // namespace twinmap

@@ -1,38 +1,35 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <string>
+#include <memory>
 #include <vector>
 
+#include "framework/features/feature_block.hpp"
 #include "framework/spec/experiment_spec.hpp"
+#include "framework/spec/response_layout.hpp"
 
 namespace twinmap {
-
-/// What one feature is.
-struct FeatureInfo {
-  std::string name;   ///< "y(0.05 s)"
-  int output = 0;     ///< index of the output it is made of
-  double time = 0.0;  ///< s
-};
 
 /// The times at which outputs must be known for all features: sorted, unique; s.
 Eigen::VectorXd collectTimes(const std::vector<FeatureSpec>& features);
 
-/// Maps responses to features. Immutable.
+/// Maps responses to features: the blocks of the experiment's list, one below the other. Immutable.
 class FeatureExtractor {
  public:
-  /// `times` are those of the responses and must contain those of the features (collectTimes).
-  FeatureExtractor(const std::vector<FeatureSpec>& features, const std::vector<std::string>& output_names,
-                   const Eigen::VectorXd& times);
+  /// The layout must contain the features' outputs and times (collectTimes). Throws std::invalid_argument.
+  FeatureExtractor(const std::vector<FeatureSpec>& features, const ResponseLayout& layout);
 
   const std::vector<FeatureInfo>& getInfos() const { return infos_; }
+  const std::vector<std::shared_ptr<const FeatureBlock>>& getBlocks() const { return blocks_; }
+  Eigen::Index getFeatureCount() const { return static_cast<Eigen::Index>(infos_.size()); }
+  bool isLinear() const;  ///< all features are linear in the response
 
-  /// Responses (outputs * times x n, output by output) -> features (d x n). A column of NaN stays one.
+  /// Responses (rows of the layout x n) -> features (d x n). A column of NaN stays one.
   Eigen::MatrixXd extract(const Eigen::MatrixXd& responses) const;
 
  private:
+  std::vector<std::shared_ptr<const FeatureBlock>> blocks_;
   std::vector<FeatureInfo> infos_;
-  std::vector<Eigen::Index> rows_;  // row of the response of each feature
 };
 
 }  // namespace twinmap

@@ -57,24 +57,40 @@ AffineStep fitPrincipalComponents(const PrincipalComponentsSpec& spec, const Mat
   return {mean, VectorXd::Ones(mean.size()), components.directions.leftCols(rank).transpose()};
 }
 
-AffineStep fitStep(const TransformStepSpec& step, const MatrixXd& features, const VectorXd& noise_stddev) {
+AffineStep fitStep(const TransformStepSpec& step, const LabelledFeatures& samples) {
   if (step.z_score) {
-    return fitZScore(features);
+    return fitZScore(samples.features);
   }
   if (step.whiten) {
-    return fitWhiten(noise_stddev);
+    return fitWhiten(samples.noise_covariance.diagonal().cwiseSqrt());
   }
-  return fitPrincipalComponents(*step.principal_components, features);
+  return fitPrincipalComponents(*step.principal_components, samples.features);
+}
+
+void applyStep(const AffineStep& step, LabelledFeatures& samples) {
+  samples.features = step.apply(samples.features);
+  samples.noise_covariance = step.applyToCovariance(samples.noise_covariance);
+  for (MatrixXd& sensitivity : samples.sensitivities) {
+    sensitivity = step.applyLinear(sensitivity);
+  }
 }
 
 }  // namespace
 
 MatrixXd AffineStep::apply(const MatrixXd& features) const {
-  const MatrixXd scaled = (features.colwise() - offset).array().colwise() / scale.array();
+  return applyLinear(features.colwise() - offset);
+}
+
+MatrixXd AffineStep::applyLinear(const MatrixXd& differences) const {
+  const MatrixXd scaled = differences.array().colwise() / scale.array();
   if (projection.size() == 0) {
     return scaled;
   }
   return projection * scaled;
+}
+
+MatrixXd AffineStep::applyToCovariance(const MatrixXd& covariance) const {
+  return applyLinear(applyLinear(covariance).transpose());
 }
 
 MatrixXd FeatureTransform::apply(const MatrixXd& features) const {
@@ -85,18 +101,12 @@ MatrixXd FeatureTransform::apply(const MatrixXd& features) const {
   return inputs;
 }
 
-FeatureTransform fitTransform(const std::vector<TransformStepSpec>& steps, const MatrixXd& features,
-                              const VectorXd& noise_stddev) {
+FeatureTransform fitTransform(const std::vector<TransformStepSpec>& steps, const LabelledFeatures& samples) {
   FeatureTransform transform;
-  MatrixXd inputs = features;
-  VectorXd noise = noise_stddev;  // of the inputs; of no interest behind a projection
+  LabelledFeatures inputs = samples;
   for (const TransformStepSpec& step : steps) {
-    const AffineStep fitted = fitStep(step, inputs, noise);
-    inputs = fitted.apply(inputs);
-    if (fitted.projection.size() == 0) {
-      noise = noise.cwiseQuotient(fitted.scale);
-    }
-    transform.steps.push_back(fitted);
+    transform.steps.push_back(fitStep(step, inputs));
+    applyStep(transform.steps.back(), inputs);
   }
   return transform;
 }

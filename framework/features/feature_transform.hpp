@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "framework/features/labelled_features.hpp"
 #include "framework/spec/experiment_spec.hpp"
 
 namespace twinmap {
@@ -15,6 +16,12 @@ struct AffineStep {
 
   /// d x n -> k x n (or d x n).
   Eigen::MatrixXd apply(const Eigen::MatrixXd& features) const;
+
+  /// Differences of features (d x n) -> differences of inputs: P x / scale.
+  Eigen::MatrixXd applyLinear(const Eigen::MatrixXd& differences) const;
+
+  /// Covariance of features (d x d) -> of inputs (k x k).
+  Eigen::MatrixXd applyToCovariance(const Eigen::MatrixXd& covariance) const;
 };
 
 /// From features to the inputs of the inverse map: affine steps one after another. Fitted once, on the
@@ -26,7 +33,8 @@ struct FeatureTransform {
   Eigen::MatrixXd apply(const Eigen::MatrixXd& features) const;
 };
 
-/// Fits the steps to training features (d x n, n >= 2), whose noise has the given standard deviations (d).
+/// Fits the steps to training samples (n >= 2), one after another: a step sees what those before it made of
+/// features, noise covariance and sensitivities.
 /// - z_score: offset is the mean, scale the standard deviation (1/(n-1)); a constant feature has scale 1, so
 ///   that it says nothing instead of NaN.
 /// - whiten: scale is the noise's standard deviation, which must be above 0.
@@ -36,7 +44,6 @@ struct FeatureTransform {
 ///
 /// Cost: min(d, n)^3 + d n min(d, n) flops for principal components. Throws std::invalid_argument where noise
 /// is 0 or more components are asked for than there are.
-FeatureTransform fitTransform(const std::vector<TransformStepSpec>& steps, const Eigen::MatrixXd& features,
-                              const Eigen::VectorXd& noise_stddev);
+FeatureTransform fitTransform(const std::vector<TransformStepSpec>& steps, const LabelledFeatures& samples);
 
 }  // namespace twinmap

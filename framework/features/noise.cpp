@@ -5,27 +5,25 @@
 
 namespace twinmap {
 
-Eigen::VectorXd collectNoiseStddev(const NoiseSpec& noise, const std::vector<OutputSpec>& outputs) {
-  Eigen::VectorXd stddev(outputs.size());
-  for (std::size_t o = 0; o < outputs.size(); ++o) {
-    const auto found =
-        std::find_if(noise.stddev.begin(), noise.stddev.end(),
-                     [&](const OutputNoiseSpec& spec) { return spec.name.text == outputs[o].name.text; });
+Eigen::VectorXd calcNoiseStddev(const NoiseSpec& noise, const ResponseLayout& layout) {
+  Eigen::VectorXd stddev(layout.getRowCount());
+  for (Eigen::Index o = 0; o < layout.getOutputCount(); ++o) {
+    const std::string& output = layout.output_names[o];
+    const auto found = std::find_if(noise.stddev.begin(), noise.stddev.end(),
+                                    [&](const OutputNoiseSpec& spec) { return spec.name.text == output; });
     if (found == noise.stddev.end()) {
-      throw std::invalid_argument("no noise is given for output '" + outputs[o].name.text + "'");
+      throw std::invalid_argument("no noise is given for output '" + output + "'");
     }
-    stddev[static_cast<Eigen::Index>(o)] = noise.scale * found->stddev;
+    stddev.segment(layout.getRow(o, 0), layout.times.size()).setConstant(noise.scale * found->stddev);
   }
   return stddev;
 }
 
-Eigen::MatrixXd addNoise(const Eigen::MatrixXd& responses, const Eigen::VectorXd& stddev_of_output,
+Eigen::MatrixXd addNoise(const Eigen::MatrixXd& responses, const Eigen::VectorXd& row_stddev,
                          const RandomStream& random, int replicate) {
-  const Eigen::Index times = responses.rows() / stddev_of_output.size();
   return Eigen::MatrixXd::NullaryExpr(
       responses.rows(), responses.cols(), [&](Eigen::Index row, Eigen::Index sample) {
-        return responses(row, sample) +
-               stddev_of_output[row / times] * random.calcNormal(sample, row, replicate);
+        return responses(row, sample) + row_stddev[row] * random.calcNormal(sample, row, replicate);
       });
 }
 

@@ -4,15 +4,16 @@
 
 #include "framework/design/random.hpp"
 #include "framework/spec/experiment_spec.hpp"
+#include "framework/spec/response_layout.hpp"
 
 namespace twinmap {
 
-/// Each output's noise standard deviation, scale included, in the order of `outputs`.
-Eigen::VectorXd collectNoiseStddev(const NoiseSpec& noise, const std::vector<OutputSpec>& outputs);
+/// The noise's standard deviation of every row of a response, scale included.
+Eigen::VectorXd calcNoiseStddev(const NoiseSpec& noise, const ResponseLayout& layout);
 
-/// Responses (outputs * times x n, output by output) plus independent normal noise. The noise of a response
-/// depends on the stream, its column, its row and the replicate alone.
-Eigen::MatrixXd addNoise(const Eigen::MatrixXd& responses, const Eigen::VectorXd& stddev_of_output,
+/// Responses (rows x n) plus independent normal noise. The noise of a response depends on the stream, its
+/// column, its row and the replicate alone.
+Eigen::MatrixXd addNoise(const Eigen::MatrixXd& responses, const Eigen::VectorXd& row_stddev,
                          const RandomStream& random, int replicate = 0);
 
 }  // namespace twinmap

@@ -149,19 +149,18 @@ Predictions GpMap::predict(const Eigen::MatrixXd& features) const {
 }
 
 GpMapTraining trainGpMap(const GpMapSpec& spec, const std::vector<TransformStepSpec>& transform,
-                         const std::vector<FeatureInfo>& infos,
                          const std::vector<std::string>& parameter_names, const LabelledFeatures& samples,
                          int threads) {
   GpMapTraining training;
   GpMap& map = training.map;
-  map.transform = fitTransform(transform, samples.features, samples.noise_stddev);
+  map.transform = fitTransform(transform, samples);
   map.target_offset = samples.parameters.rowwise().mean();
   map.target_scale = calcStddev(samples.parameters, map.target_offset);
   const Eigen::MatrixXd targets =
       (samples.parameters.colwise() - map.target_offset).array().colwise() / map.target_scale.array();
 
   const Eigen::MatrixXd inputs = map.transform.apply(samples.features);
-  const gp::ModelStructure structure = makeStructure(spec, infos, static_cast<int>(inputs.rows()));
+  const gp::ModelStructure structure = makeStructure(spec, samples.infos, static_cast<int>(inputs.rows()));
   gp::TrainingOptions options = toKernel(spec, threads);
   if (samples.replicates > 1) {
     options.warm_starts = findHyperparameters(inputs, targets, samples.replicates, structure, options);

@@ -6,9 +6,9 @@
 #include <variant>
 #include <vector>
 
-#include "framework/evaluation/metrics.hpp"
-#include "framework/features/feature_extractor.hpp"
+#include "framework/features/labelled_features.hpp"
 #include "framework/features/feature_transform.hpp"
+#include "framework/inverse_map/predictions.hpp"
 #include "framework/spec/experiment_spec.hpp"
 #include "kernels/gp/gaussian_process.hpp"
 #include "kernels/gp/training.hpp"
@@ -43,24 +43,14 @@ struct GpMapTraining {
   std::vector<std::string> warnings;        ///< "parameter 'd_y': ..."; empty if every process converged
 };
 
-/// Training samples, one column each; several draws of the noise (replicates) stand draw by draw.
-struct LabelledFeatures {
-  Eigen::MatrixXd features;      ///< d x n, noisy
-  Eigen::MatrixXd parameters;    ///< p x n
-  Eigen::VectorXd noise_stddev;  ///< d, of the features
-  int replicates = 1;
-};
-
 /// Trains the map on features and parameters of the same samples, n >= 2.
 ///
 /// Replicates share their parameters exactly, and the marginal likelihood knows nothing of that: its best
 /// optimum may recognise the simulation instead of inferring the parameter. So the hyperparameters are found
 /// on the first draw, and only the optimum that leads to is followed with all draws.
 ///
-/// The result does not
-/// depend on `threads`. Throws std::runtime_error naming the parameter whose process cannot be trained.
+/// The result does not depend on `threads`. Throws std::runtime_error naming the parameter whose process cannot be trained.
 GpMapTraining trainGpMap(const GpMapSpec& spec, const std::vector<TransformStepSpec>& transform,
-                         const std::vector<FeatureInfo>& infos,
                          const std::vector<std::string>& parameter_names, const LabelledFeatures& samples,
                          int threads);
 

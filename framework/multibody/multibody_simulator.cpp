@@ -14,8 +14,7 @@ namespace {
 /// What all clones share.
 struct SharedModel {
   ModelSpec model;
-  Eigen::VectorXd times;
-  std::vector<std::string> output_names, output_units;
+  ResponseLayout layout;
   Eigen::VectorXd box_center;  ///< coordinates of the equilibrium there, if the spec asks for it
 };
 
@@ -40,9 +39,9 @@ void checkSimulation(const SimulationSpec& simulation) {
 
 void checkShapes(const SharedModel& shared, const Eigen::Ref<const Eigen::MatrixXd>& parameters,
                  const Eigen::Ref<Eigen::MatrixXd>& responses) {
-  const Eigen::Index rows = static_cast<Eigen::Index>(shared.output_names.size()) * shared.times.size();
   const Eigen::Index count = static_cast<Eigen::Index>(shared.model.parameters.size());
-  if (parameters.rows() != count || responses.rows() != rows || responses.cols() != parameters.cols()) {
+  if (parameters.rows() != count || responses.rows() != shared.layout.getRowCount() ||
+      responses.cols() != parameters.cols()) {
     throw std::invalid_argument("MultibodySimulator::simulate: a matrix has the wrong shape");
   }
 }
@@ -85,7 +84,7 @@ Eigen::VectorXd solveBoxCenter(ModelContext& context) {
 class MultibodySimulator::Impl {
  public:
   Impl(const ModelSpec& model, Eigen::VectorXd times)
-      : Impl(std::make_shared<SharedModel>(SharedModel{model, std::move(times), {}, {}, {}})) {}
+      : Impl(std::make_shared<SharedModel>(SharedModel{model, {{}, {}, std::move(times)}, {}})) {}
 
   explicit Impl(std::shared_ptr<SharedModel> shared) : shared_(std::move(shared)), context_(shared_->model) {}
 
@@ -98,10 +97,10 @@ class MultibodySimulator::Impl {
   /// Completes what the clones share.
   void prepare() {
     checkSimulation(shared_->model.simulation);
-    checkTimes(shared_->times, shared_->model.simulation.duration);
-    shared_->output_units = twinmap::getOutputUnits(shared_->model.outputs, context_.names);
+    checkTimes(shared_->layout.times, shared_->model.simulation.duration);
+    shared_->layout.output_units = twinmap::getOutputUnits(shared_->model.outputs, context_.names);
     for (const OutputSpec& output : shared_->model.outputs) {
-      shared_->output_names.push_back(output.name.text);
+      shared_->layout.output_names.push_back(output.name.text);
     }
     try {
       compileAll();
@@ -114,11 +113,12 @@ class MultibodySimulator::Impl {
     }
   }
 
+  /// Takes the steps of `sequence` if there are any, else keeps there those it took.
   SampleStatus simulateOne(const Eigen::Ref<const Eigen::VectorXd>& parameters,
-                           Eigen::Ref<Eigen::VectorXd> response) {
+                           Eigen::Ref<Eigen::VectorXd> response, StepSequence& sequence) {
     SampleStatus status;
     try {
-      status.reason = run(parameters, response);
+      status.reason = run(parameters, response, sequence);
       if (status.reason.empty() && !response.allFinite()) {
         status.reason = "an output became non-finite";
       }
@@ -137,16 +137,17 @@ class MultibodySimulator::Impl {
   const std::shared_ptr<SharedModel>& getShared() const { return shared_; }
 
  private:
-  std::string run(const Eigen::Ref<const Eigen::VectorXd>& parameters, Eigen::Ref<Eigen::VectorXd> response) {
+  std::string run(const Eigen::Ref<const Eigen::VectorXd>& parameters, Eigen::Ref<Eigen::VectorXd> response,
+                  StepSequence& sequence) {
     const SimulationSpec& simulation = shared_->model.simulation;
     const bool own = simulation.integrator == Integrator::kDopri5;
     context_.numbers.update(parameters);
     LoadedSystem system(context_, !own);
     const Outputs outputs(shared_->model.outputs, context_.names, context_.numbers.updNumbers());
     const InitialState initial = calcInitialState(context_, system, shared_->box_center);
-    const SampleRun sample{system,     context_.excitation, outputs,        initial,
-                           simulation, shared_->times,      response.data()};
-    return own ? runDopri5(sample) : runSimbody(sample);
+    const SampleRun sample{system,     context_.excitation,   outputs,        initial,
+                           simulation, shared_->layout.times, response.data()};
+    return own ? runDopri5(sample, sequence) : runSimbody(sample);
   }
 
   std::shared_ptr<SharedModel> shared_;
@@ -161,23 +162,25 @@ MultibodySimulator::MultibodySimulator(const ModelSpec& model, Eigen::VectorXd t
 MultibodySimulator::MultibodySimulator(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 MultibodySimulator::~MultibodySimulator() = default;
 
-const std::vector<std::string>& MultibodySimulator::getOutputNames() const {
-  return impl_->getShared()->output_names;
-}
-
-const std::vector<std::string>& MultibodySimulator::getOutputUnits() const {
-  return impl_->getShared()->output_units;
-}
-
-const Eigen::VectorXd& MultibodySimulator::getTimes() const {
-  return impl_->getShared()->times;
+const ResponseLayout& MultibodySimulator::getLayout() const {
+  return impl_->getShared()->layout;
 }
 
 void MultibodySimulator::simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
                                   Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
   checkShapes(*impl_->getShared(), parameters, responses);
   for (Eigen::Index i = 0; i < parameters.cols(); ++i) {
-    statuses[i] = impl_->simulateOne(parameters.col(i), responses.col(i));
+    StepSequence own_steps;
+    statuses[i] = impl_->simulateOne(parameters.col(i), responses.col(i), own_steps);
+  }
+}
+
+void MultibodySimulator::simulateAround(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                                        Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
+  checkShapes(*impl_->getShared(), parameters, responses);
+  StepSequence steps_of_center;
+  for (Eigen::Index i = 0; i < parameters.cols(); ++i) {
+    statuses[i] = impl_->simulateOne(parameters.col(i), responses.col(i), steps_of_center);
   }
 }
 

@@ -69,13 +69,20 @@ std::vector<double> SampleRun::calcBoundaries() const {
   return boundaries;
 }
 
-std::string runDopri5(const SampleRun& run) {
+std::string runDopri5(const SampleRun& run, StepSequence& sequence) {
   SimTK::State state = run.system.getTree().getDefaultState();
   setState(run.system, run.initial, state);
   MultibodyOde ode(run, state);
   const IntegrationOptions options{run.simulation.relative_tolerance, run.simulation.absolute_tolerance,
                                    run.simulation.max_steps, run.simulation.max_wall_time};
-  return integrateDopri5(ode, getValues(state), run.calcBoundaries(), run.times, options).failure;
+  if (!sequence.empty()) {
+    return replayDopri5(ode, getValues(state), run.calcBoundaries(), run.times, sequence).failure;
+  }
+  IntegrationReport report = integrateDopri5(ode, getValues(state), run.calcBoundaries(), run.times, options);
+  if (report.failure.empty()) {
+    sequence = std::move(report.sequence);
+  }
+  return report.failure;
 }
 
 }  // namespace twinmap

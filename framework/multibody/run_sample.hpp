@@ -25,8 +25,9 @@ struct SampleRun {
   }
 };
 
-/// Runs with Dormand-Prince 5(4) around calcUDot; returns the reason of a failure, or "".
-std::string runDopri5(const SampleRun& run);
+/// Runs with Dormand-Prince 5(4) around calcUDot: takes the steps of `sequence`, or, if it is empty, controls
+/// the error and keeps there the steps it took. Returns the reason of a failure, or "".
+std::string runDopri5(const SampleRun& run, StepSequence& sequence);
 
 /// Runs with one of Simbody's own integrators, restarted at every event, at accuracy `relative_tolerance`;
 /// returns the reason of a failure, or "".

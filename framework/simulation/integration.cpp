@@ -52,9 +52,10 @@ class Integration {
         dxdt_new_(x_.size()),
         x_out_(x_.size()) {}
 
-  IntegrationReport run(const std::vector<double>& boundaries) {
+  /// With the steps of `given`, or with error control where that is null.
+  IntegrationReport run(const std::vector<double>& boundaries, const StepSequence* given) {
     for (std::size_t i = 0; i + 1 < boundaries.size() && report_.failure.empty(); ++i) {
-      runPhase(boundaries[i], boundaries[i + 1]);
+      runPhase(boundaries[i], boundaries[i + 1], given == nullptr ? nullptr : &(*given)[i]);
     }
     if (report_.failure.empty()) {
       recordRemaining(boundaries.back());
@@ -65,7 +66,7 @@ class Integration {
  private:
   void calcDerivative(const State& x, State& dxdt, double t) { problem_.calcDerivative(t, x, dxdt); }
 
-  void runPhase(double begin, double end) {
+  void runPhase(double begin, double end, const std::vector<double>* given) {
     problem_.beginPhase(begin);
     calcDerivative(x_, dxdt_, begin);
     if (!isFinite(x_) || !isFinite(dxdt_)) {
@@ -73,9 +74,37 @@ class Integration {
       return;
     }
     t_ = begin;
+    report_.sequence.emplace_back();
+    if (given != nullptr) {
+      replaySteps(begin, end, *given);
+    } else {
+      controlSteps(begin, end);
+    }
+  }
+
+  void controlSteps(double begin, double end) {
     double dt = calcFirstStep(end - begin);
     while (t_ < end && report_.failure.empty()) {
+      const double t_before = t_;
       dt = step(dt, end);
+      if (t_ > t_before) {
+        report_.sequence.back().push_back(t_ == end ? 1.0 : (t_ - begin) / (end - begin));
+      }
+    }
+  }
+
+  void replaySteps(double begin, double end, const std::vector<double>& fractions) {
+    const auto f = [this](const State& x, State& dxdt, double t) { calcDerivative(x, dxdt, t); };
+    report_.sequence.back() = fractions;
+    for (const double fraction : fractions) {
+      const double t_new = fraction == 1.0 ? end : begin + fraction * (end - begin);
+      ++report_.steps;
+      stepper_.stepper().do_step(f, x_, dxdt_, t_, x_new_, dxdt_new_, t_new - t_);
+      if (!isFinite(x_new_) || !isFinite(dxdt_new_)) {
+        report_.failure = describeAt("state became non-finite", t_);
+        return;
+      }
+      accept(t_new);
     }
   }
 
@@ -155,7 +184,19 @@ class Integration {
 IntegrationReport integrateDopri5(OdeProblem& problem, OdeProblem::State x,
                                   const std::vector<double>& boundaries, const Eigen::VectorXd& output_times,
                                   const IntegrationOptions& options) {
-  return Integration(problem, std::move(x), output_times, options).run(boundaries);
+  return Integration(problem, std::move(x), output_times, options).run(boundaries, nullptr);
+}
+
+IntegrationReport replayDopri5(OdeProblem& problem, OdeProblem::State x,
+                               const std::vector<double>& boundaries, const Eigen::VectorXd& output_times,
+                               const StepSequence& sequence) {
+  if (sequence.size() + 1 != boundaries.size()) {
+    IntegrationReport report;
+    report.failure = "the phases of the excitation are not those of the centre";
+    return report;
+  }
+  const IntegrationOptions unused;
+  return Integration(problem, std::move(x), output_times, unused).run(boundaries, &sequence);
 }
 
 }  // namespace twinmap

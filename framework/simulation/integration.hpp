@@ -28,10 +28,14 @@ class OdeProblem {
   virtual void recordOutput(int index, double t, const State& x) = 0;
 };
 
+/// Where each step ended, phase by phase, in fractions of the phase: (0, 1], increasing, the last is 1.
+using StepSequence = std::vector<std::vector<double>>;
+
 struct IntegrationReport {
   std::string failure;  ///< empty if all outputs were recorded: "step limit of 100 reached at t = 0.3 s"
   int steps = 0;        ///< tried, including rejected ones
   int rejected = 0;
+  StepSequence sequence;  ///< the accepted steps
 };
 
 /// Integrates from boundaries.front() to boundaries.back() by Dormand and Prince's 5(4) pair with its
@@ -44,6 +48,13 @@ struct IntegrationReport {
 IntegrationReport integrateDopri5(OdeProblem& problem, OdeProblem::State x,
                                   const std::vector<double>& boundaries, const Eigen::VectorXd& output_times,
                                   const IntegrationOptions& options);
+
+/// As integrateDopri5 with given steps instead of an error control: the result is a smooth function of all
+/// that enters the problem. Fails if the boundaries make another number of phases, or where the state becomes
+/// non-finite. Cost: 6 evaluations of f a step, 1 more a phase.
+IntegrationReport replayDopri5(OdeProblem& problem, OdeProblem::State x,
+                               const std::vector<double>& boundaries, const Eigen::VectorXd& output_times,
+                               const StepSequence& sequence);
 
 /// Counts steps and wall time; what a failed integration has to say.
 class IntegrationGuard {

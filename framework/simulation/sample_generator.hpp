@@ -19,10 +19,9 @@ struct GeneratorOptions {
 /// Clean responses of a set of parameter points, one column a sample.
 struct Trajectories {
   Eigen::MatrixXd parameters;          ///< parameters x n
-  Eigen::MatrixXd responses;           ///< outputs * times x n, output by output; NaN where a sample failed
+  Eigen::MatrixXd responses;           ///< rows of the layout x n; NaN where a sample failed
   std::vector<SampleStatus> statuses;  ///< n
-  Eigen::VectorXd times;               ///< s
-  std::vector<std::string> output_names, output_units;
+  ResponseLayout layout;
 
   int getSampleCount() const { return static_cast<int>(parameters.cols()); }
   int calcFailureCount() const;

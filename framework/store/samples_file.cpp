@@ -10,9 +10,9 @@ namespace {
 
 void writeSet(Hdf5Writer& file, const std::string& group, const Trajectories& set) {
   const auto samples = static_cast<std::size_t>(set.responses.cols());
-  const auto times = static_cast<std::size_t>(set.times.size());
+  const auto times = static_cast<std::size_t>(set.layout.times.size());
   file.writeSamples(group + "/parameters", set.parameters);
-  file.write(group + "/responses", set.responses.data(), {samples, set.output_names.size(), times});
+  file.write(group + "/responses", set.responses.data(), {samples, set.layout.output_names.size(), times});
   std::vector<std::int64_t> ok;
   std::vector<std::string> reasons;
   for (const SampleStatus& status : set.statuses) {
@@ -31,9 +31,9 @@ void writeSamplesFile(const std::filesystem::path& path, const ModelSpec& model,
     Hdf5Writer file(temporary);
     file.writeAttribute("/", "format", "twinmap samples 1");
     writeParametersGroup(file, model.parameters);
-    file.write("/outputs/name", train.output_names);
-    file.write("/outputs/unit", train.output_units);
-    file.write("/times", train.times);
+    file.write("/outputs/name", train.layout.output_names);
+    file.write("/outputs/unit", train.layout.output_units);
+    file.write("/times", train.layout.times);
     file.writeAttribute("/times", "unit", "s");
     writeSet(file, "/train", train);
     writeSet(file, "/test", test);

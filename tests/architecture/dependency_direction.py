@@ -11,11 +11,13 @@ ALLOWED = {
     "simulation": {"spec"},
     "multibody": {"spec", "simulation"},
     "features": {"spec", "design"},
-    "evaluation": {"spec"},
-    "inverse_map": {"spec", "design", "features", "evaluation", "kernels"},
-    "store": {"spec", "simulation", "inverse_map", "features", "evaluation", "kernels"},
-    "report": {"spec", "evaluation"},
-    "flow": {"spec", "design", "simulation", "multibody", "features", "evaluation", "inverse_map", "store", "report"},
+    "sensitivity": {"spec", "simulation", "features", "design"},
+    "inverse_map": {"spec", "design", "simulation", "features", "sensitivity", "kernels"},
+    "evaluation": {"spec", "design", "simulation", "features", "sensitivity", "inverse_map"},
+    "store": {"spec", "simulation", "inverse_map", "features", "kernels"},
+    "report": {"spec", "evaluation", "inverse_map"},
+    "flow": {"spec", "design", "simulation", "multibody", "features", "sensitivity", "evaluation", "inverse_map", "store",
+             "report"},
     "cli": {"flow", "spec", "design", "multibody", "simulation", "features", "report", "store"},
 }
 

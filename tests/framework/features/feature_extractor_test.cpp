@@ -13,6 +13,11 @@ FeatureSpec makeSamples(std::vector<Name> outputs, double start, double interval
   return feature;
 }
 
+ResponseLayout makeLayout(std::vector<std::string> outputs, const Eigen::VectorXd& times) {
+  const std::vector<std::string> units(outputs.size(), "m");
+  return {std::move(outputs), units, times};
+}
+
 TEST(FeatureExtractor, TimesAreSortedAndUnique) {
   const Eigen::VectorXd times =
       collectTimes({makeSamples({{"a", {}}}, 0.5, 0.5, 3), makeSamples({{"b", {}}}, 0.0, 0.25, 3)});
@@ -29,7 +34,7 @@ TEST(FeatureExtractor, PicksOutputsAtTheirTimes) {
   const std::vector<FeatureSpec> features{makeSamples({{"b", {}}}, 1.0, 1.0, 2),
                                           makeSamples({{"a", {}}, {"b", {}}}, 0.0, 2.0, 2)};
   const Eigen::VectorXd times = collectTimes(features);  // 0, 1, 2
-  const FeatureExtractor extractor(features, {"a", "b"}, times);
+  const FeatureExtractor extractor(features, makeLayout({"a", "b"}, times));
   Eigen::MatrixXd responses(6, 2);
   responses << 1, 10, 2, 20, 3, 30, 4, 40, 5, 50, 6, 60;  // a at 0, 1, 2, then b
   Eigen::MatrixXd expected(6, 2);
@@ -37,6 +42,7 @@ TEST(FeatureExtractor, PicksOutputsAtTheirTimes) {
   EXPECT_EQ(extractor.extract(responses), expected);
   EXPECT_EQ(extractor.getInfos()[0].name, "b(1 s)");
   EXPECT_EQ(extractor.getInfos()[3].output, 0);
+  EXPECT_EQ(extractor.getInfos()[3].unit, "m");
   EXPECT_DOUBLE_EQ(extractor.getInfos()[3].time, 2.0);
 }
 
@@ -45,15 +51,16 @@ TEST(FeatureExtractor, AFailedSampleStaysInItsColumn) {
   Eigen::MatrixXd responses(2, 3);
   responses << 1, std::nan(""), 3, 4, std::nan(""), 6;
   const Eigen::MatrixXd extracted =
-      FeatureExtractor(features, {"a"}, collectTimes(features)).extract(responses);
+      FeatureExtractor(features, makeLayout({"a"}, collectTimes(features))).extract(responses);
   EXPECT_TRUE(extracted.col(1).array().isNaN().all());
   EXPECT_EQ(extracted.col(2), responses.col(2));
 }
 
 TEST(FeatureExtractor, RefusesWhatTheResponsesLack) {
   const std::vector<FeatureSpec> features{makeSamples({{"a", {}}}, 0.0, 1.0, 2)};
-  EXPECT_THROW(FeatureExtractor(features, {"b"}, collectTimes(features)), std::invalid_argument);
-  EXPECT_THROW(FeatureExtractor(features, {"a"}, Eigen::VectorXd::Zero(1)), std::invalid_argument);
+  EXPECT_THROW(FeatureExtractor(features, makeLayout({"b"}, collectTimes(features))), std::invalid_argument);
+  EXPECT_THROW(FeatureExtractor(features, makeLayout({"a"}, Eigen::VectorXd::Zero(1))),
+               std::invalid_argument);
 }
 
 }  // namespace

@@ -33,6 +33,18 @@ TransformStepSpec makePrincipalComponents(std::optional<int> components = {},
   return step;
 }
 
+/// Samples whose features have independent noise.
+LabelledFeatures makeSamples(const MatrixXd& features, const VectorXd& noise_stddev) {
+  LabelledFeatures samples;
+  samples.features = features;
+  samples.noise_covariance = noise_stddev.cwiseAbs2().asDiagonal();
+  return samples;
+}
+
+LabelledFeatures makeUnitNoiseSamples(const MatrixXd& features) {
+  return makeSamples(features, VectorXd::Ones(features.rows()));
+}
+
 MatrixXd makeNoise(int rows, int columns, std::uint64_t seed) {
   const RandomStream random(seed, RandomPurpose::kTrainNoise);
   return MatrixXd::NullaryExpr(rows, columns, [&](Eigen::Index i, Eigen::Index j) {
@@ -52,7 +64,7 @@ MatrixXd makeTwoDirections(int samples) {
 TEST(FeatureTransform, ZScoreByHand) {
   MatrixXd features(2, 3);
   features << 1, 2, 3, 10, 10, 40;
-  const FeatureTransform transform = fitTransform({makeZScore()}, features, VectorXd::Ones(2));
+  const FeatureTransform transform = fitTransform({makeZScore()}, makeUnitNoiseSamples(features));
   EXPECT_EQ(transform.steps[0].offset, Eigen::Vector2d(2, 20));
   EXPECT_NEAR(transform.steps[0].scale[0], 1.0, 1e-15);
   EXPECT_NEAR(transform.steps[0].scale[1], std::sqrt(300.0), 1e-14);
@@ -66,46 +78,50 @@ TEST(FeatureTransform, ConstantFeaturesSayNothing) {
   features.row(0).setConstant(0.1);
   features.row(1) << 1e9, 1e9 + 1e-7, 1e9, 1e9;  // rounding only
   features.row(2).setZero();
-  const MatrixXd inputs = fitTransform({makeZScore()}, features, VectorXd::Zero(3)).apply(features);
+  const MatrixXd inputs =
+      fitTransform({makeZScore()}, makeSamples(features, VectorXd::Zero(3))).apply(features);
   EXPECT_LT(inputs.cwiseAbs().maxCoeff(), 1e-6);
 }
 
 TEST(FeatureTransform, WithoutStepsItChangesNothingAndTwiceIsOnce) {
   const MatrixXd features = MatrixXd::Random(4, 20);
   const VectorXd noise = VectorXd::Ones(4);
-  EXPECT_EQ(fitTransform({}, features, noise).apply(features), features);
-  const MatrixXd once = fitTransform({makeZScore()}, features, noise).apply(features);
-  const MatrixXd twice = fitTransform({makeZScore(), makeZScore()}, features, noise).apply(features);
+  EXPECT_EQ(fitTransform({}, makeSamples(features, noise)).apply(features), features);
+  const MatrixXd once = fitTransform({makeZScore()}, makeSamples(features, noise)).apply(features);
+  const MatrixXd twice =
+      fitTransform({makeZScore(), makeZScore()}, makeSamples(features, noise)).apply(features);
   EXPECT_LT((once - twice).cwiseAbs().maxCoeff(), 1e-14);
 }
 
 TEST(FeatureTransform, WhitenDividesByTheNoiseAlsoBehindAZScore) {
   const MatrixXd features = MatrixXd::Random(2, 20);
   const VectorXd noise = Eigen::Vector2d(0.1, 4.0);
-  const MatrixXd whitened = fitTransform({makeWhiten()}, features, noise).apply(features);
+  const MatrixXd whitened = fitTransform({makeWhiten()}, makeSamples(features, noise)).apply(features);
   EXPECT_LT((whitened.row(0) - features.row(0) / 0.1).cwiseAbs().maxCoeff(), 1e-14);
   EXPECT_LT((whitened.row(1) - features.row(1) / 4.0).cwiseAbs().maxCoeff(), 1e-14);
-  const MatrixXd behind = fitTransform({makeZScore(), makeWhiten()}, features, noise).apply(features);
+  const MatrixXd behind =
+      fitTransform({makeZScore(), makeWhiten()}, makeSamples(features, noise)).apply(features);
   const VectorXd shift = whitened.col(0) - behind.col(0);
   EXPECT_LT(((whitened - behind).colwise() - shift).cwiseAbs().maxCoeff(), 1e-12);
-  EXPECT_THROW(fitTransform({makeWhiten()}, features, Eigen::Vector2d(0.1, 0.0)), std::invalid_argument);
+  EXPECT_THROW(fitTransform({makeWhiten()}, makeSamples(features, Eigen::Vector2d(0.1, 0.0))),
+               std::invalid_argument);
 }
 
 TEST(FeatureTransform, AutomaticRankKeepsWhatStandsAboveTheNoise) {
   const MatrixXd data = makeTwoDirections(400);
-  const FeatureTransform transform = fitTransform({makePrincipalComponents()}, data, VectorXd::Ones(10));
+  const FeatureTransform transform = fitTransform({makePrincipalComponents()}, makeUnitNoiseSamples(data));
   ASSERT_EQ(transform.steps[0].projection.rows(), 2);
   EXPECT_GT(transform.steps[0].projection(0, 3), 0.99);
   EXPECT_GT(transform.steps[0].projection(1, 7), 0.99);
   const MatrixXd noise_only = makeNoise(10, 400, 3);
-  EXPECT_LE(fitTransform({makePrincipalComponents()}, noise_only, VectorXd::Ones(10)).apply(data).rows(), 2);
+  EXPECT_LE(fitTransform({makePrincipalComponents()}, makeUnitNoiseSamples(noise_only)).apply(data).rows(),
+            2);
 }
 
 TEST(FeatureTransform, RankAsGivenOrByExplainedVariance) {
   const MatrixXd data = makeTwoDirections(400);
-  const VectorXd noise = VectorXd::Ones(10);
   const auto count = [&](const TransformStepSpec& step) {
-    return fitTransform({step}, data, noise).apply(data).rows();
+    return fitTransform({step}, makeUnitNoiseSamples(data)).apply(data).rows();
   };
   EXPECT_EQ(count(makePrincipalComponents(5)), 5);
   EXPECT_EQ(count(makePrincipalComponents({}, 0.9)), 1);   // 400 of about 434

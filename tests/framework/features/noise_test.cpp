@@ -8,7 +8,10 @@ namespace twinmap {
 namespace {
 
 constexpr int kTimes = 50;
-const Eigen::Vector2d kStddev(0.1, 3.0);
+/// Two outputs.
+const Eigen::VectorXd kStddev = (Eigen::VectorXd(2 * kTimes) << Eigen::VectorXd::Constant(kTimes, 0.1),
+                                 Eigen::VectorXd::Constant(kTimes, 3.0))
+                                    .finished();
 
 TEST(Noise, HasEachOutputsStandardDeviation) {
   constexpr int kSamples = 400;
@@ -16,7 +19,7 @@ TEST(Noise, HasEachOutputsStandardDeviation) {
   const Eigen::MatrixXd noise = addNoise(clean, kStddev, {1, RandomPurpose::kTrainNoise}) - clean;
   for (int output = 0; output < 2; ++output) {
     const auto block = noise.middleRows(output * kTimes, kTimes).array();
-    const double relative = std::sqrt(block.square().mean()) / kStddev[output];
+    const double relative = std::sqrt(block.square().mean()) / kStddev[output * kTimes];
     EXPECT_NEAR(relative, 1.0, 4 / std::sqrt(2.0 * block.size()));
   }
 }
@@ -39,15 +42,13 @@ TEST(Noise, ReplicatesAreOtherDraws) {
 }
 
 TEST(Noise, ScaleMultipliesEveryOutputAndZeroIsNone) {
-  std::vector<OutputSpec> outputs(2);
-  outputs[0].name = {"y", {}};
-  outputs[1].name = {"theta", {}};
+  const ResponseLayout layout{{"y", "theta"}, {"m", "rad"}, Eigen::Vector2d(0.1, 0.2)};
   NoiseSpec spec;
   spec.scale = 2.0;
   spec.stddev = {{{"theta", {}}, 3.0}, {{"y", {}}, 0.1}};
-  EXPECT_EQ(collectNoiseStddev(spec, outputs), Eigen::Vector2d(0.2, 6.0));
+  EXPECT_EQ(calcNoiseStddev(spec, layout), Eigen::Vector4d(0.2, 0.2, 6.0, 6.0));
   const Eigen::MatrixXd clean = Eigen::MatrixXd::Random(2 * kTimes, 3);
-  EXPECT_EQ(addNoise(clean, Eigen::Vector2d::Zero(), {1, RandomPurpose::kTrainNoise}), clean);
+  EXPECT_EQ(addNoise(clean, Eigen::VectorXd::Zero(2 * kTimes), {1, RandomPurpose::kTrainNoise}), clean);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace {
 struct Problem {
   Eigen::MatrixXd parameters, features;
   std::vector<FeatureInfo> infos{
-      {"a(0 s)", 0, 0.0}, {"a(1 s)", 0, 1.0}, {"b(0 s)", 1, 0.0}, {"b(1 s)", 1, 1.0}};
+      {"a(0 s)", "", 0, 0.0}, {"a(1 s)", "", 0, 1.0}, {"b(0 s)", "", 1, 0.0}, {"b(1 s)", "", 1, 1.0}};
   std::vector<std::string> names{"p", "q"};
   int replicates = 1;
 };
@@ -38,9 +38,11 @@ Problem makeProblem(int samples, std::uint64_t seed, double noise_stddev = 1e-4)
 GpMapTraining trainOn(const Problem& problem, const GpMapSpec& spec = {}, int threads = 1) {
   TransformStepSpec z_score;
   z_score.z_score.emplace();
-  const Eigen::VectorXd noise = Eigen::VectorXd::Ones(problem.features.rows());
-  return trainGpMap(spec, {z_score}, problem.infos, problem.names,
-                    {problem.features, problem.parameters, noise, problem.replicates}, threads);
+  const Eigen::Index features = problem.features.rows();
+  const Eigen::MatrixXd noise = Eigen::MatrixXd::Identity(features, features);
+  return trainGpMap(spec, {z_score}, problem.names,
+                    {problem.infos, problem.features, problem.parameters, noise, problem.replicates, {}},
+                    threads);
 }
 
 /// Root mean square of the error of 200 other samples, relative to the parameters' spread.

@@ -180,7 +180,7 @@ TEST(Outputs, HaveUnits) {
   model.outputs[5].velocity = at;
   model.outputs[6].acceleration = at;
   const MultibodySimulator simulator(model, Eigen::VectorXd::Constant(1, 1.0));
-  EXPECT_EQ(simulator.getOutputUnits(),
+  EXPECT_EQ(simulator.getLayout().output_units,
             (std::vector<std::string>{"rad", "m", "rad/s", "m/s", "m", "m/s", "m/s2"}));
 }
 

@@ -78,8 +78,8 @@ TEST(TwoBeam, SampleDoesNotDependOnWhatWasSimulatedBefore) {
 
 TEST(TwoBeam, HasNamesAndUnits) {
   const MultibodySimulator simulator(makeTwoBeam(), makeTwoBeamTimes());
-  EXPECT_EQ(simulator.getOutputNames(), (std::vector<std::string>{"y", "theta"}));
-  EXPECT_EQ(simulator.getOutputUnits(), (std::vector<std::string>{"m", "rad"}));
+  EXPECT_EQ(simulator.getLayout().output_names, (std::vector<std::string>{"y", "theta"}));
+  EXPECT_EQ(simulator.getLayout().output_units, (std::vector<std::string>{"m", "rad"}));
 }
 
 TEST(TwoBeam, UndampedEnergyIsConserved) {

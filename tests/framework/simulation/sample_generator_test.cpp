@@ -13,9 +13,7 @@ namespace {
 /// Two outputs at three times: p0 * t and p0 + p1; fails where p0 is 0, throws where p0 is -1.
 class FakeSimulator : public Simulator {
  public:
-  const std::vector<std::string>& getOutputNames() const override { return names_; }
-  const std::vector<std::string>& getOutputUnits() const override { return units_; }
-  const Eigen::VectorXd& getTimes() const override { return times_; }
+  const ResponseLayout& getLayout() const override { return layout_; }
 
   void simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters, Eigen::Ref<Eigen::MatrixXd> responses,
                 SampleStatus* statuses) override {
@@ -38,12 +36,11 @@ class FakeSimulator : public Simulator {
       response.setConstant(std::numeric_limits<double>::quiet_NaN());
       return {false, "p0 is zero"};
     }
-    response << p[0] * times_, Eigen::VectorXd::Constant(3, p[0] + p[1]);
+    response << p[0] * layout_.times, Eigen::VectorXd::Constant(3, p[0] + p[1]);
     return {};
   }
 
-  std::vector<std::string> names_{"a", "b"}, units_{"m", "rad"};
-  Eigen::VectorXd times_ = Eigen::VectorXd::LinSpaced(3, 1.0, 3.0);
+  ResponseLayout layout_{{"a", "b"}, {"m", "rad"}, Eigen::VectorXd::LinSpaced(3, 1.0, 3.0)};
 };
 
 Eigen::MatrixXd makePoints(int count) {
@@ -57,8 +54,8 @@ Eigen::MatrixXd makePoints(int count) {
 TEST(GenerateSamples, FillsOneColumnASample) {
   const Trajectories result = generateSamples(FakeSimulator(), makePoints(4));
   EXPECT_EQ(result.parameters, makePoints(4));
-  EXPECT_EQ(result.output_names, (std::vector<std::string>{"a", "b"}));
-  EXPECT_EQ(result.output_units, (std::vector<std::string>{"m", "rad"}));
+  EXPECT_EQ(result.layout.output_names, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(result.layout.output_units, (std::vector<std::string>{"m", "rad"}));
   Eigen::VectorXd expected(6);
   expected << 3, 6, 9, 4, 4, 4;
   EXPECT_EQ(result.responses.col(2), expected);

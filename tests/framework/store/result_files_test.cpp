@@ -27,9 +27,9 @@ Trajectories makeTrajectories(int samples) {
   set.parameters = Eigen::MatrixXd::Random(2, samples);
   set.responses = Eigen::MatrixXd::Random(6, samples);
   set.statuses.resize(samples);
-  set.times = Eigen::VectorXd::LinSpaced(3, 0.1, 0.3);
-  set.output_names = {"y", "theta"};
-  set.output_units = {"m", "rad"};
+  set.layout.times = Eigen::VectorXd::LinSpaced(3, 0.1, 0.3);
+  set.layout.output_names = {"y", "theta"};
+  set.layout.output_units = {"m", "rad"};
   return set;
 }
 
@@ -59,7 +59,9 @@ TEST(MapsFile, ARestoredMapPredictsTheSameBits) {
   Eigen::MatrixXd values(2, 30);
   values.row(0) = features.row(0).array().sin() + 1.5;
   values.row(1) = features.row(1).cwiseProduct(features.row(2));
-  const std::vector<FeatureInfo> infos{{"y(0 s)", 0, 0.0}, {"y(1 s)", 0, 1.0}, {"z(0 s)", 1, 0.0}};
+  const std::vector<FeatureInfo> infos{
+      {"y(0 s)", "m", 0, 0.0}, {"y(1 s)", "m", 0, 1.0}, {"z(0 s)", "m", 1, 0.0}};
+  const Eigen::MatrixXd noise = Eigen::MatrixXd::Identity(3, 3);
   std::vector<TransformStepSpec> transform(2);
   transform[0].z_score.emplace();
   transform[1].principal_components = PrincipalComponentsSpec{3, {}};
@@ -75,7 +77,7 @@ TEST(MapsFile, ARestoredMapPredictsTheSameBits) {
   specs[4].inducing = 10;
   for (const GpMapSpec& spec : specs) {
     const GpMapTraining training =
-        trainGpMap(spec, transform, infos, {"k", "d"}, {features, values, Eigen::VectorXd::Ones(3)}, 1);
+        trainGpMap(spec, transform, {"k", "d"}, {infos, features, values, noise, 1, {}}, 1);
     writeMapsFile(folder / "maps.h5", {makeParameters(), {"a", "b", "c"}, training.map});
     const StoredMap stored = readMapsFile(folder / "maps.h5");
     EXPECT_EQ(stored.feature_names, (std::vector<std::string>{"a", "b", "c"}));

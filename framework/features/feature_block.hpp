@@ -1,0 +1,59 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+#include <string>
+#include <vector>
+
+namespace twinmap {
+
+/// What one feature is.
+struct FeatureInfo {
+  std::string name;   ///< "y(0.05 s)"
+  std::string unit;   ///< of the feature; "" for a number without
+  int output = -1;    ///< index of the output it is made of, or -1
+  double time = 0.0;  ///< s; of a feature that has no time of its own 0
+};
+
+/// features = matrix * response; one row a feature.
+using FeatureMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
+/// The features of one entry of the experiment's list, compiled for a layout. Immutable.
+class FeatureBlock {
+ public:
+  virtual ~FeatureBlock() = default;
+
+  const std::vector<FeatureInfo>& getInfos() const { return infos_; }
+
+  /// Responses (rows of the layout x n) -> features (infos x n). A feature that a response does not have,
+  /// such as a third peak, is NaN, and so are the features of a failed sample.
+  virtual void extract(const Eigen::Ref<const Eigen::MatrixXd>& responses,
+                       Eigen::Ref<Eigen::MatrixXd> features) const = 0;
+
+  /// The matrix of features that are linear in the response, null of others.
+  virtual const FeatureMatrix* findMatrix() const { return nullptr; }
+
+ protected:
+  explicit FeatureBlock(std::vector<FeatureInfo> infos) : infos_(std::move(infos)) {}
+
+ private:
+  std::vector<FeatureInfo> infos_;
+};
+
+/// Features that are linear in the response.
+class LinearBlock final : public FeatureBlock {
+ public:
+  LinearBlock(std::vector<FeatureInfo> infos, FeatureMatrix matrix)
+      : FeatureBlock(std::move(infos)), matrix_(std::move(matrix)) {}
+
+  void extract(const Eigen::Ref<const Eigen::MatrixXd>& responses,
+               Eigen::Ref<Eigen::MatrixXd> features) const override {
+    features = matrix_ * responses;
+  }
+  const FeatureMatrix* findMatrix() const override { return &matrix_; }
+
+ private:
+  FeatureMatrix matrix_;
+};
+
+}  // namespace twinmap

@@ -1,0 +1,49 @@
+#include "framework/features/sampled_outputs.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <stdexcept>
+
+namespace twinmap {
+
+Eigen::Index findOutput(const ResponseLayout& layout, const std::string& output) {
+  const auto found = std::find(layout.output_names.begin(), layout.output_names.end(), output);
+  if (found == layout.output_names.end()) {
+    throw std::invalid_argument("feature of an unknown output '" + output + "'");
+  }
+  return found - layout.output_names.begin();
+}
+
+Eigen::Index findTime(const ResponseLayout& layout, double time) {
+  const Eigen::VectorXd& times = layout.times;
+  const double* found = std::lower_bound(times.data(), times.data() + times.size(), time);
+  if (found == times.data() + times.size() || *found != time) {
+    throw std::invalid_argument("feature at a time that the responses lack");
+  }
+  return found - times.data();
+}
+
+std::string makeFeatureName(const std::string& output, double time) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "(%.6g s)", time);
+  return output + text;
+}
+
+std::shared_ptr<const FeatureBlock> makeSamplesBlock(const SamplesFeatureSpec& spec,
+                                                     const ResponseLayout& layout) {
+  std::vector<FeatureInfo> infos;
+  FeatureMatrix matrix(static_cast<Eigen::Index>(spec.outputs.size()) * spec.count, layout.getRowCount());
+  for (const Name& name : spec.outputs) {
+    const Eigen::Index output = findOutput(layout, name.text);
+    for (int i = 0; i < spec.count; ++i) {
+      const double time = calcSampleTime(spec, i);
+      matrix.insert(static_cast<Eigen::Index>(infos.size()), layout.getRow(output, findTime(layout, time))) =
+          1.0;
+      infos.push_back(
+          {makeFeatureName(name.text, time), layout.output_units[output], static_cast<int>(output), time});
+    }
+  }
+  return std::make_shared<LinearBlock>(std::move(infos), std::move(matrix));
+}
+
+}  // namespace twinmap

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "framework/features/feature_extractor.hpp"
+#include "framework/simulation/simulator.hpp"
+#include "framework/spec/model_spec.hpp"
+
+namespace twinmap {
+
+/// The clean response and features of one parameter point, and the features' derivatives there.
+struct LocalModel {
+  Eigen::VectorXd response;  ///< rows of the layout
+  Eigen::VectorXd features;  ///< d
+  /// d x p: change of each feature per width (upper - lower) of the parameter's bounds.
+  Eigen::MatrixXd sensitivities;
+  SampleStatus status;  ///< if not ok, the rest is NaN
+};
+
+/// At a point (p) by central differences of the simulator, one-sided ones of second order where the step
+/// would leave the bounds. All simulations take the integration steps of the point itself
+/// (Simulator::simulateAround), so that a step of 1e-4 of the bounds' width holds more than 4 digits. A point
+/// fails if one of its simulations does, or if a feature is missing. Cost: 2 p + 1 simulations.
+LocalModel calcLocalModel(Simulator& simulator, const FeatureExtractor& extractor,
+                          const std::vector<ParameterSpec>& parameters, const Eigen::VectorXd& point);
+
+/// The same at every column of `points`, on a team of threads; the result does not depend on their number.
+std::vector<LocalModel> calcLocalModels(const Simulator& prototype, const FeatureExtractor& extractor,
+                                        const std::vector<ParameterSpec>& parameters,
+                                        const Eigen::MatrixXd& points, int threads);
+
+}  // namespace twinmap

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "framework/features/noise_whitener.hpp"
+
+namespace twinmap {
+
+/// What noisy features say about the parameters, in units of the bounds' widths:
+/// J' C^-1 J (p x p) for sensitivities J (d x p, per width) and noise covariance C.
+Eigen::MatrixXd calcFisherInformation(const NoiseWhitener& noise, const Eigen::MatrixXd& sensitivities);
+
+/// The covariance (p x p, in widths) that no estimator beats on average over the box: the inverse of the
+/// information plus that of the box, which is 12 for each parameter because a uniform distribution has the
+/// variance width^2 / 12 (van Trees' bound with the box's variance).
+Eigen::MatrixXd calcLimitCovariance(const Eigen::MatrixXd& information);
+
+}  // namespace twinmap
