@@ -3,12 +3,34 @@
 #include <algorithm>
 
 #include "framework/features/sampled_outputs.hpp"
+#include "framework/features/statistics.hpp"
 
 namespace twinmap {
 namespace {
 
-std::shared_ptr<const FeatureBlock> makeBlock(const FeatureSpec& feature, const ResponseLayout& layout) {
-  return makeSamplesBlock(*feature.samples, layout);
+using Blocks = std::vector<std::shared_ptr<const FeatureBlock>>;
+
+Blocks makeBlocks(const FeatureSpec& feature, const ResponseLayout& layout) {
+  if (feature.statistics) {
+    return makeStatisticsBlocks(*feature.statistics, layout);
+  }
+  return {makeSamplesBlock(*feature.samples, layout)};
+}
+
+template <class Samples>
+void appendTimes(const Samples& samples, std::vector<double>& times) {
+  for (int i = 0; i < samples.count; ++i) {
+    times.push_back(calcSampleTime(samples, i));
+  }
+}
+
+void appendTimes(const FeatureSpec& feature, std::vector<double>& times) {
+  if (feature.samples) {
+    appendTimes(*feature.samples, times);
+  }
+  if (feature.statistics) {
+    appendTimes(feature.statistics->window, times);
+  }
 }
 
 }  // namespace
@@ -16,9 +38,7 @@ std::shared_ptr<const FeatureBlock> makeBlock(const FeatureSpec& feature, const 
 Eigen::VectorXd collectTimes(const std::vector<FeatureSpec>& features) {
   std::vector<double> times;
   for (const FeatureSpec& feature : features) {
-    for (int i = 0; i < feature.samples->count; ++i) {
-      times.push_back(calcSampleTime(*feature.samples, i));
-    }
+    appendTimes(feature, times);
   }
   std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end()), times.end());
@@ -27,9 +47,11 @@ Eigen::VectorXd collectTimes(const std::vector<FeatureSpec>& features) {
 
 FeatureExtractor::FeatureExtractor(const std::vector<FeatureSpec>& features, const ResponseLayout& layout) {
   for (const FeatureSpec& feature : features) {
-    blocks_.push_back(makeBlock(feature, layout));
-    const std::vector<FeatureInfo>& infos = blocks_.back()->getInfos();
-    infos_.insert(infos_.end(), infos.begin(), infos.end());
+    const Blocks blocks = makeBlocks(feature, layout);
+    blocks_.insert(blocks_.end(), blocks.begin(), blocks.end());
+  }
+  for (const auto& block : blocks_) {
+    infos_.insert(infos_.end(), block->getInfos().begin(), block->getInfos().end());
   }
 }
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "framework/spec/check_features.hpp"
 #include "framework/spec/nearest_name.hpp"
-#include "framework/spec/number_text.hpp"
 
 namespace twinmap {
 namespace {
@@ -23,26 +23,6 @@ void checkName(const Name& name) {
   }
 }
 
-void checkSamples(const SamplesFeatureSpec& samples, const ModelSpec& model) {
-  const std::vector<std::string> outputs = collectNames(model.outputs);
-  for (std::size_t i = 0; i < samples.outputs.size(); ++i) {
-    const Name& output = samples.outputs[i];
-    requireKnown(output, outputs, "an output");
-    const auto same = [&](const Name& other) { return other.text == output.text; };
-    if (std::any_of(samples.outputs.begin(), samples.outputs.begin() + i, same)) {
-      throw ExperimentError(output.where, output.text, "is listed twice");
-    }
-  }
-  const double last = calcSampleTime(samples, samples.count - 1);
-  if (last > model.simulation.duration) {
-    SourceLocation where = samples.outputs.front().where;
-    where.key_path = where.key_path.substr(0, where.key_path.rfind(".outputs"));
-    throw ExperimentError(where, "",
-                          "samples up to t = " + toText(last) + " s, but simulation.duration is " +
-                              toText(model.simulation.duration) + " s");
-  }
-}
-
 void checkNoise(const NoiseSpec& noise, const ModelSpec& model) {
   const std::vector<std::string> outputs = collectNames(model.outputs);
   for (const OutputNoiseSpec& stddev : noise.stddev) {
@@ -58,14 +38,12 @@ void checkNoise(const NoiseSpec& noise, const ModelSpec& model) {
 }
 
 void requireNoise(const ExperimentSpec& experiment, const SourceLocation& where) {
-  for (const FeatureSpec& feature : experiment.features) {
-    for (const Name& output : feature.samples->outputs) {
-      for (const OutputNoiseSpec& noise : experiment.noise.stddev) {
-        if (noise.name.text == output.text && !(experiment.noise.scale * noise.stddev > 0.0)) {
-          throw ExperimentError(
-              where, "whiten",
-              "needs noise above 0 on output '" + output.text + "'; use z_score without noise");
-        }
+  for (const Name& output : collectOutputs(experiment.features)) {
+    for (const OutputNoiseSpec& noise : experiment.noise.stddev) {
+      if (noise.name.text == output.text && !(experiment.noise.scale * noise.stddev > 0.0)) {
+        throw ExperimentError(
+            where, "whiten",
+            "needs noise above 0 on output '" + output.text + "'; use z_score without noise");
       }
     }
   }
@@ -114,9 +92,7 @@ void requireKnown(const Name& name, const std::vector<std::string>& known, const
 void checkExperiment(const ExperimentSpec& experiment) {
   checkName(experiment.name);
   checkModel(experiment.model);
-  for (const FeatureSpec& feature : experiment.features) {
-    checkSamples(*feature.samples, experiment.model);
-  }
+  checkFeatures(experiment.features, experiment.model);
   checkNoise(experiment.noise, experiment.model);
   checkTransform(experiment);
   checkDesign(experiment.design, experiment.name.where);

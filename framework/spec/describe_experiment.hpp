@@ -1,6 +1,7 @@
 #pragma once
 
 #include "framework/spec/describe_excitation.hpp"
+#include "framework/spec/describe_features.hpp"
 #include "framework/spec/describe_system.hpp"
 #include "framework/spec/experiment_spec.hpp"
 #include "framework/spec/fields.hpp"
@@ -91,21 +92,6 @@ void describe(Fields& f, SimulationSpec& s) {
   f.optional("max_wall_time", s.max_wall_time, "per sample; more is a failure; s", kPositive);
   f.optional("allowed_failures", s.allowed_failures,
              "fraction of the training or test samples that may fail before the run does", kFraction);
-}
-
-template <class Fields>
-void describe(Fields& f, SamplesFeatureSpec& s) {
-  f.required("outputs", s.outputs, "outputs to sample");
-  f.required("start", s.start, "time of the first sample; s", kNonNegative);
-  f.required("interval", s.interval, "time between samples; s", kPositive);
-  f.required("count", s.count, "samples of each output", kCount);
-  f.rule(!s.outputs.empty(), "must name at least one of outputs");
-}
-
-template <class Fields>
-void describe(Fields& f, FeatureSpec& s) {
-  f.optional("samples", s.samples, "equidistant samples of outputs");
-  f.rule(s.samples.has_value(), "must give a kind of feature: samples");
 }
 
 template <class Fields>

@@ -1,34 +1,14 @@
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "framework/spec/feature_spec.hpp"
 #include "framework/spec/model_spec.hpp"
 
 namespace twinmap {
-
-/// Equidistant samples of outputs.
-struct SamplesFeatureSpec {
-  std::vector<Name> outputs;
-  double start = 0.0;
-  double interval = 0.0;
-  int count = 0;
-};
-
-/// Time of sample i = 0 .. count - 1: start + i * interval in whole picoseconds (s), so that 3 * 0.05 is 0.15
-/// and a last sample at the end of the simulation is not beyond it.
-inline double calcSampleTime(const SamplesFeatureSpec& samples, int i) {
-  constexpr double kPicosecond = 1e12;
-  return std::round((samples.start + i * samples.interval) * kPicosecond) / kPicosecond;
-}
-
-/// One kind of feature; exactly one member is set.
-struct FeatureSpec {
-  std::optional<SamplesFeatureSpec> samples;
-};
 
 /// Each feature minus its mean, over its standard deviation.
 struct ZScoreSpec {};

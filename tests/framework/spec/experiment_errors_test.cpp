@@ -114,6 +114,26 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"FeaturesBeyondTheEnd",
                 "features[0].samples.count=101",
                 {"features[0].samples", "simulation.duration is 5 s"}},
+        Mistake{"TwoKindsOfFeature",
+                "features[0].statistics={outputs: [y], window: {start: 0, interval: 1, count: 2}, "
+                "quantities: [max]}",
+                {"features[0]", "must give one kind of feature"}},
+        Mistake{"StatisticsBeyondTheEnd",
+                "features=[{statistics: {outputs: [y], window: {start: 0, interval: 0.1, count: 52}, "
+                "quantities: [max]}}]",
+                {"features[0].statistics", "t = 5.1 s", "simulation.duration is 5 s"}},
+        Mistake{"StatisticsOfAnUnknownOutput",
+                "features=[{statistics: {outputs: [thta], window: {start: 0, interval: 0.1, count: 5}, "
+                "quantities: [max]}}]",
+                {"features[0].statistics.outputs[0]", "did you mean 'theta'?"}},
+        Mistake{"RepeatedStatistic",
+                "features=[{statistics: {outputs: [y], window: {start: 0, interval: 0.1, count: 5}, "
+                "quantities: [max, max]}}]",
+                {"features[0].statistics", "quantities twice"}},
+        Mistake{"WindowOfOneSample",
+                "features=[{statistics: {outputs: [y], window: {start: 0, interval: 0.1, count: 1}, "
+                "quantities: [max]}}]",
+                {"features[0].statistics.window", "at least 2 samples"}},
         Mistake{"UnknownStep", "transform=[z_scor]", {"transform[0]", "did you mean 'z_score'?"}},
         Mistake{"RankWithoutNoise",
                 "transform=[z_score, principal_components]",

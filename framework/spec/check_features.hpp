@@ -1,0 +1,14 @@
+#pragma once
+
+#include <vector>
+
+#include "framework/spec/feature_spec.hpp"
+#include "framework/spec/model_spec.hpp"
+
+namespace twinmap {
+
+/// Checks the features against the model: outputs exist and are named once in a feature, samples lie within
+/// the simulation. Throws ExperimentError.
+void checkFeatures(const std::vector<FeatureSpec>& features, const ModelSpec& model);
+
+}  // namespace twinmap

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "framework/spec/feature_spec.hpp"
+#include "framework/spec/fields.hpp"
+
+namespace twinmap {
+
+template <>
+struct EnumNames<Statistic> {
+  static constexpr EnumName<Statistic> values[] = {
+      {"mean", Statistic::kMean}, {"stddev", Statistic::kStddev}, {"rms", Statistic::kRms},
+      {"min", Statistic::kMin},   {"max", Statistic::kMax},       {"peak_to_peak", Statistic::kPeakToPeak},
+  };
+};
+
+template <class Fields>
+void describe(Fields& f, SamplesFeatureSpec& s) {
+  f.required("outputs", s.outputs, "outputs to sample");
+  f.required("start", s.start, "time of the first sample; s", kNonNegative);
+  f.required("interval", s.interval, "time between samples; s", kPositive);
+  f.required("count", s.count, "samples of each output", kCount);
+  f.rule(!s.outputs.empty(), "must name at least one of outputs");
+}
+
+template <class Fields>
+void describe(Fields& f, WindowSpec& s) {
+  constexpr int kFewest = 2;
+  f.required("start", s.start, "time of the first sample; s", kNonNegative);
+  f.required("interval", s.interval, "time between samples; s", kPositive);
+  f.required("count", s.count, "samples in the window", kCount);
+  f.rule(s.count >= kFewest, "must have at least 2 samples");
+}
+
+template <class Fields>
+void describe(Fields& f, StatisticsFeatureSpec& s) {
+  f.required("outputs", s.outputs, "outputs of which statistics are taken");
+  f.required("window", s.window, "the samples they are taken over");
+  f.required("quantities", s.quantities, "of mean, stddev, rms, min, max, peak_to_peak");
+  f.rule(!s.outputs.empty(), "must name at least one of outputs");
+  f.rule(!s.quantities.empty(), "must name at least one of quantities");
+}
+
+template <class Fields>
+void describe(Fields& f, FeatureSpec& s) {
+  f.optional("samples", s.samples, "equidistant samples of outputs");
+  f.optional("statistics", s.statistics, "mean, stddev, rms, min, max, peak_to_peak over a window");
+  f.rule(s.samples.has_value() + s.statistics.has_value() == 1,
+         "must give one kind of feature: samples, statistics");
+}
+
+}  // namespace twinmap

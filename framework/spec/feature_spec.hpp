@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "framework/spec/expression.hpp"
+
+namespace twinmap {
+
+/// Equidistant samples of outputs.
+struct SamplesFeatureSpec {
+  std::vector<Name> outputs;
+  double start = 0.0;
+  double interval = 0.0;
+  int count = 0;
+};
+
+/// The equidistant samples, `count` of them, that a feature is computed from.
+struct WindowSpec {
+  double start = 0.0;     ///< s
+  double interval = 0.0;  ///< s
+  int count = 0;
+};
+
+/// Time of sample i = 0 .. count - 1: start + i * interval in whole picoseconds (s), so that 3 * 0.05 is 0.15
+/// and a last sample at the end of the simulation is not beyond it.
+template <class Samples>
+double calcSampleTime(const Samples& samples, int i) {
+  constexpr double kPicosecond = 1e12;
+  return std::round((samples.start + i * samples.interval) * kPicosecond) / kPicosecond;
+}
+
+enum class Statistic { kMean, kStddev, kRms, kMin, kMax, kPeakToPeak };
+
+/// Statistics of outputs over a window.
+struct StatisticsFeatureSpec {
+  std::vector<Name> outputs;
+  WindowSpec window;
+  std::vector<Statistic> quantities;
+};
+
+/// One kind of feature; exactly one member is set.
+struct FeatureSpec {
+  std::optional<SamplesFeatureSpec> samples;
+  std::optional<StatisticsFeatureSpec> statistics;
+};
+
+/// The outputs that the features are made of, as often as they are named.
+std::vector<Name> collectOutputs(const std::vector<FeatureSpec>& features);
+
+}  // namespace twinmap
