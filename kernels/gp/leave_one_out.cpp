@@ -1,7 +1,11 @@
 #include "kernels/gp/leave_one_out.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <stdexcept>
+#include <string>
 
 #include "kernels/linalg/triangular.hpp"
 
@@ -15,39 +19,103 @@ namespace {
 
 constexpr double kNormalQuantile975 = 1.959963984540054;
 
-// P's diagonal: the squared column norms of L^-1 less the squared row norms of U = L^-T V R^-T.
-VectorXd calcPrecisionDiagonal(const GaussianProcess& process) {
-  const Index n = process.getSampleCount();
-  linalg::TriangularScratch scratch(n);
-  MatrixXd inverse = process.getFactor();
-  linalg::invertLower(linalg::viewOf(inverse), scratch);
-  VectorXd diagonal = inverse.colwise().squaredNorm();
-  if (process.getWhitenedBasis().cols() == 0) return diagonal;
-  MatrixXd correction = process.getWhitenedBasis();
-  linalg::solveTransposedFromRight(linalg::viewOf(process.getBasisFactor()), linalg::viewOf(correction),
+// Square roots of both parts of P = M'M - U U': M = L^-1, and U = L^-T V R^-T.
+struct PrecisionParts {
+  MatrixXd inverse_factor;
+  MatrixXd correction;
+};
+
+PrecisionParts calcPrecisionParts(const GaussianProcess& process, int threads) {
+  linalg::TriangularScratch scratch(process.getSampleCount(), threads);
+  PrecisionParts parts{process.getFactor(), process.getWhitenedBasis()};
+  linalg::invertLower(linalg::viewOf(parts.inverse_factor), scratch);
+  if (parts.correction.cols() == 0) return parts;
+  linalg::solveTransposedFromRight(linalg::viewOf(process.getBasisFactor()), linalg::viewOf(parts.correction),
                                    scratch);
-  for (Index k = 0; k < correction.cols(); ++k) {
-    linalg::solveLowerTransposed(linalg::viewOf(process.getFactor()), correction.col(k).data());
-    diagonal -= correction.col(k).cwiseAbs2();
+  for (Index k = 0; k < parts.correction.cols(); ++k) {
+    linalg::solveLowerTransposed(linalg::viewOf(process.getFactor()), parts.correction.col(k).data());
   }
-  return diagonal;
+  return parts;
+}
+
+MatrixXd calcPrecisionBlock(const PrecisionParts& parts, const std::vector<Index>& group) {
+  const auto size = static_cast<Index>(group.size());
+  MatrixXd block(size, size);
+  for (Index i = 0; i < size; ++i) {
+    for (Index j = 0; j <= i; ++j) {
+      block(i, j) = parts.inverse_factor.col(group[i]).dot(parts.inverse_factor.col(group[j])) -
+                    parts.correction.row(group[i]).dot(parts.correction.row(group[j]));
+      block(j, i) = block(i, j);
+    }
+  }
+  return block;
+}
+
+// A group that alone determines a coefficient of the mean has a singular precision: its stddev is huge then,
+// not NaN.
+void predictGroup(const MatrixXd& precision, const std::vector<Index>& group, const VectorXd& alpha,
+                  LeaveOneOut& result) {
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(precision);
+  const VectorXd values = eigen.eigenvalues().cwiseMax(std::numeric_limits<double>::min());
+  const MatrixXd& vectors = eigen.eigenvectors();
+  const VectorXd group_alpha = alpha(group);
+  const VectorXd residual = vectors * (vectors.transpose() * group_alpha).cwiseQuotient(values);
+  result.residual(group) = residual;
+  result.stddev(group) = (vectors.cwiseAbs2() * values.cwiseInverse()).cwiseSqrt();
+}
+
+void summarize(LeaveOneOut& result) {
+  const Eigen::ArrayXd standardised = result.residual.array() / result.stddev.array();
+  result.log_density = -0.5 * (standardised.square() + 2.0 * result.stddev.array().log() + kLogTwoPi);
+  result.total_log_density = result.log_density.sum();
+  result.coverage95 = (standardised.abs() <= kNormalQuantile975).cast<double>().mean();
+  result.root_mean_square = std::sqrt(result.residual.squaredNorm() / double(result.residual.size()));
+}
+
+void checkGroups(const SampleGroups& groups, Index samples) {
+  std::vector<int> uses(samples, 0);
+  for (const std::vector<Index>& group : groups) {
+    for (const Index i : group) {
+      if (i < 0 || i >= samples || ++uses[i] > 1) {
+        throw std::invalid_argument("calcLeaveGroupsOut: sample " + std::to_string(i) +
+                                    " is in two groups or does not exist");
+      }
+    }
+  }
+  if (std::accumulate(uses.begin(), uses.end(), Index(0)) != samples) {
+    throw std::invalid_argument("calcLeaveGroupsOut: a sample is in no group");
+  }
 }
 
 }  // namespace
 
-LeaveOneOut calcLeaveOneOut(const GaussianProcess& process) {
-  // A sample that alone determines a coefficient of the mean has precision 0: its stddev is huge, not NaN.
-  const VectorXd precision = calcPrecisionDiagonal(process).cwiseMax(std::numeric_limits<double>::min());
+SampleGroups makeDrawGroups(Index samples, int draws) {
+  if (draws < 1 || samples % draws != 0) {
+    throw std::invalid_argument("makeDrawGroups: " + std::to_string(samples) + " samples are not " +
+                                std::to_string(draws) + " draws of each");
+  }
+  const Index count = samples / draws;
+  SampleGroups groups(count);
+  for (Index i = 0; i < samples; ++i) groups[i % count].push_back(i);
+  return groups;
+}
+
+LeaveOneOut calcLeaveGroupsOut(const GaussianProcess& process, const SampleGroups& groups, int threads) {
+  const Index n = process.getSampleCount();
+  checkGroups(groups, n);
+  const PrecisionParts parts = calcPrecisionParts(process, threads);
   LeaveOneOut result;
-  result.residual = process.getAlpha().cwiseQuotient(precision);
-  result.stddev = precision.cwiseSqrt().cwiseInverse();
-  const Eigen::ArrayXd standardised = process.getAlpha().array() / precision.array().sqrt();
-  result.log_density = -0.5 * (standardised.square() - precision.array().log() + kLogTwoPi);
-  result.total_log_density = result.log_density.sum();
-  const double covered = (standardised.abs() <= kNormalQuantile975).cast<double>().sum();
-  result.coverage95 = covered / static_cast<double>(process.getSampleCount());
-  result.root_mean_square = std::sqrt(result.residual.squaredNorm() / double(process.getSampleCount()));
+  result.residual.resize(n);
+  result.stddev.resize(n);
+  for (const std::vector<Index>& group : groups) {
+    predictGroup(calcPrecisionBlock(parts, group), group, process.getAlpha(), result);
+  }
+  summarize(result);
   return result;
+}
+
+LeaveOneOut calcLeaveOneOut(const GaussianProcess& process) {
+  return calcLeaveGroupsOut(process, makeDrawGroups(process.getSampleCount(), 1));
 }
 
 }  // namespace twinmap::gp

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "kernels/gp/gaussian_process.hpp"
 
@@ -17,9 +18,21 @@ struct LeaveOneOut {
   double root_mean_square = 0.0;
 };
 
-/// In closed form from one factor (Rasmussen and Williams eqs. 5.10 to 5.12, with the mean integrated out):
-///   residual_i = alpha_i / P_ii,   variance_i = 1 / P_ii,   P = K^-1 - K^-1 H' A^-1 H K^-1.
-/// Jitter counts as noise. Cost: n^3 / 3 flops.
+/// Groups of samples that are left out together, each sample in exactly one. Draws of the noise of one
+/// simulation belong together: a draw left out alone would be predicted from its siblings.
+using SampleGroups = std::vector<std::vector<Eigen::Index>>;
+
+/// Column j + i n / draws in group j.
+SampleGroups makeDrawGroups(Eigen::Index samples, int draws);
+
+/// In closed form from one factor (Rasmussen and Williams eqs. 5.10 to 5.12, with the mean integrated out).
+/// For a group g, with P_gg its block of the precision matrix P,
+///   residual_g = P_gg^-1 alpha_g,   covariance_g = P_gg^-1,   P = K^-1 - K^-1 H' A^-1 H K^-1;
+/// of the covariance the diagonal is kept: each sample's own prediction. Jitter counts as noise. Cost:
+/// n^3 / 3 flops, shared by `threads` threads; the result does not depend on their number.
+LeaveOneOut calcLeaveGroupsOut(const GaussianProcess& process, const SampleGroups& groups, int threads = 1);
+
+/// Every sample by itself.
 LeaveOneOut calcLeaveOneOut(const GaussianProcess& process);
 
 }  // namespace twinmap::gp

@@ -44,6 +44,44 @@ TEST_P(LeaveOneOutOf, EverySampleEqualsAFitWithoutIt) {
   EXPECT_NEAR(result.total_log_density, result.log_density.sum(), 1e-12);
 }
 
+// Each simulation's draws leave together. Both what lies off the group's diagonal and the mean's integration
+// matter: a fit without the group is the oracle.
+TEST_P(LeaveOneOutOf, EveryGroupEqualsAFitWithoutIt) {
+  const int simulations = 8, draws = 3, n = simulations * draws;
+  const MatrixXd noise = test::randomMatrix(2, n, 4);
+  const MatrixXd inputs = test::randomMatrix(2, simulations, 3).replicate(1, draws) + 0.1 * noise;
+  const VectorXd target =
+      test::smoothTarget(test::randomMatrix(2, simulations, 3), 0.2, 2).replicate(draws, 1);
+  ModelStructure structure;
+  structure.mean = GetParam();
+  const Hyperparameters hyperparameters{VectorXd::Constant(1, 0.9), 1.2, 0.2, 1.0, 1.0};
+  const auto process = fit(inputs, target, structure, hyperparameters);
+  const LeaveOneOut result = calcLeaveGroupsOut(*process, makeDrawGroups(n, draws));
+  for (int j = 0; j < simulations; ++j) {
+    std::vector<Eigen::Index> kept, left;
+    for (int i = 0; i < n; ++i) (i % simulations == j ? left : kept).push_back(i);
+    const Prediction prediction = fit(inputs(Eigen::all, kept), target(kept), structure, hyperparameters)
+                                      ->predict(inputs(Eigen::all, left));
+    EXPECT_LT((result.residual(left) - (target(left) - prediction.mean)).cwiseAbs().maxCoeff(), 1e-10);
+    EXPECT_LT((result.stddev(left) - prediction.stddev()).cwiseAbs().maxCoeff(), 1e-10);
+  }
+  // Draw by draw, siblings give a sample away: the target repeats among them exactly.
+  EXPECT_LT(calcLeaveOneOut(*process).root_mean_square, 0.8 * result.root_mean_square);
+  const LeaveOneOut shared = calcLeaveGroupsOut(*process, makeDrawGroups(n, draws), 3);
+  EXPECT_EQ(shared.residual, result.residual);
+  EXPECT_EQ(shared.stddev, result.stddev);
+}
+
+TEST(LeaveGroupsOut, RefusesGroupsThatAreNoPartition) {
+  const MatrixXd inputs = test::randomMatrix(2, 4, 1);
+  const auto process =
+      fit(inputs, test::smoothTarget(inputs, 0.2, 2), {}, {VectorXd::Ones(1), 1.0, 0.2, 1.0, 1.0});
+  EXPECT_THROW(calcLeaveGroupsOut(*process, {{0, 1}, {2}}), std::invalid_argument);
+  EXPECT_THROW(calcLeaveGroupsOut(*process, {{0, 1}, {1, 2, 3}}), std::invalid_argument);
+  EXPECT_THROW(calcLeaveGroupsOut(*process, {{0, 1}, {2, 3, 4}}), std::invalid_argument);
+  EXPECT_THROW(makeDrawGroups(10, 3), std::invalid_argument);
+}
+
 INSTANTIATE_TEST_SUITE_P(Means, LeaveOneOutOf,
                          testing::Values(MeanFunction::kZero, MeanFunction::kConstant,
                                          MeanFunction::kLinear));
