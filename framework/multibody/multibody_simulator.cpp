@@ -122,6 +122,9 @@ class MultibodySimulator::Impl {
       if (status.reason.empty() && !response.allFinite()) {
         status.reason = "an output became non-finite";
       }
+    } catch (const WallTimeReached& failure) {
+      status.reason = failure.what();
+      status.machine_dependent = true;
     } catch (const SimulationFailure& failure) {
       status.reason = failure.what();
     } catch (const SimTK::Exception::Base& error) {

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "framework/simulation/number_evaluator.hpp"
+
 namespace twinmap {
 
 struct IntegrationOptions {
@@ -12,6 +14,13 @@ struct IntegrationOptions {
   double absolute_tolerance = 1e-9;  ///< and absolute, in the state's own units
   int max_steps = 100000;            ///< tried steps of all phases together
   double max_wall_time = 60.0;       ///< s
+};
+
+/// The sample's limit of wall time was reached: the only failure that depends on the machine and its load, so
+/// that another try may succeed.
+class WallTimeReached : public SimulationFailure {
+ public:
+  using SimulationFailure::SimulationFailure;
 };
 
 /// x' = f(t, x) with f smooth within each phase, and what to do with the solution.
@@ -43,7 +52,8 @@ struct IntegrationReport {
 /// II.6), and records the outputs. The integration restarts at every boundary and lands on it exactly.
 /// `boundaries` (s): strictly increasing, two or more. `output_times` (s): increasing, within the boundaries.
 /// A step with a state or derivative that is not finite is tried again with a tenth of its size. Numerical
-/// failure is a text in the report; exceptions of the problem pass through.
+/// failure is a text in the report, but for WallTimeReached, which is thrown; exceptions of the problem pass
+/// through.
 /// Cost: 6 evaluations of f a step, 3 more a phase.
 IntegrationReport integrateDopri5(OdeProblem& problem, OdeProblem::State x,
                                   const std::vector<double>& boundaries, const Eigen::VectorXd& output_times,
@@ -61,7 +71,7 @@ class IntegrationGuard {
  public:
   explicit IntegrationGuard(const IntegrationOptions& options);
 
-  /// The reason to stop before step number `steps` + 1 at time t, or "".
+  /// The reason to stop before step number `steps` + 1 at time t, or "". Throws WallTimeReached.
   std::string check(int steps, double t) const;
 
  private:

@@ -21,7 +21,7 @@ std::string IntegrationGuard::check(int steps, double t) const {
   if (elapsed.count() > options_.max_wall_time) {
     char limit[32];
     std::snprintf(limit, sizeof limit, "%g", options_.max_wall_time);
-    return describeAt("wall-time limit of " + std::string(limit) + " s reached", t);
+    throw WallTimeReached(describeAt("wall-time limit of " + std::string(limit) + " s reached", t));
   }
   return "";
 }

@@ -16,7 +16,7 @@ Trajectories prepare(const Simulator& prototype, const Eigen::MatrixXd& paramete
   result.layout = prototype.getLayout();
   result.responses.setConstant(result.layout.getRowCount(), parameters.cols(),
                                std::numeric_limits<double>::quiet_NaN());
-  result.statuses.resize(parameters.cols());
+  result.statuses.assign(parameters.cols(), {false, "not simulated"});
   return result;
 }
 
@@ -65,9 +65,15 @@ Trajectories generateSamples(const Simulator& prototype, const Eigen::MatrixXd& 
   const int batches = (samples + options.batch_size - 1) / options.batch_size;
   Progress progress(options);
   runOnTeam(prototype, batches, options.threads, [&](Simulator& simulator, int batch) {
+    if (options.stop != nullptr && options.stop->load(std::memory_order_relaxed)) {
+      return;
+    }
     const int first = batch * options.batch_size;
     const int count = std::min(options.batch_size, samples - first);
     simulateBatch(simulator, first, count, result);
+    if (options.finished) {
+      options.finished(result, first, count);
+    }
     progress.add(count);
   });
   return result;

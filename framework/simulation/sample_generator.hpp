@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <atomic>
 #include <functional>
 #include <string>
 #include <vector>
@@ -9,11 +10,17 @@
 
 namespace twinmap {
 
+struct Trajectories;
+
 struct GeneratorOptions {
   int threads = 0;     ///< 0: as many as OpenMP offers
   int batch_size = 1;  ///< samples handed to the simulator at once; larger only for back ends that vectorise
   /// Called with the number of samples done so far, from any thread but one at a time.
   std::function<void(int done)> progress;
+  /// Once true, samples under way are finished and no other is begun; those keep "not simulated" as reason.
+  const std::atomic<bool>* stop = nullptr;
+  /// Called when samples first .. first + count - 1 are there, from any thread, several at a time.
+  std::function<void(const Trajectories& all, int first, int count)> finished = nullptr;
 };
 
 /// Clean responses of a set of parameter points, one column a sample.

@@ -13,6 +13,7 @@ namespace twinmap {
 struct SampleStatus {
   bool ok = true;
   std::string reason;  ///< empty if ok: "body 'beam1': mass = 0 kg must be positive", "step limit ..."
+  bool machine_dependent = false;  ///< a failure that another try may not repeat: the wall-time limit
 };
 
 /// A model that maps parameter sets to responses (columns, see ResponseLayout). Not thread safe: clone() one

@@ -5,40 +5,88 @@
 
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <stdexcept>
+#include <utility>
 
 namespace twinmap {
 namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void fail(const fs::path& path, const std::string& what) {
-  throw std::runtime_error(path.string() + ": " + what);
+[[noreturn]] void fail(const fs::path& path, const std::string& what, int error) {
+  throw std::runtime_error(path.string() + ": " + what + ": " + std::strerror(error));
 }
 
-void sync(const fs::path& path, int flags) {
-  const int descriptor = ::open(path.c_str(), flags);
-  if (descriptor < 0) {
-    fail(path, std::string("cannot be opened: ") + std::strerror(errno));
+/// An open file; closing reports what the disk did not take until then.
+class OpenFile {
+ public:
+  OpenFile(const fs::path& path, int flags) : path_(path), descriptor_(::open(path.c_str(), flags, 0666)) {
+    if (descriptor_ < 0) {
+      fail(path_, "cannot be opened", errno);
+    }
   }
-  const int result = ::fsync(descriptor);
-  const int error = errno;
-  ::close(descriptor);
-  if (result != 0) {
-    fail(path, std::string("cannot be written to disk: ") + std::strerror(error));
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  ~OpenFile() {
+    if (descriptor_ >= 0) {
+      ::close(descriptor_);
+    }
   }
+
+  void write(const char* bytes, std::size_t size) const {
+    while (size > 0) {
+      const ssize_t written = ::write(descriptor_, bytes, size);
+      if (written < 0 && errno != EINTR) {
+        fail(path_, "cannot be written", errno);
+      }
+      const std::size_t done = written < 0 ? 0 : static_cast<std::size_t>(written);
+      bytes += done;
+      size -= done;
+    }
+  }
+
+  /// Reads up to `size` bytes; 0 at the end.
+  std::size_t read(char* bytes, std::size_t size) const {
+    ssize_t count = ::read(descriptor_, bytes, size);
+    while (count < 0 && errno == EINTR) {
+      count = ::read(descriptor_, bytes, size);
+    }
+    if (count < 0) {
+      fail(path_, "cannot be read", errno);
+    }
+    return static_cast<std::size_t>(count);
+  }
+
+  void sync() const {
+    if (::fsync(descriptor_) != 0) {
+      fail(path_, "cannot be written to disk", errno);
+    }
+  }
+
+  void close() {
+    if (::close(std::exchange(descriptor_, -1)) != 0) {
+      fail(path_, "cannot be written to disk", errno);
+    }
+  }
+
+ private:
+  const fs::path& path_;
+  int descriptor_;
+};
+
+void syncFolder(const fs::path& folder) {
+  const fs::path path = folder.empty() ? fs::path(".") : folder;
+  OpenFile(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC).sync();
 }
 
 }  // namespace
 
 void writeAtomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {
-  const fs::path temporary = path.string() + ".tmp";
+  const fs::path temporary = path.string() + kTemporarySuffix;
   try {
     write(temporary);
-    sync(temporary, O_RDONLY);
-    fs::rename(temporary, path);
-    sync(path.has_parent_path() ? path.parent_path() : fs::path("."), O_RDONLY | O_DIRECTORY);
+    OpenFile(temporary, O_RDONLY | O_CLOEXEC).sync();
+    renameFile(temporary, path);
   } catch (...) {
     std::error_code ignored;
     fs::remove(temporary, ignored);
@@ -46,15 +94,47 @@ void writeAtomically(const fs::path& path, const std::function<void(const fs::pa
   }
 }
 
-void writeTextFile(const fs::path& path, const std::string& text) {
+void writeBytes(const fs::path& path, const void* bytes, std::size_t size) {
   writeAtomically(path, [&](const fs::path& temporary) {
-    std::ofstream file(temporary, std::ios::binary);
-    file << text;
+    OpenFile file(temporary, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC);
+    file.write(static_cast<const char*>(bytes), size);
     file.close();
-    if (!file) {
-      fail(path, std::string("cannot be written: ") + std::strerror(errno));
-    }
   });
+}
+
+void writeTextFile(const fs::path& path, const std::string& text) {
+  writeBytes(path, text.data(), text.size());
+}
+
+std::string readBytes(const fs::path& path) {
+  const OpenFile file(path, O_RDONLY | O_CLOEXEC);
+  std::string bytes(fs::file_size(path), '\0');
+  std::size_t size = 0;
+  while (size < bytes.size()) {
+    const std::size_t count = file.read(bytes.data() + size, bytes.size() - size);
+    if (count == 0) {
+      break;
+    }
+    size += count;
+  }
+  bytes.resize(size);
+  return bytes;
+}
+
+void renameFile(const fs::path& from, const fs::path& to) {
+  fs::rename(from, to);
+  syncFolder(to.parent_path());
+}
+
+void makeFolders(const fs::path& folder) {
+  if (fs::is_directory(folder)) {
+    return;
+  }
+  if (folder.has_parent_path()) {
+    makeFolders(folder.parent_path());
+  }
+  fs::create_directory(folder);
+  syncFolder(folder.parent_path());
 }
 
 }  // namespace twinmap

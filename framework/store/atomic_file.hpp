@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -12,7 +13,20 @@ namespace twinmap {
 void writeAtomically(const std::filesystem::path& path,
                      const std::function<void(const std::filesystem::path& temporary)>& write);
 
-/// The same for a text.
+/// The same for bytes in memory and for a text: "<path>: cannot be written: No space left on device".
+void writeBytes(const std::filesystem::path& path, const void* bytes, std::size_t size);
 void writeTextFile(const std::filesystem::path& path, const std::string& text);
+
+/// The whole file. Throws std::runtime_error naming the file and the cause.
+std::string readBytes(const std::filesystem::path& path);
+
+/// Gives a file of the same folder another name, replacing what has it, and syncs the folder.
+void renameFile(const std::filesystem::path& from, const std::filesystem::path& to);
+
+/// Makes the folder and those above it, each synced into the one above.
+void makeFolders(const std::filesystem::path& folder);
+
+/// What a temporary file adds to the name of the file it becomes; one that is left was never complete.
+inline constexpr const char* kTemporarySuffix = ".tmp";
 
 }  // namespace twinmap

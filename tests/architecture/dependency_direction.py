@@ -28,6 +28,7 @@ LIBRARIES = {
     r"muParser.*": {"spec"},
     r"udunits2.*": {"spec"},
     r"hdf5.*": {"store"},
+    r"xxhash.*": {"store"},
     r"nlohmann/.*": {"spec", "store", "report"},
     r"CLI/.*": {"cli"},
     r"nlopt.*": {"kernels"},

@@ -46,6 +46,18 @@ TEST(Failures, WallTimeLimitNamesItsTime) {
             "wall-time limit of 1e-09 s reached at t = 0 s");
 }
 
+TEST(Failures, OnlyTheWallTimeLimitDependsOnTheMachine) {
+  for (const Integrator integrator : {Integrator::kDopri5, Integrator::kRungeKuttaMerson}) {
+    ModelSpec model = makeOscillator();
+    model.simulation.integrator = integrator;
+    model.simulation.max_steps = 20;
+    EXPECT_FALSE(getStatus(model, Eigen::Vector3d(1.0, 1e4, 0.1)).machine_dependent);
+    model.simulation.max_steps = 100000;
+    model.simulation.max_wall_time = 1e-9;
+    EXPECT_TRUE(getStatus(model, Eigen::Vector3d(1.0, 1e4, 0.1)).machine_dependent);
+  }
+}
+
 TEST(Failures, LimitsHoldForSimbodysIntegratorsToo) {
   for (const Integrator integrator : {Integrator::kRungeKuttaMerson, Integrator::kCpodes}) {
     ModelSpec model = makeOscillator();

@@ -39,15 +39,19 @@ inline Eigen::MatrixXd runModel(const ModelSpec& model, const Eigen::VectorXd& t
   return response.reshaped(times.size(), model.outputs.size());
 }
 
-/// The reason why a sample failed, or "".
-inline std::string getReason(const ModelSpec& model, const Eigen::VectorXd& parameters = Eigen::VectorXd()) {
+inline SampleStatus getStatus(const ModelSpec& model, const Eigen::VectorXd& parameters = Eigen::VectorXd()) {
   const Eigen::VectorXd times = Eigen::VectorXd::Constant(1, model.simulation.duration);
   MultibodySimulator simulator(model, times);
   Eigen::MatrixXd response(times.size() * model.outputs.size(), 1);
   SampleStatus status;
   simulator.simulate(parameters, response, &status);
   EXPECT_EQ(status.ok, status.reason.empty());
-  return status.reason;
+  return status;
+}
+
+/// The reason why a sample failed, or "".
+inline std::string getReason(const ModelSpec& model, const Eigen::VectorXd& parameters = Eigen::VectorXd()) {
+  return getStatus(model, parameters).reason;
 }
 
 /// What the constructor says against a model, or "".

@@ -40,5 +40,32 @@ TEST(AtomicFile, NamesTheFileThatCannotBeWritten) {
   }
 }
 
+// Every write to /dev/full fails as on a full disk.
+TEST(AtomicFile, AFullDiskIsNamedAndLeavesTheOldFile) {
+  const TemporaryFolder folder;
+  writeTextFile(folder / "a.txt", "one");
+  std::filesystem::create_symlink("/dev/full", folder / "a.txt.tmp");
+  try {
+    writeTextFile(folder / "a.txt", "two");
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(error.what(), (folder / "a.txt.tmp").string() + ": cannot be written: No space left on device");
+  }
+  EXPECT_EQ(readFile(folder / "a.txt"), "one");
+  EXPECT_FALSE(std::filesystem::is_symlink(folder / "a.txt.tmp"));
+}
+
+TEST(AtomicFile, MakesFoldersOnceAndReadsFilesWhole) {
+  const TemporaryFolder folder;
+  makeFolders(folder / "a/b/c/");
+  makeFolders(folder / "a/b/c");
+  const std::string bytes("zero \0 and more", 15);
+  writeTextFile(folder / "a/b/c/x", bytes);
+  EXPECT_EQ(readBytes(folder / "a/b/c/x"), bytes);
+  writeTextFile(folder / "empty", "");
+  EXPECT_EQ(readBytes(folder / "empty"), "");
+  EXPECT_THROW(readBytes(folder / "none"), std::runtime_error);
+}
+
 }  // namespace
 }  // namespace twinmap

@@ -1,0 +1,84 @@
+#include "framework/spec/trajectory_content.hpp"
+
+#include <algorithm>
+
+#include "framework/spec/check_experiment.hpp"
+#include "framework/spec/describe_experiment.hpp"
+#include "framework/spec/write_value.hpp"
+
+namespace twinmap {
+namespace {
+
+void erase(YamlNode& map, const std::string& key) {
+  auto& entries = map.entries;
+  entries.erase(
+      std::remove_if(entries.begin(), entries.end(), [&](const YamlEntry& e) { return e.key == key; }),
+      entries.end());
+}
+
+YamlNode writeSimulation(const SimulationSpec& simulation) {
+  YamlNode map = writeValue(simulation);
+  erase(map, "max_wall_time");
+  erase(map, "allowed_failures");
+  return map;
+}
+
+template <class T>
+std::vector<T> withoutUnits(std::vector<T> items) {
+  for (T& item : items) {
+    item.unit.clear();
+  }
+  return items;
+}
+
+std::vector<ConstantSpec> withoutTexts(std::vector<ConstantSpec> constants) {
+  for (ConstantSpec& constant : constants) {
+    constant.description.clear();
+  }
+  return withoutUnits(std::move(constants));
+}
+
+std::vector<double> calcCenter(const std::vector<ParameterSpec>& parameters) {
+  std::vector<double> center;
+  for (const ParameterSpec& parameter : parameters) {
+    center.push_back(0.5 * (parameter.bounds.lower + parameter.bounds.upper));
+  }
+  return center;
+}
+
+bool startsAtBoxCenter(const InitialSpec& initial) {
+  return initial.equilibrium && initial.equilibrium->at == EquilibriumAt::kBoxCenter;
+}
+
+YamlNode writeResponse(const ResponseLayout& layout) {
+  // A new member must be written here, or left out on purpose: the binding then no longer compiles.
+  const auto& [output_names, output_units, times, modes] = layout;
+  FieldWriter response;
+  response.required("outputs", output_names, "");
+  response.required("times", std::vector<double>(times.data(), times.data() + times.size()), "");
+  response.required("modes", modes, "");
+  return response.takeMap();
+}
+
+}  // namespace
+
+std::string writeTrajectoryContent(const ModelSpec& model, const ResponseLayout& layout) {
+  // A new member must be written here, or left out on purpose: the binding then no longer compiles.
+  const auto& [parameters, constants, system, excitation, initial, outputs, simulation] = model;
+  FieldWriter content;
+  content.required("parameters", collectNames(parameters), "");
+  if (startsAtBoxCenter(initial)) {
+    content.required("box_center", calcCenter(parameters), "");
+  }
+  content.requiredMap("constants", withoutTexts(constants), "");
+  content.required("system", system, "");
+  content.requiredMap("excitation", withoutUnits(excitation), "");
+  content.required("initial", initial, "");
+  content.requiredMap("outputs", outputs, "");
+  YamlNode root = content.takeMap();
+  root.entries.push_back({"simulation", {}, writeSimulation(simulation)});
+  root.entries.push_back({"response", {}, writeResponse(layout)});
+  return writeYaml(root);
+}
+
+}  // namespace twinmap

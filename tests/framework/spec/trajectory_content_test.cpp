@@ -1,0 +1,77 @@
+#include "framework/spec/trajectory_content.hpp"
+
+#include <gtest/gtest.h>
+
+#include "framework/spec/experiment_file.hpp"
+
+namespace twinmap {
+namespace {
+
+const std::string kTable1 = std::string(TWINMAP_SOURCE_DIR) + "/experiments/two_beam/table1.yaml";
+
+ResponseLayout makeLayout() {
+  return {{"y", "theta"}, {"m", "rad"}, Eigen::VectorXd::LinSpaced(3, 0.1, 0.3), 0};
+}
+
+std::string write(const std::vector<std::string>& overrides) {
+  return writeTrajectoryContent(loadExperiment(kTable1, overrides).model, makeLayout());
+}
+
+TEST(TrajectoryContent, WhatDeterminesAResponseChangesIt) {
+  const std::string reference = write({});
+  for (const char* change : {"constants.m1=3.4", "system.springs[0].rest=0.1", "system.gravity=[0, 0, -9.8]",
+                             "simulation.duration=6", "excitation.F.pulses[0].amplitude=6", "initial={}",
+                             "initial.equilibrium.at=sample", "initial.equilibrium.parameters.k_y=6",
+                             "outputs.y={speed: y}", "simulation.integrator=cpodes",
+                             "simulation.relative_tolerance=1e-7", "simulation.absolute_tolerance=1e-8",
+                             "simulation.max_steps=50000", "parameters.k_y.bounds=[5, 16]"}) {
+    EXPECT_NE(write({change}), reference) << change;
+  }
+}
+
+TEST(TrajectoryContent, WhatDoesNotChangeAResponseDoesNot) {
+  const std::string reference = write({});
+  for (const char* same :
+       {"name=other", "description=x", "seed=2", "noise.scale=3", "design.train.samples=70",
+        "design.train.method=sobol", "transform=[z_score: {}]", "inverse_map.gp.covariance=matern52",
+        "parameters.k_y.description=spring", "parameters.k_y.relative_to=range", "simulation.max_wall_time=5",
+        "simulation.allowed_failures=0.5", "report.over=[d_y, k_y]",
+        "parameters.k_y.bounds=[6, 14]"}) {  // the same centre
+    EXPECT_EQ(write({same}), reference) << same;
+  }
+}
+
+TEST(TrajectoryContent, BoundsCountOnlyWhereTheInitialStateIsTheCentresEquilibrium) {
+  for (const char* initial : {"initial={}", "initial.equilibrium.at=sample"}) {
+    EXPECT_EQ(write({initial, "parameters.k_y.bounds=[5, 16]"}), write({initial}));
+  }
+}
+
+// Users may give names that are keys elsewhere: they must not be taken for descriptions or units.
+TEST(TrajectoryContent, ConstantsOfAnyNameCount) {
+  for (const std::string name : {"description", "unit", "max_wall_time"}) {
+    EXPECT_NE(write({"constants." + name + "=1"}), write({"constants." + name + "=2"})) << name;
+    EXPECT_EQ(write({"constants." + name + "={value: 1, description: a}"}),
+              write({"constants." + name + "={value: 1, description: b, unit: m}"}));
+  }
+}
+
+TEST(TrajectoryContent, TheRowsOfAResponseCount) {
+  const ModelSpec model = loadExperiment(kTable1).model;
+  const std::string reference = writeTrajectoryContent(model, makeLayout());
+  ResponseLayout times = makeLayout(), modes = makeLayout();
+  times.times[1] += 1e-12;
+  modes.modes = 2;
+  EXPECT_NE(writeTrajectoryContent(model, times), reference);
+  EXPECT_NE(writeTrajectoryContent(model, modes), reference);
+}
+
+TEST(TrajectoryContent, AResolvedExperimentHasTheSame) {
+  const ExperimentSpec experiment = loadExperiment(kTable1);
+  const ExperimentSpec again = readExperiment(parseYaml(writeExperiment(experiment), "resolved.yaml"));
+  EXPECT_EQ(writeTrajectoryContent(again.model, makeLayout()),
+            writeTrajectoryContent(experiment.model, makeLayout()));
+}
+
+}  // namespace
+}  // namespace twinmap
