@@ -11,6 +11,7 @@
 #include "framework/spec/experiment_file.hpp"
 #include "framework/stage_timer.hpp"
 #include "framework/store/atomic_file.hpp"
+#include "framework/store/folder_lock.hpp"
 #include "framework/store/maps_file.hpp"
 
 namespace twinmap {
@@ -93,11 +94,13 @@ void evaluate(const ExperimentSpec& experiment, const GpMap& map, const Labelled
 
 RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& options) {
   RunSummary run = startSummary(experiment);
-  fs::create_directories(options.folder);
+  makeFolders(options.folder);
+  const FolderLock lock(options.folder);
   writeTextFile(options.folder / "resolved.yaml", writeExperiment(experiment));
 
   const MultibodySimulator simulator(experiment.model, collectTimes(experiment.features));
-  const SimulatedSets sets = simulateSets(experiment, simulator, options, run);
+  const auto store = openStore(experiment.model, simulator.getLayout(), options);
+  const SimulatedSets sets = simulateSets(experiment, simulator, *store, options, run);
   run.test_indices = findSuccessful(sets.test);
 
   const FeatureExtractor extractor(experiment.features, simulator.getLayout());

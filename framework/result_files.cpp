@@ -30,6 +30,7 @@ void writeResults(const fs::path& folder, const RunSummary& run) {
 void writeProvenance(const ExperimentSpec& experiment, const RunOptions& options, const RunSummary& run) {
   Provenance provenance{
       options.command, experiment.seed, options.threads, {}, static_cast<int>(run.failures.size())};
+  provenance.reused_samples = run.reused_samples;
   for (const StageTime& time : run.times) {
     provenance.stage_seconds.emplace_back(time.stage, time.seconds);
   }

@@ -1,14 +1,17 @@
 #include "framework/simulated_sets.hpp"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <stdexcept>
 
 #include "framework/design/point_set.hpp"
 #include "framework/report/tables.hpp"
+#include "framework/simulate_missing.hpp"
 #include "framework/stage_timer.hpp"
 #include "framework/store/atomic_file.hpp"
 #include "framework/store/samples_file.hpp"
+#include "framework/store_content.hpp"
 
 namespace twinmap {
 namespace {
@@ -45,6 +48,13 @@ void requireFewFailures(const std::vector<FailedSample>& failures, const std::st
   }
 }
 
+void noteReused(int reused, const std::string& set, RunSummary& run) {
+  run.reused_samples += reused;
+  if (reused > 0) {
+    spdlog::info("{} of the {} samples had been simulated before", reused, set);
+  }
+}
+
 }  // namespace
 
 std::vector<int> findSuccessful(const Trajectories& trajectories) {
@@ -57,19 +67,32 @@ std::vector<int> findSuccessful(const Trajectories& trajectories) {
   return samples;
 }
 
+std::unique_ptr<TrajectoryStore> openStore(const ModelSpec& model, const ResponseLayout& layout,
+                                           const RunOptions& options) {
+  const fs::path root = options.store.empty() ? options.folder / "chunks" : options.store;
+  auto store = std::make_unique<TrajectoryStore>(root, writeStoreContent(model, layout),
+                                                 static_cast<Eigen::Index>(model.parameters.size()),
+                                                 layout.getRowCount());
+  for (const SetAsideChunk& chunk : store->getSetAside()) {
+    spdlog::warn("{}: set aside: {}; its samples are simulated again", chunk.file.string(), chunk.reason);
+  }
+  return store;
+}
+
 SimulatedSets simulateSets(const ExperimentSpec& experiment, const Simulator& simulator,
-                           const RunOptions& options, RunSummary& run) {
+                           TrajectoryStore& store, const RunOptions& options, RunSummary& run) {
   const ModelSpec& model = experiment.model;
-  GeneratorOptions generator;
-  generator.threads = options.threads;
+  MissingOptions missing;
+  missing.threads = options.threads;
   const auto simulate = [&](const std::string& set, const PointSetSpec& design, RandomPurpose purpose) {
     const Eigen::MatrixXd points = samplePoints(design, model.parameters, experiment.seed, purpose);
-    Trajectories trajectories =
+    StoredTrajectories stored =
         timeStage(fmt::format("simulate {} {} samples", points.cols(), set), run.times,
-                  [&] { return generateSamples(simulator, points, generator); });
-    const std::vector<FailedSample> failures = collectFailures(set, trajectories);
+                  [&] { return simulateMissing(store, simulator, points, missing); });
+    noteReused(stored.counts.reused, set, run);
+    const std::vector<FailedSample> failures = collectFailures(set, stored.trajectories);
     run.failures.insert(run.failures.end(), failures.begin(), failures.end());
-    return trajectories;
+    return std::move(stored.trajectories);
   };
   const SimulatedSets sets{simulate("train", experiment.design.train, RandomPurpose::kTrainDesign),
                            simulate("test", experiment.design.test, RandomPurpose::kTestDesign)};

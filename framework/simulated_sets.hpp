@@ -1,7 +1,10 @@
 #pragma once
 
+#include <memory>
+
 #include "framework/experiment.hpp"
 #include "framework/simulation/sample_generator.hpp"
+#include "framework/store/trajectory_store.hpp"
 
 namespace twinmap {
 
@@ -9,11 +12,16 @@ struct SimulatedSets {
   Trajectories train, test;
 };
 
-/// Simulates both sets of an experiment and writes samples.h5 and failures.csv; failures and times go to the
-/// summary. `simulator` must know the experiment's outputs at the features' times. Throws std::runtime_error
-/// if more samples failed than simulation.allowed_failures permits.
+/// Opens the store of a model's samples where the options say. Chunks that had to be set aside are logged.
+std::unique_ptr<TrajectoryStore> openStore(const ModelSpec& model, const ResponseLayout& layout,
+                                           const RunOptions& options);
+
+/// Simulates what the store does not have of both sets of an experiment, and writes samples.h5 and
+/// failures.csv; failures and times go to the summary. `simulator` must know the experiment's outputs at the
+/// features' times. Throws std::runtime_error if more samples failed than simulation.allowed_failures
+/// permits.
 SimulatedSets simulateSets(const ExperimentSpec& experiment, const Simulator& simulator,
-                           const RunOptions& options, RunSummary& run);
+                           TrajectoryStore& store, const RunOptions& options, RunSummary& run);
 
 /// Indices of the samples that could be simulated.
 std::vector<int> findSuccessful(const Trajectories& trajectories);

@@ -20,6 +20,7 @@ struct SimulateArguments {
 struct RunArguments {
   ExperimentArguments experiment;
   std::string folder;  ///< "": results/NAME
+  std::string store;   ///< "": chunks in the folder
   int threads = 1;
   std::string command_line;
 };

@@ -67,6 +67,11 @@ void addRun(CLI::App& app, twinmap::RunArguments& arguments) {
   command->add_option("--out", arguments.folder, "Folder for the results (default: results/NAME)")
       ->type_name("DIR");
   command
+      ->add_option(
+          "--store", arguments.store,
+          "Folder of simulated samples, shared with other runs (default: chunks in the run's folder)")
+      ->type_name("DIR");
+  command
       ->add_option("--threads", arguments.threads,
                    "Threads (default: all cores); results do not depend on them")
       ->type_name("N")

@@ -11,6 +11,7 @@ void run(const RunArguments& arguments) {
   const ExperimentSpec experiment = loadExperiment(arguments.experiment.file, arguments.experiment.overrides);
   RunOptions options;
   options.folder = arguments.folder.empty() ? "results/" + experiment.name.text : arguments.folder;
+  options.store = arguments.store;
   options.threads = arguments.threads;
   options.command = arguments.command_line;
   const RunSummary summary = runExperiment(experiment, options);

@@ -53,6 +53,7 @@ struct RunSummary {
   std::vector<TrainingStart> training;
   std::vector<std::string> warnings;
   std::vector<FailedSample> failures;
+  int reused_samples = 0;  ///< taken from the store instead of simulated
   std::vector<StageTime> times;
 };
 

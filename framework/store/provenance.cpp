@@ -47,6 +47,7 @@ std::string makeProvenanceJson(const Provenance& provenance) {
   json["seed"] = provenance.seed;
   json["threads"] = provenance.threads;
   json["failed_samples"] = provenance.failed_samples;
+  json["reused_samples"] = provenance.reused_samples;
   for (const auto& [stage, seconds] : provenance.stage_seconds) {
     json["seconds"][stage] = seconds;
   }

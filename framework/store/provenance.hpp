@@ -14,6 +14,7 @@ struct Provenance {
   int threads = 0;
   std::vector<std::pair<std::string, double>> stage_seconds;  ///< wall time of each stage, in order
   int failed_samples = 0;
+  int reused_samples = 0;  ///< taken from the store instead of simulated
 };
 
 /// provenance.json: the above with date (UTC), version, compiler, libraries, CPU and operating system.

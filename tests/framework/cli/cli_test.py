@@ -1,11 +1,13 @@
 """The twinmap command from outside: exit codes, messages, and what a run leaves in its folder."""
 import csv
+import fcntl
 import filecmp
 import json
 import os
 import statistics
 import subprocess
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
@@ -230,6 +232,64 @@ class Run(TestCase):
             if row["best"] == "1":
                 self.assertAlmostEqual(float(row["nlml"]), nlml[row["parameter"]], 6)
                 self.assertGreater(float(row["condition"]), 1)
+
+    def assert_same_results(self, a, b):
+        _, different, missing = filecmp.cmpfiles(self.folder / a, self.folder / b, RESULTS, shallow=False)
+        self.assertEqual((different, missing), ([], []))
+
+    def count_reused(self, name):
+        return json.loads((self.folder / name / "provenance.json").read_text())["reused_samples"]
+
+    def test_killed_and_continued_gives_the_same_files(self):
+        self.run_experiment("undisturbed")
+        child = subprocess.Popen([TWINMAP, "run", TABLE1, *SMALL, "--out", self.folder / "run"],
+                                 stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+        while child.poll() is None and not list(self.folder.glob("run/chunks/*/*.chunk")):
+            time.sleep(0.002)
+        child.kill()
+        child.wait()
+        self.assertFalse((self.folder / "run/metrics.csv").exists())
+        self.run_experiment("run")
+        self.assertIn(self.count_reused("run"), (40, 60))  # the training samples, perhaps the test samples
+        self.assert_same_results("run", "undisturbed")
+        result = self.run_experiment("run")
+        self.assertIn("40 of the train samples had been simulated before", result.stderr)
+        self.assertEqual(self.count_reused("run"), 60)
+        self.assert_same_results("run", "undisturbed")
+
+    def test_runs_share_a_store_whatever_the_noise_and_the_map(self):
+        store = ["--store", self.folder / "store"]
+        nested = ["design.train.method=nested_latin_hypercube"]
+        self.run_experiment("a", *nested, *store)
+        self.run_experiment("b", *nested, *store, "noise.scale=3", "inverse_map.gp.covariance=matern52")
+        self.run_experiment("c", *nested, *store, "design.train.samples=50")
+        self.assertEqual([self.count_reused(run) for run in "abc"], [0, 60, 60])
+        self.run_experiment("alone", *nested, "design.train.samples=50")
+        self.assert_same_results("c", "alone")
+        self.assertFalse((self.folder / "a/chunks").exists())
+        self.run_experiment("d", *nested, *store, "constants.m1=3.4")
+        self.assertEqual(self.count_reused("d"), 0)
+
+    def test_damaged_chunks_are_reported_and_simulated_again(self):
+        self.run_experiment("a")
+        self.run_experiment("b")
+        chunk = next((self.folder / "b").glob("chunks/*/*.chunk"))
+        data = bytearray(chunk.read_bytes())
+        data[len(data) // 2] ^= 8
+        chunk.write_bytes(data)
+        result = self.run_experiment("b")
+        self.assertIn(f"{chunk}.set-aside: set aside: its checksum is wrong", result.stderr)
+        self.assert_same_results("a", "b")
+
+    def test_a_folder_in_use_is_refused(self):
+        (self.folder / "run").mkdir()
+        with open(self.folder / "run/lock", "w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            lock.write(str(os.getpid()))
+            lock.flush()
+            result = call("run", TABLE1, *SMALL, "--out", self.folder / "run")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn(f"{self.folder / 'run'}: is in use by process {os.getpid()};", result.stderr)
 
     def test_provenance_says_how(self):
         self.run_experiment("run", "--threads", 2)

@@ -99,11 +99,12 @@ TEST(MapsFile, RefusesOtherFiles) {
 
 TEST(Provenance, SaysHowTheRunCameAbout) {
   const nlohmann::json json =
-      nlohmann::json::parse(makeProvenanceJson({"twinmap run \"x\" \xff", 7, 2, {{"simulate", 1.5}}, 3}));
+      nlohmann::json::parse(makeProvenanceJson({"twinmap run \"x\" \xff", 7, 2, {{"simulate", 1.5}}, 3, 4}));
   EXPECT_EQ(json["seed"], 7);
   EXPECT_EQ(json["threads"], 2);
   EXPECT_EQ(json["seconds"]["simulate"], 1.5);
   EXPECT_EQ(json["failed_samples"], 3);
+  EXPECT_EQ(json["reused_samples"], 4);
   for (const auto& [library, version] : json["libraries"].items()) {
     EXPECT_NE(version, "") << library;
   }
