@@ -3,6 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <string>
 
 namespace twinmap {
 namespace {
@@ -19,6 +21,27 @@ void fixSigns(MatrixXd& directions) {
       directions.col(k) *= -1.0;
     }
   }
+}
+
+Index chooseRank(const PrincipalComponentsSpec& spec, const PrincipalComponents& components, Index samples) {
+  const Index most = components.variances.size();
+  if (spec.components) {
+    if (*spec.components > most) {
+      throw std::invalid_argument("principal_components: asked for " + std::to_string(*spec.components) +
+                                  " of " + std::to_string(most));
+    }
+    return *spec.components;
+  }
+  const double edge = calcMarchenkoPasturEdge(components.directions.rows(), samples);
+  const double total = components.variances.sum();
+  double explained = 0.0;
+  Index rank = 0;
+  while (rank < most && (spec.explained_variance ? explained < *spec.explained_variance * total
+                                                 : components.variances[rank] > edge)) {
+    explained += components.variances[rank];
+    ++rank;
+  }
+  return std::max<Index>(rank, 1);
 }
 
 }  // namespace
@@ -43,6 +66,13 @@ PrincipalComponents calcPrincipalComponents(const MatrixXd& centered) {
 double calcMarchenkoPasturEdge(Index dimensions, Index samples) {
   const double ratio = static_cast<double>(dimensions) / static_cast<double>(samples);
   return std::pow(1.0 + std::sqrt(ratio), 2);
+}
+
+AffineStep fitPrincipalComponents(const PrincipalComponentsSpec& spec, const MatrixXd& features) {
+  const VectorXd mean = features.rowwise().mean();
+  const PrincipalComponents components = calcPrincipalComponents(features.colwise() - mean);
+  const Index rank = chooseRank(spec, components, features.cols());
+  return makeProjection(mean, components.directions.leftCols(rank).transpose());
 }
 
 }  // namespace twinmap

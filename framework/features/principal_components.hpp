@@ -2,6 +2,9 @@
 
 #include <Eigen/Core>
 
+#include "framework/features/affine_step.hpp"
+#include "framework/spec/experiment_spec.hpp"
+
 namespace twinmap {
 
 /// Directions of the variance of data, largest first.
@@ -16,5 +19,11 @@ PrincipalComponents calcPrincipalComponents(const Eigen::MatrixXd& centered);
 /// The upper edge (1 + sqrt(d / n))^2 of the eigenvalues of the sample covariance of n samples of unit white
 /// noise in d dimensions (Marchenko and Pastur 1967).
 double calcMarchenkoPasturEdge(Eigen::Index dimensions, Eigen::Index samples);
+
+/// Projects features (d x n, n >= 2) on their principal components: as many as asked for, or as explain a
+/// fraction of the variance, or those whose variance stands above the Marchenko-Pastur edge, the largest of
+/// unit noise alone; at least one is kept. Throws std::invalid_argument if more are asked for than there are.
+/// Cost: min(d, n)^3 + d n min(d, n) flops.
+AffineStep fitPrincipalComponents(const PrincipalComponentsSpec& spec, const Eigen::MatrixXd& features);
 
 }  // namespace twinmap

@@ -37,43 +37,6 @@ void checkNoise(const NoiseSpec& noise, const ModelSpec& model) {
   }
 }
 
-void requireNoise(const ExperimentSpec& experiment, const SourceLocation& where) {
-  for (const Name& output : collectOutputs(experiment.features)) {
-    for (const OutputNoiseSpec& noise : experiment.noise.stddev) {
-      if (noise.name.text == output.text && !(experiment.noise.scale * noise.stddev > 0.0)) {
-        throw ExperimentError(
-            where, "whiten",
-            "needs noise above 0 on output '" + output.text + "'; use z_score without noise");
-      }
-    }
-  }
-}
-
-/// Whitening divides by the noise of every feature's output, and an automatic rank needs whitened features.
-void checkTransform(const ExperimentSpec& experiment) {
-  bool whitened = false, projected = false;
-  for (const TransformStepSpec& step : experiment.transform) {
-    if (step.whiten && projected) {
-      throw ExperimentError(step.where, "whiten", "must come before principal_components");
-    }
-    if (step.whiten) {
-      requireNoise(experiment, step.where);
-    }
-    const bool automatic = step.principal_components && !step.principal_components->components &&
-                           !step.principal_components->explained_variance;
-    if (automatic && !whitened) {
-      throw ExperimentError(step.where, "principal_components",
-                            "needs components or explained_variance, unless it directly follows whiten");
-    }
-    whitened = step.whiten.has_value();
-    projected = projected || step.principal_components.has_value();
-  }
-  if (projected && experiment.inverse_map.gp.length_scales == LengthScales::kPerOutput) {
-    throw ExperimentError({experiment.name.where.file, 0, 0, "inverse_map.gp.length_scales"}, "per_output",
-                          "has no meaning after principal_components, which mix the outputs");
-  }
-}
-
 void checkDesign(const DesignSpec& design, const SourceLocation& where) {
   constexpr int kFewest = 2;  // standard deviations need two
   if (design.train.samples < kFewest || design.test.samples < kFewest) {

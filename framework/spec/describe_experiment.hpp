@@ -56,6 +56,12 @@ struct EnumNames<GpApproximation> {
 };
 
 template <>
+struct EnumNames<WhitenBy> {
+  static constexpr EnumName<WhitenBy> values[] = {{"stddev", WhitenBy::kStddev},
+                                                  {"covariance", WhitenBy::kCovariance}};
+};
+
+template <>
 struct EnumNames<LengthScales> {
   static constexpr EnumName<LengthScales> values[] = {
       {"shared", LengthScales::kShared},
@@ -98,7 +104,9 @@ template <class Fields>
 void describe(Fields&, ZScoreSpec&) {}
 
 template <class Fields>
-void describe(Fields&, WhitenSpec&) {}
+void describe(Fields& f, WhitenSpec& s) {
+  f.optional("by", s.by, "each feature's own stddev, or the covariance, which makes noise independent too");
+}
 
 template <class Fields>
 void describe(Fields& f, PrincipalComponentsSpec& s) {
@@ -110,7 +118,7 @@ void describe(Fields& f, PrincipalComponentsSpec& s) {
 template <class Fields>
 void describe(Fields& f, TransformStepSpec& s) {
   f.optional("z_score", s.z_score, "each feature minus its mean, over its standard deviation");
-  f.optional("whiten", s.whiten, "each feature over the standard deviation of its noise");
+  f.optional("whiten", s.whiten, "features in units of their noise");
   f.optional("principal_components", s.principal_components,
              "projection on the directions of largest variance; by default those above the noise");
   f.rule(s.z_score.has_value() + s.whiten.has_value() + s.principal_components.has_value() == 1,

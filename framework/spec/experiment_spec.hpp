@@ -13,8 +13,12 @@ namespace twinmap {
 /// Each feature minus its mean, over its standard deviation.
 struct ZScoreSpec {};
 
-/// Each feature over the standard deviation of its noise, so that noise has unit variance in every direction.
-struct WhitenSpec {};
+/// By stddev: each feature over the standard deviation of its noise. By covariance: combinations of features
+/// whose noise is independent and of unit variance, for features whose noise is correlated.
+enum class WhitenBy { kStddev, kCovariance };
+struct WhitenSpec {
+  WhitenBy by = WhitenBy::kStddev;
+};
 
 /// Principal components of the training features, those of largest variance. How many: as given, or enough to
 /// explain a fraction of the variance, or by default those that stand above the noise of whitened features.

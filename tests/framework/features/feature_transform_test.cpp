@@ -107,6 +107,39 @@ TEST(FeatureTransform, WhitenDividesByTheNoiseAlsoBehindAZScore) {
                std::invalid_argument);
 }
 
+/// 4 features whose noise is correlated.
+MatrixXd makeCorrelatedCovariance() {
+  const MatrixXd mixing = makeNoise(4, 4, 6);
+  return mixing * mixing.transpose();
+}
+
+TEST(FeatureTransform, WhitenByCovarianceMakesNoiseIndependentAlsoBehindAProjection) {
+  LabelledFeatures samples;
+  samples.features = makeNoise(4, 50, 7);
+  samples.noise_covariance = makeCorrelatedCovariance();
+  TransformStepSpec whiten = makeWhiten();
+  whiten.whiten->by = WhitenBy::kCovariance;
+  for (const std::vector<TransformStepSpec>& steps :
+       {std::vector{whiten}, {makeZScore(), whiten}, {makePrincipalComponents(3), whiten}}) {
+    MatrixXd noise = samples.noise_covariance;
+    for (const AffineStep& step : fitTransform(steps, samples).steps) {
+      noise = step.applyToCovariance(noise);
+    }
+    EXPECT_LT((noise - MatrixXd::Identity(noise.rows(), noise.cols())).norm(), 1e-11);
+  }
+  samples.noise_covariance(2, 2) = 0.0;
+  EXPECT_THROW(fitTransform({whiten}, samples), std::invalid_argument);
+}
+
+TEST(FeatureTransform, ByCovarianceOfIndependentNoiseIsByStddev) {
+  const MatrixXd features = MatrixXd::Random(2, 20);
+  TransformStepSpec whiten = makeWhiten();
+  const LabelledFeatures samples = makeSamples(features, Eigen::Vector2d(0.1, 4.0));
+  const MatrixXd by_stddev = fitTransform({whiten}, samples).apply(features);
+  whiten.whiten->by = WhitenBy::kCovariance;
+  EXPECT_EQ(fitTransform({whiten}, samples).apply(features), by_stddev);
+}
+
 TEST(FeatureTransform, AutomaticRankKeepsWhatStandsAboveTheNoise) {
   const MatrixXd data = makeTwoDirections(400);
   const FeatureTransform transform = fitTransform({makePrincipalComponents()}, makeUnitNoiseSamples(data));

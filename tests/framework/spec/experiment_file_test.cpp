@@ -75,6 +75,29 @@ TEST(ExperimentFile, WhiteningNeedsNoise) {
                ExperimentError);
 }
 
+TEST(ExperimentFile, PerOutputHasNoMeaningBehindStepsThatMixFeatures) {
+  const std::string per_output = "inverse_map.gp.length_scales=per_output";
+  EXPECT_NO_THROW(loadExperiment(kTable1, {"transform=[z_score, whiten]", per_output}));
+  for (const std::string& step :
+       std::vector<std::string>{"principal_components: {components: 2}", "whiten: {by: covariance}"}) {
+    try {
+      loadExperiment(kTable1, {"transform=[z_score, " + step + "]", per_output});
+      ADD_FAILURE() << step;
+    } catch (const ExperimentError& error) {
+      EXPECT_NE(std::string(error.what()).find("transform[1]"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("per_output"), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST(ExperimentFile, EveryStepOfATransformIsReadAndWritten) {
+  const ExperimentSpec experiment = loadExperiment(
+      kTable1, {"transform=[whiten: {by: covariance}, principal_components, whiten: {by: covariance}]"});
+  EXPECT_EQ(experiment.transform[0].whiten->by, WhitenBy::kCovariance);
+  const std::string text = writeExperiment(experiment);
+  EXPECT_EQ(writeExperiment(readExperiment(parseYaml(text, "again"))), text);
+}
+
 TEST(ExperimentFile, EveryJointTypeIsReadWithItsCoordinates) {
   const std::vector<std::pair<std::string, std::string>> joints{{"weld", "[]"},
                                                                 {"slider", "[a]"},

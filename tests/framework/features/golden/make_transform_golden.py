@@ -1,0 +1,65 @@
+#!/usr/bin/python3
+"""Writes transform_golden.hpp: transforms of scikit-learn 1.2.1 and numpy (Debian 12) on a small data set.
+
+    /usr/bin/python3 tests/framework/features/golden/make_transform_golden.py \
+        > tests/framework/features/golden/transform_golden.hpp
+
+40 simulations, two noise draws each (draw by draw), 6 features with correlated noise, 2 parameters. Matrices are
+written sample by sample.
+"""
+import numpy as np
+import sklearn
+from sklearn.decomposition import PCA
+from sklearn.preprocessing import StandardScaler
+
+FEATURES, SIMULATIONS, REPLICATES = 6, 40, 2
+COMPONENTS = 3
+
+
+def make_data():
+    rng = np.random.default_rng(20220101)
+    parameters = rng.uniform(size=(SIMULATIONS, 2)) * [2.0, 300.0] + [1.0, 500.0]
+    a, b = parameters[:, 0] - 2.0, (parameters[:, 1] - 650.0) / 150.0
+    clean = np.column_stack([np.sin(2 * a), a * b, 3 * b + 40.0, np.exp(b), a + 0.2 * b, np.zeros(SIMULATIONS)])
+    factor = 0.05 * (np.eye(FEATURES) + 0.5 * np.tril(rng.normal(size=(FEATURES, FEATURES))))
+    noise = rng.normal(size=(REPLICATES * SIMULATIONS, FEATURES)) @ factor.T
+    return np.tile(clean, (REPLICATES, 1)) + noise, np.tile(parameters, (REPLICATES, 1)), factor @ factor.T
+
+
+def braces(values):
+    return "{" + ", ".join(repr(v) for v in np.ravel(values).tolist()) + "}"
+
+
+def write(name, values, kind="double"):
+    print(f"inline const std::vector<{kind}> {name} = {braces(values)};")
+
+
+def write_scalings(x, noise_covariance):
+    write("kStandardised", StandardScaler().fit_transform(x) * np.sqrt((len(x) - 1) / len(x)))
+    write("kWhitenedByStddev", x / np.sqrt(np.diag(noise_covariance)))
+    write("kWhitenedByCovariance", np.linalg.solve(np.linalg.cholesky(noise_covariance), x.T).T)
+
+
+def write_principal_components(x):
+    model = PCA(COMPONENTS, svd_solver="full").fit(x)
+    write("kPrincipalComponents", model.transform(x))
+    write("kPrincipalVariances", model.explained_variance_)
+
+
+def main():
+    x, y, noise_covariance = make_data()
+    print("// Written by make_transform_golden.py with scikit-learn", sklearn.__version__, "and numpy",
+          np.__version__ + "; do not edit.")
+    print("#pragma once\n\n#include <vector>\n\nnamespace twinmap::golden {\n\n// clang-format off")
+    print(f"constexpr int kFeatureCount = {FEATURES};\nconstexpr int kReplicates = {REPLICATES};\n"
+          f"constexpr int kComponents = {COMPONENTS};\n")
+    write("kFeatures", x)
+    write("kParameters", y)
+    write("kNoiseCovariance", noise_covariance)
+    print()
+    write_scalings(x, noise_covariance)
+    write_principal_components(x)
+    print("// clang-format on\n\n}  // namespace twinmap::golden")
+
+
+main()

@@ -1,0 +1,71 @@
+#include "tests/framework/features/golden/transform_golden.hpp"
+
+#include <gtest/gtest.h>
+
+#include "framework/features/feature_transform.hpp"
+#include "framework/features/principal_components.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Values written sample by sample -> rows x samples.
+MatrixXd toMatrix(const std::vector<double>& values, Index rows) {
+  return Eigen::Map<const MatrixXd>(values.data(), rows, static_cast<Index>(values.size()) / rows);
+}
+
+LabelledFeatures makeSamples() {
+  LabelledFeatures samples;
+  samples.features = toMatrix(golden::kFeatures, golden::kFeatureCount);
+  samples.parameters = toMatrix(golden::kParameters, 2);
+  samples.noise_covariance = toMatrix(golden::kNoiseCovariance, golden::kFeatureCount);
+  samples.replicates = golden::kReplicates;
+  return samples;
+}
+
+MatrixXd transform(const TransformStepSpec& step) {
+  const LabelledFeatures samples = makeSamples();
+  return fitTransform({step}, samples).apply(samples.features);
+}
+
+/// Equal up to the sign of each row: numbers of order 1 to 100 in some hundred operations of either side.
+void expectSameRows(const MatrixXd& rows, const MatrixXd& expected) {
+  ASSERT_EQ(rows.rows(), expected.rows());
+  for (Index i = 0; i < rows.rows(); ++i) {
+    const double sign = rows.row(i).dot(expected.row(i)) < 0.0 ? -1.0 : 1.0;
+    EXPECT_LT((sign * rows.row(i) - expected.row(i)).norm(), 1e-11 * expected.row(i).norm()) << i;
+  }
+}
+
+TEST(TransformGolden, ZScore) {
+  TransformStepSpec step;
+  step.z_score.emplace();
+  const MatrixXd expected = toMatrix(golden::kStandardised, golden::kFeatureCount);
+  EXPECT_LT((transform(step) - expected).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST(TransformGolden, WhitenByStddevAndByCovariance) {
+  TransformStepSpec step;
+  step.whiten.emplace();
+  const MatrixXd by_stddev = toMatrix(golden::kWhitenedByStddev, golden::kFeatureCount);
+  EXPECT_LT((transform(step) - by_stddev).norm(), 1e-13 * by_stddev.norm());
+  step.whiten->by = WhitenBy::kCovariance;
+  const MatrixXd by_covariance = toMatrix(golden::kWhitenedByCovariance, golden::kFeatureCount);
+  EXPECT_LT((transform(step) - by_covariance).norm(), 1e-12 * by_covariance.norm());
+}
+
+TEST(TransformGolden, PrincipalComponents) {
+  TransformStepSpec step;
+  step.principal_components = PrincipalComponentsSpec{golden::kComponents, {}};
+  const MatrixXd scores = transform(step);
+  expectSameRows(scores, toMatrix(golden::kPrincipalComponents, golden::kComponents));
+  const VectorXd variances = toMatrix(golden::kPrincipalVariances, golden::kComponents);
+  const VectorXd mine = scores.rowwise().squaredNorm() / (static_cast<double>(scores.cols()) - 1.0);
+  EXPECT_LT((mine - variances).norm(), 1e-12 * variances.norm());
+}
+
+}  // namespace
+}  // namespace twinmap
