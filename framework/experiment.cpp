@@ -99,11 +99,13 @@ RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& opt
   writeTextFile(options.folder / "resolved.yaml", writeExperiment(experiment));
 
   const MultibodySimulator simulator(experiment.model, collectTimes(experiment.features));
+  const FeatureExtractor extractor(experiment.features, simulator.getLayout());
   const auto store = openStore(experiment.model, simulator.getLayout(), options);
-  const SimulatedSets sets = simulateSets(experiment, simulator, *store, options, run);
+  SimulatedSets sets = simulateSets(experiment, simulator, *store, options, run);
+  failIncompleteSamples(experiment, extractor, sets);
+  recordFailures(experiment, sets, options, run);
   run.test_indices = findSuccessful(sets.test);
 
-  const FeatureExtractor extractor(experiment.features, simulator.getLayout());
   const FeatureNoise noise(extractor, calcNoiseStddev(experiment.noise, simulator.getLayout()),
                            experiment.seed);
   const LabelledSets labelled = makeLabelledSets(experiment, sets, extractor, noise);

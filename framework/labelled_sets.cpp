@@ -1,9 +1,39 @@
 #include "framework/labelled_sets.hpp"
 
+#include <cmath>
+
 #include "framework/features/noise.hpp"
 
 namespace twinmap {
 namespace {
+
+/// The features of one draw of the noise; all samples take part, so that none changes another's noise.
+Eigen::MatrixXd drawFeatures(const Trajectories& trajectories, const FeatureExtractor& extractor,
+                             const Eigen::VectorXd& row_stddev, const RandomStream& random, int replicate) {
+  return extractor.extract(addNoise(trajectories.responses, row_stddev, random, replicate));
+}
+
+/// Fails the samples that are ok and lack a feature; `where` completes the reason.
+void failWhereMissing(const Eigen::MatrixXd& features, const std::vector<FeatureInfo>& infos,
+                      const std::string& where, std::vector<SampleStatus>& statuses) {
+  for (Eigen::Index i = 0; i < features.cols(); ++i) {
+    for (Eigen::Index row = 0; row < features.rows() && statuses[i].ok; ++row) {
+      if (!std::isfinite(features(row, i))) {
+        statuses[i] = {false, "feature '" + infos[row].name + "' is missing in the " + where};
+      }
+    }
+  }
+}
+
+void failIncomplete(const FeatureExtractor& extractor, const Eigen::VectorXd& row_stddev,
+                    const RandomStream& random, int replicates, Trajectories& trajectories) {
+  failWhereMissing(extractor.extract(trajectories.responses), extractor.getInfos(), "response",
+                   trajectories.statuses);
+  for (int r = 0; r < replicates; ++r) {
+    failWhereMissing(drawFeatures(trajectories, extractor, row_stddev, random, r), extractor.getInfos(),
+                     "response with noise (draw " + std::to_string(r + 1) + ")", trajectories.statuses);
+  }
+}
 
 LabelledFeatures makeLabelledFeatures(const Trajectories& trajectories, const FeatureExtractor& extractor,
                                       const Eigen::VectorXd& row_stddev, const RandomStream& random,
@@ -14,8 +44,8 @@ LabelledFeatures makeLabelledFeatures(const Trajectories& trajectories, const Fe
   labelled.infos = extractor.getInfos();
   labelled.features.resize(extractor.getFeatureCount(), count * replicates);
   for (int r = 0; r < replicates; ++r) {
-    const Eigen::MatrixXd noisy = addNoise(trajectories.responses, row_stddev, random, r);
-    labelled.features.middleCols(r * count, count) = extractor.extract(noisy(Eigen::all, samples));
+    labelled.features.middleCols(r * count, count) =
+        drawFeatures(trajectories, extractor, row_stddev, random, r)(Eigen::all, samples);
   }
   labelled.parameters =
       Eigen::MatrixXd(trajectories.parameters(Eigen::all, samples)).replicate(1, replicates);
@@ -25,6 +55,17 @@ LabelledFeatures makeLabelledFeatures(const Trajectories& trajectories, const Fe
 
 }  // namespace
 
+void failIncompleteSamples(const ExperimentSpec& experiment, const FeatureExtractor& extractor,
+                           SimulatedSets& sets) {
+  if (extractor.isLinear()) {
+    return;
+  }
+  const Eigen::VectorXd row_stddev = calcNoiseStddev(experiment.noise, sets.train.layout);
+  failIncomplete(extractor, row_stddev, {experiment.seed, RandomPurpose::kTrainNoise},
+                 experiment.noise.replicates.value_or(1), sets.train);
+  failIncomplete(extractor, row_stddev, {experiment.seed, RandomPurpose::kTestNoise}, 1, sets.test);
+}
+
 LabelledSets makeLabelledSets(const ExperimentSpec& experiment, const SimulatedSets& sets,
                               const FeatureExtractor& extractor, const FeatureNoise& noise) {
   const Eigen::VectorXd row_stddev = calcNoiseStddev(experiment.noise, sets.train.layout);
@@ -33,7 +74,8 @@ LabelledSets makeLabelledSets(const ExperimentSpec& experiment, const SimulatedS
                            experiment.noise.replicates.value_or(1)),
       makeLabelledFeatures(sets.test, extractor, row_stddev, {experiment.seed, RandomPurpose::kTestNoise},
                            1)};
-  labelled.train.noise_covariance = noise.calcMeanCovariance(sets.train.responses);
+  labelled.train.noise_covariance =
+      noise.calcMeanCovariance(sets.train.responses(Eigen::all, findSuccessful(sets.train)));
   labelled.test.noise_covariance = labelled.train.noise_covariance;
   return labelled;
 }

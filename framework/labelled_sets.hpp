@@ -12,6 +12,12 @@ struct LabelledSets {
   LabelledFeatures train, test;
 };
 
+/// Fails the samples whose response lacks a feature, such as a third peak: the clean response, which stands
+/// for the sample where sensitivities and noise are computed, or one of its noisy draws. Training samples
+/// drop out with all their draws, so that every sample weighs the same.
+void failIncompleteSamples(const ExperimentSpec& experiment, const FeatureExtractor& extractor,
+                           SimulatedSets& sets);
+
 /// Draws the noise of both sets: `noise.replicates` draws for every training sample, one for every test
 /// sample. Samples that failed are left out.
 LabelledSets makeLabelledSets(const ExperimentSpec& experiment, const SimulatedSets& sets,

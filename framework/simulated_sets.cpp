@@ -18,15 +18,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<FailedSample> collectFailures(const std::string& set, const Trajectories& trajectories) {
-  std::vector<FailedSample> failures;
+void appendFailures(const std::string& set, const Trajectories& trajectories,
+                    std::vector<FailedSample>& failures) {
   for (std::size_t i = 0; i < trajectories.statuses.size(); ++i) {
     if (!trajectories.statuses[i].ok) {
       failures.push_back({set, static_cast<int>(i), trajectories.parameters.col(static_cast<Eigen::Index>(i)),
                           trajectories.statuses[i].reason});
     }
   }
-  return failures;
 }
 
 void requireFewFailures(const std::vector<FailedSample>& failures, const std::string& set, int samples,
@@ -40,11 +39,12 @@ void requireFewFailures(const std::vector<FailedSample>& failures, const std::st
     }
   }
   if (failed > allowed_fraction * samples || samples - failed < 2) {
-    throw std::runtime_error(fmt::format(
-        "{} of {} {} samples could not be simulated, more than simulation.allowed_failures = {} permits; the "
-        "first is sample {}: {}; all are listed in {}",
-        failed, samples, set, allowed_fraction, first->sample, first->reason,
-        (folder / "failures.csv").string()));
+    throw std::runtime_error(
+        fmt::format("{} of {} {} samples failed, more than simulation.allowed_failures = {} permits; the "
+                    "first is sample {}: "
+                    "{}; all are listed in {}",
+                    failed, samples, set, allowed_fraction, first->sample, first->reason,
+                    (folder / "failures.csv").string()));
   }
 }
 
@@ -90,18 +90,24 @@ SimulatedSets simulateSets(const ExperimentSpec& experiment, const Simulator& si
         timeStage(fmt::format("simulate {} {} samples", points.cols(), set), run.times,
                   [&] { return simulateMissing(store, simulator, points, missing); });
     noteReused(stored.counts.reused, set, run);
-    const std::vector<FailedSample> failures = collectFailures(set, stored.trajectories);
-    run.failures.insert(run.failures.end(), failures.begin(), failures.end());
     return std::move(stored.trajectories);
   };
-  const SimulatedSets sets{simulate("train", experiment.design.train, RandomPurpose::kTrainDesign),
-                           simulate("test", experiment.design.test, RandomPurpose::kTestDesign)};
+  SimulatedSets sets{simulate("train", experiment.design.train, RandomPurpose::kTrainDesign),
+                     simulate("test", experiment.design.test, RandomPurpose::kTestDesign)};
   writeSamplesFile(options.folder / "samples.h5", model, sets.train, sets.test);
+  return sets;
+}
+
+void recordFailures(const ExperimentSpec& experiment, const SimulatedSets& sets, const RunOptions& options,
+                    RunSummary& run) {
+  run.failures.clear();
+  appendFailures("train", sets.train, run.failures);
+  appendFailures("test", sets.test, run.failures);
   writeTextFile(options.folder / "failures.csv", makeFailuresCsv(run));
   for (const auto& [set, samples] : {std::pair("train", run.train_samples), {"test", run.test_samples}}) {
-    requireFewFailures(run.failures, set, samples, model.simulation.allowed_failures, options.folder);
+    requireFewFailures(run.failures, set, samples, experiment.model.simulation.allowed_failures,
+                       options.folder);
   }
-  return sets;
 }
 
 }  // namespace twinmap

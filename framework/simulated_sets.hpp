@@ -16,14 +16,17 @@ struct SimulatedSets {
 std::unique_ptr<TrajectoryStore> openStore(const ModelSpec& model, const ResponseLayout& layout,
                                            const RunOptions& options);
 
-/// Simulates what the store does not have of both sets of an experiment, and writes samples.h5 and
-/// failures.csv; failures and times go to the summary. `simulator` must know the experiment's outputs at the
-/// features' times. Throws std::runtime_error if more samples failed than simulation.allowed_failures
-/// permits.
+/// Simulates what the store does not have of both sets of an experiment, and writes samples.h5; times go to
+/// the summary. `simulator` must know the experiment's outputs at the features' times.
 SimulatedSets simulateSets(const ExperimentSpec& experiment, const Simulator& simulator,
                            TrajectoryStore& store, const RunOptions& options, RunSummary& run);
 
-/// Indices of the samples that could be simulated.
+/// Writes failures.csv and keeps the failures in the summary. Throws std::runtime_error if more samples
+/// failed than simulation.allowed_failures permits.
+void recordFailures(const ExperimentSpec& experiment, const SimulatedSets& sets, const RunOptions& options,
+                    RunSummary& run);
+
+/// Indices of the samples that did not fail.
 std::vector<int> findSuccessful(const Trajectories& trajectories);
 
 }  // namespace twinmap

@@ -20,7 +20,7 @@ void run(const RunArguments& arguments) {
     std::cerr << "twinmap: warning: " << warning << "\n";
   }
   if (!summary.failures.empty()) {
-    std::cerr << "twinmap: warning: " << summary.failures.size() << " samples could not be simulated; see "
+    std::cerr << "twinmap: warning: " << summary.failures.size() << " samples failed; see "
               << (options.folder / "failures.csv").string() << "\n";
   }
   std::cerr << "Report: " << (options.folder / "report.html").string() << "\n";

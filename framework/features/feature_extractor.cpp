@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "framework/features/extrema.hpp"
 #include "framework/features/sampled_outputs.hpp"
 #include "framework/features/statistics.hpp"
 
@@ -13,6 +14,9 @@ using Blocks = std::vector<std::shared_ptr<const FeatureBlock>>;
 Blocks makeBlocks(const FeatureSpec& feature, const ResponseLayout& layout) {
   if (feature.statistics) {
     return makeStatisticsBlocks(*feature.statistics, layout);
+  }
+  if (feature.extrema) {
+    return {makeExtremaBlock(*feature.extrema, layout)};
   }
   return {makeSamplesBlock(*feature.samples, layout)};
 }
@@ -30,6 +34,9 @@ void appendTimes(const FeatureSpec& feature, std::vector<double>& times) {
   }
   if (feature.statistics) {
     appendTimes(feature.statistics->window, times);
+  }
+  if (feature.extrema) {
+    appendTimes(feature.extrema->window, times);
   }
 }
 

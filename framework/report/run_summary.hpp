@@ -9,7 +9,7 @@
 
 namespace twinmap {
 
-/// A sample that could not be simulated.
+/// A sample that could not be simulated, or whose response lacks a feature.
 struct FailedSample {
   std::string set;  ///< "train" or "test"
   int sample = 0;   ///< index in its set

@@ -52,6 +52,11 @@ void check(const StatisticsFeatureSpec& statistics, const ModelSpec& model) {
   }
 }
 
+void check(const ExtremaFeatureSpec& extrema, const ModelSpec& model) {
+  checkOutputs({extrema.output}, model);
+  checkTimes(extrema.window, model, findFeature(extrema.output, "output"));
+}
+
 void append(std::vector<Name>& names, const std::vector<Name>& others) {
   names.insert(names.end(), others.begin(), others.end());
 }
@@ -67,6 +72,9 @@ std::vector<Name> collectOutputs(const std::vector<FeatureSpec>& features) {
     if (feature.statistics) {
       append(outputs, feature.statistics->outputs);
     }
+    if (feature.extrema) {
+      outputs.push_back(feature.extrema->output);
+    }
   }
   return outputs;
 }
@@ -78,6 +86,9 @@ void checkFeatures(const std::vector<FeatureSpec>& features, const ModelSpec& mo
     }
     if (feature.statistics) {
       check(*feature.statistics, model);
+    }
+    if (feature.extrema) {
+      check(*feature.extrema, model);
     }
   }
 }

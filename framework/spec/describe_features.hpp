@@ -13,6 +13,12 @@ struct EnumNames<Statistic> {
   };
 };
 
+template <>
+struct EnumNames<ExtremaKind> {
+  static constexpr EnumName<ExtremaKind> values[] = {
+      {"maxima", ExtremaKind::kMaxima}, {"minima", ExtremaKind::kMinima}, {"both", ExtremaKind::kBoth}};
+};
+
 template <class Fields>
 void describe(Fields& f, SamplesFeatureSpec& s) {
   f.required("outputs", s.outputs, "outputs to sample");
@@ -41,11 +47,27 @@ void describe(Fields& f, StatisticsFeatureSpec& s) {
 }
 
 template <class Fields>
+void describe(Fields& f, ExtremaFeatureSpec& s) {
+  constexpr int kFewest = 3;
+  f.required("output", s.output, "output whose peaks are taken");
+  f.required("window", s.window, "the samples in which they are looked for");
+  f.optional("kind", s.kind, "maxima, minima, or first the maxima and then the minima");
+  f.required("peaks", s.peaks, "how many of each kind, from the first in time", kCount);
+  f.optional("prominence", s.prominence,
+             "least height above the surroundings, in the output's unit (default: 8 stddev of its noise)",
+             kNonNegative);
+  f.optional("fit_samples", s.fit_samples, "of the parabola through each peak; odd", kCount);
+  f.rule(s.fit_samples >= kFewest && s.fit_samples % 2 == 1, "must give odd fit_samples, 3 or more");
+  f.rule(s.window.count >= s.fit_samples, "must give a window with at least fit_samples samples");
+}
+
+template <class Fields>
 void describe(Fields& f, FeatureSpec& s) {
   f.optional("samples", s.samples, "equidistant samples of outputs");
   f.optional("statistics", s.statistics, "mean, stddev, rms, min, max, peak_to_peak over a window");
-  f.rule(s.samples.has_value() + s.statistics.has_value() == 1,
-         "must give one kind of feature: samples, statistics");
+  f.optional("extrema", s.extrema, "value and time of the first peaks");
+  f.rule(s.samples.has_value() + s.statistics.has_value() + s.extrema.has_value() == 1,
+         "must give one kind of feature: samples, statistics, extrema");
 }
 
 }  // namespace twinmap

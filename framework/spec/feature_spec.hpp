@@ -40,10 +40,23 @@ struct StatisticsFeatureSpec {
   std::vector<Statistic> quantities;
 };
 
+enum class ExtremaKind { kMaxima, kMinima, kBoth };
+
+/// Value and time of the first peaks of an output within a window.
+struct ExtremaFeatureSpec {
+  Name output;
+  WindowSpec window;
+  ExtremaKind kind = ExtremaKind::kBoth;
+  int peaks = 0;                     ///< of each kind
+  std::optional<double> prominence;  ///< least, in the output's unit; default: 8 stddev of its noise
+  int fit_samples = 5;               ///< of the parabola through a peak; odd
+};
+
 /// One kind of feature; exactly one member is set.
 struct FeatureSpec {
   std::optional<SamplesFeatureSpec> samples;
   std::optional<StatisticsFeatureSpec> statistics;
+  std::optional<ExtremaFeatureSpec> extrema;
 };
 
 /// The outputs that the features are made of, as often as they are named.

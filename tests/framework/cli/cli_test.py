@@ -107,7 +107,7 @@ class ExitCodes(TestCase):
         self.assertIn("step limit", result.stderr)
         result = call("run", TABLE1, *SMALL, "simulation.max_steps=3", "--out", self.folder / "run")
         self.assertEqual(result.returncode, 1)
-        self.assertIn("40 of 40 train samples could not be simulated", result.stderr)
+        self.assertIn("40 of 40 train samples failed", result.stderr)
         self.assertEqual(len(read_csv(self.folder / "run/failures.csv")), 60)
         result = call("run", TABLE1, *SMALL, "--out", "/proc/no/such")
         self.assertEqual(result.returncode, 1)
@@ -202,7 +202,7 @@ class Run(TestCase):
         heavy = ["parameters.m={bounds: [-0.5, 6], unit: kg, relative_to: range}", "constants.m1=m",
                  "simulation.allowed_failures=0.5"]
         result = self.run_experiment("run", *heavy)
-        self.assertIn("could not be simulated", result.stderr)
+        self.assertIn("samples failed", result.stderr)
         failures = read_csv(self.folder / "run/failures.csv")
         self.assertGreater(len(failures), 0)
         with h5py.File(self.folder / "run/samples.h5") as file:
@@ -221,6 +221,28 @@ class Run(TestCase):
                 self.assertEqual(float(row["true"]), true_mass[int(row["sample"])])
         self.assertIn(f"{len(failures)} could not be simulated", (self.folder / "run/report.html").read_text())
         self.assertEqual(json.loads((self.folder / "run/provenance.json").read_text())["failed_samples"], len(failures))
+
+    def test_samples_that_lack_a_feature_fail_with_a_reason(self):
+        """The second maximum of y lies within the window for stiff springs alone."""
+        peaks = ["features=[{samples: {outputs: [y, theta], start: 0.05, interval: 0.05, count: 100}}, "
+                 "{extrema: {output: y, window: {start: 0.05, interval: 0.01, count: 496}, kind: maxima, peaks: 2}}]",
+                 "simulation.allowed_failures=0.9"]
+        result = self.run_experiment("run", *peaks)
+        self.assertIn("samples failed", result.stderr)
+        failures = read_csv(self.folder / "run/failures.csv")
+        self.assertEqual({f["set"] for f in failures}, {"train", "test"})
+        for failure in failures:
+            self.assertRegex(failure["reason"], "feature 'y maximum [12] value' is missing in the response")
+        with h5py.File(self.folder / "run/samples.h5") as file:
+            self.assertTrue(np.isfinite(file["test/responses"]).all())  # they were simulated
+            true_stiffness = file["test/parameters"][:, 2]
+        lacking = {int(f["sample"]) for f in failures if f["set"] == "test"}
+        present = set(range(20)) - lacking
+        self.assertLess(true_stiffness[list(lacking)].max(), true_stiffness[list(present)].min() + 0.5)
+        rows = [row for row in read_csv(self.folder / "run/predictions.csv") if row["parameter"] == "k_y"]
+        self.assertEqual({int(row["sample"]) for row in rows}, present)
+        for row in rows:
+            self.assertEqual(float(row["true"]), true_stiffness[int(row["sample"])])
 
     def test_training_is_reported_start_by_start(self):
         self.run_experiment("run", "inverse_map.gp.starts=3", "inverse_map.gp.length_scale_prior={log_stddev: 1}")

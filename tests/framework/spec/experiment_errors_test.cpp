@@ -134,6 +134,16 @@ INSTANTIATE_TEST_SUITE_P(
                 "features=[{statistics: {outputs: [y], window: {start: 0, interval: 0.1, count: 1}, "
                 "quantities: [max]}}]",
                 {"features[0].statistics.window", "at least 2 samples"}},
+        Mistake{"ExtremaOfAnUnknownOutput",
+                "features=[{extrema: {output: z, window: {start: 0, interval: 0.1, count: 9}, peaks: 1}}]",
+                {"features[0].extrema.output", "'z' is not an output"}},
+        Mistake{"ExtremaBeyondTheEnd",
+                "features=[{extrema: {output: y, window: {start: 0, interval: 1, count: 9}, peaks: 1}}]",
+                {"features[0].extrema", "simulation.duration is 5 s"}},
+        Mistake{"EvenParabola",
+                "features=[{extrema: {output: y, window: {start: 0, interval: 0.1, count: 9}, peaks: 1, "
+                "fit_samples: 4}}]",
+                {"features[0].extrema", "odd fit_samples"}},
         Mistake{"UnknownStep", "transform=[z_scor]", {"transform[0]", "did you mean 'z_score'?"}},
         Mistake{"RankWithoutNoise",
                 "transform=[z_score, principal_components]",
