@@ -51,25 +51,28 @@ MatrixXd calcPrecisionBlock(const PrecisionParts& parts, const std::vector<Index
   return block;
 }
 
+}  // namespace
+
 // A group that alone determines a coefficient of the mean has a singular precision: its stddev is huge then,
 // not NaN.
-void predictGroup(const MatrixXd& precision, const std::vector<Index>& group, const VectorXd& alpha,
-                  LeaveOneOut& result) {
+GroupPrediction predictGroup(const MatrixXd& precision, const VectorXd& alpha) {
   const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(precision);
   const VectorXd values = eigen.eigenvalues().cwiseMax(std::numeric_limits<double>::min());
   const MatrixXd& vectors = eigen.eigenvectors();
-  const VectorXd group_alpha = alpha(group);
-  const VectorXd residual = vectors * (vectors.transpose() * group_alpha).cwiseQuotient(values);
-  result.residual(group) = residual;
-  result.stddev(group) = (vectors.cwiseAbs2() * values.cwiseInverse()).cwiseSqrt();
+  return {vectors * (vectors.transpose() * alpha).cwiseQuotient(values),
+          vectors.cwiseAbs2() * values.cwiseInverse()};
 }
 
-void summarize(LeaveOneOut& result) {
-  const Eigen::ArrayXd standardised = result.residual.array() / result.stddev.array();
-  result.log_density = -0.5 * (standardised.square() + 2.0 * result.stddev.array().log() + kLogTwoPi);
+LeaveOneOut summarizeLeaveOneOut(const VectorXd& residual, const VectorXd& stddev) {
+  LeaveOneOut result;
+  result.residual = residual;
+  result.stddev = stddev;
+  const Eigen::ArrayXd standardised = residual.array() / stddev.array();
+  result.log_density = -0.5 * (standardised.square() + 2.0 * stddev.array().log() + kLogTwoPi);
   result.total_log_density = result.log_density.sum();
   result.coverage95 = (standardised.abs() <= kNormalQuantile975).cast<double>().mean();
-  result.root_mean_square = std::sqrt(result.residual.squaredNorm() / double(result.residual.size()));
+  result.root_mean_square = std::sqrt(residual.squaredNorm() / double(residual.size()));
+  return result;
 }
 
 void checkGroups(const SampleGroups& groups, Index samples) {
@@ -87,8 +90,6 @@ void checkGroups(const SampleGroups& groups, Index samples) {
   }
 }
 
-}  // namespace
-
 SampleGroups makeDrawGroups(Index samples, int draws) {
   if (draws < 1 || samples % draws != 0) {
     throw std::invalid_argument("makeDrawGroups: " + std::to_string(samples) + " samples are not " +
@@ -104,14 +105,14 @@ LeaveOneOut calcLeaveGroupsOut(const GaussianProcess& process, const SampleGroup
   const Index n = process.getSampleCount();
   checkGroups(groups, n);
   const PrecisionParts parts = calcPrecisionParts(process, threads);
-  LeaveOneOut result;
-  result.residual.resize(n);
-  result.stddev.resize(n);
+  VectorXd residual(n), stddev(n);
   for (const std::vector<Index>& group : groups) {
-    predictGroup(calcPrecisionBlock(parts, group), group, process.getAlpha(), result);
+    const GroupPrediction left_out =
+        predictGroup(calcPrecisionBlock(parts, group), process.getAlpha()(group));
+    residual(group) = left_out.residual;
+    stddev(group) = left_out.variance.cwiseSqrt();
   }
-  summarize(result);
-  return result;
+  return summarizeLeaveOneOut(residual, stddev);
 }
 
 LeaveOneOut calcLeaveOneOut(const GaussianProcess& process) {

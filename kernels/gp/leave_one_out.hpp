@@ -35,4 +35,18 @@ LeaveOneOut calcLeaveGroupsOut(const GaussianProcess& process, const SampleGroup
 /// Every sample by itself.
 LeaveOneOut calcLeaveOneOut(const GaussianProcess& process);
 
+/// A group's residual and variance without itself, from its block of the precision matrix and its part of
+/// alpha.
+struct GroupPrediction {
+  Eigen::VectorXd residual;
+  Eigen::VectorXd variance;
+};
+GroupPrediction predictGroup(const Eigen::MatrixXd& precision, const Eigen::VectorXd& alpha);
+
+/// Everything that follows from residuals and standard deviations.
+LeaveOneOut summarizeLeaveOneOut(const Eigen::VectorXd& residual, const Eigen::VectorXd& stddev);
+
+/// Throws std::invalid_argument unless every sample is in exactly one group.
+void checkGroups(const SampleGroups& groups, Eigen::Index samples);
+
 }  // namespace twinmap::gp

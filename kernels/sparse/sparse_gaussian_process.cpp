@@ -46,6 +46,15 @@ void checkParts(const SparseGaussianProcessParts& parts) {
           "every number must be finite");
 }
 
+VectorXd sumVariance(const SparseProjection& projection) {
+  VectorXd variance = projection.missed_variance;
+  for (Index j = 0; j < projection.corrected.cols(); ++j) variance += projection.corrected.col(j).cwiseAbs2();
+  for (Index k = 0; k < projection.basis_error.cols(); ++k) {
+    variance += projection.basis_error.col(k).cwiseAbs2();
+  }
+  return variance.cwiseMax(0.0);
+}
+
 }  // namespace
 
 SparseGaussianProcess::SparseGaussianProcess(SparseGaussianProcessParts parts) : parts_(std::move(parts)) {
@@ -63,37 +72,38 @@ Prediction SparseGaussianProcess::predict(const Eigen::Ref<const MatrixXd>& inpu
   prediction.mean.resize(inputs.cols());
   prediction.latent_variance.resize(inputs.cols());
   for (Index first = 0; first < inputs.cols(); first += kBlock) {
-    predictBlock(inputs.middleCols(first, std::min(kBlock, inputs.cols() - first)), first, prediction);
+    const Index count = std::min(kBlock, inputs.cols() - first);
+    const SparseProjection block = project(inputs.middleCols(first, count));
+    prediction.mean.segment(first, count) = block.mean;
+    prediction.latent_variance.segment(first, count) = sumVariance(block);
   }
   const double noise_stddev = parts_.hyperparameters.noise_stddev;
   prediction.variance = prediction.latent_variance.array() + noise_stddev * noise_stddev;
   return prediction;
 }
 
-void SparseGaussianProcess::predictBlock(const Eigen::Ref<const MatrixXd>& inputs, Index first,
-                                         Prediction& prediction) const {
+SparseProjection SparseGaussianProcess::project(const Eigen::Ref<const MatrixXd>& inputs) const {
   const VariationalPosterior& posterior = parts_.posterior;
   const MatrixXd centered = inputs.colwise() - parts_.center;
   const MatrixXd scaled = inverse_length_scales_.asDiagonal() * centered;
-  MatrixXd a = calcCrossCovariance(parts_.structure, parts_.hyperparameters, scaled, scaled_inducing_);
-  VectorXd mean = VectorXd::Zero(inputs.cols());
-  for (Index j = 0; j < getInducingCount(); ++j) mean += posterior.weights(j) * a.col(j);
-  VectorXd variance = calcPriorVariance(parts_.structure, parts_.hyperparameters, scaled);
+  SparseProjection result;
+  MatrixXd& a = result.corrected;
+  a = calcCrossCovariance(parts_.structure, parts_.hyperparameters, scaled, scaled_inducing_);
+  result.mean = VectorXd::Zero(inputs.cols());
+  for (Index j = 0; j < getInducingCount(); ++j) result.mean += posterior.weights(j) * a.col(j);
+  result.missed_variance = calcPriorVariance(parts_.structure, parts_.hyperparameters, scaled);
   linalg::TriangularScratch scratch(inputs.cols());
   linalg::solveTransposedFromRight(viewOf(posterior.inducing_factor), viewOf(a), scratch);
-  for (Index j = 0; j < getInducingCount(); ++j) variance -= a.col(j).cwiseAbs2();
+  for (Index j = 0; j < getInducingCount(); ++j) result.missed_variance -= a.col(j).cwiseAbs2();
   linalg::solveTransposedFromRight(viewOf(posterior.correction_factor), viewOf(a), scratch);
-  for (Index j = 0; j < getInducingCount(); ++j) variance += a.col(j).cwiseAbs2();
-  if (posterior.mean_coefficients.size() > 0) {
-    MatrixXd error = calcMeanBasis(parts_.structure.mean, centered);
-    for (Index k = 0; k < error.cols(); ++k) mean += posterior.mean_coefficients(k) * error.col(k);
-    linalg::gemm(-1.0 / parts_.hyperparameters.noise_stddev, viewOf(a), viewOf(posterior.whitened_basis), 1.0,
-                 viewOf(error), scratch.gemm());
-    linalg::solveTransposedFromRight(viewOf(posterior.basis_factor), viewOf(error), scratch);
-    for (Index k = 0; k < error.cols(); ++k) variance += error.col(k).cwiseAbs2();
-  }
-  prediction.mean.segment(first, inputs.cols()) = mean;
-  prediction.latent_variance.segment(first, inputs.cols()) = variance.cwiseMax(0.0);
+  if (posterior.mean_coefficients.size() == 0) return result;
+  MatrixXd& error = result.basis_error;
+  error = calcMeanBasis(parts_.structure.mean, centered);
+  for (Index k = 0; k < error.cols(); ++k) result.mean += posterior.mean_coefficients(k) * error.col(k);
+  linalg::gemm(-1.0 / parts_.hyperparameters.noise_stddev, viewOf(std::as_const(a)),
+               viewOf(posterior.whitened_basis), 1.0, viewOf(error), scratch.gemm());
+  linalg::solveTransposedFromRight(viewOf(posterior.basis_factor), viewOf(error), scratch);
+  return result;
 }
 
 }  // namespace twinmap::gp

@@ -17,6 +17,15 @@ struct SparseGaussianProcessParts {
   VariationalPosterior posterior;
 };
 
+/// What predictions at k inputs are made of, a row each: the variance is missed_variance + |corrected|^2 +
+/// |basis_error|^2.
+struct SparseProjection {
+  Eigen::VectorXd mean;
+  Eigen::VectorXd missed_variance;  ///< k(x, x) - a'a: what the inducing inputs leave undetermined
+  Eigen::MatrixXd corrected;        ///< (L_B^-1 a)', k x m
+  Eigen::MatrixXd basis_error;      ///< (R^-1 e)', k x p
+};
+
 /// A Gaussian process summarised by m inducing inputs; immutable. With k = cov(f(Z), f(x)), a = L^-1 k:
 ///   mean             k'w + h(x)'b
 ///   latent variance  k(x, x) - a'a + |L_B^-1 a|^2 + |R^-1 e|^2,   e = h(x) - V_h' L_B^-1 a / s_n.
@@ -33,10 +42,10 @@ class SparseGaussianProcess {
   /// inputs: d x k, finite (else std::invalid_argument). Cost: 2 k m (m + d) flops.
   Prediction predict(const Eigen::Ref<const Eigen::MatrixXd>& inputs) const;
 
- private:
-  void predictBlock(const Eigen::Ref<const Eigen::MatrixXd>& inputs, Eigen::Index first,
-                    Prediction& prediction) const;
+  /// inputs: d x k, finite, all of them at once: memory 2 k m. Cost as of predict.
+  SparseProjection project(const Eigen::Ref<const Eigen::MatrixXd>& inputs) const;
 
+ private:
   SparseGaussianProcessParts parts_;
   Eigen::VectorXd inverse_length_scales_;
   Eigen::MatrixXd scaled_inducing_;

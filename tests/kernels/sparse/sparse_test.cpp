@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "kernels/gp/fit.hpp"
 #include "kernels/sparse/inducing_points.hpp"
+#include "kernels/sparse/sparse_leave_one_out.hpp"
 #include "kernels/sparse/sparse_training.hpp"
 #include "kernels/sparse/variational_bound.hpp"
 #include "tests/kernels/support/random_data.hpp"
@@ -43,6 +45,31 @@ TEST_P(Sparse, EqualsTheExactProcessWhenEverySampleIsInducing) {
   const Prediction expected = exact->predict(tests), actual = sparse.predict(tests);
   EXPECT_LT((actual.mean - expected.mean).cwiseAbs().maxCoeff(), 1e-6);
   EXPECT_LT((actual.variance - expected.variance).cwiseAbs().maxCoeff(), 1e-6);
+}
+
+// With the same inducing inputs on the other samples.
+TEST_P(Sparse, EveryGroupLeftOutEqualsAProcessWithoutIt) {
+  const int n = 300, draws = 3;  // two blocks
+  const MatrixXd inputs = inputs_.leftCols(n), inducing = inputs_.middleCols(600, 12);
+  const auto summarize = [&](const MatrixXd& x, const VectorXd& y) {
+    SparseGaussianProcessParts parts{structure_, hyperparameters_, x.rowwise().mean(), inducing, {}};
+    EXPECT_TRUE(
+        VariationalBound(x, y, inducing, structure_).calcPosterior(hyperparameters_, parts.posterior));
+    return SparseGaussianProcess(parts);
+  };
+  const VectorXd target = target_.head(n);
+  const SampleGroups groups = makeDrawGroups(n, draws);
+  const LeaveOneOut result = calcLeaveGroupsOut(summarize(inputs, target), inputs, target, groups);
+  for (const std::vector<Eigen::Index>& left : groups) {
+    std::vector<Eigen::Index> kept;
+    for (int i = 0; i < n; ++i) {
+      if (std::find(left.begin(), left.end(), i) == left.end()) kept.push_back(i);
+    }
+    const Prediction prediction =
+        summarize(inputs(Eigen::all, kept), target(kept)).predict(inputs(Eigen::all, left));
+    EXPECT_LT((result.residual(left) - (target(left) - prediction.mean)).cwiseAbs().maxCoeff(), 1e-8);
+    EXPECT_LT((result.stddev(left) - prediction.stddev()).cwiseAbs().maxCoeff(), 1e-8);
+  }
 }
 
 TEST_P(Sparse, TheBoundLiesAboveTheExactLikelihoodAndFallsWithMoreInducingPoints) {
