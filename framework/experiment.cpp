@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "framework/evaluation/calibration.hpp"
 #include "framework/features/noise.hpp"
 #include "framework/inverse_map/gp_map.hpp"
 #include "framework/labelled_sets.hpp"
@@ -73,6 +74,8 @@ GpMap trainMap(const ExperimentSpec& experiment, const LabelledFeatures& trainin
                       options.threads);
   });
   run.warnings = trained.warnings;
+  run.leave_one_out = calcMetrics(experiment.model.parameters, training.parameters, trained.leave_one_out, {},
+                                  training.replicates);
   run.training = summarizeTraining(parameter_names, trained.reports);
   for (const Process& process : trained.map.processes) {
     run.nlml.push_back(getNlml(process));
@@ -87,7 +90,12 @@ void evaluate(const ExperimentSpec& experiment, const GpMap& map, const Labelled
   run.truth = testing.parameters;
   run.predictions =
       timeStage("infer the test samples", run.times, [&] { return map.predict(testing.features); });
-  run.metrics = calcMetrics(experiment.model.parameters, run.truth, run.predictions);
+  run.metrics = calcMetrics(experiment.model.parameters, run.truth, run.predictions, run.limit_stddev);
+  run.joint = calcJointMetrics(run.truth, run.predictions, map.residual_correlation);
+  const Eigen::MatrixXd pit = calcPit(run.truth, run.predictions);
+  for (const auto& row : pit.rowwise()) {
+    run.pit_counts.push_back(countPit(row.transpose()));
+  }
 }
 
 }  // namespace

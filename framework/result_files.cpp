@@ -12,6 +12,8 @@ namespace fs = std::filesystem;
 
 void writeResults(const fs::path& folder, const RunSummary& run) {
   writeTextFile(folder / "metrics.csv", makeMetricsCsv(run));
+  writeTextFile(folder / "joint.csv", makeJointCsv(run));
+  writeTextFile(folder / "pit.csv", makePitCsv(run));
   writeTextFile(folder / "predictions.csv", makePredictionsCsv(run));
   writeTextFile(folder / "training.csv", makeTrainingCsv(run));
   writeTextFile(folder / "table.md", makeMarkdownTable(run));

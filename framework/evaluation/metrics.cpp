@@ -1,25 +1,49 @@
 #include "framework/evaluation/metrics.hpp"
 
 #include <boost/math/constants/constants.hpp>
-#include <boost/math/distributions/normal.hpp>
 #include <cmath>
+
+#include "framework/evaluation/calibration.hpp"
+#include "framework/evaluation/jackknife.hpp"
 
 namespace twinmap {
 namespace {
 
 using Eigen::ArrayXd;
+using Eigen::Index;
+using Eigen::VectorXd;
 
-/// Two-sided normal quantile: P(|z| < quantile) = probability.
-double calcTwoSidedQuantile(double probability) {
-  return boost::math::quantile(boost::math::normal(), 0.5 * (1.0 + probability));
-}
+/// What each sample adds to the figures. Errors and z are stored less their means, so that no digits of the
+/// standard deviations are lost.
+enum Term : Index {
+  kError,
+  kSquaredError,
+  kAbsoluteError,
+  kWithin95,
+  kWithin90,
+  kWithin50,
+  kClaimedVariance,
+  kZ,
+  kSquaredZ,
+  kSurprise,
+  kCrps,
+  kSquaredLimit,
+  kTerms
+};
 
-double calcCoverage(const ArrayXd& z, double probability) {
-  return (z.abs() < calcTwoSidedQuantile(probability)).cast<double>().mean();
-}
+struct SampleTerms {
+  Eigen::MatrixXd terms;  // kTerms x n
+  double error_offset = 0.0;
+  double z_offset = 0.0;
+};
 
-double calcStddev(const ArrayXd& values) {
-  return std::sqrt((values - values.mean()).square().sum() / (static_cast<double>(values.size()) - 1.0));
+/// One parameter's samples.
+struct Samples {
+  ArrayXd truth, mean, stddev, limit_stddev;
+};
+
+ArrayXd calcWithin(const ArrayXd& z, double probability) {
+  return (z.abs() < calcTwoSidedQuantile(probability)).cast<double>();
 }
 
 ArrayXd calcScale(const ParameterSpec& parameter, const ArrayXd& truth) {
@@ -29,37 +53,91 @@ ArrayXd calcScale(const ParameterSpec& parameter, const ArrayXd& truth) {
   return truth;
 }
 
-ParameterMetrics calcMetrics(const ParameterSpec& parameter, const ArrayXd& truth, const ArrayXd& mean,
-                             const ArrayXd& stddev) {
-  constexpr double kPercent = 100.0;
-  const ArrayXd scale = calcScale(parameter, truth);
-  const ArrayXd error = (mean - truth) / scale;
-  const ArrayXd z = (mean - truth) / stddev;
+SampleTerms calcTerms(const ParameterSpec& parameter, const Samples& samples) {
   const double log_root_two_pi = 0.5 * std::log(boost::math::constants::two_pi<double>());
+  const ArrayXd scale = calcScale(parameter, samples.truth);
+  const ArrayXd error = (samples.mean - samples.truth) / scale;
+  const ArrayXd z = (samples.mean - samples.truth) / samples.stddev;
+  SampleTerms result{Eigen::MatrixXd(kTerms, error.size()), error.mean(), z.mean()};
+  auto terms = result.terms.array();
+  terms.row(kError) = (error - result.error_offset).transpose();
+  terms.row(kSquaredError) = terms.row(kError).square();
+  terms.row(kAbsoluteError) = error.abs().transpose();
+  terms.row(kWithin95) = calcWithin(z, 0.95).transpose();
+  terms.row(kWithin90) = calcWithin(z, 0.90).transpose();
+  terms.row(kWithin50) = calcWithin(z, 0.50).transpose();
+  terms.row(kClaimedVariance) = (samples.stddev / scale).square().transpose();
+  terms.row(kZ) = (z - result.z_offset).transpose();
+  terms.row(kSquaredZ) = terms.row(kZ).square();
+  terms.row(kSurprise) = (0.5 * z.square() + samples.stddev.log() + log_root_two_pi).transpose();
+  terms.row(kCrps) = (calcCrps(z, samples.stddev) / scale.abs()).transpose();
+  terms.row(kSquaredLimit) = (samples.limit_stddev / scale).square().transpose();
+  return result;
+}
+
+/// From means of values and of their squares, with 1/(n-1).
+double calcStddev(double mean, double mean_square, double samples) {
+  return std::sqrt(std::max(0.0, mean_square - mean * mean) * samples / (samples - 1.0));
+}
+
+ParameterFigures calcFigures(const SampleTerms& offsets, const VectorXd& mean, double samples) {
+  constexpr double kPercent = 100.0;
+  ParameterFigures figures;
+  figures.bias_pct = kPercent * (offsets.error_offset + mean[kError]);
+  figures.sd_pct = kPercent * calcStddev(mean[kError], mean[kSquaredError], samples);
+  figures.mare_pct = kPercent * mean[kAbsoluteError];
+  figures.coverage95 = mean[kWithin95];
+  figures.coverage90 = mean[kWithin90];
+  figures.coverage50 = mean[kWithin50];
+  figures.stddev_pct = kPercent * std::sqrt(mean[kClaimedVariance]);
+  figures.z_mean = offsets.z_offset + mean[kZ];
+  figures.z_sd = calcStddev(mean[kZ], mean[kSquaredZ], samples);
+  figures.nlpd = mean[kSurprise];
+  figures.crps_pct = kPercent * mean[kCrps];
+  figures.limit_pct = kPercent * std::sqrt(mean[kSquaredLimit]);
+  figures.ratio_to_limit = figures.sd_pct / figures.limit_pct;
+  return figures;
+}
+
+VectorXd toVector(const ParameterFigures& figures) {
+  VectorXd values(kFigureColumns.size());
+  for (std::size_t i = 0; i < kFigureColumns.size(); ++i) {
+    values[static_cast<Index>(i)] = figures.*kFigureColumns[i].value;
+  }
+  return values;
+}
+
+void setFigures(const VectorXd& values, ParameterFigures& figures) {
+  for (std::size_t i = 0; i < kFigureColumns.size(); ++i) {
+    figures.*kFigureColumns[i].value = values[static_cast<Index>(i)];
+  }
+}
+
+ParameterMetrics calcMetrics(const ParameterSpec& parameter, const Samples& samples, int draws) {
+  const SampleTerms terms = calcTerms(parameter, samples);
+  const Estimates estimates = calcWithJackknife(
+      terms.terms,
+      [&](const VectorXd& mean, double count) { return toVector(calcFigures(terms, mean, count)); }, draws);
   ParameterMetrics metrics;
-  metrics.bias_pct = kPercent * error.mean();
-  metrics.sd_pct = kPercent * calcStddev(error);
-  metrics.mare_pct = kPercent * error.abs().mean();
-  metrics.coverage95 = calcCoverage(z, 0.95);
-  metrics.coverage90 = calcCoverage(z, 0.90);
-  metrics.coverage50 = calcCoverage(z, 0.50);
-  metrics.stddev_pct = kPercent * std::sqrt((stddev / scale).square().mean());
-  metrics.z_mean = z.mean();
-  metrics.z_sd = calcStddev(z);
-  metrics.nlpd = (0.5 * z.square() + stddev.log()).mean() + log_root_two_pi;
-  metrics.samples = static_cast<int>(truth.size());
+  setFigures(estimates.value, metrics);
+  setFigures(estimates.standard_error, metrics.se);
+  metrics.samples = static_cast<int>(samples.truth.size());
   return metrics;
 }
 
 }  // namespace
 
 std::vector<ParameterMetrics> calcMetrics(const std::vector<ParameterSpec>& parameters,
-                                          const Eigen::MatrixXd& truth, const Predictions& predictions) {
+                                          const Eigen::MatrixXd& truth, const Predictions& predictions,
+                                          const Eigen::MatrixXd& limit_stddev, int draws) {
+  const ArrayXd unknown = ArrayXd::Constant(truth.cols(), std::nan(""));
   std::vector<ParameterMetrics> metrics;
   for (std::size_t p = 0; p < parameters.size(); ++p) {
-    const auto row = static_cast<Eigen::Index>(p);
-    metrics.push_back(calcMetrics(parameters[p], truth.row(row).array(), predictions.mean.row(row).array(),
-                                  predictions.stddev.row(row).array()));
+    const auto row = static_cast<Index>(p);
+    metrics.push_back(calcMetrics(parameters[p],
+                                  {truth.row(row), predictions.mean.row(row), predictions.stddev.row(row),
+                                   limit_stddev.size() == 0 ? unknown : limit_stddev.row(row).array()},
+                                  draws));
   }
   return metrics;
 }

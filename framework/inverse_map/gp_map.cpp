@@ -4,6 +4,8 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "framework/inverse_map/leave_one_out.hpp"
+#include "framework/inverse_map/residual_correlation.hpp"
 #include "kernels/sparse/sparse_training.hpp"
 
 namespace twinmap {
@@ -171,6 +173,9 @@ GpMapTraining trainGpMap(const GpMapSpec& spec, const std::vector<TransformStepS
   } else {
     keepResults(gp::train(inputs, targets, structure, options), parameter_names, training);
   }
+  training.leave_one_out = predictLeftOut(map, inputs, targets, samples.replicates, threads);
+  map.residual_correlation = calcResidualCorrelation(
+      (training.leave_one_out.mean - samples.parameters).cwiseQuotient(training.leave_one_out.stddev));
   return training;
 }
 

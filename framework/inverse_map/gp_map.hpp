@@ -6,8 +6,8 @@
 #include <variant>
 #include <vector>
 
-#include "framework/features/labelled_features.hpp"
 #include "framework/features/feature_transform.hpp"
+#include "framework/features/labelled_features.hpp"
 #include "framework/inverse_map/predictions.hpp"
 #include "framework/spec/experiment_spec.hpp"
 #include "kernels/gp/gaussian_process.hpp"
@@ -30,6 +30,9 @@ struct GpMap {
   Eigen::VectorXd target_offset;   ///< p, mean of the training parameters
   Eigen::VectorXd target_scale;    ///< p, their standard deviation
   std::vector<Process> processes;  ///< one per parameter; exact ones share their training inputs
+  /// R (p x p), of the errors among the parameters, estimated from the training samples left out
+  /// (calcResidualCorrelation): the joint predictive covariance of a sample is D R D, D = diag(stddev).
+  Eigen::MatrixXd residual_correlation;
 
   /// Features (d x m, untransformed) -> predictions (p x m each). The standard deviation is the predictive
   /// one, likelihood noise included: the spread of the parameter given the features.
@@ -41,6 +44,7 @@ struct GpMapTraining {
   GpMap map;
   std::vector<gp::TrainingReport> reports;  ///< one per parameter; of a sparse process, that of its subset
   std::vector<std::string> warnings;        ///< "parameter 'd_y': ..."; empty if every process converged
+  Predictions leave_one_out;  ///< of each training sample without itself and its replicates (predictLeftOut)
 };
 
 /// Trains the map on features and parameters of the same samples, n >= 2.
@@ -49,7 +53,8 @@ struct GpMapTraining {
 /// optimum may recognise the simulation instead of inferring the parameter. So the hyperparameters are found
 /// on the first draw, and only the optimum that leads to is followed with all draws.
 ///
-/// The result does not depend on `threads`. Throws std::runtime_error naming the parameter whose process cannot be trained.
+/// The result does not depend on `threads`. Throws std::runtime_error naming the parameter whose process
+/// cannot be trained.
 GpMapTraining trainGpMap(const GpMapSpec& spec, const std::vector<TransformStepSpec>& transform,
                          const std::vector<std::string>& parameter_names, const LabelledFeatures& samples,
                          int threads);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/evaluation/joint_metrics.hpp"
 #include "framework/evaluation/metrics.hpp"
 #include "framework/spec/model_spec.hpp"
 
@@ -48,7 +49,11 @@ struct RunSummary {
   std::vector<int> test_indices;  ///< test samples that could be simulated; columns of what follows
   Eigen::MatrixXd truth;          ///< p x n
   Predictions predictions;        ///< p x n
+  Eigen::MatrixXd limit_stddev;   ///< p x n, of the information limit; empty where it is switched off
   std::vector<ParameterMetrics> metrics;
+  std::vector<ParameterMetrics> leave_one_out;  ///< of the training samples; empty where not available
+  std::vector<std::vector<int>> pit_counts;     ///< one histogram per parameter, kPitBins bins
+  JointMetrics joint;
   std::vector<double> nlml;  ///< one per parameter, nats
   std::vector<TrainingStart> training;
   std::vector<std::string> warnings;

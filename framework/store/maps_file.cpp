@@ -186,6 +186,7 @@ void writeMapsFile(const std::filesystem::path& path, const StoredMap& stored) {
     writeTransform(file, stored.map.transform);
     file.write("/target/offset", stored.map.target_offset);
     file.write("/target/scale", stored.map.target_scale);
+    file.writeSamples("/residual_correlation", stored.map.residual_correlation);
     if (const gp::GaussianProcess* exact = findExact(stored.map)) {
       file.writeSamples("/training_inputs", exact->getInputs());
     }
@@ -208,6 +209,7 @@ StoredMap readMapsFile(const std::filesystem::path& path) {
   stored.map.transform = readTransform(file);
   stored.map.target_offset = file.readVector("/target/offset");
   stored.map.target_scale = file.readVector("/target/scale");
+  stored.map.residual_correlation = file.readSamples("/residual_correlation");
   std::shared_ptr<const Eigen::MatrixXd> inputs;
   for (const ParameterSpec& parameter : stored.parameters) {
     const std::string group = "/maps/" + parameter.name.text;

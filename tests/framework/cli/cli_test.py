@@ -18,8 +18,8 @@ import yaml
 TWINMAP = os.environ["TWINMAP"]
 TABLE1 = os.path.join(os.environ["TWINMAP_SOURCE_DIR"], "experiments/two_beam/table1.yaml")
 SMALL = ["design.train.samples=40", "design.test.samples=20"]
-RESULTS = ["failures.csv", "maps.h5", "metrics.csv", "predictions.csv", "resolved.yaml", "samples.h5", "table.md",
-           "table.tex", "training.csv"]
+RESULTS = ["failures.csv", "joint.csv", "maps.h5", "metrics.csv", "pit.csv", "predictions.csv", "resolved.yaml",
+           "samples.h5", "table.md", "table.tex", "training.csv"]
 
 
 def call(*arguments):
@@ -160,11 +160,49 @@ class Run(TestCase):
         for row in read_csv(self.folder / "run/metrics.csv"):
             mine = [p for p in predictions if p["parameter"] == row["parameter"]]
             errors = [100 * (float(p["inferred"]) / float(p["true"]) - 1) for p in mine]
-            covered = [abs(float(p["inferred"]) - float(p["true"])) < 1.959964 * float(p["stddev"]) for p in mine]
+            z = [(float(p["inferred"]) - float(p["true"])) / float(p["stddev"]) for p in mine]
+            covered = [abs(value) < 1.959964 for value in z]
             self.assertAlmostEqual(float(row["bias_pct"]), statistics.mean(errors), 9)
+            self.assertAlmostEqual(float(row["bias_pct_se"]), statistics.stdev(errors) / 20**0.5, 9)
             self.assertAlmostEqual(float(row["sd_pct"]), statistics.stdev(errors), 9)
+            self.assertAlmostEqual(float(row["sd_pct_se"]), jackknife(statistics.stdev, errors), 9)
             self.assertAlmostEqual(float(row["mare_pct"]), statistics.mean(map(abs, errors)), 9)
             self.assertAlmostEqual(float(row["coverage95"]), statistics.mean(covered), 9)
+            self.assertAlmostEqual(float(row["z_sd_se"]), jackknife(statistics.stdev, z), 9)
+            crps = [100 * normal_crps(float(p["inferred"]), float(p["stddev"]), float(p["true"])) / float(p["true"])
+                    for p in mine]
+            self.assertAlmostEqual(float(row["crps_pct"]), statistics.mean(crps), 9)
+            self.assertNotIn("limit_pct", row)
+
+    def test_calibration_files_follow_from_predictions_and_map(self):
+        self.run_experiment("run")
+        predictions = read_csv(self.folder / "run/predictions.csv")
+        normal = statistics.NormalDist()
+        z = np.array([(float(p["inferred"]) - float(p["true"])) / float(p["stddev"]) for p in predictions])
+        for name in ("d_y", "k_theta"):
+            pit = [1 - normal.cdf(value) for value, p in zip(z, predictions) if p["parameter"] == name]
+            counts = [int(row["count"]) for row in read_csv(self.folder / "run/pit.csv") if row["parameter"] == name]
+            self.assertEqual(counts, list(np.histogram(pit, bins=10, range=(0, 1))[0]))
+        with h5py.File(self.folder / "run/maps.h5") as maps:
+            correlation = maps["residual_correlation"][:]
+        np.testing.assert_array_equal(np.diag(correlation), 1)
+        z = z.reshape(20, 4)
+        distance = np.einsum("ij,ij->i", z, np.linalg.solve(correlation, z.T).T)
+        stddev = np.array([float(p["stddev"]) for p in predictions]).reshape(20, 4)
+        nlpd = 0.5 * (distance + np.linalg.slogdet(2 * np.pi * correlation)[1]) + np.log(stddev).sum(axis=1)
+        joint = {row["metric"]: row for row in read_csv(self.folder / "run/joint.csv")}
+        self.assertAlmostEqual(float(joint["coverage50"]["value"]), np.mean(distance < 3.3566940), 9)  # chi-square of 4
+        self.assertAlmostEqual(float(joint["coverage95"]["value"]), np.mean(distance < 9.4877290), 9)
+        self.assertAlmostEqual(float(joint["nlpd"]["value"]), nlpd.mean(), 9)
+        self.assertAlmostEqual(float(joint["nlpd"]["se"]), nlpd.std(ddof=1) / 20**0.5, 9)
+
+    def test_leave_one_out_foretells_the_test_errors(self):
+        """With replicates: were the siblings of a draw kept, it would look far better than the test samples."""
+        self.run_experiment("run", "noise.replicates=3", small=["design.train.samples=60", "design.test.samples=60"])
+        for row in read_csv(self.folder / "run/metrics.csv"):
+            difference = abs(float(row["loo_sd_pct"]) - float(row["sd_pct"]))
+            self.assertLess(difference, 4 * np.hypot(float(row["loo_sd_pct_se"]), float(row["sd_pct_se"])), row)
+            self.assertGreater(float(row["loo_coverage95"]), 0.8)
 
     def test_maps_file_is_enough_to_predict(self):
         """docs/file-formats.md as numpy: without noise, features are the clean responses of samples.h5."""
@@ -321,6 +359,17 @@ class Run(TestCase):
         self.assertIn("design.train.samples=40", provenance["command"])
         self.assertEqual(len(provenance["seconds"]), 4)
         self.assertEqual([p.name for p in (self.folder / "run").glob("*.tmp")], [])
+
+
+def jackknife(figure, values):
+    without = [figure(values[:i] + values[i + 1:]) for i in range(len(values))]
+    return ((len(values) - 1) * statistics.pvariance(without)) ** 0.5
+
+
+def normal_crps(mean, stddev, truth):
+    """Gneiting and Raftery (2007)."""
+    z, normal = (truth - mean) / stddev, statistics.NormalDist()
+    return stddev * (z * (2 * normal.cdf(z) - 1) + 2 * normal.pdf(z) - np.pi**-0.5)
 
 
 def transform(maps, features):

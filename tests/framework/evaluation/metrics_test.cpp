@@ -47,6 +47,33 @@ TEST(Metrics, RelativeToTheRangeWhereTheParameterSaysSo) {
   EXPECT_NEAR(metrics.mare_pct, 5.0, 1e-12);
 }
 
+// Scales 2 and 4, limits 0.1 and 0.4: relative 5 % and 10 %. Errors 10 % and -10 %: sd 10 sqrt(2) %.
+TEST(Metrics, TheInformationLimitIsRelativeAsTheStandardDeviationIs) {
+  const Eigen::RowVector2d truth(2, 4), limit(0.1, 0.4);
+  const Predictions predictions{Eigen::RowVector2d(2.2, 3.6), Eigen::RowVector2d(1, 1)};
+  const auto calc = [&](const Eigen::MatrixXd& limit_stddev, RelativeTo relative_to = RelativeTo::kValue) {
+    return calcMetrics({makeParameter(1, 5, relative_to)}, truth, predictions, limit_stddev).at(0);
+  };
+  EXPECT_NEAR(calc(limit).limit_pct, std::sqrt((25.0 + 100.0) / 2), 1e-12);
+  EXPECT_NEAR(calc(limit).ratio_to_limit, 10 * std::sqrt(2.0) / std::sqrt(62.5), 1e-12);
+  EXPECT_NEAR(calc(limit, RelativeTo::kRange).limit_pct, 100 * std::sqrt((0.01 + 0.16) / 2) / 4, 1e-12);
+  for (const Eigen::MatrixXd& unknown :
+       {Eigen::MatrixXd(), Eigen::MatrixXd(Eigen::RowVector2d(0.1, std::nan("")))}) {
+    EXPECT_TRUE(std::isnan(calc(unknown).limit_pct));
+    EXPECT_TRUE(std::isnan(calc(unknown).ratio_to_limit));
+    EXPECT_NEAR(calc(unknown).sd_pct, 10 * std::sqrt(2.0), 1e-12);
+  }
+}
+
+// A bias a million times the spread costs the spread no digits.
+TEST(Metrics, ASmallSpreadAboutALargeBiasKeepsItsDigits) {
+  const Eigen::RowVector3d truth(1, 1, 1);
+  const Predictions predictions{Eigen::RowVector3d(3, 3 + 1e-6, 3 + 2e-6), Eigen::RowVector3d(1, 1, 1)};
+  const ParameterMetrics metrics = calcMetrics({makeParameter(1, 5)}, truth, predictions).at(0);
+  EXPECT_NEAR(metrics.sd_pct, 1e-4, 1e-13);
+  EXPECT_NEAR(metrics.z_sd, 1e-6, 1e-15);
+}
+
 // Errors drawn at the quantiles of the claimed distribution are covered as claimed.
 TEST(Metrics, AnHonestStandardDeviationIsCoveredAsClaimed) {
   constexpr int kSamples = 1000;

@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "framework/report/escape.hpp"
 #include "framework/report/html_report.hpp"
+#include "framework/report/number_with_error.hpp"
 #include "framework/report/stddev_figure.hpp"
 
 namespace twinmap {
@@ -28,6 +32,7 @@ RunSummary makeRun() {
   run.predictions.mean = run.truth * 1.5;
   run.predictions.stddev = (Eigen::MatrixXd(2, 2) << 0.1, 0.2, 1e-6, 3e-6).finished();
   run.metrics = calcMetrics(run.parameters, run.truth, run.predictions);
+  run.pit_counts = {{2, 0, 0, 0, 0, 0, 0, 0, 0, 0}, {0, 0, 0, 0, 0, 0, 0, 0, 0, 2}};
   run.nlml = {-100.5, 3};
   run.failures = {{"test", 1, Eigen::Vector2d(7, 2e-4), "step limit, \"t\" = 1"}};
   run.times = {{"simulate", 1.25}};
@@ -39,6 +44,89 @@ TEST(Tables, MetricsCsvBeginsWithThePapersColumns) {
   EXPECT_EQ(csv.rfind("parameter,unit,lower,upper,bias_pct,sd_pct,mare_pct,coverage95,", 0), 0u);
   EXPECT_NE(csv.find("\nk_y,N/m,5,15,"), std::string::npos);
   EXPECT_NE(csv.find("\nd,\"a,b|c<i>\",0.000175,0.000225,"), std::string::npos);
+}
+
+std::vector<std::string> splitCsv(const std::string& line) {
+  std::vector<std::string> cells(1);
+  for (const char c : line) {
+    c == ',' ? (void)cells.emplace_back() : cells.back().push_back(c);
+  }
+  return cells;
+}
+
+/// The first parameter's cell of a column.
+std::string getCell(const std::string& csv, const std::string& column) {
+  const std::size_t end = csv.find('\n');
+  const std::vector<std::string> header = splitCsv(csv.substr(0, end));
+  const std::vector<std::string> row = splitCsv(csv.substr(end + 1, csv.find('\n', end + 1) - end - 1));
+  EXPECT_EQ(header.size(), row.size());
+  const auto found = std::find(header.begin(), header.end(), column);
+  return found == header.end() ? "no such column" : row.at(found - header.begin());
+}
+
+TEST(Tables, MetricsCsvHasAnErrorBesideEveryFigure) {
+  RunSummary run = makeRun();
+  run.metrics[0].crps_pct = 1.5;
+  run.metrics[0].se.crps_pct = 0.25;
+  const std::string csv = makeMetricsCsv(run);
+  EXPECT_EQ(getCell(csv, "crps_pct"), "1.5");
+  EXPECT_EQ(getCell(csv, "crps_pct_se"), "0.25");
+  EXPECT_EQ(getCell(csv, "nlml"), "-100.5");
+  EXPECT_EQ(getCell(csv, "test_samples"), "2");
+}
+
+TEST(Tables, LeaveOneOutColumnsAreEmptyWithoutIt) {
+  RunSummary run = makeRun();
+  EXPECT_EQ(getCell(makeMetricsCsv(run), "loo_sd_pct"), "");
+  EXPECT_EQ(getCell(makeMetricsCsv(run), "loo_nlpd_se"), "");
+  run.leave_one_out = run.metrics;
+  run.leave_one_out[0].sd_pct = 3.5;
+  run.leave_one_out[0].se.nlpd = 0.125;
+  EXPECT_EQ(getCell(makeMetricsCsv(run), "loo_sd_pct"), "3.5");
+  EXPECT_EQ(getCell(makeMetricsCsv(run), "loo_nlpd_se"), "0.125");
+}
+
+TEST(Tables, TheLimitHasColumnsOnlyWhereItIsKnown) {
+  RunSummary run = makeRun();
+  EXPECT_EQ(getCell(makeMetricsCsv(run), "limit_pct"), "no such column");
+  EXPECT_EQ(makeMarkdownTable(run).find("limit"), std::string::npos);
+  run.limit_stddev = run.predictions.stddev / 2;
+  run.metrics[0].limit_pct = 0.07;
+  run.metrics[0].ratio_to_limit = 1.043;
+  run.metrics[0].se.ratio_to_limit = 0.031;
+  EXPECT_EQ(getCell(makeMetricsCsv(run), "limit_pct"), "0.07");
+  EXPECT_EQ(getCell(makeMetricsCsv(run), "ratio_to_limit_se"), "0.031");
+  EXPECT_NE(makePredictionsCsv(run).find("stddev,limit_stddev\n0,k_y,6,9,0.1,0.05\n"), std::string::npos);
+  EXPECT_NE(makeMarkdownTable(run).find(" |  0.0700 | 1.043(31) |\n"), std::string::npos);
+  EXPECT_NE(makeLatexTable(run).find("{llrrrrrrrr}"), std::string::npos);
+}
+
+TEST(Tables, JointAndPit) {
+  RunSummary run = makeRun();
+  run.joint.coverage90 = 0.875;
+  run.joint.se.coverage90 = 0.25;
+  EXPECT_EQ(makeJointCsv(run),
+            "metric,value,se\ncoverage95,0,0\ncoverage90,0.875,0.25\ncoverage50,0,0\nnlpd,0,0\n");
+  const std::string pit = makePitCsv(run);
+  EXPECT_EQ(pit.rfind("parameter,bin_lower,bin_upper,count\nk_y,0,0.1,2\nk_y,0.1,0.2,0\n", 0), 0u);
+  EXPECT_NE(pit.find("\nd,0.9,1,2\n"), std::string::npos);
+}
+
+TEST(NumberWithError, ShowsTwoDigitsOfTheError) {
+  EXPECT_EQ(toTextWithError(0.93824, 0.0301, 4), "0.938(30)");
+  EXPECT_EQ(toTextWithError(-0.00063, 0.000561, 4), "-0.00063(56)");
+  EXPECT_EQ(toTextWithError(0.5, 0.0996, 4), "0.50(10)");
+  EXPECT_EQ(toTextWithError(12.345, 1.24, 4), "12.3(1.2)");
+  EXPECT_EQ(toTextWithError(12.345, 0.996, 4), "12.3(1.0)");
+  EXPECT_EQ(toTextWithError(1234.5, 67.8, 4), "1234(68)");
+  EXPECT_EQ(toTextWithError(1234.5, 678, 4), "1234(678)");
+}
+
+TEST(NumberWithError, ShowsTheValueAloneWithoutAnError) {
+  EXPECT_EQ(toTextWithError(1.0, 0.0, 3), "1.000");
+  EXPECT_EQ(toTextWithError(1.0, 1e-17, 3), "1.000");
+  EXPECT_EQ(toTextWithError(1.0, std::nan(""), 3), "1.000");
+  EXPECT_EQ(toTextWithError(std::nan(""), 0.1, 3), "nan");
 }
 
 TEST(Tables, PredictionsKeepTheSamplesIndices) {
@@ -55,12 +143,14 @@ TEST(Tables, FailuresCarryTheirValuesAndReason) {
 
 TEST(Tables, MarkdownAndLatexEscapeAndAlign) {
   const std::string markdown = makeMarkdownTable(makeRun());
-  EXPECT_EQ(
-      markdown,
-      "| parameter | unit         |    lower |    upper |  bias % |   sd % |  MARE % | coverage 95 % |\n"
-      "|-----------|--------------|---------:|---------:|--------:|-------:|--------:|--------------:|\n"
-      "| k_y       | N/m          |        5 |       15 | 50.0000 | 0.0000 | 50.0000 |         0.000 |\n"
-      "| d         | a,b\\|c&lt;i> | 0.000175 | 0.000225 | 50.0000 | 0.0000 | 50.0000 |         0.000 |\n");
+  EXPECT_EQ(markdown,
+            "| parameter | unit         |    lower |    upper |  bias % |   sd % |  MARE % | cov. 95 % |\n"
+            "|-----------|--------------|---------:|---------:|--------:|-------:|--------:|----------:|\n"
+            "| k_y       | N/m          |        5 |       15 | 50.0000 | 0.0000 | 50.0000 |     0.000 |\n"
+            "| d         | a,b\\|c&lt;i> | 0.000175 | 0.000225 | 50.0000 | 0.0000 | 50.0000 |     0.000 |\n"
+            "\n"
+            "In parentheses: the Monte Carlo standard error of the last digits, 0.938(30) = 0.938 with error "
+            "0.030.\n");
   const std::string latex = makeLatexTable(makeRun());
   EXPECT_NE(latex.find("k\\_y & N/m & 5 & 15 & 50.0000"), std::string::npos);
   EXPECT_NE(latex.find("bias \\% &"), std::string::npos);

@@ -86,6 +86,7 @@ TEST(MapsFile, ARestoredMapPredictsTheSameBits) {
     const Predictions expected = training.map.predict(at), restored = stored.map.predict(at);
     EXPECT_EQ(restored.mean, expected.mean);
     EXPECT_EQ(restored.stddev, expected.stddev);
+    EXPECT_EQ(stored.map.residual_correlation, training.map.residual_correlation);
   }
 }
 

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "framework/inverse_map/predictions.hpp"
+
+namespace twinmap {
+
+/// Two-sided normal quantile: P(|z| < quantile) = probability, in (0, 1).
+double calcTwoSidedQuantile(double probability);
+
+/// Continuous ranked probability score of normal distributions, in the unit of stddev = s:
+///   s (z (2 Phi(z) - 1) + 2 phi(z) - 1 / sqrt(pi)),   z = (mean - true) / s
+/// (Gneiting and Raftery, Strictly proper scoring rules, JASA 102, 2007, eq. 21, negated: less is better).
+/// Where s goes to 0 it is the absolute error.
+Eigen::ArrayXd calcCrps(const Eigen::ArrayXd& z, const Eigen::ArrayXd& stddev);
+
+/// Probability integral transform Phi((true - mean) / stddev) of each parameter and sample (p x n): uniform
+/// on [0, 1] where the predictive distributions are honest.
+Eigen::MatrixXd calcPit(const Eigen::MatrixXd& truth, const Predictions& predictions);
+
+constexpr int kPitBins = 10;
+
+/// Counts of `pit` in kPitBins equal bins of [0, 1]. Flat: honest; a hump: stddev too large; a U: too small;
+/// a slope: bias. Values that are not numbers are not counted.
+std::vector<int> countPit(const Eigen::ArrayXd& pit);
+
+}  // namespace twinmap

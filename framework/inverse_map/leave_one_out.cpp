@@ -1,0 +1,35 @@
+#include "framework/inverse_map/leave_one_out.hpp"
+
+#include "kernels/gp/leave_one_out.hpp"
+#include "kernels/sparse/sparse_leave_one_out.hpp"
+
+namespace twinmap {
+namespace {
+
+/// Of one process, in the standardised parameter.
+gp::LeaveOneOut calcLeftOut(const Process& process, const Eigen::MatrixXd& inputs,
+                            const Eigen::VectorXd& target, const gp::SampleGroups& groups, int threads) {
+  if (const auto* exact = std::get_if<std::shared_ptr<const gp::GaussianProcess>>(&process)) {
+    return gp::calcLeaveGroupsOut(**exact, groups, threads);
+  }
+  const auto& sparse = std::get<std::shared_ptr<const gp::SparseGaussianProcess>>(process);
+  return gp::calcLeaveGroupsOut(*sparse, inputs, target, groups);
+}
+
+}  // namespace
+
+Predictions predictLeftOut(const GpMap& map, const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
+                           int replicates, int threads) {
+  const gp::SampleGroups groups = gp::makeDrawGroups(inputs.cols(), replicates);
+  Predictions predictions{targets, targets};
+  for (Eigen::Index p = 0; p < targets.rows(); ++p) {
+    const gp::LeaveOneOut left_out =
+        calcLeftOut(map.processes[p], inputs, targets.row(p).transpose(), groups, threads);
+    const Eigen::RowVectorXd mean = targets.row(p) - left_out.residual.transpose();
+    predictions.mean.row(p) = map.target_offset[p] + map.target_scale[p] * mean.array();
+    predictions.stddev.row(p) = map.target_scale[p] * left_out.stddev.transpose();
+  }
+  return predictions;
+}
+
+}  // namespace twinmap
