@@ -122,7 +122,11 @@ std::string readBytes(const fs::path& path) {
 }
 
 void renameFile(const fs::path& from, const fs::path& to) {
-  fs::rename(from, to);
+  std::error_code error;
+  fs::rename(from, to, error);
+  if (error) {
+    fail(from, "cannot be renamed to " + to.filename().string(), error.value());
+  }
   syncFolder(to.parent_path());
 }
 
@@ -133,7 +137,11 @@ void makeFolders(const fs::path& folder) {
   if (folder.has_parent_path()) {
     makeFolders(folder.parent_path());
   }
-  fs::create_directory(folder);
+  std::error_code error;
+  fs::create_directory(folder, error);
+  if (error) {
+    fail(folder, "cannot be created", error.value());
+  }
   syncFolder(folder.parent_path());
 }
 
