@@ -1,5 +1,6 @@
 #include "framework/features/feature_transform.hpp"
 
+#include "framework/features/partial_least_squares.hpp"
 #include "framework/features/principal_components.hpp"
 #include "framework/features/scaling_steps.hpp"
 
@@ -14,6 +15,9 @@ AffineStep fitStep(const TransformStepSpec& step, const LabelledFeatures& sample
   }
   if (step.whiten) {
     return fitWhiten(*step.whiten, samples.noise_covariance);
+  }
+  if (step.partial_least_squares) {
+    return fitPartialLeastSquares(*step.partial_least_squares, samples);
   }
   return fitPrincipalComponents(*step.principal_components, samples.features);
 }

@@ -13,24 +13,14 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-void fixSigns(MatrixXd& directions) {
-  for (Index k = 0; k < directions.cols(); ++k) {
-    Index largest = 0;
-    directions.col(k).cwiseAbs().maxCoeff(&largest);
-    if (directions(largest, k) < 0.0) {
-      directions.col(k) *= -1.0;
-    }
-  }
-}
-
 Index chooseRank(const PrincipalComponentsSpec& spec, const PrincipalComponents& components, Index samples) {
   const Index most = components.variances.size();
-  if (spec.components) {
-    if (*spec.components > most) {
-      throw std::invalid_argument("principal_components: asked for " + std::to_string(*spec.components) +
-                                  " of " + std::to_string(most));
+  if (spec.components.number) {
+    if (*spec.components.number > most) {
+      throw std::invalid_argument("principal_components: asked for " +
+                                  std::to_string(*spec.components.number) + " of " + std::to_string(most));
     }
-    return *spec.components;
+    return *spec.components.number;
   }
   const double edge = calcMarchenkoPasturEdge(components.directions.rows(), samples);
   const double total = components.variances.sum();
@@ -61,6 +51,16 @@ PrincipalComponents calcPrincipalComponents(const MatrixXd& centered) {
   }
   fixSigns(components.directions);
   return components;
+}
+
+void fixSigns(MatrixXd& directions) {
+  for (Index k = 0; k < directions.cols(); ++k) {
+    Index largest = 0;
+    directions.col(k).cwiseAbs().maxCoeff(&largest);
+    if (directions(largest, k) < 0.0) {
+      directions.col(k) *= -1.0;
+    }
+  }
 }
 
 double calcMarchenkoPasturEdge(Index dimensions, Index samples) {

@@ -16,6 +16,9 @@ struct PrincipalComponents {
 /// Of centred data (d x n, rows of zero mean, n >= 2), by the eigenvectors of the smaller of X X' and X' X.
 PrincipalComponents calcPrincipalComponents(const Eigen::MatrixXd& centered);
 
+/// Turns each column so that its largest entry is positive.
+void fixSigns(Eigen::MatrixXd& directions);
+
 /// The upper edge (1 + sqrt(d / n))^2 of the eigenvalues of the sample covariance of n samples of unit white
 /// noise in d dimensions (Marchenko and Pastur 1967).
 double calcMarchenkoPasturEdge(Eigen::Index dimensions, Eigen::Index samples);

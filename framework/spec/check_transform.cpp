@@ -29,7 +29,7 @@ void checkWhiten(const WhitenSpec& whiten, const Progress& progress, const Sourc
 
 void checkPrincipalComponents(const PrincipalComponentsSpec& spec, const Progress& progress,
                               const SourceLocation& where) {
-  const bool automatic = !spec.components && !spec.explained_variance;
+  const bool automatic = !spec.components.number && !spec.explained_variance;
   if (automatic && !progress.whitened) {
     throw ExperimentError(where, "principal_components",
                           "needs components or explained_variance, unless it directly follows whiten");
@@ -48,7 +48,8 @@ void checkStep(const TransformStepSpec& step, const ExperimentSpec& experiment, 
 
 /// Whether inputs behind the step are no longer the features, one by one.
 bool mixes(const TransformStepSpec& step) {
-  return step.principal_components || (step.whiten && step.whiten->by == WhitenBy::kCovariance);
+  return step.principal_components || step.partial_least_squares ||
+         (step.whiten && step.whiten->by == WhitenBy::kCovariance);
 }
 
 void checkLengthScales(const TransformStepSpec& step, LengthScales length_scales) {

@@ -110,9 +110,15 @@ void describe(Fields& f, WhitenSpec& s) {
 
 template <class Fields>
 void describe(Fields& f, PrincipalComponentsSpec& s) {
-  f.optional("components", s.components, "how many", kCount);
+  f.optional("components", s.components, "how many, or automatic");
   f.optional("explained_variance", s.explained_variance, "as many as explain this fraction", kFraction);
-  f.rule(!s.components || !s.explained_variance, "must give components or explained_variance, not both");
+  f.rule(!s.components.number || !s.explained_variance,
+         "must give components or explained_variance, not both");
+}
+
+template <class Fields>
+void describe(Fields& f, PartialLeastSquaresSpec& s) {
+  f.optional("components", s.components, "how many, or automatic: by cross-validation");
 }
 
 template <class Fields>
@@ -121,8 +127,12 @@ void describe(Fields& f, TransformStepSpec& s) {
   f.optional("whiten", s.whiten, "features in units of their noise");
   f.optional("principal_components", s.principal_components,
              "projection on the directions of largest variance; by default those above the noise");
-  f.rule(s.z_score.has_value() + s.whiten.has_value() + s.principal_components.has_value() == 1,
-         "must be one of z_score, whiten, principal_components");
+  f.optional("partial_least_squares", s.partial_least_squares,
+             "projection on the directions that predict the parameters best");
+  f.rule(s.z_score.has_value() + s.whiten.has_value() + s.principal_components.has_value() +
+                 s.partial_least_squares.has_value() ==
+             1,
+         "must be one of z_score, whiten, principal_components, partial_least_squares");
 }
 
 template <class Fields>

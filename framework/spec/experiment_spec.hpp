@@ -20,11 +20,22 @@ struct WhitenSpec {
   WhitenBy by = WhitenBy::kStddev;
 };
 
+/// How many components a projection keeps; none: automatic.
+struct ComponentCount {
+  std::optional<int> number;
+};
+
 /// Principal components of the training features, those of largest variance. How many: as given, or enough to
 /// explain a fraction of the variance, or by default those that stand above the noise of whitened features.
 struct PrincipalComponentsSpec {
-  std::optional<int> components;
+  ComponentCount components;
   std::optional<double> explained_variance;
+};
+
+/// Directions of the training features that have most covariance with the parameters, those that predict other
+/// simulations best by default.
+struct PartialLeastSquaresSpec {
+  ComponentCount components;
 };
 
 /// One step from features to the inputs of the inverse map, fitted on the training features; exactly one
@@ -33,6 +44,7 @@ struct TransformStepSpec {
   std::optional<ZScoreSpec> z_score;
   std::optional<WhitenSpec> whiten;
   std::optional<PrincipalComponentsSpec> principal_components;
+  std::optional<PartialLeastSquaresSpec> partial_least_squares;
   SourceLocation where;
 };
 

@@ -42,6 +42,12 @@ Json makeSchema(const Bounds&) {
   return {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 2}, {"maxItems", 2}};
 }
 
+Json makeSchema(const ComponentCount&) {
+  const Json automatic{{"const", "automatic"}};
+  const Json number{{"type", "integer"}, {"minimum", 1}};
+  return {{"anyOf", Json::array({number, automatic})}};
+}
+
 template <class T>
 Json makeStructSchema();
 template <class T>
@@ -54,7 +60,7 @@ template <class T>
 Json makeSchema(const T&);
 
 Json makeSchema(const TransformStepSpec&) {
-  const Json names{{"enum", {"z_score", "whiten", "principal_components"}}};
+  const Json names{{"enum", {"z_score", "whiten", "principal_components", "partial_least_squares"}}};
   return {{"anyOf", Json::array({names, makeStructSchema<TransformStepSpec>()})}};
 }
 Json makeSchema(const ConstantSpec&) {

@@ -130,6 +130,15 @@ void readValue(const YamlNode& node, NamedExpression& value) {
   readValue(node, value.value);
 }
 
+void readValue(const YamlNode& node, ComponentCount& value) {
+  constexpr NumberRule kCountOrAutomatic{kCount.minimum, kCount.maximum, true,
+                                         "must be automatic or a whole number from 1 to 10000000"};
+  value.number.reset();
+  if (node.kind != YamlNode::Kind::kScalar || node.scalar != "automatic") {
+    readValue(node, value.number, kCountOrAutomatic);
+  }
+}
+
 void readValue(const YamlNode& node, TransformStepSpec& value) {
   value.where = node.where;
   if (node.kind != YamlNode::Kind::kScalar) {

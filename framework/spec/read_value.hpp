@@ -31,6 +31,8 @@ void readValue(const YamlNode& node, Name& value);
 void readValue(const YamlNode& node, Bounds& value);
 void readValue(const YamlNode& node, OutputNoiseSpec& value);
 void readValue(const YamlNode& node, NamedExpression& value);
+/// A whole number above 0, or automatic.
+void readValue(const YamlNode& node, ComponentCount& value);
 /// A scalar names a step with its defaults.
 void readValue(const YamlNode& node, TransformStepSpec& value);
 /// A scalar is the constant's value.

@@ -23,6 +23,9 @@ YamlNode writeValue(const Expression& value) {
 YamlNode writeValue(const Name& value) {
   return makeScalar(value.text);
 }
+YamlNode writeValue(const ComponentCount& value) {
+  return value.number ? writeValue(*value.number) : makeScalar("automatic");
+}
 YamlNode writeValue(const Bounds& value) {
   return writeSequence(std::array<double, 2>{value.lower, value.upper});
 }

@@ -20,6 +20,7 @@ YamlNode writeValue(std::uint64_t value);
 YamlNode writeValue(const std::string& value);
 YamlNode writeValue(const Expression& value);
 YamlNode writeValue(const Name& value);
+YamlNode writeValue(const ComponentCount& value);
 YamlNode writeValue(const Bounds& value);
 YamlNode writeValue(const OutputNoiseSpec& value);
 YamlNode writeValue(const NamedExpression& value);
@@ -95,6 +96,9 @@ bool isGiven(const std::optional<T>& value) {
 template <class T>
 bool isGiven(const std::vector<T>& values) {
   return !values.empty();
+}
+inline bool isGiven(const ComponentCount& value) {
+  return value.number.has_value();
 }
 inline bool isGiven(const Expression& value) {
   return !value.text.empty();

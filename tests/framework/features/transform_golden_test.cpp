@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "framework/features/feature_transform.hpp"
-#include "framework/features/principal_components.hpp"
+#include "framework/features/partial_least_squares.hpp"
+#include "framework/features/scaling_steps.hpp"
 
 namespace twinmap {
 namespace {
@@ -65,6 +66,27 @@ TEST(TransformGolden, PrincipalComponents) {
   const VectorXd variances = toMatrix(golden::kPrincipalVariances, golden::kComponents);
   const VectorXd mine = scores.rowwise().squaredNorm() / (static_cast<double>(scores.cols()) - 1.0);
   EXPECT_LT((mine - variances).norm(), 1e-12 * variances.norm());
+}
+
+TEST(TransformGolden, PartialLeastSquares) {
+  TransformStepSpec step;
+  step.partial_least_squares.emplace().components.number = golden::kComponents;
+  expectSameRows(transform(step), toMatrix(golden::kPartialLeastSquares, golden::kComponents));
+}
+
+TEST(TransformGolden, LinearPredictionByPartialLeastSquares) {
+  const LabelledFeatures samples = makeSamples();
+  const MatrixXd centered = samples.features.colwise() - samples.features.rowwise().mean().eval();
+  const MatrixXd targets = fitZScore(samples.parameters).apply(samples.parameters);
+  const PartialLeastSquares model = calcPartialLeastSquares(centered, targets, golden::kComponents);
+  const MatrixXd prediction = model.loadings * (model.rotations.transpose() * centered);
+  EXPECT_LT((prediction - toMatrix(golden::kLinearPrediction, 2)).cwiseAbs().maxCoeff(), 1e-11);
+}
+
+TEST(TransformGolden, CrossValidationOfPartialLeastSquares) {
+  const MatrixXd errors = calcCrossValidationErrors(makeSamples(), golden::kComponents, golden::kFolds);
+  const MatrixXd expected = toMatrix(golden::kHeldOutErrors, golden::kComponents).transpose();
+  EXPECT_LT((errors - expected).cwiseAbs().maxCoeff(), 1e-11);
 }
 
 }  // namespace

@@ -92,8 +92,12 @@ TEST(ExperimentFile, PerOutputHasNoMeaningBehindStepsThatMixFeatures) {
 
 TEST(ExperimentFile, EveryStepOfATransformIsReadAndWritten) {
   const ExperimentSpec experiment = loadExperiment(
-      kTable1, {"transform=[whiten: {by: covariance}, principal_components, whiten: {by: covariance}]"});
+      kTable1, {"transform=[whiten: {by: covariance}, principal_components: {components: automatic}, "
+                "partial_least_squares, partial_least_squares: {components: 2}]"});
   EXPECT_EQ(experiment.transform[0].whiten->by, WhitenBy::kCovariance);
+  EXPECT_FALSE(experiment.transform[1].principal_components->components.number);
+  EXPECT_FALSE(experiment.transform[2].partial_least_squares->components.number);
+  EXPECT_EQ(experiment.transform[3].partial_least_squares->components.number, 2);
   const std::string text = writeExperiment(experiment);
   EXPECT_EQ(writeExperiment(readExperiment(parseYaml(text, "again"))), text);
 }

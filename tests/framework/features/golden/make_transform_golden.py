@@ -9,11 +9,12 @@ written sample by sample.
 """
 import numpy as np
 import sklearn
+from sklearn.cross_decomposition import PLSRegression
 from sklearn.decomposition import PCA
 from sklearn.preprocessing import StandardScaler
 
 FEATURES, SIMULATIONS, REPLICATES = 6, 40, 2
-COMPONENTS = 3
+COMPONENTS, FOLDS = 3, 5
 
 
 def make_data():
@@ -46,19 +47,40 @@ def write_principal_components(x):
     write("kPrincipalVariances", model.explained_variance_)
 
 
+def fit_pls(x, targets, components):
+    """Without scaling of the features; the tolerance is that of the power iteration."""
+    return PLSRegression(components, scale=False, tol=1e-30, max_iter=100000).fit(x, targets)
+
+
+def write_partial_least_squares(x, y):
+    targets = StandardScaler().fit_transform(y) * np.sqrt((len(y) - 1) / len(y))
+    model = fit_pls(x, targets, COMPONENTS)
+    write("kPartialLeastSquares", model.transform(x))
+    write("kLinearPrediction", model.predict(x))
+    simulation = np.arange(len(x)) % SIMULATIONS
+    errors = []
+    for fold in range(FOLDS):
+        out = (simulation >= fold * SIMULATIONS // FOLDS) & (simulation < (fold + 1) * SIMULATIONS // FOLDS)
+        for components in range(1, COMPONENTS + 1):
+            error = targets[out] - fit_pls(x[~out], targets[~out], components).predict(x[out])
+            errors.append(np.sum(error**2) / out.sum())
+    write("kHeldOutErrors", errors)  # fold by fold
+
+
 def main():
     x, y, noise_covariance = make_data()
     print("// Written by make_transform_golden.py with scikit-learn", sklearn.__version__, "and numpy",
           np.__version__ + "; do not edit.")
     print("#pragma once\n\n#include <vector>\n\nnamespace twinmap::golden {\n\n// clang-format off")
     print(f"constexpr int kFeatureCount = {FEATURES};\nconstexpr int kReplicates = {REPLICATES};\n"
-          f"constexpr int kComponents = {COMPONENTS};\n")
+          f"constexpr int kComponents = {COMPONENTS};\nconstexpr int kFolds = {FOLDS};\n")
     write("kFeatures", x)
     write("kParameters", y)
     write("kNoiseCovariance", noise_covariance)
     print()
     write_scalings(x, noise_covariance)
     write_principal_components(x)
+    write_partial_least_squares(x, y)
     print("// clang-format on\n\n}  // namespace twinmap::golden")
 
 

@@ -1,0 +1,108 @@
+#include "framework/features/partial_least_squares.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <stdexcept>
+
+#include "framework/design/random.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+MatrixXd makeNormal(Index rows, Index columns, std::uint64_t seed) {
+  const RandomStream random(seed, RandomPurpose::kTrainNoise);
+  return MatrixXd::NullaryExpr(rows, columns, [&](Index i, Index j) {
+    return random.calcNormal(static_cast<std::uint64_t>(j), static_cast<std::uint64_t>(i));
+  });
+}
+
+/// Ten features of variance 100 that say nothing, and two parameters seen in two others of variance 1.
+LabelledFeatures makeSamples(int simulations, int replicates = 1) {
+  LabelledFeatures samples;
+  samples.replicates = replicates;
+  samples.parameters = makeNormal(2, simulations, 1).replicate(1, replicates);
+  samples.features.resize(12, simulations * replicates);
+  samples.features.topRows(10) = 10.0 * makeNormal(10, simulations * replicates, 2);
+  samples.features.bottomRows(2) = samples.parameters + 0.1 * makeNormal(2, simulations * replicates, 3);
+  samples.parameters.row(1) *= 1e-4;
+  return samples;
+}
+
+PartialLeastSquaresSpec makeSpec(std::optional<int> components = {}) {
+  return {{components}};
+}
+
+TEST(PartialLeastSquares, OneComponentOfOneTargetIsTheCovarianceByHand) {
+  MatrixXd features(2, 4), target(1, 4);
+  features << 1, -1, 2, -2, 1, 1, -1, -1;
+  target << 1, -1, 3, -3;
+  const PartialLeastSquares model = calcPartialLeastSquares(features, target, 1);
+  const Eigen::Vector2d direction = model.rotations.col(0) * (model.rotations(0, 0) > 0 ? 1 : -1);
+  EXPECT_NEAR(direction[0], 1.0, 1e-15);  // X y' = (14, 0)
+  EXPECT_NEAR(direction[1], 0.0, 1e-15);
+  EXPECT_NEAR(std::abs(model.loadings(0, 0)), 1.4, 1e-15);  // 14 / (1 + 1 + 4 + 4)
+}
+
+TEST(PartialLeastSquares, AllComponentsAreLeastSquares) {
+  const LabelledFeatures samples = makeSamples(40);
+  const MatrixXd x = samples.features.colwise() - samples.features.rowwise().mean().eval();
+  const MatrixXd y = samples.parameters.colwise() - samples.parameters.rowwise().mean().eval();
+  const PartialLeastSquares model = calcPartialLeastSquares(x, y, 12);
+  const MatrixXd slopes = (x * x.transpose()).ldlt().solve(x * y.transpose()).transpose();
+  EXPECT_LT((model.loadings * model.rotations.transpose() - slopes).norm(), 1e-10 * slopes.norm());
+}
+
+TEST(PartialLeastSquares, ScoresAreUncorrelatedOverTheSamples) {
+  const LabelledFeatures samples = makeSamples(60);
+  const MatrixXd scores = fitPartialLeastSquares(makeSpec(5), samples).apply(samples.features);
+  const MatrixXd covariance = scores * scores.transpose();
+  const MatrixXd diagonal = covariance.diagonal().asDiagonal();
+  EXPECT_LT((covariance - diagonal).norm(), 1e-11 * diagonal.norm());
+}
+
+TEST(PartialLeastSquares, AutomaticRankFindsTheDirectionsThatPredict) {
+  const LabelledFeatures samples = makeSamples(400, 2);
+  const MatrixXd projection = fitPartialLeastSquares(makeSpec(), samples).projection;
+  const MatrixXd errors = calcCrossValidationErrors(samples, 12, 10);
+  const Index rank = projection.rows();
+  EXPECT_LT(rank, 12);
+  EXPECT_NEAR(errors.col(rank - 1).mean(), 0.02, 0.004);  // 0.1^2 for each parameter
+  EXPECT_GT(errors.col(0).mean(), 0.1);
+}
+
+TEST(PartialLeastSquares, TheAutomaticRankOfPureNoiseIsOne) {
+  LabelledFeatures samples = makeSamples(100);
+  samples.features = makeNormal(12, 100, 9);
+  EXPECT_EQ(fitPartialLeastSquares(makeSpec(), samples).projection.rows(), 1);
+}
+
+/// Features that recognise the simulation predict its other draws perfectly, and no other simulation.
+TEST(PartialLeastSquares, ReplicatesOfASimulationStayInOneFold) {
+  constexpr Index kSimulations = 20;
+  LabelledFeatures samples;
+  samples.replicates = 2;
+  samples.features = MatrixXd::Identity(kSimulations, kSimulations).replicate(1, 2);
+  samples.parameters = makeNormal(1, kSimulations, 4).replicate(1, 2);
+  EXPECT_GT(calcCrossValidationErrors(samples, 5, 5).minCoeff(), 0.2);
+}
+
+TEST(PartialLeastSquares, RefusesMoreComponentsThanThereAre) {
+  LabelledFeatures samples = makeSamples(40);
+  EXPECT_THROW(fitPartialLeastSquares(makeSpec(13), samples), std::invalid_argument);
+  samples.features.bottomRows(6) = samples.features.topRows(6);
+  EXPECT_EQ(fitPartialLeastSquares(makeSpec(6), samples).projection.rows(), 6);
+  EXPECT_THROW(fitPartialLeastSquares(makeSpec(7), samples), std::invalid_argument);
+  samples.features.setConstant(3.0);
+  EXPECT_THROW(fitPartialLeastSquares(makeSpec(), samples), std::invalid_argument);
+}
+
+TEST(PartialLeastSquares, TwoSimulationsAreEnough) {
+  EXPECT_EQ(fitPartialLeastSquares(makeSpec(), makeSamples(2)).projection.rows(), 1);
+}
+
+}  // namespace
+}  // namespace twinmap
