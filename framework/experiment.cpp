@@ -4,6 +4,7 @@
 
 #include "framework/evaluation/calibration.hpp"
 #include "framework/features/noise.hpp"
+#include "framework/features/selections.hpp"
 #include "framework/inverse_map/gp_map.hpp"
 #include "framework/labelled_sets.hpp"
 #include "framework/multibody/multibody_simulator.hpp"
@@ -108,6 +109,7 @@ RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& opt
 
   const MultibodySimulator simulator(experiment.model, collectTimes(experiment.features));
   const FeatureExtractor extractor(experiment.features, simulator.getLayout());
+  checkTransformOf(extractor.getInfos(), experiment.transform);
   const auto store = openStore(experiment.model, simulator.getLayout(), options);
   SimulatedSets sets = simulateSets(experiment, simulator, *store, options, run);
   failIncompleteSamples(experiment, extractor, sets);
@@ -116,7 +118,9 @@ RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& opt
 
   const FeatureNoise noise(extractor, calcNoiseStddev(experiment.noise, simulator.getLayout()),
                            experiment.seed);
-  const LabelledSets labelled = makeLabelledSets(experiment, sets, extractor, noise);
+  LabelledSets labelled = makeLabelledSets(experiment, sets, extractor, noise);
+  labelled.train.sensitivities =
+      calcTrainingSensitivities(experiment, sets.train, simulator, extractor, options.threads);
 
   const GpMap map = trainMap(experiment, labelled.train, options, run);
   evaluate(experiment, map, labelled.test, run);

@@ -1,8 +1,11 @@
 #include "framework/labelled_sets.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "framework/features/noise.hpp"
+#include "framework/sensitivity/feature_sensitivities.hpp"
 
 namespace twinmap {
 namespace {
@@ -78,6 +81,31 @@ LabelledSets makeLabelledSets(const ExperimentSpec& experiment, const SimulatedS
       noise.calcMeanCovariance(sets.train.responses(Eigen::all, findSuccessful(sets.train)));
   labelled.test.noise_covariance = labelled.train.noise_covariance;
   return labelled;
+}
+
+std::vector<Eigen::MatrixXd> calcTrainingSensitivities(const ExperimentSpec& experiment,
+                                                       const Trajectories& train, const Simulator& simulator,
+                                                       const FeatureExtractor& extractor, int threads) {
+  const auto selects = [](const TransformStepSpec& step) {
+    return step.select && step.select->fisher_information;
+  };
+  if (std::none_of(experiment.transform.begin(), experiment.transform.end(), selects)) {
+    return {};
+  }
+  constexpr std::size_t kPoints = 16;
+  std::vector<int> samples = findSuccessful(train);
+  samples.resize(std::min(samples.size(), kPoints));
+  std::vector<Eigen::MatrixXd> sensitivities;
+  for (const LocalModel& local : calcLocalModels(simulator, extractor, experiment.model.parameters,
+                                                 train.parameters(Eigen::all, samples), threads)) {
+    if (local.status.ok) {
+      sensitivities.push_back(local.sensitivities);
+    }
+  }
+  if (sensitivities.empty()) {
+    throw std::runtime_error("select by fisher_information: the features' sensitivities cannot be simulated");
+  }
+  return sensitivities;
 }
 
 }  // namespace twinmap

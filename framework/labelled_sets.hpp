@@ -23,4 +23,10 @@ void failIncompleteSamples(const ExperimentSpec& experiment, const FeatureExtrac
 LabelledSets makeLabelledSets(const ExperimentSpec& experiment, const SimulatedSets& sets,
                               const FeatureExtractor& extractor, const FeatureNoise& noise);
 
+/// For a transform that selects by Fisher information, the sensitivities at the first 16 training samples
+/// that could be simulated; else none. Throws std::runtime_error if they fail at every one of them.
+std::vector<Eigen::MatrixXd> calcTrainingSensitivities(const ExperimentSpec& experiment,
+                                                       const Trajectories& train, const Simulator& simulator,
+                                                       const FeatureExtractor& extractor, int threads);
+
 }  // namespace twinmap

@@ -3,6 +3,7 @@
 #include "framework/features/partial_least_squares.hpp"
 #include "framework/features/principal_components.hpp"
 #include "framework/features/scaling_steps.hpp"
+#include "framework/features/selections.hpp"
 
 namespace twinmap {
 namespace {
@@ -19,7 +20,21 @@ AffineStep fitStep(const TransformStepSpec& step, const LabelledFeatures& sample
   if (step.partial_least_squares) {
     return fitPartialLeastSquares(*step.partial_least_squares, samples);
   }
+  if (step.select) {
+    return fitSelect(*step.select, samples);
+  }
   return fitPrincipalComponents(*step.principal_components, samples.features);
+}
+
+/// The features that a selection keeps.
+std::vector<FeatureInfo> selectInfos(const MatrixXd& selection, const std::vector<FeatureInfo>& infos) {
+  std::vector<FeatureInfo> selected(selection.rows());
+  for (Eigen::Index row = 0; row < selection.rows(); ++row) {
+    Eigen::Index feature = 0;
+    selection.row(row).maxCoeff(&feature);
+    selected[row] = infos[feature];
+  }
+  return selected;
 }
 
 void applyStep(const AffineStep& step, LabelledFeatures& samples) {
@@ -45,6 +60,9 @@ FeatureTransform fitTransform(const std::vector<TransformStepSpec>& steps, const
   LabelledFeatures inputs = samples;
   for (const TransformStepSpec& step : steps) {
     transform.steps.push_back(fitStep(step, inputs));
+    if (step.select && !inputs.infos.empty()) {
+      inputs.infos = selectInfos(transform.steps.back().projection, inputs.infos);
+    }
     applyStep(transform.steps.back(), inputs);
   }
   return transform;

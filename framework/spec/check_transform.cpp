@@ -36,10 +36,24 @@ void checkPrincipalComponents(const PrincipalComponentsSpec& spec, const Progres
   }
 }
 
+void checkSelect(const SelectSpec& select, const ExperimentSpec& experiment, const Progress& progress,
+                 const SourceLocation& where) {
+  if (!select.features.empty() && progress.mixed) {
+    throw ExperimentError(select.features.front().where, select.features.front().text,
+                          "is no feature behind a step that mixes them");
+  }
+  if (select.fisher_information) {
+    requireNoise(experiment, where, "select by fisher_information");
+  }
+}
+
 void checkStep(const TransformStepSpec& step, const ExperimentSpec& experiment, const Progress& progress) {
   if (step.whiten) {
     requireNoise(experiment, step.where, "whiten");
     checkWhiten(*step.whiten, progress, step.where);
+  }
+  if (step.select) {
+    checkSelect(*step.select, experiment, progress, step.where);
   }
   if (step.principal_components) {
     checkPrincipalComponents(*step.principal_components, progress, step.where);
@@ -53,10 +67,10 @@ bool mixes(const TransformStepSpec& step) {
 }
 
 void checkLengthScales(const TransformStepSpec& step, LengthScales length_scales) {
-  if (length_scales == LengthScales::kPerOutput && mixes(step)) {
+  if (length_scales == LengthScales::kPerOutput && (mixes(step) || step.select)) {
     throw ExperimentError(step.where, "",
                           "goes not with inverse_map.gp.length_scales: per_output, because behind it inputs "
-                          "are not the features of one output each; use per_feature or shared");
+                          "are not all the features; use per_feature or shared");
   }
 }
 

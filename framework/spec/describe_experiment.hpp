@@ -122,6 +122,26 @@ void describe(Fields& f, PartialLeastSquaresSpec& s) {
 }
 
 template <class Fields>
+void describe(Fields& f, MutualInformationSpec& s) {
+  f.required("count", s.count, "features to select", kCount);
+  f.optional("neighbours", s.neighbours, "of the nearest-neighbour estimator", kCount);
+}
+
+template <class Fields>
+void describe(Fields& f, FisherInformationSpec& s) {
+  f.required("count", s.count, "features to select", kCount);
+}
+
+template <class Fields>
+void describe(Fields& f, SelectSpec& s) {
+  f.optional("features", s.features, "their names, such as y(0.05 s)");
+  f.optional("mutual_information", s.mutual_information, "relevant to the parameters, without redundancy");
+  f.optional("fisher_information", s.fisher_information, "greedy D-optimal, by simulated sensitivities");
+  f.rule(!s.features.empty() + s.mutual_information.has_value() + s.fisher_information.has_value() == 1,
+         "must give one of features, mutual_information, fisher_information");
+}
+
+template <class Fields>
 void describe(Fields& f, TransformStepSpec& s) {
   f.optional("z_score", s.z_score, "each feature minus its mean, over its standard deviation");
   f.optional("whiten", s.whiten, "features in units of their noise");
@@ -129,10 +149,11 @@ void describe(Fields& f, TransformStepSpec& s) {
              "projection on the directions of largest variance; by default those above the noise");
   f.optional("partial_least_squares", s.partial_least_squares,
              "projection on the directions that predict the parameters best");
+  f.optional("select", s.select, "keeps some of the features");
   f.rule(s.z_score.has_value() + s.whiten.has_value() + s.principal_components.has_value() +
-                 s.partial_least_squares.has_value() ==
+                 s.partial_least_squares.has_value() + s.select.has_value() ==
              1,
-         "must be one of z_score, whiten, principal_components, partial_least_squares");
+         "must be one of z_score, whiten, principal_components, partial_least_squares, select");
 }
 
 template <class Fields>

@@ -32,10 +32,29 @@ struct PrincipalComponentsSpec {
   std::optional<double> explained_variance;
 };
 
-/// Directions of the training features that have most covariance with the parameters, those that predict other
-/// simulations best by default.
+/// Directions of the training features that have most covariance with the parameters, those that predict
+/// other simulations best by default.
 struct PartialLeastSquaresSpec {
   ComponentCount components;
+};
+
+/// The features that tell most about the parameters beyond what those selected before tell, by mutual
+/// information.
+struct MutualInformationSpec {
+  int count = 0;
+  int neighbours = 3;  ///< of the estimator
+};
+
+/// The features that determine the parameters best, to first order: greedy D-optimal selection.
+struct FisherInformationSpec {
+  int count = 0;
+};
+
+/// Some of the features; exactly one member is given.
+struct SelectSpec {
+  std::vector<Name> features;
+  std::optional<MutualInformationSpec> mutual_information;
+  std::optional<FisherInformationSpec> fisher_information;
 };
 
 /// One step from features to the inputs of the inverse map, fitted on the training features; exactly one
@@ -45,6 +64,7 @@ struct TransformStepSpec {
   std::optional<WhitenSpec> whiten;
   std::optional<PrincipalComponentsSpec> principal_components;
   std::optional<PartialLeastSquaresSpec> partial_least_squares;
+  std::optional<SelectSpec> select;
   SourceLocation where;
 };
 

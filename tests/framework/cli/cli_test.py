@@ -223,6 +223,28 @@ class Run(TestCase):
                     np.testing.assert_allclose(offset + scale * mean, [float(r["inferred"]) for r in mine], rtol=1e-8)
                     np.testing.assert_allclose(scale * stddev, [float(r["stddev"]) for r in mine], rtol=1e-6)
 
+    def test_every_transform_is_stored_so_that_the_file_is_enough(self):
+        """Features z_scored, selected or projected by numpy from maps.h5 are the stored training inputs."""
+        for steps, inputs in (("[whiten: {by: covariance}, partial_least_squares]", None),
+                              ("[whiten, select: {fisher_information: {count: 6}}]", 6),
+                              ("[select: {mutual_information: {count: 5}}, z_score]", 5),
+                              ("[select: {features: [theta(1 s), y(0.5 s)]}, z_score]", 2)):
+            self.run_experiment("run", f"transform={steps}", "inverse_map.gp.starts=1", "noise.scale=0.01")
+            with h5py.File(self.folder / "run/samples.h5") as samples:
+                features = samples["train/responses"][:].reshape(40, -1)
+            with h5py.File(self.folder / "run/maps.h5") as maps:
+                x, stored = transform(maps, features), maps["training_inputs"][:]
+                self.assertEqual(x.shape, stored.shape)
+                self.assertIn(inputs, (None, x.shape[1]))
+                correlation = [np.corrcoef(a, b)[0, 1] for a, b in zip(x.T, stored.T)]  # clean and noisy
+                self.assertGreater(min(correlation[:2]), 0.99, steps)
+
+    def test_wrong_selections_are_found_before_anything_is_simulated(self):
+        result = call("run", TABLE1, "transform=[select: {features: [theta(1 s), theta(1.05s)]}]", "--out",
+                      self.folder / "run")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("'theta(1.05s)' is not a feature; did you mean 'theta(1.05 s)'?", result.stderr)
+
     def test_samples_file_is_readable_and_named(self):
         self.run_experiment("run")
         with h5py.File(self.folder / "run/samples.h5") as file:

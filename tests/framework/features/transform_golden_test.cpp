@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "framework/features/feature_transform.hpp"
+#include "framework/features/mutual_information.hpp"
 #include "framework/features/partial_least_squares.hpp"
 #include "framework/features/scaling_steps.hpp"
+#include "framework/features/selections.hpp"
 
 namespace twinmap {
 namespace {
@@ -87,6 +89,32 @@ TEST(TransformGolden, CrossValidationOfPartialLeastSquares) {
   const MatrixXd errors = calcCrossValidationErrors(makeSamples(), golden::kComponents, golden::kFolds);
   const MatrixXd expected = toMatrix(golden::kHeldOutErrors, golden::kComponents).transpose();
   EXPECT_LT((errors - expected).cwiseAbs().maxCoeff(), 1e-11);
+}
+
+/// The estimate depends on counts of samples alone, so it is equal to rounding (scikit-learn's jitter of
+/// 1e-10 changes no count).
+TEST(TransformGolden, MutualInformation) {
+  const LabelledFeatures samples = makeSamples();
+  const Index simulations = samples.features.cols() / samples.replicates;
+  const auto rank = [&](const MatrixXd& rows, Index row) {
+    return rankValues(rows.row(row).head(simulations).transpose());
+  };
+  for (Index i = 0; i < golden::kFeatureCount; ++i) {
+    const RankedValues feature = rank(samples.features, i);
+    EXPECT_NEAR(calcMutualInformation(feature, rank(samples.parameters, 0), 3), golden::kWithParameter0[i],
+                1e-12);
+    EXPECT_NEAR(calcMutualInformation(rank(samples.parameters, 1), feature, 3), golden::kWithParameter1[i],
+                1e-12);
+    if (i > 0) {
+      EXPECT_NEAR(calcMutualInformation(feature, rank(samples.features, 0), 3), golden::kWithFeature0[i - 1],
+                  1e-12);
+    }
+  }
+}
+
+TEST(TransformGolden, RelevanceWithoutRedundancy) {
+  const std::vector<Index> selected = selectByMutualInformation({golden::kComponents, 3}, makeSamples());
+  EXPECT_EQ(std::vector<int>(selected.begin(), selected.end()), golden::kSelected);
 }
 
 }  // namespace

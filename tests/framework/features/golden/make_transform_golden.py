@@ -11,6 +11,7 @@ import numpy as np
 import sklearn
 from sklearn.cross_decomposition import PLSRegression
 from sklearn.decomposition import PCA
+from sklearn.feature_selection import mutual_info_regression
 from sklearn.preprocessing import StandardScaler
 
 FEATURES, SIMULATIONS, REPLICATES = 6, 40, 2
@@ -67,6 +68,23 @@ def write_partial_least_squares(x, y):
     write("kHeldOutErrors", errors)  # fold by fold
 
 
+def write_mutual_information(x, y):
+    """Of the first draw; feature by feature with each parameter, then with feature 0."""
+    x, y = x[:SIMULATIONS], y[:SIMULATIONS]
+    for name, target in (("kWithParameter0", y[:, 0]), ("kWithParameter1", y[:, 1])):
+        write(name, mutual_info_regression(x, target, n_neighbors=3, random_state=0))
+    write("kWithFeature0", mutual_info_regression(x[:, 1:], x[:, 0], n_neighbors=3, random_state=0))
+    relevance = sum(mutual_info_regression(x, target, n_neighbors=3, random_state=0) for target in y.T)
+    selected = [int(np.argmax(relevance))]
+    while len(selected) < COMPONENTS:
+        redundancy = [np.mean([mutual_info_regression(x[:, [i]], x[:, s], n_neighbors=3, random_state=0)[0]
+                               for s in selected]) for i in range(FEATURES)]
+        score = relevance - np.array(redundancy)
+        score[selected] = -np.inf
+        selected.append(int(np.argmax(score)))
+    write("kSelected", selected, "int")
+
+
 def main():
     x, y, noise_covariance = make_data()
     print("// Written by make_transform_golden.py with scikit-learn", sklearn.__version__, "and numpy",
@@ -81,6 +99,7 @@ def main():
     write_scalings(x, noise_covariance)
     write_principal_components(x)
     write_partial_least_squares(x, y)
+    write_mutual_information(x, y)
     print("// clang-format on\n\n}  // namespace twinmap::golden")
 
 
