@@ -7,6 +7,7 @@
 #include "framework/features/selections.hpp"
 #include "framework/inverse_map/gp_map.hpp"
 #include "framework/labelled_sets.hpp"
+#include "framework/make_extractor.hpp"
 #include "framework/multibody/multibody_simulator.hpp"
 #include "framework/result_files.hpp"
 #include "framework/spec/check_experiment.hpp"
@@ -108,7 +109,7 @@ RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& opt
   writeTextFile(options.folder / "resolved.yaml", writeExperiment(experiment));
 
   const MultibodySimulator simulator(experiment.model, collectTimes(experiment.features));
-  const FeatureExtractor extractor(experiment.features, simulator.getLayout());
+  const FeatureExtractor extractor = makeExtractor(experiment, simulator.getLayout());
   checkTransformOf(extractor.getInfos(), experiment.transform);
   const auto store = openStore(experiment.model, simulator.getLayout(), options);
   SimulatedSets sets = simulateSets(experiment, simulator, *store, options, run);

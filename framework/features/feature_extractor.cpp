@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "framework/features/extrema.hpp"
+#include "framework/features/frequency_response.hpp"
 #include "framework/features/sampled_outputs.hpp"
+#include "framework/features/spectrum.hpp"
 #include "framework/features/statistics.hpp"
 
 namespace twinmap {
@@ -11,12 +13,18 @@ namespace {
 
 using Blocks = std::vector<std::shared_ptr<const FeatureBlock>>;
 
-Blocks makeBlocks(const FeatureSpec& feature, const ResponseLayout& layout) {
+Blocks makeBlocks(const FeatureSpec& feature, const ResponseLayout& layout, const InputSignals& inputs) {
   if (feature.statistics) {
     return makeStatisticsBlocks(*feature.statistics, layout);
   }
   if (feature.extrema) {
     return {makeExtremaBlock(*feature.extrema, layout)};
+  }
+  if (feature.spectrum) {
+    return {makeSpectrumBlock(*feature.spectrum, layout)};
+  }
+  if (feature.frequency_response) {
+    return {makeFrequencyResponseBlock(*feature.frequency_response, layout, inputs)};
   }
   return {makeSamplesBlock(*feature.samples, layout)};
 }
@@ -38,6 +46,12 @@ void appendTimes(const FeatureSpec& feature, std::vector<double>& times) {
   if (feature.extrema) {
     appendTimes(feature.extrema->window, times);
   }
+  if (feature.spectrum) {
+    appendTimes(feature.spectrum->window, times);
+  }
+  if (feature.frequency_response) {
+    appendTimes(feature.frequency_response->window, times);
+  }
 }
 
 }  // namespace
@@ -52,9 +66,15 @@ Eigen::VectorXd collectTimes(const std::vector<FeatureSpec>& features) {
   return Eigen::Map<Eigen::VectorXd>(times.data(), static_cast<Eigen::Index>(times.size()));
 }
 
-FeatureExtractor::FeatureExtractor(const std::vector<FeatureSpec>& features, const ResponseLayout& layout) {
+bool needExcitation(const std::vector<FeatureSpec>& features) {
+  return std::any_of(features.begin(), features.end(),
+                     [](const FeatureSpec& feature) { return feature.frequency_response.has_value(); });
+}
+
+FeatureExtractor::FeatureExtractor(const std::vector<FeatureSpec>& features, const ResponseLayout& layout,
+                                   const InputSignals& inputs) {
   for (const FeatureSpec& feature : features) {
-    const Blocks blocks = makeBlocks(feature, layout);
+    const Blocks blocks = makeBlocks(feature, layout, inputs);
     blocks_.insert(blocks_.end(), blocks.begin(), blocks.end());
   }
   for (const auto& block : blocks_) {

@@ -6,6 +6,7 @@
 
 #include "framework/features/feature_block.hpp"
 #include "framework/spec/experiment_spec.hpp"
+#include "framework/spec/input_signals.hpp"
 #include "framework/spec/response_layout.hpp"
 
 namespace twinmap {
@@ -13,11 +14,17 @@ namespace twinmap {
 /// The times at which outputs must be known for all features: sorted, unique; s.
 Eigen::VectorXd collectTimes(const std::vector<FeatureSpec>& features);
 
+/// Whether features need the values of the excitation.
+bool needExcitation(const std::vector<FeatureSpec>& features);
+
 /// Maps responses to features: the blocks of the experiment's list, one below the other. Immutable.
 class FeatureExtractor {
  public:
-  /// The layout must contain the features' outputs and times (collectTimes). Throws std::invalid_argument.
-  FeatureExtractor(const std::vector<FeatureSpec>& features, const ResponseLayout& layout);
+  /// The layout must contain the features' outputs and times (collectTimes); `inputs`, only where features
+  /// need the excitation, the signals at the layout's times. Throws std::invalid_argument, and
+  /// ExperimentError for a frequency response where the excitation has no energy.
+  FeatureExtractor(const std::vector<FeatureSpec>& features, const ResponseLayout& layout,
+                   const InputSignals& inputs = {});
 
   const std::vector<FeatureInfo>& getInfos() const { return infos_; }
   const std::vector<std::shared_ptr<const FeatureBlock>>& getBlocks() const { return blocks_; }

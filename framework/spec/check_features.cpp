@@ -1,6 +1,7 @@
 #include "framework/spec/check_features.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "framework/spec/check_experiment.hpp"
 #include "framework/spec/number_text.hpp"
@@ -57,6 +58,100 @@ void check(const ExtremaFeatureSpec& extrema, const ModelSpec& model) {
   checkTimes(extrema.window, model, findFeature(extrema.output, "output"));
 }
 
+/// Frequencies between the lines would leak into one another and into the mean.
+void checkLines(const std::vector<Frequency>& frequencies, const WindowSpec& window) {
+  constexpr double kTolerance = 1e-6;  // of the distance between lines
+  const double resolution = 1.0 / (window.interval * window.count);
+  std::vector<int> lines;
+  for (const Frequency& frequency : frequencies) {
+    const int line = calcLine(window, frequency);
+    if (std::abs(frequency.hertz / resolution - line) > kTolerance || line < 1 || 2 * line >= window.count) {
+      throw ExperimentError(frequency.where, toText(frequency.hertz),
+                            "must be a line of the window: a multiple of 1 / (count * interval) = " +
+                                toText(resolution) + " Hz below " + toText(0.5 / window.interval) + " Hz");
+    }
+    if (std::find(lines.begin(), lines.end(), line) != lines.end()) {
+      throw ExperimentError(frequency.where, toText(frequency.hertz), "is listed twice");
+    }
+    lines.push_back(line);
+  }
+}
+
+void check(const SpectrumFeatureSpec& spectrum, const ModelSpec& model) {
+  checkOutputs(spectrum.outputs, model);
+  checkTimes(spectrum.window, model, findFeature(spectrum.outputs.front(), "outputs"));
+  checkLines(spectrum.frequencies, spectrum.window);
+}
+
+void append(std::vector<const Expression*>& all, const std::vector<Expression>& expressions) {
+  for (const Expression& expression : expressions) {
+    all.push_back(&expression);
+  }
+}
+
+std::vector<const Expression*> collectExpressions(const SignalSpec& signal) {
+  std::vector<const Expression*> all;
+  for (const PulseSpec& pulse : signal.pulses) {
+    all.insert(all.end(), {&pulse.amplitude, &pulse.start, &pulse.end});
+  }
+  for (const SineSpec& sine : signal.sines) {
+    all.insert(all.end(), {&sine.amplitude, &sine.frequency, &sine.phase, &sine.start, &sine.end});
+  }
+  for (const ChirpSpec& chirp : signal.chirps) {
+    all.insert(all.end(),
+               {&chirp.amplitude, &chirp.start_frequency, &chirp.end_frequency, &chirp.start, &chirp.end});
+  }
+  for (const MultisineSpec& multisine : signal.multisines) {
+    all.insert(all.end(), {&multisine.amplitude, &multisine.start, &multisine.end});
+    append(all, multisine.frequencies);
+    append(all, multisine.phases);
+  }
+  return all;
+}
+
+/// A parameter that an expression uses, be it through constants, or "".
+std::string findParameter(const Expression& expression, const ModelSpec& model) {
+  if (expression.text.empty()) {
+    return "";
+  }
+  const std::vector<std::string> parameters = collectNames(model.parameters);
+  for (const std::string& name : getUsedNames(expression)) {
+    if (std::find(parameters.begin(), parameters.end(), name) != parameters.end()) {
+      return name;
+    }
+    for (const ConstantSpec& constant : model.constants) {
+      const std::string within = constant.name.text == name ? findParameter(constant.value, model) : "";
+      if (!within.empty()) {
+        return within;
+      }
+    }
+  }
+  return "";
+}
+
+void checkKnown(const SignalSpec& signal, const ModelSpec& model) {
+  for (const Expression* expression : collectExpressions(signal)) {
+    const std::string parameter = findParameter(*expression, model);
+    if (!parameter.empty()) {
+      throw ExperimentError(expression->where, expression->text,
+                            "depends on the updating parameter '" + parameter +
+                                "', but the excitation of a frequency_response must be known");
+    }
+  }
+}
+
+void check(const FrequencyResponseFeatureSpec& response, const ModelSpec& model) {
+  requireKnown(response.excitation, collectNames(model.excitation), "an excitation signal");
+  checkOutputs(response.outputs, model);
+  checkTimes(response.window, model, findFeature(response.outputs.front(), "outputs"));
+  checkLines(response.frequencies, response.window);
+  for (const SignalSpec& signal : model.excitation) {
+    if (signal.name.text == response.excitation.text) {
+      checkKnown(signal, model);
+    }
+  }
+}
+
 void append(std::vector<Name>& names, const std::vector<Name>& others) {
   names.insert(names.end(), others.begin(), others.end());
 }
@@ -75,6 +170,12 @@ std::vector<Name> collectOutputs(const std::vector<FeatureSpec>& features) {
     if (feature.extrema) {
       outputs.push_back(feature.extrema->output);
     }
+    if (feature.spectrum) {
+      append(outputs, feature.spectrum->outputs);
+    }
+    if (feature.frequency_response) {
+      append(outputs, feature.frequency_response->outputs);
+    }
   }
   return outputs;
 }
@@ -89,6 +190,12 @@ void checkFeatures(const std::vector<FeatureSpec>& features, const ModelSpec& mo
     }
     if (feature.extrema) {
       check(*feature.extrema, model);
+    }
+    if (feature.spectrum) {
+      check(*feature.spectrum, model);
+    }
+    if (feature.frequency_response) {
+      check(*feature.frequency_response, model);
     }
   }
 }

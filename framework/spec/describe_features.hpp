@@ -19,6 +19,18 @@ struct EnumNames<ExtremaKind> {
       {"maxima", ExtremaKind::kMaxima}, {"minima", ExtremaKind::kMinima}, {"both", ExtremaKind::kBoth}};
 };
 
+template <>
+struct EnumNames<WindowFunction> {
+  static constexpr EnumName<WindowFunction> values[] = {{"rectangular", WindowFunction::kRectangular},
+                                                        {"hann", WindowFunction::kHann}};
+};
+
+template <>
+struct EnumNames<ComplexParts> {
+  static constexpr EnumName<ComplexParts> values[] = {{"real_imaginary", ComplexParts::kRealImaginary},
+                                                      {"magnitude_phase", ComplexParts::kMagnitudePhase}};
+};
+
 template <class Fields>
 void describe(Fields& f, SamplesFeatureSpec& s) {
   f.required("outputs", s.outputs, "outputs to sample");
@@ -62,12 +74,38 @@ void describe(Fields& f, ExtremaFeatureSpec& s) {
 }
 
 template <class Fields>
+void describe(Fields& f, SpectrumFeatureSpec& s) {
+  f.required("outputs", s.outputs, "outputs to transform");
+  f.required("window", s.window, "the samples to transform");
+  f.required("frequencies", s.frequencies, "multiples of 1 / (count * interval) of the window; Hz");
+  f.optional("window_function", s.window_function, "what the samples are multiplied by");
+  f.optional("parts", s.parts, "real and imaginary part, or magnitude with cosine and sine of the phase");
+  f.rule(!s.outputs.empty(), "must name at least one of outputs");
+  f.rule(!s.frequencies.empty(), "must list at least one of frequencies");
+}
+
+template <class Fields>
+void describe(Fields& f, FrequencyResponseFeatureSpec& s) {
+  f.required("excitation", s.excitation, "signal that the outputs respond to; known without noise");
+  f.required("outputs", s.outputs, "outputs to transform");
+  f.required("window", s.window, "whole periods of a periodic excitation, in steady state");
+  f.required("frequencies", s.frequencies, "multiples of 1 / (count * interval) of the window; Hz");
+  f.optional("parts", s.parts, "real and imaginary part, or magnitude with cosine and sine of the phase");
+  f.rule(!s.outputs.empty(), "must name at least one of outputs");
+  f.rule(!s.frequencies.empty(), "must list at least one of frequencies");
+}
+
+template <class Fields>
 void describe(Fields& f, FeatureSpec& s) {
   f.optional("samples", s.samples, "equidistant samples of outputs");
   f.optional("statistics", s.statistics, "mean, stddev, rms, min, max, peak_to_peak over a window");
   f.optional("extrema", s.extrema, "value and time of the first peaks");
-  f.rule(s.samples.has_value() + s.statistics.has_value() + s.extrema.has_value() == 1,
-         "must give one kind of feature: samples, statistics, extrema");
+  f.optional("spectrum", s.spectrum, "lines of the discrete Fourier transform");
+  f.optional("frequency_response", s.frequency_response, "outputs over an excitation at chosen frequencies");
+  const int given = s.samples.has_value() + s.statistics.has_value() + s.extrema.has_value() +
+                    s.spectrum.has_value() + s.frequency_response.has_value();
+  f.rule(given == 1,
+         "must give one kind of feature: samples, statistics, extrema, spectrum, frequency_response");
 }
 
 }  // namespace twinmap

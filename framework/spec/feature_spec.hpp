@@ -52,12 +52,49 @@ struct ExtremaFeatureSpec {
   int fit_samples = 5;               ///< of the parabola through a peak; odd
 };
 
+/// A frequency as written, above 0.
+struct Frequency {
+  double hertz = 0.0;
+  SourceLocation where;
+};
+
+enum class WindowFunction { kRectangular, kHann };
+
+/// How a complex number becomes features. The phase is given by its cosine and sine, which never jump.
+enum class ComplexParts { kRealImaginary, kMagnitudePhase };
+
+/// Lines of the discrete Fourier transform of outputs over a window, scaled so that a sine of amplitude A
+/// on a line has magnitude A.
+struct SpectrumFeatureSpec {
+  std::vector<Name> outputs;
+  WindowSpec window;
+  std::vector<Frequency> frequencies;  ///< multiples of 1 / (count * interval), below half the sample rate
+  WindowFunction window_function = WindowFunction::kRectangular;
+  ComplexParts parts = ComplexParts::kRealImaginary;
+};
+
+/// Frequency response functions: lines of the outputs' spectrum over those of an excitation signal.
+struct FrequencyResponseFeatureSpec {
+  Name excitation;
+  std::vector<Name> outputs;
+  WindowSpec window;
+  std::vector<Frequency> frequencies;  ///< as those of a spectrum
+  ComplexParts parts = ComplexParts::kRealImaginary;
+};
+
 /// One kind of feature; exactly one member is set.
 struct FeatureSpec {
   std::optional<SamplesFeatureSpec> samples;
   std::optional<StatisticsFeatureSpec> statistics;
   std::optional<ExtremaFeatureSpec> extrema;
+  std::optional<SpectrumFeatureSpec> spectrum;
+  std::optional<FrequencyResponseFeatureSpec> frequency_response;
 };
+
+/// The number of a frequency's line in a window, count * interval * frequency, rounded.
+inline int calcLine(const WindowSpec& window, const Frequency& frequency) {
+  return static_cast<int>(std::lround(frequency.hertz * window.interval * window.count));
+}
 
 /// The outputs that the features are made of, as often as they are named.
 std::vector<Name> collectOutputs(const std::vector<FeatureSpec>& features);

@@ -35,6 +35,9 @@ Json makeSchema(const Expression&) {
 Json makeSchema(const OutputNoiseSpec&) {
   return {{"type", "number"}, {"minimum", 0}};
 }
+Json makeSchema(const Frequency&) {
+  return {{"type", "number"}, {"exclusiveMinimum", 0}};
+}
 Json makeSchema(const NamedExpression&) {
   return makeSchema(Expression{});
 }

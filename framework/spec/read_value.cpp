@@ -126,6 +126,11 @@ void readValue(const YamlNode& node, OutputNoiseSpec& value) {
   readValue(node, value.stddev, kNonNegative);
 }
 
+void readValue(const YamlNode& node, Frequency& value) {
+  readValue(node, value.hertz, kPositive);
+  value.where = node.where;
+}
+
 void readValue(const YamlNode& node, NamedExpression& value) {
   readValue(node, value.value);
 }

@@ -30,6 +30,8 @@ void readValue(const YamlNode& node, Name& value);
 /// [lower, upper] with lower < upper.
 void readValue(const YamlNode& node, Bounds& value);
 void readValue(const YamlNode& node, OutputNoiseSpec& value);
+/// A number above 0.
+void readValue(const YamlNode& node, Frequency& value);
 void readValue(const YamlNode& node, NamedExpression& value);
 /// A whole number above 0, or automatic.
 void readValue(const YamlNode& node, ComponentCount& value);

@@ -32,6 +32,10 @@ YamlNode writeValue(const Bounds& value) {
 YamlNode writeValue(const OutputNoiseSpec& value) {
   return writeValue(value.stddev);
 }
+YamlNode writeValue(const Frequency& value) {
+  return writeValue(value.hertz);
+}
+
 YamlNode writeValue(const NamedExpression& value) {
   return writeValue(value.value);
 }

@@ -23,6 +23,7 @@ YamlNode writeValue(const Name& value);
 YamlNode writeValue(const ComponentCount& value);
 YamlNode writeValue(const Bounds& value);
 YamlNode writeValue(const OutputNoiseSpec& value);
+YamlNode writeValue(const Frequency& value);
 YamlNode writeValue(const NamedExpression& value);
 
 /// Writes the fields of a struct into a map, defaults included; what is not given is left out.

@@ -144,6 +144,22 @@ INSTANTIATE_TEST_SUITE_P(
                 "features=[{extrema: {output: y, window: {start: 0, interval: 0.1, count: 9}, peaks: 1, "
                 "fit_samples: 4}}]",
                 {"features[0].extrema", "odd fit_samples"}},
+        Mistake{"BetweenTheLines",
+                "features=[{spectrum: {outputs: [y], window: {start: 0, interval: 0.05, count: 100}, "
+                "frequencies: [1, 1.1]}}]",
+                {"features[0].spectrum.frequencies[1]", "'1.1' must be a line", "= 0.2 Hz below 10 Hz"}},
+        Mistake{"BeyondHalfTheSampleRate",
+                "features=[{spectrum: {outputs: [y], window: {start: 0, interval: 0.05, count: 100}, "
+                "frequencies: [10]}}]",
+                {"features[0].spectrum.frequencies[0]", "below 10 Hz"}},
+        Mistake{"RepeatedLine",
+                "features=[{spectrum: {outputs: [y], window: {start: 0, interval: 0.05, count: 100}, "
+                "frequencies: [1, 2, 1]}}]",
+                {"features[0].spectrum.frequencies[2]", "listed twice"}},
+        Mistake{"FrequencyResponseToNothing",
+                "features=[{frequency_response: {excitation: G, outputs: [y], window: {start: 0, interval: "
+                "0.05, count: 100}, frequencies: [1]}}]",
+                {"features[0].frequency_response.excitation", "'G' is not an excitation signal"}},
         Mistake{"UnknownStep", "transform=[z_scor]", {"transform[0]", "did you mean 'z_score'?"}},
         Mistake{"RankWithoutNoise",
                 "transform=[z_score, principal_components]",
@@ -191,6 +207,24 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"MalformedPath", "system..springs=1", {"malformed key path"}},
         Mistake{"NoOverride", "noise.scale", {"is not an override"}}),
     [](const testing::TestParamInfo<Mistake>& mistake) { return mistake.param.name; });
+
+TEST(ExperimentErrors, AnExcitationThatDependsOnAParameterHasNoFrequencyResponse) {
+  const std::string feature =
+      "features=[{frequency_response: {excitation: F, outputs: [y], window: {start: 0, interval: 0.05, "
+      "count: "
+      "100}, frequencies: [1]}}]";
+  EXPECT_NO_THROW(loadExperiment(kTable1, {feature}));
+  try {
+    loadExperiment(kTable1, {feature, "constants.force=2 * k_y", "excitation.F.pulses[0].amplitude=force"});
+    FAIL();
+  } catch (const ExperimentError& error) {
+    const std::string message = error.what();
+    EXPECT_NE(
+        message.find("excitation.F.pulses[0].amplitude: 'force' depends on the updating parameter 'k_y'"),
+        std::string::npos)
+        << message;
+  }
+}
 
 TEST(ExperimentErrors, NameFileLineAndColumn) {
   YamlNode root = parseYaml("name: x\nparameters:\n  a: {bounds: [2, 1]}\n", "some.yaml");

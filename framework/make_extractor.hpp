@@ -1,0 +1,11 @@
+#pragma once
+
+#include "framework/features/feature_extractor.hpp"
+
+namespace twinmap {
+
+/// The features of an experiment for responses of a layout; the excitation is computed where they need it.
+/// Throws ExperimentError for a frequency response where the excitation has no energy.
+FeatureExtractor makeExtractor(const ExperimentSpec& experiment, const ResponseLayout& layout);
+
+}  // namespace twinmap
