@@ -108,7 +108,8 @@ RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& opt
   const FolderLock lock(options.folder);
   writeTextFile(options.folder / "resolved.yaml", writeExperiment(experiment));
 
-  const MultibodySimulator simulator(experiment.model, collectTimes(experiment.features));
+  const MultibodySimulator simulator(experiment.model, collectTimes(experiment.features),
+                                     countModes(experiment.features));
   const FeatureExtractor extractor = makeExtractor(experiment, simulator.getLayout());
   checkTransformOf(extractor.getInfos(), experiment.transform);
   const auto store = openStore(experiment.model, simulator.getLayout(), options);

@@ -50,7 +50,7 @@ void addCheck(CLI::App& app, twinmap::ExperimentArguments& arguments) {
 void addSimulate(CLI::App& app, twinmap::SimulateArguments& arguments) {
   CLI::App* command = app.add_subcommand(
       "simulate",
-      "Simulate once and write the outputs at the features' times as CSV. The parameters are at "
+      "Simulate once and write the outputs at the features' times, and modes, as CSV. The parameters are at "
       "the centre of their bounds, unless given as parameters.NAME=VALUE");
   addExperiment(*command, arguments.experiment);
   command->add_option("--csv", arguments.csv, "Write to this file instead of the standard output")

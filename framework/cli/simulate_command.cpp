@@ -56,21 +56,37 @@ Eigen::VectorXd makePoint(const ModelSpec& model, const std::vector<ParameterVal
   return point;
 }
 
-std::string makeCsv(const MultibodySimulator& simulator, const Eigen::VectorXd& response) {
-  const Eigen::VectorXd& times = simulator.getLayout().times;
+std::string makeModesCsv(const ResponseLayout& layout, const Eigen::VectorXd& response) {
+  std::string csv = "mode,natural_frequency,damping_ratio\n";
+  for (int i = 0; i < layout.modes; ++i) {
+    csv += std::to_string(i + 1) + "," + toText(response[layout.getFrequencyRow(i)]) + "," +
+           toText(response[layout.getDampingRow(i)]) + "\n";
+  }
+  return csv;
+}
+
+std::string makeOutputsCsv(const ResponseLayout& layout, const Eigen::VectorXd& response) {
+  const Eigen::VectorXd& times = layout.times;
   std::string csv = "t";
-  for (const std::string& name : simulator.getLayout().output_names) {
+  for (const std::string& name : layout.output_names) {
     csv += "," + escapeCsv(name);
   }
   csv += "\n";
   for (Eigen::Index i = 0; i < times.size(); ++i) {
     csv += toText(times[i]);
-    for (Eigen::Index row = i; row < response.size(); row += times.size()) {
-      csv += "," + toText(response[row]);
+    for (Eigen::Index output = 0; output < layout.getOutputCount(); ++output) {
+      csv += "," + toText(response[layout.getRow(output, i)]);
     }
     csv += "\n";
   }
   return csv;
+}
+
+/// The outputs, then the modes; an empty line between them where there are both.
+std::string makeCsv(const ResponseLayout& layout, const Eigen::VectorXd& response) {
+  const bool outputs = layout.times.size() > 0, modes = layout.modes > 0;
+  return (outputs ? makeOutputsCsv(layout, response) : "") + (outputs && modes ? "\n" : "") +
+         (modes ? makeModesCsv(layout, response) : "");
 }
 
 }  // namespace
@@ -80,7 +96,8 @@ void simulate(const SimulateArguments& arguments) {
   const std::vector<ParameterValue> values = takeParameterValues(overrides);
   const ExperimentSpec experiment = loadExperiment(arguments.experiment.file, overrides);
   const Eigen::MatrixXd point = makePoint(experiment.model, values);
-  MultibodySimulator simulator(experiment.model, collectTimes(experiment.features));
+  MultibodySimulator simulator(experiment.model, collectTimes(experiment.features),
+                               countModes(experiment.features));
   Eigen::MatrixXd response(simulator.getLayout().getRowCount(), 1);
   SampleStatus status;
   simulator.simulate(point, response, &status);
@@ -91,7 +108,7 @@ void simulate(const SimulateArguments& arguments) {
     response = addNoise(response, calcNoiseStddev(experiment.noise, simulator.getLayout()),
                         RandomStream(experiment.seed, RandomPurpose::kSingleNoise));
   }
-  const std::string csv = makeCsv(simulator, response);
+  const std::string csv = makeCsv(simulator.getLayout(), response);
   if (arguments.csv.empty()) {
     std::cout << csv;
   } else {

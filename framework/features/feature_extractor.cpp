@@ -4,6 +4,7 @@
 
 #include "framework/features/extrema.hpp"
 #include "framework/features/frequency_response.hpp"
+#include "framework/features/mode_features.hpp"
 #include "framework/features/sampled_outputs.hpp"
 #include "framework/features/spectrum.hpp"
 #include "framework/features/statistics.hpp"
@@ -25,6 +26,9 @@ Blocks makeBlocks(const FeatureSpec& feature, const ResponseLayout& layout, cons
   }
   if (feature.frequency_response) {
     return {makeFrequencyResponseBlock(*feature.frequency_response, layout, inputs)};
+  }
+  if (feature.modes) {
+    return {makeModesBlock(*feature.modes, layout)};
   }
   return {makeSamplesBlock(*feature.samples, layout)};
 }

@@ -7,7 +7,15 @@ namespace twinmap {
 
 Eigen::VectorXd calcNoiseStddev(const NoiseSpec& noise, const ResponseLayout& layout) {
   Eigen::VectorXd stddev(layout.getRowCount());
-  for (Eigen::Index o = 0; o < layout.getOutputCount(); ++o) {
+  if (layout.modes > 0) {
+    if (!noise.modes) {
+      throw std::invalid_argument("no noise is given for the modes");
+    }
+    stddev.segment(layout.getFrequencyRow(0), layout.modes).setConstant(noise.scale * noise.modes->frequency);
+    stddev.segment(layout.getDampingRow(0), layout.modes)
+        .setConstant(noise.scale * noise.modes->damping_ratio);
+  }
+  for (Eigen::Index o = 0; o < layout.getOutputCount() && layout.times.size() > 0; ++o) {
     const std::string& output = layout.output_names[o];
     const auto found = std::find_if(noise.stddev.begin(), noise.stddev.end(),
                                     [&](const OutputNoiseSpec& spec) { return spec.name.text == output; });

@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "framework/multibody/linearization.hpp"
 #include "framework/multibody/run_sample.hpp"
 #include "framework/spec/check_experiment.hpp"
 
@@ -83,8 +84,8 @@ Eigen::VectorXd solveBoxCenter(ModelContext& context) {
 
 class MultibodySimulator::Impl {
  public:
-  Impl(const ModelSpec& model, Eigen::VectorXd times)
-      : Impl(std::make_shared<SharedModel>(SharedModel{model, {{}, {}, std::move(times)}, {}})) {}
+  Impl(const ModelSpec& model, Eigen::VectorXd times, int modes)
+      : Impl(std::make_shared<SharedModel>(SharedModel{model, {{}, {}, std::move(times), modes}, {}})) {}
 
   explicit Impl(std::shared_ptr<SharedModel> shared) : shared_(std::move(shared)), context_(shared_->model) {}
 
@@ -96,7 +97,9 @@ class MultibodySimulator::Impl {
 
   /// Completes what the clones share.
   void prepare() {
-    checkSimulation(shared_->model.simulation);
+    if (shared_->layout.times.size() > 0) {
+      checkSimulation(shared_->model.simulation);
+    }
     checkTimes(shared_->layout.times, shared_->model.simulation.duration);
     shared_->layout.output_units = twinmap::getOutputUnits(shared_->model.outputs, context_.names);
     for (const OutputSpec& output : shared_->model.outputs) {
@@ -146,6 +149,10 @@ class MultibodySimulator::Impl {
     const bool own = simulation.integrator == Integrator::kDopri5;
     context_.numbers.update(parameters);
     LoadedSystem system(context_, !own);
+    fillModes(system, response);  // before the integration, which switches the excitation on
+    if (shared_->layout.times.size() == 0) {
+      return "";
+    }
     const Outputs outputs(shared_->model.outputs, context_.names, context_.numbers.updNumbers());
     const InitialState initial = calcInitialState(context_, system, shared_->box_center);
     const SampleRun sample{system,     context_.excitation,   outputs,        initial,
@@ -153,12 +160,30 @@ class MultibodySimulator::Impl {
     return own ? runDopri5(sample, sequence) : runSimbody(sample);
   }
 
+  void fillModes(LoadedSystem& system, Eigen::Ref<Eigen::VectorXd> response) {
+    const ResponseLayout& layout = shared_->layout;
+    if (layout.modes == 0) {
+      return;
+    }
+    const Eigen::VectorXd start =
+        shared_->box_center.size() > 0 ? shared_->box_center : calcInitialValues(context_).coordinates;
+    const std::vector<Mode> modes = calcModes(calcStateMatrix(system, solveEquilibrium(system, start)));
+    if (static_cast<int>(modes.size()) < layout.modes) {
+      throw SimulationFailure("only " + std::to_string(modes.size()) + " of " + std::to_string(layout.modes) +
+                              " modes oscillate at the equilibrium");
+    }
+    for (int i = 0; i < layout.modes; ++i) {
+      response[layout.getFrequencyRow(i)] = modes[i].frequency;
+      response[layout.getDampingRow(i)] = modes[i].damping_ratio;
+    }
+  }
+
   std::shared_ptr<SharedModel> shared_;
   ModelContext context_;
 };
 
-MultibodySimulator::MultibodySimulator(const ModelSpec& model, Eigen::VectorXd times)
-    : impl_(std::make_unique<Impl>(model, std::move(times))) {
+MultibodySimulator::MultibodySimulator(const ModelSpec& model, Eigen::VectorXd times, int modes)
+    : impl_(std::make_unique<Impl>(model, std::move(times), modes)) {
   impl_->prepare();
 }
 

@@ -23,10 +23,34 @@ void checkName(const Name& name) {
   }
 }
 
-void checkNoise(const NoiseSpec& noise, const ModelSpec& model) {
+/// What is simulated must have a duration.
+void checkDuration(const ExperimentSpec& experiment) {
+  if (!collectOutputs(experiment.features).empty() && !(experiment.model.simulation.duration > 0.0)) {
+    throw ExperimentError({experiment.name.where.file, 0, 0, "simulation.duration"}, "0",
+                          "must be given, a number above 0, for features of outputs");
+  }
+}
+
+void checkModesNoise(const ExperimentSpec& experiment) {
+  const bool needed = countModes(experiment.features) > 0;
+  if (needed != experiment.noise.modes.has_value()) {
+    throw ExperimentError(
+        {experiment.name.where.file, 0, 0, "noise.modes"}, "",
+        needed ? "is needed for features of modes: {frequency: Hz, damping_ratio: }, 0 for none"
+               : "is given, but no feature is made of modes");
+  }
+}
+
+void checkNoise(const ExperimentSpec& experiment) {
+  const NoiseSpec& noise = experiment.noise;
+  const ModelSpec& model = experiment.model;
   const std::vector<std::string> outputs = collectNames(model.outputs);
   for (const OutputNoiseSpec& stddev : noise.stddev) {
     requireKnown(stddev.name, outputs, "an output");
+  }
+  checkModesNoise(experiment);
+  if (collectOutputs(experiment.features).empty()) {
+    return;
   }
   const std::vector<std::string> given = collectNames(noise.stddev);
   for (const OutputSpec& output : model.outputs) {
@@ -55,8 +79,9 @@ void requireKnown(const Name& name, const std::vector<std::string>& known, const
 void checkExperiment(const ExperimentSpec& experiment) {
   checkName(experiment.name);
   checkModel(experiment.model);
+  checkDuration(experiment);
   checkFeatures(experiment.features, experiment.model);
-  checkNoise(experiment.noise, experiment.model);
+  checkNoise(experiment);
   checkTransform(experiment);
   checkDesign(experiment.design, experiment.name.where);
   for (const Name& axis : experiment.report.over) {

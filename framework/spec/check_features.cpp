@@ -180,6 +180,14 @@ std::vector<Name> collectOutputs(const std::vector<FeatureSpec>& features) {
   return outputs;
 }
 
+int countModes(const std::vector<FeatureSpec>& features) {
+  int count = 0;
+  for (const FeatureSpec& feature : features) {
+    count = std::max(count, feature.modes ? feature.modes->count : 0);
+  }
+  return count;
+}
+
 void checkFeatures(const std::vector<FeatureSpec>& features, const ModelSpec& model) {
   for (const FeatureSpec& feature : features) {
     if (feature.samples) {

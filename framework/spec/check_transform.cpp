@@ -19,6 +19,19 @@ void requireNoise(const ExperimentSpec& experiment, const SourceLocation& where,
   }
 }
 
+void requireModesNoise(const ExperimentSpec& experiment, const SourceLocation& where,
+                       const std::string& step) {
+  const NoiseSpec& noise = experiment.noise;
+  for (const FeatureSpec& feature : experiment.features) {
+    if (feature.modes && feature.modes->frequencies && !(noise.scale * noise.modes->frequency > 0.0)) {
+      throw ExperimentError(where, step, "needs noise above 0 in noise.modes.frequency");
+    }
+    if (feature.modes && feature.modes->damping_ratios && !(noise.scale * noise.modes->damping_ratio > 0.0)) {
+      throw ExperimentError(where, step, "needs noise above 0 in noise.modes.damping_ratio");
+    }
+  }
+}
+
 void checkWhiten(const WhitenSpec& whiten, const Progress& progress, const SourceLocation& where) {
   if (progress.mixed && whiten.by == WhitenBy::kStddev) {
     throw ExperimentError(where, "whiten",
@@ -50,6 +63,7 @@ void checkSelect(const SelectSpec& select, const ExperimentSpec& experiment, con
 void checkStep(const TransformStepSpec& step, const ExperimentSpec& experiment, const Progress& progress) {
   if (step.whiten) {
     requireNoise(experiment, step.where, "whiten");
+    requireModesNoise(experiment, step.where, "whiten");
     checkWhiten(*step.whiten, progress, step.where);
   }
   if (step.select) {

@@ -90,7 +90,7 @@ void describe(Fields& f, ConstantSpec& s) {
 
 template <class Fields>
 void describe(Fields& f, SimulationSpec& s) {
-  f.required("duration", s.duration, "simulated time; s", kPositive);
+  f.optional("duration", s.duration, "simulated time; s; needed for features of outputs", kNonNegative);
   f.optional("integrator", s.integrator, "dopri5, or one of Simbody's as a cross-check");
   f.optional("relative_tolerance", s.relative_tolerance, "local error per step, relative", kPositive);
   f.optional("absolute_tolerance", s.absolute_tolerance, "local error per step, absolute", kPositive);
@@ -157,11 +157,18 @@ void describe(Fields& f, TransformStepSpec& s) {
 }
 
 template <class Fields>
+void describe(Fields& f, ModesNoiseSpec& s) {
+  f.required("frequency", s.frequency, "standard deviation of every natural frequency; Hz", kNonNegative);
+  f.required("damping_ratio", s.damping_ratio, "standard deviation of every damping ratio", kNonNegative);
+}
+
+template <class Fields>
 void describe(Fields& f, NoiseSpec& s) {
   f.optional("scale", s.scale, "multiplies every stddev", kNonNegative);
   f.optional("replicates", s.replicates,
              "noise draws per training simulation (default: 4, fewer for more than 500 samples)", kCount);
-  f.requiredMap("stddev", s.stddev, "standard deviation of each output's noise, in the output's unit");
+  f.optionalMap("stddev", s.stddev, "standard deviation of each output's noise, in the output's unit");
+  f.optional("modes", s.modes, "of natural frequencies and damping ratios, where modes are features");
 }
 
 template <class Fields>
@@ -236,8 +243,8 @@ void describe(Fields& f, ExperimentSpec& s) {
   f.required("system", s.model.system, "the multibody model");
   f.optionalMap("excitation", s.model.excitation, "named signals for forces and moments");
   f.optional("initial", s.model.initial, "initial condition");
-  f.requiredMap("outputs", s.model.outputs, "what is measured");
-  f.required("simulation", s.model.simulation, "how it is integrated");
+  f.optionalMap("outputs", s.model.outputs, "what is measured");
+  f.optional("simulation", s.model.simulation, "how it is integrated");
   f.required("features", s.features, "what the inverse map sees of the response");
   f.optional("transform", s.transform, "steps from features to the inputs of the inverse map");
   f.required("noise", s.noise, "measurement noise, on training and test features");

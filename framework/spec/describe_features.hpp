@@ -96,16 +96,26 @@ void describe(Fields& f, FrequencyResponseFeatureSpec& s) {
 }
 
 template <class Fields>
+void describe(Fields& f, ModesFeatureSpec& s) {
+  f.required("count", s.count, "how many modes, from the lowest", kCount);
+  f.optional("frequencies", s.frequencies, "natural frequencies |lambda| / (2 pi); Hz");
+  f.optional("damping_ratios", s.damping_ratios, "-Re(lambda) / |lambda|");
+  f.rule(s.frequencies || s.damping_ratios, "must have frequencies or damping_ratios");
+}
+
+template <class Fields>
 void describe(Fields& f, FeatureSpec& s) {
   f.optional("samples", s.samples, "equidistant samples of outputs");
   f.optional("statistics", s.statistics, "mean, stddev, rms, min, max, peak_to_peak over a window");
   f.optional("extrema", s.extrema, "value and time of the first peaks");
   f.optional("spectrum", s.spectrum, "lines of the discrete Fourier transform");
   f.optional("frequency_response", s.frequency_response, "outputs over an excitation at chosen frequencies");
+  f.optional("modes", s.modes, "natural frequencies and damping ratios at the equilibrium");
   const int given = s.samples.has_value() + s.statistics.has_value() + s.extrema.has_value() +
-                    s.spectrum.has_value() + s.frequency_response.has_value();
+                    s.spectrum.has_value() + s.frequency_response.has_value() + s.modes.has_value();
   f.rule(given == 1,
-         "must give one kind of feature: samples, statistics, extrema, spectrum, frequency_response");
+         "must give one kind of feature: samples, statistics, extrema, spectrum, frequency_response, "
+         "modes");
 }
 
 }  // namespace twinmap

@@ -73,11 +73,18 @@ struct OutputNoiseSpec {
   double stddev = 0.0;  ///< in the output's unit
 };
 
+/// Noise of the modes' natural frequencies and damping ratios, as identified from a measurement.
+struct ModesNoiseSpec {
+  double frequency = 0.0;      ///< standard deviation, Hz
+  double damping_ratio = 0.0;  ///< standard deviation
+};
+
 /// Independent normal noise on every sample of every output, in training and test alike.
 struct NoiseSpec {
   double scale = 1.0;             ///< multiplies every stddev
   std::optional<int> replicates;  ///< noise draws per training simulation; default 4, fewer for many samples
   std::vector<OutputNoiseSpec> stddev;
+  std::optional<ModesNoiseSpec> modes;
 };
 
 enum class DesignMethod { kLatinHypercube, kNestedLatinHypercube, kSobol, kUniform };

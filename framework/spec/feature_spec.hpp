@@ -82,6 +82,13 @@ struct FrequencyResponseFeatureSpec {
   ComplexParts parts = ComplexParts::kRealImaginary;
 };
 
+/// Natural frequencies and damping ratios of the lowest modes of the system linearised at its equilibrium.
+struct ModesFeatureSpec {
+  int count = 0;
+  bool frequencies = true;
+  bool damping_ratios = true;
+};
+
 /// One kind of feature; exactly one member is set.
 struct FeatureSpec {
   std::optional<SamplesFeatureSpec> samples;
@@ -89,12 +96,16 @@ struct FeatureSpec {
   std::optional<ExtremaFeatureSpec> extrema;
   std::optional<SpectrumFeatureSpec> spectrum;
   std::optional<FrequencyResponseFeatureSpec> frequency_response;
+  std::optional<ModesFeatureSpec> modes;
 };
 
 /// The number of a frequency's line in a window, count * interval * frequency, rounded.
 inline int calcLine(const WindowSpec& window, const Frequency& frequency) {
   return static_cast<int>(std::lround(frequency.hertz * window.interval * window.count));
 }
+
+/// How many of the lowest modes the features need; 0 for none.
+int countModes(const std::vector<FeatureSpec>& features);
 
 /// The outputs that the features are made of, as often as they are named.
 std::vector<Name> collectOutputs(const std::vector<FeatureSpec>& features);

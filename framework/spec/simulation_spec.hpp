@@ -5,7 +5,7 @@ namespace twinmap {
 enum class Integrator { kDopri5, kRungeKuttaMerson, kCpodes };
 
 struct SimulationSpec {
-  double duration = 0.0;  ///< s, > 0; required
+  double duration = 0.0;  ///< s; above 0 where features are made of outputs
   Integrator integrator = Integrator::kDopri5;
   double relative_tolerance = 3e-7;  ///< local error per step, relative to the state
   double absolute_tolerance = 1e-9;  ///< and absolute, in the state's own units

@@ -12,7 +12,15 @@ void writeSet(Hdf5Writer& file, const std::string& group, const Trajectories& se
   const auto samples = static_cast<std::size_t>(set.responses.cols());
   const auto times = static_cast<std::size_t>(set.layout.times.size());
   file.writeSamples(group + "/parameters", set.parameters);
-  file.write(group + "/responses", set.responses.data(), {samples, set.layout.output_names.size(), times});
+  const Eigen::MatrixXd outputs = set.responses.topRows(set.layout.getFrequencyRow(0));
+  file.write(group + "/responses", outputs.data(), {samples, set.layout.output_names.size(), times});
+  if (set.layout.modes > 0) {
+    const int modes = set.layout.modes;
+    file.writeSamples(group + "/natural_frequencies",
+                      set.responses.middleRows(set.layout.getFrequencyRow(0), modes));
+    file.writeSamples(group + "/damping_ratios",
+                      set.responses.middleRows(set.layout.getDampingRow(0), modes));
+  }
   std::vector<std::int64_t> ok;
   std::vector<std::string> reasons;
   for (const SampleStatus& status : set.statuses) {

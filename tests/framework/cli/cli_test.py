@@ -17,6 +17,7 @@ import yaml
 
 TWINMAP = os.environ["TWINMAP"]
 TABLE1 = os.path.join(os.environ["TWINMAP_SOURCE_DIR"], "experiments/two_beam/table1.yaml")
+CHAIN = os.path.join(os.environ["TWINMAP_SOURCE_DIR"], "experiments/three_mass_chain")
 SMALL = ["design.train.samples=40", "design.test.samples=20"]
 RESULTS = ["failures.csv", "joint.csv", "maps.h5", "metrics.csv", "pit.csv", "predictions.csv", "resolved.yaml",
            "samples.h5", "table.md", "table.tex", "training.csv"]
@@ -392,6 +393,61 @@ def normal_crps(mean, stddev, truth):
     """Gneiting and Raftery (2007)."""
     z, normal = (truth - mean) / stddev, statistics.NormalDist()
     return stddev * (z * (2 * normal.cdf(z) - 1) + 2 * normal.pdf(z) - np.pi**-0.5)
+
+
+class ThreeMassChain(TestCase):
+    """A linear system, updated from its modes and from frequency response functions, in small."""
+
+    def assert_updates_well(self, name, sd_pct):
+        for row in read_csv(self.folder / name / "metrics.csv"):
+            self.assertLess(float(row["sd_pct"]), sd_pct, row["parameter"])  # that of the prior is 12 %
+            self.assertGreater(float(row["coverage95"]), 0.75, row["parameter"])
+
+    def test_is_updated_from_its_modes_without_a_simulation_in_time(self):
+        self.run_experiment("run", file=CHAIN + "/modes.yaml", small=["design.train.samples=100", "design.test.samples=60"])
+        self.assert_updates_well("run", 6)
+        with h5py.File(self.folder / "run/samples.h5") as file:
+            self.assertEqual(file["test/responses"].shape, (60, 0, 0))
+            points, frequencies = file["test/parameters"][:], file["test/natural_frequencies"][:]
+            damping_ratios = file["test/damping_ratios"][:]
+        for point, frequency, damping in zip(points, frequencies, damping_ratios):
+            values = chain_eigenvalues(*point)
+            np.testing.assert_allclose(frequency, np.abs(values) / (2 * np.pi), rtol=1e-8)
+            np.testing.assert_allclose(damping, -values.real / np.abs(values), rtol=1e-7)
+
+    def test_is_updated_from_frequency_response_functions(self):
+        self.run_experiment("run", file=CHAIN + "/frequency_response.yaml",
+                            small=["design.train.samples=100", "design.test.samples=40"])
+        self.assert_updates_well("run", 6)
+
+    def test_modes_are_simulated_as_a_table(self):
+        result = call("simulate", CHAIN + "/modes.yaml", "parameters.k1=900")
+        rows = list(csv.reader(result.stdout.splitlines()))
+        self.assertEqual(rows[0], ["mode", "natural_frequency", "damping_ratio"])
+        values = chain_eigenvalues(900, 1000, 1000, 10)
+        np.testing.assert_allclose([float(row[1]) for row in rows[1:]], np.abs(values) / (2 * np.pi), rtol=1e-8)
+        both = call("simulate", CHAIN + "/frequency_response.yaml", "noise.modes={frequency: 0.1, damping_ratio: 0.1}",
+                    "features=[{modes: {count: 1}}, {samples: {outputs: [mass1], start: 0, interval: 0.1, count: 100}}]")
+        outputs, modes = both.stdout.split("\n\n")
+        self.assertEqual(len(outputs.splitlines()), 101)
+        self.assertEqual(len(modes.splitlines()), 2)
+
+    def test_an_excitation_without_energy_is_a_located_error(self):
+        result = call("run", CHAIN + "/frequency_response.yaml", "features[0].frequency_response.frequencies=[0.5, 6.5]",
+                      "--out", self.folder / "run")
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertIn("frequencies[1]: '6.5' is a frequency at which excitation 'F' has no energy", result.stderr)
+
+
+def chain_eigenvalues(k1, k2, k3, d):
+    """Those with positive imaginary part, by increasing magnitude, of M x'' + C x' + K x = 0."""
+    chain = np.array([[2, -1, 0], [-1, 2, -1], [0, -1, 1]])
+    stiffness = np.array([[k1 + k2, -k2, 0], [-k2, k2 + k3, -k3], [0, -k3, k3]])
+    inverse_mass = np.diag([1 / 2, 1, 1 / 0.5])
+    a = np.block([[np.zeros((3, 3)), np.eye(3)], [-inverse_mass @ stiffness, -inverse_mass @ chain * d]])
+    values = np.linalg.eigvals(a)
+    values = values[values.imag > 0]
+    return values[np.argsort(np.abs(values))]
 
 
 def transform(maps, features):

@@ -56,6 +56,23 @@ TEST(FeatureExtractor, AFailedSampleStaysInItsColumn) {
   EXPECT_EQ(extracted.col(2), responses.col(2));
 }
 
+TEST(FeatureExtractor, PicksModes) {
+  FeatureSpec modes = {}, frequencies = {};
+  modes.modes = ModesFeatureSpec{2, true, true};
+  frequencies.modes = ModesFeatureSpec{3, true, false};
+  EXPECT_EQ(countModes({modes, frequencies}), 3);
+  const ResponseLayout layout{{"a"}, {"m"}, Eigen::VectorXd::Zero(1), 3};
+  const FeatureExtractor extractor({modes, frequencies}, layout);
+  Eigen::VectorXd response(7), expected(7);
+  response << 99, 1, 2, 3, 0.1, 0.2, 0.3;  // a, three frequencies, three damping ratios
+  expected << 1, 2, 0.1, 0.2, 1, 2, 3;
+  EXPECT_EQ(extractor.extract(response), expected);
+  EXPECT_EQ(extractor.getInfos()[1].name, "natural frequency 2");
+  EXPECT_EQ(extractor.getInfos()[1].unit, "Hz");
+  EXPECT_EQ(extractor.getInfos()[2].name, "damping ratio 1");
+  EXPECT_THROW(FeatureExtractor({modes}, {{"a"}, {"m"}, Eigen::VectorXd::Zero(1), 1}), std::invalid_argument);
+}
+
 TEST(FeatureExtractor, RefusesWhatTheResponsesLack) {
   const std::vector<FeatureSpec> features{makeSamples({{"a", {}}}, 0.0, 1.0, 2)};
   EXPECT_THROW(FeatureExtractor(features, makeLayout({"b"}, collectTimes(features))), std::invalid_argument);

@@ -51,5 +51,23 @@ TEST(Noise, ScaleMultipliesEveryOutputAndZeroIsNone) {
   EXPECT_EQ(addNoise(clean, Eigen::VectorXd::Zero(2 * kTimes), {1, RandomPurpose::kTrainNoise}), clean);
 }
 
+TEST(Noise, OfModesFillsTheirRows) {
+  const ResponseLayout layout{{"y"}, {"m"}, Eigen::Vector2d(0.1, 0.2), 2};
+  NoiseSpec spec;
+  spec.scale = 2.0;
+  spec.stddev = {{{"y", {}}, 0.1}};
+  EXPECT_THROW(calcNoiseStddev(spec, layout), std::invalid_argument);
+  spec.modes = ModesNoiseSpec{0.01, 3e-4};
+  const Eigen::VectorXd expected = (Eigen::VectorXd(6) << 0.2, 0.2, 0.02, 0.02, 6e-4, 6e-4).finished();
+  EXPECT_LT((calcNoiseStddev(spec, layout) - expected).norm(), 1e-17);
+}
+
+TEST(Noise, OfOutputsThatNobodyLooksAtNeedNotBeGiven) {
+  const ResponseLayout layout{{"y"}, {"m"}, Eigen::VectorXd(), 1};
+  NoiseSpec spec;
+  spec.modes = ModesNoiseSpec{0.01, 3e-4};
+  EXPECT_EQ(calcNoiseStddev(spec, layout), Eigen::Vector2d(0.01, 3e-4));
+}
+
 }  // namespace
 }  // namespace twinmap
