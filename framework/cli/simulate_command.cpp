@@ -28,7 +28,8 @@ std::vector<ParameterValue> takeParameterValues(std::vector<std::string>& overri
   std::vector<std::string> others;
   for (const std::string& text : overrides) {
     const std::size_t equals = text.find('=');
-    const std::string name = text.substr(0, equals).substr(std::min(prefix.size(), text.size()));
+    const std::string key = text.substr(0, equals);
+    const std::string name = key.substr(std::min(prefix.size(), key.size()));
     const bool is_value = text.rfind(prefix, 0) == 0 && equals != std::string::npos &&
                           name.find_first_of(".[") == std::string::npos;
     if (!is_value) {

@@ -130,6 +130,9 @@ class Simulate(TestCase):
         np.testing.assert_allclose(default, at_centre, atol=1e-12)
         self.assertGreater(np.abs(default - elsewhere)[:, 1].max(), 1e-4)
 
+    def test_overrides_may_be_shorter_than_parameters(self):
+        self.assertEqual(call("simulate", TABLE1, "seed=3").returncode, 0)
+
     def test_noise_and_csv_are_as_asked(self):
         out = self.folder / "out.csv"
         self.assertEqual(call("simulate", TABLE1, "--noise", "--csv", out).stdout, "")
