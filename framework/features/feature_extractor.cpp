@@ -14,56 +14,49 @@ namespace {
 
 using Blocks = std::vector<std::shared_ptr<const FeatureBlock>>;
 
-Blocks makeBlocks(const FeatureSpec& feature, const ResponseLayout& layout, const InputSignals& inputs) {
-  if (feature.statistics) {
-    return makeStatisticsBlocks(*feature.statistics, layout);
-  }
-  if (feature.extrema) {
-    return {makeExtremaBlock(*feature.extrema, layout)};
-  }
-  if (feature.spectrum) {
-    return {makeSpectrumBlock(*feature.spectrum, layout)};
-  }
-  if (feature.frequency_response) {
-    return {makeFrequencyResponseBlock(*feature.frequency_response, layout, inputs)};
-  }
-  if (feature.modes) {
-    return {makeModesBlock(*feature.modes, layout)};
-  }
-  return {makeSamplesBlock(*feature.samples, layout)};
+Blocks makeBlocks(const SamplesFeatureSpec& samples, const ResponseLayout& layout, const InputSignals&) {
+  return {makeSamplesBlock(samples, layout)};
+}
+Blocks makeBlocks(const StatisticsFeatureSpec& statistics, const ResponseLayout& layout,
+                  const InputSignals&) {
+  return makeStatisticsBlocks(statistics, layout);
+}
+Blocks makeBlocks(const ExtremaFeatureSpec& extrema, const ResponseLayout& layout, const InputSignals&) {
+  return {makeExtremaBlock(extrema, layout)};
+}
+Blocks makeBlocks(const SpectrumFeatureSpec& spectrum, const ResponseLayout& layout, const InputSignals&) {
+  return {makeSpectrumBlock(spectrum, layout)};
+}
+Blocks makeBlocks(const FrequencyResponseFeatureSpec& response, const ResponseLayout& layout,
+                  const InputSignals& inputs) {
+  return {makeFrequencyResponseBlock(response, layout, inputs)};
+}
+Blocks makeBlocks(const ModesFeatureSpec& modes, const ResponseLayout& layout, const InputSignals&) {
+  return {makeModesBlock(modes, layout)};
 }
 
 template <class Samples>
-void appendTimes(const Samples& samples, std::vector<double>& times) {
+void appendSampleTimes(const Samples& samples, std::vector<double>& times) {
   for (int i = 0; i < samples.count; ++i) {
     times.push_back(calcSampleTime(samples, i));
   }
 }
 
-void appendTimes(const FeatureSpec& feature, std::vector<double>& times) {
-  if (feature.samples) {
-    appendTimes(*feature.samples, times);
-  }
-  if (feature.statistics) {
-    appendTimes(feature.statistics->window, times);
-  }
-  if (feature.extrema) {
-    appendTimes(feature.extrema->window, times);
-  }
-  if (feature.spectrum) {
-    appendTimes(feature.spectrum->window, times);
-  }
-  if (feature.frequency_response) {
-    appendTimes(feature.frequency_response->window, times);
-  }
+template <class Kind>
+void appendTimes(const Kind& kind, std::vector<double>& times) {
+  appendSampleTimes(kind.window, times);
 }
+void appendTimes(const SamplesFeatureSpec& samples, std::vector<double>& times) {
+  appendSampleTimes(samples, times);
+}
+void appendTimes(const ModesFeatureSpec&, std::vector<double>&) {}
 
 }  // namespace
 
 Eigen::VectorXd collectTimes(const std::vector<FeatureSpec>& features) {
   std::vector<double> times;
   for (const FeatureSpec& feature : features) {
-    appendTimes(feature, times);
+    visitKind(feature, [&times](const auto& kind) { appendTimes(kind, times); });
   }
   std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end()), times.end());
@@ -78,8 +71,10 @@ bool needExcitation(const std::vector<FeatureSpec>& features) {
 FeatureExtractor::FeatureExtractor(const std::vector<FeatureSpec>& features, const ResponseLayout& layout,
                                    const InputSignals& inputs) {
   for (const FeatureSpec& feature : features) {
-    const Blocks blocks = makeBlocks(feature, layout, inputs);
-    blocks_.insert(blocks_.end(), blocks.begin(), blocks.end());
+    visitKind(feature, [&](const auto& kind) {
+      const Blocks blocks = makeBlocks(kind, layout, inputs);
+      blocks_.insert(blocks_.end(), blocks.begin(), blocks.end());
+    });
   }
   for (const auto& block : blocks_) {
     infos_.insert(infos_.end(), block->getInfos().begin(), block->getInfos().end());

@@ -152,32 +152,30 @@ void check(const FrequencyResponseFeatureSpec& response, const ModelSpec& model)
   }
 }
 
-void append(std::vector<Name>& names, const std::vector<Name>& others) {
-  names.insert(names.end(), others.begin(), others.end());
+void check(const ModesFeatureSpec&, const ModelSpec&) {}
+
+template <class Kind>
+std::vector<Name> getOutputs(const Kind& kind) {
+  return kind.outputs;
+}
+std::vector<Name> getOutputs(const ExtremaFeatureSpec& extrema) {
+  return {extrema.output};
+}
+std::vector<Name> getOutputs(const ModesFeatureSpec&) {
+  return {};
 }
 
 }  // namespace
 
 std::vector<Name> collectOutputs(const std::vector<FeatureSpec>& features) {
-  std::vector<Name> outputs;
+  std::vector<Name> all;
   for (const FeatureSpec& feature : features) {
-    if (feature.samples) {
-      append(outputs, feature.samples->outputs);
-    }
-    if (feature.statistics) {
-      append(outputs, feature.statistics->outputs);
-    }
-    if (feature.extrema) {
-      outputs.push_back(feature.extrema->output);
-    }
-    if (feature.spectrum) {
-      append(outputs, feature.spectrum->outputs);
-    }
-    if (feature.frequency_response) {
-      append(outputs, feature.frequency_response->outputs);
-    }
+    visitKind(feature, [&all](const auto& kind) {
+      const std::vector<Name> outputs = getOutputs(kind);
+      all.insert(all.end(), outputs.begin(), outputs.end());
+    });
   }
-  return outputs;
+  return all;
 }
 
 int countModes(const std::vector<FeatureSpec>& features) {
@@ -190,21 +188,7 @@ int countModes(const std::vector<FeatureSpec>& features) {
 
 void checkFeatures(const std::vector<FeatureSpec>& features, const ModelSpec& model) {
   for (const FeatureSpec& feature : features) {
-    if (feature.samples) {
-      check(*feature.samples, model);
-    }
-    if (feature.statistics) {
-      check(*feature.statistics, model);
-    }
-    if (feature.extrema) {
-      check(*feature.extrema, model);
-    }
-    if (feature.spectrum) {
-      check(*feature.spectrum, model);
-    }
-    if (feature.frequency_response) {
-      check(*feature.frequency_response, model);
-    }
+    visitKind(feature, [&model](const auto& kind) { check(kind, model); });
   }
 }
 

@@ -99,6 +99,22 @@ struct FeatureSpec {
   std::optional<ModesFeatureSpec> modes;
 };
 
+/// Calls visit(kind) with the member of the feature that is set.
+template <class Visitor>
+void visitKind(const FeatureSpec& feature, const Visitor& visit) {
+  const auto visitIfSet = [&visit](const auto& kind) {
+    if (kind) {
+      visit(*kind);
+    }
+  };
+  visitIfSet(feature.samples);
+  visitIfSet(feature.statistics);
+  visitIfSet(feature.extrema);
+  visitIfSet(feature.spectrum);
+  visitIfSet(feature.frequency_response);
+  visitIfSet(feature.modes);
+}
+
 /// The number of a frequency's line in a window, count * interval * frequency, rounded.
 inline int calcLine(const WindowSpec& window, const Frequency& frequency) {
   return static_cast<int>(std::lround(frequency.hertz * window.interval * window.count));
