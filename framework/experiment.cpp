@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "framework/evaluation/calibration.hpp"
+#include "framework/evaluate.hpp"
 #include "framework/features/noise.hpp"
 #include "framework/features/selections.hpp"
 #include "framework/inverse_map/gp_map.hpp"
@@ -87,19 +87,6 @@ GpMap trainMap(const ExperimentSpec& experiment, const LabelledFeatures& trainin
   return trained.map;
 }
 
-void evaluate(const ExperimentSpec& experiment, const GpMap& map, const LabelledFeatures& testing,
-              RunSummary& run) {
-  run.truth = testing.parameters;
-  run.predictions =
-      timeStage("infer the test samples", run.times, [&] { return map.predict(testing.features); });
-  run.metrics = calcMetrics(experiment.model.parameters, run.truth, run.predictions, run.limit_stddev);
-  run.joint = calcJointMetrics(run.truth, run.predictions, map.residual_correlation);
-  const Eigen::MatrixXd pit = calcPit(run.truth, run.predictions);
-  for (const auto& row : pit.rowwise()) {
-    run.pit_counts.push_back(countPit(row.transpose()));
-  }
-}
-
 }  // namespace
 
 RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& options) {
@@ -125,7 +112,7 @@ RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& opt
       calcTrainingSensitivities(experiment, sets.train, simulator, extractor, options.threads);
 
   const GpMap map = trainMap(experiment, labelled.train, options, run);
-  evaluate(experiment, map, labelled.test, run);
+  evaluate({experiment, simulator, extractor, noise, labelled, map, options.threads}, run);
 
   writeResults(options.folder, run);
   writeProvenance(experiment, options, run);

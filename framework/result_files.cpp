@@ -1,5 +1,6 @@
 #include "framework/result_files.hpp"
 
+#include "framework/report/evaluation_tables.hpp"
 #include "framework/report/html_report.hpp"
 #include "framework/report/stddev_figure.hpp"
 #include "framework/report/tables.hpp"
@@ -10,7 +11,26 @@ namespace twinmap {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+void writeEvaluation(const fs::path& folder, const RunSummary& run) {
+  if (run.relevance) {
+    writeTextFile(folder / "features.csv", makeFeaturesCsv(run));
+    writeTextFile(folder / "correlations.csv", makeCorrelationsCsv(run));
+    writeTextFile(folder / "identifiability.csv", makeIdentifiabilityCsv(run));
+  }
+  if (!run.posteriors.empty()) {
+    writeTextFile(folder / "posterior.csv", makePosteriorCsv(run));
+  }
+  if (!run.baselines.empty()) {
+    writeTextFile(folder / "baselines.csv", makeBaselinesCsv(run));
+  }
+}
+
+}  // namespace
+
 void writeResults(const fs::path& folder, const RunSummary& run) {
+  writeEvaluation(folder, run);
   writeTextFile(folder / "metrics.csv", makeMetricsCsv(run));
   writeTextFile(folder / "joint.csv", makeJointCsv(run));
   writeTextFile(folder / "pit.csv", makePitCsv(run));

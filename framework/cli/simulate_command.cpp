@@ -4,12 +4,12 @@
 #include "framework/cli/commands.hpp"
 #include "framework/features/feature_extractor.hpp"
 #include "framework/features/noise.hpp"
-#include "framework/multibody/model_numbers.hpp"
 #include "framework/multibody/multibody_simulator.hpp"
 #include "framework/report/escape.hpp"
 #include "framework/spec/check_experiment.hpp"
 #include "framework/spec/experiment_file.hpp"
 #include "framework/spec/number_text.hpp"
+#include "framework/spec/parameter_box.hpp"
 #include "framework/store/atomic_file.hpp"
 
 namespace twinmap {
@@ -49,7 +49,7 @@ std::vector<ParameterValue> takeParameterValues(std::vector<std::string>& overri
 
 Eigen::VectorXd makePoint(const ModelSpec& model, const std::vector<ParameterValue>& values) {
   const std::vector<std::string> names = collectNames(model.parameters);
-  Eigen::VectorXd point = calcBoxCenter(model);
+  Eigen::VectorXd point = calcBoxCenter(model.parameters);
   for (const ParameterValue& given : values) {
     requireKnown(given.name, names, "a parameter");
     point[std::find(names.begin(), names.end(), given.name.text) - names.begin()] = given.value;

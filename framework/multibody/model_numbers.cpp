@@ -44,13 +44,4 @@ int defineName(ExpressionScope& scope, const Name& name) {
   return scope.define(name.text);
 }
 
-Eigen::VectorXd calcBoxCenter(const ModelSpec& model) {
-  Eigen::VectorXd center(model.parameters.size());
-  for (Eigen::Index i = 0; i < center.size(); ++i) {
-    const Bounds& bounds = model.parameters[i].bounds;
-    center[i] = 0.5 * (bounds.lower + bounds.upper);
-  }
-  return center;
-}
-
 }  // namespace twinmap

@@ -32,7 +32,4 @@ class ModelNumbers {
 /// Defines `name` in `scope`. Throws ExperimentError if it exists already or is reserved.
 int defineName(ExpressionScope& scope, const Name& name);
 
-/// The parameter point at the centre of the bounds.
-Eigen::VectorXd calcBoxCenter(const ModelSpec& model);
-
 }  // namespace twinmap

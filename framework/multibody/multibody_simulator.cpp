@@ -8,6 +8,7 @@
 #include "framework/multibody/linearization.hpp"
 #include "framework/multibody/run_sample.hpp"
 #include "framework/spec/check_experiment.hpp"
+#include "framework/spec/parameter_box.hpp"
 
 namespace twinmap {
 namespace {
@@ -55,7 +56,7 @@ int findParameter(const ModelSpec& model, const Name& name) {
 
 /// The box centre with the values that replace it; those may use the centre's parameters and constants.
 Eigen::VectorXd calcEquilibriumPoint(ModelContext& context) {
-  Eigen::VectorXd point = calcBoxCenter(context.model);
+  Eigen::VectorXd point = calcBoxCenter(context.model.parameters);
   const std::optional<EquilibriumSpec>& equilibrium = context.model.initial.equilibrium;
   if (equilibrium) {
     for (const NamedExpression& value : equilibrium->parameters) {
@@ -91,7 +92,7 @@ class MultibodySimulator::Impl {
 
   /// Compiles all expressions now, while clones are made one after the other.
   void compileAll() {
-    context_.numbers.update(calcBoxCenter(shared_->model));
+    context_.numbers.update(calcBoxCenter(shared_->model.parameters));
     buildAtBoxCenter(context_);
   }
 

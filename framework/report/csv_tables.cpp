@@ -1,23 +1,12 @@
 #include "framework/evaluation/calibration.hpp"
-#include "framework/report/escape.hpp"
+#include "framework/report/csv.hpp"
 #include "framework/report/tables.hpp"
 #include "framework/spec/number_text.hpp"
 
 namespace twinmap {
 namespace {
 
-using Row = std::vector<std::string>;
-
-std::string makeCsv(const std::vector<Row>& rows) {
-  std::string text;
-  for (const Row& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      text += (i == 0 ? "" : ",") + escapeCsv(row[i]);
-    }
-    text += "\n";
-  }
-  return text;
-}
+using Row = CsvRow;
 
 /// A column of metrics.csv and where its figure is.
 struct MetricsColumn {

@@ -1,11 +1,15 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "framework/evaluation/exact_posterior.hpp"
+#include "framework/evaluation/identifiability.hpp"
 #include "framework/evaluation/joint_metrics.hpp"
 #include "framework/evaluation/metrics.hpp"
+#include "framework/features/feature_block.hpp"
 #include "framework/spec/model_spec.hpp"
 
 namespace twinmap {
@@ -38,6 +42,29 @@ struct StageTime {
   double seconds = 0.0;
 };
 
+/// How strongly each feature follows each parameter (InformationLimit::relevance).
+struct FeatureRelevance {
+  std::vector<FeatureInfo> infos;  ///< d
+  Eigen::VectorXd noise_stddev;    ///< d, in the features' units
+  Eigen::MatrixXd relevance;       ///< d x p
+};
+
+/// One test sample's exact posterior beside what the map says.
+struct PosteriorComparison {
+  int sample = 0;  ///< index in the test set
+  ExactPosterior exact;
+  Eigen::VectorXd map_mean, map_stddev, limit_stddev;  ///< p; no limit if it is switched off
+};
+
+/// How well another way of inferring does on the first `samples` test samples; "map" for the map itself.
+struct BaselineSummary {
+  std::string method;
+  int samples = 0;
+  std::vector<ParameterMetrics> metrics;
+  double seconds_per_update = 0.0;
+  int unconverged = 0;
+};
+
 /// Everything that the tables and the report of one run show.
 struct RunSummary {
   std::string name;
@@ -54,6 +81,10 @@ struct RunSummary {
   std::vector<ParameterMetrics> leave_one_out;  ///< of the training samples; empty where not available
   std::vector<std::vector<int>> pit_counts;     ///< one histogram per parameter, kPitBins bins
   JointMetrics joint;
+  std::optional<FeatureRelevance> relevance;
+  std::optional<Identifiability> identifiability;
+  std::vector<PosteriorComparison> posteriors;
+  std::vector<BaselineSummary> baselines;
   std::vector<double> nlml;  ///< one per parameter, nats
   std::vector<TrainingStart> training;
   std::vector<std::string> warnings;

@@ -29,9 +29,9 @@ std::string makeFailuresCsv(const RunSummary& run);
 std::string makeTrainingCsv(const RunSummary& run);
 
 /// The paper's table for people: Markdown (columns aligned, so that it reads well as plain text) and LaTeX
-/// (booktabs). Bias, sd, coverage and ratio carry their standard error in parentheses (number_with_error.hpp); the
-/// information limit and the ratio to it have columns where the limit is known. With them the Markdown table
-/// of the two-beam case fills 120 columns.
+/// (booktabs). Bias, sd, coverage and ratio carry their standard error in parentheses
+/// (number_with_error.hpp); the information limit and the ratio to it have columns where the limit is known.
+/// With them the Markdown table of the two-beam case fills 120 columns.
 std::string makeMarkdownTable(const RunSummary& run);
 std::string makeLatexTable(const RunSummary& run);
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "framework/spec/describe_evaluation.hpp"
 #include "framework/spec/describe_excitation.hpp"
 #include "framework/spec/describe_features.hpp"
 #include "framework/spec/describe_system.hpp"
@@ -250,6 +251,7 @@ void describe(Fields& f, ExperimentSpec& s) {
   f.required("noise", s.noise, "measurement noise, on training and test features");
   f.optional("design", s.design, "where the parameter box is sampled");
   f.optional("inverse_map", s.inverse_map, "from features to parameters");
+  f.optional("evaluation", s.evaluation, "what is found out about the map besides its errors");
   f.optional("report", s.report, "what the report shows");
   f.rule(!s.features.empty(), "must list at least one of features");
 }

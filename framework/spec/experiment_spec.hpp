@@ -141,6 +141,39 @@ struct InverseMapSpec {
   GpMapSpec gp;
 };
 
+/// The exact posterior of some test samples by importance sampling of the simulator.
+struct PosteriorSpec {
+  int samples = 20;  ///< the first that could be simulated
+  int draws = 500;   ///< simulations of each, and per round
+};
+
+/// Inverse maps to compare with, on the same test samples.
+struct PriorMeanSpec {};
+struct LinearRegressionSpec {};
+
+enum class LeastSquaresStart { kBoxCenter, kNearestTraining };
+
+/// Classical iterative updating of each test sample by the simulator itself.
+struct LeastSquaresSpec {
+  int samples = 50;  ///< the first that could be simulated
+  LeastSquaresStart start = LeastSquaresStart::kBoxCenter;
+  int max_simulations = 500;  ///< of each sample
+};
+
+/// Exactly one member is set.
+struct BaselineSpec {
+  std::optional<PriorMeanSpec> prior_mean;
+  std::optional<LinearRegressionSpec> linear_regression;
+  std::optional<LeastSquaresSpec> least_squares;
+  SourceLocation where;
+};
+
+struct EvaluationSpec {
+  bool limit = true;  ///< the information limit of every test sample
+  std::optional<PosteriorSpec> posterior;
+  std::vector<BaselineSpec> baselines;
+};
+
 struct ReportSpec {
   std::vector<Name> over;  ///< two parameters: axes of the pictures of the inferred sd; default the last two
 };
@@ -156,6 +189,7 @@ struct ExperimentSpec {
   NoiseSpec noise;
   DesignSpec design;
   InverseMapSpec inverse_map;
+  EvaluationSpec evaluation;
   ReportSpec report;
 };
 

@@ -66,6 +66,10 @@ Json makeSchema(const TransformStepSpec&) {
   const Json names{{"enum", {"z_score", "whiten", "principal_components", "partial_least_squares"}}};
   return {{"anyOf", Json::array({names, makeStructSchema<TransformStepSpec>()})}};
 }
+Json makeSchema(const BaselineSpec&) {
+  const Json names{{"enum", {"prior_mean", "linear_regression", "least_squares"}}};
+  return {{"anyOf", Json::array({names, makeStructSchema<BaselineSpec>()})}};
+}
 Json makeSchema(const ConstantSpec&) {
   return {{"anyOf", Json::array({makeSchema(Expression{}), makeStructSchema<ConstantSpec>()})}};
 }

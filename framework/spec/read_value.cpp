@@ -144,7 +144,9 @@ void readValue(const YamlNode& node, ComponentCount& value) {
   }
 }
 
-void readValue(const YamlNode& node, TransformStepSpec& value) {
+/// A struct of which exactly one member is set, by its key; a scalar is a key without further settings.
+template <class Choice>
+static void readChoice(const YamlNode& node, Choice& value) {
   value.where = node.where;
   if (node.kind != YamlNode::Kind::kScalar) {
     readStruct(node, value);
@@ -155,6 +157,14 @@ void readValue(const YamlNode& node, TransformStepSpec& value) {
   map.entries.push_back({node.scalar, node.where, makeMap()});
   map.entries.back().value.where = node.where;
   readStruct(map, value);
+}
+
+void readValue(const YamlNode& node, TransformStepSpec& value) {
+  readChoice(node, value);
+}
+
+void readValue(const YamlNode& node, BaselineSpec& value) {
+  readChoice(node, value);
 }
 
 void readValue(const YamlNode& node, ConstantSpec& value) {

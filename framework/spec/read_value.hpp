@@ -35,8 +35,9 @@ void readValue(const YamlNode& node, Frequency& value);
 void readValue(const YamlNode& node, NamedExpression& value);
 /// A whole number above 0, or automatic.
 void readValue(const YamlNode& node, ComponentCount& value);
-/// A scalar names a step with its defaults.
+/// A scalar names one of the choices with its defaults.
 void readValue(const YamlNode& node, TransformStepSpec& value);
+void readValue(const YamlNode& node, BaselineSpec& value);
 /// A scalar is the constant's value.
 void readValue(const YamlNode& node, ConstantSpec& value);
 

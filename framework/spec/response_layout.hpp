@@ -7,8 +7,8 @@
 namespace twinmap {
 
 /// What the rows of a response are. First all outputs at all times, output by output: row o * times + i is
-/// output o at times[i]. Then the natural frequencies (Hz) of the lowest modes of the system linearised at its
-/// equilibrium, and then their damping ratios.
+/// output o at times[i]. Then the natural frequencies (Hz) of the lowest modes of the system linearised at
+/// its equilibrium, and then their damping ratios.
 struct ResponseLayout {
   std::vector<std::string> output_names, output_units;
   Eigen::VectorXd times;  ///< s, strictly increasing

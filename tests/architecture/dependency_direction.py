@@ -15,7 +15,7 @@ ALLOWED = {
     "inverse_map": {"spec", "design", "simulation", "features", "sensitivity", "kernels"},
     "evaluation": {"spec", "design", "simulation", "features", "sensitivity", "inverse_map"},
     "store": {"spec", "simulation", "inverse_map", "features", "kernels"},
-    "report": {"spec", "evaluation", "inverse_map"},
+    "report": {"spec", "features", "evaluation", "inverse_map"},
     "flow": {"spec", "design", "simulation", "multibody", "features", "sensitivity", "evaluation", "inverse_map", "store",
              "report"},
     "cli": {"flow", "spec", "design", "multibody", "simulation", "features", "report", "store"},
@@ -33,7 +33,7 @@ LIBRARIES = {
     r"CLI/.*": {"cli"},
     r"nlopt.*": {"kernels"},
     r"spdlog/.*": {"flow", "cli"},
-    r"(omp\.h|filesystem|fstream|chrono)": {"spec", "simulation", "multibody", "store", "flow", "cli", "kernels/omp.h"},
+    r"(omp\.h|filesystem|fstream|chrono)": {"spec", "simulation", "multibody", "evaluation/chrono", "store", "flow", "cli", "kernels/omp.h"},
 }
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)

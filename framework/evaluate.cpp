@@ -1,0 +1,134 @@
+#include "framework/evaluate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "framework/evaluation/baselines.hpp"
+#include "framework/evaluation/calibration.hpp"
+#include "framework/evaluation/information_limit.hpp"
+#include "framework/stage_timer.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+const std::vector<ParameterSpec>& getParameters(const EvaluationContext& context) {
+  return context.experiment.model.parameters;
+}
+
+bool hasNoise(const LabelledFeatures& samples) {
+  return samples.noise_covariance.diagonal().minCoeff() > 0.0;
+}
+
+void addLimit(const EvaluationContext& context, RunSummary& run) {
+  const LabelledFeatures& test = context.samples.test;
+  const InformationLimit limit =
+      timeStage(fmt::format("information limit of {} test samples", test.parameters.cols()), run.times, [&] {
+        const auto models = calcLocalModels(context.simulator, context.extractor, getParameters(context),
+                                            test.parameters, context.threads);
+        return calcInformationLimit(models, context.noise, getParameters(context));
+      });
+  run.limit_stddev = limit.stddev;
+  run.relevance = FeatureRelevance{test.infos, test.noise_covariance.diagonal().cwiseSqrt(), limit.relevance};
+  run.identifiability = calcIdentifiability(limit, getParameters(context));
+  run.warnings.insert(run.warnings.end(), run.identifiability->warnings.begin(),
+                      run.identifiability->warnings.end());
+  if (limit.failures > 0) {
+    run.warnings.push_back(
+        fmt::format("the information limit of {} test samples could not be computed", limit.failures));
+  }
+}
+
+void addPosteriors(const EvaluationContext& context, RunSummary& run) {
+  const PosteriorSpec& spec = *context.experiment.evaluation.posterior;
+  const LabelledFeatures& test = context.samples.test;
+  const Index count = std::min<Index>(spec.samples, test.features.cols());
+  const std::vector<ExactPosterior> exact =
+      timeStage(fmt::format("exact posterior of {} test samples", count), run.times, [&] {
+        return calcExactPosteriors(context.simulator, context.extractor, NoiseWhitener(test.noise_covariance),
+                                   getParameters(context), test.features.leftCols(count),
+                                   test.parameters.leftCols(count), context.threads,
+                                   {spec.draws, context.experiment.seed});
+      });
+  for (Index i = 0; i < count; ++i) {
+    run.posteriors.push_back({run.test_indices[i], exact[i], run.predictions.mean.col(i),
+                              run.predictions.stddev.col(i),
+                              run.limit_stddev.cols() > 0 ? VectorXd(run.limit_stddev.col(i)) : VectorXd()});
+    if (!exact[i].warning.empty()) {
+      run.warnings.push_back(
+          fmt::format("exact posterior of test sample {}: {}", run.test_indices[i], exact[i].warning));
+    }
+  }
+}
+
+BaselineSummary summarize(const EvaluationContext& context, const BaselineResult& result) {
+  const Eigen::MatrixXd truth = context.samples.test.parameters.leftCols(result.samples);
+  return {result.method, result.samples, calcMetrics(getParameters(context), truth, result.predictions),
+          result.seconds_per_update, result.unconverged};
+}
+
+/// The map on the same first samples.
+BaselineResult runMap(const EvaluationContext& context, int samples) {
+  BaselineResult result{"map", samples, {}};
+  const Eigen::MatrixXd features = context.samples.test.features.leftCols(samples);
+  const auto start = std::chrono::steady_clock::now();
+  for (Index i = 0; i < samples; ++i) {
+    context.map.predict(features.col(i));
+  }
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  result.predictions = context.map.predict(features);
+  result.seconds_per_update = elapsed.count() / samples;
+  return result;
+}
+
+void addBaselines(const EvaluationContext& context, RunSummary& run) {
+  const BaselineContext baseline{context.simulator, context.extractor, context.map.transform,
+                                 getParameters(context), context.threads};
+  int compared = 0;  // samples of the map's own row before
+  for (const BaselineSpec& spec : context.experiment.evaluation.baselines) {
+    const BaselineResult result = timeStage("baseline", run.times, [&] {
+      return runBaseline(spec, baseline, context.samples.train, context.samples.test);
+    });
+    if (result.samples != compared) {
+      run.baselines.push_back(summarize(context, runMap(context, result.samples)));
+      compared = result.samples;
+    }
+    run.baselines.push_back(summarize(context, result));
+    run.times.back().stage = "baseline " + result.method;
+    if (result.unconverged > 0) {
+      run.warnings.push_back(fmt::format("baseline {}: {} of {} searches did not converge", result.method,
+                                         result.unconverged, result.samples));
+    }
+  }
+}
+
+}  // namespace
+
+void evaluate(const EvaluationContext& context, RunSummary& run) {
+  const EvaluationSpec& spec = context.experiment.evaluation;
+  const LabelledFeatures& test = context.samples.test;
+  run.truth = test.parameters;
+  run.predictions =
+      timeStage("infer the test samples", run.times, [&] { return context.map.predict(test.features); });
+  if (spec.limit && hasNoise(test)) {
+    addLimit(context, run);
+  } else if (spec.limit) {
+    run.warnings.push_back("no information limit: the noise of a feature is 0");
+  }
+  run.metrics = calcMetrics(getParameters(context), run.truth, run.predictions, run.limit_stddev);
+  run.joint = calcJointMetrics(run.truth, run.predictions, context.map.residual_correlation);
+  const Eigen::MatrixXd pit = calcPit(run.truth, run.predictions);
+  for (const auto& row : pit.rowwise()) {
+    run.pit_counts.push_back(countPit(row.transpose()));
+  }
+  if (spec.posterior) {
+    addPosteriors(context, run);
+  }
+  addBaselines(context, run);
+}
+
+}  // namespace twinmap

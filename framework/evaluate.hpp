@@ -1,0 +1,26 @@
+#pragma once
+
+#include "framework/experiment.hpp"
+#include "framework/inverse_map/gp_map.hpp"
+#include "framework/labelled_sets.hpp"
+#include "framework/simulation/simulator.hpp"
+
+namespace twinmap {
+
+/// What the evaluation of a map looks at.
+struct EvaluationContext {
+  const ExperimentSpec& experiment;
+  const Simulator& simulator;
+  const FeatureExtractor& extractor;
+  const FeatureNoise& noise;
+  const LabelledSets& samples;
+  const GpMap& map;
+  int threads = 1;
+};
+
+/// Infers the test samples and finds out how good that is: errors and calibration, and, where the experiment
+/// asks for them, information limit, exact posteriors and baselines. Results, warnings and times go to the
+/// summary.
+void evaluate(const EvaluationContext& context, RunSummary& run);
+
+}  // namespace twinmap

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "framework/features/feature_noise.hpp"
+#include "framework/sensitivity/feature_sensitivities.hpp"
+#include "framework/spec/model_spec.hpp"
+
+namespace twinmap {
+
+/// The best that any estimator can do with the features of each test sample.
+struct InformationLimit {
+  Eigen::MatrixXd stddev;            ///< p x n, in the parameter's unit; NaN where a simulation failed
+  Eigen::MatrixXd mean_information;  ///< p x p: mean Fisher information, per width of the bounds
+  Eigen::MatrixXd mean_covariance;   ///< p x p: mean of the limit's covariances, in widths
+  /// d x p: root mean square over the samples of the change of a feature per width of a parameter's bounds,
+  /// in standard deviations of the feature's noise.
+  Eigen::MatrixXd relevance;
+  int failures = 0;  ///< samples without a limit
+};
+
+/// Per sample: sensitivities J of the features to the parameters and covariance C of their noise there give
+/// the covariance (J' C^-1 J + 12 / width^2)^-1, the box entering as a prior of its variance.
+/// Throws std::invalid_argument for a feature without noise, std::runtime_error if every sample failed.
+InformationLimit calcInformationLimit(const std::vector<LocalModel>& models, const FeatureNoise& noise,
+                                      const std::vector<ParameterSpec>& parameters);
+
+}  // namespace twinmap

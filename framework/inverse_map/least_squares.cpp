@@ -1,0 +1,137 @@
+#include "framework/inverse_map/least_squares.hpp"
+
+#include <cmath>
+#include <unsupported/Eigen/NonLinearOptimization>
+
+#include "framework/sensitivity/feature_sensitivities.hpp"
+#include "framework/sensitivity/fisher_information.hpp"
+#include "framework/spec/parameter_box.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Parameters as functions of unbounded variables x.
+class BoundedVariables {
+ public:
+  explicit BoundedVariables(const std::vector<ParameterSpec>& parameters)
+      : center_(calcBoxCenter(parameters)), half_width_(0.5 * calcWidths(parameters)) {}
+
+  VectorXd toParameters(const VectorXd& x) const {
+    return center_.array() + half_width_.array() * x.array().sin();
+  }
+  /// A start on a bound moves 0.1 % of the width inwards, because the slope there is 0.
+  VectorXd toVariables(const VectorXd& parameters) const {
+    constexpr double kInside = 0.998;
+    return ((parameters - center_).array() / half_width_.array()).max(-kInside).min(kInside).asin();
+  }
+  /// Change of parameters in widths per change of x.
+  VectorXd calcSlopes(const VectorXd& x) const { return 0.5 * x.array().cos(); }
+
+ private:
+  VectorXd center_, half_width_;
+};
+
+/// Residuals and their derivatives for Eigen's LevenbergMarquardt.
+class Residuals {
+ public:
+  Residuals(Simulator& simulator, const LeastSquaresProblem& problem, int max_simulations)
+      : simulator_(simulator),
+        problem_(problem),
+        variables_(problem.parameters),
+        max_simulations_(max_simulations) {}
+
+  int inputs() const { return static_cast<int>(problem_.parameters.size()); }
+  int values() const { return static_cast<int>(problem_.noise.getMatrix().rows()); }
+
+  int operator()(const VectorXd& x, VectorXd& residual) {
+    constexpr double kRefused = 1e100;  // a failed simulation is no better than any other point
+    MatrixXd response(simulator_.getLayout().getRowCount(), 1);
+    SampleStatus status;
+    simulator_.simulate(variables_.toParameters(x), response, &status);
+    ++simulations_;
+    residual = calcResidual(problem_.extractor.extract(response).col(0));
+    if (!status.ok || !residual.allFinite()) {
+      failure_ = status.ok ? "a feature is missing in the response" : status.reason;
+      residual.setConstant(kRefused / std::sqrt(static_cast<double>(residual.size())));
+    }
+    return simulations_ > max_simulations_ ? -1 : 0;
+  }
+
+  int df(const VectorXd& x, MatrixXd& jacobian) {
+    const LocalModel local = calcLocal(x);
+    if (!local.status.ok) {
+      failure_ = local.status.reason;
+      return -1;
+    }
+    jacobian = problem_.noise.apply(local.sensitivities) * variables_.calcSlopes(x).asDiagonal();
+    return 0;
+  }
+
+  LocalModel calcLocal(const VectorXd& x) {
+    simulations_ += 2 * inputs() + 1;
+    return calcLocalModel(simulator_, problem_.extractor, problem_.parameters, variables_.toParameters(x));
+  }
+  VectorXd calcResidual(const VectorXd& features) const {
+    return problem_.noise.apply(features - problem_.measured);
+  }
+  const BoundedVariables& getVariables() const { return variables_; }
+  int getSimulationCount() const { return simulations_; }
+  const std::string& getFailure() const { return failure_; }
+
+ private:
+  Simulator& simulator_;
+  const LeastSquaresProblem& problem_;
+  BoundedVariables variables_;
+  int max_simulations_;
+  int simulations_ = 0;
+  std::string failure_;
+};
+
+bool hasConverged(Eigen::LevenbergMarquardtSpace::Status status) {
+  using namespace Eigen::LevenbergMarquardtSpace;
+  return status == RelativeReductionTooSmall || status == RelativeErrorTooSmall ||
+         status == RelativeErrorAndReductionTooSmall || status == CosinusTooSmall || status == FtolTooSmall ||
+         status == XtolTooSmall || status == GtolTooSmall;
+}
+
+void describeEnd(Eigen::LevenbergMarquardtSpace::Status status, const Residuals& residuals,
+                 int max_simulations, LeastSquaresFit& fit) {
+  fit.converged = hasConverged(status) && fit.chi_square < 1e99;
+  if (fit.converged) {
+    fit.message = "converged";
+  } else if (residuals.getSimulationCount() > max_simulations) {
+    fit.message = "stopped after " + std::to_string(residuals.getSimulationCount()) + " simulations";
+  } else {
+    fit.message = residuals.getFailure().empty() ? "no convergence" : residuals.getFailure();
+  }
+}
+
+}  // namespace
+
+LeastSquaresFit fitLeastSquares(Simulator& simulator, const LeastSquaresProblem& problem,
+                                const VectorXd& start, int max_simulations) {
+  constexpr double kTolerance = 1e-6;  // of chi-square and of the variables, relative
+  Residuals residuals(simulator, problem, max_simulations);
+  VectorXd x = residuals.getVariables().toVariables(start);
+  Eigen::LevenbergMarquardt<Residuals> search(residuals);
+  search.parameters.ftol = kTolerance;
+  search.parameters.xtol = kTolerance;
+  search.parameters.factor = 1.0;
+  const Eigen::LevenbergMarquardtSpace::Status status = search.minimize(x);
+
+  LeastSquaresFit fit;
+  fit.parameters = residuals.getVariables().toParameters(x);
+  const LocalModel local = residuals.calcLocal(x);
+  fit.chi_square = residuals.calcResidual(local.features).squaredNorm();
+  fit.information = calcFisherInformation(problem.noise, local.sensitivities);
+  fit.simulations = residuals.getSimulationCount();
+  describeEnd(status, residuals, max_simulations, fit);
+  fit.converged = fit.converged && local.status.ok;
+  return fit;
+}
+
+}  // namespace twinmap

@@ -1,0 +1,31 @@
+#include "framework/inverse_map/linear_map.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+
+namespace twinmap {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+Predictions LinearMap::predict(const MatrixXd& features) const {
+  return {(slopes * transform.apply(features)).colwise() + offset, stddev.replicate(1, features.cols())};
+}
+
+LinearMap trainLinearMap(const FeatureTransform& transform, const LabelledFeatures& samples) {
+  const MatrixXd inputs = transform.apply(samples.features);
+  const VectorXd input_mean = inputs.rowwise().mean(), mean = samples.parameters.rowwise().mean();
+  const MatrixXd centered = (inputs.colwise() - input_mean).transpose();       // n x k
+  const MatrixXd targets = (samples.parameters.colwise() - mean).transpose();  // n x p
+  const Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition(centered);
+  LinearMap map;
+  map.transform = transform;
+  map.slopes = decomposition.solve(targets).transpose();
+  map.offset = mean - map.slopes * input_mean;
+  const MatrixXd residuals = targets - centered * map.slopes.transpose();
+  const auto degrees = static_cast<double>(inputs.cols() - decomposition.rank() - 1);
+  map.stddev = (residuals.colwise().squaredNorm() / std::max(degrees, 1.0)).cwiseSqrt().transpose();
+  return map;
+}
+
+}  // namespace twinmap

@@ -1,0 +1,18 @@
+#include "framework/report/csv.hpp"
+
+#include "framework/report/escape.hpp"
+
+namespace twinmap {
+
+std::string makeCsv(const std::vector<CsvRow>& rows) {
+  std::string text;
+  for (const CsvRow& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      text += (i == 0 ? "" : ",") + escapeCsv(row[i]);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace twinmap
