@@ -2,12 +2,13 @@
 
 #include "framework/multibody/model_numbers.hpp"
 #include "framework/simulation/excitation.hpp"
+#include "framework/spec/parameter_box.hpp"
 
 namespace twinmap {
 
 InputSignals calcInputSignals(const ModelSpec& model, const Eigen::VectorXd& times) {
   ModelNumbers numbers(model);
-  numbers.update(calcBoxCenter(model));
+  numbers.update(calcBoxCenter(model.parameters));
   Excitation excitation(model.excitation);
   excitation.update(numbers.updNumbers());
   const std::vector<double> events = excitation.calcEventTimes(model.simulation.duration);

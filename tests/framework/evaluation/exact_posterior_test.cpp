@@ -31,7 +31,8 @@ TEST(ExactPosterior, OfALinearModelIsTheNormalOne) {
   matrix << 1, 2, 0.5, -1, 1, 1.5;
   MatrixXd covariance(3, 3);
   covariance << 0.04, 0.01, 0, 0.01, 0.09, 0, 0, 0, 0.01;
-  const VectorXd measured = matrix * Eigen::Vector2d(0.3, 0.8) + Eigen::Vector3d(0.1, -0.2, 0.05);
+  VectorXd measured(3);
+  measured << 2.0, -0.85, 1.55;
   const MatrixXd expected = (matrix.transpose() * covariance.inverse() * matrix).inverse();
   const VectorXd mean = expected * matrix.transpose() * covariance.inverse() * measured;
   const auto posterior =

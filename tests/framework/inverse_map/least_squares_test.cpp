@@ -21,7 +21,9 @@ MatrixXd makeMatrix() {
 }
 
 MatrixXd makeNoise() {
-  return Eigen::Vector4d(0.01, 0.04, 0.02, 0.09).asDiagonal();
+  VectorXd variance(4);
+  variance << 0.01, 0.04, 0.02, 0.09;
+  return variance.asDiagonal();
 }
 
 class LinearFit : public ::testing::Test {
@@ -37,7 +39,8 @@ class LinearFit : public ::testing::Test {
 };
 
 TEST_F(LinearFit, IsTheWeightedLeastSquaresSolution) {
-  const VectorXd measured = makeMatrix() * Eigen::Vector2d(0.7, -1.2) + VectorXd(Eigen::Vector4d(0.1, -0.2, 0.05, 0.1));
+  VectorXd measured(4);
+  measured << -1.6, 3.1, -0.2, -2.5;
   const MatrixXd weights = makeNoise().inverse();
   const MatrixXd information = makeMatrix().transpose() * weights * makeMatrix();
   const VectorXd expected = information.inverse() * makeMatrix().transpose() * weights * measured;
@@ -74,7 +77,7 @@ TEST_F(LinearFit, AFailingStartIsReportedAndAFailureOnTheWayIsAvoided) {
 TEST(LinearMap, InvertsWhatIsLinear) {
   const MatrixXd points = MatrixXd::Random(2, 50);
   LabelledFeatures samples;
-  samples.features = (makeMatrix() * points).colwise() + Eigen::Vector4d(1.0, 2.0, 3.0, 4.0);
+  samples.features = (makeMatrix() * points).array() + 3.0;
   samples.parameters = points;
   const LinearMap map = trainLinearMap({}, samples);
   const Predictions predictions = map.predict(samples.features);
