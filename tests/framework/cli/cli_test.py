@@ -19,8 +19,9 @@ TWINMAP = os.environ["TWINMAP"]
 TABLE1 = os.path.join(os.environ["TWINMAP_SOURCE_DIR"], "experiments/two_beam/table1.yaml")
 CHAIN = os.path.join(os.environ["TWINMAP_SOURCE_DIR"], "experiments/three_mass_chain")
 SMALL = ["design.train.samples=40", "design.test.samples=20"]
-RESULTS = ["failures.csv", "joint.csv", "maps.h5", "metrics.csv", "pit.csv", "predictions.csv", "resolved.yaml",
-           "samples.h5", "table.md", "table.tex", "training.csv"]
+RESULTS = ["correlations.csv", "failures.csv", "features.csv", "identifiability.csv", "joint.csv", "maps.h5",
+           "metrics.csv", "pit.csv", "predictions.csv", "resolved.yaml", "samples.h5", "table.md", "table.tex",
+           "training.csv"]
 
 
 def call(*arguments):
@@ -176,7 +177,42 @@ class Run(TestCase):
             crps = [100 * normal_crps(float(p["inferred"]), float(p["stddev"]), float(p["true"])) / float(p["true"])
                     for p in mine]
             self.assertAlmostEqual(float(row["crps_pct"]), statistics.mean(crps), 9)
-            self.assertNotIn("limit_pct", row)
+            limit = [100 * float(p["limit_stddev"]) / float(p["true"]) for p in mine]
+            self.assertAlmostEqual(float(row["limit_pct"]), statistics.mean(x**2 for x in limit)**0.5, 9)
+            self.assertAlmostEqual(float(row["ratio_to_limit"]), float(row["sd_pct"]) / float(row["limit_pct"]), 9)
+
+    def test_the_information_limit_can_be_switched_off(self):
+        self.run_experiment("run", "evaluation.limit=false")
+        self.assertNotIn("limit_pct", read_csv(self.folder / "run/metrics.csv")[0])
+        self.assertFalse((self.folder / "run/features.csv").exists())
+
+    def test_evaluation_writes_what_it_is_asked_for(self):
+        asked = "evaluation={posterior: {samples: 2}, baselines: [prior_mean, linear_regression, {least_squares: {samples: 3}}]}"
+        result = self.run_experiment("run", asked)
+        self.assertIn("information limit of 20 test samples: ", result.stderr)  # its cost
+        run = self.folder / "run"
+        posteriors = read_csv(run / "posterior.csv")
+        self.assertEqual(len(posteriors), 2 * 4)
+        for row in posteriors:
+            self.assertGreater(float(row["effective_sample_size"]), 100)
+            self.assertAlmostEqual(float(row["limit_stddev"]) / float(row["posterior_stddev"]), 1, delta=0.15)
+        baselines = read_csv(run / "baselines.csv")
+        methods = [(row["method"], row["samples"]) for row in baselines if row["parameter"] == "k_y"]
+        self.assertEqual(methods, [("map", "20"), ("prior_mean", "20"), ("linear_regression", "20"), ("map", "3"),
+                                   ("least_squares", "3")])
+        error = {row["method"]: float(row["mare_pct"]) for row in baselines if row["parameter"] == "k_y"}
+        self.assertLess(error["least_squares"], 0.1)
+        self.assertLess(error["linear_regression"], error["prior_mean"])
+        features = read_csv(run / "features.csv")
+        self.assertEqual([len(features), features[0]["feature"], features[0]["unit"]], [200, "y(0.05 s)", "m"])
+        self.assertEqual([row["parameter"] for row in read_csv(run / "correlations.csv")],
+                         ["d_y", "d_theta", "k_y", "k_theta"])
+        self.assertEqual(len(read_csv(run / "identifiability.csv")), 4)
+
+    def test_parameters_that_nothing_determines_are_named(self):
+        unseen = ["parameters.unseen={bounds: [1, 2], unit: m}"]
+        result = self.run_experiment("run", *unseen)
+        self.assertIn("parameter 'unseen' is not determined by the features", result.stderr)
 
     def test_calibration_files_follow_from_predictions_and_map(self):
         self.run_experiment("run")
@@ -383,7 +419,7 @@ class Run(TestCase):
         self.assertEqual(provenance["threads"], 2)
         self.assertEqual(provenance["seed"], 1)
         self.assertIn("design.train.samples=40", provenance["command"])
-        self.assertEqual(len(provenance["seconds"]), 4)
+        self.assertEqual(len(provenance["seconds"]), 5)
         self.assertEqual([p.name for p in (self.folder / "run").glob("*.tmp")], [])
 
 
