@@ -25,6 +25,11 @@ struct RunArguments {
   std::string command_line;
 };
 
+struct CompareArguments {
+  std::string folder_a, folder_b;
+  bool csv = false, json = false;  ///< at most one; neither: a table for people
+};
+
 // One file a subcommand. Results go to stdout, progress and warnings to stderr. Each throws ExperimentError
 // for wrong input and any other std::exception for a failure.
 
@@ -39,5 +44,8 @@ void simulate(const SimulateArguments& arguments);
 
 /// Runs an experiment and prints its table.
 void run(const RunArguments& arguments);
+
+/// Prints two runs side by side.
+void compare(const CompareArguments& arguments);
 
 }  // namespace twinmap

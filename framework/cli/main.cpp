@@ -79,6 +79,18 @@ void addRun(CLI::App& app, twinmap::RunArguments& arguments) {
   command->callback([&arguments] { twinmap::run(arguments); });
 }
 
+void addCompare(CLI::App& app, twinmap::CompareArguments& arguments) {
+  CLI::App* command = app.add_subcommand(
+      "compare",
+      "Print the same parameters of two runs side by side, with confidence intervals of the differences, and "
+      "which keys of their experiments differ");
+  command->add_option("A", arguments.folder_a, "Folder of a run")->required()->option_text(" ");
+  command->add_option("B", arguments.folder_b, "Folder of another run")->required()->option_text(" ");
+  CLI::Option* csv = command->add_flag("--csv", arguments.csv, "Print CSV instead of a table");
+  command->add_flag("--json", arguments.json, "Print JSON instead of a table")->excludes(csv);
+  command->callback([&arguments] { twinmap::compare(arguments); });
+}
+
 void addSchema(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "schema", "Print the JSON schema of experiment files, with which editors complete and explain keys");
@@ -96,12 +108,14 @@ int runCommand(int count, char** arguments) {
 
   twinmap::ExperimentArguments check;
   twinmap::SimulateArguments simulate;
+  twinmap::CompareArguments compare;
   twinmap::RunArguments run;
   run.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   run.command_line = joinArguments(count, arguments);
   addCheck(app, check);
   addSimulate(app, simulate);
   addRun(app, run);
+  addCompare(app, compare);
   addSchema(app);
   try {
     app.parse(count, arguments);

@@ -1,10 +1,9 @@
 #include "framework/evaluation/metrics.hpp"
 
-#include <boost/math/constants/constants.hpp>
 #include <cmath>
 
-#include "framework/evaluation/calibration.hpp"
 #include "framework/evaluation/jackknife.hpp"
+#include "framework/evaluation/sample_terms.hpp"
 
 namespace twinmap {
 namespace {
@@ -13,111 +12,17 @@ using Eigen::ArrayXd;
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// What each sample adds to the figures. Errors and z are stored less their means, so that no digits of the
-/// standard deviations are lost.
-enum Term : Index {
-  kError,
-  kSquaredError,
-  kAbsoluteError,
-  kWithin95,
-  kWithin90,
-  kWithin50,
-  kClaimedVariance,
-  kZ,
-  kSquaredZ,
-  kSurprise,
-  kCrps,
-  kSquaredLimit,
-  kTerms
-};
-
-struct SampleTerms {
-  Eigen::MatrixXd terms;  // kTerms x n
-  double error_offset = 0.0;
-  double z_offset = 0.0;
-};
-
-/// One parameter's samples.
-struct Samples {
-  ArrayXd truth, mean, stddev, limit_stddev;
-};
-
-ArrayXd calcWithin(const ArrayXd& z, double probability) {
-  return (z.abs() < calcTwoSidedQuantile(probability)).cast<double>();
-}
-
-ArrayXd calcScale(const ParameterSpec& parameter, const ArrayXd& truth) {
-  if (parameter.relative_to == RelativeTo::kRange) {
-    return ArrayXd::Constant(truth.size(), parameter.bounds.upper - parameter.bounds.lower);
-  }
-  return truth;
-}
-
-SampleTerms calcTerms(const ParameterSpec& parameter, const Samples& samples) {
-  const double log_root_two_pi = 0.5 * std::log(boost::math::constants::two_pi<double>());
-  const ArrayXd scale = calcScale(parameter, samples.truth);
-  const ArrayXd error = (samples.mean - samples.truth) / scale;
-  const ArrayXd z = (samples.mean - samples.truth) / samples.stddev;
-  SampleTerms result{Eigen::MatrixXd(kTerms, error.size()), error.mean(), z.mean()};
-  auto terms = result.terms.array();
-  terms.row(kError) = (error - result.error_offset).transpose();
-  terms.row(kSquaredError) = terms.row(kError).square();
-  terms.row(kAbsoluteError) = error.abs().transpose();
-  terms.row(kWithin95) = calcWithin(z, 0.95).transpose();
-  terms.row(kWithin90) = calcWithin(z, 0.90).transpose();
-  terms.row(kWithin50) = calcWithin(z, 0.50).transpose();
-  terms.row(kClaimedVariance) = (samples.stddev / scale).square().transpose();
-  terms.row(kZ) = (z - result.z_offset).transpose();
-  terms.row(kSquaredZ) = terms.row(kZ).square();
-  terms.row(kSurprise) = (0.5 * z.square() + samples.stddev.log() + log_root_two_pi).transpose();
-  terms.row(kCrps) = (calcCrps(z, samples.stddev) / scale.abs()).transpose();
-  terms.row(kSquaredLimit) = (samples.limit_stddev / scale).square().transpose();
-  return result;
-}
-
-/// From means of values and of their squares, with 1/(n-1).
-double calcStddev(double mean, double mean_square, double samples) {
-  return std::sqrt(std::max(0.0, mean_square - mean * mean) * samples / (samples - 1.0));
-}
-
-ParameterFigures calcFigures(const SampleTerms& offsets, const VectorXd& mean, double samples) {
-  constexpr double kPercent = 100.0;
-  ParameterFigures figures;
-  figures.bias_pct = kPercent * (offsets.error_offset + mean[kError]);
-  figures.sd_pct = kPercent * calcStddev(mean[kError], mean[kSquaredError], samples);
-  figures.mare_pct = kPercent * mean[kAbsoluteError];
-  figures.coverage95 = mean[kWithin95];
-  figures.coverage90 = mean[kWithin90];
-  figures.coverage50 = mean[kWithin50];
-  figures.stddev_pct = kPercent * std::sqrt(mean[kClaimedVariance]);
-  figures.z_mean = offsets.z_offset + mean[kZ];
-  figures.z_sd = calcStddev(mean[kZ], mean[kSquaredZ], samples);
-  figures.nlpd = mean[kSurprise];
-  figures.crps_pct = kPercent * mean[kCrps];
-  figures.limit_pct = kPercent * std::sqrt(mean[kSquaredLimit]);
-  figures.ratio_to_limit = figures.sd_pct / figures.limit_pct;
-  return figures;
-}
-
-VectorXd toVector(const ParameterFigures& figures) {
-  VectorXd values(kFigureColumns.size());
-  for (std::size_t i = 0; i < kFigureColumns.size(); ++i) {
-    values[static_cast<Index>(i)] = figures.*kFigureColumns[i].value;
-  }
-  return values;
-}
-
 void setFigures(const VectorXd& values, ParameterFigures& figures) {
   for (std::size_t i = 0; i < kFigureColumns.size(); ++i) {
     figures.*kFigureColumns[i].value = values[static_cast<Index>(i)];
   }
 }
 
-ParameterMetrics calcMetrics(const ParameterSpec& parameter, const Samples& samples, int draws) {
-  const SampleTerms terms = calcTerms(parameter, samples);
+ParameterMetrics calcMetrics(const ParameterSpec& parameter, const ParameterSamples& samples, int draws) {
+  const SampleTerms terms = calcSampleTerms(parameter, samples);
   const Estimates estimates = calcWithJackknife(
-      terms.terms,
-      [&](const VectorXd& mean, double count) { return toVector(calcFigures(terms, mean, count)); }, draws);
+      terms.terms, [&](const VectorXd& mean, double count) { return calcFigureValues(terms, mean, count); },
+      draws);
   ParameterMetrics metrics;
   setFigures(estimates.value, metrics);
   setFigures(estimates.standard_error, metrics.se);

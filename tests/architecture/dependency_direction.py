@@ -16,9 +16,10 @@ ALLOWED = {
     "evaluation": {"spec", "design", "simulation", "features", "sensitivity", "inverse_map"},
     "store": {"spec", "simulation", "inverse_map", "features", "kernels"},
     "report": {"spec", "features", "evaluation", "inverse_map"},
+    "comparison": {"spec", "features", "evaluation", "inverse_map", "store", "report"},
     "flow": {"spec", "design", "simulation", "multibody", "features", "sensitivity", "evaluation", "inverse_map", "store",
              "report"},
-    "cli": {"flow", "spec", "design", "multibody", "simulation", "features", "report", "store"},
+    "cli": {"flow", "comparison", "spec", "design", "multibody", "simulation", "features", "report", "store"},
 }
 
 # Libraries that stay behind one part.
@@ -29,11 +30,11 @@ LIBRARIES = {
     r"udunits2.*": {"spec"},
     r"hdf5.*": {"store"},
     r"xxhash.*": {"store"},
-    r"nlohmann/.*": {"spec", "store", "report"},
+    r"nlohmann/.*": {"spec", "store", "report", "comparison"},
     r"CLI/.*": {"cli"},
     r"nlopt.*": {"kernels"},
     r"spdlog/.*": {"flow", "cli"},
-    r"(omp\.h|filesystem|fstream|chrono)": {"spec", "simulation", "multibody", "evaluation/chrono", "store", "flow", "cli", "kernels/omp.h"},
+    r"(omp\.h|filesystem|fstream|chrono)": {"spec", "simulation", "multibody", "evaluation/chrono", "store", "comparison", "flow", "cli", "kernels/omp.h"},
 }
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)

@@ -1,0 +1,17 @@
+#include "framework/comparison/compared_run.hpp"
+
+#include "framework/spec/check_experiment.hpp"
+#include "framework/spec/experiment_file.hpp"
+#include "framework/store/finished_run.hpp"
+
+namespace twinmap {
+
+ComparedRun readComparedRun(const std::filesystem::path& folder) {
+  requireFinishedRun(folder, {"predictions.csv"});
+  const std::string resolved = (folder / "resolved.yaml").string();
+  ComparedRun run{folder.string(), loadYaml(resolved), loadExperiment(resolved).model.parameters, {}};
+  run.test = readPredictionsFile(folder / "predictions.csv", collectNames(run.parameters));
+  return run;
+}
+
+}  // namespace twinmap

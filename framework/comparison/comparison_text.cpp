@@ -1,0 +1,157 @@
+#include "framework/comparison/comparison_text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "framework/report/escape.hpp"
+#include "framework/spec/number_text.hpp"
+
+namespace twinmap {
+namespace {
+
+using Row = std::vector<std::string>;
+
+constexpr std::size_t kGap = 2;  // spaces between columns
+
+/// Columns padded to their widths: the first `left` to the left, the others to the right.
+std::string alignRows(const std::vector<Row>& rows, std::size_t left) {
+  std::vector<std::size_t> widths(rows[0].size(), 0);
+  for (const Row& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      widths[i] = std::max(widths[i], row[i].size());
+    }
+  }
+  std::string text;
+  for (const Row& row : rows) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const std::string padding(widths[i] - row[i].size(), ' ');
+      line += (i == 0 ? "" : std::string(kGap, ' ')) + (i < left ? row[i] + padding : padding + row[i]);
+    }
+    text += line.erase(line.find_last_not_of(' ') + 1) + "\n";
+  }
+  return text;
+}
+
+std::string toCell(double value, int digits) {
+  return std::isnan(value) ? "-" : toShortText(value, digits);
+}
+
+bool isApart(const ComparedFigure& figure) {
+  return figure.lower > 0.0 || figure.upper < 0.0;
+}
+
+std::vector<Row> makeFigureRows(const RunComparison& comparison) {
+  constexpr int kDigits = 5, kIntervalDigits = 3;
+  std::vector<Row> rows{{"parameter", "figure", "A", "B", "B - A", "from", "to", ""}};
+  for (const ComparedParameter& parameter : comparison.parameters) {
+    for (const ComparedFigure& figure : parameter.figures) {
+      const bool first = &figure == &parameter.figures.front();
+      rows.push_back({first ? parameter.name : "", figure.name, toCell(figure.a, kDigits),
+                      toCell(figure.b, kDigits), toCell(figure.difference, kIntervalDigits),
+                      toCell(figure.lower, kIntervalDigits), toCell(figure.upper, kIntervalDigits),
+                      isApart(figure) ? "*" : ""});
+    }
+  }
+  return rows;
+}
+
+std::string describeIntervals(const RunComparison& comparison) {
+  const std::string intervals =
+      "from, to: 95 % bootstrap interval of B - A (BCa, 10000 resamples) over the test samples; * where it "
+      "does "
+      "not contain 0.\n";
+  if (comparison.paired) {
+    return intervals + "Both inferred the same " + std::to_string(comparison.samples_a) +
+           " test samples: the intervals are of pairs.\n";
+  }
+  return intervals + "The test sets are not the same (" + comparison.difference_of_sets +
+         "): the intervals are of independent sets, wider than those of pairs.\n";
+}
+
+std::string listOnly(const std::string& run, const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) {
+    text += (text.empty() ? "" : ", ") + name;
+  }
+  return text.empty() ? "" : "Only " + run + " has " + text + ".\n";
+}
+
+std::string listKeys(const std::vector<KeyDifference>& keys) {
+  if (keys.empty()) {
+    return "The experiments are the same.\n";
+  }
+  std::vector<Row> rows{{"key of resolved.yaml", "A", "B"}};
+  for (const KeyDifference& key : keys) {
+    rows.push_back({key.key, key.before, key.after});
+  }
+  return alignRows(rows, rows[0].size());
+}
+
+std::string toCsvCell(double value) {
+  return std::isnan(value) ? "" : toText(value);
+}
+
+nlohmann::ordered_json toJson(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+nlohmann::ordered_json toJson(const ComparedParameter& parameter) {
+  nlohmann::ordered_json figures;
+  for (const ComparedFigure& figure : parameter.figures) {
+    figures[figure.name] = {{"a", toJson(figure.a)},
+                            {"b", toJson(figure.b)},
+                            {"difference", toJson(figure.difference)},
+                            {"lower", toJson(figure.lower)},
+                            {"upper", toJson(figure.upper)}};
+  }
+  return {{"name", parameter.name}, {"unit", parameter.unit}, {"figures", figures}};
+}
+
+}  // namespace
+
+std::string makeComparisonText(const RunComparison& comparison) {
+  std::string text = "A: " + comparison.folder_a + "\nB: " + comparison.folder_b + "\n\n";
+  if (!comparison.parameters.empty()) {
+    text += alignRows(makeFigureRows(comparison), 2) + "\n" + describeIntervals(comparison);
+  }
+  return text + listOnly("A", comparison.only_a) + listOnly("B", comparison.only_b) + "\n" +
+         listKeys(comparison.keys);
+}
+
+std::string makeComparisonCsv(const RunComparison& comparison) {
+  std::string text = "parameter,unit,figure,a,b,difference,lower,upper,paired\n";
+  for (const ComparedParameter& parameter : comparison.parameters) {
+    for (const ComparedFigure& figure : parameter.figures) {
+      text += escapeCsv(parameter.name) + "," + escapeCsv(parameter.unit) + "," + figure.name;
+      for (const double value : {figure.a, figure.b, figure.difference, figure.lower, figure.upper}) {
+        text += "," + toCsvCell(value);
+      }
+      text += comparison.paired ? ",1\n" : ",0\n";
+    }
+  }
+  return text;
+}
+
+std::string makeComparisonJson(const RunComparison& comparison) {
+  nlohmann::ordered_json json;
+  json["a"] = {
+      {"folder", comparison.folder_a}, {"test_samples", comparison.samples_a}, {"only", comparison.only_a}};
+  json["b"] = {
+      {"folder", comparison.folder_b}, {"test_samples", comparison.samples_b}, {"only", comparison.only_b}};
+  json["paired"] = comparison.paired;
+  json["difference_of_sets"] = comparison.difference_of_sets;
+  json["parameters"] = nlohmann::ordered_json::array();
+  for (const ComparedParameter& parameter : comparison.parameters) {
+    json["parameters"].push_back(toJson(parameter));
+  }
+  json["keys"] = nlohmann::ordered_json::array();
+  for (const KeyDifference& key : comparison.keys) {
+    json["keys"].push_back({{"key", key.key}, {"a", key.before}, {"b", key.after}});
+  }
+  constexpr int kIndent = 2;
+  return json.dump(kIndent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace twinmap

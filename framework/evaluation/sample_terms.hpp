@@ -1,0 +1,29 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "framework/evaluation/metrics.hpp"
+
+namespace twinmap {
+
+/// Test samples of one parameter, in its unit.
+struct ParameterSamples {
+  Eigen::ArrayXd truth, mean, stddev;
+  Eigen::ArrayXd limit_stddev;  ///< NaN where the limit is not known
+};
+
+/// What each sample adds to the figures, which depend on the samples through the means of these terms alone.
+/// Errors and z are stored less their means, so that no digits of the standard deviations are lost.
+struct SampleTerms {
+  Eigen::MatrixXd terms;  ///< k x n
+  double error_offset = 0.0;
+  double z_offset = 0.0;
+};
+
+SampleTerms calcSampleTerms(const ParameterSpec& parameter, const ParameterSamples& samples);
+
+/// The figures of kFigureColumns, in their order, of a set with the given means of the terms (k) and number
+/// of samples: a FigureFunction of `of`.
+Eigen::VectorXd calcFigureValues(const SampleTerms& of, const Eigen::VectorXd& mean, double samples);
+
+}  // namespace twinmap

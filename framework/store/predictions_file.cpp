@@ -1,0 +1,72 @@
+#include "framework/store/predictions_file.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "framework/store/csv_file.hpp"
+
+namespace twinmap {
+namespace {
+
+/// Rows of the table, with errors that name the line of the file.
+class Rows {
+ public:
+  Rows(const std::filesystem::path& path, const CsvTable& table) : path_(path), table_(table) {}
+
+  [[noreturn]] void fail(std::size_t row, const std::string& problem) const {
+    throw std::runtime_error(path_.string() + ":" + std::to_string(row + 2) + ": " + problem);
+  }
+
+  double getNumber(std::size_t row, const std::string& column) const {
+    const double value = table_.getNumber(row, column);
+    if (!std::isfinite(value)) {
+      fail(row, column + " '" + table_.getText(row, column) + "' must be a number");
+    }
+    return value;
+  }
+
+  void requireText(std::size_t row, const std::string& column, const std::string& expected) const {
+    if (table_.getText(row, column) != expected) {
+      fail(row, column + " '" + table_.getText(row, column) + "' must be '" + expected + "'");
+    }
+  }
+
+ private:
+  const std::filesystem::path& path_;
+  const CsvTable& table_;
+};
+
+}  // namespace
+
+StoredPredictions readPredictionsFile(const std::filesystem::path& path,
+                                      const std::vector<std::string>& parameters) {
+  const CsvTable table = readCsvFile(path);
+  const Rows rows(path, table);
+  if (table.empty() || table.rows.size() % parameters.size() != 0) {
+    throw std::runtime_error(path.string() + ": must have a row for each test sample and parameter");
+  }
+  const auto count = static_cast<Eigen::Index>(parameters.size());
+  const auto samples = static_cast<Eigen::Index>(table.rows.size()) / count;
+  StoredPredictions stored;
+  stored.truth.resize(count, samples);
+  stored.predictions = {stored.truth, stored.truth};
+  stored.limit_stddev.resize(table.hasColumn("limit_stddev") ? count : 0, samples);
+  for (Eigen::Index i = 0; i < samples; ++i) {
+    const auto first = static_cast<std::size_t>(i * count);
+    stored.samples.push_back(static_cast<int>(rows.getNumber(first, "sample")));
+    for (Eigen::Index p = 0; p < count; ++p) {
+      const std::size_t row = first + static_cast<std::size_t>(p);
+      rows.requireText(row, "sample", std::to_string(stored.samples.back()));
+      rows.requireText(row, "parameter", parameters[static_cast<std::size_t>(p)]);
+      stored.truth(p, i) = rows.getNumber(row, "true");
+      stored.predictions.mean(p, i) = rows.getNumber(row, "inferred");
+      stored.predictions.stddev(p, i) = rows.getNumber(row, "stddev");
+      if (stored.limit_stddev.rows() > 0) {
+        stored.limit_stddev(p, i) = table.getNumber(row, "limit_stddev");
+      }
+    }
+  }
+  return stored;
+}
+
+}  // namespace twinmap

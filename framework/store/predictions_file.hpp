@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "framework/inverse_map/predictions.hpp"
+
+namespace twinmap {
+
+/// predictions.csv as matrices: p x n, in the parameters' units.
+struct StoredPredictions {
+  std::vector<int> samples;  ///< index in the test set of each column
+  Eigen::MatrixXd truth;
+  Predictions predictions;
+  Eigen::MatrixXd limit_stddev;  ///< NaN where it is not known; empty where the file has no such column
+};
+
+/// Reads predictions.csv (docs/file-formats.md); `parameters` are the names in its order. Numbers are those
+/// that were written, bit for bit. Throws std::runtime_error naming the file, the row and what is wrong with
+/// it.
+StoredPredictions readPredictionsFile(const std::filesystem::path& path,
+                                      const std::vector<std::string>& parameters);
+
+}  // namespace twinmap
