@@ -3,12 +3,15 @@
 #include <algorithm>
 
 #include "framework/evaluate.hpp"
+#include "framework/example_responses.hpp"
 #include "framework/features/noise.hpp"
 #include "framework/features/selections.hpp"
 #include "framework/inverse_map/gp_map.hpp"
 #include "framework/labelled_sets.hpp"
 #include "framework/make_extractor.hpp"
 #include "framework/multibody/multibody_simulator.hpp"
+#include "framework/online_timing.hpp"
+#include "framework/report/report.hpp"
 #include "framework/result_files.hpp"
 #include "framework/spec/check_experiment.hpp"
 #include "framework/spec/experiment_file.hpp"
@@ -67,6 +70,17 @@ std::vector<TrainingStart> summarizeTraining(const std::vector<std::string>& par
   return rows;
 }
 
+std::vector<TrainedHyperparameter> listHyperparameters(const std::vector<std::string>& parameters,
+                                                       const std::vector<gp::TrainingReport>& reports) {
+  std::vector<TrainedHyperparameter> listed;
+  for (std::size_t p = 0; p < reports.size(); ++p) {
+    for (const gp::BoundedHyperparameter& of : reports[p].hyperparameters) {
+      listed.push_back({parameters[p], of.name, of.value, of.lower, of.upper});
+    }
+  }
+  return listed;
+}
+
 /// Trains the map on the training samples and writes it.
 GpMap trainMap(const ExperimentSpec& experiment, const LabelledFeatures& training, const RunOptions& options,
                RunSummary& run) {
@@ -79,6 +93,7 @@ GpMap trainMap(const ExperimentSpec& experiment, const LabelledFeatures& trainin
   run.leave_one_out = calcMetrics(experiment.model.parameters, training.parameters, trained.leave_one_out, {},
                                   training.replicates);
   run.training = summarizeTraining(parameter_names, trained.reports);
+  run.hyperparameters = listHyperparameters(parameter_names, trained.reports);
   for (const Process& process : trained.map.processes) {
     run.nlml.push_back(getNlml(process));
   }
@@ -113,9 +128,14 @@ RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& opt
 
   const GpMap map = trainMap(experiment, labelled.train, options, run);
   evaluate({experiment, simulator, extractor, noise, labelled, map, options.threads}, run);
+  writeExampleResponses(experiment, sets, simulator, options, run);
+  timeOnlineUpdates(map, labelled.test, run);
 
   writeResults(options.folder, run);
   writeProvenance(experiment, options, run);
+  const Report report = makeReport({options.folder});
+  writeReport(options.folder, report);
+  run.gates = report.gates;
   return run;
 }
 

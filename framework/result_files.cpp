@@ -1,8 +1,6 @@
 #include "framework/result_files.hpp"
 
 #include "framework/report/evaluation_tables.hpp"
-#include "framework/report/html_report.hpp"
-#include "framework/report/stddev_figure.hpp"
 #include "framework/report/tables.hpp"
 #include "framework/store/atomic_file.hpp"
 #include "framework/store/provenance.hpp"
@@ -36,23 +34,22 @@ void writeResults(const fs::path& folder, const RunSummary& run) {
   writeTextFile(folder / "pit.csv", makePitCsv(run));
   writeTextFile(folder / "predictions.csv", makePredictionsCsv(run));
   writeTextFile(folder / "training.csv", makeTrainingCsv(run));
+  writeTextFile(folder / "hyperparameters.csv", makeHyperparametersCsv(run));
   writeTextFile(folder / "table.md", makeMarkdownTable(run));
   writeTextFile(folder / "table.tex", makeLatexTable(run));
-  writeTextFile(folder / "report.html", makeHtmlReport(run));
-  if (run.axes.empty()) {
-    return;
-  }
-  fs::create_directories(folder / "figures");
-  for (std::size_t p = 0; p < run.parameters.size(); ++p) {
-    writeTextFile(folder / "figures" / ("stddev_" + run.parameters[p].name.text + ".svg"),
-                  makeStddevFigure(run, static_cast<int>(p)));
-  }
 }
 
 void writeProvenance(const ExperimentSpec& experiment, const RunOptions& options, const RunSummary& run) {
-  Provenance provenance{
-      options.command, experiment.seed, options.threads, {}, static_cast<int>(run.failures.size())};
+  Provenance provenance;
+  provenance.command = options.command;
+  provenance.seed = experiment.seed;
+  provenance.threads = options.threads;
+  provenance.failed_samples = static_cast<int>(run.failures.size());
   provenance.reused_samples = run.reused_samples;
+  provenance.online_updates = run.online.updates;
+  provenance.online_median_us = run.online.median_us;
+  provenance.online_p99_us = run.online.p99_us;
+  provenance.warnings = run.warnings;
   for (const StageTime& time : run.times) {
     provenance.stage_seconds.emplace_back(time.stage, time.seconds);
   }

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "framework/report/gates.hpp"
 
 namespace twinmap {
 
@@ -23,6 +26,19 @@ struct RunArguments {
   std::string store;   ///< "": chunks in the folder
   int threads = 1;
   std::string command_line;
+  bool fail_on_gates = false;
+};
+
+struct ReportArguments {
+  std::vector<std::string> folders;
+  std::string out;  ///< "": the run's folder; of several runs results/report
+  bool fail_on_gates = false;
+};
+
+/// A gate failed and --fail-on-gates was given.
+class GatesFailed : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
 };
 
 struct CompareArguments {
@@ -47,5 +63,11 @@ void run(const RunArguments& arguments);
 
 /// Prints two runs side by side.
 void compare(const CompareArguments& arguments);
+
+/// Writes the report of runs, or of a sweep, again.
+void report(const ReportArguments& arguments);
+
+/// Prints the gates that failed; throws GatesFailed if there are any and `fail` is set.
+void requireGates(const std::vector<GateResult>& gates, bool fail);
 
 }  // namespace twinmap

@@ -14,6 +14,7 @@ namespace {
 
 constexpr int kFailed = 1;
 constexpr int kWrongInput = 2;
+constexpr int kGatesFailed = 3;
 
 std::string joinArguments(int count, char** arguments) {
   std::string line = "twinmap";
@@ -59,6 +60,10 @@ void addSimulate(CLI::App& app, twinmap::SimulateArguments& arguments) {
   command->callback([&arguments] { twinmap::simulate(arguments); });
 }
 
+void addFailOnGates(CLI::App& command, bool& fail) {
+  command.add_flag("--fail-on-gates", fail, "Exit with 3 if one of the experiment's gates fails");
+}
+
 void addRun(CLI::App& app, twinmap::RunArguments& arguments) {
   constexpr int kMostThreads = 1024;
   CLI::App* command =
@@ -76,6 +81,7 @@ void addRun(CLI::App& app, twinmap::RunArguments& arguments) {
                    "Threads (default: all cores); results do not depend on them")
       ->type_name("N")
       ->check(CLI::Range(1, kMostThreads));
+  addFailOnGates(*command, arguments.fail_on_gates);
   command->callback([&arguments] { twinmap::run(arguments); });
 }
 
@@ -91,6 +97,18 @@ void addCompare(CLI::App& app, twinmap::CompareArguments& arguments) {
   command->callback([&arguments] { twinmap::compare(arguments); });
 }
 
+void addReport(CLI::App& app, twinmap::ReportArguments& arguments) {
+  CLI::App* command = app.add_subcommand(
+      "report", "Write report.html again from a run's or a sweep's folder, or compare several runs");
+  command->add_option("DIR", arguments.folders, "Folders of runs")->required()->option_text(" ");
+  command
+      ->add_option("--out", arguments.out,
+                   "Folder for the report (default: the run's own; of several runs results/report)")
+      ->type_name("DIR");
+  addFailOnGates(*command, arguments.fail_on_gates);
+  command->callback([&arguments] { twinmap::report(arguments); });
+}
+
 void addSchema(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "schema", "Print the JSON schema of experiment files, with which editors complete and explain keys");
@@ -104,11 +122,14 @@ int runCommand(int count, char** arguments) {
       "deviation.");
   app.set_version_flag("--version", std::string("twinmap ") + twinmap::kVersion);
   app.require_subcommand(1);
-  app.footer("Exit codes: 0 done, 1 failed, 2 wrong usage or wrong experiment file.");
+  app.footer(
+      "Exit codes: 0 done, 1 failed, 2 wrong usage or wrong experiment file, 3 a gate failed and "
+      "--fail-on-gates was given.");
 
   twinmap::ExperimentArguments check;
   twinmap::SimulateArguments simulate;
   twinmap::CompareArguments compare;
+  twinmap::ReportArguments report;
   twinmap::RunArguments run;
   run.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   run.command_line = joinArguments(count, arguments);
@@ -116,6 +137,7 @@ int runCommand(int count, char** arguments) {
   addSimulate(app, simulate);
   addRun(app, run);
   addCompare(app, compare);
+  addReport(app, report);
   addSchema(app);
   try {
     app.parse(count, arguments);
@@ -134,6 +156,9 @@ int main(int count, char** arguments) {
   } catch (const twinmap::ExperimentError& error) {
     std::cerr << "twinmap: error: " << error.what() << "\n";
     return kWrongInput;
+  } catch (const twinmap::GatesFailed& error) {
+    std::cerr << "twinmap: error: " << error.what() << "\n";
+    return kGatesFailed;
   } catch (const std::exception& error) {
     std::cerr << "twinmap: error: " << error.what() << "\n";
     return kFailed;

@@ -24,6 +24,7 @@ void run(const RunArguments& arguments) {
               << (options.folder / "failures.csv").string() << "\n";
   }
   std::cerr << "Report: " << (options.folder / "report.html").string() << "\n";
+  requireGates(summary.gates, arguments.fail_on_gates);
 }
 
 }  // namespace twinmap

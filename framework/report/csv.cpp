@@ -15,4 +15,8 @@ std::string makeCsv(const std::vector<CsvRow>& rows) {
   return text;
 }
 
+std::string makeCsv(const CsvTable& table) {
+  return makeCsv(std::vector<CsvRow>{table.columns}) + makeCsv(table.rows);
+}
+
 }  // namespace twinmap

@@ -132,6 +132,15 @@ std::string makeFailuresCsv(const RunSummary& run) {
   return makeCsv(rows);
 }
 
+std::string makeHyperparametersCsv(const RunSummary& run) {
+  std::vector<Row> rows{{"parameter", "hyperparameter", "value", "lower", "upper"}};
+  for (const TrainedHyperparameter& trained : run.hyperparameters) {
+    rows.push_back({trained.parameter, trained.name, toText(trained.value), toText(trained.lower),
+                    toText(trained.upper)});
+  }
+  return makeCsv(rows);
+}
+
 std::string makeTrainingCsv(const RunSummary& run) {
   std::vector<Row> rows{{"parameter", "start", "best", "nlml", "evaluations", "noise_only", "stop_reason",
                          "at_bound", "condition", "jitter"}};

@@ -10,6 +10,7 @@
 #include "framework/evaluation/joint_metrics.hpp"
 #include "framework/evaluation/metrics.hpp"
 #include "framework/features/feature_block.hpp"
+#include "framework/report/gates.hpp"
 #include "framework/spec/model_spec.hpp"
 
 namespace twinmap {
@@ -34,6 +35,12 @@ struct TrainingStart {
   std::string at_bound;    ///< of the best start: hyperparameters at a bound
   double condition = 0.0;  ///< of the best start: estimated condition number of the covariance matrix
   double jitter = 0.0;  ///< of the best start: added to its diagonal, in units of the standardised parameter
+};
+
+/// A hyperparameter of a parameter's process and the bounds of its search.
+struct TrainedHyperparameter {
+  std::string parameter, name;
+  double value = 0.0, lower = 0.0, upper = 0.0;
 };
 
 /// Wall time of one stage of a run.
@@ -65,6 +72,12 @@ struct BaselineSummary {
   int unconverged = 0;
 };
 
+/// What one online update costs: the inference of all parameters from one feature vector.
+struct OnlineTimes {
+  int updates = 0;  ///< how many were timed
+  double median_us = 0.0, p99_us = 0.0;
+};
+
 /// Everything that the tables and the report of one run show.
 struct RunSummary {
   std::string name;
@@ -87,10 +100,13 @@ struct RunSummary {
   std::vector<BaselineSummary> baselines;
   std::vector<double> nlml;  ///< one per parameter, nats
   std::vector<TrainingStart> training;
+  std::vector<TrainedHyperparameter> hyperparameters;
   std::vector<std::string> warnings;
   std::vector<FailedSample> failures;
   int reused_samples = 0;  ///< taken from the store instead of simulated
   std::vector<StageTime> times;
+  OnlineTimes online;
+  std::vector<GateResult> gates;
 };
 
 }  // namespace twinmap

@@ -28,6 +28,9 @@ std::string makeFailuresCsv(const RunSummary& run);
 /// at_bound, condition, jitter.
 std::string makeTrainingCsv(const RunSummary& run);
 
+/// hyperparameters.csv: parameter, hyperparameter, value, lower, upper; of the start that was kept.
+std::string makeHyperparametersCsv(const RunSummary& run);
+
 /// The paper's table for people: Markdown (columns aligned, so that it reads well as plain text) and LaTeX
 /// (booktabs). Bias, sd, coverage and ratio carry their standard error in parentheses
 /// (number_with_error.hpp); the information limit and the ratio to it have columns where the limit is known.

@@ -68,6 +68,15 @@ void checkDesign(const DesignSpec& design, const SourceLocation& where) {
   }
 }
 
+void checkGates(const ExperimentSpec& experiment) {
+  for (const GateSpec& gate : experiment.gates) {
+    requireKnown(gate.metric, {kGateMetrics.begin(), kGateMetrics.end()}, "a metric");
+    if (gate.parameter) {
+      requireKnown(*gate.parameter, collectNames(experiment.model.parameters), "a parameter");
+    }
+  }
+}
+
 }  // namespace
 
 void requireKnown(const Name& name, const std::vector<std::string>& known, const std::string& what) {
@@ -84,6 +93,7 @@ void checkExperiment(const ExperimentSpec& experiment) {
   checkNoise(experiment);
   checkTransform(experiment);
   checkDesign(experiment.design, experiment.name.where);
+  checkGates(experiment);
   for (const Name& axis : experiment.report.over) {
     requireKnown(axis, collectNames(experiment.model.parameters), "a parameter");
   }

@@ -235,6 +235,16 @@ void describe(Fields& f, ReportSpec& s) {
 }
 
 template <class Fields>
+void describe(Fields& f, GateSpec& s) {
+  f.required("metric", s.metric, "a column of metrics.csv, such as coverage95 or ratio_to_limit");
+  f.optional("parameter", s.parameter, "the parameter it holds for (default: every one)");
+  f.optional("min", s.min, "least value that passes");
+  f.optional("max", s.max, "greatest value that passes");
+  f.rule(s.min || s.max, "must give min, max or both");
+  f.rule(!s.min || !s.max || *s.min <= *s.max, "must have min not above max");
+}
+
+template <class Fields>
 void describe(Fields& f, ExperimentSpec& s) {
   f.required("name", s.name, "letters, digits, '_', '-' and '.'; names the run's folder");
   f.optional("description", s.description, "for people");
@@ -252,6 +262,7 @@ void describe(Fields& f, ExperimentSpec& s) {
   f.optional("design", s.design, "where the parameter box is sampled");
   f.optional("inverse_map", s.inverse_map, "from features to parameters");
   f.optional("evaluation", s.evaluation, "what is found out about the map besides its errors");
+  f.optional("gates", s.gates, "conditions on the metrics; the report says which passed");
   f.optional("report", s.report, "what the report shows");
   f.rule(!s.features.empty(), "must list at least one of features");
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "framework/spec/feature_spec.hpp"
+#include "framework/spec/gate_spec.hpp"
 #include "framework/spec/model_spec.hpp"
 
 namespace twinmap {
@@ -190,6 +191,7 @@ struct ExperimentSpec {
   DesignSpec design;
   InverseMapSpec inverse_map;
   EvaluationSpec evaluation;
+  std::vector<GateSpec> gates;
   ReportSpec report;
 };
 

@@ -165,6 +165,12 @@ FeatureTransform readTransform(const Hdf5Reader& file) {
   return transform;
 }
 
+void requireFormat(const Hdf5Reader& file, const std::filesystem::path& path) {
+  if (file.readAttribute("/", "format") != kFormat) {
+    throw std::runtime_error(path.string() + ": is not a maps.h5 of this version of twinmap");
+  }
+}
+
 /// An exact process, which has the training inputs that all exact ones share; null if all are sparse.
 const gp::GaussianProcess* findExact(const GpMap& map) {
   for (const Process& process : map.processes) {
@@ -200,9 +206,7 @@ void writeMapsFile(const std::filesystem::path& path, const StoredMap& stored) {
 
 StoredMap readMapsFile(const std::filesystem::path& path) {
   const Hdf5Reader file(path);
-  if (file.readAttribute("/", "format") != kFormat) {
-    throw std::runtime_error(path.string() + ": is not a maps.h5 of this version of twinmap");
-  }
+  requireFormat(file, path);
   StoredMap stored;
   stored.parameters = readParametersGroup(file);
   stored.feature_names = file.readTexts("/features/name");
@@ -220,6 +224,18 @@ StoredMap readMapsFile(const std::filesystem::path& path) {
     stored.map.processes.push_back(sparse ? readSparse(file, group) : readExact(file, group, inputs));
   }
   return stored;
+}
+
+MapSummary readMapSummary(const std::filesystem::path& path) {
+  const Hdf5Reader file(path);
+  requireFormat(file, path);
+  MapSummary summary{file.readTexts("/features/name"), readTransform(file), {}, {}};
+  for (const ParameterSpec& parameter : readParametersGroup(file)) {
+    const std::string group = "/maps/" + parameter.name.text;
+    summary.structures.push_back(readStructure(file, group));
+    summary.hyperparameters.push_back(readHyperparameters(file, group));
+  }
+  return summary;
 }
 
 }  // namespace twinmap

@@ -6,6 +6,7 @@
 
 #include "framework/inverse_map/gp_map.hpp"
 #include "framework/spec/model_spec.hpp"
+#include "framework/store/map_summary.hpp"
 
 namespace twinmap {
 

@@ -1,5 +1,6 @@
 #include "framework/store/provenance.hpp"
 
+#include <sys/resource.h>
 #include <sys/utsname.h>
 
 #include <chrono>
@@ -37,6 +38,13 @@ std::string readOperatingSystem() {
   return uname(&name) == 0 ? std::string(name.sysname) + " " + name.release + " " + name.machine : "unknown";
 }
 
+/// The largest resident set of this process so far.
+double calcPeakMemoryMegabytes() {
+  constexpr double kKilobytes = 1e-3 * 1.024;
+  rusage usage{};
+  return getrusage(RUSAGE_SELF, &usage) == 0 ? kKilobytes * static_cast<double>(usage.ru_maxrss) : 0.0;
+}
+
 }  // namespace
 
 std::string makeProvenanceJson(const Provenance& provenance) {
@@ -51,6 +59,11 @@ std::string makeProvenanceJson(const Provenance& provenance) {
   for (const auto& [stage, seconds] : provenance.stage_seconds) {
     json["seconds"][stage] = seconds;
   }
+  json["online"] = {{"updates", provenance.online_updates},
+                    {"median_us", provenance.online_median_us},
+                    {"p99_us", provenance.online_p99_us}};
+  json["peak_memory_mb"] = calcPeakMemoryMegabytes();
+  json["warnings"] = provenance.warnings;
   json["build"] = {{"compiler", kCompiler}, {"type", kBuildType}, {"instruction_set", kInstructionSet}};
   json["libraries"] = {{"Eigen", kEigenVersion},      {"Simbody", kSimbodyVersion},
                        {"NLopt", kNloptVersion},      {"Boost", kBoostVersion},

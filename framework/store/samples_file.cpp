@@ -49,4 +49,10 @@ void writeSamplesFile(const std::filesystem::path& path, const ModelSpec& model,
   });
 }
 
+StoredResponses readTestResponses(const std::filesystem::path& path) {
+  const Hdf5Reader file(path);
+  return {file.readTexts("/outputs/name"), file.readTexts("/outputs/unit"), file.readVector("/times"),
+          file.readSamples("/test/responses")};
+}
+
 }  // namespace twinmap

@@ -12,4 +12,15 @@ namespace twinmap {
 void writeSamplesFile(const std::filesystem::path& path, const ModelSpec& model, const Trajectories& train,
                       const Trajectories& test);
 
+/// The clean responses of the test set, with the times they are known at.
+struct StoredResponses {
+  std::vector<std::string> output_names;
+  std::vector<std::string> output_units;
+  Eigen::VectorXd times;      ///< s
+  Eigen::MatrixXd responses;  ///< outputs * times x n, output by output; NaN where the sample failed
+};
+
+/// Reads the test set's responses back. Throws std::runtime_error for a file that is no samples.h5.
+StoredResponses readTestResponses(const std::filesystem::path& path);
+
 }  // namespace twinmap

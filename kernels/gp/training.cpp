@@ -108,6 +108,16 @@ std::vector<std::string> describeBounds(const ModelStructure& structure, const S
   return at_bound;
 }
 
+std::vector<BoundedHyperparameter> listHyperparameters(const ModelStructure& structure, const SearchBox& box,
+                                                       const VectorXd& point) {
+  const std::vector<std::string> names = getHyperparameterNames(structure);
+  std::vector<BoundedHyperparameter> listed;
+  for (Index i = 0; i < point.size(); ++i) {
+    listed.push_back({names[i], std::exp(point(i)), std::exp(box.lower(i)), std::exp(box.upper(i))});
+  }
+  return listed;
+}
+
 void setStatus(TrainingResult& result, TrainingStatus status, const std::string& message) {
   result.status = status;
   result.message = message;
@@ -153,7 +163,9 @@ TrainingResult finish(const TrainingSet& set, const TargetSearches& searches,
               "no start had a positive definite covariance matrix: raise the noise's lower bound");
     return result;
   }
-  report.at_bound = describeBounds(set.getStructure(), searches.box, searches.results[report.best_start].end);
+  const VectorXd& end = searches.results[report.best_start].end;
+  report.at_bound = describeBounds(set.getStructure(), searches.box, end);
+  report.hyperparameters = listHyperparameters(set.getStructure(), searches.box, end);
   report.jitter = evaluation.jitter;
   result.gp = makeGaussianProcess(set, report.starts[report.best_start].end, evaluation, workspace);
   report.condition = linalg::estimateCondition(linalg::viewOf(result.gp->getFactor()));

@@ -70,14 +70,21 @@ struct StartReport {
   std::string stop_reason;
 };
 
+/// A hyperparameter and the bounds of its search.
+struct BoundedHyperparameter {
+  std::string name;  ///< "length_scale[0]"
+  double value = 0.0, lower = 0.0, upper = 0.0;
+};
+
 struct TrainingReport {
   std::vector<StartReport> starts;
   int best_start = -1;
   int evaluations = 0;                ///< of all starts, those of the shared warm start included
   double noise_only_nlml = 0.0;       ///< the least NLML without a signal, for comparison
   std::vector<std::string> at_bound;  ///< e.g. "noise_stddev at its lower bound 1e-05"
-  double condition = 0.0;             ///< estimated 1-norm condition number of K + (s_n^2 + jitter) I
-  double jitter = 0.0;                ///< squared target units, of the final factor
+  std::vector<BoundedHyperparameter> hyperparameters;  ///< of the best start
+  double condition = 0.0;  ///< estimated 1-norm condition number of K + (s_n^2 + jitter) I
+  double jitter = 0.0;     ///< squared target units, of the final factor
 };
 
 enum class TrainingStatus {

@@ -15,7 +15,7 @@ ALLOWED = {
     "inverse_map": {"spec", "design", "simulation", "features", "sensitivity", "kernels"},
     "evaluation": {"spec", "design", "simulation", "features", "sensitivity", "inverse_map"},
     "store": {"spec", "simulation", "inverse_map", "features", "kernels"},
-    "report": {"spec", "features", "evaluation", "inverse_map"},
+    "report": {"spec", "features", "evaluation", "inverse_map", "store"},
     "comparison": {"spec", "features", "evaluation", "inverse_map", "store", "report"},
     "flow": {"spec", "design", "simulation", "multibody", "features", "sensitivity", "evaluation", "inverse_map", "store",
              "report"},
@@ -34,7 +34,8 @@ LIBRARIES = {
     r"CLI/.*": {"cli"},
     r"nlopt.*": {"kernels"},
     r"spdlog/.*": {"flow", "cli"},
-    r"(omp\.h|filesystem|fstream|chrono)": {"spec", "simulation", "multibody", "evaluation/chrono", "store", "comparison", "flow", "cli", "kernels/omp.h"},
+    r"filesystem": {"spec", "store", "report", "comparison", "flow", "cli"},
+    r"(omp\.h|fstream|chrono)": {"spec", "simulation", "multibody", "evaluation/chrono", "store", "comparison", "flow", "cli", "kernels/omp.h"},
 }
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)

@@ -4,6 +4,7 @@ import fcntl
 import filecmp
 import json
 import os
+import shutil
 import statistics
 import subprocess
 import tempfile
@@ -19,9 +20,9 @@ TWINMAP = os.environ["TWINMAP"]
 TABLE1 = os.path.join(os.environ["TWINMAP_SOURCE_DIR"], "experiments/two_beam/table1.yaml")
 CHAIN = os.path.join(os.environ["TWINMAP_SOURCE_DIR"], "experiments/three_mass_chain")
 SMALL = ["design.train.samples=40", "design.test.samples=20"]
-RESULTS = ["correlations.csv", "failures.csv", "features.csv", "identifiability.csv", "joint.csv", "maps.h5",
-           "metrics.csv", "pit.csv", "predictions.csv", "resolved.yaml", "samples.h5", "table.md", "table.tex",
-           "training.csv"]
+RESULTS = ["correlations.csv", "failures.csv", "features.csv", "hyperparameters.csv", "identifiability.csv", "joint.csv",
+           "maps.h5", "metrics.csv", "pit.csv", "predictions.csv", "resolved.yaml", "responses.csv", "samples.h5", "table.md",
+           "table.tex", "training.csv"]
 
 
 def call(*arguments):
@@ -319,7 +320,7 @@ class Run(TestCase):
         for row in read_csv(self.folder / "run/predictions.csv"):
             if row["parameter"] == "m":
                 self.assertEqual(float(row["true"]), true_mass[int(row["sample"])])
-        self.assertIn(f"{len(failures)} could not be simulated", (self.folder / "run/report.html").read_text())
+        self.assertIn(f"{len(failures)} samples could not be simulated", (self.folder / "run/report.html").read_text())
         self.assertEqual(json.loads((self.folder / "run/provenance.json").read_text())["failed_samples"], len(failures))
 
     def test_samples_that_lack_a_feature_fail_with_a_reason(self):
@@ -413,13 +414,54 @@ class Run(TestCase):
         self.assertEqual(result.returncode, 1)
         self.assertIn(f"{self.folder / 'run'}: is in use by process {os.getpid()};", result.stderr)
 
+    def test_failed_gates_are_named_and_fail_the_run_where_asked(self):
+        gates = "gates=[{metric: coverage95, min: 0}, {metric: sd_pct, parameter: k_y, max: 1e-9}]"
+        result = self.run_experiment("run", gates)
+        self.assertIn("gate failed: sd_pct \u2264 1e-09, k_y", result.stderr)
+        self.assertNotIn("coverage95", result.stderr)
+        self.assertEqual(call("report", self.folder / "run", "--fail-on-gates").returncode, 3)
+        self.assertEqual(call("report", self.folder / "run").returncode, 0)
+        result = call("check", TABLE1, "gates=[{metric: coverage, min: 0}]")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("'coverage' is not a metric", result.stderr)
+
+    def test_the_report_is_made_again_from_the_folder_alone(self):
+        self.run_experiment("run")
+        first = (self.folder / "run/report.html").read_bytes()
+        shutil.move(self.folder / "run", self.folder / "moved")
+        self.assertEqual(call("report", self.folder / "moved").returncode, 0)
+        self.assertEqual((self.folder / "moved/report.html").read_bytes(), first)
+        result = call("report", self.folder / "moved", self.folder / "moved", "--out", self.folder / "both")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("2 runs side by side", (self.folder / "both/report.html").read_text())
+        result = call("report", self.folder / "nowhere")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("is no folder of a run", result.stderr)
+
+    def test_examples_of_updated_models_fit_their_measurement(self):
+        self.run_experiment("run")
+        rows = read_csv(self.folder / "run/responses.csv")
+        self.assertEqual(len(rows), 3 * 2 * 100)
+        with h5py.File(self.folder / "run/samples.h5") as file:
+            clean = file["test/responses"][:]
+        for name in ("best", "median", "worst"):
+            mine = [row for row in rows if row["case"] == name]
+            noise, measured, nominal, updated = (np.array([float(row[column]) for row in mine]) for column in
+                                                 ("noise_stddev", "measured", "nominal", "updated"))
+            truth = clean[int(mine[0]["sample"])].ravel()  # output by output, as the rows
+            self.assertAlmostEqual(np.std((measured - truth) / noise), 1, delta=0.25)
+            self.assertLess(np.std((measured - updated) / noise), np.std((measured - nominal) / noise))
+
     def test_provenance_says_how(self):
         self.run_experiment("run", "--threads", 2)
         provenance = json.loads((self.folder / "run/provenance.json").read_text())
         self.assertEqual(provenance["threads"], 2)
         self.assertEqual(provenance["seed"], 1)
         self.assertIn("design.train.samples=40", provenance["command"])
-        self.assertEqual(len(provenance["seconds"]), 5)
+        self.assertEqual(len(provenance["seconds"]), 6)
+        self.assertEqual(provenance["online"]["updates"], 20)
+        self.assertGreaterEqual(provenance["online"]["p99_us"], provenance["online"]["median_us"])
+        self.assertGreater(provenance["peak_memory_mb"], 1)
         self.assertEqual([p.name for p in (self.folder / "run").glob("*.tmp")], [])
 
 

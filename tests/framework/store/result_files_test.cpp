@@ -99,13 +99,24 @@ TEST(MapsFile, RefusesOtherFiles) {
 }
 
 TEST(Provenance, SaysHowTheRunCameAbout) {
-  const nlohmann::json json =
-      nlohmann::json::parse(makeProvenanceJson({"twinmap run \"x\" \xff", 7, 2, {{"simulate", 1.5}}, 3, 4}));
+  const nlohmann::json json = nlohmann::json::parse(makeProvenanceJson({"twinmap run \"x\" \xff",
+                                                                        7,
+                                                                        2,
+                                                                        {{"simulate", 1.5}},
+                                                                        3,
+                                                                        4,
+                                                                        200,
+                                                                        44.5,
+                                                                        83.0,
+                                                                        {"parameter 'k': not converged"}}));
   EXPECT_EQ(json["seed"], 7);
   EXPECT_EQ(json["threads"], 2);
   EXPECT_EQ(json["seconds"]["simulate"], 1.5);
   EXPECT_EQ(json["failed_samples"], 3);
   EXPECT_EQ(json["reused_samples"], 4);
+  EXPECT_EQ(json["online"]["median_us"], 44.5);
+  EXPECT_EQ(json["warnings"][0], "parameter 'k': not converged");
+  EXPECT_GT(json["peak_memory_mb"], 0.1);
   for (const auto& [library, version] : json["libraries"].items()) {
     EXPECT_NE(version, "") << library;
   }

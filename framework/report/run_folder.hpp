@@ -1,0 +1,50 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/spec/experiment_spec.hpp"
+#include "framework/store/csv_file.hpp"
+#include "framework/store/map_summary.hpp"
+#include "framework/store/samples_file.hpp"
+
+namespace twinmap {
+
+/// What a run left in its folder: all that the report knows. Files that are not there leave an empty table.
+struct RunFolder {
+  std::filesystem::path path;
+  std::string label;  ///< the folder's name
+  ExperimentSpec experiment;
+  CsvTable metrics;
+  CsvTable joint;
+  CsvTable predictions;
+  CsvTable training;
+  CsvTable hyperparameters;
+  CsvTable failures;
+  CsvTable features;
+  CsvTable correlations;
+  CsvTable posterior;
+  CsvTable baselines;
+  CsvTable responses;
+  nlohmann::ordered_json provenance;  ///< null if absent
+  std::optional<StoredResponses> test_responses;
+  std::optional<MapSummary> map;
+};
+
+/// Reads a run's folder (docs/file-formats.md). Throws std::runtime_error naming a damaged file, or the
+/// folder if it has no resolved.yaml.
+RunFolder readRunFolder(const std::filesystem::path& path);
+
+/// A sweep: its summary and one of its cases.
+struct SweepFolder {
+  std::filesystem::path path;
+  std::string label;
+  CsvTable table;  ///< sweep.csv: one row per case and parameter
+};
+
+bool isSweepFolder(const std::filesystem::path& path);
+SweepFolder readSweepFolder(const std::filesystem::path& path);
+
+}  // namespace twinmap

@@ -1,0 +1,179 @@
+#include <cmath>
+
+#include "framework/report/html.hpp"
+#include "framework/report/sections/metric_columns.hpp"
+#include "framework/report/sections/sections.hpp"
+#include "framework/report/vega.hpp"
+#include "framework/spec/number_text.hpp"
+
+namespace twinmap {
+namespace {
+
+constexpr const char* kTable = "comparison";
+
+/// Labels that tell the runs apart: their folders' names, numbered where two are alike.
+std::vector<std::string> makeLabels(const std::vector<RunFolder>& runs) {
+  std::vector<std::string> labels;
+  for (const RunFolder& run : runs) {
+    std::string label = run.label;
+    for (int k = 2; std::find(labels.begin(), labels.end(), label) != labels.end(); ++k) {
+      label = run.label + " (" + std::to_string(k) + ")";
+    }
+    labels.push_back(label);
+  }
+  return labels;
+}
+
+DataTable makeTable(const std::vector<RunFolder>& runs, const std::vector<std::string>& labels) {
+  const std::vector<std::string> metrics{"sd_pct", "sd_pct_se", "coverage95", "coverage95_se", "limit_pct"};
+  std::vector<std::string> run, parameter;
+  std::vector<std::vector<double>> values(metrics.size());
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    for (std::size_t row = 0; row < runs[i].metrics.rows.size(); ++row) {
+      run.push_back(labels[i]);
+      parameter.push_back(runs[i].metrics.getText(row, "parameter"));
+      for (std::size_t m = 0; m < metrics.size(); ++m) {
+        values[m].push_back(runs[i].metrics.getNumber(row, metrics[m]));
+      }
+    }
+  }
+  DataTable table;
+  table.add("run", run);
+  table.add("parameter", parameter);
+  for (std::size_t m = 0; m < metrics.size(); ++m) {
+    table.add(metrics[m], values[m]);
+  }
+  return table;
+}
+
+std::vector<std::string> collectParameters(const std::vector<RunFolder>& runs) {
+  std::vector<std::string> names;
+  for (const RunFolder& run : runs) {
+    for (std::size_t row = 0; row < run.metrics.rows.size(); ++row) {
+      const std::string& name = run.metrics.getText(row, "parameter");
+      if (std::find(names.begin(), names.end(), name) == names.end()) {
+        names.push_back(name);
+      }
+    }
+  }
+  return names;
+}
+
+bool hasLimit(const std::vector<RunFolder>& runs, const std::string& parameter) {
+  for (const RunFolder& run : runs) {
+    for (std::size_t row = 0; row < run.metrics.rows.size(); ++row) {
+      if (run.metrics.getText(row, "parameter") == parameter &&
+          std::isfinite(run.metrics.getNumber(row, "limit_pct"))) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// One row per run: the metric with a bar of 2 standard errors, and a tick for what it is to be held against.
+Panel makePanel(const std::string& parameter, const std::string& metric, const std::string& title,
+                const Json& tick, const std::vector<std::string>& labels) {
+  constexpr int kRowHeight = 28, kFrame = 20;
+  Json spec = makePanelSpec(kTable, kFrame + kRowHeight * static_cast<int>(labels.size()));
+  spec.erase("params");
+  spec["title"] = parameter;
+  spec["transform"] = {
+      {{"filter", {{"field", "parameter"}, {"equal", parameter}}}},
+      {{"calculate", "datum['" + metric + "'] - 2 * datum['" + metric + "_se']"}, {"as", "low"}},
+      {{"calculate", "datum['" + metric + "'] + 2 * datum['" + metric + "_se']"}, {"as", "high"}}};
+  spec["encoding"] = {{"y", makeNominal("run", "", {{"sort", nullptr}})}};
+  const Json color = makeNominal("run", "", makeColorScale(labels));
+  Json points{
+      {"mark", {{"type", "point"}, {"filled", true}, {"size", 70}}},
+      {"encoding",
+       {{"x", makeQuantitative(metric, title, makeFreeScale())},
+        {"color", color},
+        {"tooltip", {makeNominal("run", "run"), makeQuantitative(metric, title, {{"format", ".4~g"}})}}}}};
+  points["encoding"]["color"]["legend"] = nullptr;
+  Json bars{{"transform", {{{"filter", "isValid(datum['" + metric + "_se'])"}}}},
+            {"mark", {{"type", "rule"}, {"color", "var(--ink)"}}},
+            {"encoding", {{"x", makeQuantitative("low", title)}, {"x2", {{"field", "high"}}}}}};
+  spec["layer"] = tick.is_null() ? Json{bars, points} : Json{tick, bars, points};
+  return {title + " of " + parameter + ", one row per run", spec};
+}
+
+Figure makeErrorFigure(const std::vector<RunFolder>& runs, const std::vector<std::string>& parameters,
+                       const std::vector<std::string>& labels) {
+  const std::string title = "sd of the relative error [%]";
+  const Json tick{{"transform", {{{"filter", "isValid(datum.limit_pct)"}}}},
+                  {"mark", {{"type", "tick"}, {"color", "var(--ink)"}, {"thickness", 2}}},
+                  {"encoding", {{"x", makeQuantitative("limit_pct", title)}}}};
+  Figure figure{
+      "errors-side-by-side",
+      "Errors side by side",
+      "Further left is better; bars span \u00b12 standard errors where the runs state them, ticks are the "
+      "information limit.",
+      kTable,
+      {},
+      {},
+      2};
+  for (const std::string& parameter : parameters) {
+    figure.panels.push_back(
+        makePanel(parameter, "sd_pct", title, hasLimit(runs, parameter) ? tick : Json(), labels));
+  }
+  return figure;
+}
+
+Figure makeCoverageFigure(const std::vector<std::string>& parameters,
+                          const std::vector<std::string>& labels) {
+  const std::string title = "coverage of 95 % intervals";
+  const Json tick{{"mark", {{"type", "rule"}, {"color", "var(--quiet)"}, {"strokeDash", {4, 3}}}},
+                  {"data", {{"values", {{{"v", 0.95}}}}}},
+                  {"encoding", {{"x", makeQuantitative("v", title)}, {"y", nullptr}}}};
+  Figure figure{"coverage-side-by-side",
+                "Coverage side by side",
+                "On the dashed line the intervals are honest; left of it they are too narrow.",
+                kTable,
+                {},
+                {},
+                2};
+  for (const std::string& parameter : parameters) {
+    figure.panels.push_back(makePanel(parameter, "coverage95", title, tick, labels));
+  }
+  return figure;
+}
+
+std::string makeMetricsTable(const std::vector<RunFolder>& runs, const std::vector<std::string>& labels) {
+  std::vector<std::string> headings{"parameter", "run"};
+  for (const MetricColumn& column : getMetricColumns()) {
+    headings.push_back(column.heading);
+  }
+  std::vector<std::vector<HtmlCell>> rows;
+  for (const std::string& parameter : collectParameters(runs)) {
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      const CsvTable& metrics = runs[i].metrics;
+      for (std::size_t row = 0; row < metrics.rows.size(); ++row) {
+        if (metrics.getText(row, "parameter") != parameter) {
+          continue;
+        }
+        rows.push_back({makeTextCell(parameter), makeTextCell(labels[i])});
+        for (const MetricColumn& column : getMetricColumns()) {
+          rows.back().push_back(makeNumberCell(metrics.getText(row, column.name), kMetricDigits,
+                                               metrics.getText(row, column.name + "_se")));
+        }
+      }
+    }
+  }
+  return makeHtmlTable("comparison-table", "Press a heading to sort.", headings, rows);
+}
+
+}  // namespace
+
+void addComparison(const std::vector<RunFolder>& runs, Page& page) {
+  const std::vector<std::string> labels = makeLabels(runs);
+  const std::vector<std::string> parameters = collectParameters(runs);
+  page.tables[kTable] = makeTable(runs, labels);
+  Section section{"comparison", "Side by side", "", {}};
+  section.html = makeMetricsTable(runs, labels);
+  addFigure(makeErrorFigure(runs, parameters, labels), section);
+  addFigure(makeCoverageFigure(parameters, labels), section);
+  page.sections.push_back(std::move(section));
+}
+
+}  // namespace twinmap

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "framework/report/data_table.hpp"
+#include "framework/report/run_folder.hpp"
+
+namespace twinmap {
+
+/// Columns of the table of test samples, per parameter.
+inline std::string getTrueColumn(const std::string& parameter) {
+  return "true_" + parameter;
+}
+inline std::string getInferredColumn(const std::string& parameter) {
+  return "inferred_" + parameter;
+}
+inline std::string getStddevColumn(const std::string& parameter) {
+  return "stddev_" + parameter;
+}
+inline std::string getLimitColumn(const std::string& parameter) {
+  return "limit_stddev_" + parameter;
+}
+inline std::string getErrorColumn(const std::string& parameter) {
+  return "error_" + parameter;
+}
+inline std::string getScoreColumn(const std::string& parameter) {
+  return "z_" + parameter;
+}
+inline std::string getPitColumn(const std::string& parameter) {
+  return "pit_" + parameter;
+}
+
+/// What predictions.csv says of one parameter, in the order of its samples.
+struct ParameterPredictions {
+  std::vector<double> samples, truth, inferred, stddev, limit_stddev;  ///< limit_stddev empty if not known
+};
+ParameterPredictions collectPredictions(const CsvTable& predictions, const std::string& parameter);
+
+/// The probability integral transform of z: the standard normal distribution function.
+double calcPit(double z);
+
+/// More test samples than these are not drawn: the first ones stand for all.
+inline constexpr std::size_t kMostDrawnSamples = 1000;
+
+/// One row per test sample: its index, and per parameter the true and the inferred value, the stddev, the
+/// limit where it is known, the error (inferred - true), z = error / stddev and its PIT.
+DataTable makeSamplesTable(const RunFolder& run);
+
+/// "The first 1000 of 5000 test samples are drawn.", or "".
+std::string describeDrawnSamples(const RunFolder& run);
+
+}  // namespace twinmap

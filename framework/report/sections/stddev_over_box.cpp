@@ -1,0 +1,89 @@
+#include <algorithm>
+
+#include "framework/report/sections/axis_choice.hpp"
+#include "framework/report/sections/samples_table.hpp"
+#include "framework/report/sections/sections.hpp"
+#include "framework/report/vega.hpp"
+
+namespace twinmap {
+namespace {
+
+// {x}, {y} and {p} stand for the parameters that the reader chooses.
+
+/// A point per test sample at its true parameters, coloured and sized by a value; the value is listed first.
+Panel makePanel(const std::string& column, const std::string& title, const std::string& tooltip) {
+  Json spec = makePanelSpec("samples", 190);
+  spec["title"] = title;
+  spec["transform"] = {{{"calculate", "abs(datum['" + column + "'])"}, {"as", "shown"}}};
+  spec["mark"] = {{"type", "point"}, {"filled", true}};
+  spec["params"].push_back(makeBrush()[0]);
+  spec["encoding"] = {
+      {"x", makeChosenAxis("x")},
+      {"y", makeChosenAxis("y")},
+      {"color",
+       makeQuantitative("shown", "",
+                        {{"scale", {{"scheme", "viridis"}}},
+                         {"legend", {{"orient", "right"}, {"gradientLength", 150}, {"format", ".2~g"}}}})},
+      {"opacity", {{"condition", {{"test", kIsSelected}, {"value", 0.95}}}, {"value", 0.15}}},
+      {"size",
+       {{"condition", {{"test", "selected && selected[datum.sample]"}, {"value", 90}}}, {"value", 28}}},
+      {"tooltip",
+       {makeNominal("sample", "sample"), makeQuantitative("shown", tooltip, {{"format", ".4~g"}}),
+        makeQuantitative(getTrueColumn("{x}"), "{x.label}", {{"format", ".4~g"}}),
+        makeQuantitative(getTrueColumn("{y}"), "{y.label}", {{"format", ".4~g"}})}}};
+  return {title + " over two parameters, a coloured point per test sample", spec};
+}
+
+std::size_t findParameter(const std::vector<ParameterSpec>& parameters, const ReportSpec& report,
+                          std::size_t axis, std::size_t otherwise) {
+  for (std::size_t p = 0; p < parameters.size() && axis < report.over.size(); ++p) {
+    if (parameters[p].name.text == report.over[axis].text) {
+      return p;
+    }
+  }
+  return otherwise;
+}
+
+bool hasLimits(const RunFolder& run) {
+  const auto is_known = [&](const ParameterSpec& parameter) {
+    return !collectPredictions(run.predictions, parameter.name.text).limit_stddev.empty();
+  };
+  const std::vector<ParameterSpec>& parameters = run.experiment.model.parameters;
+  return std::all_of(parameters.begin(), parameters.end(), is_known);
+}
+
+}  // namespace
+
+void addStddevOverBox(const RunFolder& run, Page& page) {
+  const std::vector<ParameterSpec>& parameters = run.experiment.model.parameters;
+  if (run.predictions.empty() || parameters.size() < 2) {
+    return;
+  }
+  const bool has_limits = hasLimits(run);
+  const ReportSpec& report = run.experiment.report;
+  Figure figure;
+  figure.name = "stddev";
+  figure.table = "samples";
+  figure.title = "How sure is the map, and where?";
+  figure.help = std::string(
+                    "One point per test sample at its true parameters: where the points of the first "
+                    "panel are dark, the map is sure; the error beside it should be large only where the "
+                    "inferred sd is") +
+                (has_limits ? ", and the limit shows what no method can beat." : ".");
+  figure.choices = {makeParameterChoice("p", "of", parameters, 0),
+                    makeParameterChoice("x", "across", parameters,
+                                        findParameter(parameters, report, 0, parameters.size() - 2)),
+                    makeParameterChoice("y", "up", parameters,
+                                        findParameter(parameters, report, 1, parameters.size() - 1))};
+  figure.panels = {makePanel(getStddevColumn("{p}"), "Inferred sd of {p.label}", "inferred sd"),
+                   makePanel(getErrorColumn("{p}"), "Absolute error of {p.label}", "absolute error")};
+  if (has_limits) {
+    figure.panels.push_back(makePanel(getLimitColumn("{p}"), "Information limit (sd) of {p.label}", "limit"));
+  }
+  figure.columns = static_cast<int>(figure.panels.size());
+  Section section{"stddev-over-box", "Standard deviation over the box", "", {}};
+  addFigure(std::move(figure), section);
+  page.sections.push_back(std::move(section));
+}
+
+}  // namespace twinmap

@@ -1,0 +1,216 @@
+#include <algorithm>
+#include <cmath>
+
+#include "framework/report/html.hpp"
+#include "framework/report/sections/sections.hpp"
+#include "framework/report/vega.hpp"
+#include "framework/spec/check_experiment.hpp"
+
+namespace twinmap {
+namespace {
+
+double findBestNlml(const CsvTable& training, const std::string& parameter) {
+  double best = HUGE_VAL;
+  for (std::size_t row = 0; row < training.rows.size(); ++row) {
+    const double nlml = training.getNumber(row, "nlml");
+    if (training.getText(row, "parameter") == parameter && nlml < best) {
+      best = nlml;
+    }
+  }
+  return best;
+}
+
+DataTable makeStartsTable(const CsvTable& training) {
+  std::vector<std::string> parameter, found;
+  std::vector<double> start, nlml, above;
+  for (std::size_t row = 0; row < training.rows.size(); ++row) {
+    parameter.push_back(training.getText(row, "parameter"));
+    found.push_back(training.getText(row, "best") == "1" ? "kept" : "other start");
+    start.push_back(training.getNumber(row, "start"));
+    nlml.push_back(training.getNumber(row, "nlml"));
+    above.push_back(std::max(nlml.back() - findBestNlml(training, parameter.back()), 0.0));
+  }
+  DataTable table;
+  table.add("parameter", parameter);
+  table.add("start", start);
+  table.add("found", found);
+  table.add("nlml", nlml);
+  table.add("above_best", above);
+  return table;
+}
+
+/// How far the worst start ended above the best of its parameter; at least 1 nat.
+double findFurthestStart(const CsvTable& training) {
+  double furthest = 1.0;
+  for (std::size_t row = 0; row < training.rows.size(); ++row) {
+    const double above =
+        training.getNumber(row, "nlml") - findBestNlml(training, training.getText(row, "parameter"));
+    furthest = std::isfinite(above) ? std::max(furthest, above) : furthest;
+  }
+  return furthest;
+}
+
+void addStarts(const RunFolder& run, Section& section, Page& page) {
+  constexpr int kRowHeight = 30, kFrame = 20;
+  const auto parameters = static_cast<int>(run.experiment.model.parameters.size());
+  page.tables["starts"] = makeStartsTable(run.training);
+  const double furthest = findFurthestStart(run.training);
+  Json spec = makePanelSpec("starts", kFrame + kRowHeight * parameters);
+  spec.erase("params");
+  spec["mark"] = {{"type", "point"}, {"size", 70}, {"strokeWidth", 1.8}, {"opacity", 0.9}};
+  spec["encoding"] = {
+      {"x", makeQuantitative("above_best", "NLML above the best start [nats]",
+                             {{"scale", {{"type", "symlog"}, {"constant", 0.01}, {"domain", {0, furthest}}}},
+                              {"axis", {{"format", "~g"}, {"tickCount", 6}}}})},
+      {"y", makeNominal("parameter", "", {{"sort", nullptr}})},
+      {"shape",
+       makeNominal("found", "",
+                   {{"scale", {{"domain", {"kept", "other start"}}, {"range", {"circle", "cross"}}}}})},
+      {"color", makeNominal("parameter", "", makeColorScale(collectNames(run.experiment.model.parameters)))},
+      {"tooltip",
+       {makeNominal("parameter", "parameter"), makeQuantitative("start", "start"),
+        makeQuantitative("nlml", "NLML", {{"format", ".6~g"}})}}};
+  spec["encoding"]["color"]["legend"] = nullptr;
+  addFigure(
+      {"starts",
+       "Searches for hyperparameters",
+       "Each mark is the end of one search; several at the left mean that different starts agree on the "
+       "optimum, one far to the right ended in a worse one and was discarded.",
+       "starts",
+       {{"Negative log marginal likelihood at the end of each start above the best, per parameter", spec}},
+       {},
+       1},
+      section);
+}
+
+std::string makeTrainingTable(const CsvTable& training) {
+  std::vector<std::vector<HtmlCell>> rows;
+  for (std::size_t row = 0; row < training.rows.size(); ++row) {
+    if (training.getText(row, "best") != "1") {
+      continue;
+    }
+    const std::string& at_bound = training.getText(row, "at_bound");
+    rows.push_back({makeTextCell(training.getText(row, "parameter")),
+                    makeNumberCell(training.getText(row, "nlml"), 6),
+                    makeNumberCell(training.getText(row, "evaluations"), 6),
+                    makeTextCell(training.getText(row, "stop_reason")),
+                    makeTextCell(at_bound.empty() ? "none" : at_bound),
+                    makeNumberCell(training.getText(row, "condition"), 3),
+                    makeNumberCell(training.getText(row, "jitter"), 3)});
+  }
+  return makeHtmlTable("training-table", "The start that was kept.",
+                       {"parameter", "NLML [nats]", "evaluations", "why it stopped", "at a bound",
+                        "condition", "jitter"},
+                       rows) +
+         makeParagraph(
+             "A condition above 1e12 or a jitter above 0 means that the covariance matrix is nearly "
+             "singular: "
+             "raise the lower bound of noise_stddev.",
+             "class=\"quiet\"");
+}
+
+DataTable makeHyperparameterTable(const CsvTable& hyperparameters) {
+  std::vector<std::string> parameter, name;
+  std::vector<double> value, lower, upper, place;
+  for (std::size_t row = 0; row < hyperparameters.rows.size(); ++row) {
+    parameter.push_back(hyperparameters.getText(row, "parameter"));
+    name.push_back(hyperparameters.getText(row, "hyperparameter"));
+    value.push_back(hyperparameters.getNumber(row, "value"));
+    lower.push_back(hyperparameters.getNumber(row, "lower"));
+    upper.push_back(hyperparameters.getNumber(row, "upper"));
+    place.push_back(std::log(value.back() / lower.back()) / std::log(upper.back() / lower.back()));
+  }
+  DataTable table;
+  table.add("parameter", parameter);
+  table.add("hyperparameter", name);
+  table.add("value", value);
+  table.add("lower", lower);
+  table.add("upper", upper);
+  table.add("place", place);
+  return table;
+}
+
+void addHyperparameters(const RunFolder& run, Section& section, Page& page) {
+  if (run.hyperparameters.empty()) {
+    return;
+  }
+  page.tables["hyperparameters"] = makeHyperparameterTable(run.hyperparameters);
+  Figure figure{
+      "hyperparameters",
+      "Hyperparameters within their bounds",
+      "Where each hyperparameter lies between its lower bound (left) and its upper bound (right), on a "
+      "logarithmic scale; one at an edge asks for wider bounds, or says that an input is irrelevant.",
+      "hyperparameters",
+      {},
+      {},
+      0};
+  const std::vector<std::string> names = collectNames(run.experiment.model.parameters);
+  const std::size_t count = std::max<std::size_t>(1, run.hyperparameters.rows.size() / names.size());
+  constexpr int kRowHeight = 18, kFrame = 20;
+  for (std::size_t p = 0; p < names.size(); ++p) {
+    Json spec = makePanelSpec("hyperparameters",
+                              kFrame + kRowHeight * static_cast<int>(std::min<std::size_t>(count, 30)));
+    spec.erase("params");
+    spec["title"] = names[p];
+    spec["transform"] = {{{"filter", {{"field", "parameter"}, {"equal", names[p]}}}}};
+    spec["mark"] = {{"type", "point"}, {"filled", true}, {"size", 50}, {"color", getColor(p)}};
+    spec["encoding"] = {
+        {"x", makeQuantitative("place", "between the bounds", makeDomain(0, 1))},
+        {"y", makeNominal("hyperparameter", "", {{"sort", nullptr}})},
+        {"tooltip",
+         {makeNominal("hyperparameter", "hyperparameter"), makeQuantitative("value", "value"),
+          makeQuantitative("lower", "lower bound"), makeQuantitative("upper", "upper bound")}}};
+    spec["encoding"]["x"]["axis"] = {
+        {"values", {0, 0.5, 1}},
+        {"labelExpr", "datum.value == 0 ? 'lower' : datum.value == 1 ? 'upper' : ''"}};
+    figure.panels.push_back({"Hyperparameters of " + names[p] + " between their bounds", spec});
+  }
+  addFigure(std::move(figure), section);
+}
+
+/// Leave-one-out figures from training alone, beside those on the test set.
+std::string makeLeaveOneOut(const CsvTable& metrics) {
+  const std::vector<std::pair<std::string, std::string>> pairs{
+      {"loo_sd_pct", "sd_pct"}, {"loo_coverage95", "coverage95"}, {"loo_z_sd", "z_sd"}, {"loo_nlpd", "nlpd"}};
+  std::vector<std::string> headings{"parameter"};
+  std::vector<std::vector<HtmlCell>> rows(metrics.rows.size());
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    rows[row].push_back(makeTextCell(metrics.getText(row, "parameter")));
+  }
+  for (const auto& [left_out, test] : pairs) {
+    if (!metrics.hasColumn(left_out)) {
+      continue;
+    }
+    headings.push_back(test + ", left out");
+    headings.push_back(test + ", test");
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      rows[row].push_back(makeNumberCell(metrics.getText(row, left_out)));
+      rows[row].push_back(makeNumberCell(metrics.getText(row, test)));
+    }
+  }
+  if (headings.size() == 1) {
+    return "";
+  }
+  return makeElement("h3", "Leave-one-out beside test") + "\n" +
+         makeHtmlTable(
+             "loo-table",
+             "Each training sample inferred from the others, without a test set: where both columns agree, "
+             "training alone tells how good the map is.",
+             headings, rows);
+}
+
+}  // namespace
+
+void addTraining(const RunFolder& run, Page& page) {
+  if (run.training.empty()) {
+    return;
+  }
+  Section section{"training", "Training health", "", {}};
+  addStarts(run, section, page);
+  section.html += makeTrainingTable(run.training);
+  addHyperparameters(run, section, page);
+  section.html += makeLeaveOneOut(run.metrics);
+  page.sections.push_back(std::move(section));
+}
+
+}  // namespace twinmap

@@ -1,0 +1,145 @@
+#include "framework/report/sections/verdict.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "framework/report/sections/sections.hpp"
+#include "framework/report/sections/warnings.hpp"
+#include "framework/spec/check_experiment.hpp"
+#include "framework/spec/number_text.hpp"
+
+namespace twinmap {
+namespace {
+
+constexpr int kDigits = 2;
+
+std::string joinNames(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
+  }
+  return text;
+}
+
+/// "sd of the relative error from 0.013 % (k_y) to 0.82 % (d_theta)".
+std::string describeErrors(const CsvTable& metrics) {
+  std::size_t best = 0, worst = 0;
+  for (std::size_t row = 0; row < metrics.rows.size(); ++row) {
+    best = metrics.getNumber(row, "sd_pct") < metrics.getNumber(best, "sd_pct") ? row : best;
+    worst = metrics.getNumber(row, "sd_pct") > metrics.getNumber(worst, "sd_pct") ? row : worst;
+  }
+  const auto describe = [&](std::size_t row) {
+    return toShortText(metrics.getNumber(row, "sd_pct"), kDigits) + " % (" +
+           metrics.getText(row, "parameter") + ")";
+  };
+  return best == worst ? describe(best) : describe(best) + " to " + describe(worst);
+}
+
+double calcMean(const CsvTable& metrics, const std::string& column) {
+  double sum = 0.0;
+  for (std::size_t row = 0; row < metrics.rows.size(); ++row) {
+    sum += metrics.getNumber(row, column);
+  }
+  return sum / static_cast<double>(metrics.rows.size());
+}
+
+std::string makeLead(const RunFolder& run) {
+  const ExperimentSpec& experiment = run.experiment;
+  std::string text = joinNames(collectNames(experiment.model.parameters)) + " inferred from " +
+                     joinNames(collectNames(experiment.model.outputs));
+  if (run.metrics.empty()) {
+    return text + ".";
+  }
+  text += ": sd of the relative error " + describeErrors(run.metrics) + "; the 95 % intervals hold " +
+          toShortText(100.0 * calcMean(run.metrics, "coverage95"), 3) + " % of the true values";
+  const double ratio = calcMean(run.metrics, "ratio_to_limit");
+  return text + (std::isfinite(ratio)
+                     ? "; on average " + toShortText(ratio, 3) + " times the information limit."
+                     : ".");
+}
+
+std::string getProvenanceText(const RunFolder& run, const char* key) {
+  if (!run.provenance.is_object() || !run.provenance.contains(key)) {
+    return "not recorded";
+  }
+  const Json& value = run.provenance[key];
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+/// "2026-01-02T03:04:05Z" -> "2026-01-02 03:04 UTC".
+std::string makeDate(const RunFolder& run) {
+  constexpr std::size_t kSeparator = 10, kMinutes = 16;
+  std::string date = getProvenanceText(run, "date");
+  if (date.size() > kMinutes && date[kSeparator] == 'T') {
+    date = date.substr(0, kMinutes).replace(kSeparator, 1, " ") + " UTC";
+  }
+  return date;
+}
+
+std::string makeSeconds(const RunFolder& run) {
+  if (!run.provenance.is_object() || !run.provenance.contains("seconds")) {
+    return "not recorded";
+  }
+  double seconds = 0.0;
+  for (const auto& stage : run.provenance["seconds"]) {
+    seconds += stage.is_number() ? stage.get<double>() : 0.0;
+  }
+  return toShortText(seconds, 3) + " s";
+}
+
+}  // namespace
+
+std::string makeFacts(const std::vector<std::pair<std::string, std::string>>& facts) {
+  std::string html = "<dl class=\"facts\">\n";
+  for (const auto& [name, value] : facts) {
+    html +=
+        makeElement("div", makeElement("dt", escapeHtml(name)) + makeElement("dd", escapeHtml(value))) + "\n";
+  }
+  return html + "</dl>\n";
+}
+
+std::string makeGateList(const std::vector<GateResult>& gates) {
+  if (gates.empty()) {
+    return makeParagraph("No gates are set. 'gates:' in the experiment file states what a run must reach.",
+                         "class=\"quiet\"");
+  }
+  std::string items;
+  for (const GateResult& gate : gates) {
+    const std::string mark =
+        makeElement("span", gate.passed ? "\u2713 passed" : "\u2717 failed", "class=\"mark\"");
+    const std::string text =
+        escapeHtml(gate.condition) + " " + makeElement("small", escapeHtml("(" + gate.found + ")"));
+    items += makeElement("li", mark + " " + makeElement("span", text),
+                         std::string("class=\"") + (gate.passed ? "passed" : "failed") + "\"") +
+             "\n";
+  }
+  return makeElement("h3", "Gates") + "\n" + makeElement("ul", items, "class=\"gates\"") + "\n";
+}
+
+std::string makeWarningList(const std::vector<std::string>& warnings) {
+  std::string items;
+  for (const std::string& warning : warnings) {
+    const std::string mark = makeElement("span", "! warning", "class=\"mark\"");
+    items += makeElement("li", mark + " " + makeElement("span", escapeHtml(warning))) + "\n";
+  }
+  return warnings.empty()
+             ? ""
+             : makeElement("h3", "Warnings") + "\n" + makeElement("ul", items, "class=\"warnings\"") + "\n";
+}
+
+void addVerdict(const RunFolder& run, const std::vector<GateResult>& gates, Page& page) {
+  const ExperimentSpec& experiment = run.experiment;
+  Section section{"verdict", "Verdict", "", {}};
+  section.html += experiment.description.empty() ? "" : makeParagraph(experiment.description);
+  section.html += makeParagraph(makeLead(run), "class=\"lead\"");
+  section.html += makeFacts({{"date", makeDate(run)},
+                             {"training samples", std::to_string(experiment.design.train.samples)},
+                             {"test samples", std::to_string(experiment.design.test.samples)},
+                             {"could not be simulated", std::to_string(run.failures.rows.size())},
+                             {"seed", std::to_string(experiment.seed)},
+                             {"wall time", makeSeconds(run)}});
+  section.html += makeGateList(gates) + makeWarningList(collectWarnings(run));
+  page.sections.push_back(std::move(section));
+}
+
+}  // namespace twinmap

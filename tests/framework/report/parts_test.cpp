@@ -1,0 +1,98 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "framework/report/data_table.hpp"
+#include "framework/report/gates.hpp"
+#include "framework/report/html.hpp"
+#include "framework/report/sections/selected_responses.hpp"
+#include "framework/report/sections/sweep_groups.hpp"
+
+namespace twinmap {
+namespace {
+
+TEST(DataTable, CsvKeepsAllDigitsAndJsonRoundsThem) {
+  DataTable table;
+  table.add("x", std::vector<double>{0.123456789012, 3.0, NAN});
+  table.add("name", std::vector<std::string>{"a,b", "</script>", ""});
+  EXPECT_EQ(table.toCsv(), "x,name\n0.123456789012,\"a,b\"\n3,</script>\n,\n");
+  EXPECT_EQ(table.toJson().dump(), R"({"x":[0.1234568,3,null],"name":["a,b","</script>",""]})");
+}
+
+TEST(Html, CellsShowDashesForMissingNumbers) {
+  EXPECT_EQ(makeNumberCell("").shown, "\u2013");
+  EXPECT_EQ(makeNumberCell("nan").shown, "\u2013");
+  EXPECT_EQ(makeNumberCell("0.123456").shown, "0.1235");
+  EXPECT_EQ(makeNumberCell("0.123456", 3, "0.0123").shown, "0.123(12)");
+}
+
+TEST(Base64, MatchesTheTestVectorsOfRfc4648) {
+  const auto encode = [](const std::string& text) {
+    return encodeBase64(std::vector<unsigned char>(text.begin(), text.end()));
+  };
+  EXPECT_EQ(encode(""), "");
+  EXPECT_EQ(encode("f"), "Zg==");
+  EXPECT_EQ(encode("fo"), "Zm8=");
+  EXPECT_EQ(encode("foo"), "Zm9v");
+  EXPECT_EQ(encode("foobar"), "Zm9vYmFy");
+}
+
+CsvTable makeMetrics() {
+  return parseCsv("parameter,coverage95,limit_pct\na,0.95,1\nb,0.99,\n", "metrics.csv");
+}
+
+GateSpec makeGate(const std::string& metric, std::optional<double> min, std::optional<double> max) {
+  return {{metric, {}}, std::nullopt, min, max};
+}
+
+TEST(Gates, HoldForEveryParameterUnlessOneIsNamed) {
+  GateSpec gate = makeGate("coverage95", 0.93, 0.97);
+  EXPECT_FALSE(checkGate(gate, makeMetrics()).passed);
+  EXPECT_EQ(checkGate(gate, makeMetrics()).found, "failed: b 0.99; passed: a 0.95");
+  EXPECT_EQ(checkGate(gate, makeMetrics()).condition, "0.93 \u2264 coverage95 \u2264 0.97, every parameter");
+  gate.parameter = Name{"a", {}};
+  EXPECT_TRUE(checkGate(gate, makeMetrics()).passed);
+}
+
+TEST(Gates, IncludeTheirLimits) {
+  EXPECT_TRUE(checkGate(makeGate("coverage95", 0.95, 0.99), makeMetrics()).passed);
+}
+
+TEST(Gates, AMissingValueFails) {
+  EXPECT_FALSE(checkGate(makeGate("limit_pct", {}, 2.0), makeMetrics()).passed);
+  EXPECT_FALSE(checkGate(makeGate("ratio_to_limit", {}, 2.0), makeMetrics()).passed);
+  EXPECT_FALSE(checkGate(makeGate("coverage95", 0.0, {}), parseCsv("parameter,coverage95\n", "")).passed);
+}
+
+TEST(Gates, ManyValuesAreCountedRatherThanListed) {
+  std::string csv = "case,parameter,sd_pct\n";
+  for (int i = 0; i < 20; ++i) {
+    csv += std::to_string(i) + ",a," + std::to_string(i) + "\n";
+  }
+  EXPECT_EQ(checkGate(makeGate("sd_pct", {}, 18.0), parseCsv(csv, "")).found,
+            "19 of 20 values passed; failed first: a 19");
+}
+
+TEST(SweepGroups, AverageOverSeedsAndKeepTheirSpread) {
+  const CsvTable sweep = parseCsv(
+      "case,design.train.samples,inverse_map.gp.covariance,seed,parameter,sd_pct,coverage95,limit_pct\n"
+      "c1,50,matern52,1,k,2,0.9,1\nc2,50,matern52,2,k,4,1,1\nc3,100,matern52,1,k,1,0.95,1\nc4,100,matern52,2,"
+      "k,,,\n",
+      "sweep.csv");
+  EXPECT_EQ(findVariedKeys(sweep),
+            (std::vector<std::string>{"design.train.samples", "inverse_map.gp.covariance", "seed"}));
+  const std::vector<SweepGroup> groups = groupCases(sweep);
+  ASSERT_EQ(groups.size(), 2u);
+  EXPECT_EQ(groups[0].variant, "covariance=matern52");
+  EXPECT_EQ(groups[0].size, 50);
+  EXPECT_TRUE(std::isnan(groups[0].noise));
+  EXPECT_EQ(groups[0].seeds, 2);
+  EXPECT_EQ(groups[0].mean, 3);
+  EXPECT_EQ(groups[0].lowest, 2);
+  EXPECT_EQ(groups[0].highest, 4);
+  EXPECT_EQ(groups[0].coverage, 0.95);
+  EXPECT_EQ(groups[1].seeds, 1);  // the failed case is left out
+}
+
+}  // namespace
+}  // namespace twinmap
