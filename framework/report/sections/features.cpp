@@ -84,7 +84,7 @@ class SeriesTable {
 
 Panel makeSeriesPanel(const std::string& table, const std::string& output, const std::string& series,
                       const std::string& value, const std::string& title,
-                      const std::vector<std::string>& names) {
+                      const std::vector<std::string>& names, const Json& scale = Json::object()) {
   Json spec = makePanelSpec(table, 140);
   spec.erase("params");
   spec["title"] = "features of " + output;
@@ -92,7 +92,7 @@ Panel makeSeriesPanel(const std::string& table, const std::string& output, const
                        {{"filter", "isValid(datum.time)"}}};
   spec["mark"] = {{"type", "line"}, {"strokeWidth", 1.5}};
   spec["encoding"] = {{"x", makeQuantitative("time", "time [s]")},
-                      {"y", makeQuantitative(value, title)},
+                      {"y", makeQuantitative(value, title, scale)},
                       {"color", makeNominal(series, "", makeColorScale(names))},
                       {"strokeDash", makeNominal(series, "", makeDashScale(names))},
                       {"tooltip",
@@ -106,6 +106,10 @@ Figure makeSeriesFigure(const std::string& name, const std::string& title, const
   const int columns = static_cast<int>(std::min<std::size_t>(panels.size(), 2));
   return {name, title, help, name, std::move(panels), {}, columns};
 }
+
+/// Linear up to 1, where a feature begins to say something, then logarithmic.
+const Json kSymmetricLog{{"scale", {{"type", "symlog"}, {"constant", 1}}},
+                         {"axis", {{"values", {0, 1, 10, 100, 1000, 10000, 100000}}}}};
 
 void addSensitivities(const RunFolder& run, const std::vector<FeaturePlace>& places, Section& section,
                       Page& page) {
@@ -126,13 +130,14 @@ void addSensitivities(const RunFolder& run, const std::vector<FeaturePlace>& pla
   page.tables["sensitivities"] = table.make("parameter", "sensitivity");
   std::vector<Panel> panels;
   for (const std::string& output : collectOutputs(places)) {
-    panels.push_back(
-        makeSeriesPanel("sensitivities", output, "parameter", "sensitivity", "change / noise sd", names));
+    panels.push_back(makeSeriesPanel("sensitivities", output, "parameter", "sensitivity", "change / noise sd",
+                                     names, kSymmetricLog));
   }
   addFigure(makeSeriesFigure(
                 "sensitivities", "Sensitivity of the features",
                 "How far a feature moves, in units of its noise sd, when a parameter crosses its whole "
-                "range (root mean square over the test set): where a line is below 1, that feature alone "
+                "range (root mean square over the test set): the axis is logarithmic above 1. Where a line "
+                "is below 1, that feature alone "
                 "says nothing about the parameter.",
                 std::move(panels)),
             section);

@@ -53,11 +53,13 @@
     range: {ramp: {scheme: 'viridis'}, heatmap: {scheme: 'viridis'}}
   };
 
-  /** Legends break into as many columns as fit. */
+  /** Legends break into as many columns as fit, titles end where the panel does. */
   function makeConfig(element) {
     const kColumnWidth = 115;
     const columns = Math.max(1, Math.floor(element.clientWidth / kColumnWidth));
-    return {...kConfig, legend: {...kConfig.legend, columns}};
+    const kAxisWidth = 110;
+    const limit = Math.max(60, element.clientWidth - kAxisWidth);
+    return {...kConfig, title: {...kConfig.title, limit}, legend: {...kConfig.legend, columns}};
   }
 
   /** Replaces "{name}", "{name.label}" and "{name.domain}" by the chosen options. */

@@ -114,6 +114,35 @@ export function makeRunWithFailures(folder) {
       'simulation.allowed_failures=0.5', 'evaluation.limit=false', '--out', folder);
 }
 
+/** A run whose parameters and outputs have names of 90 letters. */
+export function makeRunWithLongNames(folder) {
+  const [stiffness, damping, output] = ['stiffness_', 'dampingxx_', 'deflection'].map(name => name.repeat(9));
+  const file = `${folder}.yaml`;
+  writeFileSync(file, `name: ${'long_name_'.repeat(9)}
+description: ${'aWordWithoutASpace'.repeat(20)}
+parameters:
+  ${stiffness}: {bounds: [80, 120], unit: N/m}
+  ${damping}: {bounds: [0.5, 2], unit: N s/m}
+system:
+  bodies:
+    cart: {mass: 1.2, joint: {type: slider, coordinates: [x]}}
+  springs: [{coordinate: x, stiffness: ${stiffness}}]
+  dampers: [{coordinate: x, damping: ${damping}}]
+initial: {coordinates: {x: 0.1}}
+outputs:
+  ${output}: {coordinate: x}
+simulation: {duration: 2}
+features:
+  - samples: {outputs: [${output}], start: 0.1, interval: 0.1, count: 20}
+noise:
+  stddev: {${output}: 1e-3}
+design:
+  train: {samples: 30}
+  test: {samples: 20}
+`);
+  callTwinmap('run', file, '--out', folder);
+}
+
 export const kSweep = {sizes: [50, 100, 250, 500, 1000], noises: [0.25, 1, 2, 4], seeds: 10};
 
 /** A sweep of 5 sizes x 4 noise levels x 10 seeds = 200 cases; one of them a run of 500 test samples. */

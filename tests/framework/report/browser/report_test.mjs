@@ -6,7 +6,7 @@ import {createRequire} from 'node:module';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {after, before, test} from 'node:test';
-import {kNames, kSweep, kTestSamples, makeRun, makeRunWithFailures, makeSweep, callTwinmap, readCsv} from './fixtures.mjs';
+import {kNames, kSweep, kTestSamples, makeRun, makeRunWithFailures, makeRunWithLongNames, makeSweep, callTwinmap, readCsv} from './fixtures.mjs';
 
 const {chromium} = createRequire(join(process.env.TWINMAP_PLAYWRIGHT, 'index.js'))('playwright-core');
 const kFlags = ['--no-sandbox', '--disable-gpu', '--no-first-run', '--disable-background-networking'];
@@ -265,6 +265,17 @@ test('several runs stand side by side', async () => {
   await assertEverythingDrawn(page);
   assert.equal(await countMarks(page, 'errors-side-by-side-0', 'symbol'), 2);
   await close(page);
+});
+
+test('very long names widen nothing', async () => {
+  makeRunWithLongNames(join(folder, 'long'));
+  for (const width of [1280, 400]) {
+    const page = await open('long/report.html', {viewport: {width, height: 900}});
+    await assertEverythingDrawn(page);
+    await assertFits(page, 'long names');
+    await screenshot(page, `long-${width}`);
+    await close(page);
+  }
 });
 
 for (const width of [1280, 400]) {
