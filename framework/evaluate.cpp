@@ -20,10 +20,6 @@ const std::vector<ParameterSpec>& getParameters(const EvaluationContext& context
   return context.experiment.model.parameters;
 }
 
-bool hasNoise(const LabelledFeatures& samples) {
-  return samples.noise_covariance.diagonal().minCoeff() > 0.0;
-}
-
 void addLimit(const EvaluationContext& context, RunSummary& run) {
   const LabelledFeatures& test = context.samples.test;
   const InformationLimit limit =
@@ -108,23 +104,31 @@ void addBaselines(const EvaluationContext& context, RunSummary& run) {
 
 }  // namespace
 
+bool hasInformationLimit(const ExperimentSpec& experiment, const LabelledFeatures& test) {
+  return experiment.evaluation.limit && test.noise_covariance.diagonal().minCoeff() > 0.0;
+}
+
+void calcTestMetrics(const GpMap& map, RunSummary& run) {
+  run.metrics = calcMetrics(run.parameters, run.truth, run.predictions, run.limit_stddev);
+  run.joint = calcJointMetrics(run.truth, run.predictions, map.residual_correlation);
+  const Eigen::MatrixXd pit = calcPit(run.truth, run.predictions);
+  for (const auto& row : pit.rowwise()) {
+    run.pit_counts.push_back(countPit(row.transpose()));
+  }
+}
+
 void evaluate(const EvaluationContext& context, RunSummary& run) {
   const EvaluationSpec& spec = context.experiment.evaluation;
   const LabelledFeatures& test = context.samples.test;
   run.truth = test.parameters;
   run.predictions =
       timeStage("infer the test samples", run.times, [&] { return context.map.predict(test.features); });
-  if (spec.limit && hasNoise(test)) {
+  if (hasInformationLimit(context.experiment, test)) {
     addLimit(context, run);
   } else if (spec.limit) {
     run.warnings.push_back("no information limit: the noise of a feature is 0");
   }
-  run.metrics = calcMetrics(getParameters(context), run.truth, run.predictions, run.limit_stddev);
-  run.joint = calcJointMetrics(run.truth, run.predictions, context.map.residual_correlation);
-  const Eigen::MatrixXd pit = calcPit(run.truth, run.predictions);
-  for (const auto& row : pit.rowwise()) {
-    run.pit_counts.push_back(countPit(row.transpose()));
-  }
+  calcTestMetrics(context.map, run);
   if (spec.posterior) {
     addPosteriors(context, run);
   }

@@ -23,4 +23,11 @@ struct EvaluationContext {
 /// summary.
 void evaluate(const EvaluationContext& context, RunSummary& run);
 
+/// Whether a run of the experiment computes the information limit: where it asks for it and every feature has
+/// noise.
+bool hasInformationLimit(const ExperimentSpec& experiment, const LabelledFeatures& test);
+
+/// Metrics, joint metrics and PIT counts of the summary, from its truth, predictions and limit.
+void calcTestMetrics(const GpMap& map, RunSummary& run);
+
 }  // namespace twinmap

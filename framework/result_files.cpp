@@ -53,6 +53,7 @@ void writeProvenance(const ExperimentSpec& experiment, const RunOptions& options
   for (const StageTime& time : run.times) {
     provenance.stage_seconds.emplace_back(time.stage, time.seconds);
   }
+  provenance.digests = calcDigests(options.folder);
   writeTextFile(options.folder / "provenance.json", makeProvenanceJson(provenance));
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -46,6 +47,14 @@ struct CompareArguments {
   bool csv = false, json = false;  ///< at most one; neither: a table for people
 };
 
+struct VerifyArguments {
+  std::string folder;
+  int samples = 5;
+  std::uint64_t seed = 1;
+  bool all = false;
+  int threads = 1;
+};
+
 // One file a subcommand. Results go to stdout, progress and warnings to stderr. Each throws ExperimentError
 // for wrong input and any other std::exception for a failure.
 
@@ -69,5 +78,9 @@ void report(const ReportArguments& arguments);
 
 /// Prints the gates that failed; throws GatesFailed if there are any and `fail` is set.
 void requireGates(const std::vector<GateResult>& gates, bool fail);
+
+/// Recomputes a part of a run, or all of it, and prints what differs; throws std::runtime_error if anything
+/// does.
+void verify(const VerifyArguments& arguments);
 
 }  // namespace twinmap

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
+#include <random>
 #include <thread>
 #include <twinmap/build_info.hpp>
 
@@ -64,8 +65,14 @@ void addFailOnGates(CLI::App& command, bool& fail) {
   command.add_flag("--fail-on-gates", fail, "Exit with 3 if one of the experiment's gates fails");
 }
 
-void addRun(CLI::App& app, twinmap::RunArguments& arguments) {
+void addThreads(CLI::App& command, int& threads) {
   constexpr int kMostThreads = 1024;
+  command.add_option("--threads", threads, "Threads (default: all cores); results do not depend on them")
+      ->type_name("N")
+      ->check(CLI::Range(1, kMostThreads));
+}
+
+void addRun(CLI::App& app, twinmap::RunArguments& arguments) {
   CLI::App* command =
       app.add_subcommand("run", "Simulate, train, infer, and write tables, maps and the report");
   addExperiment(*command, arguments.experiment);
@@ -76,11 +83,7 @@ void addRun(CLI::App& app, twinmap::RunArguments& arguments) {
           "--store", arguments.store,
           "Folder of simulated samples, shared with other runs (default: chunks in the run's folder)")
       ->type_name("DIR");
-  command
-      ->add_option("--threads", arguments.threads,
-                   "Threads (default: all cores); results do not depend on them")
-      ->type_name("N")
-      ->check(CLI::Range(1, kMostThreads));
+  addThreads(*command, arguments.threads);
   addFailOnGates(*command, arguments.fail_on_gates);
   command->callback([&arguments] { twinmap::run(arguments); });
 }
@@ -109,6 +112,24 @@ void addReport(CLI::App& app, twinmap::ReportArguments& arguments) {
   command->callback([&arguments] { twinmap::report(arguments); });
 }
 
+void addVerify(CLI::App& app, twinmap::VerifyArguments& arguments) {
+  CLI::App* command = app.add_subcommand(
+      "verify",
+      "Recompute a random part of a run from its resolved.yaml and compare bit for bit: some samples are "
+      "simulated again, everything that follows from samples and hyperparameters is computed again. Of a "
+      "sweep, three of its cases. Exit code 1 where something differs");
+  command->add_option("DIR", arguments.folder, "Folder of a run or a sweep")->required()->option_text(" ");
+  command->add_option("--samples", arguments.samples, "Samples of each set to simulate again (default: 5)")
+      ->type_name("N")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--seed", arguments.seed, "Chooses the samples and cases (default: another each time)")
+      ->type_name("S");
+  command->add_flag("--all", arguments.all,
+                    "Run everything again, in a temporary folder, and compare all files");
+  addThreads(*command, arguments.threads);
+  command->callback([&arguments] { twinmap::verify(arguments); });
+}
+
 void addSchema(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "schema", "Print the JSON schema of experiment files, with which editors complete and explain keys");
@@ -131,13 +152,16 @@ int runCommand(int count, char** arguments) {
   twinmap::CompareArguments compare;
   twinmap::ReportArguments report;
   twinmap::RunArguments run;
-  run.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  twinmap::VerifyArguments verify;
+  verify.seed = std::random_device()();
+  verify.threads = run.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   run.command_line = joinArguments(count, arguments);
   addCheck(app, check);
   addSimulate(app, simulate);
   addRun(app, run);
   addCompare(app, compare);
   addReport(app, report);
+  addVerify(app, verify);
   addSchema(app);
   try {
     app.parse(count, arguments);

@@ -14,6 +14,7 @@ enum class RandomPurpose : std::uint64_t {
   kNoiseCovariance = 6,  // how noise propagates into features that are not linear
   kPosterior = 7,
   kBootstrap = 8,
+  kVerification = 9,
 };
 
 /// Counter-based random numbers (Philox 4x64-10, Salmon et al. 2011): a number depends on

@@ -6,6 +6,8 @@
 
 #include "framework/inverse_map/leave_one_out.hpp"
 #include "framework/inverse_map/residual_correlation.hpp"
+#include "kernels/gp/fit.hpp"
+#include "kernels/gp/training_set.hpp"
 #include "kernels/sparse/sparse_training.hpp"
 
 namespace twinmap {
@@ -122,9 +124,53 @@ std::vector<gp::Hyperparameters> findHyperparameters(const Eigen::MatrixXd& inpu
   return found;
 }
 
+using ExactProcess = std::shared_ptr<const gp::GaussianProcess>;
+using SparseProcess = std::shared_ptr<const gp::SparseGaussianProcess>;
+
+Process refit(const ExactProcess& trained, const Eigen::MatrixXd& inputs, const Eigen::VectorXd& target,
+              const gp::ModelStructure& structure) {
+  return gp::fit(inputs, target, structure, trained->getHyperparameters());
+}
+
+Process refit(const SparseProcess& trained, const Eigen::MatrixXd& inputs, const Eigen::VectorXd& target,
+              const gp::ModelStructure& structure) {
+  gp::SparseGaussianProcessParts parts{
+      structure, trained->getHyperparameters(), gp::calcCenter(inputs), trained->getParts().inducing, {}};
+  const gp::VariationalBound bound(inputs, target, parts.inducing, structure);
+  if (!bound.calcPosterior(parts.hyperparameters, parts.posterior)) {
+    throw std::runtime_error("the inducing inputs' covariance is not positive definite");
+  }
+  return std::make_shared<const gp::SparseGaussianProcess>(std::move(parts));
+}
+
 Eigen::VectorXd calcStddev(const Eigen::MatrixXd& rows, const Eigen::VectorXd& mean) {
   const Eigen::MatrixXd centered = rows.colwise() - mean;
   return (centered.rowwise().squaredNorm() / (static_cast<double>(rows.cols()) - 1.0)).cwiseSqrt();
+}
+
+/// What the processes are trained on.
+struct TrainingData {
+  Eigen::MatrixXd inputs;   // k x n, transformed features
+  Eigen::MatrixXd targets;  // p x n, standardised parameters
+};
+
+/// Fits transform, offset and scale of the map.
+TrainingData prepare(const std::vector<TransformStepSpec>& transform, const LabelledFeatures& samples,
+                     GpMap& map) {
+  map.transform = fitTransform(transform, samples);
+  map.target_offset = samples.parameters.rowwise().mean();
+  map.target_scale = calcStddev(samples.parameters, map.target_offset);
+  return {map.transform.apply(samples.features),
+          (samples.parameters.colwise() - map.target_offset).array().colwise() / map.target_scale.array()};
+}
+
+/// Leaves the training samples out of the trained processes.
+void leaveOut(const TrainingData& data, const LabelledFeatures& samples, int threads,
+              GpMapTraining& training) {
+  training.leave_one_out =
+      predictLeftOut(training.map, data.inputs, data.targets, samples.replicates, threads);
+  training.map.residual_correlation = calcResidualCorrelation(
+      (training.leave_one_out.mean - samples.parameters).cwiseQuotient(training.leave_one_out.stddev));
 }
 
 }  // namespace
@@ -154,28 +200,39 @@ GpMapTraining trainGpMap(const GpMapSpec& spec, const std::vector<TransformStepS
                          const std::vector<std::string>& parameter_names, const LabelledFeatures& samples,
                          int threads) {
   GpMapTraining training;
-  GpMap& map = training.map;
-  map.transform = fitTransform(transform, samples);
-  map.target_offset = samples.parameters.rowwise().mean();
-  map.target_scale = calcStddev(samples.parameters, map.target_offset);
-  const Eigen::MatrixXd targets =
-      (samples.parameters.colwise() - map.target_offset).array().colwise() / map.target_scale.array();
-
-  const Eigen::MatrixXd inputs = map.transform.apply(samples.features);
-  const gp::ModelStructure structure = makeStructure(spec, samples.infos, static_cast<int>(inputs.rows()));
+  const TrainingData data = prepare(transform, samples, training.map);
+  const gp::ModelStructure structure =
+      makeStructure(spec, samples.infos, static_cast<int>(data.inputs.rows()));
   gp::TrainingOptions options = toKernel(spec, threads);
   if (samples.replicates > 1) {
-    options.warm_starts = findHyperparameters(inputs, targets, samples.replicates, structure, options);
+    options.warm_starts =
+        findHyperparameters(data.inputs, data.targets, samples.replicates, structure, options);
   }
   if (spec.approximation == GpApproximation::kSgpr) {
     const gp::SparseOptions sparse{spec.inducing, spec.subset, spec.refine_evaluations};
-    keepResults(gp::trainSparse(inputs, targets, structure, options, sparse), parameter_names, training);
+    keepResults(gp::trainSparse(data.inputs, data.targets, structure, options, sparse), parameter_names,
+                training);
   } else {
-    keepResults(gp::train(inputs, targets, structure, options), parameter_names, training);
+    keepResults(gp::train(data.inputs, data.targets, structure, options), parameter_names, training);
   }
-  training.leave_one_out = predictLeftOut(map, inputs, targets, samples.replicates, threads);
-  map.residual_correlation = calcResidualCorrelation(
-      (training.leave_one_out.mean - samples.parameters).cwiseQuotient(training.leave_one_out.stddev));
+  leaveOut(data, samples, threads, training);
+  return training;
+}
+
+GpMapTraining refitGpMap(const GpMap& trained, const GpMapSpec& spec,
+                         const std::vector<TransformStepSpec>& transform, const LabelledFeatures& samples,
+                         int threads) {
+  GpMapTraining training;
+  const TrainingData data = prepare(transform, samples, training.map);
+  const gp::ModelStructure structure =
+      makeStructure(spec, samples.infos, static_cast<int>(data.inputs.rows()));
+  for (Eigen::Index p = 0; p < data.targets.rows(); ++p) {
+    const Eigen::VectorXd target = data.targets.row(p).transpose();
+    training.map.processes.push_back(
+        std::visit([&](const auto& process) { return refit(process, data.inputs, target, structure); },
+                   trained.processes.at(p)));
+  }
+  leaveOut(data, samples, threads, training);
   return training;
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <filesystem>
 #include <string>
 
 namespace twinmap {
@@ -12,6 +13,9 @@ using Digest = std::array<unsigned char, 16>;
 
 /// About 10 GB/s.
 Digest calcDigest(const void* bytes, std::size_t size);
+
+/// Of a whole file, read in pieces. Throws std::runtime_error if it cannot be read.
+Digest calcFileDigest(const std::filesystem::path& path);
 
 /// 32 lower-case hexadecimal digits.
 std::string toHex(const Digest& digest);

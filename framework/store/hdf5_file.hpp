@@ -50,6 +50,7 @@ class Hdf5Reader {
   Hdf5Reader& operator=(const Hdf5Reader&) = delete;
   ~Hdf5Reader();
 
+  bool contains(const std::string& dataset) const;
   std::vector<std::size_t> readShape(const std::string& dataset) const;
   /// (n, d) -> d x n; a vector (n) -> n x 1; a number -> 1 x 1.
   Eigen::MatrixXd readSamples(const std::string& dataset) const;

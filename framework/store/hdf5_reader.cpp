@@ -40,6 +40,10 @@ Hdf5Reader::~Hdf5Reader() {
   H5Fclose(file_);
 }
 
+bool Hdf5Reader::contains(const std::string& dataset) const {
+  return H5Lexists(file_, dataset.c_str(), H5P_DEFAULT) > 0;
+}
+
 std::vector<std::size_t> Hdf5Reader::readShape(const std::string& dataset) const {
   return getShape(openDataset(file_, path_, dataset));
 }

@@ -3,12 +3,15 @@
 #include <sys/resource.h>
 #include <sys/utsname.h>
 
+#include <algorithm>
 #include <chrono>
 #include <ctime>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <thread>
 #include <twinmap/build_info.hpp>
+
+#include "framework/store/digest.hpp"
 
 namespace twinmap {
 namespace {
@@ -47,6 +50,50 @@ double calcPeakMemoryMegabytes() {
 
 }  // namespace
 
+std::vector<std::pair<std::string, std::string>> calcDigests(const std::filesystem::path& folder) {
+  std::vector<std::pair<std::string, std::string>> digests;
+  for (const std::filesystem::directory_entry& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string kind = entry.path().extension().string();
+    const std::string name = entry.path().filename().string();
+    if (name == "resolved.yaml" || kind == ".h5" || kind == ".csv" || kind == ".md" || kind == ".tex") {
+      digests.emplace_back(name, toHex(calcFileDigest(entry.path())));
+    }
+  }
+  std::sort(digests.begin(), digests.end());
+  return digests;
+}
+
+std::string findChangedFile(const std::string& provenance_json, const std::filesystem::path& folder) {
+  const nlohmann::json digests =
+      nlohmann::json::parse(provenance_json).value("digests", nlohmann::json::object());
+  for (const auto& [name, digest] : digests.items()) {
+    if (!std::filesystem::exists(folder / name)) {
+      return name + " is missing";
+    }
+    if (toHex(calcFileDigest(folder / name)) != digest) {
+      return name + " is not as it was written";
+    }
+  }
+  return "";
+}
+
+std::vector<std::string> listBuildDifferences(const std::string& provenance_json) {
+  const nlohmann::json then = nlohmann::json::parse(provenance_json).flatten();
+  const nlohmann::json now = nlohmann::json::parse(makeProvenanceJson({})).flatten();
+  std::vector<std::string> differences;
+  for (const auto& [pointer, value] : now.items()) {
+    const bool of_build = pointer == "/version" || pointer == "/machine/cpu" ||
+                          pointer.rfind("/build/", 0) == 0 || pointer.rfind("/libraries/", 0) == 0;
+    const nlohmann::json before = then.value(pointer, nlohmann::json("unknown"));
+    if (of_build && before != value) {
+      std::string name = pointer.substr(1);
+      std::replace(name.begin(), name.end(), '/', '.');
+      differences.push_back(name + ": " + before.dump() + " then, " + value.dump() + " now");
+    }
+  }
+  return differences;
+}
+
 std::string makeProvenanceJson(const Provenance& provenance) {
   nlohmann::ordered_json json;
   json["date"] = makeDate();
@@ -64,6 +111,9 @@ std::string makeProvenanceJson(const Provenance& provenance) {
                     {"p99_us", provenance.online_p99_us}};
   json["peak_memory_mb"] = calcPeakMemoryMegabytes();
   json["warnings"] = provenance.warnings;
+  for (const auto& [name, digest] : provenance.digests) {
+    json["digests"][name] = digest;
+  }
   json["build"] = {{"compiler", kCompiler}, {"type", kBuildType}, {"instruction_set", kInstructionSet}};
   json["libraries"] = {{"Eigen", kEigenVersion},      {"Simbody", kSimbodyVersion},
                        {"NLopt", kNloptVersion},      {"Boost", kBoostVersion},

@@ -31,6 +31,34 @@ void writeSet(Hdf5Writer& file, const std::string& group, const Trajectories& se
   file.write(group + "/reason", reasons);
 }
 
+ResponseLayout readLayout(const Hdf5Reader& file, bool modes) {
+  ResponseLayout layout{file.readTexts("/outputs/name"), file.readTexts("/outputs/unit"),
+                        file.readVector("/times")};
+  layout.modes = modes ? static_cast<int>(file.readShape("/train/natural_frequencies").at(1)) : 0;
+  return layout;
+}
+
+Trajectories readSet(const Hdf5Reader& file, const std::string& group, const ResponseLayout& layout) {
+  Trajectories set;
+  set.layout = layout;
+  set.parameters = file.readSamples(group + "/parameters");
+  const Eigen::MatrixXd outputs = file.readSamples(group + "/responses");
+  set.responses.resize(layout.getRowCount(), set.parameters.cols());
+  set.responses.topRows(outputs.rows()) = outputs;
+  if (layout.modes > 0) {
+    set.responses.middleRows(layout.getFrequencyRow(0), layout.modes) =
+        file.readSamples(group + "/natural_frequencies");
+    set.responses.middleRows(layout.getDampingRow(0), layout.modes) =
+        file.readSamples(group + "/damping_ratios");
+  }
+  const std::vector<std::int64_t> ok = file.readIntegers(group + "/ok");
+  const std::vector<std::string> reasons = file.readTexts(group + "/reason");
+  for (std::size_t i = 0; i < ok.size(); ++i) {
+    set.statuses.push_back({ok[i] != 0, reasons.at(i)});
+  }
+  return set;
+}
+
 }  // namespace
 
 void writeSamplesFile(const std::filesystem::path& path, const ModelSpec& model, const Trajectories& train,
@@ -53,6 +81,12 @@ StoredResponses readTestResponses(const std::filesystem::path& path) {
   const Hdf5Reader file(path);
   return {file.readTexts("/outputs/name"), file.readTexts("/outputs/unit"), file.readVector("/times"),
           file.readSamples("/test/responses")};
+}
+
+StoredSamples readSamplesFile(const std::filesystem::path& path) {
+  const Hdf5Reader file(path);
+  const ResponseLayout layout = readLayout(file, file.contains("/train/natural_frequencies"));
+  return {readSet(file, "/train", layout), readSet(file, "/test", layout)};
 }
 
 }  // namespace twinmap

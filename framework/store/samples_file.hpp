@@ -23,4 +23,12 @@ struct StoredResponses {
 /// Reads the test set's responses back. Throws std::runtime_error for a file that is no samples.h5.
 StoredResponses readTestResponses(const std::filesystem::path& path);
 
+/// The training and the test set of samples.h5, as they were written.
+struct StoredSamples {
+  Trajectories train, test;
+};
+
+/// Reads samples.h5 back. Throws std::runtime_error for a file that is no samples.h5.
+StoredSamples readSamplesFile(const std::filesystem::path& path);
+
 }  // namespace twinmap

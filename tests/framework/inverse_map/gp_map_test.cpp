@@ -140,5 +140,35 @@ TEST(GpMap, FeaturesThatSayNothingGiveAWarningAndThePriorsSpread) {
   EXPECT_NEAR(predictions.stddev(0, 0) / training.map.target_scale[0], 1.0, 0.3);
 }
 
+// What files hold of a map is checked so: with its hyperparameters alone all else comes out again.
+TEST(GpMap, IsTheSameBitForBitWhenRefittedAtItsHyperparameters) {
+  GpMapSpec sparse;
+  sparse.approximation = GpApproximation::kSgpr;
+  sparse.inducing = 30;
+  sparse.subset = 60;
+  Problem problem = makeProblem(80, 1);
+  problem.replicates = 2;
+  problem.parameters.rightCols(40) = problem.parameters.leftCols(40).eval();
+  for (const GpMapSpec& spec : {GpMapSpec{}, sparse}) {
+    const GpMapTraining trained = trainOn(problem, spec);
+    TransformStepSpec z_score;
+    z_score.z_score.emplace();
+    const GpMapTraining again = refitGpMap(trained.map, spec, {z_score},
+                                           {problem.infos,
+                                            problem.features,
+                                            problem.parameters,
+                                            Eigen::MatrixXd::Identity(4, 4),
+                                            problem.replicates,
+                                            {}},
+                                           2);
+    EXPECT_EQ(again.leave_one_out.mean, trained.leave_one_out.mean);
+    EXPECT_EQ(again.map.residual_correlation, trained.map.residual_correlation);
+    const Eigen::MatrixXd features = makeProblem(50, 2).features;
+    EXPECT_EQ(again.map.predict(features).mean, trained.map.predict(features).mean);
+    EXPECT_EQ(again.map.predict(features).stddev, trained.map.predict(features).stddev);
+    EXPECT_EQ(getNlml(again.map.processes[0]), getNlml(trained.map.processes[0]));
+  }
+}
+
 }  // namespace
 }  // namespace twinmap

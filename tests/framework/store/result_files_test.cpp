@@ -108,7 +108,8 @@ TEST(Provenance, SaysHowTheRunCameAbout) {
                                                                         200,
                                                                         44.5,
                                                                         83.0,
-                                                                        {"parameter 'k': not converged"}}));
+                                                                        {"parameter 'k': not converged"},
+                                                                        {}}));
   EXPECT_EQ(json["seed"], 7);
   EXPECT_EQ(json["threads"], 2);
   EXPECT_EQ(json["seconds"]["simulate"], 1.5);

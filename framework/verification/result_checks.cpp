@@ -1,0 +1,150 @@
+#include "framework/verification/result_checks.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "framework/evaluate.hpp"
+#include "framework/evaluation/information_limit.hpp"
+#include "framework/features/noise.hpp"
+#include "framework/labelled_sets.hpp"
+#include "framework/make_extractor.hpp"
+#include "framework/report/tables.hpp"
+#include "framework/spec/check_experiment.hpp"
+#include "framework/store/atomic_file.hpp"
+#include "framework/store/hdf5_difference.hpp"
+#include "framework/store/maps_file.hpp"
+#include "framework/store/predictions_file.hpp"
+#include "framework/store/temporary_folder.hpp"
+#include "framework/verification/file_difference.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+/// What the results of a run follow from.
+struct Inputs {
+  const ExperimentSpec& experiment;
+  const Simulator& simulator;
+  const FeatureExtractor& extractor;
+  const FeatureNoise& noise;
+  const LabelledSets& labelled;
+  const std::vector<int>& test_indices;
+  int threads;
+};
+
+std::string findMapDifference(const std::filesystem::path& file, const Inputs& inputs, const GpMap& map) {
+  StoredMap expected{inputs.experiment.model.parameters, {}, map};
+  for (const FeatureInfo& info : inputs.extractor.getInfos()) {
+    expected.feature_names.push_back(info.name);
+  }
+  const TemporaryFolder temporary;
+  writeMapsFile(temporary.getPath() / "maps.h5", expected);
+  return findHdf5Difference(file, temporary.getPath() / "maps.h5");
+}
+
+/// The limit of all test samples as the file has it, and of `chosen` ones computed again.
+MatrixXd calcLimit(const Inputs& inputs, const std::vector<int>& chosen,
+                   const std::filesystem::path& predictions) {
+  if (!hasInformationLimit(inputs.experiment, inputs.labelled.test)) {
+    return {};
+  }
+  const std::vector<ParameterSpec>& parameters = inputs.experiment.model.parameters;
+  const MatrixXd& truth = inputs.labelled.test.parameters;
+  MatrixXd limit = readPredictionsFile(predictions, collectNames(parameters)).limit_stddev;
+  if (limit.rows() != truth.rows() || limit.cols() != truth.cols()) {
+    limit.setConstant(truth.rows(), truth.cols(), std::numeric_limits<double>::quiet_NaN());
+  }
+  std::vector<Index> columns;
+  for (const int sample : chosen) {
+    const auto found = std::find(inputs.test_indices.begin(), inputs.test_indices.end(), sample);
+    if (found != inputs.test_indices.end()) {
+      columns.push_back(found - inputs.test_indices.begin());
+    }
+  }
+  if (!columns.empty()) {
+    const auto models = calcLocalModels(inputs.simulator, inputs.extractor, parameters,
+                                        truth(Eigen::all, columns), inputs.threads);
+    limit(Eigen::all, columns) = calcInformationLimit(models, inputs.noise, parameters).stddev;
+  }
+  return limit;
+}
+
+RunSummary summarize(const Inputs& inputs, const GpMapTraining& trained, const MatrixXd& limit) {
+  const LabelledSets& labelled = inputs.labelled;
+  RunSummary run;
+  run.parameters = inputs.experiment.model.parameters;
+  run.test_indices = inputs.test_indices;
+  run.truth = labelled.test.parameters;
+  run.predictions = trained.map.predict(labelled.test.features);
+  run.limit_stddev = limit;
+  calcTestMetrics(trained.map, run);
+  run.leave_one_out = calcMetrics(run.parameters, labelled.train.parameters, trained.leave_one_out, {},
+                                  labelled.train.replicates);
+  for (const Process& process : trained.map.processes) {
+    run.nlml.push_back(getNlml(process));
+  }
+  return run;
+}
+
+struct TextFile {
+  const char* name;
+  std::string (*make)(const RunSummary& run);
+};
+
+constexpr TextFile kTables[] = {{"metrics.csv", makeMetricsCsv},
+                                {"joint.csv", makeJointCsv},
+                                {"pit.csv", makePitCsv},
+                                {"table.md", makeMarkdownTable},
+                                {"table.tex", makeLatexTable}};
+
+std::string findDifference(const std::filesystem::path& file, const std::string& expected) {
+  const std::string text = readBytes(file);
+  return file.extension() == ".csv" ? findCsvDifference(text, expected) : findTextDifference(text, expected);
+}
+
+void checkMapAndTables(const Inputs& inputs, const std::vector<int>& limits, Verification& verification) {
+  const std::filesystem::path& folder = verification.folder;
+  GpMapTraining trained;
+  verification.check("maps.h5: refitted at its hyperparameters", [&] {
+    trained = refitGpMap(readMapsFile(folder / "maps.h5").map, inputs.experiment.inverse_map.gp,
+                         inputs.experiment.transform, inputs.labelled.train, inputs.threads);
+    return findMapDifference(folder / "maps.h5", inputs, trained.map);
+  });
+  if (trained.map.processes.empty()) {
+    verification.notes.emplace_back("predictions and tables are not compared, for they follow from maps.h5");
+    return;
+  }
+  RunSummary run;
+  verification.check("predictions.csv: all test samples inferred again", [&] {
+    run = summarize(inputs, trained, calcLimit(inputs, limits, folder / "predictions.csv"));
+    return findDifference(folder / "predictions.csv", makePredictionsCsv(run));
+  });
+  if (run.metrics.empty()) {
+    verification.notes.emplace_back("tables are not compared, for they follow from predictions.csv");
+    return;
+  }
+  for (const TextFile& table : kTables) {
+    verification.check(std::string(table.name) + ": made again",
+                       [&] { return findDifference(folder / table.name, table.make(run)); });
+  }
+}
+
+}  // namespace
+
+void checkResults(const ExperimentSpec& experiment, const Simulator& simulator, SimulatedSets sets,
+                  const std::vector<int>& limits, int threads, Verification& verification) {
+  const FeatureExtractor extractor = makeExtractor(experiment, simulator.getLayout());
+  failIncompleteSamples(experiment, extractor, sets);
+  const FeatureNoise noise(extractor, calcNoiseStddev(experiment.noise, simulator.getLayout()),
+                           experiment.seed);
+  LabelledSets labelled = makeLabelledSets(experiment, sets, extractor, noise);
+  labelled.train.sensitivities =
+      calcTrainingSensitivities(experiment, sets.train, simulator, extractor, threads);
+  const std::vector<int> test_indices = findSuccessful(sets.test);
+  checkMapAndTables({experiment, simulator, extractor, noise, labelled, test_indices, threads}, limits,
+                    verification);
+}
+
+}  // namespace twinmap
