@@ -13,6 +13,8 @@
 #include "framework/online_timing.hpp"
 #include "framework/report/report.hpp"
 #include "framework/result_files.hpp"
+#include "framework/run_folder.hpp"
+#include "framework/run_log.hpp"
 #include "framework/spec/check_experiment.hpp"
 #include "framework/spec/experiment_file.hpp"
 #include "framework/stage_timer.hpp"
@@ -81,6 +83,16 @@ std::vector<TrainedHyperparameter> listHyperparameters(const std::vector<std::st
   return listed;
 }
 
+/// The store where the options say; none if the samples are shared.
+std::unique_ptr<TrajectoryStore> openOwnStore(const ExperimentSpec& experiment, const Simulator& simulator,
+                                              const RunOptions& options) {
+  if (options.samples != nullptr) {
+    return nullptr;
+  }
+  return openStore(experiment.model, simulator.getLayout(),
+                   options.store.empty() ? options.folder / "chunks" : options.store);
+}
+
 /// Trains the map on the training samples and writes it.
 GpMap trainMap(const ExperimentSpec& experiment, const LabelledFeatures& training, const RunOptions& options,
                RunSummary& run) {
@@ -108,14 +120,18 @@ RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& opt
   RunSummary run = startSummary(experiment);
   makeFolders(options.folder);
   const FolderLock lock(options.folder);
-  writeTextFile(options.folder / "resolved.yaml", writeExperiment(experiment));
+  const std::string resolved = writeExperiment(experiment);
+  requireSameExperiment(options.folder, resolved);
+  beginRun(options.folder, resolved);
+  const std::unique_ptr<RunLog> log = options.samples ? nullptr : std::make_unique<RunLog>(options.folder);
 
   const MultibodySimulator simulator(experiment.model, collectTimes(experiment.features),
                                      countModes(experiment.features));
   const FeatureExtractor extractor = makeExtractor(experiment, simulator.getLayout());
   checkTransformOf(extractor.getInfos(), experiment.transform);
-  const auto store = openStore(experiment.model, simulator.getLayout(), options);
-  SimulatedSets sets = simulateSets(experiment, simulator, *store, options, run);
+  const auto store = openOwnStore(experiment, simulator, options);
+  const SampleSource source = store ? SampleSource{simulator, *store} : *options.samples;
+  SimulatedSets sets = simulateSets(experiment, source, simulator.getLayout(), options, run);
   failIncompleteSamples(experiment, extractor, sets);
   recordFailures(experiment, sets, options, run);
   run.test_indices = findSuccessful(sets.test);

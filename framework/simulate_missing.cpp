@@ -41,16 +41,21 @@ Trajectories loadTrajectories(const TrajectoryStore& store, const ResponseLayout
 
 }  // namespace
 
-StoredTrajectories simulateMissing(TrajectoryStore& store, const Simulator& simulator,
-                                   const Eigen::MatrixXd& points, const MissingOptions& options) {
+SimulationProgress storeMissing(TrajectoryStore& store, const Simulator& simulator,
+                                const Eigen::MatrixXd& points, const MissingOptions& options) {
   const std::vector<Eigen::Index> missing = store.findMissing(points);
   SimulationProgress counts;
   counts.total = static_cast<int>(missing.size());
   counts.reused = static_cast<int>(points.cols()) - counts.total;
   ChunkSaver saver(store, options, counts);
   simulateAll(simulator, points(Eigen::all, missing), options, saver);
-  return {loadTrajectories(store, simulator.getLayout(), points), saver.getCounts(),
-          saver.getCounts().simulated < counts.total};
+  return saver.getCounts();
+}
+
+StoredTrajectories simulateMissing(TrajectoryStore& store, const Simulator& simulator,
+                                   const Eigen::MatrixXd& points, const MissingOptions& options) {
+  const SimulationProgress counts = storeMissing(store, simulator, points, options);
+  return {loadTrajectories(store, simulator.getLayout(), points), counts, counts.simulated < counts.total};
 }
 
 }  // namespace twinmap

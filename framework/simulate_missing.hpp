@@ -43,4 +43,8 @@ struct StoredTrajectories {
 StoredTrajectories simulateMissing(TrajectoryStore& store, const Simulator& simulator,
                                    const Eigen::MatrixXd& points, const MissingOptions& options = {});
 
+/// The same without reading the responses. Stopped, if fewer are simulated than the total.
+SimulationProgress storeMissing(TrajectoryStore& store, const Simulator& simulator,
+                                const Eigen::MatrixXd& points, const MissingOptions& options = {});
+
 }  // namespace twinmap

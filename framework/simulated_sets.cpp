@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "framework/design/point_set.hpp"
+#include "framework/interrupted.hpp"
 #include "framework/report/tables.hpp"
 #include "framework/simulate_missing.hpp"
 #include "framework/stage_timer.hpp"
@@ -55,6 +56,33 @@ void noteReused(int reused, const std::string& set, RunSummary& run) {
   }
 }
 
+MissingOptions makeMissingOptions(const std::string& set, const RunOptions& options) {
+  MissingOptions missing;
+  missing.threads = options.threads;
+  missing.stop = options.stop;
+  if (options.progress) {
+    missing.progress = [set, &options](const SimulationProgress& counts) {
+      options.progress({"simulate " + set, counts.simulated, counts.total, counts.failed,
+                        double(counts.simulated) / counts.total, true});
+    };
+  }
+  return missing;
+}
+
+Trajectories simulateSet(const std::string& set, const Eigen::MatrixXd& points, const SampleSource& source,
+                         const RunOptions& options, RunSummary& run) {
+  StoredTrajectories stored =
+      timeStage(fmt::format("simulate {} {} samples", points.cols(), set), run.times, [&] {
+        return simulateMissing(source.store, source.simulator, points, makeMissingOptions(set, options));
+      });
+  if (stored.stopped) {
+    throw Interrupted(fmt::format("interrupted: {} of {} {} samples are simulated and kept",
+                                  stored.counts.reused + stored.counts.simulated, points.cols(), set));
+  }
+  noteReused(stored.counts.reused, set, run);
+  return std::move(stored.trajectories);
+}
+
 }  // namespace
 
 std::vector<int> findSuccessful(const Trajectories& trajectories) {
@@ -68,8 +96,7 @@ std::vector<int> findSuccessful(const Trajectories& trajectories) {
 }
 
 std::unique_ptr<TrajectoryStore> openStore(const ModelSpec& model, const ResponseLayout& layout,
-                                           const RunOptions& options) {
-  const fs::path root = options.store.empty() ? options.folder / "chunks" : options.store;
+                                           const fs::path& root) {
   auto store = std::make_unique<TrajectoryStore>(root, writeStoreContent(model, layout),
                                                  static_cast<Eigen::Index>(model.parameters.size()),
                                                  layout.getRowCount());
@@ -79,22 +106,16 @@ std::unique_ptr<TrajectoryStore> openStore(const ModelSpec& model, const Respons
   return store;
 }
 
-SimulatedSets simulateSets(const ExperimentSpec& experiment, const Simulator& simulator,
-                           TrajectoryStore& store, const RunOptions& options, RunSummary& run) {
-  const ModelSpec& model = experiment.model;
-  MissingOptions missing;
-  missing.threads = options.threads;
+SimulatedSets simulateSets(const ExperimentSpec& experiment, const SampleSource& source,
+                           const ResponseLayout& layout, const RunOptions& options, RunSummary& run) {
+  const std::vector<ParameterSpec>& parameters = experiment.model.parameters;
   const auto simulate = [&](const std::string& set, const PointSetSpec& design, RandomPurpose purpose) {
-    const Eigen::MatrixXd points = samplePoints(design, model.parameters, experiment.seed, purpose);
-    StoredTrajectories stored =
-        timeStage(fmt::format("simulate {} {} samples", points.cols(), set), run.times,
-                  [&] { return simulateMissing(store, simulator, points, missing); });
-    noteReused(stored.counts.reused, set, run);
-    return std::move(stored.trajectories);
+    const Eigen::MatrixXd points = samplePoints(design, parameters, experiment.seed, purpose);
+    return selectRows(simulateSet(set, points, source, options, run), layout);
   };
   SimulatedSets sets{simulate("train", experiment.design.train, RandomPurpose::kTrainDesign),
                      simulate("test", experiment.design.test, RandomPurpose::kTestDesign)};
-  writeSamplesFile(options.folder / "samples.h5", model, sets.train, sets.test);
+  writeSamplesFile(options.folder / "samples.h5", experiment.model, sets.train, sets.test);
   return sets;
 }
 

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "framework/experiment.hpp"
+#include "framework/sample_source.hpp"
 #include "framework/simulation/sample_generator.hpp"
 #include "framework/store/trajectory_store.hpp"
 
@@ -12,14 +13,15 @@ struct SimulatedSets {
   Trajectories train, test;
 };
 
-/// Opens the store of a model's samples where the options say. Chunks that had to be set aside are logged.
+/// Opens the store of a model's samples in the folder `root`. Chunks that had to be set aside are logged.
 std::unique_ptr<TrajectoryStore> openStore(const ModelSpec& model, const ResponseLayout& layout,
-                                           const RunOptions& options);
+                                           const std::filesystem::path& root);
 
-/// Simulates what the store does not have of both sets of an experiment, and writes samples.h5; times go to
-/// the summary. `simulator` must know the experiment's outputs at the features' times.
-SimulatedSets simulateSets(const ExperimentSpec& experiment, const Simulator& simulator,
-                           TrajectoryStore& store, const RunOptions& options, RunSummary& run);
+/// Simulates what the source does not have of both sets of an experiment, and writes samples.h5; times go to
+/// the summary. `layout` is that of the experiment's own features. Throws Interrupted if the options ask to
+/// stop while samples are missing.
+SimulatedSets simulateSets(const ExperimentSpec& experiment, const SampleSource& source,
+                           const ResponseLayout& layout, const RunOptions& options, RunSummary& run);
 
 /// Writes failures.csv and keeps the failures in the summary. Throws std::runtime_error if more samples
 /// failed than simulation.allowed_failures permits.

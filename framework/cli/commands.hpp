@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "framework/report/gates.hpp"
+#include "framework/spec/experiment_spec.hpp"
 
 namespace twinmap {
 
@@ -26,6 +28,9 @@ struct RunArguments {
   std::string folder;  ///< "": results/NAME
   std::string store;   ///< "": chunks in the folder
   int threads = 1;
+  double memory = 0.0;     ///< GiB that a sweep may take; 0: half of the machine's
+  bool fail_fast = false;  ///< of a sweep: begin no case after one has failed
+  bool quiet = false;      ///< no progress, only warnings
   std::string command_line;
   bool fail_on_gates = false;
 };
@@ -40,6 +45,11 @@ struct ReportArguments {
 class GatesFailed : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
+};
+
+struct StatusArguments {
+  std::string folder;
+  std::string store;  ///< "": chunks in the folder
 };
 
 struct CompareArguments {
@@ -67,8 +77,20 @@ void printSchema();
 /// Simulates once and writes a CSV: t, then each output by its name.
 void simulate(const SimulateArguments& arguments);
 
-/// Runs an experiment and prints its table.
+/// Runs an experiment, or all cases of a sweep, and prints the table. Throws Interrupted where a signal asked
+/// to stop, with the command that continues.
 void run(const RunArguments& arguments);
+
+/// Prints how far a sweep or a run is.
+void status(const StatusArguments& arguments);
+
+/// Prints what run() would do with the same arguments, and does nothing of it.
+void plan(const RunArguments& arguments);
+
+/// What run() takes where the arguments leave it open: results/NAME, and half of the machine's memory
+/// (bytes).
+std::filesystem::path chooseFolder(const RunArguments& arguments, const ExperimentSpec& experiment);
+double chooseMemory(const RunArguments& arguments);
 
 /// Prints two runs side by side.
 void compare(const CompareArguments& arguments);

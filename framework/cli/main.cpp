@@ -1,6 +1,3 @@
-#include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
@@ -9,6 +6,9 @@
 #include <twinmap/build_info.hpp>
 
 #include "framework/cli/commands.hpp"
+#include "framework/cli/log.hpp"
+#include "framework/cli/signals.hpp"
+#include "framework/interrupted.hpp"
 #include "framework/spec/source_location.hpp"
 
 namespace {
@@ -16,6 +16,7 @@ namespace {
 constexpr int kFailed = 1;
 constexpr int kWrongInput = 2;
 constexpr int kGatesFailed = 3;
+constexpr int kInterrupted = 128;  // plus the signal's number, as shells say it
 
 std::string joinArguments(int count, char** arguments) {
   std::string line = "twinmap";
@@ -27,18 +28,12 @@ std::string joinArguments(int count, char** arguments) {
   return line;
 }
 
-void setUpLog() {
-  auto log = spdlog::stderr_color_mt("twinmap");
-  log->set_pattern("%^twinmap:%$ %v");
-  spdlog::set_default_logger(log);
-}
-
 void addExperiment(CLI::App& command, twinmap::ExperimentArguments& arguments) {
   command.add_option("FILE", arguments.file, "Experiment file (YAML)")->required()->option_text(" ");
   command
       .add_option("key.path=value", arguments.overrides,
-                  "Overrides of values in the file: noise.scale=2 design.train.samples=500 "
-                  "'parameters.k_y.bounds=[4, 16]'")
+                  "Overrides of values in the file: noise.scale=2 'parameters.k_y.bounds=[4, 16]'; lists and "
+                  "ranges sweep: design.train.samples=100,200 seed=1..10")
       ->option_text(" ");
 }
 
@@ -72,20 +67,48 @@ void addThreads(CLI::App& command, int& threads) {
       ->check(CLI::Range(1, kMostThreads));
 }
 
+void addWhereAndHow(CLI::App& command, twinmap::RunArguments& arguments) {
+  addExperiment(command, arguments.experiment);
+  command.add_option("--out", arguments.folder, "Folder for the results (default: results/NAME)")
+      ->type_name("DIR");
+  command
+      .add_option("--store", arguments.store,
+                  "Folder of simulated samples, shared with other runs (default: chunks in the run's folder)")
+      ->type_name("DIR");
+  addThreads(command, arguments.threads);
+  command
+      .add_option("--memory", arguments.memory,
+                  "Memory that the cases of a sweep may take together (default: half of the machine's)")
+      ->type_name("GIB")
+      ->check(CLI::PositiveNumber);
+}
+
 void addRun(CLI::App& app, twinmap::RunArguments& arguments) {
   CLI::App* command =
       app.add_subcommand("run", "Simulate, train, infer, and write tables, maps and the report");
-  addExperiment(*command, arguments.experiment);
-  command->add_option("--out", arguments.folder, "Folder for the results (default: results/NAME)")
-      ->type_name("DIR");
-  command
-      ->add_option(
-          "--store", arguments.store,
-          "Folder of simulated samples, shared with other runs (default: chunks in the run's folder)")
-      ->type_name("DIR");
-  addThreads(*command, arguments.threads);
+  addWhereAndHow(*command, arguments);
+  CLI::Option* fail_fast =
+      command->add_flag("--fail-fast", arguments.fail_fast, "Of a sweep: begin no case after one has failed");
+  command->add_flag("--keep-going", "Of a sweep: a case that fails stops no other (default)")
+      ->excludes(fail_fast);
   addFailOnGates(*command, arguments.fail_on_gates);
+  command->add_flag("--quiet", arguments.quiet, "No progress, only warnings and errors");
   command->callback([&arguments] { twinmap::run(arguments); });
+}
+
+void addPlan(CLI::App& app, twinmap::RunArguments& arguments) {
+  CLI::App* command = app.add_subcommand(
+      "plan",
+      "Print what run would do: cases, simulations, time, memory, disk; simulate and train only a little");
+  addWhereAndHow(*command, arguments);
+  command->callback([&arguments] { twinmap::plan(arguments); });
+}
+
+void addStatus(CLI::App& app, twinmap::StatusArguments& arguments) {
+  CLI::App* command = app.add_subcommand("status", "Print how far a sweep or a run is");
+  command->add_option("DIR", arguments.folder, "Folder of the results")->required()->option_text(" ");
+  command->add_option("--store", arguments.store, "As given to run")->type_name("DIR");
+  command->callback([&arguments] { twinmap::status(arguments); });
 }
 
 void addCompare(CLI::App& app, twinmap::CompareArguments& arguments) {
@@ -145,12 +168,13 @@ int runCommand(int count, char** arguments) {
   app.require_subcommand(1);
   app.footer(
       "Exit codes: 0 done, 1 failed, 2 wrong usage or wrong experiment file, 3 a gate failed and "
-      "--fail-on-gates was given.");
+      "--fail-on-gates was given, 130 and 143 interrupted by Ctrl-C or SIGTERM.");
 
   twinmap::ExperimentArguments check;
   twinmap::SimulateArguments simulate;
   twinmap::CompareArguments compare;
   twinmap::ReportArguments report;
+  twinmap::StatusArguments status;
   twinmap::RunArguments run;
   twinmap::VerifyArguments verify;
   verify.seed = std::random_device()();
@@ -159,6 +183,8 @@ int runCommand(int count, char** arguments) {
   addCheck(app, check);
   addSimulate(app, simulate);
   addRun(app, run);
+  addPlan(app, run);
+  addStatus(app, status);
   addCompare(app, compare);
   addReport(app, report);
   addVerify(app, verify);
@@ -174,7 +200,7 @@ int runCommand(int count, char** arguments) {
 }  // namespace
 
 int main(int count, char** arguments) {
-  setUpLog();
+  twinmap::setUpLog();
   try {
     return runCommand(count, arguments);
   } catch (const twinmap::ExperimentError& error) {
@@ -183,6 +209,9 @@ int main(int count, char** arguments) {
   } catch (const twinmap::GatesFailed& error) {
     std::cerr << "twinmap: error: " << error.what() << "\n";
     return kGatesFailed;
+  } catch (const twinmap::Interrupted& interrupted) {
+    std::cerr << "twinmap: " << interrupted.what() << "\n";
+    return kInterrupted + twinmap::getSignal();
   } catch (const std::exception& error) {
     std::cerr << "twinmap: error: " << error.what() << "\n";
     return kFailed;

@@ -1,20 +1,40 @@
+#include <unistd.h>
+
 #include <iostream>
 
 #include "framework/cli/commands.hpp"
+#include "framework/cli/log.hpp"
+#include "framework/cli/progress_line.hpp"
+#include "framework/cli/signals.hpp"
 #include "framework/experiment.hpp"
+#include "framework/interrupted.hpp"
 #include "framework/report/tables.hpp"
 #include "framework/spec/experiment_file.hpp"
+#include "framework/sweep/run_sweep.hpp"
 
 namespace twinmap {
+namespace {
 
-void run(const RunArguments& arguments) {
-  const ExperimentSpec experiment = loadExperiment(arguments.experiment.file, arguments.experiment.overrides);
+namespace fs = std::filesystem;
+
+ProgressCallback makeProgress(ProgressLine& line, bool quiet) {
+  if (quiet) {
+    return nullptr;
+  }
+  return [&line](const Progress& progress) { line.update(progress); };
+}
+
+void runSingle(const ExperimentSpec& experiment, const RunArguments& arguments, const fs::path& folder) {
+  ProgressLine line;
   RunOptions options;
-  options.folder = arguments.folder.empty() ? "results/" + experiment.name.text : arguments.folder;
+  options.folder = folder;
   options.store = arguments.store;
   options.threads = arguments.threads;
   options.command = arguments.command_line;
+  options.stop = &catchSignals();
+  options.progress = makeProgress(line, arguments.quiet);
   const RunSummary summary = runExperiment(experiment, options);
+  line.clear();
   std::cout << makeMarkdownTable(summary);
   for (const std::string& warning : summary.warnings) {
     std::cerr << "twinmap: warning: " << warning << "\n";
@@ -25,6 +45,66 @@ void run(const RunArguments& arguments) {
   }
   std::cerr << "Report: " << (options.folder / "report.html").string() << "\n";
   requireGates(summary.gates, arguments.fail_on_gates);
+}
+
+void runCases(const YamlNode& tree, const RunArguments& arguments, const fs::path& folder) {
+  showWarningsOnly();
+  ProgressLine line;
+  SweepOptions options;
+  options.folder = folder;
+  options.store = arguments.store;
+  options.threads = arguments.threads;
+  options.memory = chooseMemory(arguments);
+  options.fail_fast = arguments.fail_fast;
+  options.command = arguments.command_line;
+  options.stop = &catchSignals();
+  options.progress = makeProgress(line, arguments.quiet);
+  const SweepResult result = runSweep(tree, options);
+  line.clear();
+  std::cout << result.table;
+  std::cerr << "Cases: " << result.complete << " of " << result.cases << " complete";
+  std::cerr << (result.skipped > 0 ? " (" + std::to_string(result.skipped) + " before)" : "") << ", "
+            << result.failures.size() << " failed\nReport: " << (folder / "report.html").string() << "\n";
+  if (result.stopped) {
+    throw Interrupted("interrupted");
+  }
+  if (!result.failures.empty()) {
+    throw std::runtime_error(std::to_string(result.failures.size()) + " of " + std::to_string(result.cases) +
+                             " cases failed; reasons and commands are in " +
+                             (folder / "failed_cases.csv").string());
+  }
+  requireGates(result.gates, arguments.fail_on_gates);
+}
+
+}  // namespace
+
+std::filesystem::path chooseFolder(const RunArguments& arguments, const ExperimentSpec& experiment) {
+  return arguments.folder.empty() ? "results/" + experiment.name.text : arguments.folder;
+}
+
+double chooseMemory(const RunArguments& arguments) {
+  constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0, kShare = 0.5;
+  const double machine =
+      static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
+  return arguments.memory > 0.0 ? arguments.memory * kGibibyte : kShare * machine;
+}
+
+void run(const RunArguments& arguments) {
+  const YamlNode tree = loadExperimentTree(arguments.experiment.file, arguments.experiment.overrides);
+  const ExperimentSpec experiment = readExperiment(tree);
+  const fs::path folder = chooseFolder(arguments, experiment);
+  if (arguments.quiet) {
+    showWarningsOnly();
+  }
+  try {
+    readSweep(tree) ? runCases(tree, arguments, folder) : runSingle(experiment, arguments, folder);
+  } catch (const Interrupted& interrupted) {
+    throw Interrupted(std::string(interrupted.what()) + "; the same command continues:\n  " +
+                      arguments.command_line);
+  }
+  if (getSignal() != 0) {
+    throw Interrupted("interrupted, after everything was done");
+  }
 }
 
 }  // namespace twinmap

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <stdexcept>
 
 #include "framework/multibody/linearization.hpp"
@@ -12,6 +13,10 @@
 
 namespace twinmap {
 namespace {
+
+/// Systems and expressions are built one at a time: Simbody and muParser do not say that they may be
+/// otherwise.
+std::mutex building;
 
 /// What all clones share.
 struct SharedModel {
@@ -183,8 +188,9 @@ class MultibodySimulator::Impl {
   ModelContext context_;
 };
 
-MultibodySimulator::MultibodySimulator(const ModelSpec& model, Eigen::VectorXd times, int modes)
-    : impl_(std::make_unique<Impl>(model, std::move(times), modes)) {
+MultibodySimulator::MultibodySimulator(const ModelSpec& model, Eigen::VectorXd times, int modes) {
+  const std::lock_guard<std::mutex> guard(building);
+  impl_ = std::make_unique<Impl>(model, std::move(times), modes);
   impl_->prepare();
 }
 
@@ -214,6 +220,7 @@ void MultibodySimulator::simulateAround(const Eigen::Ref<const Eigen::MatrixXd>&
 }
 
 std::unique_ptr<Simulator> MultibodySimulator::clone() const {
+  const std::lock_guard<std::mutex> guard(building);
   auto impl = std::make_unique<Impl>(impl_->getShared());
   impl->compileAll();
   return std::unique_ptr<Simulator>(new MultibodySimulator(std::move(impl)));

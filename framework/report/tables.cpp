@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "framework/report/escape.hpp"
+#include "framework/report/markdown_table.hpp"
 #include "framework/report/number_with_error.hpp"
 #include "framework/spec/number_text.hpp"
 
@@ -61,35 +62,10 @@ std::vector<Row> makeRows(const RunSummary& run, std::string (*escape)(const std
   return rows;
 }
 
-/// "| a | b |" with every cell padded to its column's width: names to the left, numbers to the right.
-std::string padRow(const Row& cells, const std::vector<std::size_t>& widths) {
-  std::string line = "|";
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const std::string padding(widths[i] - cells[i].size(), ' ');
-    line += " " + (i < kTextColumns ? cells[i] + padding : padding + cells[i]) + " |";
-  }
-  return line + "\n";
-}
-
 }  // namespace
 
 std::string makeMarkdownTable(const RunSummary& run) {
-  const std::vector<Row> rows = makeRows(run, escapeMarkdown);
-  std::vector<std::size_t> widths(rows[0].size(), 0);
-  for (const Row& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      widths[i] = std::max(widths[i], row[i].size());
-    }
-  }
-  std::string text = padRow(rows[0], widths) + "|";
-  for (std::size_t i = 0; i < widths.size(); ++i) {
-    text += i < kTextColumns ? std::string(widths[i] + 2, '-') + "|" : std::string(widths[i] + 1, '-') + ":|";
-  }
-  text += "\n";
-  for (std::size_t i = 1; i < rows.size(); ++i) {
-    text += padRow(rows[i], widths);
-  }
-  return text + "\n" + kLegend;
+  return makeAlignedTable(makeRows(run, escapeMarkdown), kTextColumns) + "\n" + kLegend;
 }
 
 std::string makeLatexTable(const RunSummary& run) {

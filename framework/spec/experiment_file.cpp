@@ -4,12 +4,16 @@
 
 #include "framework/spec/check_experiment.hpp"
 #include "framework/spec/describe_experiment.hpp"
+#include "framework/spec/describe_sweep.hpp"
 #include "framework/spec/overrides.hpp"
 #include "framework/spec/read_value.hpp"
+#include "framework/spec/swept_keys.hpp"
 #include "framework/spec/write_value.hpp"
 
 namespace twinmap {
 namespace {
+
+constexpr const char* kSweep = "sweep";
 
 /// 8 standard deviations of the noise: independent noise alone exceeds that between two of 1000 samples in
 /// less than 1 % of windows (1000^2 pairs, each with the probability Q(8 / sqrt 2) = 7.7e-9).
@@ -49,22 +53,53 @@ void resolveDefaults(ExperimentSpec& experiment) {
 
 ExperimentSpec readExperiment(const YamlNode& root) {
   ExperimentSpec experiment;
-  readValue(root, experiment);
+  readValue(withoutSweep(root), experiment);
   resolveDefaults(experiment);
   checkExperiment(experiment);
   return experiment;
 }
 
-ExperimentSpec loadExperiment(const std::string& path, const std::vector<std::string>& overrides) {
+YamlNode loadExperimentTree(const std::string& path, const std::vector<std::string>& overrides) {
   YamlNode root = loadYaml(path);
   for (const std::string& text : overrides) {
     applyOverride(root, text);
   }
-  return readExperiment(root);
+  return root;
+}
+
+ExperimentSpec loadExperiment(const std::string& path, const std::vector<std::string>& overrides) {
+  return readExperiment(loadExperimentTree(path, overrides));
 }
 
 std::string writeExperiment(const ExperimentSpec& experiment) {
   return writeYaml(writeValue(experiment));
+}
+
+std::string writeIndependentDefaults(const YamlNode& root) {
+  ExperimentSpec experiment;
+  readValue(withoutSweep(root), experiment);
+  YamlNode tree = writeValue(experiment);
+  if (const std::optional<SweepSpec> sweep = readSweep(root)) {
+    tree.entries.push_back({kSweep, {}, writeValue(*sweep)});
+  }
+  return writeYaml(tree);
+}
+
+std::optional<SweepSpec> readSweep(const YamlNode& root) {
+  const YamlNode* node = root.find(kSweep);
+  if (node == nullptr) {
+    return {};
+  }
+  SweepSpec sweep;
+  readValue(*node, sweep);
+  return sweep;
+}
+
+YamlNode withoutSweep(YamlNode root) {
+  root.entries.erase(std::remove_if(root.entries.begin(), root.entries.end(),
+                                    [](const YamlEntry& entry) { return entry.key == kSweep; }),
+                     root.entries.end());
+  return root;
 }
 
 }  // namespace twinmap

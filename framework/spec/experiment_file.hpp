@@ -1,21 +1,36 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "framework/spec/experiment_spec.hpp"
+#include "framework/spec/sweep_spec.hpp"
 #include "framework/spec/yaml_node.hpp"
 
 namespace twinmap {
 
-/// Reads an experiment from its YAML tree and checks it (see check_experiment.hpp).
-/// Throws ExperimentError for the first thing wrong.
+/// Reads an experiment from its YAML tree and checks it (see check_experiment.hpp). A sweep in the tree is no
+/// part of it. Throws ExperimentError for the first thing wrong.
 ExperimentSpec readExperiment(const YamlNode& root);
 
 /// Reads `path`, applies the overrides "key.path=value" in their order, checks the result.
 ExperimentSpec loadExperiment(const std::string& path, const std::vector<std::string>& overrides = {});
 
+/// The same as a tree, not checked yet.
+YamlNode loadExperimentTree(const std::string& path, const std::vector<std::string>& overrides = {});
+
 /// The experiment as YAML with every default written out; reading it back gives the same experiment.
 std::string writeExperiment(const ExperimentSpec& experiment);
+
+/// The sweep of an experiment's tree, if there is one.
+std::optional<SweepSpec> readSweep(const YamlNode& root);
+
+/// The tree without its sweep.
+YamlNode withoutSweep(YamlNode root);
+
+/// The experiment of a tree, and its sweep, as YAML with those defaults written out that depend on no other
+/// value, so that a sweep finds the others anew for each case.
+std::string writeIndependentDefaults(const YamlNode& root);
 
 }  // namespace twinmap

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/spec/describe_experiment.hpp"
+#include "framework/spec/describe_sweep.hpp"
 
 namespace twinmap {
 namespace {
@@ -49,6 +50,12 @@ Json makeSchema(const ComponentCount&) {
   const Json automatic{{"const", "automatic"}};
   const Json number{{"type", "integer"}, {"minimum", 1}};
   return {{"anyOf", Json::array({number, automatic})}};
+}
+
+Json makeSchema(const SweptKeys&) {
+  const Json list{{"type", "array"}, {"minItems", 1}};
+  const Json range{{"type", "string"}, {"pattern", "^-?[0-9]+\\.\\.-?[0-9]+$"}};
+  return {{"type", "object"}, {"additionalProperties", {{"anyOf", Json::array({list, range})}}}};
 }
 
 template <class T>
@@ -163,6 +170,8 @@ Json makeStructSchema() {
 std::string makeJsonSchema() {
   Json schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "twinmap experiment"}};
   schema.update(makeStructSchema<ExperimentSpec>());
+  schema["properties"]["sweep"] = makeStructSchema<SweepSpec>();
+  schema["properties"]["sweep"]["description"] = "repeats the experiment with other values";
   constexpr int kIndent = 2;
   return schema.dump(kIndent) + "\n";
 }

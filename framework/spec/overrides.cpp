@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "framework/spec/swept_keys.hpp"
+
 namespace twinmap {
 namespace {
 
@@ -12,8 +14,14 @@ const SourceLocation kCommandLine{"command line", 0, 0, ""};
   throw ExperimentError(kCommandLine, override_text, rule);
 }
 
+bool isIndex(const std::string& step) {
+  constexpr std::size_t kMostDigits = 6;
+  return step.size() > 2 && step.size() <= kMostDigits + 2 && step.front() == '[' && step.back() == ']' &&
+         std::all_of(step.begin() + 1, step.end() - 1, [](unsigned char c) { return std::isdigit(c) != 0; });
+}
+
 /// "a.b[0].c" -> {"a", "b", "[0]", "c"}.
-std::vector<std::string> splitKeyPath(const std::string& path) {
+std::vector<std::string> splitKeyPath(const std::string& path, const std::string& override_text) {
   std::vector<std::string> steps(1);
   for (const char c : path) {
     if (c == '.') {
@@ -24,13 +32,12 @@ std::vector<std::string> splitKeyPath(const std::string& path) {
       steps.back() += c;
     }
   }
+  for (const std::string& step : steps) {
+    if (step.empty() || (step.front() == '[' && !isIndex(step))) {
+      reject(override_text, "has a malformed key path; write it like system.springs[0].stiffness");
+    }
+  }
   return steps;
-}
-
-bool isIndex(const std::string& step) {
-  constexpr std::size_t kMostDigits = 6;
-  return step.size() > 2 && step.size() <= kMostDigits + 2 && step.front() == '[' && step.back() == ']' &&
-         std::all_of(step.begin() + 1, step.end() - 1, [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
 /// Line and column within an override's own text help nobody.
@@ -68,6 +75,81 @@ YamlNode& descend(YamlNode& node, const std::string& step, const std::string& ov
   return node.entries.back().value;
 }
 
+/// The value at a key path; made, with the maps on the way, where it is missing.
+YamlNode& findOrMake(YamlNode& root, const std::string& key, const std::string& override_text) {
+  YamlNode* node = &root;
+  for (const std::string& step : splitKeyPath(key, override_text)) {
+    node = &descend(*node, step, override_text);
+  }
+  return *node;
+}
+
+/// Splits at the commas outside brackets and quotes.
+std::vector<std::string> splitValues(const std::string& text) {
+  std::vector<std::string> values(1);
+  int depth = 0;
+  char quote = '\0';
+  for (const char c : text) {
+    if (quote != '\0') {
+      quote = c == quote ? '\0' : quote;
+    } else if (c == '\'' || c == '"') {
+      quote = c;
+    } else {
+      depth += std::string("([{").find(c) != std::string::npos ? 1 : 0;
+      depth -= std::string(")]}").find(c) != std::string::npos ? 1 : 0;
+    }
+    if (c == ',' && depth == 0 && quote == '\0') {
+      values.emplace_back();
+    } else {
+      values.back() += c;
+    }
+  }
+  return values;
+}
+
+YamlNode parseValue(const std::string& text) {
+  YamlNode node = parseYaml(text, kCommandLine.file);
+  dropPositions(node);
+  return node;
+}
+
+YamlNode parseValues(const std::vector<std::string>& texts, const std::string& override_text) {
+  YamlNode values = makeSequence();
+  for (const std::string& text : texts) {
+    values.items.push_back(parseValue(text));
+    if (values.items.back().kind == YamlNode::Kind::kNull) {
+      reject(override_text, "has an empty value in its list");
+    }
+  }
+  return values;
+}
+
+/// Sweeps the key over the values, instead of those the file gives.
+void setSweptValues(YamlNode& root, const std::string& key, YamlNode values,
+                    const std::string& override_text) {
+  splitKeyPath(key, override_text);  // finds a malformed one
+  YamlNode& over = descend(descend(root, "sweep", override_text), "over", override_text);
+  descend(over, key, override_text) = std::move(values);
+}
+
+/// A key that has one value is no longer swept; without any other, nothing is.
+void endSweepOf(const std::string& key, YamlNode& root) {
+  YamlNode* sweep = root.find("sweep");
+  YamlNode* over = sweep == nullptr ? nullptr : sweep->find("over");
+  if (over == nullptr || over->find(key) == nullptr) {
+    return;
+  }
+  const auto erase = [](const std::string& name, std::vector<YamlEntry>& entries) {
+    entries.erase(std::remove_if(entries.begin(), entries.end(),
+                                 [&](const YamlEntry& entry) { return entry.key == name; }),
+                  entries.end());
+  };
+  erase(key, over->entries);
+  if (over->entries.empty()) {
+    erase("sweep", root.entries);
+  }
+}
+
 }  // namespace
 
 void applyOverride(YamlNode& root, const std::string& override_text) {
@@ -75,15 +157,20 @@ void applyOverride(YamlNode& root, const std::string& override_text) {
   if (equals == std::string::npos || equals == 0) {
     reject(override_text, "is not an override; write key.path=value, as in noise.scale=2");
   }
-  YamlNode* node = &root;
-  for (const std::string& step : splitKeyPath(override_text.substr(0, equals))) {
-    if (step.empty() || (step.front() == '[' && !isIndex(step))) {
-      reject(override_text, "has a malformed key path; write it like system.springs[0].stiffness");
-    }
-    node = &descend(*node, step, override_text);
+  const std::string key = override_text.substr(0, equals);
+  const std::string value = override_text.substr(equals + 1);
+  const std::vector<std::string> values = splitValues(value);
+  if (isSweepable(key) && (values.size() > 1 || isRange(value))) {
+    setSweptValues(root, key, parseValues(values, override_text), override_text);
+  } else {
+    endSweepOf(key, root);
+    findOrMake(root, key, override_text) = parseValue(value);
   }
-  *node = parseYaml(override_text.substr(equals + 1), kCommandLine.file);
-  dropPositions(*node);
+  setKeyPaths(root, "");
+}
+
+void setValue(YamlNode& root, const std::string& key, const YamlNode& value) {
+  findOrMake(root, key, key) = value;
   setKeyPaths(root, "");
 }
 

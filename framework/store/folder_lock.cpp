@@ -57,4 +57,15 @@ FolderLock::~FolderLock() {
   ::close(descriptor_);
 }
 
+std::string findLockOwner(const fs::path& folder) {
+  const int descriptor = ::open((folder / "lock").c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) {
+    return "";
+  }
+  const bool taken = ::flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  const std::string owner = taken ? describeOwner(descriptor) : "";
+  ::close(descriptor);
+  return owner;
+}
+
 }  // namespace twinmap

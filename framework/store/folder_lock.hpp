@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 namespace twinmap {
 
@@ -18,5 +19,8 @@ class FolderLock {
  private:
   int descriptor_;
 };
+
+/// "process 1234", if someone has the folder's lock, else "". Takes the lock for a moment to find out.
+std::string findLockOwner(const std::filesystem::path& folder);
 
 }  // namespace twinmap

@@ -3,14 +3,18 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
+#include <mutex>
 #include <string>
 #include <vector>
 
 namespace twinmap {
 
+/// The library's only user, as long as it is held.
+std::unique_lock<std::recursive_mutex> lockHdf5();
+
 /// A small face on HDF5: datasets of numbers and texts by path ("/train/parameters"), groups made on the way,
 /// no time stamps, so that equal content gives equal bytes. Throws std::runtime_error naming file and
-/// dataset. HDF5 is not thread safe: one thread at a time.
+/// dataset. HDF5 is not thread safe: while a thread has a file open, others wait for it.
 ///
 /// Arrays are in C order. An Eigen matrix with one column per sample (d x n) is the C-order array (n, d),
 /// written without a copy.
@@ -38,6 +42,7 @@ class Hdf5Writer {
  private:
   std::int64_t createDataset(const std::string& dataset, std::int64_t type, std::int64_t space);
 
+  std::unique_lock<std::recursive_mutex> library_ = lockHdf5();
   std::string path_;
   std::int64_t file_ = -1;
 };
@@ -61,6 +66,7 @@ class Hdf5Reader {
   std::string readAttribute(const std::string& object, const std::string& name) const;
 
  private:
+  std::unique_lock<std::recursive_mutex> library_ = lockHdf5();
   std::string path_;
   std::int64_t file_ = -1;
 };

@@ -25,6 +25,11 @@ Hdf5Handle makeSpace(const std::vector<std::size_t>& shape) {
 
 }  // namespace
 
+std::unique_lock<std::recursive_mutex> lockHdf5() {
+  static std::recursive_mutex mutex;
+  return std::unique_lock(mutex);
+}
+
 Hdf5Writer::Hdf5Writer(const std::filesystem::path& path) : path_(path.string()) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   file_ = H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);

@@ -21,7 +21,8 @@ ALLOWED = {
              "report"},
     "verification": {"flow", "spec", "design", "simulation", "multibody", "features", "sensitivity", "evaluation",
                      "inverse_map", "store", "report"},
-    "cli": {"flow", "comparison", "verification", "spec", "design", "multibody", "simulation", "features", "report", "store"},
+    "sweep": {"flow", "spec", "design", "multibody", "simulation", "features", "inverse_map", "report", "store"},
+    "cli": {"flow", "sweep", "comparison", "verification", "spec", "design", "multibody", "simulation", "features", "report", "store"},
 }
 
 # Libraries that stay behind one part.
@@ -35,9 +36,9 @@ LIBRARIES = {
     r"nlohmann/.*": {"spec", "store", "report", "comparison"},
     r"CLI/.*": {"cli"},
     r"nlopt.*": {"kernels"},
-    r"spdlog/.*": {"flow", "cli"},
-    r"filesystem": {"spec", "store", "report", "comparison", "flow", "verification", "cli"},
-    r"(omp\.h|fstream|chrono)": {"spec", "simulation", "multibody", "evaluation/chrono", "store", "comparison", "flow", "verification", "cli", "kernels/omp.h"},
+    r"spdlog/.*": {"flow", "sweep", "cli"},
+    r"filesystem": {"spec", "store", "report", "comparison", "flow", "sweep", "verification", "cli"},
+    r"(omp\.h|fstream|chrono)": {"spec", "simulation", "multibody", "evaluation/chrono", "store", "comparison", "flow", "sweep", "verification", "cli", "kernels/omp.h"},
 }
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)

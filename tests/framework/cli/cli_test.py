@@ -248,6 +248,7 @@ class Run(TestCase):
     def test_maps_file_is_enough_to_predict(self):
         """docs/file-formats.md as numpy: without noise, features are the clean responses of samples.h5."""
         for length_scales in ("shared", "per_output"):
+            shutil.rmtree(self.folder / "run", ignore_errors=True)
             self.run_experiment("run", "noise.scale=0", f"inverse_map.gp.length_scales={length_scales}",
                                 # Close bounds keep the variance from being a small difference of large numbers.
                                 "inverse_map.gp.bounds={signal_stddev: [0.01, 10], noise_stddev: [0.1, 1]}")
@@ -270,6 +271,7 @@ class Run(TestCase):
                               ("[whiten, select: {fisher_information: {count: 6}}]", 6),
                               ("[select: {mutual_information: {count: 5}}, z_score]", 5),
                               ("[select: {features: [theta(1 s), y(0.5 s)]}, z_score]", 2)):
+            shutil.rmtree(self.folder / "run", ignore_errors=True)
             self.run_experiment("run", f"transform={steps}", "inverse_map.gp.starts=1", "noise.scale=0.01")
             with h5py.File(self.folder / "run/samples.h5") as samples:
                 features = samples["train/responses"][:].reshape(40, -1)

@@ -1,0 +1,44 @@
+#include "framework/cli/signals.hpp"
+
+#include <unistd.h>
+
+#include <csignal>
+#include <string_view>
+
+namespace twinmap {
+namespace {
+
+constexpr int kExitOfSignal = 128;
+
+std::atomic<bool> stop{false};
+std::atomic<int> number{0};
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
+
+/// Only what is safe in a signal handler.
+void handle(int signal) {
+  if (number.exchange(signal) != 0) {
+    ::_exit(kExitOfSignal + signal);
+  }
+  stop = true;
+  constexpr std::string_view kMessage =
+      "\ntwinmap: stopping: what is under way is finished and kept; once more to stop at once\n";
+  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, kMessage.data(), kMessage.size());
+}
+
+}  // namespace
+
+const std::atomic<bool>& catchSignals() {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    struct sigaction action {};
+    action.sa_handler = handle;
+    action.sa_flags = SA_RESTART;
+    ::sigaction(signal, &action, nullptr);
+  }
+  return stop;
+}
+
+int getSignal() {
+  return number;
+}
+
+}  // namespace twinmap

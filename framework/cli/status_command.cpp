@@ -1,0 +1,12 @@
+#include <iostream>
+
+#include "framework/cli/commands.hpp"
+#include "framework/sweep/sweep_status.hpp"
+
+namespace twinmap {
+
+void status(const StatusArguments& arguments) {
+  std::cout << describeStatus(readStatus(arguments.folder, arguments.store));
+}
+
+}  // namespace twinmap

@@ -1,0 +1,52 @@
+#include "framework/run_folder.hpp"
+
+#include <algorithm>
+
+#include "framework/spec/compare_trees.hpp"
+#include "framework/spec/experiment_file.hpp"
+#include "framework/store/atomic_file.hpp"
+
+namespace twinmap {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kResolved = "resolved.yaml";
+constexpr const char* kLastFiles[] = {"provenance.json", "report.html"};
+
+/// With the defaults of this version, so that a key that is new to it makes no difference.
+YamlNode normalize(const YamlNode& tree) {
+  return parseYaml(writeIndependentDefaults(tree), kResolved);
+}
+
+}  // namespace
+
+void requireSameExperiment(const fs::path& folder, const std::string& resolved) {
+  const fs::path file = folder / kResolved;
+  if (!fs::exists(file)) {
+    return;
+  }
+  std::string listed;
+  for (const KeyDifference& difference :
+       compareTrees(normalize(loadYaml(file.string())), normalize(parseYaml(resolved, kResolved)))) {
+    listed += "\n  " + difference.key + ": " + difference.before + " there, " + difference.after + " now";
+  }
+  if (!listed.empty()) {
+    throw ExperimentError(folder.string() + ": holds the results of another experiment:" + listed +
+                          "\nGive another folder with --out, or delete this one.");
+  }
+}
+
+bool isComplete(const fs::path& folder) {
+  return std::all_of(std::begin(kLastFiles), std::end(kLastFiles),
+                     [&](const char* file) { return fs::exists(folder / file); });
+}
+
+void beginRun(const fs::path& folder, const std::string& resolved) {
+  for (const char* file : kLastFiles) {
+    fs::remove(folder / file);
+  }
+  writeTextFile(folder / kResolved, resolved);
+}
+
+}  // namespace twinmap

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "framework/simulation/sample_generator.hpp"
+#include "framework/store/trajectory_store.hpp"
+
+namespace twinmap {
+
+/// Where the samples of a run come from. The cases of a sweep share one, which knows the outputs at the times
+/// of all of them.
+struct SampleSource {
+  const Simulator& simulator;
+  TrajectoryStore& store;  ///< of the simulator's model and layout
+};
+
+/// The responses at the times and modes of `layout`, which must be among those that the trajectories have.
+Trajectories selectRows(Trajectories trajectories, const ResponseLayout& layout);
+
+}  // namespace twinmap

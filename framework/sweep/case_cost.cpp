@@ -1,0 +1,75 @@
+#include "framework/sweep/case_cost.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "framework/features/feature_extractor.hpp"
+
+namespace twinmap {
+namespace {
+
+bool isSparse(const ExperimentSpec& experiment) {
+  return experiment.inverse_map.gp.approximation == GpApproximation::kSgpr;
+}
+
+double countColumns(const ExperimentSpec& experiment) {
+  return double(experiment.design.train.samples) * experiment.noise.replicates.value_or(1);
+}
+
+/// Samples of the largest exact process.
+double countExact(const ExperimentSpec& experiment) {
+  const double columns = countColumns(experiment);
+  return isSparse(experiment) ? std::min<double>(columns, experiment.inverse_map.gp.subset) : columns;
+}
+
+double countRows(const ExperimentSpec& experiment) {
+  return static_cast<double>(collectTimes(experiment.features).size()) *
+             static_cast<double>(experiment.model.outputs.size()) +
+         2.0 * countModes(experiment.features) + 1.0;
+}
+
+double countSearches(const GpMapSpec& gp) {
+  return gp.starts + (gp.length_scales == LengthScales::kShared ? 0.0 : std::min(gp.starts, 2));
+}
+
+double cube(double x) {
+  return x * x * x;
+}
+
+}  // namespace
+
+std::vector<TrainingStep> listTrainingSteps(const ExperimentSpec& experiment) {
+  const GpMapSpec& gp = experiment.inverse_map.gp;
+  const auto parameters = static_cast<double>(experiment.model.parameters.size());
+  const double exact = countExact(experiment);
+  const double first = std::min<double>(exact, experiment.design.train.samples);
+  std::vector<TrainingStep> steps{{first, parameters, countSearches(gp)}};
+  if (countColumns(experiment) > experiment.design.train.samples) {
+    steps.push_back({exact, parameters, 1.0});
+  }
+  if (isSparse(experiment)) {
+    const double passes = (gp.refine_evaluations + 2.0) * 4.0 * countColumns(experiment) / gp.inducing;
+    steps.push_back({double(gp.inducing), parameters, 0.0, passes});
+  }
+  return steps;
+}
+
+CaseCost calcCaseCost(const ExperimentSpec& experiment, int threads) {
+  constexpr double kBytes = 8.0, kCopies = 40.0, kSparseCopies = 6.0;
+  const auto parameters = static_cast<double>(experiment.model.parameters.size());
+  const double searches = std::min(double(threads), parameters * experiment.inverse_map.gp.starts);
+  const double exact = countExact(experiment);
+  double numbers = exact * exact * (2.5 * searches + 1.5 * parameters + 1.0);
+  numbers += kCopies * countRows(experiment) * (countColumns(experiment) + experiment.design.test.samples);
+  if (isSparse(experiment)) {
+    numbers += kSparseCopies * countColumns(experiment) * experiment.inverse_map.gp.inducing * searches;
+  }
+  CaseCost cost{kBytes * numbers, 0.0};
+  for (const TrainingStep& step : listTrainingSteps(experiment)) {
+    const double evaluations = step.searches > 0.0 ? step.searches * kEvaluations : 1.0;
+    cost.flops += step.processes * evaluations * step.relative_cost * cube(step.samples);
+  }
+  return cost;
+}
+
+}  // namespace twinmap

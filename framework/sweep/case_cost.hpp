@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include "framework/spec/experiment_spec.hpp"
+
+namespace twinmap {
+
+/// Searches for hyperparameters that follow one another in the training of a map.
+struct TrainingStep {
+  double samples = 0.0;    ///< n; an evaluation of the marginal likelihood takes some n^3 flops
+  double processes = 0.0;  ///< one per parameter
+  double searches = 0.0;   ///< of each; 0: evaluations are counted in relative_cost
+  double relative_cost = 1.0;
+};
+
+/// The steps of training (trainGpMap): all starts on the first of the replicates, one search on all of them;
+/// for a sparse map on its subset, then the evaluations of the bound, n m^2 flops each. With several length
+/// scales, searches for a shared one lead the last start.
+std::vector<TrainingStep> listTrainingSteps(const ExperimentSpec& experiment);
+
+/// What a case needs beside its simulations; estimates.
+struct CaseCost {
+  double bytes = 0.0;  ///< at the peak
+  double flops = 0.0;  ///< of the training, with kEvaluations to a search
+};
+
+/// bytes: for exact processes with n samples, replicates included, and P parameters, 8 n^2 (2.5 a search that
+/// runs at the same time + 1.5 P + 1), and 40 numbers for every one of a response.
+CaseCost calcCaseCost(const ExperimentSpec& experiment, int threads);
+
+/// Evaluations of the marginal likelihood in one search.
+inline constexpr double kEvaluations = 30.0;
+
+}  // namespace twinmap

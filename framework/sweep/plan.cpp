@@ -1,0 +1,237 @@
+#include "framework/sweep/plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+#include "framework/features/feature_extractor.hpp"
+#include "framework/run_folder.hpp"
+#include "framework/sweep/case_cost.hpp"
+#include "framework/sweep/model_groups.hpp"
+#include "framework/sweep/probe.hpp"
+#include "framework/sweep/sweep_folder.hpp"
+
+namespace twinmap {
+namespace {
+
+constexpr double kNumber = 8.0;                      // bytes
+constexpr double kProgram = 40.0 * 1024.0 * 1024.0;  // bytes of a process without data
+constexpr double kReport = 64.0 * 1024.0;            // bytes of tables, pictures and texts of a case
+constexpr double kPredictionRow = 90.0;              // bytes of a line of predictions.csv
+
+double countTrainingColumns(const ExperimentSpec& e) {
+  return double(e.design.train.samples) * e.noise.replicates.value_or(1);
+}
+
+double countSamples(const ExperimentSpec& e) {
+  return double(e.design.train.samples) + e.design.test.samples;
+}
+
+double countParameters(const ExperimentSpec& e) {
+  return static_cast<double>(e.model.parameters.size());
+}
+
+double countRows(const ExperimentSpec& e) {
+  return static_cast<double>(collectTimes(e.features).size()) * static_cast<double>(e.model.outputs.size()) +
+         2.0 * countModes(e.features);
+}
+
+/// samples.h5, the factors in maps.h5, and the tables.
+double calcCaseDisk(const ExperimentSpec& e) {
+  const double columns = countTrainingColumns(e);
+  const bool sparse = e.inverse_map.gp.approximation == GpApproximation::kSgpr;
+  const double order = sparse ? 1.5 * e.inverse_map.gp.inducing : columns;
+  return kNumber * (countRows(e) + countParameters(e)) * countSamples(e) +
+         kNumber * countParameters(e) * order * order +
+         kPredictionRow * countParameters(e) * e.design.test.samples + kReport;
+}
+
+double calcCaseSeconds(const ExperimentSpec& e, const ProbeTimes& times) {
+  const double limit = e.evaluation.limit ? times.limit * e.design.test.samples : 0.0;
+  return times.training.calcTraining(e) + limit + times.overhead;
+}
+
+/// The time of a team that takes the longest first, and no less than the longest.
+double calcTeamSeconds(const std::vector<double>& seconds, int threads) {
+  if (seconds.empty()) {
+    return 0.0;
+  }
+  const double sum = std::accumulate(seconds.begin(), seconds.end(), 0.0);
+  return std::max(sum / threads, *std::max_element(seconds.begin(), seconds.end()));
+}
+
+/// Cases above their share of the memory count as sped up by all threads.
+double calcCasesSeconds(const std::vector<SweepCase>& cases, const std::vector<bool>& todo,
+                        const ProbeTimes& times, const PlanOptions& options) {
+  std::vector<double> side_by_side;
+  double alone = 0.0;
+  const bool single = cases.size() == 1;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    if (!todo[i]) {
+      continue;
+    }
+    const double seconds = calcCaseSeconds(cases[i].experiment, times);
+    if (single || calcCaseCost(cases[i].experiment, 1).bytes > options.memory / options.threads) {
+      alone += times.overhead + (seconds - times.overhead) / options.threads;
+    } else {
+      side_by_side.push_back(seconds);
+    }
+  }
+  return alone + calcTeamSeconds(side_by_side, options.threads);
+}
+
+/// The cases that need most, as many as run at the same time, or the largest alone.
+double calcMemory(const std::vector<SweepCase>& cases, const std::vector<bool>& todo,
+                  const PlanOptions& options) {
+  std::vector<double> bytes;
+  double alone = 0.0;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    if (todo[i]) {
+      const double one = calcCaseCost(cases[i].experiment, 1).bytes;
+      const bool fits = cases.size() > 1 && one <= options.memory / options.threads;
+      fits ? bytes.push_back(one)
+           : void(alone = std::max(alone, calcCaseCost(cases[i].experiment, options.threads).bytes));
+    }
+  }
+  std::sort(bytes.rbegin(), bytes.rend());
+  const auto together = std::min<std::size_t>(bytes.size(), static_cast<std::size_t>(options.threads));
+  return kProgram + std::max(alone, std::accumulate(bytes.begin(), bytes.begin() + together, 0.0));
+}
+
+void warnAboutPlainDesigns(const std::vector<SweepCase>& cases, SweepPlan& plan) {
+  std::set<int> train, test;
+  for (const SweepCase& one : cases) {
+    const DesignSpec& design = one.experiment.design;
+    if (design.train.method == DesignMethod::kLatinHypercube) {
+      train.insert(design.train.samples);
+    }
+    if (design.test.method == DesignMethod::kLatinHypercube) {
+      test.insert(design.test.samples);
+    }
+  }
+  for (const auto& [set, sizes] : {std::pair("train", train), {"test", test}}) {
+    if (sizes.size() > 1) {
+      plan.warnings.push_back(
+          fmt::format("design.{}.method is latin_hypercube: each of its {} sizes is simulated anew; with "
+                      "nested_latin_hypercube or sobol the larger ones contain the smaller",
+                      set, sizes.size()));
+    }
+  }
+}
+
+/// Samples needed and stored; returns how many are missing for the cases to be done.
+int countAllSamples(const std::vector<SweepCase>& cases, const std::vector<bool>& todo,
+                    const std::filesystem::path& store, SweepPlan& plan) {
+  const std::vector<bool> all(cases.size(), true);
+  int missing = 0;
+  for (const ModelGroup& group : groupByModel(cases)) {
+    const TrajectoryStore stored = openToRead(group, store);
+    const Eigen::MatrixXd points = collectPoints(cases, group, all);
+    plan.needed += static_cast<int>(points.cols());
+    plan.stored += static_cast<int>(points.cols()) - static_cast<int>(stored.findMissing(points).size());
+    const int to_simulate = static_cast<int>(stored.findMissing(collectPoints(cases, group, todo)).size());
+    missing += to_simulate;
+    plan.disk +=
+        kNumber * to_simulate * (static_cast<double>(makeLayout(group).getRowCount() + points.rows()) + 1.0);
+  }
+  return missing;
+}
+
+std::vector<bool> findTodo(const YamlNode& root, const std::vector<SweepCase>& cases,
+                           const PlanOptions& options) {
+  std::vector<bool> todo = findComplete(options.folder, cases);
+  if (root.find("sweep") == nullptr) {
+    todo = {isComplete(options.folder)};
+  }
+  todo.flip();
+  return todo;
+}
+
+/// The case with the most work stands for all.
+const ExperimentSpec& findLargest(const std::vector<SweepCase>& cases) {
+  return std::max_element(cases.begin(), cases.end(),
+                          [](const SweepCase& a, const SweepCase& b) {
+                            return calcCaseCost(a.experiment, 1).flops < calcCaseCost(b.experiment, 1).flops;
+                          })
+      ->experiment;
+}
+
+void addTimes(const std::vector<SweepCase>& cases, const std::vector<bool>& todo, int missing,
+              const PlanOptions& options, SweepPlan& plan) {
+  const ExperimentSpec& largest = findLargest(cases);
+  const ProbeTimes times = measureProbe(largest, countTrainingColumns(largest));
+  plan.no_times = times.failure;
+  if (plan.no_times.empty()) {
+    plan.simulate_s = missing * times.simulation / options.threads;
+    plan.cases_s = calcCasesSeconds(cases, todo, times, options);
+  }
+}
+
+std::string describeSeconds(double seconds) {
+  constexpr double kMinute = 60.0, kHour = 3600.0;
+  if (seconds < 2.0 * kMinute) {
+    return fmt::format("{:.2g} s", seconds);
+  }
+  return seconds < 2.0 * kHour ? fmt::format("{:.2g} min", seconds / kMinute)
+                               : fmt::format("{:.2g} h", seconds / kHour);
+}
+
+std::string describeBytes(double bytes) {
+  constexpr double kMebi = 1024.0 * 1024.0;
+  return bytes < 1024.0 * kMebi ? fmt::format("{:.2g} MiB", bytes / kMebi)
+                                : fmt::format("{:.2g} GiB", bytes / kMebi / 1024.0);
+}
+
+}  // namespace
+
+SweepPlan planRun(const YamlNode& root, const PlanOptions& options) {
+  const std::vector<SweepCase> cases = expandCases(root);
+  const std::vector<bool> todo = findTodo(root, cases, options);
+  SweepPlan plan;
+  plan.cases = static_cast<int>(cases.size());
+  plan.complete = static_cast<int>(std::count(todo.begin(), todo.end(), false));
+  const int missing = countAllSamples(cases, todo, getStoreRoot(options.folder, options.store), plan);
+  warnAboutPlainDesigns(cases, plan);
+  if (plan.complete == plan.cases) {
+    return plan;
+  }
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const ExperimentSpec& e = cases[i].experiment;
+    if (todo[i]) {
+      plan.disk += calcCaseDisk(e);
+      plan.limit_simulations +=
+          e.evaluation.limit ? e.design.test.samples * (2.0 * countParameters(e) + 1.0) : 0.0;
+    }
+  }
+  plan.memory = calcMemory(cases, todo, options);
+  addTimes(cases, todo, missing, options, plan);
+  return plan;
+}
+
+std::string describePlan(const SweepPlan& plan, const PlanOptions& options) {
+  std::string text = fmt::format("cases:       {}, {} of them complete\n", plan.cases, plan.complete) +
+                     fmt::format("simulations: {} needed, {} stored, {} to do\n", plan.needed, plan.stored,
+                                 plan.needed - plan.stored);
+  if (plan.limit_simulations > 0.0) {
+    text += fmt::format("             and {} for the information limit (evaluation.limit)\n",
+                        plan.limit_simulations);
+  }
+  if (!plan.no_times.empty()) {
+    text += "time:        not known: " + plan.no_times + "\n";
+  } else {
+    text += fmt::format("time:        about {}: {} to simulate, {} for the cases, on {} threads\n",
+                        describeSeconds(plan.simulate_s + plan.cases_s), describeSeconds(plan.simulate_s),
+                        describeSeconds(plan.cases_s), options.threads);
+  }
+  text += fmt::format("memory:      about {}, of {} allowed\n", describeBytes(plan.memory),
+                      describeBytes(options.memory)) +
+          "disk:        about " + describeBytes(plan.disk) + "\n";
+  for (const std::string& warning : plan.warnings) {
+    text += "warning: " + warning + "\n";
+  }
+  return text;
+}
+
+}  // namespace twinmap

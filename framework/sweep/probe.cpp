@@ -1,0 +1,120 @@
+#include "framework/sweep/probe.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+
+#include "framework/experiment.hpp"
+#include "framework/store/temporary_folder.hpp"
+#include "framework/sweep/case_cost.hpp"
+
+namespace twinmap {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kTrainSamples = 60, kTestSamples = 20, kFewEvaluations = 5;
+
+struct TimedRun {
+  RunSummary summary;
+  double seconds = 0.0;
+
+  /// Of the stages whose names begin so.
+  double getStage(const std::string& begin) const {
+    double sum = 0.0;
+    for (const StageTime& time : summary.times) {
+      sum += time.stage.rfind(begin, 0) == 0 ? time.seconds : 0.0;
+    }
+    return sum;
+  }
+  double getTraining() const { return getStage("train "); }
+  double countEvaluations() const {
+    double count = 0.0;
+    for (const TrainingStart& start : summary.training) {
+      count += start.evaluations;
+    }
+    return std::max(count, 1.0);
+  }
+};
+
+TimedRun timeRun(const ExperimentSpec& experiment, const std::string& name, const fs::path& folder) {
+  RunOptions options;
+  options.folder = folder / name;
+  options.store = folder / "chunks";
+  const auto start = std::chrono::steady_clock::now();
+  TimedRun run;
+  run.summary = runExperiment(experiment, options);
+  run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return run;
+}
+
+ExperimentSpec makeSmall(ExperimentSpec experiment) {
+  constexpr double kMostFailures = 0.9;
+  experiment.design.train.samples = kTrainSamples;
+  experiment.design.test.samples = kTestSamples;
+  experiment.model.simulation.allowed_failures = kMostFailures;
+  experiment.noise.replicates = 1;
+  experiment.inverse_map.gp.approximation = GpApproximation::kExact;
+  return experiment;
+}
+
+/// Few evaluations of one search.
+ExperimentSpec makeShort(ExperimentSpec experiment, int replicates) {
+  experiment.evaluation.limit = false;
+  experiment.evaluation.posterior.reset();
+  experiment.evaluation.baselines.clear();
+  experiment.inverse_map.gp.starts = 1;
+  experiment.inverse_map.gp.max_evaluations = kFewEvaluations;
+  experiment.noise.replicates = replicates;
+  return experiment;
+}
+
+/// How an evaluation grows with the samples: more draws of the noise make more samples of the same
+/// simulations. What the searches on the first draw take is known from a run without others.
+std::vector<EvaluationTime> measureEvaluations(const ExperimentSpec& small, double most_samples,
+                                               const fs::path& folder) {
+  const ExperimentSpec brief = makeShort(small, 1);
+  const TimedRun one = timeRun(brief, "one", folder);
+  const double searches = listTrainingSteps(brief).front().searches;  // of which one is reported
+  std::vector<EvaluationTime> times{
+      {double(kTrainSamples), one.getTraining() / (searches * one.countEvaluations())}};
+  for (const int replicates : {4, 16}) {
+    const double samples = double(kTrainSamples) * replicates;
+    if (times.back().samples < most_samples) {
+      const TimedRun more =
+          timeRun(makeShort(small, replicates), "draws" + std::to_string(replicates), folder);
+      const double rest = std::max(more.getTraining() - one.getTraining(), 0.5 * more.getTraining());
+      times.push_back({samples, rest / more.countEvaluations()});
+    }
+  }
+  return times;
+}
+
+ProbeTimes measure(const ExperimentSpec& experiment, double most_samples) {
+  const TemporaryFolder folder;
+  const ExperimentSpec small = makeSmall(experiment);
+  const TimedRun run = timeRun(small, "small", folder.getPath());
+  ProbeTimes times;
+  const double simulating = run.getStage("simulate "), limit = run.getStage("information limit");
+  times.simulation = simulating / (kTrainSamples + kTestSamples);
+  times.limit = limit / kTestSamples;
+  times.overhead = std::max(run.seconds - simulating - limit - run.getTraining(), 0.0);
+  times.training.measured = measureEvaluations(small, most_samples, folder.getPath());
+  times.training.evaluations = 1.0;
+  times.training.evaluations = run.getTraining() / times.training.calcTraining(small);
+  return times;
+}
+
+}  // namespace
+
+ProbeTimes measureProbe(const ExperimentSpec& experiment, double most_samples) {
+  try {
+    return measure(experiment, most_samples);
+  } catch (const std::exception& error) {
+    ProbeTimes times;
+    times.failure = error.what();
+    return times;
+  }
+}
+
+}  // namespace twinmap

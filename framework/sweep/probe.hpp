@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+
+#include "framework/spec/experiment_spec.hpp"
+#include "framework/sweep/training_time.hpp"
+
+namespace twinmap {
+
+/// Times of one case, measured on one thread with some 80 simulations.
+struct ProbeTimes {
+  double simulation = 0.0;  ///< s, of one sample
+  TrainingTime training;
+  double limit = 0.0;     ///< s, of the information limit of one test sample
+  double overhead = 0.0;  ///< s, everything else: files, tables, other evaluations
+  std::string failure;    ///< why there are no times; empty if there are
+};
+
+/// Runs small versions of an experiment in a temporary folder: 60 training and 20 test samples, for the times
+/// of each stage; then with more noise draws and few evaluations, to see how an evaluation of the marginal
+/// likelihood grows with the samples, up to `most_samples` or 1000.
+ProbeTimes measureProbe(const ExperimentSpec& experiment, double most_samples);
+
+}  // namespace twinmap

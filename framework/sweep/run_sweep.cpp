@@ -1,0 +1,167 @@
+#include "framework/sweep/run_sweep.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <chrono>
+#include <numeric>
+
+#include "framework/experiment.hpp"
+#include "framework/log_context.hpp"
+#include "framework/report/report.hpp"
+#include "framework/run_folder.hpp"
+#include "framework/run_log.hpp"
+#include "framework/spec/experiment_file.hpp"
+#include "framework/store/atomic_file.hpp"
+#include "framework/store/folder_lock.hpp"
+#include "framework/sweep/run_cases.hpp"
+#include "framework/sweep/shared_samples.hpp"
+#include "framework/sweep/sweep_tables.hpp"
+
+namespace twinmap {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Sweep {
+ public:
+  Sweep(std::vector<std::string> keys, std::vector<SweepCase> cases, const SweepOptions& options)
+      : keys_(std::move(keys)),
+        cases_(std::move(cases)),
+        options_(options),
+        complete_(findComplete(options.folder, cases_)),
+        store_(getStoreRoot(options.folder, options.store)) {
+    result_.cases = static_cast<int>(cases_.size());
+    result_.skipped = static_cast<int>(std::count(complete_.begin(), complete_.end(), true));
+    spdlog::info("{} cases, {} of them complete", result_.cases, result_.skipped);
+  }
+
+  /// False if it was stopped.
+  bool simulate() {
+    std::vector<bool> wanted = complete_;
+    wanted.flip();
+    group_of_case_.resize(cases_.size());
+    for (const ModelGroup& group : groupByModel(cases_)) {
+      for (const int member : group.cases) {
+        group_of_case_[member] = samples_.size();
+      }
+      const Eigen::MatrixXd points = collectPoints(cases_, group, wanted);
+      samples_.push_back(points.cols() > 0 ? openSharedSamples(group, points, store_) : SharedSamples{});
+    }
+    constexpr double kShare = 0.25;  // of the memory: the responses of one block, as simulated and as stored
+    const auto start = std::chrono::steady_clock::now();
+    const SimulationProgress done = simulateShared(
+        samples_, {options_.threads, kShare * options_.memory, options_.stop, options_.progress});
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    spdlog::info("{} of {} missing samples simulated in {:.2f} s, {} of them failed", done.simulated,
+                 done.total, elapsed.count(), done.failed);
+    return done.simulated == done.total;
+  }
+
+  void runMissingCases() {
+    for (std::size_t i = 0; i < cases_.size(); ++i) {
+      if (!complete_[i]) {
+        todo_.push_back(static_cast<int>(i));
+        costs_.push_back(calcCaseCost(cases_[i].experiment, 1));
+        work_ += costs_.back().flops;
+      }
+    }
+    CaseScheduling scheduling{options_.threads, options_.memory, options_.fail_fast, options_.stop, {}};
+    scheduling.finished = [this](int index, const CaseOutcome& outcome) { noteFinished(index, outcome); };
+    runCases(costs_, scheduling, [this](int index, int threads) { runCase(todo_[index], threads); });
+  }
+
+  SweepResult finish() {
+    result_.complete = static_cast<int>(std::count(complete_.begin(), complete_.end(), true));
+    result_.stopped = options_.stop != nullptr && *options_.stop &&
+                      result_.complete + static_cast<int>(result_.failures.size()) < result_.cases;
+    std::sort(result_.failures.begin(), result_.failures.end(),
+              [this](const FailedCase& a, const FailedCase& b) { return findCase(a) < findCase(b); });
+    writeFailedCases(options_.folder, result_.failures);
+    result_.table = writeSweepTables(options_.folder, keys_, cases_, complete_);
+    if (result_.complete > 0) {
+      const Report report = makeReport({options_.folder});
+      writeReport(options_.folder, report);
+      result_.gates = report.gates;
+    }
+    return result_;
+  }
+
+ private:
+  void runCase(int index, int threads) const {
+    const SweepCase& one = cases_[index];
+    const LogContext context(one.name);
+    const SharedSamples& samples = samples_[group_of_case_[index]];
+    RunOptions run;
+    run.folder = getCaseFolder(options_.folder, one);
+    run.threads = threads;
+    run.command = options_.command;
+    if (!samples.failure.empty()) {
+      makeFolders(run.folder);
+      beginRun(run.folder, writeExperiment(one.experiment));
+      throw std::runtime_error(samples.failure);
+    }
+    const SampleSource source = samples.getSource();
+    run.samples = &source;
+    runExperiment(one.experiment, run);
+  }
+
+  void noteFinished(int index, const CaseOutcome& outcome) {
+    const SweepCase& one = cases_[todo_[index]];
+    ++finished_;
+    finished_work_ += costs_[index].flops;
+    if (outcome.status == CaseStatus::kDone) {
+      complete_[todo_[index]] = true;
+      spdlog::info("case {} is complete", one.name);
+    } else {
+      const fs::path folder = getCaseFolder(options_.folder, one);
+      result_.failures.push_back({one.name, outcome.reason, makeCaseCommand(folder, store_)});
+      writeFailedCases(options_.folder, result_.failures);
+      spdlog::error("case {} failed: {}", one.name, outcome.reason);
+    }
+    if (options_.progress) {
+      options_.progress({"cases", finished_, static_cast<int>(todo_.size()),
+                         static_cast<int>(result_.failures.size()), finished_work_ / work_, false});
+    }
+  }
+
+  std::size_t findCase(const FailedCase& failure) const {
+    return std::find_if(cases_.begin(), cases_.end(),
+                        [&](const SweepCase& one) { return one.name == failure.name; }) -
+           cases_.begin();
+  }
+
+  const std::vector<std::string> keys_;  ///< that are swept
+  const std::vector<SweepCase> cases_;
+  const SweepOptions& options_;
+  std::vector<bool> complete_;
+  fs::path store_;
+  std::vector<std::size_t> group_of_case_;
+  std::vector<SharedSamples> samples_;
+  std::vector<int> todo_;  ///< cases that were not complete
+  std::vector<CaseCost> costs_;
+  double work_ = 0.0, finished_work_ = 0.0;
+  int finished_ = 0;
+  SweepResult result_;
+};
+
+}  // namespace
+
+SweepResult runSweep(const YamlNode& root, const SweepOptions& options) {
+  std::vector<SweepCase> cases = expandSweep(root);
+  const std::string resolved = writeIndependentDefaults(root);
+  makeFolders(options.folder);
+  const FolderLock lock(options.folder);
+  requireSameExperiment(options.folder, resolved);
+  writeTextFile(options.folder / "resolved.yaml", resolved);
+  const RunLog log(options.folder);
+  spdlog::info("{}", options.command);
+
+  Sweep sweep(listSweptKeys(root), std::move(cases), options);
+  if (sweep.simulate()) {
+    sweep.runMissingCases();
+  }
+  return sweep.finish();
+}
+
+}  // namespace twinmap

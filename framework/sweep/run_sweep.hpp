@@ -1,0 +1,46 @@
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "framework/progress.hpp"
+#include "framework/report/gates.hpp"
+#include "framework/spec/yaml_node.hpp"
+#include "framework/sweep/sweep_folder.hpp"
+
+namespace twinmap {
+
+struct SweepOptions {
+  std::filesystem::path folder;  ///< created if missing
+  std::filesystem::path store;   ///< where simulated samples are kept; empty: `folder`/chunks
+  int threads = 1;               ///< results do not depend on it
+  double memory = 4e9;           ///< bytes that responses, or cases that run at the same time, may take
+  bool fail_fast = false;        ///< begin no case after one has failed
+  std::string command;           ///< the command line, for provenance.json
+  /// Once true, the simulations and cases under way are finished, and no other is begun.
+  const std::atomic<bool>* stop = nullptr;
+  ProgressCallback progress;
+};
+
+struct SweepResult {
+  int cases = 0;
+  int complete = 0;  ///< now
+  int skipped = 0;   ///< of them, those that were complete before
+  std::vector<FailedCase> failures;
+  bool stopped = false;  ///< by the flag, with something left
+  std::string table;     ///< table.md
+  std::vector<GateResult> gates;
+};
+
+/// Runs the cases of an experiment's tree with a sweep (docs/file-formats.md says what is left in the
+/// folder): first all that is missing of the simulations, each point of a model once for all cases; then the
+/// cases that are not complete. The results of a case are those of runExperiment() alone, bit for bit, for
+/// any number of threads and however often the sweep was interrupted. A case that fails is reported and stops
+/// no other, unless fail_fast. Throws ExperimentError for a wrong experiment, and for a folder that holds
+/// another one; std::runtime_error if a file cannot be written or another process has the folder or the
+/// store.
+SweepResult runSweep(const YamlNode& root, const SweepOptions& options);
+
+}  // namespace twinmap

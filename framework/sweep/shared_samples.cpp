@@ -1,0 +1,90 @@
+#include "framework/sweep/shared_samples.hpp"
+
+#include <algorithm>
+
+#include "framework/simulated_sets.hpp"
+
+namespace twinmap {
+namespace {
+
+/// Adds up the counts of several calls of storeMissing() and reports them.
+class Totals {
+ public:
+  Totals(int total, const ProgressCallback& progress) : progress_(progress) { counts.total = total; }
+
+  void report(const SimulationProgress& part) const {
+    if (progress_) {
+      const int done = counts.simulated + part.simulated;
+      progress_(
+          {"simulate", done, counts.total, counts.failed + part.failed, double(done) / counts.total, true});
+    }
+  }
+
+  void add(const SimulationProgress& part) {
+    counts.simulated += part.simulated;
+    counts.failed += part.failed;
+  }
+
+  SimulationProgress counts;
+
+ private:
+  const ProgressCallback& progress_;
+};
+
+Eigen::Index chooseBlock(const SharedSamples& samples, const SimulationLimits& limits) {
+  constexpr double kFewest = 256.0;
+  const double row_bytes = sizeof(double) * static_cast<double>(samples.simulator->getLayout().getRowCount());
+  const double fitting = limits.memory / std::max(row_bytes, 1.0);
+  return static_cast<Eigen::Index>(std::clamp(fitting, kFewest, 1e9));
+}
+
+/// False if it was stopped.
+bool simulateGroup(SharedSamples& samples, const SimulationLimits& limits, Totals& totals) {
+  MissingOptions options;
+  options.threads = limits.threads;
+  options.stop = limits.stop;
+  options.progress = [&totals](const SimulationProgress& part) { totals.report(part); };
+  const Eigen::Index block = chooseBlock(samples, limits);
+  for (Eigen::Index first = 0; first < samples.missing.cols(); first += block) {
+    const Eigen::MatrixXd points =
+        samples.missing.middleCols(first, std::min(block, samples.missing.cols() - first));
+    const SimulationProgress part = storeMissing(*samples.store, *samples.simulator, points, options);
+    totals.add(part);
+    if (part.simulated < part.total) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+SharedSamples openSharedSamples(const ModelGroup& group, const Eigen::MatrixXd& points,
+                                const std::filesystem::path& root) {
+  SharedSamples samples;
+  try {
+    samples.simulator = std::make_unique<MultibodySimulator>(group.model, group.times, group.modes);
+  } catch (const ExperimentError& error) {
+    samples.failure = error.what();
+    return samples;
+  }
+  samples.store = openStore(group.model, samples.simulator->getLayout(), root);
+  samples.missing = points(Eigen::all, samples.store->findMissing(points));
+  return samples;
+}
+
+SimulationProgress simulateShared(std::vector<SharedSamples>& groups, const SimulationLimits& limits) {
+  int total = 0;
+  for (const SharedSamples& samples : groups) {
+    total += static_cast<int>(samples.missing.cols());
+  }
+  Totals totals(total, limits.progress);
+  for (SharedSamples& samples : groups) {
+    if (samples.missing.cols() > 0 && !simulateGroup(samples, limits, totals)) {
+      break;
+    }
+  }
+  return totals.counts;
+}
+
+}  // namespace twinmap

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "framework/multibody/multibody_simulator.hpp"
+#include "framework/progress.hpp"
+#include "framework/sample_source.hpp"
+#include "framework/simulate_missing.hpp"
+#include "framework/sweep/model_groups.hpp"
+
+namespace twinmap {
+
+/// The samples of a group of cases.
+struct SharedSamples {
+  std::string failure;  ///< why the group's model cannot be simulated; the rest is null then
+  std::unique_ptr<MultibodySimulator> simulator;
+  std::unique_ptr<TrajectoryStore> store;
+  Eigen::MatrixXd missing;  ///< parameters x n: points that the store does not have
+
+  SampleSource getSource() const { return {*simulator, *store}; }
+};
+
+/// Opens the store of the group's samples in `root`, and finds those of `points` that are missing. Throws
+/// std::runtime_error if another process has the store.
+SharedSamples openSharedSamples(const ModelGroup& group, const Eigen::MatrixXd& points,
+                                const std::filesystem::path& root);
+
+struct SimulationLimits {
+  int threads = 1;
+  double memory = 0.0;  ///< bytes of responses that may be held at a time
+  const std::atomic<bool>* stop = nullptr;
+  ProgressCallback progress;
+};
+
+/// Simulates all that is missing, group after group, each with all threads. Returns what was done; stopped,
+/// if fewer were simulated than the total.
+SimulationProgress simulateShared(std::vector<SharedSamples>& groups, const SimulationLimits& limits);
+
+}  // namespace twinmap

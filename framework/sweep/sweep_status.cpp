@@ -1,0 +1,62 @@
+#include "framework/sweep/sweep_status.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "framework/run_folder.hpp"
+#include "framework/spec/experiment_file.hpp"
+#include "framework/store/folder_lock.hpp"
+#include "framework/store/trajectory_store.hpp"
+#include "framework/store_content.hpp"
+#include "framework/sweep/model_groups.hpp"
+#include "framework/sweep/sweep_folder.hpp"
+
+namespace twinmap {
+namespace {
+
+namespace fs = std::filesystem;
+
+void countSamples(const std::vector<SweepCase>& cases, const fs::path& store, SweepStatus& status) {
+  const std::vector<bool> all(cases.size(), true);
+  for (const ModelGroup& group : groupByModel(cases)) {
+    const Eigen::MatrixXd points = collectPoints(cases, group, all);
+    const int missing = static_cast<int>(openToRead(group, store).findMissing(points).size());
+    status.needed += static_cast<int>(points.cols());
+    status.stored += static_cast<int>(points.cols()) - missing;
+  }
+}
+
+}  // namespace
+
+SweepStatus readStatus(const fs::path& folder, const fs::path& store) {
+  const fs::path resolved = folder / "resolved.yaml";
+  if (!fs::exists(resolved)) {
+    throw ExperimentError(folder.string() + ": is no folder of a run: it has no resolved.yaml");
+  }
+  const YamlNode root = loadYaml(resolved.string());
+  const bool is_sweep = root.find("sweep") != nullptr;
+  const std::vector<SweepCase> cases = expandCases(root);
+  SweepStatus status;
+  status.owner = findLockOwner(folder);
+  status.cases = static_cast<int>(cases.size());
+  const std::vector<bool> complete =
+      is_sweep ? findComplete(folder, cases) : std::vector<bool>{isComplete(folder)};
+  status.complete = static_cast<int>(std::count(complete.begin(), complete.end(), true));
+  const std::vector<std::string> failed = readFailedCases(folder);
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    status.failed += !complete[i] && std::count(failed.begin(), failed.end(), cases[i].name) > 0 ? 1 : 0;
+  }
+  countSamples(cases, getStoreRoot(folder, store), status);
+  return status;
+}
+
+std::string describeStatus(const SweepStatus& status) {
+  const int missing = status.cases - status.complete - status.failed;
+  return fmt::format("cases:   {} of {} complete, {} failed, {} missing\n", status.complete, status.cases,
+                     status.failed, missing) +
+         fmt::format("samples: {} of {} stored\n", status.stored, status.needed) +
+         (status.owner.empty() ? "not running\n" : "running: " + status.owner + "\n");
+}
+
+}  // namespace twinmap
