@@ -3,6 +3,7 @@
 #include <udunits2.h>
 
 #include <memory>
+#include <mutex>
 
 namespace twinmap {
 namespace {
@@ -14,7 +15,11 @@ struct FreeUnit {
   void operator()(ut_unit* unit) const { ut_free(unit); }
 };
 
-/// UDUNITS' own database of SI units, read once; not thread safe, as units are checked before any thread.
+/// UDUNITS keeps its parser's state and its last status in globals: one thread at a time. The cases of a
+/// sweep read their experiments side by side.
+std::mutex udunits;
+
+/// UDUNITS' own database of SI units, read once.
 const ut_system& getUnitSystem() {
   static const std::unique_ptr<ut_system, FreeSystem> kSystem([] {
     ut_set_error_message_handler(ut_ignore);
@@ -65,6 +70,7 @@ Dimension parseUnit(const std::string& unit, const SourceLocation& where) {
   if (unit.empty() || unit == "-") {
     return dimension;
   }
+  const std::lock_guard<std::mutex> guard(udunits);
   const std::unique_ptr<ut_unit, FreeUnit> parsed(ut_parse(&getUnitSystem(), unit.c_str(), UT_UTF8));
   if (parsed == nullptr) {
     throw ExperimentError(where, unit, "is not a unit; write units like N s/m, kg m^2, rad/s");

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kNumber = 8.0;                      // bytes
 constexpr double kProgram = 40.0 * 1024.0 * 1024.0;  // bytes of a process without data
-constexpr double kReport = 64.0 * 1024.0;            // bytes of tables, pictures and texts of a case
+constexpr double kReport = 1.5 * 1024.0 * 1024.0;    // bytes of report, figures and texts of a case
 constexpr double kPredictionRow = 90.0;              // bytes of a line of predictions.csv
 
 double countTrainingColumns(const ExperimentSpec& e) {

@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <thread>
+
 #include "framework/spec/check_scope.hpp"
 #include "framework/spec/nearest_name.hpp"
 #include "framework/spec/units.hpp"
@@ -66,6 +69,23 @@ TEST_F(CheckScopeTest, RefusesTakenReservedAndMalformedNames) {
   for (const char* name : {"k", "t", "pi", "sin", "2k", "a b", "a.b", "", "größe"}) {
     EXPECT_THROW(scope_.define({name, {}}, std::nullopt, 0.0), ExperimentError) << name;
   }
+}
+
+TEST(Units, AreParsedByAnyThread) {
+  const Dimension expected = parseUnit("N m s/rad", {});
+  std::atomic<int> wrong{0};
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 4; ++t) {
+    threads.emplace_back([&] {
+      for (int i = 0; i < 3000; ++i) {
+        wrong += parseUnit("N m s/rad", {}) == expected ? 0 : 1;
+      }
+    });
+  }
+  for (std::thread& thread : threads) {
+    thread.join();
+  }
+  EXPECT_EQ(wrong, 0);
 }
 
 }  // namespace
