@@ -55,7 +55,7 @@ std::vector<TrainingStep> listTrainingSteps(const ExperimentSpec& experiment) {
 }
 
 CaseCost calcCaseCost(const ExperimentSpec& experiment, int threads) {
-  constexpr double kBytes = 8.0, kCopies = 40.0, kSparseCopies = 6.0;
+  constexpr double kBytes = 8.0, kCopies = 10.0, kSparseCopies = 6.0;
   const auto parameters = static_cast<double>(experiment.model.parameters.size());
   const double searches = std::min(double(threads), parameters * experiment.inverse_map.gp.starts);
   const double exact = countExact(experiment);

@@ -26,7 +26,7 @@ struct CaseCost {
 };
 
 /// bytes: for exact processes with n samples, replicates included, and P parameters, 8 n^2 (2.5 a search that
-/// runs at the same time + 1.5 P + 1), and 40 numbers for every one of a response.
+/// runs at the same time + 1.5 P + 1), and 10 numbers for every one of a response.
 CaseCost calcCaseCost(const ExperimentSpec& experiment, int threads);
 
 /// Evaluations of the marginal likelihood in one search.

@@ -90,6 +90,14 @@ std::vector<EvaluationTime> measureEvaluations(const ExperimentSpec& small, doub
   return times;
 }
 
+double countEvaluationsOnAllDraws(const ExperimentSpec& experiment, ExperimentSpec small,
+                                  const fs::path& folder) {
+  small.noise.replicates = experiment.noise.replicates;
+  small.evaluation = makeShort(small, 1).evaluation;
+  return timeRun(small, "all", folder).countEvaluations() /
+         static_cast<double>(experiment.model.parameters.size());
+}
+
 ProbeTimes measure(const ExperimentSpec& experiment, double most_samples) {
   const TemporaryFolder folder;
   const ExperimentSpec small = makeSmall(experiment);
@@ -102,6 +110,7 @@ ProbeTimes measure(const ExperimentSpec& experiment, double most_samples) {
   times.training.measured = measureEvaluations(small, most_samples, folder.getPath());
   times.training.evaluations = 1.0;
   times.training.evaluations = run.getTraining() / times.training.calcTraining(small);
+  times.training.evaluations_all = countEvaluationsOnAllDraws(experiment, small, folder.getPath());
   return times;
 }
 

@@ -31,10 +31,11 @@ double TrainingTime::calcEvaluation(double samples) const {
 }
 
 double TrainingTime::calcTraining(const ExperimentSpec& experiment) const {
-  double seconds = 0.0;
+  double seconds = 0.0, of_search = evaluations;
   for (const TrainingStep& step : listTrainingSteps(experiment)) {
-    const double searches = step.searches > 0.0 ? step.searches * evaluations : 1.0;
-    seconds += step.processes * searches * step.relative_cost * calcEvaluation(step.samples);
+    const double count = step.searches > 0.0 ? step.searches * of_search : 1.0;
+    seconds += step.processes * count * step.relative_cost * calcEvaluation(step.samples);
+    of_search = evaluations_all;
   }
   return seconds;
 }

@@ -15,7 +15,8 @@ struct EvaluationTime {
 /// What training takes, from measurements of small ones.
 struct TrainingTime {
   std::vector<EvaluationTime> measured;  ///< by increasing samples, at least one
-  double evaluations = 0.0;              ///< of one search, for one parameter
+  double evaluations = 0.0;              ///< of one search on the first draw of the noise, for one parameter
+  double evaluations_all = 0.0;          ///< of the search on all draws
 
   /// Between the measurements by a power law, above the last one by the cube, below the first one linear.
   double calcEvaluation(double samples) const;

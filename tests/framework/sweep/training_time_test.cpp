@@ -13,7 +13,7 @@ ExperimentSpec load(const std::vector<std::string>& overrides) {
 }
 
 TEST(TrainingTime, GoesThroughTheMeasurementsAndGrowsWithTheCubeBeyond) {
-  const TrainingTime time{{{100, 1e-3}, {200, 4e-3}, {400, 32e-3}}, 10.0};
+  const TrainingTime time{{{100, 1e-3}, {200, 4e-3}, {400, 32e-3}}, 10.0, 10.0};
   EXPECT_DOUBLE_EQ(time.calcEvaluation(200), 4e-3);
   EXPECT_NEAR(time.calcEvaluation(150), 1e-3 * 1.5 * 1.5, 1e-12);  // the square between the first two
   EXPECT_NEAR(time.calcEvaluation(300), 4e-3 * 3.375, 1e-12);      // the cube between the last two
@@ -22,14 +22,14 @@ TEST(TrainingTime, GoesThroughTheMeasurementsAndGrowsWithTheCubeBeyond) {
 }
 
 TEST(TrainingTime, CountsParametersSearchesAndTheSearchOnAllDraws) {
-  const TrainingTime time{{{100, 1e-3}, {1000, 1.0}}, 10.0};
+  const TrainingTime time{{{100, 1e-3}, {1000, 1.0}}, 10.0, 20.0};
   const std::string size = "design.train.samples=100";
   // 3 parameters, 2 starts
   EXPECT_NEAR(time.calcTraining(load({size, "noise.replicates=1", "inverse_map.gp.length_scales=shared"})),
               3 * 2 * 10 * 1e-3, 1e-12);
   // 2 more to find a shared length scale; then one search on 1000 columns
   EXPECT_NEAR(time.calcTraining(load({size, "noise.replicates=1"})), 3 * 4 * 10 * 1e-3, 1e-12);
-  EXPECT_NEAR(time.calcTraining(load({size, "noise.replicates=10"})), 3 * 4 * 10 * 1e-3 + 3 * 10 * 1.0, 1e-9);
+  EXPECT_NEAR(time.calcTraining(load({size, "noise.replicates=10"})), 3 * 4 * 10 * 1e-3 + 3 * 20 * 1.0, 1e-9);
 }
 
 TEST(CaseCost, GrowsWithSquareAndCube) {
