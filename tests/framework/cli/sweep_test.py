@@ -2,6 +2,7 @@
 import csv
 import filecmp
 import os
+import pty
 import random
 import re
 import shlex
@@ -252,6 +253,40 @@ class Continuing(SweepTestCase):
         self.assertIn("0 of 2 complete, 0 failed, 2 missing", status)
         self.assertIn(f"is in use by process {child.pid}", second.stderr)
         self.assertIn("not running", call("status", self.folder / "run").stdout)
+
+
+class ProgressShown(SweepTestCase):
+    def run_on_terminal(self, name, *arguments):
+        """What a run writes to a terminal as its stderr."""
+        terminal, stderr = pty.openpty()
+        child = subprocess.Popen([TWINMAP, "run", CART, *SWEEP, *arguments, "--out", str(self.folder / name)],
+                                 stdout=subprocess.DEVNULL, stderr=stderr, env={**os.environ, "TERM": "xterm"})
+        os.close(stderr)
+        shown = b""
+        try:
+            while part := os.read(terminal, 4096):
+                shown += part
+        except OSError:  # the other end is closed
+            pass
+        os.close(terminal)
+        self.assertEqual(child.wait(timeout=60), 0)
+        return shown.decode()
+
+    def test_a_terminal_has_a_bar_with_stage_counts_and_rate(self):
+        shown = self.run_on_terminal("run")
+        self.assertRegex(shown, r"\[#+-*\] simulate: \d+ of 48, \d+ simulations/s")
+        self.assertRegex(shown, r"\[#{30}\] cases: 8 of 8")
+
+    def test_quiet_shows_none_and_other_outputs_get_no_control_sequences(self):
+        self.assertNotIn("simulate:", self.run_on_terminal("quiet", "--quiet"))
+        self.assertNotIn("\x1b", self.run_sweep("piped").stderr)
+
+    def test_the_log_names_the_cases(self):
+        self.run_sweep("run")
+        log = (self.folder / "run/run.log").read_text()
+        self.assertIn("48 of 48 missing samples simulated", log)
+        self.assertIn("info: samples-8_scale-1_seed-2: train the inverse map: ", log)
+        self.assertIn("case samples-16_scale-0.5_seed-1 is complete", log)
 
 
 class Plan(SweepTestCase):
