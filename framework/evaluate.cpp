@@ -9,6 +9,7 @@
 #include "framework/evaluation/calibration.hpp"
 #include "framework/evaluation/information_limit.hpp"
 #include "framework/stage_timer.hpp"
+#include "framework/stored_local_models.hpp"
 
 namespace twinmap {
 namespace {
@@ -20,14 +21,21 @@ const std::vector<ParameterSpec>& getParameters(const EvaluationContext& context
   return context.experiment.model.parameters;
 }
 
+std::vector<LocalModel> calcTestModels(const EvaluationContext& context) {
+  const Eigen::MatrixXd& points = context.samples.test.parameters;
+  if (context.neighbourhoods == nullptr) {
+    return calcLocalModels(context.simulator, context.extractor, getParameters(context), points,
+                           context.threads);
+  }
+  return calcStoredLocalModels(*context.neighbourhoods, context.simulator, context.extractor,
+                               getParameters(context), points, context.threads);
+}
+
 void addLimit(const EvaluationContext& context, RunSummary& run) {
   const LabelledFeatures& test = context.samples.test;
-  const InformationLimit limit =
-      timeStage(fmt::format("information limit of {} test samples", test.parameters.cols()), run.times, [&] {
-        const auto models = calcLocalModels(context.simulator, context.extractor, getParameters(context),
-                                            test.parameters, context.threads);
-        return calcInformationLimit(models, context.noise, getParameters(context));
-      });
+  const InformationLimit limit = timeStage(
+      fmt::format("information limit of {} test samples", test.parameters.cols()), run.times,
+      [&] { return calcInformationLimit(calcTestModels(context), context.noise, getParameters(context)); });
   run.limit_stddev = limit.stddev;
   run.relevance = FeatureRelevance{test.infos, test.noise_covariance.diagonal().cwiseSqrt(), limit.relevance};
   run.identifiability = calcIdentifiability(limit, getParameters(context));

@@ -4,6 +4,7 @@
 #include "framework/inverse_map/gp_map.hpp"
 #include "framework/labelled_sets.hpp"
 #include "framework/simulation/simulator.hpp"
+#include "framework/store/trajectory_store.hpp"
 
 namespace twinmap {
 
@@ -15,6 +16,7 @@ struct EvaluationContext {
   const FeatureNoise& noise;
   const LabelledSets& samples;
   const GpMap& map;
+  TrajectoryStore* neighbourhoods;  ///< openNeighbourhoodStore; null: simulated, not kept
   int threads = 1;
 };
 

@@ -21,6 +21,7 @@
 #include "framework/store/atomic_file.hpp"
 #include "framework/store/folder_lock.hpp"
 #include "framework/store/maps_file.hpp"
+#include "framework/stored_local_models.hpp"
 
 namespace twinmap {
 namespace {
@@ -89,8 +90,17 @@ std::unique_ptr<TrajectoryStore> openOwnStore(const ExperimentSpec& experiment, 
   if (options.samples != nullptr) {
     return nullptr;
   }
-  return openStore(experiment.model, simulator.getLayout(),
-                   options.store.empty() ? options.folder / "chunks" : options.store);
+  return openStore(experiment.model, simulator.getLayout(), getStoreRoot(options.folder, options.store));
+}
+
+/// The store of what the information limit simulates; none if the samples are shared.
+std::unique_ptr<TrajectoryStore> openOwnNeighbourhoods(const ExperimentSpec& experiment,
+                                                       const Simulator& simulator,
+                                                       const RunOptions& options) {
+  if (options.samples != nullptr || !experiment.evaluation.limit) {
+    return nullptr;
+  }
+  return openNeighbourhoodStore(experiment.model, simulator, getStoreRoot(options.folder, options.store));
 }
 
 /// Trains the map on the training samples and writes it.
@@ -143,7 +153,9 @@ RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& opt
       calcTrainingSensitivities(experiment, sets.train, simulator, extractor, options.threads);
 
   const GpMap map = trainMap(experiment, labelled.train, options, run);
-  evaluate({experiment, simulator, extractor, noise, labelled, map, options.threads}, run);
+  const auto neighbourhoods = openOwnNeighbourhoods(experiment, simulator, options);
+  evaluate({experiment, simulator, extractor, noise, labelled, map, neighbourhoods.get(), options.threads},
+           run);
   writeExampleResponses(experiment, sets, simulator, options, run);
   timeOnlineUpdates(map, labelled.test, run);
 

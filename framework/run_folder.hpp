@@ -5,11 +5,18 @@
 
 namespace twinmap {
 
+/// Where simulated samples are kept: `given`, or the folder's own chunks if that is empty.
+inline std::filesystem::path getStoreRoot(const std::filesystem::path& folder,
+                                          const std::filesystem::path& given) {
+  return given.empty() ? folder / "chunks" : given;
+}
+
 /// Throws ExperimentError, naming the keys that differ with both values, if the folder holds another
 /// experiment than `resolved`, the text of its resolved.yaml: what is there is not mixed with other results.
 void requireSameExperiment(const std::filesystem::path& folder, const std::string& resolved);
 
-/// Whether all files of a run are there: provenance.json is written last, and then the report from all others.
+/// Whether all files of a run are there: provenance.json is written last, and then the report from all
+/// others.
 bool isComplete(const std::filesystem::path& folder);
 
 /// From here on the folder is not complete, until provenance.json is written again.

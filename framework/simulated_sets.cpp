@@ -95,14 +95,18 @@ std::vector<int> findSuccessful(const Trajectories& trajectories) {
   return samples;
 }
 
+void logSetAside(const TrajectoryStore& store) {
+  for (const SetAsideChunk& chunk : store.getSetAside()) {
+    spdlog::warn("{}: set aside: {}; its samples are simulated again", chunk.file.string(), chunk.reason);
+  }
+}
+
 std::unique_ptr<TrajectoryStore> openStore(const ModelSpec& model, const ResponseLayout& layout,
                                            const fs::path& root) {
   auto store = std::make_unique<TrajectoryStore>(root, writeStoreContent(model, layout),
                                                  static_cast<Eigen::Index>(model.parameters.size()),
                                                  layout.getRowCount());
-  for (const SetAsideChunk& chunk : store->getSetAside()) {
-    spdlog::warn("{}: set aside: {}; its samples are simulated again", chunk.file.string(), chunk.reason);
-  }
+  logSetAside(*store);
   return store;
 }
 

@@ -13,6 +13,9 @@ struct SimulatedSets {
   Trajectories train, test;
 };
 
+/// Warns of chunks that could not be used.
+void logSetAside(const TrajectoryStore& store);
+
 /// Opens the store of a model's samples in the folder `root`. Chunks that had to be set aside are logged.
 std::unique_ptr<TrajectoryStore> openStore(const ModelSpec& model, const ResponseLayout& layout,
                                            const std::filesystem::path& root);

@@ -2,88 +2,36 @@
 
 #include <limits>
 
+#include "framework/sensitivity/neighbourhood_simulator.hpp"
+#include "framework/sensitivity/stencil.hpp"
 #include "framework/simulation/simulator_team.hpp"
 
 namespace twinmap {
-namespace {
 
-using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kStep = 1e-4;  // of the bounds' width
-
-/// Two points beside the centre, in steps, and the weights of centre, first and second in the derivative.
-struct Stencil {
-  double first, second;
-  double weight_of_center, weight_of_first, weight_of_second;
-};
-
-constexpr Stencil kCentral{-1.0, 1.0, 0.0, -0.5, 0.5};
-constexpr Stencil kForward{1.0, 2.0, -1.5, 2.0, -0.5};
-constexpr Stencil kBackward{-1.0, -2.0, 1.5, -2.0, 0.5};
-
-double calcWidth(const Bounds& bounds) {
-  return bounds.upper - bounds.lower;
-}
-
-const Stencil& chooseStencil(const Bounds& bounds, double value) {
-  const double step = kStep * calcWidth(bounds);
-  if (value - step < bounds.lower) {
-    return kForward;
+LocalModel makeLocalModel(const FeatureExtractor& extractor, const std::vector<ParameterSpec>& parameters,
+                          const VectorXd& point, const VectorXd& neighbourhood, const SampleStatus& status) {
+  const Eigen::Index points = 2 * point.size() + 1;
+  const MatrixXd responses = neighbourhood.reshaped(neighbourhood.size() / points, points);
+  const MatrixXd features = extractor.extract(responses);
+  LocalModel local{responses.col(0), features.col(0), calcDifferences(features, parameters, point), status};
+  if (status.ok && !features.allFinite()) {
+    local.status = {false, "a feature is missing in the response"};
   }
-  return value + step > bounds.upper ? kBackward : kCentral;
-}
-
-/// Column 0 is the point, columns 2 j + 1 and 2 j + 2 are those beside it for parameter j.
-MatrixXd makeNeighbours(const std::vector<ParameterSpec>& parameters, const VectorXd& point) {
-  MatrixXd points = point.replicate(1, 2 * point.size() + 1);
-  for (Index j = 0; j < point.size(); ++j) {
-    const Bounds& bounds = parameters[j].bounds;
-    const Stencil& stencil = chooseStencil(bounds, point[j]);
-    points(j, 2 * j + 1) += stencil.first * kStep * calcWidth(bounds);
-    points(j, 2 * j + 2) += stencil.second * kStep * calcWidth(bounds);
+  if (!local.status.ok) {
+    local.sensitivities.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
-  return points;
+  return local;
 }
-
-MatrixXd calcDifferences(const MatrixXd& features, const std::vector<ParameterSpec>& parameters,
-                         const VectorXd& point) {
-  MatrixXd sensitivities(features.rows(), point.size());
-  for (Index j = 0; j < point.size(); ++j) {
-    const Stencil& stencil = chooseStencil(parameters[j].bounds, point[j]);
-    sensitivities.col(j) =
-        (stencil.weight_of_center * features.col(0) + stencil.weight_of_first * features.col(2 * j + 1) +
-         stencil.weight_of_second * features.col(2 * j + 2)) /
-        kStep;
-  }
-  return sensitivities;
-}
-
-SampleStatus findFailure(const std::vector<SampleStatus>& statuses, const MatrixXd& features) {
-  for (const SampleStatus& status : statuses) {
-    if (!status.ok) {
-      return status;
-    }
-  }
-  return features.allFinite() ? SampleStatus{} : SampleStatus{false, "a feature is missing in the response"};
-}
-
-}  // namespace
 
 LocalModel calcLocalModel(Simulator& simulator, const FeatureExtractor& extractor,
                           const std::vector<ParameterSpec>& parameters, const VectorXd& point) {
   const MatrixXd points = makeNeighbours(parameters, point);
   MatrixXd responses(simulator.getLayout().getRowCount(), points.cols());
-  std::vector<SampleStatus> statuses(points.cols());
-  simulator.simulateAround(points, responses, statuses.data());
-  const MatrixXd features = extractor.extract(responses);
-  LocalModel local{responses.col(0), features.col(0), calcDifferences(features, parameters, point),
-                   findFailure(statuses, features)};
-  if (!local.status.ok) {
-    local.sensitivities.setConstant(std::numeric_limits<double>::quiet_NaN());
-  }
-  return local;
+  const SampleStatus status = simulateNeighbours(simulator, points, responses);
+  return makeLocalModel(extractor, parameters, point, responses.reshaped(), status);
 }
 
 std::vector<LocalModel> calcLocalModels(const Simulator& prototype, const FeatureExtractor& extractor,

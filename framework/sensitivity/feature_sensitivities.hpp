@@ -25,6 +25,11 @@ struct LocalModel {
 LocalModel calcLocalModel(Simulator& simulator, const FeatureExtractor& extractor,
                           const std::vector<ParameterSpec>& parameters, const Eigen::VectorXd& point);
 
+/// The same from the responses of the point's neighbourhood (NeighbourhoodSimulator), one column.
+LocalModel makeLocalModel(const FeatureExtractor& extractor, const std::vector<ParameterSpec>& parameters,
+                          const Eigen::VectorXd& point, const Eigen::VectorXd& neighbourhood,
+                          const SampleStatus& status);
+
 /// The same at every column of `points`, on a team of threads; the result does not depend on their number.
 std::vector<LocalModel> calcLocalModels(const Simulator& prototype, const FeatureExtractor& extractor,
                                         const std::vector<ParameterSpec>& parameters,

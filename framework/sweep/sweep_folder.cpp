@@ -29,10 +29,6 @@ fs::path getCaseFolder(const fs::path& sweep, const SweepCase& sweep_case) {
   return sweep / "cases" / sweep_case.name;
 }
 
-fs::path getStoreRoot(const fs::path& sweep, const fs::path& given) {
-  return given.empty() ? sweep / "chunks" : given;
-}
-
 std::vector<bool> findComplete(const fs::path& sweep, const std::vector<SweepCase>& cases) {
   std::vector<bool> complete;
   for (const SweepCase& one : cases) {

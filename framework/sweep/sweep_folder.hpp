@@ -16,7 +16,6 @@ struct FailedCase {
 };
 
 std::filesystem::path getCaseFolder(const std::filesystem::path& sweep, const SweepCase& sweep_case);
-std::filesystem::path getStoreRoot(const std::filesystem::path& sweep, const std::filesystem::path& given);
 
 /// One for each case: whether its folder is complete.
 std::vector<bool> findComplete(const std::filesystem::path& sweep, const std::vector<SweepCase>& cases);

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "framework/simulation/simulator.hpp"
+#include "framework/spec/model_spec.hpp"
+
+namespace twinmap {
+
+/// Simulates a point together with the 2 p points beside it that its derivatives need (all with the
+/// integration steps of the point): a response is theirs, one below the other, the point's own first, then
+/// the two of each parameter. So a point's derivatives can be stored and shared like any sample. Its layout
+/// has as many rows; its outputs and modes are those of the simulator, repeated. Fails if one simulation
+/// does.
+class NeighbourhoodSimulator final : public Simulator {
+ public:
+  NeighbourhoodSimulator(const Simulator& simulator, const std::vector<ParameterSpec>& parameters);
+
+  const ResponseLayout& getLayout() const override { return layout_; }
+  void simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters, Eigen::Ref<Eigen::MatrixXd> responses,
+                SampleStatus* statuses) override;
+  std::unique_ptr<Simulator> clone() const override;
+
+ private:
+  std::unique_ptr<Simulator> simulator_;
+  std::vector<ParameterSpec> parameters_;
+  ResponseLayout layout_;
+};
+
+/// Simulates a point and its neighbours (columns, as makeNeighbours gives them); the first failure, if any.
+SampleStatus simulateNeighbours(Simulator& simulator, const Eigen::MatrixXd& points,
+                                Eigen::Ref<Eigen::MatrixXd> responses);
+
+}  // namespace twinmap

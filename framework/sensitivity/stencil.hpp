@@ -1,0 +1,20 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "framework/spec/model_spec.hpp"
+
+namespace twinmap {
+
+/// The points (p x 2 p + 1) from which derivatives at a point come: column 0 is the point, columns 2 j + 1
+/// and 2 j + 2 are 1e-4 of the width of parameter j's bounds beside it, on both sides, or both on the inner
+/// side where the step would leave the bounds.
+Eigen::MatrixXd makeNeighbours(const std::vector<ParameterSpec>& parameters, const Eigen::VectorXd& point);
+
+/// Differences of second order of values at these points (d x 2 p + 1): derivatives (d x p) per width of the
+/// bounds.
+Eigen::MatrixXd calcDifferences(const Eigen::MatrixXd& values, const std::vector<ParameterSpec>& parameters,
+                                const Eigen::VectorXd& point);
+
+}  // namespace twinmap
