@@ -55,6 +55,14 @@ MatrixXd FeatureTransform::apply(const MatrixXd& features) const {
   return inputs;
 }
 
+MatrixXd FeatureTransform::applyToCovariance(const MatrixXd& covariance) const {
+  MatrixXd of_inputs = covariance;
+  for (const AffineStep& step : steps) {
+    of_inputs = step.applyToCovariance(of_inputs);
+  }
+  return of_inputs;
+}
+
 FeatureTransform fitTransform(const std::vector<TransformStepSpec>& steps, const LabelledFeatures& samples) {
   FeatureTransform transform;
   LabelledFeatures inputs = samples;

@@ -16,6 +16,9 @@ struct FeatureTransform {
 
   /// Features (d x n) -> inputs (k x n).
   Eigen::MatrixXd apply(const Eigen::MatrixXd& features) const;
+
+  /// Covariance of features (d x d) -> of inputs (k x k).
+  Eigen::MatrixXd applyToCovariance(const Eigen::MatrixXd& covariance) const;
 };
 
 /// Fits the steps to training samples (n >= 2), one after another: a step sees what those before it made of

@@ -164,9 +164,14 @@ TrainingData prepare(const std::vector<TransformStepSpec>& transform, const Labe
           (samples.parameters.colwise() - map.target_offset).array().colwise() / map.target_scale.array()};
 }
 
-/// Leaves the training samples out of the trained processes.
-void leaveOut(const TrainingData& data, const LabelledFeatures& samples, int threads,
-              GpMapTraining& training) {
+/// What follows from the trained processes: the noise's profile, and the training samples left out.
+void finish(const GpMapSpec& spec, const TrainingData& data, const LabelledFeatures& samples, int threads,
+            GpMapTraining& training) {
+  GpMap& map = training.map;
+  if (spec.noise == GpNoise::kFollowsSlope) {
+    map.noise = fitNoiseProfile(map.processes, map.transform.applyToCovariance(samples.noise_covariance),
+                                data.inputs.leftCols(data.inputs.cols() / samples.replicates));
+  }
   training.leave_one_out =
       predictLeftOut(training.map, data.inputs, data.targets, samples.replicates, threads);
   training.map.residual_correlation = calcResidualCorrelation(
@@ -174,13 +179,6 @@ void leaveOut(const TrainingData& data, const LabelledFeatures& samples, int thr
 }
 
 }  // namespace
-
-double getNlml(const Process& process) {
-  if (const auto* exact = std::get_if<std::shared_ptr<const gp::GaussianProcess>>(&process)) {
-    return (*exact)->getNlml();
-  }
-  return std::get<std::shared_ptr<const gp::SparseGaussianProcess>>(process)->getParts().posterior.bound;
-}
 
 Predictions GpMap::predict(const Eigen::MatrixXd& features) const {
   const Eigen::MatrixXd inputs = transform.apply(features);
@@ -191,7 +189,10 @@ Predictions GpMap::predict(const Eigen::MatrixXd& features) const {
     const gp::Prediction standardised =
         std::visit([&](const auto& process) { return process->predict(inputs); }, processes[p]);
     predictions.mean.row(p) = target_offset[p] + target_scale[p] * standardised.mean.transpose().array();
-    predictions.stddev.row(p) = target_scale[p] * standardised.stddev().transpose();
+    const Eigen::ArrayXd noise_variance =
+        getNoiseVariance(processes[p]) * noise.calcFactors(processes[p], p, inputs);
+    predictions.stddev.row(p) =
+        target_scale[p] * (standardised.latent_variance.array() + noise_variance).sqrt().transpose();
   }
   return predictions;
 }
@@ -215,7 +216,7 @@ GpMapTraining trainGpMap(const GpMapSpec& spec, const std::vector<TransformStepS
   } else {
     keepResults(gp::train(data.inputs, data.targets, structure, options), parameter_names, training);
   }
-  leaveOut(data, samples, threads, training);
+  finish(spec, data, samples, threads, training);
   return training;
 }
 
@@ -232,7 +233,7 @@ GpMapTraining refitGpMap(const GpMap& trained, const GpMapSpec& spec,
         std::visit([&](const auto& process) { return refit(process, data.inputs, target, structure); },
                    trained.processes.at(p)));
   }
-  leaveOut(data, samples, threads, training);
+  finish(spec, data, samples, threads, training);
   return training;
 }
 

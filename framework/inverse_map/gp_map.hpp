@@ -1,27 +1,18 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <memory>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "framework/features/feature_transform.hpp"
 #include "framework/features/labelled_features.hpp"
+#include "framework/inverse_map/noise_profile.hpp"
 #include "framework/inverse_map/predictions.hpp"
+#include "framework/inverse_map/process.hpp"
 #include "framework/spec/experiment_spec.hpp"
-#include "kernels/gp/gaussian_process.hpp"
 #include "kernels/gp/training.hpp"
-#include "kernels/sparse/sparse_gaussian_process.hpp"
 
 namespace twinmap {
-
-/// One parameter's process: exact, or sparse on inducing inputs.
-using Process = std::variant<std::shared_ptr<const gp::GaussianProcess>,
-                             std::shared_ptr<const gp::SparseGaussianProcess>>;
-
-/// Its negative log marginal likelihood, or the variational bound on it from above; nats.
-double getNlml(const Process& process);
 
 /// An inverse map: features -> parameters with standard deviation, by one Gaussian process per parameter on
 /// the standardised parameter (p - offset) / scale. A fitted, immutable value.
@@ -33,9 +24,10 @@ struct GpMap {
   /// R (p x p), of the errors among the parameters, estimated from the training samples left out
   /// (calcResidualCorrelation): the joint predictive covariance of a sample is D R D, D = diag(stddev).
   Eigen::MatrixXd residual_correlation;
+  NoiseProfile noise;
 
   /// Features (d x m, untransformed) -> predictions (p x m each). The standard deviation is the predictive
-  /// one, likelihood noise included: the spread of the parameter given the features.
+  /// one, noise included: the spread of the parameter given the features.
   Predictions predict(const Eigen::MatrixXd& features) const;
 };
 

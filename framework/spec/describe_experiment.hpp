@@ -63,6 +63,12 @@ struct EnumNames<WhitenBy> {
 };
 
 template <>
+struct EnumNames<GpNoise> {
+  static constexpr EnumName<GpNoise> values[] = {{"follows_slope", GpNoise::kFollowsSlope},
+                                                 {"constant", GpNoise::kConstant}};
+};
+
+template <>
 struct EnumNames<LengthScales> {
   static constexpr EnumName<LengthScales> values[] = {
       {"shared", LengthScales::kShared},
@@ -210,6 +216,8 @@ void describe(Fields& f, GpMapSpec& s) {
   f.optional("covariance", s.covariance, "covariance function");
   f.optional("linear_term", s.linear_term, "adds a linear term to the covariance function");
   f.optional("mean", s.mean, "mean function; its coefficients are integrated out");
+  f.optional("noise", s.noise,
+             "follows_slope: that of the features through the slope of the map; or constant");
   f.optional("length_scales", s.length_scales, "one for all features, per output, or per feature");
   f.optional("length_scale_prior", s.length_scale_prior, "log-normal prior; without it, maximum likelihood");
   f.optional("starts", s.starts, "optimisations of the marginal likelihood, from different points", kCount);

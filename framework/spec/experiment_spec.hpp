@@ -107,6 +107,8 @@ enum class GpCovariance { kSquaredExponential, kMatern32, kMatern52, kRationalQu
 enum class GpMean { kConstant, kZero, kLinear };
 /// Exact, or the variational sparse approximation on inducing inputs (SGPR; Titsias 2009).
 enum class GpApproximation { kExact, kSgpr };
+/// The noise of a parameter: one standard deviation, or that of the features through the slope of the map.
+enum class GpNoise { kFollowsSlope, kConstant };
 enum class LengthScales { kShared, kPerOutput, kPerFeature };
 
 /// Bounds of the hyperparameters during training, relative to the natural scale of each.
@@ -127,6 +129,7 @@ struct GpMapSpec {
   GpCovariance covariance = GpCovariance::kSquaredExponential;
   bool linear_term = false;  ///< adds a linear covariance term
   GpMean mean = GpMean::kConstant;
+  GpNoise noise = GpNoise::kFollowsSlope;
   LengthScales length_scales = LengthScales::kPerFeature;  ///< after a projection: per component
   std::optional<LengthScalePriorSpec> length_scale_prior;  ///< none: maximum likelihood
   int starts = 2;

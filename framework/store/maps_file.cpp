@@ -193,6 +193,8 @@ void writeMapsFile(const std::filesystem::path& path, const StoredMap& stored) {
     file.write("/target/offset", stored.map.target_offset);
     file.write("/target/scale", stored.map.target_scale);
     file.writeSamples("/residual_correlation", stored.map.residual_correlation);
+    file.writeSamples("/noise/directions", stored.map.noise.directions);
+    file.write("/noise/mean_of_slope", stored.map.noise.mean_of_slope);
     if (const gp::GaussianProcess* exact = findExact(stored.map)) {
       file.writeSamples("/training_inputs", exact->getInputs());
     }
@@ -214,6 +216,7 @@ StoredMap readMapsFile(const std::filesystem::path& path) {
   stored.map.target_offset = file.readVector("/target/offset");
   stored.map.target_scale = file.readVector("/target/scale");
   stored.map.residual_correlation = file.readSamples("/residual_correlation");
+  stored.map.noise = {file.readSamples("/noise/directions"), file.readVector("/noise/mean_of_slope")};
   std::shared_ptr<const Eigen::MatrixXd> inputs;
   for (const ParameterSpec& parameter : stored.parameters) {
     const std::string group = "/maps/" + parameter.name.text;

@@ -84,27 +84,46 @@ Prediction GaussianProcess::predict(const Eigen::Ref<const MatrixXd>& inputs) co
   return prediction;
 }
 
+Eigen::VectorXd GaussianProcess::predictMean(const Eigen::Ref<const MatrixXd>& inputs) const {
+  checkInputs(inputs, "GaussianProcess::predictMean inputs");
+  const linalg::FlushDenormals flush;
+  Eigen::VectorXd mean(inputs.cols());
+  for (Index first = 0; first < inputs.cols(); first += kPredictionBlock) {
+    const Index count = std::min(kPredictionBlock, inputs.cols() - first);
+    const MatrixXd centered = inputs.middleCols(first, count).colwise() - center_;
+    const MatrixXd scaled = inverse_length_scales_.asDiagonal() * centered;
+    mean.segment(first, count) = calcMean(
+        centered, calcCrossCovariance(parts_.structure, parts_.hyperparameters, scaled, scaled_inputs_));
+  }
+  return mean;
+}
+
+Eigen::VectorXd GaussianProcess::calcMean(const MatrixXd& centered, const MatrixXd& covariance) const {
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(centered.cols());
+  for (Index j = 0; j < getSampleCount(); ++j) mean += parts_.alpha(j) * covariance.col(j);
+  const MatrixXd basis = calcMeanBasis(parts_.structure.mean, centered);
+  for (Index k = 0; k < basis.cols(); ++k) mean += parts_.mean_coefficients(k) * basis.col(k);
+  return mean;
+}
+
 void GaussianProcess::predictBlock(const Eigen::Ref<const MatrixXd>& inputs, Index first,
                                    Prediction& prediction) const {
   const Index m = inputs.cols();
   const MatrixXd centered = inputs.colwise() - center_;
   const MatrixXd scaled = inverse_length_scales_.asDiagonal() * centered;
   MatrixXd covariance = calcCrossCovariance(parts_.structure, parts_.hyperparameters, scaled, scaled_inputs_);
-  Eigen::VectorXd mean = Eigen::VectorXd::Zero(m);
-  for (Index j = 0; j < getSampleCount(); ++j) mean += parts_.alpha(j) * covariance.col(j);
+  prediction.mean.segment(first, m) = calcMean(centered, covariance);
   Eigen::VectorXd variance = calcPriorVariance(parts_.structure, parts_.hyperparameters, scaled);
   linalg::TriangularScratch scratch(m);
   linalg::solveTransposedFromRight(linalg::viewOf(parts_.factor), linalg::viewOf(covariance), scratch);
   for (Index j = 0; j < getSampleCount(); ++j) variance -= covariance.col(j).cwiseAbs2();
   if (whitened_basis_.cols() > 0) {
     MatrixXd error = calcMeanBasis(parts_.structure.mean, centered);  // e' as rows
-    for (Index k = 0; k < error.cols(); ++k) mean += parts_.mean_coefficients(k) * error.col(k);
     linalg::gemm(-1.0, linalg::viewOf(std::as_const(covariance)), linalg::viewOf(whitened_basis_), 1.0,
                  linalg::viewOf(error), scratch.gemm());
     linalg::solveTransposedFromRight(linalg::viewOf(basis_factor_), linalg::viewOf(error), scratch);
     for (Index k = 0; k < error.cols(); ++k) variance += error.col(k).cwiseAbs2();
   }
-  prediction.mean.segment(first, m) = mean;
   prediction.latent_variance.segment(first, m) = variance.cwiseMax(0.0);
 }
 

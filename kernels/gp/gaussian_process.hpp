@@ -62,9 +62,13 @@ class GaussianProcess {
   /// inputs: d x m, finite (else std::invalid_argument). Cost: m n (n + 2 d) flops.
   Prediction predict(const Eigen::Ref<const Eigen::MatrixXd>& inputs) const;
 
+  /// The means alone, the same bits. Cost: 2 m n d flops.
+  Eigen::VectorXd predictMean(const Eigen::Ref<const Eigen::MatrixXd>& inputs) const;
+
  private:
   void predictBlock(const Eigen::Ref<const Eigen::MatrixXd>& inputs, Eigen::Index first,
                     Prediction& prediction) const;
+  Eigen::VectorXd calcMean(const Eigen::MatrixXd& centered, const Eigen::MatrixXd& covariance) const;
 
   GaussianProcessParts parts_;
   Eigen::VectorXd center_;

@@ -42,6 +42,11 @@ class SparseGaussianProcess {
   /// inputs: d x k, finite (else std::invalid_argument). Cost: 2 k m (m + d) flops.
   Prediction predict(const Eigen::Ref<const Eigen::MatrixXd>& inputs) const;
 
+  /// The means alone. Cost: 2 k m (m + d) flops.
+  Eigen::VectorXd predictMean(const Eigen::Ref<const Eigen::MatrixXd>& inputs) const {
+    return predict(inputs).mean;
+  }
+
   /// inputs: d x k, finite, all of them at once: memory 2 k m. Cost as of predict.
   SparseProjection project(const Eigen::Ref<const Eigen::MatrixXd>& inputs) const;
 
