@@ -22,11 +22,12 @@ std::string writeBounds(const std::vector<ParameterSpec>& parameters) {
 }  // namespace
 
 std::unique_ptr<TrajectoryStore> openNeighbourhoodStore(const ModelSpec& model, const Simulator& simulator,
-                                                        const std::filesystem::path& root) {
+                                                        const std::filesystem::path& root,
+                                                        StoreAccess access) {
   const ResponseLayout layout = NeighbourhoodSimulator(simulator, model.parameters).getLayout();
   auto store = std::make_unique<TrajectoryStore>(
       root, writeStoreContent(model, simulator.getLayout()) + writeBounds(model.parameters),
-      static_cast<Eigen::Index>(model.parameters.size()), layout.getRowCount());
+      static_cast<Eigen::Index>(model.parameters.size()), layout.getRowCount(), access);
   logSetAside(*store);
   return store;
 }

@@ -10,7 +10,8 @@ namespace twinmap {
 
 /// The store of the neighbourhoods (NeighbourhoodSimulator) of a model's points, in the folder `root`.
 std::unique_ptr<TrajectoryStore> openNeighbourhoodStore(const ModelSpec& model, const Simulator& simulator,
-                                                        const std::filesystem::path& root);
+                                                        const std::filesystem::path& root,
+                                                        StoreAccess access = StoreAccess::kReadWrite);
 
 /// As calcLocalModels, but a point whose neighbourhood the store has is not simulated again.
 std::vector<LocalModel> calcStoredLocalModels(TrajectoryStore& store, const Simulator& simulator,

@@ -9,6 +9,7 @@
 #include "framework/store/samples_file.hpp"
 #include "framework/store/temporary_folder.hpp"
 #include "framework/store_content.hpp"
+#include "framework/stored_local_models.hpp"
 
 namespace twinmap {
 namespace {
@@ -148,22 +149,31 @@ std::string compareChunks(const std::string& name, const TrajectoryStore& store,
   return replaceSamples(name, columns, block.responses(Eigen::all, columns), statuses, set);
 }
 
-/// Opens the store and checks its chunks' checksums; null if that fails.
-std::unique_ptr<TrajectoryStore> openChunks(const ExperimentSpec& experiment, const ResponseLayout& layout,
+std::string describeDamage(const TrajectoryStore& store) {
+  const std::vector<SetAsideChunk>& damaged = store.getSetAside();
+  return damaged.empty() ? "" : damaged[0].file.filename().string() + ": " + damaged[0].reason;
+}
+
+/// Opens the store and checks its chunks' checksums, and those of the neighbourhoods; null if that fails.
+std::unique_ptr<TrajectoryStore> openChunks(const ExperimentSpec& experiment, const Simulator& simulator,
                                             Verification& verification) {
+  const ResponseLayout& layout = simulator.getLayout();
   std::unique_ptr<TrajectoryStore> store;
   verification.check("chunks: checksums", [&] {
     store = std::make_unique<TrajectoryStore>(
         findChunks(verification.folder), writeStoreContent(experiment.model, layout),
         static_cast<Index>(experiment.model.parameters.size()), layout.getRowCount(), StoreAccess::kReadOnly);
-    const std::vector<SetAsideChunk>& damaged = store->getSetAside();
-    return damaged.empty() ? std::string() : damaged[0].file.filename().string() + ": " + damaged[0].reason;
+    const auto neighbourhoods = openNeighbourhoodStore(
+        experiment.model, simulator, findChunks(verification.folder), StoreAccess::kReadOnly);
+    const std::string damage = describeDamage(*store);
+    return damage.empty() ? describeDamage(*neighbourhoods) : damage;
   });
   return store;
 }
 
-void checkChunks(const ExperimentSpec& experiment, SimulatedSets& sets, Verification& verification) {
-  const auto store = openChunks(experiment, sets.train.layout, verification);
+void checkChunks(const ExperimentSpec& experiment, const Simulator& simulator, SimulatedSets& sets,
+                 Verification& verification) {
+  const auto store = openChunks(experiment, simulator, verification);
   if (store == nullptr) {
     return;
   }
@@ -198,7 +208,7 @@ SimulatedSets checkSamples(const ExperimentSpec& experiment, const Simulator& si
                            simulateAgain("test", chosen.test, simulator, threads, sets.test, verification);
                        return train.empty() ? test : train;
                      });
-  checkChunks(experiment, sets, verification);
+  checkChunks(experiment, simulator, sets, verification);
   return sets;
 }
 

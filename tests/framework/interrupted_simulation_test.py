@@ -45,7 +45,7 @@ class InterruptedSimulation(unittest.TestCase):
 
     def finish(self, *arguments, code=0, **options):
         child = self.start(*arguments, **options)
-        out, err = child.communicate(timeout=60)
+        out, err = child.communicate(timeout=600)
         self.assertEqual(child.returncode, code, err)
         return out + err
 
@@ -137,7 +137,7 @@ class InterruptedSimulation(unittest.TestCase):
             rm {self.folder}/log; mount -o remount,size=10m {self.folder} || exit 9
             {CHILD} {self.folder} {SAMPLES} 2 8 0 || exit 9
             echo "simulated again $(wc -l <{self.folder}/log)"; cp {self.folder}/responses {result}/"""
-        done = subprocess.run(["unshare", "-rm", "sh", "-c", script], capture_output=True, text=True, timeout=60)
+        done = subprocess.run(["unshare", "-rm", "sh", "-c", script], capture_output=True, text=True, timeout=600)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertRegex(done.stdout, r"\.tmp: cannot be written(?: to disk)?: No space left on device\ncode 1")
         stored, again = (int(re.search(rf"{word} (\d+)", done.stdout)[1]) for word in ("stored", "simulated again"))
@@ -150,7 +150,7 @@ class InterruptedSimulation(unittest.TestCase):
         child = self.start(microseconds=5000, chunk=4)
         self.wait_for_chunk()
         child.send_signal(signal.SIGINT)
-        child.communicate(timeout=30)
+        child.communicate(timeout=300)
         self.assertEqual(child.returncode, 130)
         stored = self.get_stored()
         self.assertEqual(sorted(self.take_log()), sorted(stored))

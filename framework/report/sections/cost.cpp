@@ -74,7 +74,7 @@ void addStages(const RunFolder& run, Section& section, Page& page) {
   }
   Json spec = makePanelSpec("stages", kFrame + kRowHeight * static_cast<int>(stages.size()));
   spec.erase("params");
-  constexpr double kRoomForNumbers = 1.15;
+  constexpr double kRoomForNumbers = 1.4;
   const double longest = *std::max_element(times.begin(), times.end());
   const Json x = makeQuantitative("seconds", "wall time [s]",
                                   makeDomain(0.0, kRoomForNumbers * std::max(longest, 1e-6)));

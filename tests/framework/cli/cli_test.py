@@ -26,7 +26,7 @@ RESULTS = ["correlations.csv", "failures.csv", "features.csv", "hyperparameters.
 
 
 def call(*arguments):
-    return subprocess.run([TWINMAP, *map(str, arguments)], capture_output=True, text=True, timeout=300)
+    return subprocess.run([TWINMAP, *map(str, arguments)], capture_output=True, text=True, timeout=1500)
 
 
 def read_csv(path):

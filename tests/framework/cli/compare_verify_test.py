@@ -19,7 +19,7 @@ SMALL = ["design.train.samples=40", "design.test.samples=30", "inverse_map.gp.st
 
 
 def call(*arguments):
-    return subprocess.run([TWINMAP, *map(str, arguments)], capture_output=True, text=True, timeout=300)
+    return subprocess.run([TWINMAP, *map(str, arguments)], capture_output=True, text=True, timeout=1500)
 
 
 def read_csv(text):
