@@ -3,6 +3,7 @@
 #include "framework/spec/check_experiment.hpp"
 #include "framework/spec/check_scope.hpp"
 #include "framework/spec/joint_type.hpp"
+#include "framework/spec/parameter_box.hpp"
 
 namespace twinmap {
 namespace {
@@ -13,6 +14,15 @@ struct Coordinate {
   std::string unit;
   bool takes_forces;
 };
+
+void checkRelativeTo(const ParameterSpec& parameter) {
+  const Bounds& bounds = parameter.bounds;
+  if (parameter.relative_to == RelativeTo::kValue && bounds.lower <= 0.0 && bounds.upper >= 0.0) {
+    throw ExperimentError(
+        bounds.where, parameter.name.text,
+        "has bounds that contain 0, where a relative error is undefined; give 'relative_to: range'");
+  }
+}
 
 std::vector<Coordinate> collectCoordinates(const SystemSpec& system) {
   std::vector<Coordinate> coordinates;
@@ -51,9 +61,12 @@ class ModelCheck {
 
  private:
   void declareParameters() {
-    for (const ParameterSpec& parameter : model_.parameters) {
+    for (const ParameterSpec& parameter : collectSampled(model_)) {
       constants_.define(parameter.name, CheckScope::readUnit(parameter.unit, parameter.name.where),
                         0.5 * (parameter.bounds.lower + parameter.bounds.upper));
+    }
+    for (const ParameterSpec& parameter : model_.parameters) {
+      checkRelativeTo(parameter);
     }
   }
 
@@ -223,7 +236,7 @@ class ModelCheck {
     }
     if (model_.initial.equilibrium) {
       for (const NamedExpression& parameter : model_.initial.equilibrium->parameters) {
-        requireKnown(parameter.name, collectNames(model_.parameters), "a parameter");
+        requireKnown(parameter.name, collectNames(collectSampled(model_)), "a parameter");
         constants_.check(parameter.value, "");
       }
     }
@@ -242,7 +255,27 @@ class ModelCheck {
           constants_.check(station_output->direction, "");
         }
       }
+      checkSensor(output);
     }
+  }
+
+  void checkSensor(const OutputSpec& output) const {
+    if (!output.gain.text.empty()) {
+      constants_.check(output.gain, "1");
+    }
+    if (!output.offset.text.empty()) {
+      constants_.check(output.offset, findUnit(output));
+    }
+  }
+
+  std::string findUnit(const OutputSpec& output) const {
+    if (output.coordinate) {
+      return findUnit(*output.coordinate);
+    }
+    if (output.speed) {
+      return findUnit(*output.speed) + "/s";
+    }
+    return output.position ? "m" : output.velocity ? "m/s" : "m/s2";
   }
 
   const Coordinate& find(const Name& name) const {

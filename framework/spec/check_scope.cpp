@@ -52,9 +52,10 @@ void CheckScope::define(const Name& name, const std::optional<Dimension>& dimens
     throw ExperimentError(name.where, name.text, "is reserved in expressions; choose another name");
   }
   if (std::find(names_.begin(), names_.end(), name.text) != names_.end()) {
-    throw ExperimentError(name.where, name.text,
-                          "is taken; parameters, constants, coordinates, speeds (<coordinate>_dot) and "
-                          "excitation signals share one name space");
+    throw ExperimentError(
+        name.where, name.text,
+        "is taken; parameters, nuisance, inputs, constants, coordinates, speeds (<coordinate>_dot) and "
+        "excitation signals share one name space");
   }
   names_.push_back(name.text);
   symbols_.push_back({dimension, reference_value});

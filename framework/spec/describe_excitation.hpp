@@ -16,7 +16,8 @@ struct EnumNames<SweepKind> {
 template <>
 struct EnumNames<TableInterpolation> {
   static constexpr EnumName<TableInterpolation> values[] = {{"linear", TableInterpolation::kLinear},
-                                                            {"hold", TableInterpolation::kHold}};
+                                                            {"hold", TableInterpolation::kHold},
+                                                            {"cubic", TableInterpolation::kCubic}};
 };
 
 template <class Fields>
@@ -58,11 +59,23 @@ void describe(Fields& f, MultisineSpec& s) {
 }
 
 template <class Fields>
+void describe(Fields& f, MeasuredSignalSpec& s) {
+  f.required("file", s.file, "CSV, MATLAB or HDF5; relative to the experiment file");
+  f.required("column", s.column, "the signal's column, such as V1 or 'force [kN]'");
+  f.optional("time", s.time, "the column of times");
+  f.optional("sample_rate", s.sample_rate, "instead of a column of times; Hz", kPositive);
+  f.optional("start", s.start, "the time in the file that becomes t = 0 of the simulation; s");
+  f.optional("duration", s.duration, "how much of it; default: to the end of the file; s", kPositive);
+  f.rule(s.time.has_value() != s.sample_rate.has_value(), "must give exactly one of time, sample_rate");
+}
+
+template <class Fields>
 void describe(Fields& f, TableSpec& s) {
-  f.required("times", s.times, "s, strictly increasing");
-  f.required("values", s.values, "one for each time; the signal is 0 outside the table");
-  f.optional("interpolation", s.interpolation, "between the times");
-  f.rule(s.times.size() >= 2, "must give at least 2 times");
+  f.optional("measured", s.measured, "takes times and values from a file of measurements");
+  f.optional("times", s.times, "s, strictly increasing");
+  f.optional("values", s.values, "one for each time; the signal is 0 outside the table");
+  f.optional("interpolation", s.interpolation, "between the times; cubic: a smooth spline");
+  f.rule(s.times.size() >= 2 || (s.measured && s.times.empty()), "must give at least 2 times, or measured");
   f.rule(s.times.size() == s.values.size(), "must give as many values as times");
   f.rule(std::is_sorted(s.times.begin(), s.times.end(), std::less_equal<>()),
          "must give strictly increasing times");
@@ -75,7 +88,7 @@ void describe(Fields& f, SignalSpec& s) {
   f.optional("sines", s.sines, "single frequencies");
   f.optional("chirps", s.chirps, "sweeping frequencies");
   f.optional("multisines", s.multisines, "sums of sines");
-  f.optional("tables", s.tables, "piecewise linear or piecewise constant");
+  f.optional("tables", s.tables, "values at times, or a measured signal");
   f.rule(s.pulses.size() + s.sines.size() + s.chirps.size() + s.multisines.size() + s.tables.size() > 0,
          "must have at least one of pulses, sines, chirps, multisines, tables");
 }

@@ -84,8 +84,6 @@ void describe(Fields& f, ParameterSpec& s) {
   f.optional("description", s.description, "for people");
   f.optional("relative_to", s.relative_to,
              "what relative errors are relative to: the value, or upper - lower");
-  f.rule(s.relative_to == RelativeTo::kRange || s.bounds.lower > 0.0 || s.bounds.upper < 0.0,
-         "has bounds that contain 0, where a relative error is undefined; give 'relative_to: range'");
 }
 
 template <class Fields>
@@ -258,6 +256,8 @@ void describe(Fields& f, ExperimentSpec& s) {
   f.optional("description", s.description, "for people");
   f.optional("seed", s.seed, "all randomness follows from it");
   f.requiredMap("parameters", s.model.parameters, "the updating parameters");
+  f.optionalMap("nuisance", s.model.nuisance, "unknown parameters that are sampled, but not inferred");
+  f.optionalMap("inputs", s.model.inputs, "known settings, sampled in training, given with a measurement");
   f.optionalMap("constants", s.model.constants, "named values for expressions");
   f.required("system", s.model.system, "the multibody model");
   f.optionalMap("excitation", s.model.excitation, "named signals for forces and moments");

@@ -168,6 +168,8 @@ void describe(Fields& f, OutputSpec& s) {
   f.optional("position", s.position, "of a station, along a direction; m");
   f.optional("velocity", s.velocity, "of a station, along a direction; m/s");
   f.optional("acceleration", s.acceleration, "of a station, along a direction; m/s2");
+  f.optional("gain", s.gain, "of the sensor, which measures gain * quantity + offset; default 1");
+  f.optional("offset", s.offset, "of the sensor, in the quantity's unit; default 0");
   const int given = s.coordinate.has_value() + s.speed.has_value() + s.position.has_value() +
                     s.velocity.has_value() + s.acceleration.has_value();
   f.rule(given == 1, "must give exactly one of coordinate, speed, position, velocity, acceleration");

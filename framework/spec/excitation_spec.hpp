@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "framework/spec/expression.hpp"
@@ -34,12 +35,24 @@ struct MultisineSpec {
   Expression end{"", {}};
 };
 
-enum class TableInterpolation { kLinear, kHold };
+/// kCubic: the spline with continuous second derivative, not-a-knot at both ends.
+enum class TableInterpolation { kLinear, kHold, kCubic };
 
-/// A piecewise table; 0 before the first and after the last time (hold: the last value ends there).
+/// A signal in a file of measurements; exactly one of `time` and `sample_rate` is given.
+struct MeasuredSignalSpec {
+  Name file;                          ///< relative to the experiment file
+  Name column;                        ///< "V1", "force [kN]"
+  std::optional<Name> time;           ///< the column of times, s
+  std::optional<double> sample_rate;  ///< Hz
+  double start = 0.0;                 ///< s; the time in the file that becomes t = 0 of the simulation
+  std::optional<double> duration;     ///< s, of the excerpt; default: to the end of the file
+};
+
+/// A table; 0 before the first and after the last time (hold: the last value ends there).
 struct TableSpec {
-  std::vector<double> times, values;
+  std::vector<double> times, values;  ///< empty until what was measured is read
   TableInterpolation interpolation = TableInterpolation::kLinear;
+  std::optional<MeasuredSignalSpec> measured{};  ///< where times and values come from
 };
 
 /// A named excitation signal: the sum of its terms. Frequencies in Hz, phases in rad, times in s.

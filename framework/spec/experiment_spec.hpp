@@ -74,6 +74,14 @@ struct OutputNoiseSpec {
   double stddev = 0.0;  ///< in the output's unit
 };
 
+/// Correlation of an output's noise e_k over its samples; one of the two lists is given.
+struct NoiseCorrelationSpec {
+  Name name;                           ///< an output
+  std::vector<double> autoregression;  ///< a_i of e_k = a_1 e_{k-1} + a_2 e_{k-2} + ... + w_k
+  std::vector<double> values;          ///< autocorrelation at lags 0, 1, 2 ...; 0 beyond
+  std::optional<double> sample_time;   ///< s, of a lag; default: the spacing of the output's feature times
+};
+
 /// Noise of the modes' natural frequencies and damping ratios, as identified from a measurement.
 struct ModesNoiseSpec {
   double frequency = 0.0;      ///< standard deviation, Hz
@@ -86,6 +94,7 @@ struct NoiseSpec {
   std::optional<int> replicates;  ///< noise draws per training simulation; default 4, fewer for many samples
   std::vector<OutputNoiseSpec> stddev;
   std::optional<ModesNoiseSpec> modes;
+  std::vector<NoiseCorrelationSpec> correlation{};  ///< of the outputs whose noise is not white
 };
 
 enum class DesignMethod { kLatinHypercube, kNestedLatinHypercube, kSobol, kUniform };

@@ -18,16 +18,16 @@ struct Bounds {
   SourceLocation where;
 };
 
-/// An updating parameter: to be inferred from a response, sampled within its bounds for training.
+/// A parameter of the model, sampled within its bounds for training.
 struct ParameterSpec {
   Name name;
   Bounds bounds;     ///< in `unit`
   std::string unit;  ///< coherent SI unit, "" if not stated
   std::string description;
-  RelativeTo relative_to = RelativeTo::kValue;
+  RelativeTo relative_to = RelativeTo::kValue;  ///< of an updating parameter
 };
 
-/// A named value of the model; may use parameters and the constants declared before it.
+/// A named value of the model; may use parameters of any kind and the constants declared before it.
 struct ConstantSpec {
   Name name;
   Expression value;
@@ -37,7 +37,9 @@ struct ConstantSpec {
 
 /// Everything that determines a trajectory but the parameter point.
 struct ModelSpec {
-  std::vector<ParameterSpec> parameters;
+  std::vector<ParameterSpec> parameters;  ///< updating: to be inferred from a response
+  std::vector<ParameterSpec> nuisance;    ///< unknown too, but not inferred: initial state, offset, friction
+  std::vector<ParameterSpec> inputs;      ///< known settings of the set-up, given with a measurement
   std::vector<ConstantSpec> constants;
   SystemSpec system;
   std::vector<SignalSpec> excitation;

@@ -7,6 +7,14 @@
 
 namespace twinmap {
 
+/// What a measurement leaves unknown: the updating parameters, then the nuisance parameters.
+std::vector<ParameterSpec> collectUnknown(const ModelSpec& model);
+
+/// The sampled box: the updating parameters, then the nuisance parameters, then the inputs. This is the order
+/// of a parameter point everywhere.
+std::vector<ParameterSpec> collectSampled(const ModelSpec& model);
+Eigen::Index countSampled(const ModelSpec& model);
+
 /// Lower bounds, and upper minus lower bounds, of the parameters (p each), in their units.
 inline Eigen::VectorXd calcLowerBounds(const std::vector<ParameterSpec>& parameters) {
   return Eigen::VectorXd::NullaryExpr(static_cast<Eigen::Index>(parameters.size()),

@@ -133,9 +133,9 @@ struct SystemSpec {
   std::vector<ForceLawSpec> force_laws;
 };
 
-/// One measured quantity of the system; exactly one of the members is set. Speeds are time derivatives of
-/// coordinates; positions, velocities and accelerations are of a station, in the ground frame, along
-/// `direction` (normalised).
+/// One measured quantity of the system: gain * quantity + offset; exactly one of the optional members is set.
+/// Speeds are time derivatives of coordinates; positions, velocities and accelerations are of a station, in
+/// the ground frame, along `direction` (normalised).
 struct StationOutputSpec {
   StationSpec station;
   Expression3 direction;
@@ -148,6 +148,8 @@ struct OutputSpec {
   std::optional<StationOutputSpec> position;
   std::optional<StationOutputSpec> velocity;
   std::optional<StationOutputSpec> acceleration;
+  Expression gain{"", {}};    ///< of the sensor, dimensionless; 1 if not given
+  Expression offset{"", {}};  ///< of the sensor, in the quantity's unit; 0 if not given
 };
 
 /// Values by name, in file order (initial coordinates, reference parameters ...).

@@ -4,6 +4,7 @@
 
 #include "framework/spec/check_experiment.hpp"
 #include "framework/spec/describe_experiment.hpp"
+#include "framework/spec/parameter_box.hpp"
 #include "framework/spec/write_value.hpp"
 
 namespace twinmap {
@@ -38,12 +39,19 @@ std::vector<ConstantSpec> withoutTexts(std::vector<ConstantSpec> constants) {
   return withoutUnits(std::move(constants));
 }
 
-std::vector<double> calcCenter(const std::vector<ParameterSpec>& parameters) {
-  std::vector<double> center;
-  for (const ParameterSpec& parameter : parameters) {
-    center.push_back(0.5 * (parameter.bounds.lower + parameter.bounds.upper));
+/// A table's values count, not where they come from.
+std::vector<SignalSpec> withoutSources(std::vector<SignalSpec> signals) {
+  for (SignalSpec& signal : signals) {
+    for (TableSpec& table : signal.tables) {
+      table.measured.reset();
+    }
   }
-  return center;
+  return withoutUnits(std::move(signals));
+}
+
+std::vector<double> calcCenter(const std::vector<ParameterSpec>& sampled) {
+  const Eigen::VectorXd center = calcBoxCenter(sampled);
+  return {center.begin(), center.end()};
 }
 
 bool startsAtBoxCenter(const InitialSpec& initial) {
@@ -64,15 +72,17 @@ YamlNode writeResponse(const ResponseLayout& layout) {
 
 std::string writeTrajectoryContent(const ModelSpec& model, const ResponseLayout& layout) {
   // A new member must be written here, or left out on purpose: the binding then no longer compiles.
-  const auto& [parameters, constants, system, excitation, initial, outputs, simulation] = model;
+  const auto& [parameters, nuisance, inputs, constants, system, excitation, initial, outputs, simulation] =
+      model;
+  const std::vector<ParameterSpec> sampled = collectSampled(model);  // all three; which is which is no matter
   FieldWriter content;
-  content.required("parameters", collectNames(parameters), "");
+  content.required("parameters", collectNames(sampled), "");
   if (startsAtBoxCenter(initial)) {
-    content.required("box_center", calcCenter(parameters), "");
+    content.required("box_center", calcCenter(sampled), "");
   }
   content.requiredMap("constants", withoutTexts(constants), "");
   content.required("system", system, "");
-  content.requiredMap("excitation", withoutUnits(excitation), "");
+  content.requiredMap("excitation", withoutSources(excitation), "");
   content.required("initial", initial, "");
   content.requiredMap("outputs", outputs, "");
   YamlNode root = content.takeMap();

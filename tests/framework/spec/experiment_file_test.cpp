@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/spec/check_experiment.hpp"
 #include "framework/spec/joint_type.hpp"
+#include "framework/spec/parameter_box.hpp"
 
 namespace twinmap {
 namespace {
@@ -29,6 +31,33 @@ TEST(ExperimentFile, ResolvedExperimentReadsBackAsItself) {
   const std::string again = writeExperiment(readExperiment(parseYaml(resolved, "resolved.yaml")));
   EXPECT_EQ(again, resolved);
   EXPECT_NE(resolved.find("relative_tolerance"), std::string::npos);
+}
+
+TEST(ExperimentFile, NuisanceAndInputsAreSampledAfterTheParametersAndUsedLikeThem) {
+  const ExperimentSpec experiment = loadExperiment(
+      kTable1, {"nuisance={bias: {bounds: [-1e-3, 1e-3], unit: m}}", "inputs={k_set: {bounds: [0, 2]}}",
+                "outputs.y.offset=bias", "system.springs[0].stiffness=k_y + k_set"});
+  EXPECT_EQ(collectNames(collectSampled(experiment.model)),
+            (std::vector<std::string>{"d_y", "d_theta", "k_y", "k_theta", "bias", "k_set"}));
+  EXPECT_EQ(collectNames(collectUnknown(experiment.model)).back(), "bias");
+  EXPECT_EQ(countSampled(experiment.model), 6);
+  const std::string resolved = writeExperiment(experiment);
+  EXPECT_EQ(writeExperiment(readExperiment(parseYaml(resolved, "resolved.yaml"))), resolved);
+}
+
+TEST(ExperimentFile, AResolvedTableHoldsWhatWasMeasuredAndWhere) {
+  const std::string measured = "measured: {file: a.csv, column: 'u [V]', sample_rate: 8, start: 0.5}";
+  ExperimentSpec experiment = loadExperiment(kTable1, {"excitation.F.tables=[{" + measured + "}]"});
+  TableSpec& table = experiment.model.excitation[0].tables[0];
+  EXPECT_TRUE(table.times.empty());
+  table.times = {0.0, 0.125, 0.25};
+  table.values = {1.0 / 3.0, 0.1, 1e-17};
+  const std::string resolved = writeExperiment(experiment);
+  const ExperimentSpec again = readExperiment(parseYaml(resolved, "resolved.yaml"));
+  const TableSpec& read = again.model.excitation[0].tables[0];
+  EXPECT_EQ(read.values, table.values);
+  EXPECT_EQ(read.measured->column.text, "u [V]");
+  EXPECT_EQ(writeExperiment(again), resolved);
 }
 
 TEST(ExperimentFile, OverridesReplaceAddAndIndex) {

@@ -47,6 +47,26 @@ TEST(TrajectoryContent, BoundsCountOnlyWhereTheInitialStateIsTheCentresEquilibri
   }
 }
 
+TEST(TrajectoryContent, TheRoleOfAParameterAndTheFileOfATableDoNotCount) {
+  const auto without = [](const std::string& role) {
+    ModelSpec model = loadExperiment(kTable1).model;
+    const ParameterSpec last = model.parameters.back();
+    model.parameters.pop_back();
+    (role == "nuisance" ? model.nuisance : model.inputs).push_back(last);
+    return writeTrajectoryContent(model, makeLayout());
+  };
+  EXPECT_EQ(without("nuisance"), write({}));
+  EXPECT_EQ(without("inputs"), write({}));
+  const std::string table = "times: [0, 1], values: [2, 3]}]";
+  EXPECT_EQ(write({"excitation.F.tables=[{measured: {file: a, column: b, time: t}, " + table}),
+            write({"excitation.F.tables=[{" + table}));
+}
+
+TEST(TrajectoryContent, SensorsCount) {
+  EXPECT_NE(write({"outputs.y.gain=1.01"}), write({}));
+  EXPECT_NE(write({"outputs.y.offset=0.01"}), write({}));
+}
+
 // Users may give names that are keys elsewhere: they must not be taken for descriptions or units.
 TEST(TrajectoryContent, ConstantsOfAnyNameCount) {
   for (const std::string name : {"description", "unit", "max_wall_time"}) {

@@ -1,0 +1,28 @@
+#include "framework/spec/parameter_box.hpp"
+
+namespace twinmap {
+namespace {
+
+void append(const std::vector<ParameterSpec>& more, std::vector<ParameterSpec>& all) {
+  all.insert(all.end(), more.begin(), more.end());
+}
+
+}  // namespace
+
+std::vector<ParameterSpec> collectUnknown(const ModelSpec& model) {
+  std::vector<ParameterSpec> unknown = model.parameters;
+  append(model.nuisance, unknown);
+  return unknown;
+}
+
+std::vector<ParameterSpec> collectSampled(const ModelSpec& model) {
+  std::vector<ParameterSpec> sampled = collectUnknown(model);
+  append(model.inputs, sampled);
+  return sampled;
+}
+
+Eigen::Index countSampled(const ModelSpec& model) {
+  return static_cast<Eigen::Index>(model.parameters.size() + model.nuisance.size() + model.inputs.size());
+}
+
+}  // namespace twinmap
