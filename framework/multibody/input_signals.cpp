@@ -8,7 +8,7 @@ namespace twinmap {
 
 InputSignals calcInputSignals(const ModelSpec& model, const Eigen::VectorXd& times) {
   ModelNumbers numbers(model);
-  numbers.update(calcBoxCenter(model.parameters));
+  numbers.update(calcBoxCenter(collectSampled(model)));
   Excitation excitation(model.excitation);
   excitation.update(numbers.updNumbers());
   const std::vector<double> events = excitation.calcEventTimes(model.simulation.duration);

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "framework/spec/parameter_box.hpp"
+
 namespace twinmap {
 namespace {
 
@@ -13,8 +15,8 @@ void checkFinite(const char* kind, const Name& name, const std::string& unit, do
 
 }  // namespace
 
-ModelNumbers::ModelNumbers(const ModelSpec& model) : model_(model) {
-  for (const ParameterSpec& parameter : model.parameters) {
+ModelNumbers::ModelNumbers(const ModelSpec& model) : model_(model), sampled_(collectSampled(model)) {
+  for (const ParameterSpec& parameter : sampled_) {
     defineName(scope_, parameter.name);
   }
   for (const ConstantSpec& constant : model.constants) {
@@ -23,12 +25,11 @@ ModelNumbers::ModelNumbers(const ModelSpec& model) : model_(model) {
   }
 }
 
-void ModelNumbers::update(const Eigen::Ref<const Eigen::VectorXd>& parameters) {
-  const int count = static_cast<int>(model_.parameters.size());
+void ModelNumbers::update(const Eigen::Ref<const Eigen::VectorXd>& point) {
+  const int count = static_cast<int>(sampled_.size());
   for (int i = 0; i < count; ++i) {
-    const ParameterSpec& spec = model_.parameters[i];
-    checkFinite("parameter", spec.name, spec.unit, parameters[i]);
-    scope_.upd(i) = parameters[i];
+    checkFinite("parameter", sampled_[i].name, sampled_[i].unit, point[i]);
+    scope_.upd(i) = point[i];
   }
   for (std::size_t i = 0; i < constants_.size(); ++i) {
     const double value = constants_[i].calc();

@@ -15,15 +15,16 @@ class ModelNumbers {
   /// constant that does not compile.
   explicit ModelNumbers(const ModelSpec& model);
 
-  /// Sets the parameters (in the model's order) and computes the constants. Throws SimulationFailure for a
-  /// value that is not finite.
-  void update(const Eigen::Ref<const Eigen::VectorXd>& parameters);
+  /// Sets the parameters to a point of the sampled box (collectSampled) and computes the constants. Throws
+  /// SimulationFailure for a value that is not finite.
+  void update(const Eigen::Ref<const Eigen::VectorXd>& point);
 
   const ExpressionScope& getScope() const { return scope_; }
   NumberEvaluator& updNumbers() { return numbers_; }
 
  private:
   const ModelSpec& model_;
+  std::vector<ParameterSpec> sampled_;
   ExpressionScope scope_;
   NumberEvaluator numbers_{scope_};
   std::vector<CompiledExpression> constants_;

@@ -46,22 +46,21 @@ void checkSimulation(const SimulationSpec& simulation) {
 
 void checkShapes(const SharedModel& shared, const Eigen::Ref<const Eigen::MatrixXd>& parameters,
                  const Eigen::Ref<Eigen::MatrixXd>& responses) {
-  const Eigen::Index count = static_cast<Eigen::Index>(shared.model.parameters.size());
-  if (parameters.rows() != count || responses.rows() != shared.layout.getRowCount() ||
+  if (parameters.rows() != countSampled(shared.model) || responses.rows() != shared.layout.getRowCount() ||
       responses.cols() != parameters.cols()) {
     throw std::invalid_argument("MultibodySimulator::simulate: a matrix has the wrong shape");
   }
 }
 
 int findParameter(const ModelSpec& model, const Name& name) {
-  const std::vector<std::string> names = collectNames(model.parameters);
+  const std::vector<std::string> names = collectNames(collectSampled(model));
   requireKnown(name, names, "a parameter");
   return static_cast<int>(std::find(names.begin(), names.end(), name.text) - names.begin());
 }
 
 /// The box centre with the values that replace it; those may use the centre's parameters and constants.
 Eigen::VectorXd calcEquilibriumPoint(ModelContext& context) {
-  Eigen::VectorXd point = calcBoxCenter(context.model.parameters);
+  Eigen::VectorXd point = calcBoxCenter(collectSampled(context.model));
   const std::optional<EquilibriumSpec>& equilibrium = context.model.initial.equilibrium;
   if (equilibrium) {
     for (const NamedExpression& value : equilibrium->parameters) {
@@ -97,7 +96,7 @@ class MultibodySimulator::Impl {
 
   /// Compiles all expressions now, while clones are made one after the other.
   void compileAll() {
-    context_.numbers.update(calcBoxCenter(shared_->model.parameters));
+    context_.numbers.update(calcBoxCenter(collectSampled(shared_->model)));
     buildAtBoxCenter(context_);
   }
 

@@ -61,17 +61,29 @@ Outputs::Outputs(const std::vector<OutputSpec>& outputs, const SystemNames& name
 
 Outputs::Output Outputs::makeOutput(const OutputSpec& spec, const SystemNames& names,
                                     NumberEvaluator& numbers) {
+  const std::string owner = "output '" + spec.name.text + "'";
+  Output output = makeQuantity(spec, names, numbers);
+  const bool has_gain = !spec.gain.text.empty(), has_offset = !spec.offset.text.empty();
+  if (has_gain || has_offset) {
+    output.sensor = {has_gain ? numbers.calc(spec.gain, {owner, "gain", ""}) : 1.0,
+                     has_offset ? numbers.calc(spec.offset, {owner, "offset", findUnit(spec, names)}) : 0.0};
+  }
+  return output;
+}
+
+Outputs::Output Outputs::makeQuantity(const OutputSpec& spec, const SystemNames& names,
+                                      NumberEvaluator& numbers) {
   if (spec.coordinate || spec.speed) {
     const Name& name = spec.coordinate ? *spec.coordinate : *spec.speed;
     const Kind kind = spec.coordinate ? Kind::kCoordinate : Kind::kSpeed;
-    return {kind, names.findCoordinate(name), Station{0, Vec3(0.0)}, Vec3(0.0)};
+    return {kind, names.findCoordinate(name), Station{0, Vec3(0.0)}, Vec3(0.0), {}};
   }
   const StationOutputSpec& at = spec.position   ? *spec.position
                                 : spec.velocity ? *spec.velocity
                                                 : *spec.acceleration;
   const Kind kind = spec.position ? Kind::kPosition : spec.velocity ? Kind::kVelocity : Kind::kAcceleration;
   const std::string owner = "output '" + spec.name.text + "'";
-  return {kind, -1, calcStation(at.station, names, numbers, owner), calcDirection(at, numbers, owner)};
+  return {kind, -1, calcStation(at.station, names, numbers, owner), calcDirection(at, numbers, owner), {}};
 }
 
 void Outputs::calc(LoadedSystem& system, const SimTK::State& state, double t, double* values,
@@ -84,13 +96,16 @@ void Outputs::calc(LoadedSystem& system, const SimTK::State& state, double t, do
   }
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     const Output& output = outputs_[i];
+    const double quantity = output.kind == Kind::kAcceleration
+                                ? calcAcceleration(output, system, state, accelerations)
+                                : calcQuantity(output, system, state);
     values[static_cast<std::ptrdiff_t>(i) * stride] =
-        output.kind == Kind::kAcceleration ? calcAcceleration(output, system, state, accelerations)
-                                           : calcOne(output, system, state);
+        output.sensor ? output.sensor->gain * quantity + output.sensor->offset : quantity;
   }
 }
 
-double Outputs::calcOne(const Output& output, const LoadedSystem& system, const SimTK::State& state) const {
+double Outputs::calcQuantity(const Output& output, const LoadedSystem& system,
+                             const SimTK::State& state) const {
   const BodyTree& tree = system.getTree();
   switch (output.kind) {
     case Kind::kCoordinate:

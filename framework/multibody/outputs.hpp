@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,7 @@ std::vector<std::string> getOutputUnits(const std::vector<OutputSpec>& outputs, 
 /// The outputs of one parameter set.
 class Outputs {
  public:
-  /// Throws SimulationFailure for a direction of no length.
+  /// Throws SimulationFailure for a direction of no length, and a gain or offset that is not finite.
   Outputs(const std::vector<OutputSpec>& outputs, const SystemNames& names, NumberEvaluator& numbers);
 
   /// How far a state must be realized before calc(): Time if only coordinates are measured.
@@ -26,15 +27,20 @@ class Outputs {
 
  private:
   enum class Kind { kCoordinate, kSpeed, kPosition, kVelocity, kAcceleration };
+  struct Sensor {
+    double gain, offset;  ///< the offset in the output's unit
+  };
   struct Output {
     Kind kind;
     int coordinate;
     Station station;
     SimTK::Vec3 direction;
+    std::optional<Sensor> sensor;
   };
 
+  static Output makeQuantity(const OutputSpec& spec, const SystemNames& names, NumberEvaluator& numbers);
   static Output makeOutput(const OutputSpec& spec, const SystemNames& names, NumberEvaluator& numbers);
-  double calcOne(const Output& output, const LoadedSystem& system, const SimTK::State& state) const;
+  double calcQuantity(const Output& output, const LoadedSystem& system, const SimTK::State& state) const;
   double calcAcceleration(const Output& output, const LoadedSystem& system, const SimTK::State& state,
                           const SimTK::Vector_<SimTK::SpatialVec>& accelerations) const;
 

@@ -29,6 +29,8 @@ struct ShapeAt {
                               : elapsed * (chirp.start_frequency + 0.5 * chirp.rate * elapsed);
     return chirp.amplitude * std::sin(kTwoPi * cycles);
   }
+
+  double operator()(const SplineShape& shape) const { return shape.spline->calc(elapsed); }
 };
 
 void checkTables(const SignalSpec& signal) {
@@ -39,6 +41,10 @@ void checkTables(const SignalSpec& signal) {
     }
     if (!std::is_sorted(table.times.begin(), table.times.end())) {
       throw ExperimentError(signal.name.where, signal.name.text, "has a table whose times decrease");
+    }
+    const bool repeats = std::adjacent_find(table.times.begin(), table.times.end()) != table.times.end();
+    if (repeats && table.interpolation == TableInterpolation::kCubic) {
+      throw ExperimentError(signal.name.where, signal.name.text, "has a cubic table with a time given twice");
     }
   }
 }
@@ -58,6 +64,11 @@ Excitation::Excitation(const std::vector<SignalSpec>& signals) : signals_(signal
   for (const SignalSpec& signal : signals) {
     checkTables(signal);
     checkPhases(signal);
+    for (const TableSpec& table : signal.tables) {
+      if (table.interpolation == TableInterpolation::kCubic) {
+        splines_.try_emplace(&table, table.times, table.values);
+      }
+    }
   }
 }
 
@@ -65,7 +76,7 @@ void Excitation::update(NumberEvaluator& numbers) {
   mute();
   terms_.clear();
   for (std::size_t i = 0; i < signals_.size(); ++i) {
-    appendTerms(signals_[i], static_cast<int>(i), numbers, terms_);
+    appendTerms(signals_[i], static_cast<int>(i), splines_, numbers, terms_);
   }
   std::stable_sort(terms_.begin(), terms_.end(),
                    [](const ExcitationTerm& a, const ExcitationTerm& b) { return a.begin < b.begin; });

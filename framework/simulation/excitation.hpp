@@ -1,9 +1,11 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "framework/simulation/cubic_spline.hpp"
 #include "framework/simulation/number_evaluator.hpp"
 #include "framework/spec/excitation_spec.hpp"
 
@@ -30,16 +32,25 @@ struct ChirpShape {
   bool logarithmic;
 };
 
-/// A smooth function that is switched on for begin <= t < end.
+/// (t - begin) -> the spline's value
+struct SplineShape {
+  const CubicSpline* spline;
+};
+
+/// A function, smooth enough to integrate across, that is switched on for begin <= t < end.
 struct ExcitationTerm {
   int signal;
   double begin, end;  ///< s; end may be infinity
-  std::variant<LineShape, ToneShape, ChirpShape> shape;
+  std::variant<LineShape, ToneShape, ChirpShape, SplineShape> shape;
 };
 
+/// The splines of cubic tables, which no parameter changes.
+using TableSplines = std::map<const TableSpec*, CubicSpline>;
+
 /// Excitation signals as sums of smooth terms. Between two successive event times every signal is a smooth
-/// function, so that the right-hand side of an integration never compares times: it is told when a phase
-/// begins, and the signal values it reads may be extended smoothly beyond the phase's end.
+/// function (through the points of a cubic table with two derivatives), so that the right-hand side of an
+/// integration never compares times: it is told when a phase begins, and the signal values it reads may be
+/// extended smoothly beyond the phase's end.
 class Excitation {
  public:
   /// `signals` must outlive the excitation unchanged. Throws ExperimentError for a table whose times decrease
@@ -67,6 +78,7 @@ class Excitation {
 
  private:
   const std::vector<SignalSpec>& signals_;
+  TableSplines splines_;
   std::vector<ExcitationTerm> terms_;  ///< by increasing begin
   std::vector<const ExcitationTerm*> active_;
   std::size_t next_ = 0;  ///< first term not yet switched on

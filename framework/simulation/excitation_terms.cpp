@@ -11,10 +11,12 @@ constexpr double kPi = 3.141592653589793;
 /// Evaluates the numbers of one signal's terms and appends the terms.
 class TermWriter {
  public:
-  TermWriter(const SignalSpec& spec, int signal, NumberEvaluator& numbers, std::vector<ExcitationTerm>& terms)
+  TermWriter(const SignalSpec& spec, int signal, const TableSplines& splines, NumberEvaluator& numbers,
+             std::vector<ExcitationTerm>& terms)
       : owner_("excitation '" + spec.name.text + "'"),
         unit_(spec.unit),
         signal_(signal),
+        splines_(splines),
         numbers_(numbers),
         terms_(terms) {}
 
@@ -49,6 +51,10 @@ class TermWriter {
   }
 
   void add(const TableSpec& table) {
+    if (table.interpolation == TableInterpolation::kCubic) {
+      terms_.push_back({signal_, table.times.front(), table.times.back(), SplineShape{&splines_.at(&table)}});
+      return;
+    }
     for (std::size_t i = 0; i + 1 < table.times.size(); ++i) {
       const double length = table.times[i + 1] - table.times[i];
       const bool hold = table.interpolation == TableInterpolation::kHold;
@@ -88,15 +94,16 @@ class TermWriter {
   std::string owner_;
   const std::string& unit_;
   int signal_;
+  const TableSplines& splines_;
   NumberEvaluator& numbers_;
   std::vector<ExcitationTerm>& terms_;
 };
 
 }  // namespace
 
-void appendTerms(const SignalSpec& spec, int signal, NumberEvaluator& numbers,
+void appendTerms(const SignalSpec& spec, int signal, const TableSplines& splines, NumberEvaluator& numbers,
                  std::vector<ExcitationTerm>& terms) {
-  TermWriter writer(spec, signal, numbers, terms);
+  TermWriter writer(spec, signal, splines, numbers, terms);
   const auto addAll = [&writer](const auto& specs) {
     for (const auto& term : specs) {
       writer.add(term);

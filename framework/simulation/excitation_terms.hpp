@@ -7,8 +7,9 @@
 namespace twinmap {
 
 /// Appends the terms of one signal, evaluated at the current parameter set. A table becomes one line per
-/// interval. Throws SimulationFailure as Excitation::update does.
-void appendTerms(const SignalSpec& spec, int signal, NumberEvaluator& numbers,
+/// interval, a cubic one its spline, which must outlive the terms. Throws SimulationFailure as
+/// Excitation::update does.
+void appendTerms(const SignalSpec& spec, int signal, const TableSplines& splines, NumberEvaluator& numbers,
                  std::vector<ExcitationTerm>& terms);
 
 /// Schroeder's phases -pi k (k - 1) / N, k = 1..N, in rad: a low crest factor for equal amplitudes.

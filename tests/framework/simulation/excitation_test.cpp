@@ -190,6 +190,20 @@ TEST(Excitation, HoldTableKeepsEachValueUntilTheNextTime) {
   EXPECT_EQ(signal.calcAt(3.0), 0.0);
 }
 
+TEST(Excitation, CubicTableIsOnePhase) {
+  SignalSpec spec = makeSignal("F");
+  spec.tables = {{{0.5, 1.0, 3.0, 3.5}, {2.0, 4.0, -2.0, 0.0}, TableInterpolation::kCubic}};
+  const CubicSpline spline(spec.tables[0].times, spec.tables[0].values);
+  OneSignal signal(spec);
+  EXPECT_EQ(signal.get().calcEventTimes(5.0), (std::vector<double>{0.5, 3.5}));
+  EXPECT_EQ(signal.calcAt(0.4), 0.0);
+  EXPECT_EQ(signal.calcAt(0.5), 2.0);
+  EXPECT_EQ(signal.calcAt(2.0), spline.calc(1.5));
+  EXPECT_EQ(signal.calcAt(3.5), 0.0);
+  signal.setParameter(3.0);
+  EXPECT_EQ(signal.calcAt(1.0), 4.0);
+}
+
 TEST(Excitation, SignalsAreSumsOfTheirTermsAndIndependent) {
   std::vector<SignalSpec> signals{makePulse(), makeSignal("M")};
   signals[0].pulses.push_back({ex("1"), ex("0"), ex("1")});
@@ -230,6 +244,8 @@ TEST(Excitation, UnusableNumbersNameTheirSignal) {
 TEST(Excitation, BadTablesAndPhasesAreWrongInput) {
   std::vector<SignalSpec> signals{makeSignal("F")};
   signals[0].tables = {{{0.0, 2.0, 1.0}, {1.0, 1.0, 1.0}, TableInterpolation::kLinear}};
+  EXPECT_THROW(Excitation{signals}, ExperimentError);
+  signals[0].tables = {{{0.0, 1.0, 1.0}, {1.0, 1.0, 1.0}, TableInterpolation::kCubic}};
   EXPECT_THROW(Excitation{signals}, ExperimentError);
   signals[0].tables = {{{0.0, 2.0}, {1.0}, TableInterpolation::kLinear}};
   EXPECT_THROW(Excitation{signals}, ExperimentError);
