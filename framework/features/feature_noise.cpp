@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "framework/features/noise.hpp"
-
 namespace twinmap {
 namespace {
 
@@ -46,7 +44,7 @@ MatrixXd takeFiniteColumns(const MatrixXd& values) {
 
 }  // namespace
 
-FeatureNoise::FeatureNoise(const FeatureExtractor& extractor, const VectorXd& row_stddev, std::uint64_t seed)
+FeatureNoise::FeatureNoise(const FeatureExtractor& extractor, const ResponseNoise& noise, std::uint64_t seed)
     : extractor_(extractor) {
   Index feature = 0;
   for (const auto& block : extractor.getBlocks()) {
@@ -54,13 +52,11 @@ FeatureNoise::FeatureNoise(const FeatureExtractor& extractor, const VectorXd& ro
       (block->findMatrix() != nullptr ? linear_ : nonlinear_).push_back(feature++);
     }
   }
-  const FeatureMatrix matrix =
-      stackMatrices(extractor, row_stddev.size(), static_cast<Index>(linear_.size()));
-  const FeatureMatrix scaled = matrix * row_stddev.asDiagonal();
-  linear_covariance_ = scaled * scaled.transpose();
+  const Index rows = noise.getStddev().size();
+  linear_covariance_ =
+      noise.calcCovariance(stackMatrices(extractor, rows, static_cast<Index>(linear_.size())));
   if (!nonlinear_.empty()) {
-    draws_ = addNoise(MatrixXd::Zero(row_stddev.size(), kDraws), row_stddev,
-                      {seed, RandomPurpose::kNoiseCovariance});
+    draws_ = addNoise(MatrixXd::Zero(rows, kDraws), noise, {seed, RandomPurpose::kNoiseCovariance});
   }
 }
 

@@ -4,22 +4,24 @@
 #include <cstdint>
 
 #include "framework/features/feature_extractor.hpp"
+#include "framework/features/noise.hpp"
 
 namespace twinmap {
 
 /// How the noise of responses propagates into features.
 class FeatureNoise {
  public:
-  /// `row_stddev`: of every row of the response (calcNoiseStddev). `extractor` must outlive the object.
-  FeatureNoise(const FeatureExtractor& extractor, const Eigen::VectorXd& row_stddev, std::uint64_t seed);
+  /// `extractor` must outlive the object.
+  FeatureNoise(const FeatureExtractor& extractor, const ResponseNoise& noise, std::uint64_t seed);
 
   /// Whether the covariance is the same for every response: that of linear features.
   bool isConstant() const { return draws_.cols() == 0; }
 
-  /// Covariance (d x d) of the features of a clean response. Linear features: M diag(row_stddev^2) M',
-  /// exact. The others by Monte Carlo, with the same noise draws for every response: their regression on the
-  /// noise of the linear ones, plus the covariance of what that leaves, so that the whole stays positive
-  /// semi-definite and its linear part exact. Features that noise makes NaN in some draws use the others.
+  /// Covariance (d x d) of the features of a clean response. Linear features: M C M', C the
+  /// covariance of the response's noise, exact. The others by Monte Carlo, with the same noise draws for
+  /// every response: their regression on the noise of the linear ones, plus the covariance of what that
+  /// leaves, so that the whole stays positive semi-definite and its linear part exact. Features that noise
+  /// makes NaN in some draws use the others.
   Eigen::MatrixXd calcCovariance(const Eigen::VectorXd& response) const;
 
   /// The mean over (at most 32 of) the columns of clean responses without NaN.

@@ -5,6 +5,7 @@
 
 #include "framework/spec/check_features.hpp"
 #include "framework/spec/nearest_name.hpp"
+#include "framework/spec/noise_correlation.hpp"
 
 namespace twinmap {
 namespace {
@@ -49,6 +50,7 @@ void checkNoise(const ExperimentSpec& experiment) {
     requireKnown(stddev.name, outputs, "an output");
   }
   checkModesNoise(experiment);
+  checkNoiseCorrelation(experiment);
   if (collectOutputs(experiment.features).empty()) {
     return;
   }

@@ -5,6 +5,7 @@
 
 #include "framework/spec/check_experiment.hpp"
 #include "framework/spec/number_text.hpp"
+#include "framework/spec/parameter_box.hpp"
 
 namespace twinmap {
 namespace {
@@ -114,7 +115,7 @@ std::string findParameter(const Expression& expression, const ModelSpec& model) 
   if (expression.text.empty()) {
     return "";
   }
-  const std::vector<std::string> parameters = collectNames(model.parameters);
+  const std::vector<std::string> parameters = collectNames(collectSampled(model));
   for (const std::string& name : getUsedNames(expression)) {
     if (std::find(parameters.begin(), parameters.end(), name) != parameters.end()) {
       return name;
@@ -134,7 +135,7 @@ void checkKnown(const SignalSpec& signal, const ModelSpec& model) {
     const std::string parameter = findParameter(*expression, model);
     if (!parameter.empty()) {
       throw ExperimentError(expression->where, expression->text,
-                            "depends on the updating parameter '" + parameter +
+                            "depends on the sampled parameter '" + parameter +
                                 "', but the excitation of a frequency_response must be known");
     }
   }

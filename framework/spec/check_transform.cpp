@@ -44,8 +44,10 @@ void checkPrincipalComponents(const PrincipalComponentsSpec& spec, const Progres
                               const SourceLocation& where) {
   const bool automatic = !spec.components.number && !spec.explained_variance;
   if (automatic && !progress.whitened) {
-    throw ExperimentError(where, "principal_components",
-                          "needs components or explained_variance, unless it directly follows whiten");
+    throw ExperimentError(
+        where, "principal_components",
+        "needs components or explained_variance, unless it directly follows whiten (by covariance, "
+        "where the noise is correlated)");
   }
 }
 
@@ -95,7 +97,8 @@ void checkTransform(const ExperimentSpec& experiment) {
   for (const TransformStepSpec& step : experiment.transform) {
     checkStep(step, experiment, progress);
     checkLengthScales(step, experiment.inverse_map.gp.length_scales);
-    progress.whitened = step.whiten.has_value();
+    progress.whitened =
+        step.whiten && (step.whiten->by == WhitenBy::kCovariance || experiment.noise.correlation.empty());
     progress.mixed = progress.mixed || mixes(step);
   }
 }

@@ -63,7 +63,7 @@ class Comparison {
         compareEntry(join(path, entry.key), YamlNode{}, entry.value);
       }
     }
-    const bool ordered = path == "parameters" || path == "outputs";
+    const bool ordered = path == "parameters" || path == "nuisance" || path == "inputs" || path == "outputs";
     if (ordered && differences.size() == found_before && listKeys(before) != listKeys(after)) {
       differences.push_back({path, listKeys(before), listKeys(after)});
     }

@@ -168,11 +168,23 @@ void describe(Fields& f, ModesNoiseSpec& s) {
 }
 
 template <class Fields>
+void describe(Fields& f, NoiseCorrelationSpec& s) {
+  f.optional("autoregression", s.autoregression,
+             "a_i of e_k = a_1 e_{k-1} + a_2 e_{k-2} + ... + white noise");
+  f.optional("values", s.values, "autocorrelation at lags 0, 1, 2 ...: [1, r_1, r_2, ...]; 0 beyond");
+  f.optional("sample_time", s.sample_time, "of a lag; default: spacing of the output's feature times; s",
+             kPositive);
+  f.rule(s.autoregression.empty() != s.values.empty(), "must give exactly one of autoregression, values");
+  f.rule(s.values.empty() || s.values.front() == 1.0, "must give values that begin with 1");
+}
+
+template <class Fields>
 void describe(Fields& f, NoiseSpec& s) {
   f.optional("scale", s.scale, "multiplies every stddev", kNonNegative);
   f.optional("replicates", s.replicates,
              "noise draws per training simulation (default: 4, fewer for more than 500 samples)", kCount);
   f.optionalMap("stddev", s.stddev, "standard deviation of each output's noise, in the output's unit");
+  f.optionalMap("correlation", s.correlation, "of outputs whose noise is not white");
   f.optional("modes", s.modes, "of natural frequencies and damping ratios, where modes are features");
 }
 

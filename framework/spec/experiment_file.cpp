@@ -5,6 +5,7 @@
 #include "framework/spec/check_experiment.hpp"
 #include "framework/spec/describe_experiment.hpp"
 #include "framework/spec/describe_sweep.hpp"
+#include "framework/spec/noise_correlation.hpp"
 #include "framework/spec/overrides.hpp"
 #include "framework/spec/read_value.hpp"
 #include "framework/spec/swept_keys.hpp"
@@ -34,9 +35,11 @@ void resolveDefaults(ExperimentSpec& experiment) {
   }
   if (experiment.transform.empty()) {
     experiment.transform.resize(2);
-    experiment.transform[0].whiten.emplace();
+    const bool correlated = !experiment.noise.correlation.empty();
+    experiment.transform[0].whiten = WhitenSpec{correlated ? WhitenBy::kCovariance : WhitenBy::kStddev};
     experiment.transform[1].principal_components.emplace();
   }
+  resolveNoiseCorrelation(experiment);
   for (FeatureSpec& feature : experiment.features) {
     if (feature.extrema) {
       resolveProminence(experiment.noise, *feature.extrema);

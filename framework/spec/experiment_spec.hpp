@@ -88,7 +88,7 @@ struct ModesNoiseSpec {
   double damping_ratio = 0.0;  ///< standard deviation
 };
 
-/// Independent normal noise on every sample of every output, in training and test alike.
+/// Normal noise on every sample of every output, independent unless correlated, in training and test alike.
 struct NoiseSpec {
   double scale = 1.0;             ///< multiplies every stddev
   std::optional<int> replicates;  ///< noise draws per training simulation; default 4, fewer for many samples

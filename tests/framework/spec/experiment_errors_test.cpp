@@ -125,6 +125,24 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"TwoOutputsInOne", "outputs.y={coordinate: y, speed: y}", {"outputs.y", "exactly one"}},
         Mistake{"NoiseMissing", "noise.stddev={y: 1}", {"outputs.theta", "has no noise"}},
         Mistake{"NoiseOfNothing", "noise.stddev.z=1", {"noise.stddev.z", "is not an output"}},
+        Mistake{"CorrelationOfNothing",
+                "noise.correlation={yy: {values: [1]}}",
+                {"noise.correlation.yy", "is not an output", "did you mean 'y'?"}},
+        Mistake{"CorrelationOfBothKinds",
+                "noise.correlation={y: {values: [1], autoregression: [0.1]}}",
+                {"noise.correlation.y", "exactly one of autoregression, values"}},
+        Mistake{"AutocorrelationOfAnotherVariance",
+                "noise.correlation={y: {values: [2, 1]}}",
+                {"noise.correlation.y", "begin with 1"}},
+        Mistake{"ImpossibleAutocorrelation",
+                "noise.correlation={y: {values: [1, 0.6]}}",
+                {"noise.correlation.y", "not positive definite"}},
+        Mistake{"UnstableAutoregression",
+                "noise.correlation={y: {autoregression: [0.5, 0.6]}}",
+                {"noise.correlation.y", "not stationary"}},
+        Mistake{"FeaturesOffTheGridOfTheNoise",
+                "noise.correlation={y: {autoregression: [0.5], sample_time: 0.03}}",
+                {"noise.correlation.y", "not multiples of sample_time apart"}},
         Mistake{"FeaturesBeyondTheEnd",
                 "features[0].samples.count=101",
                 {"features[0].samples", "simulation.duration is 5 s"}},
@@ -241,7 +259,7 @@ TEST(ExperimentErrors, AnExcitationThatDependsOnAParameterHasNoFrequencyResponse
   } catch (const ExperimentError& error) {
     const std::string message = error.what();
     EXPECT_NE(
-        message.find("excitation.F.pulses[0].amplitude: 'force' depends on the updating parameter 'k_y'"),
+        message.find("excitation.F.pulses[0].amplitude: 'force' depends on the sampled parameter 'k_y'"),
         std::string::npos)
         << message;
   }

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "framework/spec/experiment_spec.hpp"
+
+namespace twinmap {
+
+/// Whether e_k = a_1 e_{k-1} + ... + a_p e_{k-p} + w_k is stationary: the roots of z^p - a_1 z^{p-1} - ...
+/// lie within the unit circle, by the reflection coefficients of Levinson's recursion taken backwards.
+bool isStationary(const std::vector<double>& autoregression);
+
+/// The autocorrelation of the noise at lags 0 .. lags. Of a stationary autoregression it follows from the
+/// Yule-Walker equations. Cost: p^3 + p lags.
+Eigen::VectorXd calcAutocorrelation(const NoiseCorrelationSpec& spec, Eigen::Index lags);
+
+/// Whether the Toeplitz matrix of an autocorrelation is positive definite, by Levinson and Durbin's
+/// recursion. Cost: n^2.
+bool isPositiveDefinite(const Eigen::VectorXd& autocorrelation);
+
+}  // namespace twinmap
