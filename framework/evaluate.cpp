@@ -22,13 +22,12 @@ const std::vector<ParameterSpec>& getParameters(const EvaluationContext& context
 }
 
 std::vector<LocalModel> calcTestModels(const EvaluationContext& context) {
-  const Eigen::MatrixXd& points = context.samples.test.parameters;
+  const Eigen::MatrixXd points = context.samples.test.collectPoints();
   if (context.neighbourhoods == nullptr) {
-    return calcLocalModels(context.simulator, context.extractor, getParameters(context), points,
-                           context.threads);
+    return calcLocalModels(context.simulator, context.extractor, context.unknown, points, context.threads);
   }
-  return calcStoredLocalModels(*context.neighbourhoods, context.simulator, context.extractor,
-                               getParameters(context), points, context.threads);
+  return calcStoredLocalModels(*context.neighbourhoods, context.simulator, context.extractor, context.unknown,
+                               points, context.threads);
 }
 
 void addLimit(const EvaluationContext& context, RunSummary& run) {
@@ -47,6 +46,13 @@ void addLimit(const EvaluationContext& context, RunSummary& run) {
   }
 }
 
+/// The posterior of the first `count` parameters, those that are inferred.
+ExactPosterior takeUpdating(ExactPosterior posterior, Index count) {
+  posterior.mean.conservativeResize(count);
+  posterior.stddev.conservativeResize(count);
+  return posterior;
+}
+
 void addPosteriors(const EvaluationContext& context, RunSummary& run) {
   const PosteriorSpec& spec = *context.experiment.evaluation.posterior;
   const LabelledFeatures& test = context.samples.test;
@@ -54,13 +60,13 @@ void addPosteriors(const EvaluationContext& context, RunSummary& run) {
   const std::vector<ExactPosterior> exact =
       timeStage(fmt::format("exact posterior of {} test samples", count), run.times, [&] {
         return calcExactPosteriors(context.simulator, context.extractor, NoiseWhitener(test.noise_covariance),
-                                   getParameters(context), test.features.leftCols(count),
-                                   test.parameters.leftCols(count), context.threads,
+                                   context.unknown, test.features.leftCols(count),
+                                   test.collectUnknown().leftCols(count), test.inputs, context.threads,
                                    {spec.draws, context.experiment.seed});
       });
   for (Index i = 0; i < count; ++i) {
-    run.posteriors.push_back({run.test_indices[i], exact[i], run.predictions.mean.col(i),
-                              run.predictions.stddev.col(i),
+    run.posteriors.push_back({run.test_indices[i], takeUpdating(exact[i], test.parameters.rows()),
+                              run.predictions.mean.col(i), run.predictions.stddev.col(i),
                               run.limit_stddev.cols() > 0 ? VectorXd(run.limit_stddev.col(i)) : VectorXd()});
     if (!exact[i].warning.empty()) {
       run.warnings.push_back(
@@ -78,20 +84,21 @@ BaselineSummary summarize(const EvaluationContext& context, const BaselineResult
 /// The map on the same first samples.
 BaselineResult runMap(const EvaluationContext& context, int samples) {
   BaselineResult result{"map", samples, {}};
-  const Eigen::MatrixXd features = context.samples.test.features.leftCols(samples);
+  const LabelledFeatures& test = context.samples.test;
+  const Eigen::MatrixXd features = test.features.leftCols(samples), inputs = test.inputs.leftCols(samples);
   const auto start = std::chrono::steady_clock::now();
   for (Index i = 0; i < samples; ++i) {
-    context.map.predict(features.col(i));
+    context.map.predict(features.col(i), inputs.col(i));
   }
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  result.predictions = context.map.predict(features);
+  result.predictions = context.map.predict(features, inputs);
   result.seconds_per_update = elapsed.count() / samples;
   return result;
 }
 
 void addBaselines(const EvaluationContext& context, RunSummary& run) {
-  const BaselineContext baseline{context.simulator, context.extractor, context.map.transform,
-                                 getParameters(context), context.threads};
+  const BaselineContext baseline{context.simulator,      context.extractor, context.map.transform,
+                                 getParameters(context), context.unknown,   context.threads};
   int compared = 0;  // samples of the map's own row before
   for (const BaselineSpec& spec : context.experiment.evaluation.baselines) {
     const BaselineResult result = timeStage("baseline", run.times, [&] {
@@ -129,8 +136,8 @@ void evaluate(const EvaluationContext& context, RunSummary& run) {
   const EvaluationSpec& spec = context.experiment.evaluation;
   const LabelledFeatures& test = context.samples.test;
   run.truth = test.parameters;
-  run.predictions =
-      timeStage("infer the test samples", run.times, [&] { return context.map.predict(test.features); });
+  run.predictions = timeStage("infer the test samples", run.times,
+                              [&] { return context.map.predict(test.features, test.inputs); });
   if (hasInformationLimit(context.experiment, test)) {
     addLimit(context, run);
   } else if (spec.limit) {

@@ -11,6 +11,7 @@ namespace twinmap {
 /// What the evaluation of a map looks at.
 struct EvaluationContext {
   const ExperimentSpec& experiment;
+  const std::vector<ParameterSpec>& unknown;  ///< collectUnknown
   const Simulator& simulator;
   const FeatureExtractor& extractor;
   const FeatureNoise& noise;

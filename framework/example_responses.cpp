@@ -25,30 +25,44 @@ std::vector<Eigen::Index> sortByError(const RunSummary& run) {
   return order;
 }
 
+/// Of each sample the nominal, then the updated parameters; nuisance and inputs are the sample's own.
+Eigen::MatrixXd makeExamplePoints(const ExperimentSpec& experiment, const Trajectories& test,
+                                  const std::vector<Eigen::Index>& shown, const RunSummary& run) {
+  const Eigen::Index p = run.truth.rows();
+  Eigen::MatrixXd points(test.parameters.rows(), 2 * shown.size());
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    auto both = points.middleCols(static_cast<Eigen::Index>(2 * i), 2);
+    both.colwise() = test.parameters.col(run.test_indices[static_cast<std::size_t>(shown[i])]);
+    both.topRows(p) << calcBoxCenter(experiment.model.parameters), run.predictions.mean.col(shown[i]);
+  }
+  return points;
+}
+
 }  // namespace
 
 void writeExampleResponses(const ExperimentSpec& experiment, const SimulatedSets& sets,
                            const Simulator& simulator, const RunOptions& options, RunSummary& run) {
   const std::vector<Eigen::Index> order = sortByError(run);
   const std::vector<Eigen::Index> shown{order.front(), order[order.size() / 2], order.back()};
-  Eigen::MatrixXd points(run.truth.rows(), 4);
-  points << calcBoxCenter(experiment.model.parameters), run.predictions.mean(Eigen::all, shown);
+  const Eigen::MatrixXd points = makeExamplePoints(experiment, sets.test, shown, run);
   GeneratorOptions generator;
   generator.threads = options.threads;
   const Trajectories models = timeStage("simulate updated models", run.times,
                                         [&] { return generateSamples(simulator, points, generator); });
 
-  const Eigen::VectorXd stddev = calcNoiseStddev(experiment.noise, sets.test.layout);
+  const ResponseNoise noise(experiment.noise, sets.test.layout);
   const Eigen::MatrixXd measured =
-      addNoise(sets.test.responses, stddev, {experiment.seed, RandomPurpose::kTestNoise});
+      addNoise(sets.test.responses, noise, {experiment.seed, RandomPurpose::kTestNoise});
   const std::vector<std::string> names{"best", "median", "worst"};
   std::vector<ExampleResponse> examples;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const int sample = run.test_indices[static_cast<std::size_t>(shown[i])];
-    examples.push_back({names[i], sample, measured.col(sample), models.responses.col(0),
-                        models.responses.col(static_cast<Eigen::Index>(i) + 1)});
+    examples.push_back({names[i], sample, measured.col(sample),
+                        models.responses.col(static_cast<Eigen::Index>(2 * i)),
+                        models.responses.col(static_cast<Eigen::Index>(2 * i + 1))});
   }
-  writeTextFile(options.folder / "responses.csv", makeResponsesCsv(examples, sets.test.layout, stddev));
+  writeTextFile(options.folder / "responses.csv",
+                makeResponsesCsv(examples, sets.test.layout, noise.getStddev()));
 }
 
 }  // namespace twinmap

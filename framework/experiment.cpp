@@ -17,6 +17,7 @@
 #include "framework/run_log.hpp"
 #include "framework/spec/check_experiment.hpp"
 #include "framework/spec/experiment_file.hpp"
+#include "framework/spec/parameter_box.hpp"
 #include "framework/stage_timer.hpp"
 #include "framework/store/atomic_file.hpp"
 #include "framework/store/folder_lock.hpp"
@@ -33,6 +34,7 @@ RunSummary startSummary(const ExperimentSpec& experiment) {
   run.name = experiment.name.text;
   run.description = experiment.description;
   run.parameters = experiment.model.parameters;
+  run.sampled = collectSampled(experiment.model);
   run.train_samples = experiment.design.train.samples;
   run.test_samples = experiment.design.test.samples;
   const std::vector<std::string> names = collectNames(experiment.model.parameters);
@@ -109,7 +111,7 @@ GpMap trainMap(const ExperimentSpec& experiment, const LabelledFeatures& trainin
   const std::vector<std::string> parameter_names = collectNames(experiment.model.parameters);
   const GpMapTraining trained = timeStage("train the inverse map", run.times, [&] {
     return trainGpMap(experiment.inverse_map.gp, experiment.transform, parameter_names, training,
-                      options.threads);
+                      options.threads, experiment.model.inputs);
   });
   run.warnings = trained.warnings;
   run.leave_one_out = calcMetrics(experiment.model.parameters, training.parameters, trained.leave_one_out, {},
@@ -119,8 +121,8 @@ GpMap trainMap(const ExperimentSpec& experiment, const LabelledFeatures& trainin
   for (const Process& process : trained.map.processes) {
     run.nlml.push_back(getNlml(process));
   }
-  writeMapsFile(options.folder / "maps.h5",
-                {experiment.model.parameters, collectNames(training.infos), trained.map});
+  writeMapsFile(options.folder / "maps.h5", {experiment.model.parameters, collectNames(training.infos),
+                                             trained.map, experiment.model.inputs});
   return trained.map;
 }
 
@@ -146,7 +148,7 @@ RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& opt
   recordFailures(experiment, sets, options, run);
   run.test_indices = findSuccessful(sets.test);
 
-  const FeatureNoise noise(extractor, calcNoiseStddev(experiment.noise, simulator.getLayout()),
+  const FeatureNoise noise(extractor, ResponseNoise(experiment.noise, simulator.getLayout()),
                            experiment.seed);
   LabelledSets labelled = makeLabelledSets(experiment, sets, extractor, noise);
   labelled.train.sensitivities =
@@ -154,7 +156,9 @@ RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& opt
 
   const GpMap map = trainMap(experiment, labelled.train, options, run);
   const auto neighbourhoods = openOwnNeighbourhoods(experiment, simulator, options);
-  evaluate({experiment, simulator, extractor, noise, labelled, map, neighbourhoods.get(), options.threads},
+  const std::vector<ParameterSpec> unknown = collectUnknown(experiment.model);
+  evaluate({experiment, unknown, simulator, extractor, noise, labelled, map, neighbourhoods.get(),
+            options.threads},
            run);
   writeExampleResponses(experiment, sets, simulator, options, run);
   timeOnlineUpdates(map, labelled.test, run);

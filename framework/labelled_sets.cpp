@@ -6,14 +6,15 @@
 
 #include "framework/features/noise.hpp"
 #include "framework/sensitivity/feature_sensitivities.hpp"
+#include "framework/spec/parameter_box.hpp"
 
 namespace twinmap {
 namespace {
 
 /// The features of one draw of the noise; all samples take part, so that none changes another's noise.
 Eigen::MatrixXd drawFeatures(const Trajectories& trajectories, const FeatureExtractor& extractor,
-                             const Eigen::VectorXd& row_stddev, const RandomStream& random, int replicate) {
-  return extractor.extract(addNoise(trajectories.responses, row_stddev, random, replicate));
+                             const ResponseNoise& noise, const RandomStream& random, int replicate) {
+  return extractor.extract(addNoise(trajectories.responses, noise, random, replicate));
 }
 
 /// Fails the samples that are ok and lack a feature; `where` completes the reason.
@@ -28,19 +29,27 @@ void failWhereMissing(const Eigen::MatrixXd& features, const std::vector<Feature
   }
 }
 
-void failIncomplete(const FeatureExtractor& extractor, const Eigen::VectorXd& row_stddev,
-                    const RandomStream& random, int replicates, Trajectories& trajectories) {
+void failIncomplete(const FeatureExtractor& extractor, const ResponseNoise& noise, const RandomStream& random,
+                    int replicates, Trajectories& trajectories) {
   failWhereMissing(extractor.extract(trajectories.responses), extractor.getInfos(), "response",
                    trajectories.statuses);
   for (int r = 0; r < replicates; ++r) {
-    failWhereMissing(drawFeatures(trajectories, extractor, row_stddev, random, r), extractor.getInfos(),
+    failWhereMissing(drawFeatures(trajectories, extractor, noise, random, r), extractor.getInfos(),
                      "response with noise (draw " + std::to_string(r + 1) + ")", trajectories.statuses);
   }
 }
 
-LabelledFeatures makeLabelledFeatures(const Trajectories& trajectories, const FeatureExtractor& extractor,
-                                      const Eigen::VectorXd& row_stddev, const RandomStream& random,
-                                      int replicates) {
+/// Splits points of the sampled box by the role of each parameter.
+void setPoints(const ModelSpec& model, const Eigen::MatrixXd& points, LabelledFeatures& labelled) {
+  const auto p = static_cast<Eigen::Index>(model.parameters.size());
+  labelled.parameters = points.topRows(p);
+  labelled.nuisance = points.middleRows(p, static_cast<Eigen::Index>(model.nuisance.size()));
+  labelled.inputs = points.bottomRows(static_cast<Eigen::Index>(model.inputs.size()));
+}
+
+LabelledFeatures makeLabelledFeatures(const ModelSpec& model, const Trajectories& trajectories,
+                                      const FeatureExtractor& extractor, const ResponseNoise& noise,
+                                      const RandomStream& random, int replicates) {
   const std::vector<int> samples = findSuccessful(trajectories);
   const auto count = static_cast<Eigen::Index>(samples.size());
   LabelledFeatures labelled;
@@ -48,10 +57,10 @@ LabelledFeatures makeLabelledFeatures(const Trajectories& trajectories, const Fe
   labelled.features.resize(extractor.getFeatureCount(), count * replicates);
   for (int r = 0; r < replicates; ++r) {
     labelled.features.middleCols(r * count, count) =
-        drawFeatures(trajectories, extractor, row_stddev, random, r)(Eigen::all, samples);
+        drawFeatures(trajectories, extractor, noise, random, r)(Eigen::all, samples);
   }
-  labelled.parameters =
-      Eigen::MatrixXd(trajectories.parameters(Eigen::all, samples)).replicate(1, replicates);
+  setPoints(model, Eigen::MatrixXd(trajectories.parameters(Eigen::all, samples)).replicate(1, replicates),
+            labelled);
   labelled.replicates = replicates;
   return labelled;
 }
@@ -63,20 +72,20 @@ void failIncompleteSamples(const ExperimentSpec& experiment, const FeatureExtrac
   if (extractor.isLinear()) {
     return;
   }
-  const Eigen::VectorXd row_stddev = calcNoiseStddev(experiment.noise, sets.train.layout);
-  failIncomplete(extractor, row_stddev, {experiment.seed, RandomPurpose::kTrainNoise},
+  const ResponseNoise response_noise(experiment.noise, sets.train.layout);
+  failIncomplete(extractor, response_noise, {experiment.seed, RandomPurpose::kTrainNoise},
                  experiment.noise.replicates.value_or(1), sets.train);
-  failIncomplete(extractor, row_stddev, {experiment.seed, RandomPurpose::kTestNoise}, 1, sets.test);
+  failIncomplete(extractor, response_noise, {experiment.seed, RandomPurpose::kTestNoise}, 1, sets.test);
 }
 
 LabelledSets makeLabelledSets(const ExperimentSpec& experiment, const SimulatedSets& sets,
                               const FeatureExtractor& extractor, const FeatureNoise& noise) {
-  const Eigen::VectorXd row_stddev = calcNoiseStddev(experiment.noise, sets.train.layout);
-  LabelledSets labelled{
-      makeLabelledFeatures(sets.train, extractor, row_stddev, {experiment.seed, RandomPurpose::kTrainNoise},
-                           experiment.noise.replicates.value_or(1)),
-      makeLabelledFeatures(sets.test, extractor, row_stddev, {experiment.seed, RandomPurpose::kTestNoise},
-                           1)};
+  const ResponseNoise response_noise(experiment.noise, sets.train.layout);
+  LabelledSets labelled{makeLabelledFeatures(experiment.model, sets.train, extractor, response_noise,
+                                             {experiment.seed, RandomPurpose::kTrainNoise},
+                                             experiment.noise.replicates.value_or(1)),
+                        makeLabelledFeatures(experiment.model, sets.test, extractor, response_noise,
+                                             {experiment.seed, RandomPurpose::kTestNoise}, 1)};
   labelled.train.noise_covariance =
       noise.calcMeanCovariance(sets.train.responses(Eigen::all, findSuccessful(sets.train)));
   labelled.test.noise_covariance = labelled.train.noise_covariance;
@@ -96,7 +105,7 @@ std::vector<Eigen::MatrixXd> calcTrainingSensitivities(const ExperimentSpec& exp
   std::vector<int> samples = findSuccessful(train);
   samples.resize(std::min(samples.size(), kPoints));
   std::vector<Eigen::MatrixXd> sensitivities;
-  for (const LocalModel& local : calcLocalModels(simulator, extractor, experiment.model.parameters,
+  for (const LocalModel& local : calcLocalModels(simulator, extractor, collectUnknown(experiment.model),
                                                  train.parameters(Eigen::all, samples), threads)) {
     if (local.status.ok) {
       sensitivities.push_back(local.sensitivities);

@@ -11,7 +11,7 @@ void timeOnlineUpdates(const GpMap& map, const LabelledFeatures& testing, RunSum
   std::vector<double> microseconds;
   for (Eigen::Index i = 0; i < updates; ++i) {
     const auto start = std::chrono::steady_clock::now();
-    const Predictions inferred = map.predict(testing.features.col(i));
+    const Predictions inferred = map.predict(testing.features.col(i), testing.inputs.col(i));
     const std::chrono::duration<double, std::micro> elapsed = std::chrono::steady_clock::now() - start;
     microseconds.push_back(elapsed.count());
   }

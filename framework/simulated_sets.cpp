@@ -9,6 +9,7 @@
 #include "framework/interrupted.hpp"
 #include "framework/report/tables.hpp"
 #include "framework/simulate_missing.hpp"
+#include "framework/spec/parameter_box.hpp"
 #include "framework/stage_timer.hpp"
 #include "framework/store/atomic_file.hpp"
 #include "framework/store/samples_file.hpp"
@@ -103,8 +104,7 @@ void logSetAside(const TrajectoryStore& store) {
 
 std::unique_ptr<TrajectoryStore> openStore(const ModelSpec& model, const ResponseLayout& layout,
                                            const fs::path& root) {
-  auto store = std::make_unique<TrajectoryStore>(root, writeStoreContent(model, layout),
-                                                 static_cast<Eigen::Index>(model.parameters.size()),
+  auto store = std::make_unique<TrajectoryStore>(root, writeStoreContent(model, layout), countSampled(model),
                                                  layout.getRowCount());
   logSetAside(*store);
   return store;
@@ -112,9 +112,9 @@ std::unique_ptr<TrajectoryStore> openStore(const ModelSpec& model, const Respons
 
 SimulatedSets simulateSets(const ExperimentSpec& experiment, const SampleSource& source,
                            const ResponseLayout& layout, const RunOptions& options, RunSummary& run) {
-  const std::vector<ParameterSpec>& parameters = experiment.model.parameters;
+  const std::vector<ParameterSpec> sampled = collectSampled(experiment.model);
   const auto simulate = [&](const std::string& set, const PointSetSpec& design, RandomPurpose purpose) {
-    const Eigen::MatrixXd points = samplePoints(design, parameters, experiment.seed, purpose);
+    const Eigen::MatrixXd points = samplePoints(design, sampled, experiment.seed, purpose);
     return selectRows(simulateSet(set, points, source, options, run), layout);
   };
   SimulatedSets sets{simulate("train", experiment.design.train, RandomPurpose::kTrainDesign),

@@ -24,10 +24,11 @@ std::string writeBounds(const std::vector<ParameterSpec>& parameters) {
 std::unique_ptr<TrajectoryStore> openNeighbourhoodStore(const ModelSpec& model, const Simulator& simulator,
                                                         const std::filesystem::path& root,
                                                         StoreAccess access) {
-  const ResponseLayout layout = NeighbourhoodSimulator(simulator, model.parameters).getLayout();
+  const std::vector<ParameterSpec> unknown = collectUnknown(model);
+  const ResponseLayout layout = NeighbourhoodSimulator(simulator, unknown).getLayout();
   auto store = std::make_unique<TrajectoryStore>(
-      root, writeStoreContent(model, simulator.getLayout()) + writeBounds(model.parameters),
-      static_cast<Eigen::Index>(model.parameters.size()), layout.getRowCount(), access);
+      root, writeStoreContent(model, simulator.getLayout()) + writeBounds(unknown), countSampled(model),
+      layout.getRowCount(), access);
   logSetAside(*store);
   return store;
 }

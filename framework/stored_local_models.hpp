@@ -8,7 +8,8 @@
 
 namespace twinmap {
 
-/// The store of the neighbourhoods (NeighbourhoodSimulator) of a model's points, in the folder `root`.
+/// The store of the neighbourhoods (NeighbourhoodSimulator) of a model's points, for derivatives to its
+/// unknown parameters, in the folder `root`.
 std::unique_ptr<TrajectoryStore> openNeighbourhoodStore(const ModelSpec& model, const Simulator& simulator,
                                                         const std::filesystem::path& root,
                                                         StoreAccess access = StoreAccess::kReadWrite);

@@ -48,7 +48,7 @@ void addSimulate(CLI::App& app, twinmap::SimulateArguments& arguments) {
   CLI::App* command = app.add_subcommand(
       "simulate",
       "Simulate once and write the outputs at the features' times, and modes, as CSV. The parameters are at "
-      "the centre of their bounds, unless given as parameters.NAME=VALUE");
+      "the centre of their bounds, unless given as parameters.NAME=VALUE (nuisance.NAME, inputs.NAME)");
   addExperiment(*command, arguments.experiment);
   command->add_option("--csv", arguments.csv, "Write to this file instead of the standard output")
       ->type_name("OUT");

@@ -15,28 +15,35 @@
 namespace twinmap {
 namespace {
 
-/// A parameter's value for this simulation: "parameters.k_y=7.5".
+/// A sampled parameter's value for this simulation: "parameters.k_y=7.5".
 struct ParameterValue {
   Name name;
   double value;
 };
 
+/// The name of a parameter that "parameters.NAME", "nuisance.NAME" or "inputs.NAME" sets; else "".
+std::string findParameterName(const std::string& key) {
+  for (const std::string prefix : {"parameters.", "nuisance.", "inputs."}) {
+    if (key.rfind(prefix, 0) == 0 && key.find_first_of(".[", prefix.size()) == std::string::npos) {
+      return key.substr(prefix.size());
+    }
+  }
+  return "";
+}
+
 /// Takes the parameter values out of the overrides.
 std::vector<ParameterValue> takeParameterValues(std::vector<std::string>& overrides) {
-  const std::string prefix = "parameters.";
   std::vector<ParameterValue> values;
   std::vector<std::string> others;
   for (const std::string& text : overrides) {
     const std::size_t equals = text.find('=');
     const std::string key = text.substr(0, equals);
-    const std::string name = key.substr(std::min(prefix.size(), key.size()));
-    const bool is_value = text.rfind(prefix, 0) == 0 && equals != std::string::npos &&
-                          name.find_first_of(".[") == std::string::npos;
-    if (!is_value) {
+    const std::string name = equals == std::string::npos ? "" : findParameterName(key);
+    if (name.empty()) {
       others.push_back(text);
       continue;
     }
-    const SourceLocation where{"command line", 0, 0, prefix + name};
+    const SourceLocation where{"command line", 0, 0, key};
     double value = 0.0;
     if (!parseLiteral(text.substr(equals + 1), value)) {
       throw ExperimentError(where, text.substr(equals + 1), "must be a number");
@@ -48,8 +55,9 @@ std::vector<ParameterValue> takeParameterValues(std::vector<std::string>& overri
 }
 
 Eigen::VectorXd makePoint(const ModelSpec& model, const std::vector<ParameterValue>& values) {
-  const std::vector<std::string> names = collectNames(model.parameters);
-  Eigen::VectorXd point = calcBoxCenter(model.parameters);
+  const std::vector<ParameterSpec> sampled = collectSampled(model);
+  const std::vector<std::string> names = collectNames(sampled);
+  Eigen::VectorXd point = calcBoxCenter(sampled);
   for (const ParameterValue& given : values) {
     requireKnown(given.name, names, "a parameter");
     point[std::find(names.begin(), names.end(), given.name.text) - names.begin()] = given.value;
@@ -106,7 +114,7 @@ void simulate(const SimulateArguments& arguments) {
     throw std::runtime_error("the simulation failed: " + status.reason);
   }
   if (arguments.noise) {
-    response = addNoise(response, calcNoiseStddev(experiment.noise, simulator.getLayout()),
+    response = addNoise(response, ResponseNoise(experiment.noise, simulator.getLayout()),
                         RandomStream(experiment.seed, RandomPurpose::kSingleNoise));
   }
   const std::string csv = makeCsv(simulator.getLayout(), response);

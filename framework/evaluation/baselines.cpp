@@ -25,11 +25,11 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// The training parameters whose features are nearest in units of noise.
+/// The unknown of the training sample whose features are nearest in units of noise.
 VectorXd findNearest(const NoiseWhitener& noise, const LabelledFeatures& train, const VectorXd& measured) {
   Index nearest = 0;
   noise.apply(train.features.colwise() - measured).colwise().squaredNorm().minCoeff(&nearest);
-  return train.parameters.col(nearest);
+  return train.collectUnknown().col(nearest);
 }
 
 BaselineResult runPriorMean(const BaselineContext& context, const LabelledFeatures& test) {
@@ -42,7 +42,7 @@ BaselineResult runLinearRegression(const BaselineContext& context, const Labelle
   const LinearMap map = trainLinearMap(context.transform, train);
   const auto samples = static_cast<int>(test.features.cols());
   const Stopwatch stopwatch;
-  BaselineResult result{"linear_regression", samples, map.predict(test.features)};
+  BaselineResult result{"linear_regression", samples, map.predict(test.features, test.inputs)};
   result.seconds_per_update = stopwatch.getSeconds() / samples;
   return result;
 }
@@ -50,10 +50,10 @@ BaselineResult runLinearRegression(const BaselineContext& context, const Labelle
 BaselineResult runLeastSquares(const LeastSquaresSpec& spec, const BaselineContext& context,
                                const LabelledFeatures& train, const LabelledFeatures& test) {
   const NoiseWhitener noise(test.noise_covariance);
-  const VectorXd widths = calcWidths(context.parameters), center = calcBoxCenter(context.parameters);
+  const VectorXd widths = calcWidths(context.parameters), center = calcBoxCenter(context.unknown);
+  const Index p = widths.size();
   const int samples = std::min(spec.samples, static_cast<int>(test.features.cols()));
-  BaselineResult result{
-      "least_squares", samples, {MatrixXd(widths.size(), samples), MatrixXd(widths.size(), samples)}};
+  BaselineResult result{"least_squares", samples, {MatrixXd(p, samples), MatrixXd(p, samples)}};
   VectorXd seconds(samples);
   std::vector<char> converged(samples);
   runOnTeam(context.simulator, samples, context.threads, [&](Simulator& simulator, int i) {
@@ -61,11 +61,13 @@ BaselineResult runLeastSquares(const LeastSquaresSpec& spec, const BaselineConte
     const VectorXd measured = test.features.col(i);
     const VectorXd start =
         spec.start == LeastSquaresStart::kBoxCenter ? center : findNearest(noise, train, measured);
-    const LeastSquaresFit fit = fitLeastSquares(
-        simulator, {context.extractor, noise, context.parameters, measured}, start, spec.max_simulations);
-    result.predictions.mean.col(i) = fit.parameters;
+    const VectorXd inputs = test.inputs.rows() > 0 ? VectorXd(test.inputs.col(i)) : VectorXd();
+    const LeastSquaresFit fit =
+        fitLeastSquares(simulator, {context.extractor, noise, context.unknown, measured, inputs}, start,
+                        spec.max_simulations);
+    result.predictions.mean.col(i) = fit.parameters.head(p);
     result.predictions.stddev.col(i) =
-        calcLimitCovariance(fit.information).diagonal().cwiseSqrt().cwiseProduct(widths);
+        calcLimitCovariance(fit.information).diagonal().head(p).cwiseSqrt().cwiseProduct(widths);
     converged[i] = fit.converged;
     seconds[i] = stopwatch.getSeconds();
   });

@@ -28,14 +28,16 @@ Predictions predictPriorMean(const std::vector<ParameterSpec>& parameters, Eigen
 struct BaselineContext {
   const Simulator& simulator;
   const FeatureExtractor& extractor;
-  const FeatureTransform& transform;  ///< that of the map, for the linear regression
-  const std::vector<ParameterSpec>& parameters;
+  const FeatureTransform& transform;             ///< that of the map, for the linear regression
+  const std::vector<ParameterSpec>& parameters;  ///< p, updating
+  const std::vector<ParameterSpec>& unknown;     ///< u, those and the nuisance parameters
   int threads = 1;
 };
 
-/// Runs one baseline. Least squares compares features in units of their mean noise (labelled sets'
-/// covariance); its standard deviations are those of the Fisher information at its solution, with the box as
-/// in calcLimitCovariance. All but the time is independent of the threads.
+/// Runs one baseline. Least squares searches all that is unknown, with the inputs of each sample; it compares
+/// features in units of their mean noise (labelled sets' covariance); its standard deviations are those of
+/// the Fisher information at its solution, with the box as in calcLimitCovariance. All but the time is
+/// independent of the threads.
 BaselineResult runBaseline(const BaselineSpec& spec, const BaselineContext& context,
                            const LabelledFeatures& train, const LabelledFeatures& test);
 

@@ -64,7 +64,7 @@ double calcLogLikelihood(Simulator& simulator, const LeastSquaresProblem& proble
   }
   MatrixXd response(simulator.getLayout().getRowCount(), 1);
   SampleStatus status;
-  simulator.simulate(box.fromUnit(unit), response, &status);
+  simulator.simulate(problem.makePoint(box.fromUnit(unit)), response, &status);
   const VectorXd residual =
       problem.noise.apply(problem.extractor.extract(response).col(0) - problem.measured);
   return status.ok && residual.allFinite() ? -0.5 * residual.squaredNorm() : kImpossible;
@@ -142,13 +142,15 @@ ExactPosterior calcExactPosterior(Simulator& simulator, const LeastSquaresProble
 std::vector<ExactPosterior> calcExactPosteriors(const Simulator& prototype, const FeatureExtractor& extractor,
                                                 const NoiseWhitener& noise,
                                                 const std::vector<ParameterSpec>& parameters,
-                                                const MatrixXd& measured, const MatrixXd& starts, int threads,
+                                                const MatrixXd& measured, const MatrixXd& starts,
+                                                const MatrixXd& inputs, int threads,
                                                 const PosteriorOptions& options) {
   std::vector<ExactPosterior> posteriors(measured.cols());
   runOnTeam(prototype, static_cast<int>(measured.cols()), threads, [&](Simulator& simulator, int i) {
     const VectorXd features = measured.col(i);
-    posteriors[i] =
-        calcExactPosterior(simulator, {extractor, noise, parameters, features}, starts.col(i), i, options);
+    const VectorXd known = inputs.rows() > 0 ? VectorXd(inputs.col(i)) : VectorXd();
+    posteriors[i] = calcExactPosterior(simulator, {extractor, noise, parameters, features, known},
+                                       starts.col(i), i, options);
   });
   return posteriors;
 }

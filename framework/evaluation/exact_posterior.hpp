@@ -30,13 +30,13 @@ struct PosteriorOptions {
 ExactPosterior calcExactPosterior(Simulator& simulator, const LeastSquaresProblem& problem,
                                   const Eigen::VectorXd& start, int sample, const PosteriorOptions& options);
 
-/// The same for several measurements (columns of d x n and p x n), on a team of threads; the result does not
-/// depend on their number.
+/// The same for several measurements (columns of d x n, p x n and, where inputs are known, q x n), on a team
+/// of threads; the result does not depend on their number.
 std::vector<ExactPosterior> calcExactPosteriors(const Simulator& prototype, const FeatureExtractor& extractor,
                                                 const NoiseWhitener& noise,
                                                 const std::vector<ParameterSpec>& parameters,
                                                 const Eigen::MatrixXd& measured,
-                                                const Eigen::MatrixXd& starts, int threads,
-                                                const PosteriorOptions& options);
+                                                const Eigen::MatrixXd& starts, const Eigen::MatrixXd& inputs,
+                                                int threads, const PosteriorOptions& options);
 
 }  // namespace twinmap

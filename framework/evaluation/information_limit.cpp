@@ -53,13 +53,14 @@ InformationLimit calcInformationLimit(const std::vector<LocalModel>& models, con
       continue;
     }
     noise_of_samples.update(model.response);
-    const MatrixXd information = calcFisherInformation(noise_of_samples.getWhitener(), model.sensitivities);
+    const MatrixXd information = calcMarginalInformation(
+        calcFisherInformation(noise_of_samples.getWhitener(), model.sensitivities), p);
     const MatrixXd covariance = calcLimitCovariance(information);
     limit.stddev.col(i) = covariance.diagonal().cwiseSqrt().cwiseProduct(widths);
     limit.mean_information += information;
     limit.mean_covariance += covariance;
     const MatrixXd relevance =
-        (model.sensitivities.array().colwise() / noise_of_samples.getStddev().array()).square();
+        (model.sensitivities.leftCols(p).array().colwise() / noise_of_samples.getStddev().array()).square();
     limit.relevance = limit.relevance.size() == 0 ? relevance : MatrixXd(limit.relevance + relevance);
   }
   const auto successful = static_cast<double>(n - limit.failures);

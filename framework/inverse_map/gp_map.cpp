@@ -1,5 +1,6 @@
 #include "framework/inverse_map/gp_map.hpp"
 
+#include <algorithm>
 #include <map>
 #include <numeric>
 #include <stdexcept>
@@ -39,7 +40,7 @@ gp::MeanFunction toKernel(GpMean mean) {
   return gp::MeanFunction::kConstant;
 }
 
-/// Groups of inputs that share a length scale, numbered from 0 without gaps; empty for one group. Without a
+/// Groups of features that share a length scale, numbered from 0 without gaps; empty for one group. Without a
 /// projection, inputs are features.
 std::vector<int> makeGroups(LengthScales length_scales, const std::vector<FeatureInfo>& infos, int inputs) {
   std::vector<int> groups;
@@ -52,6 +53,18 @@ std::vector<int> makeGroups(LengthScales length_scales, const std::vector<Featur
       const int next = static_cast<int>(group_of_output.size());
       groups.push_back(group_of_output.emplace(info.output, next).first->second);
     }
+  }
+  return groups;
+}
+
+/// The same with known inputs behind the features, each with a length scale of its own.
+std::vector<int> addKnownInputs(std::vector<int> groups, int features, int known) {
+  if (known > 0 && groups.empty()) {
+    groups.assign(features, 0);
+  }
+  const int first = groups.empty() ? 0 : *std::max_element(groups.begin(), groups.end()) + 1;
+  for (int i = 0; i < known; ++i) {
+    groups.push_back(first + i);
   }
   return groups;
 }
@@ -74,10 +87,12 @@ gp::TrainingOptions toKernel(const GpMapSpec& spec, int threads) {
   return options;
 }
 
-gp::ModelStructure makeStructure(const GpMapSpec& spec, const std::vector<FeatureInfo>& infos, int inputs) {
+gp::ModelStructure makeStructure(const GpMapSpec& spec, const std::vector<FeatureInfo>& infos, int inputs,
+                                 int known) {
   gp::ModelStructure structure;
   structure.covariance = toKernel(spec.covariance);
-  structure.length_scale_groups = makeGroups(spec.length_scales, infos, inputs);
+  structure.length_scale_groups =
+      addKnownInputs(makeGroups(spec.length_scales, infos, inputs - known), inputs - known, known);
   structure.linear_term = spec.linear_term;
   structure.mean = toKernel(spec.mean);
   return structure;
@@ -150,17 +165,18 @@ Eigen::VectorXd calcStddev(const Eigen::MatrixXd& rows, const Eigen::VectorXd& m
 
 /// What the processes are trained on.
 struct TrainingData {
-  Eigen::MatrixXd inputs;   // k x n, transformed features
+  Eigen::MatrixXd inputs;   // k + q x n, of the processes
   Eigen::MatrixXd targets;  // p x n, standardised parameters
 };
 
 /// Fits transform, offset and scale of the map.
 TrainingData prepare(const std::vector<TransformStepSpec>& transform, const LabelledFeatures& samples,
-                     GpMap& map) {
+                     const std::vector<ParameterSpec>& known_inputs, GpMap& map) {
+  map.known_inputs = makeKnownInputs(known_inputs);
   map.transform = fitTransform(transform, samples);
   map.target_offset = samples.parameters.rowwise().mean();
   map.target_scale = calcStddev(samples.parameters, map.target_offset);
-  return {map.transform.apply(samples.features),
+  return {map.makeProcessInputs(samples.features, samples.inputs),
           (samples.parameters.colwise() - map.target_offset).array().colwise() / map.target_scale.array()};
 }
 
@@ -180,8 +196,13 @@ void finish(const GpMapSpec& spec, const TrainingData& data, const LabelledFeatu
 
 }  // namespace
 
-Predictions GpMap::predict(const Eigen::MatrixXd& features) const {
-  const Eigen::MatrixXd inputs = transform.apply(features);
+Eigen::MatrixXd GpMap::makeProcessInputs(const Eigen::MatrixXd& features,
+                                         const Eigen::MatrixXd& inputs) const {
+  return stackRows(transform.apply(features), known_inputs.scale(inputs));
+}
+
+Predictions GpMap::predict(const Eigen::MatrixXd& features, const Eigen::MatrixXd& known) const {
+  const Eigen::MatrixXd inputs = makeProcessInputs(features, known);
   const auto parameters = static_cast<Eigen::Index>(processes.size());
   Predictions predictions{Eigen::MatrixXd(parameters, features.cols()),
                           Eigen::MatrixXd(parameters, features.cols())};
@@ -199,11 +220,11 @@ Predictions GpMap::predict(const Eigen::MatrixXd& features) const {
 
 GpMapTraining trainGpMap(const GpMapSpec& spec, const std::vector<TransformStepSpec>& transform,
                          const std::vector<std::string>& parameter_names, const LabelledFeatures& samples,
-                         int threads) {
+                         int threads, const std::vector<ParameterSpec>& known_inputs) {
   GpMapTraining training;
-  const TrainingData data = prepare(transform, samples, training.map);
-  const gp::ModelStructure structure =
-      makeStructure(spec, samples.infos, static_cast<int>(data.inputs.rows()));
+  const TrainingData data = prepare(transform, samples, known_inputs, training.map);
+  const gp::ModelStructure structure = makeStructure(
+      spec, samples.infos, static_cast<int>(data.inputs.rows()), static_cast<int>(known_inputs.size()));
   gp::TrainingOptions options = toKernel(spec, threads);
   if (samples.replicates > 1) {
     options.warm_starts =
@@ -222,11 +243,11 @@ GpMapTraining trainGpMap(const GpMapSpec& spec, const std::vector<TransformStepS
 
 GpMapTraining refitGpMap(const GpMap& trained, const GpMapSpec& spec,
                          const std::vector<TransformStepSpec>& transform, const LabelledFeatures& samples,
-                         int threads) {
+                         int threads, const std::vector<ParameterSpec>& known_inputs) {
   GpMapTraining training;
-  const TrainingData data = prepare(transform, samples, training.map);
-  const gp::ModelStructure structure =
-      makeStructure(spec, samples.infos, static_cast<int>(data.inputs.rows()));
+  const TrainingData data = prepare(transform, samples, known_inputs, training.map);
+  const gp::ModelStructure structure = makeStructure(
+      spec, samples.infos, static_cast<int>(data.inputs.rows()), static_cast<int>(known_inputs.size()));
   for (Eigen::Index p = 0; p < data.targets.rows(); ++p) {
     const Eigen::VectorXd target = data.targets.row(p).transpose();
     training.map.processes.push_back(

@@ -6,6 +6,7 @@
 
 #include "framework/features/feature_transform.hpp"
 #include "framework/features/labelled_features.hpp"
+#include "framework/inverse_map/known_inputs.hpp"
 #include "framework/inverse_map/noise_profile.hpp"
 #include "framework/inverse_map/predictions.hpp"
 #include "framework/inverse_map/process.hpp"
@@ -14,8 +15,9 @@
 
 namespace twinmap {
 
-/// An inverse map: features -> parameters with standard deviation, by one Gaussian process per parameter on
-/// the standardised parameter (p - offset) / scale. A fitted, immutable value.
+/// An inverse map: features and known inputs -> parameters with standard deviation, by one Gaussian process
+/// per parameter on the standardised parameter (p - offset) / scale. The inputs of the processes are the
+/// transformed features, then the scaled known inputs. A fitted, immutable value.
 struct GpMap {
   FeatureTransform transform;
   Eigen::VectorXd target_offset;   ///< p, mean of the training parameters
@@ -25,10 +27,16 @@ struct GpMap {
   /// (calcResidualCorrelation): the joint predictive covariance of a sample is D R D, D = diag(stddev).
   Eigen::MatrixXd residual_correlation;
   NoiseProfile noise;
+  KnownInputs known_inputs;
 
-  /// Features (d x m, untransformed) -> predictions (p x m each). The standard deviation is the predictive
+  /// What the processes see of features (d x m, untransformed) and known inputs (q x m): k + q x m.
+  Eigen::MatrixXd makeProcessInputs(const Eigen::MatrixXd& features, const Eigen::MatrixXd& inputs) const;
+
+  /// Features (d x m, untransformed) and known inputs (q x m, an empty matrix where there are none, else
+  /// std::invalid_argument) ->
+  /// predictions (p x m each). The standard deviation is the predictive
   /// one, noise included: the spread of the parameter given the features.
-  Predictions predict(const Eigen::MatrixXd& features) const;
+  Predictions predict(const Eigen::MatrixXd& features, const Eigen::MatrixXd& inputs = {}) const;
 };
 
 /// A trained map and what a person should know about the training.
@@ -39,7 +47,8 @@ struct GpMapTraining {
   Predictions leave_one_out;  ///< of each training sample without itself and its replicates (predictLeftOut)
 };
 
-/// Trains the map on features and parameters of the same samples, n >= 2.
+/// Trains the map on features, parameters and known inputs of the same samples, n >= 2; `known_inputs`: the
+/// inputs' bounds.
 ///
 /// Replicates share their parameters exactly, and the marginal likelihood knows nothing of that: its best
 /// optimum may recognise the simulation instead of inferring the parameter. So the hyperparameters are found
@@ -49,7 +58,7 @@ struct GpMapTraining {
 /// cannot be trained.
 GpMapTraining trainGpMap(const GpMapSpec& spec, const std::vector<TransformStepSpec>& transform,
                          const std::vector<std::string>& parameter_names, const LabelledFeatures& samples,
-                         int threads);
+                         int threads, const std::vector<ParameterSpec>& known_inputs = {});
 
 /// The map that trainGpMap() makes of the same samples where its search ends at the hyperparameters (and
 /// inducing inputs) of `trained`: transform, processes, residual correlation and leave-one-out predictions,
@@ -58,6 +67,6 @@ GpMapTraining trainGpMap(const GpMapSpec& spec, const std::vector<TransformStepS
 /// hyperparameters do not fit the samples.
 GpMapTraining refitGpMap(const GpMap& trained, const GpMapSpec& spec,
                          const std::vector<TransformStepSpec>& transform, const LabelledFeatures& samples,
-                         int threads);
+                         int threads, const std::vector<ParameterSpec>& known_inputs = {});
 
 }  // namespace twinmap

@@ -51,7 +51,7 @@ class Residuals {
     constexpr double kRefused = 1e100;  // a failed simulation is no better than any other point
     MatrixXd response(simulator_.getLayout().getRowCount(), 1);
     SampleStatus status;
-    simulator_.simulate(variables_.toParameters(x), response, &status);
+    simulator_.simulate(problem_.makePoint(variables_.toParameters(x)), response, &status);
     ++simulations_;
     residual = calcResidual(problem_.extractor.extract(response).col(0));
     if (!status.ok || !residual.allFinite()) {
@@ -73,7 +73,8 @@ class Residuals {
 
   LocalModel calcLocal(const VectorXd& x) {
     simulations_ += 2 * inputs() + 1;
-    return calcLocalModel(simulator_, problem_.extractor, problem_.parameters, variables_.toParameters(x));
+    return calcLocalModel(simulator_, problem_.extractor, problem_.parameters,
+                          problem_.makePoint(variables_.toParameters(x)));
   }
   VectorXd calcResidual(const VectorXd& features) const {
     return problem_.noise.apply(features - problem_.measured);
@@ -111,6 +112,12 @@ void describeEnd(Eigen::LevenbergMarquardtSpace::Status status, const Residuals&
 }
 
 }  // namespace
+
+VectorXd LeastSquaresProblem::makePoint(const VectorXd& unknown) const {
+  VectorXd point(unknown.size() + inputs.size());
+  point << unknown, inputs;
+  return point;
+}
 
 LeastSquaresFit fitLeastSquares(Simulator& simulator, const LeastSquaresProblem& problem,
                                 const VectorXd& start, int max_simulations) {

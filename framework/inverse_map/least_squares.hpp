@@ -16,8 +16,11 @@ namespace twinmap {
 struct LeastSquaresProblem {
   const FeatureExtractor& extractor;
   const NoiseWhitener& noise;
-  const std::vector<ParameterSpec>& parameters;
-  const Eigen::VectorXd& measured;  ///< d, features
+  const std::vector<ParameterSpec>& parameters;  ///< p, all that is unknown (collectUnknown)
+  const Eigen::VectorXd& measured;               ///< d, features
+  Eigen::VectorXd inputs{};                      ///< q, known; behind the unknown in a point of the simulator
+
+  Eigen::VectorXd makePoint(const Eigen::VectorXd& unknown) const;
 };
 
 struct LeastSquaresFit {

@@ -8,12 +8,13 @@ namespace twinmap {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-Predictions LinearMap::predict(const MatrixXd& features) const {
-  return {(slopes * transform.apply(features)).colwise() + offset, stddev.replicate(1, features.cols())};
+Predictions LinearMap::predict(const MatrixXd& features, const MatrixXd& inputs) const {
+  return {(slopes * stackRows(transform.apply(features), inputs)).colwise() + offset,
+          stddev.replicate(1, features.cols())};
 }
 
 LinearMap trainLinearMap(const FeatureTransform& transform, const LabelledFeatures& samples) {
-  const MatrixXd inputs = transform.apply(samples.features);
+  const MatrixXd inputs = stackRows(transform.apply(samples.features), samples.inputs);
   const VectorXd input_mean = inputs.rowwise().mean(), mean = samples.parameters.rowwise().mean();
   const MatrixXd centered = (inputs.colwise() - input_mean).transpose();       // n x k
   const MatrixXd targets = (samples.parameters.colwise() - mean).transpose();  // n x p

@@ -49,7 +49,9 @@ ArrayXd NoiseProfile::calcFactors(const Process& process, Index parameter, const
 NoiseProfile fitNoiseProfile(const std::vector<Process>& processes, const MatrixXd& noise_covariance,
                              const MatrixXd& inputs) {
   NoiseProfile profile;
-  profile.directions = calcDirections(noise_covariance);
+  const MatrixXd directions = calcDirections(noise_covariance);
+  profile.directions = MatrixXd::Zero(inputs.rows(), directions.cols());
+  profile.directions.topRows(directions.rows()) = directions;
   profile.mean_of_slope.resize(static_cast<Index>(processes.size()));
   for (std::size_t p = 0; p < processes.size(); ++p) {
     profile.mean_of_slope[static_cast<Index>(p)] =

@@ -29,8 +29,9 @@ struct NoiseProfile {
 Eigen::ArrayXd calcSquaredSlopes(const Process& process, const Eigen::MatrixXd& directions,
                                  const Eigen::MatrixXd& inputs);
 
-/// A profile for trained processes. `noise_covariance`: k x k, of the inputs; `inputs`: k x n, the training
-/// inputs of one draw of the noise. Directions without noise are left out.
+/// A profile for trained processes. `inputs`: k x n, the training inputs of one draw of the noise;
+/// `noise_covariance`: of the first of their rows, the others being known without noise. Directions without
+/// noise are left out.
 NoiseProfile fitNoiseProfile(const std::vector<Process>& processes, const Eigen::MatrixXd& noise_covariance,
                              const Eigen::MatrixXd& inputs);
 

@@ -116,7 +116,7 @@ std::string makePredictionsCsv(const RunSummary& run) {
 
 std::string makeFailuresCsv(const RunSummary& run) {
   Row header{"set", "sample"};
-  for (const ParameterSpec& parameter : run.parameters) {
+  for (const ParameterSpec& parameter : run.sampled) {
     header.push_back(parameter.name.text);
   }
   header.emplace_back("reason");

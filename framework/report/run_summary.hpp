@@ -17,9 +17,9 @@ namespace twinmap {
 
 /// A sample that could not be simulated, or whose response lacks a feature.
 struct FailedSample {
-  std::string set;  ///< "train" or "test"
-  int sample = 0;   ///< index in its set
-  Eigen::VectorXd parameters;
+  std::string set;             ///< "train" or "test"
+  int sample = 0;              ///< index in its set
+  Eigen::VectorXd parameters;  ///< of the sampled box
   std::string reason;
 };
 
@@ -82,7 +82,8 @@ struct OnlineTimes {
 struct RunSummary {
   std::string name;
   std::string description;
-  std::vector<ParameterSpec> parameters;
+  std::vector<ParameterSpec> parameters;  ///< p, updating
+  std::vector<ParameterSpec> sampled;     ///< collectSampled
   std::vector<int> axes;  ///< two parameters: axes of the pictures; empty if there is one parameter only
   int train_samples = 0;  ///< requested, failures included
   int test_samples = 0;

@@ -21,7 +21,7 @@ std::string makePitCsv(const RunSummary& run);
 /// parameters of a sample, then the next.
 std::string makePredictionsCsv(const RunSummary& run);
 
-/// failures.csv: set, sample, each parameter's value, reason.
+/// failures.csv: set, sample, the value of each sampled parameter, reason.
 std::string makeFailuresCsv(const RunSummary& run);
 
 /// training.csv: parameter, start, best, nlml, evaluations, noise_only, stop_reason; of the best start also

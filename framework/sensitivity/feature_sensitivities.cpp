@@ -13,7 +13,7 @@ using Eigen::VectorXd;
 
 LocalModel makeLocalModel(const FeatureExtractor& extractor, const std::vector<ParameterSpec>& parameters,
                           const VectorXd& point, const VectorXd& neighbourhood, const SampleStatus& status) {
-  const Eigen::Index points = 2 * point.size() + 1;
+  const auto points = 2 * static_cast<Eigen::Index>(parameters.size()) + 1;
   const MatrixXd responses = neighbourhood.reshaped(neighbourhood.size() / points, points);
   const MatrixXd features = extractor.extract(responses);
   LocalModel local{responses.col(0), features.col(0), calcDifferences(features, parameters, point), status};

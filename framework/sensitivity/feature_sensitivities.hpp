@@ -18,8 +18,9 @@ struct LocalModel {
   SampleStatus status;  ///< if not ok, the rest is NaN
 };
 
-/// At a point (p) by central differences of the simulator, one-sided ones of second order where the step
-/// would leave the bounds. All simulations take the integration steps of the point itself
+/// At a point of the sampled box, to `parameters`, the first p of it (such as collectUnknown; the known
+/// inputs behind them stay), by central differences of the simulator, one-sided ones of second order where
+/// the step would leave the bounds. All simulations take the integration steps of the point itself
 /// (Simulator::simulateAround), so that a step of 1e-4 of the bounds' width holds more than 4 digits. A point
 /// fails if one of its simulations does, or if a feature is missing. Cost: 2 p + 1 simulations.
 LocalModel calcLocalModel(Simulator& simulator, const FeatureExtractor& extractor,

@@ -10,6 +10,10 @@ namespace twinmap {
 /// J' C^-1 J (p x p) for sensitivities J (d x p, per width) and noise covariance C.
 Eigen::MatrixXd calcFisherInformation(const NoiseWhitener& noise, const Eigen::MatrixXd& sensitivities);
 
+/// What remains of the information about the first `count` parameters when the others are unknown, but for
+/// their bounds: I_pp - I_pn (I_nn + 12)^-1 I_np, whose limit covariance is the block of that of the whole.
+Eigen::MatrixXd calcMarginalInformation(const Eigen::MatrixXd& information, Eigen::Index count);
+
 /// The covariance (p x p, in widths) that no estimator beats on average over the box: the inverse of the
 /// information plus that of the box, which is 12 for each parameter because a uniform distribution has the
 /// variance width^2 / 12 (van Trees' bound with the box's variance).

@@ -43,7 +43,7 @@ NeighbourhoodSimulator::NeighbourhoodSimulator(const Simulator& simulator,
 
 void NeighbourhoodSimulator::simulate(const Eigen::Ref<const MatrixXd>& parameters,
                                       Eigen::Ref<MatrixXd> responses, SampleStatus* statuses) {
-  MatrixXd own(simulator_->getLayout().getRowCount(), 2 * parameters.rows() + 1);
+  MatrixXd own(simulator_->getLayout().getRowCount(), 2 * static_cast<Index>(parameters_.size()) + 1);
   for (Index i = 0; i < parameters.cols(); ++i) {
     statuses[i] = simulateNeighbours(*simulator_, makeNeighbours(parameters_, parameters.col(i)), own);
     responses.col(i) = own.reshaped();

@@ -8,11 +8,11 @@
 
 namespace twinmap {
 
-/// Simulates a point together with the 2 p points beside it that its derivatives need (all with the
-/// integration steps of the point): a response is theirs, one below the other, the point's own first, then
-/// the two of each parameter. So a point's derivatives can be stored and shared like any sample. Its layout
-/// has as many rows; its outputs and modes are those of the simulator, repeated. Fails if one simulation
-/// does.
+/// Simulates a point together with the 2 p points beside it that its derivatives to p parameters, the first
+/// of the point, need (all with the integration steps of the point): a response is theirs, one below the
+/// other, the point's own first, then the two of each parameter. So a point's derivatives can be stored and
+/// shared like any sample. Its layout has as many rows; its outputs and modes are those of the simulator,
+/// repeated. Fails if one simulation does.
 class NeighbourhoodSimulator final : public Simulator {
  public:
   NeighbourhoodSimulator(const Simulator& simulator, const std::vector<ParameterSpec>& parameters);

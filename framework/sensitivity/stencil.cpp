@@ -34,8 +34,9 @@ const Stencil& chooseStencil(const Bounds& bounds, double value) {
 }  // namespace
 
 MatrixXd makeNeighbours(const std::vector<ParameterSpec>& parameters, const VectorXd& point) {
-  MatrixXd points = point.replicate(1, 2 * point.size() + 1);
-  for (Index j = 0; j < point.size(); ++j) {
+  const auto count = static_cast<Index>(parameters.size());
+  MatrixXd points = point.replicate(1, 2 * count + 1);
+  for (Index j = 0; j < count; ++j) {
     const Bounds& bounds = parameters[j].bounds;
     const Stencil& stencil = chooseStencil(bounds, point[j]);
     points(j, 2 * j + 1) += stencil.first * kStep * calcWidth(bounds);
@@ -46,8 +47,8 @@ MatrixXd makeNeighbours(const std::vector<ParameterSpec>& parameters, const Vect
 
 MatrixXd calcDifferences(const MatrixXd& features, const std::vector<ParameterSpec>& parameters,
                          const VectorXd& point) {
-  MatrixXd sensitivities(features.rows(), point.size());
-  for (Index j = 0; j < point.size(); ++j) {
+  MatrixXd sensitivities(features.rows(), static_cast<Index>(parameters.size()));
+  for (Index j = 0; j < sensitivities.cols(); ++j) {
     const Stencil& stencil = chooseStencil(parameters[j].bounds, point[j]);
     sensitivities.col(j) =
         (stencil.weight_of_center * features.col(0) + stencil.weight_of_first * features.col(2 * j + 1) +

@@ -7,9 +7,9 @@
 
 namespace twinmap {
 
-/// The points (p x 2 p + 1) from which derivatives at a point come: column 0 is the point, columns 2 j + 1
-/// and 2 j + 2 are 1e-4 of the width of parameter j's bounds beside it, on both sides, or both on the inner
-/// side where the step would leave the bounds.
+/// The points (2 p + 1 columns) from which derivatives to p parameters, the first rows of a point, come:
+/// column 0 is the point, columns 2 j + 1 and 2 j + 2 are 1e-4 of the width of parameter j's bounds beside
+/// it, on both sides, or both on the inner side where the step would leave the bounds. Other rows stay.
 Eigen::MatrixXd makeNeighbours(const std::vector<ParameterSpec>& parameters, const Eigen::VectorXd& point);
 
 /// Differences of second order of values at these points (d x 2 p + 1): derivatives (d x p) per width of the

@@ -11,6 +11,8 @@ namespace twinmap {
 namespace {
 
 constexpr const char* kFormat = "twinmap maps 1";
+constexpr const char* kParameters = "/parameters";
+constexpr const char* kInputs = "/inputs";
 constexpr const char* kExact = "exact";
 constexpr const char* kSgpr = "sgpr";
 
@@ -187,7 +189,10 @@ void writeMapsFile(const std::filesystem::path& path, const StoredMap& stored) {
   writeAtomically(path, [&](const std::filesystem::path& temporary) {
     Hdf5Writer file(temporary);
     file.writeAttribute("/", "format", kFormat);
-    writeParametersGroup(file, stored.parameters);
+    writeParametersGroup(file, kParameters, stored.parameters);
+    if (!stored.inputs.empty()) {
+      writeParametersGroup(file, kInputs, stored.inputs);
+    }
     file.write("/features/name", stored.feature_names);
     writeTransform(file, stored.map.transform);
     file.write("/target/offset", stored.map.target_offset);
@@ -210,7 +215,11 @@ StoredMap readMapsFile(const std::filesystem::path& path) {
   const Hdf5Reader file(path);
   requireFormat(file, path);
   StoredMap stored;
-  stored.parameters = readParametersGroup(file);
+  stored.parameters = readParametersGroup(file, kParameters);
+  if (file.contains(std::string(kInputs) + "/name")) {
+    stored.inputs = readParametersGroup(file, kInputs);
+  }
+  stored.map.known_inputs = makeKnownInputs(stored.inputs);
   stored.feature_names = file.readTexts("/features/name");
   stored.map.transform = readTransform(file);
   stored.map.target_offset = file.readVector("/target/offset");
@@ -233,7 +242,7 @@ MapSummary readMapSummary(const std::filesystem::path& path) {
   const Hdf5Reader file(path);
   requireFormat(file, path);
   MapSummary summary{file.readTexts("/features/name"), readTransform(file), {}, {}};
-  for (const ParameterSpec& parameter : readParametersGroup(file)) {
+  for (const ParameterSpec& parameter : readParametersGroup(file, kParameters)) {
     const std::string group = "/maps/" + parameter.name.text;
     summary.structures.push_back(readStructure(file, group));
     summary.hyperparameters.push_back(readHyperparameters(file, group));

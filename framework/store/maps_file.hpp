@@ -15,6 +15,7 @@ struct StoredMap {
   std::vector<ParameterSpec> parameters;
   std::vector<std::string> feature_names;
   GpMap map;
+  std::vector<ParameterSpec> inputs{};  ///< known, with a measurement; their bounds scale them
 };
 
 /// Writes maps.h5 (docs/file-formats.md): all that is needed to predict. Equal content gives equal bytes.

@@ -2,7 +2,8 @@
 
 namespace twinmap {
 
-void writeParametersGroup(Hdf5Writer& file, const std::vector<ParameterSpec>& parameters) {
+void writeParametersGroup(Hdf5Writer& file, const std::string& group,
+                          const std::vector<ParameterSpec>& parameters) {
   std::vector<std::string> names, units;
   Eigen::VectorXd lower(parameters.size()), upper(parameters.size());
   for (std::size_t p = 0; p < parameters.size(); ++p) {
@@ -11,17 +12,17 @@ void writeParametersGroup(Hdf5Writer& file, const std::vector<ParameterSpec>& pa
     lower[static_cast<Eigen::Index>(p)] = parameters[p].bounds.lower;
     upper[static_cast<Eigen::Index>(p)] = parameters[p].bounds.upper;
   }
-  file.write("/parameters/name", names);
-  file.write("/parameters/unit", units);
-  file.write("/parameters/lower", lower);
-  file.write("/parameters/upper", upper);
+  file.write(group + "/name", names);
+  file.write(group + "/unit", units);
+  file.write(group + "/lower", lower);
+  file.write(group + "/upper", upper);
 }
 
-std::vector<ParameterSpec> readParametersGroup(const Hdf5Reader& file) {
-  const std::vector<std::string> names = file.readTexts("/parameters/name");
-  const std::vector<std::string> units = file.readTexts("/parameters/unit");
-  const Eigen::VectorXd lower = file.readVector("/parameters/lower");
-  const Eigen::VectorXd upper = file.readVector("/parameters/upper");
+std::vector<ParameterSpec> readParametersGroup(const Hdf5Reader& file, const std::string& group) {
+  const std::vector<std::string> names = file.readTexts(group + "/name");
+  const std::vector<std::string> units = file.readTexts(group + "/unit");
+  const Eigen::VectorXd lower = file.readVector(group + "/lower");
+  const Eigen::VectorXd upper = file.readVector(group + "/upper");
   std::vector<ParameterSpec> parameters(names.size());
   for (std::size_t p = 0; p < names.size(); ++p) {
     const auto row = static_cast<Eigen::Index>(p);

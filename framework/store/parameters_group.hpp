@@ -7,10 +7,12 @@
 
 namespace twinmap {
 
-/// The group /parameters that samples.h5 and maps.h5 share: name, unit, lower, upper of each parameter.
-void writeParametersGroup(Hdf5Writer& file, const std::vector<ParameterSpec>& parameters);
+/// A group such as /parameters, which samples.h5 and maps.h5 have: name, unit, lower, upper of each
+/// parameter.
+void writeParametersGroup(Hdf5Writer& file, const std::string& group,
+                          const std::vector<ParameterSpec>& parameters);
 
 /// Reads the group back (names, units and bounds only).
-std::vector<ParameterSpec> readParametersGroup(const Hdf5Reader& file);
+std::vector<ParameterSpec> readParametersGroup(const Hdf5Reader& file, const std::string& group);
 
 }  // namespace twinmap

@@ -1,6 +1,7 @@
 #include "framework/store/samples_file.hpp"
 
 #include "framework/spec/check_experiment.hpp"
+#include "framework/spec/parameter_box.hpp"
 #include "framework/store/atomic_file.hpp"
 #include "framework/store/hdf5_file.hpp"
 #include "framework/store/parameters_group.hpp"
@@ -66,7 +67,7 @@ void writeSamplesFile(const std::filesystem::path& path, const ModelSpec& model,
   writeAtomically(path, [&](const std::filesystem::path& temporary) {
     Hdf5Writer file(temporary);
     file.writeAttribute("/", "format", "twinmap samples 1");
-    writeParametersGroup(file, model.parameters);
+    writeParametersGroup(file, "/parameters", collectSampled(model));
     file.write("/outputs/name", train.layout.output_names);
     file.write("/outputs/unit", train.layout.output_units);
     file.write("/times", train.layout.times);

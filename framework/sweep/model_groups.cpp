@@ -8,6 +8,7 @@
 #include "framework/features/feature_extractor.hpp"
 #include "framework/spec/check_experiment.hpp"
 #include "framework/spec/check_features.hpp"
+#include "framework/spec/parameter_box.hpp"
 #include "framework/spec/trajectory_content.hpp"
 #include "framework/store_content.hpp"
 
@@ -89,17 +90,16 @@ Eigen::MatrixXd collectPoints(const std::vector<SweepCase>& cases, const ModelGr
   for (const int member : group.cases) {
     if (wanted[member]) {
       const ExperimentSpec& e = cases[member].experiment;
-      points.add(samplePoints(e.design.train, e.model.parameters, e.seed, RandomPurpose::kTrainDesign));
-      points.add(samplePoints(e.design.test, e.model.parameters, e.seed, RandomPurpose::kTestDesign));
+      points.add(samplePoints(e.design.train, collectSampled(e.model), e.seed, RandomPurpose::kTrainDesign));
+      points.add(samplePoints(e.design.test, collectSampled(e.model), e.seed, RandomPurpose::kTestDesign));
     }
   }
-  return points.get(static_cast<Eigen::Index>(group.model.parameters.size()));
+  return points.get(countSampled(group.model));
 }
 
 TrajectoryStore openToRead(const ModelGroup& group, const std::filesystem::path& root) {
   const ResponseLayout layout = makeLayout(group);
-  return {root, writeStoreContent(group.model, layout),
-          static_cast<Eigen::Index>(group.model.parameters.size()), layout.getRowCount(),
+  return {root, writeStoreContent(group.model, layout), countSampled(group.model), layout.getRowCount(),
           StoreAccess::kReadOnly};
 }
 

@@ -8,6 +8,7 @@
 
 #include "framework/features/feature_extractor.hpp"
 #include "framework/run_folder.hpp"
+#include "framework/spec/parameter_box.hpp"
 #include "framework/sweep/case_cost.hpp"
 #include "framework/sweep/model_groups.hpp"
 #include "framework/sweep/probe.hpp"
@@ -33,6 +34,10 @@ double countParameters(const ExperimentSpec& e) {
   return static_cast<double>(e.model.parameters.size());
 }
 
+double countUnknown(const ExperimentSpec& e) {
+  return static_cast<double>(collectUnknown(e.model).size());
+}
+
 double countRows(const ExperimentSpec& e) {
   return static_cast<double>(collectTimes(e.features).size()) * static_cast<double>(e.model.outputs.size()) +
          2.0 * countModes(e.features);
@@ -43,7 +48,7 @@ double calcCaseDisk(const ExperimentSpec& e) {
   const double columns = countTrainingColumns(e);
   const bool sparse = e.inverse_map.gp.approximation == GpApproximation::kSgpr;
   const double order = sparse ? 1.5 * e.inverse_map.gp.inducing : columns;
-  return kNumber * (countRows(e) + countParameters(e)) * countSamples(e) +
+  return kNumber * (countRows(e) + double(countSampled(e.model))) * countSamples(e) +
          kNumber * countParameters(e) * order * order +
          kPredictionRow * countParameters(e) * e.design.test.samples + kReport;
 }
@@ -202,7 +207,7 @@ SweepPlan planRun(const YamlNode& root, const PlanOptions& options) {
     if (todo[i]) {
       plan.disk += calcCaseDisk(e);
       plan.limit_simulations +=
-          e.evaluation.limit ? e.design.test.samples * (2.0 * countParameters(e) + 1.0) : 0.0;
+          e.evaluation.limit ? e.design.test.samples * (2.0 * countUnknown(e) + 1.0) : 0.0;
     }
   }
   plan.memory = calcMemory(cases, todo, options);

@@ -10,6 +10,7 @@
 #include "framework/make_extractor.hpp"
 #include "framework/report/tables.hpp"
 #include "framework/spec/check_experiment.hpp"
+#include "framework/spec/parameter_box.hpp"
 #include "framework/store/atomic_file.hpp"
 #include "framework/store/hdf5_difference.hpp"
 #include "framework/store/maps_file.hpp"
@@ -35,7 +36,7 @@ struct Inputs {
 };
 
 std::string findMapDifference(const std::filesystem::path& file, const Inputs& inputs, const GpMap& map) {
-  StoredMap expected{inputs.experiment.model.parameters, {}, map};
+  StoredMap expected{inputs.experiment.model.parameters, {}, map, inputs.experiment.model.inputs};
   for (const FeatureInfo& info : inputs.extractor.getInfos()) {
     expected.feature_names.push_back(info.name);
   }
@@ -64,8 +65,9 @@ MatrixXd calcLimit(const Inputs& inputs, const std::vector<int>& chosen,
     }
   }
   if (!columns.empty()) {
-    const auto models = calcLocalModels(inputs.simulator, inputs.extractor, parameters,
-                                        truth(Eigen::all, columns), inputs.threads);
+    const MatrixXd points = inputs.labelled.test.collectPoints()(Eigen::all, columns);
+    const auto models = calcLocalModels(inputs.simulator, inputs.extractor,
+                                        collectUnknown(inputs.experiment.model), points, inputs.threads);
     limit(Eigen::all, columns) = calcInformationLimit(models, inputs.noise, parameters).stddev;
   }
   return limit;
@@ -77,7 +79,7 @@ RunSummary summarize(const Inputs& inputs, const GpMapTraining& trained, const M
   run.parameters = inputs.experiment.model.parameters;
   run.test_indices = inputs.test_indices;
   run.truth = labelled.test.parameters;
-  run.predictions = trained.map.predict(labelled.test.features);
+  run.predictions = trained.map.predict(labelled.test.features, labelled.test.inputs);
   run.limit_stddev = limit;
   calcTestMetrics(trained.map, run);
   run.leave_one_out = calcMetrics(run.parameters, labelled.train.parameters, trained.leave_one_out, {},
@@ -109,7 +111,8 @@ void checkMapAndTables(const Inputs& inputs, const std::vector<int>& limits, Ver
   GpMapTraining trained;
   verification.check("maps.h5: refitted at its hyperparameters", [&] {
     trained = refitGpMap(readMapsFile(folder / "maps.h5").map, inputs.experiment.inverse_map.gp,
-                         inputs.experiment.transform, inputs.labelled.train, inputs.threads);
+                         inputs.experiment.transform, inputs.labelled.train, inputs.threads,
+                         inputs.experiment.model.inputs);
     return findMapDifference(folder / "maps.h5", inputs, trained.map);
   });
   if (trained.map.processes.empty()) {
@@ -137,7 +140,7 @@ void checkResults(const ExperimentSpec& experiment, const Simulator& simulator, 
                   const std::vector<int>& limits, int threads, Verification& verification) {
   const FeatureExtractor extractor = makeExtractor(experiment, simulator.getLayout());
   failIncompleteSamples(experiment, extractor, sets);
-  const FeatureNoise noise(extractor, calcNoiseStddev(experiment.noise, simulator.getLayout()),
+  const FeatureNoise noise(extractor, ResponseNoise(experiment.noise, simulator.getLayout()),
                            experiment.seed);
   LabelledSets labelled = makeLabelledSets(experiment, sets, extractor, noise);
   labelled.train.sensitivities =

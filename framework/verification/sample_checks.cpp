@@ -5,6 +5,7 @@
 
 #include "framework/design/point_set.hpp"
 #include "framework/spec/number_text.hpp"
+#include "framework/spec/parameter_box.hpp"
 #include "framework/store/hdf5_difference.hpp"
 #include "framework/store/samples_file.hpp"
 #include "framework/store/temporary_folder.hpp"
@@ -93,7 +94,7 @@ SimulatedSets readSamples(const fs::path& file, const ExperimentSpec& experiment
   const auto prepare = [&](Trajectories& set, const PointSetSpec& design, RandomPurpose purpose,
                            const std::string& name) {
     const Eigen::MatrixXd points =
-        samplePoints(design, experiment.model.parameters, experiment.seed, purpose);
+        samplePoints(design, collectSampled(experiment.model), experiment.seed, purpose);
     requireShape(set, points, layout, name);
     set.parameters = points;
     set.layout = layout;
@@ -162,7 +163,7 @@ std::unique_ptr<TrajectoryStore> openChunks(const ExperimentSpec& experiment, co
   verification.check("chunks: checksums", [&] {
     store = std::make_unique<TrajectoryStore>(
         findChunks(verification.folder), writeStoreContent(experiment.model, layout),
-        static_cast<Index>(experiment.model.parameters.size()), layout.getRowCount(), StoreAccess::kReadOnly);
+        countSampled(experiment.model), layout.getRowCount(), StoreAccess::kReadOnly);
     const auto neighbourhoods = openNeighbourhoodStore(
         experiment.model, simulator, findChunks(verification.folder), StoreAccess::kReadOnly);
     const std::string damage = describeDamage(*store);

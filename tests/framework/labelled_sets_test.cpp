@@ -10,6 +10,7 @@ namespace {
 /// Output y at t = 0 .. 8, one maximum of at least 1 wanted, noise 0.3.
 ExperimentSpec makeExperiment() {
   ExperimentSpec experiment;
+  experiment.model.parameters.resize(1);
   experiment.features.resize(1);
   experiment.features[0].extrema =
       ExtremaFeatureSpec{{"y", {}}, {0.0, 1.0, 9}, ExtremaKind::kMaxima, 1, 1.0, 3};
@@ -62,6 +63,24 @@ TEST(LabelledSets, SamplesThatLackAFeatureFailWithTheReasonAndKeepTheirPlace) {
   EXPECT_EQ(labelled.test.parameters, Eigen::RowVector2d(20.0, 30.0));
   EXPECT_TRUE(labelled.test.features.allFinite());
   EXPECT_NEAR(labelled.test.features(0, 1), 30.0, 2.0);
+}
+
+TEST(LabelledSets, SplitPointsByTheRoleOfTheirParameters) {
+  ExperimentSpec experiment = makeExperiment();
+  experiment.model.nuisance.resize(2);
+  experiment.model.inputs.resize(1);
+  SimulatedSets sets{makeBells({20.0, 25.0}), makeBells({20.0, 25.0})};
+  Eigen::MatrixXd points(4, 2);
+  points << 1, 5, 2, 6, 3, 7, 4, 8;
+  sets.train.parameters = sets.test.parameters = points;
+  const FeatureExtractor extractor(experiment.features, sets.train.layout);
+  const FeatureNoise noise(extractor, Eigen::VectorXd::Constant(9, 0.3), 1);
+  const LabelledFeatures test = makeLabelledSets(experiment, sets, extractor, noise).test;
+  EXPECT_EQ(test.parameters, points.topRows(1));
+  EXPECT_EQ(test.nuisance, points.middleRows(1, 2));
+  EXPECT_EQ(test.inputs, points.bottomRows(1));
+  EXPECT_EQ(test.collectUnknown(), points.topRows(3));
+  EXPECT_EQ(test.collectPoints(), points);
 }
 
 TEST(LabelledSets, TheNoiseOfASampleDoesNotDependOnFailuresOfOthers) {

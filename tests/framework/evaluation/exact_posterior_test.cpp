@@ -17,12 +17,12 @@ using Eigen::VectorXd;
 std::vector<ExactPosterior> calcPosteriors(const LinearSimulator& simulator,
                                            const std::vector<ParameterSpec>& parameters,
                                            const MatrixXd& covariance, const MatrixXd& measured,
-                                           int threads = 1) {
+                                           int threads = 1, const MatrixXd& inputs = {}) {
   const FeatureExtractor extractor(makeAllFeatures(simulator), simulator.getLayout());
   const MatrixXd starts =
       MatrixXd::Constant(static_cast<Eigen::Index>(parameters.size()), measured.cols(), 0.5);
   return calcExactPosteriors(simulator, extractor, NoiseWhitener(covariance), parameters, measured, starts,
-                             threads, {1000, 7});
+                             inputs, threads, {1000, 7});
 }
 
 // With a wide box the posterior is normal, with the moments of the normal equations.
@@ -62,6 +62,16 @@ TEST(ExactPosterior, OfABoundedParameterIsTruncated) {
   ASSERT_EQ(posterior.warning, "");
   EXPECT_NEAR(posterior.mean[0], mean, 0.02 * kStddev);
   EXPECT_NEAR(posterior.stddev[0] / std::sqrt(variance), 1.0, 0.03);
+}
+
+// y = a + u with u known: the posterior of a is that of y - u.
+TEST(ExactPosterior, HoldsKnownInputs) {
+  const auto posterior = calcPosteriors(LinearSimulator(MatrixXd::Ones(1, 2)), makeParameters(1, -20.0, 20.0),
+                                        MatrixXd::Constant(1, 1, 0.04), MatrixXd::Constant(1, 1, 5.0), 1,
+                                        MatrixXd::Constant(1, 1, 3.5))[0];
+  ASSERT_EQ(posterior.warning, "");
+  EXPECT_NEAR(posterior.mean[0], 1.5, 0.004);
+  EXPECT_NEAR(posterior.stddev[0], 0.2, 0.004);
 }
 
 TEST(ExactPosterior, IsTheSameForAnyNumberOfThreads) {

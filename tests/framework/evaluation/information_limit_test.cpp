@@ -49,6 +49,45 @@ TEST(InformationLimit, OfALinearModelIsTheRidgeCovariance) {
   EXPECT_LT((limit.relevance - makeMatrix().cwiseAbs() * kWidth / kNoise).norm(), 1e-6);
 }
 
+// y_i = k s_i + offset + g u: with k inferred, the offset unknown in wide bounds and u known, the variance of
+// k is that of the slope of a regression line, sigma^2 / sum (s_i - mean s)^2.
+TEST(InformationLimit, OfASlopeBesideAnUnknownOffsetIsThatOfARegressionLine) {
+  constexpr double kWide = 1e4;
+  MatrixXd matrix(4, 3);
+  matrix << 1, 1, 7, 2, 1, -3, 4, 1, 2, 9, 1, 5;
+  const LinearSimulator simulator(matrix);
+  const FeatureExtractor extractor(makeAllFeatures(simulator), simulator.getLayout());
+  const auto unknown = makeParameters(2, -kWide, kWide);
+  const FeatureNoise noise(extractor, VectorXd::Constant(4, kNoise), 1);
+  const MatrixXd points = MatrixXd::Random(3, 2);
+  const std::vector<LocalModel> models = calcLocalModels(simulator, extractor, unknown, points, 1);
+  ASSERT_EQ(models[0].sensitivities.cols(), 2);
+  const InformationLimit limit = calcInformationLimit(models, noise, {unknown[0]});
+  const Eigen::ArrayXd s = matrix.col(0).array();
+  const double information = (s - s.mean()).square().sum() / (kNoise * kNoise);
+  ASSERT_EQ(limit.stddev.rows(), 1);
+  EXPECT_NEAR(limit.stddev(0, 0) * std::sqrt(information), 1.0, 1e-6);
+  EXPECT_NEAR(limit.mean_information(0, 0) / (4.0 * kWide * kWide * information), 1.0, 1e-6);
+  EXPECT_EQ(limit.relevance.cols(), 1);
+  EXPECT_EQ(calcIdentifiability(limit, {unknown[0]}).remaining.size(), 1);
+}
+
+TEST(InformationLimit, OfTheParametersIsTheirBlockOfTheCovarianceOfAllUnknown) {
+  MatrixXd matrix(4, 3);
+  matrix << 1, 2, 0.3, 0, 1, -1, 0.5, -1, 2, 1, 1, 1;
+  matrix *= 0.1;
+  const LinearSimulator simulator(matrix);
+  const FeatureExtractor extractor(makeAllFeatures(simulator), simulator.getLayout());
+  const auto unknown = makeParameters(3, kLower, kUpper);
+  const FeatureNoise noise(extractor, VectorXd::Constant(4, kNoise), 1);
+  const InformationLimit limit = calcInformationLimit(
+      calcLocalModels(simulator, extractor, unknown, makePoints(3, 1), 1), noise, {unknown[0], unknown[1]});
+  const MatrixXd information = matrix.transpose() * matrix / (kNoise * kNoise);
+  const MatrixXd box = 12.0 / (kWidth * kWidth) * MatrixXd::Identity(3, 3);
+  const MatrixXd expected = (information + box).inverse().topLeftCorner(2, 2);
+  EXPECT_LT((limit.mean_covariance * kWidth * kWidth - expected).norm(), 1e-8);
+}
+
 TEST(InformationLimit, LeavesOutFailedSamplesAndCountsThem) {
   MatrixXd points = makePoints(2, 3);
   points(0, 1) = 2.9;

@@ -170,5 +170,44 @@ TEST(GpMap, IsTheSameBitForBitWhenRefittedAtItsHyperparameters) {
   }
 }
 
+/// One feature that mixes a parameter p in [1, 2] with an input u in [3, 5]: f = p u.
+LabelledFeatures makeMixed(int samples, std::uint64_t seed) {
+  LabelledFeatures mixed;
+  const RandomStream random(seed, RandomPurpose::kTrainDesign);
+  mixed.infos = {{"f", "", 0, 0.0}};
+  mixed.features.resize(1, samples);
+  mixed.parameters.resize(1, samples);
+  mixed.inputs.resize(1, samples);
+  mixed.noise_covariance = Eigen::MatrixXd::Constant(1, 1, 1e-6);
+  for (int i = 0; i < samples; ++i) {
+    mixed.parameters(0, i) = 1 + random.calcUniform(i, 0);
+    mixed.inputs(0, i) = 3 + 2 * random.calcUniform(i, 1);
+    mixed.features(0, i) = mixed.parameters(0, i) * mixed.inputs(0, i) + 1e-3 * random.calcNormal(i, 2);
+  }
+  return mixed;
+}
+
+TEST(GpMap, InfersWithKnownInputsWhatTheFeaturesAloneLeaveOpen) {
+  std::vector<ParameterSpec> known(1);
+  known[0].bounds = {3.0, 5.0, {}};
+  const LabelledFeatures train = makeMixed(60, 1), test = makeMixed(100, 2);
+  TransformStepSpec whiten;
+  whiten.whiten.emplace();
+  for (const LengthScales length_scales :
+       {LengthScales::kShared, LengthScales::kPerOutput, LengthScales::kPerFeature}) {
+    GpMapSpec spec;
+    spec.length_scales = length_scales;
+    const GpMapTraining training = trainGpMap(spec, {whiten}, {"p"}, train, 1, known);
+    const Predictions predictions = training.map.predict(test.features, test.inputs);
+    const Eigen::ArrayXXd error = (predictions.mean - test.parameters).array();
+    EXPECT_LT(std::sqrt(error.square().mean()), 1e-3);  // the noise leaves 1e-3 / u = 2.5e-4
+    EXPECT_THROW(training.map.predict(test.features), std::invalid_argument);
+    const GpMapTraining again = refitGpMap(training.map, spec, {whiten}, train, 1, known);
+    EXPECT_EQ(again.map.predict(test.features, test.inputs).stddev, predictions.stddev);
+    EXPECT_EQ(training.map.makeProcessInputs(test.features, test.inputs).row(1),
+              Eigen::RowVectorXd(test.inputs.array() - 4.0));
+  }
+}
+
 }  // namespace
 }  // namespace twinmap

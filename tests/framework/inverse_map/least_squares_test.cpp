@@ -52,6 +52,17 @@ TEST_F(LinearFit, IsTheWeightedLeastSquaresSolution) {
   EXPECT_NEAR(found.chi_square, residual.dot(weights * residual), 1e-4);
 }
 
+TEST_F(LinearFit, SearchesTheUnknownWithTheInputsHeld) {
+  const VectorXd measured = makeMatrix() * Eigen::Vector2d(1.0, 4.0);
+  const std::vector<ParameterSpec> unknown{parameters_[0]};
+  const LeastSquaresFit found =
+      fitLeastSquares(simulator_, {extractor_, noise_, unknown, measured, VectorXd::Constant(1, 4.0)},
+                      VectorXd::Zero(1), 500);
+  ASSERT_TRUE(found.converged) << found.message;
+  ASSERT_EQ(found.parameters.size(), 1);
+  EXPECT_NEAR(found.parameters[0], 1.0, 1e-4);
+}
+
 TEST_F(LinearFit, StaysWithinTheBounds) {
   const VectorXd measured = makeMatrix() * Eigen::Vector2d(7.0, 1.0);  // the first beyond its bound 5
   const LeastSquaresFit found = fit(measured, Eigen::Vector2d(5.0, 1.0));
@@ -80,9 +91,18 @@ TEST(LinearMap, InvertsWhatIsLinear) {
   samples.features = (makeMatrix() * points).array() + 3.0;
   samples.parameters = points;
   const LinearMap map = trainLinearMap({}, samples);
-  const Predictions predictions = map.predict(samples.features);
+  const Predictions predictions = map.predict(samples.features, {});
   EXPECT_LT((predictions.mean - points).cwiseAbs().maxCoeff(), 1e-12);
   EXPECT_LT(predictions.stddev.maxCoeff(), 1e-12);
+}
+
+TEST(LinearMap, SeesKnownInputs) {
+  LabelledFeatures samples;
+  samples.parameters = MatrixXd::Random(1, 50);
+  samples.inputs = MatrixXd::Random(1, 50);
+  samples.features = 2.0 * samples.parameters + 5.0 * samples.inputs;
+  const Predictions predictions = trainLinearMap({}, samples).predict(samples.features, samples.inputs);
+  EXPECT_LT((predictions.mean - samples.parameters).cwiseAbs().maxCoeff(), 1e-12);
 }
 
 TEST(LinearMap, ItsStddevIsThatOfWhatTheFeaturesDoNotExplain) {

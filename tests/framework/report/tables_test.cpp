@@ -24,6 +24,7 @@ RunSummary makeRun() {
   run.parameters[1].name = {"d", {}};
   run.parameters[1].unit = "a,b|c<i>";
   run.parameters[1].bounds = {1.75e-4, 2.25e-4, {}};
+  run.sampled = run.parameters;
   run.axes = {0, 1};
   run.train_samples = 10;
   run.test_samples = 3;

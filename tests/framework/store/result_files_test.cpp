@@ -90,6 +90,28 @@ TEST(MapsFile, ARestoredMapPredictsTheSameBits) {
   }
 }
 
+TEST(MapsFile, KeepsTheBoundsThatScaleKnownInputs) {
+  const TemporaryFolder folder;
+  LabelledFeatures samples;
+  samples.infos = {{"y(0 s)", "m", 0, 0.0}};
+  samples.features = Eigen::MatrixXd::Random(1, 20);
+  samples.inputs = Eigen::MatrixXd::Random(1, 20);
+  samples.parameters = samples.features + samples.inputs;
+  samples.noise_covariance = Eigen::MatrixXd::Identity(1, 1);
+  ParameterSpec input;
+  input.name.text = "load";
+  input.unit = "kg";
+  input.bounds = {-3.0, 4.0, {}};
+  const GpMap map = trainGpMap({}, {}, {"k"}, samples, 1, {input}).map;
+  writeMapsFile(folder / "maps.h5", {{makeParameters()[0]}, {"y(0 s)"}, map, {input}});
+  const StoredMap stored = readMapsFile(folder / "maps.h5");
+  ASSERT_EQ(stored.inputs.size(), 1U);
+  EXPECT_EQ(stored.inputs[0].name.text, "load");
+  EXPECT_EQ(stored.inputs[0].unit, "kg");
+  EXPECT_EQ(stored.map.predict(samples.features, samples.inputs).stddev,
+            map.predict(samples.features, samples.inputs).stddev);
+}
+
 TEST(MapsFile, RefusesOtherFiles) {
   const TemporaryFolder folder;
   ModelSpec model;

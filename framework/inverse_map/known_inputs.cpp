@@ -1,0 +1,21 @@
+#include "framework/inverse_map/known_inputs.hpp"
+
+#include <stdexcept>
+
+#include "framework/spec/parameter_box.hpp"
+
+namespace twinmap {
+
+Eigen::MatrixXd KnownInputs::scale(const Eigen::MatrixXd& values) const {
+  if (values.rows() != center.size()) {
+    throw std::invalid_argument("a map needs the values of its " + std::to_string(center.size()) +
+                                " known inputs, not " + std::to_string(values.rows()));
+  }
+  return (values.colwise() - center).array().colwise() / half_width.array();
+}
+
+KnownInputs makeKnownInputs(const std::vector<ParameterSpec>& inputs) {
+  return {calcBoxCenter(inputs), 0.5 * calcWidths(inputs)};
+}
+
+}  // namespace twinmap
