@@ -26,6 +26,8 @@ if(TWINMAP_WARNINGS_AS_ERRORS)
   add_compile_options(-Werror)
 endif()
 
+add_link_options(-Wl,--as-needed) # a process loads only the libraries that it uses
+
 set(TWINMAP_SANITIZE "" CACHE STRING "Sanitizers, as in -fsanitize=..., or empty")
 if(TWINMAP_SANITIZE)
   add_compile_options(-fsanitize=${TWINMAP_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)

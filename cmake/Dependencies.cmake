@@ -11,6 +11,15 @@ find_package(muparser 2.3 REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(spdlog REQUIRED)
 find_package(nlohmann_json REQUIRED)
+# Static: Debian's shared HDF5 brings some thirty libraries of a network client, which twinmap would load at each start.
+set(HDF5_USE_STATIC_LIBRARIES ON)
 find_package(HDF5 REQUIRED COMPONENTS C)
+find_path(MATIO_INCLUDE_DIR matio.h REQUIRED)
+find_library(MATIO_LIBRARY libmatio.a REQUIRED) # with the same copy of HDF5
+add_library(matio STATIC IMPORTED)
+set_target_properties(matio PROPERTIES
+  IMPORTED_LOCATION "${MATIO_LIBRARY}"
+  INTERFACE_INCLUDE_DIRECTORIES "${MATIO_INCLUDE_DIR}"
+  INTERFACE_LINK_LIBRARIES "HDF5::HDF5")
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)

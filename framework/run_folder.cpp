@@ -14,9 +14,15 @@ namespace fs = std::filesystem;
 constexpr const char* kResolved = "resolved.yaml";
 constexpr const char* kLastFiles[] = {"provenance.json", "report.html"};
 
-/// With the defaults of this version, so that a key that is new to it makes no difference.
+/// With the defaults of this version, so that a key that is new to it makes no difference, and without what
+/// no result of a run depends on.
 YamlNode normalize(const YamlNode& tree) {
-  return parseYaml(writeIndependentDefaults(tree), kResolved);
+  YamlNode normalized = parseYaml(writeIndependentDefaults(tree), kResolved);
+  std::vector<YamlEntry>& entries = normalized.entries;
+  entries.erase(std::remove_if(entries.begin(), entries.end(),
+                               [](const YamlEntry& entry) { return entry.key == "measurement"; }),
+                entries.end());
+  return normalized;
 }
 
 }  // namespace

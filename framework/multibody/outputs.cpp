@@ -1,6 +1,7 @@
 #include "framework/multibody/outputs.hpp"
 
 #include "framework/multibody/mass_properties.hpp"
+#include "framework/spec/output_units.hpp"
 
 namespace twinmap {
 namespace {
@@ -9,13 +10,10 @@ using SimTK::Stage;
 using SimTK::Vec3;
 
 const char* findUnit(const OutputSpec& output, const SystemNames& names) {
-  if (output.coordinate) {
-    return getUnit(names.getCoordinates()[names.findCoordinate(*output.coordinate)].traits.kind);
-  }
-  if (output.speed) {
-    return getSpeedUnit(names.getCoordinates()[names.findCoordinate(*output.speed)].traits.kind);
-  }
-  return output.position ? "m" : output.velocity ? "m/s" : "m/s2";
+  const std::optional<Name>& coordinate = output.coordinate ? output.coordinate : output.speed;
+  return getOutputUnit(output, coordinate
+                                   ? names.getCoordinates()[names.findCoordinate(*coordinate)].traits.kind
+                                   : CoordinateKind{});
 }
 
 void checkOne(const OutputSpec& output) {

@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "framework/spec/check_features.hpp"
+#include "framework/spec/check_measurement.hpp"
 #include "framework/spec/nearest_name.hpp"
 #include "framework/spec/noise_correlation.hpp"
 
@@ -96,6 +97,7 @@ void checkExperiment(const ExperimentSpec& experiment) {
   checkTransform(experiment);
   checkDesign(experiment.design, experiment.name.where);
   checkGates(experiment);
+  checkMeasurement(experiment.measurement, experiment.model);
   for (const Name& axis : experiment.report.over) {
     requireKnown(axis, collectNames(experiment.model.parameters), "a parameter");
   }

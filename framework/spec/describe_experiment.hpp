@@ -3,6 +3,7 @@
 #include "framework/spec/describe_evaluation.hpp"
 #include "framework/spec/describe_excitation.hpp"
 #include "framework/spec/describe_features.hpp"
+#include "framework/spec/describe_measurement.hpp"
 #include "framework/spec/describe_system.hpp"
 #include "framework/spec/experiment_spec.hpp"
 #include "framework/spec/fields.hpp"
@@ -283,6 +284,7 @@ void describe(Fields& f, ExperimentSpec& s) {
   f.optional("inverse_map", s.inverse_map, "from features to parameters");
   f.optional("evaluation", s.evaluation, "what is found out about the map besides its errors");
   f.optional("gates", s.gates, "conditions on the metrics; the report says which passed");
+  f.optional("measurement", s.measurement, "how files of measurements are read");
   f.optional("report", s.report, "what the report shows");
   f.rule(!s.features.empty(), "must list at least one of features");
 }

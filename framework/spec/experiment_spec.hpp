@@ -7,6 +7,7 @@
 
 #include "framework/spec/feature_spec.hpp"
 #include "framework/spec/gate_spec.hpp"
+#include "framework/spec/measurement_spec.hpp"
 #include "framework/spec/model_spec.hpp"
 
 namespace twinmap {
@@ -204,6 +205,7 @@ struct ExperimentSpec {
   InverseMapSpec inverse_map;
   EvaluationSpec evaluation;
   std::vector<GateSpec> gates;
+  MeasurementSpec measurement;  ///< for inferring from files; no simulation depends on it
   ReportSpec report;
 };
 

@@ -42,6 +42,12 @@ Json makeSchema(const Frequency&) {
 Json makeSchema(const NamedExpression&) {
   return makeSchema(Expression{});
 }
+Json makeSchema(const ColumnSpec&) {
+  return {{"type", "string"}};
+}
+Json makeSchema(const MeasuredColumnSpec&) {
+  return makeSchema(ColumnSpec{});
+}
 Json makeSchema(const Bounds&) {
   return {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 2}, {"maxItems", 2}};
 }

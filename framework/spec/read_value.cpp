@@ -135,6 +135,17 @@ void readValue(const YamlNode& node, NamedExpression& value) {
   readValue(node, value.value);
 }
 
+void readValue(const YamlNode& node, ColumnSpec& value) {
+  value = parseColumn(requireScalar(node, "a column, 'NAME' or 'NAME [unit]'"), node.where);
+  if (value.name.empty()) {
+    throw ExperimentError(node.where, node.scalar, "must name a column, 'NAME' or 'NAME [unit]'");
+  }
+}
+
+void readValue(const YamlNode& node, MeasuredColumnSpec& value) {
+  readValue(node, value.column);
+}
+
 void readValue(const YamlNode& node, ComponentCount& value) {
   constexpr NumberRule kCountOrAutomatic{kCount.minimum, kCount.maximum, true,
                                          "must be automatic or a whole number from 1 to 10000000"};

@@ -33,6 +33,9 @@ void readValue(const YamlNode& node, OutputNoiseSpec& value);
 /// A number above 0.
 void readValue(const YamlNode& node, Frequency& value);
 void readValue(const YamlNode& node, NamedExpression& value);
+/// "NAME" or "NAME [unit]".
+void readValue(const YamlNode& node, ColumnSpec& value);
+void readValue(const YamlNode& node, MeasuredColumnSpec& value);
 /// A whole number above 0, or automatic.
 void readValue(const YamlNode& node, ComponentCount& value);
 /// A scalar names one of the choices with its defaults.

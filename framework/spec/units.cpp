@@ -14,6 +14,9 @@ struct FreeSystem {
 struct FreeUnit {
   void operator()(ut_unit* unit) const { ut_free(unit); }
 };
+struct FreeConverter {
+  void operator()(cv_converter* converter) const { cv_free(converter); }
+};
 
 /// UDUNITS keeps its parser's state and its last status in globals: one thread at a time. The cases of a
 /// sweep read their experiments side by side.
@@ -30,6 +33,18 @@ const ut_system& getUnitSystem() {
         "the units database of UDUNITS-2 cannot be read; is libudunits2-data installed?");
   }
   return *kSystem;
+}
+
+using Unit = std::unique_ptr<ut_unit, FreeUnit>;
+
+/// Call with `udunits` locked.
+Unit parse(const std::string& unit, const SourceLocation& where) {
+  const std::string text = unit.empty() || unit == "-" ? "1" : unit;
+  Unit parsed(ut_parse(&getUnitSystem(), text.c_str(), UT_UTF8));
+  if (parsed == nullptr) {
+    throw ExperimentError(where, unit, "is not a unit; write units like N s/m, kg m^2, rad/s");
+  }
+  return parsed;
 }
 
 void addPower(Dimension& dimension, const ut_unit* base, int power) {
@@ -71,15 +86,27 @@ Dimension parseUnit(const std::string& unit, const SourceLocation& where) {
     return dimension;
   }
   const std::lock_guard<std::mutex> guard(udunits);
-  const std::unique_ptr<ut_unit, FreeUnit> parsed(ut_parse(&getUnitSystem(), unit.c_str(), UT_UTF8));
-  if (parsed == nullptr) {
-    throw ExperimentError(where, unit, "is not a unit; write units like N s/m, kg m^2, rad/s");
-  }
+  const Unit parsed = parse(unit, where);
   const ut_visitor visitor{visitBase, visitProduct, visitScaled, visitTimestamp, visitLogarithm};
   if (ut_accept_visitor(parsed.get(), &visitor, &dimension) != UT_SUCCESS) {
     throw ExperimentError(where, unit, "is not a coherent SI unit; give the value in m, kg, s, N, rad ...");
   }
   return dimension;
+}
+
+UnitConversion calcUnitConversion(const std::string& from, const std::string& to,
+                                  const SourceLocation& where) {
+  if (from == to) {
+    return {};
+  }
+  const std::lock_guard<std::mutex> guard(udunits);
+  const Unit source = parse(from, where), target = parse(to, where);
+  const std::unique_ptr<cv_converter, FreeConverter> converter(ut_get_converter(source.get(), target.get()));
+  if (converter == nullptr) {
+    throw ExperimentError(where, from, "does not convert to " + (to.empty() ? "a number" : to));
+  }
+  const double offset = cv_convert_double(converter.get(), 0.0);
+  return {cv_convert_double(converter.get(), 1.0) - offset, offset};
 }
 
 }  // namespace twinmap

@@ -15,4 +15,16 @@ using Dimension = std::map<std::string, int>;
 /// used as they stand, so N/mm would be a silent factor of 1000.
 Dimension parseUnit(const std::string& unit, const SourceLocation& where);
 
+/// value [to] = factor * value [from] + offset.
+struct UnitConversion {
+  double factor = 1.0, offset = 0.0;
+
+  double apply(double value) const { return factor * value + offset; }
+};
+
+/// From any unit that UDUNITS-2 knows (mm, deg, kN, degC ...; "" and "-" are 1) to another of its dimension.
+/// Throws ExperimentError for an unknown unit and for one of another dimension.
+UnitConversion calcUnitConversion(const std::string& from, const std::string& to,
+                                  const SourceLocation& where);
+
 }  // namespace twinmap

@@ -39,5 +39,11 @@ YamlNode writeValue(const Frequency& value) {
 YamlNode writeValue(const NamedExpression& value) {
   return writeValue(value.value);
 }
+YamlNode writeValue(const ColumnSpec& value) {
+  return makeScalar(toText(value));
+}
+YamlNode writeValue(const MeasuredColumnSpec& value) {
+  return writeValue(value.column);
+}
 
 }  // namespace twinmap

@@ -25,6 +25,8 @@ YamlNode writeValue(const Bounds& value);
 YamlNode writeValue(const OutputNoiseSpec& value);
 YamlNode writeValue(const Frequency& value);
 YamlNode writeValue(const NamedExpression& value);
+YamlNode writeValue(const ColumnSpec& value);
+YamlNode writeValue(const MeasuredColumnSpec& value);
 
 /// Writes the fields of a struct into a map, defaults included; what is not given is left out.
 class FieldWriter {

@@ -5,9 +5,9 @@
 #include <cstring>
 #include <vector>
 
+#include "framework/hdf5/hdf5_handle.hpp"
 #include "framework/spec/number_text.hpp"
 #include "framework/store/atomic_file.hpp"
-#include "framework/store/hdf5_handle.hpp"
 
 namespace twinmap {
 namespace {

@@ -3,8 +3,8 @@
 #include <memory>
 #include <stdexcept>
 
+#include "framework/hdf5/hdf5_file.hpp"
 #include "framework/store/atomic_file.hpp"
-#include "framework/store/hdf5_file.hpp"
 #include "framework/store/parameters_group.hpp"
 
 namespace twinmap {

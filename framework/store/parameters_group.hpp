@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "framework/hdf5/hdf5_file.hpp"
 #include "framework/spec/model_spec.hpp"
-#include "framework/store/hdf5_file.hpp"
 
 namespace twinmap {
 

@@ -7,6 +7,8 @@ from pathlib import Path
 ALLOWED = {
     "kernels": set(),
     "spec": set(),
+    "hdf5": set(),
+    "measurement": {"spec", "hdf5"},
     "design": {"spec"},
     "simulation": {"spec"},
     "multibody": {"spec", "simulation"},
@@ -14,7 +16,7 @@ ALLOWED = {
     "sensitivity": {"spec", "simulation", "features", "design"},
     "inverse_map": {"spec", "design", "simulation", "features", "sensitivity", "kernels"},
     "evaluation": {"spec", "design", "simulation", "features", "sensitivity", "inverse_map"},
-    "store": {"spec", "simulation", "inverse_map", "features", "kernels"},
+    "store": {"spec", "hdf5", "simulation", "inverse_map", "features", "kernels"},
     "report": {"spec", "features", "evaluation", "inverse_map", "store"},
     "comparison": {"spec", "features", "evaluation", "inverse_map", "store", "report"},
     "flow": {"spec", "design", "simulation", "multibody", "features", "sensitivity", "evaluation", "inverse_map", "store",
@@ -22,7 +24,7 @@ ALLOWED = {
     "verification": {"flow", "spec", "design", "simulation", "multibody", "features", "sensitivity", "evaluation",
                      "inverse_map", "store", "report"},
     "sweep": {"flow", "spec", "design", "multibody", "simulation", "features", "inverse_map", "report", "store"},
-    "cli": {"flow", "sweep", "comparison", "verification", "spec", "design", "multibody", "simulation", "features", "report", "store"},
+    "cli": {"flow", "sweep", "comparison", "verification", "spec", "measurement", "design", "multibody", "simulation", "features", "report", "store"},
 }
 
 # Libraries that stay behind one part.
@@ -31,14 +33,15 @@ LIBRARIES = {
     r"yaml-cpp/.*": {"spec"},
     r"muParser.*": {"spec"},
     r"udunits2.*": {"spec"},
-    r"hdf5.*": {"store"},
+    r"hdf5.*": {"hdf5", "store"},
+    r"matio.*": {"measurement"},
     r"xxhash.*": {"store"},
     r"nlohmann/.*": {"spec", "store", "report", "comparison"},
     r"CLI/.*": {"cli"},
     r"nlopt.*": {"kernels"},
     r"spdlog/.*": {"flow", "sweep", "cli"},
-    r"filesystem": {"spec", "store", "report", "comparison", "flow", "sweep", "verification", "cli"},
-    r"(omp\.h|fstream|chrono)": {"spec", "simulation", "multibody", "evaluation/chrono", "store", "comparison", "flow", "sweep", "verification", "cli", "kernels/omp.h"},
+    r"filesystem": {"spec", "hdf5", "measurement", "store", "report", "comparison", "flow", "sweep", "verification", "cli"},
+    r"(omp\.h|fstream|chrono)": {"spec", "measurement/fstream", "simulation", "multibody", "evaluation/chrono", "store", "comparison", "flow", "sweep", "verification", "cli", "kernels/omp.h"},
 }
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)

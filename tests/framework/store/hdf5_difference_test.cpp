@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-#include "framework/store/hdf5_file.hpp"
+#include "framework/hdf5/hdf5_file.hpp"
 #include "framework/store/temporary_folder.hpp"
 
 namespace twinmap {

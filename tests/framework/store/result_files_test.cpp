@@ -3,7 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "framework/store/hdf5_file.hpp"
+#include "framework/hdf5/hdf5_file.hpp"
 #include "framework/store/maps_file.hpp"
 #include "framework/store/provenance.hpp"
 #include "framework/store/samples_file.hpp"

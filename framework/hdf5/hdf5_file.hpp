@@ -9,7 +9,7 @@
 
 namespace twinmap {
 
-/// The library's only user, as long as it is held.
+/// The library's only user, as long as it is held. HDF5 then prints no errors of its own.
 std::unique_lock<std::recursive_mutex> lockHdf5();
 
 /// A small face on HDF5: datasets of numbers and texts by path ("/train/parameters"), groups made on the way,
@@ -56,6 +56,10 @@ class Hdf5Reader {
   ~Hdf5Reader();
 
   bool contains(const std::string& dataset) const;
+  /// The paths of all datasets, without the leading '/', in the order of names.
+  std::vector<std::string> listDatasets() const;
+  /// Whether a dataset is of integers or floating-point numbers.
+  bool isRealNumber(const std::string& dataset) const;
   std::vector<std::size_t> readShape(const std::string& dataset) const;
   /// (n, d) -> d x n; a vector (n) -> n x 1; a number -> 1 x 1.
   Eigen::MatrixXd readSamples(const std::string& dataset) const;
@@ -63,6 +67,8 @@ class Hdf5Reader {
   double readNumber(const std::string& dataset) const;
   std::vector<std::int64_t> readIntegers(const std::string& dataset) const;
   std::vector<std::string> readTexts(const std::string& dataset) const;
+  bool hasAttribute(const std::string& object, const std::string& name) const;
+  /// A text of fixed or variable length.
   std::string readAttribute(const std::string& object, const std::string& name) const;
 
  private:

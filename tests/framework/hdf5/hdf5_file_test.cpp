@@ -1,4 +1,4 @@
-#include "framework/store/hdf5_file.hpp"
+#include "framework/hdf5/hdf5_file.hpp"
 
 #include <gtest/gtest.h>
 

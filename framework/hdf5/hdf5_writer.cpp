@@ -1,7 +1,7 @@
 #include <algorithm>
 
-#include "framework/store/hdf5_file.hpp"
-#include "framework/store/hdf5_handle.hpp"
+#include "framework/hdf5/hdf5_file.hpp"
+#include "framework/hdf5/hdf5_handle.hpp"
 
 namespace twinmap {
 namespace {
@@ -27,11 +27,12 @@ Hdf5Handle makeSpace(const std::vector<std::size_t>& shape) {
 
 std::unique_lock<std::recursive_mutex> lockHdf5() {
   static std::recursive_mutex mutex;
-  return std::unique_lock(mutex);
+  std::unique_lock lock(mutex);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  return lock;
 }
 
 Hdf5Writer::Hdf5Writer(const std::filesystem::path& path) : path_(path.string()) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   file_ = H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   if (file_ < 0) {
     throw std::runtime_error(path_ + ": cannot be created as an HDF5 file");

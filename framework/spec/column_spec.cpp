@@ -1,0 +1,26 @@
+#include "framework/spec/column_spec.hpp"
+
+namespace twinmap {
+namespace {
+
+std::string trim(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+}  // namespace
+
+ColumnSpec parseColumn(const std::string& text, const SourceLocation& where) {
+  const std::string trimmed = trim(text);
+  const std::size_t open = trimmed.rfind('[');
+  if (open == std::string::npos || trimmed.back() != ']') {
+    return {trimmed, {}, where};
+  }
+  return {trim(trimmed.substr(0, open)), trim(trimmed.substr(open + 1, trimmed.size() - open - 2)), where};
+}
+
+std::string toText(const ColumnSpec& column) {
+  return column.name + (column.unit ? " [" + *column.unit + "]" : "");
+}
+
+}  // namespace twinmap

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "framework/spec/column_spec.hpp"
+#include "framework/spec/expression.hpp"
+
+namespace twinmap {
+
+/// Where an output stands in a table of measurements.
+struct MeasuredColumnSpec {
+  Name name;  ///< the output
+  ColumnSpec column;
+};
+
+/// How measurements are read: at most one of `time` and `sample_rate` is given; neither: a column named t or
+/// time, in s unless the table states a unit. Outputs that are not listed stand in columns of their own name.
+/// A unit here goes before the one that the table states; without either a column is in its output's unit.
+struct MeasurementSpec {
+  std::optional<ColumnSpec> time;
+  std::optional<double> sample_rate;  ///< Hz; the first row is at time 0
+  double start = 0.0;                 ///< time in the table (s) at which the model's time is 0
+  std::vector<MeasuredColumnSpec> columns;
+};
+
+}  // namespace twinmap
