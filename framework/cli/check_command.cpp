@@ -1,15 +1,15 @@
 #include <iostream>
 
 #include "framework/cli/commands.hpp"
+#include "framework/measurement/signal_experiment.hpp"
 #include "framework/spec/experiment_file.hpp"
-#include "framework/spec/sweep_cases.hpp"
 
 namespace twinmap {
 
 void check(const ExperimentArguments& arguments) {
   const YamlNode tree = loadExperimentTree(arguments.file, arguments.overrides);
-  expandCases(tree);  // finds what is wrong in any of them
-  std::cout << (tree.find("sweep") == nullptr ? writeExperiment(readExperiment(tree))
+  expandCasesWithSignals(tree);  // finds what is wrong in any of them
+  std::cout << (tree.find("sweep") == nullptr ? writeExperiment(readExperimentWithSignals(tree))
                                               : writeIndependentDefaults(tree));
 }
 

@@ -57,6 +57,14 @@ struct CompareArguments {
   bool csv = false, json = false;  ///< at most one; neither: a table for people
 };
 
+struct NoiseArguments {
+  std::string measurement;           ///< a file
+  std::vector<double> window;        ///< s; [from, to], or empty: all
+  std::vector<std::string> columns;  ///< or outputs of the experiment; empty: all
+  std::string experiment;            ///< "": none
+  bool json = false;
+};
+
 struct VerifyArguments {
   std::string folder;
   int samples = 5;
@@ -100,6 +108,9 @@ void report(const ReportArguments& arguments);
 
 /// Prints the gates that failed; throws GatesFailed if there are any and `fail` is set.
 void requireGates(const std::vector<GateResult>& gates, bool fail);
+
+/// Prints the noise of a measurement's columns.
+void noise(const NoiseArguments& arguments);
 
 /// Recomputes a part of a run, or all of it, and prints what differs; throws std::runtime_error if anything
 /// does.

@@ -123,6 +123,30 @@ void addCompare(CLI::App& app, twinmap::CompareArguments& arguments) {
   command->callback([&arguments] { twinmap::compare(arguments); });
 }
 
+void addNoise(CLI::App& app, twinmap::NoiseArguments& arguments) {
+  CLI::App* command = app.add_subcommand(
+      "noise",
+      "Estimate the noise of a measurement while nothing moves (or of residuals): standard deviation and "
+      "autoregressive model of each column, and the same as YAML for an experiment file");
+  command->add_option("MEASUREMENT", arguments.measurement, "CSV, MATLAB or HDF5 file")
+      ->required()
+      ->option_text(" ");
+  command->add_option("--window", arguments.window, "Times from A to B only; s (default: all)")
+      ->type_name("A,B")
+      ->delimiter(',')
+      ->expected(2);
+  command->add_option("--columns", arguments.columns, "Columns, or outputs of the experiment (default: all)")
+      ->type_name("NAME,...")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command
+      ->add_option("--experiment", arguments.experiment,
+                   "Experiment file whose 'measurement' says where its outputs stand, and in which units")
+      ->type_name("FILE");
+  command->add_flag("--json", arguments.json, "Print JSON");
+  command->callback([&arguments] { twinmap::noise(arguments); });
+}
+
 void addReport(CLI::App& app, twinmap::ReportArguments& arguments) {
   CLI::App* command = app.add_subcommand(
       "report", "Write report.html again from a run's or a sweep's folder, or compare several runs");
@@ -173,6 +197,7 @@ int runCommand(int count, char** arguments) {
   twinmap::ExperimentArguments check;
   twinmap::SimulateArguments simulate;
   twinmap::CompareArguments compare;
+  twinmap::NoiseArguments noise;
   twinmap::ReportArguments report;
   twinmap::StatusArguments status;
   twinmap::RunArguments run;
@@ -186,6 +211,7 @@ int runCommand(int count, char** arguments) {
   addPlan(app, run);
   addStatus(app, status);
   addCompare(app, compare);
+  addNoise(app, noise);
   addReport(app, report);
   addVerify(app, verify);
   addSchema(app);

@@ -8,6 +8,7 @@
 #include "framework/cli/signals.hpp"
 #include "framework/experiment.hpp"
 #include "framework/interrupted.hpp"
+#include "framework/measurement/signal_experiment.hpp"
 #include "framework/report/tables.hpp"
 #include "framework/spec/experiment_file.hpp"
 #include "framework/sweep/run_sweep.hpp"
@@ -91,7 +92,7 @@ double chooseMemory(const RunArguments& arguments) {
 
 void run(const RunArguments& arguments) {
   const YamlNode tree = loadExperimentTree(arguments.experiment.file, arguments.experiment.overrides);
-  const ExperimentSpec experiment = readExperiment(tree);
+  const ExperimentSpec experiment = readExperimentWithSignals(tree);
   const fs::path folder = chooseFolder(arguments, experiment);
   if (arguments.quiet) {
     showWarningsOnly();

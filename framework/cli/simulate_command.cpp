@@ -1,11 +1,13 @@
 #include <algorithm>
 #include <iostream>
+#include <sstream>
 
 #include "framework/cli/commands.hpp"
 #include "framework/features/feature_extractor.hpp"
 #include "framework/features/noise.hpp"
+#include "framework/measurement/signal_experiment.hpp"
+#include "framework/measurement/table.hpp"
 #include "framework/multibody/multibody_simulator.hpp"
-#include "framework/report/escape.hpp"
 #include "framework/spec/check_experiment.hpp"
 #include "framework/spec/experiment_file.hpp"
 #include "framework/spec/number_text.hpp"
@@ -75,20 +77,14 @@ std::string makeModesCsv(const ResponseLayout& layout, const Eigen::VectorXd& re
 }
 
 std::string makeOutputsCsv(const ResponseLayout& layout, const Eigen::VectorXd& response) {
-  const Eigen::VectorXd& times = layout.times;
-  std::string csv = "t";
-  for (const std::string& name : layout.output_names) {
-    csv += "," + escapeCsv(name);
+  std::vector<Column> columns{{"t", {}, layout.times}};
+  for (Eigen::Index output = 0; output < layout.getOutputCount(); ++output) {
+    columns.push_back(
+        {layout.output_names[output], {}, response.segment(layout.getRow(output, 0), layout.times.size())});
   }
-  csv += "\n";
-  for (Eigen::Index i = 0; i < times.size(); ++i) {
-    csv += toText(times[i]);
-    for (Eigen::Index output = 0; output < layout.getOutputCount(); ++output) {
-      csv += "," + toText(response[layout.getRow(output, i)]);
-    }
-    csv += "\n";
-  }
-  return csv;
+  std::ostringstream csv;
+  writeTable(csv, columns);
+  return csv.str();
 }
 
 /// The outputs, then the modes; an empty line between them where there are both.
@@ -103,7 +99,8 @@ std::string makeCsv(const ResponseLayout& layout, const Eigen::VectorXd& respons
 void simulate(const SimulateArguments& arguments) {
   std::vector<std::string> overrides = arguments.experiment.overrides;
   const std::vector<ParameterValue> values = takeParameterValues(overrides);
-  const ExperimentSpec experiment = loadExperiment(arguments.experiment.file, overrides);
+  const ExperimentSpec experiment =
+      readExperimentWithSignals(loadExperimentTree(arguments.experiment.file, overrides));
   const Eigen::MatrixXd point = makePoint(experiment.model, values);
   MultibodySimulator simulator(experiment.model, collectTimes(experiment.features),
                                countModes(experiment.features));

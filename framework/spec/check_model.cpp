@@ -3,6 +3,7 @@
 #include "framework/spec/check_experiment.hpp"
 #include "framework/spec/check_scope.hpp"
 #include "framework/spec/joint_type.hpp"
+#include "framework/spec/output_units.hpp"
 #include "framework/spec/parameter_box.hpp"
 
 namespace twinmap {
@@ -264,18 +265,8 @@ class ModelCheck {
       constants_.check(output.gain, "1");
     }
     if (!output.offset.text.empty()) {
-      constants_.check(output.offset, findUnit(output));
+      constants_.check(output.offset, findOutputUnit(output, model_.system));
     }
-  }
-
-  std::string findUnit(const OutputSpec& output) const {
-    if (output.coordinate) {
-      return findUnit(*output.coordinate);
-    }
-    if (output.speed) {
-      return findUnit(*output.speed) + "/s";
-    }
-    return output.position ? "m" : output.velocity ? "m/s" : "m/s2";
   }
 
   const Coordinate& find(const Name& name) const {

@@ -8,6 +8,7 @@
 #include "framework/spec/noise_correlation.hpp"
 #include "framework/spec/overrides.hpp"
 #include "framework/spec/read_value.hpp"
+#include "framework/spec/signal_files.hpp"
 #include "framework/spec/swept_keys.hpp"
 #include "framework/spec/write_value.hpp"
 
@@ -67,6 +68,7 @@ YamlNode loadExperimentTree(const std::string& path, const std::vector<std::stri
   for (const std::string& text : overrides) {
     applyOverride(root, text);
   }
+  resolveSignalFiles(root, path);
   return root;
 }
 

@@ -17,7 +17,8 @@ ExperimentSpec readExperiment(const YamlNode& root);
 /// Reads `path`, applies the overrides "key.path=value" in their order, checks the result.
 ExperimentSpec loadExperiment(const std::string& path, const std::vector<std::string>& overrides = {});
 
-/// The same as a tree, not checked yet.
+/// The same as a tree, not checked yet. Names of files in it (measured signals) are relative to the folder of
+/// `path`, and absolute from here on.
 YamlNode loadExperimentTree(const std::string& path, const std::vector<std::string>& overrides = {});
 
 /// The experiment as YAML with every default written out; reading it back gives the same experiment.

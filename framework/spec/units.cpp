@@ -22,11 +22,21 @@ struct FreeConverter {
 /// sweep read their experiments side by side.
 std::mutex udunits;
 
+/// A name that UDUNITS lacks, though everybody uses it.
+void addDegree(ut_system* system) {
+  const std::unique_ptr<ut_unit, FreeUnit> degree(ut_parse(system, "degree", UT_ASCII));
+  ut_map_name_to_unit("deg", UT_ASCII, degree.get());
+}
+
 /// UDUNITS' own database of SI units, read once.
 const ut_system& getUnitSystem() {
   static const std::unique_ptr<ut_system, FreeSystem> kSystem([] {
     ut_set_error_message_handler(ut_ignore);
-    return ut_read_xml(nullptr);
+    ut_system* system = ut_read_xml(nullptr);
+    if (system != nullptr) {
+      addDegree(system);
+    }
+    return system;
   }());
   if (kSystem == nullptr) {
     throw std::runtime_error(

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "framework/features/feature_extractor.hpp"
+#include "framework/measurement/signal_experiment.hpp"
 #include "framework/run_folder.hpp"
 #include "framework/spec/parameter_box.hpp"
 #include "framework/sweep/case_cost.hpp"
@@ -192,7 +193,7 @@ std::string describeBytes(double bytes) {
 }  // namespace
 
 SweepPlan planRun(const YamlNode& root, const PlanOptions& options) {
-  const std::vector<SweepCase> cases = expandCases(root);
+  const std::vector<SweepCase> cases = expandCasesWithSignals(root);
   const std::vector<bool> todo = findTodo(root, cases, options);
   SweepPlan plan;
   plan.cases = static_cast<int>(cases.size());

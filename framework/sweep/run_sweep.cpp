@@ -8,6 +8,7 @@
 
 #include "framework/experiment.hpp"
 #include "framework/log_context.hpp"
+#include "framework/measurement/signal_experiment.hpp"
 #include "framework/report/report.hpp"
 #include "framework/run_folder.hpp"
 #include "framework/run_log.hpp"
@@ -148,7 +149,7 @@ class Sweep {
 }  // namespace
 
 SweepResult runSweep(const YamlNode& root, const SweepOptions& options) {
-  std::vector<SweepCase> cases = expandSweep(root);
+  std::vector<SweepCase> cases = expandCasesWithSignals(root);
   const std::string resolved = writeIndependentDefaults(root);
   makeFolders(options.folder);
   const FolderLock lock(options.folder);

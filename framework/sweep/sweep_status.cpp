@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "framework/measurement/signal_experiment.hpp"
 #include "framework/run_folder.hpp"
 #include "framework/spec/experiment_file.hpp"
 #include "framework/store/folder_lock.hpp"
@@ -36,7 +37,7 @@ SweepStatus readStatus(const fs::path& folder, const fs::path& store) {
   }
   const YamlNode root = loadYaml(resolved.string());
   const bool is_sweep = root.find("sweep") != nullptr;
-  const std::vector<SweepCase> cases = expandCases(root);
+  const std::vector<SweepCase> cases = expandCasesWithSignals(root);
   SweepStatus status;
   status.owner = findLockOwner(folder);
   status.cases = static_cast<int>(cases.size());

@@ -23,7 +23,7 @@ ALLOWED = {
              "report"},
     "verification": {"flow", "spec", "design", "simulation", "multibody", "features", "sensitivity", "evaluation",
                      "inverse_map", "store", "report"},
-    "sweep": {"flow", "spec", "design", "multibody", "simulation", "features", "inverse_map", "report", "store"},
+    "sweep": {"flow", "spec", "measurement", "design", "multibody", "simulation", "features", "inverse_map", "report", "store"},
     "cli": {"flow", "sweep", "comparison", "verification", "spec", "measurement", "design", "multibody", "simulation", "features", "report", "store"},
 }
 
@@ -36,7 +36,7 @@ LIBRARIES = {
     r"hdf5.*": {"hdf5", "store"},
     r"matio.*": {"measurement"},
     r"xxhash.*": {"store"},
-    r"nlohmann/.*": {"spec", "store", "report", "comparison"},
+    r"nlohmann/.*": {"spec", "measurement", "store", "report", "comparison"},
     r"CLI/.*": {"cli"},
     r"nlopt.*": {"kernels"},
     r"spdlog/.*": {"flow", "sweep", "cli"},

@@ -1,0 +1,92 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "framework/measurement/signal_noise.hpp"
+#include "framework/spec/number_text.hpp"
+
+namespace twinmap {
+namespace {
+
+std::string join(const std::vector<double>& numbers) {
+  constexpr int kDigits = 5;
+  std::string text;
+  for (const double number : numbers) {
+    text += (text.empty() ? "" : ", ") + toShortText(number, kDigits);
+  }
+  return text;
+}
+
+std::string makeLabel(const SignalNoise& signal) {
+  return signal.name + (signal.unit.empty() ? "" : " [" + signal.unit + "]");
+}
+
+/// A key of a YAML map: plain if it is an identifier, else quoted.
+std::string makeKey(const std::string& name) {
+  const bool plain =
+      std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
+  return plain ? name : nlohmann::json(name).dump();
+}
+
+}  // namespace
+
+std::string makeNoiseTable(const std::vector<SignalNoise>& signals) {
+  constexpr int kDigits = 6, kErrorDigits = 2;
+  std::size_t width = 6;
+  for (const SignalNoise& signal : signals) {
+    width = std::max(width, makeLabel(signal).size());
+  }
+  std::string text = fmt::format("{:<{}}  {:>9}  {:>12}  {:>12}  {:>8}  {:>9}  {}\n", "column", width,
+                                 "samples", "mean", "stddev", "+-", "whiteness", "autoregression");
+  for (const SignalNoise& signal : signals) {
+    const std::vector<double>& coefficients = signal.noise.model.coefficients;
+    text += fmt::format("{:<{}}  {:>9}  {:>12}  {:>12}  {:>8}  {:>9}  {}\n", makeLabel(signal), width,
+                        signal.samples, toShortText(signal.noise.mean, kDigits),
+                        toShortText(signal.noise.stddev, kDigits),
+                        toShortText(signal.noise.stddev_error, kErrorDigits),
+                        toShortText(signal.noise.whiteness, kErrorDigits),
+                        coefficients.empty() ? "none, white" : join(coefficients));
+  }
+  return text;
+}
+
+std::string makeNoiseJson(const std::vector<SignalNoise>& signals, const std::string& source) {
+  nlohmann::ordered_json columns = nlohmann::ordered_json::array();
+  for (const SignalNoise& signal : signals) {
+    nlohmann::ordered_json column{{"name", signal.name},
+                                  {"unit", signal.unit},
+                                  {"samples", signal.samples},
+                                  {"mean", signal.noise.mean},
+                                  {"stddev", signal.noise.stddev},
+                                  {"stddev_error", signal.noise.stddev_error},
+                                  {"autoregression", signal.noise.model.coefficients},
+                                  {"innovation_stddev", signal.noise.model.innovation_stddev},
+                                  {"whiteness", signal.noise.whiteness}};
+    column["sample_time"] =
+        signal.sample_time ? nlohmann::ordered_json(*signal.sample_time) : nlohmann::ordered_json();
+    columns.push_back(std::move(column));
+  }
+  constexpr int kIndent = 2;
+  return nlohmann::ordered_json{{"source", source}, {"columns", columns}}.dump(kIndent) + "\n";
+}
+
+std::string makeNoiseYaml(const std::vector<SignalNoise>& signals) {
+  constexpr int kDigits = 5, kTimeDigits = 10;
+  std::string stddev, correlation;
+  for (const SignalNoise& signal : signals) {
+    stddev += (stddev.empty() ? "" : ", ") + makeKey(signal.name) + ": " +
+              toShortText(signal.noise.stddev, kDigits);
+    if (!signal.noise.model.coefficients.empty()) {
+      correlation +=
+          "    " + makeKey(signal.name) + ": {autoregression: [" + join(signal.noise.model.coefficients) +
+          "]" +
+          (signal.sample_time ? ", sample_time: " + toShortText(*signal.sample_time, kTimeDigits) : "") +
+          "}\n";
+    }
+  }
+  return "noise:\n  stddev: {" + stddev + "}\n" +
+         (correlation.empty() ? "" : "  correlation:\n" + correlation);
+}
+
+}  // namespace twinmap

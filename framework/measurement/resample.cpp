@@ -1,0 +1,165 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "framework/measurement/measurement.hpp"
+#include "framework/measurement/time_series.hpp"
+#include "framework/spec/number_text.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr int kPoints = 4;
+
+/// A value as a combination of consecutive samples: one that is there, or a cubic through four.
+struct Stencil {
+  Index first = 0;
+  int count = 1;
+  std::array<double, kPoints> weights{1.0, 1.0, 1.0, 1.0};
+};
+
+std::string toSeconds(double t) {
+  constexpr int kDigits = 6;
+  return toShortText(t, kDigits) + " s";
+}
+
+/// Lagrange's weights of the cubic through four points, at t.
+Stencil makeCubic(const VectorXd& times, Index first, double t) {
+  Stencil stencil;
+  stencil.first = first;
+  stencil.count = kPoints;
+  for (int i = 0; i < kPoints; ++i) {
+    for (int j = 0; j < kPoints; ++j) {
+      if (i != j) {
+        stencil.weights[i] *= (t - times[first + j]) / (times[first + i] - times[first + j]);
+      }
+    }
+  }
+  return stencil;
+}
+
+double calcSmallestDifference(const VectorXd& times) {
+  return times.size() < 2 ? HUGE_VAL
+                          : (times.tail(times.size() - 1) - times.head(times.size() - 1)).minCoeff();
+}
+
+class Stencils {
+ public:
+  Stencils(const Measurement& measurement, const VectorXd& needed, double interval)
+      : source_(measurement.source), times_(measurement.times), interval_(interval) {
+    if (times_.size() < 2) {
+      fail("has " + std::to_string(times_.size()) + " samples; must have at least 2");
+    }
+    step_ = calcMedianStep(times_);
+    requireCovered(needed[0], needed[needed.size() - 1]);
+    for (const double t : needed) {
+      stencils_.push_back(make(t));
+    }
+  }
+
+  const Stencil& operator[](Index i) const { return stencils_[static_cast<std::size_t>(i)]; }
+
+ private:
+  double getTolerance() const { return 1e-6 * step_; }
+
+  void requireCovered(double from, double to) const {
+    if (times_[0] > from + getTolerance()) {
+      fail("begins at " + toSeconds(times_[0]) + ", but is needed from " + toSeconds(from) + " on");
+    }
+    const double end = times_[times_.size() - 1];
+    if (end < to - getTolerance()) {
+      fail("ends at " + toSeconds(end) + ", but is needed until " + toSeconds(to));
+    }
+  }
+
+  Stencil make(double t) const {
+    const double* begin = times_.data();
+    const Index next = std::lower_bound(begin, begin + times_.size(), t - getTolerance()) - begin;
+    if (std::abs(times_[next] - t) <= getTolerance()) {
+      Stencil same;
+      same.first = next;
+      return same;
+    }
+    requireRate();
+    const Index first = std::clamp<Index>(next - kPoints / 2, 0, times_.size() - kPoints);
+    requireNoGap(first);
+    return makeCubic(times_, first, t);
+  }
+
+  void requireRate() const {
+    constexpr double kSlack = 1.01;
+    if (times_.size() < kPoints || step_ > kSlack * interval_) {
+      fail("has a sample each " + toSeconds(step_) + " (median); at least one each " + toSeconds(interval_) +
+           " is needed");
+    }
+  }
+
+  void requireNoGap(Index first) const {
+    constexpr double kLongest = 1.5;
+    for (Index i = first; i + 1 < first + kPoints; ++i) {
+      if (times_[i + 1] - times_[i] > kLongest * step_) {
+        fail("has a gap from " + toSeconds(times_[i]) + " to " + toSeconds(times_[i + 1]) +
+             ", where samples are needed; the median step is " + toSeconds(step_));
+      }
+    }
+  }
+
+  [[noreturn]] void fail(const std::string& problem) const {
+    throw MeasurementError(source_ + ": " + problem);
+  }
+
+  const std::string& source_;
+  const VectorXd& times_;
+  double step_ = 0.0, interval_ = 0.0;
+  std::vector<Stencil> stencils_;
+};
+
+void requireAlive(const Measurement& measurement, Index output, const RowRange& range) {
+  constexpr Index kFewest = 4;
+  const auto values = measurement.values.col(output).segment(range.first, range.count);
+  if (range.count >= kFewest && (values.array() == values[0]).all()) {
+    throw MeasurementError(
+        measurement.source + ": column '" + measurement.column_names[output] + "' is " + toText(values[0]) +
+        " at all needed times, " + toSeconds(measurement.times[range.first]) + " to " +
+        toSeconds(measurement.times[range.first + range.count - 1]) + "; is the sensor dead?");
+  }
+}
+
+double apply(const Stencil& stencil, const Measurement& measurement, Index output) {
+  if (stencil.count == 1) {
+    return measurement.values(stencil.first, output);
+  }
+  double sum = 0.0;
+  for (int k = 0; k < stencil.count; ++k) {
+    sum += stencil.weights[k] * measurement.values(stencil.first + k, output);
+  }
+  return sum;
+}
+
+}  // namespace
+
+VectorXd resample(const Measurement& measurement, const ResponseLayout& layout,
+                  std::optional<double> interval) {
+  if (layout.modes > 0) {
+    throw MeasurementError(measurement.source + ": holds no modes, of which features are made");
+  }
+  const VectorXd& needed = layout.times;
+  VectorXd response(layout.getRowCount());
+  if (response.size() == 0) {
+    return response;
+  }
+  const Stencils stencils(measurement, needed, interval.value_or(calcSmallestDifference(needed)));
+  const RowRange range = findRows(measurement.times, needed[0], needed[needed.size() - 1], 0);
+  for (Index output = 0; output < layout.getOutputCount(); ++output) {
+    requireAlive(measurement, output, range);
+    for (Index i = 0; i < needed.size(); ++i) {
+      response[layout.getRow(output, i)] = apply(stencils[i], measurement, output);
+    }
+  }
+  return response;
+}
+
+}  // namespace twinmap

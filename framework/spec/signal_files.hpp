@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "framework/spec/yaml_node.hpp"
+
+namespace twinmap {
+
+/// Makes the names of files of measured signals (excitation.*.tables[*].measured.file, also where they are
+/// swept) absolute: they are relative to the folder of the experiment file `path`.
+void resolveSignalFiles(YamlNode& root, const std::string& path);
+
+}  // namespace twinmap
