@@ -26,24 +26,16 @@ MatrixXd calcDirections(const MatrixXd& covariance) {
 }  // namespace
 
 ArrayXd calcSquaredSlopes(const Process& process, const MatrixXd& directions, const MatrixXd& inputs) {
-  const auto predict_mean = [&](const MatrixXd& at) {
-    return std::visit([&](const auto& trained) { return trained->predictMean(at); }, process);
-  };
-  ArrayXd slopes = ArrayXd::Zero(inputs.cols());
-  for (const auto& direction : directions.colwise()) {
-    const VectorXd change =
-        0.5 * (predict_mean(inputs.colwise() + direction) - predict_mean(inputs.colwise() - direction));
-    slopes += change.array().square();
-  }
-  return slopes;
+  const MatrixXd gradient = std::visit(
+      [&](const auto& trained) { return trained->getMean().predictMeanGradient(inputs); }, process);
+  return (directions.transpose() * gradient).colwise().squaredNorm().transpose();
 }
 
 ArrayXd NoiseProfile::calcFactors(const Process& process, Index parameter, const MatrixXd& inputs) const {
-  constexpr double kSmallest = 0.1;
   if (isConstant() || !(mean_of_slope[parameter] > 0.0)) {
     return ArrayXd::Ones(inputs.cols());
   }
-  return (calcSquaredSlopes(process, directions, inputs) / mean_of_slope[parameter]).max(kSmallest);
+  return (calcSquaredSlopes(process, directions, inputs) / mean_of_slope[parameter]).max(kSmallestFactor);
 }
 
 NoiseProfile fitNoiseProfile(const std::vector<Process>& processes, const MatrixXd& noise_covariance,

@@ -12,15 +12,18 @@ namespace twinmap {
 /// carried through the slope of the map: steep places are uncertain. To first order its variance is the
 /// mean's squared slope along the noise of the inputs (McHutchon and Rasmussen, Gaussian Process Training
 /// with Input Noise, 2011). So the likelihood's variance, which is right on average, is multiplied by
-///   s(x) / mean of s over the training inputs,   s(x) = sum_l ((m(x + l) - m(x - l)) / 2)^2,
-/// l the columns of `directions`, at least by 0.1.
+///   s(x) / mean of s over the training inputs,   s(x) = |L' dm/dx|^2,
+/// L = `directions`, at least by kSmallestFactor.
 struct NoiseProfile {
+  static constexpr double kSmallestFactor = 0.1;
+
   Eigen::MatrixXd directions;  ///< k x r, L with L L' = noise covariance of the inputs; empty: constant noise
   Eigen::VectorXd mean_of_slope;  ///< p, mean of s over the training inputs, standardised parameters
 
   bool isConstant() const { return directions.size() == 0; }
 
-  /// The factor of parameter p's noise variance at each of `inputs` (k x n). Cost: 2 r predicted means each.
+  /// The factor of parameter p's noise variance at each of `inputs` (k x n). Cost: that of a gradient of the
+  /// mean.
   Eigen::ArrayXd calcFactors(const Process& process, Eigen::Index parameter,
                              const Eigen::MatrixXd& inputs) const;
 };

@@ -4,7 +4,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "kernels/gp/cross_covariance.hpp"
 #include "kernels/gp/training_set.hpp"
 #include "kernels/linalg/flush_denormals.hpp"
 #include "kernels/linalg/triangular.hpp"
@@ -52,12 +51,9 @@ MatrixXd calcBasisFactor(const MatrixXd& whitened_basis, linalg::TriangularScrat
 GaussianProcess::GaussianProcess(GaussianProcessParts parts) : parts_(std::move(parts)) {
   checkParts(parts_);
   const MatrixXd& inputs = *parts_.inputs;
-  center_ = calcCenter(inputs);
-  inverse_length_scales_ =
-      lengthScaleOfFeatures(parts_.structure, parts_.hyperparameters, inputs.rows()).cwiseInverse();
-  const MatrixXd centered = inputs.colwise() - center_;
-  scaled_inputs_ = inverse_length_scales_.asDiagonal() * centered;
-  whitened_basis_ = calcMeanBasis(parts_.structure.mean, centered);
+  expansion_ = KernelExpansion(parts_.structure, parts_.hyperparameters, calcCenter(inputs), inputs,
+                               parts_.alpha, parts_.mean_coefficients);
+  whitened_basis_ = calcMeanBasis(parts_.structure.mean, expansion_.calcCentered(inputs));
   for (Index k = 0; k < whitened_basis_.cols(); ++k) {
     linalg::solveLower(linalg::viewOf(std::as_const(parts_.factor)), whitened_basis_.col(k).data());
   }
@@ -84,36 +80,13 @@ Prediction GaussianProcess::predict(const Eigen::Ref<const MatrixXd>& inputs) co
   return prediction;
 }
 
-Eigen::VectorXd GaussianProcess::predictMean(const Eigen::Ref<const MatrixXd>& inputs) const {
-  checkInputs(inputs, "GaussianProcess::predictMean inputs");
-  const linalg::FlushDenormals flush;
-  Eigen::VectorXd mean(inputs.cols());
-  for (Index first = 0; first < inputs.cols(); first += kPredictionBlock) {
-    const Index count = std::min(kPredictionBlock, inputs.cols() - first);
-    const MatrixXd centered = inputs.middleCols(first, count).colwise() - center_;
-    const MatrixXd scaled = inverse_length_scales_.asDiagonal() * centered;
-    mean.segment(first, count) = calcMean(
-        centered, calcCrossCovariance(parts_.structure, parts_.hyperparameters, scaled, scaled_inputs_));
-  }
-  return mean;
-}
-
-Eigen::VectorXd GaussianProcess::calcMean(const MatrixXd& centered, const MatrixXd& covariance) const {
-  Eigen::VectorXd mean = Eigen::VectorXd::Zero(centered.cols());
-  for (Index j = 0; j < getSampleCount(); ++j) mean += parts_.alpha(j) * covariance.col(j);
-  const MatrixXd basis = calcMeanBasis(parts_.structure.mean, centered);
-  for (Index k = 0; k < basis.cols(); ++k) mean += parts_.mean_coefficients(k) * basis.col(k);
-  return mean;
-}
-
 void GaussianProcess::predictBlock(const Eigen::Ref<const MatrixXd>& inputs, Index first,
                                    Prediction& prediction) const {
   const Index m = inputs.cols();
-  const MatrixXd centered = inputs.colwise() - center_;
-  const MatrixXd scaled = inverse_length_scales_.asDiagonal() * centered;
-  MatrixXd covariance = calcCrossCovariance(parts_.structure, parts_.hyperparameters, scaled, scaled_inputs_);
-  prediction.mean.segment(first, m) = calcMean(centered, covariance);
-  Eigen::VectorXd variance = calcPriorVariance(parts_.structure, parts_.hyperparameters, scaled);
+  const MatrixXd centered = expansion_.calcCentered(inputs);
+  MatrixXd covariance = expansion_.calcCovariance(centered);
+  prediction.mean.segment(first, m) = expansion_.calcMean(centered, covariance);
+  Eigen::VectorXd variance = expansion_.calcPriorVariance(centered);
   linalg::TriangularScratch scratch(m);
   linalg::solveTransposedFromRight(linalg::viewOf(parts_.factor), linalg::viewOf(covariance), scratch);
   for (Index j = 0; j < getSampleCount(); ++j) variance -= covariance.col(j).cwiseAbs2();

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <memory>
 
+#include "kernels/gp/kernel_expansion.hpp"
 #include "kernels/gp/model.hpp"
 
 namespace twinmap::gp {
@@ -52,9 +53,9 @@ class GaussianProcess {
   Eigen::Index getFeatureCount() const { return parts_.inputs->rows(); }
   Eigen::Index getSampleCount() const { return parts_.inputs->cols(); }
   /// c, the mean training input.
-  const Eigen::VectorXd& getCenter() const { return center_; }
+  const Eigen::VectorXd& getCenter() const { return expansion_.getCenter(); }
   /// 1 / l of each feature.
-  const Eigen::VectorXd& getInverseLengthScales() const { return inverse_length_scales_; }
+  const Eigen::VectorXd& getInverseLengthScales() const { return expansion_.getInverseLengthScales(); }
   /// V = L^-1 H', n x p, and the lower Cholesky factor R of A = V'V.
   const Eigen::MatrixXd& getWhitenedBasis() const { return whitened_basis_; }
   const Eigen::MatrixXd& getBasisFactor() const { return basis_factor_; }
@@ -62,18 +63,15 @@ class GaussianProcess {
   /// inputs: d x m, finite (else std::invalid_argument). Cost: m n (n + 2 d) flops.
   Prediction predict(const Eigen::Ref<const Eigen::MatrixXd>& inputs) const;
 
-  /// The means alone, the same bits. Cost: 2 m n d flops.
-  Eigen::VectorXd predictMean(const Eigen::Ref<const Eigen::MatrixXd>& inputs) const;
+  /// The mean as a function of the input: the same bits as predict()'s at a fraction of its cost.
+  const KernelExpansion& getMean() const { return expansion_; }
 
  private:
   void predictBlock(const Eigen::Ref<const Eigen::MatrixXd>& inputs, Eigen::Index first,
                     Prediction& prediction) const;
-  Eigen::VectorXd calcMean(const Eigen::MatrixXd& centered, const Eigen::MatrixXd& covariance) const;
 
   GaussianProcessParts parts_;
-  Eigen::VectorXd center_;
-  Eigen::VectorXd inverse_length_scales_;
-  Eigen::MatrixXd scaled_inputs_;  // (X - c) / l, d x n
+  KernelExpansion expansion_;
   Eigen::MatrixXd whitened_basis_;
   Eigen::MatrixXd basis_factor_;
 };

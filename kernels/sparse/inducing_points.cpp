@@ -34,12 +34,12 @@ std::vector<Index> spreadIndices(Index size, Index count) {
 }
 
 MatrixXd chooseInducingPoints(const Eigen::Ref<const MatrixXd>& inputs, const ModelStructure& structure,
-                              const Hyperparameters& hyperparameters, Index count) {
+                              const Hyperparameters& hyperparameters, Index count, double tolerance) {
   const MatrixXd candidates = select(inputs, spreadIndices(inputs.cols(), kCandidatesPerPoint * count));
   const VectorXd scales = lengthScaleOfFeatures(structure, hyperparameters, inputs.rows());
   const MatrixXd scaled = scales.cwiseInverse().asDiagonal() * (candidates.colwise() - calcCenter(inputs));
   VectorXd variance = calcPriorVariance(structure, hyperparameters, scaled);
-  const double least = kDetermined * variance.maxCoeff();
+  const double least = std::max(kDetermined, tolerance) * variance.maxCoeff();
   MatrixXd factor(candidates.cols(), std::min(count, candidates.cols()));
   std::vector<Index> pivots;
   for (Index k = 0; k < factor.cols(); ++k) {

@@ -4,7 +4,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "kernels/gp/cross_covariance.hpp"
 #include "kernels/gp/training_set.hpp"
 #include "kernels/linalg/flush_denormals.hpp"
 #include "kernels/linalg/triangular.hpp"
@@ -59,9 +58,8 @@ VectorXd sumVariance(const SparseProjection& projection) {
 
 SparseGaussianProcess::SparseGaussianProcess(SparseGaussianProcessParts parts) : parts_(std::move(parts)) {
   checkParts(parts_);
-  inverse_length_scales_ =
-      lengthScaleOfFeatures(parts_.structure, parts_.hyperparameters, getFeatureCount()).cwiseInverse();
-  scaled_inducing_ = inverse_length_scales_.asDiagonal() * (parts_.inducing.colwise() - parts_.center);
+  expansion_ = KernelExpansion(parts_.structure, parts_.hyperparameters, parts_.center, parts_.inducing,
+                               parts_.posterior.weights, parts_.posterior.mean_coefficients);
 }
 
 Prediction SparseGaussianProcess::predict(const Eigen::Ref<const MatrixXd>& inputs) const {
@@ -84,14 +82,12 @@ Prediction SparseGaussianProcess::predict(const Eigen::Ref<const MatrixXd>& inpu
 
 SparseProjection SparseGaussianProcess::project(const Eigen::Ref<const MatrixXd>& inputs) const {
   const VariationalPosterior& posterior = parts_.posterior;
-  const MatrixXd centered = inputs.colwise() - parts_.center;
-  const MatrixXd scaled = inverse_length_scales_.asDiagonal() * centered;
+  const MatrixXd centered = expansion_.calcCentered(inputs);
   SparseProjection result;
   MatrixXd& a = result.corrected;
-  a = calcCrossCovariance(parts_.structure, parts_.hyperparameters, scaled, scaled_inducing_);
-  result.mean = VectorXd::Zero(inputs.cols());
-  for (Index j = 0; j < getInducingCount(); ++j) result.mean += posterior.weights(j) * a.col(j);
-  result.missed_variance = calcPriorVariance(parts_.structure, parts_.hyperparameters, scaled);
+  a = expansion_.calcCovariance(centered);
+  result.mean = expansion_.calcMean(centered, a);
+  result.missed_variance = expansion_.calcPriorVariance(centered);
   linalg::TriangularScratch scratch(inputs.cols());
   linalg::solveTransposedFromRight(viewOf(posterior.inducing_factor), viewOf(a), scratch);
   for (Index j = 0; j < getInducingCount(); ++j) result.missed_variance -= a.col(j).cwiseAbs2();
@@ -99,7 +95,6 @@ SparseProjection SparseGaussianProcess::project(const Eigen::Ref<const MatrixXd>
   if (posterior.mean_coefficients.size() == 0) return result;
   MatrixXd& error = result.basis_error;
   error = calcMeanBasis(parts_.structure.mean, centered);
-  for (Index k = 0; k < error.cols(); ++k) result.mean += posterior.mean_coefficients(k) * error.col(k);
   linalg::gemm(-1.0 / parts_.hyperparameters.noise_stddev, viewOf(std::as_const(a)),
                viewOf(posterior.whitened_basis), 1.0, viewOf(error), scratch.gemm());
   linalg::solveTransposedFromRight(viewOf(posterior.basis_factor), viewOf(error), scratch);

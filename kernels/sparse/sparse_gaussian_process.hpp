@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include "kernels/gp/gaussian_process.hpp"
+#include "kernels/gp/kernel_expansion.hpp"
 #include "kernels/gp/model.hpp"
 #include "kernels/sparse/variational_bound.hpp"
 
@@ -42,18 +43,15 @@ class SparseGaussianProcess {
   /// inputs: d x k, finite (else std::invalid_argument). Cost: 2 k m (m + d) flops.
   Prediction predict(const Eigen::Ref<const Eigen::MatrixXd>& inputs) const;
 
-  /// The means alone. Cost: 2 k m (m + d) flops.
-  Eigen::VectorXd predictMean(const Eigen::Ref<const Eigen::MatrixXd>& inputs) const {
-    return predict(inputs).mean;
-  }
+  /// The mean as a function of the input: the same bits as predict()'s. Cost: 2 k m d flops.
+  const KernelExpansion& getMean() const { return expansion_; }
 
   /// inputs: d x k, finite, all of them at once: memory 2 k m. Cost as of predict.
   SparseProjection project(const Eigen::Ref<const Eigen::MatrixXd>& inputs) const;
 
  private:
   SparseGaussianProcessParts parts_;
-  Eigen::VectorXd inverse_length_scales_;
-  Eigen::MatrixXd scaled_inducing_;
+  KernelExpansion expansion_;
 };
 
 }  // namespace twinmap::gp

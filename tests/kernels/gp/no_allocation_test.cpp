@@ -8,6 +8,9 @@
 
 #include "kernels/gp/fit.hpp"
 #include "kernels/gp/online_predictor.hpp"
+#include "kernels/interpolation/interpolator.hpp"
+#include "kernels/sparse/compression.hpp"
+#include "kernels/sparse/sparse_online_predictor.hpp"
 #include "tests/kernels/support/random_data.hpp"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -115,6 +118,27 @@ TEST_F(NoAllocation, InAnOnlinePrediction) {
       }
     }
   }
+}
+
+TEST_F(NoAllocation, InAnOnlinePredictionOfCompactProcesses) {
+  const MatrixXd inputs = test::randomMatrix(3, 300, 1);
+  Hyperparameters hyperparameters;
+  hyperparameters.length_scales = VectorXd::Constant(1, 2.0);
+  const auto compact = compress(*fit(inputs, test::smoothTarget(inputs, 0.1, 2), {}, hyperparameters), 1e-3);
+  ASSERT_TRUE(compact);
+  const SparseOnlinePredictor predictor({compact, compact});
+  SparseOnlinePredictor::Workspace workspace(predictor);
+  const VectorXd x = inputs.col(3);
+  EXPECT_EQ(allocationsOf([&] { predictor.predict(x, workspace); }), 0);
+}
+
+TEST_F(NoAllocation, InAnInterpolationAfterTheFirst) {
+  const MatrixXd points = test::randomMatrix(3, 60, 1);
+  const Interpolator interpolator = fitInterpolator(points, test::randomMatrix(5, 3, 2) * points);
+  Interpolator::Workspace workspace;
+  const VectorXd x = points.col(3);
+  interpolator.evaluate(x, workspace);
+  EXPECT_EQ(allocationsOf([&] { interpolator.evaluate(x, workspace); }), 0);
 }
 
 }  // namespace

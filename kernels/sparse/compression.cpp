@@ -1,0 +1,42 @@
+#include "kernels/sparse/compression.hpp"
+
+#include "kernels/gp/training_set.hpp"
+#include "kernels/sparse/inducing_points.hpp"
+#include "kernels/sparse/variational_bound.hpp"
+
+namespace twinmap::gp {
+namespace {
+
+using Eigen::VectorXd;
+
+/// y = (K + s_n^2 I) alpha + H'b = L L' alpha + H'b.
+VectorXd restoreTarget(const GaussianProcess& process) {
+  const auto factor = process.getFactor().triangularView<Eigen::Lower>();
+  const VectorXd half = factor.transpose() * process.getAlpha();
+  const Eigen::MatrixXd basis =
+      calcMeanBasis(process.getStructure().mean, process.getInputs().colwise() - process.getCenter());
+  return factor * half + basis * process.getMeanCoefficients();
+}
+
+}  // namespace
+
+std::shared_ptr<const SparseGaussianProcess> compress(const GaussianProcess& process, double tolerance) {
+  if (process.getStructure().linear_term) return nullptr;
+  const Hyperparameters& hyperparameters = process.getHyperparameters();
+  const double noise_ratio = hyperparameters.noise_stddev / hyperparameters.signal_stddev;
+  const Eigen::Index most = process.getSampleCount() / 2;
+  SparseGaussianProcessParts parts{
+      process.getStructure(),
+      hyperparameters,
+      process.getCenter(),
+      chooseInducingPoints(process.getInputs(), process.getStructure(), hyperparameters, most + 1,
+                           tolerance * noise_ratio * noise_ratio),
+      {}};
+  if (parts.inducing.cols() > most) return nullptr;
+  const VectorXd target = restoreTarget(process);
+  const VariationalBound bound(process.getInputs(), target, parts.inducing, parts.structure);
+  if (!bound.calcPosterior(hyperparameters, parts.posterior)) return nullptr;
+  return std::make_shared<const SparseGaussianProcess>(std::move(parts));
+}
+
+}  // namespace twinmap::gp
