@@ -1,0 +1,111 @@
+#include "framework/online/online_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "kernels/sparse/compression.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+using ExactProcess = std::shared_ptr<const gp::GaussianProcess>;
+using SparseProcess = std::shared_ptr<const gp::SparseGaussianProcess>;
+
+std::optional<gp::SparseOnlinePredictor> makePredictor(const std::vector<Process>& processes) {
+  std::vector<SparseProcess> sparse;
+  for (const Process& process : processes) {
+    if (const auto* found = std::get_if<SparseProcess>(&process)) {
+      sparse.push_back(*found);
+    }
+  }
+  if (sparse.size() != processes.size()) {
+    return {};
+  }
+  return std::make_optional<gp::SparseOnlinePredictor>(sparse);
+}
+
+Index countFeatures(const FeatureTransform& transform) {
+  return transform.steps.front().offset.size();
+}
+
+}  // namespace
+
+OnlineMap::OnlineMap(GpMap map) : map_(std::move(map)), predictor_(makePredictor(map_.processes)) {
+  const Index features = countFeatures(map_.transform);
+  offset_ = map_.transform.apply(VectorXd::Zero(features));
+  matrix_ = map_.transform.apply(MatrixXd::Identity(features, features)).colwise() - offset_;
+  noise_variance_.resize(static_cast<Index>(map_.processes.size()));
+  for (Index p = 0; p < noise_variance_.size(); ++p) {
+    noise_variance_[p] = getNoiseVariance(map_.processes[p]);
+  }
+}
+
+OnlineMap::Workspace::Workspace(const OnlineMap& map) {
+  const auto parameters = static_cast<Index>(map.map_.processes.size());
+  inference.mean.setZero(parameters);
+  inference.stddev.setZero(parameters);
+  inference.inputs.setZero(map.matrix_.rows());
+  slope.setZero(map.map_.noise.directions.cols());
+  if (map.predictor_) {
+    predictor.emplace(*map.predictor_);
+  }
+}
+
+const Inference& OnlineMap::infer(const Eigen::Ref<const VectorXd>& features,
+                                  const Eigen::Ref<const VectorXd>& /*known*/, Workspace& workspace) const {
+  Inference& inference = workspace.inference;
+  inference.inputs = offset_;
+  inference.inputs.noalias() += matrix_ * features;
+  if (predictor_) {
+    inferSparse(workspace);
+  } else {
+    const Predictions predictions = map_.predict(features);
+    inference.mean = predictions.mean.col(0);
+    inference.stddev = predictions.stddev.col(0);
+  }
+  return inference;
+}
+
+void OnlineMap::inferSparse(Workspace& workspace) const {
+  Inference& inference = workspace.inference;
+  predictor_->predict(inference.inputs, *workspace.predictor);
+  const gp::SparseOnlinePredictor::Values& values = workspace.predictor->values;
+  inference.mean = map_.target_offset + map_.target_scale.cwiseProduct(values.mean);
+  for (Index p = 0; p < inference.stddev.size(); ++p) {
+    const double factor = calcNoiseFactor(p, values.gradient.col(p), workspace.slope);
+    inference.stddev[p] =
+        map_.target_scale[p] * std::sqrt(values.latent_variance[p] + noise_variance_[p] * factor);
+  }
+}
+
+double OnlineMap::calcNoiseFactor(Index parameter, const Eigen::Ref<const VectorXd>& gradient,
+                                  VectorXd& slope) const {
+  const NoiseProfile& noise = map_.noise;
+  if (noise.isConstant() || !(noise.mean_of_slope[parameter] > 0.0)) {
+    return 1.0;
+  }
+  slope.noalias() = noise.directions.transpose() * gradient;
+  return std::max(slope.squaredNorm() / noise.mean_of_slope[parameter], NoiseProfile::kSmallestFactor);
+}
+
+GpMap compressMap(const GpMap& map) {
+  constexpr double kTolerance = 1e-4;
+  GpMap compact = map;
+  for (Process& process : compact.processes) {
+    if (const auto* exact = std::get_if<ExactProcess>(&process)) {
+      if (const auto sparse = gp::compress(**exact, kTolerance)) {
+        process = sparse;
+      }
+    }
+  }
+  return compact;
+}
+
+}  // namespace twinmap

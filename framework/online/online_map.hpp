@@ -1,0 +1,59 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "framework/inverse_map/gp_map.hpp"
+#include "kernels/sparse/sparse_online_predictor.hpp"
+
+namespace twinmap {
+
+/// What is inferred from one measurement.
+struct Inference {
+  Eigen::VectorXd mean, stddev;  ///< p, in the parameters' units
+  Eigen::VectorXd inputs;        ///< of the map's processes, k
+};
+
+/// An inverse map made ready for one measurement after another: the transform's steps become one, sparse
+/// processes are packed. Predictions are those of the map to rounding. Immutable.
+class OnlineMap {
+ public:
+  explicit OnlineMap(GpMap map);
+
+  const GpMap& getMap() const { return map_; }
+
+  /// The buffers of one thread, and the result.
+  class Workspace {
+   public:
+    explicit Workspace(const OnlineMap& map);
+    Inference inference;
+
+   private:
+    friend class OnlineMap;
+    std::optional<gp::SparseOnlinePredictor::Workspace> predictor;
+    Eigen::VectorXd slope;
+  };
+
+  /// features: d, finite; known: the inputs of the set-up (q). The result lies in the workspace until its
+  /// next use. With sparse processes it allocates nothing.
+  /// Cost: 2 k d flops, then those of SparseOnlinePredictor::predict; some 10 us for four parameters.
+  const Inference& infer(const Eigen::Ref<const Eigen::VectorXd>& features,
+                         const Eigen::Ref<const Eigen::VectorXd>& known, Workspace& workspace) const;
+
+ private:
+  void inferSparse(Workspace& workspace) const;
+  double calcNoiseFactor(Eigen::Index parameter, const Eigen::Ref<const Eigen::VectorXd>& gradient,
+                         Eigen::VectorXd& slope) const;
+
+  GpMap map_;
+  Eigen::MatrixXd matrix_;  // inputs = matrix features + offset
+  Eigen::VectorXd offset_;
+  Eigen::VectorXd noise_variance_;
+  std::optional<gp::SparseOnlinePredictor> predictor_;  // none if a process is not sparse
+};
+
+/// The map with its exact processes compressed (gp::compress), where that makes them smaller: means within
+/// some 0.01 standard deviations, standard deviations within 0.2 % of the exact ones.
+GpMap compressMap(const GpMap& map);
+
+}  // namespace twinmap

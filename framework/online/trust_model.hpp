@@ -1,0 +1,78 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "framework/online/burst.hpp"
+#include "framework/online/forward_model.hpp"
+#include "framework/online/online_map.hpp"
+
+namespace twinmap {
+
+/// What to think of an inference, the gravest first.
+enum class TrustStatus {
+  kModelMismatch,    ///< no point of the box explains the features within their noise
+  kOutsideTraining,  ///< the features are far from all the map was trained on
+  kAtBounds,         ///< a parameter lies beyond its bounds
+  kUninformative,    ///< a parameter's standard deviation is close to that of the box
+  kOk
+};
+
+/// "model_mismatch", ...
+const char* toString(TrustStatus status);
+
+/// Whether to believe an inference, with the numbers that tell.
+struct Trust {
+  std::vector<TrustStatus> statuses;  ///< all that apply, the gravest first; {kOk} if none does
+  double p_value = 1.0;               ///< of the residual, as if the model were right
+  double chi_square = 0.0;            ///< sum of the squared residuals, in noise variances
+  Eigen::Index residuals = 0;         ///< how many
+  Burst burst;                        ///< the most conspicuous stretch of residuals
+  double burst_p_value = 1.0, chi_square_p_value = 1.0;  ///< each test's own
+  double distance = 0.0;  ///< to the nearest training sample, 1: the farthest of simulated measurements
+};
+
+/// A statistic of simulated measurements, sorted: what a measured one is compared with.
+struct ReferenceDistribution {
+  Eigen::VectorXd sorted;
+
+  /// The share of simulated measurements whose statistic is at least `value`: (count + 1) / (n + 1).
+  double calcPValue(double value) const;
+};
+
+/// Where the map was trained: its inputs, each in standard deviations.
+struct TrainingCloud {
+  Eigen::MatrixXd inputs;  ///< k x n, scaled
+  Eigen::VectorXd scale;   ///< k
+  double reach = 1.0;      ///< the largest distance of a simulated measurement to its nearest neighbour
+
+  /// Distance of inputs (k, not scaled) to the nearest training input, over `reach`.
+  double calcDistance(const Eigen::Ref<const Eigen::VectorXd>& at, Eigen::VectorXd& buffer) const;
+};
+
+/// Tells whether a measurement is one that the simulator could have given. All but the level is found from
+/// simulations; the reference distributions include whatever the approximations leave.
+struct TrustModel {
+  ForwardModel forward;
+  std::vector<ResidualRun> runs;
+  ReferenceDistribution chi_square, burst;
+  TrainingCloud cloud;
+  Eigen::VectorXd center, half_width;  ///< m, of the sampled box
+  Eigen::Index unknown = 0;            ///< leading variables of a point that a measurement leaves open
+  double level = 0.01;                 ///< false alarms of model_mismatch
+};
+
+/// The buffers of one thread.
+struct TrustWorkspace {
+  ExplanationWorkspace explanation;
+  Eigen::VectorXd start, distance;  // the start is normalised
+};
+
+/// Judges an inference from features (d, finite) and known inputs (q). Cost: that of explain() and of one
+/// pass over the training cloud; some 20 to 40 us for 200 features.
+Trust judge(const TrustModel& model, const Eigen::Ref<const Eigen::VectorXd>& features,
+            const Eigen::Ref<const Eigen::VectorXd>& known, const Inference& inference,
+            TrustWorkspace& workspace);
+
+}  // namespace twinmap

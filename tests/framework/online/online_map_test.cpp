@@ -1,0 +1,46 @@
+#include "framework/online/online_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/framework/online/oscillation.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using testing::Oscillation;
+
+void expectSame(const OnlineMap& online, const MatrixXd& features) {
+  const Predictions expected = online.getMap().predict(features);
+  OnlineMap::Workspace workspace(online);
+  for (Eigen::Index i = 0; i < features.cols(); ++i) {
+    const Inference& inferred = online.infer(features.col(i), VectorXd(0), workspace);
+    EXPECT_TRUE(inferred.mean.isApprox(expected.mean.col(i), 1e-9));
+    EXPECT_TRUE(inferred.stddev.isApprox(expected.stddev.col(i), 1e-6));
+  }
+}
+
+TEST(OnlineMap, InfersWhatItsMapPredicts) {
+  const MatrixXd features =
+      Oscillation::addNoise(Oscillation::calcClean(Oscillation::samplePoints(20, 5)), 5);
+  const GpMap exact = Oscillation().trainMap();
+  expectSame(OnlineMap(exact), features);               // exact processes
+  expectSame(OnlineMap(compressMap(exact)), features);  // packed ones
+}
+
+TEST(OnlineMap, ACompressedMapPredictsAsTheExactOne) {
+  const MatrixXd features =
+      Oscillation::addNoise(Oscillation::calcClean(Oscillation::samplePoints(200, 5)), 5);
+  const GpMap exact = Oscillation().trainMap(400);
+  const GpMap compact = compressMap(exact);
+  for (const Process& process : compact.processes) {
+    ASSERT_TRUE(std::holds_alternative<std::shared_ptr<const gp::SparseGaussianProcess>>(process));
+  }
+  const Predictions expected = exact.predict(features), actual = compact.predict(features);
+  EXPECT_LT((actual.mean - expected.mean).cwiseQuotient(expected.stddev).cwiseAbs().maxCoeff(), 0.02);
+  EXPECT_LT((actual.stddev.cwiseQuotient(expected.stddev).array() - 1.0).abs().maxCoeff(), 0.005);
+}
+
+}  // namespace
+}  // namespace twinmap
