@@ -6,6 +6,7 @@
 #include "framework/example_responses.hpp"
 #include "framework/features/noise.hpp"
 #include "framework/features/selections.hpp"
+#include "framework/fit_online.hpp"
 #include "framework/inverse_map/gp_map.hpp"
 #include "framework/labelled_sets.hpp"
 #include "framework/make_extractor.hpp"
@@ -50,14 +51,6 @@ std::string join(const std::vector<std::string>& texts) {
     joined += (joined.empty() ? "" : "; ") + text;
   }
   return joined;
-}
-
-std::vector<std::string> collectNames(const std::vector<FeatureInfo>& infos) {
-  std::vector<std::string> names;
-  for (const FeatureInfo& info : infos) {
-    names.push_back(info.name);
-  }
-  return names;
 }
 
 std::vector<TrainingStart> summarizeTraining(const std::vector<std::string>& parameters,
@@ -105,7 +98,7 @@ std::unique_ptr<TrajectoryStore> openOwnNeighbourhoods(const ExperimentSpec& exp
   return openNeighbourhoodStore(experiment.model, simulator, getStoreRoot(options.folder, options.store));
 }
 
-/// Trains the map on the training samples and writes it.
+/// Trains the map on the training samples.
 GpMap trainMap(const ExperimentSpec& experiment, const LabelledFeatures& training, const RunOptions& options,
                RunSummary& run) {
   const std::vector<std::string> parameter_names = collectNames(experiment.model.parameters);
@@ -121,9 +114,16 @@ GpMap trainMap(const ExperimentSpec& experiment, const LabelledFeatures& trainin
   for (const Process& process : trained.map.processes) {
     run.nlml.push_back(getNlml(process));
   }
-  writeMapsFile(options.folder / "maps.h5", {experiment.model.parameters, collectNames(training.infos),
-                                             trained.map, experiment.model.inputs});
   return trained.map;
+}
+
+/// Makes the map ready for measurements and writes both.
+void writeMaps(const ExperimentSpec& experiment, const SimulatedSets& sets, const FeatureExtractor& extractor,
+               const LabelledSets& labelled, const GpMap& map, const RunOptions& options, RunSummary& run) {
+  const OnlineFit online = timeStage("prepare for measurements", run.times,
+                                     [&] { return fitOnline(experiment, sets, extractor, labelled, map); });
+  run.warnings.insert(run.warnings.end(), online.warnings.begin(), online.warnings.end());
+  writeMapsFile(options.folder / "maps.h5", makeStoredMap(experiment, extractor, map, online.model));
 }
 
 }  // namespace
@@ -155,6 +155,7 @@ RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& opt
       calcTrainingSensitivities(experiment, sets.train, simulator, extractor, options.threads);
 
   const GpMap map = trainMap(experiment, labelled.train, options, run);
+  writeMaps(experiment, sets, extractor, labelled, map, options, run);
   const auto neighbourhoods = openOwnNeighbourhoods(experiment, simulator, options);
   const std::vector<ParameterSpec> unknown = collectUnknown(experiment.model);
   evaluate({experiment, unknown, simulator, extractor, noise, labelled, map, neighbourhoods.get(),

@@ -73,6 +73,16 @@ struct VerifyArguments {
   int threads = 1;
 };
 
+struct InferArguments {
+  std::string run;                 ///< folder of a run, or its maps.h5
+  std::vector<std::string> files;  ///< measurements
+  std::vector<std::string> known;  ///< "NAME=VALUE" of the inputs
+  std::vector<double> starts;      ///< times in each file that are 0 of the model; empty: the experiment's
+  bool json = false, csv = false;  ///< at most one; neither: a table for people
+  bool follow = false;             ///< measurements from the standard input, JSON lines out
+  bool refine = false;
+};
+
 // One file a subcommand. Results go to stdout, progress and warnings to stderr. Each throws ExperimentError
 // for wrong input and any other std::exception for a failure.
 
@@ -102,6 +112,10 @@ double chooseMemory(const RunArguments& arguments);
 
 /// Prints two runs side by side.
 void compare(const CompareArguments& arguments);
+
+/// Infers the parameters of measurements and prints them with their trust status. Throws std::runtime_error
+/// after the last one if some could not be used.
+void infer(const InferArguments& arguments);
 
 /// Writes the report of runs, or of a sweep, again.
 void report(const ReportArguments& arguments);

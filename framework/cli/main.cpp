@@ -159,6 +159,37 @@ void addReport(CLI::App& app, twinmap::ReportArguments& arguments) {
   command->callback([&arguments] { twinmap::report(arguments); });
 }
 
+void addInfer(CLI::App& app, twinmap::InferArguments& arguments) {
+  CLI::App* command = app.add_subcommand("infer",
+                                         "Infer the parameters of measured responses with a trained map: "
+                                         "mean, sd and 95 % interval of each, and "
+                                         "whether to trust them");
+  command->add_option("RUN", arguments.run, "Folder of a finished run, or its maps.h5")
+      ->required()
+      ->option_text(" ");
+  command
+      ->add_option("MEASUREMENT", arguments.files,
+                   "Files: CSV, MATLAB .mat or HDF5, with a column of times and one for each output")
+      ->option_text(" ");
+  command->add_option("--set", arguments.known, "Value of a known input of the set-up; for each of them")
+      ->type_name("NAME=VALUE");
+  command
+      ->add_option("--start", arguments.starts,
+                   "Time in the file (s) at which the model's time is 0; several infer several windows")
+      ->type_name("S");
+  CLI::Option* csv = command->add_flag("--csv", arguments.csv, "Print CSV instead of a table");
+  command->add_flag("--json", arguments.json, "Print a line of JSON per measurement")->excludes(csv);
+  command
+      ->add_flag(
+          "--follow", arguments.follow,
+          "Read CSV measurements one after another from the standard input, each ended by an empty line, "
+          "and print a line of JSON for each at once")
+      ->excludes(csv);
+  command->add_flag("--refine", arguments.refine,
+                    "Then a few Gauss-Newton steps on the simulator from what was inferred");
+  command->callback([&arguments] { twinmap::infer(arguments); });
+}
+
 void addVerify(CLI::App& app, twinmap::VerifyArguments& arguments) {
   CLI::App* command = app.add_subcommand(
       "verify",
@@ -202,6 +233,7 @@ int runCommand(int count, char** arguments) {
   twinmap::StatusArguments status;
   twinmap::RunArguments run;
   twinmap::VerifyArguments verify;
+  twinmap::InferArguments infer;
   verify.seed = std::random_device()();
   verify.threads = run.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   run.command_line = joinArguments(count, arguments);
@@ -209,6 +241,7 @@ int runCommand(int count, char** arguments) {
   addSimulate(app, simulate);
   addRun(app, run);
   addPlan(app, run);
+  addInfer(app, infer);
   addStatus(app, status);
   addCompare(app, compare);
   addNoise(app, noise);

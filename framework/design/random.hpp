@@ -15,6 +15,8 @@ enum class RandomPurpose : std::uint64_t {
   kPosterior = 7,
   kBootstrap = 8,
   kVerification = 9,
+  kTrust = 10,     // simulated measurements that real ones are compared with
+  kEnsemble = 11,  // parameters drawn from what was inferred
 };
 
 /// Counter-based random numbers (Philox 4x64-10, Salmon et al. 2011): a number depends on

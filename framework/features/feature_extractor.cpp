@@ -63,6 +63,18 @@ Eigen::VectorXd collectTimes(const std::vector<FeatureSpec>& features) {
   return Eigen::Map<Eigen::VectorXd>(times.data(), static_cast<Eigen::Index>(times.size()));
 }
 
+std::optional<double> findSampleInterval(const std::vector<FeatureSpec>& features) {
+  std::optional<double> smallest;
+  for (const FeatureSpec& feature : features) {
+    std::vector<double> times;
+    visitKind(feature, [&times](const auto& kind) { appendTimes(kind, times); });
+    for (std::size_t i = 1; i < times.size(); ++i) {
+      smallest = std::min(times[i] - times[i - 1], smallest.value_or(times[i] - times[i - 1]));
+    }
+  }
+  return smallest;
+}
+
 bool needExcitation(const std::vector<FeatureSpec>& features) {
   return std::any_of(features.begin(), features.end(),
                      [](const FeatureSpec& feature) { return feature.frequency_response.has_value(); });

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "framework/features/feature_block.hpp"
@@ -13,6 +14,9 @@ namespace twinmap {
 
 /// The times at which outputs must be known for all features: sorted, unique; s.
 Eigen::VectorXd collectTimes(const std::vector<FeatureSpec>& features);
+
+/// The smallest interval at which a feature samples the outputs, s; none if each takes a single sample.
+std::optional<double> findSampleInterval(const std::vector<FeatureSpec>& features);
 
 /// Whether features need the values of the excitation.
 bool needExcitation(const std::vector<FeatureSpec>& features);

@@ -51,7 +51,7 @@ OnlineMap::Workspace::Workspace(const OnlineMap& map) {
   const auto parameters = static_cast<Index>(map.map_.processes.size());
   inference.mean.setZero(parameters);
   inference.stddev.setZero(parameters);
-  inference.inputs.setZero(map.matrix_.rows());
+  inference.inputs.setZero(map.matrix_.rows() + map.map_.known_inputs.center.size());
   slope.setZero(map.map_.noise.directions.cols());
   if (map.predictor_) {
     predictor.emplace(*map.predictor_);
@@ -59,14 +59,17 @@ OnlineMap::Workspace::Workspace(const OnlineMap& map) {
 }
 
 const Inference& OnlineMap::infer(const Eigen::Ref<const VectorXd>& features,
-                                  const Eigen::Ref<const VectorXd>& /*known*/, Workspace& workspace) const {
+                                  const Eigen::Ref<const VectorXd>& known, Workspace& workspace) const {
   Inference& inference = workspace.inference;
-  inference.inputs = offset_;
-  inference.inputs.noalias() += matrix_ * features;
+  auto transformed = inference.inputs.head(offset_.size());
+  transformed = offset_;
+  transformed.noalias() += matrix_ * features;
+  inference.inputs.tail(known.size()) =
+      (known - map_.known_inputs.center).cwiseQuotient(map_.known_inputs.half_width);
   if (predictor_) {
     inferSparse(workspace);
   } else {
-    const Predictions predictions = map_.predict(features);
+    const Predictions predictions = map_.predict(features, known);
     inference.mean = predictions.mean.col(0);
     inference.stddev = predictions.stddev.col(0);
   }
@@ -91,7 +94,7 @@ double OnlineMap::calcNoiseFactor(Index parameter, const Eigen::Ref<const Vector
   if (noise.isConstant() || !(noise.mean_of_slope[parameter] > 0.0)) {
     return 1.0;
   }
-  slope.noalias() = noise.directions.transpose() * gradient;
+  slope.noalias() = noise.directions.transpose() * gradient.head(noise.directions.rows());
   return std::max(slope.squaredNorm() / noise.mean_of_slope[parameter], NoiseProfile::kSmallestFactor);
 }
 

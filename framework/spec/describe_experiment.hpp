@@ -248,6 +248,12 @@ void describe(Fields& f, InverseMapSpec& s) {
 }
 
 template <class Fields>
+void describe(Fields& f, TrustSpec& s) {
+  f.optional("level", s.level, "share of good measurements that may be called a mismatch of the model",
+             kFraction);
+}
+
+template <class Fields>
 void describe(Fields& f, ReportSpec& s) {
   f.optional("over", s.over, "two parameters: axes of the pictures of the inferred standard deviation");
   f.rule(s.over.empty() || s.over.size() == 2, "must name two parameters in 'over'");
@@ -283,6 +289,7 @@ void describe(Fields& f, ExperimentSpec& s) {
   f.optional("design", s.design, "where the parameter box is sampled");
   f.optional("inverse_map", s.inverse_map, "from features to parameters");
   f.optional("evaluation", s.evaluation, "what is found out about the map besides its errors");
+  f.optional("trust", s.trust, "how inferences from measurements are judged");
   f.optional("gates", s.gates, "conditions on the metrics; the report says which passed");
   f.optional("measurement", s.measurement, "how files of measurements are read");
   f.optional("report", s.report, "what the report shows");

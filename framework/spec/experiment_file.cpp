@@ -80,6 +80,12 @@ std::string writeExperiment(const ExperimentSpec& experiment) {
   return writeYaml(writeValue(experiment));
 }
 
+ExperimentSpec readResolved(const std::string& text) {
+  ExperimentSpec experiment;
+  readValue(parseYaml(text, "resolved.yaml"), experiment);
+  return experiment;
+}
+
 std::string writeIndependentDefaults(const YamlNode& root) {
   ExperimentSpec experiment;
   readValue(withoutSweep(root), experiment);

@@ -24,6 +24,9 @@ YamlNode loadExperimentTree(const std::string& path, const std::vector<std::stri
 /// The experiment as YAML with every default written out; reading it back gives the same experiment.
 std::string writeExperiment(const ExperimentSpec& experiment);
 
+/// Reads the text of writeExperiment() back, which has been checked. Throws ExperimentError for another text.
+ExperimentSpec readResolved(const std::string& text);
+
 /// The sweep of an experiment's tree, if there is one.
 std::optional<SweepSpec> readSweep(const YamlNode& root);
 

@@ -188,6 +188,11 @@ struct EvaluationSpec {
   std::vector<BaselineSpec> baselines;
 };
 
+/// How inferences are judged.
+struct TrustSpec {
+  double level = 0.01;  ///< share of good measurements that are called a mismatch of the model
+};
+
 struct ReportSpec {
   std::vector<Name> over;  ///< two parameters: axes of the pictures of the inferred sd; default the last two
 };
@@ -204,6 +209,7 @@ struct ExperimentSpec {
   DesignSpec design;
   InverseMapSpec inverse_map;
   EvaluationSpec evaluation;
+  TrustSpec trust;
   std::vector<GateSpec> gates;
   MeasurementSpec measurement;  ///< for inferring from files; no simulation depends on it
   ReportSpec report;

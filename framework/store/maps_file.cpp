@@ -4,8 +4,11 @@
 #include <stdexcept>
 
 #include "framework/hdf5/hdf5_file.hpp"
+#include "framework/spec/check_experiment.hpp"
 #include "framework/store/atomic_file.hpp"
+#include "framework/store/online_group.hpp"
 #include "framework/store/parameters_group.hpp"
+#include "framework/store/process_group.hpp"
 
 namespace twinmap {
 namespace {
@@ -13,133 +16,7 @@ namespace {
 constexpr const char* kFormat = "twinmap maps 1";
 constexpr const char* kParameters = "/parameters";
 constexpr const char* kInputs = "/inputs";
-constexpr const char* kExact = "exact";
-constexpr const char* kSgpr = "sgpr";
-
-const char* toText(gp::MeanFunction mean) {
-  switch (mean) {
-    case gp::MeanFunction::kZero:
-      return "zero";
-    case gp::MeanFunction::kConstant:
-      return "constant";
-    case gp::MeanFunction::kLinear:
-      break;
-  }
-  return "linear";
-}
-
-template <class Enum>
-Enum parseEnum(const std::string& text, std::initializer_list<Enum> values, const char* (*name)(Enum)) {
-  for (const Enum value : values) {
-    if (text == name(value)) {
-      return value;
-    }
-  }
-  throw std::runtime_error("maps.h5: unknown '" + text + "'");
-}
-
-std::vector<std::int64_t> toIntegers(const std::vector<int>& values) {
-  return {values.begin(), values.end()};
-}
-
-void writeStructure(Hdf5Writer& file, const std::string& group, const gp::ModelStructure& structure,
-                    const gp::Hyperparameters& hyperparameters) {
-  file.write(group + "/length_scales", hyperparameters.length_scales);
-  file.write(group + "/length_scale_groups", toIntegers(structure.length_scale_groups));
-  file.write(group + "/signal_stddev", hyperparameters.signal_stddev);
-  file.write(group + "/noise_stddev", hyperparameters.noise_stddev);
-  file.write(group + "/shape", hyperparameters.shape);
-  file.write(group + "/linear_stddev", hyperparameters.linear_stddev);
-  file.writeAttribute(group, "covariance", gp::toString(structure.covariance));
-  file.writeAttribute(group, "mean", toText(structure.mean));
-  file.writeAttribute(group, "linear_term", structure.linear_term ? "true" : "false");
-}
-
-void writeProcess(Hdf5Writer& file, const std::string& group, const gp::GaussianProcess& process) {
-  const gp::GaussianProcessParts& parts = process.getParts();
-  writeStructure(file, group, parts.structure, parts.hyperparameters);
-  file.write(group + "/mean_coefficients", parts.mean_coefficients);
-  file.write(group + "/alpha", parts.alpha);
-  file.writeSamples(group + "/factor", parts.factor.transpose());
-  file.write(group + "/nlml", parts.nlml);
-  file.write(group + "/jitter", parts.jitter);
-  file.writeAttribute(group, "approximation", kExact);
-}
-
-void writeProcess(Hdf5Writer& file, const std::string& group, const gp::SparseGaussianProcess& process) {
-  const gp::SparseGaussianProcessParts& parts = process.getParts();
-  const gp::VariationalPosterior& posterior = parts.posterior;
-  writeStructure(file, group, parts.structure, parts.hyperparameters);
-  file.write(group + "/center", parts.center);
-  file.writeSamples(group + "/inducing", parts.inducing);
-  file.writeSamples(group + "/inducing_factor", posterior.inducing_factor.transpose());
-  file.writeSamples(group + "/correction_factor", posterior.correction_factor.transpose());
-  file.write(group + "/weights", posterior.weights);
-  file.writeSamples(group + "/whitened_basis", posterior.whitened_basis.transpose());
-  file.writeSamples(group + "/basis_factor", posterior.basis_factor.transpose());
-  file.write(group + "/mean_coefficients", posterior.mean_coefficients);
-  file.write(group + "/bound", posterior.bound);
-  file.write(group + "/jitter", posterior.jitter);
-  file.writeAttribute(group, "approximation", kSgpr);
-}
-
-gp::ModelStructure readStructure(const Hdf5Reader& file, const std::string& group) {
-  gp::ModelStructure structure;
-  structure.covariance = parseEnum<gp::CovarianceFunction>(
-      file.readAttribute(group, "covariance"),
-      {gp::CovarianceFunction::kSquaredExponential, gp::CovarianceFunction::kMatern32,
-       gp::CovarianceFunction::kMatern52, gp::CovarianceFunction::kRationalQuadratic},
-      gp::toString);
-  structure.mean = parseEnum<gp::MeanFunction>(
-      file.readAttribute(group, "mean"),
-      {gp::MeanFunction::kZero, gp::MeanFunction::kConstant, gp::MeanFunction::kLinear}, toText);
-  structure.linear_term = file.readAttribute(group, "linear_term") == "true";
-  const std::vector<std::int64_t> groups = file.readIntegers(group + "/length_scale_groups");
-  structure.length_scale_groups.assign(groups.begin(), groups.end());
-  return structure;
-}
-
-gp::Hyperparameters readHyperparameters(const Hdf5Reader& file, const std::string& group) {
-  gp::Hyperparameters hyperparameters;
-  hyperparameters.length_scales = file.readVector(group + "/length_scales");
-  hyperparameters.signal_stddev = file.readNumber(group + "/signal_stddev");
-  hyperparameters.noise_stddev = file.readNumber(group + "/noise_stddev");
-  hyperparameters.shape = file.readNumber(group + "/shape");
-  hyperparameters.linear_stddev = file.readNumber(group + "/linear_stddev");
-  return hyperparameters;
-}
-
-Process readExact(const Hdf5Reader& file, const std::string& group,
-                  std::shared_ptr<const Eigen::MatrixXd> inputs) {
-  gp::GaussianProcessParts parts;
-  parts.structure = readStructure(file, group);
-  parts.hyperparameters = readHyperparameters(file, group);
-  parts.inputs = std::move(inputs);
-  parts.mean_coefficients = file.readVector(group + "/mean_coefficients");
-  parts.alpha = file.readVector(group + "/alpha");
-  parts.factor = file.readSamples(group + "/factor").transpose();
-  parts.nlml = file.readNumber(group + "/nlml");
-  parts.jitter = file.readNumber(group + "/jitter");
-  return std::make_shared<const gp::GaussianProcess>(std::move(parts));
-}
-
-Process readSparse(const Hdf5Reader& file, const std::string& group) {
-  gp::SparseGaussianProcessParts parts;
-  parts.structure = readStructure(file, group);
-  parts.hyperparameters = readHyperparameters(file, group);
-  parts.center = file.readVector(group + "/center");
-  parts.inducing = file.readSamples(group + "/inducing");
-  gp::VariationalPosterior& posterior = parts.posterior;
-  posterior.inducing_factor = file.readSamples(group + "/inducing_factor").transpose();
-  posterior.correction_factor = file.readSamples(group + "/correction_factor").transpose();
-  posterior.weights = file.readVector(group + "/weights");
-  posterior.whitened_basis = file.readSamples(group + "/whitened_basis").transpose();
-  posterior.basis_factor = file.readSamples(group + "/basis_factor").transpose();
-  posterior.mean_coefficients = file.readVector(group + "/mean_coefficients");
-  posterior.bound = file.readNumber(group + "/bound");
-  posterior.jitter = file.readNumber(group + "/jitter");
-  return std::make_shared<const gp::SparseGaussianProcess>(std::move(parts));
-}
+constexpr const char* kExperiment = "/online/experiment";
 
 std::string getStepGroup(std::size_t step) {
   return "/transform/" + std::to_string(step);
@@ -171,6 +48,23 @@ void requireFormat(const Hdf5Reader& file, const std::filesystem::path& path) {
   if (file.readAttribute("/", "format") != kFormat) {
     throw std::runtime_error(path.string() + ": is not a maps.h5 of this version of twinmap");
   }
+}
+
+std::vector<ParameterSpec> readInputs(const Hdf5Reader& file) {
+  return file.contains(std::string(kInputs) + "/name") ? readParametersGroup(file, kInputs)
+                                                       : std::vector<ParameterSpec>{};
+}
+
+/// The map without its processes.
+GpMap readSharedParts(const Hdf5Reader& file) {
+  GpMap map;
+  map.known_inputs = makeKnownInputs(readInputs(file));
+  map.transform = readTransform(file);
+  map.target_offset = file.readVector("/target/offset");
+  map.target_scale = file.readVector("/target/scale");
+  map.residual_correlation = file.readSamples("/residual_correlation");
+  map.noise = {file.readSamples("/noise/directions"), file.readVector("/noise/mean_of_slope")};
+  return map;
 }
 
 /// An exact process, which has the training inputs that all exact ones share; null if all are sparse.
@@ -205,7 +99,11 @@ void writeMapsFile(const std::filesystem::path& path, const StoredMap& stored) {
     }
     for (std::size_t p = 0; p < stored.parameters.size(); ++p) {
       const std::string group = "/maps/" + stored.parameters[p].name.text;
-      std::visit([&](const auto& process) { writeProcess(file, group, *process); }, stored.map.processes[p]);
+      writeProcess(file, group, stored.map.processes[p]);
+    }
+    if (!stored.online.map.processes.empty()) {
+      writeOnlineGroup(file, collectNames(stored.parameters), stored.online);
+      file.write(kExperiment, std::vector<std::string>{stored.experiment});
     }
     file.close();
   });
@@ -216,25 +114,30 @@ StoredMap readMapsFile(const std::filesystem::path& path) {
   requireFormat(file, path);
   StoredMap stored;
   stored.parameters = readParametersGroup(file, kParameters);
-  if (file.contains(std::string(kInputs) + "/name")) {
-    stored.inputs = readParametersGroup(file, kInputs);
-  }
-  stored.map.known_inputs = makeKnownInputs(stored.inputs);
+  stored.inputs = readInputs(file);
   stored.feature_names = file.readTexts("/features/name");
-  stored.map.transform = readTransform(file);
-  stored.map.target_offset = file.readVector("/target/offset");
-  stored.map.target_scale = file.readVector("/target/scale");
-  stored.map.residual_correlation = file.readSamples("/residual_correlation");
-  stored.map.noise = {file.readSamples("/noise/directions"), file.readVector("/noise/mean_of_slope")};
+  stored.map = readSharedParts(file);
   std::shared_ptr<const Eigen::MatrixXd> inputs;
   for (const ParameterSpec& parameter : stored.parameters) {
     const std::string group = "/maps/" + parameter.name.text;
-    const bool sparse = file.readAttribute(group, "approximation") == kSgpr;
-    if (!sparse && inputs == nullptr) {
+    if (isExactProcess(file, group) && inputs == nullptr) {
       inputs = std::make_shared<const Eigen::MatrixXd>(file.readSamples("/training_inputs"));
     }
-    stored.map.processes.push_back(sparse ? readSparse(file, group) : readExact(file, group, inputs));
+    stored.map.processes.push_back(readProcess(file, group, inputs));
   }
+  return stored;
+}
+
+StoredOnlineModel readOnlineModel(const std::filesystem::path& path) {
+  const Hdf5Reader file(path);
+  requireFormat(file, path);
+  if (!file.contains(kExperiment)) {
+    throw std::runtime_error(path.string() + ": has no online model; run its experiment again");
+  }
+  StoredOnlineModel stored;
+  stored.model.map = readSharedParts(file);
+  readOnlineGroup(file, collectNames(readParametersGroup(file, kParameters)), stored.model);
+  stored.experiment = file.readTexts(kExperiment).at(0);
   return stored;
 }
 

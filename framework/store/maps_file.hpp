@@ -5,17 +5,26 @@
 #include <vector>
 
 #include "framework/inverse_map/gp_map.hpp"
+#include "framework/online/online_model.hpp"
 #include "framework/spec/model_spec.hpp"
 #include "framework/store/map_summary.hpp"
 
 namespace twinmap {
 
-/// A trained map with the names of what goes in and comes out.
+/// A trained map with the names of what goes in and comes out, and what measurements need.
 struct StoredMap {
   std::vector<ParameterSpec> parameters;
   std::vector<std::string> feature_names;
   GpMap map;
   std::vector<ParameterSpec> inputs{};  ///< known, with a measurement; their bounds scale them
+  OnlineModel online{};                 ///< written where it has processes; not read back
+  std::string experiment{};             ///< resolved.yaml's text, written with the online model
+};
+
+/// What infers from measurements.
+struct StoredOnlineModel {
+  OnlineModel model;
+  std::string experiment;  ///< resolved.yaml's text
 };
 
 /// Writes maps.h5 (docs/file-formats.md): all that is needed to predict. Equal content gives equal bytes.
@@ -24,5 +33,9 @@ void writeMapsFile(const std::filesystem::path& path, const StoredMap& stored);
 /// Reads it back; predictions are those of the map that was written, bit for bit. Throws std::runtime_error
 /// for a file that is no maps.h5.
 StoredMap readMapsFile(const std::filesystem::path& path);
+
+/// Reads the online model alone, a fraction of the file. Throws std::runtime_error for a file that is no
+/// maps.h5 or has none.
+StoredOnlineModel readOnlineModel(const std::filesystem::path& path);
 
 }  // namespace twinmap

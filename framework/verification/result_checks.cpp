@@ -6,6 +6,7 @@
 #include "framework/evaluate.hpp"
 #include "framework/evaluation/information_limit.hpp"
 #include "framework/features/noise.hpp"
+#include "framework/fit_online.hpp"
 #include "framework/labelled_sets.hpp"
 #include "framework/make_extractor.hpp"
 #include "framework/report/tables.hpp"
@@ -30,18 +31,17 @@ struct Inputs {
   const Simulator& simulator;
   const FeatureExtractor& extractor;
   const FeatureNoise& noise;
+  const SimulatedSets& sets;
   const LabelledSets& labelled;
   const std::vector<int>& test_indices;
   int threads;
 };
 
 std::string findMapDifference(const std::filesystem::path& file, const Inputs& inputs, const GpMap& map) {
-  StoredMap expected{inputs.experiment.model.parameters, {}, map, inputs.experiment.model.inputs};
-  for (const FeatureInfo& info : inputs.extractor.getInfos()) {
-    expected.feature_names.push_back(info.name);
-  }
+  const OnlineFit online = fitOnline(inputs.experiment, inputs.sets, inputs.extractor, inputs.labelled, map);
   const TemporaryFolder temporary;
-  writeMapsFile(temporary.getPath() / "maps.h5", expected);
+  writeMapsFile(temporary.getPath() / "maps.h5",
+                makeStoredMap(inputs.experiment, inputs.extractor, map, online.model));
   return findHdf5Difference(file, temporary.getPath() / "maps.h5");
 }
 
@@ -146,7 +146,7 @@ void checkResults(const ExperimentSpec& experiment, const Simulator& simulator, 
   labelled.train.sensitivities =
       calcTrainingSensitivities(experiment, sets.train, simulator, extractor, threads);
   const std::vector<int> test_indices = findSuccessful(sets.test);
-  checkMapAndTables({experiment, simulator, extractor, noise, labelled, test_indices, threads}, limits,
+  checkMapAndTables({experiment, simulator, extractor, noise, sets, labelled, test_indices, threads}, limits,
                     verification);
 }
 

@@ -22,10 +22,11 @@ ALLOWED = {
     "comparison": {"spec", "features", "evaluation", "inverse_map", "store", "report"},
     "flow": {"spec", "design", "simulation", "multibody", "features", "sensitivity", "evaluation", "inverse_map", "online", "store",
              "report"},
+    "inference": {"flow", "spec", "design", "simulation", "multibody", "features", "sensitivity", "inverse_map", "online", "measurement", "store", "report"},
     "verification": {"flow", "spec", "design", "simulation", "multibody", "features", "sensitivity", "evaluation",
                      "inverse_map", "store", "report"},
     "sweep": {"flow", "spec", "measurement", "design", "multibody", "simulation", "features", "inverse_map", "report", "store"},
-    "cli": {"flow", "sweep", "comparison", "verification", "spec", "measurement", "design", "multibody", "simulation", "features", "report", "store"},
+    "cli": {"flow", "sweep", "comparison", "verification", "inference", "spec", "measurement", "design", "multibody", "simulation", "features", "report", "store"},
 }
 
 # Libraries that stay behind one part.
@@ -37,11 +38,11 @@ LIBRARIES = {
     r"hdf5.*": {"hdf5", "store"},
     r"matio.*": {"measurement"},
     r"xxhash.*": {"store"},
-    r"nlohmann/.*": {"spec", "measurement", "store", "report", "comparison"},
+    r"nlohmann/.*": {"spec", "measurement", "store", "report", "comparison", "inference"},
     r"CLI/.*": {"cli"},
     r"nlopt.*": {"kernels"},
     r"spdlog/.*": {"flow", "sweep", "cli"},
-    r"filesystem": {"spec", "hdf5", "measurement", "store", "report", "comparison", "flow", "sweep", "verification", "cli"},
+    r"filesystem": {"spec", "inference", "hdf5", "measurement", "store", "report", "comparison", "flow", "sweep", "verification", "cli"},
     r"(omp\.h|fstream|chrono)": {"spec", "measurement/fstream", "simulation", "multibody", "evaluation/chrono", "store", "comparison", "flow", "sweep", "verification", "cli", "kernels/omp.h"},
 }
 

@@ -1,0 +1,83 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "framework/inference/inference_text.hpp"
+
+namespace twinmap {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json makeEstimate(double mean, double stddev, const std::string& unit) {
+  return {{"mean", mean},
+          {"sd", stddev},
+          {"lower", mean - kNormal95 * stddev},
+          {"upper", mean + kNormal95 * stddev},
+          {"unit", unit}};
+}
+
+Json makeEstimates(const Eigen::VectorXd& mean, const Eigen::VectorXd& stddev,
+                   const std::vector<ParameterSpec>& parameters) {
+  Json estimates = Json::object();
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const auto i = static_cast<Eigen::Index>(p);
+    estimates[parameters[p].name.text] = makeEstimate(mean[i], stddev[i], parameters[p].unit);
+  }
+  return estimates;
+}
+
+Json toJson(const Trust& trust, const std::vector<FeatureInfo>& features) {
+  return {{"p_value", trust.p_value},
+          {"chi_square", trust.chi_square},
+          {"residuals", trust.residuals},
+          {"chi_square_p_value", trust.chi_square_p_value},
+          {"burst_p_value", trust.burst_p_value},
+          {"burst", describeBurst(trust, features)},
+          {"distance", trust.distance}};
+}
+
+Json toJson(const Refined& refined, const std::vector<ParameterSpec>& parameters) {
+  if (!refined.status.ok) {
+    return {{"error", refined.status.reason}};
+  }
+  return {{"parameters", makeEstimates(refined.point, refined.stddev, parameters)},
+          {"distance", refined.distance},
+          {"chi_square", refined.chi_square},
+          {"steps", refined.steps},
+          {"simulations", refined.simulations},
+          {"converged", refined.converged}};
+}
+
+std::string dump(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
+std::string makeInferenceJson(const InferredMeasurement& inferred,
+                              const std::vector<ParameterSpec>& parameters,
+                              const std::vector<FeatureInfo>& features) {
+  Json json{{"source", inferred.source}, {"start", inferred.start}};
+  if (inferred.trust) {
+    json["status"] = toString(inferred.trust->statuses.front());
+    for (const TrustStatus status : inferred.trust->statuses) {
+      json["statuses"].push_back(toString(status));
+    }
+  } else {
+    json["status"] = nullptr;
+  }
+  json["parameters"] = makeEstimates(inferred.inference.mean, inferred.inference.stddev, parameters);
+  if (inferred.trust) {
+    json["trust"] = toJson(*inferred.trust, features);
+  }
+  if (inferred.refined) {
+    json["refined"] = toJson(*inferred.refined, parameters);
+  }
+  return dump(json);
+}
+
+std::string makeErrorJson(const std::string& source, double start, const std::string& error) {
+  return dump({{"source", source}, {"start", start}, {"status", "error"}, {"error", error}});
+}
+
+}  // namespace twinmap

@@ -1,0 +1,150 @@
+#include "framework/inference/inference_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "framework/report/escape.hpp"
+#include "framework/spec/number_text.hpp"
+#include "framework/spec/parameter_box.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+
+std::string joinStatuses(const Trust& trust, const char* separator) {
+  std::string joined;
+  for (const TrustStatus status : trust.statuses) {
+    joined += (joined.empty() ? "" : separator) + std::string(toString(status));
+  }
+  return joined;
+}
+
+/// What is wrong, in words; one line each.
+std::string explainStatus(TrustStatus status, const Trust& trust, const std::vector<FeatureInfo>& features) {
+  switch (status) {
+    case TrustStatus::kModelMismatch:
+      return fmt::format("  No point of the parameter box explains the features: {}.\n",
+                         describeBurst(trust, features));
+    case TrustStatus::kOutsideTraining:
+      return fmt::format(
+          "  The features are {:.2g} times as far from the training samples as simulated "
+          "measurements are at most.\n",
+          trust.distance);
+    case TrustStatus::kAtBounds:
+      return "  A parameter lies beyond its bounds: widen them and train again.\n";
+    case TrustStatus::kUninformative:
+      return "  A parameter's sd is close to that of its bounds: this measurement says little about it.\n";
+    case TrustStatus::kOk:
+      break;
+  }
+  return "";
+}
+
+std::string makeTrustLines(const InferredMeasurement& inferred, const std::vector<FeatureInfo>& features) {
+  if (!inferred.trust) {
+    return inferred.source + ": not judged (the run has no trust model)\n";
+  }
+  const Trust& trust = *inferred.trust;
+  std::string text = fmt::format("{}: {} (p = {:.2g}, chi-square {:.1f} of {} residuals)\n", inferred.source,
+                                 joinStatuses(trust, ", "), trust.p_value, trust.chi_square, trust.residuals);
+  for (const TrustStatus status : trust.statuses) {
+    text += explainStatus(status, trust, features);
+  }
+  return text;
+}
+
+using Row = std::vector<std::string>;
+
+Row makeRow(const ParameterSpec& parameter, double mean, double stddev) {
+  constexpr int kDigits = 6, kStddevDigits = 3;
+  return {parameter.name.text, parameter.unit, toShortText(mean, kDigits), toShortText(stddev, kStddevDigits),
+          fmt::format("{} .. {}", toShortText(mean - kNormal95 * stddev, kDigits),
+                      toShortText(mean + kNormal95 * stddev, kDigits))};
+}
+
+std::string align(const std::vector<Row>& rows) {
+  std::vector<std::size_t> widths(rows.front().size(), 0);
+  for (const Row& row : rows) {
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      widths[c] = std::max(widths[c], row[c].size());
+    }
+  }
+  std::string text;
+  for (const Row& row : rows) {
+    std::string line = " ";
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      line += fmt::format(" {:<{}}", row[c], widths[c] + 1);
+    }
+    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+  }
+  return text;
+}
+
+std::string describeRefined(const Refined& refined) {
+  if (!refined.status.ok) {
+    return "  refined: failed: " + refined.status.reason + "\n";
+  }
+  return fmt::format("  refined by {} steps ({} simulations), {:.2g} sd from the map's{}:\n", refined.steps,
+                     refined.simulations, refined.distance, refined.converged ? "" : "; not converged");
+}
+
+}  // namespace
+
+std::string describeBurst(const Trust& trust, const std::vector<FeatureInfo>& features) {
+  const Burst& burst = trust.burst;
+  if (burst.first + burst.count > static_cast<Index>(features.size())) {
+    return "";
+  }
+  const std::string& first = features[static_cast<std::size_t>(burst.first)].name;
+  const std::string& last = features[static_cast<std::size_t>(burst.first + burst.count - 1)].name;
+  return "it is worst at " + (burst.count == 1 ? first : first + " to " + last);
+}
+
+std::string makeInferenceTable(const InferredMeasurement& inferred,
+                               const std::vector<ParameterSpec>& parameters,
+                               const std::vector<FeatureInfo>& features) {
+  std::vector<Row> rows{{"parameter", "unit", "mean", "sd", "95 % interval"}};
+  std::vector<Row> refined = rows;
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const auto i = static_cast<Index>(p);
+    rows.push_back(makeRow(parameters[p], inferred.inference.mean[i], inferred.inference.stddev[i]));
+    if (inferred.refined && inferred.refined->status.ok) {
+      refined.push_back(makeRow(parameters[p], inferred.refined->point[i], inferred.refined->stddev[i]));
+    }
+  }
+  std::string text = makeTrustLines(inferred, features) + align(rows);
+  if (inferred.refined) {
+    text += describeRefined(*inferred.refined) + (refined.size() > 1 ? align(refined) : "");
+  }
+  return text;
+}
+
+std::string makeInferenceCsvHeader(bool refined) {
+  return std::string("source,start,parameter,unit,mean,sd,lower,upper,status,p_value") +
+         (refined ? ",refined_mean,refined_sd" : "") + "\n";
+}
+
+std::string makeInferenceCsvRows(const InferredMeasurement& inferred,
+                                 const std::vector<ParameterSpec>& parameters) {
+  std::string text;
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const auto i = static_cast<Index>(p);
+    const double mean = inferred.inference.mean[i], stddev = inferred.inference.stddev[i];
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{}", escapeCsv(inferred.source), toText(inferred.start),
+                        escapeCsv(parameters[p].name.text), escapeCsv(parameters[p].unit), toText(mean),
+                        toText(stddev), toText(mean - kNormal95 * stddev), toText(mean + kNormal95 * stddev),
+                        inferred.trust ? joinStatuses(*inferred.trust, " ") : "",
+                        inferred.trust ? toText(inferred.trust->p_value) : "");
+    if (inferred.refined) {
+      text += inferred.refined->status.ok ? fmt::format(",{},{}", toText(inferred.refined->point[i]),
+                                                        toText(inferred.refined->stddev[i]))
+                                          : ",,";
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace twinmap

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "framework/inference/inferrer.hpp"
+
+namespace twinmap {
+
+/// The 95 % interval of a normal distribution is mean +- this many standard deviations.
+constexpr double kNormal95 = 1.959963984540054;
+
+/// A table for people: the status with its numbers, then a row per parameter.
+std::string makeInferenceTable(const InferredMeasurement& inferred,
+                               const std::vector<ParameterSpec>& parameters,
+                               const std::vector<FeatureInfo>& features);
+
+/// CSV: a row per measurement and parameter.
+std::string makeInferenceCsvHeader(bool refined);
+std::string makeInferenceCsvRows(const InferredMeasurement& inferred,
+                                 const std::vector<ParameterSpec>& parameters);
+
+/// One line of JSON, without a line end (docs/inference.md).
+std::string makeInferenceJson(const InferredMeasurement& inferred,
+                              const std::vector<ParameterSpec>& parameters,
+                              const std::vector<FeatureInfo>& features);
+/// The same for a measurement that could not be used.
+std::string makeErrorJson(const std::string& source, double start, const std::string& error);
+
+/// "the largest residuals: y(0.1 s) to y(0.4 s)"; "" without a trust model.
+std::string describeBurst(const Trust& trust, const std::vector<FeatureInfo>& features);
+
+}  // namespace twinmap

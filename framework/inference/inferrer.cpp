@@ -1,0 +1,81 @@
+#include "framework/inference/inferrer.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "framework/make_extractor.hpp"
+#include "framework/spec/experiment_file.hpp"
+#include "framework/store/maps_file.hpp"
+
+namespace twinmap {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path findMaps(const fs::path& run_or_maps) {
+  const fs::path file = fs::is_directory(run_or_maps) ? run_or_maps / "maps.h5" : run_or_maps;
+  if (!fs::exists(file)) {
+    throw std::runtime_error(file.string() +
+                             ": does not exist; give the folder of a finished run, or its maps.h5");
+  }
+  return file;
+}
+
+}  // namespace
+
+struct Inferrer::Loaded {
+  StoredOnlineModel stored;
+  ExperimentSpec experiment;
+  ResponseLayout layout;
+};
+
+Inferrer::Inferrer(const fs::path& run_or_maps)
+    : Inferrer([&] {
+        Loaded loaded{readOnlineModel(findMaps(run_or_maps)), {}, {}};
+        loaded.experiment = readResolved(loaded.stored.experiment);
+        loaded.layout = makeLayout(loaded.experiment);
+        return loaded;
+      }()) {}
+
+Inferrer::Inferrer(Loaded loaded)
+    : experiment_(std::move(loaded.experiment)),
+      layout_(std::move(loaded.layout)),
+      sample_interval_(findSampleInterval(experiment_.features)),
+      extractor_(makeExtractor(experiment_, layout_)),
+      map_(std::move(loaded.stored.model.map)),
+      trust_(std::move(loaded.stored.model.trust)) {}
+
+std::vector<std::string> Inferrer::listColumns() const {
+  return twinmap::listColumns(experiment_.measurement, layout_.output_names);
+}
+
+Eigen::VectorXd Inferrer::readResponse(const Table& table, std::optional<double> start) const {
+  MeasurementSpec spec = experiment_.measurement;
+  spec.start = start.value_or(spec.start);
+  return resample(readMeasurement(table, spec, layout_), layout_, sample_interval_);
+}
+
+Eigen::VectorXd Inferrer::extractFeatures(const Eigen::VectorXd& response, const std::string& source) const {
+  Eigen::VectorXd features = extractor_.extract(response);
+  for (Eigen::Index i = 0; i < features.size(); ++i) {
+    if (!std::isfinite(features[i])) {
+      throw MeasurementError(source + ": the response has no feature '" + extractor_.getInfos()[i].name +
+                             "'");
+    }
+  }
+  return features;
+}
+
+InferredMeasurement Inferrer::infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
+                                    Workspace& workspace) const {
+  InferredMeasurement inferred;
+  inferred.inference = map_.infer(features, known, workspace.map);
+  if (trust_) {
+    inferred.trust = judge(*trust_, features, known, inferred.inference, workspace.trust);
+    inferred.explanation =
+        trust_->center + trust_->half_width.cwiseProduct(workspace.trust.explanation.best.point);
+  }
+  return inferred;
+}
+
+}  // namespace twinmap

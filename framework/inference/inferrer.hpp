@@ -1,0 +1,73 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/features/feature_extractor.hpp"
+#include "framework/inference/refine.hpp"
+#include "framework/measurement/measurement.hpp"
+#include "framework/online/online_map.hpp"
+#include "framework/online/online_model.hpp"
+#include "framework/spec/experiment_spec.hpp"
+
+namespace twinmap {
+
+/// What a measurement says about the machine.
+struct InferredMeasurement {
+  std::string source;              ///< the file
+  double start = 0.0;              ///< time in the file that is 0 of the model, s
+  Inference inference;             ///< by the map
+  std::optional<Trust> trust;      ///< none where the run could fit no trust model
+  Eigen::VectorXd explanation;     ///< sampled point that explains the features best; empty without trust
+  std::optional<Refined> refined;  ///< where it was asked for
+};
+
+/// A finished run made ready for measurements. Immutable; its workspaces are for one thread each.
+class Inferrer {
+ public:
+  /// `run_or_maps`: the folder of a run, or its maps.h5, which holds all that is needed. Throws
+  /// std::runtime_error for a file that is missing or was made by another version.
+  explicit Inferrer(const std::filesystem::path& run_or_maps);
+
+  const ExperimentSpec& getExperiment() const { return experiment_; }
+  const ResponseLayout& getLayout() const { return layout_; }
+  const FeatureExtractor& getExtractor() const { return extractor_; }
+  const OnlineMap& getMap() const { return map_; }
+  const std::optional<TrustModel>& getTrustModel() const { return trust_; }
+
+  /// The columns that a table of a measurement must have, for readTable().
+  std::vector<std::string> listColumns() const;
+
+  /// A measured response at the layout's times (its rows). `start` replaces that of the experiment's
+  /// `measurement:`. Throws MeasurementError.
+  Eigen::VectorXd readResponse(const Table& table, std::optional<double> start) const;
+
+  /// The features of a response (rows of the layout). Throws MeasurementError, naming `source`, where the
+  /// response lacks a feature, such as a third peak.
+  Eigen::VectorXd extractFeatures(const Eigen::VectorXd& response, const std::string& source) const;
+
+  struct Workspace {
+    explicit Workspace(const Inferrer& inferrer) : map(inferrer.getMap()) {}
+    OnlineMap::Workspace map;
+    TrustWorkspace trust;
+  };
+
+  /// Infers and judges. features: d, finite; known: the inputs of the set-up (q). Cost: some 50 us.
+  InferredMeasurement infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
+                            Workspace& workspace) const;
+
+ private:
+  struct Loaded;
+  explicit Inferrer(Loaded loaded);
+
+  ExperimentSpec experiment_;
+  ResponseLayout layout_;
+  std::optional<double> sample_interval_;
+  FeatureExtractor extractor_;
+  OnlineMap map_;
+  std::optional<TrustModel> trust_;
+};
+
+}  // namespace twinmap

@@ -1,0 +1,62 @@
+#include "framework/inference/known_value.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "framework/spec/check_experiment.hpp"
+#include "framework/spec/nearest_name.hpp"
+#include "framework/spec/number_text.hpp"
+#include "framework/spec/source_location.hpp"
+
+namespace twinmap {
+namespace {
+
+double findValue(const ParameterSpec& input, const std::vector<KnownValue>& values) {
+  const auto has_name = [&](const KnownValue& value) { return value.name == input.name.text; };
+  const auto found = std::find_if(values.begin(), values.end(), has_name);
+  if (found == values.end()) {
+    throw ExperimentError(
+        fmt::format("the input '{}' is not given; add --set {}=VALUE, in {} within [{}, {}]", input.name.text,
+                    input.name.text, input.unit.empty() ? "its unit" : input.unit, input.bounds.lower,
+                    input.bounds.upper));
+  }
+  if (std::count_if(values.begin(), values.end(), has_name) > 1) {
+    throw ExperimentError(fmt::format("--set {}: is given twice", input.name.text));
+  }
+  if (found->value < input.bounds.lower || found->value > input.bounds.upper) {
+    throw ExperimentError(
+        fmt::format("--set {}={}: must be within the bounds [{}, {}] that the map was trained on",
+                    input.name.text, found->value, input.bounds.lower, input.bounds.upper));
+  }
+  return found->value;
+}
+
+}  // namespace
+
+KnownValue parseKnownValue(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  KnownValue known{text.substr(0, equals), 0.0};
+  if (equals == std::string::npos || !parseLiteral(text.substr(equals + 1), known.value)) {
+    throw ExperimentError("--set " + text + ": must be NAME=NUMBER");
+  }
+  return known;
+}
+
+Eigen::VectorXd collectKnown(const std::vector<ParameterSpec>& inputs,
+                             const std::vector<KnownValue>& values) {
+  const std::vector<std::string> names = collectNames(inputs);
+  for (const KnownValue& value : values) {
+    if (std::find(names.begin(), names.end(), value.name) == names.end()) {
+      throw ExperimentError("--set " + value.name + ": is no input of this experiment" +
+                            suggestName(value.name, names));
+    }
+  }
+  Eigen::VectorXd known(static_cast<Eigen::Index>(inputs.size()));
+  for (Eigen::Index i = 0; i < known.size(); ++i) {
+    known[i] = findValue(inputs[static_cast<std::size_t>(i)], values);
+  }
+  return known;
+}
+
+}  // namespace twinmap

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "framework/spec/model_spec.hpp"
+
+namespace twinmap {
+
+/// "NAME=VALUE", the value of a known input.
+struct KnownValue {
+  std::string name;
+  double value = 0.0;
+};
+
+/// Throws ExperimentError for a text of another form.
+KnownValue parseKnownValue(const std::string& text);
+
+/// The values of all inputs of a model, in their order and units. Throws ExperimentError for an input that is
+/// missing, given twice or outside its bounds, and for a name that is no input.
+Eigen::VectorXd collectKnown(const std::vector<ParameterSpec>& inputs, const std::vector<KnownValue>& values);
+
+}  // namespace twinmap

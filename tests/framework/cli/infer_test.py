@@ -1,0 +1,345 @@
+"""From measurements to parameters: twinmap infer."""
+import csv
+import io
+import json
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+import h5py
+import numpy as np
+import scipy.io
+import yaml
+from scipy.interpolate import CubicSpline
+
+from support import TWINMAP, RunTestCase, call, read_csv, write_csv
+
+TRUE = {"d_y": 0.95, "d_theta": 2.1e-4, "k_y": 8.5, "k_theta": 0.034}
+POINT = [f"parameters.{name}={value}" for name, value in TRUE.items()]
+
+
+def read_columns(path):
+    rows = read_csv(path)
+    return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+
+
+class InferCase(RunTestCase):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.measurement = cls.simulate("m.csv", *POINT)
+        cls.columns = read_columns(cls.measurement)
+
+    def infer(self, *arguments, **options):
+        result = call("infer", self.run_folder, *arguments, **options)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return result.stdout
+
+    def infer_json(self, *arguments):
+        return json.loads(self.infer("--json", *arguments))
+
+    def write(self, name, **columns):
+        path = self.folder / name
+        columns = {**self.columns, **columns}
+        write_csv(path, columns.keys(), columns.values())
+        return path
+
+
+class Infer(InferCase):
+    def test_finds_the_parameters_with_their_standard_deviation(self):
+        inferred = self.infer_json(self.measurement)
+        self.assertEqual(inferred["status"], "ok")
+        for name, true in TRUE.items():
+            estimate = inferred["parameters"][name]
+            self.assertLess(abs(estimate["mean"] - true), 4 * estimate["sd"], name)
+            self.assertAlmostEqual(estimate["upper"] - estimate["lower"], 3.92 * estimate["sd"],
+                                   delta=1e-3 * estimate["sd"])
+
+    def test_infers_the_clean_test_responses_of_the_run(self):
+        with h5py.File(self.run_folder / "samples.h5") as file:
+            times, names = file["times"][:], [name.decode() for name in file["parameters/name"]]
+            responses, points = file["test/responses"][:20], file["test/parameters"][:20]
+        files = [self.folder / f"test_{i}.csv" for i in range(len(responses))]
+        for path, (y, theta) in zip(files, responses):
+            write_csv(path, ["t", "y", "theta"], [times, y, theta])
+        lines = self.infer("--json", *files).splitlines()
+        self.assertEqual(len(lines), 20)
+        for line, point in zip(lines, points):
+            for name, true in zip(names, point):
+                estimate = json.loads(line)["parameters"][name]
+                self.assertLess(abs(estimate["mean"] - true), 4 * estimate["sd"], name)
+
+    def test_table_csv_and_json_agree(self):
+        inferred = self.infer_json(self.measurement)
+        rows = list(csv.DictReader(io.StringIO(self.infer("--csv", self.measurement))))
+        self.assertEqual([row["parameter"] for row in rows], list(TRUE))
+        for row in rows:
+            self.assertEqual(float(row["mean"]), inferred["parameters"][row["parameter"]]["mean"])
+            self.assertEqual(row["status"], "ok")
+        table = self.infer(self.measurement)
+        self.assertIn("m.csv: ok", table)
+        self.assertIn("k_theta", table)
+        self.assertIn("N m/rad", table)
+
+    def test_the_maps_file_alone_suffices(self):
+        alone = self.folder / "elsewhere.h5"
+        alone.write_bytes((self.run_folder / "maps.h5").read_bytes())
+        result = call("infer", alone, self.measurement, "--json")
+        self.assertEqual(json.loads(result.stdout), self.infer_json(self.measurement))
+
+    def test_refine_agrees_with_the_map(self):
+        refined = self.infer_json(self.measurement, "--refine")["refined"]
+        self.assertTrue(refined["converged"])
+        self.assertLess(refined["distance"], 5.0)
+        for name, true in TRUE.items():
+            estimate = refined["parameters"][name]
+            self.assertLess(abs(estimate["mean"] - true), 4 * estimate["sd"], name)
+        self.assertIn("refined by", self.infer(self.measurement, "--refine"))
+
+    def test_follows_a_stream(self):
+        text = self.measurement.read_text()
+        lines = self.infer("--follow", input=text + text + "\n").splitlines()
+        self.assertEqual(len(lines), 2)
+        expected = self.infer_json(self.measurement)["parameters"]
+        for line in lines:
+            self.assertEqual(json.loads(line)["parameters"], expected)
+
+    def test_a_stream_answers_each_measurement_at_once(self):
+        with subprocess.Popen([TWINMAP, "infer", str(self.run_folder), "--follow"], stdin=subprocess.PIPE,
+                              stdout=subprocess.PIPE, text=True) as process:
+            for _ in range(3):
+                process.stdin.write(self.measurement.read_text() + "\n")
+                process.stdin.flush()
+                self.assertEqual(json.loads(process.stdout.readline())["status"], "ok")
+            process.stdin.close()
+            self.assertEqual(process.wait(), 0)
+
+    def test_resamples_a_finer_measurement_that_starts_later(self):
+        fine = np.arange(0, 5.0005, 0.01)
+        times = np.concatenate([[0.0], self.columns["t"]])
+        finer = {name: CubicSpline(times, np.concatenate([[0.0], self.columns[name]]))(fine) for name in ("y", "theta")}
+        path = self.folder / "fine.csv"
+        write_csv(path, ["t", "y", "theta"], [fine + 2.5, finer["y"], finer["theta"]])
+        inferred = self.infer_json(path, "--start", "2.5")
+        expected = self.infer_json(self.measurement)
+        for name in TRUE:
+            estimate = expected["parameters"][name]
+            self.assertAlmostEqual(inferred["parameters"][name]["mean"], estimate["mean"], delta=0.5 * estimate["sd"])
+
+
+class Formats(InferCase):
+    def expect_same(self, path):
+        self.assertEqual(self.infer_json(path)["parameters"], self.infer_json(self.measurement)["parameters"])
+
+    def test_matlab_files(self):
+        scipy.io.savemat(self.folder / "m5.mat", self.columns)
+        self.expect_same(self.folder / "m5.mat")
+
+    def test_hdf5_files(self):
+        with h5py.File(self.folder / "m.h5", "w") as file:
+            for name, values in self.columns.items():
+                file[name] = values
+        self.expect_same(self.folder / "m.h5")
+
+
+class Columns(RunTestCase):
+    """A machine whose file has other names and units."""
+    @classmethod
+    def setUpClass(cls):
+        experiment = yaml.safe_load(RunTestCase.FILE.read_text())
+        experiment["measurement"] = {"time": "clock [ms]", "columns": {"y": "enc1 [mm]", "theta": "enc2 [degree]"}}
+        folder = tempfile.TemporaryDirectory(prefix="twinmap_test_")
+        cls.addClassCleanup(folder.cleanup)
+        cls.FILE = Path(folder.name) / "machine.yaml"
+        cls.FILE.write_text(yaml.safe_dump(experiment, sort_keys=False))
+        super().setUpClass()
+
+    def test_are_mapped_and_converted(self):
+        columns = read_columns(self.simulate("m.csv", *POINT))
+        path = self.folder / "machine.csv"
+        write_csv(path, ["clock", "enc1", "enc2", "remark"],
+                  [1e3 * columns["t"], 1e3 * columns["y"], np.degrees(columns["theta"]), ["fine"] * len(columns["t"])])
+        inferred = json.loads(call("infer", self.run_folder, path, "--json").stdout)
+        self.assertEqual(inferred["status"], "ok")
+        for name, true in TRUE.items():
+            estimate = inferred["parameters"][name]
+            self.assertLess(abs(estimate["mean"] - true), 4 * estimate["sd"], name)
+
+
+class BadMeasurements(InferCase):
+    """Each gives a clear error, the others are still inferred, and the exit code says so."""
+    def expect_error(self, path, *texts):
+        result = call("infer", self.run_folder, path, self.measurement, "--json")
+        self.assertEqual(result.returncode, 1, result.stderr)
+        lines = [json.loads(line) for line in result.stdout.splitlines()]
+        self.assertEqual([line["status"] for line in lines], ["error", "ok"])
+        for text in texts:
+            self.assertIn(text, lines[0]["error"])
+            self.assertIn(text, result.stderr)
+
+    def spoil(self, name, line, text):
+        path = self.folder / name
+        lines = self.measurement.read_text().splitlines()
+        lines[line] = text
+        path.write_text("\n".join(lines) + "\n")
+        return path
+
+    def test_nan(self):
+        self.expect_error(self.spoil("nan.csv", 5, "0.25,nan,0.1"), "nan.csv", "line 6", "y")
+
+    def test_text_in_a_number(self):
+        self.expect_error(self.spoil("text.csv", 7, "0.35,0.1,broken"), "text.csv", "line 8", "theta", "broken")
+
+    def test_missing_column(self):
+        path = self.folder / "missing.csv"
+        path.write_text(self.measurement.read_text().replace("theta", "thetta", 1))
+        self.expect_error(path, "missing.csv", "theta", "thetta")
+
+    def test_too_short(self):
+        path = self.folder / "short.csv"
+        path.write_text("\n".join(self.measurement.read_text().splitlines()[:50]) + "\n")
+        self.expect_error(path, "short.csv")
+
+    def test_constant(self):
+        self.expect_error(self.write("constant.csv", y=np.full_like(self.columns["y"], 0.1)), "constant.csv", "y")
+
+    def test_a_gap(self):
+        keep = np.r_[0:40, 43:len(self.columns["t"])]
+        path = self.folder / "gap.csv"
+        write_csv(path, self.columns.keys(), [values[keep] for values in self.columns.values()])
+        self.expect_error(path, "gap.csv")
+
+    def test_wrong_rate(self):
+        path = self.folder / "slow.csv"
+        write_csv(path, self.columns.keys(), [values[1::2] for values in self.columns.values()])
+        self.expect_error(path, "slow.csv")
+
+    def test_wrong_encoding(self):
+        path = self.folder / "utf16.csv"
+        path.write_text(self.measurement.read_text(), encoding="utf-16")
+        self.expect_error(path, "utf16.csv", "UTF-16")
+
+    def test_wrong_unit(self):
+        path = self.folder / "unit.csv"
+        path.write_text(self.measurement.read_text().replace("theta", "theta [kg]", 1))
+        self.expect_error(path, "unit.csv", "theta", "kg")
+
+    def test_a_file_that_is_not_there(self):
+        self.expect_error(self.folder / "nowhere.csv", "nowhere.csv")
+
+    def test_a_sparse_file_of_a_gigabyte(self):
+        path = self.folder / "large.csv"
+        with open(path, "wb") as file:
+            file.write(b"t,y,theta\n")
+            file.truncate(1 << 30)
+        self.expect_error(path, "large.csv")
+
+    def test_in_a_stream(self):
+        text = self.measurement.read_text()
+        bad = text.replace("theta", "theta", 1).splitlines()
+        bad[3] = "0.15,x,0"
+        result = call("infer", self.run_folder, "--follow", input="\n".join(bad) + "\n\n" + text)
+        self.assertEqual(result.returncode, 1)
+        self.assertEqual([json.loads(line)["status"] for line in result.stdout.splitlines()], ["error", "ok"])
+
+
+class Trust(InferCase):
+    NOISE = {"y": 5e-5, "theta": 0.015}
+
+    def status(self, name, **columns):
+        return self.infer_json(self.write(name, **columns))["statuses"]
+
+    def test_a_spike_a_drift_and_a_stuck_sensor_are_mismatches(self):
+        y, theta = self.columns["y"], self.columns["theta"]
+        spike = theta + 10 * self.NOISE["theta"] * (np.arange(len(y)) == 40)
+        drift = y + np.linspace(0, 10 * self.NOISE["y"], len(y))
+        stuck = np.where(np.arange(len(y)) > 60, y[60], y)
+        self.assertIn("model_mismatch", self.status("spike.csv", theta=spike))
+        self.assertIn("model_mismatch", self.status("drift.csv", y=drift))
+        self.assertIn("model_mismatch", self.status("stuck.csv", y=stuck))
+
+    def test_another_machine_is_a_mismatch(self):
+        other = self.simulate("other.csv", *POINT, "constants.m1.value=3.465")
+        inferred = self.infer_json(other)
+        self.assertEqual(inferred["status"], "model_mismatch")
+        self.assertLess(inferred["trust"]["p_value"], 0.01)
+        self.assertIn("No point of the parameter box explains", self.infer(other))
+
+
+class WrongUsage(InferCase):
+    def expect(self, *arguments, code, text):
+        result = call("infer", *arguments)
+        self.assertEqual(result.returncode, code, result.stderr)
+        self.assertIn(text, result.stderr)
+
+    def test_is_explained(self):
+        self.expect(self.run_folder, code=2, text="--follow")
+        self.expect(self.run_folder, self.measurement, "--follow", code=2, text="give no files")
+        self.expect(self.folder / "nothing", self.measurement, code=1, text="does not exist")
+        self.expect(self.run_folder, self.measurement, "--set", "k=1", code=2, text="no input")
+        self.expect(self.run_folder, self.measurement, "--set", "k", code=2, text="NAME=NUMBER")
+        self.expect(self.measurement, self.measurement, code=1, text="m.csv")
+
+
+class Roles(RunTestCase):
+    """A cart with an unknown offset and a payload that is known."""
+    EXPERIMENT = """
+name: roles
+parameters:
+  k: {bounds: [80, 120], unit: N/m}
+nuisance:
+  offset: {bounds: [-0.01, 0.01], unit: m}
+inputs:
+  payload: {bounds: [0, 1], unit: kg}
+system:
+  bodies:
+    cart: {mass: 1.2 + payload, joint: {type: slider, coordinates: [x]}}
+  springs: [{coordinate: x, stiffness: k}]
+  dampers: [{coordinate: x, damping: 1.5}]
+  force_laws: [{coordinate: x, force: F}]
+excitation:
+  F: {unit: N, pulses: [{amplitude: 2, start: 0.1, end: 0.4}]}
+outputs:
+  x: {coordinate: x, offset: offset}
+simulation: {duration: 2}
+features:
+  - samples: {outputs: [x], start: 0.05, interval: 0.05, count: 40}
+noise: {stddev: {x: 1e-4}}
+design: {train: {samples: 120}, test: {samples: 60}}
+"""
+    ARGUMENTS = ["evaluation.limit=false"]
+
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory(prefix="twinmap_test_")
+        cls.addClassCleanup(folder.cleanup)
+        cls.FILE = Path(folder.name) / "roles.yaml"
+        cls.FILE.write_text(cls.EXPERIMENT)
+        super().setUpClass()
+
+    def test_known_inputs_are_given_with_the_measurement(self):
+        path = self.simulate("m.csv", "parameters.k=93", "nuisance.offset=0.004", "inputs.payload=0.7")
+        result = call("infer", self.run_folder, path, "--set", "payload=0.7", "--refine", "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        inferred = json.loads(result.stdout)
+        self.assertEqual(inferred["status"], "ok")
+        for estimate in (inferred["parameters"]["k"], inferred["refined"]["parameters"]["k"]):
+            self.assertLess(abs(estimate["mean"] - 93), 4 * estimate["sd"])
+            self.assertLess(estimate["sd"], 1.0)
+
+    def test_the_wrong_payload_gives_another_stiffness_or_a_mismatch(self):
+        path = self.simulate("m.csv", "parameters.k=93", "nuisance.offset=0.004", "inputs.payload=0.7")
+        result = json.loads(call("infer", self.run_folder, path, "--set", "payload=0.2", "--json").stdout)
+        self.assertIn("model_mismatch", result["statuses"])
+
+    def test_a_missing_input_is_asked_for(self):
+        path = self.simulate("m.csv", "inputs.payload=0.7")
+        for arguments, text in [([], "--set payload=VALUE"), (["--set", "payload=3"], "bounds [0, 1]")]:
+            result = call("infer", self.run_folder, path, *arguments)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn(text, result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
