@@ -21,7 +21,7 @@ OUTPUTS = ["y", "theta"]
 
 def run(twinmap, experiment, folder, *overrides):
     subprocess.run([twinmap, "run", experiment, "evaluation.limit=false", *overrides, "--out", folder, "--quiet"],
-                   check=True, stdout=subprocess.DEVNULL)
+                   check=True, capture_output=True)
 
 
 def simulate(twinmap, experiment, folder, count, *overrides):

@@ -186,10 +186,10 @@ class BadMeasurements(InferCase):
         return path
 
     def test_nan(self):
-        self.expect_error(self.spoil("nan.csv", 5, "0.25,nan,0.1"), "nan.csv", "line 6", "y")
+        self.expect_error(self.spoil("nan.csv", 5, "0.25,nan,0.1"), "nan.csv:6", "y", "nan")
 
     def test_text_in_a_number(self):
-        self.expect_error(self.spoil("text.csv", 7, "0.35,0.1,broken"), "text.csv", "line 8", "theta", "broken")
+        self.expect_error(self.spoil("text.csv", 7, "0.35,0.1,broken"), "text.csv:8", "theta", "broken")
 
     def test_missing_column(self):
         path = self.folder / "missing.csv"
