@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -83,6 +84,19 @@ struct InferArguments {
   bool refine = false;
 };
 
+struct ReplayArguments {
+  std::string run;                   ///< folder of a run, or its maps.h5
+  std::string file;                  ///< the measurement that is simulated again
+  std::optional<double> start;       ///< time in the file that is 0 of the model; default: the experiment's
+  std::string from;                  ///< the measurement that parameters are inferred from; "": the same
+  std::optional<double> from_start;  ///< default: `start` of the same file, else the experiment's
+  std::vector<std::string> known;    ///< "NAME=VALUE" of the inputs
+  bool refine = false;
+  int draws = 50;
+  int threads = 1;
+  std::string out;  ///< "": RUN/replay/STEM
+};
+
 // One file a subcommand. Results go to stdout, progress and warnings to stderr. Each throws ExperimentError
 // for wrong input and any other std::exception for a failure.
 
@@ -116,6 +130,11 @@ void compare(const CompareArguments& arguments);
 /// Infers the parameters of measurements and prints them with their trust status. Throws std::runtime_error
 /// after the last one if some could not be used.
 void infer(const InferArguments& arguments);
+
+/// Infers the parameters of a measurement, simulates the updated model next to it (the same measurement or
+/// another), writes the comparison and prints how well it fits. Throws std::runtime_error for a measurement
+/// that cannot be used and a simulation that fails.
+void replay(const ReplayArguments& arguments);
 
 /// Writes the report of runs, or of a sweep, again.
 void report(const ReportArguments& arguments);

@@ -19,14 +19,6 @@ Format chooseFormat(const InferArguments& arguments) {
   return arguments.json || arguments.follow ? Format::kJson : arguments.csv ? Format::kCsv : Format::kTable;
 }
 
-std::vector<KnownValue> parseKnownValues(const std::vector<std::string>& texts) {
-  std::vector<KnownValue> values;
-  for (const std::string& text : texts) {
-    values.push_back(parseKnownValue(text));
-  }
-  return values;
-}
-
 /// Infers one measurement after another and prints what comes out. A measurement that cannot be used is an
 /// error of its own.
 class InferCommand {
@@ -41,7 +33,7 @@ class InferCommand {
       starts_.emplace_back(std::nullopt);
     }
     if (arguments.refine) {
-      refiner_.emplace(inferrer_);
+      refiner_.emplace(inferrer_.getExperiment(), inferrer_.getLayout());
     }
     if (format_ == Format::kCsv) {
       std::cout << makeInferenceCsvHeader(arguments.refine);

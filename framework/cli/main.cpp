@@ -190,6 +190,42 @@ void addInfer(CLI::App& app, twinmap::InferArguments& arguments) {
   command->callback([&arguments] { twinmap::infer(arguments); });
 }
 
+void addReplay(CLI::App& app, twinmap::ReplayArguments& arguments) {
+  constexpr int kFewestDraws = 2, kMostDraws = 10000;
+  CLI::App* command =
+      app.add_subcommand("replay",
+                         "Infer the parameters of a measured response, simulate the updated model next to "
+                         "it, and report how well "
+                         "it follows: tables and a page with the measured, nominal and updated responses");
+  command->add_option("RUN", arguments.run, "Folder of a finished run, or its maps.h5")
+      ->required()
+      ->option_text(" ");
+  command->add_option("MEASUREMENT", arguments.file, "File: CSV, MATLAB .mat or HDF5, as infer takes them")
+      ->required()
+      ->option_text(" ");
+  command->add_option("--start", arguments.start, "Time in the file (s) at which the model's time is 0")
+      ->type_name("S");
+  command
+      ->add_option("--from", arguments.from,
+                   "Infer the parameters from this measurement instead (default: the same file)")
+      ->type_name("FILE");
+  command->add_option("--from-start", arguments.from_start, "Where its window starts (default: as --start)")
+      ->type_name("S");
+  command->add_option("--set", arguments.known, "Value of a known input of the set-up; for each of them")
+      ->type_name("NAME=VALUE");
+  command->add_flag("--refine", arguments.refine,
+                    "Refine what was inferred by a few Gauss-Newton steps on the simulator");
+  command
+      ->add_option("--draws", arguments.draws,
+                   "Simulations with parameters drawn from what was inferred, for the band (default: 50)")
+      ->type_name("N")
+      ->check(CLI::Range(kFewestDraws, kMostDraws));
+  addThreads(*command, arguments.threads);
+  command->add_option("--out", arguments.out, "Folder for the results (default: RUN/replay/NAME of the file)")
+      ->type_name("DIR");
+  command->callback([&arguments] { twinmap::replay(arguments); });
+}
+
 void addVerify(CLI::App& app, twinmap::VerifyArguments& arguments) {
   CLI::App* command = app.add_subcommand(
       "verify",
@@ -234,14 +270,17 @@ int runCommand(int count, char** arguments) {
   twinmap::RunArguments run;
   twinmap::VerifyArguments verify;
   twinmap::InferArguments infer;
+  twinmap::ReplayArguments replay;
   verify.seed = std::random_device()();
-  verify.threads = run.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  replay.threads = verify.threads = run.threads =
+      static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   run.command_line = joinArguments(count, arguments);
   addCheck(app, check);
   addSimulate(app, simulate);
   addRun(app, run);
   addPlan(app, run);
   addInfer(app, infer);
+  addReplay(app, replay);
   addStatus(app, status);
   addCompare(app, compare);
   addNoise(app, noise);

@@ -42,19 +42,6 @@ std::string explainStatus(TrustStatus status, const Trust& trust, const std::vec
   return "";
 }
 
-std::string makeTrustLines(const InferredMeasurement& inferred, const std::vector<FeatureInfo>& features) {
-  if (!inferred.trust) {
-    return inferred.source + ": not judged (the run has no trust model)\n";
-  }
-  const Trust& trust = *inferred.trust;
-  std::string text = fmt::format("{}: {} (p = {:.2g}, chi-square {:.1f} of {} residuals)\n", inferred.source,
-                                 joinStatuses(trust, ", "), trust.p_value, trust.chi_square, trust.residuals);
-  for (const TrustStatus status : trust.statuses) {
-    text += explainStatus(status, trust, features);
-  }
-  return text;
-}
-
 using Row = std::vector<std::string>;
 
 Row makeRow(const ParameterSpec& parameter, double mean, double stddev) {
@@ -92,6 +79,19 @@ std::string describeRefined(const Refined& refined) {
 
 }  // namespace
 
+std::string describeTrust(const InferredMeasurement& inferred, const std::vector<FeatureInfo>& features) {
+  if (!inferred.trust) {
+    return inferred.source + ": not judged (the run has no trust model)\n";
+  }
+  const Trust& trust = *inferred.trust;
+  std::string text = fmt::format("{}: {} (p = {:.2g}, chi-square {:.1f} of {} residuals)\n", inferred.source,
+                                 joinStatuses(trust, ", "), trust.p_value, trust.chi_square, trust.residuals);
+  for (const TrustStatus status : trust.statuses) {
+    text += explainStatus(status, trust, features);
+  }
+  return text;
+}
+
 std::string describeBurst(const Trust& trust, const std::vector<FeatureInfo>& features) {
   const Burst& burst = trust.burst;
   if (burst.first + burst.count > static_cast<Index>(features.size())) {
@@ -114,7 +114,7 @@ std::string makeInferenceTable(const InferredMeasurement& inferred,
       refined.push_back(makeRow(parameters[p], inferred.refined->point[i], inferred.refined->stddev[i]));
     }
   }
-  std::string text = makeTrustLines(inferred, features) + align(rows);
+  std::string text = describeTrust(inferred, features) + align(rows);
   if (inferred.refined) {
     text += describeRefined(*inferred.refined) + (refined.size() > 1 ? align(refined) : "");
   }

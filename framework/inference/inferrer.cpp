@@ -56,11 +56,15 @@ Eigen::VectorXd Inferrer::readResponse(const Table& table, std::optional<double>
 }
 
 Eigen::VectorXd Inferrer::extractFeatures(const Eigen::VectorXd& response, const std::string& source) const {
-  Eigen::VectorXd features = extractor_.extract(response);
+  return twinmap::extractFeatures(extractor_, response, source);
+}
+
+Eigen::VectorXd extractFeatures(const FeatureExtractor& extractor, const Eigen::VectorXd& response,
+                                const std::string& source) {
+  Eigen::VectorXd features = extractor.extract(response);
   for (Eigen::Index i = 0; i < features.size(); ++i) {
     if (!std::isfinite(features[i])) {
-      throw MeasurementError(source + ": the response has no feature '" + extractor_.getInfos()[i].name +
-                             "'");
+      throw MeasurementError(source + ": the response has no feature '" + extractor.getInfos()[i].name + "'");
     }
   }
   return features;

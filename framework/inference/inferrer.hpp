@@ -24,6 +24,11 @@ struct InferredMeasurement {
   std::optional<Refined> refined;  ///< where it was asked for
 };
 
+/// The features of a response (rows of the layout). Throws MeasurementError, naming `source`, where the
+/// response lacks a feature, such as a third peak.
+Eigen::VectorXd extractFeatures(const FeatureExtractor& extractor, const Eigen::VectorXd& response,
+                                const std::string& source);
+
 /// A finished run made ready for measurements. Immutable; its workspaces are for one thread each.
 class Inferrer {
  public:
@@ -44,8 +49,7 @@ class Inferrer {
   /// `measurement:`. Throws MeasurementError.
   Eigen::VectorXd readResponse(const Table& table, std::optional<double> start) const;
 
-  /// The features of a response (rows of the layout). Throws MeasurementError, naming `source`, where the
-  /// response lacks a feature, such as a third peak.
+  /// extractFeatures() by the run's extractor.
   Eigen::VectorXd extractFeatures(const Eigen::VectorXd& response, const std::string& source) const;
 
   struct Workspace {

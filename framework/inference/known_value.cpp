@@ -43,6 +43,14 @@ KnownValue parseKnownValue(const std::string& text) {
   return known;
 }
 
+std::vector<KnownValue> parseKnownValues(const std::vector<std::string>& texts) {
+  std::vector<KnownValue> values;
+  for (const std::string& text : texts) {
+    values.push_back(parseKnownValue(text));
+  }
+  return values;
+}
+
 Eigen::VectorXd collectKnown(const std::vector<ParameterSpec>& inputs,
                              const std::vector<KnownValue>& values) {
   const std::vector<std::string> names = collectNames(inputs);

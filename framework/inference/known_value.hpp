@@ -17,6 +17,9 @@ struct KnownValue {
 /// Throws ExperimentError for a text of another form.
 KnownValue parseKnownValue(const std::string& text);
 
+/// Each of the texts.
+std::vector<KnownValue> parseKnownValues(const std::vector<std::string>& texts);
+
 /// The values of all inputs of a model, in their order and units. Throws ExperimentError for an input that is
 /// missing, given twice or outside its bounds, and for a name that is no input.
 Eigen::VectorXd collectKnown(const std::vector<ParameterSpec>& inputs, const std::vector<KnownValue>& values);

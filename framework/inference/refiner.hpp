@@ -11,10 +11,13 @@ namespace twinmap {
 /// Refines inferences of one run on its simulator.
 class SimulatorRefiner {
  public:
-  /// `inferrer` must outlive the object.
-  explicit SimulatorRefiner(const Inferrer& inferrer);
+  /// `experiment`: that of the run, with the excitation of the measurement where it is measured.
+  SimulatorRefiner(const ExperimentSpec& experiment, const ResponseLayout& layout);
+  SimulatorRefiner(const SimulatorRefiner&) = delete;
+  SimulatorRefiner& operator=(const SimulatorRefiner&) = delete;
 
   const MultibodySimulator& getSimulator() const { return simulator_; }
+  const FeatureExtractor& getExtractor() const { return extractor_; }
 
   /// Searches all unknown parameters from the inferred ones and the nuisance parameters that explain the
   /// features best. known: q.
@@ -26,9 +29,10 @@ class SimulatorRefiner {
   Refined fitNuisance(const Eigen::VectorXd& point, const Eigen::VectorXd& features) const;
 
  private:
-  const Inferrer& inferrer_;
-  MultibodySimulator simulator_;
-  FeatureNoise noise_;
+  const ModelSpec model_;
+  const FeatureExtractor extractor_;
+  const MultibodySimulator simulator_;
+  const FeatureNoise noise_;  // of extractor_
 };
 
 /// A point of the sampled box: the given parameters, the nuisance parameters of `explanation` (a point of the

@@ -1,8 +1,8 @@
 #include <algorithm>
 
 #include "framework/report/html.hpp"
+#include "framework/report/response_panels.hpp"
 #include "framework/report/sections/sections.hpp"
-#include "framework/report/vega.hpp"
 
 namespace twinmap {
 namespace {
@@ -64,57 +64,8 @@ Json makeFilter(const std::string& which, const std::string& output) {
                       {{"filter", {{"field", "output"}, {"equal", output}}}}});
 }
 
-/// The same colour, shape and dash of each kind of response everywhere.
-Json makeKind(const std::string& kind) {
-  return {{"datum", kind},
-          {"type", "nominal"},
-          {"title", nullptr},
-          {"scale",
-           {{"domain", {"measured", "nominal", "updated"}},
-            {"range", {"var(--ink)", "var(--color-1)", "var(--color-0)"}}}}};
-}
-
-Json makeLine(const char* column, const Json& dash, double width) {
-  return {{"mark", {{"type", "line"}, {"strokeDash", dash}, {"strokeWidth", width}}},
-          {"encoding", {{"y", {{"field", column}, {"type", "quantitative"}}}, {"color", makeKind(column)}}}};
-}
-
-Panel makeResponsePanel(const std::string& which, const std::string& output, const std::string& unit) {
-  Json spec = makePanelSpec(kTable, 150);
-  spec.erase("params");
-  spec["transform"] = makeFilter(which, output);
-  spec["encoding"] = {
-      {"x", makeQuantitative("time", "time [s]")},
-      {"y", {{"type", "quantitative"}, {"title", makeLabel(output, unit)}, {"scale", {{"zero", false}}}}}};
-  const Json points{{"mark", {{"type", "point"}, {"filled", true}, {"size", 12}, {"opacity", 0.7}}},
-                    {"encoding",
-                     {{"y", {{"field", "measured"}, {"type", "quantitative"}}},
-                      {"color", makeKind("measured")},
-                      {"tooltip",
-                       {makeQuantitative("time", "time [s]", {{"format", ".4~g"}}),
-                        makeQuantitative("measured", "measured", {{"format", ".4~g"}}),
-                        makeQuantitative("nominal", "nominal", {{"format", ".4~g"}}),
-                        makeQuantitative("updated", "updated", {{"format", ".4~g"}})}}}}};
-  spec["layer"] = {makeLine("nominal", {5, 3}, 1.2), makeLine("updated", {1, 0}, 1.6), points};
-  return {"Measured, nominal and updated " + output + " over time, " + which + " case", spec};
-}
-
-Panel makeResidualPanel(const std::string& which, const std::string& output) {
-  const std::string title = "residual / sd";
-  Json spec = makePanelSpec(kTable, 70);
-  spec.erase("params");
-  spec["transform"] = makeFilter(which, output);
-  spec["transform"].push_back(
-      {{"calculate", "(datum.measured - datum.updated) / datum.noise_stddev"}, {"as", "residual"}});
-  const Json band{{"data", {{"values", {{{"low", -2}, {"high", 2}}}}}},
-                  {"mark", {{"type", "rect"}, {"color", "var(--quiet)"}, {"opacity", 0.15}}},
-                  {"encoding", {{"y", makeQuantitative("low", title)}, {"y2", {{"field", "high"}}}}}};
-  spec["layer"] = {
-      band,
-      {{"mark", {{"type", "point"}, {"filled", true}, {"size", 10}, {"color", "var(--color-0)"}}},
-       {"encoding",
-        {{"x", makeQuantitative("time", "time [s]")}, {"y", makeQuantitative("residual", title)}}}}};
-  return {"Residual of " + output + " in units of noise over time, " + which + " case", spec};
+ResponseData describeResponse(const RunFolder& run, const std::string& which, const std::string& output) {
+  return {kTable, makeFilter(which, output), output, findUnit(run, output), which + " case"};
 }
 
 }  // namespace
@@ -143,10 +94,10 @@ void addResponses(const RunFolder& run, Page& page) {
         {},
         static_cast<int>(std::min<std::size_t>(outputs.size(), 3))};
     for (const std::string& output : outputs) {
-      figure.panels.push_back(makeResponsePanel(which, output, findUnit(run, output)));
+      figure.panels.push_back(makeResponsePanel(describeResponse(run, which, output)));
     }
     for (const std::string& output : outputs) {
-      figure.panels.push_back(makeResidualPanel(which, output));
+      figure.panels.push_back(makeResidualPanel(describeResponse(run, which, output)));
     }
     addFigure(std::move(figure), section);
   }

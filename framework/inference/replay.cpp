@@ -1,0 +1,176 @@
+#include "framework/inference/replay.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "framework/features/noise.hpp"
+#include "framework/inference/ensemble.hpp"
+#include "framework/inference/refiner.hpp"
+#include "framework/measurement/measured_signals.hpp"
+#include "framework/simulation/sample_generator.hpp"
+#include "framework/spec/parameter_box.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+Table readWindow(const Inferrer& inferrer, const MeasuredWindow& window) {
+  std::vector<std::string> columns = inferrer.listColumns();
+  const std::vector<std::string> signals = listSignalColumns(inferrer.getExperiment());
+  columns.insert(columns.end(), signals.begin(), signals.end());
+  return readTable(window.file, columns);
+}
+
+ExperimentSpec makeExperiment(const Inferrer& inferrer, const Table& table, double start) {
+  ExperimentSpec experiment = inferrer.getExperiment();
+  replaceMeasuredSignals(experiment, table, start);
+  return experiment;
+}
+
+/// What was measured in a window, and the model with the excitation of the window.
+struct Window {
+  Window(const Inferrer& inferrer, const Table& table, double start)
+      : response(inferrer.readResponse(table, start)),
+        refiner(makeExperiment(inferrer, table, start), inferrer.getLayout()),
+        features(extractFeatures(refiner.getExtractor(), response, table.source)) {}
+
+  const VectorXd response;
+  const SimulatorRefiner refiner;
+  const VectorXd features;
+};
+
+void requireOk(const SampleStatus& status, const std::string& what) {
+  if (!status.ok) {
+    throw std::runtime_error(what + " could not be simulated: " + status.reason);
+  }
+}
+
+InferredMeasurement infer(const Inferrer& inferrer, const Window& window, const ReplayOptions& options) {
+  Inferrer::Workspace workspace(inferrer);
+  InferredMeasurement inferred = inferrer.infer(window.features, options.known, workspace);
+  inferred.source = options.from.file.string();
+  inferred.start = options.from.start;
+  if (options.refine) {
+    inferred.refined = window.refiner.refine(inferred, window.features, options.known);
+    requireOk(inferred.refined->status, "a step of the refinement");
+  }
+  return inferred;
+}
+
+class Replayer {
+ public:
+  Replayer(const Inferrer& inferrer, const Window& window, Replay& replay)
+      : inferrer_(inferrer),
+        model_(inferrer.getExperiment().model),
+        window_(window),
+        replay_(replay),
+        refined_(replay.inferred.refined) {
+    if (replay.options.measurement == replay.options.from) {
+      explanation_ = refined_ ? refined_->point : replay.inferred.explanation;
+    }
+  }
+
+  void run() {
+    const Index p = static_cast<Index>(model_.parameters.size());
+    const VectorXd mean = refined_ ? VectorXd(refined_->point.head(p)) : replay_.inferred.inference.mean;
+    fitNuisance(calcBoxCenter(model_.parameters), replay_.nominal);
+    fitNuisance(clipToBounds(mean, model_.parameters), replay_.updated);
+    MatrixXd points(replay_.updated.point.size(), 2 + replay_.options.draws);
+    points.colwise() = replay_.updated.point;
+    points.col(0) = replay_.nominal.point;
+    points.topRightCorner(p, replay_.options.draws) = draw(mean);
+    const MatrixXd responses = simulate(points);
+    setResponse(responses.col(0), replay_.nominal);
+    setResponse(responses.col(1), replay_.updated);
+    constexpr double kTail = 0.025;
+    const MatrixXd ensemble = responses.rightCols(replay_.options.draws);
+    replay_.lower = calcRowQuantiles(ensemble, kTail);
+    replay_.upper = calcRowQuantiles(ensemble, 1.0 - kTail);
+  }
+
+ private:
+  void fitNuisance(const VectorXd& parameters, ReplayedModel& model) const {
+    const VectorXd start = makePoint(model_, parameters, explanation_, replay_.options.known);
+    const Refined fitted = window_.refiner.fitNuisance(start, window_.features);
+    model.point = fitted.point;
+    model.nuisance_converged = fitted.status.ok && fitted.converged;
+  }
+
+  MatrixXd draw(const VectorXd& mean) const {
+    const VectorXd& stddev = refined_ ? refined_->stddev : replay_.inferred.inference.stddev;
+    const RandomStream random(inferrer_.getExperiment().seed, RandomPurpose::kEnsemble);
+    return clipToBounds(drawNormal(mean, stddev, inferrer_.getMap().getMap().residual_correlation,
+                                   replay_.options.draws, random),
+                        model_.parameters);
+  }
+
+  MatrixXd simulate(const MatrixXd& points) const {
+    GeneratorOptions options;
+    options.threads = replay_.options.threads;
+    const Trajectories simulated = generateSamples(window_.refiner.getSimulator(), points, options);
+    for (std::size_t i = 0; i < simulated.statuses.size(); ++i) {
+      requireOk(simulated.statuses[i], i == 0   ? "the nominal model"
+                                       : i == 1 ? "the updated model"
+                                                : "draw " + std::to_string(i - 1) + " of the ensemble");
+    }
+    return simulated.responses;
+  }
+
+  void setResponse(const VectorXd& response, ReplayedModel& model) const {
+    model.response = response;
+    model.fits = calcFits(replay_.measured, response, replay_.noise_stddev, replay_.layout);
+  }
+
+  const Inferrer& inferrer_;
+  const ModelSpec& model_;
+  const Window& window_;
+  Replay& replay_;
+  const std::optional<Refined>& refined_;
+  VectorXd explanation_;  // of the window; empty: its nuisance parameters are sought from the box's centre
+};
+
+InferredMeasurement inferFrom(const Inferrer& inferrer, const Table& table, const Window& window,
+                              const ReplayOptions& options) {
+  if (options.from == options.measurement) {
+    return infer(inferrer, window, options);
+  }
+  const bool same_file = options.from.file == options.measurement.file;
+  const Table other = same_file ? Table() : readWindow(inferrer, options.from);
+  return infer(inferrer, Window(inferrer, same_file ? table : other, options.from.start), options);
+}
+
+}  // namespace
+
+Replay replay(const Inferrer& inferrer, const ReplayOptions& options) {
+  const Table table = readWindow(inferrer, options.measurement);
+  const Window window(inferrer, table, options.measurement.start);
+  Replay replay;
+  replay.options = options;
+  replay.inferred = inferFrom(inferrer, table, window, options);
+  replay.layout = inferrer.getLayout();
+  replay.measured = window.response;
+  replay.noise_stddev = calcNoiseStddev(inferrer.getExperiment().noise, replay.layout);
+  Replayer(inferrer, window, replay).run();
+  return replay;
+}
+
+std::vector<OutputFit> calcFits(const VectorXd& measured, const VectorXd& response,
+                                const VectorXd& noise_stddev, const ResponseLayout& layout) {
+  const Index times = layout.times.size();
+  std::vector<OutputFit> fits;
+  for (Index output = 0; output < layout.getOutputCount(); ++output) {
+    const auto mine = Eigen::seqN(layout.getRow(output, 0), times);
+    const VectorXd residual = measured(mine) - response(mine);
+    const VectorXd motion = measured(mine).array() - measured(mine).mean();
+    const VectorXd in_sd = residual.cwiseQuotient(noise_stddev(mine));
+    const double root = std::sqrt(static_cast<double>(times));
+    fits.push_back(
+        {100.0 * residual.norm() / motion.norm(), in_sd.norm() / root, in_sd.cwiseAbs().maxCoeff()});
+  }
+  return fits;
+}
+
+}  // namespace twinmap

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "framework/inference/replay.hpp"
+
+namespace twinmap {
+
+// Files of a replay (docs/replay.md). Cells without a finite number are empty.
+
+/// output, time, measured, nominal, updated, lower, upper, noise_stddev.
+std::string makeReplayCsv(const Replay& replay);
+
+/// t, then measured minus updated of each output: a table of measurements itself.
+std::string makeResidualsCsv(const Replay& replay);
+
+/// The fits of each output by the updated and by the nominal model; the first row names the columns.
+std::vector<std::vector<std::string>> listFits(const Replay& replay);
+
+/// The same for people.
+std::string makeFitTable(const Replay& replay);
+
+/// Writes replay.csv, residuals.csv, fit.csv, inference.json and report.html, each whole or not at all; makes
+/// the folder. Throws std::runtime_error naming what cannot be written.
+void writeReplay(const std::filesystem::path& folder, const Inferrer& inferrer, const Replay& replay);
+
+}  // namespace twinmap

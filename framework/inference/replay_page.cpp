@@ -1,0 +1,216 @@
+#include "framework/inference/replay_page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "framework/inference/inference_text.hpp"
+#include "framework/inference/replay_files.hpp"
+#include "framework/report/csv.hpp"
+#include "framework/report/html.hpp"
+#include "framework/report/response_panels.hpp"
+#include "framework/report/sections/verdict.hpp"
+#include "framework/report/vega.hpp"
+#include "framework/spec/number_text.hpp"
+#include "framework/spec/parameter_box.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr int kShownDigits = 6;
+constexpr Index kMostTimes = 10000;  // that are drawn
+
+HtmlCell makeCell(double value, int digits = kShownDigits) {
+  return makeNumberCell(toText(value), digits);
+}
+
+std::string describeWindow(const MeasuredWindow& window) {
+  return window.file.string() + ", from " + toShortText(window.start, kShownDigits) + " s";
+}
+
+/// "NRMSE of the updated model: 0.5 % (y), 3 % (theta); of the nominal model: 40 % (y), 30 % (theta)."
+std::string describeFits(const Replay& replay) {
+  const auto list = [&](const ReplayedModel& model) {
+    std::string text;
+    for (std::size_t o = 0; o < model.fits.size(); ++o) {
+      text += fmt::format("{}{:.3g} % ({})", o == 0 ? "" : ", ", model.fits[o].nrmse_pct,
+                          replay.layout.output_names[o]);
+    }
+    return text;
+  };
+  return "NRMSE of the updated model: " + list(replay.updated) +
+         "; of the nominal model: " + list(replay.nominal) + ".";
+}
+
+std::vector<std::string> collectWarnings(const Replay& replay) {
+  std::vector<std::string> warnings;
+  for (const auto& [name, model] : {std::pair("nominal", &replay.nominal), {"updated", &replay.updated}}) {
+    if (!model->nuisance_converged) {
+      warnings.push_back(
+          fmt::format("the search for the nuisance parameters of the {} model did not converge", name));
+    }
+  }
+  if (replay.inferred.refined && !replay.inferred.refined->converged) {
+    warnings.emplace_back("the refinement did not converge");
+  }
+  return warnings;
+}
+
+Section makeVerdict(const Inferrer& inferrer, const Replay& replay) {
+  Section section{"verdict", "Verdict", "", {}};
+  std::istringstream trust(describeTrust(replay.inferred, inferrer.getExtractor().getInfos()));
+  for (std::string line; std::getline(trust, line);) {
+    section.html += makeParagraph(line, "class=\"lead\"");
+  }
+  section.html += makeParagraph(describeFits(replay));
+  const std::vector<ParameterSpec>& inputs = inferrer.getExperiment().model.inputs;
+  std::vector<std::pair<std::string, std::string>> facts{
+      {"measurement", describeWindow(replay.options.measurement)},
+      {"parameters inferred from", describeWindow(replay.options.from)},
+      {"experiment", inferrer.getExperiment().name.text},
+      {"draws of the band", std::to_string(replay.options.draws)}};
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    facts.emplace_back(makeLabel(inputs[i]),
+                       toShortText(replay.options.known[static_cast<Index>(i)], kShownDigits));
+  }
+  section.html += makeFacts(facts) + makeWarningList(collectWarnings(replay));
+  return section;
+}
+
+using Cells = std::vector<HtmlCell>;
+
+std::string makeParameterTable(const Inferrer& inferrer, const Replay& replay) {
+  constexpr int kStddevDigits = 3;
+  const std::vector<ParameterSpec>& parameters = inferrer.getExperiment().model.parameters;
+  const bool refined = replay.inferred.refined.has_value();
+  std::vector<std::string> headings{"parameter", "unit", "inferred", "sd", "95 % from", "to"};
+  if (refined) {
+    headings.insert(headings.end(), {"refined", "its sd"});
+  }
+  headings.emplace_back("nominal");
+  std::vector<Cells> rows;
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const auto i = static_cast<Index>(p);
+    const double mean = replay.inferred.inference.mean[i], stddev = replay.inferred.inference.stddev[i];
+    rows.push_back({makeTextCell(parameters[p].name.text), makeTextCell(parameters[p].unit), makeCell(mean),
+                    makeCell(stddev, kStddevDigits), makeCell(mean - kNormal95 * stddev),
+                    makeCell(mean + kNormal95 * stddev)});
+    if (refined) {
+      rows.back().push_back(makeCell(replay.inferred.refined->point[i]));
+      rows.back().push_back(makeCell(replay.inferred.refined->stddev[i], kStddevDigits));
+    }
+    rows.back().push_back(makeCell(replay.nominal.point[i]));
+  }
+  return makeHtmlTable("parameters-table",
+                       std::string("Updating parameters. The updated model is simulated at the ") +
+                           (refined ? "refined" : "inferred") +
+                           " values, moved to the bounds where they lie beyond.",
+                       headings, rows);
+}
+
+std::string makeNuisanceTable(const ModelSpec& model, const Replay& replay) {
+  std::vector<Cells> rows;
+  for (std::size_t n = 0; n < model.nuisance.size(); ++n) {
+    const auto i = static_cast<Index>(model.parameters.size() + n);
+    rows.push_back({makeTextCell(model.nuisance[n].name.text), makeTextCell(model.nuisance[n].unit),
+                    makeCell(replay.updated.point[i]), makeCell(replay.nominal.point[i])});
+  }
+  return rows.empty() ? ""
+                      : makeHtmlTable("nuisance-table",
+                                      "Nuisance parameters, fitted to the replayed measurement for either "
+                                      "model, so that the comparison is fair.",
+                                      {"nuisance parameter", "unit", "updated", "nominal"}, rows);
+}
+
+std::string makeFitHtml(const Replay& replay) {
+  constexpr int kDigits = 4;
+  const std::vector<CsvRow> fits = listFits(replay);
+  std::vector<Cells> rows;
+  for (std::size_t row = 1; row < fits.size(); ++row) {
+    rows.push_back({makeTextCell(fits[row][0])});
+    for (std::size_t column = 1; column < fits[row].size(); ++column) {
+      rows.back().push_back(makeNumberCell(fits[row][column], kDigits));
+    }
+  }
+  return makeHtmlTable(
+      "fit-table",
+      "NRMSE: rms of the residual over rms of the measured output about its mean. Residuals in standard "
+      "deviations of the noise: where the model is right, their rms is about 1.",
+      {"output", "NRMSE %", "rms residual / sd", "largest", "nominal NRMSE %", "nominal rms / sd",
+       "nominal largest"},
+      rows);
+}
+
+DataTable makeTable(const Replay& replay, Index output) {
+  const Index times = replay.layout.times.size();
+  const Index step = (times + kMostTimes - 1) / kMostTimes;
+  const auto pick = [&](const VectorXd& rows, Index first) {
+    std::vector<double> values;
+    for (Index i = 0; i < times; i += step) {
+      values.push_back(rows[first + i]);
+    }
+    return values;
+  };
+  const Index first = replay.layout.getRow(output, 0);
+  DataTable table;
+  table.add("time", pick(replay.layout.times, 0));
+  table.add("measured", pick(replay.measured, first));
+  table.add("nominal", pick(replay.nominal.response, first));
+  table.add("updated", pick(replay.updated.response, first));
+  table.add("lower", pick(replay.lower, first));
+  table.add("upper", pick(replay.upper, first));
+  table.add("noise_stddev", pick(replay.noise_stddev, first));
+  return table;
+}
+
+std::string makeHelp(const Replay& replay) {
+  std::string help =
+      "Points: measured; dashed: the nominal model, at the centre of the box; solid: the updated model, with "
+      "the "
+      "95 % band that the uncertainty of the parameters leaves. Below: measured minus updated; where the "
+      "updated model is right, 95 % lie in the grey band of \u00b12 noise sd. Drag and scroll to move and "
+      "zoom "
+      "the axis of time, double-click to take it back.";
+  if (replay.layout.times.size() > kMostTimes) {
+    help += " Not all times are drawn; replay.csv has them all.";
+  }
+  return help;
+}
+
+Figure makeFigure(const Replay& replay, Index output) {
+  const auto o = static_cast<std::size_t>(output);
+  const std::string table = "replay-" + std::to_string(output);
+  const ResponseData data{table, Json::array(), replay.layout.output_names[o], replay.layout.output_units[o],
+                          ""};
+  constexpr ResponseLook kLook{true, true};
+  return {table, replay.layout.output_names[o] + ": measured, nominal, updated",   makeHelp(replay),
+          table, {makeResponsePanel(data, kLook), makeResidualPanel(data, kLook)}, {},
+          1};
+}
+
+}  // namespace
+
+std::string makeReplayPage(const Inferrer& inferrer, const Replay& replay) {
+  const ModelSpec& model = inferrer.getExperiment().model;
+  Page page;
+  page.title = "Replay of " + replay.options.measurement.file.filename().string();
+  page.sections.push_back(makeVerdict(inferrer, replay));
+  page.sections.push_back({"parameters",
+                           "Parameters",
+                           makeParameterTable(inferrer, replay) + makeNuisanceTable(model, replay),
+                           {}});
+  page.sections.push_back({"fit", "Fit", makeFitHtml(replay), {}});
+  Section responses{"responses", "Responses", "", {}};
+  for (Index output = 0; output < replay.layout.getOutputCount(); ++output) {
+    page.tables["replay-" + std::to_string(output)] = makeTable(replay, output);
+    addFigure(makeFigure(replay, output), responses);
+  }
+  page.sections.push_back(std::move(responses));
+  return makePage(page);
+}
+
+}  // namespace twinmap
