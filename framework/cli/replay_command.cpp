@@ -31,7 +31,7 @@ fs::path chooseFolder(const ReplayArguments& arguments) {
     return arguments.out;
   }
   const fs::path run =
-      fs::is_directory(arguments.run) ? arguments.run : fs::path(arguments.run).parent_path();
+      fs::is_directory(arguments.run) ? fs::path(arguments.run) : fs::path(arguments.run).parent_path();
   return run / "replay" / fs::path(arguments.file).stem();
 }
 
