@@ -36,6 +36,7 @@ void readTables(const fs::path& path, RunFolder& run) {
   run.failures = readCsvFile(path / "failures.csv");
   run.features = readCsvFile(path / "features.csv");
   run.correlations = readCsvFile(path / "correlations.csv");
+  run.identifiability = readCsvFile(path / "identifiability.csv");
   run.posterior = readCsvFile(path / "posterior.csv");
   run.baselines = readCsvFile(path / "baselines.csv");
   run.responses = readCsvFile(path / "responses.csv");

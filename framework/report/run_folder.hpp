@@ -25,6 +25,7 @@ struct RunFolder {
   CsvTable failures;
   CsvTable features;
   CsvTable correlations;
+  CsvTable identifiability;
   CsvTable posterior;
   CsvTable baselines;
   CsvTable responses;

@@ -197,6 +197,7 @@ void addFeatures(const RunFolder& run, Page& page) {
   addLoadings(run, places, section, page);
   addRelevance(run, section, page);
   addCorrelations(run, section, page);
+  addCombinations(run, section, page);
   page.sections.push_back(std::move(section));
 }
 

@@ -1,29 +1,11 @@
 #include <algorithm>
 
+#include "framework/report/sections/heat_spec.hpp"
 #include "framework/report/sections/sections.hpp"
 #include "framework/report/vega.hpp"
 #include "framework/spec/check_experiment.hpp"
 
 namespace twinmap {
-namespace {
-
-/// A heat map with its numbers written in, so that it reads without colour.
-Json makeHeatSpec(const std::string& table, int rows, const Json& x, const Json& y, const Json& color,
-                  const std::string& value, const std::string& light_text) {
-  constexpr int kRowHeight = 26, kFrame = 10;
-  Json spec = makePanelSpec(table, kFrame + kRowHeight * rows);
-  spec.erase("params");
-  spec["encoding"] = {{"x", x}, {"y", y}};
-  spec["layer"] = {
-      {{"mark", {{"type", "rect"}}}, {"encoding", {{"color", color}}}},
-      {{"mark", {{"type", "text"}, {"fontSize", 11}}},
-       {"encoding",
-        {{"text", makeQuantitative(value, value, {{"format", ".2~g"}})},
-         {"color", {{"condition", {{"test", light_text}, {"value", "#ffffff"}}}, {"value", "#101010"}}}}}}};
-  return spec;
-}
-
-}  // namespace
 
 void addRelevance(const RunFolder& run, Section& section, Page& page) {
   if (!run.map) {
@@ -91,11 +73,9 @@ void addCorrelations(const RunFolder& run, Section& section, Page& page) {
   page.tables["correlations"] = table;
   const Json x = makeNominal("other", "", {{"sort", nullptr}, {"axis", {{"labelAngle", 0}}}});
   const Json y = makeNominal("parameter", "", {{"sort", nullptr}});
-  const Json color =
-      makeQuantitative("correlation", "correlation",
-                       {{"scale", {{"scheme", "purpleorange"}, {"domain", {-1, 1}}, {"reverse", true}}}});
-  const Json spec = makeHeatSpec("correlations", static_cast<int>(names.size()), x, y, color, "correlation",
-                                 "abs(datum.correlation) > 0.6");
+  const Json spec =
+      makeHeatSpec("correlations", static_cast<int>(names.size()), x, y, makeSignedColor("correlation"),
+                   "correlation", "abs(datum.correlation) > 0.6");
   addFigure({"correlations",
              "Correlation of the parameters",
              "How the data tie errors of two parameters together (from the mean Fisher information): near "

@@ -20,6 +20,8 @@ void addCalibration(const RunFolder& run, Page& page);
 void addPosterior(const RunFolder& run, Section& section, Page& page);
 void addResponses(const RunFolder& run, Page& page);
 void addFeatures(const RunFolder& run, Page& page);
+/// Which combinations of parameters the data determine.
+void addCombinations(const RunFolder& run, Section& section, Page& page);
 /// Which inputs each parameter's process depends on, and how the data tie parameters together.
 void addRelevance(const RunFolder& run, Section& section, Page& page);
 void addCorrelations(const RunFolder& run, Section& section, Page& page);

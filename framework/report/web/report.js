@@ -4,7 +4,7 @@
 (() => {
   const page = JSON.parse(document.getElementById('page-data').textContent);
   const views = new Map();   // panel id -> Vega view
-  const drawing = new Map(); // panel id -> promise of its view
+  const drawing = new Map(); // panel id -> promise of its last drawing
   const rowsOfTable = new Map();
   let selected = null;       // null, or {sample: true, ...}
 
@@ -34,6 +34,7 @@
 
   const kConfig = {
     background: 'transparent',
+    aria: false,  // a panel is one image with one text: what is within is not read out
     font: 'system-ui, -apple-system, "Segoe UI", Roboto, sans-serif',
     view: {stroke: null},
     axis: {
@@ -100,6 +101,19 @@
     }
   }
 
+  /** Tooltips are made when the pointer comes, not for each of thousands of marks. */
+  function deferTooltips(spec) {
+    const defer = mark => {
+      (mark.marks || []).forEach(defer);
+      const {update, hover} = mark.encode || {};
+      if (!update || !update.tooltip) return;
+      mark.encode.hover = {...hover, tooltip: update.tooltip};
+      delete update.tooltip;
+    };
+    spec.marks.forEach(defer);
+    return spec;
+  }
+
   async function drawPanel(figure, index) {
     const id = `${figure.name}-${index}`;
     const element = document.getElementById(id);
@@ -108,13 +122,13 @@
     spec.datasets = Object.fromEntries([...findTables(spec)].map(name => [name, getRows(name).map(row => ({...row}))]));
     if (views.has(id)) views.get(id).finalize();
     const result = await vegaEmbed(element, spec, {
-      actions: false, renderer: 'svg', config: makeConfig(element), mode: 'vega-lite', tooltip: {theme: 'page'}
+      actions: false, renderer: 'svg', config: makeConfig(element), mode: 'vega-lite', tooltip: {theme: 'page'},
+      patch: deferTooltips, hover: true
     });
     views.set(id, result.view);
     listen(result.view, spec, id);
     if (selected) highlight(result.view);
     element.dataset.drawn = 'true';
-    return result.view;
   }
 
   function fail(figure, error) {
@@ -125,28 +139,81 @@
     console.error(figure.name, error);
   }
 
-  function drawFigure(figure) {
-    if (!drawing.has(figure.name)) {
-      drawing.set(figure.name, Promise.all(figure.panels.map((_, index) => drawPanel(figure, index)))
-          .catch(error => fail(figure, error)));
-    }
-    return drawing.get(figure.name);
-  }
-
   function redrawFigure(name) {
-    drawing.delete(name);
-    return drawFigure(page.figures.find(figure => figure.name === name));
+    const figure = page.figures.find(candidate => candidate.name === name);
+    return Promise.all(figure.panels.map((_, index) => draw({figure, index})));
   }
 
-  /** Draws what is in sight first, then the others one by one, so that the page answers meanwhile. */
-  async function drawAll() {
-    const inSight = figure => document.getElementById(figure.name).getBoundingClientRect().top < innerHeight;
-    const order = [...page.figures.filter(inSight), ...page.figures.filter(figure => !inSight(figure))];
-    for (const figure of order.filter(candidate => !document.getElementById(candidate.name).hidden)) {
-      await drawFigure(figure);
-      await new Promise(resolve => setTimeout(resolve));
+  // ---- What is drawn when -----------------------------------------------------------------------------------
+
+  /** Panels that nothing has drawn yet: {figure, index} by id, in reading order. */
+  const pending = new Map();
+
+  function listPending() {
+    for (const figure of page.figures.filter(candidate => !document.getElementById(candidate.name).hidden)) {
+      figure.panels.forEach((_, index) => pending.set(`${figure.name}-${index}`, {figure, index}));
     }
+  }
+
+  /** Draws a panel, after whatever is being drawn in its place. */
+  function draw({figure, index}) {
+    const id = `${figure.name}-${index}`;
+    pending.delete(id);
+    const drawn = Promise.resolve(drawing.get(id)).then(() => drawPanel(figure, index))
+        .catch(error => fail(figure, error));
+    drawing.set(id, drawn);
+    return drawn;
+  }
+
+  /** How far a panel is from the window, in pixels; 0 in sight. */
+  function calcDistance(id) {
+    const {top, bottom} = document.getElementById(id).getBoundingClientRect();
+    return Math.max(0, top - innerHeight, -bottom);
+  }
+
+  /** The ids of the panels nearest to the window first; a scroll makes another one the nearest. */
+  let order = null;
+  addEventListener('scroll', () => { order = null; }, {passive: true});
+
+  function findNearest() {
+    if (!order) {
+      const distances = new Map([...pending.keys()].map(id => [id, calcDistance(id)]));
+      order = [...distances.keys()].sort((a, b) => distances.get(a) - distances.get(b));
+    }
+    return pending.get(order.find(id => pending.has(id)));
+  }
+
+  /** Until the browser has nothing better to do. */
+  function waitUntilIdle() {
+    const kMost = 100;  // ms
+    return new Promise(resolve => window.requestIdleCallback ? requestIdleCallback(resolve, {timeout: kMost})
+                                                             : setTimeout(resolve));
+  }
+
+  /** Notes the time at which what has been drawn is also on the screen. */
+  function markWhenPainted(name) {
+    requestAnimationFrame(() => setTimeout(() => performance.mark(name)));
+  }
+
+  /** Draws what is in sight at once, the others in idle time, the one nearest to the window first. */
+  async function drawAll() {
+    listPending();
+    for (const [id, panel] of [...pending]) {
+      if (calcDistance(id) === 0) await draw(panel);
+    }
+    markWhenPainted('opened');
+    while (pending.size > 0) {
+      await waitUntilIdle();
+      if (pending.size > 0) await draw(findNearest());
+    }
+    await Promise.all(drawing.values());
     document.documentElement.dataset.drawn = 'true';
+    markWhenPainted('drawn');
+  }
+
+  /** Paper shows everything. */
+  function drawForPrint() {
+    [...pending.values()].forEach(draw);
   }
 
   // ---- Highlighted samples ----------------------------------------------------------------------------------
@@ -305,5 +372,6 @@
   setUpControls();
   setUpSelection();
   showResponses();
+  addEventListener('beforeprint', drawForPrint);
   drawAll();
 })();

@@ -114,15 +114,12 @@ export function makeRunWithFailures(folder) {
       'simulation.allowed_failures=0.5', 'evaluation.limit=false', '--out', folder);
 }
 
-/** A run whose parameters and outputs have names of 90 letters. */
-export function makeRunWithLongNames(folder) {
-  const [stiffness, damping, output] = ['stiffness_', 'dampingxx_', 'deflection'].map(name => name.repeat(9));
-  const file = `${folder}.yaml`;
-  writeFileSync(file, `name: ${'long_name_'.repeat(9)}
-description: ${'aWordWithoutASpace'.repeat(20)}
+/** An experiment on a cart between springs, simulated in a moment. */
+function makeCartYaml({name, parameters, stiffness, damping, output, more}) {
+  return `name: ${name}
+${more}
 parameters:
-  ${stiffness}: {bounds: [80, 120], unit: N/m}
-  ${damping}: {bounds: [0.5, 2], unit: N s/m}
+${Object.entries(parameters).map(([parameter, rest]) => `  ${parameter}: ${rest}`).join('\n')}
 system:
   bodies:
     cart: {mass: 1.2, joint: {type: slider, coordinates: [x]}}
@@ -139,7 +136,31 @@ noise:
 design:
   train: {samples: 30}
   test: {samples: 20}
-`);
+`;
+}
+
+/** A run whose parameters and outputs have names of 90 letters. */
+export function makeRunWithLongNames(folder) {
+  const [stiffness, damping, output] = ['stiffness_', 'dampingxx_', 'deflection'].map(name => name.repeat(9));
+  const file = `${folder}.yaml`;
+  writeFileSync(file, makeCartYaml({
+    name: 'long_name_'.repeat(9), more: `description: ${'aWordWithoutASpace'.repeat(20)}`, stiffness, damping, output,
+    parameters: {[stiffness]: '{bounds: [80, 120], unit: N/m}', [damping]: '{bounds: [0.5, 2], unit: N s/m}'}
+  }));
+  callTwinmap('run', file, '--out', folder);
+}
+
+/** A run with exact posteriors and baselines, in which the data determine the sum of two parameters only. */
+export function makeRunWithSprings(folder) {
+  const file = `${folder}.yaml`;
+  writeFileSync(file, makeCartYaml({
+    name: 'springs', stiffness: 'k_1 + k_2', damping: 'd', output: 'x',
+    more: `evaluation:
+  posterior: {samples: 4, draws: 100}
+  baselines: [prior_mean, linear_regression, {least_squares: {samples: 3}}]`,
+    parameters: {k_1: '{bounds: [40, 60], unit: N/m}', k_2: '{bounds: [40, 60], unit: N/m}',
+                 d: '{bounds: [0.5, 2], unit: N s/m}'}
+  }));
   callTwinmap('run', file, '--out', folder);
 }
 

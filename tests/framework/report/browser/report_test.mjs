@@ -2,14 +2,13 @@
 // and fit the window. Screenshots go to TWINMAP_SCREENSHOTS.
 import assert from 'node:assert/strict';
 import {mkdtempSync, mkdirSync, readFileSync, rmSync, statSync} from 'node:fs';
-import {createRequire} from 'node:module';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {after, before, test} from 'node:test';
-import {kNames, kSweep, kTestSamples, makeRun, makeRunWithFailures, makeRunWithLongNames, makeSweep, callTwinmap, readCsv} from './fixtures.mjs';
+import {kNames, kSweep, kTestSamples, makeRun, makeRunWithFailures, makeRunWithLongNames, makeRunWithSprings, makeSweep,
+        callTwinmap, readCsv} from './fixtures.mjs';
+import {launchBrowser, openPage} from './launch.mjs';
 
-const {chromium} = createRequire(join(process.env.TWINMAP_PLAYWRIGHT, 'index.js'))('playwright-core');
-const kFlags = ['--no-sandbox', '--disable-gpu', '--no-first-run', '--disable-background-networking'];
 const kScreenshots = process.env.TWINMAP_SCREENSHOTS;
 const folder = mkdtempSync(join(tmpdir(), 'twinmap_browser_'));
 let browser;
@@ -17,7 +16,7 @@ let browser;
 before(async () => {
   mkdirSync(kScreenshots, {recursive: true});
   makeRun(join(folder, 'run'));
-  browser = await chromium.launch({executablePath: process.env.TWINMAP_CHROMIUM, args: kFlags});
+  browser = await launchBrowser();
 });
 
 after(async () => {
@@ -25,20 +24,24 @@ after(async () => {
   rmSync(folder, {recursive: true, force: true});
 });
 
-/** Opens a report and waits until it is drawn; whatever the console says is an error. */
-async function open(path, options = {}) {
-  const context = await browser.newContext({viewport: {width: 1280, height: 900}, ...options});
-  const page = await context.newPage();
+/** Opens a report; whatever the console says is an error. */
+async function openUndrawn(path, options = {}, prepare = () => {}) {
+  const page = await openPage(browser, options);
   page.complaints = [];
   page.on('console', message => page.complaints.push(message.text()));
   page.on('pageerror', error => page.complaints.push(error.message));
   page.on('request', request => {
     if (!/^(file|data|blob):/.test(request.url())) page.complaints.push(`asks the network for ${request.url()}`);
   });
-  const start = Date.now();
+  await page.addInitScript(prepare);
   await page.goto(`file://${join(folder, path)}`);
+  return page;
+}
+
+/** Opens a report and waits until all of it is drawn, which nobody has to scroll for. */
+async function open(path, options = {}) {
+  const page = await openUndrawn(path, options);
   await page.waitForSelector('html[data-drawn=true]', {state: 'attached'});
-  page.milliseconds = Date.now() - start;
   return page;
 }
 
@@ -47,8 +50,18 @@ async function close(page) {
   await page.context().close();
 }
 
+const findMarks = (panel, mark, filter = '') => `#${panel} .mark-${mark}.role-mark path${filter}`;
+
 /** Number of marks of a panel: symbols, rules, lines, rects ... */
-const countMarks = (page, panel, mark, filter = '') => page.locator(`#${panel} .mark-${mark}.role-mark path${filter}`).count();
+const countMarks = (page, ...marks) => page.locator(findMarks(...marks)).count();
+
+/** Until a panel has as many marks. */
+const waitForMarks = (page, count, ...marks) => page.waitForFunction(([selector, expected]) =>
+    document.querySelectorAll(selector).length === expected, [findMarks(...marks), count]);
+
+/** Until the page says how many samples are highlighted. */
+const waitForSelection = (page, count) => page.waitForFunction(expected =>
+    document.getElementById('selection-text').textContent.startsWith(`${expected} highlighted: `), count);
 
 async function assertEverythingDrawn(page) {
   const panels = await page.locator('figure:not([hidden]) .panel').evaluateAll(elements => elements.map(element => ({
@@ -187,22 +200,86 @@ test('brushing highlights the same samples in every figure and shows their respo
   const expected = readCsv(join(folder, 'run/predictions.csv')).filter(row => row.parameter === 'k_y' &&
       within(Number(row.true), brush.true_k_y) && within(Number(row.inferred), brush.inferred_k_y));
   assert.ok(expected.length > 3 && expected.length < kTestSamples - 3, `${expected.length} samples brushed`);
-  assert.match(await page.locator('#selection-text').textContent(), new RegExp(`^${expected.length} highlighted: `));
-  await page.waitForSelector('#selected-responses [data-drawn=true] .mark-line path');
+  await waitForSelection(page, expected.length);
   for (const id of ['inferred-0', 'errors-3', 'z-scores-1']) {
-    await page.waitForFunction(([panelId, count]) => document.querySelectorAll(
-        `#${panelId} .mark-symbol.role-mark path[opacity="0.85"]`).length === count, [id, expected.length]);
+    await waitForMarks(page, expected.length, id, 'symbol', '[opacity="0.85"]');
   }
-  assert.equal(await countMarks(page, 'stddev-0', 'symbol', '[opacity="0.95"]'), expected.length);
-  assert.equal(await countMarks(page, 'reliability-0', 'symbol'), kNames.length * expected.length);
-  assert.equal(await countMarks(page, 'selected-responses-0', 'line'), Math.min(12, expected.length));
+  await waitForMarks(page, expected.length, 'stddev-0', 'symbol', '[opacity="0.95"]');
+  await waitForMarks(page, kNames.length * expected.length, 'reliability-0', 'symbol');
+  await waitForMarks(page, Math.min(12, expected.length), 'selected-responses-0', 'line');
   await page.screenshot({path: join(kScreenshots, 'run-brushed.png')});
 
   await page.locator('#clear').click();
   await page.waitForSelector('#selection:not(.active)');
-  assert.equal(await page.locator('#selected-responses').isHidden(), true);
-  await page.waitForFunction(count => document.querySelectorAll(
-      '#errors-3 .mark-symbol.role-mark path[opacity="0.85"]').length === count, kTestSamples);
+  await page.waitForSelector('#selected-responses', {state: 'hidden'});
+  await waitForMarks(page, kTestSamples, 'errors-3', 'symbol', '[opacity="0.85"]');
+  await close(page);
+});
+
+/** Idle time comes when the test says so. */
+function holdIdleTime() {
+  window.idle = [];
+  window.requestIdleCallback = callback => window.idle.push(callback);
+}
+
+async function giveIdleTime(page) {
+  await page.waitForFunction(() => window.idle.length > 0);
+  await page.evaluate(() => window.idle.shift()());
+  await page.waitForFunction(() => window.idle.length > 0 || document.documentElement.dataset.drawn);
+}
+
+const readPanels = page => page.locator('figure:not([hidden]) .panel').evaluateAll(panels => panels.map(panel => {
+  const {top, bottom} = panel.getBoundingClientRect();
+  return {id: panel.id, drawn: panel.dataset.drawn === 'true', inSight: top < innerHeight && bottom > 0};
+}));
+
+test('what is in sight is drawn first, then what is nearest; what is drawn later is highlighted too', async () => {
+  const page = await openUndrawn('run/report.html', {}, holdIdleTime);
+  await page.waitForFunction(() => performance.getEntriesByName('opened').length > 0);
+  const opened = await readPanels(page);
+  assert.ok(opened.some(panel => panel.inSight) && opened.some(panel => !panel.drawn));
+  assert.deepEqual(opened.filter(panel => panel.inSight && !panel.drawn), []);
+
+  await page.locator('#sample').fill('17');
+  await page.keyboard.press('Enter');
+  await waitForSelection(page, 1);
+  await page.locator('#z-scores-0').evaluate(panel => panel.scrollIntoView());
+  await giveIdleTime(page);
+  await giveIdleTime(page);
+  await waitForMarks(page, 1, 'z-scores-0', 'symbol', '[opacity="0.85"]');
+  const later = await readPanels(page);
+  assert.ok(later.find(panel => panel.id === 'z-scores-1').drawn);
+  assert.ok(!later.at(-1).drawn);
+
+  while (await page.evaluate(() => !document.documentElement.dataset.drawn)) await giveIdleTime(page);
+  await assertEverythingDrawn(page);
+  await close(page);
+});
+
+test('paper shows every figure, however early it is printed', async () => {
+  const page = await openUndrawn('run/report.html', {}, holdIdleTime);
+  await page.waitForFunction(() => performance.getEntriesByName('opened').length > 0);
+  assert.ok((await readPanels(page)).some(panel => !panel.drawn));
+  const bytes = (await page.pdf()).length;
+  await assertEverythingDrawn(page);
+  await giveIdleTime(page);
+  await page.waitForSelector('html[data-drawn=true]', {state: 'attached'});
+  const again = (await page.pdf()).length;
+  assert.ok(Math.abs(bytes - again) < 0.02 * again, `${bytes} bytes printed at once, ${again} when all was drawn`);
+  await close(page);
+});
+
+test('pointing at a sample shows its parameters, with units', async () => {
+  const page = await open('run/report.html');
+  const row = readCsv(join(folder, 'run/predictions.csv')).find(({parameter}) => parameter === 'k_y');
+  const point = page.locator(findMarks('inferred-2', 'symbol')).nth(Number(row.sample));
+  await point.scrollIntoViewIfNeeded();
+  await point.hover({force: true});
+  const {x, y} = await point.boundingBox();
+  await page.mouse.move(x + 1.5, y + 1.5);
+  await page.waitForSelector('#vg-tooltip-element.visible');
+  const text = await page.locator('#vg-tooltip-element').textContent();
+  assert.match(text, /true k_y \[N\/m\]:?[0-9.]+/);
   await close(page);
 });
 
@@ -232,18 +309,58 @@ test('a run with failures says where and why', async () => {
   await assertEverythingDrawn(page);
   const failures = readFileSync(join(folder, 'failures/failures.csv'), 'utf8').trim().split('\n').length - 1;
   assert.ok(failures > 0);
-  assert.equal(await page.locator('#failures-0 .mark-symbol.role-mark path[aria-label*="reason"]').count(), failures);
+  assert.equal(await page.locator('#failures-0 .mark-symbol.role-mark path').count(), failures);
   const counted = await page.locator('#reasons tbody td:first-child').allTextContents();
   assert.equal(counted.reduce((sum, count) => sum + Number(count), 0), failures);
   await close(page);
 });
 
-test('a sweep of 200 cases is aggregated, stays small, and says so', async t => {
+/** Columns of a page's table equal those of a file of the run, number for number. */
+async function assertSameNumbers(page, table, expected, columns) {
+  const shown = await page.evaluate(name => window.twinmapReport.page.tables[name], table);
+  for (const column of columns) {
+    assert.deepEqual(shown[column].map(value => value === null ? NaN : Number(value)),
+        expected.map(row => row[column] === '' ? NaN : Number(row[column])), `${table}, ${column}`);
+  }
+}
+
+test('posteriors and baselines say what their files say', async () => {
+  makeRunWithSprings(join(folder, 'springs'));
+  const page = await open('springs/report.html');
+  await assertEverythingDrawn(page);
+  const posterior = readCsv(join(folder, 'springs/posterior.csv'));
+  await assertSameNumbers(page, 'posterior', posterior, ['sample', 'posterior_mean', 'posterior_stddev', 'map_mean',
+      'map_stddev', 'limit_stddev', 'effective_sample_size']);
+  for (const [p, name] of ['k_1', 'k_2', 'd'].entries()) {
+    const sampled = posterior.filter(row => row.parameter === name && Number.isFinite(Number(row.posterior_stddev)));
+    assert.equal(await countMarks(page, `posterior-${p}`, 'symbol'), 2 * sampled.length); // the map's and the limit's
+  }
+  const baselines = readCsv(join(folder, 'springs/baselines.csv'));
+  const rows = await page.locator('#baselines tbody tr').evaluateAll(found => found.map(row =>
+      [...row.cells].map(cell => cell.dataset.value ?? cell.textContent)));
+  assert.deepEqual(rows, baselines.map(row => Object.values(row)));
+  assert.ok(['prior_mean', 'linear_regression', 'least_squares'].every(method => rows.some(row => row[0] === method)));
+  await close(page);
+});
+
+test('the page says which combination of parameters is undetermined', async () => {
+  const page = await open('springs/report.html');
+  const weights = readCsv(join(folder, 'springs/identifiability.csv'));
+  await assertSameNumbers(page, 'combinations', weights.flatMap(({eigenvalue, ...entries}) =>
+      Object.values(entries).map(weight => ({weight}))), ['weight']);
+  assert.equal(await countMarks(page, 'combinations-0', 'rect'), 9);
+  const texts = await page.locator('#combinations-0 .mark-text.role-mark text').allTextContents();
+  assert.deepEqual(texts.map(text => Number(text.replace('\u2212', '-'))),
+      weights.flatMap(({eigenvalue, ...entries}) => Object.values(entries).map(weight => Number(Number(weight).toPrecision(2)))));
+  assert.match(await page.locator('#features').textContent(), /Undetermined: 0\.71 k_1 \u2212 0\.71 k_2, .* leave 100 %/);
+  await close(page);
+});
+
+test('a sweep of 200 cases is aggregated, stays small, and says so', async () => {
   makeSweep(join(folder, 'sweep'), join(folder, 'run'));
   const bytes = statSync(join(folder, 'sweep/report.html')).size;
   assert.ok(bytes < 8e6, `${bytes} bytes`);
   const page = await open('sweep/report.html');
-  t.diagnostic(`${(bytes / 1e6).toFixed(2)} MB, drawn after ${page.milliseconds} ms`);
   await assertEverythingDrawn(page);
   assert.match(await page.locator('#verdict').textContent(), /200 cases/);
   assert.match(await page.locator('#verdict').textContent(), /summarised/);
@@ -279,7 +396,7 @@ test('very long names widen nothing', async () => {
 });
 
 for (const width of [1280, 400]) {
-  for (const report of ['run', 'failures', 'sweep', 'both']) {
+  for (const report of ['run', 'failures', 'springs', 'sweep', 'both']) {
     test(`${report} fits a window of ${width} pixels, light and dark`, async () => {
       const page = await open(`${report}/report.html`, {colorScheme: 'light', viewport: {width, height: 900}});
       await assertFits(page, report);

@@ -1,0 +1,103 @@
+#include <cmath>
+
+#include "framework/report/html.hpp"
+#include "framework/report/sections/heat_spec.hpp"
+#include "framework/report/sections/sections.hpp"
+#include "framework/spec/check_experiment.hpp"
+#include "framework/spec/number_text.hpp"
+
+namespace twinmap {
+namespace {
+
+constexpr const char* kTable = "combinations";
+constexpr double kUndetermined = 0.5;  // of the box's own standard deviation
+
+/// The sd that the mean information and the box leave along an eigenvector, over the one that the box alone
+/// leaves: the variance of a uniform parameter is 1/12 of its squared width.
+double calcRemaining(double eigenvalue) {
+  constexpr double kBoxInformation = 12.0;
+  return std::sqrt(kBoxInformation / (kBoxInformation + std::fmax(eigenvalue, 0.0)));
+}
+
+double getRemaining(const RunFolder& run, std::size_t row) {
+  return calcRemaining(run.identifiability.getNumber(row, "eigenvalue"));
+}
+
+std::string toPercent(double fraction) {
+  return toShortText(100.0 * fraction, 3) + " %";
+}
+
+/// "0.71 k_1 \u2212 0.7 k_2": what moves by more than a tenth.
+std::string describeCombination(const RunFolder& run, std::size_t row) {
+  constexpr double kLeast = 0.1;
+  std::string text;
+  for (const std::string& name : collectNames(run.experiment.model.parameters)) {
+    const double weight = run.identifiability.getNumber(row, name);
+    if (std::abs(weight) >= kLeast) {
+      text += text.empty() ? (weight < 0.0 ? "\u2212" : "") : (weight < 0.0 ? " \u2212 " : " + ");
+      text += toShortText(std::abs(weight), 2) + " " + name;
+    }
+  }
+  return text;
+}
+
+/// In words: what stays undetermined, or that nothing does. Rows ascend in information.
+std::string describeUndetermined(const RunFolder& run) {
+  std::string text;
+  for (std::size_t row = 0; row < run.identifiability.rows.size(); ++row) {
+    const double remaining = getRemaining(run, row);
+    if (remaining > kUndetermined) {
+      text += "Undetermined: " + describeCombination(run, row) + ", of whose sd the data leave " +
+              toPercent(remaining) + ". ";
+    }
+  }
+  return text.empty() ? "No combination stays undetermined; the weakest is " + describeCombination(run, 0) +
+                            ", of whose sd the data leave " + toPercent(getRemaining(run, 0)) + "."
+                      : text;
+}
+
+DataTable makeTable(const RunFolder& run) {
+  std::vector<std::string> combinations, parameters;
+  std::vector<double> weights, remaining;
+  for (std::size_t row = 0; row < run.identifiability.rows.size(); ++row) {
+    for (const std::string& name : collectNames(run.experiment.model.parameters)) {
+      combinations.push_back(std::to_string(row + 1) + ": " + toPercent(getRemaining(run, row)));
+      parameters.push_back(name);
+      weights.push_back(run.identifiability.getNumber(row, name));
+      remaining.push_back(100.0 * getRemaining(run, row));
+    }
+  }
+  DataTable table;
+  table.add("combination", combinations);
+  table.add("parameter", parameters);
+  table.add("weight", weights);
+  table.add("remaining_pct", remaining);
+  return table;
+}
+
+}  // namespace
+
+void addCombinations(const RunFolder& run, Section& section, Page& page) {
+  if (run.identifiability.empty()) {
+    return;
+  }
+  page.tables[kTable] = makeTable(run);
+  const Json x = makeNominal("parameter", "weight of each parameter, in widths of its range",
+                             {{"sort", nullptr}, {"axis", {{"labelAngle", 0}}}});
+  const Json y = makeNominal("combination", "combination: sd left [%]", {{"sort", nullptr}});
+  const Json spec = makeHeatSpec(kTable, static_cast<int>(run.identifiability.rows.size()), x, y,
+                                 makeSignedColor("weight"), "weight", "abs(datum.weight) > 0.6");
+  addFigure({kTable,
+             "Which combinations the data determine",
+             "Each row is a combination of parameters that the data determine on its own (an eigenvector of "
+             "the mean Fisher information), the weakest first, with the part of the sd allowed by the bounds "
+             "that is left at best: near 100 % the data say nothing about it.",
+             kTable,
+             {{"Weight of each parameter in each combination. " + describeUndetermined(run), spec}},
+             {},
+             1},
+            section);
+  section.html += makeParagraph(describeUndetermined(run));
+}
+
+}  // namespace twinmap
