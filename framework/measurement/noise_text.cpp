@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <nlohmann/json.hpp>
 
 #include "framework/measurement/signal_noise.hpp"
@@ -9,11 +10,10 @@
 namespace twinmap {
 namespace {
 
-std::string join(const std::vector<double>& numbers) {
-  constexpr int kDigits = 5;
+std::string join(const std::vector<double>& numbers, int digits) {
   std::string text;
   for (const double number : numbers) {
-    text += (text.empty() ? "" : ", ") + toShortText(number, kDigits);
+    text += (text.empty() ? "" : ", ") + toShortText(number, digits);
   }
   return text;
 }
@@ -32,7 +32,7 @@ std::string makeKey(const std::string& name) {
 }  // namespace
 
 std::string makeNoiseTable(const std::vector<SignalNoise>& signals) {
-  constexpr int kDigits = 6, kErrorDigits = 2;
+  constexpr int kShownDigits = 5, kDigits = 6, kErrorDigits = 2;
   std::size_t width = 6;
   for (const SignalNoise& signal : signals) {
     width = std::max(width, makeLabel(signal).size());
@@ -46,7 +46,7 @@ std::string makeNoiseTable(const std::vector<SignalNoise>& signals) {
                         toShortText(signal.noise.stddev, kDigits),
                         toShortText(signal.noise.stddev_error, kErrorDigits),
                         toShortText(signal.noise.whiteness, kErrorDigits),
-                        coefficients.empty() ? "none, white" : join(coefficients));
+                        coefficients.empty() ? "none, white" : join(coefficients, kShownDigits));
   }
   return text;
 }
@@ -73,14 +73,15 @@ std::string makeNoiseJson(const std::vector<SignalNoise>& signals, const std::st
 
 std::string makeNoiseYaml(const std::vector<SignalNoise>& signals) {
   constexpr int kDigits = 5, kTimeDigits = 10;
+  constexpr int kCoefficientDigits = 10;  // few digits may make a model unstable
   std::string stddev, correlation;
   for (const SignalNoise& signal : signals) {
     stddev += (stddev.empty() ? "" : ", ") + makeKey(signal.name) + ": " +
               toShortText(signal.noise.stddev, kDigits);
     if (!signal.noise.model.coefficients.empty()) {
       correlation +=
-          "    " + makeKey(signal.name) + ": {autoregression: [" + join(signal.noise.model.coefficients) +
-          "]" +
+          "    " + makeKey(signal.name) + ": {autoregression: [" +
+          join(signal.noise.model.coefficients, kCoefficientDigits) + "]" +
           (signal.sample_time ? ", sample_time: " + toShortText(*signal.sample_time, kTimeDigits) : "") +
           "}\n";
     }
