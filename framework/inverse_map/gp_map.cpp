@@ -143,12 +143,12 @@ using ExactProcess = std::shared_ptr<const gp::GaussianProcess>;
 using SparseProcess = std::shared_ptr<const gp::SparseGaussianProcess>;
 
 Process refit(const ExactProcess& trained, const Eigen::MatrixXd& inputs, const Eigen::VectorXd& target,
-              const gp::ModelStructure& structure) {
-  return gp::fit(inputs, target, structure, trained->getHyperparameters());
+              const gp::ModelStructure& structure, int threads) {
+  return gp::fit(inputs, target, structure, trained->getHyperparameters(), threads);
 }
 
 Process refit(const SparseProcess& trained, const Eigen::MatrixXd& inputs, const Eigen::VectorXd& target,
-              const gp::ModelStructure& structure) {
+              const gp::ModelStructure& structure, int /*threads*/) {
   gp::SparseGaussianProcessParts parts{
       structure, trained->getHyperparameters(), gp::calcCenter(inputs), trained->getParts().inducing, {}};
   const gp::VariationalBound bound(inputs, target, parts.inducing, structure);
@@ -178,6 +178,36 @@ TrainingData prepare(const std::vector<TransformStepSpec>& transform, const Labe
   map.target_scale = calcStddev(samples.parameters, map.target_offset);
   return {map.makeProcessInputs(samples.features, samples.inputs),
           (samples.parameters.colwise() - map.target_offset).array().colwise() / map.target_scale.array()};
+}
+
+/// Fits the processes found on the first columns to all of them; a process that cannot be is null.
+void fitToAll(const TrainingData& data, const gp::ModelStructure& structure, int threads,
+              std::vector<gp::TrainingResult>& results) {
+  for (std::size_t p = 0; p < results.size(); ++p) {
+    if (results[p].gp == nullptr) {
+      continue;
+    }
+    const gp::Hyperparameters found = results[p].gp->getHyperparameters();
+    try {
+      results[p].gp = gp::fit(data.inputs, data.targets.row(static_cast<Eigen::Index>(p)).transpose(),
+                              structure, found, threads);
+    } catch (const std::runtime_error& error) {
+      results[p].gp = nullptr;
+      results[p].message = error.what();
+    }
+  }
+}
+
+/// Searches the hyperparameters on the first columns, and fits the processes to all.
+std::vector<gp::TrainingResult> trainExact(const TrainingData& data, Eigen::Index searched,
+                                           const gp::ModelStructure& structure,
+                                           const gp::TrainingOptions& options) {
+  std::vector<gp::TrainingResult> results =
+      gp::train(data.inputs.leftCols(searched), data.targets.leftCols(searched), structure, options);
+  if (searched < data.inputs.cols()) {
+    fitToAll(data, structure, options.threads, results);
+  }
+  return results;
 }
 
 /// What follows from the trained processes: the noise's profile, and the training samples left out.
@@ -218,6 +248,12 @@ Predictions GpMap::predict(const Eigen::MatrixXd& features, const Eigen::MatrixX
   return predictions;
 }
 
+int countSearchedReplicates(Eigen::Index columns, int replicates) {
+  constexpr Eigen::Index kMostColumns = 2000;
+  const Eigen::Index samples = columns / replicates;
+  return static_cast<int>(std::clamp<Eigen::Index>(kMostColumns / samples, 1, replicates));
+}
+
 GpMapTraining trainGpMap(const GpMapSpec& spec, const std::vector<TransformStepSpec>& transform,
                          const std::vector<std::string>& parameter_names, const LabelledFeatures& samples,
                          int threads, const std::vector<ParameterSpec>& known_inputs) {
@@ -226,16 +262,20 @@ GpMapTraining trainGpMap(const GpMapSpec& spec, const std::vector<TransformStepS
   const gp::ModelStructure structure = makeStructure(
       spec, samples.infos, static_cast<int>(data.inputs.rows()), static_cast<int>(known_inputs.size()));
   gp::TrainingOptions options = toKernel(spec, threads);
-  if (samples.replicates > 1) {
+  const bool sparse_map = spec.approximation == GpApproximation::kSgpr;
+  const int draws =
+      sparse_map ? samples.replicates : countSearchedReplicates(data.inputs.cols(), samples.replicates);
+  if (draws > 1) {
     options.warm_starts =
         findHyperparameters(data.inputs, data.targets, samples.replicates, structure, options);
   }
-  if (spec.approximation == GpApproximation::kSgpr) {
+  if (sparse_map) {
     const gp::SparseOptions sparse{spec.inducing, spec.subset, spec.refine_evaluations};
     keepResults(gp::trainSparse(data.inputs, data.targets, structure, options, sparse), parameter_names,
                 training);
   } else {
-    keepResults(gp::train(data.inputs, data.targets, structure, options), parameter_names, training);
+    const Eigen::Index searched = data.inputs.cols() / samples.replicates * draws;
+    keepResults(trainExact(data, searched, structure, options), parameter_names, training);
   }
   finish(spec, data, samples, threads, training);
   return training;
@@ -250,9 +290,9 @@ GpMapTraining refitGpMap(const GpMap& trained, const GpMapSpec& spec,
       spec, samples.infos, static_cast<int>(data.inputs.rows()), static_cast<int>(known_inputs.size()));
   for (Eigen::Index p = 0; p < data.targets.rows(); ++p) {
     const Eigen::VectorXd target = data.targets.row(p).transpose();
-    training.map.processes.push_back(
-        std::visit([&](const auto& process) { return refit(process, data.inputs, target, structure); },
-                   trained.processes.at(p)));
+    training.map.processes.push_back(std::visit(
+        [&](const auto& process) { return refit(process, data.inputs, target, structure, threads); },
+        trained.processes.at(p)));
   }
   finish(spec, data, samples, threads, training);
   return training;

@@ -47,12 +47,17 @@ struct GpMapTraining {
   Predictions leave_one_out;  ///< of each training sample without itself and its replicates (predictLeftOut)
 };
 
+/// Draws of the noise, at least one, that the hyperparameters of exact processes are searched with: those
+/// that stay within 2000 columns. A search costs some 90 times as much as the final fit.
+int countSearchedReplicates(Eigen::Index columns, int replicates);
+
 /// Trains the map on features, parameters and known inputs of the same samples, n >= 2; `known_inputs`: the
 /// inputs' bounds.
 ///
 /// Replicates share their parameters exactly, and the marginal likelihood knows nothing of that: its best
 /// optimum may recognise the simulation instead of inferring the parameter. So the hyperparameters are found
-/// on the first draw, and only the optimum that leads to is followed with all draws.
+/// on the first draw, and only the optimum that leads to is followed with all draws; for exact processes with
+/// no more of them than countSearchedReplicates(). The processes are fitted to all draws.
 ///
 /// The result does not depend on `threads`. Throws std::runtime_error naming the parameter whose process
 /// cannot be trained.

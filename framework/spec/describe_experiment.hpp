@@ -183,7 +183,7 @@ template <class Fields>
 void describe(Fields& f, NoiseSpec& s) {
   f.optional("scale", s.scale, "multiplies every stddev", kNonNegative);
   f.optional("replicates", s.replicates,
-             "noise draws per training simulation (default: 4, fewer for more than 500 samples)", kCount);
+             "noise draws per training simulation (default: 4, fewer for more than 750 samples)", kCount);
   f.optionalMap("stddev", s.stddev, "standard deviation of each output's noise, in the output's unit");
   f.optionalMap("correlation", s.correlation, "of outputs whose noise is not white");
   f.optional("modes", s.modes, "of natural frequencies and damping ratios, where modes are features");

@@ -47,7 +47,7 @@ void resolveDefaults(ExperimentSpec& experiment) {
     }
   }
   if (!experiment.noise.replicates) {
-    constexpr int kMostReplicates = 4, kMostColumns = 2000;
+    constexpr int kMostReplicates = 4, kMostColumns = 3000;
     experiment.noise.replicates =
         std::clamp(kMostColumns / experiment.design.train.samples, 1, kMostReplicates);
   }

@@ -4,9 +4,12 @@
 #include <cmath>
 
 #include "framework/features/feature_extractor.hpp"
+#include "framework/inverse_map/gp_map.hpp"
 
 namespace twinmap {
 namespace {
+
+constexpr double kFitCost = 1.0 / 3.0;  // of an evaluation with its gradient
 
 bool isSparse(const ExperimentSpec& experiment) {
   return experiment.inverse_map.gp.approximation == GpApproximation::kSgpr;
@@ -22,6 +25,15 @@ double countExact(const ExperimentSpec& experiment) {
   return isSparse(experiment) ? std::min<double>(columns, experiment.inverse_map.gp.subset) : columns;
 }
 
+/// Of them, those that the hyperparameters are searched with.
+double countSearched(const ExperimentSpec& experiment) {
+  const int samples = experiment.design.train.samples, replicates = experiment.noise.replicates.value_or(1);
+  const double columns = countExact(experiment);
+  return isSparse(experiment)
+             ? columns
+             : double(samples) * countSearchedReplicates(Eigen::Index(samples) * replicates, replicates);
+}
+
 double countRows(const ExperimentSpec& experiment) {
   return static_cast<double>(collectTimes(experiment.features).size()) *
              static_cast<double>(experiment.model.outputs.size()) +
@@ -30,6 +42,10 @@ double countRows(const ExperimentSpec& experiment) {
 
 double countSearches(const GpMapSpec& gp) {
   return gp.starts + (gp.length_scales == LengthScales::kShared ? 0.0 : std::min(gp.starts, 2));
+}
+
+double square(double x) {
+  return x * x;
 }
 
 double cube(double x) {
@@ -41,11 +57,14 @@ double cube(double x) {
 std::vector<TrainingStep> listTrainingSteps(const ExperimentSpec& experiment) {
   const GpMapSpec& gp = experiment.inverse_map.gp;
   const auto parameters = static_cast<double>(experiment.model.parameters.size());
-  const double exact = countExact(experiment);
+  const double exact = countExact(experiment), searched = countSearched(experiment);
   const double first = std::min<double>(exact, experiment.design.train.samples);
   std::vector<TrainingStep> steps{{first, parameters, countSearches(gp)}};
-  if (countColumns(experiment) > experiment.design.train.samples) {
-    steps.push_back({exact, parameters, 1.0});
+  if (isSparse(experiment) ? countColumns(experiment) > first : searched > first) {
+    steps.push_back({searched, parameters, 1.0});
+  }
+  if (searched < exact) {
+    steps.push_back({exact, parameters, 0.0, kFitCost});
   }
   if (isSparse(experiment)) {
     const double passes = (gp.refine_evaluations + 2.0) * 4.0 * countColumns(experiment) / gp.inducing;
@@ -59,7 +78,8 @@ CaseCost calcCaseCost(const ExperimentSpec& experiment, int threads) {
   const auto parameters = static_cast<double>(experiment.model.parameters.size());
   const double searches = std::min(double(threads), parameters * experiment.inverse_map.gp.starts);
   const double exact = countExact(experiment);
-  double numbers = exact * exact * (2.5 * searches + 1.5 * parameters + 1.0);
+  double numbers = std::max(square(countSearched(experiment)) * (2.5 * searches + 1.0), 3.5 * square(exact)) +
+                   1.5 * parameters * square(exact);
   numbers += kCopies * countRows(experiment) * (countColumns(experiment) + experiment.design.test.samples);
   if (isSparse(experiment)) {
     numbers += kSparseCopies * countColumns(experiment) * experiment.inverse_map.gp.inducing * searches;

@@ -14,9 +14,9 @@ struct TrainingStep {
   double relative_cost = 1.0;
 };
 
-/// The steps of training (trainGpMap): all starts on the first of the replicates, one search on all of them;
-/// for a sparse map on its subset, then the evaluations of the bound, n m^2 flops each. With several length
-/// scales, searches for a shared one lead the last start.
+/// The steps of training (trainGpMap): all starts on the first of the replicates, one search on all of them,
+/// or on countSearchedReplicates() and a fit to all; for a sparse map on its subset, then the evaluations of
+/// the bound, n m^2 flops each. With several length scales, searches for a shared one lead the last start.
 std::vector<TrainingStep> listTrainingSteps(const ExperimentSpec& experiment);
 
 /// What a case needs beside its simulations; estimates.
@@ -25,8 +25,9 @@ struct CaseCost {
   double flops = 0.0;  ///< of the training, with kEvaluations to a search
 };
 
-/// bytes: for exact processes with n samples, replicates included, and P parameters, 8 n^2 (2.5 a search that
-/// runs at the same time + 1.5 P + 1), and 10 numbers for every one of a response.
+/// bytes: for exact processes with n samples, replicates included, m of them searched with, and P parameters,
+/// 8 m^2 (2.5 a search that runs at the same time + 1), at least 8 n^2 3.5 to fit one, and 8 n^2 1.5 P; and
+/// 10 numbers for every one of a response.
 CaseCost calcCaseCost(const ExperimentSpec& experiment, int threads);
 
 /// Evaluations of the marginal likelihood in one search.

@@ -11,7 +11,7 @@ using Eigen::MatrixXd;
 std::shared_ptr<const GaussianProcess> fit(const Eigen::Ref<const MatrixXd>& inputs,
                                            const Eigen::Ref<const Eigen::VectorXd>& target,
                                            const ModelStructure& structure,
-                                           const Hyperparameters& hyperparameters) {
+                                           const Hyperparameters& hyperparameters, int threads) {
   const TrainingSet set(inputs, structure);
   checkHyperparameters(structure, hyperparameters);
   if (target.size() != inputs.cols()) {
@@ -19,7 +19,7 @@ std::shared_ptr<const GaussianProcess> fit(const Eigen::Ref<const MatrixXd>& inp
                                 std::to_string(inputs.cols()) + " training samples");
   }
   checkInputs(target, "fit: target");
-  LikelihoodWorkspace workspace(set);
+  LikelihoodWorkspace workspace(set, getTeamSize(set, threads));
   const LikelihoodEvaluation evaluation = evaluateLikelihood(set, target, hyperparameters, workspace);
   if (!evaluation.ok) throw std::runtime_error("fit: the covariance matrix is not positive definite");
   return makeGaussianProcess(set, hyperparameters, evaluation, workspace);

@@ -115,6 +115,38 @@ TEST(GpMap, ReplicatesHelpAndAreNotRecognised) {
   EXPECT_LT(calcError(problem, kNoise), 1.05 * error_of_one);
 }
 
+TEST(GpMap, SearchesWithTheDrawsThatStayWithin2000Columns) {
+  EXPECT_EQ(countSearchedReplicates(4 * 500, 4), 4);
+  EXPECT_EQ(countSearchedReplicates(4 * 501, 4), 3);
+  EXPECT_EQ(countSearchedReplicates(3 * 1000, 3), 2);
+  EXPECT_EQ(countSearchedReplicates(2 * 1500, 2), 1);
+  EXPECT_EQ(countSearchedReplicates(5000, 1), 1);
+}
+
+// 60 draws of 40 samples are more than 2000 columns: the last ten only enter the fit.
+TEST(GpMap, IsFittedToAllDrawsAlsoWhereTheSearchUsesFewer) {
+  constexpr int kSamples = 40, kReplicates = 60;
+  constexpr double kNoise = 0.02;
+  Problem problem = makeProblem(kSamples, 5, 0.0);
+  problem.replicates = kReplicates;
+  problem.parameters = problem.parameters.replicate(1, kReplicates).eval();
+  problem.features = problem.features.replicate(1, kReplicates).eval();
+  const RandomStream random(6, RandomPurpose::kTrainNoise);
+  for (Eigen::Index i = 0; i < problem.features.cols(); ++i) {
+    for (int f = 0; f < 4; ++f) {
+      problem.features(f, i) += kNoise * random.calcNormal(i, f);
+    }
+  }
+  GpMapSpec spec;
+  spec.max_evaluations = 3;
+  const GpMapTraining training = trainOn(problem, spec, 2);
+  for (const Process& process : training.map.processes) {
+    EXPECT_EQ(std::get<std::shared_ptr<const gp::GaussianProcess>>(process)->getSampleCount(),
+              kSamples * kReplicates);
+  }
+  EXPECT_EQ(training.leave_one_out.mean.cols(), kSamples * kReplicates);
+}
+
 TEST(GpMap, TheResultDoesNotDependOnTheThreads) {
   const Problem problem = makeProblem(60, 3);
   const Predictions expected = trainOn(problem).map.predict(problem.features);

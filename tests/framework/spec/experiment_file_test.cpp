@@ -93,7 +93,7 @@ TEST(ExperimentFile, DefaultsAreWhitenedComponentsAndReplicates) {
   EXPECT_EQ(experiment.noise.replicates, 4);
   EXPECT_EQ(loadExperiment(kTable1, {"noise={stddev: {y: 1, theta: 1}}", "design.train.samples=1000"})
                 .noise.replicates,
-            2);
+            3);
 }
 
 TEST(ExperimentFile, WhiteningNeedsNoise) {

@@ -32,6 +32,13 @@ TEST(TrainingTime, CountsParametersSearchesAndTheSearchOnAllDraws) {
   EXPECT_NEAR(time.calcTraining(load({size, "noise.replicates=10"})), 3 * 4 * 10 * 1e-3 + 3 * 20 * 1.0, 1e-9);
 }
 
+// 1000 samples with 3 draws: searched with 2 of them, fitted to 3000 columns for a third of an evaluation.
+TEST(TrainingTime, CountsAFitToAllDrawsAfterASearchOnFewer) {
+  const TrainingTime time{{{100, 1e-3}, {1000, 1.0}}, 10.0, 20.0};
+  EXPECT_NEAR(time.calcTraining(load({"design.train.samples=1000", "noise.replicates=3"})),
+              3 * 4 * 10 * 1.0 + 3 * 20 * 8.0 + 3 * 27.0 / 3, 1e-9);
+}
+
 TEST(CaseCost, GrowsWithSquareAndCube) {
   const auto cost = [](int samples, int threads) {
     return calcCaseCost(load({"noise.replicates=1", "design.train.samples=" + std::to_string(samples)}),
