@@ -118,12 +118,14 @@ GpMap trainMap(const ExperimentSpec& experiment, const LabelledFeatures& trainin
 }
 
 /// Makes the map ready for measurements and writes both.
-void writeMaps(const ExperimentSpec& experiment, const SimulatedSets& sets, const FeatureExtractor& extractor,
-               const LabelledSets& labelled, const GpMap& map, const RunOptions& options, RunSummary& run) {
+OnlineModel writeMaps(const ExperimentSpec& experiment, const SimulatedSets& sets,
+                      const FeatureExtractor& extractor, const LabelledSets& labelled, const GpMap& map,
+                      const RunOptions& options, RunSummary& run) {
   const OnlineFit online = timeStage("prepare for measurements", run.times,
                                      [&] { return fitOnline(experiment, sets, extractor, labelled, map); });
   run.warnings.insert(run.warnings.end(), online.warnings.begin(), online.warnings.end());
   writeMapsFile(options.folder / "maps.h5", makeStoredMap(experiment, extractor, map, online.model));
+  return online.model;
 }
 
 }  // namespace
@@ -155,14 +157,14 @@ RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& opt
       calcTrainingSensitivities(experiment, sets.train, simulator, extractor, options.threads);
 
   const GpMap map = trainMap(experiment, labelled.train, options, run);
-  writeMaps(experiment, sets, extractor, labelled, map, options, run);
+  const OnlineModel online = writeMaps(experiment, sets, extractor, labelled, map, options, run);
   const auto neighbourhoods = openOwnNeighbourhoods(experiment, simulator, options);
   const std::vector<ParameterSpec> unknown = collectUnknown(experiment.model);
   evaluate({experiment, unknown, simulator, extractor, noise, labelled, map, neighbourhoods.get(),
             options.threads},
            run);
   writeExampleResponses(experiment, sets, simulator, options, run);
-  timeOnlineUpdates(map, labelled.test, run);
+  timeOnlineUpdates(online, labelled.test, run);
 
   writeResults(options.folder, run);
   writeProvenance(experiment, options, run);

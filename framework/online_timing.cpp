@@ -5,13 +5,21 @@
 
 namespace twinmap {
 
-void timeOnlineUpdates(const GpMap& map, const LabelledFeatures& testing, RunSummary& run) {
+void timeOnlineUpdates(const OnlineModel& model, const LabelledFeatures& testing, RunSummary& run) {
   constexpr Eigen::Index kMostUpdates = 200;
   const Eigen::Index updates = std::min(testing.features.cols(), kMostUpdates);
+  const OnlineMap map(model.map);
+  OnlineMap::Workspace inferring(map);
+  TrustWorkspace judging;
   std::vector<double> microseconds;
   for (Eigen::Index i = 0; i < updates; ++i) {
+    const auto features = testing.features.col(i);
+    const auto known = testing.inputs.col(i);
     const auto start = std::chrono::steady_clock::now();
-    const Predictions inferred = map.predict(testing.features.col(i), testing.inputs.col(i));
+    const Inference& inferred = map.infer(features, known, inferring);
+    if (model.trust) {
+      judge(*model.trust, features, known, inferred, judging);
+    }
     const std::chrono::duration<double, std::micro> elapsed = std::chrono::steady_clock::now() - start;
     microseconds.push_back(elapsed.count());
   }

@@ -61,7 +61,7 @@ DataTable makeTable(const RunFolder& run) {
   std::vector<double> weights, remaining;
   for (std::size_t row = 0; row < run.identifiability.rows.size(); ++row) {
     for (const std::string& name : collectNames(run.experiment.model.parameters)) {
-      combinations.push_back(std::to_string(row + 1) + ": " + toPercent(getRemaining(run, row)));
+      combinations.push_back(std::to_string(row + 1) + ": " + toPercent(getRemaining(run, row)) + " left");
       parameters.push_back(name);
       weights.push_back(run.identifiability.getNumber(row, name));
       remaining.push_back(100.0 * getRemaining(run, row));
@@ -82,9 +82,9 @@ void addCombinations(const RunFolder& run, Section& section, Page& page) {
     return;
   }
   page.tables[kTable] = makeTable(run);
-  const Json x = makeNominal("parameter", "weight of each parameter, in widths of its range",
+  const Json x = makeNominal("parameter", "weight [width of its range]",
                              {{"sort", nullptr}, {"axis", {{"labelAngle", 0}}}});
-  const Json y = makeNominal("combination", "combination: sd left [%]", {{"sort", nullptr}});
+  const Json y = makeNominal("combination", "", {{"sort", nullptr}});
   const Json spec = makeHeatSpec(kTable, static_cast<int>(run.identifiability.rows.size()), x, y,
                                  makeSignedColor("weight"), "weight", "abs(datum.weight) > 0.6");
   addFigure({kTable,

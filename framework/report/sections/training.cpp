@@ -146,6 +146,7 @@ void addHyperparameters(const RunFolder& run, Section& section, Page& page) {
       0};
   const std::vector<std::string> names = collectNames(run.experiment.model.parameters);
   const std::size_t count = std::max<std::size_t>(1, run.hyperparameters.rows.size() / names.size());
+  figure.columns = names.size() == 4 ? 2 : 0;
   constexpr int kRowHeight = 18, kFrame = 20;
   for (std::size_t p = 0; p < names.size(); ++p) {
     Json spec = makePanelSpec("hyperparameters",
