@@ -9,7 +9,6 @@
 #include "framework/evaluation/calibration.hpp"
 #include "framework/evaluation/information_limit.hpp"
 #include "framework/stage_timer.hpp"
-#include "framework/stored_local_models.hpp"
 
 namespace twinmap {
 namespace {
@@ -21,20 +20,13 @@ const std::vector<ParameterSpec>& getParameters(const EvaluationContext& context
   return context.experiment.model.parameters;
 }
 
-std::vector<LocalModel> calcTestModels(const EvaluationContext& context) {
-  const Eigen::MatrixXd points = context.samples.test.collectPoints();
-  if (context.neighbourhoods == nullptr) {
-    return calcLocalModels(context.simulator, context.extractor, context.unknown, points, context.threads);
-  }
-  return calcStoredLocalModels(*context.neighbourhoods, context.simulator, context.extractor, context.unknown,
-                               points, context.threads);
-}
-
 void addLimit(const EvaluationContext& context, RunSummary& run) {
   const LabelledFeatures& test = context.samples.test;
-  const InformationLimit limit = timeStage(
-      fmt::format("information limit of {} test samples", test.parameters.cols()), run.times,
-      [&] { return calcInformationLimit(calcTestModels(context), context.noise, getParameters(context)); });
+  const InformationLimit limit =
+      timeStage(fmt::format("information limit of {} test samples", test.parameters.cols()), run.times, [&] {
+        return calcInformationLimit(context.local_models(test.collectPoints()), context.noise,
+                                    getParameters(context));
+      });
   run.limit_stddev = limit.stddev;
   run.relevance = FeatureRelevance{test.infos, test.noise_covariance.diagonal().cwiseSqrt(), limit.relevance};
   run.identifiability = calcIdentifiability(limit, getParameters(context));

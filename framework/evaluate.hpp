@@ -3,8 +3,8 @@
 #include "framework/experiment.hpp"
 #include "framework/inverse_map/gp_map.hpp"
 #include "framework/labelled_sets.hpp"
+#include "framework/sensitivity/feature_sensitivities.hpp"
 #include "framework/simulation/simulator.hpp"
-#include "framework/store/trajectory_store.hpp"
 
 namespace twinmap {
 
@@ -17,7 +17,7 @@ struct EvaluationContext {
   const FeatureNoise& noise;
   const LabelledSets& samples;
   const GpMap& map;
-  TrajectoryStore* neighbourhoods;  ///< openNeighbourhoodStore; null: simulated, not kept
+  LocalModelSource local_models;
   int threads = 1;
 };
 

@@ -11,6 +11,7 @@
 #include "framework/labelled_sets.hpp"
 #include "framework/make_extractor.hpp"
 #include "framework/multibody/multibody_simulator.hpp"
+#include "framework/needed_neighbourhoods.hpp"
 #include "framework/online_timing.hpp"
 #include "framework/report/report.hpp"
 #include "framework/result_files.hpp"
@@ -88,14 +89,25 @@ std::unique_ptr<TrajectoryStore> openOwnStore(const ExperimentSpec& experiment, 
   return openStore(experiment.model, simulator.getLayout(), getStoreRoot(options.folder, options.store));
 }
 
-/// The store of what the information limit simulates; none if the samples are shared.
+/// The store of the neighbourhoods that the experiment needs; none if the samples are shared.
 std::unique_ptr<TrajectoryStore> openOwnNeighbourhoods(const ExperimentSpec& experiment,
                                                        const Simulator& simulator,
                                                        const RunOptions& options) {
-  if (options.samples != nullptr || !experiment.evaluation.limit) {
+  if (options.samples != nullptr || listNeededNeighbourhoods(experiment).cols() == 0) {
     return nullptr;
   }
-  return openNeighbourhoodStore(experiment.model, simulator, getStoreRoot(options.folder, options.store));
+  return openNeighbourhoodStore(experiment.model, simulator.getLayout(),
+                                getStoreRoot(options.folder, options.store));
+}
+
+/// From the source's neighbourhoods, where it keeps them.
+std::vector<LocalModel> getLocalModels(const ExperimentSpec& experiment, const SampleSource& source,
+                                       const Simulator& simulator, const FeatureExtractor& extractor,
+                                       const Eigen::MatrixXd& points, int threads) {
+  const std::vector<ParameterSpec> unknown = collectUnknown(experiment.model);
+  return source.neighbourhoods == nullptr
+             ? calcLocalModels(simulator, extractor, unknown, points, threads)
+             : calcStoredLocalModels(source, simulator.getLayout(), extractor, unknown, points, threads);
 }
 
 /// Trains the map on the training samples.
@@ -137,6 +149,9 @@ RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& opt
   const std::string resolved = writeExperiment(experiment);
   requireSameExperiment(options.folder, resolved);
   beginRun(options.folder, resolved);
+  if (options.samples == nullptr) {
+    noteStore(options.folder, options.store);
+  }
   const std::unique_ptr<RunLog> log = options.samples ? nullptr : std::make_unique<RunLog>(options.folder);
 
   const MultibodySimulator simulator(experiment.model, collectTimes(experiment.features),
@@ -144,24 +159,27 @@ RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& opt
   const FeatureExtractor extractor = makeExtractor(experiment, simulator.getLayout());
   checkTransformOf(extractor.getInfos(), experiment.transform);
   const auto store = openOwnStore(experiment, simulator, options);
-  const SampleSource source = store ? SampleSource{simulator, *store} : *options.samples;
+  const auto neighbourhoods = openOwnNeighbourhoods(experiment, simulator, options);
+  const SampleSource source =
+      store ? SampleSource{simulator, *store, neighbourhoods.get()} : *options.samples;
   SimulatedSets sets = simulateSets(experiment, source, simulator.getLayout(), options, run);
   failIncompleteSamples(experiment, extractor, sets);
   recordFailures(experiment, sets, options, run);
   run.test_indices = findSuccessful(sets.test);
+  simulateNeighbourhoods(experiment, source, options, run);
+  const LocalModelSource local_models = [&](const Eigen::MatrixXd& points) {
+    return getLocalModels(experiment, source, simulator, extractor, points, options.threads);
+  };
 
   const FeatureNoise noise(extractor, ResponseNoise(experiment.noise, simulator.getLayout()),
                            experiment.seed);
   LabelledSets labelled = makeLabelledSets(experiment, sets, extractor, noise);
-  labelled.train.sensitivities =
-      calcTrainingSensitivities(experiment, sets.train, simulator, extractor, options.threads);
+  labelled.train.sensitivities = calcTrainingSensitivities(experiment, sets.train, local_models);
 
   const GpMap map = trainMap(experiment, labelled.train, options, run);
   const OnlineModel online = writeMaps(experiment, sets, extractor, labelled, map, options, run);
-  const auto neighbourhoods = openOwnNeighbourhoods(experiment, simulator, options);
   const std::vector<ParameterSpec> unknown = collectUnknown(experiment.model);
-  evaluate({experiment, unknown, simulator, extractor, noise, labelled, map, neighbourhoods.get(),
-            options.threads},
+  evaluate({experiment, unknown, simulator, extractor, noise, labelled, map, local_models, options.threads},
            run);
   writeExampleResponses(experiment, sets, simulator, options, run);
   timeOnlineUpdates(online, labelled.test, run);

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "framework/features/noise.hpp"
-#include "framework/sensitivity/feature_sensitivities.hpp"
+#include "framework/needed_neighbourhoods.hpp"
 #include "framework/spec/parameter_box.hpp"
 
 namespace twinmap {
@@ -93,20 +93,15 @@ LabelledSets makeLabelledSets(const ExperimentSpec& experiment, const SimulatedS
 }
 
 std::vector<Eigen::MatrixXd> calcTrainingSensitivities(const ExperimentSpec& experiment,
-                                                       const Trajectories& train, const Simulator& simulator,
-                                                       const FeatureExtractor& extractor, int threads) {
-  const auto selects = [](const TransformStepSpec& step) {
-    return step.select && step.select->fisher_information;
-  };
-  if (std::none_of(experiment.transform.begin(), experiment.transform.end(), selects)) {
+                                                       const Trajectories& train,
+                                                       const LocalModelSource& local_models) {
+  if (!selectsByFisherInformation(experiment)) {
     return {};
   }
-  constexpr std::size_t kPoints = 16;
   std::vector<int> samples = findSuccessful(train);
-  samples.resize(std::min(samples.size(), kPoints));
+  samples.resize(std::min<std::size_t>(samples.size(), kSensitivitySamples));
   std::vector<Eigen::MatrixXd> sensitivities;
-  for (const LocalModel& local : calcLocalModels(simulator, extractor, collectUnknown(experiment.model),
-                                                 train.parameters(Eigen::all, samples), threads)) {
+  for (const LocalModel& local : local_models(train.parameters(Eigen::all, samples))) {
     if (local.status.ok) {
       sensitivities.push_back(local.sensitivities);
     }

@@ -3,6 +3,7 @@
 #include "framework/features/feature_extractor.hpp"
 #include "framework/features/feature_noise.hpp"
 #include "framework/features/labelled_features.hpp"
+#include "framework/sensitivity/feature_sensitivities.hpp"
 #include "framework/simulated_sets.hpp"
 
 namespace twinmap {
@@ -26,7 +27,7 @@ LabelledSets makeLabelledSets(const ExperimentSpec& experiment, const SimulatedS
 /// For a transform that selects by Fisher information, the sensitivities at the first 16 training samples
 /// that could be simulated; else none. Throws std::runtime_error if they fail at every one of them.
 std::vector<Eigen::MatrixXd> calcTrainingSensitivities(const ExperimentSpec& experiment,
-                                                       const Trajectories& train, const Simulator& simulator,
-                                                       const FeatureExtractor& extractor, int threads);
+                                                       const Trajectories& train,
+                                                       const LocalModelSource& local_models);
 
 }  // namespace twinmap

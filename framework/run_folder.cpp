@@ -12,6 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kResolved = "resolved.yaml";
+constexpr const char* kStore = "store.txt";
 constexpr const char* kLastFiles[] = {"provenance.json", "report.html"};
 
 /// With the defaults of this version, so that a key that is new to it makes no difference, and without what
@@ -26,6 +27,24 @@ YamlNode normalize(const YamlNode& tree) {
 }
 
 }  // namespace
+
+void noteStore(const fs::path& folder, const fs::path& given) {
+  if (given.empty()) {
+    fs::remove(folder / kStore);
+  } else {
+    writeTextFile(folder / kStore, fs::absolute(given).lexically_normal().string() + "\n");
+  }
+}
+
+fs::path findStore(const fs::path& folder) {
+  const fs::path whole = fs::absolute(folder / ".").lexically_normal().parent_path();
+  if (fs::exists(whole / kStore)) {
+    const std::string text = readBytes(whole / kStore);
+    return text.substr(0, text.find('\n'));
+  }
+  const bool is_case = !fs::exists(whole / "chunks") && whole.parent_path().filename() == "cases";
+  return is_case ? findStore(whole.parent_path().parent_path()) : whole / "chunks";
+}
 
 void requireSameExperiment(const fs::path& folder, const std::string& resolved) {
   const fs::path file = folder / kResolved;

@@ -5,11 +5,17 @@
 
 namespace twinmap {
 
-/// Where simulated samples are kept: `given`, or the folder's own chunks if that is empty.
+/// Where a run keeps simulated samples: `given`, or the folder's own chunks if that is empty.
 inline std::filesystem::path getStoreRoot(const std::filesystem::path& folder,
                                           const std::filesystem::path& given) {
   return given.empty() ? folder / "chunks" : given;
 }
+
+/// Writes store.txt, the absolute path of the given store; removes it if the folder's own chunks are used.
+void noteStore(const std::filesystem::path& folder, const std::filesystem::path& given);
+
+/// The store of the run, sweep or case of a sweep in the folder, as noteStore() left it.
+std::filesystem::path findStore(const std::filesystem::path& folder);
 
 /// Throws ExperimentError, naming the keys that differ with both values, if the folder holds another
 /// experiment than `resolved`, the text of its resolved.yaml: what is there is not mixed with other results.

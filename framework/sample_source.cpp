@@ -23,11 +23,13 @@ std::vector<Eigen::Index> findRows(const ResponseLayout& from, const ResponseLay
 
 }  // namespace
 
+Eigen::MatrixXd selectRows(Eigen::MatrixXd responses, const ResponseLayout& from, const ResponseLayout& to) {
+  return from.getRowCount() == to.getRowCount() ? std::move(responses)
+                                                : Eigen::MatrixXd(responses(findRows(from, to), Eigen::all));
+}
+
 Trajectories selectRows(Trajectories trajectories, const ResponseLayout& layout) {
-  if (trajectories.layout.getRowCount() != layout.getRowCount()) {
-    trajectories.responses =
-        Eigen::MatrixXd(trajectories.responses(findRows(trajectories.layout, layout), Eigen::all));
-  }
+  trajectories.responses = selectRows(std::move(trajectories.responses), trajectories.layout, layout);
   trajectories.layout = layout;
   return trajectories;
 }

@@ -9,10 +9,14 @@ namespace twinmap {
 /// of all of them.
 struct SampleSource {
   const Simulator& simulator;
-  TrajectoryStore& store;  ///< of the simulator's model and layout
+  TrajectoryStore& store;                     ///< of the simulator's model and layout
+  TrajectoryStore* neighbourhoods = nullptr;  ///< openNeighbourhoodStore of them; null if none are needed
 };
 
 /// The responses at the times and modes of `layout`, which must be among those that the trajectories have.
 Trajectories selectRows(Trajectories trajectories, const ResponseLayout& layout);
+
+/// The same of responses (columns) alone, of the layout `from`.
+Eigen::MatrixXd selectRows(Eigen::MatrixXd responses, const ResponseLayout& from, const ResponseLayout& to);
 
 }  // namespace twinmap

@@ -8,7 +8,6 @@
 #include "framework/design/point_set.hpp"
 #include "framework/interrupted.hpp"
 #include "framework/report/tables.hpp"
-#include "framework/simulate_missing.hpp"
 #include "framework/spec/parameter_box.hpp"
 #include "framework/stage_timer.hpp"
 #include "framework/store/atomic_file.hpp"
@@ -57,24 +56,12 @@ void noteReused(int reused, const std::string& set, RunSummary& run) {
   }
 }
 
-MissingOptions makeMissingOptions(const std::string& set, const RunOptions& options) {
-  MissingOptions missing;
-  missing.threads = options.threads;
-  missing.stop = options.stop;
-  if (options.progress) {
-    missing.progress = [set, &options](const SimulationProgress& counts) {
-      options.progress({"simulate " + set, counts.simulated, counts.total, counts.failed,
-                        double(counts.simulated) / counts.total, true});
-    };
-  }
-  return missing;
-}
-
 Trajectories simulateSet(const std::string& set, const Eigen::MatrixXd& points, const SampleSource& source,
                          const RunOptions& options, RunSummary& run) {
   StoredTrajectories stored =
       timeStage(fmt::format("simulate {} {} samples", points.cols(), set), run.times, [&] {
-        return simulateMissing(source.store, source.simulator, points, makeMissingOptions(set, options));
+        return simulateMissing(source.store, source.simulator, points,
+                               makeMissingOptions("simulate " + set, 1, options));
       });
   if (stored.stopped) {
     throw Interrupted(fmt::format("interrupted: {} of {} {} samples are simulated and kept",
@@ -94,6 +81,19 @@ std::vector<int> findSuccessful(const Trajectories& trajectories) {
     }
   }
   return samples;
+}
+
+MissingOptions makeMissingOptions(const std::string& stage, int simulations, const RunOptions& options) {
+  MissingOptions missing;
+  missing.threads = options.threads;
+  missing.stop = options.stop;
+  if (options.progress) {
+    missing.progress = [=, &options](const SimulationProgress& counts) {
+      options.progress({stage, simulations * counts.simulated, simulations * counts.total,
+                        simulations * counts.failed, double(counts.simulated) / counts.total, true});
+    };
+  }
+  return missing;
 }
 
 void logSetAside(const TrajectoryStore& store) {

@@ -4,10 +4,14 @@
 
 #include "framework/experiment.hpp"
 #include "framework/sample_source.hpp"
+#include "framework/simulate_missing.hpp"
 #include "framework/simulation/sample_generator.hpp"
 #include "framework/store/trajectory_store.hpp"
 
 namespace twinmap {
+
+/// The stage that simulates neighbourhoods (NeighbourhoodSimulator), for people.
+inline constexpr const char* kNeighbourhoodStage = "simulate sensitivities";
 
 struct SimulatedSets {
   Trajectories train, test;
@@ -15,6 +19,9 @@ struct SimulatedSets {
 
 /// Warns of chunks that could not be used.
 void logSetAside(const TrajectoryStore& store);
+
+/// Of a run's stage that simulates; `simulations` are behind each sample that is reported.
+MissingOptions makeMissingOptions(const std::string& stage, int simulations, const RunOptions& options);
 
 /// Opens the store of a model's samples in the folder `root`. Chunks that had to be set aside are logged.
 std::unique_ptr<TrajectoryStore> openStore(const ModelSpec& model, const ResponseLayout& layout,

@@ -50,7 +50,7 @@ class GatesFailed : public std::runtime_error {
 
 struct StatusArguments {
   std::string folder;
-  std::string store;  ///< "": chunks in the folder
+  std::string store;  ///< "": the one that the run used
 };
 
 struct CompareArguments {

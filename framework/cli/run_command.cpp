@@ -11,6 +11,7 @@
 #include "framework/measurement/signal_experiment.hpp"
 #include "framework/report/tables.hpp"
 #include "framework/spec/experiment_file.hpp"
+#include "framework/store/atomic_file.hpp"
 #include "framework/sweep/run_sweep.hpp"
 
 namespace twinmap {
@@ -102,6 +103,9 @@ void run(const RunArguments& arguments) {
   } catch (const Interrupted& interrupted) {
     throw Interrupted(std::string(interrupted.what()) + "; the same command continues:\n  " +
                       arguments.command_line);
+  } catch (const DiskFull& full) {
+    throw DiskFull(std::string(full.what()) + "; with more room the same command continues:\n  " +
+                   arguments.command_line);
   }
   if (getSignal() != 0) {
     throw Interrupted("interrupted, after everything was done");

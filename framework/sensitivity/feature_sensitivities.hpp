@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 #include "framework/features/feature_extractor.hpp"
@@ -17,6 +18,9 @@ struct LocalModel {
   Eigen::MatrixXd sensitivities;
   SampleStatus status;  ///< if not ok, the rest is NaN
 };
+
+/// Gives the local models at the columns of `points`: simulates them, or has them from a store.
+using LocalModelSource = std::function<std::vector<LocalModel>(const Eigen::MatrixXd& points)>;
 
 /// At a point of the sampled box, to `parameters`, the first p of it (such as collectUnknown; the known
 /// inputs behind them stay), by central differences of the simulator, one-sided ones of second order where

@@ -39,11 +39,11 @@ NeighbourhoodSimulator::NeighbourhoodSimulator(const Simulator& simulator,
                                                const std::vector<ParameterSpec>& parameters)
     : simulator_(simulator.clone()),
       parameters_(parameters),
-      layout_(repeat(simulator.getLayout(), 2 * static_cast<int>(parameters.size()) + 1)) {}
+      layout_(repeat(simulator.getLayout(), countNeighbours(parameters.size()))) {}
 
 void NeighbourhoodSimulator::simulate(const Eigen::Ref<const MatrixXd>& parameters,
                                       Eigen::Ref<MatrixXd> responses, SampleStatus* statuses) {
-  MatrixXd own(simulator_->getLayout().getRowCount(), 2 * static_cast<Index>(parameters_.size()) + 1);
+  MatrixXd own(simulator_->getLayout().getRowCount(), countNeighbours(parameters_.size()));
   for (Index i = 0; i < parameters.cols(); ++i) {
     statuses[i] = simulateNeighbours(*simulator_, makeNeighbours(parameters_, parameters.col(i)), own);
     responses.col(i) = own.reshaped();

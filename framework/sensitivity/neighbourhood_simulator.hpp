@@ -8,6 +8,11 @@
 
 namespace twinmap {
 
+/// Simulations of a point's neighbourhood, its own included, for derivatives to so many parameters.
+inline int countNeighbours(std::size_t parameters) {
+  return 2 * static_cast<int>(parameters) + 1;
+}
+
 /// Simulates a point together with the 2 p points beside it that its derivatives to p parameters, the first
 /// of the point, need (all with the integration steps of the point): a response is theirs, one below the
 /// other, the point's own first, then the two of each parameter. So a point's derivatives can be stored and

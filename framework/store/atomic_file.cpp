@@ -4,8 +4,8 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
-#include <stdexcept>
 #include <utility>
 
 namespace twinmap {
@@ -14,7 +14,19 @@ namespace {
 namespace fs = std::filesystem;
 
 [[noreturn]] void fail(const fs::path& path, const std::string& what, int error) {
-  throw std::runtime_error(path.string() + ": " + what + ": " + std::strerror(error));
+  const std::string message = path.string() + ": " + what + ": " + std::strerror(error);
+  if (error == ENOSPC || error == EDQUOT) {
+    throw DiskFull(message);
+  }
+  throw std::runtime_error(message);
+}
+
+/// For what other libraries fail to write without saying why.
+bool isFull(const fs::path& folder) {
+  constexpr std::uintmax_t kLeast = 1u << 16;
+  std::error_code error;
+  const fs::space_info space = fs::space(folder.empty() ? fs::path(".") : folder, error);
+  return !error && space.available < kLeast;
 }
 
 /// An open file; closing reports what the disk did not take until then.
@@ -79,12 +91,25 @@ void syncFolder(const fs::path& folder) {
   OpenFile(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC).sync();
 }
 
+void writeOrSayFull(const fs::path& file, const std::function<void(const fs::path&)>& write) {
+  try {
+    write(file);
+  } catch (const DiskFull&) {
+    throw;
+  } catch (const std::exception&) {
+    if (isFull(file.parent_path())) {
+      fail(file, "cannot be written", ENOSPC);
+    }
+    throw;
+  }
+}
+
 }  // namespace
 
 void writeAtomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {
   const fs::path temporary = path.string() + kTemporarySuffix;
   try {
-    write(temporary);
+    writeOrSayFull(temporary, write);
     OpenFile(temporary, O_RDONLY | O_CLOEXEC).sync();
     renameFile(temporary, path);
   } catch (...) {

@@ -3,13 +3,21 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <stdexcept>
 #include <string>
 
 namespace twinmap {
 
+/// A file could not be written because the disk, or what one may have of it, is full.
+class DiskFull : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// Writes a file whole or not at all: `write` fills a temporary file in the same folder, which is synced to
 /// disk and renamed to `path`; then the folder is synced. On an exception the temporary file is removed and
-/// an older file at `path` stays as it was. Throws std::runtime_error naming the file and the cause.
+/// an older file at `path` stays as it was. Throws std::runtime_error naming the file and the cause, a
+/// DiskFull where that is it.
 void writeAtomically(const std::filesystem::path& path,
                      const std::function<void(const std::filesystem::path& temporary)>& write);
 

@@ -77,7 +77,7 @@ void TrajectoryStore::readAll(StoreAccess access) {
 void TrajectoryStore::readOne(const fs::path& file, StoreAccess access) {
   const std::string bytes = readBytes(file);
   try {
-    addToIndex(file, readChunk(bytes, shape_).parameters);
+    addToIndex(file, readChunk(bytes, shape_));
   } catch (const BadChunk& bad) {
     setAside(file, bad.what(), access);
   } catch (const std::runtime_error& error) {
@@ -94,11 +94,11 @@ void TrajectoryStore::setAside(const fs::path& file, const std::string& reason, 
   set_aside_.push_back({now, reason});
 }
 
-void TrajectoryStore::addToIndex(const fs::path& file, const Eigen::MatrixXd& points) {
+void TrajectoryStore::addToIndex(const fs::path& file, const SampleBlock& block) {
   const int chunk = static_cast<int>(chunks_.size());
   chunks_.push_back(file);
-  for (Eigen::Index column = 0; column < points.cols(); ++column) {
-    places_.insert({getBits(points.col(column)), {chunk, column}});
+  for (int column = 0; column < block.getSampleCount(); ++column) {
+    places_.insert({getBits(block.parameters.col(column)), {chunk, column, block.statuses[column].ok}});
   }
 }
 
@@ -109,6 +109,13 @@ bool TrajectoryStore::isKnown(const std::string& point_bits) const {
 bool TrajectoryStore::contains(const Eigen::Ref<const Eigen::VectorXd>& point) const {
   const std::lock_guard<std::mutex> guard(mutex_);
   return isKnown(getBits(point));
+}
+
+bool TrajectoryStore::hasFailed(const Eigen::Ref<const Eigen::VectorXd>& point) const {
+  const std::lock_guard<std::mutex> guard(mutex_);
+  const std::string bits = getBits(point);
+  const auto place = places_.find(bits);
+  return place == places_.end() ? not_kept_failures_.count(bits) > 0 : !place->second.ok;
 }
 
 std::vector<Eigen::Index> TrajectoryStore::findMissing(const Eigen::MatrixXd& points) const {
@@ -138,7 +145,7 @@ void TrajectoryStore::append(const SampleBlock& block) {
     const std::string bytes = makeChunk(chunk, shape_);
     const fs::path file = folder_ / (toHex(calcDigest(bytes.data(), bytes.size())) + kChunkSuffix);
     writeBytes(file, bytes.data(), bytes.size());
-    addToIndex(file, chunk.parameters);
+    addToIndex(file, chunk);
   }
   for (int column = 0; column < block.getSampleCount(); ++column) {
     if (block.statuses[column].machine_dependent) {

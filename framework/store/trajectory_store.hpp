@@ -45,6 +45,9 @@ class TrajectoryStore {
 
   bool contains(const Eigen::Ref<const Eigen::VectorXd>& point) const;
 
+  /// Whether the sample is known and failed.
+  bool hasFailed(const Eigen::Ref<const Eigen::VectorXd>& point) const;
+
   /// Columns of `points` (parameters x n) that are not stored, the first of equal ones only.
   std::vector<Eigen::Index> findMissing(const Eigen::MatrixXd& points) const;
 
@@ -65,6 +68,7 @@ class TrajectoryStore {
   struct Place {
     int chunk;  ///< in chunks_
     Eigen::Index column;
+    bool ok;
   };
   struct ColumnCopy {
     Eigen::Index from, to;
@@ -73,7 +77,7 @@ class TrajectoryStore {
   void readAll(StoreAccess access);
   void readOne(const std::filesystem::path& file, StoreAccess access);
   void setAside(const std::filesystem::path& file, const std::string& reason, StoreAccess access);
-  void addToIndex(const std::filesystem::path& file, const Eigen::MatrixXd& points);
+  void addToIndex(const std::filesystem::path& file, const SampleBlock& block);
   void copyColumns(const std::filesystem::path& file, const std::vector<ColumnCopy>& copies,
                    SampleBlock& to) const;
   bool isKnown(const std::string& point_bits) const;

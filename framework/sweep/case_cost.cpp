@@ -5,6 +5,8 @@
 
 #include "framework/features/feature_extractor.hpp"
 #include "framework/inverse_map/gp_map.hpp"
+#include "framework/sensitivity/neighbourhood_simulator.hpp"
+#include "framework/spec/parameter_box.hpp"
 
 namespace twinmap {
 namespace {
@@ -74,7 +76,7 @@ std::vector<TrainingStep> listTrainingSteps(const ExperimentSpec& experiment) {
 }
 
 CaseCost calcCaseCost(const ExperimentSpec& experiment, int threads) {
-  constexpr double kBytes = 8.0, kCopies = 10.0, kSparseCopies = 6.0;
+  constexpr double kBytes = 8.0, kCopies = 10.0, kSparseCopies = 6.0, kLimitCopies = 1.5;
   const auto parameters = static_cast<double>(experiment.model.parameters.size());
   const double searches = std::min(double(threads), parameters * experiment.inverse_map.gp.starts);
   const double exact = countExact(experiment);
@@ -83,6 +85,10 @@ CaseCost calcCaseCost(const ExperimentSpec& experiment, int threads) {
   numbers += kCopies * countRows(experiment) * (countColumns(experiment) + experiment.design.test.samples);
   if (isSparse(experiment)) {
     numbers += kSparseCopies * countColumns(experiment) * experiment.inverse_map.gp.inducing * searches;
+  }
+  if (experiment.evaluation.limit) {
+    numbers += kLimitCopies * countRows(experiment) *
+               countNeighbours(collectUnknown(experiment.model).size()) * experiment.design.test.samples;
   }
   CaseCost cost{kBytes * numbers, 0.0};
   for (const TrainingStep& step : listTrainingSteps(experiment)) {

@@ -27,7 +27,8 @@ struct CaseCost {
 
 /// bytes: for exact processes with n samples, replicates included, m of them searched with, and P parameters,
 /// 8 m^2 (2.5 a search that runs at the same time + 1), at least 8 n^2 3.5 to fit one, and 8 n^2 1.5 P; and
-/// 10 numbers for every one of a response.
+/// 10 numbers for every one of a response; and where there is an information limit, the neighbourhoods of the
+/// test samples.
 CaseCost calcCaseCost(const ExperimentSpec& experiment, int threads);
 
 /// Evaluations of the marginal likelihood in one search.

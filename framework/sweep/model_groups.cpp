@@ -6,6 +6,7 @@
 
 #include "framework/design/point_set.hpp"
 #include "framework/features/feature_extractor.hpp"
+#include "framework/needed_neighbourhoods.hpp"
 #include "framework/spec/check_experiment.hpp"
 #include "framework/spec/check_features.hpp"
 #include "framework/spec/parameter_box.hpp"
@@ -57,6 +58,13 @@ class PointSet {
   std::vector<double> values_;
 };
 
+bool haveEqualBounds(const std::vector<ParameterSpec>& a, const std::vector<ParameterSpec>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const ParameterSpec& one, const ParameterSpec& other) {
+                      return one.bounds.lower == other.bounds.lower && one.bounds.upper == other.bounds.upper;
+                    });
+}
+
 ModelGroup startGroup(const ExperimentSpec& experiment) {
   ModelGroup group;
   group.model = experiment.model;
@@ -92,6 +100,35 @@ Eigen::MatrixXd collectPoints(const std::vector<SweepCase>& cases, const ModelGr
       const ExperimentSpec& e = cases[member].experiment;
       points.add(samplePoints(e.design.train, collectSampled(e.model), e.seed, RandomPurpose::kTrainDesign));
       points.add(samplePoints(e.design.test, collectSampled(e.model), e.seed, RandomPurpose::kTestDesign));
+    }
+  }
+  return points.get(countSampled(group.model));
+}
+
+std::vector<ModelGroup> splitByBounds(const std::vector<SweepCase>& cases, const ModelGroup& group) {
+  std::vector<ModelGroup> parts;
+  for (const int member : group.cases) {
+    const ModelSpec& model = cases[member].experiment.model;
+    auto part = std::find_if(parts.begin(), parts.end(), [&](const ModelGroup& other) {
+      return haveEqualBounds(collectUnknown(other.model), collectUnknown(model));
+    });
+    if (part == parts.end()) {
+      part = parts.insert(parts.end(), group);
+      part->cases.clear();
+      part->model = model;
+      part->model.simulation = group.model.simulation;
+    }
+    part->cases.push_back(member);
+  }
+  return parts;
+}
+
+Eigen::MatrixXd collectNeighbourhoods(const std::vector<SweepCase>& cases, const ModelGroup& group,
+                                      const std::vector<bool>& wanted) {
+  PointSet points;
+  for (const int member : group.cases) {
+    if (wanted[member]) {
+      points.add(listNeededNeighbourhoods(cases[member].experiment));
     }
   }
   return points.get(countSampled(group.model));

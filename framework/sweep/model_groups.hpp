@@ -28,6 +28,15 @@ std::vector<ModelGroup> groupByModel(const std::vector<SweepCase>& cases);
 Eigen::MatrixXd collectPoints(const std::vector<SweepCase>& cases, const ModelGroup& group,
                               const std::vector<bool>& wanted);
 
+/// The group by the bounds of its parameters, on which neighbourhoods depend, in the order of the first
+/// cases.
+std::vector<ModelGroup> splitByBounds(const std::vector<SweepCase>& cases, const ModelGroup& group);
+
+/// The points whose neighbourhoods the cases of the group that `wanted` asks for need
+/// (listNeededNeighbourhoods), each once: parameters x n.
+Eigen::MatrixXd collectNeighbourhoods(const std::vector<SweepCase>& cases, const ModelGroup& group,
+                                      const std::vector<bool>& wanted);
+
 /// The group's store in `root`, to see what it has.
 TrajectoryStore openToRead(const ModelGroup& group, const std::filesystem::path& root);
 

@@ -11,7 +11,6 @@
 #include "framework/run_folder.hpp"
 #include "framework/spec/parameter_box.hpp"
 #include "framework/sweep/case_cost.hpp"
-#include "framework/sweep/model_groups.hpp"
 #include "framework/sweep/probe.hpp"
 #include "framework/sweep/sweep_folder.hpp"
 
@@ -33,10 +32,6 @@ double countSamples(const ExperimentSpec& e) {
 
 double countParameters(const ExperimentSpec& e) {
   return static_cast<double>(e.model.parameters.size());
-}
-
-double countUnknown(const ExperimentSpec& e) {
-  return static_cast<double>(collectUnknown(e.model).size());
 }
 
 double countRows(const ExperimentSpec& e) {
@@ -88,11 +83,14 @@ double calcCasesSeconds(const std::vector<SweepCase>& cases, const std::vector<b
   return alone + calcTeamSeconds(side_by_side, options.threads);
 }
 
-/// The cases that need most, as many as run at the same time, or the largest alone.
+/// The cases that need most, as many as run at the same time, or the largest alone; or what is simulated
+/// before.
 double calcMemory(const std::vector<SweepCase>& cases, const std::vector<bool>& todo,
-                  const PlanOptions& options) {
+                  const PlanOptions& options, const StoredCounts& stored) {
+  constexpr double kShare = 0.25, kCopies = 2.0;  // of a block of responses (runSweep)
   std::vector<double> bytes;
-  double alone = 0.0;
+  double alone = kCopies * std::min(kShare * options.memory,
+                                    std::max(stored.samples.bytes, stored.neighbourhoods.bytes));
   for (std::size_t i = 0; i < cases.size(); ++i) {
     if (todo[i]) {
       const double one = calcCaseCost(cases[i].experiment, 1).bytes;
@@ -127,24 +125,6 @@ void warnAboutPlainDesigns(const std::vector<SweepCase>& cases, SweepPlan& plan)
   }
 }
 
-/// Samples needed and stored; returns how many are missing for the cases to be done.
-int countAllSamples(const std::vector<SweepCase>& cases, const std::vector<bool>& todo,
-                    const std::filesystem::path& store, SweepPlan& plan) {
-  const std::vector<bool> all(cases.size(), true);
-  int missing = 0;
-  for (const ModelGroup& group : groupByModel(cases)) {
-    const TrajectoryStore stored = openToRead(group, store);
-    const Eigen::MatrixXd points = collectPoints(cases, group, all);
-    plan.needed += static_cast<int>(points.cols());
-    plan.stored += static_cast<int>(points.cols()) - static_cast<int>(stored.findMissing(points).size());
-    const int to_simulate = static_cast<int>(stored.findMissing(collectPoints(cases, group, todo)).size());
-    missing += to_simulate;
-    plan.disk +=
-        kNumber * to_simulate * (static_cast<double>(makeLayout(group).getRowCount() + points.rows()) + 1.0);
-  }
-  return missing;
-}
-
 std::vector<bool> findTodo(const YamlNode& root, const std::vector<SweepCase>& cases,
                            const PlanOptions& options) {
   std::vector<bool> todo = findComplete(options.folder, cases);
@@ -164,13 +144,15 @@ const ExperimentSpec& findLargest(const std::vector<SweepCase>& cases) {
       ->experiment;
 }
 
-void addTimes(const std::vector<SweepCase>& cases, const std::vector<bool>& todo, int missing,
-              const PlanOptions& options, SweepPlan& plan) {
+void addTimes(const std::vector<SweepCase>& cases, const std::vector<bool>& todo, const PlanOptions& options,
+              SweepPlan& plan) {
   const ExperimentSpec& largest = findLargest(cases);
   const ProbeTimes times = measureProbe(largest, countTrainingColumns(largest));
   plan.no_times = times.failure;
   if (plan.no_times.empty()) {
-    plan.simulate_s = missing * times.simulation / options.threads;
+    plan.simulate_s = (plan.stored.samples.missing * times.simulation +
+                       plan.stored.neighbourhoods.missing * times.neighbourhood) /
+                      options.threads;
     plan.cases_s = calcCasesSeconds(cases, todo, times, options);
   }
 }
@@ -197,32 +179,32 @@ SweepPlan planRun(const YamlNode& root, const PlanOptions& options) {
   const std::vector<bool> todo = findTodo(root, cases, options);
   SweepPlan plan;
   plan.cases = static_cast<int>(cases.size());
-  plan.complete = static_cast<int>(std::count(todo.begin(), todo.end(), false));
-  const int missing = countAllSamples(cases, todo, getStoreRoot(options.folder, options.store), plan);
+  std::vector<bool> complete = todo;
+  complete.flip();
+  plan.complete = static_cast<int>(std::count(complete.begin(), complete.end(), true));
+  plan.stored = countStored(cases, complete, getStoreRoot(options.folder, options.store));
   warnAboutPlainDesigns(cases, plan);
   if (plan.complete == plan.cases) {
     return plan;
   }
+  plan.disk = plan.stored.samples.bytes + plan.stored.neighbourhoods.bytes;
   for (std::size_t i = 0; i < cases.size(); ++i) {
-    const ExperimentSpec& e = cases[i].experiment;
-    if (todo[i]) {
-      plan.disk += calcCaseDisk(e);
-      plan.limit_simulations +=
-          e.evaluation.limit ? e.design.test.samples * (2.0 * countUnknown(e) + 1.0) : 0.0;
-    }
+    plan.disk += todo[i] ? calcCaseDisk(cases[i].experiment) : 0.0;
   }
-  plan.memory = calcMemory(cases, todo, options);
-  addTimes(cases, todo, missing, options, plan);
+  plan.memory = calcMemory(cases, todo, options, plan.stored);
+  addTimes(cases, todo, options, plan);
   return plan;
 }
 
 std::string describePlan(const SweepPlan& plan, const PlanOptions& options) {
+  const PointCounts &samples = plan.stored.samples, &neighbourhoods = plan.stored.neighbourhoods;
   std::string text = fmt::format("cases:       {}, {} of them complete\n", plan.cases, plan.complete) +
-                     fmt::format("simulations: {} needed, {} stored, {} to do\n", plan.needed, plan.stored,
-                                 plan.needed - plan.stored);
-  if (plan.limit_simulations > 0.0) {
-    text += fmt::format("             and {} for the information limit (evaluation.limit)\n",
-                        plan.limit_simulations);
+                     fmt::format("simulations: {} needed, {} stored, {} to do\n", samples.needed,
+                                 samples.stored, samples.missing);
+  if (neighbourhoods.needed > 0) {
+    text += fmt::format(
+        "limits:      neighbourhoods of {} points needed, {} stored, {} to do: {} simulations\n",
+        neighbourhoods.needed, neighbourhoods.stored, neighbourhoods.missing, neighbourhoods.simulations);
   }
   if (!plan.no_times.empty()) {
     text += "time:        not known: " + plan.no_times + "\n";

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "framework/spec/yaml_node.hpp"
+#include "framework/sweep/stored_counts.hpp"
 
 namespace twinmap {
 
@@ -19,14 +20,12 @@ struct PlanOptions {
 struct SweepPlan {
   int cases = 0;
   int complete = 0;
-  int needed = 0;                  ///< distinct samples of all cases
-  int stored = 0;                  ///< of them
-  double limit_simulations = 0.0;  ///< for the information limits; not stored
-  double simulate_s = 0.0;         ///< wall time of the missing samples
-  double cases_s = 0.0;            ///< wall time of the cases after that
-  double memory = 0.0;             ///< bytes at the peak
-  double disk = 0.0;               ///< bytes to be written
-  std::string no_times;            ///< why times are not known; empty if they are
+  StoredCounts stored;
+  double simulate_s = 0.0;  ///< wall time of what is missing
+  double cases_s = 0.0;     ///< wall time of the cases after that
+  double memory = 0.0;      ///< bytes at the peak
+  double disk = 0.0;        ///< bytes to be written
+  std::string no_times;     ///< why times are not known; empty if they are
   std::vector<std::string> warnings;
 };
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "framework/experiment.hpp"
+#include "framework/needed_neighbourhoods.hpp"
 #include "framework/store/temporary_folder.hpp"
 #include "framework/sweep/case_cost.hpp"
 
@@ -105,8 +106,10 @@ ProbeTimes measure(const ExperimentSpec& experiment, double most_samples) {
   ProbeTimes times;
   const double simulating = run.getStage("simulate "), limit = run.getStage("information limit");
   times.simulation = simulating / (kTrainSamples + kTestSamples);
+  const double neighbourhoods = run.getStage("neighbourhoods of ");
   times.limit = limit / kTestSamples;
-  times.overhead = std::max(run.seconds - simulating - limit - run.getTraining(), 0.0);
+  times.neighbourhood = neighbourhoods / std::max<double>(listNeededNeighbourhoods(small).cols(), 1.0);
+  times.overhead = std::max(run.seconds - simulating - neighbourhoods - limit - run.getTraining(), 0.0);
   times.training.measured = measureEvaluations(small, most_samples, folder.getPath());
   times.training.evaluations = 1.0;
   times.training.evaluations = run.getTraining() / times.training.calcTraining(small);

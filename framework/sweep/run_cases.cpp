@@ -1,8 +1,11 @@
 #include "framework/sweep/run_cases.hpp"
 
 #include <algorithm>
+#include <exception>
 #include <mutex>
 #include <numeric>
+
+#include "framework/store/atomic_file.hpp"
 
 namespace twinmap {
 namespace {
@@ -13,12 +16,34 @@ class CaseRunner {
       : outcomes(cases), scheduling_(scheduling), task_(task) {}
 
   void run(int index, int threads) {
-    const bool stopped = scheduling_.stop != nullptr && scheduling_.stop->load(std::memory_order_relaxed);
-    if (stopped || (scheduling_.fail_fast && failed_.load(std::memory_order_relaxed))) {
-      return;
+    if (mayBegin()) {
+      try {
+        note(index, runTask(index, threads));
+      } catch (...) {
+        const std::lock_guard<std::mutex> guard(mutex_);
+        fatal_ = fatal_ ? fatal_ : std::current_exception();
+        ended_ = true;
+      }
     }
-    const CaseOutcome outcome = runTask(index, threads);
-    failed_ = failed_ || outcome.status == CaseStatus::kFailed;
+  }
+
+  void rethrow() const {
+    if (fatal_) {
+      std::rethrow_exception(fatal_);
+    }
+  }
+
+  std::vector<CaseOutcome> outcomes;
+
+ private:
+  bool mayBegin() const {
+    return !ended_ && (scheduling_.stop == nullptr || !scheduling_.stop->load(std::memory_order_relaxed));
+  }
+
+  void note(int index, const CaseOutcome& outcome) {
+    if (scheduling_.fail_fast && outcome.status == CaseStatus::kFailed) {
+      ended_ = true;
+    }
     const std::lock_guard<std::mutex> guard(mutex_);
     outcomes[index] = outcome;
     if (scheduling_.finished) {
@@ -26,13 +51,12 @@ class CaseRunner {
     }
   }
 
-  std::vector<CaseOutcome> outcomes;
-
- private:
   CaseOutcome runTask(int index, int threads) const {
     try {
       task_(index, threads);
       return {CaseStatus::kDone, ""};
+    } catch (const DiskFull&) {
+      throw;
     } catch (const std::exception& error) {
       return {CaseStatus::kFailed, error.what()};
     }
@@ -41,7 +65,8 @@ class CaseRunner {
   const CaseScheduling& scheduling_;
   const std::function<void(int, int)>& task_;
   std::mutex mutex_;
-  std::atomic<bool> failed_{false};
+  std::atomic<bool> ended_{false};  ///< no other case is begun
+  std::exception_ptr fatal_;
 };
 
 /// Indices by decreasing work.
@@ -70,6 +95,7 @@ std::vector<CaseOutcome> runCases(const std::vector<CaseCost>& costs, const Case
   for (int i = 0; i < count; ++i) {
     runner.run(rest[i], 1);
   }
+  runner.rethrow();
   return std::move(runner.outcomes);
 }
 

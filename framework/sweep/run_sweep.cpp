@@ -12,7 +12,10 @@
 #include "framework/report/report.hpp"
 #include "framework/run_folder.hpp"
 #include "framework/run_log.hpp"
+#include "framework/sensitivity/neighbourhood_simulator.hpp"
+#include "framework/simulated_sets.hpp"
 #include "framework/spec/experiment_file.hpp"
+#include "framework/spec/parameter_box.hpp"
 #include "framework/store/atomic_file.hpp"
 #include "framework/store/folder_lock.hpp"
 #include "framework/sweep/run_cases.hpp"
@@ -31,32 +34,32 @@ class Sweep {
         cases_(std::move(cases)),
         options_(options),
         complete_(findComplete(options.folder, cases_)),
-        store_(getStoreRoot(options.folder, options.store)) {
+        store_(getStoreRoot(options.folder, options.store)),
+        samples_of_case_(cases_.size()),
+        neighbourhoods_of_case_(cases_.size()) {
     result_.cases = static_cast<int>(cases_.size());
     result_.skipped = static_cast<int>(std::count(complete_.begin(), complete_.end(), true));
     spdlog::info("{} cases, {} of them complete", result_.cases, result_.skipped);
   }
 
-  /// False if it was stopped.
+  /// The samples, then the neighbourhoods of those that did not fail. False if it was stopped.
   bool simulate() {
     std::vector<bool> wanted = complete_;
     wanted.flip();
-    group_of_case_.resize(cases_.size());
-    for (const ModelGroup& group : groupByModel(cases_)) {
-      for (const int member : group.cases) {
-        group_of_case_[member] = samples_.size();
-      }
-      const Eigen::MatrixXd points = collectPoints(cases_, group, wanted);
-      samples_.push_back(points.cols() > 0 ? openSharedSamples(group, points, store_) : SharedSamples{});
+    const std::vector<ModelGroup> groups = groupByModel(cases_);
+    for (const ModelGroup& group : groups) {
+      addSamples(group, collectPoints(cases_, group, wanted));
     }
-    constexpr double kShare = 0.25;  // of the memory: the responses of one block, as simulated and as stored
-    const auto start = std::chrono::steady_clock::now();
-    const SimulationProgress done = simulateShared(
-        samples_, {options_.threads, kShare * options_.memory, options_.stop, options_.progress});
-    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-    spdlog::info("{} of {} missing samples simulated in {:.2f} s, {} of them failed", done.simulated,
-                 done.total, elapsed.count(), done.failed);
-    return done.simulated == done.total;
+    if (!simulateAll(samples_, "samples", {"simulate", 1})) {
+      return false;
+    }
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+      for (const ModelGroup& part : splitByBounds(cases_, groups[i])) {
+        addNeighbourhoods(part, collectNeighbourhoods(cases_, part, wanted), samples_[i]);
+      }
+    }
+    const std::size_t unknown = collectUnknown(cases_[0].experiment.model).size();
+    return simulateAll(neighbourhoods_, "neighbourhoods", {kNeighbourhoodStage, countNeighbours(unknown)});
   }
 
   void runMissingCases() {
@@ -89,10 +92,45 @@ class Sweep {
   }
 
  private:
+  void addSamples(const ModelGroup& group, const Eigen::MatrixXd& points) {
+    for (const int member : group.cases) {
+      samples_of_case_[member] = samples_.size();
+    }
+    samples_.push_back(points.cols() > 0 ? openSharedSamples(group, points, store_) : SharedSamples{});
+  }
+
+  void addNeighbourhoods(const ModelGroup& group, const Eigen::MatrixXd& points,
+                         const SharedSamples& samples) {
+    for (const int member : group.cases) {
+      neighbourhoods_of_case_[member] = neighbourhoods_.size();
+    }
+    const bool needed = points.cols() > 0 && samples.store != nullptr;
+    neighbourhoods_.push_back(needed ? openSharedNeighbourhoods(group, points, samples, store_)
+                                     : SharedSamples{});
+  }
+
+  struct Stage {
+    std::string name;
+    int simulations;  ///< behind each sample
+  };
+
+  /// False if it was stopped.
+  bool simulateAll(std::vector<SharedSamples>& groups, const std::string& what, const Stage& stage) const {
+    constexpr double kShare = 0.25;  // of the memory: the responses of one block, as simulated and as stored
+    const auto start = std::chrono::steady_clock::now();
+    const SimulationProgress done =
+        simulateShared(groups, {options_.threads, kShare * options_.memory, options_.stop, options_.progress,
+                                stage.name, stage.simulations});
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    spdlog::info("{} of {} missing {} simulated in {:.2f} s, {} of them failed", done.simulated, done.total,
+                 what, elapsed.count(), done.failed);
+    return done.simulated == done.total;
+  }
+
   void runCase(int index, int threads) const {
     const SweepCase& one = cases_[index];
     const LogContext context(one.name);
-    const SharedSamples& samples = samples_[group_of_case_[index]];
+    const SharedSamples& samples = samples_[samples_of_case_[index]];
     RunOptions run;
     run.folder = getCaseFolder(options_.folder, one);
     run.threads = threads;
@@ -102,7 +140,8 @@ class Sweep {
       beginRun(run.folder, writeExperiment(one.experiment));
       throw std::runtime_error(samples.failure);
     }
-    const SampleSource source = samples.getSource();
+    const SampleSource source{*samples.simulator, *samples.store,
+                              neighbourhoods_[neighbourhoods_of_case_[index]].store.get()};
     run.samples = &source;
     runExperiment(one.experiment, run);
   }
@@ -137,8 +176,8 @@ class Sweep {
   const SweepOptions& options_;
   std::vector<bool> complete_;
   fs::path store_;
-  std::vector<std::size_t> group_of_case_;
-  std::vector<SharedSamples> samples_;
+  std::vector<std::size_t> samples_of_case_, neighbourhoods_of_case_;  ///< indices of the next two
+  std::vector<SharedSamples> samples_, neighbourhoods_;
   std::vector<int> todo_;  ///< cases that were not complete
   std::vector<CaseCost> costs_;
   double work_ = 0.0, finished_work_ = 0.0;
@@ -155,6 +194,7 @@ SweepResult runSweep(const YamlNode& root, const SweepOptions& options) {
   const FolderLock lock(options.folder);
   requireSameExperiment(options.folder, resolved);
   writeTextFile(options.folder / "resolved.yaml", resolved);
+  noteStore(options.folder, options.store);
   const RunLog log(options.folder);
   spdlog::info("{}", options.command);
 

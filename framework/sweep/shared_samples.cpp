@@ -2,7 +2,12 @@
 
 #include <algorithm>
 
+#include "framework/multibody/multibody_simulator.hpp"
+#include "framework/needed_neighbourhoods.hpp"
+#include "framework/sensitivity/neighbourhood_simulator.hpp"
 #include "framework/simulated_sets.hpp"
+#include "framework/spec/parameter_box.hpp"
+#include "framework/stored_local_models.hpp"
 
 namespace twinmap {
 namespace {
@@ -10,13 +15,13 @@ namespace {
 /// Adds up the counts of several calls of storeMissing() and reports them.
 class Totals {
  public:
-  Totals(int total, const ProgressCallback& progress) : progress_(progress) { counts.total = total; }
+  Totals(int total, const SimulationLimits& limits) : limits_(limits) { counts.total = total; }
 
   void report(const SimulationProgress& part) const {
-    if (progress_) {
-      const int done = counts.simulated + part.simulated;
-      progress_(
-          {"simulate", done, counts.total, counts.failed + part.failed, double(done) / counts.total, true});
+    if (limits_.progress) {
+      const int done = counts.simulated + part.simulated, each = limits_.simulations;
+      limits_.progress({limits_.stage, each * done, each * counts.total, each * (counts.failed + part.failed),
+                        double(done) / counts.total, true});
     }
   }
 
@@ -28,7 +33,7 @@ class Totals {
   SimulationProgress counts;
 
  private:
-  const ProgressCallback& progress_;
+  const SimulationLimits& limits_;
 };
 
 Eigen::Index chooseBlock(const SharedSamples& samples, const SimulationLimits& limits) {
@@ -73,12 +78,23 @@ SharedSamples openSharedSamples(const ModelGroup& group, const Eigen::MatrixXd& 
   return samples;
 }
 
+SharedSamples openSharedNeighbourhoods(const ModelGroup& group, const Eigen::MatrixXd& points,
+                                       const SharedSamples& samples, const std::filesystem::path& root) {
+  SharedSamples shared;
+  shared.simulator =
+      std::make_unique<NeighbourhoodSimulator>(*samples.simulator, collectUnknown(group.model));
+  shared.store = openNeighbourhoodStore(group.model, samples.simulator->getLayout(), root);
+  const Eigen::MatrixXd needed = dropFailed(points, *samples.store);
+  shared.missing = needed(Eigen::all, shared.store->findMissing(needed));
+  return shared;
+}
+
 SimulationProgress simulateShared(std::vector<SharedSamples>& groups, const SimulationLimits& limits) {
   int total = 0;
   for (const SharedSamples& samples : groups) {
     total += static_cast<int>(samples.missing.cols());
   }
-  Totals totals(total, limits.progress);
+  Totals totals(total, limits);
   for (SharedSamples& samples : groups) {
     if (samples.missing.cols() > 0 && !simulateGroup(samples, limits, totals)) {
       break;

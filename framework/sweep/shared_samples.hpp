@@ -4,22 +4,20 @@
 #include <string>
 #include <vector>
 
-#include "framework/multibody/multibody_simulator.hpp"
 #include "framework/progress.hpp"
 #include "framework/sample_source.hpp"
 #include "framework/simulate_missing.hpp"
+#include "framework/simulation/simulator.hpp"
 #include "framework/sweep/model_groups.hpp"
 
 namespace twinmap {
 
-/// The samples of a group of cases.
+/// The samples of a group of cases, or their neighbourhoods.
 struct SharedSamples {
   std::string failure;  ///< why the group's model cannot be simulated; the rest is null then
-  std::unique_ptr<MultibodySimulator> simulator;
+  std::unique_ptr<Simulator> simulator;
   std::unique_ptr<TrajectoryStore> store;
   Eigen::MatrixXd missing;  ///< parameters x n: points that the store does not have
-
-  SampleSource getSource() const { return {*simulator, *store}; }
 };
 
 /// Opens the store of the group's samples in `root`, and finds those of `points` that are missing. Throws
@@ -27,11 +25,18 @@ struct SharedSamples {
 SharedSamples openSharedSamples(const ModelGroup& group, const Eigen::MatrixXd& points,
                                 const std::filesystem::path& root);
 
+/// The same of the neighbourhoods at `points`, without those of samples that have failed. `group` has equal
+/// bounds (splitByBounds), `samples` are those of the group that it is a part of.
+SharedSamples openSharedNeighbourhoods(const ModelGroup& group, const Eigen::MatrixXd& points,
+                                       const SharedSamples& samples, const std::filesystem::path& root);
+
 struct SimulationLimits {
   int threads = 1;
   double memory = 0.0;  ///< bytes of responses that may be held at a time
   const std::atomic<bool>* stop = nullptr;
   ProgressCallback progress;
+  std::string stage = "simulate";  ///< for people
+  int simulations = 1;             ///< behind each sample, as progress counts them
 };
 
 /// Simulates all that is missing, group after group, each with all threads. Returns what was done; stopped,

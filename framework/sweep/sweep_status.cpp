@@ -8,9 +8,6 @@
 #include "framework/run_folder.hpp"
 #include "framework/spec/experiment_file.hpp"
 #include "framework/store/folder_lock.hpp"
-#include "framework/store/trajectory_store.hpp"
-#include "framework/store_content.hpp"
-#include "framework/sweep/model_groups.hpp"
 #include "framework/sweep/sweep_folder.hpp"
 
 namespace twinmap {
@@ -18,14 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void countSamples(const std::vector<SweepCase>& cases, const fs::path& store, SweepStatus& status) {
-  const std::vector<bool> all(cases.size(), true);
-  for (const ModelGroup& group : groupByModel(cases)) {
-    const Eigen::MatrixXd points = collectPoints(cases, group, all);
-    const int missing = static_cast<int>(openToRead(group, store).findMissing(points).size());
-    status.needed += static_cast<int>(points.cols());
-    status.stored += static_cast<int>(points.cols()) - missing;
-  }
+std::string describeStored(const std::string& name, const PointCounts& counts) {
+  return counts.needed == 0 ? "" : fmt::format("{} {} of {} stored\n", name, counts.stored, counts.needed);
 }
 
 }  // namespace
@@ -48,7 +39,7 @@ SweepStatus readStatus(const fs::path& folder, const fs::path& store) {
   for (std::size_t i = 0; i < cases.size(); ++i) {
     status.failed += !complete[i] && std::count(failed.begin(), failed.end(), cases[i].name) > 0 ? 1 : 0;
   }
-  countSamples(cases, getStoreRoot(folder, store), status);
+  status.stored = countStored(cases, complete, store.empty() ? findStore(folder) : store);
   return status;
 }
 
@@ -56,7 +47,8 @@ std::string describeStatus(const SweepStatus& status) {
   const int missing = status.cases - status.complete - status.failed;
   return fmt::format("cases:   {} of {} complete, {} failed, {} missing\n", status.complete, status.cases,
                      status.failed, missing) +
-         fmt::format("samples: {} of {} stored\n", status.stored, status.needed) +
+         describeStored("samples:", status.stored.samples) +
+         describeStored("limits:  neighbourhoods of test points:", status.stored.neighbourhoods) +
          (status.owner.empty() ? "not running\n" : "running: " + status.owner + "\n");
 }
 

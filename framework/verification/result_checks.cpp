@@ -144,7 +144,9 @@ void checkResults(const ExperimentSpec& experiment, const Simulator& simulator, 
                            experiment.seed);
   LabelledSets labelled = makeLabelledSets(experiment, sets, extractor, noise);
   labelled.train.sensitivities =
-      calcTrainingSensitivities(experiment, sets.train, simulator, extractor, threads);
+      calcTrainingSensitivities(experiment, sets.train, [&](const Eigen::MatrixXd& points) {
+        return calcLocalModels(simulator, extractor, collectUnknown(experiment.model), points, threads);
+      });
   const std::vector<int> test_indices = findSuccessful(sets.test);
   checkMapAndTables({experiment, simulator, extractor, noise, sets, labelled, test_indices, threads}, limits,
                     verification);

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "framework/design/point_set.hpp"
+#include "framework/run_folder.hpp"
 #include "framework/spec/number_text.hpp"
 #include "framework/spec/parameter_box.hpp"
 #include "framework/store/hdf5_difference.hpp"
@@ -128,13 +129,6 @@ std::string simulateAgain(const std::string& name, const std::vector<int>& chose
   return replaceSamples(name, columns, again.responses(Eigen::all, compared), statuses, set);
 }
 
-/// The run's own store, or that of the sweep whose case it is.
-fs::path findChunks(const fs::path& folder) {
-  const fs::path whole = fs::absolute(folder / ".").lexically_normal().parent_path();
-  const bool is_case = !fs::exists(whole / "chunks") && whole.parent_path().filename() == "cases";
-  return (is_case ? whole.parent_path().parent_path() : whole) / "chunks";
-}
-
 std::string compareChunks(const std::string& name, const TrajectoryStore& store, Trajectories& set,
                           int& found) {
   const SampleBlock block = store.load(set.parameters);
@@ -162,10 +156,10 @@ std::unique_ptr<TrajectoryStore> openChunks(const ExperimentSpec& experiment, co
   std::unique_ptr<TrajectoryStore> store;
   verification.check("chunks: checksums", [&] {
     store = std::make_unique<TrajectoryStore>(
-        findChunks(verification.folder), writeStoreContent(experiment.model, layout),
+        findStore(verification.folder), writeStoreContent(experiment.model, layout),
         countSampled(experiment.model), layout.getRowCount(), StoreAccess::kReadOnly);
     const auto neighbourhoods = openNeighbourhoodStore(
-        experiment.model, simulator, findChunks(verification.folder), StoreAccess::kReadOnly);
+        experiment.model, layout, findStore(verification.folder), StoreAccess::kReadOnly);
     const std::string damage = describeDamage(*store);
     return damage.empty() ? describeDamage(*neighbourhoods) : damage;
   });

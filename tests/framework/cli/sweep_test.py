@@ -1,4 +1,5 @@
 """Sweeps from outside: what is simulated, what is left behind, and what an interruption or a failure changes."""
+import collections
 import csv
 import filecmp
 import os
@@ -20,6 +21,9 @@ CART = os.path.join(os.environ["TWINMAP_SOURCE_DIR"], "experiments/duffing/cart.
 CHAIN = os.path.join(os.environ["TWINMAP_SOURCE_DIR"], "experiments/three_mass_chain/modes.yaml")
 QUICK = ["evaluation.limit=false", "design.train.method=nested_latin_hypercube"]
 SMALL = [*QUICK, "design.test.samples=8", "inverse_map.gp.starts=1"]
+LIMITS = [*SMALL, "evaluation.limit=true"]
+KILLED = [*LIMITS, "design.train.samples=8,16", "noise.scale=0.5,1", "seed=1..2", "design.test.samples=60"]
+FULL = [*LIMITS, "design.train.samples=8,16", "noise.scale=0.5,1"]
 SWEEP = [*SMALL, "design.train.samples=8,16", "noise.scale=0.5,1", "seed=1..2"]
 TABLES = ["sweep.csv", "summary.csv", "table.md", "failed_cases.csv", "resolved.yaml"]
 RESULTS = ["failures.csv", "joint.csv", "maps.h5", "metrics.csv", "pit.csv", "predictions.csv", "resolved.yaml",
@@ -61,11 +65,17 @@ class SweepTestCase(unittest.TestCase):
     def list_cases(self, name):
         return sorted(path.name for path in (self.folder / name / "cases").iterdir())
 
-    def get_stored(self, name):
-        """The simulated points; none twice."""
-        points = [point for chunk in (self.folder / name).glob("chunks/*/*.chunk") for point in read_points(chunk)]
-        self.assertEqual(len(points), len(set(points)), "a sample was simulated twice")
+    def get_stored(self, name, neighbourhoods=False):
+        """The points that were simulated, or those whose neighbourhoods were; none twice."""
+        points = []
+        for content in (self.folder / name).glob("chunks/*/content.yaml"):
+            if ("\nneighbourhoods:" in content.read_text()) == neighbourhoods:
+                points += [point for chunk in content.parent.glob("*.chunk") for point in read_points(chunk)]
+        self.assertEqual(len(points), len(set(points)), "a point was simulated twice")
         return set(points)
+
+    def get_all_stored(self, name):
+        return self.get_stored(name), self.get_stored(name, neighbourhoods=True)
 
     def assert_same_files(self, a, b, files):
         _, different, missing = filecmp.cmpfiles(self.folder / a, self.folder / b, files, shallow=False)
@@ -101,6 +111,27 @@ class Simulations(SweepTestCase):
                          f"transform={transform}", "design.train.samples=12"]
                 self.run_sweep(f"alone{interval}{i}", sweep=alone)
                 self.assert_same_files(f"run/cases/interval-{interval}_transform-{i + 1}", f"alone{interval}{i}", RESULTS)
+
+    def test_cases_share_the_neighbourhoods_of_their_test_points(self):
+        sweep = [*LIMITS, "noise.scale=0,0.5,1", "features[0].samples.interval=0.05,0.07", "features[0].samples.count=60",
+                 "transform=[z_score]", "design.train.samples=12,16"]
+        self.run_sweep("run", sweep=sweep)
+        self.assertEqual(list(map(len, self.get_all_stored("run"))), [16 + 8, 8])
+        self.assertIn("neighbourhoods of test points: 8 of 8 stored", call("status", self.folder / "run").stdout)
+        self.run_sweep("alone", sweep=[*LIMITS, "noise.scale=0.5", "features[0].samples.interval=0.07",
+                                       "features[0].samples.count=60", "transform=[z_score]", "design.train.samples=12"])
+        self.assert_same_files("run/cases/scale-0.5_interval-0.07_samples-12", "alone", [*RESULTS, "identifiability.csv"])
+        self.run_sweep("noiseless", sweep=[*LIMITS, "noise.scale=0", "transform=[z_score]"])
+        self.assertEqual(self.get_stored("noiseless", neighbourhoods=True), set())
+
+    def test_a_selection_by_fisher_information_shares_neighbourhoods_of_training_points(self):
+        select = "transform=[{select: {fisher_information: {count: 6}}}, z_score]"
+        self.run_sweep("run", sweep=[*SMALL, select, "design.train.samples=20,30", "noise.scale=0.5,1"])
+        self.assertEqual(len(self.get_stored("run", neighbourhoods=True)), 16)
+
+    def test_other_bounds_have_other_neighbourhoods(self):
+        self.run_sweep("run", sweep=[*LIMITS, "parameters.k.bounds=[80, 120],[90, 110]", "design.train.samples=12"])
+        self.assertEqual(len(self.get_stored("run", neighbourhoods=True)), 2 * 8)
 
     def test_results_are_bitwise_the_same_for_any_number_of_threads_and_any_memory(self):
         self.run_sweep("1", "--threads", 1)
@@ -169,22 +200,77 @@ class Continuing(SweepTestCase):
         self.run_sweep("one", sweep=one)
 
     def test_killed_at_random_moments_it_simulates_nothing_twice_and_changes_no_bit(self):
-        self.run_sweep("undisturbed")
+        start = time.monotonic()
+        self.run_sweep("undisturbed", sweep=KILLED)
+        duration = time.monotonic() - start
         rng = random.Random(3)
         kills = int(os.environ.get("TWINMAP_SWEEP_KILLS", "6"))
-        survived = 0
-        for _ in range(kills):
-            stored = self.get_stored("run")
-            child = self.start("run", "--threads", rng.choice("123"))
-            time.sleep(rng.uniform(0.01, 0.6))
-            survived += child.poll() is not None
+        stages = collections.Counter()
+        for i in range(kills):
+            stored = self.get_all_stored("run")
+            child = self.start("run", "--threads", rng.choice("123"), sweep=KILLED)
+            if i % 6 == 1:
+                self.wait_for_neighbourhoods("run", child)
+            time.sleep(rng.uniform(0.0, 0.1 if i % 2 == 1 else 0.6 * duration))
+            survived = child.poll() is not None
             child.kill()
             child.communicate()
-            self.assertLessEqual(stored, self.get_stored("run"))
-        self.assertLess(survived, kills)
-        self.run_sweep("run")
-        self.assertEqual(self.get_stored("run"), self.get_stored("undisturbed"))
+            for before, now in zip(stored, self.get_all_stored("run")):
+                self.assertLessEqual(before, now)
+            stages["survived" if survived else self.find_stage("run")] += 1
+        print("killed while at:", dict(stages))
+        self.assertLess(stages["survived"], kills)
+        self.run_sweep("run", sweep=KILLED)
+        self.assertEqual(self.get_all_stored("run"), self.get_all_stored("undisturbed"))
         self.assert_same_sweeps("run", "undisturbed")
+
+    def wait_for_neighbourhoods(self, name, child):
+        while child.poll() is None and not any("\nneighbourhoods:" in content.read_text() for content in
+                                               (self.folder / name).glob("chunks/*/content.yaml")):
+            time.sleep(0.002)
+
+    def find_stage(self, name):
+        """Of a sweep KILLED that was killed, by what it left."""
+        samples, neighbourhoods = self.get_all_stored(name)
+        complete = len(list(self.folder.glob(f"{name}/cases/*/report.html")))
+        return ("samples" if len(samples) < 2 * (16 + 60) else "neighbourhoods" if len(neighbourhoods) < 2 * 60 else
+                "cases" if complete < 8 else "tables")
+
+    def test_a_full_disk_is_named_and_with_more_room_the_sweep_continues(self):
+        probe = subprocess.run(["unshare", "-rm", "mount", "-t", "tmpfs", "none", self.folder], capture_output=True)
+        if probe.returncode != 0:
+            self.skipTest("no file system of its own: " + probe.stderr.decode())
+        self.run_sweep("undisturbed", sweep=FULL)
+        size = sum(file.stat().st_size for file in (self.folder / "undisturbed").rglob("*") if file.is_file())
+        for part in (0.01, 0.04, 0.08, 0.3, 0.6, 0.95):  # samples, neighbourhoods, cases, ...
+            with self.subTest(part=part):
+                self.fill_disk(f"disk{part}", int(part * size), f"run{part}")
+                kept = self.get_all_stored(f"run{part}")
+                self.run_sweep(f"run{part}", sweep=FULL)
+                for before, now, whole in zip(kept, self.get_all_stored(f"run{part}"), self.get_all_stored("undisturbed")):
+                    self.assertLessEqual(before, now)
+                    self.assertEqual(now, whole)
+                self.assert_same_sweeps(f"run{part}", "undisturbed")
+
+    def fill_disk(self, disk, size, name):
+        """Runs the sweep on a disk of so many bytes, and copies what is there then."""
+        (self.folder / disk).mkdir()
+        run = shlex.join([TWINMAP, "run", CART, *FULL, "--quiet", "--out", str(self.folder / disk / name)])
+        script = f"""mount -t tmpfs -o size={size} none {self.folder / disk} || exit 9
+            {run}; code=$?; cp -a {self.folder / disk / name} {self.folder}; exit $code"""
+        done = subprocess.run(["unshare", "-rm", "sh", "-c", script], capture_output=True, text=True, timeout=600)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertRegex(done.stderr, r"twinmap: error: \S+: cannot be \w+[\w ]*: No space left on device")
+        self.assertIn("with more room the same command continues:\n  twinmap run", done.stderr.replace(TWINMAP, "twinmap"))
+
+    def test_a_store_elsewhere_is_found_by_status_and_verify(self):
+        self.run_sweep("run", "--store", self.folder / "store", sweep=[*LIMITS, "design.train.samples=8,16"])
+        self.assertFalse((self.folder / "run/chunks").exists())
+        status = call("status", self.folder / "run").stdout
+        self.assertIn("samples: 24 of 24 stored\nlimits:  neighbourhoods of test points: 8 of 8 stored", status)
+        verified = call("verify", self.folder / "run")
+        self.assertEqual(verified.returncode, 0, verified.stdout)
+        self.assertIn("responses of the 24 samples that chunks hold", verified.stdout)
 
     def interrupt(self, name, number, pattern, times=1):
         """Sends the signal once something matches the pattern in the folder."""
@@ -277,6 +363,11 @@ class ProgressShown(SweepTestCase):
         self.assertRegex(shown, r"\[#+-*\] simulate: \d+ of 48, \d+ simulations/s")
         self.assertRegex(shown, r"\[#{30}\] cases: 8 of 8")
 
+    def test_neighbourhoods_are_a_stage_that_counts_their_simulations(self):
+        shown = self.run_on_terminal("run", "evaluation.limit=true")
+        self.assertRegex(shown, rf"\[#+-*\] simulate sensitivities: \d+ of {2 * 8 * 7}, \d+ simulations/s")
+        self.assertIn("16 of 16 missing neighbourhoods simulated", (self.folder / "run/run.log").read_text())
+
     def test_quiet_shows_none_and_other_outputs_get_no_control_sequences(self):
         self.assertNotIn("simulate:", self.run_on_terminal("quiet", "--quiet"))
         self.assertNotIn("\x1b", self.run_sweep("piped").stderr)
@@ -312,7 +403,10 @@ class Plan(SweepTestCase):
         plan = self.plan(*SMALL, "design.train.samples=8,24", "evaluation.limit=true", "--store",
                          self.folder / "run/chunks")
         self.assertIn("simulations: 32 needed, 16 stored, 16 to do", plan)
-        self.assertIn(f"and {2 * 8 * (2 * 3 + 1)} for the information limit", plan)
+        self.assertIn(f"neighbourhoods of 8 points needed, 0 stored, 8 to do: {8 * (2 * 3 + 1)} simulations", plan)
+        self.run_sweep("run", sweep=[*LIMITS, "design.train.samples=8,24"])
+        self.assertIn("neighbourhoods of 8 points needed, 8 stored, 0 to do: 0 simulations", self.plan(
+            *LIMITS, "design.train.samples=8,24,30"))
 
     def test_warns_of_plain_latin_hypercubes(self):
         plan = self.plan(*SWEEP, "design.train.method=latin_hypercube")
@@ -321,7 +415,8 @@ class Plan(SweepTestCase):
         self.assertNotIn("warning", self.plan(*SWEEP))
 
     def test_disk_is_about_what_is_written(self):
-        sizes = [*SMALL, "design.train.samples=100,200", "noise.replicates=2", "inverse_map.gp.max_evaluations=2"]
+        sizes = [*SMALL, "design.train.samples=100,200", "noise.replicates=2", "inverse_map.gp.max_evaluations=2",
+                 "evaluation.limit=true", "design.test.samples=60"]
         number, unit = re.search(r"disk:        about ([\d.e+]+) (\w+)", self.plan(*sizes)).groups()
         planned = float(number) * {"MiB": 2**20, "GiB": 2**30}[unit]
         self.run_sweep("run", sweep=sizes)

@@ -78,6 +78,20 @@ TEST(RunCases, AFailureIsReportedAndStopsTheOthersOnlyIfAsked) {
   EXPECT_EQ(count(failed, CaseStatus::kMissing), 2);
 }
 
+TEST(RunCases, AFullDiskOrAnErrorOutsideOfTheCasesEndsThem) {
+  std::atomic<int> begun{0};
+  const std::vector<CaseCost> costs(6, {1, 1});
+  const auto fill_disk = [&](int, int) {
+    ++begun;
+    throw DiskFull("no space");
+  };
+  EXPECT_THROW(runCases(costs, {2, 100.0, false, nullptr, {}}, fill_disk), DiskFull);
+  EXPECT_LE(begun, 2);
+  CaseScheduling scheduling{2, 100.0, false, nullptr, {}};
+  scheduling.finished = [](int, const CaseOutcome&) { throw std::runtime_error("cannot be noted"); };
+  EXPECT_THROW(runCases(costs, scheduling, [](int, int) {}), std::runtime_error);
+}
+
 TEST(RunCases, AStopFinishesTheCasesUnderWayAndBeginsNoOther) {
   std::atomic<bool> stop{false};
   int finished = 0;
