@@ -1,5 +1,7 @@
 #include "kernels/sparse/compression.hpp"
 
+#include <algorithm>
+
 #include "kernels/gp/training_set.hpp"
 #include "kernels/sparse/inducing_points.hpp"
 #include "kernels/sparse/variational_bound.hpp"
@@ -21,6 +23,7 @@ VectorXd restoreTarget(const GaussianProcess& process) {
 }  // namespace
 
 std::shared_ptr<const SparseGaussianProcess> compress(const GaussianProcess& process, double tolerance) {
+  constexpr double kLoosest = 0.1;  // of the signal: a process that is nearly all noise keeps some points
   if (process.getStructure().linear_term) return nullptr;
   const Hyperparameters& hyperparameters = process.getHyperparameters();
   const double noise_ratio = hyperparameters.noise_stddev / hyperparameters.signal_stddev;
@@ -30,7 +33,7 @@ std::shared_ptr<const SparseGaussianProcess> compress(const GaussianProcess& pro
       hyperparameters,
       process.getCenter(),
       chooseInducingPoints(process.getInputs(), process.getStructure(), hyperparameters, most + 1,
-                           tolerance * noise_ratio * noise_ratio),
+                           std::min(tolerance * noise_ratio * noise_ratio, kLoosest)),
       {}};
   if (parts.inducing.cols() > most) return nullptr;
   const VectorXd target = restoreTarget(process);

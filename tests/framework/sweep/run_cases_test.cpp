@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "framework/store/atomic_file.hpp"
+
 namespace twinmap {
 namespace {
 

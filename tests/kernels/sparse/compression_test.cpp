@@ -77,6 +77,15 @@ TEST(CompressionLimits, AProcessWithALinearTermOrRoughOnesAreLeftAsTheyAre) {
   EXPECT_FALSE(compress(*fitSmooth({CovarianceFunction::kMatern32, {}}, 40), 1e-6));
 }
 
+TEST(CompressionLimits, AProcessThatIsNearlyAllNoiseIsStillOne) {
+  const MatrixXd inputs = randomMatrix(3, 50, 1), tests = randomMatrix(3, 20, 2);
+  const Hyperparameters hyperparameters{VectorXd::Constant(1, 3.0), 0.01, 2.0, 1.0, 1.0};
+  const auto exact = fit(inputs, randomMatrix(1, 50, 3).transpose(), {}, hyperparameters);
+  const auto compact = compress(*exact, 1e-3);
+  ASSERT_TRUE(compact);
+  EXPECT_LT((compact->predict(tests).mean - exact->predict(tests).mean).cwiseAbs().maxCoeff(), 0.01);
+}
+
 TEST(LinearTerm, TheGradientOfTheMeanEqualsFiniteDifferences) {
   const auto exact = fitSmooth({CovarianceFunction::kMatern52, {0, 1, 0}, true, MeanFunction::kLinear}, 60);
   const VectorXd at = randomMatrix(3, 1, 6);
