@@ -25,13 +25,19 @@ std::vector<Index> findComplete(const MatrixXd& features) {
   return complete;
 }
 
+/// How many measurements the references are made of: as fine as the map deserves.
+int countMeasurements(const ExperimentSpec& experiment) {
+  constexpr int kFewest = 200, kMost = 2000, kPerSimulation = 10;
+  return std::clamp(kPerSimulation * experiment.design.train.samples, kFewest, kMost);
+}
+
 /// Test responses, each with several draws of the noise.
 void simulateMeasurements(const ExperimentSpec& experiment, const SimulatedSets& sets,
                           const FeatureExtractor& extractor, TrustTraining& training) {
-  constexpr int kMeasurements = 2000;
   const std::vector<int> samples = findSuccessful(sets.test);
   const MatrixXd responses = sets.test.responses(Eigen::all, samples);
-  const int draws = std::max(1, kMeasurements / std::max<int>(1, static_cast<int>(samples.size())));
+  const auto count = std::max(1, static_cast<int>(samples.size()));
+  const int draws = std::max(1, countMeasurements(experiment) / count);
   const ResponseNoise noise(experiment.noise, sets.test.layout);
   const RandomStream random(experiment.seed, RandomPurpose::kTrust);
   MatrixXd measured(extractor.getFeatureCount(), responses.cols() * draws);

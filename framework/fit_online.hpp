@@ -18,8 +18,8 @@ struct OnlineFit {
 };
 
 /// Compresses the map and fits its trust model: the forward model to the clean training responses, the
-/// reference distributions to some 2000 simulated measurements, the test responses with noise drawn for that
-/// alone. Deterministic. Cost: some seconds at most.
+/// reference distributions to some 2000 simulated measurements (fewer below 200 training samples), the test
+/// responses with noise drawn for that alone. Deterministic. Cost: some seconds at most.
 OnlineFit fitOnline(const ExperimentSpec& experiment, const SimulatedSets& sets,
                     const FeatureExtractor& extractor, const LabelledSets& labelled, const GpMap& map);
 

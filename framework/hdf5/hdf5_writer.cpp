@@ -28,6 +28,9 @@ Hdf5Handle makeSpace(const std::vector<std::size_t>& shape) {
 std::unique_lock<std::recursive_mutex> lockHdf5() {
   static std::recursive_mutex mutex;
   std::unique_lock lock(mutex);
+  // At exit the library would try once more to write a file for which the disk had no room, and crash.
+  static const herr_t once = H5dont_atexit();
+  static_cast<void>(once);
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   return lock;
 }

@@ -404,9 +404,10 @@ class Plan(SweepTestCase):
                          self.folder / "run/chunks")
         self.assertIn("simulations: 32 needed, 16 stored, 16 to do", plan)
         self.assertIn(f"neighbourhoods of 8 points needed, 0 stored, 8 to do: {8 * (2 * 3 + 1)} simulations", plan)
-        self.run_sweep("run", sweep=[*LIMITS, "design.train.samples=8,24"])
+        store = ["--store", self.folder / "run/chunks"]
+        self.run_sweep("limits", *store, sweep=[*LIMITS, "design.train.samples=8,24"])
         self.assertIn("neighbourhoods of 8 points needed, 8 stored, 0 to do: 0 simulations", self.plan(
-            *LIMITS, "design.train.samples=8,24,30"))
+            *LIMITS, "design.train.samples=8,24,30", *store))
 
     def test_warns_of_plain_latin_hypercubes(self):
         plan = self.plan(*SWEEP, "design.train.method=latin_hypercube")
