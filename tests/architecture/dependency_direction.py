@@ -25,7 +25,7 @@ ALLOWED = {
     "inference": {"flow", "spec", "design", "simulation", "multibody", "features", "sensitivity", "inverse_map", "online", "measurement", "store", "report"},
     "verification": {"flow", "spec", "design", "simulation", "multibody", "features", "sensitivity", "evaluation",
                      "inverse_map", "store", "report"},
-    "sweep": {"flow", "spec", "measurement", "design", "multibody", "simulation", "features", "inverse_map", "report", "store"},
+    "sweep": {"flow", "spec", "measurement", "design", "multibody", "simulation", "features", "sensitivity", "inverse_map", "report", "store"},
     "cli": {"flow", "sweep", "comparison", "verification", "inference", "spec", "measurement", "design", "multibody", "simulation", "features", "report", "store"},
 }
 

@@ -47,8 +47,9 @@ TEST(Interpolator, ThePointsLeftOutTellItsAccuracy) {
     interpolator.evaluate(tests.col(i), workspace);
     squares += (workspace.values - calcFunctions(tests.col(i))).cwiseAbs2() / tests.cols();
   }
-  for (int k = 0; k < 3; ++k) {  // rough: squares have long tails
-    EXPECT_LT(squares(k), 10.0 * interpolator.getParts().left_out_variance(k)) << k;
+  constexpr double kUnimportant = 0.01;  // of the accuracy that is wanted, 1: below it, nothing is sought
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_LT(squares(k), kUnimportant + 4.0 * interpolator.getParts().left_out_variance(k)) << k;
   }
 }
 
