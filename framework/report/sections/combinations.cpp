@@ -86,7 +86,7 @@ void addCombinations(const RunFolder& run, Section& section, Page& page) {
                              {{"sort", nullptr}, {"axis", {{"labelAngle", 0}}}});
   const Json y = makeNominal("combination", "", {{"sort", nullptr}});
   const Json spec = makeHeatSpec(kTable, static_cast<int>(run.identifiability.rows.size()), x, y,
-                                 makeSignedColor("weight"), "weight", "abs(datum.weight) > 0.6");
+                                 makeSignedColor("weight"), "weight", "abs(datum.weight) > 0.6", ".2~f");
   addFigure({kTable,
              "Which combinations the data determine",
              "Each row is a combination of parameters that the data determine on its own (an eigenvector of "

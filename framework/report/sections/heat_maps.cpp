@@ -39,7 +39,7 @@ void addRelevance(const RunFolder& run, Section& section, Page& page) {
   const Json color = makeQuantitative("relevance", "shortest / length scale",
                                       {{"scale", {{"scheme", "viridis"}, {"domain", {0, 1}}}}});
   const Json spec = makeHeatSpec("relevance", static_cast<int>(names.size()), x, y, color, "relevance",
-                                 "datum.relevance < 0.55");
+                                 "datum.relevance < 0.55", ".2~g");
   addFigure(
       {"relevance",
        "Relevance of the inputs",
@@ -75,7 +75,7 @@ void addCorrelations(const RunFolder& run, Section& section, Page& page) {
   const Json y = makeNominal("parameter", "", {{"sort", nullptr}});
   const Json spec =
       makeHeatSpec("correlations", static_cast<int>(names.size()), x, y, makeSignedColor("correlation"),
-                   "correlation", "abs(datum.correlation) > 0.6");
+                   "correlation", "abs(datum.correlation) > 0.6", ".2~f");
   addFigure({"correlations",
              "Correlation of the parameters",
              "How the data tie errors of two parameters together (from the mean Fisher information): near "

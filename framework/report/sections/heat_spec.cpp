@@ -3,7 +3,7 @@
 namespace twinmap {
 
 Json makeHeatSpec(const std::string& table, int rows, const Json& x, const Json& y, const Json& color,
-                  const std::string& value, const std::string& light_text) {
+                  const std::string& value, const std::string& light_text, const std::string& format) {
   constexpr int kRowHeight = 26, kFrame = 10;
   Json spec = makePanelSpec(table, kFrame + kRowHeight * rows);
   spec.erase("params");
@@ -12,7 +12,7 @@ Json makeHeatSpec(const std::string& table, int rows, const Json& x, const Json&
       {{"mark", {{"type", "rect"}}}, {"encoding", {{"color", color}}}},
       {{"mark", {{"type", "text"}, {"fontSize", 11}}},
        {"encoding",
-        {{"text", makeQuantitative(value, value, {{"format", ".2~g"}})},
+        {{"text", makeQuantitative(value, value, {{"format", format}})},
          {"color", {{"condition", {{"test", light_text}, {"value", "#ffffff"}}}, {"value", "#101010"}}}}}}};
   return spec;
 }

@@ -156,7 +156,7 @@ export function makeRunWithSprings(folder) {
   writeFileSync(file, makeCartYaml({
     name: 'springs', stiffness: 'k_1 + k_2', damping: 'd', output: 'x',
     more: `evaluation:
-  posterior: {samples: 4, draws: 100}
+  posterior: {samples: 4, draws: 200}
   baselines: [prior_mean, linear_regression, {least_squares: {samples: 3}}]`,
     parameters: {k_1: '{bounds: [40, 60], unit: N/m}', k_2: '{bounds: [40, 60], unit: N/m}',
                  d: '{bounds: [0.5, 2], unit: N s/m}'}

@@ -7,7 +7,7 @@ const kFlags = ['--disable-gpu', '--no-first-run', '--disable-background-network
 const kTries = 3;
 
 /** Longer than anything takes on the most loaded machine. */
-export const kPatience = 240_000; // ms
+export const kPatience = 900_000; // ms
 
 /** A browser; a start that fails, as it may where memory is short for a moment, is tried again. */
 export async function launchBrowser(tries = kTries) {
