@@ -35,7 +35,7 @@ bool CsvLines::next(std::string_view& line) {
 
 /// Drops the lines that were given, and appends a block; false at the end of the stream.
 bool CsvLines::fill() {
-  constexpr std::size_t kBlock = std::size_t{1} << 18, kLongestLine = std::size_t{1} << 24;
+  constexpr std::size_t kBlock = std::size_t{1} << 15, kLongestLine = std::size_t{1} << 24;
   buffer_.erase(0, at_);
   at_ = 0;
   const std::size_t before = buffer_.size();
