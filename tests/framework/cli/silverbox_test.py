@@ -28,7 +28,6 @@ def read_signals():
     return np.array([[float(row[2]), float(row[3])] for row in rows[1:] if len(row) > 3]).T
 
 
-@unittest.skipIf(os.environ.get("TWINMAP_SANITIZE"), "trains two maps of 1200 samples: too long under sanitizers")
 @unittest.skipIf(DATA is None, f"{NAME} of the Silverbox benchmark is not here: docs/inference.md says how to get it; "
                                "TWINMAP_SILVERBOX may say where it is")
 class Silverbox(unittest.TestCase):
