@@ -12,12 +12,25 @@
 #include "framework/report/tables.hpp"
 #include "framework/spec/experiment_file.hpp"
 #include "framework/store/atomic_file.hpp"
+#include "framework/sweep/case_cost.hpp"
 #include "framework/sweep/run_sweep.hpp"
 
 namespace twinmap {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
+
+/// Bytes.
+double getMachineMemory() {
+  return static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
+}
+
+/// What one case must not exceed: the machine's, or more where the user says so.
+double getMostMemory(const RunArguments& arguments) {
+  return std::max(getMachineMemory(), arguments.memory * kGibibyte);
+}
 
 ProgressCallback makeProgress(ProgressLine& line, bool quiet) {
   if (quiet) {
@@ -27,6 +40,7 @@ ProgressCallback makeProgress(ProgressLine& line, bool quiet) {
 }
 
 void runSingle(const ExperimentSpec& experiment, const RunArguments& arguments, const fs::path& folder) {
+  requireMemory(experiment, arguments.threads, getMostMemory(arguments));
   ProgressLine line;
   RunOptions options;
   options.folder = folder;
@@ -49,7 +63,14 @@ void runSingle(const ExperimentSpec& experiment, const RunArguments& arguments, 
   requireGates(summary.gates, arguments.fail_on_gates);
 }
 
+void requireMemoryOfCases(const YamlNode& tree, double bytes) {
+  for (const SweepCase& one : expandCasesWithSignals(tree)) {
+    requireMemory(one.experiment, 1, bytes);
+  }
+}
+
 void runCases(const YamlNode& tree, const RunArguments& arguments, const fs::path& folder) {
+  requireMemoryOfCases(tree, getMostMemory(arguments));
   showWarningsOnly();
   ProgressLine line;
   SweepOptions options;
@@ -85,10 +106,8 @@ std::filesystem::path chooseFolder(const RunArguments& arguments, const Experime
 }
 
 double chooseMemory(const RunArguments& arguments) {
-  constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0, kShare = 0.5;
-  const double machine =
-      static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
-  return arguments.memory > 0.0 ? arguments.memory * kGibibyte : kShare * machine;
+  constexpr double kShare = 0.5;
+  return arguments.memory > 0.0 ? arguments.memory * kGibibyte : kShare * getMachineMemory();
 }
 
 void run(const RunArguments& arguments) {

@@ -49,7 +49,8 @@ void requireExcerpt(const std::string& source, const VectorXd& times, double sta
 }
 
 void fill(TableSpec& target, const Table& table, const std::string& unit, double start, double duration) {
-  constexpr Index kMargin = 4;  // samples beside, for interpolation that looks at neighbours
+  constexpr Index kMostSamples = 400'000;  // resolved experiments hold them, and at most a million values
+  constexpr Index kMargin = 4;             // samples beside, for interpolation that looks at neighbours
   const ColumnSpec column = parseColumn(target.measured->column.text, target.measured->column.where);
   const Column& found = getColumn(table, column.name);
   const VectorXd times = readTimes(table, makeTimeBase(*target.measured, start), found.values.size());
@@ -60,6 +61,10 @@ void fill(TableSpec& target, const Table& table, const std::string& unit, double
   const VectorXd kept = times.segment(range.first, range.count);
   requireExcerpt(table.source, kept, start, end);
   const VectorXd values = readValues(table, column, unit, range.first, range.count);
+  if (values.size() > kMostSamples) {
+    throw MeasurementError(table.source + ": has more than 400000 samples in the time that is simulated; " +
+                           "resample the signal");
+  }
   const auto used = excerpt ? findRows(kept, 0.0, end, 0) : RowRange{0, kept.size()};
   target.times.assign(kept.data() + used.first, kept.data() + used.first + used.count);
   target.values.assign(values.data() + used.first, values.data() + used.first + used.count);

@@ -166,6 +166,34 @@ std::vector<Name> getOutputs(const ModesFeatureSpec&) {
   return {};
 }
 
+template <class Kind>
+const WindowSpec& getWindow(const Kind& kind) {
+  return kind.window;
+}
+WindowSpec getWindow(const SamplesFeatureSpec& samples) {
+  return {samples.start, samples.interval, samples.count};
+}
+WindowSpec getWindow(const ModesFeatureSpec&) {
+  return {};
+}
+
+/// A mistyped duration would cost hours of simulation that no feature needs.
+void checkDuration(const std::vector<FeatureSpec>& features, const ModelSpec& model) {
+  constexpr double kMost = 100.0, kShort = 1.0;
+  double last = kShort;
+  for (const FeatureSpec& feature : features) {
+    visitKind(feature, [&last](const auto& kind) {
+      const WindowSpec window = getWindow(kind);
+      last = std::max(last, calcSampleTime(window, window.count - 1));
+    });
+  }
+  if (model.simulation.duration > kMost * last) {
+    throw ExperimentError({model.parameters.front().name.where.file, 0, 0, "simulation.duration"},
+                          toText(model.simulation.duration),
+                          "must be at most 100 times the " + toText(last) + " s that the features need");
+  }
+}
+
 }  // namespace
 
 std::vector<Name> collectOutputs(const std::vector<FeatureSpec>& features) {
@@ -187,10 +215,23 @@ int countModes(const std::vector<FeatureSpec>& features) {
   return count;
 }
 
+void requireFewSamples(const std::vector<FeatureSpec>& features, const SourceLocation& where) {
+  constexpr double kMost = 1e7;
+  double samples = 0.0;
+  for (const FeatureSpec& feature : features) {
+    visitKind(feature, [&samples](const auto& kind) { samples += getWindow(kind).count; });
+  }
+  if (samples > kMost) {
+    throw ExperimentError({where.file, 0, 0, "features"}, "",
+                          "need more than 10000000 samples of an output, all together");
+  }
+}
+
 void checkFeatures(const std::vector<FeatureSpec>& features, const ModelSpec& model) {
   for (const FeatureSpec& feature : features) {
     visitKind(feature, [&model](const auto& kind) { check(kind, model); });
   }
+  checkDuration(features, model);
 }
 
 }  // namespace twinmap

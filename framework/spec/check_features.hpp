@@ -11,4 +11,7 @@ namespace twinmap {
 /// the simulation. Throws ExperimentError.
 void checkFeatures(const std::vector<FeatureSpec>& features, const ModelSpec& model);
 
+/// Throws ExperimentError where the features need so many samples that listing their times would take long.
+void requireFewSamples(const std::vector<FeatureSpec>& features, const SourceLocation& where);
+
 }  // namespace twinmap

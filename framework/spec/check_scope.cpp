@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "framework/spec/nearest_name.hpp"
+#include "framework/spec/number_text.hpp"
 #include "framework/spec/read_value.hpp"
 
 namespace twinmap {
@@ -63,6 +64,7 @@ void CheckScope::define(const Name& name, const std::optional<Dimension>& dimens
 
 void CheckScope::defineTime() {
   constexpr double kSomeTime = 0.29;
+  changes_ = true;
   names_.emplace_back("t");
   symbols_.push_back({Dimension{{"s", 1}}, kSomeTime});
 }
@@ -74,8 +76,16 @@ std::optional<Dimension> CheckScope::readUnit(const std::string& unit, const Sou
 }
 
 double CheckScope::check(const Expression& expression, const std::string& unit) const {
+  double literal = 0.0;
+  if (parseLiteral(expression.text, literal)) {
+    return literal;
+  }
   const double value = calcScaled(expression, false);
   const std::vector<std::string> used = getUsedNames(expression);
+  if (!std::isfinite(value) && (used.empty() || !changes_)) {
+    throw ExperimentError(expression.where, expression.text,
+                          "is not a finite number at the centre of the parameter box");
+  }
   if (unit.empty() || used.empty() || !isUnitStated(used) || hasFreeNumber(expression.text)) {
     return value;
   }

@@ -41,6 +41,7 @@ class CheckScope {
 
   std::vector<std::string> names_;
   std::vector<Symbol> symbols_;
+  bool changes_ = false;  ///< some of the names change in time
 };
 
 }  // namespace twinmap

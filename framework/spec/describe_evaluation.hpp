@@ -15,8 +15,8 @@ struct EnumNames<LeastSquaresStart> {
 
 template <class Fields>
 void describe(Fields& f, PosteriorSpec& s) {
-  f.optional("samples", s.samples, "test samples, the first ones", kCount);
-  f.optional("draws", s.draws, "simulations of each, at least 200", kCount);
+  f.optional("samples", s.samples, "test samples, the first ones", kHundredThousand);
+  f.optional("draws", s.draws, "simulations of each, at least 200", kHundredThousand);
   f.rule(s.draws >= 200, "must give at least 200 draws");
 }
 
@@ -30,7 +30,7 @@ template <class Fields>
 void describe(Fields& f, LeastSquaresSpec& s) {
   f.optional("samples", s.samples, "test samples, the first ones", kCount);
   f.optional("start", s.start, "where the search begins: box_center, or nearest_training by features");
-  f.optional("max_simulations", s.max_simulations, "of each sample", kCount);
+  f.optional("max_simulations", s.max_simulations, "of each sample", kHundredThousand);
 }
 
 template <class Fields>

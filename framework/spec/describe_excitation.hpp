@@ -50,7 +50,7 @@ template <class Fields>
 void describe(Fields& f, MultisineSpec& s) {
   f.required("amplitude", s.amplitude, "of each sine");
   f.required("frequencies", s.frequencies, "Hz");
-  f.optional("phases", s.phases, "rad; Schroeder's phases if absent");
+  f.optional("phases", s.phases, "rad; Schroeder's phases if absent", kNotEmpty);
   f.optional("start", s.start, "s; 0 before");
   f.optional("end", s.end, "s; 0 after; without it, to the end of the simulation");
   f.rule(!s.frequencies.empty(), "must list at least one of frequencies");

@@ -96,12 +96,15 @@ void describe(Fields& f, ConstantSpec& s) {
 
 template <class Fields>
 void describe(Fields& f, SimulationSpec& s) {
+  constexpr NumberRule kRelative{1e-13, 0.1, true, "must be a number from 1e-13 to 0.1"};
+  constexpr NumberRule kAbsolute{1e-18, 1.0, true, "must be a number from 1e-18 to 1"};
+  constexpr NumberRule kWallTime{0.0, 86400.0, false, "must be a number above 0, at most 86400 (a day)"};
   f.optional("duration", s.duration, "simulated time; s; needed for features of outputs", kNonNegative);
   f.optional("integrator", s.integrator, "dopri5, or one of Simbody's as a cross-check");
-  f.optional("relative_tolerance", s.relative_tolerance, "local error per step, relative", kPositive);
-  f.optional("absolute_tolerance", s.absolute_tolerance, "local error per step, absolute", kPositive);
+  f.optional("relative_tolerance", s.relative_tolerance, "local error per step, relative", kRelative);
+  f.optional("absolute_tolerance", s.absolute_tolerance, "local error per step, absolute", kAbsolute);
   f.optional("max_steps", s.max_steps, "per sample; more is a failure", kCount);
-  f.optional("max_wall_time", s.max_wall_time, "per sample; more is a failure; s", kPositive);
+  f.optional("max_wall_time", s.max_wall_time, "per sample; more is a failure; s", kWallTime);
   f.optional("allowed_failures", s.allowed_failures,
              "fraction of the training or test samples that may fail before the run does", kFraction);
 }
@@ -130,7 +133,7 @@ void describe(Fields& f, PartialLeastSquaresSpec& s) {
 template <class Fields>
 void describe(Fields& f, MutualInformationSpec& s) {
   f.required("count", s.count, "features to select", kCount);
-  f.optional("neighbours", s.neighbours, "of the nearest-neighbour estimator", kCount);
+  f.optional("neighbours", s.neighbours, "of the nearest-neighbour estimator", kThousand);
 }
 
 template <class Fields>
@@ -183,7 +186,7 @@ template <class Fields>
 void describe(Fields& f, NoiseSpec& s) {
   f.optional("scale", s.scale, "multiplies every stddev", kNonNegative);
   f.optional("replicates", s.replicates,
-             "noise draws per training simulation (default: 4, fewer for more than 750 samples)", kCount);
+             "noise draws per training simulation (default: 4, fewer for more than 750 samples)", kThousand);
   f.optionalMap("stddev", s.stddev, "standard deviation of each output's noise, in the output's unit");
   f.optionalMap("correlation", s.correlation, "of outputs whose noise is not white");
   f.optional("modes", s.modes, "of natural frequencies and damping ratios, where modes are features");
@@ -192,10 +195,10 @@ void describe(Fields& f, NoiseSpec& s) {
 template <class Fields>
 void describe(Fields& f, PointSetSpec& s) {
   f.optional("method", s.method, "how the parameter box is sampled");
-  f.optional("samples", s.samples, "number of points", kCount);
+  f.optional("samples", s.samples, "number of points", kSampleCount);
   f.optional("smallest", s.smallest,
              "nested_latin_hypercube: a Latin hypercube at this size and 2, 4, 8 ... times it (default 1)",
-             kCount);
+             kSampleCount);
   f.rule(!s.smallest || s.method == DesignMethod::kNestedLatinHypercube,
          "must give smallest with 'method: nested_latin_hypercube' only");
 }
@@ -231,11 +234,13 @@ void describe(Fields& f, GpMapSpec& s) {
              "follows_slope: that of the features through the slope of the map; or constant");
   f.optional("length_scales", s.length_scales, "one for all features, per output, or per feature");
   f.optional("length_scale_prior", s.length_scale_prior, "log-normal prior; without it, maximum likelihood");
-  f.optional("starts", s.starts, "optimisations of the marginal likelihood, from different points", kCount);
-  f.optional("max_evaluations", s.max_evaluations, "of the marginal likelihood, per start", kCount);
+  f.optional("starts", s.starts, "optimisations of the marginal likelihood, from different points",
+             kThousand);
+  f.optional("max_evaluations", s.max_evaluations, "of the marginal likelihood, per start", kHundredThousand);
   f.optional("approximation", s.approximation, "exact, or sgpr: sparse on inducing inputs, for many samples");
-  f.optional("inducing", s.inducing, "sgpr: inducing inputs", kCount);
-  f.optional("subset", s.subset, "sgpr: samples on which an exact process finds the hyperparameters", kCount);
+  f.optional("inducing", s.inducing, "sgpr: inducing inputs", kHundredThousand);
+  f.optional("subset", s.subset, "sgpr: samples on which an exact process finds the hyperparameters",
+             kHundredThousand);
   f.optional("refine_evaluations", s.refine_evaluations, "sgpr: of the bound over all samples", kCountOrNone);
   f.optional("bounds", s.bounds, "of the hyperparameters");
   f.rule(s.approximation == GpApproximation::kExact || !s.linear_term,
@@ -255,7 +260,8 @@ void describe(Fields& f, TrustSpec& s) {
 
 template <class Fields>
 void describe(Fields& f, ReportSpec& s) {
-  f.optional("over", s.over, "two parameters: axes of the pictures of the inferred standard deviation");
+  f.optional("over", s.over, "two parameters: axes of the pictures of the inferred standard deviation",
+             kNotEmpty);
   f.rule(s.over.empty() || s.over.size() == 2, "must name two parameters in 'over'");
 }
 
@@ -284,7 +290,7 @@ void describe(Fields& f, ExperimentSpec& s) {
   f.optionalMap("outputs", s.model.outputs, "what is measured");
   f.optional("simulation", s.model.simulation, "how it is integrated");
   f.required("features", s.features, "what the inverse map sees of the response");
-  f.optional("transform", s.transform, "steps from features to the inputs of the inverse map");
+  f.optional("transform", s.transform, "steps from features to the inputs of the inverse map", kNotEmpty);
   f.required("noise", s.noise, "measurement noise, on training and test features");
   f.optional("design", s.design, "where the parameter box is sampled");
   f.optional("inverse_map", s.inverse_map, "from features to parameters");

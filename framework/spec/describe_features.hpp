@@ -35,8 +35,8 @@ template <class Fields>
 void describe(Fields& f, SamplesFeatureSpec& s) {
   f.required("outputs", s.outputs, "outputs to sample");
   f.required("start", s.start, "time of the first sample; s", kNonNegative);
-  f.required("interval", s.interval, "time between samples; s", kPositive);
-  f.required("count", s.count, "samples of each output", kCount);
+  f.required("interval", s.interval, "time between samples; s", kSampleInterval);
+  f.required("count", s.count, "samples of each output", kSampleCount);
   f.rule(!s.outputs.empty(), "must name at least one of outputs");
 }
 
@@ -44,8 +44,8 @@ template <class Fields>
 void describe(Fields& f, WindowSpec& s) {
   constexpr int kFewest = 2;
   f.required("start", s.start, "time of the first sample; s", kNonNegative);
-  f.required("interval", s.interval, "time between samples; s", kPositive);
-  f.required("count", s.count, "samples in the window", kCount);
+  f.required("interval", s.interval, "time between samples; s", kSampleInterval);
+  f.required("count", s.count, "samples in the window", kSampleCount);
   f.rule(s.count >= kFewest, "must have at least 2 samples");
 }
 
@@ -70,6 +70,7 @@ void describe(Fields& f, ExtremaFeatureSpec& s) {
              kNonNegative);
   f.optional("fit_samples", s.fit_samples, "of the parabola through each peak; odd", kCount);
   f.rule(s.fit_samples >= kFewest && s.fit_samples % 2 == 1, "must give odd fit_samples, 3 or more");
+  f.rule(s.peaks <= s.window.count, "must not ask for more peaks than the window has samples");
   f.rule(s.window.count >= s.fit_samples, "must give a window with at least fit_samples samples");
 }
 
@@ -97,7 +98,7 @@ void describe(Fields& f, FrequencyResponseFeatureSpec& s) {
 
 template <class Fields>
 void describe(Fields& f, ModesFeatureSpec& s) {
-  f.required("count", s.count, "how many modes, from the lowest", kCount);
+  f.required("count", s.count, "how many modes, from the lowest", kThousand);
   f.optional("frequencies", s.frequencies, "natural frequencies |lambda| / (2 pi); Hz");
   f.optional("damping_ratios", s.damping_ratios, "-Re(lambda) / |lambda|");
   f.rule(s.frequencies || s.damping_ratios, "must have frequencies or damping_ratios");

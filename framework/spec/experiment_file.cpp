@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "framework/spec/check_experiment.hpp"
+#include "framework/spec/check_features.hpp"
 #include "framework/spec/describe_experiment.hpp"
 #include "framework/spec/describe_sweep.hpp"
 #include "framework/spec/noise_correlation.hpp"
@@ -39,6 +40,9 @@ void resolveDefaults(ExperimentSpec& experiment) {
     const bool correlated = !experiment.noise.correlation.empty();
     experiment.transform[0].whiten = WhitenSpec{correlated ? WhitenBy::kCovariance : WhitenBy::kStddev};
     experiment.transform[1].principal_components.emplace();
+    for (TransformStepSpec& step : experiment.transform) {
+      step.where = {experiment.name.where.file, 0, 0, "transform"};
+    }
   }
   resolveNoiseCorrelation(experiment);
   for (FeatureSpec& feature : experiment.features) {
@@ -58,6 +62,7 @@ void resolveDefaults(ExperimentSpec& experiment) {
 ExperimentSpec readExperiment(const YamlNode& root) {
   ExperimentSpec experiment;
   readValue(withoutSweep(root), experiment);
+  requireFewSamples(experiment.features, experiment.name.where);
   resolveDefaults(experiment);
   checkExperiment(experiment);
   return experiment;

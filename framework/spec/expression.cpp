@@ -2,7 +2,6 @@
 
 #include <muParser.h>
 
-#include <algorithm>
 #include <boost/math/constants/constants.hpp>
 
 #include "framework/spec/nearest_name.hpp"
@@ -26,24 +25,32 @@ bool hasAssignment(const std::string& text) {
   return false;
 }
 
+[[noreturn]] void throwSyntaxError(const Expression& expression, const mu::Parser::exception_type& error) {
+  throw ExperimentError(expression.where, expression.text, "is not a valid expression: " + error.GetMsg());
+}
+
 std::unique_ptr<mu::Parser> makeParser(const Expression& expression) {
+  constexpr std::size_t kLongest = 4000;
+  if (expression.text.size() > kLongest) {
+    throw ExperimentError(expression.where, expression.text, "must have at most 4000 characters");
+  }
   if (hasAssignment(expression.text)) {
     throw ExperimentError(expression.where, expression.text, "must not assign; write '==' to compare");
   }
   auto parser = std::make_unique<mu::Parser>();
   parser->DefineConst("pi", boost::math::constants::pi<double>());
-  parser->SetExpr(expression.text);
+  try {
+    parser->SetExpr(expression.text);
+  } catch (const mu::Parser::exception_type& error) {
+    throwSyntaxError(expression, error);
+  }
   return parser;
-}
-
-[[noreturn]] void throwSyntaxError(const Expression& expression, const mu::Parser::exception_type& error) {
-  throw ExperimentError(expression.where, expression.text, "is not a valid expression: " + error.GetMsg());
 }
 
 }  // namespace
 
 int ExpressionScope::define(const std::string& name, double value) {
-  if (contains(name)) {
+  if (!indices_.emplace(name, names_.size()).second) {
     throw std::invalid_argument("the name '" + name + "' is defined twice");
   }
   names_.push_back(name);
@@ -52,7 +59,16 @@ int ExpressionScope::define(const std::string& name, double value) {
 }
 
 bool ExpressionScope::contains(const std::string& name) const {
-  return std::find(names_.begin(), names_.end(), name) != names_.end();
+  return indices_.count(name) > 0;
+}
+
+std::size_t ExpressionScope::find(const std::string& name, const Expression& user) const {
+  const auto found = indices_.find(name);
+  if (found == indices_.end()) {
+    throw ExperimentError(user.where, user.text,
+                          "uses the unknown name '" + name + "'" + suggestName(name, names_));
+  }
+  return found->second;
 }
 
 CompiledExpression ExpressionScope::compile(const Expression& expression) {
@@ -60,16 +76,11 @@ CompiledExpression ExpressionScope::compile(const Expression& expression) {
   if (parseLiteral(expression.text, literal)) {
     return CompiledExpression(literal);
   }
-  for (const std::string& used : getUsedNames(expression)) {
-    if (!contains(used)) {
-      throw ExperimentError(expression.where, expression.text,
-                            "uses the unknown name '" + used + "'" + suggestName(used, names_));
-    }
-  }
   std::unique_ptr<mu::Parser> parser = makeParser(expression);
+  const std::vector<std::string> used = getUsedNames(expression);
   try {
-    for (std::size_t i = 0; i < names_.size(); ++i) {
-      parser->DefineVar(names_[i], &values_[i]);
+    for (const std::string& name : used) {
+      parser->DefineVar(name, &values_[find(name, expression)]);
     }
     parser->Eval();  // builds the byte code, so that later evaluations only run it
   } catch (const mu::Parser::exception_type& error) {

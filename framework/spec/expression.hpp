@@ -4,6 +4,7 @@
 #include <deque>
 #include <memory>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "framework/spec/source_location.hpp"
@@ -53,8 +54,12 @@ class ExpressionScope {
   CompiledExpression compile(const Expression& expression);
 
  private:
+  /// Index of a name that `user` uses.
+  std::size_t find(const std::string& name, const Expression& user) const;
+
   std::vector<std::string> names_;
-  std::deque<double> values_;  // addresses stay valid while names are added
+  std::unordered_map<std::string, std::size_t> indices_;  ///< in names_
+  std::deque<double> values_;                             // addresses stay valid while names are added
 };
 
 /// An expression bound to a scope that must outlive it. A literal evaluates at no cost. Move-only.

@@ -120,6 +120,10 @@ void addRule(Json& schema, const NumberRule& rule) {
   }
 }
 
+void addRule(Json& schema, const ListRule& rule) {
+  schema["minItems"] = rule.minimum;
+}
+
 /// Collects the fields of a struct into the schema of an object (see fields.hpp).
 class FieldSchema {
  public:

@@ -9,6 +9,8 @@
 namespace twinmap {
 namespace {
 
+constexpr double kMostLags = 20000.0;  // finding out whether values are an autocorrelation costs their square
+
 /// The times (s) at which the features need an output: sorted, each once.
 class OutputTimes {
  public:
@@ -63,6 +65,9 @@ void checkCorrelation(const NoiseCorrelationSpec& correlation, const std::vector
   }
   if (!correlation.sample_time) {
     reject("needs sample_time (s, of a lag), because its feature times are not equidistant");
+  }
+  if (times.back() - times.front() > kMostLags * *correlation.sample_time) {
+    reject("has feature times that are more than 20000 times sample_time apart");
   }
   const std::vector<long> grid = findGrid(times, *correlation.sample_time);
   if (grid.empty()) {

@@ -10,8 +10,14 @@ namespace {
 
 const SourceLocation kCommandLine{"command line", 0, 0, ""};
 
-[[noreturn]] void reject(const std::string& override_text, const std::string& rule) {
-  throw ExperimentError(kCommandLine, override_text, rule);
+/// What asks for a change of the tree: an override's text, or a swept key.
+struct Change {
+  std::string text;
+  SourceLocation where;
+};
+
+[[noreturn]] void reject(const Change& change, const std::string& rule) {
+  throw ExperimentError(change.where, change.text, rule);
 }
 
 bool isIndex(const std::string& step) {
@@ -21,7 +27,7 @@ bool isIndex(const std::string& step) {
 }
 
 /// "a.b[0].c" -> {"a", "b", "[0]", "c"}.
-std::vector<std::string> splitKeyPath(const std::string& path, const std::string& override_text) {
+std::vector<std::string> splitKeyPath(const std::string& path, const Change& change) {
   std::vector<std::string> steps(1);
   for (const char c : path) {
     if (c == '.') {
@@ -32,9 +38,13 @@ std::vector<std::string> splitKeyPath(const std::string& path, const std::string
       steps.back() += c;
     }
   }
+  constexpr std::size_t kMostSteps = 20;
+  if (steps.size() > kMostSteps) {
+    reject(change, "has a key path of more than 20 steps");
+  }
   for (const std::string& step : steps) {
     if (step.empty() || (step.front() == '[' && !isIndex(step))) {
-      reject(override_text, "has a malformed key path; write it like system.springs[0].stiffness");
+      reject(change, "has a malformed key path; write it like system.springs[0].stiffness");
     }
   }
   return steps;
@@ -52,12 +62,12 @@ void dropPositions(YamlNode& node) {
   }
 }
 
-YamlNode& descend(YamlNode& node, const std::string& step, const std::string& override_text) {
+YamlNode& descend(YamlNode& node, const std::string& step, const Change& change) {
   if (isIndex(step)) {
     const std::size_t index = std::stoul(step.substr(1));
     if (index >= node.items.size()) {
-      reject(override_text, "names " + step + " of a list with " + std::to_string(node.items.size()) +
-                                " items; indices start at 0");
+      reject(change, "names " + step + " of a list with " + std::to_string(node.items.size()) +
+                         " items; indices start at 0");
     }
     return node.items[index];
   }
@@ -65,21 +75,21 @@ YamlNode& descend(YamlNode& node, const std::string& step, const std::string& ov
     node.kind = YamlNode::Kind::kMap;
   }
   if (node.kind != YamlNode::Kind::kMap) {
-    reject(override_text, "goes below '" + node.where.key_path + "', which is " + describeValue(node));
+    reject(change, "goes below '" + node.where.key_path + "', which is " + describeValue(node));
   }
   if (YamlNode* child = node.find(step)) {
     return *child;
   }
-  node.entries.push_back({step, kCommandLine, YamlNode{}});
-  node.entries.back().value.where = kCommandLine;
+  node.entries.push_back({step, change.where, YamlNode{}});
+  node.entries.back().value.where = change.where;
   return node.entries.back().value;
 }
 
 /// The value at a key path; made, with the maps on the way, where it is missing.
-YamlNode& findOrMake(YamlNode& root, const std::string& key, const std::string& override_text) {
+YamlNode& findOrMake(YamlNode& root, const std::string& key, const Change& change) {
   YamlNode* node = &root;
-  for (const std::string& step : splitKeyPath(key, override_text)) {
-    node = &descend(*node, step, override_text);
+  for (const std::string& step : splitKeyPath(key, change)) {
+    node = &descend(*node, step, change);
   }
   return *node;
 }
@@ -113,23 +123,22 @@ YamlNode parseValue(const std::string& text) {
   return node;
 }
 
-YamlNode parseValues(const std::vector<std::string>& texts, const std::string& override_text) {
+YamlNode parseValues(const std::vector<std::string>& texts, const Change& change) {
   YamlNode values = makeSequence();
   for (const std::string& text : texts) {
     values.items.push_back(parseValue(text));
     if (values.items.back().kind == YamlNode::Kind::kNull) {
-      reject(override_text, "has an empty value in its list");
+      reject(change, "has an empty value in its list");
     }
   }
   return values;
 }
 
 /// Sweeps the key over the values, instead of those the file gives.
-void setSweptValues(YamlNode& root, const std::string& key, YamlNode values,
-                    const std::string& override_text) {
-  splitKeyPath(key, override_text);  // finds a malformed one
-  YamlNode& over = descend(descend(root, "sweep", override_text), "over", override_text);
-  descend(over, key, override_text) = std::move(values);
+void setSweptValues(YamlNode& root, const std::string& key, YamlNode values, const Change& change) {
+  splitKeyPath(key, change);  // finds a malformed one
+  YamlNode& over = descend(descend(root, "sweep", change), "over", change);
+  descend(over, key, change) = std::move(values);
 }
 
 /// A key that has one value is no longer swept; without any other, nothing is.
@@ -153,24 +162,25 @@ void endSweepOf(const std::string& key, YamlNode& root) {
 }  // namespace
 
 void applyOverride(YamlNode& root, const std::string& override_text) {
+  const Change change{override_text, kCommandLine};
   const std::size_t equals = override_text.find('=');
   if (equals == std::string::npos || equals == 0) {
-    reject(override_text, "is not an override; write key.path=value, as in noise.scale=2");
+    reject(change, "is not an override; write key.path=value, as in noise.scale=2");
   }
   const std::string key = override_text.substr(0, equals);
   const std::string value = override_text.substr(equals + 1);
   const std::vector<std::string> values = splitValues(value);
   if (isSweepable(key) && (values.size() > 1 || isRange(value))) {
-    setSweptValues(root, key, parseValues(values, override_text), override_text);
+    setSweptValues(root, key, parseValues(values, change), change);
   } else {
     endSweepOf(key, root);
-    findOrMake(root, key, override_text) = parseValue(value);
+    findOrMake(root, key, change) = parseValue(value);
   }
   setKeyPaths(root, "");
 }
 
-void setValue(YamlNode& root, const std::string& key, const YamlNode& value) {
-  findOrMake(root, key, key) = value;
+void setValue(YamlNode& root, const Name& key, const YamlNode& value) {
+  findOrMake(root, key.text, {key.text, key.where}) = value;
   setKeyPaths(root, "");
 }
 

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "framework/spec/expression.hpp"
 #include "framework/spec/yaml_node.hpp"
 
 namespace twinmap {
@@ -13,7 +14,8 @@ namespace twinmap {
 /// of the key. Throws ExperimentError for a malformed override.
 void applyOverride(YamlNode& root, const std::string& override_text);
 
-/// Puts a value at a key path, which keeps its place for messages. Throws ExperimentError as applyOverride().
-void setValue(YamlNode& root, const std::string& key, const YamlNode& value);
+/// Puts a value at a key path; both keep their places for messages. Throws ExperimentError as
+/// applyOverride().
+void setValue(YamlNode& root, const Name& key, const YamlNode& value);
 
 }  // namespace twinmap

@@ -77,8 +77,9 @@ void readValue(const YamlNode& node, int& value, const NumberRule& rule) {
 }
 
 void readValue(const YamlNode& node, std::uint64_t& value) {
-  constexpr double kLargest = 9007199254740992.0;  // 2^53: beyond, doubles skip whole numbers
-  constexpr NumberRule kSeed{0.0, kLargest, true, "must be a whole number from 0 to 9007199254740992"};
+  constexpr double kLargest =
+      9007199254740991.0;  // 2^53 - 1: from 2^53, doubles stand for their neighbours too
+  constexpr NumberRule kSeed{0.0, kLargest, true, "must be a whole number from 0 to 9007199254740991"};
   value = static_cast<std::uint64_t>(readInteger(node, kSeed));
 }
 

@@ -20,7 +20,7 @@ namespace twinmap {
 void readValue(const YamlNode& node, double& value, const NumberRule& rule = kAnyNumber);
 /// Whole numbers, also written as 1e3.
 void readValue(const YamlNode& node, int& value, const NumberRule& rule = kAnyNumber);
-/// Whole numbers from 0 to 2^53.
+/// Whole numbers from 0 to 2^53 - 1.
 void readValue(const YamlNode& node, std::uint64_t& value);
 /// true or false; yes, no, on, off and numbers are refused.
 void readValue(const YamlNode& node, bool& value);
@@ -117,8 +117,15 @@ void readValue(const YamlNode& node, std::optional<T>& value, const Rule&... rul
 }
 
 template <class T>
-void readValue(const YamlNode& node, std::vector<T>& values) {
+void readValue(const YamlNode& node, std::vector<T>& values, const ListRule& rule = {}) {
+  constexpr std::size_t kMost = 10000;
   requireKind(node, YamlNode::Kind::kSequence, "a list");
+  if (node.items.size() < rule.minimum) {
+    throw ExperimentError(node.where, "[]", rule.text);
+  }
+  if (!std::is_arithmetic_v<T> && node.items.size() > kMost) {
+    throw ExperimentError(node.where, "", "must list at most 10000");
+  }
   values.assign(node.items.size(), T{});
   for (std::size_t i = 0; i < values.size(); ++i) {
     readValue(node.items[i], values[i]);
@@ -138,7 +145,11 @@ void readValue(const YamlNode& node, std::array<T, N>& values) {
 
 template <class T>
 void readMap(const YamlNode& node, std::vector<T>& values) {
+  constexpr std::size_t kMost = 1000;
   requireKind(node, YamlNode::Kind::kMap, "a map from names to values");
+  if (node.entries.size() > kMost) {
+    throw ExperimentError(node.where, "", "must name at most 1000");
+  }
   values.clear();
   for (const YamlEntry& entry : node.entries) {
     T value{};

@@ -16,7 +16,8 @@ struct SourceLocation {
 /// "file:line:column: key.path"; parts that are unknown are left out.
 std::string toString(const SourceLocation& where);
 
-/// Wrong input. The message names file:line:column, key path, the value found and the rule it breaks.
+/// Wrong input. The message names file:line:column, key path, the value found (its beginning) and the rule it
+/// breaks.
 class ExperimentError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -13,7 +13,7 @@ namespace {
 
 using Choice = std::vector<std::size_t>;  ///< index of the value of each key
 
-constexpr std::size_t kMostCases = 100000;
+constexpr std::size_t kMostCases = 10000;
 
 /// Harmless in the name of a folder.
 bool isPlain(char c) {
@@ -40,8 +40,7 @@ std::vector<Choice> listGrid(const SweepSpec& sweep) {
     }
     choices = std::move(longer);
     if (choices.size() > kMostCases) {
-      throw ExperimentError(sweep.over.keys.front().where, "",
-                            "belongs to a sweep of more than 100000 cases");
+      throw ExperimentError(sweep.over.keys.front().where, "", "belongs to a sweep of more than 10000 cases");
     }
   }
   return choices;
@@ -147,7 +146,7 @@ std::vector<SweepCase> expandSweep(const YamlNode& root) {
     cases.push_back({names[i], {}, {}});
     for (std::size_t k = 0; k < choices[i].size(); ++k) {
       const SweptKey& key = sweep.over.keys[k];
-      setValue(tree, key.key, key.values[choices[i][k]]);
+      setValue(tree, {key.key, key.where}, key.values[choices[i][k]]);
       cases.back().values.push_back(describeOnOneLine(key.values[choices[i][k]]));
     }
     cases.back().experiment = readExperiment(tree);

@@ -45,8 +45,7 @@ std::string describeValue(const YamlNode& node) {
     case YamlNode::Kind::kScalar:
       break;
   }
-  constexpr std::size_t kLongest = 80;
-  return node.scalar.size() <= kLongest ? node.scalar : node.scalar.substr(0, kLongest) + "...";
+  return node.scalar;
 }
 
 void setKeyPaths(YamlNode& node, const std::string& key_path) {

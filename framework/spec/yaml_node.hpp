@@ -38,7 +38,8 @@ YamlNode makeSequence();
 std::string describeValue(const YamlNode& node);
 
 /// Parses one YAML document. Throws ExperimentError for a syntax error, a duplicate key, a merge key, a tag,
-/// a second document, a NUL byte, or more than a million values (aliases expanded).
+/// a second document, a NUL byte, what is not UTF-8, more than a million values (aliases expanded), more than 20
+/// levels, or a key of more than 100 characters.
 YamlNode parseYaml(const std::string& text, const std::string& file);
 
 /// Reads and parses a file of at most 16 MiB; ExperimentError also where it cannot be read.

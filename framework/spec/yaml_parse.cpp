@@ -3,10 +3,12 @@
 #include <yaml-cpp/parser.h>
 
 #include <algorithm>
+#include <boost/locale/utf.hpp>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <sstream>
+#include <unordered_set>
 
 #include "framework/spec/yaml_node.hpp"
 
@@ -14,7 +16,9 @@ namespace twinmap {
 namespace {
 
 constexpr std::size_t kMostValues = 1'000'000;
-constexpr std::uintmax_t kLargestFile = 16 << 20;
+constexpr std::size_t kMostLevels = 20;
+constexpr std::size_t kLongestKey = 100;
+constexpr std::size_t kLargestFile = 16 << 20;
 
 SourceLocation locate(const std::string& file, const YAML::Mark& mark) {
   return {file, mark.line + 1, mark.column + 1, ""};
@@ -74,6 +78,7 @@ class TreeBuilder : public YAML::EventHandler {
     YamlNode node;
     YAML::anchor_t anchor;
     std::size_t values_before;
+    std::unordered_set<std::string> keys;
     bool has_key = false;
     std::string key;
     SourceLocation key_where;
@@ -97,7 +102,10 @@ class TreeBuilder : public YAML::EventHandler {
     node.where = locate(file_, mark);
     const std::size_t values_before = values_;
     countValues(1, mark);
-    stack_.push_back({std::move(node), anchor, values_before, false, "", {}});
+    if (stack_.size() == kMostLevels) {
+      throw ExperimentError(locate(file_, mark), "", "is nested more than 20 levels deep");
+    }
+    stack_.push_back({std::move(node), anchor, values_before, {}, false, "", {}});
   }
 
   void close() {
@@ -132,7 +140,10 @@ class TreeBuilder : public YAML::EventHandler {
     if (key.scalar == "<<" && !key.quoted) {
       throw ExperimentError(key.where, "<<", "is a merge key, which YAML 1.2 does not have; repeat the keys");
     }
-    if (parent.node.find(key.scalar) != nullptr) {
+    if (key.scalar.size() > kLongestKey) {
+      throw ExperimentError(key.where, key.scalar, "is a key of more than 100 characters");
+    }
+    if (!parent.keys.insert(key.scalar).second) {
       throw ExperimentError(key.where, key.scalar, "is given twice in the same map");
     }
     parent.has_key = true;
@@ -147,15 +158,33 @@ class TreeBuilder : public YAML::EventHandler {
   std::size_t values_ = 0;
 };
 
+SourceLocation locateByte(const std::string& text, std::string::const_iterator byte,
+                          const std::string& file) {
+  return {file, static_cast<int>(std::count(text.begin(), byte, '\n')) + 1, 1, ""};
+}
+
+/// yaml-cpp would replace what is not UTF-8.
+void requireText(const std::string& text, const std::string& file) {
+  const auto nul = std::find(text.begin(), text.end(), '\0');
+  if (nul != text.end()) {
+    throw ExperimentError(locateByte(text, nul, file), "",
+                          "has a NUL byte in this line: a binary file or UTF-16, not YAML in UTF-8");
+  }
+  using Utf8 = boost::locale::utf::utf_traits<char>;
+  for (auto character = text.begin(); character != text.end();) {
+    const auto begin = character;
+    const boost::locale::utf::code_point code = Utf8::decode(character, text.end());
+    if (code == boost::locale::utf::illegal || code == boost::locale::utf::incomplete) {
+      throw ExperimentError(locateByte(text, begin, file), "",
+                            "has a byte in this line that is not UTF-8; save the file as UTF-8");
+    }
+  }
+}
+
 }  // namespace
 
 YamlNode parseYaml(const std::string& text, const std::string& file) {
-  const std::size_t nul = text.find('\0');
-  if (nul != std::string::npos) {
-    const auto line = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(nul), '\n');
-    throw ExperimentError({file, static_cast<int>(line) + 1, 1, ""}, "",
-                          "has a NUL byte in this line: a binary file, not YAML");
-  }
+  requireText(text, file);
   std::istringstream stream(text);
   TreeBuilder builder(file);
   try {
@@ -187,12 +216,13 @@ YamlNode loadYaml(const std::string& path) {
   if (!file) {
     throw ExperimentError(where, "", "cannot be read; does the file exist?");
   }
-  if (std::filesystem::file_size(path, error) > kLargestFile && !error) {
+  std::string text(kLargestFile + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (text.size() > kLargestFile) {
     throw ExperimentError(where, "", "is larger than 16 MiB, too large for an experiment file");
   }
-  std::ostringstream text;
-  text << file.rdbuf();
-  return parseYaml(text.str(), path);
+  return parseYaml(text, path);
 }
 
 }  // namespace twinmap

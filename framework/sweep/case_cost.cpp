@@ -1,5 +1,7 @@
 #include "framework/sweep/case_cost.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -76,7 +78,8 @@ std::vector<TrainingStep> listTrainingSteps(const ExperimentSpec& experiment) {
 }
 
 CaseCost calcCaseCost(const ExperimentSpec& experiment, int threads) {
-  constexpr double kBytes = 8.0, kCopies = 10.0, kSparseCopies = 6.0, kLimitCopies = 1.5;
+  constexpr double kBytes = 8.0, kCopies = 10.0, kSparseCopies = 6.0, kLimitCopies = 1.5,
+                   kPosteriorCopies = 3.0;
   const auto parameters = static_cast<double>(experiment.model.parameters.size());
   const double searches = std::min(double(threads), parameters * experiment.inverse_map.gp.starts);
   const double exact = countExact(experiment);
@@ -90,12 +93,29 @@ CaseCost calcCaseCost(const ExperimentSpec& experiment, int threads) {
     numbers += kLimitCopies * countRows(experiment) *
                countNeighbours(collectUnknown(experiment.model).size()) * experiment.design.test.samples;
   }
+  if (experiment.evaluation.posterior) {
+    numbers += kPosteriorCopies * countRows(experiment) * experiment.evaluation.posterior->draws;
+  }
   CaseCost cost{kBytes * numbers, 0.0};
   for (const TrainingStep& step : listTrainingSteps(experiment)) {
     const double evaluations = step.searches > 0.0 ? step.searches * kEvaluations : 1.0;
     cost.flops += step.processes * evaluations * step.relative_cost * cube(step.samples);
   }
   return cost;
+}
+
+void requireMemory(const ExperimentSpec& experiment, int threads, double bytes) {
+  constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
+  const double needed = calcCaseCost(experiment, threads).bytes;
+  if (needed > bytes) {
+    throw ExperimentError(
+        {experiment.name.where.file, 0, 0, "design"}, "",
+        fmt::format("needs about {:.3g} GiB of memory for {} training samples x {} draws of noise, {} test "
+                    "samples and {:.3g} numbers in a response; {:.3g} GiB are allowed (--memory)",
+                    needed / kGibibyte, experiment.design.train.samples,
+                    experiment.noise.replicates.value_or(1), experiment.design.test.samples,
+                    countRows(experiment), bytes / kGibibyte));
+  }
 }
 
 }  // namespace twinmap

@@ -1,6 +1,8 @@
 // Every kind of mistake in an experiment file gives one error that names its place, its value and the rule.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "framework/spec/experiment_file.hpp"
 
 namespace twinmap {
@@ -259,6 +261,37 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"TableNotIncreasing",
                 "excitation.F={tables: [{times: [0, 0], values: [1, 2]}]}",
                 {"excitation.F.tables[0]", "strictly increasing"}},
+        Mistake{"NotFinite", "constants.m1.value=1/0", {"constants.m1.value: '1/0' is not a finite number"}},
+        Mistake{"NotFiniteForce",
+                "system.applied_forces[0].force[1]=sqrt(-1)",
+                {"system.applied_forces[0].force[1]: 'sqrt(-1)' is not a finite number"}},
+        Mistake{"NotANumberOfParameters",
+                "system.springs[0].stiffness=k_y / (k_y - 10)",
+                {"system.springs[0].stiffness", "is not a finite number at the centre of the parameter box"}},
+        Mistake{"SeedThatADoubleRounds", "seed=9007199254740993", {"seed: '9007199254740993' must be"}},
+        Mistake{"NoStep", "transform=[]", {"transform: '[]' must not be empty"}},
+        Mistake{"NoAxis", "report.over=[]", {"report.over: '[]' must not be empty"}},
+        Mistake{"NoPhase",
+                "excitation.F={multisines: [{amplitude: 1, frequencies: [1], phases: []}]}",
+                {"excitation.F.multisines[0].phases: '[]' must not be empty"}},
+        Mistake{"ManySamplesOfFeatures",
+                "features[0].samples={outputs: [y], start: 0, interval: 1e-9, count: 1000001}",
+                {"count: '1000001' must be a whole number from 1 to 1000000"}},
+        Mistake{"SamplesCloserThanTheirTimes",
+                "features[0].samples.interval=1e-12",
+                {"interval: '1e-12' must be a number, 1e-9 or above"}},
+        Mistake{"ManyLags",
+                "noise.correlation={y: {values: [1, 0.5], sample_time: 1e-9}}",
+                {"noise.correlation.y", "more than 20000 times sample_time apart"}},
+        Mistake{"MorePeaksThanSamples",
+                "features[0]={extrema: {output: y, peaks: 9, window: {start: 0, interval: 1, count: 5}}}",
+                {"must not ask for more peaks than the window has samples"}},
+        Mistake{"ManyDraws", "evaluation.posterior={draws: 1e7}", {"draws: '1e7' must be a whole number"}},
+        Mistake{"ToleranceOfNoUse", "simulation.relative_tolerance=1e-300", {"from 1e-13 to 0.1"}},
+        Mistake{"LongerThanNeeded",
+                "simulation.duration=1e12",
+                {"simulation.duration: '1e+12' must be at most 100 times the 5 s that the features need"}},
+        Mistake{"EndlessSamples", "simulation.max_wall_time=1e300", {"at most 86400"}},
         Mistake{"IndexOutOfRange", "system.springs[9].stiffness=1", {"[9] of a list with 2 items"}},
         Mistake{"MalformedPath", "system..springs=1", {"malformed key path"}},
         Mistake{"NoOverride", "noise.scale", {"is not an override"}}),
@@ -279,6 +312,18 @@ TEST(ExperimentErrors, AnExcitationThatDependsOnAParameterHasNoFrequencyResponse
         message.find("excitation.F.pulses[0].amplitude: 'force' depends on the sampled parameter 'k_y'"),
         std::string::npos)
         << message;
+  }
+}
+
+TEST(ExperimentErrors, NameTheKeyWhoseDefaultBreaksARule) {
+  YamlNode root = loadExperimentTree(kTable1, {"noise.stddev.y=0"});
+  root.entries.erase(std::find_if(root.entries.begin(), root.entries.end(),
+                                  [](const YamlEntry& entry) { return entry.key == "transform"; }));
+  try {
+    readExperiment(root);
+    FAIL();
+  } catch (const ExperimentError& error) {
+    EXPECT_EQ(std::string(error.what()), kTable1 + ": transform: 'whiten' needs noise above 0 on output 'y'");
   }
 }
 

@@ -10,6 +10,7 @@ namespace twinmap {
 namespace {
 
 const std::string kTable1 = std::string(TWINMAP_SOURCE_DIR) + "/experiments/two_beam/table1.yaml";
+const std::string kCart = std::string(TWINMAP_SOURCE_DIR) + "/experiments/duffing/cart.yaml";
 
 TEST(ExperimentFile, ReadsTheTwoBeamExperiment) {
   const ExperimentSpec experiment = loadExperiment(kTable1);
@@ -85,8 +86,7 @@ TEST(ExperimentFile, ReportAxesDefaultToTheLastTwoParameters) {
 }
 
 TEST(ExperimentFile, DefaultsAreWhitenedComponentsAndReplicates) {
-  const ExperimentSpec experiment =
-      loadExperiment(kTable1, {"transform=[]", "noise={stddev: {y: 1, theta: 1}}"});
+  const ExperimentSpec experiment = loadExperiment(kCart);
   ASSERT_EQ(experiment.transform.size(), 2u);
   EXPECT_TRUE(experiment.transform[0].whiten);
   EXPECT_TRUE(experiment.transform[1].principal_components);

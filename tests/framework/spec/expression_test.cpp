@@ -68,6 +68,20 @@ TEST(Expression, ErrorsNamePlaceValueAndRule) {
   EXPECT_NE(get_error("(2").find("is not a valid expression"), std::string::npos);
 }
 
+TEST(Expression, MayBeLongOrDeepButNotEndless) {
+  std::string sum = "1", nested = "1";
+  for (int i = 0; i < 1000; ++i) {
+    sum += "+1";
+    nested = "(" + nested + ")";
+  }
+  ExpressionScope scope;
+  EXPECT_EQ(scope.compile({sum, {}}).calc(), 1001.0);
+  EXPECT_EQ(scope.compile({nested, {}}).calc(), 1.0);
+  for (const char character : {'x', '1', '(', '+'}) {
+    EXPECT_THROW(scope.compile({std::string(100000, character), {}}), ExperimentError) << character;
+  }
+}
+
 TEST(NumberText, IsShortestAndReadsBackAsTheSameNumber) {
   EXPECT_EQ(toText(0.1), "0.1");
   EXPECT_EQ(toText(1.3e-4), "0.00013");

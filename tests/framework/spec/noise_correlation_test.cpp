@@ -11,7 +11,7 @@
 namespace twinmap {
 namespace {
 
-const std::string kTable1 = std::string(TWINMAP_SOURCE_DIR) + "/experiments/two_beam/table1.yaml";
+const std::string kCart = std::string(TWINMAP_SOURCE_DIR) + "/experiments/duffing/cart.yaml";
 
 Eigen::VectorXd calcOf(const std::vector<double>& autoregression, Eigen::Index lags) {
   return calcAutocorrelation({{}, autoregression, {}, {}}, lags);
@@ -58,8 +58,7 @@ TEST(Autocorrelation, IsPositiveDefiniteWhereItsMatrixIs) {
 }
 
 TEST(NoiseCorrelation, DefaultsFollowFromTheFeatureTimes) {
-  const ExperimentSpec experiment =
-      loadExperiment(kTable1, {"noise.correlation={y: {autoregression: [0.5]}}", "transform=[]"});
+  const ExperimentSpec experiment = loadExperiment(kCart, {"noise.correlation={x: {autoregression: [0.5]}}"});
   EXPECT_EQ(experiment.noise.correlation[0].sample_time, 0.05);
   EXPECT_EQ(experiment.transform[0].whiten->by, WhitenBy::kCovariance);
   const std::string resolved = writeExperiment(experiment);

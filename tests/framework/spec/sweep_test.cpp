@@ -104,7 +104,9 @@ TEST(Sweep, WhatIsWrongIsNamedAtItsPlace) {
   expect("sweep={over: {name: [a, b]}}", "'name' cannot be swept");
   expect("sweep={over: {noise: [{}], noise.scale: [1]}}", "overlaps with the swept key 'noise'");
   expect("sweep={over: {seed: 1..200000}}", "is not a range");
-  expect("sweep={over: {seed: 1..90000, noise.scale: [1, 2]}}", "more than 100000 cases");
+  expect("sweep={over: {seed: 1..9000, noise.scale: [1, 2]}}", "more than 10000 cases");
+  expect("sweep={over: {seed: -9000000000000000000..9000000000000000000}}", "is not a range");
+  expect("sweep={over: {seed: -9223372036854775808..9223372036854775807}}", "is not a range");
 }
 
 TEST(CompareTrees, NamesWhatDiffersAndIgnoresOrderAndDescriptions) {

@@ -62,6 +62,46 @@ TEST(YamlNode, RefusesDeepNestingAndAliasBombs) {
   EXPECT_NE(getError(bomb).find("more than a million values"), std::string::npos);
 }
 
+TEST(YamlNode, RefusesWhatIsNotUtf8) {
+  for (const char* text : {"a: \xff", "# \xe4", "# \xc0\x80", "# \xed\xa0\x80", "# \xe2\x82"}) {
+    EXPECT_EQ(
+        getError(std::string("b: 1\n") + text).rfind("f.yaml:2:1: has a byte in this line that is not", 0),
+        0u)
+        << text;
+  }
+  EXPECT_EQ(parseYaml("\xef\xbb\xbf"
+                      "a: \u00b5m\n",
+                      "f.yaml")
+                .find("a")
+                ->scalar,
+            "\u00b5m");
+}
+
+TEST(YamlNode, BoundsKeysAndLevelsSoThatKeyPathsStaySmall) {
+  EXPECT_NE(getError("? " + std::string(101, 'k') + "\n: 1\n").find("a key of more than 100"),
+            std::string::npos);
+  EXPECT_EQ(getError(std::string(20, '[') + std::string(20, ']')), "");
+  EXPECT_NE(getError(std::string(21, '[') + std::string(21, ']')).find("more than 20 levels"),
+            std::string::npos);
+}
+
+TEST(YamlNode, ReadsAMapOfManyKeysInLinearTime) {
+  std::string text;
+  for (int i = 0; i < 100000; ++i) {
+    text += "k" + std::to_string(i) + ": 1\n";
+  }
+  EXPECT_EQ(parseYaml(text, "f.yaml").entries.size(), 100000u);
+}
+
+TEST(ExperimentError, ShowsTheBeginningOfAValueOnOneLine) {
+  const std::string message =
+      ExperimentError({"f", 1, 1, "k"}, "a\n\x1b" + std::string(500, 'x'), "is wrong").what();
+  EXPECT_EQ(message, "f:1:1: k: 'a  " + std::string(77, 'x') + "...' is wrong");
+  const std::string cut =
+      ExperimentError({"f", 1, 1, ""}, std::string(79, 'x') + "\u00b5m", "is wrong").what();
+  EXPECT_EQ(cut, "f:1:1: '" + std::string(79, 'x') + "...' is wrong");
+}
+
 TEST(YamlNode, WrittenYamlParsesToTheSameTree) {
   const std::string text = "a: 1\nb: [x, \"5\", '#no comment']\nc: {d: \"k: v\", e: [{f: 1}, {g: []}]}\n";
   const YamlNode root = parseYaml(text, "f.yaml");
