@@ -35,6 +35,9 @@ if(TWINMAP_SANITIZE)
                       -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${TWINMAP_SANITIZE})
 endif()
+if(TWINMAP_FUZZ)
+  add_compile_options(-fsanitize=fuzzer-no-link) # counts what was reached
+endif()
 
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM)
