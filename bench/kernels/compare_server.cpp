@@ -14,8 +14,8 @@
 
 #include "bench/kernels/problem.hpp"
 #include "kernels/gp/fit.hpp"
-#include "kernels/gp/online_predictor.hpp"
 #include "kernels/gp/training.hpp"
+#include "kernels/online/online_predictor.hpp"
 
 namespace twinmap::bench {
 namespace {
@@ -88,18 +88,17 @@ void predictOnline(std::istream& arguments) {
   gp::TrainingOptions options;
   options.starts = 1;
   options.max_evaluations = 3;  // the time does not depend on the hyperparameters
-  std::vector<std::shared_ptr<const gp::GaussianProcess>> processes;
+  std::vector<gp::Process> processes;
   for (const auto& result :
        gp::train(problem.inputs, problem.targets, makeStructure(features, per_feature != 0), options)) {
     processes.push_back(result.gp);
   }
   const gp::OnlinePredictor predictor(processes);
   gp::OnlinePredictor::Workspace workspace(predictor);
-  VectorXd mean(4), stddev(4);
   std::vector<double> times;
   for (int i = 0; i < repeats; ++i) {
     const VectorXd x = problem.inputs.col(i % n);
-    times.push_back(1e6 * secondsOf([&] { predictor.predict(x, mean, stddev, workspace); }));
+    times.push_back(1e6 * secondsOf([&] { predictor.predict(x, workspace); }));
   }
   std::cout << quantile(times, 0.5) << ' ' << quantile(times, 0.99);
 }

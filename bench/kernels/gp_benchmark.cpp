@@ -4,8 +4,8 @@
 
 #include "bench/kernels/problem.hpp"
 #include "kernels/gp/fit.hpp"
-#include "kernels/gp/online_predictor.hpp"
 #include "kernels/gp/training.hpp"
+#include "kernels/online/online_predictor.hpp"
 
 namespace twinmap::bench {
 namespace {
@@ -82,7 +82,7 @@ void predictOnline(benchmark::State& state) {
   const int n = static_cast<int>(state.range(0)), features = static_cast<int>(state.range(1));
   const bool per_feature = state.range(2) != 0;
   const Problem problem = makeProblem(n, features);
-  std::vector<std::shared_ptr<const gp::GaussianProcess>> processes;
+  std::vector<gp::Process> processes;
   const auto inputs = std::make_shared<const MatrixXd>(problem.inputs);
   for (int t = 0; t < 4; ++t) {
     const auto fitted =
@@ -94,11 +94,10 @@ void predictOnline(benchmark::State& state) {
   }
   const gp::OnlinePredictor predictor(processes);
   gp::OnlinePredictor::Workspace workspace(predictor);
-  VectorXd mean(4), stddev(4);
   Eigen::Index i = 0;
   for (auto _ : state) {
-    predictor.predict(problem.inputs.col(i), mean, stddev, workspace);
-    benchmark::DoNotOptimize(stddev.data());
+    predictor.predict(problem.inputs.col(i), workspace);
+    benchmark::DoNotOptimize(workspace.values.stddev.data());
     i = (i + 1) % n;
   }
 }

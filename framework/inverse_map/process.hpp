@@ -1,16 +1,10 @@
 #pragma once
 
-#include <memory>
-#include <variant>
-
-#include "kernels/gp/gaussian_process.hpp"
-#include "kernels/sparse/sparse_gaussian_process.hpp"
+#include "kernels/online/process.hpp"
 
 namespace twinmap {
 
-/// One parameter's process: exact, or sparse on inducing inputs.
-using Process = std::variant<std::shared_ptr<const gp::GaussianProcess>,
-                             std::shared_ptr<const gp::SparseGaussianProcess>>;
+using gp::Process;
 
 /// Its negative log marginal likelihood, or the variational bound on it from above; nats.
 double getNlml(const Process& process);

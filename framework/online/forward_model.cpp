@@ -65,7 +65,7 @@ class Search {
   void linearize() {
     workspace_.jacobian = workspace_.forward.jacobian.leftCols(unknown_).array().colwise() * weights_;
     workspace_.gradient.noalias() = workspace_.jacobian.transpose() * workspace_.misfit;
-    workspace_.normal.noalias() = workspace_.jacobian.transpose() * workspace_.jacobian;
+    workspace_.normal.noalias() = workspace_.jacobian.transpose().lazyProduct(workspace_.jacobian);  // small
   }
 
   /// Tries steps with more and more damping until one improves the point.

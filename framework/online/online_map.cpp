@@ -16,20 +16,6 @@ using Eigen::VectorXd;
 namespace {
 
 using ExactProcess = std::shared_ptr<const gp::GaussianProcess>;
-using SparseProcess = std::shared_ptr<const gp::SparseGaussianProcess>;
-
-std::optional<gp::SparseOnlinePredictor> makePredictor(const std::vector<Process>& processes) {
-  std::vector<SparseProcess> sparse;
-  for (const Process& process : processes) {
-    if (const auto* found = std::get_if<SparseProcess>(&process)) {
-      sparse.push_back(*found);
-    }
-  }
-  if (sparse.size() != processes.size()) {
-    return {};
-  }
-  return std::make_optional<gp::SparseOnlinePredictor>(sparse);
-}
 
 Index countFeatures(const FeatureTransform& transform) {
   return transform.steps.front().offset.size();
@@ -37,7 +23,7 @@ Index countFeatures(const FeatureTransform& transform) {
 
 }  // namespace
 
-OnlineMap::OnlineMap(GpMap map) : map_(std::move(map)), predictor_(makePredictor(map_.processes)) {
+OnlineMap::OnlineMap(GpMap map) : map_(std::move(map)), predictor_(map_.processes) {
   const Index features = countFeatures(map_.transform);
   offset_ = map_.transform.apply(VectorXd::Zero(features));
   matrix_ = map_.transform.apply(MatrixXd::Identity(features, features)).colwise() - offset_;
@@ -47,15 +33,12 @@ OnlineMap::OnlineMap(GpMap map) : map_(std::move(map)), predictor_(makePredictor
   }
 }
 
-OnlineMap::Workspace::Workspace(const OnlineMap& map) {
+OnlineMap::Workspace::Workspace(const OnlineMap& map) : predictor(map.predictor_) {
   const auto parameters = static_cast<Index>(map.map_.processes.size());
   inference.mean.setZero(parameters);
   inference.stddev.setZero(parameters);
   inference.inputs.setZero(map.matrix_.rows() + map.map_.known_inputs.center.size());
   slope.setZero(map.map_.noise.directions.cols());
-  if (map.predictor_) {
-    predictor.emplace(*map.predictor_);
-  }
 }
 
 const Inference& OnlineMap::infer(const Eigen::Ref<const VectorXd>& features,
@@ -66,26 +49,19 @@ const Inference& OnlineMap::infer(const Eigen::Ref<const VectorXd>& features,
   transformed.noalias() += matrix_ * features;
   inference.inputs.tail(known.size()) =
       (known - map_.known_inputs.center).cwiseQuotient(map_.known_inputs.half_width);
-  if (predictor_) {
-    inferSparse(workspace);
+  if (map_.noise.isConstant()) {
+    predictor_.predict(inference.inputs, workspace.predictor);
   } else {
-    const Predictions predictions = map_.predict(features, known);
-    inference.mean = predictions.mean.col(0);
-    inference.stddev = predictions.stddev.col(0);
+    predictor_.predictWithGradient(inference.inputs, workspace.predictor);
   }
-  return inference;
-}
-
-void OnlineMap::inferSparse(Workspace& workspace) const {
-  Inference& inference = workspace.inference;
-  predictor_->predict(inference.inputs, *workspace.predictor);
-  const gp::SparseOnlinePredictor::Values& values = workspace.predictor->values;
+  const gp::OnlinePredictor::Values& values = workspace.predictor.values;
   inference.mean = map_.target_offset + map_.target_scale.cwiseProduct(values.mean);
   for (Index p = 0; p < inference.stddev.size(); ++p) {
     const double factor = calcNoiseFactor(p, values.gradient.col(p), workspace.slope);
     inference.stddev[p] =
         map_.target_scale[p] * std::sqrt(values.latent_variance[p] + noise_variance_[p] * factor);
   }
+  return inference;
 }
 
 double OnlineMap::calcNoiseFactor(Index parameter, const Eigen::Ref<const VectorXd>& gradient,

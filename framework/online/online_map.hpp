@@ -1,10 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 
 #include "framework/inverse_map/gp_map.hpp"
-#include "kernels/sparse/sparse_online_predictor.hpp"
+#include "kernels/online/online_predictor.hpp"
 
 namespace twinmap {
 
@@ -14,7 +13,7 @@ struct Inference {
   Eigen::VectorXd inputs;        ///< of the map's processes, k
 };
 
-/// An inverse map made ready for one measurement after another: the transform's steps become one, sparse
+/// An inverse map made ready for one measurement after another: the transform's steps become one, the
 /// processes are packed. Predictions are those of the map to rounding. Immutable.
 class OnlineMap {
  public:
@@ -30,18 +29,17 @@ class OnlineMap {
 
    private:
     friend class OnlineMap;
-    std::optional<gp::SparseOnlinePredictor::Workspace> predictor;
+    gp::OnlinePredictor::Workspace predictor;
     Eigen::VectorXd slope;
   };
 
   /// features: d, finite; known: the inputs of the set-up (q). The result lies in the workspace until its
-  /// next use. With sparse processes it allocates nothing.
-  /// Cost: 2 k d flops, then those of SparseOnlinePredictor::predict; some 10 us for four parameters.
+  /// next use. It allocates nothing.
+  /// Cost: 2 k d flops, then those of OnlinePredictor; some 10 us for four parameters.
   const Inference& infer(const Eigen::Ref<const Eigen::VectorXd>& features,
                          const Eigen::Ref<const Eigen::VectorXd>& known, Workspace& workspace) const;
 
  private:
-  void inferSparse(Workspace& workspace) const;
   double calcNoiseFactor(Eigen::Index parameter, const Eigen::Ref<const Eigen::VectorXd>& gradient,
                          Eigen::VectorXd& slope) const;
 
@@ -49,7 +47,7 @@ class OnlineMap {
   Eigen::MatrixXd matrix_;  // inputs = matrix features + offset
   Eigen::VectorXd offset_;
   Eigen::VectorXd noise_variance_;
-  std::optional<gp::SparseOnlinePredictor> predictor_;  // none if a process is not sparse
+  gp::OnlinePredictor predictor_;
 };
 
 /// The map with its exact processes compressed (gp::compress), where that makes them smaller: means within

@@ -119,4 +119,14 @@ void PackedSamples::addProduct(const double* weights, double* values) const {
   }
 }
 
+void PackedSamples::addTransposedProduct(const double* weights, double* values) const {
+  Eigen::Map<Eigen::VectorXd> sums(values, features_);
+  for (Index chunk = 0; chunk < chunks_; ++chunk) {
+    const Eigen::Map<const Eigen::MatrixXd> samples(values_.data() + chunk * kChunk * features_, kChunk,
+                                                    features_);
+    sums.noalias() +=
+        samples.transpose() * Eigen::Map<const Eigen::VectorXd>(weights + chunk * kChunk, kChunk);
+  }
+}
+
 }  // namespace twinmap::linalg

@@ -51,6 +51,9 @@ class PackedSamples {
   /// values(i) += sum over features of sample_fi weights_f. Cost: 2 n d.
   void addProduct(const double* weights, double* values) const;
 
+  /// values_f += sum over samples of sample_fi weights(i), with paddedSize() weights. Cost: 2 n d.
+  void addTransposedProduct(const double* weights, double* values) const;
+
  private:
   Index features_ = 0;
   Index chunks_ = 0;

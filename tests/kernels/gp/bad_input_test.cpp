@@ -4,8 +4,8 @@
 #include <stdexcept>
 
 #include "kernels/gp/fit.hpp"
-#include "kernels/gp/online_predictor.hpp"
 #include "kernels/gp/training.hpp"
+#include "kernels/online/online_predictor.hpp"
 #include "tests/kernels/support/random_data.hpp"
 
 namespace twinmap::gp {
@@ -153,7 +153,7 @@ TEST_F(BadInput, PredictionAtPointsThatDoNotFit) {
 }
 
 TEST_F(BadInput, AnOnlinePredictorOfNothing) {
-  const std::vector<std::shared_ptr<const GaussianProcess>> none, null(1);
+  const std::vector<Process> none, null(1);
   EXPECT_NE(messageOf([&] { OnlinePredictor predictor(none); }), "");
   EXPECT_NE(messageOf([&] { OnlinePredictor predictor(null); }).find("null"), std::string::npos);
 }

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "kernels/gp/fit.hpp"
-#include "kernels/gp/online_predictor.hpp"
+#include "kernels/online/online_predictor.hpp"
 #include "tests/kernels/golden/sklearn_golden.hpp"
 
 namespace twinmap::gp {
@@ -67,12 +67,11 @@ TEST_P(Golden, OnlinePredictions) {
   const auto gp = fit(inputs_, target_, getStructure(), getHyperparameters());
   const OnlinePredictor predictor({gp, gp});
   OnlinePredictor::Workspace workspace(predictor);
-  VectorXd mean(2), stddev(2);
   for (int i = 0; i < golden::kTests; ++i) {
-    predictor.predict(tests_.col(i), mean, stddev, workspace);
+    predictor.predict(tests_.col(i), workspace);
     for (int t = 0; t < 2; ++t) {
-      EXPECT_NEAR(mean(t), GetParam().predicted_mean[i], kRelative);
-      EXPECT_NEAR(stddev(t), GetParam().predicted_stddev[i], kRelative);
+      EXPECT_NEAR(workspace.values.mean(t), GetParam().predicted_mean[i], kRelative);
+      EXPECT_NEAR(workspace.values.stddev(t), GetParam().predicted_stddev[i], kRelative);
     }
   }
 }

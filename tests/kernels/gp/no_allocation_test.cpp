@@ -7,10 +7,9 @@
 #include <cstdlib>
 
 #include "kernels/gp/fit.hpp"
-#include "kernels/gp/online_predictor.hpp"
 #include "kernels/interpolation/interpolator.hpp"
+#include "kernels/online/online_predictor.hpp"
 #include "kernels/sparse/compression.hpp"
-#include "kernels/sparse/sparse_online_predictor.hpp"
 #include "tests/kernels/support/random_data.hpp"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -112,9 +111,8 @@ TEST_F(NoAllocation, InAnOnlinePrediction) {
         const auto gp = fit(inputs, target, structure, hyperparameters);
         const OnlinePredictor predictor({gp, gp});
         OnlinePredictor::Workspace workspace(predictor);
-        VectorXd mean_out(2), stddev_out(2);
         const VectorXd x = inputs.col(3);
-        EXPECT_EQ(allocationsOf([&] { predictor.predict(x, mean_out, stddev_out, workspace); }), 0);
+        EXPECT_EQ(allocationsOf([&] { predictor.predictWithGradient(x, workspace); }), 0);
       }
     }
   }
@@ -126,10 +124,10 @@ TEST_F(NoAllocation, InAnOnlinePredictionOfCompactProcesses) {
   hyperparameters.length_scales = VectorXd::Constant(1, 2.0);
   const auto compact = compress(*fit(inputs, test::smoothTarget(inputs, 0.1, 2), {}, hyperparameters), 1e-3);
   ASSERT_TRUE(compact);
-  const SparseOnlinePredictor predictor({compact, compact});
-  SparseOnlinePredictor::Workspace workspace(predictor);
+  const OnlinePredictor predictor({compact, compact});
+  OnlinePredictor::Workspace workspace(predictor);
   const VectorXd x = inputs.col(3);
-  EXPECT_EQ(allocationsOf([&] { predictor.predict(x, workspace); }), 0);
+  EXPECT_EQ(allocationsOf([&] { predictor.predictWithGradient(x, workspace); }), 0);
 }
 
 TEST_F(NoAllocation, InAnInterpolationAfterTheFirst) {

@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "kernels/gp/fit.hpp"
-#include "kernels/gp/online_predictor.hpp"
+#include "kernels/online/online_predictor.hpp"
 #include "tests/kernels/support/random_data.hpp"
 
 namespace twinmap::gp {
@@ -119,13 +119,15 @@ RC_GTEST_PROP(OnlinePredictor, AgreesWithTheBatchPrediction, ()) {
   const auto two = fit(problem.inputs, -2.0 * problem.target, problem.structure, problem.hyperparameters);
   const OnlinePredictor predictor({one, two});
   OnlinePredictor::Workspace workspace(predictor);
-  VectorXd mean(2), stddev(2);
+  const OnlinePredictor::Values& values = workspace.values;
   const Prediction expected = one->predict(problem.tests);
+  const MatrixXd gradient = one->getMean().predictMeanGradient(problem.tests);
   for (Eigen::Index i = 0; i < problem.tests.cols(); ++i) {
-    predictor.predict(problem.tests.col(i), mean, stddev, workspace);
-    RC_ASSERT(std::abs(mean(0) - expected.mean(i)) < 1e-8);
-    RC_ASSERT(std::abs(mean(1) + 2.0 * expected.mean(i)) < 2e-8);
-    RC_ASSERT(std::abs(stddev(0) - std::sqrt(expected.variance(i))) < 1e-7);
+    predictor.predictWithGradient(problem.tests.col(i), workspace);
+    RC_ASSERT(std::abs(values.mean(0) - expected.mean(i)) < 1e-8);
+    RC_ASSERT(std::abs(values.mean(1) + 2.0 * expected.mean(i)) < 2e-8);
+    RC_ASSERT(std::abs(values.stddev(0) - std::sqrt(expected.variance(i))) < 1e-7);
+    RC_ASSERT((values.gradient.col(0) - gradient.col(i)).norm() < 1e-7 * (1.0 + gradient.col(i).norm()));
   }
 }
 

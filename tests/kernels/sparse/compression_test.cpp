@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "kernels/gp/fit.hpp"
-#include "kernels/sparse/sparse_online_predictor.hpp"
+#include "kernels/online/online_predictor.hpp"
 #include "tests/kernels/support/random_data.hpp"
 
 namespace twinmap::gp {
@@ -37,13 +37,13 @@ TEST_P(Compression, KeepsThePredictionsOfTheExactProcessWithFewerInputs) {
 TEST_P(Compression, OnlineItPredictsTheSame) {
   const auto compact = compress(*fitSmooth(GetParam()), 1e-3);
   ASSERT_TRUE(compact);
-  const SparseOnlinePredictor predictor({compact, compact});
-  SparseOnlinePredictor::Workspace workspace(predictor);
+  const OnlinePredictor predictor({compact, compact});
+  OnlinePredictor::Workspace workspace(predictor);
   const MatrixXd tests = randomMatrix(3, 50, 4);
   const Prediction expected = compact->predict(tests);
   const MatrixXd gradient = compact->getMean().predictMeanGradient(tests);
   for (Eigen::Index i = 0; i < tests.cols(); ++i) {
-    predictor.predict(tests.col(i), workspace);
+    predictor.predictWithGradient(tests.col(i), workspace);
     EXPECT_NEAR(workspace.values.mean(1), expected.mean(i), 1e-9);
     EXPECT_NEAR(workspace.values.latent_variance(1), expected.latent_variance(i), 1e-9);
     EXPECT_LT((workspace.values.gradient.col(1) - gradient.col(i)).norm(), 1e-8);

@@ -1,0 +1,244 @@
+#include "kernels/online/online_predictor.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "kernels/covariance/radial.hpp"
+#include "kernels/linalg/flush_denormals.hpp"
+#include "kernels/linalg/triangular.hpp"
+
+namespace twinmap::gp {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Both kinds of processes as predictions see them.
+struct OnlinePredictor::Source {
+  const ModelStructure& structure;
+  const Hyperparameters& hyperparameters;
+  const KernelExpansion& mean;
+  const MatrixXd& inputs;  // training samples or inducing inputs
+  const VectorXd& weights;
+  const MatrixXd& factor;
+  const MatrixXd* correction;
+  MatrixXd whitened_basis;
+  const MatrixXd& basis_factor;
+  const VectorXd& mean_coefficients;
+
+  bool sharesInputs(const Source& other) const {
+    return (&inputs == &other.inputs || (inputs.cols() == other.inputs.cols() && inputs == other.inputs)) &&
+           mean.getCenter() == other.mean.getCenter();
+  }
+};
+
+namespace {
+
+void require(bool condition, const char* message) {
+  if (!condition) throw std::invalid_argument(std::string("OnlinePredictor: ") + message);
+}
+
+MatrixXd padRows(const MatrixXd& matrix, Index rows) {
+  MatrixXd padded = MatrixXd::Zero(rows, matrix.cols());
+  padded.topRows(matrix.rows()) = matrix;
+  return padded;
+}
+
+}  // namespace
+
+OnlinePredictor::OnlinePredictor(const std::vector<Process>& processes) {
+  require(!processes.empty(), "there are no processes");
+  std::vector<Source> sources;
+  for (const Process& process : processes) {
+    require(std::visit([](const auto& trained) { return trained != nullptr; }, process),
+            "a process is null; its training failed");
+    sources.push_back(getSource(process));
+    require(sources.back().inputs.rows() == sources.front().inputs.rows(),
+            "the processes differ in their number of features");
+  }
+  feature_count_ = sources.front().inputs.rows();
+  for (const Source& source : sources) targets_.push_back(makeTarget(source));
+  for (Index first = 0; first < getTargetCount(); first += batches_.back().count) {
+    batches_.push_back(makeBatch(sources, first));
+  }
+}
+
+OnlinePredictor::Source OnlinePredictor::getSource(const Process& process) {
+  if (const auto* exact = std::get_if<std::shared_ptr<const GaussianProcess>>(&process)) {
+    const GaussianProcess& gp = **exact;
+    return {gp.getStructure(),   gp.getHyperparameters(), gp.getMean(), gp.getInputs(),
+            gp.getAlpha(),       gp.getFactor(),          nullptr,      gp.getWhitenedBasis(),
+            gp.getBasisFactor(), gp.getMeanCoefficients()};
+  }
+  const SparseGaussianProcess& gp = *std::get<std::shared_ptr<const SparseGaussianProcess>>(process);
+  const SparseGaussianProcessParts& parts = gp.getParts();
+  const VariationalPosterior& posterior = parts.posterior;
+  return {parts.structure,
+          parts.hyperparameters,
+          gp.getMean(),
+          parts.inducing,
+          posterior.weights,
+          posterior.inducing_factor,
+          &posterior.correction_factor,
+          posterior.whitened_basis / parts.hyperparameters.noise_stddev,
+          posterior.basis_factor,
+          posterior.mean_coefficients};
+}
+
+OnlinePredictor::Batch OnlinePredictor::makeBatch(const std::vector<Source>& sources, Index first) {
+  const auto total = static_cast<Index>(sources.size());
+  const Source& source = sources[first];
+  Batch batch;
+  batch.first = first;
+  batch.count = 1;
+  while (batch.count < kBatch && first + batch.count < total &&
+         source.sharesInputs(sources[first + batch.count])) {
+    ++batch.count;
+  }
+  batch.center = source.mean.getCenter();
+  batch.inputs = linalg::PackedSamples(source.inputs.colwise() - batch.center);
+  batch.weights = MatrixXd::Zero(batch.count == 1 ? 1 : kBatch, source.inputs.rows());
+  for (Index t = 0; t < batch.count; ++t) {
+    batch.weights.row(t) = sources[first + t].mean.getInverseLengthScales().cwiseAbs2().transpose();
+  }
+  return batch;
+}
+
+OnlinePredictor::Target OnlinePredictor::makeTarget(const Source& source) {
+  Target target;
+  target.structure = source.structure;
+  target.hyperparameters = source.hyperparameters;
+  target.factor = linalg::PackedLower(linalg::viewOf(source.factor));
+  if (source.correction) target.correction.emplace(linalg::viewOf(*source.correction));
+  const Index padding = target.factor.paddedSize();
+  target.input_count = source.inputs.cols();
+  target.weights = padRows(source.weights, padding);
+  target.whitened_basis = padRows(source.whitened_basis, padding);
+  target.basis_factor = source.basis_factor;
+  target.mean_coefficients = source.mean_coefficients;
+  target.constant_gradient = VectorXd::Zero(source.inputs.rows());
+  if (source.structure.linear_term) {
+    const double variance = source.hyperparameters.linear_stddev * source.hyperparameters.linear_stddev;
+    target.constant_gradient =
+        variance * (source.inputs.colwise() - source.mean.getCenter()) * source.weights;
+  }
+  if (source.structure.mean == MeanFunction::kLinear) {
+    target.constant_gradient += source.mean_coefficients.tail(source.inputs.rows());
+  }
+  return target;
+}
+
+OnlinePredictor::Workspace::Workspace(const OnlinePredictor& predictor) {
+  const Index features = predictor.getFeatureCount(), targets = predictor.getTargetCount();
+  Index largest = 0;
+  Index coefficients = 0;
+  for (const Target& target : predictor.targets_) {
+    largest = std::max(largest, target.factor.paddedSize());
+    coefficients = std::max(coefficients, target.mean_coefficients.size());
+  }
+  values.mean.setZero(targets);
+  values.latent_variance.setZero(targets);
+  values.stddev.setZero(targets);
+  values.gradient.setZero(features, targets);
+  point.setZero(features);
+  linear.setZero(features);
+  distances.setZero(largest, kBatch);
+  covariance.setZero(largest);
+  weight.setZero(largest);
+  error.setZero(coefficients);
+}
+
+void OnlinePredictor::predict(const Eigen::Ref<const VectorXd>& x, Workspace& workspace) const {
+  predictAll<false>(x, workspace);
+}
+
+void OnlinePredictor::predictWithGradient(const Eigen::Ref<const VectorXd>& x, Workspace& workspace) const {
+  predictAll<true>(x, workspace);
+}
+
+template <bool kGradient>
+void OnlinePredictor::predictAll(const Eigen::Ref<const VectorXd>& x, Workspace& workspace) const {
+  assert(x.size() == getFeatureCount());
+  const linalg::FlushDenormals flush;
+  for (const Batch& batch : batches_) {
+    workspace.point = x - batch.center;
+    calcDistances(batch, workspace);
+    for (Index t = batch.first; t < batch.first + batch.count; ++t) {
+      predictTarget(t, batch, workspace);
+      if (kGradient) calcGradient(t, batch, workspace);
+    }
+  }
+}
+
+void OnlinePredictor::calcDistances(const Batch& batch, Workspace& workspace) const {
+  const double* point = workspace.point.data();
+  if (batch.count == 1) {
+    batch.inputs.weightedDistances<1>(point, batch.weights.data(), workspace.distances.data());
+  } else {
+    batch.inputs.weightedDistances<kBatch>(point, batch.weights.data(), workspace.distances.data());
+  }
+}
+
+void OnlinePredictor::predictTarget(Index index, const Batch& batch, Workspace& workspace) const {
+  const Target& target = targets_[index];
+  const Hyperparameters& h = target.hyperparameters;
+  const Index size = target.factor.paddedSize();
+  AlignedColumn covariance(workspace.covariance.data(), size);
+  const ConstAlignedColumn distances(workspace.distances.data() + (index - batch.first) * size, size);
+  evaluateRadial(target.structure.covariance, h.shape, distances, covariance,
+                 AlignedColumn(workspace.weight.data(), size));
+  double variance = h.signal_stddev * h.signal_stddev;
+  covariance *= variance;
+  if (target.structure.linear_term) {
+    workspace.linear = h.linear_stddev * h.linear_stddev * workspace.point;
+    batch.inputs.addProduct(workspace.linear.data(), covariance.data());
+    variance += workspace.linear.dot(workspace.point);
+  }
+  covariance.tail(size - target.input_count).setZero();
+  Values& values = workspace.values;
+  values.mean(index) = covariance.matrix().dot(target.weights);
+  target.factor.solve(covariance.data());
+  variance -= covariance.matrix().squaredNorm();
+  if (target.correction) {
+    target.correction->solve(covariance.data());
+    variance += covariance.matrix().squaredNorm();
+  }
+  values.latent_variance(index) = variance;
+  addMeanFunction(index, workspace);
+  values.latent_variance(index) = std::max(values.latent_variance(index), 0.0);
+  values.stddev(index) = std::sqrt(values.latent_variance(index) + h.noise_stddev * h.noise_stddev);
+}
+
+// Adds h(x)'b to the mean and |R^-1 e|^2 to the variance; workspace.covariance holds the solution of the
+// factors.
+void OnlinePredictor::addMeanFunction(Index index, Workspace& workspace) const {
+  const Target& target = targets_[index];
+  const Index count = target.mean_coefficients.size();
+  if (count == 0) return;
+  const auto whitened = workspace.covariance.head(target.factor.paddedSize());
+  for (Index k = 0; k < count; ++k) {
+    const double basis = k == 0 ? 1.0 : workspace.point(k - 1);
+    workspace.values.mean(index) += basis * target.mean_coefficients(k);
+    workspace.error(k) = basis - target.whitened_basis.col(k).dot(whitened);
+  }
+  linalg::solveLower(linalg::viewOf(target.basis_factor), workspace.error.data());
+  workspace.values.latent_variance(index) += workspace.error.head(count).squaredNorm();
+}
+
+// With w = -2 dk/dq, of each input: dk/dx = w (z - x) / l^2.
+void OnlinePredictor::calcGradient(Index index, const Batch& batch, Workspace& workspace) const {
+  const Target& target = targets_[index];
+  const double variance = target.hyperparameters.signal_stddev * target.hyperparameters.signal_stddev;
+  auto weight = workspace.weight.head(target.factor.paddedSize());
+  weight.array() *= variance * target.weights.array();
+  auto gradient = workspace.values.gradient.col(index);
+  gradient = -weight.sum() * workspace.point;
+  batch.inputs.addTransposedProduct(weight.data(), gradient.data());
+  gradient.array() *= batch.weights.row(index - batch.first).transpose().array();
+  gradient += target.constant_gradient;
+}
+
+}  // namespace twinmap::gp
