@@ -57,7 +57,8 @@ std::string explain(Index parameter, double remaining, const InformationLimit& l
   const std::string begin = "parameter '" + parameters[parameter].name.text +
                             "' is not determined by the features: at best they leave " +
                             toPercent(remaining) + " of the standard deviation that its bounds allow, ";
-  const double alone = std::sqrt(12.0 / (limit.mean_information(parameter, parameter) + 12.0));
+  const double alone =
+      std::sqrt(kUniformInformation / (limit.mean_information(parameter, parameter) + kUniformInformation));
   if (alone > kUndetermined) {
     return begin + "and " + toPercent(alone) + " even if all others were known: no feature follows it enough";
   }

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "framework/features/selections.hpp"
+#include "framework/spec/parameter_box.hpp"
 
 namespace twinmap {
 namespace {
@@ -18,10 +19,9 @@ class GreedySelection {
  public:
   GreedySelection(const MatrixXd& covariance, const std::vector<MatrixXd>& sensitivities, Index most)
       : covariance_(covariance), variance_(covariance.diagonal()), factor_(covariance.rows(), most) {
-    constexpr double kInformationOfTheBox = 12.0;  // of a uniform distribution over its width
     for (const MatrixXd& sensitivity : sensitivities) {
       const MatrixXd prior = MatrixXd::Identity(sensitivity.cols(), sensitivity.cols());
-      points_.push_back({sensitivity, kInformationOfTheBox * prior});
+      points_.push_back({sensitivity, kUniformInformation * prior});
     }
   }
 

@@ -9,11 +9,13 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json makeEstimate(double mean, double stddev, const std::string& unit) {
-  return {{"mean", mean},
-          {"sd", stddev},
-          {"lower", mean - kNormal95 * stddev},
-          {"upper", mean + kNormal95 * stddev},
-          {"unit", unit}};
+  Json estimate;
+  estimate["mean"] = mean;
+  estimate["sd"] = stddev;
+  estimate["lower"] = mean - kNormal95 * stddev;
+  estimate["upper"] = mean + kNormal95 * stddev;
+  estimate["unit"] = unit;
+  return estimate;
 }
 
 Json makeEstimates(const Eigen::VectorXd& mean, const Eigen::VectorXd& stddev,
@@ -27,13 +29,15 @@ Json makeEstimates(const Eigen::VectorXd& mean, const Eigen::VectorXd& stddev,
 }
 
 Json toJson(const Trust& trust, const std::vector<FeatureInfo>& features) {
-  return {{"p_value", trust.p_value},
-          {"chi_square", trust.chi_square},
-          {"residuals", trust.residuals},
-          {"chi_square_p_value", trust.chi_square_p_value},
-          {"burst_p_value", trust.burst_p_value},
-          {"burst", describeBurst(trust, features)},
-          {"distance", trust.distance}};
+  Json json;
+  json["p_value"] = trust.p_value;
+  json["chi_square"] = trust.chi_square;
+  json["residuals"] = trust.residuals;
+  json["chi_square_p_value"] = trust.chi_square_p_value;
+  json["burst_p_value"] = trust.burst_p_value;
+  json["burst"] = describeBurst(trust, features);
+  json["distance"] = trust.distance;
+  return json;
 }
 
 Json toJson(const Refined& refined, const std::vector<ParameterSpec>& parameters) {

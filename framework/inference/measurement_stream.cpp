@@ -21,7 +21,10 @@ bool MeasurementStream::next(std::string& text) {
       return true;
     }
     if (!ends) {
-      text += (text.empty() ? header_ + "\n" : "") + line_ + "\n";
+      if (text.empty()) {
+        text.append(header_) += '\n';
+      }
+      text.append(line_) += '\n';
     }
   }
   return !text.empty();

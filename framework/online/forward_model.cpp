@@ -47,11 +47,14 @@ class Search {
     for (int i = 0; i < kMostSteps; ++i) {
       linearize();
       const double before = square;
-      if (!step(point, square, damping) || before - square < kGain) {
+      if (!step(point, square, damping)) {
+        return evaluate(point);
+      }
+      if (before - square < kGain) {
         break;
       }
     }
-    return evaluate(point);
+    return square;
   }
 
  private:

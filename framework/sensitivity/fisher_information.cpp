@@ -2,6 +2,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "framework/spec/parameter_box.hpp"
+
 namespace twinmap {
 
 using Eigen::MatrixXd;
@@ -11,22 +13,20 @@ MatrixXd calcFisherInformation(const NoiseWhitener& noise, const MatrixXd& sensi
   return whitened.transpose() * whitened;
 }
 
-constexpr double kInformationOfTheBox = 12.0;  // of a uniform distribution over its width
-
 MatrixXd calcMarginalInformation(const MatrixXd& information, Eigen::Index count) {
   const Eigen::Index others = information.rows() - count;
   if (others == 0) {
     return information;
   }
   MatrixXd of_others = information.bottomRightCorner(others, others);
-  of_others.diagonal().array() += kInformationOfTheBox;
+  of_others.diagonal().array() += kUniformInformation;
   const MatrixXd coupling = information.bottomLeftCorner(others, count);
   return information.topLeftCorner(count, count) - coupling.transpose() * of_others.llt().solve(coupling);
 }
 
 MatrixXd calcLimitCovariance(const MatrixXd& information) {
   const MatrixXd identity = MatrixXd::Identity(information.rows(), information.cols());
-  return (information + kInformationOfTheBox * identity).llt().solve(identity);
+  return (information + kUniformInformation * identity).llt().solve(identity);
 }
 
 }  // namespace twinmap

@@ -36,5 +36,7 @@ inline Eigen::VectorXd calcBoxCenter(const std::vector<ParameterSpec>& parameter
 
 /// Standard deviation of a uniform distribution over a unit width.
 constexpr double kUniformStddev = 0.28867513459481287;
+/// 1 / variance of the same.
+constexpr double kUniformInformation = 12.0;
 
 }  // namespace twinmap

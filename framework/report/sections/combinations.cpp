@@ -5,6 +5,7 @@
 #include "framework/report/sections/sections.hpp"
 #include "framework/spec/check_experiment.hpp"
 #include "framework/spec/number_text.hpp"
+#include "framework/spec/parameter_box.hpp"
 
 namespace twinmap {
 namespace {
@@ -15,8 +16,7 @@ constexpr double kUndetermined = 0.5;  // of the box's own standard deviation
 /// The sd that the mean information and the box leave along an eigenvector, over the one that the box alone
 /// leaves: the variance of a uniform parameter is 1/12 of its squared width.
 double calcRemaining(double eigenvalue) {
-  constexpr double kBoxInformation = 12.0;
-  return std::sqrt(kBoxInformation / (kBoxInformation + std::fmax(eigenvalue, 0.0)));
+  return std::sqrt(kUniformInformation / (kUniformInformation + std::fmax(eigenvalue, 0.0)));
 }
 
 double getRemaining(const RunFolder& run, std::size_t row) {

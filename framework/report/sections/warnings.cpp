@@ -6,6 +6,7 @@
 
 #include "framework/report/sections/samples_table.hpp"
 #include "framework/spec/number_text.hpp"
+#include "framework/spec/parameter_box.hpp"
 
 namespace twinmap {
 namespace {
@@ -71,7 +72,7 @@ void appendUninformed(const RunFolder& run, std::vector<std::string>& warnings) 
     for (const double stddev : found.stddev) {
       sum += stddev * stddev;
     }
-    const double box_stddev = (parameter.bounds.upper - parameter.bounds.lower) / std::sqrt(12.0);
+    const double box_stddev = kUniformStddev * (parameter.bounds.upper - parameter.bounds.lower);
     const bool is_uninformed =
         std::sqrt(sum / static_cast<double>(found.stddev.size())) > kUninformed * box_stddev;
     if (is_uninformed && !isRecorded(run, parameter.name.text)) {
