@@ -35,7 +35,7 @@ TrainingCloud makeCloud(const OnlineMap& map, const TrustTraining& training, con
   OnlineMap::Workspace workspace(map);
   TrainingCloud cloud;
   for (Index i = 0; i < n; ++i) {
-    const Inference& inference = map.infer(training.clean_features.col(i), known.col(i), workspace);
+    const Inference& inference = map.inferMean(training.clean_features.col(i), known.col(i), workspace);
     cloud.inputs.conservativeResize(inference.inputs.size(), n);
     cloud.inputs.col(i) = inference.inputs;
   }
@@ -48,7 +48,8 @@ void sort(VectorXd& values) {
   std::sort(values.data(), values.data() + values.size());
 }
 
-/// The statistics of the simulated measurements, by a model whose references are still empty.
+/// The statistics of the simulated measurements, by a model whose references are still empty. None depends on
+/// the inferred standard deviation.
 void fitReferences(const TrustTraining& training, const OnlineMap& map, TrustModel& model) {
   const Index count = training.measured.cols();
   model.chi_square.sorted.resize(count);
@@ -59,7 +60,7 @@ void fitReferences(const TrustTraining& training, const OnlineMap& map, TrustMod
   for (Index i = 0; i < count; ++i) {
     const auto features = training.measured.col(i);
     const auto known = training.known.col(i);
-    const Trust trust = judge(model, features, known, map.infer(features, known, inferring), judging);
+    const Trust trust = judge(model, features, known, map.inferMean(features, known, inferring), judging);
     model.chi_square.sorted[i] = trust.chi_square;
     model.burst.sorted[i] = trust.burst.score;
     reach = std::max(reach, trust.distance);

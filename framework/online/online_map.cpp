@@ -41,14 +41,18 @@ OnlineMap::Workspace::Workspace(const OnlineMap& map) : predictor(map.predictor_
   slope.setZero(map.map_.noise.directions.cols());
 }
 
+void OnlineMap::makeInputs(const Eigen::Ref<const VectorXd>& features,
+                           const Eigen::Ref<const VectorXd>& known, VectorXd& inputs) const {
+  auto transformed = inputs.head(offset_.size());
+  transformed = offset_;
+  transformed.noalias() += matrix_ * features;
+  inputs.tail(known.size()) = (known - map_.known_inputs.center).cwiseQuotient(map_.known_inputs.half_width);
+}
+
 const Inference& OnlineMap::infer(const Eigen::Ref<const VectorXd>& features,
                                   const Eigen::Ref<const VectorXd>& known, Workspace& workspace) const {
   Inference& inference = workspace.inference;
-  auto transformed = inference.inputs.head(offset_.size());
-  transformed = offset_;
-  transformed.noalias() += matrix_ * features;
-  inference.inputs.tail(known.size()) =
-      (known - map_.known_inputs.center).cwiseQuotient(map_.known_inputs.half_width);
+  makeInputs(features, known, inference.inputs);
   if (map_.noise.isConstant()) {
     predictor_.predict(inference.inputs, workspace.predictor);
   } else {
@@ -61,6 +65,16 @@ const Inference& OnlineMap::infer(const Eigen::Ref<const VectorXd>& features,
     inference.stddev[p] =
         map_.target_scale[p] * std::sqrt(values.latent_variance[p] + noise_variance_[p] * factor);
   }
+  return inference;
+}
+
+const Inference& OnlineMap::inferMean(const Eigen::Ref<const VectorXd>& features,
+                                      const Eigen::Ref<const VectorXd>& known, Workspace& workspace) const {
+  Inference& inference = workspace.inference;
+  makeInputs(features, known, inference.inputs);
+  predictor_.predictMean(inference.inputs, workspace.predictor);
+  inference.mean = map_.target_offset + map_.target_scale.cwiseProduct(workspace.predictor.values.mean);
+  inference.stddev.setZero();
   return inference;
 }
 

@@ -38,8 +38,13 @@ class OnlineMap {
   /// Cost: 2 k d flops, then those of OnlinePredictor; some 10 us for four parameters.
   const Inference& infer(const Eigen::Ref<const Eigen::VectorXd>& features,
                          const Eigen::Ref<const Eigen::VectorXd>& known, Workspace& workspace) const;
+  /// Mean and inputs alone; the stddev is zero.
+  const Inference& inferMean(const Eigen::Ref<const Eigen::VectorXd>& features,
+                             const Eigen::Ref<const Eigen::VectorXd>& known, Workspace& workspace) const;
 
  private:
+  void makeInputs(const Eigen::Ref<const Eigen::VectorXd>& features,
+                  const Eigen::Ref<const Eigen::VectorXd>& known, Eigen::VectorXd& inputs) const;
   double calcNoiseFactor(Eigen::Index parameter, const Eigen::Ref<const Eigen::VectorXd>& gradient,
                          Eigen::VectorXd& slope) const;
 

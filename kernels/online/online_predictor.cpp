@@ -152,23 +152,28 @@ OnlinePredictor::Workspace::Workspace(const OnlinePredictor& predictor) {
 }
 
 void OnlinePredictor::predict(const Eigen::Ref<const VectorXd>& x, Workspace& workspace) const {
-  predictAll<false>(x, workspace);
+  predictAll(x, Extent::kVariance, workspace);
+}
+
+void OnlinePredictor::predictMean(const Eigen::Ref<const VectorXd>& x, Workspace& workspace) const {
+  predictAll(x, Extent::kMean, workspace);
 }
 
 void OnlinePredictor::predictWithGradient(const Eigen::Ref<const VectorXd>& x, Workspace& workspace) const {
-  predictAll<true>(x, workspace);
+  predictAll(x, Extent::kGradient, workspace);
 }
 
-template <bool kGradient>
-void OnlinePredictor::predictAll(const Eigen::Ref<const VectorXd>& x, Workspace& workspace) const {
+void OnlinePredictor::predictAll(const Eigen::Ref<const VectorXd>& x, Extent extent,
+                                 Workspace& workspace) const {
   assert(x.size() == getFeatureCount());
   const linalg::FlushDenormals flush;
   for (const Batch& batch : batches_) {
     workspace.point = x - batch.center;
     calcDistances(batch, workspace);
     for (Index t = batch.first; t < batch.first + batch.count; ++t) {
-      predictTarget(t, batch, workspace);
-      if (kGradient) calcGradient(t, batch, workspace);
+      calcMean(t, batch, workspace);
+      if (extent != Extent::kMean) calcVariance(t, workspace);
+      if (extent == Extent::kGradient) calcGradient(t, batch, workspace);
     }
   }
 }
@@ -182,7 +187,8 @@ void OnlinePredictor::calcDistances(const Batch& batch, Workspace& workspace) co
   }
 }
 
-void OnlinePredictor::predictTarget(Index index, const Batch& batch, Workspace& workspace) const {
+// Leaves k in workspace.covariance and the prior variance in the values.
+void OnlinePredictor::calcMean(Index index, const Batch& batch, Workspace& workspace) const {
   const Target& target = targets_[index];
   const Hyperparameters& h = target.hyperparameters;
   const Index size = target.factor.paddedSize();
@@ -198,34 +204,40 @@ void OnlinePredictor::predictTarget(Index index, const Batch& batch, Workspace& 
     variance += workspace.linear.dot(workspace.point);
   }
   covariance.tail(size - target.input_count).setZero();
-  Values& values = workspace.values;
-  values.mean(index) = covariance.matrix().dot(target.weights);
-  target.factor.solve(covariance.data());
-  variance -= covariance.matrix().squaredNorm();
-  if (target.correction) {
-    target.correction->solve(covariance.data());
-    variance += covariance.matrix().squaredNorm();
+  workspace.values.latent_variance(index) = variance;
+  double& mean = workspace.values.mean(index);
+  mean = covariance.matrix().dot(target.weights);
+  for (Index k = 0; k < target.mean_coefficients.size(); ++k) {
+    mean += target.mean_coefficients(k) * (k == 0 ? 1.0 : workspace.point(k - 1));
   }
-  values.latent_variance(index) = variance;
-  addMeanFunction(index, workspace);
-  values.latent_variance(index) = std::max(values.latent_variance(index), 0.0);
-  values.stddev(index) = std::sqrt(values.latent_variance(index) + h.noise_stddev * h.noise_stddev);
 }
 
-// Adds h(x)'b to the mean and |R^-1 e|^2 to the variance; workspace.covariance holds the solution of the
-// factors.
-void OnlinePredictor::addMeanFunction(Index index, Workspace& workspace) const {
+void OnlinePredictor::calcVariance(Index index, Workspace& workspace) const {
   const Target& target = targets_[index];
+  auto solution = workspace.covariance.head(target.factor.paddedSize());
+  double& variance = workspace.values.latent_variance(index);
+  target.factor.solve(solution.data());
+  variance -= solution.squaredNorm();
+  if (target.correction) {
+    target.correction->solve(solution.data());
+    variance += solution.squaredNorm();
+  }
+  variance = std::max(variance + calcMeanFunctionVariance(target, workspace), 0.0);
+  const double noise = target.hyperparameters.noise_stddev;
+  workspace.values.stddev(index) = std::sqrt(variance + noise * noise);
+}
+
+// |R^-1 e|^2; workspace.covariance holds the solution of the factors.
+double OnlinePredictor::calcMeanFunctionVariance(const Target& target, Workspace& workspace) {
   const Index count = target.mean_coefficients.size();
-  if (count == 0) return;
+  if (count == 0) return 0.0;
   const auto whitened = workspace.covariance.head(target.factor.paddedSize());
   for (Index k = 0; k < count; ++k) {
     const double basis = k == 0 ? 1.0 : workspace.point(k - 1);
-    workspace.values.mean(index) += basis * target.mean_coefficients(k);
     workspace.error(k) = basis - target.whitened_basis.col(k).dot(whitened);
   }
   linalg::solveLower(linalg::viewOf(target.basis_factor), workspace.error.data());
-  workspace.values.latent_variance(index) += workspace.error.head(count).squaredNorm();
+  return workspace.error.head(count).squaredNorm();
 }
 
 // With w = -2 dk/dq, of each input: dk/dx = w (z - x) / l^2.

@@ -50,7 +50,9 @@ class OnlinePredictor {
   /// workspace.values.
   /// Cost per target: n^2 + 3 n d flops and n exponentials; of a sparse process 2 m^2 + 3 m d and m.
   void predict(const Eigen::Ref<const Eigen::VectorXd>& x, Workspace& workspace) const;
-  /// The same and the gradient, for 2 n d flops more per target.
+  /// The means alone, for 3 n d flops per target.
+  void predictMean(const Eigen::Ref<const Eigen::VectorXd>& x, Workspace& workspace) const;
+  /// The same as predict() and the gradient, for 2 n d flops more per target.
   void predictWithGradient(const Eigen::Ref<const Eigen::VectorXd>& x, Workspace& workspace) const;
 
  private:
@@ -81,11 +83,12 @@ class OnlinePredictor {
   static Batch makeBatch(const std::vector<Source>& sources, Eigen::Index first);
   static Target makeTarget(const Source& source);
 
-  template <bool kGradient>
-  void predictAll(const Eigen::Ref<const Eigen::VectorXd>& x, Workspace& workspace) const;
+  enum class Extent { kMean, kVariance, kGradient };
+  void predictAll(const Eigen::Ref<const Eigen::VectorXd>& x, Extent extent, Workspace& workspace) const;
   void calcDistances(const Batch& batch, Workspace& workspace) const;
-  void predictTarget(Eigen::Index index, const Batch& batch, Workspace& workspace) const;
-  void addMeanFunction(Eigen::Index index, Workspace& workspace) const;
+  void calcMean(Eigen::Index index, const Batch& batch, Workspace& workspace) const;
+  void calcVariance(Eigen::Index index, Workspace& workspace) const;
+  static double calcMeanFunctionVariance(const Target& target, Workspace& workspace);
   void calcGradient(Eigen::Index index, const Batch& batch, Workspace& workspace) const;
 
   std::vector<Target> targets_;

@@ -127,6 +127,9 @@ RC_GTEST_PROP(OnlinePredictor, AgreesWithTheBatchPrediction, ()) {
     RC_ASSERT(std::abs(values.mean(0) - expected.mean(i)) < 1e-8);
     RC_ASSERT(std::abs(values.mean(1) + 2.0 * expected.mean(i)) < 2e-8);
     RC_ASSERT(std::abs(values.stddev(0) - std::sqrt(expected.variance(i))) < 1e-7);
+    const VectorXd mean = values.mean;
+    predictor.predictMean(problem.tests.col(i), workspace);
+    RC_ASSERT(values.mean == mean);
     RC_ASSERT((values.gradient.col(0) - gradient.col(i)).norm() < 1e-7 * (1.0 + gradient.col(i).norm()));
   }
 }
