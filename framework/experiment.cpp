@@ -182,7 +182,8 @@ RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& opt
   evaluate({experiment, unknown, simulator, extractor, noise, labelled, map, local_models, options.threads},
            run);
   writeExampleResponses(experiment, sets, simulator, options, run);
-  timeOnlineUpdates(online, labelled.test, run);
+  run.online = timeStage("time the inference of one measurement", run.times,
+                         [&] { return timeOnlineUpdates(online, labelled.test); });
 
   writeResults(options.folder, run);
   writeProvenance(experiment, options, run);

@@ -5,7 +5,7 @@
 
 namespace twinmap {
 
-void timeOnlineUpdates(const OnlineModel& model, const LabelledFeatures& testing, RunSummary& run) {
+OnlineTimes timeOnlineUpdates(const OnlineModel& model, const LabelledFeatures& testing) {
   constexpr Eigen::Index kMostUpdates = 200;
   const Eigen::Index updates = std::min(testing.features.cols(), kMostUpdates);
   const OnlineMap map(model.map);
@@ -25,7 +25,7 @@ void timeOnlineUpdates(const OnlineModel& model, const LabelledFeatures& testing
   }
   std::sort(microseconds.begin(), microseconds.end());
   const auto last = microseconds.size() - 1;
-  run.online = {static_cast<int>(updates), microseconds[last / 2], microseconds[last * 99 / 100]};
+  return {static_cast<int>(updates), microseconds[last / 2], microseconds[last * 99 / 100]};
 }
 
 }  // namespace twinmap

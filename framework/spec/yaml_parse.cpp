@@ -181,6 +181,19 @@ void requireText(const std::string& text, const std::string& file) {
   }
 }
 
+/// The whole stream, or at least its first `most` bytes.
+std::string readStart(std::istream& stream, std::size_t most) {
+  constexpr std::size_t kBlock = std::size_t{1} << 16;
+  std::string text;
+  while (stream && text.size() < most) {
+    const std::size_t before = text.size();
+    text.resize(before + kBlock);
+    stream.read(text.data() + before, static_cast<std::streamsize>(kBlock));
+    text.resize(before + static_cast<std::size_t>(stream.gcount()));
+  }
+  return text;
+}
+
 }  // namespace
 
 YamlNode parseYaml(const std::string& text, const std::string& file) {
@@ -216,9 +229,7 @@ YamlNode loadYaml(const std::string& path) {
   if (!file) {
     throw ExperimentError(where, "", "cannot be read; does the file exist?");
   }
-  std::string text(kLargestFile + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(file.gcount()));
+  const std::string text = readStart(file, kLargestFile + 1);
   if (text.size() > kLargestFile) {
     throw ExperimentError(where, "", "is larger than 16 MiB, too large for an experiment file");
   }

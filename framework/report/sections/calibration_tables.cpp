@@ -14,7 +14,8 @@ namespace {
 
 /// Quantiles of the k-th of n sorted uniform numbers, k = 1 ... n: a beta distribution.
 double calcOrderQuantile(int k, int n, double probability) {
-  return boost::math::quantile(boost::math::beta_distribution<>(k, n - k + 1), probability);
+  using Double = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
+  return boost::math::quantile(boost::math::beta_distribution<double, Double>(k, n - k + 1), probability);
 }
 
 double calcNormalQuantile(double probability) {
