@@ -25,19 +25,13 @@ std::vector<Index> findComplete(const MatrixXd& features) {
   return complete;
 }
 
-/// How many measurements the references are made of: as fine as the map deserves.
-int countMeasurements(const ExperimentSpec& experiment) {
-  constexpr int kFewest = 200, kMost = 2000, kPerSimulation = 10;
-  return std::clamp(kPerSimulation * experiment.design.train.samples, kFewest, kMost);
-}
-
 /// Test responses, each with several draws of the noise.
 void simulateMeasurements(const ExperimentSpec& experiment, const SimulatedSets& sets,
                           const FeatureExtractor& extractor, TrustTraining& training) {
   const std::vector<int> samples = findSuccessful(sets.test);
   const MatrixXd responses = sets.test.responses(Eigen::all, samples);
   const auto count = std::max(1, static_cast<int>(samples.size()));
-  const int draws = std::max(1, countMeasurements(experiment) / count);
+  const int draws = std::max(1, countReferences(experiment.design.train.samples) / count);
   const ResponseNoise noise(experiment.noise, sets.test.layout);
   const RandomStream random(experiment.seed, RandomPurpose::kTrust);
   MatrixXd measured(extractor.getFeatureCount(), responses.cols() * draws);
@@ -68,6 +62,11 @@ TrustTraining makeTrustTraining(const ExperimentSpec& experiment, const Simulate
 }
 
 }  // namespace
+
+int countReferences(int train_samples) {
+  constexpr int kFewest = 200, kMost = 2000, kPerSimulation = 10;
+  return std::clamp(train_samples, kFewest / kPerSimulation, kMost / kPerSimulation) * kPerSimulation;
+}
 
 OnlineFit fitOnline(const ExperimentSpec& experiment, const SimulatedSets& sets,
                     const FeatureExtractor& extractor, const LabelledSets& labelled, const GpMap& map) {

@@ -17,6 +17,9 @@ struct OnlineFit {
   std::vector<std::string> warnings;
 };
 
+/// Of how many simulated measurements a trust model's references are made: as fine as the map deserves.
+int countReferences(int train_samples);
+
 /// Compresses the map and fits its trust model: the forward model to the clean training responses, the
 /// reference distributions to some 2000 simulated measurements (fewer below 200 training samples), the test
 /// responses with noise drawn for that alone. Deterministic. Cost: some seconds at most.

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "framework/experiment.hpp"
+#include "framework/fit_online.hpp"
 #include "framework/needed_neighbourhoods.hpp"
 #include "framework/store/temporary_folder.hpp"
 #include "framework/sweep/case_cost.hpp"
@@ -109,7 +110,10 @@ ProbeTimes measure(const ExperimentSpec& experiment, double most_samples) {
   const double neighbourhoods = run.getStage("neighbourhoods of ");
   times.limit = limit / kTestSamples;
   times.neighbourhood = neighbourhoods / std::max<double>(listNeededNeighbourhoods(small).cols(), 1.0);
-  times.overhead = std::max(run.seconds - simulating - neighbourhoods - limit - run.getTraining(), 0.0);
+  const double preparing = run.getStage("prepare for ");
+  times.preparation = preparing / (double(kTrainSamples) * countReferences(kTrainSamples));
+  times.overhead =
+      std::max(run.seconds - simulating - neighbourhoods - limit - run.getTraining() - preparing, 0.0);
   times.training.measured = measureEvaluations(small, most_samples, folder.getPath());
   times.training.evaluations = 1.0;
   times.training.evaluations = run.getTraining() / times.training.calcTraining(small);
@@ -118,6 +122,10 @@ ProbeTimes measure(const ExperimentSpec& experiment, double most_samples) {
 }
 
 }  // namespace
+
+double ProbeTimes::calcPreparation(int train_samples) const {
+  return preparation * train_samples * countReferences(train_samples);
+}
 
 ProbeTimes measureProbe(const ExperimentSpec& experiment, double most_samples) {
   try {

@@ -12,9 +12,13 @@ struct ProbeTimes {
   double simulation = 0.0;     ///< s, of one sample
   double neighbourhood = 0.0;  ///< s, of simulating one
   TrainingTime training;
-  double limit = 0.0;     ///< s, of the information limit of one test sample, from its neighbourhood
-  double overhead = 0.0;  ///< s, everything else: files, tables, other evaluations
-  std::string failure;    ///< why there are no times; empty if there are
+  double preparation = 0.0;  ///< s, for measurements, of one reference and training sample
+  double limit = 0.0;        ///< s, of the information limit of one test sample, from its neighbourhood
+  double overhead = 0.0;     ///< s, everything else: files, tables, other evaluations
+  std::string failure;       ///< why there are no times; empty if there are
+
+  /// Preparing for measurements: a prediction per reference, which an exact process makes from all samples.
+  double calcPreparation(int train_samples) const;
 };
 
 /// Runs small versions of an experiment in a temporary folder: 60 training and 20 test samples, for the times
