@@ -20,8 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
-
 /// Bytes.
 double getMachineMemory() {
   return static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
@@ -63,14 +61,7 @@ void runSingle(const ExperimentSpec& experiment, const RunArguments& arguments, 
   requireGates(summary.gates, arguments.fail_on_gates);
 }
 
-void requireMemoryOfCases(const YamlNode& tree, double bytes) {
-  for (const SweepCase& one : expandCasesWithSignals(tree)) {
-    requireMemory(one.experiment, 1, bytes);
-  }
-}
-
 void runCases(const YamlNode& tree, const RunArguments& arguments, const fs::path& folder) {
-  requireMemoryOfCases(tree, getMostMemory(arguments));
   showWarningsOnly();
   ProgressLine line;
   SweepOptions options;
@@ -78,6 +69,7 @@ void runCases(const YamlNode& tree, const RunArguments& arguments, const fs::pat
   options.store = arguments.store;
   options.threads = arguments.threads;
   options.memory = chooseMemory(arguments);
+  options.most_memory = getMostMemory(arguments);
   options.fail_fast = arguments.fail_fast;
   options.command = arguments.command_line;
   options.stop = &catchSignals();

@@ -32,13 +32,8 @@ std::vector<ResidualRun> collectRuns(const std::vector<FeatureInfo>& infos, Inde
 TrainingCloud makeCloud(const OnlineMap& map, const TrustTraining& training, const MatrixXd& known) {
   constexpr Index kMost = 1000;
   const Index n = std::min(training.points.cols(), kMost);
-  OnlineMap::Workspace workspace(map);
   TrainingCloud cloud;
-  for (Index i = 0; i < n; ++i) {
-    const Inference& inference = map.inferMean(training.clean_features.col(i), known.col(i), workspace);
-    cloud.inputs.conservativeResize(inference.inputs.size(), n);
-    cloud.inputs.col(i) = inference.inputs;
-  }
+  cloud.inputs = map.getMap().makeProcessInputs(training.clean_features.leftCols(n), known.leftCols(n));
   cloud.scale = fitZScore(cloud.inputs).scale;
   cloud.inputs = cloud.scale.cwiseInverse().asDiagonal() * cloud.inputs;
   return cloud;

@@ -105,7 +105,6 @@ CaseCost calcCaseCost(const ExperimentSpec& experiment, int threads) {
 }
 
 void requireMemory(const ExperimentSpec& experiment, int threads, double bytes) {
-  constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
   const double needed = calcCaseCost(experiment, threads).bytes;
   if (needed > bytes) {
     throw ExperimentError(

@@ -6,6 +6,8 @@
 
 namespace twinmap {
 
+inline constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;  ///< bytes
+
 /// Searches for hyperparameters that follow one another in the training of a map.
 struct TrainingStep {
   double samples = 0.0;    ///< n; an evaluation of the marginal likelihood takes some n^3 flops

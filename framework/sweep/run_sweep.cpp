@@ -189,6 +189,9 @@ class Sweep {
 
 SweepResult runSweep(const YamlNode& root, const SweepOptions& options) {
   std::vector<SweepCase> cases = expandCasesWithSignals(root);
+  for (const SweepCase& one : cases) {
+    requireMemory(one.experiment, 1, options.most_memory);
+  }
   const std::string resolved = writeIndependentDefaults(root);
   makeFolders(options.folder);
   const FolderLock lock(options.folder);

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,9 @@ struct SweepOptions {
   std::filesystem::path store;   ///< where simulated samples are kept; empty: `folder`/chunks
   int threads = 1;               ///< results do not depend on it
   double memory = 4e9;           ///< bytes that responses, or cases that run at the same time, may take
-  bool fail_fast = false;        ///< begin no case after one has failed
-  std::string command;           ///< the command line, for provenance.json
+  double most_memory = std::numeric_limits<double>::infinity();  ///< bytes that one case may take
+  bool fail_fast = false;                                        ///< begin no case after one has failed
+  std::string command;                                           ///< the command line, for provenance.json
   /// Once true, the simulations and cases under way are finished, and no other is begun.
   const std::atomic<bool>* stop = nullptr;
   ProgressCallback progress;
@@ -38,9 +40,9 @@ struct SweepResult {
 /// folder): first all that is missing of the simulations, each point of a model once for all cases; then the
 /// cases that are not complete. The results of a case are those of runExperiment() alone, bit for bit, for
 /// any number of threads and however often the sweep was interrupted. A case that fails is reported and stops
-/// no other, unless fail_fast. Throws ExperimentError for a wrong experiment, and for a folder that holds
-/// another one; std::runtime_error if a file cannot be written or another process has the folder or the
-/// store.
+/// no other, unless fail_fast. Throws ExperimentError for a wrong experiment or a case that exceeds
+/// most_memory, before the folder is touched, and for a folder that holds another experiment;
+/// std::runtime_error if a file cannot be written or another process has the folder or the store.
 SweepResult runSweep(const YamlNode& root, const SweepOptions& options);
 
 }  // namespace twinmap

@@ -16,22 +16,14 @@ import h5py
 import numpy as np
 import yaml
 
-TWINMAP = os.environ["TWINMAP"]
-TABLE1 = os.path.join(os.environ["TWINMAP_SOURCE_DIR"], "experiments/two_beam/table1.yaml")
-CHAIN = os.path.join(os.environ["TWINMAP_SOURCE_DIR"], "experiments/three_mass_chain")
+from support import EXPERIMENTS, TWINMAP, call, read_csv
+
+TABLE1 = EXPERIMENTS / "two_beam/table1.yaml"
+CHAIN = EXPERIMENTS / "three_mass_chain"
 SMALL = ["design.train.samples=40", "design.test.samples=20"]
 RESULTS = ["correlations.csv", "failures.csv", "features.csv", "hyperparameters.csv", "identifiability.csv", "joint.csv",
            "maps.h5", "metrics.csv", "pit.csv", "predictions.csv", "resolved.yaml", "responses.csv", "samples.h5", "table.md",
            "table.tex", "training.csv"]
-
-
-def call(*arguments):
-    return subprocess.run([TWINMAP, *map(str, arguments)], capture_output=True, text=True, timeout=1500)
-
-
-def read_csv(path):
-    with open(path, newline="") as file:
-        return list(csv.DictReader(file))
 
 
 def read_table(lines):
@@ -491,7 +483,7 @@ class ThreeMassChain(TestCase):
             self.assertGreater(float(row["coverage95"]), 0.75, row["parameter"])
 
     def test_is_updated_from_its_modes_without_a_simulation_in_time(self):
-        self.run_experiment("run", file=CHAIN + "/modes.yaml", small=["design.train.samples=100", "design.test.samples=60"])
+        self.run_experiment("run", file=CHAIN / "modes.yaml", small=["design.train.samples=100", "design.test.samples=60"])
         self.assert_updates_well("run", 6)
         with h5py.File(self.folder / "run/samples.h5") as file:
             self.assertEqual(file["test/responses"].shape, (60, 0, 0))
@@ -503,24 +495,24 @@ class ThreeMassChain(TestCase):
             np.testing.assert_allclose(damping, -values.real / np.abs(values), rtol=1e-7)
 
     def test_is_updated_from_frequency_response_functions(self):
-        self.run_experiment("run", file=CHAIN + "/frequency_response.yaml",
+        self.run_experiment("run", file=CHAIN / "frequency_response.yaml",
                             small=["design.train.samples=100", "design.test.samples=40"])
         self.assert_updates_well("run", 6)
 
     def test_modes_are_simulated_as_a_table(self):
-        result = call("simulate", CHAIN + "/modes.yaml", "parameters.k1=900")
+        result = call("simulate", CHAIN / "modes.yaml", "parameters.k1=900")
         rows = list(csv.reader(result.stdout.splitlines()))
         self.assertEqual(rows[0], ["mode", "natural_frequency", "damping_ratio"])
         values = chain_eigenvalues(900, 1000, 1000, 10)
         np.testing.assert_allclose([float(row[1]) for row in rows[1:]], np.abs(values) / (2 * np.pi), rtol=1e-8)
-        both = call("simulate", CHAIN + "/frequency_response.yaml", "noise.modes={frequency: 0.1, damping_ratio: 0.1}",
+        both = call("simulate", CHAIN / "frequency_response.yaml", "noise.modes={frequency: 0.1, damping_ratio: 0.1}",
                     "features=[{modes: {count: 1}}, {samples: {outputs: [mass1], start: 0, interval: 0.1, count: 100}}]")
         outputs, modes = both.stdout.split("\n\n")
         self.assertEqual(len(outputs.splitlines()), 101)
         self.assertEqual(len(modes.splitlines()), 2)
 
     def test_an_excitation_without_energy_is_a_located_error(self):
-        result = call("run", CHAIN + "/frequency_response.yaml", "features[0].frequency_response.frequencies=[0.5, 6.5]",
+        result = call("run", CHAIN / "frequency_response.yaml", "features[0].frequency_response.frequencies=[0.5, 6.5]",
                       "--out", self.folder / "run")
         self.assertEqual(result.returncode, 2, result.stderr)
         self.assertIn("frequencies[1]: '6.5' is a frequency at which excitation 'F' has no energy", result.stderr)

@@ -2,38 +2,25 @@
 import csv
 import io
 import json
-import os
 import shutil
-import subprocess
-import tempfile
 import unittest
-from pathlib import Path
 
 import h5py
 import numpy as np
 import yaml
 
-TWINMAP = os.environ["TWINMAP"]
-TABLE1 = os.path.join(os.environ["TWINMAP_SOURCE_DIR"], "experiments/two_beam/table1.yaml")
+from support import EXPERIMENTS, FolderTestCase, call
+
+TABLE1 = EXPERIMENTS / "two_beam/table1.yaml"
 SMALL = ["design.train.samples=40", "design.test.samples=30", "inverse_map.gp.starts=1"]
-
-
-def call(*arguments):
-    return subprocess.run([TWINMAP, *map(str, arguments)], capture_output=True, text=True, timeout=1500)
 
 
 def read_csv(text):
     return list(csv.DictReader(io.StringIO(text)))
 
 
-class TestCase(unittest.TestCase):
+class TestCase(FolderTestCase):
     """Runs are made once for all tests of a class; `copy` gives a test one of its own to damage."""
-
-    @classmethod
-    def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory(prefix="twinmap_compare_")
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = Path(folder.name)
 
     @classmethod
     def run_experiment(cls, name, *arguments, file=TABLE1):
@@ -58,7 +45,7 @@ class Compare(TestCase):
         cls.run_experiment("a")
         cls.run_experiment("b", "noise.scale=0.5")
         cls.run_experiment("other_seed", "seed=2")
-        experiment = yaml.safe_load(Path(TABLE1).read_text())
+        experiment = yaml.safe_load(TABLE1.read_text())
         del experiment["parameters"]["d_y"]
         experiment["constants"]["d_y"] = 1.0
         (cls.folder / "three.yaml").write_text(yaml.safe_dump(experiment, sort_keys=False))
@@ -292,7 +279,7 @@ class Verify(TestCase):
     def test_other_experiments_pass(self):
         self.run_experiment("whitened", "transform=[whiten, principal_components]", "noise.replicates=2")
         self.run_experiment("sparse", "inverse_map.gp.approximation=sgpr", "inverse_map.gp.inducing=20")
-        chain = os.path.join(os.path.dirname(os.path.dirname(TABLE1)), "three_mass_chain/modes.yaml")
+        chain = EXPERIMENTS / "three_mass_chain/modes.yaml"
         self.run_experiment("modes", file=chain)
         for name in ("whitened", "sparse", "modes"):
             differing, output = self.verify(self.folder / name)

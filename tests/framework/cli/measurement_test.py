@@ -1,7 +1,6 @@
 """twinmap noise, simulated responses as measurements, and measured excitation, as a user meets them."""
 import json
 import os
-import subprocess
 import tempfile
 import unittest
 from pathlib import Path
@@ -11,12 +10,9 @@ import numpy as np
 import scipy.io
 import yaml
 
-TWINMAP = os.environ["TWINMAP"]
-TABLE1 = os.path.join(os.environ["TWINMAP_SOURCE_DIR"], "experiments/two_beam/table1.yaml")
+from support import EXPERIMENTS, call
 
-
-def call(*arguments):
-    return subprocess.run([TWINMAP, *map(str, arguments)], capture_output=True, text=True, timeout=600)
+TABLE1 = EXPERIMENTS / "two_beam/table1.yaml"
 
 
 class TestCase(unittest.TestCase):
@@ -59,7 +55,7 @@ class Noise(TestCase):
         self.assertEqual(noise["correlation"]["theta"]["sample_time"], 0.01)
 
     def test_an_experiment_says_where_outputs_stand_and_takes_the_result(self):
-        experiment = yaml.safe_load(Path(TABLE1).read_text())
+        experiment = yaml.safe_load(TABLE1.read_text())
         experiment["measurement"] = {"columns": {"y": "enc1"}}
         path = self.write("e.yaml", yaml.safe_dump(experiment))
         result = call("noise", self.write_csv(), "--window", "0,9.995", "--experiment", path)
@@ -113,7 +109,7 @@ class MeasuredExcitation(TestCase):
         super().setUp()
         t = np.arange(-20, 600) * 0.01
         self.write("force.csv", "time,F [kN]\n" + "".join(f"{a + 0.5:.3f},{5e-3 * np.sin(3 * a):.17g}\n" for a in t))
-        self.experiment = yaml.safe_load(Path(TABLE1).read_text())
+        self.experiment = yaml.safe_load(TABLE1.read_text())
         self.experiment["excitation"]["F"] = {
             "unit": "N", "tables": [{"measured": {"file": "force.csv", "column": "F", "time": "time", "start": 0.5},
                                      "interpolation": "cubic"}]}

@@ -5,17 +5,14 @@ import re
 import resource
 import shutil
 import subprocess
-import tempfile
 import unittest
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
 import yaml
 
 import mutations
+from support import EXPERIMENTS, TWINMAP, FolderTestCase
 
-TWINMAP = os.environ["TWINMAP"]
-EXPERIMENTS = Path(os.environ["TWINMAP_SOURCE_DIR"]) / "experiments"
 TABLE1 = EXPERIMENTS / "two_beam/table1.yaml"
 # Small where the mutation does not say otherwise.
 SMALL = {"design.train.samples": 20, "design.test.samples": 4, "evaluation.limit": "false", "simulation.max_steps": 3000,
@@ -71,12 +68,10 @@ def is_same(given, resolved):
             os.path.isabs(resolved) and resolved.endswith(os.path.basename(given)))
 
 
-class MutatedExperiments(unittest.TestCase):
+class MutatedExperiments(FolderTestCase):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory(prefix="twinmap_mutated_")
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = Path(folder.name)
+        super().setUpClass()
         cls.files = list(list_files())
         with ThreadPoolExecutor(os.cpu_count()) as pool:
             cls.checked = list(pool.map(cls.check, range(len(cls.files)), cls.files))

@@ -1,17 +1,14 @@
 """Parameters of every role, from the experiment file to a verified run: a mass whose load is known, whose initial
 position and whose sensor's offset are not."""
 import csv
-import os
-import subprocess
-import tempfile
 import unittest
-from pathlib import Path
 
 import h5py
 import numpy as np
 import yaml
 
-TWINMAP = os.environ["TWINMAP"]
+from support import FolderTestCase, call, read_csv
+
 EXPERIMENT = """
 name: mass
 parameters:
@@ -46,24 +43,18 @@ evaluation:
 """
 
 
-def call(*arguments):
-    return subprocess.run([TWINMAP, *map(str, arguments)], capture_output=True, text=True, timeout=1500)
-
-
-class Roles(unittest.TestCase):
+class Roles(FolderTestCase):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory(prefix="twinmap_roles_")
-        cls.addClassCleanup(folder.cleanup)
-        cls.file = Path(folder.name) / "mass.yaml"
+        super().setUpClass()
+        cls.file = cls.folder / "mass.yaml"
         cls.file.write_text(EXPERIMENT)
-        cls.run_folder = Path(folder.name) / "run"
+        cls.run_folder = cls.folder / "run"
         result = call("run", cls.file, "--out", cls.run_folder)
         assert result.returncode == 0, result.stderr
 
     def test_only_the_updating_parameters_are_inferred(self):
-        with (self.run_folder / "metrics.csv").open() as file:
-            rows = list(csv.DictReader(file))
+        rows = read_csv(self.run_folder / "metrics.csv")
         self.assertEqual([row["parameter"] for row in rows], ["k", "d"])
         for row in rows:
             self.assertGreater(float(row["ratio_to_limit"]), 0.7, row)

@@ -3,14 +3,13 @@ import csv
 import json
 import os
 import shutil
-import tempfile
 import unittest
 from pathlib import Path
 
 import numpy as np
 import yaml
 
-from support import EXPERIMENTS, call, read_csv, write_csv
+from support import EXPERIMENTS, FolderTestCase, call, read_csv, write_csv
 
 NAME = "Schroeder80mV.csv"
 PLACES = [os.environ.get("TWINMAP_SILVERBOX", ""), EXPERIMENTS / "silverbox" / NAME,
@@ -30,12 +29,10 @@ def read_signals():
 
 @unittest.skipIf(DATA is None, f"{NAME} of the Silverbox benchmark is not here: docs/inference.md says how to get it; "
                                "TWINMAP_SILVERBOX may say where it is")
-class Silverbox(unittest.TestCase):
+class Silverbox(FolderTestCase):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory(prefix="twinmap_silverbox_")
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = Path(folder.name)
+        super().setUpClass()
         shutil.copy(EXPERIMENTS / "silverbox/silverbox.yaml", cls.folder)
         (cls.folder / NAME).symlink_to(DATA.resolve())
         cls.run_folder = cls.train("silverbox.yaml")

@@ -28,16 +28,24 @@ def write_csv(path, names, columns):
         writer.writerows(zip(*columns))
 
 
-class RunTestCase(unittest.TestCase):
-    """One run for all tests of the class, of FILE with ARGUMENTS."""
-    FILE = EXPERIMENTS / "two_beam/best.yaml"
-    ARGUMENTS = QUICK
+class FolderTestCase(unittest.TestCase):
+    """A folder for all tests of the class."""
 
     @classmethod
     def setUpClass(cls):
         folder = tempfile.TemporaryDirectory(prefix="twinmap_test_")
         cls.addClassCleanup(folder.cleanup)
         cls.folder = Path(folder.name)
+
+
+class RunTestCase(FolderTestCase):
+    """One run for all tests of the class, of FILE with ARGUMENTS."""
+    FILE = EXPERIMENTS / "two_beam/best.yaml"
+    ARGUMENTS = QUICK
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
         cls.run_folder = cls.folder / "run"
         result = call("run", cls.FILE, *cls.ARGUMENTS, "--out", cls.run_folder)
         if result.returncode != 0:

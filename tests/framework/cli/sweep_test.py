@@ -1,6 +1,5 @@
 """Sweeps from outside: what is simulated, what is left behind, and what an interruption or a failure changes."""
 import collections
-import csv
 import filecmp
 import os
 import pty
@@ -16,9 +15,10 @@ import time
 import unittest
 from pathlib import Path
 
-TWINMAP = os.environ["TWINMAP"]
-CART = os.path.join(os.environ["TWINMAP_SOURCE_DIR"], "experiments/duffing/cart.yaml")
-CHAIN = os.path.join(os.environ["TWINMAP_SOURCE_DIR"], "experiments/three_mass_chain/modes.yaml")
+from support import EXPERIMENTS, TWINMAP, call, read_csv
+
+CART = EXPERIMENTS / "duffing/cart.yaml"
+CHAIN = EXPERIMENTS / "three_mass_chain/modes.yaml"
 QUICK = ["evaluation.limit=false", "design.train.method=nested_latin_hypercube"]
 SMALL = [*QUICK, "design.test.samples=8", "inverse_map.gp.starts=1"]
 LIMITS = [*SMALL, "evaluation.limit=true"]
@@ -28,15 +28,6 @@ SWEEP = [*SMALL, "design.train.samples=8,16", "noise.scale=0.5,1", "seed=1..2"]
 TABLES = ["sweep.csv", "summary.csv", "table.md", "failed_cases.csv", "resolved.yaml"]
 RESULTS = ["failures.csv", "joint.csv", "maps.h5", "metrics.csv", "pit.csv", "predictions.csv", "resolved.yaml",
            "samples.h5", "table.md", "table.tex", "training.csv"]
-
-
-def call(*arguments, **options):
-    return subprocess.run([TWINMAP, *map(str, arguments)], capture_output=True, text=True, timeout=1500, **options)
-
-
-def read_csv(path):
-    with open(path, newline="") as file:
-        return list(csv.DictReader(file))
 
 
 def read_points(chunk):
@@ -255,7 +246,7 @@ class Continuing(SweepTestCase):
     def fill_disk(self, disk, size, name):
         """Runs the sweep on a disk of so many bytes, and copies what is there then."""
         (self.folder / disk).mkdir()
-        run = shlex.join([TWINMAP, "run", CART, *FULL, "--quiet", "--out", str(self.folder / disk / name)])
+        run = shlex.join([TWINMAP, "run", str(CART), *FULL, "--quiet", "--out", str(self.folder / disk / name)])
         script = f"""mount -t tmpfs -o size={size} none {self.folder / disk} || exit 9
             {run}; code=$?; cp -a {self.folder / disk / name} {self.folder}; exit $code"""
         done = subprocess.run(["unshare", "-rm", "sh", "-c", script], capture_output=True, text=True, timeout=600)
