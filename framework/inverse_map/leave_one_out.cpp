@@ -27,11 +27,12 @@ Predictions predictLeftOut(const GpMap& map, const Eigen::MatrixXd& inputs, cons
         calcLeftOut(map.processes[p], inputs, targets.row(p).transpose(), groups, threads);
     const Eigen::RowVectorXd mean = targets.row(p) - left_out.residual.transpose();
     predictions.mean.row(p) = map.target_offset[p] + map.target_scale[p] * mean.array();
-    // The stddev left out holds the likelihood's noise; the profile redistributes it.
-    const Eigen::ArrayXd more_noise =
-        getNoiseVariance(map.processes[p]) * (map.noise.calcFactors(map.processes[p], p, inputs) - 1.0);
-    const Eigen::ArrayXd latent_and_noise = left_out.stddev.array().square() + more_noise;
-    predictions.stddev.row(p) = map.target_scale[p] * latent_and_noise.sqrt().transpose();
+    // The stddev left out holds the likelihood's noise, which the profile redistributes. Without the noise
+    // little more than rounding may be left, of either sign.
+    const double noise = getNoiseVariance(map.processes[p]);
+    const Eigen::ArrayXd latent = (left_out.stddev.array().square() - noise).max(0.0);
+    const Eigen::ArrayXd factors = map.noise.calcFactors(map.processes[p], p, inputs);
+    predictions.stddev.row(p) = map.target_scale[p] * (latent + noise * factors).sqrt().transpose();
   }
   return predictions;
 }

@@ -89,6 +89,28 @@ TEST_P(MapLeaveOneOut, TellsErrorsAndTheirCorrelationFromTrainingAlone) {
   }
 }
 
+// The noise ends at its lower bound, far below what rounding leaves of the precision matrix.
+TEST(MapLeaveOneOutOfSmoothFunctions, IsANumberWithoutAnyNoise) {
+  const RandomStream random(7, RandomPurpose::kTrainNoise);
+  LabelledFeatures samples = makeSamples(30, 1);
+  for (int i = 0; i < 30; ++i) {
+    const double a = 2 * random.calcUniform(i, 4) - 1, b = 2 * random.calcUniform(i, 5) - 1;
+    samples.features.col(i) << a, b;
+    samples.parameters.col(i) << std::sin(a) + 15, a * b;
+  }
+  TransformStepSpec z_score;
+  z_score.z_score.emplace();
+  for (const GpCovariance covariance :
+       {GpCovariance::kSquaredExponential, GpCovariance::kRationalQuadratic}) {
+    GpMapSpec spec;
+    spec.covariance = covariance;
+    spec.mean = GpMean::kLinear;
+    const GpMapTraining training = trainGpMap(spec, {z_score}, {"p", "q"}, samples, 1);
+    EXPECT_TRUE(training.leave_one_out.stddev.allFinite());
+    EXPECT_TRUE(training.map.residual_correlation.allFinite());
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Approximations, MapLeaveOneOut,
                          testing::Values(GpApproximation::kExact, GpApproximation::kSgpr));
 
