@@ -11,6 +11,9 @@ struct AffineStep {
   Eigen::VectorXd scale;       ///< d, > 0
   Eigen::MatrixXd projection;  ///< P, k x d, or empty
 
+  /// k, or d without P.
+  Eigen::Index countInputs() const { return projection.size() > 0 ? projection.rows() : offset.size(); }
+
   /// d x n -> k x n (or d x n).
   Eigen::MatrixXd apply(const Eigen::MatrixXd& features) const;
 

@@ -55,6 +55,18 @@ MatrixXd FeatureTransform::apply(const MatrixXd& features) const {
   return inputs;
 }
 
+MatrixXd FeatureTransform::calcMatrix() const {
+  const Eigen::Index inputs = steps.back().countInputs();
+  MatrixXd matrix = MatrixXd::Identity(inputs, inputs);
+  for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
+    if (step->projection.size() > 0) {
+      matrix = matrix * step->projection;
+    }
+    matrix = matrix * step->scale.cwiseInverse().asDiagonal();
+  }
+  return matrix;
+}
+
 MatrixXd FeatureTransform::applyToCovariance(const MatrixXd& covariance) const {
   MatrixXd of_inputs = covariance;
   for (const AffineStep& step : steps) {

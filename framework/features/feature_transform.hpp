@@ -17,6 +17,9 @@ struct FeatureTransform {
   /// Features (d x n) -> inputs (k x n).
   Eigen::MatrixXd apply(const Eigen::MatrixXd& features) const;
 
+  /// M (k x d) of apply(x) = M x + apply(0); needs a step, which knows d.
+  Eigen::MatrixXd calcMatrix() const;
+
   /// Covariance of features (d x d) -> of inputs (k x k).
   Eigen::MatrixXd applyToCovariance(const Eigen::MatrixXd& covariance) const;
 };

@@ -17,16 +17,11 @@ namespace {
 
 using ExactProcess = std::shared_ptr<const gp::GaussianProcess>;
 
-Index countFeatures(const FeatureTransform& transform) {
-  return transform.steps.front().offset.size();
-}
-
 }  // namespace
 
 OnlineMap::OnlineMap(GpMap map) : map_(std::move(map)), predictor_(map_.processes) {
-  const Index features = countFeatures(map_.transform);
-  offset_ = map_.transform.apply(VectorXd::Zero(features));
-  matrix_ = map_.transform.apply(MatrixXd::Identity(features, features)).colwise() - offset_;
+  matrix_ = map_.transform.calcMatrix();
+  offset_ = map_.transform.apply(VectorXd::Zero(matrix_.cols()));
   noise_variance_.resize(static_cast<Index>(map_.processes.size()));
   for (Index p = 0; p < noise_variance_.size(); ++p) {
     noise_variance_[p] = getNoiseVariance(map_.processes[p]);

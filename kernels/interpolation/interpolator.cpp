@@ -101,6 +101,7 @@ Interpolator::Interpolator(InterpolatorParts parts) : parts_(std::move(parts)) {
               parts_.left_out_variance.allFinite() && (parts_.length_scales.array() > 0.0).all(),
           "every number must be finite, length scales positive");
   scaled_points_ = parts_.points.transpose() * parts_.length_scales.cwiseInverse().asDiagonal();
+  weights_of_function_ = parts_.weights.transpose();
 }
 
 void Interpolator::evaluate(const Eigen::Ref<const VectorXd>& point, Workspace& workspace) const {
@@ -113,11 +114,12 @@ void Interpolator::evaluate(const Eigen::Ref<const VectorXd>& point, Workspace& 
   for (Index v = 1; v < getVariableCount(); ++v) workspace.covariance += scaled.col(v).array().square();
   workspace.covariance = (-0.5 * workspace.covariance).exp();
   workspace.values = parts_.mean;
-  workspace.values.noalias() += parts_.weights * workspace.covariance.matrix();
+  workspace.values.noalias() += weights_of_function_.transpose() * workspace.covariance.matrix();
   for (Index v = 0; v < getVariableCount(); ++v) {
     scaled.col(v).array() *= workspace.covariance / parts_.length_scales(v);
   }
-  workspace.jacobian.noalias() = parts_.weights * scaled;
+  // Few columns: dot products beat a blocked product, which would copy the weights first.
+  workspace.jacobian.noalias() = weights_of_function_.transpose().lazyProduct(scaled);
 }
 
 Interpolator fitInterpolator(const MatrixXd& points, const MatrixXd& values) {

@@ -40,7 +40,8 @@ class Interpolator {
 
  private:
   InterpolatorParts parts_;
-  Eigen::MatrixXd scaled_points_;  // Z / l, n x p
+  Eigen::MatrixXd scaled_points_;        // Z / l, n x p
+  Eigen::MatrixXd weights_of_function_;  // n x r
 };
 
 /// Fits an interpolator to `values` (r x n) at `points` (p x n, n > p + 1, each variable spread over about

@@ -131,6 +131,24 @@ TEST(FeatureTransform, WhitenByCovarianceMakesNoiseIndependentAlsoBehindAProject
   EXPECT_THROW(fitTransform({whiten}, samples), std::invalid_argument);
 }
 
+TEST(FeatureTransform, ItsMatrixMapsDifferences) {
+  LabelledFeatures samples;
+  samples.features = makeNoise(4, 50, 7);
+  samples.noise_covariance = makeCorrelatedCovariance();
+  TransformStepSpec whiten = makeWhiten();
+  whiten.whiten->by = WhitenBy::kCovariance;
+  for (const std::vector<TransformStepSpec>& steps : {std::vector{makeZScore()},
+                                                      {makeZScore(), whiten},
+                                                      {whiten, makePrincipalComponents(3), makeZScore()}}) {
+    const FeatureTransform transform = fitTransform(steps, samples);
+    const MatrixXd origin = transform.apply(VectorXd::Zero(4));
+    const MatrixXd expected = transform.apply(samples.features).colwise() - origin.col(0);
+    const MatrixXd mapped = transform.calcMatrix() * samples.features;
+    ASSERT_EQ(mapped.rows(), expected.rows());
+    EXPECT_LT((mapped - expected).norm(), 1e-11 * expected.norm());
+  }
+}
+
 TEST(FeatureTransform, ByCovarianceOfIndependentNoiseIsByStddev) {
   const MatrixXd features = MatrixXd::Random(2, 20);
   TransformStepSpec whiten = makeWhiten();
