@@ -7,7 +7,7 @@
 #include "framework/features/noise.hpp"
 #include "framework/features/selections.hpp"
 #include "framework/fit_online.hpp"
-#include "framework/inverse_map/gp_map.hpp"
+#include "framework/inverse_map/train_gp_map.hpp"
 #include "framework/labelled_sets.hpp"
 #include "framework/make_extractor.hpp"
 #include "framework/multibody/multibody_simulator.hpp"

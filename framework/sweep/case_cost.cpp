@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "framework/features/feature_extractor.hpp"
-#include "framework/inverse_map/gp_map.hpp"
+#include "framework/inverse_map/train_gp_map.hpp"
 #include "framework/sensitivity/neighbourhood_simulator.hpp"
 #include "framework/spec/parameter_box.hpp"
 

@@ -7,6 +7,7 @@
 #include "framework/evaluation/information_limit.hpp"
 #include "framework/features/noise.hpp"
 #include "framework/fit_online.hpp"
+#include "framework/inverse_map/train_gp_map.hpp"
 #include "framework/labelled_sets.hpp"
 #include "framework/make_extractor.hpp"
 #include "framework/report/tables.hpp"

@@ -1,4 +1,4 @@
-#include "framework/inverse_map/gp_map.hpp"
+#include "framework/inverse_map/train_gp_map.hpp"
 
 #include <gtest/gtest.h>
 

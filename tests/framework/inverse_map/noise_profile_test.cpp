@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "framework/design/random.hpp"
-#include "framework/inverse_map/gp_map.hpp"
+#include "framework/inverse_map/train_gp_map.hpp"
 
 namespace twinmap {
 namespace {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "framework/design/random.hpp"
+#include "framework/inverse_map/train_gp_map.hpp"
 #include "framework/online/fit_trust.hpp"
 
 namespace twinmap::testing {

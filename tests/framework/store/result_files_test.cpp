@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/hdf5/hdf5_file.hpp"
+#include "framework/inverse_map/train_gp_map.hpp"
 #include "framework/store/maps_file.hpp"
 #include "framework/store/provenance.hpp"
 #include "framework/store/samples_file.hpp"
