@@ -1,4 +1,5 @@
 """twinmap noise, simulated responses as measurements, and measured excitation, as a user meets them."""
+import functools
 import json
 import os
 import tempfile
@@ -10,9 +11,11 @@ import numpy as np
 import scipy.io
 import yaml
 
-from support import EXPERIMENTS, call
+import support
+from support import EXPERIMENTS
 
 TABLE1 = EXPERIMENTS / "two_beam/table1.yaml"
+call = functools.partial(support.call, timeout=600)
 
 
 class TestCase(unittest.TestCase):

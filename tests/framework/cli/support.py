@@ -12,8 +12,8 @@ EXPERIMENTS = Path(os.environ["TWINMAP_SOURCE_DIR"]) / "experiments"
 QUICK = ["design.train.samples=60", "design.test.samples=60", "evaluation.limit=false"]
 
 
-def call(*arguments, **options):
-    return subprocess.run([TWINMAP, *map(str, arguments)], capture_output=True, text=True, timeout=1500, **options)
+def call(*arguments, timeout=1500, **options):
+    return subprocess.run([TWINMAP, *map(str, arguments)], capture_output=True, text=True, timeout=timeout, **options)
 
 
 def read_csv(path):
