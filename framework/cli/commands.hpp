@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/report/gates.hpp"
+#include "framework/results/gates.hpp"
 #include "framework/spec/experiment_spec.hpp"
 
 namespace twinmap {

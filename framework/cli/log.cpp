@@ -6,7 +6,7 @@
 #include <cstdlib>
 
 #include "framework/cli/progress_line.hpp"
-#include "framework/run_log.hpp"
+#include "framework/monitoring/run_log.hpp"
 
 namespace twinmap {
 

@@ -8,8 +8,8 @@
 #include "framework/cli/commands.hpp"
 #include "framework/cli/log.hpp"
 #include "framework/cli/signals.hpp"
-#include "framework/interrupted.hpp"
-#include "framework/spec/source_location.hpp"
+#include "framework/monitoring/interrupted.hpp"
+#include "framework/spec/yaml/source_location.hpp"
 
 namespace {
 

@@ -4,9 +4,9 @@
 #include "framework/cli/commands.hpp"
 #include "framework/measurement/measurement.hpp"
 #include "framework/measurement/signal_noise.hpp"
-#include "framework/spec/check_experiment.hpp"
+#include "framework/spec/check/check_experiment.hpp"
 #include "framework/spec/experiment_file.hpp"
-#include "framework/spec/output_units.hpp"
+#include "framework/spec/expression/output_units.hpp"
 
 namespace twinmap {
 namespace {

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <string>
 
-#include "framework/progress.hpp"
+#include "framework/monitoring/progress.hpp"
 
 namespace twinmap {
 

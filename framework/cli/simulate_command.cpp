@@ -8,10 +8,10 @@
 #include "framework/measurement/signal_experiment.hpp"
 #include "framework/measurement/table.hpp"
 #include "framework/multibody/multibody_simulator.hpp"
-#include "framework/spec/check_experiment.hpp"
+#include "framework/spec/check/check_experiment.hpp"
 #include "framework/spec/experiment_file.hpp"
-#include "framework/spec/number_text.hpp"
 #include "framework/spec/parameter_box.hpp"
+#include "framework/spec/yaml/number_text.hpp"
 #include "framework/store/atomic_file.hpp"
 
 namespace twinmap {

@@ -1,6 +1,6 @@
 #include "framework/comparison/compared_run.hpp"
 
-#include "framework/spec/check_experiment.hpp"
+#include "framework/spec/check/check_experiment.hpp"
 #include "framework/spec/experiment_file.hpp"
 #include "framework/store/finished_run.hpp"
 

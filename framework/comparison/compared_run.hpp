@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "framework/spec/model_spec.hpp"
-#include "framework/spec/yaml_node.hpp"
+#include "framework/spec/yaml/yaml_node.hpp"
 #include "framework/store/predictions_file.hpp"
 
 namespace twinmap {

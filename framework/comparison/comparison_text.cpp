@@ -4,8 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "framework/report/escape.hpp"
-#include "framework/spec/number_text.hpp"
+#include "framework/results/escape.hpp"
+#include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
 namespace {

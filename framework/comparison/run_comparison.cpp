@@ -7,7 +7,7 @@
 #include "framework/evaluation/metrics.hpp"
 #include "framework/evaluation/paired_bootstrap.hpp"
 #include "framework/evaluation/sample_terms.hpp"
-#include "framework/spec/number_text.hpp"
+#include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "framework/comparison/compared_run.hpp"
-#include "framework/spec/compare_trees.hpp"
+#include "framework/spec/yaml/compare_trees.hpp"
 
 namespace twinmap {
 

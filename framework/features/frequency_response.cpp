@@ -5,7 +5,7 @@
 
 #include "framework/features/complex_lines.hpp"
 #include "framework/features/layout_rows.hpp"
-#include "framework/spec/number_text.hpp"
+#include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
 namespace {

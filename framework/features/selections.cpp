@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "framework/features/mutual_information.hpp"
-#include "framework/spec/check_experiment.hpp"
+#include "framework/spec/check/check_experiment.hpp"
 
 namespace twinmap {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "framework/report/escape.hpp"
-#include "framework/spec/number_text.hpp"
+#include "framework/results/escape.hpp"
 #include "framework/spec/parameter_box.hpp"
+#include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "framework/spec/check_experiment.hpp"
-#include "framework/spec/nearest_name.hpp"
-#include "framework/spec/number_text.hpp"
-#include "framework/spec/source_location.hpp"
+#include "framework/spec/check/check_experiment.hpp"
+#include "framework/spec/yaml/nearest_name.hpp"
+#include "framework/spec/yaml/number_text.hpp"
+#include "framework/spec/yaml/source_location.hpp"
 
 namespace twinmap {
 namespace {

@@ -1,7 +1,7 @@
 #include "framework/inference/refiner.hpp"
 
+#include "framework/experiment/make_extractor.hpp"
 #include "framework/features/noise.hpp"
-#include "framework/make_extractor.hpp"
 #include "framework/spec/parameter_box.hpp"
 
 namespace twinmap {

@@ -5,9 +5,9 @@
 
 #include "framework/inference/inference_text.hpp"
 #include "framework/inference/replay_page.hpp"
-#include "framework/report/csv.hpp"
-#include "framework/report/markdown_table.hpp"
-#include "framework/spec/number_text.hpp"
+#include "framework/results/csv.hpp"
+#include "framework/results/markdown_table.hpp"
+#include "framework/spec/yaml/number_text.hpp"
 #include "framework/store/atomic_file.hpp"
 
 namespace twinmap {

@@ -7,13 +7,13 @@
 
 #include "framework/inference/inference_text.hpp"
 #include "framework/inference/replay_files.hpp"
-#include "framework/report/csv.hpp"
 #include "framework/report/html.hpp"
 #include "framework/report/response_panels.hpp"
 #include "framework/report/sections/verdict.hpp"
 #include "framework/report/vega.hpp"
-#include "framework/spec/number_text.hpp"
+#include "framework/results/csv.hpp"
 #include "framework/spec/parameter_box.hpp"
+#include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "framework/measurement/time_series.hpp"
-#include "framework/spec/number_text.hpp"
+#include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
 namespace {

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/measurement/signal_noise.hpp"
-#include "framework/spec/number_text.hpp"
+#include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
 namespace {

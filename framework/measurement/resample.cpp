@@ -4,7 +4,7 @@
 
 #include "framework/measurement/measurement.hpp"
 #include "framework/measurement/time_series.hpp"
-#include "framework/spec/number_text.hpp"
+#include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "framework/spec/sweep_cases.hpp"
+#include "framework/spec/sweep/sweep_cases.hpp"
 
 namespace twinmap {
 

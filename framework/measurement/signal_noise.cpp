@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "framework/spec/number_text.hpp"
+#include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
 namespace {

@@ -7,8 +7,8 @@
 #include "framework/measurement/read_hdf5_table.hpp"
 #include "framework/measurement/read_mat_table.hpp"
 #include "framework/spec/column_spec.hpp"
-#include "framework/spec/nearest_name.hpp"
-#include "framework/spec/number_text.hpp"
+#include "framework/spec/yaml/nearest_name.hpp"
+#include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
 namespace {

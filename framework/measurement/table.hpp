@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/spec/source_location.hpp"
+#include "framework/spec/yaml/source_location.hpp"
 
 namespace twinmap {
 

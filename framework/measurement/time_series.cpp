@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "framework/spec/number_text.hpp"
-#include "framework/spec/units.hpp"
+#include "framework/spec/expression/units.hpp"
+#include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "framework/multibody/linearization.hpp"
 #include "framework/multibody/run_sample.hpp"
-#include "framework/spec/check_experiment.hpp"
+#include "framework/spec/check/check_experiment.hpp"
 #include "framework/spec/parameter_box.hpp"
 
 namespace twinmap {

@@ -1,7 +1,7 @@
 #include "framework/multibody/outputs.hpp"
 
 #include "framework/multibody/mass_properties.hpp"
-#include "framework/spec/output_units.hpp"
+#include "framework/spec/expression/output_units.hpp"
 
 namespace twinmap {
 namespace {

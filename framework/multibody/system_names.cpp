@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "framework/spec/nearest_name.hpp"
+#include "framework/spec/yaml/nearest_name.hpp"
 
 namespace twinmap {
 namespace {

@@ -1,7 +1,7 @@
 #include "framework/report/html.hpp"
 
-#include "framework/report/number_with_error.hpp"
-#include "framework/spec/number_text.hpp"
+#include "framework/results/number_with_error.hpp"
+#include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/report/escape.hpp"
+#include "framework/results/escape.hpp"
 
 namespace twinmap {
 

@@ -4,9 +4,9 @@
 #include <optional>
 #include <stdexcept>
 
-#include "framework/report/run_folder.hpp"
 #include "framework/report/sections/samples_table.hpp"
 #include "framework/report/sections/sections.hpp"
+#include "framework/results/run_folder.hpp"
 #include "framework/store/atomic_file.hpp"
 
 namespace twinmap {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/report/gates.hpp"
+#include "framework/results/gates.hpp"
 
 namespace twinmap {
 

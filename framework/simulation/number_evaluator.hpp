@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "framework/spec/expression.hpp"
+#include "framework/spec/expression/expression.hpp"
 
 namespace twinmap {
 

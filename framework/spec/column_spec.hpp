@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "framework/spec/source_location.hpp"
+#include "framework/spec/yaml/source_location.hpp"
 
 namespace twinmap {
 

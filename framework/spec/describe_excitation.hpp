@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "framework/spec/excitation_spec.hpp"
-#include "framework/spec/fields.hpp"
+#include "framework/spec/fields/fields.hpp"
 
 namespace twinmap {
 

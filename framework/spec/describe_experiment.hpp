@@ -6,7 +6,7 @@
 #include "framework/spec/describe_measurement.hpp"
 #include "framework/spec/describe_system.hpp"
 #include "framework/spec/experiment_spec.hpp"
-#include "framework/spec/fields.hpp"
+#include "framework/spec/fields/fields.hpp"
 
 namespace twinmap {
 

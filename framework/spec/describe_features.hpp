@@ -1,7 +1,7 @@
 #pragma once
 
 #include "framework/spec/feature_spec.hpp"
-#include "framework/spec/fields.hpp"
+#include "framework/spec/fields/fields.hpp"
 
 namespace twinmap {
 

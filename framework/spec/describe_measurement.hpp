@@ -1,6 +1,6 @@
 #pragma once
 
-#include "framework/spec/fields.hpp"
+#include "framework/spec/fields/fields.hpp"
 #include "framework/spec/measurement_spec.hpp"
 
 namespace twinmap {

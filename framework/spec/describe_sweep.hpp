@@ -1,7 +1,7 @@
 #pragma once
 
-#include "framework/spec/fields.hpp"
-#include "framework/spec/sweep_spec.hpp"
+#include "framework/spec/fields/fields.hpp"
+#include "framework/spec/sweep/sweep_spec.hpp"
 
 namespace twinmap {
 

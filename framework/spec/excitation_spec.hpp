@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "framework/spec/expression.hpp"
+#include "framework/spec/expression/expression.hpp"
 
 namespace twinmap {
 

@@ -2,16 +2,16 @@
 
 #include <algorithm>
 
-#include "framework/spec/check_experiment.hpp"
-#include "framework/spec/check_features.hpp"
+#include "framework/spec/check/check_experiment.hpp"
+#include "framework/spec/check/check_features.hpp"
 #include "framework/spec/describe_experiment.hpp"
 #include "framework/spec/describe_sweep.hpp"
+#include "framework/spec/fields/overrides.hpp"
+#include "framework/spec/fields/read_value.hpp"
+#include "framework/spec/fields/write_value.hpp"
 #include "framework/spec/noise_correlation.hpp"
-#include "framework/spec/overrides.hpp"
-#include "framework/spec/read_value.hpp"
 #include "framework/spec/signal_files.hpp"
-#include "framework/spec/swept_keys.hpp"
-#include "framework/spec/write_value.hpp"
+#include "framework/spec/sweep/swept_keys.hpp"
 
 namespace twinmap {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "framework/spec/experiment_spec.hpp"
-#include "framework/spec/sweep_spec.hpp"
-#include "framework/spec/yaml_node.hpp"
+#include "framework/spec/sweep/sweep_spec.hpp"
+#include "framework/spec/yaml/yaml_node.hpp"
 
 namespace twinmap {
 

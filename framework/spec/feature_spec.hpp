@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "framework/spec/expression.hpp"
+#include "framework/spec/expression/expression.hpp"
 
 namespace twinmap {
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <optional>
 
-#include "framework/spec/expression.hpp"
+#include "framework/spec/expression/expression.hpp"
 
 namespace twinmap {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "framework/spec/column_spec.hpp"
-#include "framework/spec/expression.hpp"
+#include "framework/spec/expression/expression.hpp"
 
 namespace twinmap {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "framework/spec/autocorrelation.hpp"
-#include "framework/spec/check_experiment.hpp"
+#include "framework/spec/check/check_experiment.hpp"
 
 namespace twinmap {
 namespace {

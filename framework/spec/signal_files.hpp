@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "framework/spec/yaml_node.hpp"
+#include "framework/spec/yaml/yaml_node.hpp"
 
 namespace twinmap {
 

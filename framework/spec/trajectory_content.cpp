@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "framework/spec/check_experiment.hpp"
+#include "framework/spec/check/check_experiment.hpp"
 #include "framework/spec/describe_experiment.hpp"
+#include "framework/spec/fields/write_value.hpp"
 #include "framework/spec/parameter_box.hpp"
-#include "framework/spec/write_value.hpp"
 
 namespace twinmap {
 namespace {

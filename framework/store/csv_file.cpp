@@ -6,7 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "framework/spec/number_text.hpp"
+#include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
 namespace {

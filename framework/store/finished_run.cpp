@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "framework/spec/source_location.hpp"
+#include "framework/spec/yaml/source_location.hpp"
 
 namespace twinmap {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "framework/hdf5/hdf5_handle.hpp"
-#include "framework/spec/number_text.hpp"
+#include "framework/spec/yaml/number_text.hpp"
 #include "framework/store/atomic_file.hpp"
 
 namespace twinmap {

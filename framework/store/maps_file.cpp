@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "framework/hdf5/hdf5_file.hpp"
-#include "framework/spec/check_experiment.hpp"
+#include "framework/spec/check/check_experiment.hpp"
 #include "framework/store/atomic_file.hpp"
 #include "framework/store/online_group.hpp"
 #include "framework/store/parameters_group.hpp"

@@ -1,7 +1,7 @@
 #include "framework/store/samples_file.hpp"
 
 #include "framework/hdf5/hdf5_file.hpp"
-#include "framework/spec/check_experiment.hpp"
+#include "framework/spec/check/check_experiment.hpp"
 #include "framework/spec/parameter_box.hpp"
 #include "framework/store/atomic_file.hpp"
 #include "framework/store/parameters_group.hpp"

@@ -6,12 +6,12 @@
 
 #include "framework/design/point_set.hpp"
 #include "framework/features/feature_extractor.hpp"
-#include "framework/needed_neighbourhoods.hpp"
-#include "framework/spec/check_experiment.hpp"
-#include "framework/spec/check_features.hpp"
+#include "framework/sampling/needed_neighbourhoods.hpp"
+#include "framework/sampling/store_content.hpp"
+#include "framework/spec/check/check_experiment.hpp"
+#include "framework/spec/check/check_features.hpp"
 #include "framework/spec/parameter_box.hpp"
 #include "framework/spec/trajectory_content.hpp"
-#include "framework/store_content.hpp"
 
 namespace twinmap {
 namespace {

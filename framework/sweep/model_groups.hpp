@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "framework/spec/response_layout.hpp"
-#include "framework/spec/sweep_cases.hpp"
+#include "framework/spec/sweep/sweep_cases.hpp"
 #include "framework/store/trajectory_store.hpp"
 
 namespace twinmap {

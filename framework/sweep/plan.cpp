@@ -8,7 +8,7 @@
 
 #include "framework/features/feature_extractor.hpp"
 #include "framework/measurement/signal_experiment.hpp"
-#include "framework/run_folder.hpp"
+#include "framework/results/run_state.hpp"
 #include "framework/spec/parameter_box.hpp"
 #include "framework/sweep/case_cost.hpp"
 #include "framework/sweep/probe.hpp"

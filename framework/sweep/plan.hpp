@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/spec/yaml_node.hpp"
+#include "framework/spec/yaml/yaml_node.hpp"
 #include "framework/sweep/stored_counts.hpp"
 
 namespace twinmap {

@@ -4,9 +4,9 @@
 #include <chrono>
 #include <filesystem>
 
-#include "framework/experiment.hpp"
-#include "framework/fit_online.hpp"
-#include "framework/needed_neighbourhoods.hpp"
+#include "framework/experiment/fit_online.hpp"
+#include "framework/experiment/run_experiment.hpp"
+#include "framework/sampling/needed_neighbourhoods.hpp"
 #include "framework/store/temporary_folder.hpp"
 #include "framework/sweep/case_cost.hpp"
 

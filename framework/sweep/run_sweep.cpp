@@ -6,14 +6,14 @@
 #include <chrono>
 #include <numeric>
 
-#include "framework/experiment.hpp"
-#include "framework/log_context.hpp"
+#include "framework/experiment/run_experiment.hpp"
+#include "framework/experiment/simulated_sets.hpp"
 #include "framework/measurement/signal_experiment.hpp"
+#include "framework/monitoring/log_context.hpp"
+#include "framework/monitoring/run_log.hpp"
 #include "framework/report/report.hpp"
-#include "framework/run_folder.hpp"
-#include "framework/run_log.hpp"
+#include "framework/results/run_state.hpp"
 #include "framework/sensitivity/neighbourhood_simulator.hpp"
-#include "framework/simulated_sets.hpp"
 #include "framework/spec/experiment_file.hpp"
 #include "framework/spec/parameter_box.hpp"
 #include "framework/store/atomic_file.hpp"

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "framework/progress.hpp"
-#include "framework/report/gates.hpp"
-#include "framework/spec/yaml_node.hpp"
+#include "framework/monitoring/progress.hpp"
+#include "framework/results/gates.hpp"
+#include "framework/spec/yaml/yaml_node.hpp"
 #include "framework/sweep/sweep_folder.hpp"
 
 namespace twinmap {

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
+#include "framework/experiment/simulated_sets.hpp"
 #include "framework/multibody/multibody_simulator.hpp"
-#include "framework/needed_neighbourhoods.hpp"
+#include "framework/sampling/needed_neighbourhoods.hpp"
+#include "framework/sampling/stored_local_models.hpp"
 #include "framework/sensitivity/neighbourhood_simulator.hpp"
-#include "framework/simulated_sets.hpp"
 #include "framework/spec/parameter_box.hpp"
-#include "framework/stored_local_models.hpp"
 
 namespace twinmap {
 namespace {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "framework/progress.hpp"
-#include "framework/sample_source.hpp"
-#include "framework/simulate_missing.hpp"
+#include "framework/monitoring/progress.hpp"
+#include "framework/sampling/sample_source.hpp"
+#include "framework/sampling/simulate_missing.hpp"
 #include "framework/simulation/simulator.hpp"
 #include "framework/sweep/model_groups.hpp"
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "framework/spec/sweep_cases.hpp"
+#include "framework/spec/sweep/sweep_cases.hpp"
 
 namespace twinmap {
 

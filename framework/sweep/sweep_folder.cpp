@@ -1,7 +1,7 @@
 #include "framework/sweep/sweep_folder.hpp"
 
-#include "framework/report/escape.hpp"
-#include "framework/run_folder.hpp"
+#include "framework/results/escape.hpp"
+#include "framework/results/run_state.hpp"
 #include "framework/store/atomic_file.hpp"
 #include "framework/store/csv_file.hpp"
 

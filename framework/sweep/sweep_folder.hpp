@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/spec/sweep_cases.hpp"
+#include "framework/spec/sweep/sweep_cases.hpp"
 
 namespace twinmap {
 

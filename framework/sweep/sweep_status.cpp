@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "framework/measurement/signal_experiment.hpp"
-#include "framework/run_folder.hpp"
+#include "framework/results/run_state.hpp"
 #include "framework/spec/experiment_file.hpp"
 #include "framework/store/folder_lock.hpp"
 #include "framework/sweep/sweep_folder.hpp"

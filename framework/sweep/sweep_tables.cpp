@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "framework/report/csv.hpp"
-#include "framework/report/escape.hpp"
-#include "framework/report/markdown_table.hpp"
-#include "framework/report/number_with_error.hpp"
-#include "framework/spec/number_text.hpp"
+#include "framework/results/csv.hpp"
+#include "framework/results/escape.hpp"
+#include "framework/results/markdown_table.hpp"
+#include "framework/results/number_with_error.hpp"
+#include "framework/spec/yaml/number_text.hpp"
 #include "framework/store/atomic_file.hpp"
 #include "framework/store/csv_file.hpp"
 #include "framework/sweep/sweep_folder.hpp"

@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <limits>
 
-#include "framework/evaluate.hpp"
 #include "framework/evaluation/information_limit.hpp"
+#include "framework/experiment/evaluate_map.hpp"
+#include "framework/experiment/fit_online.hpp"
+#include "framework/experiment/labelled_sets.hpp"
+#include "framework/experiment/make_extractor.hpp"
 #include "framework/features/noise.hpp"
-#include "framework/fit_online.hpp"
 #include "framework/inverse_map/train_gp_map.hpp"
-#include "framework/labelled_sets.hpp"
-#include "framework/make_extractor.hpp"
-#include "framework/report/tables.hpp"
-#include "framework/spec/check_experiment.hpp"
+#include "framework/results/tables.hpp"
+#include "framework/spec/check/check_experiment.hpp"
 #include "framework/spec/parameter_box.hpp"
 #include "framework/store/atomic_file.hpp"
 #include "framework/store/hdf5_difference.hpp"

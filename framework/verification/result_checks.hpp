@@ -1,6 +1,6 @@
 #pragma once
 
-#include "framework/simulated_sets.hpp"
+#include "framework/experiment/simulated_sets.hpp"
 #include "framework/verification/verification.hpp"
 
 namespace twinmap {

@@ -4,14 +4,14 @@
 #include <memory>
 
 #include "framework/design/point_set.hpp"
-#include "framework/run_folder.hpp"
-#include "framework/spec/number_text.hpp"
+#include "framework/results/run_state.hpp"
+#include "framework/sampling/store_content.hpp"
+#include "framework/sampling/stored_local_models.hpp"
 #include "framework/spec/parameter_box.hpp"
+#include "framework/spec/yaml/number_text.hpp"
 #include "framework/store/hdf5_difference.hpp"
 #include "framework/store/samples_file.hpp"
 #include "framework/store/temporary_folder.hpp"
-#include "framework/store_content.hpp"
-#include "framework/stored_local_models.hpp"
 
 namespace twinmap {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "framework/simulated_sets.hpp"
+#include "framework/experiment/simulated_sets.hpp"
 #include "framework/verification/verification.hpp"
 
 namespace twinmap {

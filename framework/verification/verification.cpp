@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "framework/design/slices.hpp"
-#include "framework/experiment.hpp"
+#include "framework/experiment/run_experiment.hpp"
 #include "framework/multibody/multibody_simulator.hpp"
 #include "framework/spec/experiment_file.hpp"
 #include "framework/store/atomic_file.hpp"

@@ -8,6 +8,7 @@ ALLOWED = {
     "kernels": set(),
     "spec": set(),
     "hdf5": set(),
+    "monitoring": set(),
     "measurement": {"spec", "hdf5"},
     "design": {"spec"},
     "simulation": {"spec"},
@@ -18,15 +19,20 @@ ALLOWED = {
     "online": {"spec", "design", "features", "inverse_map", "kernels"},
     "evaluation": {"spec", "design", "simulation", "features", "sensitivity", "inverse_map"},
     "store": {"spec", "hdf5", "simulation", "inverse_map", "online", "features", "kernels"},
-    "report": {"spec", "features", "evaluation", "inverse_map", "store"},
-    "comparison": {"spec", "features", "evaluation", "inverse_map", "store", "report"},
-    "flow": {"spec", "design", "simulation", "multibody", "features", "sensitivity", "evaluation", "inverse_map", "online", "store",
-             "report"},
-    "inference": {"flow", "spec", "design", "simulation", "multibody", "features", "sensitivity", "inverse_map", "online", "measurement", "store", "report"},
-    "verification": {"flow", "spec", "design", "simulation", "multibody", "features", "sensitivity", "evaluation",
-                     "inverse_map", "store", "report"},
-    "sweep": {"flow", "spec", "measurement", "design", "multibody", "simulation", "features", "sensitivity", "inverse_map", "report", "store"},
-    "cli": {"flow", "sweep", "comparison", "verification", "inference", "spec", "measurement", "design", "multibody", "simulation", "features", "report", "store"},
+    "sampling": {"spec", "monitoring", "design", "simulation", "features", "sensitivity", "store"},
+    "results": {"spec", "monitoring", "features", "evaluation", "inverse_map", "store"},
+    "report": {"spec", "features", "evaluation", "inverse_map", "store", "results"},
+    "comparison": {"spec", "features", "evaluation", "inverse_map", "store", "results"},
+    "experiment": {"spec", "monitoring", "design", "simulation", "multibody", "features", "sensitivity", "evaluation", "inverse_map",
+                   "online", "store", "sampling", "results", "report"},
+    "inference": {"experiment", "spec", "design", "simulation", "multibody", "features", "sensitivity", "inverse_map", "online",
+                  "measurement", "store", "results", "report"},
+    "verification": {"experiment", "spec", "monitoring", "design", "simulation", "multibody", "features", "sensitivity", "evaluation",
+                     "inverse_map", "store", "sampling", "results"},
+    "sweep": {"experiment", "spec", "monitoring", "measurement", "design", "multibody", "simulation", "features", "sensitivity",
+              "inverse_map", "store", "sampling", "results", "report"},
+    "cli": {"experiment", "sweep", "comparison", "verification", "inference", "spec", "monitoring", "measurement", "design",
+            "multibody", "simulation", "features", "store", "sampling", "results", "report"},
 }
 
 # Libraries that stay behind one part.
@@ -38,22 +44,22 @@ LIBRARIES = {
     r"hdf5.*": {"hdf5", "store"},
     r"matio.*": {"measurement"},
     r"xxhash.*": {"store"},
-    r"nlohmann/.*": {"spec", "measurement", "store", "report", "comparison", "inference"},
+    r"nlohmann/.*": {"spec", "measurement", "store", "results", "report", "comparison", "inference"},
     r"CLI/.*": {"cli"},
     r"nlopt.*": {"kernels"},
-    r"spdlog/.*": {"flow", "sweep", "cli"},
-    r"filesystem": {"spec", "inference", "hdf5", "measurement", "store", "report", "comparison", "flow", "sweep", "verification", "cli"},
-    r"(omp\.h|fstream|chrono)": {"spec", "measurement/fstream", "simulation", "multibody", "evaluation/chrono", "store", "comparison", "flow", "sweep", "verification", "cli", "kernels/omp.h"},
+    r"spdlog/.*": {"monitoring", "sampling", "experiment", "sweep", "cli"},
+    r"filesystem": {"spec", "inference", "hdf5", "monitoring", "measurement", "store", "sampling", "results", "report", "comparison", "experiment",
+                     "sweep", "verification", "cli"},
+    r"(omp\.h|fstream|chrono)": {"spec", "measurement/fstream", "monitoring/chrono", "simulation", "multibody", "evaluation/chrono",
+                                 "store", "sampling", "comparison", "experiment", "sweep", "verification", "cli", "kernels/omp.h"},
 }
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 
 
 def part_of(path):
-    """'kernels', a folder of framework, or 'flow' for the files in framework itself."""
-    if path.parts[0] == "kernels":
-        return "kernels"
-    return path.parts[1] if len(path.parts) > 2 else "flow"
+    """'kernels', or a folder of framework."""
+    return "kernels" if path.parts[0] == "kernels" else path.parts[1]
 
 
 def check(root, file):

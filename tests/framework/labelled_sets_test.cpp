@@ -1,4 +1,4 @@
-#include "framework/labelled_sets.hpp"
+#include "framework/experiment/labelled_sets.hpp"
 
 #include <gtest/gtest.h>
 

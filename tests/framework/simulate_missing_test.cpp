@@ -1,4 +1,4 @@
-#include "framework/simulate_missing.hpp"
+#include "framework/sampling/simulate_missing.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <iostream>
 #include <thread>
 
-#include "framework/simulate_missing.hpp"
+#include "framework/sampling/simulate_missing.hpp"
 #include "framework/store/atomic_file.hpp"
 #include "tests/framework/counting_simulator.hpp"
 

@@ -5,7 +5,7 @@
 #include "framework/report/sections/samples_table.hpp"
 #include "framework/report/sections/sections.hpp"
 #include "framework/report/vega.hpp"
-#include "framework/spec/check_experiment.hpp"
+#include "framework/spec/check/check_experiment.hpp"
 
 namespace twinmap {
 namespace {

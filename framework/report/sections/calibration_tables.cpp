@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "framework/report/sections/samples_table.hpp"
-#include "framework/spec/check_experiment.hpp"
+#include "framework/spec/check/check_experiment.hpp"
 
 namespace twinmap {
 namespace {

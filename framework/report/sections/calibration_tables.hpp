@@ -1,7 +1,7 @@
 #pragma once
 
 #include "framework/report/data_table.hpp"
-#include "framework/report/run_folder.hpp"
+#include "framework/results/run_folder.hpp"
 
 namespace twinmap {
 

@@ -3,9 +3,9 @@
 #include "framework/report/html.hpp"
 #include "framework/report/sections/heat_spec.hpp"
 #include "framework/report/sections/sections.hpp"
-#include "framework/spec/check_experiment.hpp"
-#include "framework/spec/number_text.hpp"
+#include "framework/spec/check/check_experiment.hpp"
 #include "framework/spec/parameter_box.hpp"
+#include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
 namespace {

@@ -4,7 +4,7 @@
 #include "framework/report/sections/metric_columns.hpp"
 #include "framework/report/sections/sections.hpp"
 #include "framework/report/vega.hpp"
-#include "framework/spec/number_text.hpp"
+#include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
 namespace {

@@ -5,7 +5,7 @@
 #include "framework/report/sections/sections.hpp"
 #include "framework/report/sections/verdict.hpp"
 #include "framework/report/vega.hpp"
-#include "framework/spec/number_text.hpp"
+#include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
 namespace {

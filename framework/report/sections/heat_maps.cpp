@@ -3,7 +3,7 @@
 #include "framework/report/sections/heat_spec.hpp"
 #include "framework/report/sections/sections.hpp"
 #include "framework/report/vega.hpp"
-#include "framework/spec/check_experiment.hpp"
+#include "framework/spec/check/check_experiment.hpp"
 
 namespace twinmap {
 

@@ -1,8 +1,8 @@
-#include "framework/report/csv.hpp"
 #include "framework/report/html.hpp"
 #include "framework/report/sections/metric_columns.hpp"
 #include "framework/report/sections/sections.hpp"
-#include "framework/spec/number_text.hpp"
+#include "framework/results/csv.hpp"
+#include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
 namespace {

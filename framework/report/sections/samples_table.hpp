@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "framework/report/data_table.hpp"
-#include "framework/report/run_folder.hpp"
+#include "framework/results/run_folder.hpp"
 
 namespace twinmap {
 

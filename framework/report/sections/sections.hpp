@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "framework/report/figure.hpp"
-#include "framework/report/gates.hpp"
-#include "framework/report/run_folder.hpp"
+#include "framework/results/gates.hpp"
+#include "framework/results/run_folder.hpp"
 
 namespace twinmap {
 

@@ -1,7 +1,7 @@
 #include "framework/report/sections/sweep_figures.hpp"
 
 #include "framework/report/vega.hpp"
-#include "framework/spec/number_text.hpp"
+#include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "framework/report/sections/sections.hpp"
 #include "framework/report/sections/warnings.hpp"
-#include "framework/spec/check_experiment.hpp"
-#include "framework/spec/number_text.hpp"
+#include "framework/spec/check/check_experiment.hpp"
+#include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
 namespace {

@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "framework/report/gates.hpp"
 #include "framework/report/html.hpp"
+#include "framework/results/gates.hpp"
 
 namespace twinmap {
 

@@ -5,8 +5,8 @@
 #include <sstream>
 
 #include "framework/report/sections/samples_table.hpp"
-#include "framework/spec/number_text.hpp"
 #include "framework/spec/parameter_box.hpp"
+#include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/report/run_folder.hpp"
+#include "framework/results/run_folder.hpp"
 
 namespace twinmap {
 

@@ -1,10 +1,9 @@
-#include "framework/inverse_map/train_gp_map.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "framework/design/random.hpp"
+#include "framework/inverse_map/train_gp_map.hpp"
 
 namespace twinmap {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "framework/design/random.hpp"
-#include "framework/inverse_map/train_gp_map.hpp"
 #include "framework/inverse_map/residual_correlation.hpp"
+#include "framework/inverse_map/train_gp_map.hpp"
 
 namespace twinmap {
 namespace {

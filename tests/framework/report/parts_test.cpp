@@ -3,10 +3,10 @@
 #include <cmath>
 
 #include "framework/report/data_table.hpp"
-#include "framework/report/gates.hpp"
 #include "framework/report/html.hpp"
 #include "framework/report/sections/selected_responses.hpp"
 #include "framework/report/sections/sweep_groups.hpp"
+#include "framework/results/gates.hpp"
 
 namespace twinmap {
 namespace {

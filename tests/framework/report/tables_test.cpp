@@ -1,4 +1,4 @@
-#include "framework/report/tables.hpp"
+#include "framework/results/tables.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <sstream>
 
-#include "framework/report/escape.hpp"
-#include "framework/report/number_with_error.hpp"
+#include "framework/results/escape.hpp"
+#include "framework/results/number_with_error.hpp"
 #include "framework/spec/gate_spec.hpp"
 
 namespace twinmap {

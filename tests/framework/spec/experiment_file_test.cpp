@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "framework/spec/check_experiment.hpp"
+#include "framework/spec/check/check_experiment.hpp"
 #include "framework/spec/joint_type.hpp"
 #include "framework/spec/parameter_box.hpp"
 

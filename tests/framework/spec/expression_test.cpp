@@ -1,10 +1,10 @@
-#include "framework/spec/expression.hpp"
+#include "framework/spec/expression/expression.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "framework/spec/number_text.hpp"
+#include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "framework/spec/column_spec.hpp"
 #include "framework/spec/experiment_file.hpp"
-#include "framework/spec/units.hpp"
+#include "framework/spec/expression/units.hpp"
 
 namespace twinmap {
 namespace {

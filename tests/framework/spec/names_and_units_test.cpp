@@ -3,9 +3,9 @@
 #include <atomic>
 #include <thread>
 
-#include "framework/spec/check_scope.hpp"
-#include "framework/spec/nearest_name.hpp"
-#include "framework/spec/units.hpp"
+#include "framework/spec/check/check_scope.hpp"
+#include "framework/spec/expression/units.hpp"
+#include "framework/spec/yaml/nearest_name.hpp"
 
 namespace twinmap {
 namespace {

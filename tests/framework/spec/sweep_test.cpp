@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "framework/spec/compare_trees.hpp"
 #include "framework/spec/experiment_file.hpp"
-#include "framework/spec/sweep_cases.hpp"
+#include "framework/spec/sweep/sweep_cases.hpp"
+#include "framework/spec/yaml/compare_trees.hpp"
 
 namespace twinmap {
 namespace {

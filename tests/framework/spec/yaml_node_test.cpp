@@ -1,4 +1,4 @@
-#include "framework/spec/yaml_node.hpp"
+#include "framework/spec/yaml/yaml_node.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,93 @@
+#include "framework/experiment/fit_online.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "framework/features/noise.hpp"
+#include "framework/online/fit_trust.hpp"
+#include "framework/spec/experiment_file.hpp"
+#include "framework/spec/parameter_box.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+/// Columns whose features are all there; a noise draw may have lost one.
+std::vector<Index> findComplete(const MatrixXd& features) {
+  std::vector<Index> complete;
+  for (Index i = 0; i < features.cols(); ++i) {
+    if (features.col(i).allFinite()) {
+      complete.push_back(i);
+    }
+  }
+  return complete;
+}
+
+/// Test responses, each with several draws of the noise.
+void simulateMeasurements(const ExperimentSpec& experiment, const SimulatedSets& sets,
+                          const FeatureExtractor& extractor, TrustTraining& training) {
+  const std::vector<int> samples = findSuccessful(sets.test);
+  const MatrixXd responses = sets.test.responses(Eigen::all, samples);
+  const auto count = std::max(1, static_cast<int>(samples.size()));
+  const int draws = std::max(1, countReferences(experiment.design.train.samples) / count);
+  const ResponseNoise noise(experiment.noise, sets.test.layout);
+  const RandomStream random(experiment.seed, RandomPurpose::kTrust);
+  MatrixXd measured(extractor.getFeatureCount(), responses.cols() * draws);
+  for (int r = 0; r < draws; ++r) {
+    measured.middleCols(r * responses.cols(), responses.cols()) =
+        extractor.extract(addNoise(responses, noise, random, r));
+  }
+  const std::vector<Index> complete = findComplete(measured);
+  const auto known = static_cast<Index>(experiment.model.inputs.size());
+  const MatrixXd inputs =
+      MatrixXd(sets.test.parameters(Eigen::all, samples).bottomRows(known)).replicate(1, draws);
+  training.measured = measured(Eigen::all, complete);
+  training.known = inputs(Eigen::all, complete);
+}
+
+TrustTraining makeTrustTraining(const ExperimentSpec& experiment, const SimulatedSets& sets,
+                                const FeatureExtractor& extractor, const LabelledSets& labelled) {
+  const std::vector<int> samples = findSuccessful(sets.train);
+  TrustTraining training;
+  training.sampled = collectSampled(experiment.model);
+  training.unknown = static_cast<Index>(collectUnknown(experiment.model).size());
+  training.infos = extractor.getInfos();
+  training.points = sets.train.parameters(Eigen::all, samples);
+  training.clean_features = extractor.extract(sets.train.responses(Eigen::all, samples));
+  training.noise_covariance = labelled.train.noise_covariance;
+  simulateMeasurements(experiment, sets, extractor, training);
+  return training;
+}
+
+}  // namespace
+
+int countReferences(int train_samples) {
+  constexpr int kFewest = 200, kMost = 2000, kPerSimulation = 10;
+  return std::clamp(train_samples, kFewest / kPerSimulation, kMost / kPerSimulation) * kPerSimulation;
+}
+
+OnlineFit fitOnline(const ExperimentSpec& experiment, const SimulatedSets& sets,
+                    const FeatureExtractor& extractor, const LabelledSets& labelled, const GpMap& map) {
+  OnlineFit fit{{compressMap(map), {}}, {}};
+  try {
+    fit.model.trust = fitTrustModel(makeTrustTraining(experiment, sets, extractor, labelled),
+                                    OnlineMap(fit.model.map), experiment.trust.level);
+  } catch (const std::invalid_argument& error) {
+    fit.warnings.push_back(std::string("measurements cannot be judged (no trust model): ") + error.what());
+  }
+  return fit;
+}
+
+StoredMap makeStoredMap(const ExperimentSpec& experiment, const FeatureExtractor& extractor, const GpMap& map,
+                        const OnlineModel& online) {
+  StoredMap stored{experiment.model.parameters, {},     map,
+                   experiment.model.inputs,     online, writeExperiment(experiment)};
+  for (const FeatureInfo& info : extractor.getInfos()) {
+    stored.feature_names.push_back(info.name);
+  }
+  return stored;
+}
+
+}  // namespace twinmap

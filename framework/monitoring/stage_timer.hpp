@@ -1,0 +1,24 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "framework/results/run_summary.hpp"
+
+namespace twinmap {
+
+/// Logs a stage that took the given time, and notes it.
+void noteStage(const std::string& name, std::chrono::steady_clock::duration elapsed,
+               std::vector<StageTime>& times);
+
+/// Runs a stage, logs it and notes its wall time.
+template <class Stage>
+auto timeStage(const std::string& name, std::vector<StageTime>& times, const Stage& stage) {
+  const auto start = std::chrono::steady_clock::now();
+  auto result = stage();
+  noteStage(name, std::chrono::steady_clock::now() - start, times);
+  return result;
+}
+
+}  // namespace twinmap

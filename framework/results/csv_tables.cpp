@@ -1,0 +1,156 @@
+#include "framework/evaluation/calibration.hpp"
+#include "framework/results/csv.hpp"
+#include "framework/results/tables.hpp"
+#include "framework/spec/yaml/number_text.hpp"
+
+namespace twinmap {
+namespace {
+
+using Row = CsvRow;
+
+/// A column of metrics.csv and where its figure is.
+struct MetricsColumn {
+  std::string name;
+  double ParameterFigures::*figure;
+  bool leave_one_out;
+};
+
+std::vector<MetricsColumn> listMetricsColumns(const RunSummary& run) {
+  std::vector<MetricsColumn> columns;
+  for (const FigureColumn& column : kFigureColumns) {
+    const bool of_limit =
+        column.value == &ParameterFigures::limit_pct || column.value == &ParameterFigures::ratio_to_limit;
+    if (!of_limit || run.limit_stddev.size() > 0) {
+      columns.push_back({column.name, column.value, false});
+    }
+  }
+  columns.push_back({"loo_sd_pct", &ParameterFigures::sd_pct, true});
+  columns.push_back({"loo_coverage95", &ParameterFigures::coverage95, true});
+  columns.push_back({"loo_nlpd", &ParameterFigures::nlpd, true});
+  return columns;
+}
+
+/// The metrics that a column shows; null where there are none.
+const ParameterMetrics* findMetrics(const RunSummary& run, const MetricsColumn& column,
+                                    std::size_t parameter) {
+  if (!column.leave_one_out) {
+    return &run.metrics[parameter];
+  }
+  return run.leave_one_out.empty() ? nullptr : &run.leave_one_out[parameter];
+}
+
+Row makeMetricsRow(const RunSummary& run, const std::vector<MetricsColumn>& columns, std::size_t p) {
+  const ParameterSpec& parameter = run.parameters[p];
+  Row row{parameter.name.text, parameter.unit, toText(parameter.bounds.lower),
+          toText(parameter.bounds.upper)};
+  Row errors;
+  for (const MetricsColumn& column : columns) {
+    const ParameterMetrics* metrics = findMetrics(run, column, p);
+    row.push_back(metrics == nullptr ? "" : toText(metrics->*column.figure));
+    errors.push_back(metrics == nullptr ? "" : toText(metrics->se.*column.figure));
+  }
+  row.push_back(toText(run.nlml[p]));
+  row.push_back(std::to_string(run.metrics[p].samples));
+  row.insert(row.end(), errors.begin(), errors.end());
+  return row;
+}
+
+}  // namespace
+
+std::string makeMetricsCsv(const RunSummary& run) {
+  const std::vector<MetricsColumn> columns = listMetricsColumns(run);
+  Row header{"parameter", "unit", "lower", "upper"};
+  for (const MetricsColumn& column : columns) {
+    header.push_back(column.name);
+  }
+  header.insert(header.end(), {"nlml", "test_samples"});
+  for (const MetricsColumn& column : columns) {
+    header.push_back(column.name + "_se");
+  }
+  std::vector<Row> rows{header};
+  for (std::size_t p = 0; p < run.parameters.size(); ++p) {
+    rows.push_back(makeMetricsRow(run, columns, p));
+  }
+  return makeCsv(rows);
+}
+
+std::string makeJointCsv(const RunSummary& run) {
+  std::vector<Row> rows{{"metric", "value", "se"}};
+  for (const JointColumn& column : kJointColumns) {
+    rows.push_back({column.name, toText(run.joint.*column.value), toText(run.joint.se.*column.value)});
+  }
+  return makeCsv(rows);
+}
+
+std::string makePitCsv(const RunSummary& run) {
+  std::vector<Row> rows{{"parameter", "bin_lower", "bin_upper", "count"}};
+  for (std::size_t p = 0; p < run.pit_counts.size(); ++p) {
+    for (int bin = 0; bin < kPitBins; ++bin) {
+      rows.push_back({run.parameters[p].name.text, toText(double(bin) / kPitBins),
+                      toText(double(bin + 1) / kPitBins), std::to_string(run.pit_counts[p][bin])});
+    }
+  }
+  return makeCsv(rows);
+}
+
+std::string makePredictionsCsv(const RunSummary& run) {
+  const bool has_limit = run.limit_stddev.size() > 0;
+  std::vector<Row> rows{{"sample", "parameter", "true", "inferred", "stddev"}};
+  if (has_limit) {
+    rows[0].emplace_back("limit_stddev");
+  }
+  for (std::size_t i = 0; i < run.test_indices.size(); ++i) {
+    for (std::size_t p = 0; p < run.parameters.size(); ++p) {
+      const auto row = static_cast<Eigen::Index>(p);
+      const auto column = static_cast<Eigen::Index>(i);
+      rows.push_back({std::to_string(run.test_indices[i]), run.parameters[p].name.text,
+                      toText(run.truth(row, column)), toText(run.predictions.mean(row, column)),
+                      toText(run.predictions.stddev(row, column))});
+      if (has_limit) {
+        rows.back().push_back(toText(run.limit_stddev(row, column)));
+      }
+    }
+  }
+  return makeCsv(rows);
+}
+
+std::string makeFailuresCsv(const RunSummary& run) {
+  Row header{"set", "sample"};
+  for (const ParameterSpec& parameter : run.sampled) {
+    header.push_back(parameter.name.text);
+  }
+  header.emplace_back("reason");
+  std::vector<Row> rows{header};
+  for (const FailedSample& failure : run.failures) {
+    Row row{failure.set, std::to_string(failure.sample)};
+    for (const double value : failure.parameters) {
+      row.push_back(toText(value));
+    }
+    row.push_back(failure.reason);
+    rows.push_back(row);
+  }
+  return makeCsv(rows);
+}
+
+std::string makeHyperparametersCsv(const RunSummary& run) {
+  std::vector<Row> rows{{"parameter", "hyperparameter", "value", "lower", "upper"}};
+  for (const TrainedHyperparameter& trained : run.hyperparameters) {
+    rows.push_back({trained.parameter, trained.name, toText(trained.value), toText(trained.lower),
+                    toText(trained.upper)});
+  }
+  return makeCsv(rows);
+}
+
+std::string makeTrainingCsv(const RunSummary& run) {
+  std::vector<Row> rows{{"parameter", "start", "best", "nlml", "evaluations", "noise_only", "stop_reason",
+                         "at_bound", "condition", "jitter"}};
+  for (const TrainingStart& start : run.training) {
+    rows.push_back({start.parameter, std::to_string(start.start), start.best ? "1" : "0", toText(start.nlml),
+                    std::to_string(start.evaluations), start.noise_only ? "1" : "0", start.stop_reason,
+                    start.at_bound, start.best ? toText(start.condition) : "",
+                    start.best ? toText(start.jitter) : ""});
+  }
+  return makeCsv(rows);
+}
+
+}  // namespace twinmap

@@ -1,0 +1,91 @@
+#include "framework/results/evaluation_tables.hpp"
+
+#include "framework/results/csv.hpp"
+#include "framework/spec/yaml/number_text.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+
+CsvRow addParameterNames(CsvRow header, const RunSummary& run) {
+  for (const ParameterSpec& parameter : run.parameters) {
+    header.push_back(parameter.name.text);
+  }
+  return header;
+}
+
+CsvRow addNumbers(CsvRow row, const Eigen::VectorXd& values) {
+  for (const double value : values) {
+    row.push_back(toText(value));
+  }
+  return row;
+}
+
+}  // namespace
+
+std::string makeFeaturesCsv(const RunSummary& run) {
+  std::vector<CsvRow> rows{addParameterNames({"feature", "unit", "output", "time", "noise_stddev"}, run)};
+  const FeatureRelevance& features = *run.relevance;
+  for (std::size_t f = 0; f < features.infos.size(); ++f) {
+    const FeatureInfo& info = features.infos[f];
+    const auto index = static_cast<Index>(f);
+    rows.push_back(addNumbers({info.name, info.unit, info.output < 0 ? "" : std::to_string(info.output),
+                               toText(info.time), toText(features.noise_stddev[index])},
+                              features.relevance.row(index)));
+  }
+  return makeCsv(rows);
+}
+
+std::string makeCorrelationsCsv(const RunSummary& run) {
+  std::vector<CsvRow> rows{addParameterNames({"parameter"}, run)};
+  for (std::size_t p = 0; p < run.parameters.size(); ++p) {
+    rows.push_back(addNumbers({run.parameters[p].name.text},
+                              run.identifiability->correlation.row(static_cast<Index>(p))));
+  }
+  return makeCsv(rows);
+}
+
+std::string makeIdentifiabilityCsv(const RunSummary& run) {
+  std::vector<CsvRow> rows{addParameterNames({"eigenvalue"}, run)};
+  const Identifiability& found = *run.identifiability;
+  for (Index k = 0; k < found.eigenvalues.size(); ++k) {
+    rows.push_back(addNumbers({toText(found.eigenvalues[k])}, found.eigenvectors.col(k)));
+  }
+  return makeCsv(rows);
+}
+
+std::string makePosteriorCsv(const RunSummary& run) {
+  std::vector<CsvRow> rows{{"sample", "parameter", "posterior_mean", "posterior_stddev", "map_mean",
+                            "map_stddev", "limit_stddev", "effective_sample_size", "simulations"}};
+  for (const PosteriorComparison& row : run.posteriors) {
+    for (std::size_t p = 0; p < run.parameters.size(); ++p) {
+      const auto j = static_cast<Index>(p);
+      rows.push_back({std::to_string(row.sample), run.parameters[p].name.text, toText(row.exact.mean[j]),
+                      toText(row.exact.stddev[j]), toText(row.map_mean[j]), toText(row.map_stddev[j]),
+                      row.limit_stddev.size() > 0 ? toText(row.limit_stddev[j]) : "",
+                      toText(row.exact.effective_sample_size), std::to_string(row.exact.simulations)});
+    }
+  }
+  return makeCsv(rows);
+}
+
+std::string makeBaselinesCsv(const RunSummary& run) {
+  std::vector<CsvRow> rows{{"method", "samples", "parameter", "bias_pct", "sd_pct", "mare_pct", "coverage50",
+                            "coverage90", "coverage95", "seconds_per_update", "unconverged"}};
+  for (const BaselineSummary& baseline : run.baselines) {
+    for (std::size_t p = 0; p < run.parameters.size(); ++p) {
+      const ParameterMetrics& m = baseline.metrics[p];
+      CsvRow row{baseline.method, std::to_string(baseline.samples), run.parameters[p].name.text};
+      for (const double value : {m.bias_pct, m.sd_pct, m.mare_pct, m.coverage50, m.coverage90, m.coverage95,
+                                 baseline.seconds_per_update}) {
+        row.push_back(toText(value));
+      }
+      row.push_back(std::to_string(baseline.unconverged));
+      rows.push_back(row);
+    }
+  }
+  return makeCsv(rows);
+}
+
+}  // namespace twinmap

@@ -1,0 +1,36 @@
+#include "framework/results/responses_csv.hpp"
+
+#include <cmath>
+
+#include "framework/results/escape.hpp"
+#include "framework/spec/yaml/number_text.hpp"
+
+namespace twinmap {
+namespace {
+
+std::string makeCell(double value) {
+  return "," + (std::isfinite(value) ? toText(value) : "");
+}
+
+}  // namespace
+
+std::string makeResponsesCsv(const std::vector<ExampleResponse>& examples, const ResponseLayout& layout,
+                             const Eigen::VectorXd& row_stddev) {
+  std::string csv = "case,sample,output,unit,time,measured,nominal,updated,noise_stddev\n";
+  for (const ExampleResponse& example : examples) {
+    for (Eigen::Index output = 0; output < layout.getOutputCount(); ++output) {
+      const auto o = static_cast<std::size_t>(output);
+      const std::string start = example.name + "," + std::to_string(example.sample) + "," +
+                                escapeCsv(layout.output_names[o]) + "," + escapeCsv(layout.output_units[o]);
+      for (Eigen::Index time = 0; time < layout.times.size(); ++time) {
+        const Eigen::Index row = layout.getRow(output, time);
+        csv += start + makeCell(layout.times[time]) + makeCell(example.measured[row]) +
+               makeCell(example.nominal[row]) + makeCell(example.updated[row]) + makeCell(row_stddev[row]) +
+               "\n";
+      }
+    }
+  }
+  return csv;
+}
+
+}  // namespace twinmap

@@ -1,0 +1,74 @@
+#include "framework/results/run_folder.hpp"
+
+#include <filesystem>
+#include <stdexcept>
+
+#include "framework/spec/experiment_file.hpp"
+
+namespace twinmap {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string makeLabel(const fs::path& folder) {
+  const fs::path whole = fs::absolute(folder).lexically_normal();
+  return whole.has_filename() ? whole.filename().string() : whole.parent_path().filename().string();
+}
+
+nlohmann::ordered_json readJson(const fs::path& path) {
+  const std::string text = readTextFile(path);
+  if (text.empty()) {
+    return nullptr;
+  }
+  try {
+    return nlohmann::ordered_json::parse(text);
+  } catch (const nlohmann::json::parse_error& error) {
+    throw std::runtime_error(path.string() + ": " + error.what());
+  }
+}
+
+void readTables(const fs::path& path, RunFolder& run) {
+  run.metrics = readCsvFile(path / "metrics.csv");
+  run.joint = readCsvFile(path / "joint.csv");
+  run.predictions = readCsvFile(path / "predictions.csv");
+  run.training = readCsvFile(path / "training.csv");
+  run.hyperparameters = readCsvFile(path / "hyperparameters.csv");
+  run.failures = readCsvFile(path / "failures.csv");
+  run.features = readCsvFile(path / "features.csv");
+  run.correlations = readCsvFile(path / "correlations.csv");
+  run.identifiability = readCsvFile(path / "identifiability.csv");
+  run.posterior = readCsvFile(path / "posterior.csv");
+  run.baselines = readCsvFile(path / "baselines.csv");
+  run.responses = readCsvFile(path / "responses.csv");
+}
+
+}  // namespace
+
+RunFolder readRunFolder(const fs::path& path) {
+  if (!fs::exists(path / "resolved.yaml")) {
+    throw std::runtime_error(path.string() + ": is no folder of a run: it has no resolved.yaml");
+  }
+  RunFolder run;
+  run.path = path;
+  run.label = makeLabel(path);
+  run.experiment = loadExperiment((path / "resolved.yaml").string());
+  readTables(path, run);
+  run.provenance = readJson(path / "provenance.json");
+  if (fs::exists(path / "samples.h5")) {
+    run.test_responses = readTestResponses(path / "samples.h5");
+  }
+  if (fs::exists(path / "maps.h5")) {
+    run.map = readMapSummary(path / "maps.h5");
+  }
+  return run;
+}
+
+bool isSweepFolder(const fs::path& path) {
+  return fs::exists(path / "sweep.csv");
+}
+
+SweepFolder readSweepFolder(const fs::path& path) {
+  return {path, makeLabel(path), readCsvFile(path / "sweep.csv")};
+}
+
+}  // namespace twinmap

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string>
+
+#include "framework/results/run_summary.hpp"
+
+namespace twinmap {
+
+/// metrics.csv: one row a parameter; columns parameter, unit, lower, upper, kFigureColumns (limit_pct and
+/// ratio_to_limit only where the limit is known), loo_sd_pct, loo_coverage95, loo_nlpd (empty where not
+/// available), nlml, test_samples, then the standard error of each figure as NAME_se.
+std::string makeMetricsCsv(const RunSummary& run);
+
+/// joint.csv: metric, value, se; one row each of kJointColumns.
+std::string makeJointCsv(const RunSummary& run);
+
+/// pit.csv: parameter, bin_lower, bin_upper, count.
+std::string makePitCsv(const RunSummary& run);
+
+/// predictions.csv: sample, parameter, true, inferred, stddev, and limit_stddev where the limit is known; all
+/// parameters of a sample, then the next.
+std::string makePredictionsCsv(const RunSummary& run);
+
+/// failures.csv: set, sample, the value of each sampled parameter, reason.
+std::string makeFailuresCsv(const RunSummary& run);
+
+/// training.csv: parameter, start, best, nlml, evaluations, noise_only, stop_reason; of the best start also
+/// at_bound, condition, jitter.
+std::string makeTrainingCsv(const RunSummary& run);
+
+/// hyperparameters.csv: parameter, hyperparameter, value, lower, upper; of the start that was kept.
+std::string makeHyperparametersCsv(const RunSummary& run);
+
+/// The paper's table for people: Markdown (columns aligned, so that it reads well as plain text) and LaTeX
+/// (booktabs). Bias, sd, coverage and ratio carry their standard error in parentheses
+/// (number_with_error.hpp); the information limit and the ratio to it have columns where the limit is known.
+/// With them the Markdown table of the two-beam case fills 120 columns.
+std::string makeMarkdownTable(const RunSummary& run);
+std::string makeLatexTable(const RunSummary& run);
+
+}  // namespace twinmap

@@ -1,0 +1,106 @@
+#include "framework/spec/check/check_experiment.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+#include "framework/spec/check/check_features.hpp"
+#include "framework/spec/check/check_measurement.hpp"
+#include "framework/spec/noise_correlation.hpp"
+#include "framework/spec/yaml/nearest_name.hpp"
+
+namespace twinmap {
+namespace {
+
+void checkName(const Name& name) {
+  constexpr std::size_t kLongestName = 100;
+  const auto is_allowed = [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.';
+  };
+  const bool valid = std::all_of(name.text.begin(), name.text.end(), is_allowed) && name.text[0] != '.' &&
+                     name.text.size() <= kLongestName;
+  if (!valid) {
+    throw ExperimentError(name.where, name.text,
+                          "names the run's folder: use at most 100 letters, digits, '_', '-' and '.', not "
+                          "beginning with '.'");
+  }
+}
+
+/// What is simulated must have a duration.
+void checkDuration(const ExperimentSpec& experiment) {
+  if (!collectOutputs(experiment.features).empty() && !(experiment.model.simulation.duration > 0.0)) {
+    throw ExperimentError({experiment.name.where.file, 0, 0, "simulation.duration"}, "0",
+                          "must be given, a number above 0, for features of outputs");
+  }
+}
+
+void checkModesNoise(const ExperimentSpec& experiment) {
+  const bool needed = countModes(experiment.features) > 0;
+  if (needed != experiment.noise.modes.has_value()) {
+    throw ExperimentError(
+        {experiment.name.where.file, 0, 0, "noise.modes"}, "",
+        needed ? "is needed for features of modes: {frequency: Hz, damping_ratio: }, 0 for none"
+               : "is given, but no feature is made of modes");
+  }
+}
+
+void checkNoise(const ExperimentSpec& experiment) {
+  const NoiseSpec& noise = experiment.noise;
+  const ModelSpec& model = experiment.model;
+  const std::vector<std::string> outputs = collectNames(model.outputs);
+  for (const OutputNoiseSpec& stddev : noise.stddev) {
+    requireKnown(stddev.name, outputs, "an output");
+  }
+  checkModesNoise(experiment);
+  checkNoiseCorrelation(experiment);
+  if (collectOutputs(experiment.features).empty()) {
+    return;
+  }
+  const std::vector<std::string> given = collectNames(noise.stddev);
+  for (const OutputSpec& output : model.outputs) {
+    if (std::find(given.begin(), given.end(), output.name.text) == given.end()) {
+      throw ExperimentError(output.name.where, output.name.text,
+                            "has no noise in noise.stddev; give its standard deviation, 0 for none");
+    }
+  }
+}
+
+void checkDesign(const DesignSpec& design, const SourceLocation& where) {
+  constexpr int kFewest = 2;  // standard deviations need two
+  if (design.train.samples < kFewest || design.test.samples < kFewest) {
+    throw ExperimentError({where.file, 0, 0, "design"}, "", "needs at least 2 training and 2 test samples");
+  }
+}
+
+void checkGates(const ExperimentSpec& experiment) {
+  for (const GateSpec& gate : experiment.gates) {
+    requireKnown(gate.metric, {kGateMetrics.begin(), kGateMetrics.end()}, "a metric");
+    if (gate.parameter) {
+      requireKnown(*gate.parameter, collectNames(experiment.model.parameters), "a parameter");
+    }
+  }
+}
+
+}  // namespace
+
+void requireKnown(const Name& name, const std::vector<std::string>& known, const std::string& what) {
+  if (std::find(known.begin(), known.end(), name.text) == known.end()) {
+    throw ExperimentError(name.where, name.text, "is not " + what + suggestName(name.text, known));
+  }
+}
+
+void checkExperiment(const ExperimentSpec& experiment) {
+  checkName(experiment.name);
+  checkModel(experiment.model);
+  checkDuration(experiment);
+  checkFeatures(experiment.features, experiment.model);
+  checkNoise(experiment);
+  checkTransform(experiment);
+  checkDesign(experiment.design, experiment.name.where);
+  checkGates(experiment);
+  checkMeasurement(experiment.measurement, experiment.model);
+  for (const Name& axis : experiment.report.over) {
+    requireKnown(axis, collectNames(experiment.model.parameters), "a parameter");
+  }
+}
+
+}  // namespace twinmap

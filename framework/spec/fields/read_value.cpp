@@ -1,0 +1,232 @@
+#include "framework/spec/fields/read_value.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "framework/spec/describe_experiment.hpp"
+#include "framework/spec/yaml/number_text.hpp"
+
+namespace twinmap {
+namespace {
+
+bool hasLeadingZero(const std::string& text) {
+  const std::size_t first = text.find_first_not_of("+-");
+  return first != std::string::npos && first + 1 < text.size() && text[first] == '0' &&
+         std::isdigit(static_cast<unsigned char>(text[first + 1])) != 0;
+}
+
+const std::string& requireScalar(const YamlNode& node, const std::string& expected) {
+  requireKind(node, YamlNode::Kind::kScalar, expected);
+  return node.scalar;
+}
+
+std::string trim(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" \t\n");
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\n") - first + 1);
+}
+
+double readInteger(const YamlNode& node, const NumberRule& rule) {
+  double number = 0.0;
+  readValue(node, number, rule);
+  if (number != std::floor(number)) {
+    throw ExperimentError(node.where, node.scalar, "must be a whole number");
+  }
+  return number;
+}
+
+}  // namespace
+
+void requireKind(const YamlNode& node, YamlNode::Kind kind, const std::string& expected) {
+  if (node.kind != kind) {
+    throw ExperimentError(node.where, describeValue(node), "must be " + expected);
+  }
+}
+
+void requireIdentifier(const Name& name) {
+  const auto is_word = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
+  const bool valid = !name.text.empty() && std::isdigit(static_cast<unsigned char>(name.text[0])) == 0 &&
+                     std::all_of(name.text.begin(), name.text.end(), is_word);
+  if (!valid) {
+    throw ExperimentError(name.where, name.text,
+                          "is not a valid name; use letters, digits and '_', beginning with no digit");
+  }
+}
+
+void readValue(const YamlNode& node, double& value, const NumberRule& rule) {
+  const std::string text = describeValue(node);
+  if (node.kind == YamlNode::Kind::kScalar && hasLeadingZero(text)) {
+    throw ExperimentError(node.where, text, "begins with 0, which some read as octal; write it without");
+  }
+  double number = 0.0;
+  const bool is_number =
+      node.kind == YamlNode::Kind::kScalar && !node.quoted && parseLiteral(node.scalar, number);
+  const bool in_range =
+      number <= rule.maximum && (rule.minimum_allowed ? number >= rule.minimum : number > rule.minimum);
+  if (!is_number || !in_range) {
+    throw ExperimentError(node.where, text, rule.text);
+  }
+  value = number;
+}
+
+void readValue(const YamlNode& node, int& value, const NumberRule& rule) {
+  NumberRule bounded = rule;
+  bounded.minimum = std::max(rule.minimum, -1e9);
+  bounded.maximum = std::min(rule.maximum, 1e9);
+  value = static_cast<int>(readInteger(node, bounded));
+}
+
+void readValue(const YamlNode& node, std::uint64_t& value) {
+  constexpr double kLargest =
+      9007199254740991.0;  // 2^53 - 1: from 2^53, doubles stand for their neighbours too
+  constexpr NumberRule kSeed{0.0, kLargest, true, "must be a whole number from 0 to 9007199254740991"};
+  value = static_cast<std::uint64_t>(readInteger(node, kSeed));
+}
+
+void readValue(const YamlNode& node, bool& value) {
+  const bool is_plain = node.kind == YamlNode::Kind::kScalar && !node.quoted;
+  if (!is_plain || (node.scalar != "true" && node.scalar != "false")) {
+    throw ExperimentError(node.where, describeValue(node), "must be true or false");
+  }
+  value = node.scalar == "true";
+}
+
+void readValue(const YamlNode& node, std::string& value) {
+  value = requireScalar(node, "a text");
+}
+
+void readValue(const YamlNode& node, Expression& value) {
+  const std::string text = trim(requireScalar(node, "a number or an expression"));
+  if (text.empty()) {
+    throw ExperimentError(node.where, "", "must be a number or an expression");
+  }
+  if (hasLeadingZero(text)) {
+    throw ExperimentError(node.where, text, "begins with 0, which some read as octal; write it without");
+  }
+  value = {text, node.where};
+}
+
+void readValue(const YamlNode& node, Name& value) {
+  value = {requireScalar(node, "a name"), node.where};
+  if (value.text.empty()) {
+    throw ExperimentError(node.where, "", "must be a name");
+  }
+}
+
+void readValue(const YamlNode& node, Bounds& value) {
+  std::array<double, 2> ends{};
+  readValue(node, ends);
+  if (!(ends[0] < ends[1])) {
+    throw ExperimentError(node.where, "[" + node.items[0].scalar + ", " + node.items[1].scalar + "]",
+                          "must be [lower, upper] with lower below upper");
+  }
+  value = {ends[0], ends[1], node.where};
+}
+
+void readValue(const YamlNode& node, OutputNoiseSpec& value) {
+  readValue(node, value.stddev, kNonNegative);
+}
+
+void readValue(const YamlNode& node, Frequency& value) {
+  readValue(node, value.hertz, kPositive);
+  value.where = node.where;
+}
+
+void readValue(const YamlNode& node, NamedExpression& value) {
+  readValue(node, value.value);
+}
+
+void readValue(const YamlNode& node, ColumnSpec& value) {
+  value = parseColumn(requireScalar(node, "a column, 'NAME' or 'NAME [unit]'"), node.where);
+  if (value.name.empty()) {
+    throw ExperimentError(node.where, node.scalar, "must name a column, 'NAME' or 'NAME [unit]'");
+  }
+}
+
+void readValue(const YamlNode& node, MeasuredColumnSpec& value) {
+  readValue(node, value.column);
+}
+
+void readValue(const YamlNode& node, ComponentCount& value) {
+  constexpr NumberRule kCountOrAutomatic{kCount.minimum, kCount.maximum, true,
+                                         "must be automatic or a whole number from 1 to 10000000"};
+  value.number.reset();
+  if (node.kind != YamlNode::Kind::kScalar || node.scalar != "automatic") {
+    readValue(node, value.number, kCountOrAutomatic);
+  }
+}
+
+/// A struct of which exactly one member is set, by its key; a scalar is a key without further settings.
+template <class Choice>
+static void readChoice(const YamlNode& node, Choice& value) {
+  value.where = node.where;
+  if (node.kind != YamlNode::Kind::kScalar) {
+    readStruct(node, value);
+    return;
+  }
+  YamlNode map = makeMap();
+  map.where = node.where;
+  map.entries.push_back({node.scalar, node.where, makeMap()});
+  map.entries.back().value.where = node.where;
+  readStruct(map, value);
+}
+
+void readValue(const YamlNode& node, TransformStepSpec& value) {
+  readChoice(node, value);
+}
+
+void readValue(const YamlNode& node, BaselineSpec& value) {
+  readChoice(node, value);
+}
+
+void readValue(const YamlNode& node, ConstantSpec& value) {
+  if (node.kind == YamlNode::Kind::kScalar) {
+    readValue(node, value.value);
+  } else {
+    readStruct(node, value);
+  }
+}
+
+const YamlNode* FieldReader::take(const char* key) {
+  known_.emplace_back(key);
+  return map_.find(key);
+}
+
+const YamlNode& FieldReader::takeRequired(const char* key, const char* what) {
+  const YamlNode* node = take(key);
+  if (node == nullptr) {
+    for (const YamlEntry& entry : map_.entries) {
+      const std::string suggestion = suggestName(entry.key, {key});
+      if (!suggestion.empty() && std::find(known_.begin(), known_.end(), entry.key) == known_.end()) {
+        throw ExperimentError(entry.key_where, entry.key, "is not a key here" + suggestion);
+      }
+    }
+    throw ExperimentError(map_.where, "", "needs the key '" + std::string(key) + "' (" + what + ")");
+  }
+  return *node;
+}
+
+void FieldReader::rule(bool holds, const char* text) {
+  if (!holds && broken_rule_ == nullptr) {
+    broken_rule_ = text;
+  }
+}
+
+void FieldReader::finish() const {
+  for (const YamlEntry& entry : map_.entries) {
+    if (std::find(known_.begin(), known_.end(), entry.key) == known_.end()) {
+      std::string listed;
+      for (const std::string& key : known_) {
+        listed += (listed.empty() ? "" : ", ") + key;
+      }
+      throw ExperimentError(
+          entry.key_where, entry.key,
+          "is not a key here" + suggestName(entry.key, known_) + " (known: " + listed + ")");
+    }
+  }
+  if (broken_rule_ != nullptr) {
+    throw ExperimentError(map_.where, "", broken_rule_);
+  }
+}
+
+}  // namespace twinmap

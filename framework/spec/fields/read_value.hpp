@@ -1,0 +1,191 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/spec/experiment_spec.hpp"
+#include "framework/spec/fields/fields.hpp"
+#include "framework/spec/yaml/nearest_name.hpp"
+#include "framework/spec/yaml/yaml_node.hpp"
+
+namespace twinmap {
+
+// One overload for each type of value in the experiment file. All throw ExperimentError with the node's
+// place, its value and the rule it breaks.
+
+/// Decimal numbers; refuses inf, nan, quoted numbers and leading zeros (octal in YAML 1.1).
+void readValue(const YamlNode& node, double& value, const NumberRule& rule = kAnyNumber);
+/// Whole numbers, also written as 1e3.
+void readValue(const YamlNode& node, int& value, const NumberRule& rule = kAnyNumber);
+/// Whole numbers from 0 to 2^53 - 1.
+void readValue(const YamlNode& node, std::uint64_t& value);
+/// true or false; yes, no, on, off and numbers are refused.
+void readValue(const YamlNode& node, bool& value);
+void readValue(const YamlNode& node, std::string& value);
+void readValue(const YamlNode& node, Expression& value);
+void readValue(const YamlNode& node, Name& value);
+/// [lower, upper] with lower < upper.
+void readValue(const YamlNode& node, Bounds& value);
+void readValue(const YamlNode& node, OutputNoiseSpec& value);
+/// A number above 0.
+void readValue(const YamlNode& node, Frequency& value);
+void readValue(const YamlNode& node, NamedExpression& value);
+/// "NAME" or "NAME [unit]".
+void readValue(const YamlNode& node, ColumnSpec& value);
+void readValue(const YamlNode& node, MeasuredColumnSpec& value);
+/// A whole number above 0, or automatic.
+void readValue(const YamlNode& node, ComponentCount& value);
+/// A scalar names one of the choices with its defaults.
+void readValue(const YamlNode& node, TransformStepSpec& value);
+void readValue(const YamlNode& node, BaselineSpec& value);
+/// A scalar is the constant's value.
+void readValue(const YamlNode& node, ConstantSpec& value);
+
+/// Throws unless `node` is of the kind; the message says what was expected.
+void requireKind(const YamlNode& node, YamlNode::Kind kind, const std::string& expected);
+
+/// Throws unless `key` is an identifier: a letter or '_', then letters, digits or '_'.
+void requireIdentifier(const Name& name);
+
+/// Reads the keys of a map into the fields of a struct (see fields.hpp).
+class FieldReader {
+ public:
+  explicit FieldReader(const YamlNode& map) : map_(map) { requireKind(map, YamlNode::Kind::kMap, "a map"); }
+
+  template <class T, class... Rule>
+  void required(const char* key, T& value, const char* /*what*/, const Rule&... rule);
+  template <class T, class... Rule>
+  void optional(const char* key, T& value, const char* /*what*/, const Rule&... rule);
+  template <class T>
+  void requiredMap(const char* key, std::vector<T>& values, const char* /*what*/);
+  template <class T>
+  void optionalMap(const char* key, std::vector<T>& values, const char* /*what*/);
+  void rule(bool holds, const char* text);
+
+  /// Throws for a key that no field asked for, with the nearest known one; then for the first broken rule,
+  /// which a misspelt key may have caused.
+  void finish() const;
+
+ private:
+  const YamlNode* take(const char* key);
+  const YamlNode& takeRequired(const char* key, const char* what);
+
+  const YamlNode& map_;
+  std::vector<std::string> known_;
+  const char* broken_rule_ = nullptr;
+};
+
+template <class T>
+void readStruct(const YamlNode& node, T& value) {
+  FieldReader fields(node);
+  describe(fields, value);
+  fields.finish();
+}
+
+template <class Enum>
+void readEnum(const YamlNode& node, Enum& value) {
+  requireKind(node, YamlNode::Kind::kScalar, "a name");
+  std::vector<std::string> names;
+  std::string listed;
+  for (const EnumName<Enum>& name : EnumNames<Enum>::values) {
+    if (node.scalar == name.text) {
+      value = name.value;
+      return;
+    }
+    names.emplace_back(name.text);
+    listed += (listed.empty() ? "" : ", ") + names.back();
+  }
+  throw ExperimentError(node.where, node.scalar,
+                        "must be one of " + listed + suggestName(node.scalar, names));
+}
+
+template <class T>
+void readValue(const YamlNode& node, T& value) {
+  if constexpr (std::is_enum_v<T>) {
+    readEnum(node, value);
+  } else {
+    readStruct(node, value);
+  }
+}
+
+template <class T, class... Rule>
+void readValue(const YamlNode& node, std::optional<T>& value, const Rule&... rule) {
+  readValue(node, value.emplace(), rule...);
+}
+
+template <class T>
+void readValue(const YamlNode& node, std::vector<T>& values, const ListRule& rule = {}) {
+  constexpr std::size_t kMost = 10000;
+  requireKind(node, YamlNode::Kind::kSequence, "a list");
+  if (node.items.size() < rule.minimum) {
+    throw ExperimentError(node.where, "[]", rule.text);
+  }
+  if (!std::is_arithmetic_v<T> && node.items.size() > kMost) {
+    throw ExperimentError(node.where, "", "must list at most 10000");
+  }
+  values.assign(node.items.size(), T{});
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    readValue(node.items[i], values[i]);
+  }
+}
+
+template <class T, std::size_t N>
+void readValue(const YamlNode& node, std::array<T, N>& values) {
+  if (node.kind != YamlNode::Kind::kSequence || node.items.size() != N) {
+    throw ExperimentError(node.where, describeValue(node),
+                          "must be a list of " + std::to_string(N) + " values");
+  }
+  for (std::size_t i = 0; i < N; ++i) {
+    readValue(node.items[i], values[i]);
+  }
+}
+
+template <class T>
+void readMap(const YamlNode& node, std::vector<T>& values) {
+  constexpr std::size_t kMost = 1000;
+  requireKind(node, YamlNode::Kind::kMap, "a map from names to values");
+  if (node.entries.size() > kMost) {
+    throw ExperimentError(node.where, "", "must name at most 1000");
+  }
+  values.clear();
+  for (const YamlEntry& entry : node.entries) {
+    T value{};
+    value.name = {entry.key, entry.key_where};
+    requireIdentifier(value.name);
+    readValue(entry.value, value);
+    values.push_back(std::move(value));
+  }
+}
+
+template <class T, class... Rule>
+void FieldReader::required(const char* key, T& value, const char* what, const Rule&... rule) {
+  readValue(takeRequired(key, what), value, rule...);
+}
+
+template <class T, class... Rule>
+void FieldReader::optional(const char* key, T& value, const char*, const Rule&... rule) {
+  if (const YamlNode* node = take(key)) {
+    readValue(*node, value, rule...);
+  }
+}
+
+template <class T>
+void FieldReader::requiredMap(const char* key, std::vector<T>& values, const char* what) {
+  const YamlNode& node = takeRequired(key, what);
+  readMap(node, values);
+  if (values.empty()) {
+    throw ExperimentError(node.where, "{}", "must name at least one; " + std::string(what));
+  }
+}
+
+template <class T>
+void FieldReader::optionalMap(const char* key, std::vector<T>& values, const char*) {
+  if (const YamlNode* node = take(key)) {
+    readMap(*node, values);
+  }
+}
+
+}  // namespace twinmap

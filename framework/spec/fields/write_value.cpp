@@ -1,0 +1,49 @@
+#include "framework/spec/fields/write_value.hpp"
+
+namespace twinmap {
+
+YamlNode writeValue(double value) {
+  return makeScalar(toText(value));
+}
+YamlNode writeValue(int value) {
+  return makeScalar(std::to_string(value));
+}
+YamlNode writeValue(bool value) {
+  return makeScalar(value ? "true" : "false");
+}
+YamlNode writeValue(std::uint64_t value) {
+  return makeScalar(std::to_string(value));
+}
+YamlNode writeValue(const std::string& value) {
+  return makeScalar(value, true);
+}
+YamlNode writeValue(const Expression& value) {
+  return makeScalar(value.text);
+}
+YamlNode writeValue(const Name& value) {
+  return makeScalar(value.text);
+}
+YamlNode writeValue(const ComponentCount& value) {
+  return value.number ? writeValue(*value.number) : makeScalar("automatic");
+}
+YamlNode writeValue(const Bounds& value) {
+  return writeSequence(std::array<double, 2>{value.lower, value.upper});
+}
+YamlNode writeValue(const OutputNoiseSpec& value) {
+  return writeValue(value.stddev);
+}
+YamlNode writeValue(const Frequency& value) {
+  return writeValue(value.hertz);
+}
+
+YamlNode writeValue(const NamedExpression& value) {
+  return writeValue(value.value);
+}
+YamlNode writeValue(const ColumnSpec& value) {
+  return makeScalar(toText(value));
+}
+YamlNode writeValue(const MeasuredColumnSpec& value) {
+  return writeValue(value.column);
+}
+
+}  // namespace twinmap

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "framework/spec/yaml/yaml_node.hpp"
+
+namespace twinmap {
+
+/// A key of the experiment and the values it takes.
+struct SweptKey {
+  std::string key;               ///< key path: "design.train.samples"
+  std::vector<YamlNode> values;  ///< any YAML; ranges a..b are expanded
+  SourceLocation where;
+};
+
+struct SweptKeys {
+  std::vector<SweptKey> keys;  ///< none is part of another; no value occurs twice
+};
+
+/// Every value with every other, or the first with the first, the second with the second ...
+enum class SweepCombine { kGrid, kZip };
+
+/// The experiment is repeated with other values of some keys.
+struct SweepSpec {
+  SweptKeys over;
+  SweepCombine combine = SweepCombine::kGrid;
+};
+
+}  // namespace twinmap
