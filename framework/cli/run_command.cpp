@@ -30,11 +30,13 @@ double getMostMemory(const RunArguments& arguments) {
   return std::max(getMachineMemory(), arguments.memory * kGibibyte);
 }
 
-ProgressCallback makeProgress(ProgressLine& line, bool quiet) {
-  if (quiet) {
-    return nullptr;
+/// `line` must outlive it.
+RunControl makeControl(const RunArguments& arguments, ProgressLine& line) {
+  RunControl control{arguments.threads, &catchSignals(), nullptr};
+  if (!arguments.quiet) {
+    control.progress = [&line](const Progress& progress) { line.update(progress); };
   }
-  return [&line](const Progress& progress) { line.update(progress); };
+  return control;
 }
 
 void runSingle(const ExperimentSpec& experiment, const RunArguments& arguments, const fs::path& folder) {
@@ -43,14 +45,11 @@ void runSingle(const ExperimentSpec& experiment, const RunArguments& arguments, 
   RunOptions options;
   options.folder = folder;
   options.store = arguments.store;
-  options.threads = arguments.threads;
   options.command = arguments.command_line;
-  options.stop = &catchSignals();
-  options.progress = makeProgress(line, arguments.quiet);
-  const RunSummary summary = runExperiment(experiment, options);
+  const RunSummary summary = runExperiment(experiment, options, makeControl(arguments, line));
   line.clear();
   std::cout << makeMarkdownTable(summary);
-  for (const std::string& warning : summary.warnings) {
+  for (const std::string& warning : summary.notes.warnings) {
     std::cerr << "twinmap: warning: " << warning << "\n";
   }
   if (!summary.failures.empty()) {
@@ -67,14 +66,11 @@ void runCases(const YamlNode& tree, const RunArguments& arguments, const fs::pat
   SweepOptions options;
   options.folder = folder;
   options.store = arguments.store;
-  options.threads = arguments.threads;
   options.memory = chooseMemory(arguments);
   options.most_memory = getMostMemory(arguments);
   options.fail_fast = arguments.fail_fast;
   options.command = arguments.command_line;
-  options.stop = &catchSignals();
-  options.progress = makeProgress(line, arguments.quiet);
-  const SweepResult result = runSweep(tree, options);
+  const SweepResult result = runSweep(tree, options, makeControl(arguments, line));
   line.clear();
   std::cout << result.table;
   std::cerr << "Cases: " << result.complete << " of " << result.cases << " complete";

@@ -9,6 +9,8 @@
 #include "framework/evaluation/calibration.hpp"
 #include "framework/evaluation/information_limit.hpp"
 #include "framework/monitoring/stage_timer.hpp"
+#include "framework/sensitivity/fisher_information.hpp"
+#include "framework/spec/parameter_box.hpp"
 
 namespace twinmap {
 namespace {
@@ -20,22 +22,23 @@ const std::vector<ParameterSpec>& getParameters(const EvaluationContext& context
   return context.experiment.model.parameters;
 }
 
-void addLimit(const EvaluationContext& context, RunSummary& run) {
-  const LabelledFeatures& test = context.samples.test;
-  const InformationLimit limit =
-      timeStage(fmt::format("information limit of {} test samples", test.parameters.cols()), run.times, [&] {
-        return calcInformationLimit(context.local_models(test.collectPoints()), context.noise,
-                                    getParameters(context));
-      });
-  run.limit_stddev = limit.stddev;
-  run.relevance = FeatureRelevance{test.infos, test.noise_covariance.diagonal().cwiseSqrt(), limit.relevance};
-  run.identifiability = calcIdentifiability(limit, getParameters(context));
-  run.warnings.insert(run.warnings.end(), run.identifiability->warnings.begin(),
-                      run.identifiability->warnings.end());
-  if (limit.failures > 0) {
-    run.warnings.push_back(
-        fmt::format("the information limit of {} test samples could not be computed", limit.failures));
+const LabelledFeatures& getTest(const EvaluationContext& context) {
+  return context.data.labelled.test;
+}
+
+/// The limit, if the experiment has one.
+std::optional<InformationLimit> findLimit(const EvaluationContext& context, StageNotes& notes) {
+  const LabelledFeatures& test = getTest(context);
+  if (hasInformationLimit(context.experiment, test)) {
+    return timeStage(fmt::format("information limit of {} test samples", test.parameters.cols()), notes, [&] {
+      return calcInformationLimit(context.local_models(test.collectPoints()), context.data.noise,
+                                  getParameters(context));
+    });
   }
+  if (context.experiment.evaluation.limit) {
+    notes.warnings.emplace_back("no information limit: the noise of a feature is 0");
+  }
+  return std::nullopt;
 }
 
 /// The posterior of the first `count` parameters, those that are inferred.
@@ -45,30 +48,40 @@ ExactPosterior takeUpdating(ExactPosterior posterior, Index count) {
   return posterior;
 }
 
-void addPosteriors(const EvaluationContext& context, RunSummary& run) {
+std::vector<ExactPosterior> calcPosteriors(const EvaluationContext& context, Index count, StageNotes& notes) {
   const PosteriorSpec& spec = *context.experiment.evaluation.posterior;
-  const LabelledFeatures& test = context.samples.test;
-  const Index count = std::min<Index>(spec.samples, test.features.cols());
-  const std::vector<ExactPosterior> exact =
-      timeStage(fmt::format("exact posterior of {} test samples", count), run.times, [&] {
-        return calcExactPosteriors(context.simulator, context.extractor, NoiseWhitener(test.noise_covariance),
-                                   context.unknown, test.features.leftCols(count),
-                                   test.collectUnknown().leftCols(count), test.inputs, context.threads,
-                                   {spec.draws, context.experiment.seed});
-      });
+  const LabelledFeatures& test = getTest(context);
+  return timeStage(fmt::format("exact posterior of {} test samples", count), notes, [&] {
+    return calcExactPosteriors(context.simulator, context.extractor, NoiseWhitener(test.noise_covariance),
+                               collectUnknown(context.experiment.model), test.features.leftCols(count),
+                               test.collectUnknown().leftCols(count), test.inputs, context.threads,
+                               {spec.draws, context.experiment.seed});
+  });
+}
+
+/// The exact posteriors of the first test samples beside what the map infers of them.
+std::vector<PosteriorComparison> comparePosteriors(const EvaluationContext& context,
+                                                   const Predictions& predictions,
+                                                   const Eigen::MatrixXd& limit_stddev, StageNotes& notes) {
+  const Index count =
+      std::min<Index>(context.experiment.evaluation.posterior->samples, getTest(context).features.cols());
+  const std::vector<ExactPosterior> exact = calcPosteriors(context, count, notes);
+  std::vector<PosteriorComparison> compared;
   for (Index i = 0; i < count; ++i) {
-    run.posteriors.push_back({run.test_indices[i], takeUpdating(exact[i], test.parameters.rows()),
-                              run.predictions.mean.col(i), run.predictions.stddev.col(i),
-                              run.limit_stddev.cols() > 0 ? VectorXd(run.limit_stddev.col(i)) : VectorXd()});
+    const int sample = context.data.test_indices[i];
+    compared.push_back({sample, takeUpdating(exact[i], predictions.mean.rows()), predictions.mean.col(i),
+                        predictions.stddev.col(i),
+                        limit_stddev.cols() > 0 ? VectorXd(limit_stddev.col(i)) : VectorXd()});
     if (!exact[i].warning.empty()) {
-      run.warnings.push_back(
-          fmt::format("exact posterior of test sample {}: {}", run.test_indices[i], exact[i].warning));
+      notes.warnings.push_back(
+          fmt::format("exact posterior of test sample {}: {}", sample, exact[i].warning));
     }
   }
+  return compared;
 }
 
 BaselineSummary summarize(const EvaluationContext& context, const BaselineResult& result) {
-  const Eigen::MatrixXd truth = context.samples.test.parameters.leftCols(result.samples);
+  const Eigen::MatrixXd truth = getTest(context).parameters.leftCols(result.samples);
   return {result.method, result.samples, calcMetrics(getParameters(context), truth, result.predictions),
           result.seconds_per_update, result.unconverged};
 }
@@ -76,7 +89,7 @@ BaselineSummary summarize(const EvaluationContext& context, const BaselineResult
 /// The map on the same first samples.
 BaselineResult runMap(const EvaluationContext& context, int samples) {
   BaselineResult result{"map", samples, {}};
-  const LabelledFeatures& test = context.samples.test;
+  const LabelledFeatures& test = getTest(context);
   const Eigen::MatrixXd features = test.features.leftCols(samples), inputs = test.inputs.leftCols(samples);
   const auto start = std::chrono::steady_clock::now();
   for (Index i = 0; i < samples; ++i) {
@@ -88,58 +101,84 @@ BaselineResult runMap(const EvaluationContext& context, int samples) {
   return result;
 }
 
-void addBaselines(const EvaluationContext& context, RunSummary& run) {
+BaselineResult timeBaseline(const BaselineSpec& spec, const EvaluationContext& context, StageNotes& notes) {
+  const std::vector<ParameterSpec> unknown = collectUnknown(context.experiment.model);
   const BaselineContext baseline{context.simulator,      context.extractor, context.map.transform,
-                                 getParameters(context), context.unknown,   context.threads};
+                                 getParameters(context), unknown,           context.threads};
+  BaselineResult result = timeStage("baseline", notes, [&] {
+    return runBaseline(spec, baseline, context.data.labelled.train, getTest(context));
+  });
+  notes.times.back().stage = "baseline " + result.method;
+  if (result.unconverged > 0) {
+    notes.warnings.push_back(fmt::format("baseline {}: {} of {} searches did not converge", result.method,
+                                         result.unconverged, result.samples));
+  }
+  return result;
+}
+
+/// The baselines, each after the map's own row on the same samples.
+std::vector<BaselineSummary> runBaselines(const EvaluationContext& context, StageNotes& notes) {
+  std::vector<BaselineSummary> rows;
   int compared = 0;  // samples of the map's own row before
   for (const BaselineSpec& spec : context.experiment.evaluation.baselines) {
-    const BaselineResult result = timeStage("baseline", run.times, [&] {
-      return runBaseline(spec, baseline, context.samples.train, context.samples.test);
-    });
+    const BaselineResult result = timeBaseline(spec, context, notes);
     if (result.samples != compared) {
-      run.baselines.push_back(summarize(context, runMap(context, result.samples)));
+      rows.push_back(summarize(context, runMap(context, result.samples)));
       compared = result.samples;
     }
-    run.baselines.push_back(summarize(context, result));
-    run.times.back().stage = "baseline " + result.method;
-    if (result.unconverged > 0) {
-      run.warnings.push_back(fmt::format("baseline {}: {} of {} searches did not converge", result.method,
-                                         result.unconverged, result.samples));
-    }
+    rows.push_back(summarize(context, result));
+  }
+  return rows;
+}
+
+void addLimit(const EvaluationContext& context, const InformationLimit& limit, MapEvaluation& result) {
+  const LabelledFeatures& test = getTest(context);
+  result.evaluation.relevance =
+      FeatureRelevance{test.infos, test.noise_covariance.diagonal().cwiseSqrt(), limit.relevance};
+  result.evaluation.identifiability = calcIdentifiability(limit, getParameters(context));
+  result.notes.append({result.evaluation.identifiability->warnings, {}});
+  if (limit.failures > 0) {
+    result.notes.warnings.push_back(
+        fmt::format("the information limit of {} test samples could not be computed", limit.failures));
   }
 }
 
 }  // namespace
 
-bool hasInformationLimit(const ExperimentSpec& experiment, const LabelledFeatures& test) {
-  return experiment.evaluation.limit && test.noise_covariance.diagonal().minCoeff() > 0.0;
-}
-
-void calcTestMetrics(const GpMap& map, RunSummary& run) {
-  run.metrics = calcMetrics(run.parameters, run.truth, run.predictions, run.limit_stddev);
-  run.joint = calcJointMetrics(run.truth, run.predictions, map.residual_correlation);
-  const Eigen::MatrixXd pit = calcPit(run.truth, run.predictions);
+Evaluation evaluatePredictions(const std::vector<ParameterSpec>& parameters, const Eigen::MatrixXd& truth,
+                               const Predictions& predictions, const Eigen::MatrixXd& limit_stddev,
+                               const Eigen::MatrixXd& residual_correlation) {
+  Evaluation evaluation;
+  evaluation.truth = truth;
+  evaluation.predictions = predictions;
+  evaluation.limit_stddev = limit_stddev;
+  evaluation.metrics = calcMetrics(parameters, truth, predictions, limit_stddev);
+  evaluation.joint = calcJointMetrics(truth, predictions, residual_correlation);
+  const Eigen::MatrixXd pit = calcPit(truth, predictions);
   for (const auto& row : pit.rowwise()) {
-    run.pit_counts.push_back(countPit(row.transpose()));
+    evaluation.pit_counts.push_back(countPit(row.transpose()));
   }
+  return evaluation;
 }
 
-void evaluate(const EvaluationContext& context, RunSummary& run) {
-  const EvaluationSpec& spec = context.experiment.evaluation;
-  const LabelledFeatures& test = context.samples.test;
-  run.truth = test.parameters;
-  run.predictions = timeStage("infer the test samples", run.times,
-                              [&] { return context.map.predict(test.features, test.inputs); });
-  if (hasInformationLimit(context.experiment, test)) {
-    addLimit(context, run);
-  } else if (spec.limit) {
-    run.warnings.push_back("no information limit: the noise of a feature is 0");
+MapEvaluation evaluateMap(const EvaluationContext& context) {
+  const LabelledFeatures& test = getTest(context);
+  MapEvaluation result;
+  const Predictions predictions = timeStage("infer the test samples", result.notes,
+                                            [&] { return context.map.predict(test.features, test.inputs); });
+  const std::optional<InformationLimit> limit = findLimit(context, result.notes);
+  result.evaluation =
+      evaluatePredictions(getParameters(context), test.parameters, predictions,
+                          limit ? limit->stddev : Eigen::MatrixXd(), context.map.residual_correlation);
+  if (limit) {
+    addLimit(context, *limit, result);
   }
-  calcTestMetrics(context.map, run);
-  if (spec.posterior) {
-    addPosteriors(context, run);
+  if (context.experiment.evaluation.posterior) {
+    result.evaluation.posteriors =
+        comparePosteriors(context, predictions, result.evaluation.limit_stddev, result.notes);
   }
-  addBaselines(context, run);
+  result.evaluation.baselines = runBaselines(context, result.notes);
+  return result;
 }
 
 }  // namespace twinmap

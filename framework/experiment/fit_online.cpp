@@ -70,12 +70,13 @@ int countReferences(int train_samples) {
 
 OnlineFit fitOnline(const ExperimentSpec& experiment, const SimulatedSets& sets,
                     const FeatureExtractor& extractor, const LabelledSets& labelled, const GpMap& map) {
-  OnlineFit fit{{compressMap(map), {}}, {}};
+  OnlineFit fit{{compressMap(map), {}}};
   try {
     fit.model.trust = fitTrustModel(makeTrustTraining(experiment, sets, extractor, labelled),
                                     OnlineMap(fit.model.map), experiment.trust.level);
   } catch (const std::invalid_argument& error) {
-    fit.warnings.push_back(std::string("measurements cannot be judged (no trust model): ") + error.what());
+    fit.notes.warnings.push_back(std::string("measurements cannot be judged (no trust model): ") +
+                                 error.what());
   }
   return fit;
 }

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/experiment/labelled_sets.hpp"
+#include "framework/experiment/prepare_data.hpp"
 #include "framework/experiment/simulated_sets.hpp"
 #include "framework/features/feature_extractor.hpp"
 #include "framework/online/online_model.hpp"
@@ -11,10 +11,10 @@
 
 namespace twinmap {
 
-/// An online model, and why it has no trust model where it has none.
+/// An online model; a note says why it has no trust model where it has none.
 struct OnlineFit {
   OnlineModel model;
-  std::vector<std::string> warnings;
+  StageNotes notes{};
 };
 
 /// Of how many simulated measurements a trust model's references are made: as fine as the map deserves.

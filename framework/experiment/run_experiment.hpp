@@ -1,10 +1,9 @@
 #pragma once
 
-#include <atomic>
 #include <filesystem>
 #include <string>
 
-#include "framework/monitoring/progress.hpp"
+#include "framework/monitoring/run_control.hpp"
 #include "framework/results/run_summary.hpp"
 #include "framework/spec/experiment_spec.hpp"
 
@@ -12,26 +11,23 @@ namespace twinmap {
 
 struct SampleSource;
 
+/// Where a run leaves what it finds, and where its samples come from.
 struct RunOptions {
   std::filesystem::path folder;  ///< created if missing; files of an earlier run are replaced one by one
   std::filesystem::path store;   ///< where simulated samples are kept; empty: `folder`/chunks
-  int threads = 1;               ///< results do not depend on it
   std::string command;           ///< the command line, for provenance.json
   const SampleSource* samples = nullptr;  ///< shared with other runs of this process; null: the store
-  /// Once true, the simulations under way are finished and kept; if others are missing, Interrupted is
-  /// thrown.
-  const std::atomic<bool>* stop = nullptr;
-  ProgressCallback progress = nullptr;
 };
 
 /// Runs an experiment from design to report. Samples that the store has are taken from it, so that an
 /// interrupted run continues; the result is the same bit for bit. Leaves in the folder: resolved.yaml,
 /// samples.h5, failures.csv, maps.h5, predictions.csv, metrics.csv, joint.csv, pit.csv, training.csv,
 /// table.md, table.tex, report.html, figures/*.csv, provenance.json. Progress goes to the log. Throws
-/// std::runtime_error if more samples fail than simulation.allowed_failures permits (samples.h5 and
-/// failures.csv are there then), if a map cannot be trained, if a file cannot be written, or if another
-/// process has the folder or the store; ExperimentError if the folder holds the results of another
-/// experiment, whose differing keys it names.
-RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& options);
+/// Interrupted where `control` stops it; std::runtime_error if more samples fail than
+/// simulation.allowed_failures permits (samples.h5 and failures.csv are there then), if a map cannot be
+/// trained, if a file cannot be written, or if another process has the folder or the store; ExperimentError
+/// if the folder holds the results of another experiment, whose differing keys it names.
+RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& options,
+                         const RunControl& control);
 
 }  // namespace twinmap

@@ -1,42 +1,35 @@
 #pragma once
 
-#include <memory>
+#include <filesystem>
+#include <vector>
 
-#include "framework/experiment/run_experiment.hpp"
+#include "framework/monitoring/run_control.hpp"
+#include "framework/monitoring/stage_notes.hpp"
+#include "framework/results/run_summary.hpp"
 #include "framework/sampling/sample_source.hpp"
-#include "framework/sampling/simulate_missing.hpp"
-#include "framework/simulation/sample_generator.hpp"
-#include "framework/store/trajectory_store.hpp"
+#include "framework/spec/experiment_spec.hpp"
 
 namespace twinmap {
 
-/// The stage that simulates neighbourhoods (NeighbourhoodSimulator), for people.
-inline constexpr const char* kNeighbourhoodStage = "simulate sensitivities";
-
+/// The simulated training and test samples of an experiment.
 struct SimulatedSets {
   Trajectories train, test;
+  int reused = 0;  ///< samples that the source had already
+  StageNotes notes{};
 };
 
-/// Warns of chunks that could not be used.
-void logSetAside(const TrajectoryStore& store);
-
-/// Of a run's stage that simulates; `simulations` are behind each sample that is reported.
-MissingOptions makeMissingOptions(const std::string& stage, int simulations, const RunOptions& options);
-
-/// Opens the store of a model's samples in the folder `root`. Chunks that had to be set aside are logged.
-std::unique_ptr<TrajectoryStore> openStore(const ModelSpec& model, const ResponseLayout& layout,
-                                           const std::filesystem::path& root);
-
-/// Simulates what the source does not have of both sets of an experiment, and writes samples.h5; times go to
-/// the summary. `layout` is that of the experiment's own features. Throws Interrupted if the options ask to
-/// stop while samples are missing.
+/// Simulates what the source does not have of both sets of an experiment. `layout` is that of the
+/// experiment's own features. Throws Interrupted if it is stopped while samples are missing.
 SimulatedSets simulateSets(const ExperimentSpec& experiment, const SampleSource& source,
-                           const ResponseLayout& layout, const RunOptions& options, RunSummary& run);
+                           const ResponseLayout& layout, const RunControl& control);
 
-/// Writes failures.csv and keeps the failures in the summary. Throws std::runtime_error if more samples
-/// failed than simulation.allowed_failures permits.
-void recordFailures(const ExperimentSpec& experiment, const SimulatedSets& sets, const RunOptions& options,
-                    RunSummary& run);
+/// The failed samples of both sets.
+std::vector<FailedSample> listFailures(const SimulatedSets& sets);
+
+/// Throws std::runtime_error if more samples of a set failed than simulation.allowed_failures permits, or all
+/// but one; the message names the first, and `file` that lists them all.
+void requireFewFailures(const ExperimentSpec& experiment, const std::vector<FailedSample>& failures,
+                        const std::filesystem::path& file);
 
 /// Indices of the samples that did not fail.
 std::vector<int> findSuccessful(const Trajectories& trajectories);

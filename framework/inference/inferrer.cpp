@@ -3,7 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "framework/experiment/make_extractor.hpp"
+#include "framework/experiment/prepare_data.hpp"
 #include "framework/spec/experiment_file.hpp"
 #include "framework/store/maps_file.hpp"
 

@@ -1,6 +1,6 @@
 #include "framework/inference/refiner.hpp"
 
-#include "framework/experiment/make_extractor.hpp"
+#include "framework/experiment/prepare_data.hpp"
 #include "framework/features/noise.hpp"
 #include "framework/spec/parameter_box.hpp"
 

@@ -4,7 +4,7 @@
 
 namespace twinmap {
 
-/// A run that was asked to stop (RunOptions::stop): what was finished has been written.
+/// A run that was asked to stop (RunControl::stop): what was finished has been written.
 class Interrupted : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -4,10 +4,9 @@
 
 namespace twinmap {
 
-void noteStage(const std::string& name, std::chrono::steady_clock::duration elapsed,
-               std::vector<StageTime>& times) {
+void noteStage(const std::string& name, std::chrono::steady_clock::duration elapsed, StageNotes& notes) {
   const double seconds = std::chrono::duration<double>(elapsed).count();
-  times.push_back({name, seconds});
+  notes.times.push_back({name, seconds});
   spdlog::info("{}: {:.2f} s", name, seconds);
 }
 

@@ -4,20 +4,19 @@
 #include <string>
 #include <vector>
 
-#include "framework/results/run_summary.hpp"
+#include "framework/monitoring/stage_notes.hpp"
 
 namespace twinmap {
 
 /// Logs a stage that took the given time, and notes it.
-void noteStage(const std::string& name, std::chrono::steady_clock::duration elapsed,
-               std::vector<StageTime>& times);
+void noteStage(const std::string& name, std::chrono::steady_clock::duration elapsed, StageNotes& notes);
 
 /// Runs a stage, logs it and notes its wall time.
 template <class Stage>
-auto timeStage(const std::string& name, std::vector<StageTime>& times, const Stage& stage) {
+auto timeStage(const std::string& name, StageNotes& notes, const Stage& stage) {
   const auto start = std::chrono::steady_clock::now();
   auto result = stage();
-  noteStage(name, std::chrono::steady_clock::now() - start, times);
+  noteStage(name, std::chrono::steady_clock::now() - start, notes);
   return result;
 }
 

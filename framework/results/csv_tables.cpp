@@ -20,7 +20,7 @@ std::vector<MetricsColumn> listMetricsColumns(const RunSummary& run) {
   for (const FigureColumn& column : kFigureColumns) {
     const bool of_limit =
         column.value == &ParameterFigures::limit_pct || column.value == &ParameterFigures::ratio_to_limit;
-    if (!of_limit || run.limit_stddev.size() > 0) {
+    if (!of_limit || run.evaluation.limit_stddev.size() > 0) {
       columns.push_back({column.name, column.value, false});
     }
   }
@@ -34,9 +34,9 @@ std::vector<MetricsColumn> listMetricsColumns(const RunSummary& run) {
 const ParameterMetrics* findMetrics(const RunSummary& run, const MetricsColumn& column,
                                     std::size_t parameter) {
   if (!column.leave_one_out) {
-    return &run.metrics[parameter];
+    return &run.evaluation.metrics[parameter];
   }
-  return run.leave_one_out.empty() ? nullptr : &run.leave_one_out[parameter];
+  return run.training.leave_one_out.empty() ? nullptr : &run.training.leave_one_out[parameter];
 }
 
 Row makeMetricsRow(const RunSummary& run, const std::vector<MetricsColumn>& columns, std::size_t p) {
@@ -49,8 +49,8 @@ Row makeMetricsRow(const RunSummary& run, const std::vector<MetricsColumn>& colu
     row.push_back(metrics == nullptr ? "" : toText(metrics->*column.figure));
     errors.push_back(metrics == nullptr ? "" : toText(metrics->se.*column.figure));
   }
-  row.push_back(toText(run.nlml[p]));
-  row.push_back(std::to_string(run.metrics[p].samples));
+  row.push_back(toText(run.training.nlml[p]));
+  row.push_back(std::to_string(run.evaluation.metrics[p].samples));
   row.insert(row.end(), errors.begin(), errors.end());
   return row;
 }
@@ -77,24 +77,25 @@ std::string makeMetricsCsv(const RunSummary& run) {
 std::string makeJointCsv(const RunSummary& run) {
   std::vector<Row> rows{{"metric", "value", "se"}};
   for (const JointColumn& column : kJointColumns) {
-    rows.push_back({column.name, toText(run.joint.*column.value), toText(run.joint.se.*column.value)});
+    rows.push_back({column.name, toText(run.evaluation.joint.*column.value),
+                    toText(run.evaluation.joint.se.*column.value)});
   }
   return makeCsv(rows);
 }
 
 std::string makePitCsv(const RunSummary& run) {
   std::vector<Row> rows{{"parameter", "bin_lower", "bin_upper", "count"}};
-  for (std::size_t p = 0; p < run.pit_counts.size(); ++p) {
+  for (std::size_t p = 0; p < run.evaluation.pit_counts.size(); ++p) {
     for (int bin = 0; bin < kPitBins; ++bin) {
       rows.push_back({run.parameters[p].name.text, toText(double(bin) / kPitBins),
-                      toText(double(bin + 1) / kPitBins), std::to_string(run.pit_counts[p][bin])});
+                      toText(double(bin + 1) / kPitBins), std::to_string(run.evaluation.pit_counts[p][bin])});
     }
   }
   return makeCsv(rows);
 }
 
 std::string makePredictionsCsv(const RunSummary& run) {
-  const bool has_limit = run.limit_stddev.size() > 0;
+  const bool has_limit = run.evaluation.limit_stddev.size() > 0;
   std::vector<Row> rows{{"sample", "parameter", "true", "inferred", "stddev"}};
   if (has_limit) {
     rows[0].emplace_back("limit_stddev");
@@ -104,24 +105,26 @@ std::string makePredictionsCsv(const RunSummary& run) {
       const auto row = static_cast<Eigen::Index>(p);
       const auto column = static_cast<Eigen::Index>(i);
       rows.push_back({std::to_string(run.test_indices[i]), run.parameters[p].name.text,
-                      toText(run.truth(row, column)), toText(run.predictions.mean(row, column)),
-                      toText(run.predictions.stddev(row, column))});
+                      toText(run.evaluation.truth(row, column)),
+                      toText(run.evaluation.predictions.mean(row, column)),
+                      toText(run.evaluation.predictions.stddev(row, column))});
       if (has_limit) {
-        rows.back().push_back(toText(run.limit_stddev(row, column)));
+        rows.back().push_back(toText(run.evaluation.limit_stddev(row, column)));
       }
     }
   }
   return makeCsv(rows);
 }
 
-std::string makeFailuresCsv(const RunSummary& run) {
+std::string makeFailuresCsv(const std::vector<ParameterSpec>& sampled,
+                            const std::vector<FailedSample>& failures) {
   Row header{"set", "sample"};
-  for (const ParameterSpec& parameter : run.sampled) {
+  for (const ParameterSpec& parameter : sampled) {
     header.push_back(parameter.name.text);
   }
   header.emplace_back("reason");
   std::vector<Row> rows{header};
-  for (const FailedSample& failure : run.failures) {
+  for (const FailedSample& failure : failures) {
     Row row{failure.set, std::to_string(failure.sample)};
     for (const double value : failure.parameters) {
       row.push_back(toText(value));
@@ -134,7 +137,7 @@ std::string makeFailuresCsv(const RunSummary& run) {
 
 std::string makeHyperparametersCsv(const RunSummary& run) {
   std::vector<Row> rows{{"parameter", "hyperparameter", "value", "lower", "upper"}};
-  for (const TrainedHyperparameter& trained : run.hyperparameters) {
+  for (const TrainedHyperparameter& trained : run.training.hyperparameters) {
     rows.push_back({trained.parameter, trained.name, toText(trained.value), toText(trained.lower),
                     toText(trained.upper)});
   }
@@ -144,7 +147,7 @@ std::string makeHyperparametersCsv(const RunSummary& run) {
 std::string makeTrainingCsv(const RunSummary& run) {
   std::vector<Row> rows{{"parameter", "start", "best", "nlml", "evaluations", "noise_only", "stop_reason",
                          "at_bound", "condition", "jitter"}};
-  for (const TrainingStart& start : run.training) {
+  for (const TrainingStart& start : run.training.starts) {
     rows.push_back({start.parameter, std::to_string(start.start), start.best ? "1" : "0", toText(start.nlml),
                     std::to_string(start.evaluations), start.noise_only ? "1" : "0", start.stop_reason,
                     start.at_bound, start.best ? toText(start.condition) : "",

@@ -26,7 +26,7 @@ CsvRow addNumbers(CsvRow row, const Eigen::VectorXd& values) {
 
 std::string makeFeaturesCsv(const RunSummary& run) {
   std::vector<CsvRow> rows{addParameterNames({"feature", "unit", "output", "time", "noise_stddev"}, run)};
-  const FeatureRelevance& features = *run.relevance;
+  const FeatureRelevance& features = *run.evaluation.relevance;
   for (std::size_t f = 0; f < features.infos.size(); ++f) {
     const FeatureInfo& info = features.infos[f];
     const auto index = static_cast<Index>(f);
@@ -41,14 +41,14 @@ std::string makeCorrelationsCsv(const RunSummary& run) {
   std::vector<CsvRow> rows{addParameterNames({"parameter"}, run)};
   for (std::size_t p = 0; p < run.parameters.size(); ++p) {
     rows.push_back(addNumbers({run.parameters[p].name.text},
-                              run.identifiability->correlation.row(static_cast<Index>(p))));
+                              run.evaluation.identifiability->correlation.row(static_cast<Index>(p))));
   }
   return makeCsv(rows);
 }
 
 std::string makeIdentifiabilityCsv(const RunSummary& run) {
   std::vector<CsvRow> rows{addParameterNames({"eigenvalue"}, run)};
-  const Identifiability& found = *run.identifiability;
+  const Identifiability& found = *run.evaluation.identifiability;
   for (Index k = 0; k < found.eigenvalues.size(); ++k) {
     rows.push_back(addNumbers({toText(found.eigenvalues[k])}, found.eigenvectors.col(k)));
   }
@@ -58,7 +58,7 @@ std::string makeIdentifiabilityCsv(const RunSummary& run) {
 std::string makePosteriorCsv(const RunSummary& run) {
   std::vector<CsvRow> rows{{"sample", "parameter", "posterior_mean", "posterior_stddev", "map_mean",
                             "map_stddev", "limit_stddev", "effective_sample_size", "simulations"}};
-  for (const PosteriorComparison& row : run.posteriors) {
+  for (const PosteriorComparison& row : run.evaluation.posteriors) {
     for (std::size_t p = 0; p < run.parameters.size(); ++p) {
       const auto j = static_cast<Index>(p);
       rows.push_back({std::to_string(row.sample), run.parameters[p].name.text, toText(row.exact.mean[j]),
@@ -73,7 +73,7 @@ std::string makePosteriorCsv(const RunSummary& run) {
 std::string makeBaselinesCsv(const RunSummary& run) {
   std::vector<CsvRow> rows{{"method", "samples", "parameter", "bias_pct", "sd_pct", "mare_pct", "coverage50",
                             "coverage90", "coverage95", "seconds_per_update", "unconverged"}};
-  for (const BaselineSummary& baseline : run.baselines) {
+  for (const BaselineSummary& baseline : run.evaluation.baselines) {
     for (std::size_t p = 0; p < run.parameters.size(); ++p) {
       const ParameterMetrics& m = baseline.metrics[p];
       CsvRow row{baseline.method, std::to_string(baseline.samples), run.parameters[p].name.text};

@@ -3,7 +3,6 @@
 #include "framework/results/evaluation_tables.hpp"
 #include "framework/results/tables.hpp"
 #include "framework/store/atomic_file.hpp"
-#include "framework/store/provenance.hpp"
 
 namespace twinmap {
 
@@ -12,15 +11,15 @@ namespace fs = std::filesystem;
 namespace {
 
 void writeEvaluation(const fs::path& folder, const RunSummary& run) {
-  if (run.relevance) {
+  if (run.evaluation.relevance) {
     writeTextFile(folder / "features.csv", makeFeaturesCsv(run));
     writeTextFile(folder / "correlations.csv", makeCorrelationsCsv(run));
     writeTextFile(folder / "identifiability.csv", makeIdentifiabilityCsv(run));
   }
-  if (!run.posteriors.empty()) {
+  if (!run.evaluation.posteriors.empty()) {
     writeTextFile(folder / "posterior.csv", makePosteriorCsv(run));
   }
-  if (!run.baselines.empty()) {
+  if (!run.evaluation.baselines.empty()) {
     writeTextFile(folder / "baselines.csv", makeBaselinesCsv(run));
   }
 }
@@ -39,22 +38,18 @@ void writeResults(const fs::path& folder, const RunSummary& run) {
   writeTextFile(folder / "table.tex", makeLatexTable(run));
 }
 
-void writeProvenance(const ExperimentSpec& experiment, const RunOptions& options, const RunSummary& run) {
-  Provenance provenance;
-  provenance.command = options.command;
-  provenance.seed = experiment.seed;
-  provenance.threads = options.threads;
+void writeProvenance(const fs::path& folder, Provenance provenance, const RunSummary& run) {
   provenance.failed_samples = static_cast<int>(run.failures.size());
   provenance.reused_samples = run.reused_samples;
   provenance.online_updates = run.online.updates;
   provenance.online_median_us = run.online.median_us;
   provenance.online_p99_us = run.online.p99_us;
-  provenance.warnings = run.warnings;
-  for (const StageTime& time : run.times) {
+  provenance.warnings = run.notes.warnings;
+  for (const StageTime& time : run.notes.times) {
     provenance.stage_seconds.emplace_back(time.stage, time.seconds);
   }
-  provenance.digests = calcDigests(options.folder);
-  writeTextFile(options.folder / "provenance.json", makeProvenanceJson(provenance));
+  provenance.digests = calcDigests(folder);
+  writeTextFile(folder / "provenance.json", makeProvenanceJson(provenance));
 }
 
 }  // namespace twinmap

@@ -10,6 +10,8 @@
 #include "framework/evaluation/joint_metrics.hpp"
 #include "framework/evaluation/metrics.hpp"
 #include "framework/features/feature_block.hpp"
+#include "framework/inverse_map/predictions.hpp"
+#include "framework/monitoring/stage_notes.hpp"
 #include "framework/results/gates.hpp"
 #include "framework/spec/model_spec.hpp"
 
@@ -43,10 +45,12 @@ struct TrainedHyperparameter {
   double value = 0.0, lower = 0.0, upper = 0.0;
 };
 
-/// Wall time of one stage of a run.
-struct StageTime {
-  std::string stage;
-  double seconds = 0.0;
+/// How the inverse map was trained.
+struct TrainingSummary {
+  std::vector<ParameterMetrics> leave_one_out;  ///< of the training samples; empty where not available
+  std::vector<double> nlml;                     ///< one per parameter, nats
+  std::vector<TrainingStart> starts;
+  std::vector<TrainedHyperparameter> hyperparameters;
 };
 
 /// How strongly each feature follows each parameter (InformationLimit::relevance).
@@ -72,41 +76,36 @@ struct BaselineSummary {
   int unconverged = 0;
 };
 
+/// How well the inverse map infers the test samples: p parameters, n samples that could be simulated.
+struct Evaluation {
+  Eigen::MatrixXd truth;         ///< p x n
+  Predictions predictions;       ///< p x n
+  Eigen::MatrixXd limit_stddev;  ///< p x n, of the information limit; empty where there is none
+  std::vector<ParameterMetrics> metrics;
+  std::vector<std::vector<int>> pit_counts;  ///< one histogram per parameter, kPitBins bins
+  JointMetrics joint;
+  std::optional<FeatureRelevance> relevance;
+  std::optional<Identifiability> identifiability;
+  std::vector<PosteriorComparison> posteriors;
+  std::vector<BaselineSummary> baselines;
+};
+
 /// What one online update costs: the inference of all parameters from one feature vector.
 struct OnlineTimes {
   int updates = 0;  ///< how many were timed
   double median_us = 0.0, p99_us = 0.0;
 };
 
-/// Everything that the tables and the report of one run show.
+/// Everything that the tables of one run show.
 struct RunSummary {
-  std::string name;
-  std::string description;
   std::vector<ParameterSpec> parameters;  ///< p, updating
-  std::vector<ParameterSpec> sampled;     ///< collectSampled
-  std::vector<int> axes;  ///< two parameters: axes of the pictures; empty if there is one parameter only
-  int train_samples = 0;  ///< requested, failures included
-  int test_samples = 0;
-  std::vector<int> test_indices;  ///< test samples that could be simulated; columns of what follows
-  Eigen::MatrixXd truth;          ///< p x n
-  Predictions predictions;        ///< p x n
-  Eigen::MatrixXd limit_stddev;   ///< p x n, of the information limit; empty where it is switched off
-  std::vector<ParameterMetrics> metrics;
-  std::vector<ParameterMetrics> leave_one_out;  ///< of the training samples; empty where not available
-  std::vector<std::vector<int>> pit_counts;     ///< one histogram per parameter, kPitBins bins
-  JointMetrics joint;
-  std::optional<FeatureRelevance> relevance;
-  std::optional<Identifiability> identifiability;
-  std::vector<PosteriorComparison> posteriors;
-  std::vector<BaselineSummary> baselines;
-  std::vector<double> nlml;  ///< one per parameter, nats
-  std::vector<TrainingStart> training;
-  std::vector<TrainedHyperparameter> hyperparameters;
-  std::vector<std::string> warnings;
+  std::vector<int> test_indices;          ///< test samples that could be simulated; columns of the evaluation
+  TrainingSummary training;
+  Evaluation evaluation;
   std::vector<FailedSample> failures;
   int reused_samples = 0;  ///< taken from the store instead of simulated
-  std::vector<StageTime> times;
   OnlineTimes online;
+  StageNotes notes;  ///< of all stages, in their order
   std::vector<GateResult> gates;
 };
 

@@ -23,7 +23,7 @@ constexpr std::size_t kTextColumns = 2;  // to the left; numbers to the right
 
 Row makeHeader(const RunSummary& run) {
   Row header{"parameter", "unit", "lower", "upper", "bias %", "sd %", "MARE %", "cov. 95 %"};
-  if (run.limit_stddev.size() > 0) {
+  if (run.evaluation.limit_stddev.size() > 0) {
     header.insert(header.end(), {"limit %", "ratio"});
   }
   return header;
@@ -31,7 +31,7 @@ Row makeHeader(const RunSummary& run) {
 
 Row makeRow(const RunSummary& run, std::size_t p) {
   const ParameterSpec& parameter = run.parameters[p];
-  const ParameterMetrics& m = run.metrics[p];
+  const ParameterMetrics& m = run.evaluation.metrics[p];
   const auto with_error = [&m](double ParameterFigures::*figure, int decimals) {
     return toTextWithError(m.*figure, m.se.*figure, decimals);
   };
@@ -43,7 +43,7 @@ Row makeRow(const RunSummary& run, std::size_t p) {
           with_error(&ParameterFigures::sd_pct, kPercentDecimals),
           toFixedText(m.mare_pct, kPercentDecimals),
           with_error(&ParameterFigures::coverage95, kCoverageDecimals)};
-  if (run.limit_stddev.size() > 0) {
+  if (run.evaluation.limit_stddev.size() > 0) {
     row.push_back(toFixedText(m.limit_pct, kPercentDecimals));
     row.push_back(with_error(&ParameterFigures::ratio_to_limit, kCoverageDecimals));
   }

@@ -21,8 +21,9 @@ std::string makePitCsv(const RunSummary& run);
 /// parameters of a sample, then the next.
 std::string makePredictionsCsv(const RunSummary& run);
 
-/// failures.csv: set, sample, the value of each sampled parameter, reason.
-std::string makeFailuresCsv(const RunSummary& run);
+/// failures.csv: set, sample, the value of each parameter of the sampled box, reason.
+std::string makeFailuresCsv(const std::vector<ParameterSpec>& sampled,
+                            const std::vector<FailedSample>& failures);
 
 /// training.csv: parameter, start, best, nlml, evaluations, noise_only, stop_reason; of the best start also
 /// at_bound, condition, jitter.

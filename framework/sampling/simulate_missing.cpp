@@ -41,6 +41,19 @@ Trajectories loadTrajectories(const TrajectoryStore& store, const ResponseLayout
 
 }  // namespace
 
+MissingOptions makeMissingOptions(const std::string& stage, int simulations, const RunControl& control) {
+  MissingOptions missing;
+  missing.threads = control.threads;
+  missing.stop = control.stop;
+  if (control.progress) {
+    missing.progress = [stage, simulations, progress = control.progress](const SimulationProgress& counts) {
+      progress({stage, simulations * counts.simulated, simulations * counts.total,
+                simulations * counts.failed, double(counts.simulated) / counts.total, true});
+    };
+  }
+  return missing;
+}
+
 SimulationProgress storeMissing(TrajectoryStore& store, const Simulator& simulator,
                                 const Eigen::MatrixXd& points, const MissingOptions& options) {
   const std::vector<Eigen::Index> missing = store.findMissing(points);

@@ -2,7 +2,9 @@
 
 #include <atomic>
 #include <functional>
+#include <string>
 
+#include "framework/monitoring/run_control.hpp"
 #include "framework/simulation/sample_generator.hpp"
 #include "framework/store/trajectory_store.hpp"
 
@@ -24,6 +26,10 @@ struct MissingOptions {
   /// Called after each sample, from any thread but one at a time.
   std::function<void(const SimulationProgress&)> progress;
 };
+
+/// Options for a stage of a run that simulates, called `stage` where progress is shown; `simulations` are
+/// behind each sample.
+MissingOptions makeMissingOptions(const std::string& stage, int simulations, const RunControl& control);
 
 struct StoredTrajectories {
   Trajectories trajectories;  ///< samples that were not reached: NaN, "not simulated"

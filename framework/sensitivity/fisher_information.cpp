@@ -1,6 +1,7 @@
 #include "framework/sensitivity/fisher_information.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 
 #include "framework/spec/parameter_box.hpp"
 
@@ -27,6 +28,22 @@ MatrixXd calcMarginalInformation(const MatrixXd& information, Eigen::Index count
 MatrixXd calcLimitCovariance(const MatrixXd& information) {
   const MatrixXd identity = MatrixXd::Identity(information.rows(), information.cols());
   return (information + kUniformInformation * identity).llt().solve(identity);
+}
+
+bool asksForInformationLimit(const ExperimentSpec& experiment) {
+  const std::vector<Name> outputs = collectOutputs(experiment.features);
+  const auto is_silent = [&](const OutputNoiseSpec& noise) {
+    return noise.stddev == 0.0 && std::any_of(outputs.begin(), outputs.end(), [&](const Name& output) {
+             return output.text == noise.name.text;
+           });
+  };
+  const std::vector<OutputNoiseSpec>& all = experiment.noise.stddev;
+  return experiment.evaluation.limit && experiment.noise.scale > 0.0 &&
+         std::none_of(all.begin(), all.end(), is_silent);
+}
+
+bool hasInformationLimit(const ExperimentSpec& experiment, const LabelledFeatures& samples) {
+  return asksForInformationLimit(experiment) && samples.noise_covariance.diagonal().minCoeff() > 0.0;
 }
 
 }  // namespace twinmap

@@ -2,7 +2,9 @@
 
 #include <Eigen/Core>
 
+#include "framework/features/labelled_features.hpp"
 #include "framework/features/noise_whitener.hpp"
+#include "framework/spec/experiment_spec.hpp"
 
 namespace twinmap {
 
@@ -18,5 +20,13 @@ Eigen::MatrixXd calcMarginalInformation(const Eigen::MatrixXd& information, Eige
 /// information plus that of the box, which is 12 for each parameter because a uniform distribution has the
 /// variance width^2 / 12 (van Trees' bound with the box's variance).
 Eigen::MatrixXd calcLimitCovariance(const Eigen::MatrixXd& information);
+
+/// Whether an experiment asks for the information limit and all outputs that its features read have noise:
+/// without noise there is no limit.
+bool asksForInformationLimit(const ExperimentSpec& experiment);
+
+/// Whether a run of the experiment computes the limit: where it asks for it and every feature turned out to
+/// have noise.
+bool hasInformationLimit(const ExperimentSpec& experiment, const LabelledFeatures& samples);
 
 }  // namespace twinmap

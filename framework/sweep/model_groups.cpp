@@ -4,10 +4,10 @@
 #include <map>
 #include <unordered_set>
 
-#include "framework/design/point_set.hpp"
+#include "framework/design/experiment_points.hpp"
 #include "framework/features/feature_extractor.hpp"
-#include "framework/sampling/needed_neighbourhoods.hpp"
-#include "framework/sampling/store_content.hpp"
+#include "framework/sampling/model_store.hpp"
+#include "framework/sampling/neighbourhoods.hpp"
 #include "framework/spec/check/check_experiment.hpp"
 #include "framework/spec/check/check_features.hpp"
 #include "framework/spec/parameter_box.hpp"
@@ -98,8 +98,8 @@ Eigen::MatrixXd collectPoints(const std::vector<SweepCase>& cases, const ModelGr
   for (const int member : group.cases) {
     if (wanted[member]) {
       const ExperimentSpec& e = cases[member].experiment;
-      points.add(samplePoints(e.design.train, collectSampled(e.model), e.seed, RandomPurpose::kTrainDesign));
-      points.add(samplePoints(e.design.test, collectSampled(e.model), e.seed, RandomPurpose::kTestDesign));
+      points.add(sampleTrainPoints(e));
+      points.add(sampleTestPoints(e));
     }
   }
   return points.get(countSampled(group.model));

@@ -6,7 +6,7 @@
 
 #include "framework/experiment/fit_online.hpp"
 #include "framework/experiment/run_experiment.hpp"
-#include "framework/sampling/needed_neighbourhoods.hpp"
+#include "framework/sampling/neighbourhoods.hpp"
 #include "framework/store/temporary_folder.hpp"
 #include "framework/sweep/case_cost.hpp"
 
@@ -24,7 +24,7 @@ struct TimedRun {
   /// Of the stages whose names begin so.
   double getStage(const std::string& begin) const {
     double sum = 0.0;
-    for (const StageTime& time : summary.times) {
+    for (const StageTime& time : summary.notes.times) {
       sum += time.stage.rfind(begin, 0) == 0 ? time.seconds : 0.0;
     }
     return sum;
@@ -32,7 +32,7 @@ struct TimedRun {
   double getTraining() const { return getStage("train "); }
   double countEvaluations() const {
     double count = 0.0;
-    for (const TrainingStart& start : summary.training) {
+    for (const TrainingStart& start : summary.training.starts) {
       count += start.evaluations;
     }
     return std::max(count, 1.0);
@@ -45,7 +45,7 @@ TimedRun timeRun(const ExperimentSpec& experiment, const std::string& name, cons
   options.store = folder / "chunks";
   const auto start = std::chrono::steady_clock::now();
   TimedRun run;
-  run.summary = runExperiment(experiment, options);
+  run.summary = runExperiment(experiment, options, RunControl{});
   run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return run;
 }

@@ -5,6 +5,7 @@
 #include <mutex>
 #include <numeric>
 
+#include "framework/monitoring/interrupted.hpp"
 #include "framework/store/atomic_file.hpp"
 
 namespace twinmap {
@@ -46,7 +47,7 @@ class CaseRunner {
     }
     const std::lock_guard<std::mutex> guard(mutex_);
     outcomes[index] = outcome;
-    if (scheduling_.finished) {
+    if (scheduling_.finished && outcome.status != CaseStatus::kMissing) {
       scheduling_.finished(index, outcome);
     }
   }
@@ -57,6 +58,8 @@ class CaseRunner {
       return {CaseStatus::kDone, ""};
     } catch (const DiskFull&) {
       throw;
+    } catch (const Interrupted&) {
+      return {CaseStatus::kMissing, ""};
     } catch (const std::exception& error) {
       return {CaseStatus::kFailed, error.what()};
     }

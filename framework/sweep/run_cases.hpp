@@ -27,7 +27,8 @@ struct CaseScheduling {
 
 /// Runs task(index, threads) for every index of `costs`: first the cases that need more than their share of
 /// the memory, one after the other with all threads; then the others, each on one thread of a team, the most
-/// work first. An exception of a task is the case's failure; but after a DiskFull, or an exception of
+/// work first. An exception of a task is the case's failure, Interrupted
+/// leaves it missing; but after a DiskFull, or an exception of
 /// `finished`, no case is begun, and it is thrown again when those under way have ended.
 std::vector<CaseOutcome> runCases(const std::vector<CaseCost>& costs, const CaseScheduling& scheduling,
                                   const std::function<void(int index, int threads)>& task);

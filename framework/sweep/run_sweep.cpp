@@ -7,12 +7,12 @@
 #include <numeric>
 
 #include "framework/experiment/run_experiment.hpp"
-#include "framework/experiment/simulated_sets.hpp"
 #include "framework/measurement/signal_experiment.hpp"
 #include "framework/monitoring/log_context.hpp"
 #include "framework/monitoring/run_log.hpp"
 #include "framework/report/report.hpp"
 #include "framework/results/run_state.hpp"
+#include "framework/sampling/neighbourhoods.hpp"
 #include "framework/sensitivity/neighbourhood_simulator.hpp"
 #include "framework/spec/experiment_file.hpp"
 #include "framework/spec/parameter_box.hpp"
@@ -29,10 +29,12 @@ namespace fs = std::filesystem;
 
 class Sweep {
  public:
-  Sweep(std::vector<std::string> keys, std::vector<SweepCase> cases, const SweepOptions& options)
+  Sweep(std::vector<std::string> keys, std::vector<SweepCase> cases, const SweepOptions& options,
+        const RunControl& control)
       : keys_(std::move(keys)),
         cases_(std::move(cases)),
         options_(options),
+        control_(control),
         complete_(findComplete(options.folder, cases_)),
         store_(getStoreRoot(options.folder, options.store)),
         samples_of_case_(cases_.size()),
@@ -70,14 +72,14 @@ class Sweep {
         work_ += costs_.back().flops;
       }
     }
-    CaseScheduling scheduling{options_.threads, options_.memory, options_.fail_fast, options_.stop, {}};
+    CaseScheduling scheduling{control_.threads, options_.memory, options_.fail_fast, control_.stop, {}};
     scheduling.finished = [this](int index, const CaseOutcome& outcome) { noteFinished(index, outcome); };
     runCases(costs_, scheduling, [this](int index, int threads) { runCase(todo_[index], threads); });
   }
 
   SweepResult finish() {
     result_.complete = static_cast<int>(std::count(complete_.begin(), complete_.end(), true));
-    result_.stopped = options_.stop != nullptr && *options_.stop &&
+    result_.stopped = control_.stop != nullptr && *control_.stop &&
                       result_.complete + static_cast<int>(result_.failures.size()) < result_.cases;
     std::sort(result_.failures.begin(), result_.failures.end(),
               [this](const FailedCase& a, const FailedCase& b) { return findCase(a) < findCase(b); });
@@ -119,8 +121,7 @@ class Sweep {
     constexpr double kShare = 0.25;  // of the memory: the responses of one block, as simulated and as stored
     const auto start = std::chrono::steady_clock::now();
     const SimulationProgress done =
-        simulateShared(groups, {options_.threads, kShare * options_.memory, options_.stop, options_.progress,
-                                stage.name, stage.simulations});
+        simulateShared(groups, {kShare * options_.memory, stage.name, stage.simulations}, control_);
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     spdlog::info("{} of {} missing {} simulated in {:.2f} s, {} of them failed", done.simulated, done.total,
                  what, elapsed.count(), done.failed);
@@ -133,7 +134,6 @@ class Sweep {
     const SharedSamples& samples = samples_[samples_of_case_[index]];
     RunOptions run;
     run.folder = getCaseFolder(options_.folder, one);
-    run.threads = threads;
     run.command = options_.command;
     if (!samples.failure.empty()) {
       makeFolders(run.folder);
@@ -143,7 +143,7 @@ class Sweep {
     const SampleSource source{*samples.simulator, *samples.store,
                               neighbourhoods_[neighbourhoods_of_case_[index]].store.get()};
     run.samples = &source;
-    runExperiment(one.experiment, run);
+    runExperiment(one.experiment, run, {threads, control_.stop, nullptr});
   }
 
   void noteFinished(int index, const CaseOutcome& outcome) {
@@ -159,8 +159,8 @@ class Sweep {
       writeFailedCases(options_.folder, result_.failures);
       spdlog::error("case {} failed: {}", one.name, outcome.reason);
     }
-    if (options_.progress) {
-      options_.progress({"cases", finished_, static_cast<int>(todo_.size()),
+    if (control_.progress) {
+      control_.progress({"cases", finished_, static_cast<int>(todo_.size()),
                          static_cast<int>(result_.failures.size()), finished_work_ / work_, false});
     }
   }
@@ -174,6 +174,7 @@ class Sweep {
   const std::vector<std::string> keys_;  ///< that are swept
   const std::vector<SweepCase> cases_;
   const SweepOptions& options_;
+  const RunControl& control_;
   std::vector<bool> complete_;
   fs::path store_;
   std::vector<std::size_t> samples_of_case_, neighbourhoods_of_case_;  ///< indices of the next two
@@ -187,7 +188,7 @@ class Sweep {
 
 }  // namespace
 
-SweepResult runSweep(const YamlNode& root, const SweepOptions& options) {
+SweepResult runSweep(const YamlNode& root, const SweepOptions& options, const RunControl& control) {
   std::vector<SweepCase> cases = expandCasesWithSignals(root);
   for (const SweepCase& one : cases) {
     requireMemory(one.experiment, 1, options.most_memory);
@@ -201,7 +202,7 @@ SweepResult runSweep(const YamlNode& root, const SweepOptions& options) {
   const RunLog log(options.folder);
   spdlog::info("{}", options.command);
 
-  Sweep sweep(listSweptKeys(root), std::move(cases), options);
+  Sweep sweep(listSweptKeys(root), std::move(cases), options, control);
   if (sweep.simulate()) {
     sweep.runMissingCases();
   }

@@ -1,29 +1,25 @@
 #pragma once
 
-#include <atomic>
 #include <filesystem>
 #include <limits>
 #include <string>
 #include <vector>
 
-#include "framework/monitoring/progress.hpp"
+#include "framework/monitoring/run_control.hpp"
 #include "framework/results/gates.hpp"
 #include "framework/spec/yaml/yaml_node.hpp"
 #include "framework/sweep/sweep_folder.hpp"
 
 namespace twinmap {
 
+/// Where a sweep leaves what it finds, and what it may take.
 struct SweepOptions {
   std::filesystem::path folder;  ///< created if missing
   std::filesystem::path store;   ///< where simulated samples are kept; empty: `folder`/chunks
-  int threads = 1;               ///< results do not depend on it
   double memory = 4e9;           ///< bytes that responses, or cases that run at the same time, may take
   double most_memory = std::numeric_limits<double>::infinity();  ///< bytes that one case may take
   bool fail_fast = false;                                        ///< begin no case after one has failed
   std::string command;                                           ///< the command line, for provenance.json
-  /// Once true, the simulations and cases under way are finished, and no other is begun.
-  const std::atomic<bool>* stop = nullptr;
-  ProgressCallback progress;
 };
 
 struct SweepResult {
@@ -39,10 +35,11 @@ struct SweepResult {
 /// Runs the cases of an experiment's tree with a sweep (docs/file-formats.md says what is left in the
 /// folder): first all that is missing of the simulations, each point of a model once for all cases; then the
 /// cases that are not complete. The results of a case are those of runExperiment() alone, bit for bit, for
-/// any number of threads and however often the sweep was interrupted. A case that fails is reported and stops
-/// no other, unless fail_fast. Throws ExperimentError for a wrong experiment or a case that exceeds
+/// any number of threads and however often the sweep was interrupted. Once `control`
+/// stops it, the simulations under way are finished and no other case is begun. A case that fails is reported
+/// and stops no other, unless fail_fast. Throws ExperimentError for a wrong experiment or a case that exceeds
 /// most_memory, before the folder is touched, and for a folder that holds another experiment;
 /// std::runtime_error if a file cannot be written or another process has the folder or the store.
-SweepResult runSweep(const YamlNode& root, const SweepOptions& options);
+SweepResult runSweep(const YamlNode& root, const SweepOptions& options, const RunControl& control);
 
 }  // namespace twinmap

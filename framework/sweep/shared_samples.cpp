@@ -2,10 +2,9 @@
 
 #include <algorithm>
 
-#include "framework/experiment/simulated_sets.hpp"
 #include "framework/multibody/multibody_simulator.hpp"
-#include "framework/sampling/needed_neighbourhoods.hpp"
-#include "framework/sampling/stored_local_models.hpp"
+#include "framework/sampling/model_store.hpp"
+#include "framework/sampling/neighbourhoods.hpp"
 #include "framework/sensitivity/neighbourhood_simulator.hpp"
 #include "framework/spec/parameter_box.hpp"
 
@@ -15,13 +14,16 @@ namespace {
 /// Adds up the counts of several calls of storeMissing() and reports them.
 class Totals {
  public:
-  Totals(int total, const SimulationLimits& limits) : limits_(limits) { counts.total = total; }
+  Totals(int total, const SharedStage& stage, const ProgressCallback& progress)
+      : stage_(stage), progress_(progress) {
+    counts.total = total;
+  }
 
   void report(const SimulationProgress& part) const {
-    if (limits_.progress) {
-      const int done = counts.simulated + part.simulated, each = limits_.simulations;
-      limits_.progress({limits_.stage, each * done, each * counts.total, each * (counts.failed + part.failed),
-                        double(done) / counts.total, true});
+    if (progress_) {
+      const int done = counts.simulated + part.simulated, each = stage_.simulations;
+      progress_({stage_.name, each * done, each * counts.total, each * (counts.failed + part.failed),
+                 double(done) / counts.total, true});
     }
   }
 
@@ -33,23 +35,25 @@ class Totals {
   SimulationProgress counts;
 
  private:
-  const SimulationLimits& limits_;
+  const SharedStage& stage_;
+  const ProgressCallback& progress_;
 };
 
-Eigen::Index chooseBlock(const SharedSamples& samples, const SimulationLimits& limits) {
+Eigen::Index chooseBlock(const SharedSamples& samples, double memory) {
   constexpr double kFewest = 256.0;
   const double row_bytes = sizeof(double) * static_cast<double>(samples.simulator->getLayout().getRowCount());
-  const double fitting = limits.memory / std::max(row_bytes, 1.0);
+  const double fitting = memory / std::max(row_bytes, 1.0);
   return static_cast<Eigen::Index>(std::clamp(fitting, kFewest, 1e9));
 }
 
 /// False if it was stopped.
-bool simulateGroup(SharedSamples& samples, const SimulationLimits& limits, Totals& totals) {
+bool simulateGroup(SharedSamples& samples, const SharedStage& stage, const RunControl& control,
+                   Totals& totals) {
   MissingOptions options;
-  options.threads = limits.threads;
-  options.stop = limits.stop;
+  options.threads = control.threads;
+  options.stop = control.stop;
   options.progress = [&totals](const SimulationProgress& part) { totals.report(part); };
-  const Eigen::Index block = chooseBlock(samples, limits);
+  const Eigen::Index block = chooseBlock(samples, stage.memory);
   for (Eigen::Index first = 0; first < samples.missing.cols(); first += block) {
     const Eigen::MatrixXd points =
         samples.missing.middleCols(first, std::min(block, samples.missing.cols() - first));
@@ -89,14 +93,15 @@ SharedSamples openSharedNeighbourhoods(const ModelGroup& group, const Eigen::Mat
   return shared;
 }
 
-SimulationProgress simulateShared(std::vector<SharedSamples>& groups, const SimulationLimits& limits) {
+SimulationProgress simulateShared(std::vector<SharedSamples>& groups, const SharedStage& stage,
+                                  const RunControl& control) {
   int total = 0;
   for (const SharedSamples& samples : groups) {
     total += static_cast<int>(samples.missing.cols());
   }
-  Totals totals(total, limits);
+  Totals totals(total, stage, control.progress);
   for (SharedSamples& samples : groups) {
-    if (samples.missing.cols() > 0 && !simulateGroup(samples, limits, totals)) {
+    if (samples.missing.cols() > 0 && !simulateGroup(samples, stage, control, totals)) {
       break;
     }
   }

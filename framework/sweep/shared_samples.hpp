@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/monitoring/progress.hpp"
+#include "framework/monitoring/run_control.hpp"
 #include "framework/sampling/sample_source.hpp"
 #include "framework/sampling/simulate_missing.hpp"
 #include "framework/simulation/simulator.hpp"
@@ -30,17 +30,16 @@ SharedSamples openSharedSamples(const ModelGroup& group, const Eigen::MatrixXd& 
 SharedSamples openSharedNeighbourhoods(const ModelGroup& group, const Eigen::MatrixXd& points,
                                        const SharedSamples& samples, const std::filesystem::path& root);
 
-struct SimulationLimits {
-  int threads = 1;
-  double memory = 0.0;  ///< bytes of responses that may be held at a time
-  const std::atomic<bool>* stop = nullptr;
-  ProgressCallback progress;
-  std::string stage = "simulate";  ///< for people
-  int simulations = 1;             ///< behind each sample, as progress counts them
+/// A stage of a sweep that simulates.
+struct SharedStage {
+  double memory = 0.0;            ///< bytes of responses that may be held at a time
+  std::string name = "simulate";  ///< for people
+  int simulations = 1;            ///< behind each sample, as progress counts them
 };
 
 /// Simulates all that is missing, group after group, each with all threads. Returns what was done; stopped,
 /// if fewer were simulated than the total.
-SimulationProgress simulateShared(std::vector<SharedSamples>& groups, const SimulationLimits& limits);
+SimulationProgress simulateShared(std::vector<SharedSamples>& groups, const SharedStage& stage,
+                                  const RunControl& control);
 
 }  // namespace twinmap

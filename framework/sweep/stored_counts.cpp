@@ -1,7 +1,6 @@
 #include "framework/sweep/stored_counts.hpp"
 
-#include "framework/sampling/needed_neighbourhoods.hpp"
-#include "framework/sampling/stored_local_models.hpp"
+#include "framework/sampling/neighbourhoods.hpp"
 #include "framework/sensitivity/neighbourhood_simulator.hpp"
 #include "framework/spec/parameter_box.hpp"
 #include "framework/sweep/model_groups.hpp"

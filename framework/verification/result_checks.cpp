@@ -6,11 +6,10 @@
 #include "framework/evaluation/information_limit.hpp"
 #include "framework/experiment/evaluate_map.hpp"
 #include "framework/experiment/fit_online.hpp"
-#include "framework/experiment/labelled_sets.hpp"
-#include "framework/experiment/make_extractor.hpp"
-#include "framework/features/noise.hpp"
+#include "framework/experiment/prepare_data.hpp"
 #include "framework/inverse_map/train_gp_map.hpp"
 #include "framework/results/tables.hpp"
+#include "framework/sensitivity/fisher_information.hpp"
 #include "framework/spec/check/check_experiment.hpp"
 #include "framework/spec/parameter_box.hpp"
 #include "framework/store/atomic_file.hpp"
@@ -31,15 +30,14 @@ struct Inputs {
   const ExperimentSpec& experiment;
   const Simulator& simulator;
   const FeatureExtractor& extractor;
-  const FeatureNoise& noise;
   const SimulatedSets& sets;
-  const LabelledSets& labelled;
-  const std::vector<int>& test_indices;
+  const PreparedData& data;
   int threads;
 };
 
 std::string findMapDifference(const std::filesystem::path& file, const Inputs& inputs, const GpMap& map) {
-  const OnlineFit online = fitOnline(inputs.experiment, inputs.sets, inputs.extractor, inputs.labelled, map);
+  const OnlineFit online =
+      fitOnline(inputs.experiment, inputs.sets, inputs.extractor, inputs.data.labelled, map);
   const TemporaryFolder temporary;
   writeMapsFile(temporary.getPath() / "maps.h5",
                 makeStoredMap(inputs.experiment, inputs.extractor, map, online.model));
@@ -49,44 +47,43 @@ std::string findMapDifference(const std::filesystem::path& file, const Inputs& i
 /// The limit of all test samples as the file has it, and of `chosen` ones computed again.
 MatrixXd calcLimit(const Inputs& inputs, const std::vector<int>& chosen,
                    const std::filesystem::path& predictions) {
-  if (!hasInformationLimit(inputs.experiment, inputs.labelled.test)) {
+  if (!hasInformationLimit(inputs.experiment, inputs.data.labelled.test)) {
     return {};
   }
   const std::vector<ParameterSpec>& parameters = inputs.experiment.model.parameters;
-  const MatrixXd& truth = inputs.labelled.test.parameters;
+  const MatrixXd& truth = inputs.data.labelled.test.parameters;
   MatrixXd limit = readPredictionsFile(predictions, collectNames(parameters)).limit_stddev;
   if (limit.rows() != truth.rows() || limit.cols() != truth.cols()) {
     limit.setConstant(truth.rows(), truth.cols(), std::numeric_limits<double>::quiet_NaN());
   }
   std::vector<Index> columns;
   for (const int sample : chosen) {
-    const auto found = std::find(inputs.test_indices.begin(), inputs.test_indices.end(), sample);
-    if (found != inputs.test_indices.end()) {
-      columns.push_back(found - inputs.test_indices.begin());
+    const auto found = std::find(inputs.data.test_indices.begin(), inputs.data.test_indices.end(), sample);
+    if (found != inputs.data.test_indices.end()) {
+      columns.push_back(found - inputs.data.test_indices.begin());
     }
   }
   if (!columns.empty()) {
-    const MatrixXd points = inputs.labelled.test.collectPoints()(Eigen::all, columns);
+    const MatrixXd points = inputs.data.labelled.test.collectPoints()(Eigen::all, columns);
     const auto models = calcLocalModels(inputs.simulator, inputs.extractor,
                                         collectUnknown(inputs.experiment.model), points, inputs.threads);
-    limit(Eigen::all, columns) = calcInformationLimit(models, inputs.noise, parameters).stddev;
+    limit(Eigen::all, columns) = calcInformationLimit(models, inputs.data.noise, parameters).stddev;
   }
   return limit;
 }
 
 RunSummary summarize(const Inputs& inputs, const GpMapTraining& trained, const MatrixXd& limit) {
-  const LabelledSets& labelled = inputs.labelled;
+  const LabelledSets& labelled = inputs.data.labelled;
   RunSummary run;
   run.parameters = inputs.experiment.model.parameters;
-  run.test_indices = inputs.test_indices;
-  run.truth = labelled.test.parameters;
-  run.predictions = trained.map.predict(labelled.test.features, labelled.test.inputs);
-  run.limit_stddev = limit;
-  calcTestMetrics(trained.map, run);
-  run.leave_one_out = calcMetrics(run.parameters, labelled.train.parameters, trained.leave_one_out, {},
-                                  labelled.train.replicates);
+  run.test_indices = inputs.data.test_indices;
+  run.evaluation = evaluatePredictions(run.parameters, labelled.test.parameters,
+                                       trained.map.predict(labelled.test.features, labelled.test.inputs),
+                                       limit, trained.map.residual_correlation);
+  run.training.leave_one_out = calcMetrics(run.parameters, labelled.train.parameters, trained.leave_one_out,
+                                           {}, labelled.train.replicates);
   for (const Process& process : trained.map.processes) {
-    run.nlml.push_back(getNlml(process));
+    run.training.nlml.push_back(getNlml(process));
   }
   return run;
 }
@@ -112,7 +109,7 @@ void checkMapAndTables(const Inputs& inputs, const std::vector<int>& limits, Ver
   GpMapTraining trained;
   verification.check("maps.h5: refitted at its hyperparameters", [&] {
     trained = refitGpMap(readMapsFile(folder / "maps.h5").map, inputs.experiment.inverse_map.gp,
-                         inputs.experiment.transform, inputs.labelled.train, inputs.threads,
+                         inputs.experiment.transform, inputs.data.labelled.train, inputs.threads,
                          inputs.experiment.model.inputs);
     return findMapDifference(folder / "maps.h5", inputs, trained.map);
   });
@@ -125,7 +122,7 @@ void checkMapAndTables(const Inputs& inputs, const std::vector<int>& limits, Ver
     run = summarize(inputs, trained, calcLimit(inputs, limits, folder / "predictions.csv"));
     return findDifference(folder / "predictions.csv", makePredictionsCsv(run));
   });
-  if (run.metrics.empty()) {
+  if (run.evaluation.metrics.empty()) {
     verification.notes.emplace_back("tables are not compared, for they follow from predictions.csv");
     return;
   }
@@ -140,17 +137,12 @@ void checkMapAndTables(const Inputs& inputs, const std::vector<int>& limits, Ver
 void checkResults(const ExperimentSpec& experiment, const Simulator& simulator, SimulatedSets sets,
                   const std::vector<int>& limits, int threads, Verification& verification) {
   const FeatureExtractor extractor = makeExtractor(experiment, simulator.getLayout());
-  failIncompleteSamples(experiment, extractor, sets);
-  const FeatureNoise noise(extractor, ResponseNoise(experiment.noise, simulator.getLayout()),
-                           experiment.seed);
-  LabelledSets labelled = makeLabelledSets(experiment, sets, extractor, noise);
-  labelled.train.sensitivities =
-      calcTrainingSensitivities(experiment, sets.train, [&](const Eigen::MatrixXd& points) {
-        return calcLocalModels(simulator, extractor, collectUnknown(experiment.model), points, threads);
-      });
-  const std::vector<int> test_indices = findSuccessful(sets.test);
-  checkMapAndTables({experiment, simulator, extractor, noise, sets, labelled, test_indices, threads}, limits,
-                    verification);
+  sets = failIncompleteSamples(experiment, extractor, std::move(sets));
+  const LocalModelSource local_models = [&](const MatrixXd& points) {
+    return calcLocalModels(simulator, extractor, collectUnknown(experiment.model), points, threads);
+  };
+  const PreparedData data = prepareData(experiment, extractor, sets, local_models);
+  checkMapAndTables({experiment, simulator, extractor, sets, data, threads}, limits, verification);
 }
 
 }  // namespace twinmap

@@ -3,10 +3,10 @@
 #include <cstring>
 #include <memory>
 
-#include "framework/design/point_set.hpp"
+#include "framework/design/experiment_points.hpp"
 #include "framework/results/run_state.hpp"
-#include "framework/sampling/store_content.hpp"
-#include "framework/sampling/stored_local_models.hpp"
+#include "framework/sampling/model_store.hpp"
+#include "framework/sampling/neighbourhoods.hpp"
 #include "framework/spec/parameter_box.hpp"
 #include "framework/spec/yaml/number_text.hpp"
 #include "framework/store/hdf5_difference.hpp"
@@ -92,16 +92,13 @@ StoredSamples readOrThrow(const fs::path& file) {
 SimulatedSets readSamples(const fs::path& file, const ExperimentSpec& experiment,
                           const ResponseLayout& layout) {
   StoredSamples stored = readOrThrow(file);
-  const auto prepare = [&](Trajectories& set, const PointSetSpec& design, RandomPurpose purpose,
-                           const std::string& name) {
-    const Eigen::MatrixXd points =
-        samplePoints(design, collectSampled(experiment.model), experiment.seed, purpose);
+  const auto prepare = [&](Trajectories& set, const Eigen::MatrixXd& points, const std::string& name) {
     requireShape(set, points, layout, name);
     set.parameters = points;
     set.layout = layout;
   };
-  prepare(stored.train, experiment.design.train, RandomPurpose::kTrainDesign, "training");
-  prepare(stored.test, experiment.design.test, RandomPurpose::kTestDesign, "test");
+  prepare(stored.train, sampleTrainPoints(experiment), "training");
+  prepare(stored.test, sampleTestPoints(experiment), "test");
   return {std::move(stored.train), std::move(stored.test)};
 }
 

@@ -53,8 +53,9 @@ void verifyAll(const ExperimentSpec& experiment, const VerifyOptions& options, V
   const TemporaryFolder temporary;
   RunOptions run;
   run.folder = temporary.getPath();
-  run.threads = options.threads;
-  runExperiment(experiment, run);
+  RunControl control;
+  control.threads = options.threads;
+  runExperiment(experiment, run, control);
   for (const fs::path& file : listResults(run.folder)) {
     verification.check(file.string(),
                        [&] { return findFileDifference(verification.folder / file, run.folder / file); });

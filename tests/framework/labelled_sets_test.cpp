@@ -1,8 +1,8 @@
-#include "framework/experiment/labelled_sets.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "framework/experiment/prepare_data.hpp"
 
 namespace twinmap {
 namespace {

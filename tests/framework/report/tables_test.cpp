@@ -15,8 +15,6 @@ namespace {
 
 RunSummary makeRun() {
   RunSummary run;
-  run.name = "<script>alert(1)</script>";
-  run.description = "\"quotes\" & more";
   run.parameters.resize(2);
   run.parameters[0].name = {"k_y", {}};
   run.parameters[0].unit = "N/m";
@@ -24,25 +22,21 @@ RunSummary makeRun() {
   run.parameters[1].name = {"d", {}};
   run.parameters[1].unit = "a,b|c<i>";
   run.parameters[1].bounds = {1.75e-4, 2.25e-4, {}};
-  run.sampled = run.parameters;
-  run.axes = {0, 1};
-  run.train_samples = 10;
-  run.test_samples = 3;
   run.test_indices = {0, 2};
-  run.truth = (Eigen::MatrixXd(2, 2) << 6, 12, 1.8e-4, 2.1e-4).finished();
-  run.predictions.mean = run.truth * 1.5;
-  run.predictions.stddev = (Eigen::MatrixXd(2, 2) << 0.1, 0.2, 1e-6, 3e-6).finished();
-  run.metrics = calcMetrics(run.parameters, run.truth, run.predictions);
-  run.pit_counts = {{2, 0, 0, 0, 0, 0, 0, 0, 0, 0}, {0, 0, 0, 0, 0, 0, 0, 0, 0, 2}};
-  run.nlml = {-100.5, 3};
+  run.evaluation.truth = (Eigen::MatrixXd(2, 2) << 6, 12, 1.8e-4, 2.1e-4).finished();
+  run.evaluation.predictions.mean = run.evaluation.truth * 1.5;
+  run.evaluation.predictions.stddev = (Eigen::MatrixXd(2, 2) << 0.1, 0.2, 1e-6, 3e-6).finished();
+  run.evaluation.metrics = calcMetrics(run.parameters, run.evaluation.truth, run.evaluation.predictions);
+  run.evaluation.pit_counts = {{2, 0, 0, 0, 0, 0, 0, 0, 0, 0}, {0, 0, 0, 0, 0, 0, 0, 0, 0, 2}};
+  run.training.nlml = {-100.5, 3};
   run.failures = {{"test", 1, Eigen::Vector2d(7, 2e-4), "step limit, \"t\" = 1"}};
-  run.times = {{"simulate", 1.25}};
+  run.notes.times = {{"simulate", 1.25}};
   return run;
 }
 
 TEST(Tables, GatesMayHoldEveryMetricAndNoOther) {
   RunSummary run = makeRun();
-  run.limit_stddev = run.predictions.stddev;
+  run.evaluation.limit_stddev = run.evaluation.predictions.stddev;
   std::string header = makeMetricsCsv(run);
   header = header.substr(0, header.find('\n'));
   std::vector<std::string> metrics;
@@ -84,8 +78,8 @@ std::string getCell(const std::string& csv, const std::string& column) {
 
 TEST(Tables, MetricsCsvHasAnErrorBesideEveryFigure) {
   RunSummary run = makeRun();
-  run.metrics[0].crps_pct = 1.5;
-  run.metrics[0].se.crps_pct = 0.25;
+  run.evaluation.metrics[0].crps_pct = 1.5;
+  run.evaluation.metrics[0].se.crps_pct = 0.25;
   const std::string csv = makeMetricsCsv(run);
   EXPECT_EQ(getCell(csv, "crps_pct"), "1.5");
   EXPECT_EQ(getCell(csv, "crps_pct_se"), "0.25");
@@ -97,9 +91,9 @@ TEST(Tables, LeaveOneOutColumnsAreEmptyWithoutIt) {
   RunSummary run = makeRun();
   EXPECT_EQ(getCell(makeMetricsCsv(run), "loo_sd_pct"), "");
   EXPECT_EQ(getCell(makeMetricsCsv(run), "loo_nlpd_se"), "");
-  run.leave_one_out = run.metrics;
-  run.leave_one_out[0].sd_pct = 3.5;
-  run.leave_one_out[0].se.nlpd = 0.125;
+  run.training.leave_one_out = run.evaluation.metrics;
+  run.training.leave_one_out[0].sd_pct = 3.5;
+  run.training.leave_one_out[0].se.nlpd = 0.125;
   EXPECT_EQ(getCell(makeMetricsCsv(run), "loo_sd_pct"), "3.5");
   EXPECT_EQ(getCell(makeMetricsCsv(run), "loo_nlpd_se"), "0.125");
 }
@@ -108,10 +102,10 @@ TEST(Tables, TheLimitHasColumnsOnlyWhereItIsKnown) {
   RunSummary run = makeRun();
   EXPECT_EQ(getCell(makeMetricsCsv(run), "limit_pct"), "no such column");
   EXPECT_EQ(makeMarkdownTable(run).find("limit"), std::string::npos);
-  run.limit_stddev = run.predictions.stddev / 2;
-  run.metrics[0].limit_pct = 0.07;
-  run.metrics[0].ratio_to_limit = 1.043;
-  run.metrics[0].se.ratio_to_limit = 0.031;
+  run.evaluation.limit_stddev = run.evaluation.predictions.stddev / 2;
+  run.evaluation.metrics[0].limit_pct = 0.07;
+  run.evaluation.metrics[0].ratio_to_limit = 1.043;
+  run.evaluation.metrics[0].se.ratio_to_limit = 0.031;
   EXPECT_EQ(getCell(makeMetricsCsv(run), "limit_pct"), "0.07");
   EXPECT_EQ(getCell(makeMetricsCsv(run), "ratio_to_limit_se"), "0.031");
   EXPECT_NE(makePredictionsCsv(run).find("stddev,limit_stddev\n0,k_y,6,9,0.1,0.05\n"), std::string::npos);
@@ -121,8 +115,8 @@ TEST(Tables, TheLimitHasColumnsOnlyWhereItIsKnown) {
 
 TEST(Tables, JointAndPit) {
   RunSummary run = makeRun();
-  run.joint.coverage90 = 0.875;
-  run.joint.se.coverage90 = 0.25;
+  run.evaluation.joint.coverage90 = 0.875;
+  run.evaluation.joint.se.coverage90 = 0.25;
   EXPECT_EQ(makeJointCsv(run),
             "metric,value,se\ncoverage95,0,0\ncoverage90,0.875,0.25\ncoverage50,0,0\nnlpd,0,0\n");
   const std::string pit = makePitCsv(run);
@@ -155,7 +149,7 @@ TEST(Tables, PredictionsKeepTheSamplesIndices) {
 }
 
 TEST(Tables, FailuresCarryTheirValuesAndReason) {
-  EXPECT_EQ(makeFailuresCsv(makeRun()),
+  EXPECT_EQ(makeFailuresCsv(makeRun().parameters, makeRun().failures),
             "set,sample,k_y,d,reason\ntest,1,7,2e-04,\"step limit, \"\"t\"\" = 1\"\n");
 }
 

@@ -1,11 +1,13 @@
-#include "framework/experiment/labelled_sets.hpp"
+#include "framework/experiment/prepare_data.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "framework/features/noise.hpp"
-#include "framework/sampling/needed_neighbourhoods.hpp"
+#include "framework/multibody/input_signals.hpp"
+#include "framework/sampling/neighbourhoods.hpp"
+#include "framework/spec/expression/output_units.hpp"
 #include "framework/spec/parameter_box.hpp"
 
 namespace twinmap {
@@ -65,33 +67,6 @@ LabelledFeatures makeLabelledFeatures(const ModelSpec& model, const Trajectories
   return labelled;
 }
 
-}  // namespace
-
-void failIncompleteSamples(const ExperimentSpec& experiment, const FeatureExtractor& extractor,
-                           SimulatedSets& sets) {
-  if (extractor.isLinear()) {
-    return;
-  }
-  const ResponseNoise response_noise(experiment.noise, sets.train.layout);
-  failIncomplete(extractor, response_noise, {experiment.seed, RandomPurpose::kTrainNoise},
-                 experiment.noise.replicates.value_or(1), sets.train);
-  failIncomplete(extractor, response_noise, {experiment.seed, RandomPurpose::kTestNoise}, 1, sets.test);
-}
-
-LabelledSets makeLabelledSets(const ExperimentSpec& experiment, const SimulatedSets& sets,
-                              const FeatureExtractor& extractor, const FeatureNoise& noise) {
-  const ResponseNoise response_noise(experiment.noise, sets.train.layout);
-  LabelledSets labelled{makeLabelledFeatures(experiment.model, sets.train, extractor, response_noise,
-                                             {experiment.seed, RandomPurpose::kTrainNoise},
-                                             experiment.noise.replicates.value_or(1)),
-                        makeLabelledFeatures(experiment.model, sets.test, extractor, response_noise,
-                                             {experiment.seed, RandomPurpose::kTestNoise}, 1)};
-  labelled.train.noise_covariance =
-      noise.calcMeanCovariance(sets.train.responses(Eigen::all, findSuccessful(sets.train)));
-  labelled.test.noise_covariance = labelled.train.noise_covariance;
-  return labelled;
-}
-
 std::vector<Eigen::MatrixXd> calcTrainingSensitivities(const ExperimentSpec& experiment,
                                                        const Trajectories& train,
                                                        const LocalModelSource& local_models) {
@@ -110,6 +85,64 @@ std::vector<Eigen::MatrixXd> calcTrainingSensitivities(const ExperimentSpec& exp
     throw std::runtime_error("select by fisher_information: the features' sensitivities cannot be simulated");
   }
   return sensitivities;
+}
+
+}  // namespace
+
+ResponseLayout makeLayout(const ExperimentSpec& experiment) {
+  ResponseLayout layout;
+  layout.times = collectTimes(experiment.features);
+  layout.modes = countModes(experiment.features);
+  if (layout.times.size() > 0) {
+    for (const OutputSpec& output : experiment.model.outputs) {
+      layout.output_names.push_back(output.name.text);
+      layout.output_units.push_back(findOutputUnit(output, experiment.model.system));
+    }
+  }
+  return layout;
+}
+
+FeatureExtractor makeExtractor(const ExperimentSpec& experiment, const ResponseLayout& layout) {
+  const bool needed = needExcitation(experiment.features);
+  return {experiment.features, layout,
+          needed ? calcInputSignals(experiment.model, layout.times) : InputSignals{}};
+}
+
+SimulatedSets failIncompleteSamples(const ExperimentSpec& experiment, const FeatureExtractor& extractor,
+                                    SimulatedSets sets) {
+  if (extractor.isLinear()) {
+    return sets;
+  }
+  const ResponseNoise response_noise(experiment.noise, sets.train.layout);
+  failIncomplete(extractor, response_noise, {experiment.seed, RandomPurpose::kTrainNoise},
+                 experiment.noise.replicates.value_or(1), sets.train);
+  failIncomplete(extractor, response_noise, {experiment.seed, RandomPurpose::kTestNoise}, 1, sets.test);
+  return sets;
+}
+
+LabelledSets makeLabelledSets(const ExperimentSpec& experiment, const SimulatedSets& sets,
+                              const FeatureExtractor& extractor, const FeatureNoise& noise) {
+  const ResponseNoise response_noise(experiment.noise, sets.train.layout);
+  LabelledSets labelled{makeLabelledFeatures(experiment.model, sets.train, extractor, response_noise,
+                                             {experiment.seed, RandomPurpose::kTrainNoise},
+                                             experiment.noise.replicates.value_or(1)),
+                        makeLabelledFeatures(experiment.model, sets.test, extractor, response_noise,
+                                             {experiment.seed, RandomPurpose::kTestNoise}, 1)};
+  labelled.train.noise_covariance =
+      noise.calcMeanCovariance(sets.train.responses(Eigen::all, findSuccessful(sets.train)));
+  labelled.test.noise_covariance = labelled.train.noise_covariance;
+  return labelled;
+}
+
+PreparedData prepareData(const ExperimentSpec& experiment, const FeatureExtractor& extractor,
+                         const SimulatedSets& sets, const LocalModelSource& local_models) {
+  PreparedData data{
+      FeatureNoise(extractor, ResponseNoise(experiment.noise, sets.train.layout), experiment.seed),
+      {},
+      findSuccessful(sets.test)};
+  data.labelled = makeLabelledSets(experiment, sets, extractor, data.noise);
+  data.labelled.train.sensitivities = calcTrainingSensitivities(experiment, sets.train, local_models);
+  return data;
 }
 
 }  // namespace twinmap

@@ -1,0 +1,61 @@
+#include "framework/experiment/train_map.hpp"
+
+#include <fmt/format.h>
+
+#include "framework/inverse_map/train_gp_map.hpp"
+#include "framework/monitoring/stage_timer.hpp"
+#include "framework/spec/check/check_experiment.hpp"
+
+namespace twinmap {
+namespace {
+
+std::vector<TrainingStart> summarizeTraining(const std::vector<std::string>& parameters,
+                                             const std::vector<gp::TrainingReport>& reports) {
+  std::vector<TrainingStart> rows;
+  for (std::size_t p = 0; p < reports.size(); ++p) {
+    for (std::size_t k = 0; k < reports[p].starts.size(); ++k) {
+      const gp::StartReport& start = reports[p].starts[k];
+      const bool best = static_cast<int>(k) == reports[p].best_start;
+      rows.push_back({parameters[p], static_cast<int>(k), best, start.nlml, start.evaluations,
+                      start.noise_only, start.stop_reason,
+                      best ? fmt::format("{}", fmt::join(reports[p].at_bound, "; ")) : "",
+                      reports[p].condition, reports[p].jitter});
+    }
+  }
+  return rows;
+}
+
+std::vector<TrainedHyperparameter> listHyperparameters(const std::vector<std::string>& parameters,
+                                                       const std::vector<gp::TrainingReport>& reports) {
+  std::vector<TrainedHyperparameter> listed;
+  for (std::size_t p = 0; p < reports.size(); ++p) {
+    for (const gp::BoundedHyperparameter& of : reports[p].hyperparameters) {
+      listed.push_back({parameters[p], of.name, of.value, of.lower, of.upper});
+    }
+  }
+  return listed;
+}
+
+}  // namespace
+
+Training trainMap(const ExperimentSpec& experiment, const LabelledFeatures& samples,
+                  const RunControl& control) {
+  const std::vector<std::string> names = collectNames(experiment.model.parameters);
+  Training training;
+  GpMapTraining trained = timeStage("train the inverse map", training.notes, [&] {
+    return trainGpMap(experiment.inverse_map.gp, experiment.transform, names, samples, control.threads,
+                      experiment.model.inputs);
+  });
+  training.notes.warnings = std::move(trained.warnings);
+  training.summary.leave_one_out = calcMetrics(experiment.model.parameters, samples.parameters,
+                                               trained.leave_one_out, {}, samples.replicates);
+  training.summary.starts = summarizeTraining(names, trained.reports);
+  training.summary.hyperparameters = listHyperparameters(names, trained.reports);
+  for (const Process& process : trained.map.processes) {
+    training.summary.nlml.push_back(getNlml(process));
+  }
+  training.map = std::move(trained.map);
+  return training;
+}
+
+}  // namespace twinmap

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "framework/monitoring/run_control.hpp"
+#include "framework/monitoring/stage_timer.hpp"
+#include "framework/sampling/sample_source.hpp"
+#include "framework/sensitivity/feature_sensitivities.hpp"
+#include "framework/spec/experiment_spec.hpp"
+
+namespace twinmap {
+
+/// The stage that simulates neighbourhoods (NeighbourhoodSimulator), for people.
+inline constexpr const char* kNeighbourhoodStage = "simulate sensitivities";
+
+/// Of how many training samples a selection by Fisher information looks at the sensitivities.
+inline constexpr int kSensitivitySamples = 16;
+
+/// Whether a step of the transform selects features by Fisher information.
+bool selectsByFisherInformation(const ExperimentSpec& experiment);
+
+/// The points whose neighbourhoods a run of the experiment needs: the test points for the information limit,
+/// and the first training points for a selection by Fisher information. Parameters x n, n = 0 if it needs
+/// none. Neighbourhoods of samples that fail are not needed after all.
+Eigen::MatrixXd listNeededNeighbourhoods(const ExperimentSpec& experiment);
+
+/// Those of the points whose sample has not failed, as far as the store of the samples knows.
+Eigen::MatrixXd dropFailed(const Eigen::MatrixXd& points, const TrajectoryStore& samples);
+
+/// The store of the neighbourhoods of a model's points, for derivatives to its unknown parameters, in the
+/// folder `root`; `layout` is that of one response.
+std::unique_ptr<TrajectoryStore> openNeighbourhoodStore(const ModelSpec& model, const ResponseLayout& layout,
+                                                        const std::filesystem::path& root,
+                                                        StoreAccess access = StoreAccess::kReadWrite);
+
+/// Simulates the neighbourhoods that the experiment needs and the source does not have; notes its time, if
+/// anything was missing. Throws Interrupted if it is stopped while some are missing.
+StageNotes simulateNeighbourhoods(const ExperimentSpec& experiment, const SampleSource& source,
+                                  const RunControl& control);
+
+/// The local models at points, from the source's neighbourhoods where it keeps them: what it has is not
+/// simulated again. `extractor`: of the experiment, for responses of `layout`, whose rows must be among those
+/// of the source. The result does not depend on `threads`.
+std::vector<LocalModel> calcLocalModels(const ExperimentSpec& experiment, const SampleSource& source,
+                                        const ResponseLayout& layout, const FeatureExtractor& extractor,
+                                        const Eigen::MatrixXd& points, int threads);
+
+}  // namespace twinmap
