@@ -41,14 +41,26 @@ endif()
 
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM)
-  set(CMAKE_CXX_COMPILER_LAUNCHER "${CCACHE_PROGRAM}")
+  # what ccache asks for with precompiled headers
+  set(CMAKE_CXX_COMPILER_LAUNCHER
+      "${CMAKE_COMMAND}" -E env CCACHE_SLOPPINESS=pch_defines,time_macros "${CCACHE_PROGRAM}")
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    add_compile_options(-fpch-preprocess)
+  else()
+    add_compile_options("SHELL:-Xclang -fno-pch-timestamp")
+  endif()
 endif()
 
-# twinmap_add_library(<target> SOURCES <files...> [PUBLIC <targets...>] [PRIVATE <targets...>]):
-# a static library whose headers are included by their path from the project's root.
+# twinmap_add_library(<target> SOURCES <files...> [PRECOMPILED <name>] [PUBLIC <targets...>] [PRIVATE <targets...>]):
+# a static library whose headers are included by their path from the project's root. PRECOMPILED as in
+# cmake/PrecompiledHeaders.cmake, common by default.
 function(twinmap_add_library target)
-  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "" "PRECOMPILED" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   add_library(${target} STATIC ${ARG_SOURCES})
   target_include_directories(${target} PUBLIC "${PROJECT_SOURCE_DIR}")
   target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
+  if(NOT ARG_PRECOMPILED)
+    set(ARG_PRECOMPILED common)
+  endif()
+  twinmap_use_precompiled(${target} ${ARG_PRECOMPILED})
 endfunction()

@@ -1,11 +1,10 @@
 # Every package comes from the distribution; scripts/install-dependencies lists them by name.
 find_package(Eigen3 3.4 REQUIRED)
 find_package(NLopt REQUIRED)
-if(NOT TWINMAP_FUZZ)
-  find_package(OpenMP REQUIRED COMPONENTS CXX)
-  # Threads are twinmap's own, outside Eigen: how Eigen cuts a product depends on their number.
-  set_property(TARGET OpenMP::OpenMP_CXX APPEND PROPERTY INTERFACE_COMPILE_DEFINITIONS EIGEN_DONT_PARALLELIZE)
-endif()
+find_package(OpenMP REQUIRED COMPONENTS CXX)
+# Threads are twinmap's own, outside Eigen: how Eigen cuts a product depends on their number.
+set_property(TARGET OpenMP::OpenMP_CXX APPEND PROPERTY INTERFACE_COMPILE_DEFINITIONS EIGEN_DONT_PARALLELIZE)
+link_libraries(OpenMP::OpenMP_CXX) # every target: precompiled headers need the same flags
 find_package(Boost 1.74 REQUIRED)
 find_package(Simbody 3.7 REQUIRED)
 find_package(yaml-cpp 0.7 REQUIRED)

@@ -1,6 +1,5 @@
 #include "framework/evaluation/exact_posterior.hpp"
 
-#include <Eigen/Cholesky>
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <limits>
@@ -9,6 +8,7 @@
 #include "framework/sensitivity/fisher_information.hpp"
 #include "framework/simulation/simulator_team.hpp"
 #include "framework/spec/parameter_box.hpp"
+#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 namespace {
@@ -98,7 +98,7 @@ Proposal makeProposal(const VectorXd& mean, const MatrixXd& covariance) {
   constexpr double kWidening = 1.25;
   constexpr double kFloor = 1e-16;  // of the box's squared width
   const MatrixXd floor = kFloor * MatrixXd::Identity(mean.size(), mean.size());
-  return {mean, kWidening * MatrixXd((covariance + floor).llt().matrixL())};
+  return {mean, kWidening * linalg::calcCholesky(covariance + floor).lower};
 }
 
 }  // namespace

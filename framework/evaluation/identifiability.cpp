@@ -1,11 +1,11 @@
 #include "framework/evaluation/identifiability.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <cstdio>
 
 #include "framework/sensitivity/fisher_information.hpp"
 #include "framework/spec/parameter_box.hpp"
+#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 namespace {
@@ -73,9 +73,9 @@ Identifiability calcIdentifiability(const InformationLimit& limit,
                                     const std::vector<ParameterSpec>& parameters) {
   Identifiability result;
   result.correlation = calcCorrelation(calcLimitCovariance(limit.mean_information));
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(limit.mean_information);
-  result.eigenvalues = eigen.eigenvalues();
-  result.eigenvectors = fixSigns(eigen.eigenvectors());
+  const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(limit.mean_information);
+  result.eigenvalues = eigen.values;
+  result.eigenvectors = fixSigns(eigen.vectors);
   result.remaining = limit.mean_covariance.diagonal().cwiseSqrt() / kUniformStddev;
   for (Index j = 0; j < result.remaining.size(); ++j) {
     if (result.remaining[j] > kUndetermined) {

@@ -1,12 +1,12 @@
 #include "framework/evaluation/joint_metrics.hpp"
 
-#include <Eigen/Cholesky>
 #include <boost/math/constants/constants.hpp>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cassert>
 #include <cmath>
 
 #include "framework/evaluation/jackknife.hpp"
+#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 namespace {
@@ -16,16 +16,16 @@ using Eigen::ArrayXd;
 /// Rows as in kJointColumns.
 Eigen::MatrixXd calcTerms(const Eigen::MatrixXd& truth, const Predictions& predictions,
                           const Eigen::MatrixXd& residual_correlation) {
-  const Eigen::LLT<Eigen::MatrixXd> factor(residual_correlation);
-  assert(factor.info() == Eigen::Success);
+  const linalg::Cholesky factor = linalg::calcCholesky(residual_correlation);
+  assert(factor.positive_definite);
   const Eigen::MatrixXd z = (predictions.mean - truth).cwiseQuotient(predictions.stddev);
-  const ArrayXd squared_distance = factor.matrixL().solve(z).colwise().squaredNorm();
+  const ArrayXd squared_distance = linalg::solveLower(factor.lower, z).colwise().squaredNorm();
   const auto parameters = static_cast<double>(truth.rows());
   const boost::math::chi_squared chi_squared(parameters);
   const auto within = [&](double probability) -> Eigen::RowVectorXd {
     return (squared_distance < boost::math::quantile(chi_squared, probability)).cast<double>().transpose();
   };
-  const double log_normalization = factor.matrixLLT().diagonal().array().log().sum() +
+  const double log_normalization = factor.lower.diagonal().array().log().sum() +
                                    0.5 * parameters * std::log(boost::math::constants::two_pi<double>());
   Eigen::MatrixXd terms(kJointColumns.size(), truth.cols());
   terms.row(0) = within(0.95);

@@ -1,8 +1,9 @@
 #include "framework/features/feature_noise.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <stdexcept>
+
+#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 namespace {
@@ -72,7 +73,8 @@ MatrixXd FeatureNoise::calcSampledCovariance(const VectorXd& response) const {
   }
   const MatrixXd centered = features.colwise() - features.rowwise().mean().eval();
   const MatrixXd linear = centered(linear_, Eigen::all), others = centered(nonlinear_, Eigen::all);
-  const MatrixXd slopes = (linear * linear.transpose()).ldlt().solve(linear * others.transpose()).transpose();
+  const MatrixXd slopes =
+      linalg::solveSemidefinite(linear * linear.transpose(), linear * others.transpose()).transpose();
   const MatrixXd rest = others - slopes * linear;
   const MatrixXd cross = slopes * linear_covariance_;
 

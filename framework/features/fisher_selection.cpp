@@ -1,10 +1,10 @@
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
 #include "framework/features/selections.hpp"
 #include "framework/spec/parameter_box.hpp"
+#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 namespace {
@@ -33,8 +33,8 @@ class GreedySelection {
     constexpr double kOwnNoise = 1e-10;  // of a feature's variance
     VectorXd gains = VectorXd::Zero(variance_.size());
     for (const Point& point : points_) {
-      const Eigen::LLT<MatrixXd> information(point.information);
-      const MatrixXd solved = information.matrixL().solve(point.sensitivities.transpose());
+      const MatrixXd solved =
+          linalg::solveLower(linalg::calcCholesky(point.information).lower, point.sensitivities.transpose());
       gains.array() += (solved.colwise().squaredNorm().transpose().array() / variance_.array()).log1p();
     }
     const auto own = variance_.array() > kOwnNoise * covariance_.diagonal().array();

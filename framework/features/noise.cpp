@@ -1,12 +1,12 @@
 #include "framework/features/noise.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "framework/features/layout_rows.hpp"
 #include "framework/spec/autocorrelation.hpp"
+#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 namespace {
@@ -82,12 +82,12 @@ void ResponseNoise::correlate(const NoiseCorrelationSpec& spec, const ResponseLa
   const Eigen::Index output = findOutput(layout, spec.name.text);
   for (const GridRows& grid : collectGrids(layout.times, *spec.sample_time)) {
     const Eigen::VectorXd rho = calcAutocorrelation(spec, grid.steps.back() - grid.steps.front());
-    const Eigen::LLT<Eigen::MatrixXd> factor(makeCorrelation(rho, grid.steps));
-    if (factor.info() != Eigen::Success) {
+    linalg::Cholesky factor = linalg::calcCholesky(makeCorrelation(rho, grid.steps));
+    if (!factor.positive_definite) {
       throw std::invalid_argument("the noise of output '" + spec.name.text +
                                   "' is so correlated that its covariance is singular");
     }
-    Block block{{}, factor.matrixL()};
+    Block block{{}, std::move(factor.lower)};
     for (const Eigen::Index time : grid.times) {
       block.rows.push_back(layout.getRow(output, time));
     }

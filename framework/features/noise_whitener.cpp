@@ -1,8 +1,8 @@
 #include "framework/features/noise_whitener.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <stdexcept>
+
+#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 
@@ -23,16 +23,16 @@ NoiseWhitener::NoiseWhitener(const MatrixXd& covariance) {
   }
   constexpr double kSmallest = 1e-12;
   const MatrixXd correlation = scale.asDiagonal() * covariance * scale.asDiagonal();
-  const Eigen::LLT<MatrixXd> factor(correlation);
-  if (factor.info() == Eigen::Success && factor.rcond() > kSmallest) {
-    matrix_ = factor.matrixL().solve(MatrixXd(scale.asDiagonal()));
+  const linalg::Cholesky factor = linalg::calcCholesky(correlation);
+  if (factor.reciprocal_condition > kSmallest) {
+    matrix_ = linalg::solveLower(factor.lower, scale.asDiagonal());
     return;
   }
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(correlation);
-  const VectorXd& values = eigen.eigenvalues();  // increasing
+  const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(correlation);
+  const VectorXd& values = eigen.values;
   const Index kept = (values.array() > kSmallest * values[values.size() - 1]).count();
   matrix_ = values.tail(kept).cwiseSqrt().cwiseInverse().asDiagonal() *
-            eigen.eigenvectors().rightCols(kept).transpose() * scale.asDiagonal();
+            eigen.vectors.rightCols(kept).transpose() * scale.asDiagonal();
 }
 
 MatrixXd NoiseWhitener::apply(const MatrixXd& differences) const {

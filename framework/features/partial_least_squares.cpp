@@ -1,6 +1,5 @@
 #include "framework/features/partial_least_squares.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -8,6 +7,7 @@
 
 #include "framework/features/principal_components.hpp"
 #include "framework/features/scaling_steps.hpp"
+#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 namespace {
@@ -18,8 +18,7 @@ using Eigen::VectorXd;
 
 /// The direction w (d) with the largest |w' cross|, not normalised: the better, the longer.
 VectorXd calcDominantDirection(const MatrixXd& cross) {
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(cross.transpose() * cross);
-  return cross * eigen.eigenvectors().rightCols(1);
+  return cross * linalg::calcSymmetricEigen(cross.transpose() * cross).vectors.rightCols(1);
 }
 
 MatrixXd subtractMean(const MatrixXd& rows, const VectorXd& mean) {

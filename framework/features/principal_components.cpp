@@ -1,10 +1,11 @@
 #include "framework/features/principal_components.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
+
+#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 namespace {
@@ -41,10 +42,10 @@ PrincipalComponents calcPrincipalComponents(const MatrixXd& centered) {
   const double degrees_of_freedom = static_cast<double>(centered.cols()) - 1.0;
   const MatrixXd products =
       tall ? MatrixXd(centered.transpose() * centered) : MatrixXd(centered * centered.transpose());
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(products / degrees_of_freedom);
+  const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(products / degrees_of_freedom);
   PrincipalComponents components;
-  components.variances = eigen.eigenvalues().reverse().cwiseMax(0.0);
-  components.directions = eigen.eigenvectors().rowwise().reverse();
+  components.variances = eigen.values.reverse().cwiseMax(0.0);
+  components.directions = eigen.vectors.rowwise().reverse();
   if (tall) {
     components.directions = centered * components.directions;
     components.directions.colwise().normalize();

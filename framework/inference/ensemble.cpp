@@ -1,10 +1,10 @@
 #include "framework/inference/ensemble.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "framework/spec/parameter_box.hpp"
+#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 
@@ -24,9 +24,9 @@ MatrixXd clipToBounds(const MatrixXd& points, const std::vector<ParameterSpec>& 
 
 MatrixXd drawNormal(const VectorXd& mean, const VectorXd& stddev, const MatrixXd& correlation, int draws,
                     const RandomStream& random) {
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(correlation);
-  const VectorXd scale = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt();
-  const MatrixXd factor = stddev.asDiagonal() * eigen.eigenvectors() * scale.asDiagonal();
+  const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(correlation);
+  const VectorXd scale = eigen.values.cwiseMax(0.0).cwiseSqrt();
+  const MatrixXd factor = stddev.asDiagonal() * eigen.vectors * scale.asDiagonal();
   const MatrixXd normal = MatrixXd::NullaryExpr(mean.size(), draws, [&](Index p, Index j) {
     return random.calcNormal(static_cast<std::uint64_t>(j), static_cast<std::uint64_t>(p));
   });

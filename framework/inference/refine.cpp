@@ -1,12 +1,12 @@
 #include "framework/inference/refine.hpp"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
 #include "framework/features/noise_whitener.hpp"
 #include "framework/sensitivity/feature_sensitivities.hpp"
 #include "framework/sensitivity/fisher_information.hpp"
 #include "framework/spec/parameter_box.hpp"
+#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 
@@ -60,7 +60,7 @@ class Refiner {
     constexpr double kDamping = 1e-6;
     MatrixXd normal = at.information;
     normal.diagonal().array() += kDamping;
-    return normal.llt().solve(at.descent);
+    return linalg::solvePositiveDefinite(normal, at.descent);
   }
 
   /// The point after a step, within the box; the step is cut to what was taken.

@@ -1,7 +1,8 @@
 #include "framework/inverse_map/linear_map.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
+
+#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 
@@ -18,13 +19,13 @@ LinearMap trainLinearMap(const FeatureTransform& transform, const LabelledFeatur
   const VectorXd input_mean = inputs.rowwise().mean(), mean = samples.parameters.rowwise().mean();
   const MatrixXd centered = (inputs.colwise() - input_mean).transpose();       // n x k
   const MatrixXd targets = (samples.parameters.colwise() - mean).transpose();  // n x p
-  const Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition(centered);
+  const linalg::LinearFit fit = linalg::fitLinear(centered, targets);
   LinearMap map;
   map.transform = transform;
-  map.slopes = decomposition.solve(targets).transpose();
+  map.slopes = fit.coefficients.transpose();
   map.offset = mean - map.slopes * input_mean;
   const MatrixXd residuals = targets - centered * map.slopes.transpose();
-  const auto degrees = static_cast<double>(inputs.cols() - decomposition.rank() - 1);
+  const auto degrees = static_cast<double>(inputs.cols() - fit.rank - 1);
   map.stddev = (residuals.colwise().squaredNorm() / std::max(degrees, 1.0)).cwiseSqrt().transpose();
   return map;
 }

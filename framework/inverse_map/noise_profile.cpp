@@ -1,6 +1,6 @@
 #include "framework/inverse_map/noise_profile.hpp"
 
-#include <Eigen/Eigenvalues>
+#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 
@@ -17,10 +17,10 @@ MatrixXd calcDirections(const MatrixXd& covariance) {
   if (covariance.isDiagonal(kSmallest)) {
     return covariance.diagonal().cwiseSqrt().asDiagonal();
   }
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(covariance);
-  const VectorXd& variances = eigen.eigenvalues();  // increasing
+  const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(covariance);
+  const VectorXd& variances = eigen.values;
   const Index kept = (variances.array() > kSmallest * variances[variances.size() - 1]).count();
-  return eigen.eigenvectors().rightCols(kept) * variances.tail(kept).cwiseSqrt().asDiagonal();
+  return eigen.vectors.rightCols(kept) * variances.tail(kept).cwiseSqrt().asDiagonal();
 }
 
 }  // namespace

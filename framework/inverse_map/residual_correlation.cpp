@@ -1,15 +1,15 @@
 #include "framework/inverse_map/residual_correlation.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
+
+#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 namespace {
 
 Eigen::MatrixXd makePositiveDefinite(const Eigen::MatrixXd& correlation) {
   constexpr double kLeastEigenvalue = 1e-6;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlation, Eigen::EigenvaluesOnly);
-  const double least = eigen.eigenvalues()[0];
+  const double least = linalg::calcSymmetricEigenvalues(correlation)[0];
   const double weight = std::max(0.0, (kLeastEigenvalue - least) / (1.0 - least));
   Eigen::MatrixXd shrunk = (1.0 - weight) * correlation;
   shrunk.diagonal().setOnes();

@@ -1,8 +1,8 @@
-#include <Eigen/QR>
 #include <cmath>
 #include <cstdio>
 
 #include "framework/multibody/initial_state.hpp"
+#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 namespace {
@@ -24,7 +24,7 @@ class EquilibriumSolver {
       if (residual.lpNorm<Eigen::Infinity>() <= kResidualTolerance * largest_) {
         return q;
       }
-      const Eigen::VectorXd step = -calcJacobian(q).completeOrthogonalDecomposition().solve(residual);
+      const Eigen::VectorXd step = -linalg::solveMinimumNorm(calcJacobian(q), residual);
       const double length = moveAlong(step, q, residual);
       const double change = length * (step.array().abs() / (1.0 + q.array().abs())).maxCoeff();
       if (change <= kStepTolerance && length == 1.0 && isSmall(residual)) {

@@ -1,10 +1,10 @@
 #include "framework/multibody/linearization.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "framework/multibody/initial_state.hpp"
+#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 namespace {
@@ -75,7 +75,7 @@ std::vector<Mode> calcModes(const MatrixXd& state_matrix) {
   if (!state_matrix.allFinite()) {
     throw SimulationFailure("the linearisation at the equilibrium is not finite");
   }
-  const Eigen::VectorXcd eigenvalues = state_matrix.eigenvalues();
+  const Eigen::VectorXcd eigenvalues = linalg::calcEigenvalues(state_matrix);
   const double least = kSmallest * eigenvalues.cwiseAbs().maxCoeff();
   std::vector<Mode> modes;
   for (const std::complex<double>& eigenvalue : eigenvalues) {

@@ -1,6 +1,6 @@
 #include "framework/multibody/mass_properties.hpp"
 
-#include <Eigen/Eigenvalues>
+#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 namespace {
@@ -15,7 +15,7 @@ Eigen::Vector3d calcPrincipalMoments(const Vec3& moments, const Vec3& products) 
   tensor << moments[0], products[0], products[1],  //
       products[0], moments[1], products[2],        //
       products[1], products[2], moments[2];
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(tensor, Eigen::EigenvaluesOnly).eigenvalues();
+  return linalg::calcSymmetricEigenvalues(tensor);
 }
 
 void checkInertia(const std::string& owner, const Eigen::Vector3d& principal) {

@@ -1,6 +1,5 @@
 #include "framework/online/forward_model.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,6 +7,7 @@
 
 #include "framework/features/noise_whitener.hpp"
 #include "framework/features/principal_components.hpp"
+#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 
@@ -77,7 +77,7 @@ class Search {
     for (; damping < kMostDamping; damping *= kFactor) {
       MatrixXd damped = workspace_.normal;
       damped.diagonal().array() += damping * damped.diagonal().array() + kFloor;
-      workspace_.step = damped.llt().solve(workspace_.gradient);
+      workspace_.step = linalg::solvePositiveDefinite(damped, workspace_.gradient);
       workspace_.trial = point;
       workspace_.trial.head(unknown_) =
           (point.head(unknown_) + workspace_.step).cwiseMax(-kBeyondBox).cwiseMin(kBeyondBox);

@@ -1,9 +1,9 @@
 #include "framework/sensitivity/fisher_information.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 
 #include "framework/spec/parameter_box.hpp"
+#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 
@@ -22,12 +22,14 @@ MatrixXd calcMarginalInformation(const MatrixXd& information, Eigen::Index count
   MatrixXd of_others = information.bottomRightCorner(others, others);
   of_others.diagonal().array() += kUniformInformation;
   const MatrixXd coupling = information.bottomLeftCorner(others, count);
-  return information.topLeftCorner(count, count) - coupling.transpose() * of_others.llt().solve(coupling);
+  const MatrixXd solved = linalg::solveCholesky(linalg::calcCholesky(of_others).lower, coupling);
+  return information.topLeftCorner(count, count) - coupling.transpose() * solved;
 }
 
 MatrixXd calcLimitCovariance(const MatrixXd& information) {
   const MatrixXd identity = MatrixXd::Identity(information.rows(), information.cols());
-  return (information + kUniformInformation * identity).llt().solve(identity);
+  return linalg::solveCholesky(linalg::calcCholesky(information + kUniformInformation * identity).lower,
+                               identity);
 }
 
 bool asksForInformationLimit(const ExperimentSpec& experiment) {

@@ -1,8 +1,9 @@
 #include "framework/spec/autocorrelation.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+
+#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 
@@ -23,7 +24,7 @@ VectorXd solveYuleWalker(const VectorXd& a) {
       (lag == 0 ? right[k - 1] : system(k - 1, lag - 1)) += lag == 0 ? a[i - 1] : -a[i - 1];
     }
   }
-  return system.partialPivLu().solve(right);
+  return linalg::solveLinear(system, right);
 }
 
 VectorXd calcOfAutoregression(const VectorXd& a, Index lags) {

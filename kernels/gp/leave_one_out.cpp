@@ -1,12 +1,12 @@
 #include "kernels/gp/leave_one_out.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
 #include <string>
 
+#include "kernels/linalg/decompositions.hpp"
 #include "kernels/linalg/triangular.hpp"
 
 namespace twinmap::gp {
@@ -56,9 +56,9 @@ MatrixXd calcPrecisionBlock(const PrecisionParts& parts, const std::vector<Index
 // A group that alone determines a coefficient of the mean has a singular precision: its stddev is huge then,
 // not NaN.
 GroupPrediction predictGroup(const MatrixXd& precision, const VectorXd& alpha) {
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(precision);
-  const VectorXd values = eigen.eigenvalues().cwiseMax(std::numeric_limits<double>::min());
-  const MatrixXd& vectors = eigen.eigenvectors();
+  const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(precision);
+  const VectorXd values = eigen.values.cwiseMax(std::numeric_limits<double>::min());
+  const MatrixXd& vectors = eigen.vectors;
   return {vectors * (vectors.transpose() * alpha).cwiseQuotient(values),
           vectors.cwiseAbs2() * values.cwiseInverse()};
 }

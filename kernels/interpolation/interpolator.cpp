@@ -2,12 +2,12 @@
 
 #include <nlopt.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
 #include <vector>
 
+#include "kernels/linalg/decompositions.hpp"
 #include "kernels/sparse/inducing_points.hpp"
 
 namespace twinmap::gp {
@@ -47,10 +47,11 @@ struct Solution {
 /// Williams eq. 5.12). False if K is not positive definite.
 bool solve(const MatrixXd& points, const MatrixXd& centered, const VectorXd& length_scales,
            Solution& solution) {
-  const Eigen::LLT<MatrixXd> factor(calcCovariance(points, length_scales));
-  if (factor.info() != Eigen::Success) return false;
-  solution.weights = factor.solve(centered.transpose());
-  const MatrixXd inverse_factor = factor.matrixL().solve(MatrixXd::Identity(points.cols(), points.cols()));
+  const linalg::Cholesky factor = linalg::calcCholesky(calcCovariance(points, length_scales));
+  if (!factor.positive_definite) return false;
+  solution.weights = linalg::solveCholesky(factor.lower, centered.transpose());
+  const MatrixXd inverse_factor =
+      linalg::solveLower(factor.lower, MatrixXd::Identity(points.cols(), points.cols()));
   const Eigen::ArrayXd precision = inverse_factor.colwise().squaredNorm();
   solution.left_out_variance =
       (solution.weights.array().colwise() / precision).square().colwise().mean().transpose();

@@ -2,13 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <cmath>
 
 #include "framework/design/random.hpp"
 #include "framework/evaluation/joint_metrics.hpp"
 #include "framework/evaluation/metrics.hpp"
+#include "tests/lu.hpp"
 
 namespace twinmap {
 namespace {
@@ -96,7 +95,7 @@ LinearGaussian makeLinearGaussian() {
     }
   }
   const MatrixXd precision = MatrixXd::Identity(3, 3) + a.transpose() * a / kNoiseVariance;
-  const MatrixXd covariance = precision.llt().solve(MatrixXd::Identity(3, 3));
+  const MatrixXd covariance = test::calcInverse(precision);
   problem.stddev = covariance.diagonal().cwiseSqrt();
   problem.correlation =
       problem.stddev.cwiseInverse().asDiagonal() * covariance * problem.stddev.cwiseInverse().asDiagonal();
@@ -175,7 +174,7 @@ TEST(JointCalibration, NeedsTheCorrelationOfTheExactPosterior) {
   EXPECT_NEAR(honest.coverage50, 0.50, kErrors * honest.se.coverage50);
   // The entropy of a normal distribution: p/2 (1 + log 2 pi) + 1/2 log|C|.
   const double entropy = 1.5 * (1 + std::log(2 * M_PI)) + problem.stddev.array().log().sum() +
-                         0.5 * std::log(problem.correlation.determinant());
+                         0.5 * std::log(test::calcDeterminant(problem.correlation));
   EXPECT_NEAR(honest.nlpd, entropy, kErrors * honest.se.nlpd);
   EXPECT_NEAR(honest.se.nlpd, std::sqrt(0.5 * 3 / kSamples), 1e-4);  // half a chi-square of 3
   const JointMetrics independent = calcJointMetrics(problem.truth, problem.posterior, identity);

@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
 
 #include "tests/framework/support/linear_simulator.hpp"
+#include "tests/lu.hpp"
 
 namespace twinmap::testing {
 namespace {
@@ -33,8 +33,9 @@ TEST(ExactPosterior, OfALinearModelIsTheNormalOne) {
   covariance << 0.04, 0.01, 0, 0.01, 0.09, 0, 0, 0, 0.01;
   VectorXd measured(3);
   measured << 2.0, -0.85, 1.55;
-  const MatrixXd expected = (matrix.transpose() * covariance.inverse() * matrix).inverse();
-  const VectorXd mean = expected * matrix.transpose() * covariance.inverse() * measured;
+  const MatrixXd precision = test::calcInverse(covariance);
+  const MatrixXd expected = test::calcInverse(matrix.transpose() * precision * matrix);
+  const VectorXd mean = expected * matrix.transpose() * precision * measured;
   const auto posterior =
       calcPosteriors(LinearSimulator(matrix), makeParameters(2, -20.0, 20.0), covariance, measured)[0];
   ASSERT_EQ(posterior.warning, "");

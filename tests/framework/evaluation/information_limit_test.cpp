@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <cmath>
 #include <stdexcept>
 
 #include "framework/evaluation/identifiability.hpp"
 #include "tests/framework/support/linear_simulator.hpp"
+#include "tests/lu.hpp"
 
 namespace twinmap::testing {
 namespace {
@@ -41,7 +41,7 @@ TEST(InformationLimit, OfALinearModelIsTheRidgeCovariance) {
   const InformationLimit limit = calcLimit(makeMatrix(), makePoints(2, 5));
   const MatrixXd information = makeMatrix().transpose() * makeMatrix() / (kNoise * kNoise);
   const MatrixXd box = 12.0 / (kWidth * kWidth) * MatrixXd::Identity(2, 2);
-  const VectorXd expected = (information + box).inverse().diagonal().cwiseSqrt();
+  const VectorXd expected = test::calcInverse(information + box).diagonal().cwiseSqrt();
   for (Eigen::Index i = 0; i < 5; ++i) {
     EXPECT_LT((limit.stddev.col(i) - expected).cwiseAbs().maxCoeff(), 1e-8);
   }
@@ -84,7 +84,7 @@ TEST(InformationLimit, OfTheParametersIsTheirBlockOfTheCovarianceOfAllUnknown) {
       calcLocalModels(simulator, extractor, unknown, makePoints(3, 1), 1), noise, {unknown[0], unknown[1]});
   const MatrixXd information = matrix.transpose() * matrix / (kNoise * kNoise);
   const MatrixXd box = 12.0 / (kWidth * kWidth) * MatrixXd::Identity(3, 3);
-  const MatrixXd expected = (information + box).inverse().topLeftCorner(2, 2);
+  const MatrixXd expected = test::calcInverse(information + box).topLeftCorner(2, 2);
   EXPECT_LT((limit.mean_covariance * kWidth * kWidth - expected).norm(), 1e-8);
 }
 

@@ -2,13 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <cmath>
 #include <stdexcept>
 
 #include "framework/design/random.hpp"
 #include "framework/features/feature_transform.hpp"
 #include "framework/features/mutual_information.hpp"
+#include "tests/lu.hpp"
 
 namespace twinmap {
 namespace {
@@ -28,11 +28,11 @@ MatrixXd makeNormal(Index rows, Index columns, std::uint64_t seed) {
 double calcInformation(const std::vector<Index>& selected, const MatrixXd& covariance,
                        const std::vector<MatrixXd>& sensitivities) {
   double sum = 0.0;
-  const MatrixXd inverse = MatrixXd(covariance(selected, selected)).inverse();
+  const MatrixXd inverse = test::calcInverse(covariance(selected, selected));
   for (const MatrixXd& all : sensitivities) {
     const MatrixXd j = all(selected, Eigen::all);
     const MatrixXd box = 12.0 * MatrixXd::Identity(j.cols(), j.cols());
-    sum += std::log((j.transpose() * inverse * j + box).determinant());
+    sum += std::log(test::calcDeterminant(j.transpose() * inverse * j + box));
   }
   return sum;
 }

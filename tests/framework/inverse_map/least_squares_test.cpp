@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <cmath>
 
 #include "framework/inverse_map/linear_map.hpp"
 #include "tests/framework/support/linear_simulator.hpp"
+#include "tests/lu.hpp"
 
 namespace twinmap::testing {
 namespace {
@@ -41,9 +41,9 @@ class LinearFit : public ::testing::Test {
 TEST_F(LinearFit, IsTheWeightedLeastSquaresSolution) {
   VectorXd measured(4);
   measured << -1.6, 3.1, -0.2, -2.5;
-  const MatrixXd weights = makeNoise().inverse();
+  const MatrixXd weights = test::calcInverse(makeNoise());
   const MatrixXd information = makeMatrix().transpose() * weights * makeMatrix();
-  const VectorXd expected = information.inverse() * makeMatrix().transpose() * weights * measured;
+  const VectorXd expected = test::calcInverse(information) * makeMatrix().transpose() * weights * measured;
   const LeastSquaresFit found = fit(measured, Eigen::Vector2d(1.0, 1.0));
   ASSERT_TRUE(found.converged) << found.message;
   EXPECT_LT((found.parameters - expected).norm(), 1e-4);  // a hundredth of the stddev

@@ -2,13 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <limits>
 
 #include "kernels/linalg/condition.hpp"
+#include "kernels/linalg/decompositions.hpp"
 #include "kernels/linalg/packed_lower.hpp"
 #include "tests/kernels/support/random_data.hpp"
+#include "tests/lu.hpp"
 
 namespace twinmap::linalg {
 namespace {
@@ -113,9 +113,9 @@ TEST_P(Triangular, SolvesAgreeWithTheFactor) {
 TEST_P(Triangular, ConditionEstimateLiesWithinAFactorOfTheTruth) {
   const Index n = GetParam();
   const MatrixXd k = positiveDefinite(n);
-  const MatrixXd lower = Eigen::LLT<MatrixXd>(k).matrixL();
+  const MatrixXd lower = calcCholesky(k).lower;
   const double truth =
-      k.cwiseAbs().colwise().sum().maxCoeff() * k.inverse().cwiseAbs().colwise().sum().maxCoeff();
+      k.cwiseAbs().colwise().sum().maxCoeff() * test::calcInverse(k).cwiseAbs().colwise().sum().maxCoeff();
   const double estimate = estimateCondition(viewOf(lower));
   EXPECT_GT(estimate, truth / 3.0);
   EXPECT_LT(estimate, truth * static_cast<double>(n) + 1e-9);

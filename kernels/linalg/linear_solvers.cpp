@@ -1,0 +1,25 @@
+#include <Eigen/LU>
+#include <Eigen/QR>
+
+#include "kernels/linalg/decompositions.hpp"
+
+namespace twinmap::linalg {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using Orthogonal = Eigen::CompleteOrthogonalDecomposition<MatrixXd>;
+
+VectorXd solveLinear(const MatrixXd& a, const VectorXd& b) {
+  return a.partialPivLu().solve(b);
+}
+
+LinearFit fitLinear(const MatrixXd& a, const MatrixXd& b) {
+  const Orthogonal decomposition(a);
+  return {decomposition.solve(b), decomposition.rank()};
+}
+
+VectorXd solveMinimumNorm(const MatrixXd& a, const VectorXd& b) {
+  return Orthogonal(a).solve(b);
+}
+
+}  // namespace twinmap::linalg
