@@ -29,7 +29,9 @@ PrecisionParts calcPrecisionParts(const GaussianProcess& process, int threads) {
   linalg::TriangularScratch scratch(process.getSampleCount(), threads);
   PrecisionParts parts{process.getFactor(), process.getWhitenedBasis()};
   linalg::invertLower(linalg::viewOf(parts.inverse_factor), scratch);
-  if (parts.correction.cols() == 0) return parts;
+  if (parts.correction.cols() == 0) {
+    return parts;
+  }
   linalg::solveTransposedFromRight(linalg::viewOf(process.getBasisFactor()), linalg::viewOf(parts.correction),
                                    scratch);
   for (Index k = 0; k < parts.correction.cols(); ++k) {
@@ -97,7 +99,9 @@ SampleGroups makeDrawGroups(Index samples, int draws) {
   }
   const Index count = samples / draws;
   SampleGroups groups(count);
-  for (Index i = 0; i < samples; ++i) groups[i % count].push_back(i);
+  for (Index i = 0; i < samples; ++i) {
+    groups[i % count].push_back(i);
+  }
   return groups;
 }
 

@@ -35,7 +35,9 @@ void runTasks(const TrainingSet& set, const TrainingOptions& options, const std:
   const int team = getTeamSize(set, options.threads);
   if (team > 1) {
     LikelihoodWorkspace workspace(set, team);
-    for (const Task& task : tasks) runTask(set, options, task, workspace);
+    for (const Task& task : tasks) {
+      runTask(set, options, task, workspace);
+    }
     return;
   }
   const int count = static_cast<int>(tasks.size());
@@ -44,7 +46,9 @@ void runTasks(const TrainingSet& set, const TrainingOptions& options, const std:
   {
     LikelihoodWorkspace workspace(set);
 #pragma omp for schedule(dynamic, 1)
-    for (int i = 0; i < count; ++i) runTask(set, options, tasks[i], workspace);
+    for (int i = 0; i < count; ++i) {
+      runTask(set, options, tasks[i], workspace);
+    }
   }
 }
 
@@ -78,7 +82,9 @@ void chooseStarts(const TrainingSet& set, const TrainingOptions& options, int st
   for (TargetSearches& target : targets) {
     target.starts.clear();
     target.results.clear();
-    if (target.constant) continue;
+    if (target.constant) {
+      continue;
+    }
     target.box = makeSearchBox(set, scales, target.stddev, options);
     target.starts = makeStarts(set, scales, target.stddev, options, starts);
   }
@@ -107,7 +113,9 @@ void addWarmStarts(const TrainingSet& set, const TrainingOptions& options,
   chooseStarts(shared_set, options, std::min(options.starts, kMostShared), shared_targets);
   searchStarts(shared_set, options, shared_targets);
   for (std::size_t t = 0; t < targets.size(); ++t) {
-    if (targets[t].constant) continue;
+    if (targets[t].constant) {
+      continue;
+    }
     for (const SearchResult& result : shared_targets[t].results) {
       targets[t].warm_start_evaluations += result.evaluations;
     }
@@ -125,12 +133,16 @@ std::vector<TargetSearches> searchAllStarts(const TrainingSet& set, const Eigen:
   chooseStarts(set, options, options.starts, all);
   if (!options.warm_starts.empty()) {
     for (std::size_t t = 0; t < all.size(); ++t) {
-      if (!all[t].constant) all[t].starts = {toLog(set.getStructure(), options.warm_starts[t])};
+      if (!all[t].constant) {
+        all[t].starts = {toLog(set.getStructure(), options.warm_starts[t])};
+      }
     }
     runTasks(set, options, makeTasks(all, 0, 1));
     return all;
   }
-  if (getGroupCount(set.getStructure()) > 1) addWarmStarts(set, options, all);
+  if (getGroupCount(set.getStructure()) > 1) {
+    addWarmStarts(set, options, all);
+  }
   searchStarts(set, options, all);
   return all;
 }

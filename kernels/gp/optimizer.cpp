@@ -40,14 +40,18 @@ double addPrior(const SearchBox& box, const Eigen::VectorXd& point, double nlml,
 }
 
 void keepBest(Search& search, const Eigen::VectorXd& point, double nlml, double objective) {
-  if (!(objective < search.result.objective)) return;
+  if (!(objective < search.result.objective)) {
+    return;
+  }
   search.result.end = point;
   search.result.nlml = nlml;
   search.result.objective = objective;
 }
 
 bool hasJoined(const Search& search, const Eigen::VectorXd& point, double objective) {
-  if (search.known == nullptr) return false;
+  if (search.known == nullptr) {
+    return false;
+  }
   const double above = objective - search.known->objective;
   const bool near = (point - search.known->end).cwiseAbs().maxCoeff() < kJoinedDistance;
   return std::abs(above) < kEqualNats || (near && above < kJoinedNats);
@@ -57,7 +61,9 @@ double calcObjective(Search& search, const Eigen::VectorXd& point) {
   const LikelihoodEvaluation evaluation = search.objective(point, search.gradient);
   ++search.result.evaluations;
   search.result.largest_jitter = std::max(search.result.largest_jitter, evaluation.jitter);
-  if (!evaluation.ok) return kRejected;
+  if (!evaluation.ok) {
+    return kRejected;
+  }
   const double objective = addPrior(search.box, point, evaluation.nlml, search.gradient);
   keepBest(search, point, evaluation.nlml, objective);
   return objective;
@@ -71,8 +77,12 @@ double evaluate(unsigned count, const double* values, double* gradient, void* da
     search.last_point = point;
   }
   const double objective = search.last_objective;
-  if (hasJoined(search, point, objective)) nlopt_force_stop(search.optimizer);
-  if (gradient) Eigen::Map<Eigen::VectorXd>(gradient, count) = search.scale * search.gradient;
+  if (hasJoined(search, point, objective)) {
+    nlopt_force_stop(search.optimizer);
+  }
+  if (gradient) {
+    Eigen::Map<Eigen::VectorXd>(gradient, count) = search.scale * search.gradient;
+  }
   return search.scale * objective;
 }
 

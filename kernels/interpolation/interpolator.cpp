@@ -24,7 +24,9 @@ constexpr double kShortest = 0.2, kLongest = 50.0;  // length scales, of variabl
 constexpr double kNugget = 1e-10;                   // keeps K positive definite; far below any noise
 
 void require(bool condition, const char* message) {
-  if (!condition) throw std::invalid_argument(std::string("Interpolator: ") + message);
+  if (!condition) {
+    throw std::invalid_argument(std::string("Interpolator: ") + message);
+  }
 }
 
 MatrixXd calcCovariance(const MatrixXd& points, const VectorXd& length_scales) {
@@ -48,7 +50,9 @@ struct Solution {
 bool solve(const MatrixXd& points, const MatrixXd& centered, const VectorXd& length_scales,
            Solution& solution) {
   const Eigen::LLT<MatrixXd> factor(calcCovariance(points, length_scales));
-  if (factor.info() != Eigen::Success) return false;
+  if (factor.info() != Eigen::Success) {
+    return false;
+  }
   solution.weights = factor.solve(centered.transpose());
   const MatrixXd inverse_factor = factor.matrixL().solve(MatrixXd::Identity(points.cols(), points.cols()));
   const Eigen::ArrayXd precision = inverse_factor.colwise().squaredNorm();
@@ -67,7 +71,9 @@ double evaluateLengthScales(unsigned count, const double* logs, double*, void* d
   constexpr double kRejected = 1e6;
   Search& search = *static_cast<Search*>(data);
   const VectorXd length_scales = Eigen::Map<const Eigen::ArrayXd>(logs, count).exp();
-  if (!solve(search.points, search.centered, length_scales, search.solution)) return kRejected;
+  if (!solve(search.points, search.centered, length_scales, search.solution)) {
+    return kRejected;
+  }
   return search.solution.left_out_variance.array().log1p().sum();
 }
 
@@ -111,7 +117,9 @@ void Interpolator::evaluate(const Eigen::Ref<const VectorXd>& point, Workspace& 
     scaled.col(v).array() -= point(v) / parts_.length_scales(v);
   }
   workspace.covariance = scaled.col(0).array().square();
-  for (Index v = 1; v < getVariableCount(); ++v) workspace.covariance += scaled.col(v).array().square();
+  for (Index v = 1; v < getVariableCount(); ++v) {
+    workspace.covariance += scaled.col(v).array().square();
+  }
   workspace.covariance = (-0.5 * workspace.covariance).exp();
   workspace.values = parts_.mean;
   workspace.values.noalias() += weights_of_function_.transpose() * workspace.covariance.matrix();

@@ -59,7 +59,9 @@ TEST_P(LeaveOneOutOf, EveryGroupEqualsAFitWithoutIt) {
   const LeaveOneOut result = calcLeaveGroupsOut(*process, makeDrawGroups(n, draws));
   for (int j = 0; j < simulations; ++j) {
     std::vector<Eigen::Index> kept, left;
-    for (int i = 0; i < n; ++i) (i % simulations == j ? left : kept).push_back(i);
+    for (int i = 0; i < n; ++i) {
+      (i % simulations == j ? left : kept).push_back(i);
+    }
     const Prediction prediction = fit(inputs(Eigen::all, kept), target(kept), structure, hyperparameters)
                                       ->predict(inputs(Eigen::all, left));
     EXPECT_LT((result.residual(left) - (target(left) - prediction.mean)).cwiseAbs().maxCoeff(), 1e-10);
