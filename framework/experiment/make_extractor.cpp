@@ -1,6 +1,6 @@
 #include "framework/experiment/make_extractor.hpp"
 
-#include "framework/multibody/input_signals.hpp"
+#include "framework/multibody/calc_input_signals.hpp"
 #include "framework/spec/expression/output_units.hpp"
 
 namespace twinmap {

@@ -123,8 +123,8 @@ GpMap trainMap(const ExperimentSpec& experiment, const LabelledFeatures& trainin
                                   training.replicates);
   run.training = summarizeTraining(parameter_names, trained.reports);
   run.hyperparameters = listHyperparameters(parameter_names, trained.reports);
-  for (const Process& process : trained.map.processes) {
-    run.nlml.push_back(getNlml(process));
+  for (const gp::Process& process : trained.map.processes) {
+    run.nlml.push_back(gp::getNlml(process));
   }
   return trained.map;
 }

@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "framework/inverse_map/kernel_options.hpp"
-#include "framework/inverse_map/leave_one_out.hpp"
+#include "framework/inverse_map/predict_left_out.hpp"
 #include "framework/inverse_map/residual_correlation.hpp"
 #include "kernels/gp/fit.hpp"
 #include "kernels/gp/training_set.hpp"
@@ -57,13 +57,13 @@ std::vector<gp::Hyperparameters> findHyperparameters(const Eigen::MatrixXd& inpu
 using ExactProcess = std::shared_ptr<const gp::GaussianProcess>;
 using SparseProcess = std::shared_ptr<const gp::SparseGaussianProcess>;
 
-Process refit(const ExactProcess& trained, const Eigen::MatrixXd& inputs, const Eigen::VectorXd& target,
-              const gp::ModelStructure& structure, int threads) {
+gp::Process refit(const ExactProcess& trained, const Eigen::MatrixXd& inputs, const Eigen::VectorXd& target,
+                  const gp::ModelStructure& structure, int threads) {
   return gp::fit(inputs, target, structure, trained->getHyperparameters(), threads);
 }
 
-Process refit(const SparseProcess& trained, const Eigen::MatrixXd& inputs, const Eigen::VectorXd& target,
-              const gp::ModelStructure& structure, int /*threads*/) {
+gp::Process refit(const SparseProcess& trained, const Eigen::MatrixXd& inputs, const Eigen::VectorXd& target,
+                  const gp::ModelStructure& structure, int /*threads*/) {
   gp::SparseGaussianProcessParts parts{
       structure, trained->getHyperparameters(), gp::calcCenter(inputs), trained->getParts().inducing, {}};
   const gp::VariationalBound bound(inputs, target, parts.inducing, structure);

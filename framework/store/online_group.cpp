@@ -15,7 +15,7 @@ std::string getMapGroup(const std::string& parameter) {
   return "/online/maps/" + parameter;
 }
 
-bool isSparse(const Process& process) {
+bool isSparse(const gp::Process& process) {
   return std::holds_alternative<std::shared_ptr<const gp::SparseGaussianProcess>>(process);
 }
 

@@ -139,7 +139,7 @@ TEST(GpMap, IsFittedToAllDrawsAlsoWhereTheSearchUsesFewer) {
   GpMapSpec spec;
   spec.max_evaluations = 3;
   const GpMapTraining training = trainOn(problem, spec, 2);
-  for (const Process& process : training.map.processes) {
+  for (const gp::Process& process : training.map.processes) {
     EXPECT_EQ(std::get<std::shared_ptr<const gp::GaussianProcess>>(process)->getSampleCount(),
               kSamples * kReplicates);
   }
@@ -197,7 +197,7 @@ TEST(GpMap, IsTheSameBitForBitWhenRefittedAtItsHyperparameters) {
     const Eigen::MatrixXd features = makeProblem(50, 2).features;
     EXPECT_EQ(again.map.predict(features).mean, trained.map.predict(features).mean);
     EXPECT_EQ(again.map.predict(features).stddev, trained.map.predict(features).stddev);
-    EXPECT_EQ(getNlml(again.map.processes[0]), getNlml(trained.map.processes[0]));
+    EXPECT_EQ(gp::getNlml(again.map.processes[0]), gp::getNlml(trained.map.processes[0]));
   }
 }
 

@@ -1,4 +1,4 @@
-#include "framework/inverse_map/leave_one_out.hpp"
+#include "framework/inverse_map/predict_left_out.hpp"
 
 #include "kernels/gp/leave_one_out.hpp"
 #include "kernels/sparse/sparse_leave_one_out.hpp"
@@ -7,7 +7,7 @@ namespace twinmap {
 namespace {
 
 /// Of one process, in the standardised parameter.
-gp::LeaveOneOut calcLeftOut(const Process& process, const Eigen::MatrixXd& inputs,
+gp::LeaveOneOut calcLeftOut(const gp::Process& process, const Eigen::MatrixXd& inputs,
                             const Eigen::VectorXd& target, const gp::SampleGroups& groups, int threads) {
   if (const auto* exact = std::get_if<std::shared_ptr<const gp::GaussianProcess>>(&process)) {
     return gp::calcLeaveGroupsOut(**exact, groups, threads);
@@ -29,7 +29,7 @@ Predictions predictLeftOut(const GpMap& map, const Eigen::MatrixXd& inputs, cons
     predictions.mean.row(p) = map.target_offset[p] + map.target_scale[p] * mean.array();
     // The stddev left out holds the likelihood's noise, which the profile redistributes. Without the noise
     // little more than rounding may be left, of either sign.
-    const double noise = getNoiseVariance(map.processes[p]);
+    const double noise = gp::getNoiseVariance(map.processes[p]);
     const Eigen::ArrayXd latent = (left_out.stddev.array().square() - noise).max(0.0);
     const Eigen::ArrayXd factors = map.noise.calcFactors(map.processes[p], p, inputs);
     predictions.stddev.row(p) = map.target_scale[p] * (latent + noise * factors).sqrt().transpose();
