@@ -27,10 +27,9 @@ Predictions predictLeftOut(const GpMap& map, const Eigen::MatrixXd& inputs, cons
         calcLeftOut(map.processes[p], inputs, targets.row(p).transpose(), groups, threads);
     const Eigen::RowVectorXd mean = targets.row(p) - left_out.residual.transpose();
     predictions.mean.row(p) = map.target_offset[p] + map.target_scale[p] * mean.array();
-    // The stddev left out holds the likelihood's noise, which the profile redistributes. Without the noise
-    // little more than rounding may be left, of either sign.
+    // The stddev left out holds the likelihood's noise, which the profile redistributes.
     const double noise = gp::getNoiseVariance(map.processes[p]);
-    const Eigen::ArrayXd latent = (left_out.stddev.array().square() - noise).max(0.0);
+    const Eigen::ArrayXd latent = left_out.stddev.array().square() - noise;
     const Eigen::ArrayXd factors = map.noise.calcFactors(map.processes[p], p, inputs);
     predictions.stddev.row(p) = map.target_scale[p] * (latent + noise * factors).sqrt().transpose();
   }

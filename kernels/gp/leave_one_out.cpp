@@ -56,13 +56,14 @@ MatrixXd calcPrecisionBlock(const PrecisionParts& parts, const std::vector<Index
 }  // namespace
 
 // A group that alone determines a coefficient of the mean has a singular precision: its stddev is huge then,
-// not NaN.
-GroupPrediction predictGroup(const MatrixXd& precision, const VectorXd& alpha) {
+// not NaN. Noise far below the signal drowns in the rounding of the precision, and a variance below that of
+// the noise would leave a negative one for the function without it.
+GroupPrediction predictGroup(const MatrixXd& precision, const VectorXd& alpha, double noise_variance) {
   const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(precision);
   const VectorXd values = eigen.eigenvalues().cwiseMax(std::numeric_limits<double>::min());
   const MatrixXd& vectors = eigen.eigenvectors();
   return {vectors * (vectors.transpose() * alpha).cwiseQuotient(values),
-          vectors.cwiseAbs2() * values.cwiseInverse()};
+          (vectors.cwiseAbs2() * values.cwiseInverse()).cwiseMax(noise_variance)};
 }
 
 LeaveOneOut summarizeLeaveOneOut(const VectorXd& residual, const VectorXd& stddev) {
@@ -109,10 +110,11 @@ LeaveOneOut calcLeaveGroupsOut(const GaussianProcess& process, const SampleGroup
   const Index n = process.getSampleCount();
   checkGroups(groups, n);
   const PrecisionParts parts = calcPrecisionParts(process, threads);
+  const double noise_stddev = process.getHyperparameters().noise_stddev;
   VectorXd residual(n), stddev(n);
   for (const std::vector<Index>& group : groups) {
-    const GroupPrediction left_out =
-        predictGroup(calcPrecisionBlock(parts, group), process.getAlpha()(group));
+    const GroupPrediction left_out = predictGroup(calcPrecisionBlock(parts, group), process.getAlpha()(group),
+                                                  noise_stddev * noise_stddev);
     residual(group) = left_out.residual;
     stddev(group) = left_out.variance.cwiseSqrt();
   }

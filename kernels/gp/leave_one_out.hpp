@@ -11,7 +11,7 @@ namespace twinmap::gp {
 /// mean's coefficients fitted anew).
 struct LeaveOneOut {
   Eigen::VectorXd residual;     ///< y_i minus its prediction, target units
-  Eigen::VectorXd stddev;       ///< of that prediction, noise included
+  Eigen::VectorXd stddev;       ///< of that prediction, noise included and never below it
   Eigen::VectorXd log_density;  ///< of y_i under it, nats
   double total_log_density = 0.0;
   double coverage95 = 0.0;  ///< fraction of |residual| <= 1.96 stddev
@@ -35,13 +35,16 @@ LeaveOneOut calcLeaveGroupsOut(const GaussianProcess& process, const SampleGroup
 /// Every sample by itself.
 LeaveOneOut calcLeaveOneOut(const GaussianProcess& process);
 
-/// A group's residual and variance without itself, from its block of the precision matrix and its part of
-/// alpha.
+/// A group of samples without itself: y minus the prediction, and the variance of that prediction.
 struct GroupPrediction {
   Eigen::VectorXd residual;
-  Eigen::VectorXd variance;
+  Eigen::VectorXd variance;  ///< noise included
 };
-GroupPrediction predictGroup(const Eigen::MatrixXd& precision, const Eigen::VectorXd& alpha);
+
+/// The prediction of a group from its block of the precision matrix and its part of alpha. The variance is at
+/// least `noise_variance`, whatever rounding leaves of it.
+GroupPrediction predictGroup(const Eigen::MatrixXd& precision, const Eigen::VectorXd& alpha,
+                             double noise_variance);
 
 /// Everything that follows from residuals and standard deviations.
 LeaveOneOut summarizeLeaveOneOut(const Eigen::VectorXd& residual, const Eigen::VectorXd& stddev);
