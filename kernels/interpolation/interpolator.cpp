@@ -101,13 +101,12 @@ VectorXd findLengthScales(const MatrixXd& points, const MatrixXd& centered) {
 Interpolator::Interpolator(InterpolatorParts parts) : parts_(std::move(parts)) {
   const Index n = parts_.points.cols(), r = parts_.mean.size();
   require(n > 0 && parts_.length_scales.size() == parts_.points.rows(), "a length scale per variable");
-  require(parts_.weights.rows() == r && parts_.weights.cols() == n && parts_.left_out_variance.size() == r,
-          "weights must be functions x points");
+  require(parts_.weights.rows() == n && parts_.weights.cols() == r && parts_.left_out_variance.size() == r,
+          "weights must be points x functions");
   require(parts_.points.allFinite() && parts_.weights.allFinite() && parts_.mean.allFinite() &&
               parts_.left_out_variance.allFinite() && (parts_.length_scales.array() > 0.0).all(),
           "every number must be finite, length scales positive");
   scaled_points_ = parts_.points.transpose() * parts_.length_scales.cwiseInverse().asDiagonal();
-  weights_of_function_ = parts_.weights.transpose();
 }
 
 void Interpolator::evaluate(const Eigen::Ref<const VectorXd>& point, Workspace& workspace) const {
@@ -122,12 +121,12 @@ void Interpolator::evaluate(const Eigen::Ref<const VectorXd>& point, Workspace& 
   }
   workspace.covariance = (-0.5 * workspace.covariance).exp();
   workspace.values = parts_.mean;
-  workspace.values.noalias() += weights_of_function_.transpose() * workspace.covariance.matrix();
+  workspace.values.noalias() += parts_.weights.transpose() * workspace.covariance.matrix();
   for (Index v = 0; v < getVariableCount(); ++v) {
     scaled.col(v).array() *= workspace.covariance / parts_.length_scales(v);
   }
   // Few columns: dot products beat a blocked product, which would copy the weights first.
-  workspace.jacobian.noalias() = weights_of_function_.transpose().lazyProduct(scaled);
+  workspace.jacobian.noalias() = parts_.weights.transpose().lazyProduct(scaled);
 }
 
 Interpolator fitInterpolator(const MatrixXd& points, const MatrixXd& values) {
@@ -142,7 +141,7 @@ Interpolator fitInterpolator(const MatrixXd& points, const MatrixXd& values) {
   parts.length_scales = findLengthScales(points(Eigen::all, searched), centered(Eigen::all, searched));
   Solution solution;
   require(solve(points, centered, parts.length_scales, solution), "the covariance is not positive definite");
-  parts.weights = solution.weights.transpose();
+  parts.weights = solution.weights;
   parts.left_out_variance = solution.left_out_variance;
   return Interpolator(std::move(parts));
 }
