@@ -116,7 +116,7 @@ GpMap trainMap(const ExperimentSpec& experiment, const LabelledFeatures& trainin
   const std::vector<std::string> parameter_names = collectNames(experiment.model.parameters);
   const GpMapTraining trained = timeStage("train the inverse map", run.times, [&] {
     return trainGpMap(experiment.inverse_map.gp, experiment.transform, parameter_names, training,
-                      options.threads, experiment.model.inputs);
+                      {options.threads}, experiment.model.inputs);
   });
   run.warnings = trained.warnings;
   run.leave_one_out = calcMetrics(experiment.model.parameters, training.parameters, trained.leave_one_out, {},

@@ -19,12 +19,13 @@ gp::LeaveOneOut calcLeftOut(const gp::Process& process, const Eigen::MatrixXd& i
 }  // namespace
 
 Predictions predictLeftOut(const GpMap& map, const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
-                           int replicates, int threads) {
+                           int replicates, const TrainingControl& control) {
   const gp::SampleGroups groups = gp::makeDrawGroups(inputs.cols(), replicates);
   Predictions predictions{targets, targets};
   for (Eigen::Index p = 0; p < targets.rows(); ++p) {
+    gp::throwIfStopped(control.stop);
     const gp::LeaveOneOut left_out =
-        calcLeftOut(map.processes[p], inputs, targets.row(p).transpose(), groups, threads);
+        calcLeftOut(map.processes[p], inputs, targets.row(p).transpose(), groups, control.threads);
     const Eigen::RowVectorXd mean = targets.row(p) - left_out.residual.transpose();
     predictions.mean.row(p) = map.target_offset[p] + map.target_scale[p] * mean.array();
     // The stddev left out holds the likelihood's noise, which the profile redistributes.

@@ -25,8 +25,22 @@ void runTask(const TrainingSet& set, const TrainingOptions& options, const Task&
              LikelihoodWorkspace& workspace) {
   TargetSearches& target = *task.target;
   const SearchResult* known = task.start > 0 ? &target.results[0] : nullptr;
-  target.results[task.start] = search(set, target.values, target.starts[task.start], target.box,
-                                      options.max_evaluations, options.tolerance, workspace, known);
+  target.results[task.start] =
+      search(set, target.values, target.starts[task.start], target.box,
+             {options.max_evaluations, options.tolerance, known, options.stop}, workspace);
+}
+
+void runSideBySide(const TrainingSet& set, const TrainingOptions& options, const std::vector<Task>& tasks) {
+  const int count = static_cast<int>(tasks.size());
+  const int threads = std::max(1, std::min(options.threads, count));
+#pragma omp parallel num_threads(threads)
+  {
+    LikelihoodWorkspace workspace(set);
+#pragma omp for schedule(dynamic, 1)
+    for (int i = 0; i < count; ++i) {
+      runTask(set, options, tasks[i], workspace);
+    }
+  }
 }
 
 // Side by side, each by one thread, or for large matrices one after another, each by all threads (one
@@ -38,18 +52,10 @@ void runTasks(const TrainingSet& set, const TrainingOptions& options, const std:
     for (const Task& task : tasks) {
       runTask(set, options, task, workspace);
     }
-    return;
+  } else {
+    runSideBySide(set, options, tasks);
   }
-  const int count = static_cast<int>(tasks.size());
-  const int threads = std::max(1, std::min(options.threads, count));
-#pragma omp parallel num_threads(threads)
-  {
-    LikelihoodWorkspace workspace(set);
-#pragma omp for schedule(dynamic, 1)
-    for (int i = 0; i < count; ++i) {
-      runTask(set, options, tasks[i], workspace);
-    }
-  }
+  throwIfStopped(options.stop);
 }
 
 std::vector<Task> makeTasks(std::vector<TargetSearches>& targets, std::size_t first, std::size_t last) {

@@ -218,6 +218,7 @@ std::vector<TrainingResult> train(const Eigen::Ref<const Eigen::MatrixXd>& input
   LikelihoodWorkspace workspace(set, getTeamSize(set, options.threads));
   std::vector<TrainingResult> results;
   for (const TargetSearches& target : searches) {
+    throwIfStopped(options.stop);
     results.push_back(finish(set, target, workspace));
   }
   return results;

@@ -52,8 +52,8 @@ Hyperparameters refine(const VariationalBound& bound, const MatrixXd& subset, co
   const Objective objective = [&](const VectorXd& point, VectorXd& gradient) {
     return bound.evaluate(fromLog(structure, point), gradient);
   };
-  const SearchResult found =
-      minimize(objective, target.size(), toLog(structure, start), box, evaluations, options.tolerance);
+  const SearchResult found = minimize(objective, target.size(), toLog(structure, start), box,
+                                      {evaluations, options.tolerance, nullptr, options.stop});
   result.refine_evaluations += found.evaluations;
   return std::isfinite(found.objective) ? fromLog(structure, found.end) : start;
 }
@@ -63,7 +63,7 @@ void fitSparse(const MatrixXd& inputs, const VectorXd& target, const MatrixXd& s
                const Hyperparameters& start, SparseTrainingResult& result) {
   SparseGaussianProcessParts parts{structure, start, calcCenter(inputs), {}, {}};
   bool definite = true;
-  for (int round = 0; round < kRounds && definite; ++round) {
+  for (int round = 0; round < kRounds && definite && !isStopRequested(options.stop); ++round) {
     parts.inducing = chooseInducingPoints(inputs, structure, parts.hyperparameters, sparse.inducing);
     const VariationalBound bound(inputs, target, parts.inducing, structure);
     if (round == 0 && bound.calcPosterior(start, parts.posterior)) {
@@ -75,6 +75,9 @@ void fitSparse(const MatrixXd& inputs, const VectorXd& target, const MatrixXd& s
           refine(bound, subset, target, structure, options, evaluations, parts.hyperparameters, result);
     }
     definite = bound.calcPosterior(parts.hyperparameters, parts.posterior);
+  }
+  if (isStopRequested(options.stop)) {
+    return;
   }
   if (!definite) {
     result.status = TrainingStatus::kFailed;
@@ -115,6 +118,7 @@ std::vector<SparseTrainingResult> trainSparse(const Eigen::Ref<const MatrixXd>& 
     const VectorXd target = targets.row(t).transpose();
     fitSparse(all, target, subset, structure, options, sparse, exact[t].gp->getHyperparameters(), results[t]);
   }
+  throwIfStopped(options.stop);
   return results;
 }
 
