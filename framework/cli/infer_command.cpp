@@ -90,6 +90,7 @@ class InferCommand {
 
   InferredMeasurement infer(const Table& table, const std::string& source,
                             const std::optional<double>& start) {
+    inferrer_.requireExcitation(table, start);
     const Eigen::VectorXd features = inferrer_.extractFeatures(inferrer_.readResponse(table, start), source);
     InferredMeasurement inferred = inferrer_.infer(features, known_, workspace_);
     inferred.source = source;
