@@ -6,7 +6,7 @@
 namespace twinmap {
 namespace {
 
-/// Of one process, in the standardised parameter.
+/// The samples left out of one process, in the standardised parameter.
 gp::LeaveOneOut calcLeftOut(const gp::Process& process, const Eigen::MatrixXd& inputs,
                             const Eigen::VectorXd& target, const gp::SampleGroups& groups, int threads) {
   if (const auto* exact = std::get_if<std::shared_ptr<const gp::GaussianProcess>>(&process)) {

@@ -12,7 +12,9 @@ using linalg::padded;
 
 namespace {
 
-constexpr Index kPanel = 128;  // columns of the triangular operand taken at a time
+// Columns of the triangular operand taken at a time: few enough to multiply few of its zeros, many enough for
+// the products to run at full speed.
+constexpr Index kPanel = 128;
 
 }  // namespace
 

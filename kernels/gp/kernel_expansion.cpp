@@ -14,7 +14,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr Index kBlock = 256;  // inputs taken together
+constexpr Index kBlock = 256;  // inputs taken together: memory for 256 n covariances instead of m n
 
 }  // namespace
 

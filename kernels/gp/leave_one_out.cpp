@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kNormalQuantile975 = 1.959963984540054;
+constexpr double kNormalQuantile975 = 1.959963984540054;  // 95 % lie within it on both sides
 
 // Square roots of both parts of P = M'M - U U': M = L^-1, and U = L^-T V R^-T.
 struct PrecisionParts {

@@ -25,14 +25,14 @@ using SampleGroups = std::vector<std::vector<Eigen::Index>>;
 /// Column j + i n / draws in group j.
 SampleGroups makeDrawGroups(Eigen::Index samples, int draws);
 
-/// In closed form from one factor (Rasmussen and Williams eqs. 5.10 to 5.12, with the mean integrated out).
-/// For a group g, with P_gg its block of the precision matrix P,
+/// Every group left out, in closed form from one factor (Rasmussen and Williams eqs. 5.10 to 5.12, with the
+/// mean integrated out). For a group g, with P_gg its block of the precision matrix P,
 ///   residual_g = P_gg^-1 alpha_g,   covariance_g = P_gg^-1,   P = K^-1 - K^-1 H' A^-1 H K^-1;
 /// of the covariance the diagonal is kept: each sample's own prediction. Jitter counts as noise. Cost:
 /// n^3 / 3 flops, shared by `threads` threads; the result does not depend on their number.
 LeaveOneOut calcLeaveGroupsOut(const GaussianProcess& process, const SampleGroups& groups, int threads = 1);
 
-/// Every sample by itself.
+/// Every sample left out by itself.
 LeaveOneOut calcLeaveOneOut(const GaussianProcess& process);
 
 /// A group of samples without itself: y minus the prediction, and the variance of that prediction.

@@ -17,6 +17,8 @@ namespace {
 
 constexpr double kFirstJitter = 1e-14;  // relative to the diagonal: below rounding, cannot change a result
 constexpr double kLastJitter = 1e-6;    // beyond it the model itself would be another one
+// Columns of a triangle, unequally long, that a thread takes at a time: enough to pay for the taking.
+constexpr Index kColumnChunk = 16;
 
 linalg::View factorView(LikelihoodWorkspace& workspace) {
   return {workspace.factor.data(), workspace.factor.cols(), workspace.factor.cols(), workspace.factor.rows()};
@@ -61,7 +63,7 @@ void calcCovariance(const TrainingSet& set, const Hyperparameters& hyperparamete
                     LikelihoodWorkspace& workspace) {
   set.distances().calc(hyperparameters.length_scales, factorView(workspace), workspace.distances,
                        workspace.scratch);
-  linalg::parallelFor(workspace.scratch.threads(), set.size(), 16, [&](Index j, int thread) {
+  linalg::parallelFor(workspace.scratch.threads(), set.size(), kColumnChunk, [&](Index j, int thread) {
     calcCovarianceColumn(set, hyperparameters, diagonal, j, thread, workspace);
   });
 }
@@ -86,7 +88,8 @@ bool factorize(const TrainingSet& set, const Hyperparameters& hyperparameters, L
   if (!std::isfinite(scale)) {
     return false;
   }
-  for (double relative = 0.0; relative <= kLastJitter * 1.01;
+  constexpr double kRounding = 1.01;  // of ten multiplications
+  for (double relative = 0.0; relative <= kLastJitter * kRounding;
        relative = relative == 0.0 ? kFirstJitter : 10.0 * relative) {
     jitter = relative * scale;
     calcCovariance(set, hyperparameters, noise_variance + jitter, workspace);
@@ -171,7 +174,7 @@ double halfTraceWith(LikelihoodWorkspace& workspace, const Eigen::MatrixXd& matr
 void multiplyWeights(LikelihoodWorkspace& workspace) {
   const linalg::View factor = factorView(workspace);
   const linalg::View weights = weightsView(workspace);
-  linalg::parallelFor(workspace.scratch.threads(), factor.cols, 16, [&](Index j, int) {
+  linalg::parallelFor(workspace.scratch.threads(), factor.cols, kColumnChunk, [&](Index j, int) {
     lowerColumn(weights, j) *= lowerColumn(factor, j);
     clearOutsideStrictLower(weights, j);
   });
@@ -206,7 +209,7 @@ void calcGradient(const TrainingSet& set, const Eigen::VectorXd& target,
 }  // namespace
 
 int getTeamSize(const TrainingSet& set, int threads) {
-  constexpr Eigen::Index kTeamSamples = 1500;
+  constexpr Eigen::Index kTeamSamples = 1500;  // 2 n^2 doubles: 36 MB, beyond which one workspace is enough
   return set.size() > kTeamSamples ? threads : 1;
 }
 

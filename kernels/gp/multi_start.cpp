@@ -77,7 +77,8 @@ std::vector<TargetSearches> makeTargets(const Eigen::Ref<const MatrixXd>& target
     const double mean = target.values.mean();
     target.stddev = std::sqrt((target.values.array() - mean).square().mean());
     const double largest = std::max(std::abs(mean), target.values.cwiseAbs().maxCoeff());
-    target.constant = !(target.stddev > 1e-13 * largest);
+    constexpr double kRounding = 1e-13;  // of mean and stddev over thousands of samples, with a margin
+    target.constant = !(target.stddev > kRounding * largest);
   }
   return all;
 }
@@ -98,7 +99,7 @@ void chooseStarts(const TrainingSet& set, const TrainingOptions& options, int st
 
 void searchStarts(const TrainingSet& set, const TrainingOptions& options,
                   std::vector<TargetSearches>& targets) {
-  constexpr std::size_t kFirst = 1;
+  constexpr std::size_t kFirst = 1;  // the optimum of the first start is what the others may join
   runTasks(set, options, makeTasks(targets, 0, kFirst));
   runTasks(set, options, makeTasks(targets, kFirst, options.starts));
 }
@@ -115,6 +116,7 @@ void addWarmStarts(const TrainingSet& set, const TrainingOptions& options,
   shared.length_scale_groups.clear();
   const TrainingSet shared_set(set.getInputs(), shared);
   std::vector<TargetSearches> shared_targets = targets;
+  // A single length scale has few optima, and the best only starts another search.
   constexpr int kMostShared = 2;
   chooseStarts(shared_set, options, std::min(options.starts, kMostShared), shared_targets);
   searchStarts(shared_set, options, shared_targets);

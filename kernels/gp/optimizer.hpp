@@ -47,7 +47,7 @@ struct SearchLimits {
 SearchResult minimize(const Objective& objective, Eigen::Index samples, const Eigen::VectorXd& start,
                       const SearchBox& box, const SearchLimits& limits);
 
-/// The same for the exact NLML. Cost: up to limits.max_evaluations of n^3 flops.
+/// minimize() for the exact NLML of one target. Cost: up to limits.max_evaluations of n^3 flops.
 SearchResult search(const TrainingSet& set, const Eigen::VectorXd& target, const Eigen::VectorXd& start,
                     const SearchBox& box, const SearchLimits& limits, LikelihoodWorkspace& workspace);
 

@@ -13,6 +13,7 @@ using Eigen::VectorXd;
 
 namespace {
 
+// 8128 pairs: they tell the median to some per cent; bounds and starts need no more.
 constexpr Index kMedianSamples = 128;
 
 MatrixXd spacedSamples(const MatrixXd& inputs) {
@@ -62,6 +63,8 @@ std::vector<std::vector<double>> calcPairDistances(const TrainingSet& set) {
 // Start number k: multiples of the median distance and of the target's stddev. Beyond the table, a
 // low-discrepancy (golden ratio) sequence over the same ranges.
 std::array<double, 2> spread(int k, const TrainingOptions& options) {
+  // From short to long length scales with little to much noise; the second, which is used most, lies far off
+  // the first in both.
   constexpr std::array<std::array<double, 2>, 4> kTable{{{1.0, 0.0}, {3.0, 0.03}, {0.5, 0.1}, {8.0, 0.5}}};
   if (k == 0) {
     return {options.start_length_scale, options.start_noise};
@@ -69,6 +72,7 @@ std::array<double, 2> spread(int k, const TrainingOptions& options) {
   if (k < 4) {
     return kTable[k];
   }
+  // The inverse powers of x^3 = x + 1's root, the golden ratio's like in two dimensions.
   const double u = std::fmod(0.7548776662466927 * k, 1.0);
   const double v = std::fmod(0.5698402909980532 * k, 1.0);
   return {0.3 * std::pow(10.0 / 0.3, u), 0.03 * std::pow(0.7 / 0.03, v)};
@@ -140,7 +144,8 @@ std::vector<VectorXd> makeStarts(const TrainingSet& set, const DataScales& scale
     start.length_scales = length_factor * scales.group_distances;
     start.signal_stddev = target_stddev;
     start.noise_stddev = noise_factor * target_stddev;
-    start.linear_stddev = 0.5 * target_stddev / scales.root_mean_square;
+    constexpr double kLinearPart = 0.5;  // of the stddev: a quarter of the variance
+    start.linear_stddev = kLinearPart * target_stddev / scales.root_mean_square;
     starts.push_back(toLog(set.getStructure(), start));
   }
   return starts;
@@ -171,12 +176,13 @@ double calcNoiseOnlyNlml(const TrainingSet& set, const VectorXd& target) {
       log_determinant += std::log(normal(k, k));
     }
   }
-  residual = std::max(residual, 1e-28 * target.squaredNorm());
+  constexpr double kRounding = 1e-28;  // (1e-14)^2: a target that the mean explains leaves no less
+  residual = std::max(residual, kRounding * target.squaredNorm());
   return 0.5 * free_samples * (std::log(residual / free_samples) + 1.0 + kLogTwoPi) + log_determinant;
 }
 
 bool isNoiseOnly(double nlml, double noise_only_nlml) {
-  constexpr double kMargin = 5.0;
+  constexpr double kMargin = 5.0;  // nats: chance gains two or four, a signal of the order of n
   return !(nlml < noise_only_nlml - kMargin);
 }
 

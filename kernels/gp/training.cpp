@@ -113,7 +113,8 @@ std::vector<std::string> describeBounds(const ModelStructure& structure, const S
     at_bound.push_back(text.str());
   };
   for (Index i = 0; i < point.size(); ++i) {
-    const double margin = 1e-6 * (box.upper(i) - box.lower(i));
+    constexpr double kAtBound = 1e-6;  // of the box: the optimizer clamps to within rounding of it
+    const double margin = kAtBound * (box.upper(i) - box.lower(i));
     if (point(i) <= box.lower(i) + margin) {
       add(i, "lower", box.lower(i));
     }

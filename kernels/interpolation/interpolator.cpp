@@ -18,10 +18,16 @@ using Eigen::VectorXd;
 
 namespace {
 
+// Few points tell length scales, and an evaluation costs their number cubed.
 constexpr Index kSearchPoints = 300;
-constexpr int kMostEvaluations = 120;
-constexpr double kShortest = 0.2, kLongest = 50.0;  // length scales, of variables within [-1, 1]
-constexpr double kNugget = 1e-10;                   // keeps K positive definite; far below any noise
+constexpr int kMostEvaluations = 120;  // the search ends after some 100 by itself
+// Length scales, of variables within [-1, 1]: below, nothing is learnt between the points; above, a function
+// is a polynomial of low order, and K singular.
+constexpr double kShortest = 0.2, kLongest = 50.0;
+constexpr double kStart = 1.5;       // of the order of the box
+constexpr double kFirstStep = 0.7;   // of the logarithm: a factor of two
+constexpr double kTolerance = 0.02;  // of the logarithm: 2 % of a length scale change no value visibly
+constexpr double kNugget = 1e-10;    // keeps K positive definite; far below any noise
 
 void require(bool condition, const char* message) {
   if (!condition) {
@@ -68,7 +74,7 @@ struct Search {
 };
 
 double evaluateLengthScales(unsigned count, const double* logs, double*, void* data) {
-  constexpr double kRejected = 1e6;
+  constexpr double kRejected = 1e6;  // worse than any sum of logarithms, yet finite for the optimizer
   Search& search = *static_cast<Search*>(data);
   const VectorXd length_scales = Eigen::Map<const Eigen::ArrayXd>(logs, count).exp();
   if (!solve(search.points, search.centered, length_scales, search.solution)) {
@@ -87,10 +93,10 @@ VectorXd findLengthScales(const MatrixXd& points, const MatrixXd& centered) {
   nlopt_set_min_objective(optimizer.get(), evaluateLengthScales, &search);
   nlopt_set_lower_bounds1(optimizer.get(), std::log(kShortest));
   nlopt_set_upper_bounds1(optimizer.get(), std::log(kLongest));
-  nlopt_set_initial_step1(optimizer.get(), 0.7);
-  nlopt_set_xtol_abs1(optimizer.get(), 0.02);
+  nlopt_set_initial_step1(optimizer.get(), kFirstStep);
+  nlopt_set_xtol_abs1(optimizer.get(), kTolerance);
   nlopt_set_maxeval(optimizer.get(), kMostEvaluations);
-  std::vector<double> logs(count, std::log(1.5));
+  std::vector<double> logs(count, std::log(kStart));
   double best = 0.0;
   nlopt_optimize(optimizer.get(), logs.data(), &best);
   return Eigen::Map<const Eigen::ArrayXd>(logs.data(), count).exp();

@@ -19,9 +19,9 @@ constexpr Index kTileVectors = 3;
 #endif
 constexpr Index kTileCols = kLanes;  // 16 (AVX-512) or 12 (AVX2) sums in registers; 32 rows are whole tiles
 constexpr Index kTileRows = kLanes * kTileVectors;
-constexpr Index kBlockDepth = 256;
-constexpr Index kBlockRows = 12 * kTileRows;
-constexpr Index kBlockCols = 1024;
+constexpr Index kBlockDepth = 256;  // a sliver of B, kTileCols wide: 16 KiB (8 with AVX2), half of L1
+constexpr Index kBlockRows = 12 * kTileRows;  // a block of A: 384 KiB (288 with AVX2), within L2
+constexpr Index kBlockCols = 1024;            // a panel of B: 2 MiB of L3
 
 Index roundUp(Index value, Index multiple) {
   return (value + multiple - 1) / multiple * multiple;

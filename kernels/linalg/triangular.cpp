@@ -12,11 +12,11 @@
 namespace twinmap::linalg {
 namespace {
 
-constexpr Index kBase = 32;   // below this order, plain loops over columns
-constexpr Index kPanel = 64;  // triangular operands up to this order are multiplied with their zeros
-constexpr Index kChunkVectors = 4;
-constexpr double kTeamFlops = 2e7;  // half a millisecond: a hundred times what waking a team costs
-constexpr Index kStripsPerThread = 4;
+constexpr Index kBase = 32;            // below this order, plain loops over columns
+constexpr Index kPanel = 64;           // triangular operands up to this order are multiplied with their zeros
+constexpr Index kChunkVectors = 4;     // independent sums: they hide the latency of multiplying and adding
+constexpr double kTeamFlops = 2e7;     // half a millisecond: a hundred times what waking a team costs
+constexpr Index kStripsPerThread = 4;  // strips of unequal work: dealt one by one, they even out
 #ifdef TWINMAP_OPENBLAS
 constexpr bool kSharesProducts = false;  // see openblas.hpp
 #else

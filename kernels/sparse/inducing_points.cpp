@@ -14,6 +14,7 @@ using Eigen::VectorXd;
 
 namespace {
 
+// Enough to choose among; time and memory grow in proportion.
 constexpr Index kCandidatesPerPoint = 8;
 constexpr double kDetermined = 1e-10;  // of the prior variance: below, a point adds nothing but rounding
 

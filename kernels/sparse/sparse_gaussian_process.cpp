@@ -17,7 +17,7 @@ using linalg::viewOf;
 
 namespace {
 
-constexpr Index kBlock = 256;
+constexpr Index kBlock = 256;  // points predicted together: their covariances stay in cache
 
 void require(bool condition, const char* message) {
   if (!condition) {

@@ -18,9 +18,9 @@ using linalg::viewOf;
 
 namespace {
 
-constexpr Index kBlock = 512;           // samples at a time
+constexpr Index kBlock = 512;           // samples at a time: deep products, and memory 512 m instead of n m
 constexpr double kFirstJitter = 1e-10;  // relative to s_f^2; K_uu has no noise to keep it definite
-constexpr double kLastJitter = 1e-5;
+constexpr double kLastJitter = 1e-5;    // beyond it the model itself would be another one
 
 MatrixXd lowerPart(const MatrixXd& matrix) {
   return matrix.triangularView<Eigen::Lower>();
