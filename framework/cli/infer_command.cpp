@@ -10,7 +10,7 @@
 #include "framework/inference/measurement_stream.hpp"
 #include "framework/inference/refiner.hpp"
 
-namespace twinmap {
+namespace twinmap::cli {
 namespace {
 
 enum class Format { kTable, kCsv, kJson };
@@ -155,4 +155,4 @@ void infer(const InferArguments& arguments) {
   command.finish();
 }
 
-}  // namespace twinmap
+}  // namespace twinmap::cli
