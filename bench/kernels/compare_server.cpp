@@ -78,7 +78,9 @@ void train(std::istream& arguments) {
   std::vector<gp::TrainingResult> results;
   std::cout << secondsOf(
       [&] { results = gp::train(problem.inputs, problem.targets, makeStructure(features, false), options); });
-  for (const gp::TrainingResult& result : results) std::cout << ' ' << result.gp->getNlml();
+  for (const gp::TrainingResult& result : results) {
+    std::cout << ' ' << result.gp->getNlml();
+  }
 }
 
 void predictOnline(std::istream& arguments) {
@@ -112,10 +114,18 @@ int main() {
     std::istringstream arguments(line);
     std::string command;
     arguments >> command;
-    if (command == "data") twinmap::bench::writeData(arguments);
-    if (command == "evaluate") twinmap::bench::evaluate(arguments);
-    if (command == "train") twinmap::bench::train(arguments);
-    if (command == "online") twinmap::bench::predictOnline(arguments);
+    if (command == "data") {
+      twinmap::bench::writeData(arguments);
+    }
+    if (command == "evaluate") {
+      twinmap::bench::evaluate(arguments);
+    }
+    if (command == "train") {
+      twinmap::bench::train(arguments);
+    }
+    if (command == "online") {
+      twinmap::bench::predictOnline(arguments);
+    }
     std::cout << std::endl;
   }
 }

@@ -47,7 +47,9 @@ void evaluate(benchmark::State& state) {
 }
 
 void evaluateArguments(benchmark::internal::Benchmark* bench, int features, int per_feature, int threads) {
-  for (int n : {100, 250, 500, 1000, 2000, 4000}) bench->Args({n, features, per_feature, threads});
+  for (int n : {100, 250, 500, 1000, 2000, 4000}) {
+    bench->Args({n, features, per_feature, threads});
+  }
   bench->Complexity(benchmark::oNCubed)->Unit(benchmark::kMillisecond)->UseRealTime();
 }
 #define TWINMAP_EVALUATE(features, per_feature, threads)                               \

@@ -19,14 +19,18 @@ inline Problem makeProblem(int samples, int features, std::uint64_t seed = 1) {
   const test::TwoBeamData data = test::makeTwoBeamData(samples, seed);
   const Eigen::MatrixXd scored = test::zScored(data.features);
   Problem problem{Eigen::MatrixXd(features, samples), test::zScored(data.parameters)};
-  for (int f = 0; f < features; ++f) problem.inputs.row(f) = scored.row(f * 200 / features);
+  for (int f = 0; f < features; ++f) {
+    problem.inputs.row(f) = scored.row(f * 200 / features);
+  }
   return problem;
 }
 
 inline gp::ModelStructure makeStructure(int features, bool per_feature) {
   gp::ModelStructure structure;
   structure.mean = gp::MeanFunction::kZero;  // as in scikit-learn
-  if (per_feature) structure.length_scale_groups = gp::oneGroupPerFeature(features);
+  if (per_feature) {
+    structure.length_scale_groups = gp::oneGroupPerFeature(features);
+  }
   return structure;
 }
 

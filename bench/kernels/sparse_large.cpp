@@ -64,7 +64,9 @@ int main(int argc, char** argv) {
               << results[t].bound << ", inducing " << results[t].gp->getInducingCount() << "\n";
   }
   const int exact_samples = argument(4, 4000);
-  if (exact_samples == 0) return 0;
+  if (exact_samples == 0) {
+    return 0;
+  }
   start = seconds();
   options.starts = 1;
   options.max_evaluations = 40;

@@ -4,7 +4,7 @@
 #include "framework/measurement/signal_experiment.hpp"
 #include "framework/spec/experiment_file.hpp"
 
-namespace twinmap {
+namespace twinmap::cli {
 
 void check(const ExperimentArguments& arguments) {
   const YamlNode tree = loadExperimentTree(arguments.file, arguments.overrides);
@@ -13,4 +13,4 @@ void check(const ExperimentArguments& arguments) {
                                               : writeIndependentDefaults(tree));
 }
 
-}  // namespace twinmap
+}  // namespace twinmap::cli

@@ -10,7 +10,7 @@
 #include "framework/results/gates.hpp"
 #include "framework/spec/experiment_spec.hpp"
 
-namespace twinmap {
+namespace twinmap::cli {
 
 /// What every command that reads an experiment takes.
 struct ExperimentArguments {
@@ -149,4 +149,4 @@ void noise(const NoiseArguments& arguments);
 /// does.
 void verify(const VerifyArguments& arguments);
 
-}  // namespace twinmap
+}  // namespace twinmap::cli

@@ -3,7 +3,7 @@
 #include "framework/cli/commands.hpp"
 #include "framework/comparison/comparison_text.hpp"
 
-namespace twinmap {
+namespace twinmap::cli {
 
 void compare(const CompareArguments& arguments) {
   const RunComparison comparison =
@@ -13,4 +13,4 @@ void compare(const CompareArguments& arguments) {
                                  : makeComparisonText(comparison));
 }
 
-}  // namespace twinmap
+}  // namespace twinmap::cli

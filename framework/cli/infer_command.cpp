@@ -10,7 +10,7 @@
 #include "framework/inference/measurement_stream.hpp"
 #include "framework/inference/refiner.hpp"
 
-namespace twinmap {
+namespace twinmap::cli {
 namespace {
 
 enum class Format { kTable, kCsv, kJson };
@@ -90,6 +90,7 @@ class InferCommand {
 
   InferredMeasurement infer(const Table& table, const std::string& source,
                             const std::optional<double>& start) {
+    inferrer_.requireExcitation(table, start);
     const Eigen::VectorXd features = inferrer_.extractFeatures(inferrer_.readResponse(table, start), source);
     InferredMeasurement inferred = inferrer_.infer(features, known_, workspace_);
     inferred.source = source;
@@ -154,4 +155,4 @@ void infer(const InferArguments& arguments) {
   command.finish();
 }
 
-}  // namespace twinmap
+}  // namespace twinmap::cli

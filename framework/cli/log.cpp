@@ -8,7 +8,7 @@
 #include "framework/cli/progress_line.hpp"
 #include "framework/monitoring/run_log.hpp"
 
-namespace twinmap {
+namespace twinmap::cli {
 
 void setUpLog() {
   const char* no_color = std::getenv("NO_COLOR");
@@ -24,4 +24,4 @@ void showWarningsOnly() {
   spdlog::default_logger()->sinks().front()->set_level(spdlog::level::warn);
 }
 
-}  // namespace twinmap
+}  // namespace twinmap::cli

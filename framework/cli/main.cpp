@@ -11,6 +11,8 @@
 #include "framework/monitoring/interrupted.hpp"
 #include "framework/spec/yaml/source_location.hpp"
 
+namespace cli = twinmap::cli;
+
 namespace {
 
 constexpr int kFailed = 1;
@@ -28,7 +30,7 @@ std::string joinArguments(int count, char** arguments) {
   return line;
 }
 
-void addExperiment(CLI::App& command, twinmap::ExperimentArguments& arguments) {
+void addExperiment(CLI::App& command, cli::ExperimentArguments& arguments) {
   command.add_option("FILE", arguments.file, "Experiment file (YAML)")->required()->option_text(" ");
   command
       .add_option("key.path=value", arguments.overrides,
@@ -37,14 +39,14 @@ void addExperiment(CLI::App& command, twinmap::ExperimentArguments& arguments) {
       ->option_text(" ");
 }
 
-void addCheck(CLI::App& app, twinmap::ExperimentArguments& arguments) {
+void addCheck(CLI::App& app, cli::ExperimentArguments& arguments) {
   CLI::App* command =
       app.add_subcommand("check", "Validate an experiment and print it with all defaults; simulate nothing");
   addExperiment(*command, arguments);
-  command->callback([&arguments] { twinmap::check(arguments); });
+  command->callback([&arguments] { cli::check(arguments); });
 }
 
-void addSimulate(CLI::App& app, twinmap::SimulateArguments& arguments) {
+void addSimulate(CLI::App& app, cli::SimulateArguments& arguments) {
   CLI::App* command = app.add_subcommand(
       "simulate",
       "Simulate once and write the outputs at the features' times, and modes, as CSV. The parameters are at "
@@ -53,7 +55,7 @@ void addSimulate(CLI::App& app, twinmap::SimulateArguments& arguments) {
   command->add_option("--csv", arguments.csv, "Write to this file instead of the standard output")
       ->type_name("OUT");
   command->add_flag("--noise", arguments.noise, "Add the experiment's measurement noise");
-  command->callback([&arguments] { twinmap::simulate(arguments); });
+  command->callback([&arguments] { cli::simulate(arguments); });
 }
 
 void addFailOnGates(CLI::App& command, bool& fail) {
@@ -67,7 +69,7 @@ void addThreads(CLI::App& command, int& threads) {
       ->check(CLI::Range(1, kMostThreads));
 }
 
-void addWhereAndHow(CLI::App& command, twinmap::RunArguments& arguments) {
+void addWhereAndHow(CLI::App& command, cli::RunArguments& arguments) {
   addExperiment(command, arguments.experiment);
   command.add_option("--out", arguments.folder, "Folder for the results (default: results/NAME)")
       ->type_name("DIR");
@@ -83,7 +85,7 @@ void addWhereAndHow(CLI::App& command, twinmap::RunArguments& arguments) {
       ->check(CLI::PositiveNumber);
 }
 
-void addRun(CLI::App& app, twinmap::RunArguments& arguments) {
+void addRun(CLI::App& app, cli::RunArguments& arguments) {
   CLI::App* command =
       app.add_subcommand("run", "Simulate, train, infer, and write tables, maps and the report");
   addWhereAndHow(*command, arguments);
@@ -93,25 +95,25 @@ void addRun(CLI::App& app, twinmap::RunArguments& arguments) {
       ->excludes(fail_fast);
   addFailOnGates(*command, arguments.fail_on_gates);
   command->add_flag("--quiet", arguments.quiet, "No progress, only warnings and errors");
-  command->callback([&arguments] { twinmap::run(arguments); });
+  command->callback([&arguments] { cli::run(arguments); });
 }
 
-void addPlan(CLI::App& app, twinmap::RunArguments& arguments) {
+void addPlan(CLI::App& app, cli::RunArguments& arguments) {
   CLI::App* command = app.add_subcommand(
       "plan",
       "Print what run would do: cases, simulations, time, memory, disk; simulate and train only a little");
   addWhereAndHow(*command, arguments);
-  command->callback([&arguments] { twinmap::plan(arguments); });
+  command->callback([&arguments] { cli::plan(arguments); });
 }
 
-void addStatus(CLI::App& app, twinmap::StatusArguments& arguments) {
+void addStatus(CLI::App& app, cli::StatusArguments& arguments) {
   CLI::App* command = app.add_subcommand("status", "Print how far a sweep or a run is");
   command->add_option("DIR", arguments.folder, "Folder of the results")->required()->option_text(" ");
   command->add_option("--store", arguments.store, "As given to run")->type_name("DIR");
-  command->callback([&arguments] { twinmap::status(arguments); });
+  command->callback([&arguments] { cli::status(arguments); });
 }
 
-void addCompare(CLI::App& app, twinmap::CompareArguments& arguments) {
+void addCompare(CLI::App& app, cli::CompareArguments& arguments) {
   CLI::App* command = app.add_subcommand(
       "compare",
       "Print the same parameters of two runs side by side, with confidence intervals of the differences, and "
@@ -120,10 +122,10 @@ void addCompare(CLI::App& app, twinmap::CompareArguments& arguments) {
   command->add_option("B", arguments.folder_b, "Folder of another run")->required()->option_text(" ");
   CLI::Option* csv = command->add_flag("--csv", arguments.csv, "Print CSV instead of a table");
   command->add_flag("--json", arguments.json, "Print JSON instead of a table")->excludes(csv);
-  command->callback([&arguments] { twinmap::compare(arguments); });
+  command->callback([&arguments] { cli::compare(arguments); });
 }
 
-void addNoise(CLI::App& app, twinmap::NoiseArguments& arguments) {
+void addNoise(CLI::App& app, cli::NoiseArguments& arguments) {
   CLI::App* command = app.add_subcommand(
       "noise",
       "Estimate the noise of a measurement while nothing moves (or of residuals): standard deviation and "
@@ -144,10 +146,10 @@ void addNoise(CLI::App& app, twinmap::NoiseArguments& arguments) {
                    "Experiment file whose 'measurement' says where its outputs stand, and in which units")
       ->type_name("FILE");
   command->add_flag("--json", arguments.json, "Print JSON");
-  command->callback([&arguments] { twinmap::noise(arguments); });
+  command->callback([&arguments] { cli::noise(arguments); });
 }
 
-void addReport(CLI::App& app, twinmap::ReportArguments& arguments) {
+void addReport(CLI::App& app, cli::ReportArguments& arguments) {
   CLI::App* command = app.add_subcommand(
       "report", "Write report.html again from a run's or a sweep's folder, or compare several runs");
   command->add_option("DIR", arguments.folders, "Folders of runs")->required()->option_text(" ");
@@ -156,10 +158,10 @@ void addReport(CLI::App& app, twinmap::ReportArguments& arguments) {
                    "Folder for the report (default: the run's own; of several runs results/report)")
       ->type_name("DIR");
   addFailOnGates(*command, arguments.fail_on_gates);
-  command->callback([&arguments] { twinmap::report(arguments); });
+  command->callback([&arguments] { cli::report(arguments); });
 }
 
-void addInfer(CLI::App& app, twinmap::InferArguments& arguments) {
+void addInfer(CLI::App& app, cli::InferArguments& arguments) {
   CLI::App* command = app.add_subcommand("infer",
                                          "Infer the parameters of measured responses with a trained map: "
                                          "mean, sd and 95 % interval of each, and "
@@ -187,10 +189,10 @@ void addInfer(CLI::App& app, twinmap::InferArguments& arguments) {
       ->excludes(csv);
   command->add_flag("--refine", arguments.refine,
                     "Then a few Gauss-Newton steps on the simulator from what was inferred");
-  command->callback([&arguments] { twinmap::infer(arguments); });
+  command->callback([&arguments] { cli::infer(arguments); });
 }
 
-void addReplay(CLI::App& app, twinmap::ReplayArguments& arguments) {
+void addReplay(CLI::App& app, cli::ReplayArguments& arguments) {
   constexpr int kFewestDraws = 2, kMostDraws = 10000;
   CLI::App* command =
       app.add_subcommand("replay",
@@ -223,10 +225,10 @@ void addReplay(CLI::App& app, twinmap::ReplayArguments& arguments) {
   addThreads(*command, arguments.threads);
   command->add_option("--out", arguments.out, "Folder for the results (default: RUN/replay/NAME of the file)")
       ->type_name("DIR");
-  command->callback([&arguments] { twinmap::replay(arguments); });
+  command->callback([&arguments] { cli::replay(arguments); });
 }
 
-void addVerify(CLI::App& app, twinmap::VerifyArguments& arguments) {
+void addVerify(CLI::App& app, cli::VerifyArguments& arguments) {
   CLI::App* command = app.add_subcommand(
       "verify",
       "Recompute a random part of a run from its resolved.yaml and compare bit for bit: some samples are "
@@ -241,13 +243,13 @@ void addVerify(CLI::App& app, twinmap::VerifyArguments& arguments) {
   command->add_flag("--all", arguments.all,
                     "Run everything again, in a temporary folder, and compare all files");
   addThreads(*command, arguments.threads);
-  command->callback([&arguments] { twinmap::verify(arguments); });
+  command->callback([&arguments] { cli::verify(arguments); });
 }
 
 void addSchema(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "schema", "Print the JSON schema of experiment files, with which editors complete and explain keys");
-  command->callback([] { twinmap::printSchema(); });
+  command->callback([] { cli::printSchema(); });
 }
 
 int runCommand(int count, char** arguments) {
@@ -261,16 +263,16 @@ int runCommand(int count, char** arguments) {
       "Exit codes: 0 done, 1 failed, 2 wrong usage or wrong experiment file, 3 a gate failed and "
       "--fail-on-gates was given, 130 and 143 interrupted by Ctrl-C or SIGTERM.");
 
-  twinmap::ExperimentArguments check;
-  twinmap::SimulateArguments simulate;
-  twinmap::CompareArguments compare;
-  twinmap::NoiseArguments noise;
-  twinmap::ReportArguments report;
-  twinmap::StatusArguments status;
-  twinmap::RunArguments run;
-  twinmap::VerifyArguments verify;
-  twinmap::InferArguments infer;
-  twinmap::ReplayArguments replay;
+  cli::ExperimentArguments check;
+  cli::SimulateArguments simulate;
+  cli::CompareArguments compare;
+  cli::NoiseArguments noise;
+  cli::ReportArguments report;
+  cli::StatusArguments status;
+  cli::RunArguments run;
+  cli::VerifyArguments verify;
+  cli::InferArguments infer;
+  cli::ReplayArguments replay;
   verify.seed = std::random_device()();
   replay.threads = verify.threads = run.threads =
       static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
@@ -298,18 +300,18 @@ int runCommand(int count, char** arguments) {
 }  // namespace
 
 int main(int count, char** arguments) {
-  twinmap::setUpLog();
+  cli::setUpLog();
   try {
     return runCommand(count, arguments);
   } catch (const twinmap::ExperimentError& error) {
     std::cerr << "twinmap: error: " << error.what() << "\n";
     return kWrongInput;
-  } catch (const twinmap::GatesFailed& error) {
+  } catch (const cli::GatesFailed& error) {
     std::cerr << "twinmap: error: " << error.what() << "\n";
     return kGatesFailed;
   } catch (const twinmap::Interrupted& interrupted) {
     std::cerr << "twinmap: " << interrupted.what() << "\n";
-    return kInterrupted + twinmap::getSignal();
+    return kInterrupted + cli::getSignal();
   } catch (const std::exception& error) {
     std::cerr << "twinmap: error: " << error.what() << "\n";
     return kFailed;

@@ -8,7 +8,7 @@
 #include "framework/spec/experiment_file.hpp"
 #include "framework/spec/expression/output_units.hpp"
 
-namespace twinmap {
+namespace twinmap::cli {
 namespace {
 
 /// The outputs of the experiment, or those of them that were named, as its `measurement` says.
@@ -64,4 +64,4 @@ void noise(const NoiseArguments& arguments) {
                                : makeNoiseTable(signals) + "\n" + makeNoiseYaml(signals));
 }
 
-}  // namespace twinmap
+}  // namespace twinmap::cli

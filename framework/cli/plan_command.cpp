@@ -6,7 +6,7 @@
 #include "framework/spec/experiment_file.hpp"
 #include "framework/sweep/plan.hpp"
 
-namespace twinmap {
+namespace twinmap::cli {
 
 void plan(const RunArguments& arguments) {
   const YamlNode tree = loadExperimentTree(arguments.experiment.file, arguments.experiment.overrides);
@@ -19,4 +19,4 @@ void plan(const RunArguments& arguments) {
   std::cout << describePlan(planRun(tree, options), options);
 }
 
-}  // namespace twinmap
+}  // namespace twinmap::cli

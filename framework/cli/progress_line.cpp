@@ -8,7 +8,7 @@
 #include <iostream>
 #include <string_view>
 
-namespace twinmap {
+namespace twinmap::cli {
 namespace {
 
 constexpr const char* kClearLine = "\r\x1b[K";
@@ -86,4 +86,4 @@ void ProgressLine::clear() const {
   }
 }
 
-}  // namespace twinmap
+}  // namespace twinmap::cli

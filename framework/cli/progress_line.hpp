@@ -5,7 +5,7 @@
 
 #include "framework/monitoring/progress.hpp"
 
-namespace twinmap {
+namespace twinmap::cli {
 
 /// "1:02:03", "0:42".
 std::string describeDuration(double seconds);
@@ -36,4 +36,4 @@ class ProgressLine {
 /// Whether stderr is a terminal that understands control sequences.
 bool isTerminal();
 
-}  // namespace twinmap
+}  // namespace twinmap::cli

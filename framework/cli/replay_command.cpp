@@ -6,7 +6,7 @@
 #include "framework/inference/known_value.hpp"
 #include "framework/inference/replay_files.hpp"
 
-namespace twinmap {
+namespace twinmap::cli {
 namespace {
 
 namespace fs = std::filesystem;
@@ -37,7 +37,7 @@ fs::path chooseFolder(const ReplayArguments& arguments) {
 
 Replay replayMeasurement(const Inferrer& inferrer, const ReplayOptions& options) {
   try {
-    return replay(inferrer, options);
+    return twinmap::replay(inferrer, options);
   } catch (const MeasurementError& error) {
     throw std::runtime_error(error.what());
   }
@@ -57,4 +57,4 @@ void replay(const ReplayArguments& arguments) {
             << "\nBeside it: replay.csv, residuals.csv, fit.csv, inference.json\n";
 }
 
-}  // namespace twinmap
+}  // namespace twinmap::cli

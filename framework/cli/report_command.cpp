@@ -4,7 +4,7 @@
 #include "framework/cli/commands.hpp"
 #include "framework/report/report.hpp"
 
-namespace twinmap {
+namespace twinmap::cli {
 
 void report(const ReportArguments& arguments) {
   const std::vector<std::filesystem::path> folders(arguments.folders.begin(), arguments.folders.end());
@@ -28,4 +28,4 @@ void requireGates(const std::vector<GateResult>& gates, bool fail) {
   }
 }
 
-}  // namespace twinmap
+}  // namespace twinmap::cli

@@ -15,7 +15,7 @@
 #include "framework/sweep/case_cost.hpp"
 #include "framework/sweep/run_sweep.hpp"
 
-namespace twinmap {
+namespace twinmap::cli {
 namespace {
 
 namespace fs = std::filesystem;
@@ -119,4 +119,4 @@ void run(const RunArguments& arguments) {
   }
 }
 
-}  // namespace twinmap
+}  // namespace twinmap::cli

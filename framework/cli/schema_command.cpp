@@ -3,10 +3,10 @@
 #include "framework/cli/commands.hpp"
 #include "framework/spec/fields/json_schema.hpp"
 
-namespace twinmap {
+namespace twinmap::cli {
 
 void printSchema() {
   std::cout << makeJsonSchema();
 }
 
-}  // namespace twinmap
+}  // namespace twinmap::cli

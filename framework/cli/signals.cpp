@@ -5,7 +5,7 @@
 #include <csignal>
 #include <string_view>
 
-namespace twinmap {
+namespace twinmap::cli {
 namespace {
 
 constexpr int kExitOfSignal = 128;
@@ -41,4 +41,4 @@ int getSignal() {
   return number;
 }
 
-}  // namespace twinmap
+}  // namespace twinmap::cli

@@ -2,7 +2,7 @@
 
 #include <atomic>
 
-namespace twinmap {
+namespace twinmap::cli {
 
 /// From now on SIGINT and SIGTERM ask to stop: the first sets the flag and says so on stderr; the second ends
 /// the process at once, with 128 + the signal's number, as a shell reports it.
@@ -11,4 +11,4 @@ const std::atomic<bool>& catchSignals();
 /// The number of the signal that came, or 0.
 int getSignal();
 
-}  // namespace twinmap
+}  // namespace twinmap::cli

@@ -14,7 +14,7 @@
 #include "framework/spec/yaml/number_text.hpp"
 #include "framework/store/atomic_file.hpp"
 
-namespace twinmap {
+namespace twinmap::cli {
 namespace {
 
 /// A sampled parameter's value for this simulation: "parameters.k_y=7.5".
@@ -122,4 +122,4 @@ void simulate(const SimulateArguments& arguments) {
   }
 }
 
-}  // namespace twinmap
+}  // namespace twinmap::cli

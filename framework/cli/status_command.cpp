@@ -3,10 +3,10 @@
 #include "framework/cli/commands.hpp"
 #include "framework/sweep/sweep_status.hpp"
 
-namespace twinmap {
+namespace twinmap::cli {
 
 void status(const StatusArguments& arguments) {
   std::cout << describeStatus(readStatus(arguments.folder, arguments.store));
 }
 
-}  // namespace twinmap
+}  // namespace twinmap::cli

@@ -5,7 +5,7 @@
 #include "framework/store/finished_run.hpp"
 #include "framework/verification/verification.hpp"
 
-namespace twinmap {
+namespace twinmap::cli {
 namespace {
 
 namespace fs = std::filesystem;
@@ -69,4 +69,4 @@ void verify(const VerifyArguments& arguments) {
   }
 }
 
-}  // namespace twinmap
+}  // namespace twinmap::cli

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "framework/inverse_map/train_gp_map.hpp"
+#include "framework/monitoring/interrupted.hpp"
 #include "framework/monitoring/stage_timer.hpp"
 #include "framework/spec/check/check_experiment.hpp"
 
@@ -36,6 +37,16 @@ std::vector<TrainedHyperparameter> listHyperparameters(const std::vector<std::st
   return listed;
 }
 
+GpMapTraining trainOrThrow(const ExperimentSpec& experiment, const std::vector<std::string>& names,
+                           const LabelledFeatures& samples, const TrainingControl& control) {
+  try {
+    return trainGpMap(experiment.inverse_map.gp, experiment.transform, names, samples, control,
+                      experiment.model.inputs);
+  } catch (const gp::Stopped&) {
+    throw Interrupted("interrupted during training; the simulated samples are kept");
+  }
+}
+
 }  // namespace
 
 Training trainMap(const ExperimentSpec& experiment, const LabelledFeatures& samples,
@@ -43,16 +54,15 @@ Training trainMap(const ExperimentSpec& experiment, const LabelledFeatures& samp
   const std::vector<std::string> names = collectNames(experiment.model.parameters);
   Training training;
   GpMapTraining trained = timeStage("train the inverse map", training.notes, [&] {
-    return trainGpMap(experiment.inverse_map.gp, experiment.transform, names, samples, control.threads,
-                      experiment.model.inputs);
+    return trainOrThrow(experiment, names, samples, {control.threads, control.stop});
   });
   training.notes.warnings = std::move(trained.warnings);
   training.summary.leave_one_out = calcMetrics(experiment.model.parameters, samples.parameters,
                                                trained.leave_one_out, {}, samples.replicates);
   training.summary.starts = summarizeTraining(names, trained.reports);
   training.summary.hyperparameters = listHyperparameters(names, trained.reports);
-  for (const Process& process : trained.map.processes) {
-    training.summary.nlml.push_back(getNlml(process));
+  for (const gp::Process& process : trained.map.processes) {
+    training.summary.nlml.push_back(gp::getNlml(process));
   }
   training.map = std::move(trained.map);
   return training;

@@ -16,7 +16,8 @@ struct Training {
   StageNotes notes;
 };
 
-/// Trains the inverse map of an experiment on its training samples (trainGpMap).
+/// Trains the inverse map of an experiment on its training samples (trainGpMap). Throws Interrupted if it is
+/// stopped, after one evaluation of the likelihood at most.
 Training trainMap(const ExperimentSpec& experiment, const LabelledFeatures& samples,
                   const RunControl& control);
 

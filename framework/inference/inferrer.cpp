@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "framework/experiment/prepare_data.hpp"
+#include "framework/measurement/trained_excitation.hpp"
 #include "framework/spec/experiment_file.hpp"
 #include "framework/store/maps_file.hpp"
 
@@ -46,7 +47,14 @@ Inferrer::Inferrer(Loaded loaded)
       trust_(std::move(loaded.stored.model.trust)) {}
 
 std::vector<std::string> Inferrer::listColumns() const {
-  return twinmap::listColumns(experiment_.measurement, layout_.output_names);
+  std::vector<std::string> names = twinmap::listColumns(experiment_.measurement, layout_.output_names);
+  const std::vector<std::string> excitation = listExcitationColumns(experiment_);
+  names.insert(names.end(), excitation.begin(), excitation.end());
+  return names;
+}
+
+void Inferrer::requireExcitation(const Table& table, std::optional<double> start) const {
+  requireTrainedExcitation(experiment_, table, start.value_or(experiment_.measurement.start));
 }
 
 Eigen::VectorXd Inferrer::readResponse(const Table& table, std::optional<double> start) const {

@@ -42,11 +42,14 @@ class Inferrer {
   const OnlineMap& getMap() const { return map_; }
   const std::optional<TrustModel>& getTrustModel() const { return trust_; }
 
-  /// The columns that a table of a measurement must have, for readTable().
+  /// The columns that a table of a measurement must have, and those that it may have, for readTable().
   std::vector<std::string> listColumns() const;
 
-  /// A measured response at the layout's times (its rows). `start` replaces that of the experiment's
-  /// `measurement:`. Throws MeasurementError.
+  /// Throws MeasurementError where the table tells another excitation than the map was trained on
+  /// (requireTrainedExcitation). `start` replaces that of the experiment's `measurement:`.
+  void requireExcitation(const Table& table, std::optional<double> start) const;
+
+  /// A measured response at the layout's times (its rows); `start` as above. Throws MeasurementError.
   Eigen::VectorXd readResponse(const Table& table, std::optional<double> start) const;
 
   /// extractFeatures() by the run's extractor.

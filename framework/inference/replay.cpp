@@ -134,12 +134,14 @@ class Replayer {
 
 InferredMeasurement inferFrom(const Inferrer& inferrer, const Table& table, const Window& window,
                               const ReplayOptions& options) {
+  const bool same_file = options.from.file == options.measurement.file;
+  const Table other = same_file ? Table() : readWindow(inferrer, options.from);
+  const Table& source = same_file ? table : other;
+  inferrer.requireExcitation(source, options.from.start);
   if (options.from == options.measurement) {
     return infer(inferrer, window, options);
   }
-  const bool same_file = options.from.file == options.measurement.file;
-  const Table other = same_file ? Table() : readWindow(inferrer, options.from);
-  return infer(inferrer, Window(inferrer, same_file ? table : other, options.from.start), options);
+  return infer(inferrer, Window(inferrer, source, options.from.start), options);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ Predictions GpMap::predict(const Eigen::MatrixXd& features, const Eigen::MatrixX
         std::visit([&](const auto& process) { return process->predict(inputs); }, processes[p]);
     predictions.mean.row(p) = target_offset[p] + target_scale[p] * standardised.mean.transpose().array();
     const Eigen::ArrayXd noise_variance =
-        getNoiseVariance(processes[p]) * noise.calcFactors(processes[p], p, inputs);
+        gp::getNoiseVariance(processes[p]) * noise.calcFactors(processes[p], p, inputs);
     predictions.stddev.row(p) =
         target_scale[p] * (standardised.latent_variance.array() + noise_variance).sqrt().transpose();
   }

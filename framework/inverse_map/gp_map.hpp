@@ -7,7 +7,7 @@
 #include "framework/inverse_map/known_inputs.hpp"
 #include "framework/inverse_map/noise_profile.hpp"
 #include "framework/inverse_map/predictions.hpp"
-#include "framework/inverse_map/process.hpp"
+#include "kernels/online/process.hpp"
 
 namespace twinmap {
 
@@ -16,9 +16,9 @@ namespace twinmap {
 /// transformed features, then the scaled known inputs. A fitted, immutable value.
 struct GpMap {
   FeatureTransform transform;
-  Eigen::VectorXd target_offset;   ///< p, mean of the training parameters
-  Eigen::VectorXd target_scale;    ///< p, their standard deviation
-  std::vector<Process> processes;  ///< one per parameter; exact ones share their training inputs
+  Eigen::VectorXd target_offset;       ///< p, mean of the training parameters
+  Eigen::VectorXd target_scale;        ///< p, their standard deviation
+  std::vector<gp::Process> processes;  ///< one per parameter; exact ones share their training inputs
   /// R (p x p), of the errors among the parameters, estimated from the training samples left out
   /// (calcResidualCorrelation): the joint predictive covariance of a sample is D R D, D = diag(stddev).
   Eigen::MatrixXd residual_correlation;

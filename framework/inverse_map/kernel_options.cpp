@@ -68,7 +68,7 @@ gp::RelativeBounds toKernel(const Bounds& bounds) {
 
 }  // namespace
 
-gp::TrainingOptions makeTrainingOptions(const GpMapSpec& spec, int threads) {
+gp::TrainingOptions makeTrainingOptions(const GpMapSpec& spec, const TrainingControl& control) {
   gp::TrainingOptions options;
   options.starts = spec.starts;
   options.max_evaluations = spec.max_evaluations;
@@ -78,7 +78,8 @@ gp::TrainingOptions makeTrainingOptions(const GpMapSpec& spec, int threads) {
   if (spec.length_scale_prior) {
     options.length_scale_prior = {spec.length_scale_prior->log_mean, spec.length_scale_prior->log_stddev};
   }
-  options.threads = threads;
+  options.threads = control.threads;
+  options.stop = control.stop;
   return options;
 }
 

@@ -3,13 +3,14 @@
 #include <vector>
 
 #include "framework/features/labelled_features.hpp"
+#include "framework/inverse_map/training_control.hpp"
 #include "framework/spec/experiment_spec.hpp"
 #include "kernels/gp/training.hpp"
 
 namespace twinmap {
 
 /// What an experiment says of its maps, in the kernels' terms.
-gp::TrainingOptions makeTrainingOptions(const GpMapSpec& spec, int threads);
+gp::TrainingOptions makeTrainingOptions(const GpMapSpec& spec, const TrainingControl& control);
 
 /// The structure of processes with `inputs` inputs, the last `known` of them known inputs, which have a
 /// length scale each. `infos`: of the features before the transform; length scales per output are for

@@ -25,20 +25,20 @@ MatrixXd calcDirections(const MatrixXd& covariance) {
 
 }  // namespace
 
-ArrayXd calcSquaredSlopes(const Process& process, const MatrixXd& directions, const MatrixXd& inputs) {
+ArrayXd calcSquaredSlopes(const gp::Process& process, const MatrixXd& directions, const MatrixXd& inputs) {
   const MatrixXd gradient = std::visit(
       [&](const auto& trained) { return trained->getMean().predictMeanGradient(inputs); }, process);
   return (directions.transpose() * gradient).colwise().squaredNorm().transpose();
 }
 
-ArrayXd NoiseProfile::calcFactors(const Process& process, Index parameter, const MatrixXd& inputs) const {
+ArrayXd NoiseProfile::calcFactors(const gp::Process& process, Index parameter, const MatrixXd& inputs) const {
   if (isConstant() || !(mean_of_slope[parameter] > 0.0)) {
     return ArrayXd::Ones(inputs.cols());
   }
   return (calcSquaredSlopes(process, directions, inputs) / mean_of_slope[parameter]).max(kSmallestFactor);
 }
 
-NoiseProfile fitNoiseProfile(const std::vector<Process>& processes, const MatrixXd& noise_covariance,
+NoiseProfile fitNoiseProfile(const std::vector<gp::Process>& processes, const MatrixXd& noise_covariance,
                              const MatrixXd& inputs) {
   NoiseProfile profile;
   const MatrixXd directions = calcDirections(noise_covariance);

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "framework/inverse_map/process.hpp"
+#include "kernels/online/process.hpp"
 
 namespace twinmap {
 
@@ -24,18 +24,18 @@ struct NoiseProfile {
 
   /// The factor of parameter p's noise variance at each of `inputs` (k x n). Cost: that of a gradient of the
   /// mean.
-  Eigen::ArrayXd calcFactors(const Process& process, Eigen::Index parameter,
+  Eigen::ArrayXd calcFactors(const gp::Process& process, Eigen::Index parameter,
                              const Eigen::MatrixXd& inputs) const;
 };
 
 /// s at each of `inputs`.
-Eigen::ArrayXd calcSquaredSlopes(const Process& process, const Eigen::MatrixXd& directions,
+Eigen::ArrayXd calcSquaredSlopes(const gp::Process& process, const Eigen::MatrixXd& directions,
                                  const Eigen::MatrixXd& inputs);
 
 /// A profile for trained processes. `inputs`: k x n, the training inputs of one draw of the noise;
 /// `noise_covariance`: of the first of their rows, the others being known without noise. Directions without
 /// noise are left out.
-NoiseProfile fitNoiseProfile(const std::vector<Process>& processes, const Eigen::MatrixXd& noise_covariance,
-                             const Eigen::MatrixXd& inputs);
+NoiseProfile fitNoiseProfile(const std::vector<gp::Process>& processes,
+                             const Eigen::MatrixXd& noise_covariance, const Eigen::MatrixXd& inputs);
 
 }  // namespace twinmap

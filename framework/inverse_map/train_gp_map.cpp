@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "framework/inverse_map/kernel_options.hpp"
-#include "framework/inverse_map/leave_one_out.hpp"
+#include "framework/inverse_map/predict_left_out.hpp"
 #include "framework/inverse_map/residual_correlation.hpp"
 #include "kernels/gp/fit.hpp"
 #include "kernels/gp/training_set.hpp"
@@ -57,13 +57,13 @@ std::vector<gp::Hyperparameters> findHyperparameters(const Eigen::MatrixXd& inpu
 using ExactProcess = std::shared_ptr<const gp::GaussianProcess>;
 using SparseProcess = std::shared_ptr<const gp::SparseGaussianProcess>;
 
-Process refit(const ExactProcess& trained, const Eigen::MatrixXd& inputs, const Eigen::VectorXd& target,
-              const gp::ModelStructure& structure, int threads) {
+gp::Process refit(const ExactProcess& trained, const Eigen::MatrixXd& inputs, const Eigen::VectorXd& target,
+                  const gp::ModelStructure& structure, int threads) {
   return gp::fit(inputs, target, structure, trained->getHyperparameters(), threads);
 }
 
-Process refit(const SparseProcess& trained, const Eigen::MatrixXd& inputs, const Eigen::VectorXd& target,
-              const gp::ModelStructure& structure, int /*threads*/) {
+gp::Process refit(const SparseProcess& trained, const Eigen::MatrixXd& inputs, const Eigen::VectorXd& target,
+                  const gp::ModelStructure& structure, int /*threads*/) {
   gp::SparseGaussianProcessParts parts{
       structure, trained->getHyperparameters(), gp::calcCenter(inputs), trained->getParts().inducing, {}};
   const gp::VariationalBound bound(inputs, target, parts.inducing, structure);
@@ -96,16 +96,17 @@ TrainingData prepare(const std::vector<TransformStepSpec>& transform, const Labe
 }
 
 /// Fits the processes found on the first columns to all of them; a process that cannot be is null.
-void fitToAll(const TrainingData& data, const gp::ModelStructure& structure, int threads,
+void fitToAll(const TrainingData& data, const gp::ModelStructure& structure, const TrainingControl& control,
               std::vector<gp::TrainingResult>& results) {
   for (std::size_t p = 0; p < results.size(); ++p) {
     if (results[p].gp == nullptr) {
       continue;
     }
+    gp::throwIfStopped(control.stop);
     const gp::Hyperparameters found = results[p].gp->getHyperparameters();
     try {
       results[p].gp = gp::fit(data.inputs, data.targets.row(static_cast<Eigen::Index>(p)).transpose(),
-                              structure, found, threads);
+                              structure, found, control.threads);
     } catch (const std::runtime_error& error) {
       results[p].gp = nullptr;
       results[p].message = error.what();
@@ -120,21 +121,21 @@ std::vector<gp::TrainingResult> trainExact(const TrainingData& data, Eigen::Inde
   std::vector<gp::TrainingResult> results =
       gp::train(data.inputs.leftCols(searched), data.targets.leftCols(searched), structure, options);
   if (searched < data.inputs.cols()) {
-    fitToAll(data, structure, options.threads, results);
+    fitToAll(data, structure, {options.threads, options.stop}, results);
   }
   return results;
 }
 
 /// What follows from the trained processes: the noise's profile, and the training samples left out.
-void finish(const GpMapSpec& spec, const TrainingData& data, const LabelledFeatures& samples, int threads,
-            GpMapTraining& training) {
+void finish(const GpMapSpec& spec, const TrainingData& data, const LabelledFeatures& samples,
+            const TrainingControl& control, GpMapTraining& training) {
   GpMap& map = training.map;
   if (spec.noise == GpNoise::kFollowsSlope) {
     map.noise = fitNoiseProfile(map.processes, map.transform.applyToCovariance(samples.noise_covariance),
                                 data.inputs.leftCols(data.inputs.cols() / samples.replicates));
   }
   training.leave_one_out =
-      predictLeftOut(training.map, data.inputs, data.targets, samples.replicates, threads);
+      predictLeftOut(training.map, data.inputs, data.targets, samples.replicates, control);
   training.map.residual_correlation = calcResidualCorrelation(
       (training.leave_one_out.mean - samples.parameters).cwiseQuotient(training.leave_one_out.stddev));
 }
@@ -149,12 +150,12 @@ int countSearchedReplicates(Eigen::Index columns, int replicates) {
 
 GpMapTraining trainGpMap(const GpMapSpec& spec, const std::vector<TransformStepSpec>& transform,
                          const std::vector<std::string>& parameter_names, const LabelledFeatures& samples,
-                         int threads, const std::vector<ParameterSpec>& known_inputs) {
+                         const TrainingControl& control, const std::vector<ParameterSpec>& known_inputs) {
   GpMapTraining training;
   const TrainingData data = prepare(transform, samples, known_inputs, training.map);
   const gp::ModelStructure structure = makeStructure(
       spec, samples.infos, static_cast<int>(data.inputs.rows()), static_cast<int>(known_inputs.size()));
-  gp::TrainingOptions options = makeTrainingOptions(spec, threads);
+  gp::TrainingOptions options = makeTrainingOptions(spec, control);
   const bool sparse_map = spec.approximation == GpApproximation::kSgpr;
   const int draws =
       sparse_map ? samples.replicates : countSearchedReplicates(data.inputs.cols(), samples.replicates);
@@ -170,7 +171,7 @@ GpMapTraining trainGpMap(const GpMapSpec& spec, const std::vector<TransformStepS
     const Eigen::Index searched = data.inputs.cols() / samples.replicates * draws;
     keepResults(trainExact(data, searched, structure, options), parameter_names, training);
   }
-  finish(spec, data, samples, threads, training);
+  finish(spec, data, samples, control, training);
   return training;
 }
 
@@ -187,7 +188,7 @@ GpMapTraining refitGpMap(const GpMap& trained, const GpMapSpec& spec,
         [&](const auto& process) { return refit(process, data.inputs, target, structure, threads); },
         trained.processes.at(p)));
   }
-  finish(spec, data, samples, threads, training);
+  finish(spec, data, samples, {threads}, training);
   return training;
 }
 

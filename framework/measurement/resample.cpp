@@ -1,7 +1,7 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 
+#include "framework/measurement/lagrange.hpp"
 #include "framework/measurement/measurement.hpp"
 #include "framework/measurement/time_series.hpp"
 #include "framework/spec/yaml/number_text.hpp"
@@ -12,33 +12,11 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr int kPoints = 4;
-
-/// A value as a combination of consecutive samples: one that is there, or a cubic through four.
-struct Stencil {
-  Index first = 0;
-  int count = 1;
-  std::array<double, kPoints> weights{1.0, 1.0, 1.0, 1.0};
-};
+constexpr int kPoints = Stencil::kPoints;
 
 std::string toSeconds(double t) {
   constexpr int kDigits = 6;
   return toShortText(t, kDigits) + " s";
-}
-
-/// Lagrange's weights of the cubic through four points, at t.
-Stencil makeCubic(const VectorXd& times, Index first, double t) {
-  Stencil stencil;
-  stencil.first = first;
-  stencil.count = kPoints;
-  for (int i = 0; i < kPoints; ++i) {
-    for (int j = 0; j < kPoints; ++j) {
-      if (i != j) {
-        stencil.weights[i] *= (t - times[first + j]) / (times[first + i] - times[first + j]);
-      }
-    }
-  }
-  return stencil;
 }
 
 double calcSmallestDifference(const VectorXd& times) {
@@ -86,7 +64,7 @@ class Stencils {
     requireRate();
     const Index first = std::clamp<Index>(next - kPoints / 2, 0, times_.size() - kPoints);
     requireNoGap(first);
-    return makeCubic(times_, first, t);
+    return makeLagrange(times_, first, kPoints, t);
   }
 
   void requireRate() const {
@@ -128,17 +106,6 @@ void requireAlive(const Measurement& measurement, Index output, const RowRange& 
   }
 }
 
-double apply(const Stencil& stencil, const Measurement& measurement, Index output) {
-  if (stencil.count == 1) {
-    return measurement.values(stencil.first, output);
-  }
-  double sum = 0.0;
-  for (int k = 0; k < stencil.count; ++k) {
-    sum += stencil.weights[k] * measurement.values(stencil.first + k, output);
-  }
-  return sum;
-}
-
 }  // namespace
 
 VectorXd resample(const Measurement& measurement, const ResponseLayout& layout,
@@ -156,7 +123,7 @@ VectorXd resample(const Measurement& measurement, const ResponseLayout& layout,
   for (Index output = 0; output < layout.getOutputCount(); ++output) {
     requireAlive(measurement, output, range);
     for (Index i = 0; i < needed.size(); ++i) {
-      response[layout.getRow(output, i)] = apply(stencils[i], measurement, output);
+      response[layout.getRow(output, i)] = apply(stencils[i], measurement.values.col(output));
     }
   }
   return response;

@@ -24,7 +24,7 @@ OnlineMap::OnlineMap(GpMap map) : map_(std::move(map)), predictor_(map_.processe
   offset_ = map_.transform.apply(VectorXd::Zero(matrix_.cols()));
   noise_variance_.resize(static_cast<Index>(map_.processes.size()));
   for (Index p = 0; p < noise_variance_.size(); ++p) {
-    noise_variance_[p] = getNoiseVariance(map_.processes[p]);
+    noise_variance_[p] = gp::getNoiseVariance(map_.processes[p]);
   }
 }
 
@@ -86,7 +86,7 @@ double OnlineMap::calcNoiseFactor(Index parameter, const Eigen::Ref<const Vector
 GpMap compressMap(const GpMap& map) {
   constexpr double kTolerance = 1e-4;
   GpMap compact = map;
-  for (Process& process : compact.processes) {
+  for (gp::Process& process : compact.processes) {
     if (const auto* exact = std::get_if<ExactProcess>(&process)) {
       if (const auto sparse = gp::compress(**exact, kTolerance)) {
         process = sparse;

@@ -69,7 +69,7 @@ GpMap readSharedParts(const Hdf5Reader& file) {
 
 /// An exact process, which has the training inputs that all exact ones share; null if all are sparse.
 const gp::GaussianProcess* findExact(const GpMap& map) {
-  for (const Process& process : map.processes) {
+  for (const gp::Process& process : map.processes) {
     if (const auto* exact = std::get_if<std::shared_ptr<const gp::GaussianProcess>>(&process)) {
       return exact->get();
     }

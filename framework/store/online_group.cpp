@@ -15,7 +15,7 @@ std::string getMapGroup(const std::string& parameter) {
   return "/online/maps/" + parameter;
 }
 
-bool isSparse(const Process& process) {
+bool isSparse(const gp::Process& process) {
   return std::holds_alternative<std::shared_ptr<const gp::SparseGaussianProcess>>(process);
 }
 
@@ -44,14 +44,15 @@ void writeForward(Hdf5Writer& file, const std::string& group, const ForwardModel
   file.writeSamples(group + "/scores", forward.scores);
   file.writeSamples(group + "/points", parts.points);
   file.write(group + "/length_scales", parts.length_scales);
-  file.writeSamples(group + "/weights", parts.weights);
+  file.writeSamples(group + "/weights", parts.weights.transpose());
   file.write(group + "/mean", parts.mean);
   file.write(group + "/left_out_variance", parts.left_out_variance);
 }
 
 ForwardModel readForward(const Hdf5Reader& file, const std::string& group) {
   gp::InterpolatorParts parts{file.readSamples(group + "/points"), file.readVector(group + "/length_scales"),
-                              file.readSamples(group + "/weights"), file.readVector(group + "/mean"),
+                              file.readSamples(group + "/weights").transpose(),
+                              file.readVector(group + "/mean"),
                               file.readVector(group + "/left_out_variance")};
   return {file.readSamples(group + "/whitener"), file.readVector(group + "/center"),
           file.readSamples(group + "/components"), file.readSamples(group + "/scores"),

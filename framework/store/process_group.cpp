@@ -78,8 +78,8 @@ void writeParts(Hdf5Writer& file, const std::string& group, const gp::SparseGaus
   file.writeAttribute(group, "approximation", kSgpr);
 }
 
-Process readExact(const Hdf5Reader& file, const std::string& group,
-                  std::shared_ptr<const Eigen::MatrixXd> inputs) {
+gp::Process readExact(const Hdf5Reader& file, const std::string& group,
+                      std::shared_ptr<const Eigen::MatrixXd> inputs) {
   gp::GaussianProcessParts parts;
   parts.structure = readStructure(file, group);
   parts.hyperparameters = readHyperparameters(file, group);
@@ -92,7 +92,7 @@ Process readExact(const Hdf5Reader& file, const std::string& group,
   return std::make_shared<const gp::GaussianProcess>(std::move(parts));
 }
 
-Process readSparse(const Hdf5Reader& file, const std::string& group) {
+gp::Process readSparse(const Hdf5Reader& file, const std::string& group) {
   gp::SparseGaussianProcessParts parts;
   parts.structure = readStructure(file, group);
   parts.hyperparameters = readHyperparameters(file, group);
@@ -138,7 +138,7 @@ gp::Hyperparameters readHyperparameters(const Hdf5Reader& file, const std::strin
   return hyperparameters;
 }
 
-void writeProcess(Hdf5Writer& file, const std::string& group, const Process& process) {
+void writeProcess(Hdf5Writer& file, const std::string& group, const gp::Process& process) {
   std::visit([&](const auto& parts) { writeParts(file, group, *parts); }, process);
 }
 
@@ -146,8 +146,8 @@ bool isExactProcess(const Hdf5Reader& file, const std::string& group) {
   return file.readAttribute(group, "approximation") == kExact;
 }
 
-Process readProcess(const Hdf5Reader& file, const std::string& group,
-                    std::shared_ptr<const Eigen::MatrixXd> inputs) {
+gp::Process readProcess(const Hdf5Reader& file, const std::string& group,
+                        std::shared_ptr<const Eigen::MatrixXd> inputs) {
   return isExactProcess(file, group) ? readExact(file, group, std::move(inputs)) : readSparse(file, group);
 }
 

@@ -4,17 +4,17 @@
 #include <string>
 
 #include "framework/hdf5/hdf5_file.hpp"
-#include "framework/inverse_map/process.hpp"
+#include "kernels/online/process.hpp"
 
 namespace twinmap {
 
 /// Writes all that a process consists of into a group; the training inputs that exact ones share are left to
 /// the caller.
-void writeProcess(Hdf5Writer& file, const std::string& group, const Process& process);
+void writeProcess(Hdf5Writer& file, const std::string& group, const gp::Process& process);
 
 /// Reads it back, bit for bit. `inputs`: the training inputs; unused for sparse processes.
-Process readProcess(const Hdf5Reader& file, const std::string& group,
-                    std::shared_ptr<const Eigen::MatrixXd> inputs);
+gp::Process readProcess(const Hdf5Reader& file, const std::string& group,
+                        std::shared_ptr<const Eigen::MatrixXd> inputs);
 
 /// Whether the group holds an exact process, which needs the training inputs.
 bool isExactProcess(const Hdf5Reader& file, const std::string& group);

@@ -82,8 +82,8 @@ RunSummary summarize(const Inputs& inputs, const GpMapTraining& trained, const M
                                        limit, trained.map.residual_correlation);
   run.training.leave_one_out = calcMetrics(run.parameters, labelled.train.parameters, trained.leave_one_out,
                                            {}, labelled.train.replicates);
-  for (const Process& process : trained.map.processes) {
-    run.training.nlml.push_back(getNlml(process));
+  for (const gp::Process& process : trained.map.processes) {
+    run.training.nlml.push_back(gp::getNlml(process));
   }
   return run;
 }

@@ -12,17 +12,23 @@ using linalg::padded;
 
 namespace {
 
-constexpr Index kPanel = 128;  // columns of the triangular operand taken at a time
+// Columns of the triangular operand taken at a time: few enough to multiply few of its zeros, many enough for
+// the products to run at full speed.
+constexpr Index kPanel = 128;
 
 }  // namespace
 
 SquaredDistances::SquaredDistances(const Eigen::MatrixXd& inputs, std::vector<int> groups, int group_count)
     : inputs_(inputs), groups_(std::move(groups)), group_count_(group_count) {
-  if (isStored()) storeGroups();
+  if (isStored()) {
+    storeGroups();
+  }
 }
 
 SquaredDistances::Workspace::Workspace(const SquaredDistances& distances) {
-  if (distances.isStored()) return;
+  if (distances.isStored()) {
+    return;
+  }
   const Index n = distances.size();
   const Index d = distances.inputs_.rows();
   scaled.setZero(padded(d), n);
@@ -46,13 +52,17 @@ void SquaredDistances::storeGroups() {
 
 void SquaredDistances::calc(const Eigen::VectorXd& length_scales, linalg::View q, Workspace& workspace,
                             linalg::TriangularScratch& scratch) const {
-  if (isStored()) return calcFromGroups(length_scales, q);
+  if (isStored()) {
+    return calcFromGroups(length_scales, q);
+  }
   calcFromProduct(length_scales, q, workspace, scratch);
 }
 
 void SquaredDistances::contract(const Eigen::VectorXd& length_scales, linalg::View t, Workspace& workspace,
                                 linalg::TriangularScratch& scratch, Eigen::VectorXd& sums) const {
-  if (isStored()) return contractGroups(length_scales, t, sums);
+  if (isStored()) {
+    return contractGroups(length_scales, t, sums);
+  }
   contractProduct(t, workspace, scratch, sums);
 }
 
@@ -70,7 +80,9 @@ void SquaredDistances::calcFromProduct(const Eigen::VectorXd& length_scales, lin
                                        Workspace& workspace, linalg::TriangularScratch& scratch) const {
   const Index n = size();
   const Index d = inputs_.rows();
-  for (Index f = 0; f < d; ++f) workspace.feature_sums(f) = 1.0 / length_scales(groups_[f]);
+  for (Index f = 0; f < d; ++f) {
+    workspace.feature_sums(f) = 1.0 / length_scales(groups_[f]);
+  }
   for (Index i = 0; i < n; ++i) {
     workspace.scaled.col(i).head(d) = inputs_.col(i).cwiseProduct(workspace.feature_sums.head(d));
     workspace.squared_norms(i) = workspace.scaled.col(i).squaredNorm();
@@ -89,7 +101,9 @@ void SquaredDistances::contractGroups(const Eigen::VectorXd& length_scales, lina
                                       Eigen::VectorXd& sums) const {
   for (int g = 0; g < group_count_; ++g) {
     double sum = 0.0;
-    for (Index j = 0; j < size(); ++j) sum += (lowerColumn(t, j) * lowerColumn(stored_[g], j)).sum();
+    for (Index j = 0; j < size(); ++j) {
+      sum += (lowerColumn(t, j) * lowerColumn(stored_[g], j)).sum();
+    }
     sums(g) = sum / (length_scales(g) * length_scales(g));
   }
 }
@@ -118,7 +132,9 @@ void SquaredDistances::contractProduct(linalg::View t, Workspace& workspace,
         (workspace.row_sums(i) * workspace.scaled.col(i).array() - 2.0 * workspace.product.col(i).array());
   }
   sums.head(group_count_).setZero();
-  for (Index f = 0; f < d; ++f) sums(groups_[f]) += workspace.feature_sums(f);
+  for (Index f = 0; f < d; ++f) {
+    sums(groups_[f]) += workspace.feature_sums(f);
+  }
 }
 
 }  // namespace twinmap::gp

@@ -33,7 +33,9 @@ MatrixXd calcCrossCovariance(const ModelStructure& structure, const Hyperparamet
   linalg::gemm(-2.0, linalg::viewOf(left).transposed(), linalg::viewOf(right), 0.0, view, scratch);
   Eigen::ArrayXd left_norms = Eigen::ArrayXd::Zero(rows);
   left_norms.head(left.cols()) = left.colwise().squaredNorm().transpose();
-  if (weights) weights->resize(left.cols(), right.cols());
+  if (weights) {
+    weights->resize(left.cols(), right.cols());
+  }
   Eigen::ArrayXd q(rows);
   Eigen::ArrayXd weight(rows);
   for (Index j = 0; j < right.cols(); ++j) {
@@ -42,9 +44,13 @@ MatrixXd calcCrossCovariance(const ModelStructure& structure, const Hyperparamet
     evaluateRadial(structure.covariance, hyperparameters.shape, ConstAlignedColumn(q.data(), rows), column,
                    AlignedColumn(weight.data(), rows));
     column *= variance;
-    if (weights) weights->col(j) = variance * weight.head(left.cols());
+    if (weights) {
+      weights->col(j) = variance * weight.head(left.cols());
+    }
   }
-  if (structure.linear_term) addLinearTerm(structure, hyperparameters, left, right, view, scratch);
+  if (structure.linear_term) {
+    addLinearTerm(structure, hyperparameters, left, right, view, scratch);
+  }
   covariance.conservativeResize(left.cols(), Eigen::NoChange);
   return covariance;
 }
@@ -53,7 +59,9 @@ Eigen::VectorXd calcPriorVariance(const ModelStructure& structure, const Hyperpa
                                   const MatrixXd& inputs) {
   const double variance = hyperparameters.signal_stddev * hyperparameters.signal_stddev;
   Eigen::VectorXd prior = Eigen::VectorXd::Constant(inputs.cols(), variance);
-  if (!structure.linear_term) return prior;
+  if (!structure.linear_term) {
+    return prior;
+  }
   const Eigen::VectorXd scales = lengthScaleOfFeatures(structure, hyperparameters, inputs.rows());
   const double linear_variance = hyperparameters.linear_stddev * hyperparameters.linear_stddev;
   for (Index i = 0; i < inputs.cols(); ++i) {

@@ -21,7 +21,9 @@ std::shared_ptr<const GaussianProcess> fit(const Eigen::Ref<const MatrixXd>& inp
   checkInputs(target, "fit: target");
   LikelihoodWorkspace workspace(set, getTeamSize(set, threads));
   const LikelihoodEvaluation evaluation = evaluateLikelihood(set, target, hyperparameters, workspace);
-  if (!evaluation.ok) throw std::runtime_error("fit: the covariance matrix is not positive definite");
+  if (!evaluation.ok) {
+    throw std::runtime_error("fit: the covariance matrix is not positive definite");
+  }
   return makeGaussianProcess(set, hyperparameters, evaluation, workspace);
 }
 

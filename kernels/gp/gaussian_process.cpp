@@ -18,7 +18,9 @@ namespace {
 constexpr Index kPredictionBlock = 256;  // points predicted together: the block of V stays in cache
 
 void require(bool condition, const char* message) {
-  if (!condition) throw std::invalid_argument(std::string("GaussianProcess: ") + message);
+  if (!condition) {
+    throw std::invalid_argument(std::string("GaussianProcess: ") + message);
+  }
 }
 
 void checkParts(const GaussianProcessParts& parts) {
@@ -39,7 +41,9 @@ void checkParts(const GaussianProcessParts& parts) {
 // R, the lower Cholesky factor of V'V.
 MatrixXd calcBasisFactor(const MatrixXd& whitened_basis, linalg::TriangularScratch& scratch) {
   MatrixXd normal = MatrixXd::Zero(whitened_basis.cols(), whitened_basis.cols());
-  if (normal.size() == 0) return normal;
+  if (normal.size() == 0) {
+    return normal;
+  }
   const linalg::ConstView basis = linalg::viewOf(whitened_basis);
   linalg::gemm(1.0, basis.transposed(), basis, 0.0, linalg::viewOf(normal), scratch.gemm());
   require(linalg::factorizeCholesky(linalg::viewOf(normal), scratch), "the mean's basis is rank deficient");
@@ -89,13 +93,17 @@ void GaussianProcess::predictBlock(const Eigen::Ref<const MatrixXd>& inputs, Ind
   Eigen::VectorXd variance = expansion_.calcPriorVariance(centered);
   linalg::TriangularScratch scratch(m);
   linalg::solveTransposedFromRight(linalg::viewOf(parts_.factor), linalg::viewOf(covariance), scratch);
-  for (Index j = 0; j < getSampleCount(); ++j) variance -= covariance.col(j).cwiseAbs2();
+  for (Index j = 0; j < getSampleCount(); ++j) {
+    variance -= covariance.col(j).cwiseAbs2();
+  }
   if (whitened_basis_.cols() > 0) {
     MatrixXd error = calcMeanBasis(parts_.structure.mean, centered);  // e' as rows
     linalg::gemm(-1.0, linalg::viewOf(std::as_const(covariance)), linalg::viewOf(whitened_basis_), 1.0,
                  linalg::viewOf(error), scratch.gemm());
     linalg::solveTransposedFromRight(linalg::viewOf(basis_factor_), linalg::viewOf(error), scratch);
-    for (Index k = 0; k < error.cols(); ++k) variance += error.col(k).cwiseAbs2();
+    for (Index k = 0; k < error.cols(); ++k) {
+      variance += error.col(k).cwiseAbs2();
+    }
   }
   prediction.latent_variance.segment(first, m) = variance.cwiseMax(0.0);
 }

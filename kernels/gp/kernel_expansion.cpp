@@ -14,7 +14,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr Index kBlock = 256;  // inputs taken together
+constexpr Index kBlock = 256;  // inputs taken together: memory for 256 n covariances instead of m n
 
 }  // namespace
 
@@ -44,9 +44,13 @@ VectorXd KernelExpansion::calcPriorVariance(const MatrixXd& centered) const {
 
 VectorXd KernelExpansion::calcMean(const MatrixXd& centered, const MatrixXd& covariance) const {
   VectorXd mean = VectorXd::Zero(centered.cols());
-  for (Index j = 0; j < weights_.size(); ++j) mean += weights_(j) * covariance.col(j);
+  for (Index j = 0; j < weights_.size(); ++j) {
+    mean += weights_(j) * covariance.col(j);
+  }
   const MatrixXd basis = calcMeanBasis(structure_.mean, centered);
-  for (Index k = 0; k < basis.cols(); ++k) mean += mean_coefficients_(k) * basis.col(k);
+  for (Index k = 0; k < basis.cols(); ++k) {
+    mean += mean_coefficients_(k) * basis.col(k);
+  }
   return mean;
 }
 

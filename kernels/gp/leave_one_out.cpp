@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kNormalQuantile975 = 1.959963984540054;
+constexpr double kNormalQuantile975 = 1.959963984540054;  // 95 % lie within it on both sides
 
 // Square roots of both parts of P = M'M - U U': M = L^-1, and U = L^-T V R^-T.
 struct PrecisionParts {
@@ -29,7 +29,9 @@ PrecisionParts calcPrecisionParts(const GaussianProcess& process, int threads) {
   linalg::TriangularScratch scratch(process.getSampleCount(), threads);
   PrecisionParts parts{process.getFactor(), process.getWhitenedBasis()};
   linalg::invertLower(linalg::viewOf(parts.inverse_factor), scratch);
-  if (parts.correction.cols() == 0) return parts;
+  if (parts.correction.cols() == 0) {
+    return parts;
+  }
   linalg::solveTransposedFromRight(linalg::viewOf(process.getBasisFactor()), linalg::viewOf(parts.correction),
                                    scratch);
   for (Index k = 0; k < parts.correction.cols(); ++k) {
@@ -54,13 +56,14 @@ MatrixXd calcPrecisionBlock(const PrecisionParts& parts, const std::vector<Index
 }  // namespace
 
 // A group that alone determines a coefficient of the mean has a singular precision: its stddev is huge then,
-// not NaN.
-GroupPrediction predictGroup(const MatrixXd& precision, const VectorXd& alpha) {
+// not NaN. Noise far below the signal drowns in the rounding of the precision, and a variance below that of
+// the noise would leave a negative one for the function without it.
+GroupPrediction predictGroup(const MatrixXd& precision, const VectorXd& alpha, double noise_variance) {
   const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(precision);
   const VectorXd values = eigen.values.cwiseMax(std::numeric_limits<double>::min());
   const MatrixXd& vectors = eigen.vectors;
   return {vectors * (vectors.transpose() * alpha).cwiseQuotient(values),
-          vectors.cwiseAbs2() * values.cwiseInverse()};
+          (vectors.cwiseAbs2() * values.cwiseInverse()).cwiseMax(noise_variance)};
 }
 
 LeaveOneOut summarizeLeaveOneOut(const VectorXd& residual, const VectorXd& stddev) {
@@ -97,7 +100,9 @@ SampleGroups makeDrawGroups(Index samples, int draws) {
   }
   const Index count = samples / draws;
   SampleGroups groups(count);
-  for (Index i = 0; i < samples; ++i) groups[i % count].push_back(i);
+  for (Index i = 0; i < samples; ++i) {
+    groups[i % count].push_back(i);
+  }
   return groups;
 }
 
@@ -105,10 +110,11 @@ LeaveOneOut calcLeaveGroupsOut(const GaussianProcess& process, const SampleGroup
   const Index n = process.getSampleCount();
   checkGroups(groups, n);
   const PrecisionParts parts = calcPrecisionParts(process, threads);
+  const double noise_stddev = process.getHyperparameters().noise_stddev;
   VectorXd residual(n), stddev(n);
   for (const std::vector<Index>& group : groups) {
-    const GroupPrediction left_out =
-        predictGroup(calcPrecisionBlock(parts, group), process.getAlpha()(group));
+    const GroupPrediction left_out = predictGroup(calcPrecisionBlock(parts, group), process.getAlpha()(group),
+                                                  noise_stddev * noise_stddev);
     residual(group) = left_out.residual;
     stddev(group) = left_out.variance.cwiseSqrt();
   }

@@ -17,6 +17,8 @@ namespace {
 
 constexpr double kFirstJitter = 1e-14;  // relative to the diagonal: below rounding, cannot change a result
 constexpr double kLastJitter = 1e-6;    // beyond it the model itself would be another one
+// Columns of a triangle, unequally long, that a thread takes at a time: enough to pay for the taking.
+constexpr Index kColumnChunk = 16;
 
 linalg::View factorView(LikelihoodWorkspace& workspace) {
   return {workspace.factor.data(), workspace.factor.cols(), workspace.factor.cols(), workspace.factor.rows()};
@@ -51,7 +53,9 @@ void calcCovarianceColumn(const TrainingSet& set, const Hyperparameters& hyperpa
     evaluateShapeDerivative(hyperparameters.shape, q_read, derivative);
     derivative *= variance;
   }
-  if (structure.linear_term) addLinearTerm(set, hyperparameters.linear_stddev, factor, j);
+  if (structure.linear_term) {
+    addLinearTerm(set, hyperparameters.linear_stddev, factor, j);
+  }
   factor(j, j) += diagonal;
 }
 
@@ -59,7 +63,7 @@ void calcCovariance(const TrainingSet& set, const Hyperparameters& hyperparamete
                     LikelihoodWorkspace& workspace) {
   set.distances().calc(hyperparameters.length_scales, factorView(workspace), workspace.distances,
                        workspace.scratch);
-  linalg::parallelFor(workspace.scratch.threads(), set.size(), 16, [&](Index j, int thread) {
+  linalg::parallelFor(workspace.scratch.threads(), set.size(), kColumnChunk, [&](Index j, int thread) {
     calcCovarianceColumn(set, hyperparameters, diagonal, j, thread, workspace);
   });
 }
@@ -68,7 +72,9 @@ double meanDiagonal(const TrainingSet& set, const Hyperparameters& hyperparamete
   double variance = hyperparameters.signal_stddev * hyperparameters.signal_stddev;
   if (set.getStructure().linear_term) {
     double trace = 0.0;
-    for (Index i = 0; i < set.size(); ++i) trace += set.gram()(i, i);
+    for (Index i = 0; i < set.size(); ++i) {
+      trace += set.gram()(i, i);
+    }
     variance += hyperparameters.linear_stddev * hyperparameters.linear_stddev * trace / double(set.size());
   }
   return variance + hyperparameters.noise_stddev * hyperparameters.noise_stddev;
@@ -79,12 +85,17 @@ bool factorize(const TrainingSet& set, const Hyperparameters& hyperparameters, L
                double& jitter) {
   const double noise_variance = hyperparameters.noise_stddev * hyperparameters.noise_stddev;
   const double scale = meanDiagonal(set, hyperparameters);
-  if (!std::isfinite(scale)) return false;
-  for (double relative = 0.0; relative <= kLastJitter * 1.01;
+  if (!std::isfinite(scale)) {
+    return false;
+  }
+  constexpr double kRounding = 1.01;  // of ten multiplications
+  for (double relative = 0.0; relative <= kLastJitter * kRounding;
        relative = relative == 0.0 ? kFirstJitter : 10.0 * relative) {
     jitter = relative * scale;
     calcCovariance(set, hyperparameters, noise_variance + jitter, workspace);
-    if (linalg::factorizeCholesky(factorView(workspace), workspace.scratch)) return true;
+    if (linalg::factorizeCholesky(factorView(workspace), workspace.scratch)) {
+      return true;
+    }
   }
   return false;
 }
@@ -93,13 +104,19 @@ bool factorize(const TrainingSet& set, const Hyperparameters& hyperparameters, L
 // z = L^-1 y, on return z = L^-1 (y - H'b). False (NaN) if the basis is rank deficient.
 double fitMean(const TrainingSet& set, LikelihoodWorkspace& workspace, Eigen::Ref<Eigen::VectorXd> z) {
   const Index p = set.meanBasis().cols();
-  if (p == 0) return 0.0;
+  if (p == 0) {
+    return 0.0;
+  }
   workspace.whitened_basis = set.meanBasis();
   const linalg::View basis = linalg::viewOf(workspace.whitened_basis);
-  for (Index k = 0; k < p; ++k) linalg::solveLower(factorView(workspace), basis.col(k));
+  for (Index k = 0; k < p; ++k) {
+    linalg::solveLower(factorView(workspace), basis.col(k));
+  }
   const linalg::View normal = linalg::viewOf(workspace.basis_factor);
   linalg::gemm(1.0, basis.transposed(), basis, 0.0, normal, workspace.scratch.gemm());
-  if (!linalg::factorizeCholesky(normal, workspace.scratch)) return std::nan("");
+  if (!linalg::factorizeCholesky(normal, workspace.scratch)) {
+    return std::nan("");
+  }
   double log_determinant = 0.0;
   for (Index k = 0; k < p; ++k) {
     log_determinant += std::log(normal(k, k));
@@ -107,18 +124,24 @@ double fitMean(const TrainingSet& set, LikelihoodWorkspace& workspace, Eigen::Re
   }
   linalg::solveLower(normal, workspace.mean_coefficients.data());
   linalg::solveLowerTransposed(normal, workspace.mean_coefficients.data());
-  for (Index k = 0; k < p; ++k) z -= workspace.mean_coefficients(k) * workspace.whitened_basis.col(k);
+  for (Index k = 0; k < p; ++k) {
+    z -= workspace.mean_coefficients(k) * workspace.whitened_basis.col(k);
+  }
   return log_determinant;
 }
 
 // U = L^-T V R^-T, so that U U' = K^-1 H' A^-1 H K^-1; into the columns behind alpha.
 void calcMeanCorrection(LikelihoodWorkspace& workspace) {
   const Index p = workspace.whitened_basis.cols();
-  if (p == 0) return;
+  if (p == 0) {
+    return;
+  }
   workspace.corrections.rightCols(p) = workspace.whitened_basis;
   const linalg::View u = linalg::viewOf(workspace.corrections).block(0, 1, workspace.corrections.rows(), p);
   linalg::solveTransposedFromRight(linalg::viewOf(workspace.basis_factor), u, workspace.scratch);
-  for (Index k = 0; k < p; ++k) linalg::solveLowerTransposed(factorView(workspace), u.col(k));
+  for (Index k = 0; k < p; ++k) {
+    linalg::solveLowerTransposed(factorView(workspace), u.col(k));
+  }
 }
 
 // W's lower triangle replaces L; returns tr(W).
@@ -129,7 +152,9 @@ double calcInverseMinusCorrections(LikelihoodWorkspace& workspace) {
   linalg::multiplyTransposedBySelf(factor, workspace.scratch);
   workspace.scratch.multiply(-1.0, corrections, corrections.transposed(), 1.0, factor, linalg::Part::kLower);
   double trace = 0.0;
-  for (Index j = 0; j < factor.cols; ++j) trace += factor(j, j);
+  for (Index j = 0; j < factor.cols; ++j) {
+    trace += factor(j, j);
+  }
   return trace;
 }
 
@@ -149,7 +174,7 @@ double halfTraceWith(LikelihoodWorkspace& workspace, const Eigen::MatrixXd& matr
 void multiplyWeights(LikelihoodWorkspace& workspace) {
   const linalg::View factor = factorView(workspace);
   const linalg::View weights = weightsView(workspace);
-  linalg::parallelFor(workspace.scratch.threads(), factor.cols, 16, [&](Index j, int) {
+  linalg::parallelFor(workspace.scratch.threads(), factor.cols, kColumnChunk, [&](Index j, int) {
     lowerColumn(weights, j) *= lowerColumn(factor, j);
     clearOutsideStrictLower(weights, j);
   });
@@ -172,7 +197,9 @@ void calcGradient(const TrainingSet& set, const Eigen::VectorXd& target,
   }
   gradient(layout.noise) = noise_variance * trace;
   gradient(layout.signal) = trace_with_total - (noise_variance + jitter) * trace - trace_with_linear;
-  if (layout.shape >= 0) gradient(layout.shape) = halfTraceWith(workspace, workspace.shape_derivative);
+  if (layout.shape >= 0) {
+    gradient(layout.shape) = halfTraceWith(workspace, workspace.shape_derivative);
+  }
   multiplyWeights(workspace);
   set.distances().contract(hyperparameters.length_scales, weightsView(workspace), workspace.distances,
                            workspace.scratch, workspace.group_sums);
@@ -182,7 +209,7 @@ void calcGradient(const TrainingSet& set, const Eigen::VectorXd& target,
 }  // namespace
 
 int getTeamSize(const TrainingSet& set, int threads) {
-  constexpr Eigen::Index kTeamSamples = 1500;
+  constexpr Eigen::Index kTeamSamples = 1500;  // 2 n^2 doubles: 36 MB, beyond which one workspace is enough
   return set.size() > kTeamSamples ? threads : 1;
 }
 
@@ -197,7 +224,9 @@ LikelihoodWorkspace::LikelihoodWorkspace(const TrainingSet& set, int threads)
       group_sums(set.distances().getGroupCount()),
       distances(set.distances()),
       scratch(std::max(set.size(), set.meanBasis().cols()), threads) {
-  if (hasShape(set.getStructure().covariance)) shape_derivative.setZero(padded(set.size()), set.size());
+  if (hasShape(set.getStructure().covariance)) {
+    shape_derivative.setZero(padded(set.size()), set.size());
+  }
 }
 
 LikelihoodEvaluation evaluateLikelihood(const TrainingSet& set, const Eigen::VectorXd& target,
@@ -206,15 +235,21 @@ LikelihoodEvaluation evaluateLikelihood(const TrainingSet& set, const Eigen::Vec
   const linalg::FlushDenormals flush;
   LikelihoodEvaluation evaluation;
   evaluation.nlml = std::numeric_limits<double>::infinity();
-  if (!factorize(set, hyperparameters, workspace, evaluation.jitter)) return evaluation;
+  if (!factorize(set, hyperparameters, workspace, evaluation.jitter)) {
+    return evaluation;
+  }
   const linalg::View factor = factorView(workspace);
   auto z = workspace.corrections.col(0);
   z = target;
   linalg::solveLower(factor, z.data());
   double nlml = fitMean(set, workspace, z) + 0.5 * z.squaredNorm();
-  for (Index j = 0; j < set.size(); ++j) nlml += std::log(factor(j, j));
+  for (Index j = 0; j < set.size(); ++j) {
+    nlml += std::log(factor(j, j));
+  }
   nlml += 0.5 * kLogTwoPi * static_cast<double>(set.size() - set.meanBasis().cols());
-  if (!std::isfinite(nlml)) return evaluation;
+  if (!std::isfinite(nlml)) {
+    return evaluation;
+  }
   linalg::solveLowerTransposed(factor, z.data());
   evaluation.ok = true;
   evaluation.nlml = nlml;
@@ -227,7 +262,9 @@ LikelihoodEvaluation evaluateLikelihoodGradient(const TrainingSet& set, const Ei
   const linalg::FlushDenormals flush;
   const LikelihoodEvaluation evaluation = evaluateLikelihood(set, target, hyperparameters, workspace);
   gradient.setZero();
-  if (!evaluation.ok) return evaluation;
+  if (!evaluation.ok) {
+    return evaluation;
+  }
   calcGradient(set, target, hyperparameters, evaluation.jitter, workspace, gradient);
   return evaluation;
 }

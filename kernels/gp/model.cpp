@@ -10,7 +10,9 @@ namespace twinmap::gp {
 namespace {
 
 void requirePositive(double value, const std::string& name) {
-  if (value > 0.0 && std::isfinite(value)) return;
+  if (value > 0.0 && std::isfinite(value)) {
+    return;
+  }
   std::ostringstream message;
   message << "hyperparameter " << name << " is " << value << "; it must be positive and finite";
   throw std::invalid_argument(message.str());
@@ -43,8 +45,12 @@ int getMeanCoefficientCount(const ModelStructure& structure, Eigen::Index featur
 
 HyperparameterLayout::HyperparameterLayout(const ModelStructure& structure)
     : signal(getGroupCount(structure)), noise(signal + 1), shape(-1), linear(-1), count(noise + 1) {
-  if (hasShape(structure.covariance)) shape = count++;
-  if (structure.linear_term) linear = count++;
+  if (hasShape(structure.covariance)) {
+    shape = count++;
+  }
+  if (structure.linear_term) {
+    linear = count++;
+  }
 }
 
 Eigen::VectorXd toLog(const ModelStructure& structure, const Hyperparameters& hyperparameters) {
@@ -53,8 +59,12 @@ Eigen::VectorXd toLog(const ModelStructure& structure, const Hyperparameters& hy
   values.head(layout.signal) = hyperparameters.length_scales;
   values(layout.signal) = hyperparameters.signal_stddev;
   values(layout.noise) = hyperparameters.noise_stddev;
-  if (layout.shape >= 0) values(layout.shape) = hyperparameters.shape;
-  if (layout.linear >= 0) values(layout.linear) = hyperparameters.linear_stddev;
+  if (layout.shape >= 0) {
+    values(layout.shape) = hyperparameters.shape;
+  }
+  if (layout.linear >= 0) {
+    values(layout.linear) = hyperparameters.linear_stddev;
+  }
   return values.unaryExpr([](double value) { return std::log(value); });
 }
 
@@ -65,24 +75,36 @@ Hyperparameters fromLog(const ModelStructure& structure, const Eigen::VectorXd& 
   hyperparameters.length_scales = values.head(layout.signal);
   hyperparameters.signal_stddev = values(layout.signal);
   hyperparameters.noise_stddev = values(layout.noise);
-  if (layout.shape >= 0) hyperparameters.shape = values(layout.shape);
-  if (layout.linear >= 0) hyperparameters.linear_stddev = values(layout.linear);
+  if (layout.shape >= 0) {
+    hyperparameters.shape = values(layout.shape);
+  }
+  if (layout.linear >= 0) {
+    hyperparameters.linear_stddev = values(layout.linear);
+  }
   return hyperparameters;
 }
 
 std::vector<std::string> getHyperparameterNames(const ModelStructure& structure) {
   const HyperparameterLayout layout(structure);
   std::vector<std::string> names;
-  for (int g = 0; g < layout.signal; ++g) names.push_back("length_scale[" + std::to_string(g) + "]");
+  for (int g = 0; g < layout.signal; ++g) {
+    names.push_back("length_scale[" + std::to_string(g) + "]");
+  }
   names.insert(names.end(), {"signal_stddev", "noise_stddev"});
-  if (layout.shape >= 0) names.push_back("shape");
-  if (layout.linear >= 0) names.push_back("linear_stddev");
+  if (layout.shape >= 0) {
+    names.push_back("shape");
+  }
+  if (layout.linear >= 0) {
+    names.push_back("linear_stddev");
+  }
   return names;
 }
 
 void checkStructure(const ModelStructure& structure, Eigen::Index feature_count) {
   const auto& groups = structure.length_scale_groups;
-  if (groups.empty()) return;
+  if (groups.empty()) {
+    return;
+  }
   if (static_cast<Eigen::Index>(groups.size()) != feature_count) {
     throw std::invalid_argument("length_scale_groups has " + std::to_string(groups.size()) + " entries for " +
                                 std::to_string(feature_count) + " features; it needs one per feature");
@@ -115,14 +137,20 @@ void checkHyperparameters(const ModelStructure& structure, const Hyperparameters
   }
   requirePositive(hyperparameters.signal_stddev, "signal_stddev");
   requirePositive(hyperparameters.noise_stddev, "noise_stddev");
-  if (hasShape(structure.covariance)) requirePositive(hyperparameters.shape, "shape");
-  if (structure.linear_term) requirePositive(hyperparameters.linear_stddev, "linear_stddev");
+  if (hasShape(structure.covariance)) {
+    requirePositive(hyperparameters.shape, "shape");
+  }
+  if (structure.linear_term) {
+    requirePositive(hyperparameters.linear_stddev, "linear_stddev");
+  }
 }
 
 void checkInputs(const Eigen::Ref<const Eigen::MatrixXd>& inputs, const char* caller) {
   for (Eigen::Index sample = 0; sample < inputs.cols(); ++sample) {
     for (Eigen::Index feature = 0; feature < inputs.rows(); ++feature) {
-      if (std::isfinite(inputs(feature, sample))) continue;
+      if (std::isfinite(inputs(feature, sample))) {
+        continue;
+      }
       std::ostringstream message;
       message << caller << ": row " << feature << " of sample " << sample << " is " << inputs(feature, sample)
               << "; every value must be finite";

@@ -25,8 +25,22 @@ void runTask(const TrainingSet& set, const TrainingOptions& options, const Task&
              LikelihoodWorkspace& workspace) {
   TargetSearches& target = *task.target;
   const SearchResult* known = task.start > 0 ? &target.results[0] : nullptr;
-  target.results[task.start] = search(set, target.values, target.starts[task.start], target.box,
-                                      options.max_evaluations, options.tolerance, workspace, known);
+  target.results[task.start] =
+      search(set, target.values, target.starts[task.start], target.box,
+             {options.max_evaluations, options.tolerance, known, options.stop}, workspace);
+}
+
+void runSideBySide(const TrainingSet& set, const TrainingOptions& options, const std::vector<Task>& tasks) {
+  const int count = static_cast<int>(tasks.size());
+  const int threads = std::max(1, std::min(options.threads, count));
+#pragma omp parallel num_threads(threads)
+  {
+    LikelihoodWorkspace workspace(set);
+#pragma omp for schedule(dynamic, 1)
+    for (int i = 0; i < count; ++i) {
+      runTask(set, options, tasks[i], workspace);
+    }
+  }
 }
 
 // Side by side, each by one thread, or for large matrices one after another, each by all threads (one
@@ -35,17 +49,13 @@ void runTasks(const TrainingSet& set, const TrainingOptions& options, const std:
   const int team = getTeamSize(set, options.threads);
   if (team > 1) {
     LikelihoodWorkspace workspace(set, team);
-    for (const Task& task : tasks) runTask(set, options, task, workspace);
-    return;
+    for (const Task& task : tasks) {
+      runTask(set, options, task, workspace);
+    }
+  } else {
+    runSideBySide(set, options, tasks);
   }
-  const int count = static_cast<int>(tasks.size());
-  const int threads = std::max(1, std::min(options.threads, count));
-#pragma omp parallel num_threads(threads)
-  {
-    LikelihoodWorkspace workspace(set);
-#pragma omp for schedule(dynamic, 1)
-    for (int i = 0; i < count; ++i) runTask(set, options, tasks[i], workspace);
-  }
+  throwIfStopped(options.stop);
 }
 
 std::vector<Task> makeTasks(std::vector<TargetSearches>& targets, std::size_t first, std::size_t last) {
@@ -67,7 +77,8 @@ std::vector<TargetSearches> makeTargets(const Eigen::Ref<const MatrixXd>& target
     const double mean = target.values.mean();
     target.stddev = std::sqrt((target.values.array() - mean).square().mean());
     const double largest = std::max(std::abs(mean), target.values.cwiseAbs().maxCoeff());
-    target.constant = !(target.stddev > 1e-13 * largest);
+    constexpr double kRounding = 1e-13;  // of mean and stddev over thousands of samples, with a margin
+    target.constant = !(target.stddev > kRounding * largest);
   }
   return all;
 }
@@ -78,7 +89,9 @@ void chooseStarts(const TrainingSet& set, const TrainingOptions& options, int st
   for (TargetSearches& target : targets) {
     target.starts.clear();
     target.results.clear();
-    if (target.constant) continue;
+    if (target.constant) {
+      continue;
+    }
     target.box = makeSearchBox(set, scales, target.stddev, options);
     target.starts = makeStarts(set, scales, target.stddev, options, starts);
   }
@@ -86,7 +99,7 @@ void chooseStarts(const TrainingSet& set, const TrainingOptions& options, int st
 
 void searchStarts(const TrainingSet& set, const TrainingOptions& options,
                   std::vector<TargetSearches>& targets) {
-  constexpr std::size_t kFirst = 1;
+  constexpr std::size_t kFirst = 1;  // the optimum of the first start is what the others may join
   runTasks(set, options, makeTasks(targets, 0, kFirst));
   runTasks(set, options, makeTasks(targets, kFirst, options.starts));
 }
@@ -103,11 +116,14 @@ void addWarmStarts(const TrainingSet& set, const TrainingOptions& options,
   shared.length_scale_groups.clear();
   const TrainingSet shared_set(set.getInputs(), shared);
   std::vector<TargetSearches> shared_targets = targets;
+  // A single length scale has few optima, and the best only starts another search.
   constexpr int kMostShared = 2;
   chooseStarts(shared_set, options, std::min(options.starts, kMostShared), shared_targets);
   searchStarts(shared_set, options, shared_targets);
   for (std::size_t t = 0; t < targets.size(); ++t) {
-    if (targets[t].constant) continue;
+    if (targets[t].constant) {
+      continue;
+    }
     for (const SearchResult& result : shared_targets[t].results) {
       targets[t].warm_start_evaluations += result.evaluations;
     }
@@ -125,12 +141,16 @@ std::vector<TargetSearches> searchAllStarts(const TrainingSet& set, const Eigen:
   chooseStarts(set, options, options.starts, all);
   if (!options.warm_starts.empty()) {
     for (std::size_t t = 0; t < all.size(); ++t) {
-      if (!all[t].constant) all[t].starts = {toLog(set.getStructure(), options.warm_starts[t])};
+      if (!all[t].constant) {
+        all[t].starts = {toLog(set.getStructure(), options.warm_starts[t])};
+      }
     }
     runTasks(set, options, makeTasks(all, 0, 1));
     return all;
   }
-  if (getGroupCount(set.getStructure()) > 1) addWarmStarts(set, options, all);
+  if (getGroupCount(set.getStructure()) > 1) {
+    addWarmStarts(set, options, all);
+  }
   searchStarts(set, options, all);
   return all;
 }

@@ -21,7 +21,7 @@ struct TargetSearches {
 
 /// Searches from several starts for each row of `targets` (t x n), parallel over targets x starts, or for
 /// n > 1500 over the threads of one factorisation. The result does not depend on the number of threads.
-/// The first start goes first; the others stop once they have joined its optimum.
+/// The first start goes first; the others stop once they have joined its optimum. Throws Stopped.
 std::vector<TargetSearches> searchAllStarts(const TrainingSet& set,
                                             const Eigen::Ref<const Eigen::MatrixXd>& targets,
                                             const TrainingOptions& options);

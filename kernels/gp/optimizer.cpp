@@ -19,12 +19,13 @@ constexpr double kFirstStep = 1.0;
 constexpr double kJoinedDistance = 0.5;
 constexpr double kEqualNats = 0.01;
 constexpr double kJoinedNats = 0.5;
+constexpr const char* kStopped = "asked to stop";
 
 struct Search {
   const Objective& objective;
   Eigen::Index samples;
   const SearchBox& box;
-  const SearchResult* known;
+  const SearchLimits& limits;
   Eigen::VectorXd gradient;
   double scale = 1.0;
   SearchResult result;
@@ -40,16 +41,21 @@ double addPrior(const SearchBox& box, const Eigen::VectorXd& point, double nlml,
 }
 
 void keepBest(Search& search, const Eigen::VectorXd& point, double nlml, double objective) {
-  if (!(objective < search.result.objective)) return;
+  if (!(objective < search.result.objective)) {
+    return;
+  }
   search.result.end = point;
   search.result.nlml = nlml;
   search.result.objective = objective;
 }
 
 bool hasJoined(const Search& search, const Eigen::VectorXd& point, double objective) {
-  if (search.known == nullptr) return false;
-  const double above = objective - search.known->objective;
-  const bool near = (point - search.known->end).cwiseAbs().maxCoeff() < kJoinedDistance;
+  const SearchResult* known = search.limits.known;
+  if (known == nullptr) {
+    return false;
+  }
+  const double above = objective - known->objective;
+  const bool near = (point - known->end).cwiseAbs().maxCoeff() < kJoinedDistance;
   return std::abs(above) < kEqualNats || (near && above < kJoinedNats);
 }
 
@@ -57,7 +63,9 @@ double calcObjective(Search& search, const Eigen::VectorXd& point) {
   const LikelihoodEvaluation evaluation = search.objective(point, search.gradient);
   ++search.result.evaluations;
   search.result.largest_jitter = std::max(search.result.largest_jitter, evaluation.jitter);
-  if (!evaluation.ok) return kRejected;
+  if (!evaluation.ok) {
+    return kRejected;
+  }
   const double objective = addPrior(search.box, point, evaluation.nlml, search.gradient);
   keepBest(search, point, evaluation.nlml, objective);
   return objective;
@@ -66,13 +74,18 @@ double calcObjective(Search& search, const Eigen::VectorXd& point) {
 double evaluate(unsigned count, const double* values, double* gradient, void* data) {
   Search& search = *static_cast<Search*>(data);
   const Eigen::Map<const Eigen::VectorXd> point(values, count);
-  if (point != search.last_point) {
+  const bool stopped = isStopRequested(search.limits.stop);
+  if (!stopped && point != search.last_point) {
     search.last_objective = calcObjective(search, point);
     search.last_point = point;
   }
   const double objective = search.last_objective;
-  if (hasJoined(search, point, objective)) nlopt_force_stop(search.optimizer);
-  if (gradient) Eigen::Map<Eigen::VectorXd>(gradient, count) = search.scale * search.gradient;
+  if (stopped || hasJoined(search, point, objective)) {
+    nlopt_force_stop(search.optimizer);
+  }
+  if (gradient) {
+    Eigen::Map<Eigen::VectorXd>(gradient, count) = search.scale * search.gradient;
+  }
   return search.scale * objective;
 }
 
@@ -108,14 +121,17 @@ const char* describe(nlopt_result code) {
 }  // namespace
 
 SearchResult minimize(const Objective& objective, Eigen::Index samples, const Eigen::VectorXd& start,
-                      const SearchBox& box, int max_evaluations, double tolerance,
-                      const SearchResult* known) {
-  Search search{objective, samples, box, known, Eigen::VectorXd::Zero(start.size()),
-                1.0,       {},      {},  0.0,   nullptr};
+                      const SearchBox& box, const SearchLimits& limits) {
+  Search search{objective, samples, box, limits, Eigen::VectorXd::Zero(start.size()),
+                1.0,       {},      {},  0.0,    nullptr};
   search.result.objective = std::numeric_limits<double>::infinity();
   search.result.nlml = std::numeric_limits<double>::infinity();
   Eigen::VectorXd point = start.cwiseMax(box.lower).cwiseMin(box.upper);
   search.result.end = point;
+  search.result.stop_reason = kStopped;
+  if (isStopRequested(limits.stop)) {
+    return search.result;
+  }
   search.scale = calcScale(search, point);
   const std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)> optimizer(
       nlopt_create(NLOPT_LD_LBFGS, static_cast<unsigned>(start.size())), &nlopt_destroy);
@@ -123,22 +139,24 @@ SearchResult minimize(const Objective& objective, Eigen::Index samples, const Ei
   nlopt_set_min_objective(optimizer.get(), &evaluate, &search);
   nlopt_set_lower_bounds(optimizer.get(), box.lower.data());
   nlopt_set_upper_bounds(optimizer.get(), box.upper.data());
-  nlopt_set_maxeval(optimizer.get(), std::max(1, max_evaluations - 1));
-  nlopt_set_ftol_abs(optimizer.get(), tolerance * search.scale);
+  nlopt_set_maxeval(optimizer.get(), std::max(1, limits.max_evaluations - 1));
+  nlopt_set_ftol_abs(optimizer.get(), limits.tolerance * search.scale);
   double least = 0.0;
   const nlopt_result code = nlopt_optimize(optimizer.get(), point.data(), &least);
+  if (isStopRequested(limits.stop)) {
+    return search.result;
+  }
   search.result.stop_reason = describe(code);
   search.result.converged = code != NLOPT_MAXEVAL_REACHED && std::isfinite(search.result.objective);
   return search.result;
 }
 
 SearchResult search(const TrainingSet& set, const Eigen::VectorXd& target, const Eigen::VectorXd& start,
-                    const SearchBox& box, int max_evaluations, double tolerance,
-                    LikelihoodWorkspace& workspace, const SearchResult* known) {
+                    const SearchBox& box, const SearchLimits& limits, LikelihoodWorkspace& workspace) {
   const Objective objective = [&](const Eigen::VectorXd& point, Eigen::VectorXd& gradient) {
     return evaluateLikelihoodGradient(set, target, fromLog(set.getStructure(), point), workspace, gradient);
   };
-  return minimize(objective, set.size(), start, box, max_evaluations, tolerance, known);
+  return minimize(objective, set.size(), start, box, limits);
 }
 
 }  // namespace twinmap::gp

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "kernels/gp/marginal_likelihood.hpp"
+#include "kernels/gp/stop.hpp"
 
 namespace twinmap::gp {
 
@@ -31,17 +32,23 @@ struct SearchResult {
 using Objective =
     std::function<LikelihoodEvaluation(const Eigen::VectorXd& point, Eigen::VectorXd& gradient)>;
 
-/// One local search for the least objective (plus prior) by NLopt's L-BFGS, from `start` clamped into the
-/// box, until a step gains less than `tolerance` nats, or, with the result of another search as `known`,
-/// until it has come so near that it can only end in the same optimum. `samples`, their number, sets the
-/// objective's size. Returns the best point evaluated. Deterministic.
-SearchResult minimize(const Objective& objective, Eigen::Index samples, const Eigen::VectorXd& start,
-                      const SearchBox& box, int max_evaluations, double tolerance,
-                      const SearchResult* known = nullptr);
+/// What ends a search besides an optimum.
+struct SearchLimits {
+  int max_evaluations = 200;
+  double tolerance = 1e-6;  ///< nats; a step that gains less ends the search
+  /// The result of another search: once so near it that only the same optimum can follow, the search ends.
+  const SearchResult* known = nullptr;
+  StopFlag stop = nullptr;  ///< once true, nothing more is evaluated
+};
 
-/// The same for the exact NLML. Cost: up to max_evaluations of n^3 flops.
+/// One local search for the least objective (plus prior) by NLopt's L-BFGS, from `start` clamped into the
+/// box. `samples`, their number, sets the objective's size. Returns the best point evaluated. Deterministic
+/// unless it is stopped.
+SearchResult minimize(const Objective& objective, Eigen::Index samples, const Eigen::VectorXd& start,
+                      const SearchBox& box, const SearchLimits& limits);
+
+/// minimize() for the exact NLML of one target. Cost: up to limits.max_evaluations of n^3 flops.
 SearchResult search(const TrainingSet& set, const Eigen::VectorXd& target, const Eigen::VectorXd& start,
-                    const SearchBox& box, int max_evaluations, double tolerance,
-                    LikelihoodWorkspace& workspace, const SearchResult* known = nullptr);
+                    const SearchBox& box, const SearchLimits& limits, LikelihoodWorkspace& workspace);
 
 }  // namespace twinmap::gp

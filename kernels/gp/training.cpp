@@ -19,10 +19,14 @@ namespace {
 
 void checkOptions(const TrainingOptions& options) {
   const auto require = [](bool condition, const char* rule) {
-    if (!condition) throw std::invalid_argument(std::string("TrainingOptions: ") + rule);
+    if (!condition) {
+      throw std::invalid_argument(std::string("TrainingOptions: ") + rule);
+    }
   };
   const auto require_bounds = [&](const RelativeBounds& bounds, const char* name) {
-    if (bounds.lower > 0.0 && bounds.lower < bounds.upper && std::isfinite(bounds.upper)) return;
+    if (bounds.lower > 0.0 && bounds.lower < bounds.upper && std::isfinite(bounds.upper)) {
+      return;
+    }
     std::ostringstream message;
     message << "TrainingOptions: " << name << " is [" << bounds.lower << ", " << bounds.upper
             << "]; it must satisfy 0 < lower < upper < infinity";
@@ -40,7 +44,9 @@ void checkOptions(const TrainingOptions& options) {
   require_bounds(options.noise_stddev, "noise_stddev");
   require_bounds(options.shape, "shape");
   require_bounds(options.linear_stddev, "linear_stddev");
-  if (!options.length_scale_prior) return;
+  if (!options.length_scale_prior) {
+    return;
+  }
   require(std::isfinite(options.length_scale_prior->log_mean), "the prior's log_mean must be finite");
   require(options.length_scale_prior->log_stddev > 0.0, "the prior's log_stddev must be positive");
 }
@@ -60,7 +66,9 @@ void checkWarmStarts(Eigen::Index targets, const ModelStructure& structure,
     throw std::invalid_argument("TrainingOptions: warm_starts has " + std::to_string(warm_starts.size()) +
                                 " entries for " + std::to_string(targets) + " targets");
   }
-  for (const Hyperparameters& start : warm_starts) checkHyperparameters(structure, start);
+  for (const Hyperparameters& start : warm_starts) {
+    checkHyperparameters(structure, start);
+  }
 }
 
 StartReport reportStart(const ModelStructure& structure, const VectorXd& start, const SearchResult& result,
@@ -82,11 +90,15 @@ StartReport reportStart(const ModelStructure& structure, const VectorXd& start, 
 int chooseStart(const std::vector<StartReport>& starts) {
   int best = -1;
   for (int k = 0; k < static_cast<int>(starts.size()); ++k) {
-    if (!std::isfinite(starts[k].objective)) continue;
+    if (!std::isfinite(starts[k].objective)) {
+      continue;
+    }
     const bool better = best < 0 || (starts[k].noise_only == starts[best].noise_only
                                          ? starts[k].objective < starts[best].objective
                                          : starts[best].noise_only);
-    if (better) best = k;
+    if (better) {
+      best = k;
+    }
   }
   return best;
 }
@@ -101,9 +113,14 @@ std::vector<std::string> describeBounds(const ModelStructure& structure, const S
     at_bound.push_back(text.str());
   };
   for (Index i = 0; i < point.size(); ++i) {
-    const double margin = 1e-6 * (box.upper(i) - box.lower(i));
-    if (point(i) <= box.lower(i) + margin) add(i, "lower", box.lower(i));
-    if (point(i) >= box.upper(i) - margin) add(i, "upper", box.upper(i));
+    constexpr double kAtBound = 1e-6;  // of the box: the optimizer clamps to within rounding of it
+    const double margin = kAtBound * (box.upper(i) - box.lower(i));
+    if (point(i) <= box.lower(i) + margin) {
+      add(i, "lower", box.lower(i));
+    }
+    if (point(i) >= box.upper(i) - margin) {
+      add(i, "upper", box.upper(i));
+    }
   }
   return at_bound;
 }
@@ -201,7 +218,10 @@ std::vector<TrainingResult> train(const Eigen::Ref<const Eigen::MatrixXd>& input
   const std::vector<TargetSearches> searches = searchAllStarts(set, targets, options);
   LikelihoodWorkspace workspace(set, getTeamSize(set, options.threads));
   std::vector<TrainingResult> results;
-  for (const TargetSearches& target : searches) results.push_back(finish(set, target, workspace));
+  for (const TargetSearches& target : searches) {
+    throwIfStopped(options.stop);
+    results.push_back(finish(set, target, workspace));
+  }
   return results;
 }
 

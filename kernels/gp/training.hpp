@@ -8,6 +8,7 @@
 
 #include "kernels/gp/gaussian_process.hpp"
 #include "kernels/gp/model.hpp"
+#include "kernels/gp/stop.hpp"
 
 namespace twinmap::gp {
 
@@ -55,6 +56,8 @@ struct TrainingOptions {
   std::optional<LengthScalePrior> length_scale_prior;
   /// Targets x starts run in parallel; the result does not depend on the number.
   int threads = 1;
+  /// Once true, training ends with Stopped as soon as the evaluations under way are done: n^3 flops each.
+  StopFlag stop = nullptr;
 };
 
 /// One local search.
@@ -106,8 +109,8 @@ struct TrainingResult {
 /// Trains one process per row of `targets` (t x n) on the same inputs (d x n): hyperparameters by least NLML,
 /// NLopt's L-BFGS on their logarithms within bounds, from several deterministic starts. Results are bitwise
 /// the same for any number of threads. Throws std::invalid_argument for input that cannot be meant: NaN,
-/// sizes that do not fit, n < 2, all inputs equal, options out of range. A constant target is a status.
-/// Cost per evaluation: n^3 flops; memory per thread: 2.5 n^2 doubles.
+/// sizes that do not fit, n < 2, all inputs equal, options out of range; Stopped where the options ask for
+/// it. A constant target is a status. Cost per evaluation: n^3 flops; memory per thread: 2.5 n^2 doubles.
 std::vector<TrainingResult> train(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                                   const Eigen::Ref<const Eigen::MatrixXd>& targets,
                                   const ModelStructure& structure, const TrainingOptions& options = {});

@@ -10,7 +10,9 @@ namespace {
 
 void checkSize(Eigen::Index samples, int coefficients) {
   const Eigen::Index least = std::max<Eigen::Index>(2, coefficients + 1);
-  if (samples >= least) return;
+  if (samples >= least) {
+    return;
+  }
   throw std::invalid_argument("a Gaussian process needs at least " + std::to_string(least) +
                               " training samples for this mean function; there are " +
                               std::to_string(samples));
@@ -26,7 +28,9 @@ Eigen::MatrixXd calcGram(const Eigen::MatrixXd& centered) {
 }
 
 std::vector<int> explicitGroups(const ModelStructure& structure, Eigen::Index features) {
-  if (!structure.length_scale_groups.empty()) return structure.length_scale_groups;
+  if (!structure.length_scale_groups.empty()) {
+    return structure.length_scale_groups;
+  }
   return std::vector<int>(features, 0);
 }
 
@@ -34,13 +38,19 @@ std::vector<int> explicitGroups(const ModelStructure& structure, Eigen::Index fe
 
 Eigen::VectorXd calcCenter(const Eigen::Ref<const Eigen::MatrixXd>& inputs) {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(inputs.rows());
-  for (Eigen::Index i = 0; i < inputs.cols(); ++i) sum += inputs.col(i);
+  for (Eigen::Index i = 0; i < inputs.cols(); ++i) {
+    sum += inputs.col(i);
+  }
   return sum / static_cast<double>(inputs.cols());
 }
 
 Eigen::MatrixXd calcMeanBasis(MeanFunction mean, const Eigen::MatrixXd& centered) {
-  if (mean == MeanFunction::kZero) return Eigen::MatrixXd(centered.cols(), 0);
-  if (mean == MeanFunction::kConstant) return Eigen::MatrixXd::Ones(centered.cols(), 1);
+  if (mean == MeanFunction::kZero) {
+    return Eigen::MatrixXd(centered.cols(), 0);
+  }
+  if (mean == MeanFunction::kConstant) {
+    return Eigen::MatrixXd::Ones(centered.cols(), 1);
+  }
   Eigen::MatrixXd basis(centered.cols(), centered.rows() + 1);
   basis.col(0).setOnes();
   basis.rightCols(centered.rows()) = centered.transpose();
@@ -54,7 +64,9 @@ TrainingSet::TrainingSet(const Eigen::Ref<const Eigen::MatrixXd>& inputs, const 
   checkSize(inputs.cols(), getMeanCoefficientCount(structure, inputs.rows()));
   const Eigen::MatrixXd centered = inputs_->colwise() - calcCenter(*inputs_);
   distances_.emplace(centered, explicitGroups(structure, inputs.rows()), getGroupCount(structure));
-  if (structure.linear_term) gram_ = calcGram(centered);
+  if (structure.linear_term) {
+    gram_ = calcGram(centered);
+  }
   mean_basis_ = calcMeanBasis(structure.mean, centered);
 }
 

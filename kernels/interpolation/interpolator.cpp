@@ -18,13 +18,21 @@ using Eigen::VectorXd;
 
 namespace {
 
+// Few points tell length scales, and an evaluation costs their number cubed.
 constexpr Index kSearchPoints = 300;
-constexpr int kMostEvaluations = 120;
-constexpr double kShortest = 0.2, kLongest = 50.0;  // length scales, of variables within [-1, 1]
-constexpr double kNugget = 1e-10;                   // keeps K positive definite; far below any noise
+constexpr int kMostEvaluations = 120;  // the search ends after some 100 by itself
+// Length scales, of variables within [-1, 1]: below, nothing is learnt between the points; above, a function
+// is a polynomial of low order, and K singular.
+constexpr double kShortest = 0.2, kLongest = 50.0;
+constexpr double kStart = 1.5;       // of the order of the box
+constexpr double kFirstStep = 0.7;   // of the logarithm: a factor of two
+constexpr double kTolerance = 0.02;  // of the logarithm: 2 % of a length scale change no value visibly
+constexpr double kNugget = 1e-10;    // keeps K positive definite; far below any noise
 
 void require(bool condition, const char* message) {
-  if (!condition) throw std::invalid_argument(std::string("Interpolator: ") + message);
+  if (!condition) {
+    throw std::invalid_argument(std::string("Interpolator: ") + message);
+  }
 }
 
 MatrixXd calcCovariance(const MatrixXd& points, const VectorXd& length_scales) {
@@ -48,7 +56,9 @@ struct Solution {
 bool solve(const MatrixXd& points, const MatrixXd& centered, const VectorXd& length_scales,
            Solution& solution) {
   const linalg::Cholesky factor = linalg::calcCholesky(calcCovariance(points, length_scales));
-  if (!factor.positive_definite) return false;
+  if (!factor.positive_definite) {
+    return false;
+  }
   solution.weights = linalg::solveCholesky(factor.lower, centered.transpose());
   const MatrixXd inverse_factor =
       linalg::solveLower(factor.lower, MatrixXd::Identity(points.cols(), points.cols()));
@@ -65,10 +75,12 @@ struct Search {
 };
 
 double evaluateLengthScales(unsigned count, const double* logs, double*, void* data) {
-  constexpr double kRejected = 1e6;
+  constexpr double kRejected = 1e6;  // worse than any sum of logarithms, yet finite for the optimizer
   Search& search = *static_cast<Search*>(data);
   const VectorXd length_scales = Eigen::Map<const Eigen::ArrayXd>(logs, count).exp();
-  if (!solve(search.points, search.centered, length_scales, search.solution)) return kRejected;
+  if (!solve(search.points, search.centered, length_scales, search.solution)) {
+    return kRejected;
+  }
   return search.solution.left_out_variance.array().log1p().sum();
 }
 
@@ -82,10 +94,10 @@ VectorXd findLengthScales(const MatrixXd& points, const MatrixXd& centered) {
   nlopt_set_min_objective(optimizer.get(), evaluateLengthScales, &search);
   nlopt_set_lower_bounds1(optimizer.get(), std::log(kShortest));
   nlopt_set_upper_bounds1(optimizer.get(), std::log(kLongest));
-  nlopt_set_initial_step1(optimizer.get(), 0.7);
-  nlopt_set_xtol_abs1(optimizer.get(), 0.02);
+  nlopt_set_initial_step1(optimizer.get(), kFirstStep);
+  nlopt_set_xtol_abs1(optimizer.get(), kTolerance);
   nlopt_set_maxeval(optimizer.get(), kMostEvaluations);
-  std::vector<double> logs(count, std::log(1.5));
+  std::vector<double> logs(count, std::log(kStart));
   double best = 0.0;
   nlopt_optimize(optimizer.get(), logs.data(), &best);
   return Eigen::Map<const Eigen::ArrayXd>(logs.data(), count).exp();
@@ -96,13 +108,12 @@ VectorXd findLengthScales(const MatrixXd& points, const MatrixXd& centered) {
 Interpolator::Interpolator(InterpolatorParts parts) : parts_(std::move(parts)) {
   const Index n = parts_.points.cols(), r = parts_.mean.size();
   require(n > 0 && parts_.length_scales.size() == parts_.points.rows(), "a length scale per variable");
-  require(parts_.weights.rows() == r && parts_.weights.cols() == n && parts_.left_out_variance.size() == r,
-          "weights must be functions x points");
+  require(parts_.weights.rows() == n && parts_.weights.cols() == r && parts_.left_out_variance.size() == r,
+          "weights must be points x functions");
   require(parts_.points.allFinite() && parts_.weights.allFinite() && parts_.mean.allFinite() &&
               parts_.left_out_variance.allFinite() && (parts_.length_scales.array() > 0.0).all(),
           "every number must be finite, length scales positive");
   scaled_points_ = parts_.points.transpose() * parts_.length_scales.cwiseInverse().asDiagonal();
-  weights_of_function_ = parts_.weights.transpose();
 }
 
 void Interpolator::evaluate(const Eigen::Ref<const VectorXd>& point, Workspace& workspace) const {
@@ -112,15 +123,17 @@ void Interpolator::evaluate(const Eigen::Ref<const VectorXd>& point, Workspace& 
     scaled.col(v).array() -= point(v) / parts_.length_scales(v);
   }
   workspace.covariance = scaled.col(0).array().square();
-  for (Index v = 1; v < getVariableCount(); ++v) workspace.covariance += scaled.col(v).array().square();
+  for (Index v = 1; v < getVariableCount(); ++v) {
+    workspace.covariance += scaled.col(v).array().square();
+  }
   workspace.covariance = (-0.5 * workspace.covariance).exp();
   workspace.values = parts_.mean;
-  workspace.values.noalias() += weights_of_function_.transpose() * workspace.covariance.matrix();
+  workspace.values.noalias() += parts_.weights.transpose() * workspace.covariance.matrix();
   for (Index v = 0; v < getVariableCount(); ++v) {
     scaled.col(v).array() *= workspace.covariance / parts_.length_scales(v);
   }
   // Few columns: dot products beat a blocked product, which would copy the weights first.
-  workspace.jacobian.noalias() = weights_of_function_.transpose().lazyProduct(scaled);
+  workspace.jacobian.noalias() = parts_.weights.transpose().lazyProduct(scaled);
 }
 
 Interpolator fitInterpolator(const MatrixXd& points, const MatrixXd& values) {
@@ -135,7 +148,7 @@ Interpolator fitInterpolator(const MatrixXd& points, const MatrixXd& values) {
   parts.length_scales = findLengthScales(points(Eigen::all, searched), centered(Eigen::all, searched));
   Solution solution;
   require(solve(points, centered, parts.length_scales, solution), "the covariance is not positive definite");
-  parts.weights = solution.weights.transpose();
+  parts.weights = solution.weights;
   parts.left_out_variance = solution.left_out_variance;
   return Interpolator(std::move(parts));
 }

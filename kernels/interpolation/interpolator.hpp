@@ -8,7 +8,7 @@ namespace twinmap::gp {
 struct InterpolatorParts {
   Eigen::MatrixXd points;         ///< Z, p x n
   Eigen::VectorXd length_scales;  ///< p, in the units of the points
-  Eigen::MatrixXd weights;        ///< r x n, (K^-1 (S - mean)')'
+  Eigen::MatrixXd weights;        ///< n x r, K^-1 (S - mean)'
   Eigen::VectorXd mean;           ///< r
   /// r, mean squared error of each function at a point that is left out.
   Eigen::VectorXd left_out_variance;
@@ -40,8 +40,7 @@ class Interpolator {
 
  private:
   InterpolatorParts parts_;
-  Eigen::MatrixXd scaled_points_;        // Z / l, n x p
-  Eigen::MatrixXd weights_of_function_;  // n x r
+  Eigen::MatrixXd scaled_points_;  // Z / l, n x p
 };
 
 /// Fits an interpolator to `values` (r x n) at `points` (p x n, n > p + 1, each variable spread over about

@@ -22,8 +22,12 @@ double boundNorm(ConstView lower) {
   Eigen::VectorXd row_weights = Eigen::VectorXd::Zero(n);
   for (Index j = 0; j < n; ++j) {
     double column_sum = 0.0;
-    for (Index i = j; i < n; ++i) column_sum += std::abs(lower(i, j));
-    for (Index i = j; i < n; ++i) row_weights(i) += std::abs(lower(i, j)) * column_sum;
+    for (Index i = j; i < n; ++i) {
+      column_sum += std::abs(lower(i, j));
+    }
+    for (Index i = j; i < n; ++i) {
+      row_weights(i) += std::abs(lower(i, j)) * column_sum;
+    }
   }
   return row_weights.maxCoeff();
 }
@@ -35,7 +39,9 @@ double estimateInverseNorm(ConstView lower) {
   for (int step = 0; step < kHagerSteps; ++step) {
     applyInverse(lower, x);
     const double found = x.lpNorm<1>();
-    if (found <= norm) break;
+    if (found <= norm) {
+      break;
+    }
     norm = found;
     x = x.unaryExpr([](double value) { return value >= 0.0 ? 1.0 : -1.0; });
     applyInverse(lower, x);
@@ -50,7 +56,9 @@ double estimateInverseNorm(ConstView lower) {
 }  // namespace
 
 double estimateCondition(ConstView lower) {
-  if (lower.rows == 0) return 1.0;
+  if (lower.rows == 0) {
+    return 1.0;
+  }
   return boundNorm(lower) * estimateInverseNorm(lower);
 }
 

@@ -19,9 +19,9 @@ constexpr Index kTileVectors = 3;
 #endif
 constexpr Index kTileCols = kLanes;  // 16 (AVX-512) or 12 (AVX2) sums in registers; 32 rows are whole tiles
 constexpr Index kTileRows = kLanes * kTileVectors;
-constexpr Index kBlockDepth = 256;
-constexpr Index kBlockRows = 12 * kTileRows;
-constexpr Index kBlockCols = 1024;
+constexpr Index kBlockDepth = 256;  // a sliver of B, kTileCols wide: 16 KiB (8 with AVX2), half of L1
+constexpr Index kBlockRows = 12 * kTileRows;  // a block of A: 384 KiB (288 with AVX2), within L2
+constexpr Index kBlockCols = 1024;            // a panel of B: 2 MiB of L3
 
 Index roundUp(Index value, Index multiple) {
   return (value + multiple - 1) / multiple * multiple;
@@ -34,8 +34,12 @@ void pack(ConstView a, Index width, double alpha, double* packed) {
     const Index rows = std::min(width, a.rows - first);
     for (Index p = 0; p < a.cols; ++p, packed += width) {
       const double* source = a.data + first * a.row_stride + p * a.col_stride;
-      for (Index r = 0; r < rows; ++r) packed[r] = alpha * source[r * a.row_stride];
-      for (Index r = rows; r < width; ++r) packed[r] = 0.0;
+      for (Index r = 0; r < rows; ++r) {
+        packed[r] = alpha * source[r * a.row_stride];
+      }
+      for (Index r = rows; r < width; ++r) {
+        packed[r] = 0.0;
+      }
     }
   }
 }
@@ -46,10 +50,14 @@ void packUnitStride(ConstView a, Index width, double alpha, double* packed) {
   for (Index first = 0; first < whole; first += width) {
     for (Index p = 0; p < a.cols; ++p, packed += width) {
       const double* source = a.data + first + p * a.col_stride;
-      for (Index r = 0; r < width; ++r) packed[r] = alpha * source[r];
+      for (Index r = 0; r < width; ++r) {
+        packed[r] = alpha * source[r];
+      }
     }
   }
-  if (whole < a.rows) pack(a.block(whole, 0, a.rows - whole, a.cols), width, alpha, packed);
+  if (whole < a.rows) {
+    pack(a.block(whole, 0, a.rows - whole, a.cols), width, alpha, packed);
+  }
 }
 
 // Where the depth runs along memory, square blocks are transposed in registers.
@@ -64,16 +72,26 @@ void packUnitDepth(ConstView a, Index width, double alpha, double* packed) {
       }
     }
     pack(a.block(first, depth, width, a.cols - depth), width, 1.0, packed + depth * width);
-    if (alpha == 1.0) continue;
-    for (Index i = 0; i < width * a.cols; ++i) packed[i] *= alpha;
+    if (alpha == 1.0) {
+      continue;
+    }
+    for (Index i = 0; i < width * a.cols; ++i) {
+      packed[i] *= alpha;
+    }
   }
-  if (whole < a.rows) pack(a.block(whole, 0, a.rows - whole, a.cols), width, alpha, packed);
+  if (whole < a.rows) {
+    pack(a.block(whole, 0, a.rows - whole, a.cols), width, alpha, packed);
+  }
 }
 
 template <Index kWidth>
 void packSlivers(ConstView a, double alpha, double* packed) {
-  if (a.row_stride == 1) return packUnitStride(a, kWidth, alpha, packed);
-  if (a.col_stride == 1) return packUnitDepth(a, kWidth, alpha, packed);
+  if (a.row_stride == 1) {
+    return packUnitStride(a, kWidth, alpha, packed);
+  }
+  if (a.col_stride == 1) {
+    return packUnitDepth(a, kWidth, alpha, packed);
+  }
   pack(a, kWidth, alpha, packed);
 }
 
@@ -86,15 +104,21 @@ inline void multiplySlivers(Index depth, const double* left, const double* right
   Packet sum[kTileCols][kTileVectors] = {};
   for (Index p = 0; p < depth; ++p, left += kTileRows, right += kTileCols) {
     Packet rows[kTileVectors];
-    for (Index v = 0; v < kTileVectors; ++v) rows[v] = *reinterpret_cast<const Packet*>(left + v * kLanes);
+    for (Index v = 0; v < kTileVectors; ++v) {
+      rows[v] = *reinterpret_cast<const Packet*>(left + v * kLanes);
+    }
 #pragma GCC unroll 8
     for (Index j = 0; j < kTileCols; ++j) {
 #pragma GCC unroll 3
-      for (Index v = 0; v < kTileVectors; ++v) sum[j][v] += rows[v] * right[j];
+      for (Index v = 0; v < kTileVectors; ++v) {
+        sum[j][v] += rows[v] * right[j];
+      }
     }
   }
   for (Index j = 0; j < kTileCols; ++j) {
-    for (Index v = 0; v < kTileVectors; ++v) tile.column[j][v] = sum[j][v];
+    for (Index v = 0; v < kTileVectors; ++v) {
+      tile.column[j][v] = sum[j][v];
+    }
   }
 }
 
@@ -111,7 +135,9 @@ void storeEdge(const Tile& tile, bool accumulate, View c) {
   for (Index j = 0; j < c.cols; ++j) {
     double values[kTileRows];
     std::memcpy(values, tile.column[j], sizeof(values));
-    for (Index i = 0; i < c.rows; ++i) c(i, j) = accumulate ? c(i, j) + values[i] : values[i];
+    for (Index i = 0; i < c.rows; ++i) {
+      c(i, j) = accumulate ? c(i, j) + values[i] : values[i];
+    }
   }
 }
 
@@ -123,7 +149,9 @@ void multiplyBlock(Index depth, const double* left, const double* right, bool ac
     const Index cols = std::min(kTileCols, c.cols - j);
     for (Index i = 0; i < c.rows; i += kTileRows) {
       const Index rows = std::min(kTileRows, c.rows - i);
-      if (part == Part::kLower && i + rows - 1 + diagonal_offset < j) continue;
+      if (part == Part::kLower && i + rows - 1 + diagonal_offset < j) {
+        continue;
+      }
       Tile tile;
       multiplySlivers(depth, left + i * depth, right + j * depth, tile);
       const View target = c.block(i, j, rows, cols);
@@ -137,7 +165,9 @@ void multiplyBlock(Index depth, const double* left, const double* right, bool ac
 }
 
 void clear(View c) {
-  for (Index j = 0; j < c.cols; ++j) std::fill_n(c.col(j), c.rows, 0.0);
+  for (Index j = 0; j < c.cols; ++j) {
+    std::fill_n(c.col(j), c.rows, 0.0);
+  }
 }
 
 }  // namespace
@@ -148,9 +178,13 @@ GemmScratch::GemmScratch()
 
 void gemm(double alpha, ConstView a, ConstView b, double beta, View c, GemmScratch& scratch, Part part) {
 #ifdef TWINMAP_OPENBLAS
-  if (a.cols >= kOpenblasDepth) return multiplyByOpenblas(alpha, a, b, beta, c, part);
+  if (a.cols >= kOpenblasDepth) {
+    return multiplyByOpenblas(alpha, a, b, beta, c, part);
+  }
 #endif
-  if (a.cols == 0 && beta == 0.0) clear(c);
+  if (a.cols == 0 && beta == 0.0) {
+    clear(c);
+  }
   for (Index j = 0; j < c.cols; j += kBlockCols) {
     const Index cols = std::min(kBlockCols, c.cols - j);
     for (Index p = 0; p < a.cols; p += kBlockDepth) {
@@ -159,7 +193,9 @@ void gemm(double alpha, ConstView a, ConstView b, double beta, View c, GemmScrat
       packSlivers<kTileCols>(b.block(p, j, depth, cols).transposed(), 1.0, scratch.right());
       for (Index i = 0; i < c.rows; i += kBlockRows) {
         const Index rows = std::min(kBlockRows, c.rows - i);
-        if (part == Part::kLower && i + rows - 1 < j) continue;
+        if (part == Part::kLower && i + rows - 1 < j) {
+          continue;
+        }
         packSlivers<kTileRows>(a.block(i, p, rows, depth), alpha, scratch.left());
         multiplyBlock(depth, scratch.left(), scratch.right(), accumulate, c.block(i, j, rows, cols), i - j,
                       part);

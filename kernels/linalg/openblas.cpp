@@ -39,7 +39,9 @@ void multiplyColumns(double alpha, ConstView a, ConstView b, double beta, View c
 }  // namespace
 
 void multiplyByOpenblas(double alpha, ConstView a, ConstView b, double beta, View c, Part part) {
-  if (part == Part::kAll) return multiplyColumns(alpha, a, b, beta, c);
+  if (part == Part::kAll) {
+    return multiplyColumns(alpha, a, b, beta, c);
+  }
   for (Index j = 0; j < std::min(c.cols, c.rows); j += kLowerCols) {
     const Index cols = std::min(kLowerCols, c.cols - j);
     const Index rows = c.rows - j;

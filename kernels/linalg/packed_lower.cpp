@@ -18,25 +18,33 @@ struct Rows {
 
 inline Rows loadRows(const double* source) {
   Rows rows;
-  for (Index v = 0; v < kVectors; ++v) rows.part[v] = load(source + v * kLanes);
+  for (Index v = 0; v < kVectors; ++v) {
+    rows.part[v] = load(source + v * kLanes);
+  }
   return rows;
 }
 
 inline void storeRows(double* target, const Rows& rows) {
-  for (Index v = 0; v < kVectors; ++v) store(target + v * kLanes, rows.part[v]);
+  for (Index v = 0; v < kVectors; ++v) {
+    store(target + v * kLanes, rows.part[v]);
+  }
 }
 
 // sum -= tile x
 inline void subtractProduct(const double* tile, const double* x, Rows& sum) {
   for (Index j = 0; j < kTile; ++j, tile += kTile) {
-    for (Index v = 0; v < kVectors; ++v) sum.part[v] -= load(tile + v * kLanes) * x[j];
+    for (Index v = 0; v < kVectors; ++v) {
+      sum.part[v] -= load(tile + v * kLanes) * x[j];
+    }
   }
 }
 
 // The tile's inverse, padded with zeros.
 void storeInverse(ConstView block, double* tile, TriangularScratch& scratch) {
   for (Index j = 0; j < block.cols; ++j) {
-    for (Index i = j; i < block.rows; ++i) tile[i + j * kTile] = block(i, j);
+    for (Index i = j; i < block.rows; ++i) {
+      tile[i + j * kTile] = block(i, j);
+    }
   }
   invertLower({tile, block.rows, block.cols, kTile}, scratch);
 }
@@ -52,7 +60,9 @@ PackedLower::PackedLower(ConstView lower)
     const Index rows = std::min(kTile, lower.rows - r);
     for (Index c = 0; c < r; c += kTile, tile += kTileElements) {
       for (Index j = 0; j < kTile; ++j) {
-        for (Index i = 0; i < rows; ++i) tile[i + j * kTile] = lower(r + i, c + j);
+        for (Index i = 0; i < rows; ++i) {
+          tile[i + j * kTile] = lower(r + i, c + j);
+        }
       }
     }
     storeInverse(lower.block(r, r, rows, rows), tile, scratch);
@@ -64,13 +74,17 @@ void PackedLower::solve(double* x) const {
   const double* tile = tiles_.data();
   for (Index r = 0; r < blocks_; ++r) {
     Rows sum = loadRows(x + r * kTile);
-    for (Index c = 0; c < r; ++c, tile += kTileElements) subtractProduct(tile, x + c * kTile, sum);
+    for (Index c = 0; c < r; ++c, tile += kTileElements) {
+      subtractProduct(tile, x + c * kTile, sum);
+    }
     double right[kTile];
     storeRows(right, sum);
     Rows negative = {};
     subtractProduct(tile, right, negative);
     tile += kTileElements;
-    for (Index v = 0; v < kVectors; ++v) negative.part[v] = -negative.part[v];
+    for (Index v = 0; v < kVectors; ++v) {
+      negative.part[v] = -negative.part[v];
+    }
     storeRows(x + r * kTile, negative);
   }
 }
@@ -97,9 +111,13 @@ void PackedSamples::weightedDistances(const double* point, const double* weights
       for (Index f = 0; f < features_; ++f, sample += kChunk, weight += kWeightings) {
         const Packet difference = load(sample) - point[f];
         const Packet square = difference * difference;
-        for (int t = 0; t < kWeightings; ++t) sum[t] += square * weight[t];
+        for (int t = 0; t < kWeightings; ++t) {
+          sum[t] += square * weight[t];
+        }
       }
-      for (int t = 0; t < kWeightings; ++t) store(squares + t * paddedSize() + first + v * kLanes, sum[t]);
+      for (int t = 0; t < kWeightings; ++t) {
+        store(squares + t * paddedSize() + first + v * kLanes, sum[t]);
+      }
     }
     source += features_ * kChunk;
   }
@@ -113,7 +131,9 @@ void PackedSamples::addProduct(const double* weights, double* values) const {
   for (Index chunk = 0; chunk < chunks_; ++chunk) {
     Rows sum = loadRows(values + chunk * kChunk);
     for (Index f = 0; f < features_; ++f, source += kChunk) {
-      for (Index v = 0; v < kVectors; ++v) sum.part[v] += load(source + v * kLanes) * weights[f];
+      for (Index v = 0; v < kVectors; ++v) {
+        sum.part[v] += load(source + v * kLanes) * weights[f];
+      }
     }
     storeRows(values + chunk * kChunk, sum);
   }

@@ -29,7 +29,9 @@ inline void store(double* target, Packet value) {
 /// p becomes contiguous at target + p * target_stride.
 inline void copyTransposed(const double* source, Index stride, double* target, Index target_stride) {
   Packet row[kLanes];
-  for (Index r = 0; r < kLanes; ++r) row[r] = load(source + r * stride);
+  for (Index r = 0; r < kLanes; ++r) {
+    row[r] = load(source + r * stride);
+  }
 #ifdef __AVX512F__
   Packet pair[kLanes], quad[kLanes];
   for (Index r = 0; r < 8; r += 2) {

@@ -11,11 +11,15 @@ namespace twinmap::linalg {
 template <typename Action>
 void parallelFor(int threads, Index count, Index chunk, const Action& action) {
   if (threads == 1) {
-    for (Index i = 0; i < count; ++i) action(i, 0);
+    for (Index i = 0; i < count; ++i) {
+      action(i, 0);
+    }
     return;
   }
 #pragma omp parallel for num_threads(threads) schedule(dynamic, chunk)
-  for (Index i = 0; i < count; ++i) action(i, omp_get_thread_num());
+  for (Index i = 0; i < count; ++i) {
+    action(i, omp_get_thread_num());
+  }
 }
 
 }  // namespace twinmap::linalg

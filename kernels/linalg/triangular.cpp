@@ -12,11 +12,11 @@
 namespace twinmap::linalg {
 namespace {
 
-constexpr Index kBase = 32;   // below this order, plain loops over columns
-constexpr Index kPanel = 64;  // triangular operands up to this order are multiplied with their zeros
-constexpr Index kChunkVectors = 4;
-constexpr double kTeamFlops = 2e7;  // half a millisecond: a hundred times what waking a team costs
-constexpr Index kStripsPerThread = 4;
+constexpr Index kBase = 32;            // below this order, plain loops over columns
+constexpr Index kPanel = 64;           // triangular operands up to this order are multiplied with their zeros
+constexpr Index kChunkVectors = 4;     // independent sums: they hide the latency of multiplying and adding
+constexpr double kTeamFlops = 2e7;     // half a millisecond: a hundred times what waking a team costs
+constexpr Index kStripsPerThread = 4;  // strips of unequal work: dealt one by one, they even out
 #ifdef TWINMAP_OPENBLAS
 constexpr bool kSharesProducts = false;  // see openblas.hpp
 #else
@@ -32,11 +32,17 @@ template <Index kVectors>
 void subtractColumnsChunk(const double* columns, Index stride, const double* weights, Index weight_stride,
                           Index count, double* target) {
   Packet sum[kVectors];
-  for (Index v = 0; v < kVectors; ++v) sum[v] = load(target + v * kLanes);
-  for (Index i = 0; i < count; ++i, columns += stride, weights += weight_stride) {
-    for (Index v = 0; v < kVectors; ++v) sum[v] -= load(columns + v * kLanes) * *weights;
+  for (Index v = 0; v < kVectors; ++v) {
+    sum[v] = load(target + v * kLanes);
   }
-  for (Index v = 0; v < kVectors; ++v) store(target + v * kLanes, sum[v]);
+  for (Index i = 0; i < count; ++i, columns += stride, weights += weight_stride) {
+    for (Index v = 0; v < kVectors; ++v) {
+      sum[v] -= load(columns + v * kLanes) * *weights;
+    }
+  }
+  for (Index v = 0; v < kVectors; ++v) {
+    store(target + v * kLanes, sum[v]);
+  }
 }
 
 void subtractColumns(ConstView columns, const double* weights, Index weight_stride, double* target) {
@@ -53,13 +59,17 @@ void subtractColumns(ConstView columns, const double* weights, Index weight_stri
   }
   for (; row < columns.rows; ++row) {
     double sum = target[row];
-    for (Index i = 0; i < columns.cols; ++i) sum -= source[row + i * stride] * weights[i * weight_stride];
+    for (Index i = 0; i < columns.cols; ++i) {
+      sum -= source[row + i * stride] * weights[i * weight_stride];
+    }
     target[row] = sum;
   }
 }
 
 void scale(double factor, double* values, Index count) {
-  for (Index i = 0; i < count; ++i) values[i] *= factor;
+  for (Index i = 0; i < count; ++i) {
+    values[i] *= factor;
+  }
 }
 
 bool factorizeSmall(View a) {
@@ -67,7 +77,9 @@ bool factorizeSmall(View a) {
     const Index rows = a.rows - j;
     subtractColumns(a.block(j, 0, rows, j), &a(j, 0), a.stride, &a(j, j));
     const double pivot = a(j, j);
-    if (!(pivot > 0.0) || !std::isfinite(pivot)) return false;
+    if (!(pivot > 0.0) || !std::isfinite(pivot)) {
+      return false;
+    }
     scale(1.0 / std::sqrt(pivot), &a(j, j), rows);
   }
   return true;
@@ -82,7 +94,9 @@ void solveSmall(ConstView lower, View b) {
 
 // b = b L^-T by one thread; the rows of b are independent of each other.
 void solveRows(ConstView lower, View b, GemmScratch& scratch) {
-  if (b.cols <= kBase) return solveSmall(lower, b);
+  if (b.cols <= kBase) {
+    return solveSmall(lower, b);
+  }
   const Index left = halfOf(b.cols);
   const Index right = b.cols - left;
   const View b1 = b.block(0, 0, b.rows, left);
@@ -97,12 +111,18 @@ double dot(const double* a, const double* b, Index count) {
   Packet sums[kChunkVectors] = {};
   Index i = 0;
   for (; i + kChunkVectors * kLanes <= count; i += kChunkVectors * kLanes) {
-    for (Index v = 0; v < kChunkVectors; ++v) sums[v] += load(a + i + v * kLanes) * load(b + i + v * kLanes);
+    for (Index v = 0; v < kChunkVectors; ++v) {
+      sums[v] += load(a + i + v * kLanes) * load(b + i + v * kLanes);
+    }
   }
   const Packet packet = (sums[0] + sums[1]) + (sums[2] + sums[3]);
   double sum = 0.0;
-  for (Index lane = 0; lane < kLanes; ++lane) sum += packet[lane];
-  for (; i < count; ++i) sum += a[i] * b[i];
+  for (Index lane = 0; lane < kLanes; ++lane) {
+    sum += packet[lane];
+  }
+  for (; i < count; ++i) {
+    sum += a[i] * b[i];
+  }
   return sum;
 }
 
@@ -123,7 +143,9 @@ void invertSmall(View lower) {
 }
 
 void copy(ConstView from, View to) {
-  for (Index j = 0; j < to.cols; ++j) std::copy_n(from.data + j * from.col_stride, to.rows, to.col(j));
+  for (Index j = 0; j < to.cols; ++j) {
+    std::copy_n(from.data + j * from.col_stride, to.rows, to.col(j));
+  }
 }
 
 // b = b L, in place: the left columns need the right ones before these are overwritten.
@@ -183,7 +205,9 @@ TriangularScratch::TriangularScratch(Index size, int threads)
 void TriangularScratch::multiply(double alpha, ConstView a, ConstView b, double beta, View c, Part part) {
   const double flops =
       2.0 * static_cast<double>(c.rows) * static_cast<double>(c.cols) * static_cast<double>(a.cols);
-  if (threads() == 1 || flops < kTeamFlops) return linalg::gemm(alpha, a, b, beta, c, gemm(), part);
+  if (threads() == 1 || flops < kTeamFlops) {
+    return linalg::gemm(alpha, a, b, beta, c, gemm(), part);
+  }
   const Index width =
       std::max(kPanel, (c.cols / (kStripsPerThread * threads()) + kPanel - 1) / kPanel * kPanel);
   parallelFor(threads(), (c.cols + width - 1) / width, 1, [&](Index strip, int thread) {
@@ -200,13 +224,17 @@ View TriangularScratch::block(Index rows, Index cols) {
 }
 
 bool factorizeCholesky(View a, TriangularScratch& scratch) {
-  if (a.rows <= kBase) return factorizeSmall(a);
+  if (a.rows <= kBase) {
+    return factorizeSmall(a);
+  }
   const Index top = halfOf(a.rows);
   const Index bottom = a.rows - top;
   const View a11 = a.block(0, 0, top, top);
   const View a21 = a.block(top, 0, bottom, top);
   const View a22 = a.block(top, top, bottom, bottom);
-  if (!factorizeCholesky(a11, scratch)) return false;
+  if (!factorizeCholesky(a11, scratch)) {
+    return false;
+  }
   solveTransposedFromRight(a11, a21, scratch);
   scratch.multiply(-1.0, a21, a21.transposed(), 1.0, a22, Part::kLower);
   return factorizeCholesky(a22, scratch);
@@ -215,7 +243,9 @@ bool factorizeCholesky(View a, TriangularScratch& scratch) {
 void solveTransposedFromRight(ConstView lower, View b, TriangularScratch& scratch) {
   const double flops =
       static_cast<double>(b.rows) * static_cast<double>(b.cols) * static_cast<double>(b.cols);
-  if (scratch.threads() == 1 || flops < kTeamFlops) return solveRows(lower, b, scratch.gemm());
+  if (scratch.threads() == 1 || flops < kTeamFlops) {
+    return solveRows(lower, b, scratch.gemm());
+  }
   const Index strips = kStripsPerThread * scratch.threads();
   const Index height = std::max(kPanel, (b.rows / strips + kPanel - 1) / kPanel * kPanel);
   parallelFor(scratch.threads(), (b.rows + height - 1) / height, 1, [&](Index strip, int thread) {
@@ -231,7 +261,9 @@ void solveLower(ConstView lower, double* x) {
     const Index end = std::min(first + kBase, n);
     for (Index j = first; j < end; ++j) {
       x[j] /= lower(j, j);
-      for (Index i = j + 1; i < end; ++i) x[i] -= lower(i, j) * x[j];
+      for (Index i = j + 1; i < end; ++i) {
+        x[i] -= lower(i, j) * x[j];
+      }
     }
     subtractColumns(lower.block(end, first, n - end, end - first), x + first, 1, x + end);
   }
@@ -245,7 +277,9 @@ void solveLowerTransposed(ConstView lower, double* x) {
 }
 
 void invertLower(View lower, TriangularScratch& scratch) {
-  if (lower.rows <= kBase) return invertSmall(lower);
+  if (lower.rows <= kBase) {
+    return invertSmall(lower);
+  }
   const Index top = halfOf(lower.rows);
   const Index bottom = lower.rows - top;
   const View l11 = lower.block(0, 0, top, top);
@@ -255,7 +289,9 @@ void invertLower(View lower, TriangularScratch& scratch) {
   invertLower(l22, scratch);
   multiplyLowerFromRight(l11, l21, scratch);
   multiplyLowerFromLeft(-1.0, l22, l21, scratch);
-  for (Index j = top; j < lower.cols; ++j) std::fill_n(lower.col(j), top, 0.0);
+  for (Index j = top; j < lower.cols; ++j) {
+    std::fill_n(lower.col(j), top, 0.0);
+  }
 }
 
 void multiplyTransposedBySelf(View lower, TriangularScratch& scratch) {

@@ -38,7 +38,9 @@ struct OnlinePredictor::Source {
 namespace {
 
 void require(bool condition, const char* message) {
-  if (!condition) throw std::invalid_argument(std::string("OnlinePredictor: ") + message);
+  if (!condition) {
+    throw std::invalid_argument(std::string("OnlinePredictor: ") + message);
+  }
 }
 
 MatrixXd padRows(const MatrixXd& matrix, Index rows) {
@@ -60,7 +62,9 @@ OnlinePredictor::OnlinePredictor(const std::vector<Process>& processes) {
             "the processes differ in their number of features");
   }
   feature_count_ = sources.front().inputs.rows();
-  for (const Source& source : sources) targets_.push_back(makeTarget(source));
+  for (const Source& source : sources) {
+    targets_.push_back(makeTarget(source));
+  }
   for (Index first = 0; first < getTargetCount(); first += batches_.back().count) {
     batches_.push_back(makeBatch(sources, first));
   }
@@ -112,7 +116,9 @@ OnlinePredictor::Target OnlinePredictor::makeTarget(const Source& source) {
   target.structure = source.structure;
   target.hyperparameters = source.hyperparameters;
   target.factor = linalg::PackedLower(linalg::viewOf(source.factor));
-  if (source.correction) target.correction.emplace(linalg::viewOf(*source.correction));
+  if (source.correction) {
+    target.correction.emplace(linalg::viewOf(*source.correction));
+  }
   const Index padding = target.factor.paddedSize();
   target.input_count = source.inputs.cols();
   target.weights = padRows(source.weights, padding);
@@ -172,8 +178,12 @@ void OnlinePredictor::predictAll(const Eigen::Ref<const VectorXd>& x, Extent ext
     calcDistances(batch, workspace);
     for (Index t = batch.first; t < batch.first + batch.count; ++t) {
       calcMean(t, batch, workspace);
-      if (extent != Extent::kMean) calcVariance(t, workspace);
-      if (extent == Extent::kGradient) calcGradient(t, batch, workspace);
+      if (extent != Extent::kMean) {
+        calcVariance(t, workspace);
+      }
+      if (extent == Extent::kGradient) {
+        calcGradient(t, batch, workspace);
+      }
     }
   }
 }
@@ -230,7 +240,9 @@ void OnlinePredictor::calcVariance(Index index, Workspace& workspace) const {
 // |R^-1 e|^2; workspace.covariance holds the solution of the factors.
 double OnlinePredictor::calcMeanFunctionVariance(const Target& target, Workspace& workspace) {
   const Index count = target.mean_coefficients.size();
-  if (count == 0) return 0.0;
+  if (count == 0) {
+    return 0.0;
+  }
   const auto whitened = workspace.covariance.head(target.factor.paddedSize());
   for (Index k = 0; k < count; ++k) {
     const double basis = k == 0 ? 1.0 : workspace.point(k - 1);

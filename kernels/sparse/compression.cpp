@@ -24,7 +24,9 @@ VectorXd restoreTarget(const GaussianProcess& process) {
 
 std::shared_ptr<const SparseGaussianProcess> compress(const GaussianProcess& process, double tolerance) {
   constexpr double kLoosest = 0.1;  // of the signal: a process that is nearly all noise keeps some points
-  if (process.getStructure().linear_term) return nullptr;
+  if (process.getStructure().linear_term) {
+    return nullptr;
+  }
   const Hyperparameters& hyperparameters = process.getHyperparameters();
   const double noise_ratio = hyperparameters.noise_stddev / hyperparameters.signal_stddev;
   const Eigen::Index most = process.getSampleCount() / 2;
@@ -35,10 +37,14 @@ std::shared_ptr<const SparseGaussianProcess> compress(const GaussianProcess& pro
       chooseInducingPoints(process.getInputs(), process.getStructure(), hyperparameters, most + 1,
                            std::min(tolerance * noise_ratio * noise_ratio, kLoosest)),
       {}};
-  if (parts.inducing.cols() > most) return nullptr;
+  if (parts.inducing.cols() > most) {
+    return nullptr;
+  }
   const VectorXd target = restoreTarget(process);
   const VariationalBound bound(process.getInputs(), target, parts.inducing, parts.structure);
-  if (!bound.calcPosterior(hyperparameters, parts.posterior)) return nullptr;
+  if (!bound.calcPosterior(hyperparameters, parts.posterior)) {
+    return nullptr;
+  }
   return std::make_shared<const SparseGaussianProcess>(std::move(parts));
 }
 

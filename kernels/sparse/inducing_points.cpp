@@ -14,12 +14,15 @@ using Eigen::VectorXd;
 
 namespace {
 
+// Enough to choose among; time and memory grow in proportion.
 constexpr Index kCandidatesPerPoint = 8;
 constexpr double kDetermined = 1e-10;  // of the prior variance: below, a point adds nothing but rounding
 
 MatrixXd select(const Eigen::Ref<const MatrixXd>& inputs, const std::vector<Index>& indices) {
   MatrixXd selected(inputs.rows(), static_cast<Index>(indices.size()));
-  for (Index i = 0; i < selected.cols(); ++i) selected.col(i) = inputs.col(indices[i]);
+  for (Index i = 0; i < selected.cols(); ++i) {
+    selected.col(i) = inputs.col(indices[i]);
+  }
   return selected;
 }
 
@@ -44,10 +47,14 @@ MatrixXd chooseInducingPoints(const Eigen::Ref<const MatrixXd>& inputs, const Mo
   std::vector<Index> pivots;
   for (Index k = 0; k < factor.cols(); ++k) {
     Index pivot = 0;
-    if (variance.maxCoeff(&pivot) <= least) break;
+    if (variance.maxCoeff(&pivot) <= least) {
+      break;
+    }
     auto column = factor.col(k);
     column = calcCrossCovariance(structure, hyperparameters, scaled, scaled.col(pivot));
-    for (Index j = 0; j < k; ++j) column -= factor(pivot, j) * factor.col(j);
+    for (Index j = 0; j < k; ++j) {
+      column -= factor(pivot, j) * factor.col(j);
+    }
     column /= std::sqrt(variance(pivot));
     variance = (variance - column.cwiseAbs2()).cwiseMax(0.0);
     variance(pivot) = 0.0;

@@ -17,10 +17,12 @@ using linalg::viewOf;
 
 namespace {
 
-constexpr Index kBlock = 256;
+constexpr Index kBlock = 256;  // points predicted together: their covariances stay in cache
 
 void require(bool condition, const char* message) {
-  if (!condition) throw std::invalid_argument(std::string("SparseGaussianProcess: ") + message);
+  if (!condition) {
+    throw std::invalid_argument(std::string("SparseGaussianProcess: ") + message);
+  }
 }
 
 void checkParts(const SparseGaussianProcessParts& parts) {
@@ -47,7 +49,9 @@ void checkParts(const SparseGaussianProcessParts& parts) {
 
 VectorXd sumVariance(const SparseProjection& projection) {
   VectorXd variance = projection.missed_variance;
-  for (Index j = 0; j < projection.corrected.cols(); ++j) variance += projection.corrected.col(j).cwiseAbs2();
+  for (Index j = 0; j < projection.corrected.cols(); ++j) {
+    variance += projection.corrected.col(j).cwiseAbs2();
+  }
   for (Index k = 0; k < projection.basis_error.cols(); ++k) {
     variance += projection.basis_error.col(k).cwiseAbs2();
   }
@@ -90,9 +94,13 @@ SparseProjection SparseGaussianProcess::project(const Eigen::Ref<const MatrixXd>
   result.missed_variance = expansion_.calcPriorVariance(centered);
   linalg::TriangularScratch scratch(inputs.cols());
   linalg::solveTransposedFromRight(viewOf(posterior.inducing_factor), viewOf(a), scratch);
-  for (Index j = 0; j < getInducingCount(); ++j) result.missed_variance -= a.col(j).cwiseAbs2();
+  for (Index j = 0; j < getInducingCount(); ++j) {
+    result.missed_variance -= a.col(j).cwiseAbs2();
+  }
   linalg::solveTransposedFromRight(viewOf(posterior.correction_factor), viewOf(a), scratch);
-  if (posterior.mean_coefficients.size() == 0) return result;
+  if (posterior.mean_coefficients.size() == 0) {
+    return result;
+  }
   MatrixXd& error = result.basis_error;
   error = calcMeanBasis(parts_.structure.mean, centered);
   linalg::gemm(-1.0 / parts_.hyperparameters.noise_stddev, viewOf(std::as_const(a)),

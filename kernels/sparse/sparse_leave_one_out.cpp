@@ -54,8 +54,8 @@ LeaveOneOut calcLeaveGroupsOut(const SparseGaussianProcess& process, const Eigen
     Index row = 0;
     for (std::size_t g = first; g < last; ++g) {
       const auto count = static_cast<Index>(groups[g].size());
-      const GroupPrediction left_out =
-          predictGroup(calcPrecision(block, row, count, noise_variance), alpha.segment(row, count));
+      const GroupPrediction left_out = predictGroup(calcPrecision(block, row, count, noise_variance),
+                                                    alpha.segment(row, count), noise_variance);
       const VectorXd missed = block.missed_variance.segment(row, count).cwiseMax(0.0);
       residual(groups[g]) = left_out.residual;
       stddev(groups[g]) = (left_out.variance + missed).cwiseSqrt();

@@ -24,7 +24,9 @@ constexpr int kRounds = 2;
 
 void checkOptions(const SparseOptions& sparse, const ModelStructure& structure) {
   const auto require = [](bool condition, const char* rule) {
-    if (!condition) throw std::invalid_argument(std::string("SparseOptions: ") + rule);
+    if (!condition) {
+      throw std::invalid_argument(std::string("SparseOptions: ") + rule);
+    }
   };
   require(sparse.inducing >= 1, "inducing must be at least 1");
   require(sparse.subset >= 2, "subset must be at least 2");
@@ -34,7 +36,9 @@ void checkOptions(const SparseOptions& sparse, const ModelStructure& structure) 
 
 MatrixXd selectColumns(const Eigen::Ref<const MatrixXd>& matrix, const std::vector<Index>& indices) {
   MatrixXd selected(matrix.rows(), static_cast<Index>(indices.size()));
-  for (Index i = 0; i < selected.cols(); ++i) selected.col(i) = matrix.col(indices[i]);
+  for (Index i = 0; i < selected.cols(); ++i) {
+    selected.col(i) = matrix.col(indices[i]);
+  }
   return selected;
 }
 
@@ -48,8 +52,8 @@ Hyperparameters refine(const VariationalBound& bound, const MatrixXd& subset, co
   const Objective objective = [&](const VectorXd& point, VectorXd& gradient) {
     return bound.evaluate(fromLog(structure, point), gradient);
   };
-  const SearchResult found =
-      minimize(objective, target.size(), toLog(structure, start), box, evaluations, options.tolerance);
+  const SearchResult found = minimize(objective, target.size(), toLog(structure, start), box,
+                                      {evaluations, options.tolerance, nullptr, options.stop});
   result.refine_evaluations += found.evaluations;
   return std::isfinite(found.objective) ? fromLog(structure, found.end) : start;
 }
@@ -59,17 +63,21 @@ void fitSparse(const MatrixXd& inputs, const VectorXd& target, const MatrixXd& s
                const Hyperparameters& start, SparseTrainingResult& result) {
   SparseGaussianProcessParts parts{structure, start, calcCenter(inputs), {}, {}};
   bool definite = true;
-  for (int round = 0; round < kRounds && definite; ++round) {
+  for (int round = 0; round < kRounds && definite && !isStopRequested(options.stop); ++round) {
     parts.inducing = chooseInducingPoints(inputs, structure, parts.hyperparameters, sparse.inducing);
     const VariationalBound bound(inputs, target, parts.inducing, structure);
-    if (round == 0 && bound.calcPosterior(start, parts.posterior))
+    if (round == 0 && bound.calcPosterior(start, parts.posterior)) {
       result.subset_bound = parts.posterior.bound;
+    }
     const int evaluations = sparse.refine_evaluations / kRounds;
     if (evaluations > 0) {
       parts.hyperparameters =
           refine(bound, subset, target, structure, options, evaluations, parts.hyperparameters, result);
     }
     definite = bound.calcPosterior(parts.hyperparameters, parts.posterior);
+  }
+  if (isStopRequested(options.stop)) {
+    return;
   }
   if (!definite) {
     result.status = TrainingStatus::kFailed;
@@ -104,10 +112,13 @@ std::vector<SparseTrainingResult> trainSparse(const Eigen::Ref<const MatrixXd>& 
     results[t].status = exact[t].status;
     results[t].message = exact[t].message;
     results[t].subset_report = exact[t].report;
-    if (!exact[t].gp) continue;
+    if (!exact[t].gp) {
+      continue;
+    }
     const VectorXd target = targets.row(t).transpose();
     fitSparse(all, target, subset, structure, options, sparse, exact[t].gp->getHyperparameters(), results[t]);
   }
+  throwIfStopped(options.stop);
   return results;
 }
 

@@ -35,8 +35,8 @@ struct SparseTrainingResult {
 /// Trains one sparse process per row of `targets` (t x n): hyperparameters from an exact process on a subset,
 /// inducing inputs by pivoted Cholesky, hyperparameters refined on the bound, the posterior over all samples.
 /// Structures with a linear covariance term, and options out of range, are std::invalid_argument, as is what
-/// train refuses. Results do not depend on the number of threads.
-/// Cost: train on the subset, then 5 n m^2 flops per refining evaluation; memory O(m^2 + m d) per thread.
+/// train refuses. Results do not depend on the number of threads. Throws Stopped where the options ask for
+/// it. Cost: train on the subset, then 5 n m^2 flops per refining evaluation; memory O(m^2 + m d) per thread.
 std::vector<SparseTrainingResult> trainSparse(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                                               const Eigen::Ref<const Eigen::MatrixXd>& targets,
                                               const ModelStructure& structure,

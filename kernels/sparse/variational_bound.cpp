@@ -18,9 +18,9 @@ using linalg::viewOf;
 
 namespace {
 
-constexpr Index kBlock = 512;           // samples at a time
+constexpr Index kBlock = 512;           // samples at a time: deep products, and memory 512 m instead of n m
 constexpr double kFirstJitter = 1e-10;  // relative to s_f^2; K_uu has no noise to keep it definite
-constexpr double kLastJitter = 1e-5;
+constexpr double kLastJitter = 1e-5;    // beyond it the model itself would be another one
 
 MatrixXd lowerPart(const MatrixXd& matrix) {
   return matrix.triangularView<Eigen::Lower>();
@@ -129,7 +129,9 @@ bool VariationalBound::factorizeInducing(const Hyperparameters& hyperparameters,
     posterior.jitter = relative * signal_variance;
     posterior.inducing_factor = prior;
     posterior.inducing_factor.diagonal().array() += posterior.jitter;
-    if (!linalg::factorizeCholesky(viewOf(posterior.inducing_factor), scratch)) continue;
+    if (!linalg::factorizeCholesky(viewOf(posterior.inducing_factor), scratch)) {
+      continue;
+    }
     posterior.inducing_factor = lowerPart(posterior.inducing_factor);
     return true;
   }
@@ -141,7 +143,9 @@ bool VariationalBound::factorizeCorrection(double noise_stddev, Sums& sums,
   linalg::TriangularScratch scratch(inducing_.cols());
   posterior.correction_factor = sums.aa / (noise_stddev * noise_stddev);
   posterior.correction_factor.diagonal().array() += 1.0;
-  if (!linalg::factorizeCholesky(viewOf(posterior.correction_factor), scratch)) return false;
+  if (!linalg::factorizeCholesky(viewOf(posterior.correction_factor), scratch)) {
+    return false;
+  }
   posterior.correction_factor = lowerPart(posterior.correction_factor);
   sums.v = sums.ar / noise_stddev;
   for (Index k = 0; k < sums.v.cols(); ++k) {
@@ -156,9 +160,13 @@ double VariationalBound::fitMean(const MatrixXd& products, VariationalPosterior&
   const Index p = products.cols() - 1;
   posterior.basis_factor = products.bottomRightCorner(p, p);
   posterior.mean_coefficients = products.bottomLeftCorner(p, 1);
-  if (p == 0) return products(0, 0);
+  if (p == 0) {
+    return products(0, 0);
+  }
   linalg::TriangularScratch scratch(p);
-  if (!linalg::factorizeCholesky(viewOf(posterior.basis_factor), scratch)) return std::nan("");
+  if (!linalg::factorizeCholesky(viewOf(posterior.basis_factor), scratch)) {
+    return std::nan("");
+  }
   posterior.basis_factor = lowerPart(posterior.basis_factor);
   linalg::solveLower(viewOf(posterior.basis_factor), posterior.mean_coefficients.data());
   const double explained = posterior.mean_coefficients.squaredNorm();
@@ -171,9 +179,13 @@ bool VariationalBound::solve(const Hyperparameters& hyperparameters, Variational
                              Sums& sums) const {
   const double noise_stddev = hyperparameters.noise_stddev;
   const double noise_variance = noise_stddev * noise_stddev;
-  if (!factorizeInducing(hyperparameters, posterior)) return false;
+  if (!factorizeInducing(hyperparameters, posterior)) {
+    return false;
+  }
   sums = accumulate(hyperparameters, posterior.inducing_factor);
-  if (!factorizeCorrection(noise_stddev, sums, posterior)) return false;
+  if (!factorizeCorrection(noise_stddev, sums, posterior)) {
+    return false;
+  }
   linalg::GemmScratch scratch;
   const MatrixXd explained = multiply(viewOf(sums.v).transposed(), viewOf(sums.v), scratch);
   const double quadratic = fitMean((sums.rr - explained) / noise_variance, posterior);
@@ -199,7 +211,9 @@ bool VariationalBound::calcPosterior(const Hyperparameters& hyperparameters,
                                      VariationalPosterior& posterior) const {
   const linalg::FlushDenormals flush;
   Sums sums;
-  if (!solve(hyperparameters, posterior, sums)) return false;
+  if (!solve(hyperparameters, posterior, sums)) {
+    return false;
+  }
   solveColumnsTransposed(posterior.inducing_factor, posterior.weights);
   return true;
 }
@@ -289,7 +303,9 @@ LikelihoodEvaluation VariationalBound::evaluate(const Hyperparameters& hyperpara
   gradient.setZero();
   VariationalPosterior posterior;
   Sums sums;
-  if (!solve(hyperparameters, posterior, sums)) return evaluation;
+  if (!solve(hyperparameters, posterior, sums)) {
+    return evaluation;
+  }
   evaluation = {true, posterior.bound, posterior.jitter};
 
   linalg::TriangularScratch scratch(std::max(inducing_.cols(), kBlock));

@@ -265,6 +265,22 @@ class MeasuredExcitation(ReplayCase):
         columns = self.read_replay(folder)["x"]
         self.assertLess(abs(np.mean(columns["measured"] - columns["nominal"])) / 2e-4, 10)
 
+    def test_a_map_infers_from_the_excitation_that_it_knows(self):
+        self.assertEqual(call("infer", self.run_folder, self.usual, "--set", "load=0.4").returncode, 0)
+        for arguments in [("infer", self.run_folder, self.unusual),
+                          ("replay", self.run_folder, self.unusual, "--out", self.folder / "none")]:
+            result = call(*arguments, "--set", "load=0.4")
+            self.assertEqual(result.returncode, 1, result)
+            self.assertIn("unusual.csv: column 'F' is not the excitation 'F' that the map was trained on", result.stderr)
+            self.assertIn("--start", result.stderr)
+
+    def test_without_its_excitation_a_measurement_is_inferred_from(self):
+        columns = read_numbers(self.unusual)
+        path = self.folder / "untold.csv"
+        write_csv(path, ["t", "x"], [columns["t"], columns["x"]])
+        inferred = json.loads(call("infer", self.run_folder, path, "--set", "load=0.4", "--json").stdout)
+        self.assertIn("model_mismatch", inferred["statuses"])
+
     def test_the_known_load_matters_and_is_required(self):
         fit = self.read_fit(self.replay("load", self.usual, "--set", "load=0.9"))["x"]
         self.assertGreater(fit["rms_residual_sd"], 3)

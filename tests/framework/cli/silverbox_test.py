@@ -60,6 +60,11 @@ class Silverbox(FolderTestCase):
             self.assertLess(np.ptp(means) / means.mean(), spread, name)
             self.assertLess(abs(means.mean() / value - 1), about, name)
 
+    def test_another_excitation_is_refused(self):
+        result = call("infer", self.run_folder, DATA, "--start", "100")
+        self.assertEqual(result.returncode, 1, result)
+        self.assertIn("column 'V1' is not the excitation 'u' that the map was trained on", result.stderr)
+
     def test_the_model_of_one_window_simulates_others(self):
         for start in (STARTS[3], STARTS[8]):
             out = self.folder / f"replay_{start:.0f}"

@@ -41,7 +41,7 @@ GpMapTraining trainOn(const Problem& problem, const GpMapSpec& spec = {}, int th
   const Eigen::MatrixXd noise = Eigen::MatrixXd::Identity(features, features);
   return trainGpMap(spec, {z_score}, problem.names,
                     {problem.infos, problem.features, problem.parameters, noise, problem.replicates, {}},
-                    threads);
+                    {threads});
 }
 
 /// Root mean square of the error of 200 other samples, relative to the parameters' spread.
@@ -139,7 +139,7 @@ TEST(GpMap, IsFittedToAllDrawsAlsoWhereTheSearchUsesFewer) {
   GpMapSpec spec;
   spec.max_evaluations = 3;
   const GpMapTraining training = trainOn(problem, spec, 2);
-  for (const Process& process : training.map.processes) {
+  for (const gp::Process& process : training.map.processes) {
     EXPECT_EQ(std::get<std::shared_ptr<const gp::GaussianProcess>>(process)->getSampleCount(),
               kSamples * kReplicates);
   }
@@ -197,7 +197,7 @@ TEST(GpMap, IsTheSameBitForBitWhenRefittedAtItsHyperparameters) {
     const Eigen::MatrixXd features = makeProblem(50, 2).features;
     EXPECT_EQ(again.map.predict(features).mean, trained.map.predict(features).mean);
     EXPECT_EQ(again.map.predict(features).stddev, trained.map.predict(features).stddev);
-    EXPECT_EQ(getNlml(again.map.processes[0]), getNlml(trained.map.processes[0]));
+    EXPECT_EQ(gp::getNlml(again.map.processes[0]), gp::getNlml(trained.map.processes[0]));
   }
 }
 
@@ -228,7 +228,7 @@ TEST(GpMap, InfersWithKnownInputsWhatTheFeaturesAloneLeaveOpen) {
        {LengthScales::kShared, LengthScales::kPerOutput, LengthScales::kPerFeature}) {
     GpMapSpec spec;
     spec.length_scales = length_scales;
-    const GpMapTraining training = trainGpMap(spec, {whiten}, {"p"}, train, 1, known);
+    const GpMapTraining training = trainGpMap(spec, {whiten}, {"p"}, train, {1}, known);
     const Predictions predictions = training.map.predict(test.features, test.inputs);
     const Eigen::ArrayXXd error = (predictions.mean - test.parameters).array();
     EXPECT_LT(std::sqrt(error.square().mean()), 1e-3);  // the noise leaves 1e-3 / u = 2.5e-4
@@ -237,6 +237,21 @@ TEST(GpMap, InfersWithKnownInputsWhatTheFeaturesAloneLeaveOpen) {
     EXPECT_EQ(again.map.predict(test.features, test.inputs).stddev, predictions.stddev);
     EXPECT_EQ(training.map.makeProcessInputs(test.features, test.inputs).row(1),
               Eigen::RowVectorXd(test.inputs.array() - 4.0));
+  }
+}
+
+TEST(GpMapTraining, EndsWhereItIsAskedTo) {
+  const Problem problem = makeProblem(60, 3);
+  TransformStepSpec z_score;
+  z_score.z_score.emplace();
+  const LabelledFeatures samples{problem.infos,      problem.features,
+                                 problem.parameters, Eigen::MatrixXd::Identity(4, 4),
+                                 problem.replicates, {}};
+  std::atomic<bool> stop{true};
+  for (const GpApproximation approximation : {GpApproximation::kExact, GpApproximation::kSgpr}) {
+    GpMapSpec spec;
+    spec.approximation = approximation;
+    EXPECT_THROW((void)trainGpMap(spec, {z_score}, problem.names, samples, {1, &stop}), gp::Stopped);
   }
 }
 

@@ -37,7 +37,7 @@ GpMap trainOn(const LabelledFeatures& samples, GpNoise noise, GpApproximation ap
   spec.inducing = 30;
   TransformStepSpec whiten;
   whiten.whiten.emplace();
-  return trainGpMap(spec, {whiten}, {"p"}, samples, 1).map;
+  return trainGpMap(spec, {whiten}, {"p"}, samples, {1}).map;
 }
 
 TEST(NoiseProfile, FollowsTheSlopeOfTheMap) {
@@ -75,7 +75,7 @@ TEST(NoiseProfile, WithoutNoiseItIsConstant) {
   LabelledFeatures samples = makeSquares(50, 1);
   samples.noise_covariance.setZero();
   GpMapSpec spec;
-  const GpMap map = trainGpMap(spec, {}, {"p"}, samples, 1).map;
+  const GpMap map = trainGpMap(spec, {}, {"p"}, samples, {1}).map;
   EXPECT_EQ(map.noise.calcFactors(map.processes[0], 0, samples.features).matrix(),
             Eigen::ArrayXd::Ones(50).matrix());
 }

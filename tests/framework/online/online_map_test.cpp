@@ -34,7 +34,7 @@ TEST(OnlineMap, ACompressedMapPredictsAsTheExactOne) {
       Oscillation::addNoise(Oscillation::calcClean(Oscillation::samplePoints(200, 5)), 5);
   const GpMap exact = Oscillation().trainMap(400);
   const GpMap compact = compressMap(exact);
-  for (const Process& process : compact.processes) {
+  for (const gp::Process& process : compact.processes) {
     ASSERT_TRUE(std::holds_alternative<std::shared_ptr<const gp::SparseGaussianProcess>>(process));
   }
   const Predictions expected = exact.predict(features), actual = compact.predict(features);

@@ -74,7 +74,7 @@ struct Oscillation {
     std::vector<TransformStepSpec> transform(2);
     transform[0].whiten.emplace();
     transform[1].principal_components.emplace();
-    return trainGpMap({}, transform, {"d", "w"}, samples, 1).map;
+    return trainGpMap({}, transform, {"d", "w"}, samples, {1}).map;
   }
 
   TrustTraining makeTrustTraining() const {

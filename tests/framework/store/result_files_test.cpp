@@ -78,7 +78,7 @@ TEST(MapsFile, ARestoredMapPredictsTheSameBits) {
   specs[4].inducing = 10;
   for (const GpMapSpec& spec : specs) {
     const GpMapTraining training =
-        trainGpMap(spec, transform, {"k", "d"}, {infos, features, values, noise, 1, {}}, 1);
+        trainGpMap(spec, transform, {"k", "d"}, {infos, features, values, noise, 1, {}}, {1});
     writeMapsFile(folder / "maps.h5", {makeParameters(), {"a", "b", "c"}, training.map});
     const StoredMap stored = readMapsFile(folder / "maps.h5");
     EXPECT_EQ(stored.feature_names, (std::vector<std::string>{"a", "b", "c"}));
@@ -103,7 +103,7 @@ TEST(MapsFile, KeepsTheBoundsThatScaleKnownInputs) {
   input.name.text = "load";
   input.unit = "kg";
   input.bounds = {-3.0, 4.0, {}};
-  const GpMap map = trainGpMap({}, {}, {"k"}, samples, 1, {input}).map;
+  const GpMap map = trainGpMap({}, {}, {"k"}, samples, {1}, {input}).map;
   writeMapsFile(folder / "maps.h5", {{makeParameters()[0]}, {"y(0 s)"}, map, {input}});
   const StoredMap stored = readMapsFile(folder / "maps.h5");
   ASSERT_EQ(stored.inputs.size(), 1U);

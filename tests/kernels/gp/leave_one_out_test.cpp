@@ -59,7 +59,9 @@ TEST_P(LeaveOneOutOf, EveryGroupEqualsAFitWithoutIt) {
   const LeaveOneOut result = calcLeaveGroupsOut(*process, makeDrawGroups(n, draws));
   for (int j = 0; j < simulations; ++j) {
     std::vector<Eigen::Index> kept, left;
-    for (int i = 0; i < n; ++i) (i % simulations == j ? left : kept).push_back(i);
+    for (int i = 0; i < n; ++i) {
+      (i % simulations == j ? left : kept).push_back(i);
+    }
     const Prediction prediction = fit(inputs(Eigen::all, kept), target(kept), structure, hyperparameters)
                                       ->predict(inputs(Eigen::all, left));
     EXPECT_LT((result.residual(left) - (target(left) - prediction.mean)).cwiseAbs().maxCoeff(), 1e-10);
@@ -70,6 +72,34 @@ TEST_P(LeaveOneOutOf, EveryGroupEqualsAFitWithoutIt) {
   const LeaveOneOut shared = calcLeaveGroupsOut(*process, makeDrawGroups(n, draws), 3);
   EXPECT_EQ(shared.residual, result.residual);
   EXPECT_EQ(shared.stddev, result.stddev);
+}
+
+// A noise variance of 1e-16 beside a signal variance of 1: the precision matrix is rounding in its fifth
+// digit or before.
+TEST(LeaveGroupsOut, StddevIsNeverBelowTheNoise) {
+  const int n = 60;
+  const MatrixXd inputs = test::randomMatrix(2, n, 1);
+  for (const double noise : {1e-8, 1e-3}) {
+    const Hyperparameters hyperparameters{VectorXd::Constant(1, 3.0), 1.0, noise, 1.0, 1.0};
+    const auto process = fit(inputs, test::smoothTarget(inputs, 0.0, 2), {}, hyperparameters);
+    for (const int draws : {1, 3}) {
+      const LeaveOneOut result = calcLeaveGroupsOut(*process, makeDrawGroups(n, draws));
+      EXPECT_GE(result.stddev.minCoeff(), (1.0 - 1e-15) * noise);
+      EXPECT_TRUE(result.log_density.allFinite());
+    }
+  }
+}
+
+// The block and alpha of one sample as rounding may leave them: [2 / s_n^2] instead of at most 1 / s_n^2.
+TEST(LeaveGroupsOut, AVarianceBelowTheNoiseIsRounding) {
+  const double noise_variance = 0.04;
+  const GroupPrediction rounded =
+      predictGroup(MatrixXd::Constant(1, 1, 2.0 / noise_variance), VectorXd::Ones(1), noise_variance);
+  EXPECT_EQ(rounded.variance(0), noise_variance);
+  EXPECT_DOUBLE_EQ(rounded.residual(0), 0.5 * noise_variance);
+  const GroupPrediction kept =
+      predictGroup(MatrixXd::Constant(1, 1, 0.5 / noise_variance), VectorXd::Ones(1), noise_variance);
+  EXPECT_DOUBLE_EQ(kept.variance(0), 2.0 * noise_variance);
 }
 
 TEST(LeaveGroupsOut, RefusesGroupsThatAreNoPartition) {

@@ -61,7 +61,9 @@ std::vector<GradientCase> allCases() {
                           CovarianceFunction::kMatern52, CovarianceFunction::kRationalQuadratic}) {
     for (auto mean : {MeanFunction::kZero, MeanFunction::kConstant, MeanFunction::kLinear}) {
       for (int groups : {1, 3, 7}) {  // stored distances, several of them, and by product
-        for (bool linear_term : {false, true}) cases.push_back({covariance, mean, groups, linear_term});
+        for (bool linear_term : {false, true}) {
+          cases.push_back({covariance, mean, groups, linear_term});
+        }
       }
     }
   }

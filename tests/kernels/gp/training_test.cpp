@@ -31,7 +31,9 @@ TEST(Training, RecoversTheHyperparametersOfADrawnFunction) {
   // A draw: L times normal numbers (twelve uniform ones summed), L from any target.
   const auto prior = fit(inputs, VectorXd::Zero(n), structure, truth);
   VectorXd normal = VectorXd::Zero(n);
-  for (int k = 0; k < 12; ++k) normal += 0.5 * randomMatrix(n, 1, 100 + k);
+  for (int k = 0; k < 12; ++k) {
+    normal += 0.5 * randomMatrix(n, 1, 100 + k);
+  }
   const VectorXd target = prior->getFactor() * normal;
   const auto results = train(inputs, target.transpose(), structure);
   ASSERT_EQ(results[0].status, TrainingStatus::kConverged) << results[0].message;
@@ -83,7 +85,9 @@ TEST(Training, IsBitwiseTheSameForAnyNumberOfThreadsAndAlignment) {
       Eigen::Map<MatrixXd> shifted(moved.data() + threads, inputs.rows(), inputs.cols());
       shifted = inputs;
       const auto actual = train(shifted, targets, structure, options);
-      for (std::size_t t = 0; t < 2; ++t) expectEqual(expected[t], actual[t]);
+      for (std::size_t t = 0; t < 2; ++t) {
+        expectEqual(expected[t], actual[t]);
+      }
     }
   }
 }
@@ -115,7 +119,9 @@ TEST(Training, RecognisesPureNoise) {
   const MatrixXd noise = randomMatrix(1, 100, 6);
   const auto result = train(inputs, noise, {})[0];
   EXPECT_EQ(result.status, TrainingStatus::kNoiseOnly) << result.message;
-  for (const StartReport& start : result.report.starts) EXPECT_TRUE(start.noise_only);
+  for (const StartReport& start : result.report.starts) {
+    EXPECT_TRUE(start.noise_only);
+  }
   ASSERT_TRUE(result.gp);
   const Prediction prediction = result.gp->predict(randomMatrix(3, 1, 16));
   const double stddev = std::sqrt((noise.array() - noise.mean()).square().mean());
@@ -130,7 +136,9 @@ TEST(Training, DoesNotAcceptAStartThatEndsInPureNoise) {
   const StartReport& best = result.report.starts[result.report.best_start];
   EXPECT_FALSE(best.noise_only);
   EXPECT_LT(best.nlml, result.report.noise_only_nlml);
-  for (const StartReport& start : result.report.starts) EXPECT_LE(best.nlml, start.nlml);
+  for (const StartReport& start : result.report.starts) {
+    EXPECT_LE(best.nlml, start.nlml);
+  }
 }
 
 TEST(Training, ReportsWhatSitsAtABound) {
@@ -196,7 +204,9 @@ TEST(TwoBeams, EveryFirstStartLeadsToTheSameLikelihood) {
       ++corner;
     }
   }
-  for (int t = 0; t < 4; ++t) EXPECT_LT(nlml.row(t).maxCoeff() - nlml.row(t).minCoeff(), 1e-3) << t;
+  for (int t = 0; t < 4; ++t) {
+    EXPECT_LT(nlml.row(t).maxCoeff() - nlml.row(t).minCoeff(), 1e-3) << t;
+  }
 }
 
 }  // namespace

@@ -63,7 +63,9 @@ TEST_P(Sparse, EveryGroupLeftOutEqualsAProcessWithoutIt) {
   for (const std::vector<Eigen::Index>& left : groups) {
     std::vector<Eigen::Index> kept;
     for (int i = 0; i < n; ++i) {
-      if (std::find(left.begin(), left.end(), i) == left.end()) kept.push_back(i);
+      if (std::find(left.begin(), left.end(), i) == left.end()) {
+        kept.push_back(i);
+      }
     }
     const Prediction prediction =
         summarize(inputs(Eigen::all, kept), target(kept)).predict(inputs(Eigen::all, left));
@@ -96,7 +98,9 @@ TEST_P(Sparse, TheGradientEqualsFiniteDifferences) {
   constexpr double kStep = 2e-3;
   const HyperparameterLayout layout(structure_);
   for (int i = 0; i < point.size(); ++i) {
-    if (i == layout.shape) continue;
+    if (i == layout.shape) {
+      continue;
+    }
     const auto at = [&](double offset) {
       VectorXd moved = point;
       moved(i) += offset * kStep;

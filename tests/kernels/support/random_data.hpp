@@ -34,7 +34,9 @@ inline Eigen::VectorXd smoothTarget(const Eigen::MatrixXd& inputs, double noise,
 /// Feature f in group f % count.
 inline std::vector<int> cyclicGroups(int features, int count) {
   std::vector<int> groups(features);
-  for (int f = 0; f < features; ++f) groups[f] = f % count;
+  for (int f = 0; f < features; ++f) {
+    groups[f] = f % count;
+  }
   return groups;
 }
 

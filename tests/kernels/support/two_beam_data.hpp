@@ -40,7 +40,9 @@ inline TwoBeamState twoBeamDerivative(const TwoBeamState& state, const TwoBeamPa
 inline TwoBeamState twoBeamStep(const TwoBeamState& x, const TwoBeamParameters& p, bool pulse, double h) {
   const auto shifted = [&](const TwoBeamState& k, double factor) {
     TwoBeamState result;
-    for (int i = 0; i < 4; ++i) result[i] = x[i] + factor * k[i];
+    for (int i = 0; i < 4; ++i) {
+      result[i] = x[i] + factor * k[i];
+    }
     return result;
   };
   const TwoBeamState k1 = twoBeamDerivative(x, p, pulse);
@@ -48,7 +50,9 @@ inline TwoBeamState twoBeamStep(const TwoBeamState& x, const TwoBeamParameters& 
   const TwoBeamState k3 = twoBeamDerivative(shifted(k2, h / 2), p, pulse);
   const TwoBeamState k4 = twoBeamDerivative(shifted(k3, h), p, pulse);
   TwoBeamState next;
-  for (int i = 0; i < 4; ++i) next[i] = x[i] + h / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i]);
+  for (int i = 0; i < 4; ++i) {
+    next[i] = x[i] + h / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i]);
+  }
   return next;
 }
 
@@ -71,7 +75,9 @@ inline TwoBeamData makeTwoBeamData(int n, std::uint64_t seed, bool stratified = 
   for (int k = 0; k < 4; ++k) {
     std::vector<int> cells(n);
     std::iota(cells.begin(), cells.end(), 0);
-    for (int i = n - 1; i > 0; --i) std::swap(cells[i], cells[static_cast<int>(uniform() * (i + 1))]);
+    for (int i = n - 1; i > 0; --i) {
+      std::swap(cells[i], cells[static_cast<int>(uniform() * (i + 1))]);
+    }
     for (int i = 0; i < n; ++i) {
       const double u = stratified ? (cells[i] + uniform()) / n : uniform();
       data.parameters(k, i) = kTwoBeamLower[k] + u * (kTwoBeamUpper[k] - kTwoBeamLower[k]);
@@ -85,7 +91,9 @@ inline TwoBeamData makeTwoBeamData(int n, std::uint64_t seed, bool stratified = 
     TwoBeamState state{0.0, rest, 0.0, 0.0};
     for (int sample = 0; sample < 100; ++sample) {
       const bool pulse = sample == 4;  // 0.2 s <= t < 0.25 s
-      for (int step = 0; step < kSteps; ++step) state = twoBeamStep(state, p, pulse, 0.05 / kSteps);
+      for (int step = 0; step < kSteps; ++step) {
+        state = twoBeamStep(state, p, pulse, 0.05 / kSteps);
+      }
       data.features(sample, i) = state[0] / 5e-5 + normal();
       data.features(100 + sample, i) = state[1] / 0.015 + normal();
     }

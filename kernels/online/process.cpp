@@ -1,12 +1,12 @@
-#include "framework/inverse_map/process.hpp"
+#include "kernels/online/process.hpp"
 
-namespace twinmap {
+namespace twinmap::gp {
 
 double getNlml(const Process& process) {
-  if (const auto* exact = std::get_if<std::shared_ptr<const gp::GaussianProcess>>(&process)) {
+  if (const auto* exact = std::get_if<std::shared_ptr<const GaussianProcess>>(&process)) {
     return (*exact)->getNlml();
   }
-  return std::get<std::shared_ptr<const gp::SparseGaussianProcess>>(process)->getParts().posterior.bound;
+  return std::get<std::shared_ptr<const SparseGaussianProcess>>(process)->getParts().posterior.bound;
 }
 
 double getNoiseVariance(const Process& process) {
@@ -15,4 +15,4 @@ double getNoiseVariance(const Process& process) {
   return stddev * stddev;
 }
 
-}  // namespace twinmap
+}  // namespace twinmap::gp

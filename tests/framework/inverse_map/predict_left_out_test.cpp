@@ -67,7 +67,7 @@ class MapLeaveOneOut : public testing::TestWithParam<GpApproximation> {
     spec.refine_evaluations = 20;
     TransformStepSpec z_score;
     z_score.z_score.emplace();
-    return trainGpMap(spec, {z_score}, {"p", "q"}, samples, 1);
+    return trainGpMap(spec, {z_score}, {"p", "q"}, samples, {1});
   }
 };
 
@@ -104,7 +104,7 @@ TEST(MapLeaveOneOutOfSmoothFunctions, IsANumberWithoutAnyNoise) {
     GpMapSpec spec;
     spec.covariance = covariance;
     spec.mean = GpMean::kLinear;
-    const GpMapTraining training = trainGpMap(spec, {z_score}, {"p", "q"}, samples, 1);
+    const GpMapTraining training = trainGpMap(spec, {z_score}, {"p", "q"}, samples, {1});
     EXPECT_TRUE(training.leave_one_out.stddev.allFinite());
     EXPECT_TRUE(training.map.residual_correlation.allFinite());
   }

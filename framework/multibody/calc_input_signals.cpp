@@ -1,4 +1,4 @@
-#include "framework/multibody/input_signals.hpp"
+#include "framework/multibody/calc_input_signals.hpp"
 
 #include "framework/multibody/model_numbers.hpp"
 #include "framework/simulation/excitation.hpp"
