@@ -37,7 +37,7 @@ std::vector<TrainedHyperparameter> listHyperparameters(const std::vector<std::st
   return listed;
 }
 
-GpMapTraining trainOrThrow(const ExperimentSpec& experiment, const std::vector<std::string>& names,
+GpMapTraining trainInterruptibly(const ExperimentSpec& experiment, const std::vector<std::string>& names,
                            const LabelledFeatures& samples, const TrainingControl& control) {
   try {
     return trainGpMap(experiment.inverse_map.gp, experiment.transform, names, samples, control,
@@ -54,7 +54,7 @@ Training trainMap(const ExperimentSpec& experiment, const LabelledFeatures& samp
   const std::vector<std::string> names = collectNames(experiment.model.parameters);
   Training training;
   GpMapTraining trained = timeStage("train the inverse map", training.notes, [&] {
-    return trainOrThrow(experiment, names, samples, {control.threads, control.stop});
+    return trainInterruptibly(experiment, names, samples, {control.threads, control.stop});
   });
   training.notes.warnings = std::move(trained.warnings);
   training.summary.leave_one_out = calcMetrics(experiment.model.parameters, samples.parameters,
