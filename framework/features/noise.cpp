@@ -5,8 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "framework/autocorrelation/autocorrelation.hpp"
 #include "framework/features/layout_rows.hpp"
-#include "framework/spec/autocorrelation.hpp"
 
 namespace twinmap {
 namespace {

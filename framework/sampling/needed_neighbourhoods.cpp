@@ -54,9 +54,11 @@ MatrixXd dropFailed(const MatrixXd& points, const TrajectoryStore& samples) {
 }
 
 bool selectsByFisherInformation(const ExperimentSpec& experiment) {
-  return std::any_of(
-      experiment.transform.begin(), experiment.transform.end(),
-      [](const TransformStepSpec& step) { return step.select && step.select->fisher_information; });
+  return std::any_of(experiment.transform.begin(), experiment.transform.end(),
+                     [](const TransformStepSpec& step) {
+                       const auto* select = std::get_if<SelectSpec>(&step.kind);
+                       return select != nullptr && std::holds_alternative<FisherInformationSpec>(*select);
+                     });
 }
 
 }  // namespace twinmap

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "framework/sampling/trajectory_content.hpp"
 #include "framework/simulation/solver_revision.hpp"
-#include "framework/spec/trajectory_content.hpp"
 #include "twinmap/build_info.hpp"
 
 namespace twinmap {

@@ -8,10 +8,10 @@
 #include "framework/features/feature_extractor.hpp"
 #include "framework/sampling/needed_neighbourhoods.hpp"
 #include "framework/sampling/store_content.hpp"
+#include "framework/sampling/trajectory_content.hpp"
 #include "framework/spec/check/check_experiment.hpp"
 #include "framework/spec/check/check_features.hpp"
 #include "framework/spec/parameter_box.hpp"
-#include "framework/spec/trajectory_content.hpp"
 
 namespace twinmap {
 namespace {

@@ -1,4 +1,4 @@
-#include "framework/spec/trajectory_content.hpp"
+#include "framework/sampling/trajectory_content.hpp"
 
 #include <algorithm>
 
@@ -65,7 +65,7 @@ YamlNode writeResponse(const ResponseLayout& layout) {
   response.required("outputs", output_names, "");
   response.required("times", std::vector<double>(times.data(), times.data() + times.size()), "");
   response.required("modes", modes, "");
-  return response.takeMap();
+  return response.takeNode();
 }
 
 }  // namespace
@@ -85,7 +85,7 @@ std::string writeTrajectoryContent(const ModelSpec& model, const ResponseLayout&
   content.requiredMap("excitation", withoutSources(excitation), "");
   content.required("initial", initial, "");
   content.requiredMap("outputs", outputs, "");
-  YamlNode root = content.takeMap();
+  YamlNode root = content.takeNode();
   root.entries.push_back({"simulation", {}, writeSimulation(simulation)});
   root.entries.push_back({"response", {}, writeResponse(layout)});
   return writeYaml(root);
