@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "framework/spec/check/check_experiment.hpp"
-#include "framework/spec/describe_experiment.hpp"
 #include "framework/spec/fields/write_value.hpp"
 #include "framework/spec/parameter_box.hpp"
 

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <algorithm>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -121,6 +119,15 @@ struct TableSpec {
   std::optional<MeasuredSignalSpec> measured{};  ///< where times and values come from
 };
 
+inline bool isStrictlyIncreasing(const std::vector<double>& values) {
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    if (values[i - 1] >= values[i]) {
+      return false;
+    }
+  }
+  return true;
+}
+
 template <class Fields>
 void describe(Fields& f, TableSpec& s) {
   f.optional("measured", s.measured, "takes times and values from a file of measurements");
@@ -129,8 +136,7 @@ void describe(Fields& f, TableSpec& s) {
   f.optional("interpolation", s.interpolation, "between the times; cubic: a smooth spline");
   f.rule(s.times.size() >= 2 || (s.measured && s.times.empty()), "must give at least 2 times, or measured");
   f.rule(s.times.size() == s.values.size(), "must give as many values as times");
-  f.rule(std::is_sorted(s.times.begin(), s.times.end(), std::less_equal<>()),
-         "must give strictly increasing times");
+  f.rule(isStrictlyIncreasing(s.times), "must give strictly increasing times");
 }
 
 /// A named excitation signal: the sum of its terms. Frequencies in Hz, phases in rad, times in s.

@@ -177,7 +177,13 @@ const YamlNode& FieldReader::takeRequired(const char* key, const char* what) {
   return *node;
 }
 
-void FieldReader::rule(bool holds, const std::string& text) {
+void FieldReader::requireOne(int given, const char* text, std::initializer_list<const char*> keys) {
+  if (given != 1) {
+    rule(false, (text + (" " + listNames({keys.begin(), keys.end()}))).c_str());
+  }
+}
+
+void FieldReader::rule(bool holds, const char* text) {
   if (!holds && broken_rule_.empty()) {
     broken_rule_ = text;
   }

@@ -58,7 +58,7 @@ class FieldReader {
   void optionalMap(const char* key, std::vector<T>& values, const char* /*what*/);
   template <class... Choices>
   void oneOf(const char* text, Choices... choices);
-  void rule(bool holds, const std::string& text);
+  void rule(bool holds, const char* text);
   template <class T, class... Rule>
   void value(T& value, const Rule&... rule);
   void scalarIsKey();
@@ -74,6 +74,7 @@ class FieldReader {
   const YamlNode& takeRequired(const char* key, const char* what);
   template <class Choice>
   int readChoice(Choice& choice);
+  void requireOne(int given, const char* text, std::initializer_list<const char*> keys);
   void setMap(const std::string& key, YamlNode value);
 
   const YamlNode* node_;
@@ -213,7 +214,7 @@ template <class... Choices>
 void FieldReader::oneOf(const char* text, Choices... choices) {
   int given = 0;
   ((given += readChoice(choices)), ...);
-  rule(given == 1, text + (" " + listNames({choices.key...})));
+  requireOne(given, text, {choices.key...});
 }
 
 template <class T, class... Rule>
