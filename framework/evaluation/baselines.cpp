@@ -85,13 +85,13 @@ Predictions predictPriorMean(const std::vector<ParameterSpec>& parameters, Index
 
 BaselineResult runBaseline(const BaselineSpec& spec, const BaselineContext& context,
                            const LabelledFeatures& train, const LabelledFeatures& test) {
-  if (spec.prior_mean) {
+  if (std::holds_alternative<PriorMeanSpec>(spec)) {
     return runPriorMean(context, test);
   }
-  if (spec.linear_regression) {
+  if (std::holds_alternative<LinearRegressionSpec>(spec)) {
     return runLinearRegression(context, train, test);
   }
-  return runLeastSquares(*spec.least_squares, context, train, test);
+  return runLeastSquares(std::get<LeastSquaresSpec>(spec), context, train, test);
 }
 
 }  // namespace twinmap

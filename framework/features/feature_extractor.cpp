@@ -35,31 +35,14 @@ Blocks makeBlocks(const ModesFeatureSpec& modes, const ResponseLayout& layout, c
   return {makeModesBlock(modes, layout)};
 }
 
-template <class Samples>
-void appendSampleTimes(const Samples& samples, std::vector<double>& times) {
-  for (int i = 0; i < samples.count; ++i) {
-    times.push_back(calcSampleTime(samples, i));
-  }
-}
-
-template <class Kind>
-void appendTimes(const Kind& kind, std::vector<double>& times) {
-  appendSampleTimes(kind.window, times);
-}
-void appendTimes(const SamplesFeatureSpec& samples, std::vector<double>& times) {
-  appendSampleTimes(samples, times);
-}
-void appendTimes(const ModesFeatureSpec&, std::vector<double>&) {}
-
 }  // namespace
 
 Eigen::VectorXd collectTimes(const std::vector<FeatureSpec>& features) {
   std::vector<double> times;
   for (const FeatureSpec& feature : features) {
-    visitKind(feature, [&times](const auto& kind) { appendTimes(kind, times); });
+    appendSampleTimes(getWindow(feature), times);
   }
-  std::sort(times.begin(), times.end());
-  times.erase(std::unique(times.begin(), times.end()), times.end());
+  sortUnique(times);
   return Eigen::Map<Eigen::VectorXd>(times.data(), static_cast<Eigen::Index>(times.size()));
 }
 
@@ -67,7 +50,7 @@ std::optional<double> findSampleInterval(const std::vector<FeatureSpec>& feature
   std::optional<double> smallest;
   for (const FeatureSpec& feature : features) {
     std::vector<double> times;
-    visitKind(feature, [&times](const auto& kind) { appendTimes(kind, times); });
+    appendSampleTimes(getWindow(feature), times);
     for (std::size_t i = 1; i < times.size(); ++i) {
       smallest = std::min(times[i] - times[i - 1], smallest.value_or(times[i] - times[i - 1]));
     }
@@ -76,17 +59,17 @@ std::optional<double> findSampleInterval(const std::vector<FeatureSpec>& feature
 }
 
 bool needExcitation(const std::vector<FeatureSpec>& features) {
-  return std::any_of(features.begin(), features.end(),
-                     [](const FeatureSpec& feature) { return feature.frequency_response.has_value(); });
+  return std::any_of(features.begin(), features.end(), [](const FeatureSpec& feature) {
+    return std::holds_alternative<FrequencyResponseFeatureSpec>(feature);
+  });
 }
 
 FeatureExtractor::FeatureExtractor(const std::vector<FeatureSpec>& features, const ResponseLayout& layout,
                                    const InputSignals& inputs) {
   for (const FeatureSpec& feature : features) {
-    visitKind(feature, [&](const auto& kind) {
-      const Blocks blocks = makeBlocks(kind, layout, inputs);
-      blocks_.insert(blocks_.end(), blocks.begin(), blocks.end());
-    });
+    const Blocks blocks =
+        std::visit([&](const auto& kind) { return makeBlocks(kind, layout, inputs); }, feature);
+    blocks_.insert(blocks_.end(), blocks.begin(), blocks.end());
   }
   for (const auto& block : blocks_) {
     infos_.insert(infos_.end(), block->getInfos().begin(), block->getInfos().end());

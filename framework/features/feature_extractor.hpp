@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "framework/features/feature_block.hpp"
+#include "framework/response/input_signals.hpp"
+#include "framework/response/response_layout.hpp"
 #include "framework/spec/experiment_spec.hpp"
-#include "framework/spec/input_signals.hpp"
-#include "framework/spec/response_layout.hpp"
 
 namespace twinmap {
 

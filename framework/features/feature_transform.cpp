@@ -10,20 +10,24 @@ namespace {
 
 using Eigen::MatrixXd;
 
+AffineStep fit(const ZScoreSpec&, const LabelledFeatures& samples) {
+  return fitZScore(samples.features);
+}
+AffineStep fit(const WhitenSpec& whiten, const LabelledFeatures& samples) {
+  return fitWhiten(whiten, samples.noise_covariance);
+}
+AffineStep fit(const PrincipalComponentsSpec& components, const LabelledFeatures& samples) {
+  return fitPrincipalComponents(components, samples.features);
+}
+AffineStep fit(const PartialLeastSquaresSpec& components, const LabelledFeatures& samples) {
+  return fitPartialLeastSquares(components, samples);
+}
+AffineStep fit(const SelectSpec& select, const LabelledFeatures& samples) {
+  return fitSelect(select, samples);
+}
+
 AffineStep fitStep(const TransformStepSpec& step, const LabelledFeatures& samples) {
-  if (step.z_score) {
-    return fitZScore(samples.features);
-  }
-  if (step.whiten) {
-    return fitWhiten(*step.whiten, samples.noise_covariance);
-  }
-  if (step.partial_least_squares) {
-    return fitPartialLeastSquares(*step.partial_least_squares, samples);
-  }
-  if (step.select) {
-    return fitSelect(*step.select, samples);
-  }
-  return fitPrincipalComponents(*step.principal_components, samples.features);
+  return std::visit([&samples](const auto& kind) { return fit(kind, samples); }, step.kind);
 }
 
 /// The features that a selection keeps.
@@ -80,7 +84,7 @@ FeatureTransform fitTransform(const std::vector<TransformStepSpec>& steps, const
   LabelledFeatures inputs = samples;
   for (const TransformStepSpec& step : steps) {
     transform.steps.push_back(fitStep(step, inputs));
-    if (step.select && !inputs.infos.empty()) {
+    if (std::holds_alternative<SelectSpec>(step.kind) && !inputs.infos.empty()) {
       inputs.infos = selectInfos(transform.steps.back().projection, inputs.infos);
     }
     applyStep(transform.steps.back(), inputs);

@@ -3,9 +3,9 @@
 #include <memory>
 
 #include "framework/features/feature_block.hpp"
+#include "framework/response/input_signals.hpp"
+#include "framework/response/response_layout.hpp"
 #include "framework/spec/feature_spec.hpp"
-#include "framework/spec/input_signals.hpp"
-#include "framework/spec/response_layout.hpp"
 
 namespace twinmap {
 

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "framework/response/response_layout.hpp"
 #include "framework/spec/feature_spec.hpp"
-#include "framework/spec/response_layout.hpp"
 
 namespace twinmap {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "framework/autocorrelation/autocorrelation.hpp"
 #include "framework/features/layout_rows.hpp"
-#include "framework/spec/autocorrelation.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {

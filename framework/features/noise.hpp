@@ -5,8 +5,8 @@
 
 #include "framework/design/random.hpp"
 #include "framework/features/feature_block.hpp"
+#include "framework/response/response_layout.hpp"
 #include "framework/spec/experiment_spec.hpp"
-#include "framework/spec/response_layout.hpp"
 
 namespace twinmap {
 

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "framework/features/feature_block.hpp"
+#include "framework/response/response_layout.hpp"
 #include "framework/spec/feature_spec.hpp"
-#include "framework/spec/response_layout.hpp"
 
 namespace twinmap {
 

@@ -53,7 +53,7 @@ Index findBest(const VectorXd& scores, const std::vector<Index>& taken) {
 
 }  // namespace
 
-std::vector<Index> selectByName(const std::vector<Name>& names, const std::vector<FeatureInfo>& infos) {
+std::vector<Index> selectByName(const FeatureNames& names, const std::vector<FeatureInfo>& infos) {
   std::vector<std::string> known;
   for (const FeatureInfo& info : infos) {
     known.push_back(info.name);
@@ -88,17 +88,24 @@ std::vector<Index> selectByMutualInformation(const MutualInformationSpec& spec,
   return selected;
 }
 
+namespace {
+
+std::vector<Index> selectBy(const FeatureNames& names, const LabelledFeatures& samples) {
+  return selectByName(names, samples.infos);
+}
+std::vector<Index> selectBy(const MutualInformationSpec& spec, const LabelledFeatures& samples) {
+  return selectByMutualInformation(spec, samples);
+}
+std::vector<Index> selectBy(const FisherInformationSpec& spec, const LabelledFeatures& samples) {
+  return selectByFisherInformation(spec, samples.noise_covariance, samples.sensitivities);
+}
+
+}  // namespace
+
 AffineStep fitSelect(const SelectSpec& spec, const LabelledFeatures& samples) {
-  const Index count = samples.features.rows();
-  if (spec.mutual_information) {
-    return makeSelection(selectByMutualInformation(*spec.mutual_information, samples), count);
-  }
-  if (spec.fisher_information) {
-    return makeSelection(
-        selectByFisherInformation(*spec.fisher_information, samples.noise_covariance, samples.sensitivities),
-        count);
-  }
-  return makeSelection(selectByName(spec.features, samples.infos), count);
+  const std::vector<Index> selected =
+      std::visit([&samples](const auto& by) { return selectBy(by, samples); }, spec);
+  return makeSelection(selected, samples.features.rows());
 }
 
 }  // namespace twinmap

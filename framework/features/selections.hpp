@@ -10,7 +10,7 @@
 namespace twinmap {
 
 /// Indices of the named features. Throws ExperimentError for a name that is none of them, or listed twice.
-std::vector<Eigen::Index> selectByName(const std::vector<Name>& names, const std::vector<FeatureInfo>& infos);
+std::vector<Eigen::Index> selectByName(const FeatureNames& names, const std::vector<FeatureInfo>& infos);
 
 /// Relevance without redundancy (mRMR, difference form; Peng, Long and Ding 2005): each feature in turn has
 /// the largest relevance minus mean mutual information with those selected before. Relevance is the sum of

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "framework/features/selections.hpp"
@@ -7,20 +9,32 @@ namespace {
 
 using Eigen::Index;
 
-/// How many inputs a step asks for; none where it takes what comes.
-std::optional<int> getCount(const TransformStepSpec& step) {
-  if (step.principal_components) {
-    return step.principal_components->components.number;
-  }
-  if (step.partial_least_squares) {
-    return step.partial_least_squares->components.number;
-  }
-  if (step.select && step.select->mutual_information) {
-    return step.select->mutual_information->count;
-  }
-  return step.select && step.select->fisher_information
-             ? std::optional(step.select->fisher_information->count)
-             : std::nullopt;
+// How many inputs a step asks for; none where it takes what comes.
+template <class Kind>
+std::optional<int> getCount(const Kind&) {
+  return {};
+}
+std::optional<int> getCount(const PrincipalComponentsSpec& spec) {
+  return spec.components.number;
+}
+std::optional<int> getCount(const PartialLeastSquaresSpec& spec) {
+  return spec.components.number;
+}
+std::optional<int> getCount(const MutualInformationSpec& spec) {
+  return spec.count;
+}
+std::optional<int> getCount(const FisherInformationSpec& spec) {
+  return spec.count;
+}
+template <class... Kinds>
+std::optional<int> getCount(const std::variant<Kinds...>& step) {
+  return std::visit([](const auto& kind) { return getCount(kind); }, step);
+}
+
+/// The names by which a step selects features; null where it does not.
+const FeatureNames* findNames(const TransformStepSpec& step) {
+  const auto* select = std::get_if<SelectSpec>(&step.kind);
+  return select == nullptr ? nullptr : std::get_if<FeatureNames>(select);
 }
 
 }  // namespace
@@ -28,14 +42,14 @@ std::optional<int> getCount(const TransformStepSpec& step) {
 void checkTransformOf(const std::vector<FeatureInfo>& infos, const std::vector<TransformStepSpec>& steps) {
   auto most = static_cast<Index>(infos.size());
   for (const TransformStepSpec& step : steps) {
-    const Index count = getCount(step).value_or(0);
+    const Index count = getCount(step.kind).value_or(0);
     if (count > most) {
       throw ExperimentError(step.where, std::to_string(count),
-                            "asks for more than the " + std::to_string(most) + " inputs of the step");
+                            fmt::format("asks for more than the {} inputs of the step", most));
     }
     most = count > 0 ? count : most;
-    if (step.select && !step.select->features.empty()) {
-      most = std::min(most, static_cast<Index>(selectByName(step.select->features, infos).size()));
+    if (const FeatureNames* names = findNames(step)) {
+      most = std::min(most, static_cast<Index>(selectByName(*names, infos).size()));
     }
   }
 }

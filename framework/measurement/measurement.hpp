@@ -1,8 +1,8 @@
 #pragma once
 
 #include "framework/measurement/table.hpp"
+#include "framework/response/response_layout.hpp"
 #include "framework/spec/measurement_spec.hpp"
-#include "framework/spec/response_layout.hpp"
 
 namespace twinmap {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "framework/spec/input_signals.hpp"
+#include "framework/response/input_signals.hpp"
 #include "framework/spec/model_spec.hpp"
 
 namespace twinmap {

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "framework/sampling/trajectory_content.hpp"
 #include "framework/simulation/solver_revision.hpp"
 #include "framework/spec/parameter_box.hpp"
-#include "framework/spec/trajectory_content.hpp"
 #include "twinmap/build_info.hpp"
 
 namespace twinmap {

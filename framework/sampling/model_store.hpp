@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
+#include "framework/response/response_layout.hpp"
 #include "framework/spec/model_spec.hpp"
-#include "framework/spec/response_layout.hpp"
 #include "framework/store/trajectory_store.hpp"
 
 namespace twinmap {

@@ -52,9 +52,11 @@ std::vector<LocalModel> calcStoredLocalModels(const SampleSource& source, const 
 }  // namespace
 
 bool selectsByFisherInformation(const ExperimentSpec& experiment) {
-  return std::any_of(
-      experiment.transform.begin(), experiment.transform.end(),
-      [](const TransformStepSpec& step) { return step.select && step.select->fisher_information; });
+  return std::any_of(experiment.transform.begin(), experiment.transform.end(),
+                     [](const TransformStepSpec& step) {
+                       const auto* select = std::get_if<SelectSpec>(&step.kind);
+                       return select != nullptr && std::holds_alternative<FisherInformationSpec>(*select);
+                     });
 }
 
 MatrixXd listNeededNeighbourhoods(const ExperimentSpec& experiment) {

@@ -4,12 +4,10 @@
 
 #include "framework/spec/check/check_experiment.hpp"
 #include "framework/spec/check/check_features.hpp"
-#include "framework/spec/describe_experiment.hpp"
-#include "framework/spec/describe_sweep.hpp"
 #include "framework/spec/fields/overrides.hpp"
 #include "framework/spec/fields/read_value.hpp"
 #include "framework/spec/fields/write_value.hpp"
-#include "framework/spec/noise_correlation.hpp"
+#include "framework/spec/resolve_defaults.hpp"
 #include "framework/spec/signal_files.hpp"
 #include "framework/spec/sweep/swept_keys.hpp"
 
@@ -17,45 +15,6 @@ namespace twinmap {
 namespace {
 
 constexpr const char* kSweep = "sweep";
-
-/// 8 standard deviations of the noise: independent noise alone exceeds that between two of 1000 samples in
-/// less than 1 % of windows (1000^2 pairs, each with the probability Q(8 / sqrt 2) = 7.7e-9).
-void resolveProminence(const NoiseSpec& noise, ExtremaFeatureSpec& extrema) {
-  constexpr double kNoiseStddevs = 8.0;
-  for (const OutputNoiseSpec& output : noise.stddev) {
-    if (!extrema.prominence && output.name.text == extrema.output.text) {
-      extrema.prominence = kNoiseStddevs * noise.scale * output.stddev;
-    }
-  }
-}
-
-/// Defaults that depend on other values.
-void resolveDefaults(ExperimentSpec& experiment) {
-  const std::vector<ParameterSpec>& parameters = experiment.model.parameters;
-  if (experiment.report.over.empty() && parameters.size() >= 2) {
-    experiment.report.over = {parameters[parameters.size() - 2].name, parameters.back().name};
-  }
-  if (experiment.transform.empty()) {
-    experiment.transform.resize(2);
-    const bool correlated = !experiment.noise.correlation.empty();
-    experiment.transform[0].whiten = WhitenSpec{correlated ? WhitenBy::kCovariance : WhitenBy::kStddev};
-    experiment.transform[1].principal_components.emplace();
-    for (TransformStepSpec& step : experiment.transform) {
-      step.where = {experiment.name.where.file, 0, 0, "transform"};
-    }
-  }
-  resolveNoiseCorrelation(experiment);
-  for (FeatureSpec& feature : experiment.features) {
-    if (feature.extrema) {
-      resolveProminence(experiment.noise, *feature.extrema);
-    }
-  }
-  if (!experiment.noise.replicates) {
-    constexpr int kMostReplicates = 4, kMostColumns = 3000;
-    experiment.noise.replicates =
-        std::clamp(kMostColumns / experiment.design.train.samples, 1, kMostReplicates);
-  }
-}
 
 }  // namespace
 

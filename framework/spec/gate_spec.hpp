@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "framework/spec/expression/expression.hpp"
+#include "framework/spec/fields/fields.hpp"
 
 namespace twinmap {
 
@@ -13,6 +14,16 @@ struct GateSpec {
   std::optional<Name> parameter;  ///< none: every parameter
   std::optional<double> min, max;
 };
+
+template <class Fields>
+void describe(Fields& f, GateSpec& s) {
+  f.required("metric", s.metric, "a column of metrics.csv, such as coverage95 or ratio_to_limit");
+  f.optional("parameter", s.parameter, "the parameter it holds for (default: every one)");
+  f.optional("min", s.min, "least value that passes");
+  f.optional("max", s.max, "greatest value that passes");
+  f.rule(s.min || s.max, "must give min, max or both");
+  f.rule(!s.min || !s.max || *s.min <= *s.max, "must have min not above max");
+}
 
 /// The columns of metrics.csv that a gate may hold.
 inline constexpr std::array<const char*, 18> kGateMetrics{

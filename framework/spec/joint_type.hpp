@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "framework/spec/system_spec.hpp"
+#include "framework/spec/body_spec.hpp"
 
 namespace twinmap {
 

@@ -1,8 +1,19 @@
 #pragma once
 
+#include "framework/spec/fields/fields.hpp"
+
 namespace twinmap {
 
 enum class Integrator { kDopri5, kRungeKuttaMerson, kCpodes };
+
+template <>
+struct EnumNames<Integrator> {
+  static constexpr EnumName<Integrator> values[] = {
+      {"dopri5", Integrator::kDopri5},
+      {"runge_kutta_merson", Integrator::kRungeKuttaMerson},
+      {"cpodes", Integrator::kCpodes},
+  };
+};
 
 struct SimulationSpec {
   double duration = 0.0;  ///< s; above 0 where features are made of outputs
@@ -13,5 +24,20 @@ struct SimulationSpec {
   double max_wall_time = 60.0;       ///< s per sample; more is reported as a failure
   double allowed_failures = 0.05;    ///< fraction of a set's samples that may fail before the run does
 };
+
+template <class Fields>
+void describe(Fields& f, SimulationSpec& s) {
+  constexpr NumberRule kRelative{1e-13, 0.1, true, "must be a number from 1e-13 to 0.1"};
+  constexpr NumberRule kAbsolute{1e-18, 1.0, true, "must be a number from 1e-18 to 1"};
+  constexpr NumberRule kWallTime{0.0, 86400.0, false, "must be a number above 0, at most 86400 (a day)"};
+  f.optional("duration", s.duration, "simulated time; s; needed for features of outputs", kNonNegative);
+  f.optional("integrator", s.integrator, "dopri5, or one of Simbody's as a cross-check");
+  f.optional("relative_tolerance", s.relative_tolerance, "local error per step, relative", kRelative);
+  f.optional("absolute_tolerance", s.absolute_tolerance, "local error per step, absolute", kAbsolute);
+  f.optional("max_steps", s.max_steps, "per sample; more is a failure", kCount);
+  f.optional("max_wall_time", s.max_wall_time, "per sample; more is a failure; s", kWallTime);
+  f.optional("allowed_failures", s.allowed_failures,
+             "fraction of the training or test samples that may fail before the run does", kFraction);
+}
 
 }  // namespace twinmap

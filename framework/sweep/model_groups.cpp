@@ -11,7 +11,6 @@
 #include "framework/spec/check/check_experiment.hpp"
 #include "framework/spec/check/check_features.hpp"
 #include "framework/spec/parameter_box.hpp"
-#include "framework/spec/trajectory_content.hpp"
 
 namespace twinmap {
 namespace {

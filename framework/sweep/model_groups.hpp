@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "framework/spec/response_layout.hpp"
+#include "framework/response/response_layout.hpp"
 #include "framework/spec/sweep/sweep_cases.hpp"
 #include "framework/store/trajectory_store.hpp"
 

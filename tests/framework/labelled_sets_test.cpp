@@ -12,8 +12,7 @@ ExperimentSpec makeExperiment() {
   ExperimentSpec experiment;
   experiment.model.parameters.resize(1);
   experiment.features.resize(1);
-  experiment.features[0].extrema =
-      ExtremaFeatureSpec{{"y", {}}, {0.0, 1.0, 9}, ExtremaKind::kMaxima, 1, 1.0, 3};
+  experiment.features[0] = ExtremaFeatureSpec{{"y", {}}, {0.0, 1.0, 9}, ExtremaKind::kMaxima, 1, 1.0, 3};
   experiment.noise.stddev = {{{"y", {}}, 0.3}};
   experiment.noise.replicates = 20;
   return experiment;

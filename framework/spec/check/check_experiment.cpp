@@ -5,7 +5,7 @@
 
 #include "framework/spec/check/check_features.hpp"
 #include "framework/spec/check/check_measurement.hpp"
-#include "framework/spec/noise_correlation.hpp"
+#include "framework/spec/check/check_noise.hpp"
 #include "framework/spec/yaml/nearest_name.hpp"
 
 namespace twinmap {
@@ -30,37 +30,6 @@ void checkDuration(const ExperimentSpec& experiment) {
   if (!collectOutputs(experiment.features).empty() && !(experiment.model.simulation.duration > 0.0)) {
     throw ExperimentError({experiment.name.where.file, 0, 0, "simulation.duration"}, "0",
                           "must be given, a number above 0, for features of outputs");
-  }
-}
-
-void checkModesNoise(const ExperimentSpec& experiment) {
-  const bool needed = countModes(experiment.features) > 0;
-  if (needed != experiment.noise.modes.has_value()) {
-    throw ExperimentError(
-        {experiment.name.where.file, 0, 0, "noise.modes"}, "",
-        needed ? "is needed for features of modes: {frequency: Hz, damping_ratio: }, 0 for none"
-               : "is given, but no feature is made of modes");
-  }
-}
-
-void checkNoise(const ExperimentSpec& experiment) {
-  const NoiseSpec& noise = experiment.noise;
-  const ModelSpec& model = experiment.model;
-  const std::vector<std::string> outputs = collectNames(model.outputs);
-  for (const OutputNoiseSpec& stddev : noise.stddev) {
-    requireKnown(stddev.name, outputs, "an output");
-  }
-  checkModesNoise(experiment);
-  checkNoiseCorrelation(experiment);
-  if (collectOutputs(experiment.features).empty()) {
-    return;
-  }
-  const std::vector<std::string> given = collectNames(noise.stddev);
-  for (const OutputSpec& output : model.outputs) {
-    if (std::find(given.begin(), given.end(), output.name.text) == given.end()) {
-      throw ExperimentError(output.name.where, output.name.text,
-                            "has no noise in noise.stddev; give its standard deviation, 0 for none");
-    }
   }
 }
 

@@ -155,37 +155,13 @@ void check(const FrequencyResponseFeatureSpec& response, const ModelSpec& model)
 
 void check(const ModesFeatureSpec&, const ModelSpec&) {}
 
-template <class Kind>
-std::vector<Name> getOutputs(const Kind& kind) {
-  return kind.outputs;
-}
-std::vector<Name> getOutputs(const ExtremaFeatureSpec& extrema) {
-  return {extrema.output};
-}
-std::vector<Name> getOutputs(const ModesFeatureSpec&) {
-  return {};
-}
-
-template <class Kind>
-const WindowSpec& getWindow(const Kind& kind) {
-  return kind.window;
-}
-WindowSpec getWindow(const SamplesFeatureSpec& samples) {
-  return {samples.start, samples.interval, samples.count};
-}
-WindowSpec getWindow(const ModesFeatureSpec&) {
-  return {};
-}
-
 /// A mistyped duration would cost hours of simulation that no feature needs.
 void checkDuration(const std::vector<FeatureSpec>& features, const ModelSpec& model) {
   constexpr double kMost = 100.0, kShort = 1.0;
   double last = kShort;
   for (const FeatureSpec& feature : features) {
-    visitKind(feature, [&last](const auto& kind) {
-      const WindowSpec window = getWindow(kind);
-      last = std::max(last, calcSampleTime(window, window.count - 1));
-    });
+    const WindowSpec window = getWindow(feature);
+    last = std::max(last, calcSampleTime(window, window.count - 1));
   }
   if (model.simulation.duration > kMost * last) {
     throw ExperimentError({model.parameters.front().name.where.file, 0, 0, "simulation.duration"},
@@ -196,30 +172,11 @@ void checkDuration(const std::vector<FeatureSpec>& features, const ModelSpec& mo
 
 }  // namespace
 
-std::vector<Name> collectOutputs(const std::vector<FeatureSpec>& features) {
-  std::vector<Name> all;
-  for (const FeatureSpec& feature : features) {
-    visitKind(feature, [&all](const auto& kind) {
-      const std::vector<Name> outputs = getOutputs(kind);
-      all.insert(all.end(), outputs.begin(), outputs.end());
-    });
-  }
-  return all;
-}
-
-int countModes(const std::vector<FeatureSpec>& features) {
-  int count = 0;
-  for (const FeatureSpec& feature : features) {
-    count = std::max(count, feature.modes ? feature.modes->count : 0);
-  }
-  return count;
-}
-
 void requireFewSamples(const std::vector<FeatureSpec>& features, const SourceLocation& where) {
   constexpr double kMost = 1e7;
   double samples = 0.0;
   for (const FeatureSpec& feature : features) {
-    visitKind(feature, [&samples](const auto& kind) { samples += getWindow(kind).count; });
+    samples += getWindow(feature).count;
   }
   if (samples > kMost) {
     throw ExperimentError({where.file, 0, 0, "features"}, "",
@@ -229,7 +186,7 @@ void requireFewSamples(const std::vector<FeatureSpec>& features, const SourceLoc
 
 void checkFeatures(const std::vector<FeatureSpec>& features, const ModelSpec& model) {
   for (const FeatureSpec& feature : features) {
-    visitKind(feature, [&model](const auto& kind) { check(kind, model); });
+    std::visit([&model](const auto& kind) { check(kind, model); }, feature);
   }
   checkDuration(features, model);
 }

@@ -23,67 +23,78 @@ void requireModesNoise(const ExperimentSpec& experiment, const SourceLocation& w
                        const std::string& step) {
   const NoiseSpec& noise = experiment.noise;
   for (const FeatureSpec& feature : experiment.features) {
-    if (feature.modes && feature.modes->frequencies && !(noise.scale * noise.modes->frequency > 0.0)) {
+    const auto* modes = std::get_if<ModesFeatureSpec>(&feature);
+    if (modes != nullptr && modes->frequencies && !(noise.scale * noise.modes->frequency > 0.0)) {
       throw ExperimentError(where, step, "needs noise above 0 in noise.modes.frequency");
     }
-    if (feature.modes && feature.modes->damping_ratios && !(noise.scale * noise.modes->damping_ratio > 0.0)) {
+    if (modes != nullptr && modes->damping_ratios && !(noise.scale * noise.modes->damping_ratio > 0.0)) {
       throw ExperimentError(where, step, "needs noise above 0 in noise.modes.damping_ratio");
     }
   }
 }
 
-void checkWhiten(const WhitenSpec& whiten, const Progress& progress, const SourceLocation& where) {
-  if (progress.mixed && whiten.by == WhitenBy::kStddev) {
-    throw ExperimentError(where, "whiten",
+/// What a step is checked against.
+struct Context {
+  const ExperimentSpec& experiment;
+  const Progress& progress;
+  const SourceLocation& where;
+};
+
+void check(const ZScoreSpec&, const Context&) {}
+
+void check(const WhitenSpec& whiten, const Context& context) {
+  requireNoise(context.experiment, context.where, "whiten");
+  requireModesNoise(context.experiment, context.where, "whiten");
+  if (context.progress.mixed && whiten.by == WhitenBy::kStddev) {
+    throw ExperimentError(context.where, "whiten",
                           "must be 'whiten: {by: covariance}' behind a step that mixes features, which "
                           "correlates their noise; or come before it");
   }
 }
 
-void checkPrincipalComponents(const PrincipalComponentsSpec& spec, const Progress& progress,
-                              const SourceLocation& where) {
+void check(const PrincipalComponentsSpec& spec, const Context& context) {
   const bool automatic = !spec.components.number && !spec.explained_variance;
-  if (automatic && !progress.whitened) {
+  if (automatic && !context.progress.whitened) {
     throw ExperimentError(
-        where, "principal_components",
+        context.where, "principal_components",
         "needs components or explained_variance, unless it directly follows whiten (by covariance, "
         "where the noise is correlated)");
   }
 }
 
-void checkSelect(const SelectSpec& select, const ExperimentSpec& experiment, const Progress& progress,
-                 const SourceLocation& where) {
-  if (!select.features.empty() && progress.mixed) {
-    throw ExperimentError(select.features.front().where, select.features.front().text,
+void check(const PartialLeastSquaresSpec&, const Context&) {}
+
+void check(const SelectSpec& select, const Context& context) {
+  const auto* names = std::get_if<FeatureNames>(&select);
+  if (names != nullptr && context.progress.mixed) {
+    throw ExperimentError(names->front().where, names->front().text,
                           "is no feature behind a step that mixes them");
   }
-  if (select.fisher_information) {
-    requireNoise(experiment, where, "select by fisher_information");
+  if (std::holds_alternative<FisherInformationSpec>(select)) {
+    requireNoise(context.experiment, context.where, "select by fisher_information");
   }
 }
 
-void checkStep(const TransformStepSpec& step, const ExperimentSpec& experiment, const Progress& progress) {
-  if (step.whiten) {
-    requireNoise(experiment, step.where, "whiten");
-    requireModesNoise(experiment, step.where, "whiten");
-    checkWhiten(*step.whiten, progress, step.where);
-  }
-  if (step.select) {
-    checkSelect(*step.select, experiment, progress, step.where);
-  }
-  if (step.principal_components) {
-    checkPrincipalComponents(*step.principal_components, progress, step.where);
-  }
+bool whitensByCovariance(const TransformStepSpec& step) {
+  const auto* whiten = std::get_if<WhitenSpec>(&step.kind);
+  return whiten != nullptr && whiten->by == WhitenBy::kCovariance;
 }
 
 /// Whether inputs behind the step are no longer the features, one by one.
 bool mixes(const TransformStepSpec& step) {
-  return step.principal_components || step.partial_least_squares ||
-         (step.whiten && step.whiten->by == WhitenBy::kCovariance);
+  return std::holds_alternative<PrincipalComponentsSpec>(step.kind) ||
+         std::holds_alternative<PartialLeastSquaresSpec>(step.kind) || whitensByCovariance(step);
+}
+
+/// Whether inputs behind the step have independent noise of unit variance.
+bool whitens(const TransformStepSpec& step, const NoiseSpec& noise) {
+  return std::holds_alternative<WhitenSpec>(step.kind) &&
+         (whitensByCovariance(step) || noise.correlation.empty());
 }
 
 void checkLengthScales(const TransformStepSpec& step, LengthScales length_scales) {
-  if (length_scales == LengthScales::kPerOutput && (mixes(step) || step.select)) {
+  if (length_scales == LengthScales::kPerOutput &&
+      (mixes(step) || std::holds_alternative<SelectSpec>(step.kind))) {
     throw ExperimentError(step.where, "",
                           "goes not with inverse_map.gp.length_scales: per_output, because behind it inputs "
                           "are not all the features; use per_feature or shared");
@@ -95,10 +106,10 @@ void checkLengthScales(const TransformStepSpec& step, LengthScales length_scales
 void checkTransform(const ExperimentSpec& experiment) {
   Progress progress;
   for (const TransformStepSpec& step : experiment.transform) {
-    checkStep(step, experiment, progress);
+    const Context context{experiment, progress, step.where};
+    std::visit([&context](const auto& kind) { check(kind, context); }, step.kind);
     checkLengthScales(step, experiment.inverse_map.gp.length_scales);
-    progress.whitened =
-        step.whiten && (step.whiten->by == WhitenBy::kCovariance || experiment.noise.correlation.empty());
+    progress.whitened = whitens(step, experiment.noise);
     progress.mixed = progress.mixed || mixes(step);
   }
 }

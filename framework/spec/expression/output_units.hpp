@@ -3,6 +3,7 @@
 #include <string>
 
 #include "framework/spec/joint_type.hpp"
+#include "framework/spec/output_spec.hpp"
 #include "framework/spec/system_spec.hpp"
 
 namespace twinmap {

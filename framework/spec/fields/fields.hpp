@@ -55,7 +55,7 @@ const char* getEnumText(Enum value) {
   return "";
 }
 
-/// How structs are described. For each struct of the experiment there is
+/// How structs are described. Beside each struct of the experiment there is
 ///
 ///   template <class Fields> void describe(Fields& f, SpringSpec& s) {
 ///     f.required("coordinate", s.coordinate, "the coordinate it acts on");
@@ -67,6 +67,10 @@ const char* getEnumText(Enum value) {
 /// derive the JSON schema (json_schema.cpp), so that a key is named in one place.
 ///   required, optional         a value; an optional one keeps its default when absent
 ///   requiredMap, optionalMap   a vector of structs with a Name `name`, written as a map from name to struct
+///   oneOf                      keys of which exactly one is given (one_of.hpp)
 ///   rule                       a condition over several fields
+///   value                      instead of keys: the struct is written as this value alone
+///   scalarIsKey, scalarIsValueOf   called first: a scalar is short for the map {scalar: {}}, {key: scalar}
+///   location                   where the struct stands in its file
 
 }  // namespace twinmap

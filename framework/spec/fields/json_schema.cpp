@@ -3,8 +3,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "framework/spec/describe_experiment.hpp"
-#include "framework/spec/describe_sweep.hpp"
+#include "framework/spec/experiment_spec.hpp"
+#include "framework/spec/fields/one_of.hpp"
+#include "framework/spec/sweep/sweep_spec.hpp"
 
 namespace twinmap {
 namespace {
@@ -33,20 +34,8 @@ Json makeSchema(const Name&) {
 Json makeSchema(const Expression&) {
   return {{"type", {"number", "string"}}};
 }
-Json makeSchema(const OutputNoiseSpec&) {
-  return {{"type", "number"}, {"minimum", 0}};
-}
-Json makeSchema(const Frequency&) {
-  return {{"type", "number"}, {"exclusiveMinimum", 0}};
-}
-Json makeSchema(const NamedExpression&) {
-  return makeSchema(Expression{});
-}
 Json makeSchema(const ColumnSpec&) {
   return {{"type", "string"}};
-}
-Json makeSchema(const MeasuredColumnSpec&) {
-  return makeSchema(ColumnSpec{});
 }
 Json makeSchema(const Bounds&) {
   return {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 2}, {"maxItems", 2}};
@@ -55,13 +44,13 @@ Json makeSchema(const Bounds&) {
 Json makeSchema(const ComponentCount&) {
   const Json automatic{{"const", "automatic"}};
   const Json number{{"type", "integer"}, {"minimum", 1}};
-  return {{"anyOf", Json::array({number, automatic})}};
+  return {{"oneOf", Json::array({number, automatic})}};
 }
 
 Json makeSchema(const SweptKeys&) {
   const Json list{{"type", "array"}, {"minItems", 1}};
   const Json range{{"type", "string"}, {"pattern", "^-?[0-9]+\\.\\.-?[0-9]+$"}};
-  return {{"type", "object"}, {"additionalProperties", {{"anyOf", Json::array({list, range})}}}};
+  return {{"type", "object"}, {"additionalProperties", {{"oneOf", Json::array({list, range})}}}};
 }
 
 template <class T>
@@ -72,20 +61,11 @@ template <class T, std::size_t N>
 Json makeSchema(const std::array<T, N>&);
 template <class T>
 Json makeSchema(const std::optional<T>&);
+template <class T, class Variant>
+Json makeSchema(const Alternative<T, Variant>&);
 template <class T>
 Json makeSchema(const T&);
 
-Json makeSchema(const TransformStepSpec&) {
-  const Json names{{"enum", {"z_score", "whiten", "principal_components", "partial_least_squares"}}};
-  return {{"anyOf", Json::array({names, makeStructSchema<TransformStepSpec>()})}};
-}
-Json makeSchema(const BaselineSpec&) {
-  const Json names{{"enum", {"prior_mean", "linear_regression", "least_squares"}}};
-  return {{"anyOf", Json::array({names, makeStructSchema<BaselineSpec>()})}};
-}
-Json makeSchema(const ConstantSpec&) {
-  return {{"anyOf", Json::array({makeSchema(Expression{}), makeStructSchema<ConstantSpec>()})}};
-}
 template <class T>
 Json makeSchema(const std::vector<T>&) {
   return {{"type", "array"}, {"items", makeSchema(T{})}};
@@ -96,6 +76,10 @@ Json makeSchema(const std::array<T, N>&) {
 }
 template <class T>
 Json makeSchema(const std::optional<T>&) {
+  return makeSchema(T{});
+}
+template <class T, class Variant>
+Json makeSchema(const Alternative<T, Variant>&) {
   return makeSchema(T{});
 }
 template <class T>
@@ -124,7 +108,12 @@ void addRule(Json& schema, const ListRule& rule) {
   schema["minItems"] = rule.minimum;
 }
 
-/// Collects the fields of a struct into the schema of an object (see fields.hpp).
+/// Whether a map without keys is valid.
+bool acceptsNoKeys(const Json& schema) {
+  return !schema.contains("required") && !schema.contains("oneOf");
+}
+
+/// Collects the fields of a struct into its schema (see fields.hpp).
 class FieldSchema {
  public:
   template <class T, class... Rule>
@@ -147,14 +136,26 @@ class FieldSchema {
   void optionalMap(const char* key, const std::vector<T>&, const char* what) {
     add(key, {{"type", "object"}, {"additionalProperties", makeSchema(T{})}}, what);
   }
+  template <class... Choices>
+  void oneOf(const char* /*text*/, const Choices&... choices) {
+    (addChoice(choices), ...);
+  }
+  template <class T, class... Rule>
+  void value(const T& value, const Rule&... rule) {
+    value_ = makeSchema(value);
+    (addRule(value_, rule), ...);
+  }
   void rule(bool, const char*) const {}
+  void scalarIsKey() { scalar_is_key_ = true; }
+  void scalarIsValueOf(const char* key) { value_key_ = key; }
+  void location(const SourceLocation&) const {}
 
-  Json makeObject() const {
-    Json object{{"type", "object"}, {"additionalProperties", false}, {"properties", properties_}};
-    if (!required_.empty()) {
-      object["required"] = required_;
+  Json getSchema() const {
+    if (!value_.is_null()) {
+      return value_;
     }
-    return object;
+    const Json scalar = makeScalar();
+    return scalar.is_null() ? makeObject() : Json{{"oneOf", Json::array({scalar, makeObject()})}};
   }
 
  private:
@@ -163,8 +164,51 @@ class FieldSchema {
     properties_[key] = std::move(schema);
   }
 
+  template <class Choice>
+  void addChoice(const Choice& choice) {
+    std::apply([&](const auto&... rule) { optional(choice.key, choice.value, choice.what, rule...); },
+               choice.rules);
+    choices_.push_back(Json{{"required", Json::array({choice.key})}});
+  }
+
+  Json makeObject() const {
+    Json object{{"type", "object"}, {"additionalProperties", false}, {"properties", properties_}};
+    if (!required_.empty()) {
+      object["required"] = required_;
+    }
+    if (!choices_.empty()) {
+      object["oneOf"] = choices_;
+    }
+    return object;
+  }
+
+  /// What a scalar may be; null if only a map will do.
+  Json makeScalar() const {
+    if (!value_key_.empty()) {
+      Json schema = properties_[value_key_];
+      schema.erase("description");
+      return schema;
+    }
+    return scalar_is_key_ ? Json{{"enum", listDefaults()}} : Json();
+  }
+
+  /// The choices that need no keys of their own.
+  Json listDefaults() const {
+    Json keys = Json::array();
+    for (const auto& [key, schema] : properties_.items()) {
+      if (acceptsNoKeys(schema)) {
+        keys.push_back(key);
+      }
+    }
+    return keys;
+  }
+
   Json properties_ = Json::object();
   std::vector<std::string> required_;
+  Json choices_ = Json::array();
+  Json value_;
+  std::string value_key_;
+  bool scalar_is_key_ = false;
 };
 
 template <class T>
@@ -172,7 +216,7 @@ Json makeStructSchema() {
   FieldSchema fields;
   T value{};
   describe(fields, value);
-  return fields.makeObject();
+  return fields.getSchema();
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <cctype>
 #include <cmath>
 
-#include "framework/spec/describe_experiment.hpp"
 #include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
@@ -123,28 +122,11 @@ void readValue(const YamlNode& node, Bounds& value) {
   value = {ends[0], ends[1], node.where};
 }
 
-void readValue(const YamlNode& node, OutputNoiseSpec& value) {
-  readValue(node, value.stddev, kNonNegative);
-}
-
-void readValue(const YamlNode& node, Frequency& value) {
-  readValue(node, value.hertz, kPositive);
-  value.where = node.where;
-}
-
-void readValue(const YamlNode& node, NamedExpression& value) {
-  readValue(node, value.value);
-}
-
 void readValue(const YamlNode& node, ColumnSpec& value) {
   value = parseColumn(requireScalar(node, "a column, 'NAME' or 'NAME [unit]'"), node.where);
   if (value.name.empty()) {
     throw ExperimentError(node.where, node.scalar, "must name a column, 'NAME' or 'NAME [unit]'");
   }
-}
-
-void readValue(const YamlNode& node, MeasuredColumnSpec& value) {
-  readValue(node, value.column);
 }
 
 void readValue(const YamlNode& node, ComponentCount& value) {
@@ -156,76 +138,71 @@ void readValue(const YamlNode& node, ComponentCount& value) {
   }
 }
 
-/// A struct of which exactly one member is set, by its key; a scalar is a key without further settings.
-template <class Choice>
-static void readChoice(const YamlNode& node, Choice& value) {
-  value.where = node.where;
-  if (node.kind != YamlNode::Kind::kScalar) {
-    readStruct(node, value);
-    return;
+void FieldReader::setMap(const std::string& key, YamlNode value) {
+  written_out_ = makeMap();
+  written_out_.where = value.where = node_->where;
+  written_out_.entries.push_back({key, node_->where, std::move(value)});
+  node_ = &written_out_;
+}
+
+void FieldReader::scalarIsKey() {
+  if (node_->kind == YamlNode::Kind::kScalar) {
+    setMap(node_->scalar, makeMap());
   }
-  YamlNode map = makeMap();
-  map.where = node.where;
-  map.entries.push_back({node.scalar, node.where, makeMap()});
-  map.entries.back().value.where = node.where;
-  readStruct(map, value);
 }
 
-void readValue(const YamlNode& node, TransformStepSpec& value) {
-  readChoice(node, value);
-}
-
-void readValue(const YamlNode& node, BaselineSpec& value) {
-  readChoice(node, value);
-}
-
-void readValue(const YamlNode& node, ConstantSpec& value) {
-  if (node.kind == YamlNode::Kind::kScalar) {
-    readValue(node, value.value);
-  } else {
-    readStruct(node, value);
+void FieldReader::scalarIsValueOf(const char* key) {
+  if (node_->kind == YamlNode::Kind::kScalar) {
+    setMap(key, *node_);
   }
 }
 
 const YamlNode* FieldReader::take(const char* key) {
+  requireKind(*node_, YamlNode::Kind::kMap, "a map");
   known_.emplace_back(key);
-  return map_.find(key);
+  return node_->find(key);
 }
 
 const YamlNode& FieldReader::takeRequired(const char* key, const char* what) {
   const YamlNode* node = take(key);
   if (node == nullptr) {
-    for (const YamlEntry& entry : map_.entries) {
+    for (const YamlEntry& entry : node_->entries) {
       const std::string suggestion = suggestName(entry.key, {key});
       if (!suggestion.empty() && std::find(known_.begin(), known_.end(), entry.key) == known_.end()) {
         throw ExperimentError(entry.key_where, entry.key, "is not a key here" + suggestion);
       }
     }
-    throw ExperimentError(map_.where, "", "needs the key '" + std::string(key) + "' (" + what + ")");
+    throw ExperimentError(node_->where, "", "needs the key '" + std::string(key) + "' (" + what + ")");
   }
   return *node;
 }
 
+void FieldReader::requireOne(int given, const char* text, std::initializer_list<const char*> keys) {
+  if (given != 1) {
+    rule(false, (text + (" " + listNames({keys.begin(), keys.end()}))).c_str());
+  }
+}
+
 void FieldReader::rule(bool holds, const char* text) {
-  if (!holds && broken_rule_ == nullptr) {
+  if (!holds && broken_rule_.empty()) {
     broken_rule_ = text;
   }
 }
 
 void FieldReader::finish() const {
-  for (const YamlEntry& entry : map_.entries) {
+  if (is_value_) {
+    return;
+  }
+  requireKind(*node_, YamlNode::Kind::kMap, "a map");
+  for (const YamlEntry& entry : node_->entries) {
     if (std::find(known_.begin(), known_.end(), entry.key) == known_.end()) {
-      std::string listed;
-      for (const std::string& key : known_) {
-        listed += (listed.empty() ? "" : ", ") + key;
-      }
       throw ExperimentError(
           entry.key_where, entry.key,
-          "is not a key here" + suggestName(entry.key, known_) + " (known: " + listed + ")");
+          "is not a key here" + suggestName(entry.key, known_) + " (known: " + listNames(known_) + ")");
     }
   }
-  if (broken_rule_ != nullptr) {
-    throw ExperimentError(map_.where, "", broken_rule_);
+  if (!broken_rule_.empty()) {
+    throw ExperimentError(node_->where, "", broken_rule_);
   }
 }
 

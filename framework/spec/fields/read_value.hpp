@@ -8,6 +8,7 @@
 
 #include "framework/spec/experiment_spec.hpp"
 #include "framework/spec/fields/fields.hpp"
+#include "framework/spec/fields/one_of.hpp"
 #include "framework/spec/yaml/nearest_name.hpp"
 #include "framework/spec/yaml/yaml_node.hpp"
 
@@ -29,20 +30,10 @@ void readValue(const YamlNode& node, Expression& value);
 void readValue(const YamlNode& node, Name& value);
 /// [lower, upper] with lower < upper.
 void readValue(const YamlNode& node, Bounds& value);
-void readValue(const YamlNode& node, OutputNoiseSpec& value);
-/// A number above 0.
-void readValue(const YamlNode& node, Frequency& value);
-void readValue(const YamlNode& node, NamedExpression& value);
 /// "NAME" or "NAME [unit]".
 void readValue(const YamlNode& node, ColumnSpec& value);
-void readValue(const YamlNode& node, MeasuredColumnSpec& value);
 /// A whole number above 0, or automatic.
 void readValue(const YamlNode& node, ComponentCount& value);
-/// A scalar names one of the choices with its defaults.
-void readValue(const YamlNode& node, TransformStepSpec& value);
-void readValue(const YamlNode& node, BaselineSpec& value);
-/// A scalar is the constant's value.
-void readValue(const YamlNode& node, ConstantSpec& value);
 
 /// Throws unless `node` is of the kind; the message says what was expected.
 void requireKind(const YamlNode& node, YamlNode::Kind kind, const std::string& expected);
@@ -50,10 +41,12 @@ void requireKind(const YamlNode& node, YamlNode::Kind kind, const std::string& e
 /// Throws unless `key` is an identifier: a letter or '_', then letters, digits or '_'.
 void requireIdentifier(const Name& name);
 
-/// Reads the keys of a map into the fields of a struct (see fields.hpp).
+/// Reads a node into the fields of a struct (see fields.hpp).
 class FieldReader {
  public:
-  explicit FieldReader(const YamlNode& map) : map_(map) { requireKind(map, YamlNode::Kind::kMap, "a map"); }
+  explicit FieldReader(const YamlNode& node) : node_(&node) {}
+  FieldReader(const FieldReader&) = delete;
+  FieldReader& operator=(const FieldReader&) = delete;
 
   template <class T, class... Rule>
   void required(const char* key, T& value, const char* /*what*/, const Rule&... rule);
@@ -63,7 +56,14 @@ class FieldReader {
   void requiredMap(const char* key, std::vector<T>& values, const char* /*what*/);
   template <class T>
   void optionalMap(const char* key, std::vector<T>& values, const char* /*what*/);
+  template <class... Choices>
+  void oneOf(const char* text, Choices... choices);
   void rule(bool holds, const char* text);
+  template <class T, class... Rule>
+  void value(T& value, const Rule&... rule);
+  void scalarIsKey();
+  void scalarIsValueOf(const char* key);
+  void location(SourceLocation& where) const { where = node_->where; }
 
   /// Throws for a key that no field asked for, with the nearest known one; then for the first broken rule,
   /// which a misspelt key may have caused.
@@ -72,10 +72,16 @@ class FieldReader {
  private:
   const YamlNode* take(const char* key);
   const YamlNode& takeRequired(const char* key, const char* what);
+  template <class Choice>
+  int readChoice(Choice& choice);
+  void requireOne(int given, const char* text, std::initializer_list<const char*> keys);
+  void setMap(const std::string& key, YamlNode value);
 
-  const YamlNode& map_;
+  const YamlNode* node_;
+  YamlNode written_out_;   ///< the map that a scalar is short for
+  bool is_value_ = false;  ///< not a map
   std::vector<std::string> known_;
-  const char* broken_rule_ = nullptr;
+  std::string broken_rule_;
 };
 
 template <class T>
@@ -89,17 +95,15 @@ template <class Enum>
 void readEnum(const YamlNode& node, Enum& value) {
   requireKind(node, YamlNode::Kind::kScalar, "a name");
   std::vector<std::string> names;
-  std::string listed;
   for (const EnumName<Enum>& name : EnumNames<Enum>::values) {
     if (node.scalar == name.text) {
       value = name.value;
       return;
     }
     names.emplace_back(name.text);
-    listed += (listed.empty() ? "" : ", ") + names.back();
   }
   throw ExperimentError(node.where, node.scalar,
-                        "must be one of " + listed + suggestName(node.scalar, names));
+                        "must be one of " + listNames(names) + suggestName(node.scalar, names));
 }
 
 template <class T>
@@ -114,6 +118,13 @@ void readValue(const YamlNode& node, T& value) {
 template <class T, class... Rule>
 void readValue(const YamlNode& node, std::optional<T>& value, const Rule&... rule) {
   readValue(node, value.emplace(), rule...);
+}
+
+template <class T, class Variant, class... Rule>
+void readValue(const YamlNode& node, Alternative<T, Variant>& alternative, const Rule&... rule) {
+  T value{};
+  readValue(node, value, rule...);
+  alternative.variant.template emplace<T>(std::move(value));
 }
 
 template <class T>
@@ -186,6 +197,30 @@ void FieldReader::optionalMap(const char* key, std::vector<T>& values, const cha
   if (const YamlNode* node = take(key)) {
     readMap(*node, values);
   }
+}
+
+/// 1 if the choice is given, else 0.
+template <class Choice>
+int FieldReader::readChoice(Choice& choice) {
+  const YamlNode* node = take(choice.key);
+  if (node == nullptr) {
+    return 0;
+  }
+  std::apply([&](const auto&... rule) { readValue(*node, choice.value, rule...); }, choice.rules);
+  return isGiven(choice.value) ? 1 : 0;
+}
+
+template <class... Choices>
+void FieldReader::oneOf(const char* text, Choices... choices) {
+  int given = 0;
+  ((given += readChoice(choices)), ...);
+  requireOne(given, text, {choices.key...});
+}
+
+template <class T, class... Rule>
+void FieldReader::value(T& value, const Rule&... rule) {
+  is_value_ = true;
+  readValue(*node_, value, rule...);
 }
 
 }  // namespace twinmap

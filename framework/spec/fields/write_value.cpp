@@ -29,21 +29,8 @@ YamlNode writeValue(const ComponentCount& value) {
 YamlNode writeValue(const Bounds& value) {
   return writeSequence(std::array<double, 2>{value.lower, value.upper});
 }
-YamlNode writeValue(const OutputNoiseSpec& value) {
-  return writeValue(value.stddev);
-}
-YamlNode writeValue(const Frequency& value) {
-  return writeValue(value.hertz);
-}
-
-YamlNode writeValue(const NamedExpression& value) {
-  return writeValue(value.value);
-}
 YamlNode writeValue(const ColumnSpec& value) {
   return makeScalar(toText(value));
-}
-YamlNode writeValue(const MeasuredColumnSpec& value) {
-  return writeValue(value.column);
 }
 
 }  // namespace twinmap

@@ -8,6 +8,7 @@
 
 #include "framework/spec/experiment_spec.hpp"
 #include "framework/spec/fields/fields.hpp"
+#include "framework/spec/fields/one_of.hpp"
 #include "framework/spec/yaml/number_text.hpp"
 #include "framework/spec/yaml/yaml_node.hpp"
 
@@ -22,16 +23,19 @@ YamlNode writeValue(const Expression& value);
 YamlNode writeValue(const Name& value);
 YamlNode writeValue(const ComponentCount& value);
 YamlNode writeValue(const Bounds& value);
-YamlNode writeValue(const OutputNoiseSpec& value);
-YamlNode writeValue(const Frequency& value);
-YamlNode writeValue(const NamedExpression& value);
 YamlNode writeValue(const ColumnSpec& value);
-YamlNode writeValue(const MeasuredColumnSpec& value);
 
-/// Writes the fields of a struct into a map, defaults included; what is not given is left out.
+inline bool isGiven(const ComponentCount& value) {
+  return value.number.has_value();
+}
+inline bool isGiven(const Expression& value) {
+  return !value.text.empty();
+}
+
+/// Writes the fields of a struct, defaults included; what is not given is left out.
 class FieldWriter {
  public:
-  YamlNode takeMap() { return std::move(map_); }
+  YamlNode takeNode() { return std::move(node_); }
 
   template <class T, class... Rule>
   void required(const char* key, const T& value, const char* /*what*/, const Rule&...);
@@ -45,12 +49,21 @@ class FieldWriter {
   void optionalMap(const char* key, const std::vector<T>& values, const char* what) {
     requiredMap(key, values, what);
   }
+  template <class... Choices>
+  void oneOf(const char* /*text*/, const Choices&... choices) {
+    (required(choices.key, choices.value, choices.what), ...);
+  }
+  template <class T, class... Rule>
+  void value(const T& value, const Rule&...);
   void rule(bool, const char*) const {}
+  void scalarIsKey() const {}
+  void scalarIsValueOf(const char* /*key*/) const {}
+  void location(const SourceLocation&) const {}
 
  private:
-  void add(const char* key, YamlNode value) { map_.entries.push_back({key, {}, std::move(value)}); }
+  void add(const char* key, YamlNode value) { node_.entries.push_back({key, {}, std::move(value)}); }
 
-  YamlNode map_ = makeMap();
+  YamlNode node_ = makeMap();
 };
 
 template <class T>
@@ -60,7 +73,7 @@ YamlNode writeValue(const T& value) {
   } else {
     FieldWriter fields;
     describe(fields, const_cast<T&>(value));  // the writer takes every field by const reference
-    return fields.takeMap();
+    return fields.takeNode();
   }
 }
 
@@ -88,23 +101,9 @@ YamlNode writeValue(const std::optional<T>& value) {
   return writeValue(*value);
 }
 
-template <class T>
-bool isGiven(const T&) {
-  return true;
-}
-template <class T>
-bool isGiven(const std::optional<T>& value) {
-  return value.has_value();
-}
-template <class T>
-bool isGiven(const std::vector<T>& values) {
-  return !values.empty();
-}
-inline bool isGiven(const ComponentCount& value) {
-  return value.number.has_value();
-}
-inline bool isGiven(const Expression& value) {
-  return !value.text.empty();
+template <class T, class Variant>
+YamlNode writeValue(const Alternative<T, Variant>& alternative) {
+  return writeValue(std::get<T>(alternative.variant));
 }
 
 template <class T, class... Rule>
@@ -124,6 +123,11 @@ void FieldWriter::requiredMap(const char* key, const std::vector<T>& values, con
     map.entries.push_back({value.name.text, {}, writeValue(value)});
   }
   add(key, std::move(map));
+}
+
+template <class T, class... Rule>
+void FieldWriter::value(const T& value, const Rule&...) {
+  node_ = writeValue(value);
 }
 
 }  // namespace twinmap

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/spec/fields/fields.hpp"
 #include "framework/spec/yaml/yaml_node.hpp"
 
 namespace twinmap {
@@ -21,10 +22,23 @@ struct SweptKeys {
 /// Every value with every other, or the first with the first, the second with the second ...
 enum class SweepCombine { kGrid, kZip };
 
+template <>
+struct EnumNames<SweepCombine> {
+  static constexpr EnumName<SweepCombine> values[] = {{"grid", SweepCombine::kGrid},
+                                                      {"zip", SweepCombine::kZip}};
+};
+
 /// The experiment is repeated with other values of some keys.
 struct SweepSpec {
   SweptKeys over;
   SweepCombine combine = SweepCombine::kGrid;
 };
+
+template <class Fields>
+void describe(Fields& f, SweepSpec& s) {
+  f.required("over", s.over, "key paths, each with a list of values or a range such as 1..10");
+  f.optional("combine", s.combine,
+             "grid: every combination of values; zip: the first values, the second ...");
+}
 
 }  // namespace twinmap

@@ -47,4 +47,12 @@ std::string suggestName(const std::string& name, const std::vector<std::string>&
   return best.empty() ? "" : "; did you mean '" + best + "'?";
 }
 
+std::string listNames(const std::vector<std::string>& names) {
+  std::string listed;
+  for (const std::string& name : names) {
+    listed += (listed.empty() ? "" : ", ") + name;
+  }
+  return listed;
+}
+
 }  // namespace twinmap

@@ -9,4 +9,7 @@ namespace twinmap {
 /// is near (more than a third of the letters differ).
 std::string suggestName(const std::string& name, const std::vector<std::string>& candidates);
 
+/// "a, b, c".
+std::string listNames(const std::vector<std::string>& names);
+
 }  // namespace twinmap

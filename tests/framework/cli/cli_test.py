@@ -66,7 +66,7 @@ def unknown_keys(value, schema, path):
         return [key for item in value for key in unknown_keys(item, schema.get("items", {}), path + "[]")]
     if not isinstance(value, dict):
         return []
-    options = [option for option in [schema, *schema.get("anyOf", [])] if option.get("type") == "object"]
+    options = [option for option in [schema, *schema.get("oneOf", [])] if option.get("type") == "object"]
     if not options:
         return [path]
     unknown = []

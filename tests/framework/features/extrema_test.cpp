@@ -83,9 +83,7 @@ struct Oscillation {
 };
 
 FeatureSpec makeExtrema(ExtremaKind kind, int peaks, double prominence) {
-  FeatureSpec feature;
-  feature.extrema = ExtremaFeatureSpec{{"y", {}}, {0.1, 0.01, 290}, kind, peaks, prominence, 5};
-  return feature;
+  return ExtremaFeatureSpec{{"y", {}}, {0.1, 0.01, 290}, kind, peaks, prominence, 5};
 }
 
 ResponseLayout makeLayout(const std::vector<FeatureSpec>& features) {
@@ -153,8 +151,7 @@ TEST(Extrema, OfAFailedSampleAreMissing) {
 TEST(Extrema, HaveTheNoiseOfTheirParabola) {
   // values c0 - c k^2 / 2 with little noise: to first order the top moves by first / (squares c) and rises by
   // the noise of c0, whose variance is fourths / (n fourths - squares^2)
-  FeatureSpec feature;
-  feature.extrema = ExtremaFeatureSpec{{"y", {}}, {0.0, 1.0, 9}, ExtremaKind::kMaxima, 1, 0.1, 5};
+  const FeatureSpec feature = ExtremaFeatureSpec{{"y", {}}, {0.0, 1.0, 9}, ExtremaKind::kMaxima, 1, 0.1, 5};
   const ResponseLayout layout = makeLayout({feature});
   const FeatureExtractor extractor({feature}, layout);
   constexpr double kCurvature = 2.0, kStddev = 1e-3;

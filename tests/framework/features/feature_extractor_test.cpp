@@ -8,9 +8,7 @@ namespace twinmap {
 namespace {
 
 FeatureSpec makeSamples(std::vector<Name> outputs, double start, double interval, int count) {
-  FeatureSpec feature;
-  feature.samples = SamplesFeatureSpec{std::move(outputs), start, interval, count};
-  return feature;
+  return SamplesFeatureSpec{std::move(outputs), start, interval, count};
 }
 
 ResponseLayout makeLayout(std::vector<std::string> outputs, const Eigen::VectorXd& times) {
@@ -57,9 +55,7 @@ TEST(FeatureExtractor, AFailedSampleStaysInItsColumn) {
 }
 
 TEST(FeatureExtractor, PicksModes) {
-  FeatureSpec modes = {}, frequencies = {};
-  modes.modes = ModesFeatureSpec{2, true, true};
-  frequencies.modes = ModesFeatureSpec{3, true, false};
+  const FeatureSpec modes = ModesFeatureSpec{2, true, true}, frequencies = ModesFeatureSpec{3, true, false};
   EXPECT_EQ(countModes({modes, frequencies}), 3);
   const ResponseLayout layout{{"a"}, {"m"}, Eigen::VectorXd::Zero(1), 3};
   const FeatureExtractor extractor({modes, frequencies}, layout);

@@ -16,15 +16,11 @@ constexpr double kRelative = 4 * 0.032;
 constexpr double kPi = 3.141592653589793;
 
 FeatureSpec makeSamples(double start, int count) {
-  FeatureSpec feature;
-  feature.samples = SamplesFeatureSpec{{{"a", {}}}, start, 1.0, count};
-  return feature;
+  return SamplesFeatureSpec{{{"a", {}}}, start, 1.0, count};
 }
 
 FeatureSpec makeStatistics(int count, std::vector<Statistic> quantities) {
-  FeatureSpec feature;
-  feature.statistics = StatisticsFeatureSpec{{{"a", {}}}, {0.0, 1.0, count}, std::move(quantities)};
-  return feature;
+  return StatisticsFeatureSpec{{{"a", {}}}, {0.0, 1.0, count}, std::move(quantities)};
 }
 
 ResponseLayout makeLayout(int count) {

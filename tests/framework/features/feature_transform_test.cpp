@@ -15,22 +15,16 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 TransformStepSpec makeZScore() {
-  TransformStepSpec step;
-  step.z_score.emplace();
-  return step;
+  return {ZScoreSpec{}, {}};
 }
 
-TransformStepSpec makeWhiten() {
-  TransformStepSpec step;
-  step.whiten.emplace();
-  return step;
+TransformStepSpec makeWhiten(WhitenBy by = WhitenBy::kStddev) {
+  return {WhitenSpec{by}, {}};
 }
 
 TransformStepSpec makePrincipalComponents(std::optional<int> components = {},
                                           std::optional<double> explained_variance = {}) {
-  TransformStepSpec step;
-  step.principal_components = PrincipalComponentsSpec{components, explained_variance};
-  return step;
+  return {PrincipalComponentsSpec{components, explained_variance}, {}};
 }
 
 /// Samples whose features have independent noise.
@@ -117,8 +111,7 @@ TEST(FeatureTransform, WhitenByCovarianceMakesNoiseIndependentAlsoBehindAProject
   LabelledFeatures samples;
   samples.features = makeNoise(4, 50, 7);
   samples.noise_covariance = makeCorrelatedCovariance();
-  TransformStepSpec whiten = makeWhiten();
-  whiten.whiten->by = WhitenBy::kCovariance;
+  const TransformStepSpec whiten = makeWhiten(WhitenBy::kCovariance);
   for (const std::vector<TransformStepSpec>& steps :
        {std::vector{whiten}, {makeZScore(), whiten}, {makePrincipalComponents(3), whiten}}) {
     MatrixXd noise = samples.noise_covariance;
@@ -135,8 +128,7 @@ TEST(FeatureTransform, ItsMatrixMapsDifferences) {
   LabelledFeatures samples;
   samples.features = makeNoise(4, 50, 7);
   samples.noise_covariance = makeCorrelatedCovariance();
-  TransformStepSpec whiten = makeWhiten();
-  whiten.whiten->by = WhitenBy::kCovariance;
+  const TransformStepSpec whiten = makeWhiten(WhitenBy::kCovariance);
   for (const std::vector<TransformStepSpec>& steps : {std::vector{makeZScore()},
                                                       {makeZScore(), whiten},
                                                       {whiten, makePrincipalComponents(3), makeZScore()}}) {
@@ -151,11 +143,9 @@ TEST(FeatureTransform, ItsMatrixMapsDifferences) {
 
 TEST(FeatureTransform, ByCovarianceOfIndependentNoiseIsByStddev) {
   const MatrixXd features = MatrixXd::Random(2, 20);
-  TransformStepSpec whiten = makeWhiten();
   const LabelledFeatures samples = makeSamples(features, Eigen::Vector2d(0.1, 4.0));
-  const MatrixXd by_stddev = fitTransform({whiten}, samples).apply(features);
-  whiten.whiten->by = WhitenBy::kCovariance;
-  EXPECT_EQ(fitTransform({whiten}, samples).apply(features), by_stddev);
+  const MatrixXd by_stddev = fitTransform({makeWhiten()}, samples).apply(features);
+  EXPECT_EQ(fitTransform({makeWhiten(WhitenBy::kCovariance)}, samples).apply(features), by_stddev);
 }
 
 TEST(FeatureTransform, AutomaticRankKeepsWhatStandsAboveTheNoise) {

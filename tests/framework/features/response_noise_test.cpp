@@ -47,8 +47,7 @@ TEST(ResponseNoise, DrawsFollowTheAutoregression) {
 }
 
 TEST(ResponseNoise, OfFeaturesHasTheCovarianceOfTheAutoregression) {
-  FeatureSpec feature;
-  feature.samples = SamplesFeatureSpec{{{"y", {}}, {"z", {}}}, 0.1, 0.2, 3};
+  const FeatureSpec feature = SamplesFeatureSpec{{{"y", {}}, {"z", {}}}, 0.1, 0.2, 3};
   const FeatureExtractor extractor({feature}, makeLayout());
   const MatrixXd covariance =
       FeatureNoise(extractor, ResponseNoise(makeSpec(), makeLayout()), 1).calcCovariance({});

@@ -134,12 +134,11 @@ TEST(MutualInformationSelection, PrefersNewInformationToRepetition) {
 }
 
 TransformStepSpec makeSelect(const std::vector<std::string>& names) {
-  TransformStepSpec step;
-  step.select.emplace();
+  FeatureNames features;
   for (const std::string& name : names) {
-    step.select->features.push_back({name, {"some.yaml", 3, 4, "transform[0].select.features"}});
+    features.push_back({name, {"some.yaml", 3, 4, "transform[0].select.features"}});
   }
-  return step;
+  return {SelectSpec{features}, {}};
 }
 
 TEST(Selection, ByNameKeepsTheFeaturesInThatOrderAlsoTwice) {
@@ -165,10 +164,9 @@ TEST(Selection, WrongNamesAndCountsAreLocatedErrors) {
   expectError(makeSelect({"a(0 s)", "a(0 s)"}), "'a(0 s)' is listed twice");
   TransformStepSpec step;
   step.where = {"some.yaml", 3, 4, "transform[0]"};
-  step.select.emplace().fisher_information = FisherInformationSpec{5};
+  step.kind = SelectSpec{FisherInformationSpec{5}};
   expectError(step, "transform[0]: '5' asks for more than the 4 inputs");
-  step.select.reset();
-  step.partial_least_squares.emplace().components.number = 5;
+  step.kind = PartialLeastSquaresSpec{5};
   expectError(step, "'5' asks for more");
   EXPECT_NO_THROW(checkTransformOf(infos, {makeSelect({"b(1 s)"})}));
 }

@@ -16,19 +16,17 @@ const WindowSpec kWindow{0.3, 0.05, 40};  // lines at multiples of 0.5 Hz
 
 FeatureSpec makeSpectrum(const std::vector<double>& frequencies, WindowFunction function,
                          ComplexParts parts) {
-  FeatureSpec feature;
-  feature.spectrum = SpectrumFeatureSpec{{{"y", {}}}, kWindow, {}, function, parts};
+  SpectrumFeatureSpec feature{{{"y", {}}}, kWindow, {}, function, parts};
   for (const double frequency : frequencies) {
-    feature.spectrum->frequencies.push_back({frequency, {}});
+    feature.frequencies.push_back({frequency, {}});
   }
   return feature;
 }
 
 FeatureSpec makeFrequencyResponse(const std::vector<double>& frequencies, ComplexParts parts) {
-  FeatureSpec feature;
-  feature.frequency_response = FrequencyResponseFeatureSpec{{"F", {}}, {{"y", {}}}, kWindow, {}, parts};
+  FrequencyResponseFeatureSpec feature{{"F", {}}, {{"y", {}}}, kWindow, {}, parts};
   for (const double frequency : frequencies) {
-    feature.frequency_response->frequencies.push_back({frequency, {}});
+    feature.frequencies.push_back({frequency, {}});
   }
   return feature;
 }
@@ -147,7 +145,8 @@ TEST(FrequencyResponse, IsTheRatioOfOutputToExcitation) {
 
 TEST(FrequencyResponse, NeedsEnergyInTheExcitation) {
   std::vector<FeatureSpec> features{makeFrequencyResponse({1.5, 2.5}, ComplexParts::kRealImaginary)};
-  features[0].frequency_response->frequencies[1].where = {"some.yaml", 7, 9, "frequencies[1]"};
+  std::get<FrequencyResponseFeatureSpec>(features[0]).frequencies[1].where = {"some.yaml", 7, 9,
+                                                                              "frequencies[1]"};
   const ResponseLayout layout = makeLayout(features);
   const InputSignals inputs{{"F"}, {"N"}, calcSine(layout.times, 3.0, 1.5, 0.7)};
   try {

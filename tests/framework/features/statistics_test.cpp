@@ -11,9 +11,7 @@ namespace {
 
 FeatureSpec makeStatistics(std::vector<Name> outputs, const WindowSpec& window,
                            std::vector<Statistic> quantities) {
-  FeatureSpec feature;
-  feature.statistics = StatisticsFeatureSpec{std::move(outputs), window, std::move(quantities)};
-  return feature;
+  return StatisticsFeatureSpec{std::move(outputs), window, std::move(quantities)};
 }
 
 TEST(Statistics, AreThoseOfAHandComputedWindow) {

@@ -44,26 +44,20 @@ void expectSameRows(const MatrixXd& rows, const MatrixXd& expected) {
 }
 
 TEST(TransformGolden, ZScore) {
-  TransformStepSpec step;
-  step.z_score.emplace();
   const MatrixXd expected = toMatrix(golden::kStandardised, golden::kFeatureCount);
-  EXPECT_LT((transform(step) - expected).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_LT((transform({ZScoreSpec{}, {}}) - expected).cwiseAbs().maxCoeff(), 1e-12);
 }
 
 TEST(TransformGolden, WhitenByStddevAndByCovariance) {
-  TransformStepSpec step;
-  step.whiten.emplace();
   const MatrixXd by_stddev = toMatrix(golden::kWhitenedByStddev, golden::kFeatureCount);
-  EXPECT_LT((transform(step) - by_stddev).norm(), 1e-13 * by_stddev.norm());
-  step.whiten->by = WhitenBy::kCovariance;
+  EXPECT_LT((transform({WhitenSpec{}, {}}) - by_stddev).norm(), 1e-13 * by_stddev.norm());
   const MatrixXd by_covariance = toMatrix(golden::kWhitenedByCovariance, golden::kFeatureCount);
-  EXPECT_LT((transform(step) - by_covariance).norm(), 1e-12 * by_covariance.norm());
+  EXPECT_LT((transform({WhitenSpec{WhitenBy::kCovariance}, {}}) - by_covariance).norm(),
+            1e-12 * by_covariance.norm());
 }
 
 TEST(TransformGolden, PrincipalComponents) {
-  TransformStepSpec step;
-  step.principal_components = PrincipalComponentsSpec{golden::kComponents, {}};
-  const MatrixXd scores = transform(step);
+  const MatrixXd scores = transform({PrincipalComponentsSpec{golden::kComponents, {}}, {}});
   expectSameRows(scores, toMatrix(golden::kPrincipalComponents, golden::kComponents));
   const VectorXd variances = toMatrix(golden::kPrincipalVariances, golden::kComponents);
   const VectorXd mine = scores.rowwise().squaredNorm() / (static_cast<double>(scores.cols()) - 1.0);
@@ -71,9 +65,8 @@ TEST(TransformGolden, PrincipalComponents) {
 }
 
 TEST(TransformGolden, PartialLeastSquares) {
-  TransformStepSpec step;
-  step.partial_least_squares.emplace().components.number = golden::kComponents;
-  expectSameRows(transform(step), toMatrix(golden::kPartialLeastSquares, golden::kComponents));
+  expectSameRows(transform({PartialLeastSquaresSpec{golden::kComponents}, {}}),
+                 toMatrix(golden::kPartialLeastSquares, golden::kComponents));
 }
 
 TEST(TransformGolden, LinearPredictionByPartialLeastSquares) {

@@ -35,8 +35,7 @@ Problem makeProblem(int samples, std::uint64_t seed, double noise_stddev = 1e-4)
 }
 
 GpMapTraining trainOn(const Problem& problem, const GpMapSpec& spec = {}, int threads = 1) {
-  TransformStepSpec z_score;
-  z_score.z_score.emplace();
+  const TransformStepSpec z_score{ZScoreSpec{}, {}};
   const Eigen::Index features = problem.features.rows();
   const Eigen::MatrixXd noise = Eigen::MatrixXd::Identity(features, features);
   return trainGpMap(spec, {z_score}, problem.names,
@@ -182,8 +181,7 @@ TEST(GpMap, IsTheSameBitForBitWhenRefittedAtItsHyperparameters) {
   problem.parameters.rightCols(40) = problem.parameters.leftCols(40).eval();
   for (const GpMapSpec& spec : {GpMapSpec{}, sparse}) {
     const GpMapTraining trained = trainOn(problem, spec);
-    TransformStepSpec z_score;
-    z_score.z_score.emplace();
+    const TransformStepSpec z_score{ZScoreSpec{}, {}};
     const GpMapTraining again = refitGpMap(trained.map, spec, {z_score},
                                            {problem.infos,
                                             problem.features,
@@ -222,8 +220,7 @@ TEST(GpMap, InfersWithKnownInputsWhatTheFeaturesAloneLeaveOpen) {
   std::vector<ParameterSpec> known(1);
   known[0].bounds = {3.0, 5.0, {}};
   const LabelledFeatures train = makeMixed(60, 1), test = makeMixed(100, 2);
-  TransformStepSpec whiten;
-  whiten.whiten.emplace();
+  const TransformStepSpec whiten{WhitenSpec{}, {}};
   for (const LengthScales length_scales :
        {LengthScales::kShared, LengthScales::kPerOutput, LengthScales::kPerFeature}) {
     GpMapSpec spec;

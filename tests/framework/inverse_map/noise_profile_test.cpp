@@ -35,8 +35,7 @@ GpMap trainOn(const LabelledFeatures& samples, GpNoise noise, GpApproximation ap
   spec.noise = noise;
   spec.approximation = approximation;
   spec.inducing = 30;
-  TransformStepSpec whiten;
-  whiten.whiten.emplace();
+  const TransformStepSpec whiten{WhitenSpec{}, {}};
   return trainGpMap(spec, {whiten}, {"p"}, samples, {1}).map;
 }
 

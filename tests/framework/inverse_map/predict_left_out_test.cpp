@@ -65,8 +65,7 @@ class MapLeaveOneOut : public testing::TestWithParam<GpApproximation> {
     spec.approximation = GetParam();
     spec.inducing = 60;
     spec.refine_evaluations = 20;
-    TransformStepSpec z_score;
-    z_score.z_score.emplace();
+    const TransformStepSpec z_score{ZScoreSpec{}, {}};
     return trainGpMap(spec, {z_score}, {"p", "q"}, samples, {1});
   }
 };
@@ -97,8 +96,7 @@ TEST(MapLeaveOneOutOfSmoothFunctions, IsANumberWithoutAnyNoise) {
     samples.features.col(i) << a, b;
     samples.parameters.col(i) << std::sin(a) + 15, a * b;
   }
-  TransformStepSpec z_score;
-  z_score.z_score.emplace();
+  const TransformStepSpec z_score{ZScoreSpec{}, {}};
   for (const GpCovariance covariance :
        {GpCovariance::kSquaredExponential, GpCovariance::kRationalQuadratic}) {
     GpMapSpec spec;

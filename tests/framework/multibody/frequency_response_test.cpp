@@ -54,7 +54,7 @@ TEST(FrequencyResponse, OfASimulatedChainIsThatOfItsMatrices) {
   // After 14 s the slowest transient, real part -1.09 1/s, is exp(-15) = 2.4e-7 of the response to 16 sines,
   // some 0.02 m, and the integration errs by 1e-9 of it a step.
   constexpr double kTolerance = 2e-8;
-  const auto& lines = experiment.features[0].frequency_response->frequencies;
+  const auto& lines = std::get<FrequencyResponseFeatureSpec>(experiment.features[0]).frequencies;
   const auto count = static_cast<Eigen::Index>(lines.size());
   for (Eigen::Index i = 0; i < count; ++i) {
     const Eigen::Vector3cd expected = calcFrequencyResponse(point, lines[i].hertz);

@@ -71,9 +71,7 @@ struct Oscillation {
     samples.parameters = samplePoints(n, 1);
     samples.features = addNoise(calcClean(samples.parameters), 1);
     samples.noise_covariance = getNoiseCovariance();
-    std::vector<TransformStepSpec> transform(2);
-    transform[0].whiten.emplace();
-    transform[1].principal_components.emplace();
+    const std::vector<TransformStepSpec> transform{{WhitenSpec{}, {}}, {PrincipalComponentsSpec{}, {}}};
     return trainGpMap({}, transform, {"d", "w"}, samples, {1}).map;
   }
 

@@ -12,9 +12,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 std::vector<FeatureSpec> makeFeatures() {
-  FeatureSpec feature;
-  feature.samples = SamplesFeatureSpec{{{"y", {}}, {"theta", {}}}, 0.05, 0.05, 100};
-  return {feature};
+  return {SamplesFeatureSpec{{{"y", {}}, {"theta", {}}}, 0.05, 0.05, 100}};
 }
 
 VectorXd calcWidths(const ModelSpec& model) {

@@ -23,7 +23,7 @@ TEST(ExperimentFile, ReadsTheTwoBeamExperiment) {
   EXPECT_EQ(experiment.model.system.bodies[0].joint.parent.text, "ground");
   EXPECT_EQ(experiment.model.system.gravity[2].text, "-g");
   EXPECT_DOUBLE_EQ(experiment.noise.stddev[1].stddev, 0.015);
-  EXPECT_EQ(experiment.features[0].samples->count, 100);
+  EXPECT_EQ(std::get<SamplesFeatureSpec>(experiment.features[0]).count, 100);
   EXPECT_EQ(experiment.inverse_map.gp.length_scales, LengthScales::kShared);
 }
 
@@ -88,8 +88,8 @@ TEST(ExperimentFile, ReportAxesDefaultToTheLastTwoParameters) {
 TEST(ExperimentFile, DefaultsAreWhitenedComponentsAndReplicates) {
   const ExperimentSpec experiment = loadExperiment(kCart);
   ASSERT_EQ(experiment.transform.size(), 2u);
-  EXPECT_TRUE(experiment.transform[0].whiten);
-  EXPECT_TRUE(experiment.transform[1].principal_components);
+  EXPECT_TRUE(std::holds_alternative<WhitenSpec>(experiment.transform[0].kind));
+  EXPECT_TRUE(std::holds_alternative<PrincipalComponentsSpec>(experiment.transform[1].kind));
   EXPECT_EQ(experiment.noise.replicates, 4);
   EXPECT_EQ(loadExperiment(kTable1, {"noise={stddev: {y: 1, theta: 1}}", "design.train.samples=1000"})
                 .noise.replicates,
@@ -123,10 +123,10 @@ TEST(ExperimentFile, EveryStepOfATransformIsReadAndWritten) {
   const ExperimentSpec experiment = loadExperiment(
       kTable1, {"transform=[whiten: {by: covariance}, principal_components: {components: automatic}, "
                 "partial_least_squares, partial_least_squares: {components: 2}]"});
-  EXPECT_EQ(experiment.transform[0].whiten->by, WhitenBy::kCovariance);
-  EXPECT_FALSE(experiment.transform[1].principal_components->components.number);
-  EXPECT_FALSE(experiment.transform[2].partial_least_squares->components.number);
-  EXPECT_EQ(experiment.transform[3].partial_least_squares->components.number, 2);
+  EXPECT_EQ(std::get<WhitenSpec>(experiment.transform[0].kind).by, WhitenBy::kCovariance);
+  EXPECT_FALSE(std::get<PrincipalComponentsSpec>(experiment.transform[1].kind).components.number);
+  EXPECT_FALSE(std::get<PartialLeastSquaresSpec>(experiment.transform[2].kind).components.number);
+  EXPECT_EQ(std::get<PartialLeastSquaresSpec>(experiment.transform[3].kind).components.number, 2);
   const std::string text = writeExperiment(experiment);
   EXPECT_EQ(writeExperiment(readExperiment(parseYaml(text, "again"))), text);
 }

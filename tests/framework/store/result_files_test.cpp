@@ -63,9 +63,7 @@ TEST(MapsFile, ARestoredMapPredictsTheSameBits) {
   const std::vector<FeatureInfo> infos{
       {"y(0 s)", "m", 0, 0.0}, {"y(1 s)", "m", 0, 1.0}, {"z(0 s)", "m", 1, 0.0}};
   const Eigen::MatrixXd noise = Eigen::MatrixXd::Identity(3, 3);
-  std::vector<TransformStepSpec> transform(2);
-  transform[0].z_score.emplace();
-  transform[1].principal_components = PrincipalComponentsSpec{3, {}};
+  const std::vector<TransformStepSpec> transform{{ZScoreSpec{}, {}}, {PrincipalComponentsSpec{3, {}}, {}}};
   std::vector<GpMapSpec> specs(5);
   specs[0].length_scales = LengthScales::kShared;
   specs[1].length_scales = LengthScales::kPerOutput;

@@ -44,10 +44,7 @@ class LinearSimulator final : public Simulator {
 
 /// Every row of a LinearSimulator's response as a feature.
 inline std::vector<FeatureSpec> makeAllFeatures(const LinearSimulator& simulator) {
-  FeatureSpec feature;
-  feature.samples =
-      SamplesFeatureSpec{{{"y", {}}}, 1.0, 1.0, static_cast<int>(simulator.getLayout().times.size())};
-  return {feature};
+  return {SamplesFeatureSpec{{{"y", {}}}, 1.0, 1.0, static_cast<int>(simulator.getLayout().times.size())}};
 }
 
 /// Parameters "a", "b", ... within the same bounds.

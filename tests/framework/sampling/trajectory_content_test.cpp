@@ -1,4 +1,4 @@
-#include "framework/spec/trajectory_content.hpp"
+#include "framework/sampling/trajectory_content.hpp"
 
 #include <gtest/gtest.h>
 

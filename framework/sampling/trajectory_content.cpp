@@ -1,9 +1,8 @@
-#include "framework/spec/trajectory_content.hpp"
+#include "framework/sampling/trajectory_content.hpp"
 
 #include <algorithm>
 
 #include "framework/spec/check/check_experiment.hpp"
-#include "framework/spec/describe_experiment.hpp"
 #include "framework/spec/fields/write_value.hpp"
 #include "framework/spec/parameter_box.hpp"
 
@@ -65,7 +64,7 @@ YamlNode writeResponse(const ResponseLayout& layout) {
   response.required("outputs", output_names, "");
   response.required("times", std::vector<double>(times.data(), times.data() + times.size()), "");
   response.required("modes", modes, "");
-  return response.takeMap();
+  return response.takeNode();
 }
 
 }  // namespace
@@ -85,7 +84,7 @@ std::string writeTrajectoryContent(const ModelSpec& model, const ResponseLayout&
   content.requiredMap("excitation", withoutSources(excitation), "");
   content.required("initial", initial, "");
   content.requiredMap("outputs", outputs, "");
-  YamlNode root = content.takeMap();
+  YamlNode root = content.takeNode();
   root.entries.push_back({"simulation", {}, writeSimulation(simulation)});
   root.entries.push_back({"response", {}, writeResponse(layout)});
   return writeYaml(root);

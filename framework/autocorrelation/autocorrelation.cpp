@@ -1,4 +1,4 @@
-#include "framework/spec/autocorrelation.hpp"
+#include "framework/autocorrelation/autocorrelation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -27,17 +27,6 @@ VectorXd solveYuleWalker(const VectorXd& a) {
   return linalg::solveLinear(system, right);
 }
 
-VectorXd calcOfAutoregression(const VectorXd& a, Index lags) {
-  const Index p = a.size();
-  VectorXd rho(std::max(lags, p) + 1);
-  rho[0] = 1.0;
-  rho.segment(1, p) = solveYuleWalker(a);
-  for (Index k = p + 1; k <= lags; ++k) {
-    rho[k] = a.dot(rho.segment(k - p, p).reverse());
-  }
-  return rho.head(lags + 1);
-}
-
 }  // namespace
 
 bool isStationary(const std::vector<double>& autoregression) {
@@ -53,15 +42,16 @@ bool isStationary(const std::vector<double>& autoregression) {
   return true;
 }
 
-VectorXd calcAutocorrelation(const NoiseCorrelationSpec& spec, Index lags) {
-  if (!spec.autoregression.empty()) {
-    return calcOfAutoregression(
-        Eigen::Map<const VectorXd>(spec.autoregression.data(), Index(spec.autoregression.size())), lags);
+VectorXd calcAutocorrelation(const std::vector<double>& autoregression, Index lags) {
+  const auto p = static_cast<Index>(autoregression.size());
+  const Eigen::Map<const VectorXd> a(autoregression.data(), p);
+  VectorXd rho(std::max(lags, p) + 1);
+  rho[0] = 1.0;
+  rho.segment(1, p) = solveYuleWalker(a);
+  for (Index k = p + 1; k <= lags; ++k) {
+    rho[k] = a.dot(rho.segment(k - p, p).reverse());
   }
-  VectorXd rho = VectorXd::Zero(lags + 1);
-  const Index given = std::min(lags + 1, static_cast<Index>(spec.values.size()));
-  rho.head(given) = Eigen::Map<const VectorXd>(spec.values.data(), given);
-  return rho;
+  return rho.head(lags + 1);
 }
 
 bool isPositiveDefinite(const VectorXd& autocorrelation) {
@@ -76,6 +66,19 @@ bool isPositiveDefinite(const VectorXd& autocorrelation) {
     error *= 1.0 - reflection * reflection;
   }
   return error > 0.0;
+}
+
+std::vector<long> findLags(const std::vector<double>& times, double sample_time) {
+  constexpr double kTolerance = 1e-6;  // of sample_time, far above the rounding of times
+  std::vector<long> lags;
+  for (const double time : times) {
+    const double steps = (time - times.front()) / sample_time;
+    lags.push_back(std::lround(steps));
+    if (std::abs(steps - static_cast<double>(lags.back())) > kTolerance * std::max(1.0, steps)) {
+      return {};
+    }
+  }
+  return lags;
 }
 
 }  // namespace twinmap

@@ -2,8 +2,8 @@
 
 #include <string>
 
+#include "framework/response/response_layout.hpp"
 #include "framework/spec/model_spec.hpp"
-#include "framework/spec/response_layout.hpp"
 
 namespace twinmap {
 

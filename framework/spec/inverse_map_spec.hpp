@@ -1,0 +1,136 @@
+#pragma once
+
+#include <optional>
+
+#include "framework/spec/bounds_spec.hpp"
+#include "framework/spec/fields/fields.hpp"
+
+namespace twinmap {
+
+enum class GpCovariance { kSquaredExponential, kMatern32, kMatern52, kRationalQuadratic };
+
+template <>
+struct EnumNames<GpCovariance> {
+  static constexpr EnumName<GpCovariance> values[] = {
+      {"squared_exponential", GpCovariance::kSquaredExponential},
+      {"matern32", GpCovariance::kMatern32},
+      {"matern52", GpCovariance::kMatern52},
+      {"rational_quadratic", GpCovariance::kRationalQuadratic},
+  };
+};
+
+enum class GpMean { kConstant, kZero, kLinear };
+
+template <>
+struct EnumNames<GpMean> {
+  static constexpr EnumName<GpMean> values[] = {
+      {"constant", GpMean::kConstant}, {"zero", GpMean::kZero}, {"linear", GpMean::kLinear}};
+};
+
+/// Exact, or the variational sparse approximation on inducing inputs (SGPR; Titsias 2009).
+enum class GpApproximation { kExact, kSgpr };
+
+template <>
+struct EnumNames<GpApproximation> {
+  static constexpr EnumName<GpApproximation> values[] = {{"exact", GpApproximation::kExact},
+                                                         {"sgpr", GpApproximation::kSgpr}};
+};
+
+/// The noise of a parameter: one standard deviation, or that of the features through the slope of the map.
+enum class GpNoise { kFollowsSlope, kConstant };
+
+template <>
+struct EnumNames<GpNoise> {
+  static constexpr EnumName<GpNoise> values[] = {{"follows_slope", GpNoise::kFollowsSlope},
+                                                 {"constant", GpNoise::kConstant}};
+};
+
+enum class LengthScales { kShared, kPerOutput, kPerFeature };
+
+template <>
+struct EnumNames<LengthScales> {
+  static constexpr EnumName<LengthScales> values[] = {
+      {"shared", LengthScales::kShared},
+      {"per_output", LengthScales::kPerOutput},
+      {"per_feature", LengthScales::kPerFeature},
+  };
+};
+
+/// Bounds of the hyperparameters during training, relative to the natural scale of each.
+struct GpBoundsSpec {
+  Bounds length_scale{1e-2, 1e3, {}};   ///< times the median distance of the training inputs
+  Bounds signal_stddev{1e-2, 1e3, {}};  ///< times the standard deviation of the target
+  Bounds noise_stddev{1e-5, 3.0, {}};   ///< times the standard deviation of the target
+};
+
+template <class Fields>
+void describe(Fields& f, GpBoundsSpec& s) {
+  f.optional("length_scale", s.length_scale, "times the median distance of the training inputs");
+  f.optional("signal_stddev", s.signal_stddev, "times the target's standard deviation");
+  f.optional("noise_stddev", s.noise_stddev, "times the target's standard deviation");
+  for (const Bounds* bounds : {&s.length_scale, &s.signal_stddev, &s.noise_stddev}) {
+    f.rule(bounds->lower > 0.0, "must give lower bounds above 0");
+  }
+}
+
+/// A log-normal prior on each length scale l: log(l / median distance) ~ N(log_mean, log_stddev^2).
+struct LengthScalePriorSpec {
+  double log_mean = 0.0;
+  double log_stddev = 2.0;
+};
+
+template <class Fields>
+void describe(Fields& f, LengthScalePriorSpec& s) {
+  f.optional("log_mean", s.log_mean, "mean of log(length scale / median distance)");
+  f.optional("log_stddev", s.log_stddev, "standard deviation of the same", kPositive);
+}
+
+/// One Gaussian process per parameter, hyperparameters by maximum marginal likelihood.
+struct GpMapSpec {
+  GpCovariance covariance = GpCovariance::kSquaredExponential;
+  bool linear_term = false;  ///< adds a linear covariance term
+  GpMean mean = GpMean::kConstant;
+  GpNoise noise = GpNoise::kFollowsSlope;
+  LengthScales length_scales = LengthScales::kPerFeature;  ///< after a projection: per component
+  std::optional<LengthScalePriorSpec> length_scale_prior;  ///< none: maximum likelihood
+  int starts = 2;
+  int max_evaluations = 200;  ///< of the marginal likelihood, per start
+  GpApproximation approximation = GpApproximation::kExact;
+  int inducing = 500;            ///< sgpr: inducing inputs
+  int subset = 1000;             ///< sgpr: samples on which an exact process finds the hyperparameters
+  int refine_evaluations = 100;  ///< sgpr: of the variational bound over all samples; 0 for none
+  GpBoundsSpec bounds;
+};
+
+template <class Fields>
+void describe(Fields& f, GpMapSpec& s) {
+  f.optional("covariance", s.covariance, "covariance function");
+  f.optional("linear_term", s.linear_term, "adds a linear term to the covariance function");
+  f.optional("mean", s.mean, "mean function; its coefficients are integrated out");
+  f.optional("noise", s.noise,
+             "follows_slope: that of the features through the slope of the map; or constant");
+  f.optional("length_scales", s.length_scales, "one for all features, per output, or per feature");
+  f.optional("length_scale_prior", s.length_scale_prior, "log-normal prior; without it, maximum likelihood");
+  f.optional("starts", s.starts, "optimisations of the marginal likelihood, from different points",
+             kThousand);
+  f.optional("max_evaluations", s.max_evaluations, "of the marginal likelihood, per start", kHundredThousand);
+  f.optional("approximation", s.approximation, "exact, or sgpr: sparse on inducing inputs, for many samples");
+  f.optional("inducing", s.inducing, "sgpr: inducing inputs", kHundredThousand);
+  f.optional("subset", s.subset, "sgpr: samples on which an exact process finds the hyperparameters",
+             kHundredThousand);
+  f.optional("refine_evaluations", s.refine_evaluations, "sgpr: of the bound over all samples", kCountOrNone);
+  f.optional("bounds", s.bounds, "of the hyperparameters");
+  f.rule(s.approximation == GpApproximation::kExact || !s.linear_term,
+         "must not have a linear_term with 'approximation: sgpr'");
+}
+
+struct InverseMapSpec {
+  GpMapSpec gp;
+};
+
+template <class Fields>
+void describe(Fields& f, InverseMapSpec& s) {
+  f.optional("gp", s.gp, "one Gaussian process per parameter");
+}
+
+}  // namespace twinmap

@@ -1,0 +1,60 @@
+#include "framework/spec/resolve_defaults.hpp"
+
+#include <algorithm>
+
+#include "framework/spec/noise_correlation.hpp"
+
+namespace twinmap {
+namespace {
+
+void resolveReport(const std::vector<ParameterSpec>& parameters, ReportSpec& report) {
+  if (report.over.empty() && parameters.size() >= 2) {
+    report.over = {parameters[parameters.size() - 2].name, parameters.back().name};
+  }
+}
+
+void resolveTransform(ExperimentSpec& experiment) {
+  if (experiment.transform.empty()) {
+    const bool correlated = !experiment.noise.correlation.empty();
+    const SourceLocation where{experiment.name.where.file, 0, 0, "transform"};
+    experiment.transform = {
+        {WhitenSpec{correlated ? WhitenBy::kCovariance : WhitenBy::kStddev}, where},
+        {PrincipalComponentsSpec{}, where},
+    };
+  }
+}
+
+/// 8 standard deviations of the noise: independent noise alone exceeds that between two of 1000 samples in
+/// less than 1 % of windows (1000^2 pairs, each with the probability Q(8 / sqrt 2) = 7.7e-9).
+void resolveProminence(const NoiseSpec& noise, ExtremaFeatureSpec& extrema) {
+  constexpr double kNoiseStddevs = 8.0;
+  for (const OutputNoiseSpec& output : noise.stddev) {
+    if (!extrema.prominence && output.name.text == extrema.output.text) {
+      extrema.prominence = kNoiseStddevs * noise.scale * output.stddev;
+    }
+  }
+}
+
+/// 4 draws; fewer where the training set would have more than 3000 columns.
+void resolveReplicates(int samples, NoiseSpec& noise) {
+  constexpr int kMostReplicates = 4, kMostColumns = 3000;
+  if (!noise.replicates) {
+    noise.replicates = std::clamp(kMostColumns / samples, 1, kMostReplicates);
+  }
+}
+
+}  // namespace
+
+void resolveDefaults(ExperimentSpec& experiment) {
+  resolveReport(experiment.model.parameters, experiment.report);
+  resolveTransform(experiment);
+  resolveNoiseCorrelation(experiment);
+  for (FeatureSpec& feature : experiment.features) {
+    if (auto* extrema = std::get_if<ExtremaFeatureSpec>(&feature)) {
+      resolveProminence(experiment.noise, *extrema);
+    }
+  }
+  resolveReplicates(experiment.design.train.samples, experiment.noise);
+}
+
+}  // namespace twinmap
