@@ -107,18 +107,24 @@ TEST(FeatureTransform, WhitenDividesByTheNoiseAlsoBehindAZScore) {
                std::invalid_argument);
 }
 
-/// 4 features whose noise is correlated.
-MatrixXd makeCorrelatedCovariance() {
+TransformStepSpec makeWhitenByCovariance() {
+  TransformStepSpec step = makeWhiten();
+  step.whiten->by = WhitenBy::kCovariance;
+  return step;
+}
+
+/// 50 samples of 4 features whose noise is correlated.
+LabelledFeatures makeCorrelatedSamples() {
   const MatrixXd mixing = makeNoise(4, 4, 6);
-  return mixing * mixing.transpose();
+  LabelledFeatures samples;
+  samples.features = makeNoise(4, 50, 7);
+  samples.noise_covariance = mixing * mixing.transpose();
+  return samples;
 }
 
 TEST(FeatureTransform, WhitenByCovarianceMakesNoiseIndependentAlsoBehindAProjection) {
-  LabelledFeatures samples;
-  samples.features = makeNoise(4, 50, 7);
-  samples.noise_covariance = makeCorrelatedCovariance();
-  TransformStepSpec whiten = makeWhiten();
-  whiten.whiten->by = WhitenBy::kCovariance;
+  LabelledFeatures samples = makeCorrelatedSamples();
+  const TransformStepSpec whiten = makeWhitenByCovariance();
   for (const std::vector<TransformStepSpec>& steps :
        {std::vector{whiten}, {makeZScore(), whiten}, {makePrincipalComponents(3), whiten}}) {
     MatrixXd noise = samples.noise_covariance;
@@ -132,11 +138,8 @@ TEST(FeatureTransform, WhitenByCovarianceMakesNoiseIndependentAlsoBehindAProject
 }
 
 TEST(FeatureTransform, ItsMatrixMapsDifferences) {
-  LabelledFeatures samples;
-  samples.features = makeNoise(4, 50, 7);
-  samples.noise_covariance = makeCorrelatedCovariance();
-  TransformStepSpec whiten = makeWhiten();
-  whiten.whiten->by = WhitenBy::kCovariance;
+  const LabelledFeatures samples = makeCorrelatedSamples();
+  const TransformStepSpec whiten = makeWhitenByCovariance();
   for (const std::vector<TransformStepSpec>& steps : {std::vector{makeZScore()},
                                                       {makeZScore(), whiten},
                                                       {whiten, makePrincipalComponents(3), makeZScore()}}) {
@@ -151,11 +154,9 @@ TEST(FeatureTransform, ItsMatrixMapsDifferences) {
 
 TEST(FeatureTransform, ByCovarianceOfIndependentNoiseIsByStddev) {
   const MatrixXd features = MatrixXd::Random(2, 20);
-  TransformStepSpec whiten = makeWhiten();
   const LabelledFeatures samples = makeSamples(features, Eigen::Vector2d(0.1, 4.0));
-  const MatrixXd by_stddev = fitTransform({whiten}, samples).apply(features);
-  whiten.whiten->by = WhitenBy::kCovariance;
-  EXPECT_EQ(fitTransform({whiten}, samples).apply(features), by_stddev);
+  const MatrixXd by_stddev = fitTransform({makeWhiten()}, samples).apply(features);
+  EXPECT_EQ(fitTransform({makeWhitenByCovariance()}, samples).apply(features), by_stddev);
 }
 
 TEST(FeatureTransform, AutomaticRankKeepsWhatStandsAboveTheNoise) {

@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-#include "tests/framework/counting_simulator.hpp"
+#include "tests/framework/sampling/counting_simulator.hpp"
 #include "tests/framework/temporary_folder.hpp"
 
 namespace twinmap {
