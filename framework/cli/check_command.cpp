@@ -1,14 +1,25 @@
 #include <iostream>
 
 #include "framework/cli/commands.hpp"
+#include "framework/features/feature_extractor.hpp"
 #include "framework/measurement/signal_experiment.hpp"
+#include "framework/multibody/multibody_simulator.hpp"
+#include "framework/spec/check/check_features.hpp"
 #include "framework/spec/experiment_file.hpp"
+#include "framework/sweep/model_groups.hpp"
 
 namespace twinmap::cli {
 
+void requireModel(const ExperimentSpec& experiment) {
+  MultibodySimulator(experiment.model, collectTimes(experiment.features), countModes(experiment.features))
+      .checkStart();
+}
+
 void check(const ExperimentArguments& arguments) {
   const YamlNode tree = loadExperimentTree(arguments.file, arguments.overrides);
-  expandCasesWithSignals(tree);  // finds what is wrong in any of them
+  for (const ModelGroup& group : groupByModel(expandCasesWithSignals(tree))) {  // what is wrong in any case
+    MultibodySimulator(group.model, group.times, group.modes).checkStart();
+  }
   std::cout << (tree.find("sweep") == nullptr ? writeExperiment(readExperimentWithSignals(tree))
                                               : writeIndependentDefaults(tree));
 }

@@ -100,7 +100,8 @@ struct ReplayArguments {
 // One file a subcommand. Results go to stdout, progress and warnings to stderr. Each throws ExperimentError
 // for wrong input and any other std::exception for a failure.
 
-/// Validates an experiment and prints it with all defaults.
+/// Validates an experiment, builds the model of each of its cases at the centre of the parameter box, and
+/// prints it with all defaults.
 void check(const ExperimentArguments& arguments);
 
 /// Prints the JSON schema of experiment files.
@@ -118,6 +119,10 @@ void status(const StatusArguments& arguments);
 
 /// Prints what run() would do with the same arguments, and does nothing of it.
 void plan(const RunArguments& arguments);
+
+/// Builds the model at the centre of the parameter box (MultibodySimulator); simulates nothing. Throws
+/// ExperimentError if it or its initial state cannot exist there.
+void requireModel(const ExperimentSpec& experiment);
 
 /// What run() takes where the arguments leave it open: results/NAME, and half of the machine's memory
 /// (bytes).

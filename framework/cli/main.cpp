@@ -40,8 +40,9 @@ void addExperiment(CLI::App& command, cli::ExperimentArguments& arguments) {
 }
 
 void addCheck(CLI::App& app, cli::ExperimentArguments& arguments) {
-  CLI::App* command =
-      app.add_subcommand("check", "Validate an experiment and print it with all defaults; simulate nothing");
+  CLI::App* command = app.add_subcommand("check",
+                                         "Validate an experiment, build its model at the centre of the "
+                                         "bounds, and print all with defaults; simulate nothing");
   addExperiment(*command, arguments);
   command->callback([&arguments] { cli::check(arguments); });
 }

@@ -41,6 +41,7 @@ RunControl makeControl(const RunArguments& arguments, ProgressLine& line) {
 
 void runSingle(const ExperimentSpec& experiment, const RunArguments& arguments, const fs::path& folder) {
   requireMemory(experiment, arguments.threads, getMostMemory(arguments));
+  requireModel(experiment);  // before the folder is touched
   ProgressLine line;
   RunOptions options;
   options.folder = folder;

@@ -37,13 +37,13 @@ void requireFewFailuresOf(const std::string& set, int samples, const std::vector
   }
 }
 
-StoredTrajectories simulateSet(const std::string& set, const Eigen::MatrixXd& points,
+StoredTrajectories simulateSet(const std::string& set, const Eigen::MatrixXd& points, double allowed_failures,
                                const SampleSource& source, const RunControl& control, StageNotes& notes) {
+  MissingOptions options = makeMissingOptions("simulate " + set, 1, control);
+  options.allowed_failures = allowed_failures;
   StoredTrajectories stored =
-      timeStage(fmt::format("simulate {} {} samples", points.cols(), set), notes, [&] {
-        return simulateMissing(source.store, source.simulator, points,
-                               makeMissingOptions("simulate " + set, 1, control));
-      });
+      timeStage(fmt::format("simulate {} {} samples", points.cols(), set), notes,
+                [&] { return simulateMissing(source.store, source.simulator, points, options); });
   if (stored.stopped) {
     throw Interrupted(fmt::format("interrupted: {} of {} {} samples are simulated and kept",
                                   stored.counts.reused + stored.counts.simulated, points.cols(), set));
@@ -58,9 +58,12 @@ StoredTrajectories simulateSet(const std::string& set, const Eigen::MatrixXd& po
 
 SimulatedSets simulateSets(const ExperimentSpec& experiment, const SampleSource& source,
                            const ResponseLayout& layout, const RunControl& control) {
+  const double allowed = experiment.model.simulation.allowed_failures;
   StageNotes notes;
-  StoredTrajectories train = simulateSet("train", sampleTrainPoints(experiment), source, control, notes);
-  StoredTrajectories test = simulateSet("test", sampleTestPoints(experiment), source, control, notes);
+  StoredTrajectories train =
+      simulateSet("train", sampleTrainPoints(experiment), allowed, source, control, notes);
+  StoredTrajectories test =
+      simulateSet("test", sampleTestPoints(experiment), allowed, source, control, notes);
   return {selectRows(std::move(train.trajectories), layout), selectRows(std::move(test.trajectories), layout),
           train.counts.reused + test.counts.reused, notes};
 }

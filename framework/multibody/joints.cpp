@@ -17,7 +17,7 @@ Rotation calcAxisAlignment(const JointSpec& joint, NumberEvaluator& numbers, con
   }
   const Vec3 axis = calcVec3(numbers, *joint.axis, {owner, "joint.axis", ""});
   if (axis.norm() == 0.0) {
-    throw SimulationFailure(owner + ": joint.axis must not be zero");
+    throw SimulationFailure(owner + ": joint.axis must not be zero", (*joint.axis)[0].where);
   }
   const SimTK::CoordinateAxis own = joint.type == JointType::kSlider
                                         ? static_cast<SimTK::CoordinateAxis>(SimTK::XAxis)

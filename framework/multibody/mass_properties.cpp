@@ -18,15 +18,15 @@ Eigen::Vector3d calcPrincipalMoments(const Vec3& moments, const Vec3& products) 
   return linalg::calcSymmetricEigenvalues(tensor);
 }
 
-void checkInertia(const std::string& owner, const Eigen::Vector3d& principal) {
+void checkInertia(const std::string& owner, const Eigen::Vector3d& principal, const SourceLocation& where) {
   const double slack = kInertiaSlack * principal.cwiseAbs().maxCoeff();
   if (principal[0] < -slack) {
     throwUnusable({owner, "inertia: smallest principal moment", "kg m2"}, principal[0],
-                  "must not be negative");
+                  "must not be negative", where);
   }
   if (principal[2] > principal[0] + principal[1] + slack) {
     throwUnusable({owner, "inertia: largest principal moment", "kg m2"}, principal[2],
-                  "must not exceed the sum of the other two");
+                  "must not exceed the sum of the other two", where);
   }
 }
 
@@ -43,7 +43,7 @@ SimTK::MassProperties calcMassProperties(const BodySpec& body, NumberEvaluator& 
   const Vec3 center = calcVec3(numbers, body.center_of_mass, {owner, "center_of_mass", "m"});
   const Vec3 moments = calcVec3(numbers, body.inertia.moments, {owner, "inertia.moments", "kg m2"});
   const Vec3 products = calcVec3(numbers, body.inertia.products, {owner, "inertia.products", "kg m2"});
-  checkInertia(owner, calcPrincipalMoments(moments, products));
+  checkInertia(owner, calcPrincipalMoments(moments, products), body.inertia.moments[0].where);
   SimTK::Inertia about_origin(moments, products);
   about_origin.shiftFromMassCenterInPlace(center, mass);
   return SimTK::MassProperties(mass, center, about_origin);

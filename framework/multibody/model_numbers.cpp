@@ -7,9 +7,10 @@
 namespace twinmap {
 namespace {
 
-void checkFinite(const char* kind, const Name& name, const std::string& unit, double value) {
+void checkFinite(const char* kind, const Name& name, const std::string& unit, double value,
+                 const SourceLocation& where) {
   if (!std::isfinite(value)) {
-    throwUnusable({kind, name.text.c_str(), unit.c_str()}, value, "must be finite");
+    throwUnusable({kind, name.text.c_str(), unit.c_str()}, value, "must be finite", where);
   }
 }
 
@@ -28,12 +29,13 @@ ModelNumbers::ModelNumbers(const ModelSpec& model) : model_(model), sampled_(col
 void ModelNumbers::update(const Eigen::Ref<const Eigen::VectorXd>& point) {
   const int count = static_cast<int>(sampled_.size());
   for (int i = 0; i < count; ++i) {
-    checkFinite("parameter", sampled_[i].name, sampled_[i].unit, point[i]);
+    checkFinite("parameter", sampled_[i].name, sampled_[i].unit, point[i], sampled_[i].name.where);
     scope_.upd(i) = point[i];
   }
   for (std::size_t i = 0; i < constants_.size(); ++i) {
     const double value = constants_[i].calc();
-    checkFinite("constant", model_.constants[i].name, model_.constants[i].unit, value);
+    const ConstantSpec& constant = model_.constants[i];
+    checkFinite("constant", constant.name, constant.unit, value, constant.value.where);
     scope_.upd(count + static_cast<int>(i)) = value;
   }
 }

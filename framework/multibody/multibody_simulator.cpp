@@ -85,6 +85,30 @@ Eigen::VectorXd solveBoxCenter(ModelContext& context) {
   return solveEquilibrium(system, calcInitialValues(context).coordinates);
 }
 
+/// The initial state at the current point exists and its accelerations are finite; else SimulationFailure.
+void checkInitialState(ModelContext& context, const Eigen::VectorXd& box_center) {
+  LoadedSystem system(context, false);
+  SimTK::State state = system.getTree().getDefaultState();
+  setState(system, calcInitialState(context, system, box_center), state);
+  context.excitation.beginPhase(0.0);
+  const bool finite = system.calcUDot(state, 0.0).allFinite();
+  context.excitation.mute();
+  if (!finite) {
+    throw SimulationFailure("the accelerations of the initial state are not finite");
+  }
+}
+
+/// What is wrong with the model at the centre of its box, with the number that is the cause, or `system`.
+ExperimentError makeCenterError(const ModelSpec& model, SourceLocation where, const std::string& reason) {
+  if (where.file.empty() && !model.system.bodies.empty()) {
+    where = model.system.bodies.front().name.where;
+    where.key_path = where.file.empty() ? "" : "system";
+  }
+  const std::string place = toString(where);
+  return ExperimentError((place.empty() ? "" : place + ": ") +
+                         "at the centre of the parameter box: " + reason);
+}
+
 }  // namespace
 
 class MultibodySimulator::Impl {
@@ -110,15 +134,20 @@ class MultibodySimulator::Impl {
     for (const OutputSpec& output : shared_->model.outputs) {
       shared_->layout.output_names.push_back(output.name.text);
     }
-    try {
+    atBoxCenter([this] {
       compileAll();
       const std::optional<EquilibriumSpec>& equilibrium = shared_->model.initial.equilibrium;
       if (equilibrium && equilibrium->at == EquilibriumAt::kBoxCenter) {
         shared_->box_center = solveBoxCenter(context_);
       }
-    } catch (const SimulationFailure& failure) {
-      throw ExperimentError(std::string("at the centre of the parameter box: ") + failure.what());
-    }
+    });
+  }
+
+  void checkStart() {
+    atBoxCenter([this] {
+      context_.numbers.update(calcBoxCenter(collectSampled(shared_->model)));
+      checkInitialState(context_, shared_->box_center);
+    });
   }
 
   /// Takes the steps of `sequence` if there are any, else keeps there those it took.
@@ -148,6 +177,18 @@ class MultibodySimulator::Impl {
   const std::shared_ptr<SharedModel>& getShared() const { return shared_; }
 
  private:
+  /// What fails in `build` is wrong input.
+  template <typename Build>
+  void atBoxCenter(const Build& build) const {
+    try {
+      build();
+    } catch (const SimulationFailure& failure) {
+      throw makeCenterError(shared_->model, failure.getWhere(), failure.what());
+    } catch (const SimTK::Exception::Base& error) {
+      throw makeCenterError(shared_->model, {}, std::string("Simbody: ") + error.getMessage());
+    }
+  }
+
   std::string run(const Eigen::Ref<const Eigen::VectorXd>& parameters, Eigen::Ref<Eigen::VectorXd> response,
                   StepSequence& sequence) {
     const SimulationSpec& simulation = shared_->model.simulation;
@@ -198,6 +239,11 @@ MultibodySimulator::~MultibodySimulator() = default;
 
 const ResponseLayout& MultibodySimulator::getLayout() const {
   return impl_->getShared()->layout;
+}
+
+void MultibodySimulator::checkStart() {
+  const std::lock_guard<std::mutex> guard(building);
+  impl_->checkStart();
 }
 
 void MultibodySimulator::simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters,

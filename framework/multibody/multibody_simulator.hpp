@@ -15,11 +15,16 @@ class MultibodySimulator final : public Simulator {
   /// The model is built once at the centre of the parameter box, with the equilibrium if it is asked for
   /// there. Throws ExperimentError for anything wrong with the model that no parameter set can cure: unknown
   /// or doubled names, expressions that do not compile, springs, dampers or force laws on coordinates that
-  /// take none, times out of range, a system that cannot exist at the box centre.
+  /// take none, times out of range; and for a system that cannot exist at the box centre, with the place of
+  /// the number that is the cause.
   MultibodySimulator(const ModelSpec& model, Eigen::VectorXd times, int modes = 0);
   ~MultibodySimulator() override;
 
   const ResponseLayout& getLayout() const override;
+
+  /// Throws ExperimentError unless a simulation at the box centre could begin: the initial state exists, its
+  /// equilibrium is found if it has one, and its accelerations are finite. Nothing is integrated; a few ms.
+  void checkStart();
 
   /// As Simulator::simulate; throws std::invalid_argument for matrices of the wrong shape. Cost for the
   /// two-beam case: 5 ms a sample of 5 s, of which building the system takes 1 %.

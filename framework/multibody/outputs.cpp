@@ -28,7 +28,7 @@ void checkOne(const OutputSpec& output) {
 Vec3 calcDirection(const StationOutputSpec& spec, NumberEvaluator& numbers, const std::string& owner) {
   const Vec3 direction = calcVec3(numbers, spec.direction, {owner, "direction", ""});
   if (direction.norm() == 0.0) {
-    throw SimulationFailure(owner + ": direction must not be zero");
+    throw SimulationFailure(owner + ": direction must not be zero", spec.direction[0].where);
   }
   return direction.normalize();
 }

@@ -15,12 +15,17 @@ struct SimulationProgress {
   int simulated = 0;  ///< of them, until now
   int failed = 0;     ///< of those
   int reused = 0;     ///< samples that were in the store
+  int given_up = 0;   ///< of the total: not simulated, since all before had failed (MissingOptions)
 };
 
 struct MissingOptions {
   int threads = 0;             ///< 0: as many as OpenMP offers
   int chunk_samples = 256;     ///< a chunk is written when so many samples wait (fewer if they are large),
   double chunk_seconds = 2.0;  ///< or when a sample is finished so long after the last chunk
+  /// Fraction of the samples that may fail (simulation.allowed_failures). Where so many fail in a row from
+  /// the first on, stored ones included, that it is as unlikely as a dozen of which half may fail, no other
+  /// is begun. 1: all are simulated.
+  double allowed_failures = 1.0;
   /// Once true, the samples under way are finished and written, and no other is begun.
   const std::atomic<bool>* stop = nullptr;
   /// Called after each sample, from any thread but one at a time.
@@ -32,14 +37,17 @@ struct MissingOptions {
 MissingOptions makeMissingOptions(const std::string& stage, int simulations, const RunControl& control);
 
 struct StoredTrajectories {
-  Trajectories trajectories;  ///< samples that were not reached: NaN, "not simulated"
+  /// Samples that were not reached: NaN, "not simulated", with the reason where they were given up.
+  Trajectories trajectories;
   SimulationProgress counts;
   bool stopped = false;  ///< by the flag, with samples left
 };
 
 /// The responses at the columns of `points`: those in the store are taken from it, the others, each distinct
 /// one once, are simulated as by generateSamples() and stored. Every response comes back from the store, so
-/// that the result is bitwise the same for any number of threads, chunk size and history.
+/// that the result is bitwise the same for any number of threads, chunk size and history. Whether samples are
+/// given up depends on the points and on what is stored of them, never on the number of threads: the first
+/// dozen is waited for before others begin, unless a stored sample has shown that the model can be simulated.
 ///
 /// What is lost when the process is killed are the samples under way and those finished within chunk_seconds.
 /// An exception, of a simulator or because a chunk cannot be written (disk full: std::runtime_error naming
@@ -49,8 +57,12 @@ struct StoredTrajectories {
 StoredTrajectories simulateMissing(TrajectoryStore& store, const Simulator& simulator,
                                    const Eigen::MatrixXd& points, const MissingOptions& options = {});
 
-/// The same without reading the responses. Stopped, if fewer are simulated than the total.
+/// The same without reading the responses. Stopped, if fewer are simulated or given up than the total.
 SimulationProgress storeMissing(TrajectoryStore& store, const Simulator& simulator,
                                 const Eigen::MatrixXd& points, const MissingOptions& options = {});
+
+/// Whether what is stored of the points are failures alone, so many that simulateMissing() would begin no
+/// other.
+bool isGivenUp(const TrajectoryStore& store, const Eigen::MatrixXd& points, double allowed_failures);
 
 }  // namespace twinmap

@@ -80,7 +80,7 @@ class TermWriter {
     }
     const double end = calc(expression, "end", "s");
     if (end <= start) {
-      throwUnusable({owner_, "end", "s"}, end, "must be after its start");
+      throwUnusable({owner_, "end", "s"}, end, "must be after its start", expression.where);
     }
     return end;
   }

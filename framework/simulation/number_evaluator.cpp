@@ -5,11 +5,12 @@
 
 namespace twinmap {
 
-void throwUnusable(const Quantity& quantity, double value, const std::string& rule) {
+void throwUnusable(const Quantity& quantity, double value, const std::string& rule,
+                   const SourceLocation& where) {
   char number[32];
   std::snprintf(number, sizeof number, "%.9g", value);
   const std::string unit = *quantity.unit != '\0' ? std::string(" ") + quantity.unit : std::string();
-  throw SimulationFailure(quantity.owner + ": " + quantity.name + " = " + number + unit + " " + rule);
+  throw SimulationFailure(quantity.owner + ": " + quantity.name + " = " + number + unit + " " + rule, where);
 }
 
 double NumberEvaluator::calc(const Expression& expression, const Quantity& quantity) {
@@ -19,7 +20,7 @@ double NumberEvaluator::calc(const Expression& expression, const Quantity& quant
   }
   const double value = found->second.calc();
   if (!std::isfinite(value)) {
-    throwUnusable(quantity, value, "must be finite");
+    throwUnusable(quantity, value, "must be finite", expression.where);
   }
   return value;
 }
@@ -27,7 +28,7 @@ double NumberEvaluator::calc(const Expression& expression, const Quantity& quant
 double NumberEvaluator::calcPositive(const Expression& expression, const Quantity& quantity) {
   const double value = calc(expression, quantity);
   if (value <= 0.0) {
-    throwUnusable(quantity, value, "must be positive");
+    throwUnusable(quantity, value, "must be positive", expression.where);
   }
   return value;
 }

@@ -14,7 +14,14 @@ namespace twinmap {
 /// prepared or run; a simulator turns it into that sample's status.
 class SimulationFailure : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  /// `where`: the number of the experiment that is the cause, where it is known.
+  explicit SimulationFailure(const std::string& reason, SourceLocation where = {})
+      : std::runtime_error(reason), where_(std::move(where)) {}
+
+  const SourceLocation& getWhere() const { return where_; }
+
+ private:
+  SourceLocation where_;
 };
 
 /// How messages call a number: "<owner>: <name> = 0 <unit>".
@@ -24,8 +31,9 @@ struct Quantity {
   const char* unit;          ///< "kg"
 };
 
-/// Throws SimulationFailure("<owner>: <name> = <value> <unit> <rule>").
-[[noreturn]] void throwUnusable(const Quantity& quantity, double value, const std::string& rule);
+/// Throws SimulationFailure("<owner>: <name> = <value> <unit> <rule>"); `where` the value is given.
+[[noreturn]] void throwUnusable(const Quantity& quantity, double value, const std::string& rule,
+                                const SourceLocation& where);
 
 /// Evaluates the numbers of a spec at the current values of a scope. Each expression is compiled at its first
 /// use and remembered by its address, so the spec must outlive the evaluator unchanged. Not thread safe.

@@ -85,8 +85,10 @@ std::vector<ModelGroup> groupByModel(const std::vector<SweepCase>& cases) {
     ModelGroup& group = groups[found->second];
     group.cases.push_back(static_cast<int>(i));
     group.times = uniteTimes(group.times, collectTimes(experiment.features));
-    group.model.simulation.max_wall_time =
-        std::max(group.model.simulation.max_wall_time, experiment.model.simulation.max_wall_time);
+    SimulationSpec& shared = group.model.simulation;
+    const SimulationSpec& own = experiment.model.simulation;
+    shared.max_wall_time = std::max(shared.max_wall_time, own.max_wall_time);
+    shared.allowed_failures = std::max(shared.allowed_failures, own.allowed_failures);
   }
   return groups;
 }

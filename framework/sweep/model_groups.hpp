@@ -12,8 +12,8 @@ namespace twinmap {
 /// Cases whose responses come from the same simulations.
 struct ModelGroup {
   std::vector<int> cases;  ///< indices, ascending
-  ModelSpec model;         ///< of the first, with the longest max_wall_time of all
-  Eigen::VectorXd times;   ///< s, those of all cases; sorted
+  ModelSpec model;  ///< of the first, with the longest max_wall_time and the most allowed_failures of all
+  Eigen::VectorXd times;  ///< s, those of all cases; sorted
   int modes = 0;
 };
 

@@ -30,6 +30,7 @@ class Totals {
   void add(const SimulationProgress& part) {
     counts.simulated += part.simulated;
     counts.failed += part.failed;
+    counts.given_up += part.given_up;
   }
 
   SimulationProgress counts;
@@ -46,12 +47,24 @@ Eigen::Index chooseBlock(const SharedSamples& samples, double memory) {
   return static_cast<Eigen::Index>(std::clamp(fitting, kFewest, 1e9));
 }
 
+/// The points whose samples are in the store and did not fail.
+Eigen::MatrixXd selectSucceeded(const Eigen::MatrixXd& points, const TrajectoryStore& samples) {
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    if (samples.contains(points.col(i)) && !samples.hasFailed(points.col(i))) {
+      kept.push_back(i);
+    }
+  }
+  return points(Eigen::all, kept);
+}
+
 /// False if it was stopped.
 bool simulateGroup(SharedSamples& samples, const SharedStage& stage, const RunControl& control,
                    Totals& totals) {
   MissingOptions options;
   options.threads = control.threads;
   options.stop = control.stop;
+  options.allowed_failures = samples.allowed_failures;
   options.progress = [&totals](const SimulationProgress& part) { totals.report(part); };
   const Eigen::Index block = chooseBlock(samples, stage.memory);
   for (Eigen::Index first = 0; first < samples.missing.cols(); first += block) {
@@ -59,9 +72,14 @@ bool simulateGroup(SharedSamples& samples, const SharedStage& stage, const RunCo
         samples.missing.middleCols(first, std::min(block, samples.missing.cols() - first));
     const SimulationProgress part = storeMissing(*samples.store, *samples.simulator, points, options);
     totals.add(part);
+    if (part.given_up > 0) {
+      totals.counts.given_up += static_cast<int>(samples.missing.cols() - first - points.cols());
+      return true;
+    }
     if (part.simulated < part.total) {
       return false;
     }
+    options.allowed_failures = 1.0;  // the first block has shown that there are others
   }
   return true;
 }
@@ -72,13 +90,21 @@ SharedSamples openSharedSamples(const ModelGroup& group, const Eigen::MatrixXd& 
                                 const std::filesystem::path& root) {
   SharedSamples samples;
   try {
-    samples.simulator = std::make_unique<MultibodySimulator>(group.model, group.times, group.modes);
+    auto simulator = std::make_unique<MultibodySimulator>(group.model, group.times, group.modes);
+    simulator->checkStart();
+    samples.simulator = std::move(simulator);
   } catch (const ExperimentError& error) {
     samples.failure = error.what();
     return samples;
   }
   samples.store = openStore(group.model, samples.simulator->getLayout(), root);
+  const double allowed = group.model.simulation.allowed_failures;
+  if (isGivenUp(*samples.store, points, allowed)) {
+    samples.missing.resize(points.rows(), 0);
+    return samples;
+  }
   samples.missing = points(Eigen::all, samples.store->findMissing(points));
+  samples.allowed_failures = selectSucceeded(points, *samples.store).cols() > 0 ? 1.0 : allowed;
   return samples;
 }
 
@@ -88,7 +114,7 @@ SharedSamples openSharedNeighbourhoods(const ModelGroup& group, const Eigen::Mat
   shared.simulator =
       std::make_unique<NeighbourhoodSimulator>(*samples.simulator, collectUnknown(group.model));
   shared.store = openNeighbourhoodStore(group.model, samples.simulator->getLayout(), root);
-  const Eigen::MatrixXd needed = dropFailed(points, *samples.store);
+  const Eigen::MatrixXd needed = selectSucceeded(points, *samples.store);
   shared.missing = needed(Eigen::all, shared.store->findMissing(needed));
   return shared;
 }

@@ -17,7 +17,8 @@ struct SharedSamples {
   std::string failure;  ///< why the group's model cannot be simulated; the rest is null then
   std::unique_ptr<Simulator> simulator;
   std::unique_ptr<TrajectoryStore> store;
-  Eigen::MatrixXd missing;  ///< parameters x n: points that the store does not have
+  Eigen::MatrixXd missing;        ///< parameters x n: points that the store does not have
+  double allowed_failures = 1.0;  ///< when the group is given up (MissingOptions)
 };
 
 /// Opens the store of the group's samples in `root`, and finds those of `points` that are missing. Throws
@@ -25,8 +26,8 @@ struct SharedSamples {
 SharedSamples openSharedSamples(const ModelGroup& group, const Eigen::MatrixXd& points,
                                 const std::filesystem::path& root);
 
-/// The same of the neighbourhoods at `points`, without those of samples that have failed. `group` has equal
-/// bounds (splitByBounds), `samples` are those of the group that it is a part of.
+/// The same of the neighbourhoods at `points`, without those of samples that have failed or were given up.
+/// `group` has equal bounds (splitByBounds), `samples` are those of the group that it is a part of.
 SharedSamples openSharedNeighbourhoods(const ModelGroup& group, const Eigen::MatrixXd& points,
                                        const SharedSamples& samples, const std::filesystem::path& root);
 
@@ -37,8 +38,8 @@ struct SharedStage {
   int simulations = 1;            ///< behind each sample, as progress counts them
 };
 
-/// Simulates all that is missing, group after group, each with all threads. Returns what was done; stopped,
-/// if fewer were simulated than the total.
+/// Simulates all that is missing, group after group, each with all threads; a group that is given up holds up
+/// no other. Returns what was done; stopped, if fewer were simulated or given up than the total.
 SimulationProgress simulateShared(std::vector<SharedSamples>& groups, const SharedStage& stage,
                                   const RunControl& control);
 

@@ -3,9 +3,7 @@ import csv
 import io
 import json
 import subprocess
-import tempfile
 import unittest
-from pathlib import Path
 
 import h5py
 import numpy as np
@@ -146,14 +144,11 @@ class Formats(InferCase):
 class Columns(RunTestCase):
     """A machine whose file has other names and units."""
     @classmethod
-    def setUpClass(cls):
+    def write_files(cls):
         experiment = yaml.safe_load(RunTestCase.FILE.read_text())
         experiment["measurement"] = {"time": "clock [ms]", "columns": {"y": "enc1 [mm]", "theta": "enc2 [degree]"}}
-        folder = tempfile.TemporaryDirectory(prefix="twinmap_test_")
-        cls.addClassCleanup(folder.cleanup)
-        cls.FILE = Path(folder.name) / "machine.yaml"
+        cls.FILE = cls.folder / "machine.yaml"
         cls.FILE.write_text(yaml.safe_dump(experiment, sort_keys=False))
-        super().setUpClass()
 
     def test_are_mapped_and_converted(self):
         columns = read_columns(self.simulate("m.csv", *POINT))
@@ -311,12 +306,9 @@ design: {train: {samples: 120}, test: {samples: 60}}
     ARGUMENTS = ["evaluation.limit=false"]
 
     @classmethod
-    def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory(prefix="twinmap_test_")
-        cls.addClassCleanup(folder.cleanup)
-        cls.FILE = Path(folder.name) / "roles.yaml"
+    def write_files(cls):
+        cls.FILE = cls.folder / "roles.yaml"
         cls.FILE.write_text(cls.EXPERIMENT)
-        super().setUpClass()
 
     def test_known_inputs_are_given_with_the_measurement(self):
         path = self.simulate("m.csv", "parameters.k=93", "nuisance.offset=0.004", "inputs.payload=0.7")

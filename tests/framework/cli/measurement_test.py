@@ -2,9 +2,7 @@
 import functools
 import json
 import os
-import tempfile
 import unittest
-from pathlib import Path
 
 import h5py
 import numpy as np
@@ -12,18 +10,13 @@ import scipy.io
 import yaml
 
 import support
-from support import EXPERIMENTS
+from support import EXPERIMENTS, OwnFolderTestCase
 
 TABLE1 = EXPERIMENTS / "two_beam/table1.yaml"
 call = functools.partial(support.call, timeout=600)
 
 
-class TestCase(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="twinmap_measurement_")
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
-
+class TestCase(OwnFolderTestCase):
     def write(self, name, text):
         path = self.folder / name
         path.write_text(text)

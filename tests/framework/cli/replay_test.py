@@ -3,9 +3,7 @@ import csv
 import filecmp
 import json
 import re
-import tempfile
 import unittest
-from pathlib import Path
 
 import h5py
 import numpy as np
@@ -224,14 +222,14 @@ class MeasuredExcitation(ReplayCase):
     ARGUMENTS = []
 
     @classmethod
-    def setUpClass(cls):
-        files = tempfile.TemporaryDirectory(prefix="twinmap_test_")
-        cls.addClassCleanup(files.cleanup)
-        cls.files = Path(files.name)
-        cls.FILE = cls.files / "cart.yaml"
+    def write_files(cls):
+        cls.FILE = cls.folder / "cart.yaml"
         cls.FILE.write_text(yaml.safe_dump(CART, sort_keys=False))
         cls.write_input("input.csv", 1)
         cls.write_input("other.csv", 2)
+
+    @classmethod
+    def setUpClass(cls):
         super().setUpClass()
         cls.usual = cls.measure("usual.csv", "input.csv", "nuisance.x_0=0.01", "nuisance.bias=0.004")
         cls.unusual = cls.measure("unusual.csv", "other.csv", "nuisance.x_0=-0.012", "nuisance.bias=-0.006", "seed=5")
@@ -242,13 +240,13 @@ class MeasuredExcitation(ReplayCase):
         random = np.random.default_rng(seed)
         phases = random.uniform(0, 2 * np.pi, 8)
         force = sum(np.sin(2 * np.pi * (0.5 + 0.5 * i) * times + phase) for i, phase in enumerate(phases))
-        write_csv(cls.files / name, ["t", "F"], [times, force])
+        write_csv(cls.folder / name, ["t", "F"], [times, force])
 
     @classmethod
     def measure(cls, name, force, *arguments):
         path = cls.simulate(name, "parameters.k=92", "parameters.d=1.6", "inputs.load=0.4",
-                            f"excitation.F.tables[0].measured.file={cls.files / force}", *arguments)
-        measured, inputs = read_numbers(path), read_numbers(cls.files / force)
+                            f"excitation.F.tables[0].measured.file={cls.folder / force}", *arguments)
+        measured, inputs = read_numbers(path), read_numbers(cls.folder / force)
         write_csv(path, ["t", "x", "F"], [measured["t"], measured["x"], inputs["F"]])
         return path
 

@@ -1,5 +1,6 @@
 """What the tests of the command share."""
 import csv
+import functools
 import os
 import subprocess
 import tempfile
@@ -14,6 +15,19 @@ QUICK = ["design.train.samples=60", "design.test.samples=60", "evaluation.limit=
 
 def call(*arguments, timeout=1500, **options):
     return subprocess.run([TWINMAP, *map(str, arguments)], capture_output=True, text=True, timeout=timeout, **options)
+
+
+SHARED = tempfile.TemporaryDirectory(prefix="twinmap_shared_")
+
+
+@functools.lru_cache(maxsize=None)
+def run_once(file, *arguments):
+    """(folder, result) of a run that succeeds, made once for all tests of the program: read it, or damage a copy."""
+    folder = Path(tempfile.mkdtemp(dir=SHARED.name)) / "run"
+    result = call("run", file, *arguments, "--out", folder)
+    if result.returncode != 0:
+        raise RuntimeError(result.stderr)
+    return folder, result
 
 
 def read_csv(path):
@@ -38,18 +52,29 @@ class FolderTestCase(unittest.TestCase):
         cls.folder = Path(folder.name)
 
 
+class OwnFolderTestCase(unittest.TestCase):
+    """A folder for each test."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="twinmap_test_")
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+
 class RunTestCase(FolderTestCase):
-    """One run for all tests of the class, of FILE with ARGUMENTS."""
+    """One run for all tests, of FILE with ARGUMENTS."""
     FILE = EXPERIMENTS / "two_beam/best.yaml"
     ARGUMENTS = QUICK
 
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        cls.run_folder = cls.folder / "run"
-        result = call("run", cls.FILE, *cls.ARGUMENTS, "--out", cls.run_folder)
-        if result.returncode != 0:
-            raise RuntimeError(result.stderr)
+        cls.write_files()
+        cls.run_folder, _ = run_once(cls.FILE, *cls.ARGUMENTS)
+
+    @classmethod
+    def write_files(cls):
+        """Writes what the run needs into the folder, FILE for one."""
 
     @classmethod
     def simulate(cls, name, *arguments):

@@ -6,16 +6,15 @@ import pty
 import random
 import re
 import shlex
+import shutil
 import signal
 import statistics
 import struct
 import subprocess
-import tempfile
 import time
 import unittest
-from pathlib import Path
 
-from support import EXPERIMENTS, TWINMAP, call, read_csv
+from support import EXPERIMENTS, TWINMAP, OwnFolderTestCase, call, read_csv, run_once
 
 CART = EXPERIMENTS / "duffing/cart.yaml"
 CHAIN = EXPERIMENTS / "three_mass_chain/modes.yaml"
@@ -38,16 +37,15 @@ def read_points(chunk):
     return [data[56 + i * size:56 + (i + 1) * size] for i in range(samples)]
 
 
-class SweepTestCase(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="twinmap_sweep_")
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
-
+class SweepTestCase(OwnFolderTestCase):
     def run_sweep(self, name, *arguments, file=CART, sweep=SWEEP, code=0):
         result = call("run", file, *sweep, *arguments, "--out", self.folder / name)
         self.assertEqual(result.returncode, code, result.stderr)
         return result
+
+    def copy_sweep(self, name):
+        """The complete SWEEP, which all tests share, as if it had been run here."""
+        shutil.copytree(run_once(CART, *SWEEP)[0], self.folder / name)
 
     def start(self, name, *arguments, sweep=SWEEP):
         return subprocess.Popen([TWINMAP, "run", CART, *sweep, *arguments, "--out", str(self.folder / name)],
@@ -154,7 +152,7 @@ class Tables(SweepTestCase):
             self.assertAlmostEqual(float(row["sd_pct_se"]), statistics.stdev(values) / 3**0.5, 9)
 
     def test_the_resolved_sweep_repeats_it(self):
-        self.run_sweep("a")
+        self.copy_sweep("a")
         self.run_sweep("b", file=self.folder / "a/resolved.yaml", sweep=[])
         self.assert_same_sweeps("a", "b")
 
@@ -165,14 +163,14 @@ class Tables(SweepTestCase):
 
 class Continuing(SweepTestCase):
     def test_a_complete_sweep_is_left_alone(self):
-        self.run_sweep("run")
+        self.copy_sweep("run")
         before = {path: path.stat().st_mtime_ns for path in (self.folder / "run/cases").rglob("*")}
         self.assertIn("8 of 8 complete (8 before)", self.run_sweep("run").stderr)
         self.assertEqual(before, {path: path.stat().st_mtime_ns for path in (self.folder / "run/cases").rglob("*")})
 
     def test_only_what_is_missing_is_done(self):
-        self.run_sweep("run")
-        self.run_sweep("undisturbed")
+        self.copy_sweep("run")
+        self.copy_sweep("undisturbed")
         (self.folder / "run/cases/samples-8_scale-1_seed-2/provenance.json").unlink()
         (self.folder / "run/cases/samples-8_scale-1_seed-2/metrics.csv").write_text("torn")
         self.assertIn("7 of 8 complete", call("status", self.folder / "run").stdout)
@@ -180,7 +178,7 @@ class Continuing(SweepTestCase):
         self.assert_same_sweeps("run", "undisturbed")
 
     def test_another_experiment_is_refused_with_the_keys_that_differ(self):
-        self.run_sweep("run")
+        self.copy_sweep("run")
         result = self.run_sweep("run", "noise.scale=0.5,2", "simulation.duration=6", code=2)
         self.assertIn("simulation.duration: 5 there, 6 now", result.stderr)
         self.assertIn("sweep.over.noise.scale[1]: 1 there, 2 now", result.stderr)
@@ -278,7 +276,7 @@ class Continuing(SweepTestCase):
         return child.returncode, message
 
     def test_an_interrupt_finishes_what_is_under_way_and_says_how_to_continue(self):
-        self.run_sweep("undisturbed")
+        self.copy_sweep("undisturbed")
         code, message = self.interrupt("run", signal.SIGINT, "cases/*")
         self.assertEqual(code, 130)
         self.assertIn("the same command continues:\n  twinmap run", message)
@@ -361,10 +359,10 @@ class ProgressShown(SweepTestCase):
 
     def test_quiet_shows_none_and_other_outputs_get_no_control_sequences(self):
         self.assertNotIn("simulate:", self.run_on_terminal("quiet", "--quiet"))
-        self.assertNotIn("\x1b", self.run_sweep("piped").stderr)
+        self.assertNotIn("\x1b", run_once(CART, *SWEEP)[1].stderr)
 
     def test_the_log_names_the_cases(self):
-        self.run_sweep("run")
+        self.copy_sweep("run")
         log = (self.folder / "run/run.log").read_text()
         self.assertIn("48 of 48 missing samples simulated", log)
         self.assertIn("info: samples-8_scale-1_seed-2: train the inverse map: ", log)

@@ -101,16 +101,17 @@ TEST(FeatureTransform, WhitenDividesByTheNoiseAlsoBehindAZScore) {
                std::invalid_argument);
 }
 
-/// 4 features whose noise is correlated.
-MatrixXd makeCorrelatedCovariance() {
+/// 50 samples of 4 features whose noise is correlated.
+LabelledFeatures makeCorrelatedSamples() {
   const MatrixXd mixing = makeNoise(4, 4, 6);
-  return mixing * mixing.transpose();
+  LabelledFeatures samples;
+  samples.features = makeNoise(4, 50, 7);
+  samples.noise_covariance = mixing * mixing.transpose();
+  return samples;
 }
 
 TEST(FeatureTransform, WhitenByCovarianceMakesNoiseIndependentAlsoBehindAProjection) {
-  LabelledFeatures samples;
-  samples.features = makeNoise(4, 50, 7);
-  samples.noise_covariance = makeCorrelatedCovariance();
+  LabelledFeatures samples = makeCorrelatedSamples();
   const TransformStepSpec whiten = makeWhiten(WhitenBy::kCovariance);
   for (const std::vector<TransformStepSpec>& steps :
        {std::vector{whiten}, {makeZScore(), whiten}, {makePrincipalComponents(3), whiten}}) {
@@ -125,9 +126,7 @@ TEST(FeatureTransform, WhitenByCovarianceMakesNoiseIndependentAlsoBehindAProject
 }
 
 TEST(FeatureTransform, ItsMatrixMapsDifferences) {
-  LabelledFeatures samples;
-  samples.features = makeNoise(4, 50, 7);
-  samples.noise_covariance = makeCorrelatedCovariance();
+  const LabelledFeatures samples = makeCorrelatedSamples();
   const TransformStepSpec whiten = makeWhiten(WhitenBy::kCovariance);
   for (const std::vector<TransformStepSpec>& steps : {std::vector{makeZScore()},
                                                       {makeZScore(), whiten},

@@ -214,6 +214,60 @@ TEST(WrongInput, SystemThatCannotExistAtTheBoxCenterIsRefused) {
             "at the centre of the parameter box: body 'block': mass = -0.5 kg must be positive");
 }
 
+/// As read from a file.
+SourceLocation at(int line, const std::string& key) {
+  return {"cart.yaml", line, 12, key};
+}
+
+TEST(WrongInput, WhatCannotExistAtTheBoxCenterIsNamedWithItsPlace) {
+  const std::string centre = ": at the centre of the parameter box: ";
+  ModelSpec model = makeOscillator();
+  model.system.bodies[0].name.where = at(5, "system.bodies.block");
+  model.system.bodies[0].mass = {"-m", at(6, "system.bodies.block.mass")};
+  EXPECT_EQ(getError(model), "cart.yaml:6:12: system.bodies.block.mass" + centre +
+                                 "body 'block': mass = -1 kg must be positive");
+  model.system.bodies[0].mass = {"m", {}};
+  model.system.bodies[0].inertia.moments = {Expression{"3", at(7, "system.bodies.block.inertia")},
+                                            Expression{"1", {}}, Expression{"1", {}}};
+  EXPECT_EQ(getError(model), "cart.yaml:7:12: system.bodies.block.inertia" + centre +
+                                 "body 'block': inertia: largest principal moment = 3 kg m2 must not exceed "
+                                 "the sum of the other two");
+  model.system.bodies[0].inertia.moments = kOrigin;
+  model.constants = {{name("n"), {"1 / (m - 1)", at(3, "constants.n")}, "", ""}};
+  EXPECT_EQ(getError(model), "cart.yaml:3:12: constants.n" + centre + "constant: n = inf must be finite");
+}
+
+/// What checkStart() says against a model, or "".
+std::string getStartError(const ModelSpec& model) {
+  try {
+    MultibodySimulator(model, Eigen::VectorXd::Constant(1, model.simulation.duration)).checkStart();
+  } catch (const ExperimentError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(WrongInput, AnInitialStateThatFailsAtTheBoxCenterIsRefused) {
+  const std::string centre = "cart.yaml:5:12: system: at the centre of the parameter box: ";
+  ModelSpec model = makeOscillator();
+  EXPECT_EQ(getStartError(model), "");
+  model.system.bodies[0].name.where = at(5, "system.bodies.block");
+  model.system.force_laws = {law("x", "sqrt(x - 2)")};  // x = 1
+  EXPECT_EQ(getStartError(model), centre + "the accelerations of the initial state are not finite");
+  model.system.force_laws = {law("x", "-50 - k * x^2")};  // none: 10 x + 10 x^2 + 50 has no root
+  for (const EquilibriumAt place : {EquilibriumAt::kBoxCenter, EquilibriumAt::kSample}) {
+    model.initial.equilibrium = EquilibriumSpec{place, {}};
+    EXPECT_EQ(getStartError(model).rfind(centre + "static equilibrium not found", 0), 0u)
+        << getStartError(model);
+  }
+  model = makeOscillator();
+  model.system.bodies.push_back(
+      body("pointer", "1", kOrigin, kOrigin, joint(JointType::kPin, {"turn"}, "block")));
+  EXPECT_EQ(getStartError(model),
+            "at the centre of the parameter box: the mass matrix is singular: a body without "
+            "inertia can move freely");
+}
+
 TEST(WrongInput, MatricesOfTheWrongShapeAreRefused) {
   MultibodySimulator simulator(makeOscillator(), Eigen::Vector2d(0.5, 1.0));
   Eigen::MatrixXd good(2, 1), bad(3, 1);

@@ -10,7 +10,7 @@
 namespace twinmap {
 namespace {
 
-// Two processes: tests/framework/interrupted_simulation_test.py.
+// Two processes: tests/framework/sampling/interrupted_simulation_test.py.
 TEST(FolderLock, RefusesASecondOwnerAndNamesTheFirst) {
   const TemporaryFolder folder;
   const FolderLock first(folder.getPath());

@@ -10,7 +10,7 @@
 
 #include "framework/sampling/simulate_missing.hpp"
 #include "framework/store/atomic_file.hpp"
-#include "tests/framework/counting_simulator.hpp"
+#include "tests/framework/sampling/counting_simulator.hpp"
 
 namespace twinmap {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-#include "tests/framework/counting_simulator.hpp"
+#include "tests/framework/sampling/counting_simulator.hpp"
 #include "tests/framework/temporary_folder.hpp"
 
 namespace twinmap {
@@ -151,6 +151,120 @@ TEST(SimulateMissing, NoPointsGiveNoColumns) {
   const StoredTrajectories result = simulateMissing(store, CountingSimulator(), MatrixXd(2, 0));
   EXPECT_EQ(result.trajectories.responses.rows(), 8);
   EXPECT_EQ(result.trajectories.responses.cols(), 0);
+}
+
+/// `count` points at which the simulator fails, the first of them 7 * first.
+MatrixXd makeFailingPoints(int count, int first = 1) {
+  MatrixXd points(2, count);
+  for (int i = 0; i < count; ++i) {
+    points.col(i) << 7.0 * (i + first), 0.5;
+  }
+  return points;
+}
+
+MissingOptions makeGivingUp(int threads, double allowed_failures = 0.05) {
+  MissingOptions options;
+  options.threads = threads;
+  options.allowed_failures = allowed_failures;
+  return options;
+}
+
+TEST(GivingUp, EndsAfterADozenForAnyThreadsAndKeepsThem) {
+  for (const int threads : {1, 2, 3, 5}) {
+    const TemporaryFolder root;
+    TrajectoryStore store = openStore(root.getPath());
+    const CountingSimulator simulator;
+    const StoredTrajectories result =
+        simulateMissing(store, simulator, makeFailingPoints(1000), makeGivingUp(threads));
+    EXPECT_EQ(simulator.getCount(), 12);
+    EXPECT_EQ(store.getSampleCount(), 12);
+    EXPECT_EQ(result.counts.failed, 12);
+    EXPECT_EQ(result.counts.given_up, 988);
+    EXPECT_FALSE(result.stopped);
+    EXPECT_EQ(result.trajectories.calcFailureCount(), 1000);
+    EXPECT_TRUE(result.trajectories.responses.array().isNaN().all());
+    EXPECT_EQ(result.trajectories.statuses[11].reason, "p0 is a multiple of 7");
+    EXPECT_EQ(result.trajectories.statuses[12].reason,
+              "not simulated, since every sample before failed: p0 is a multiple of 7");
+  }
+}
+
+TEST(GivingUp, OneSuccessAmongTheDozenIsEnoughToGoOn) {
+  for (const int place : {0, 5, 11}) {
+    const TemporaryFolder root;
+    TrajectoryStore store = openStore(root.getPath());
+    const CountingSimulator simulator;
+    MatrixXd points = makeFailingPoints(40);
+    points(0, place) = 1.0;
+    const StoredTrajectories result = simulateMissing(store, simulator, points, makeGivingUp(2));
+    EXPECT_EQ(simulator.getCount(), 40);
+    EXPECT_EQ(result.counts.given_up, 0);
+    EXPECT_EQ(result.counts.failed, 39);
+  }
+}
+
+TEST(GivingUp, CountsWhatIsStored) {
+  const TemporaryFolder root;
+  TrajectoryStore store = openStore(root.getPath());
+  simulateMissing(store, CountingSimulator(), makeFailingPoints(5));
+  const CountingSimulator simulator;
+  EXPECT_FALSE(isGivenUp(store, makeFailingPoints(40), 0.05));
+  simulateMissing(store, simulator, makeFailingPoints(40), makeGivingUp(2));
+  EXPECT_EQ(simulator.getCount(), 7);  // and 5 make a dozen
+  EXPECT_TRUE(isGivenUp(store, makeFailingPoints(40), 0.05));
+  const StoredTrajectories again = simulateMissing(store, simulator, makeFailingPoints(40), makeGivingUp(2));
+  EXPECT_EQ(simulator.getCount(), 7);
+  EXPECT_EQ(again.counts.given_up, 28);
+  MatrixXd with_success = makeFailingPoints(40);
+  with_success(0, 39) = 1.0;
+  simulateMissing(store, simulator, with_success.rightCols(1));
+  simulateMissing(store, simulator, with_success, makeGivingUp(2));
+  EXPECT_EQ(simulator.getCount(), 7 + 1 + 27);
+  EXPECT_FALSE(isGivenUp(store, with_success, 0.05));
+}
+
+TEST(GivingUp, TakesMoreWhereMoreMayFailAndNeverWhereAllMay) {
+  for (const auto& [allowed, simulated] : {std::pair(0.5, 12), {0.9, 79}, {1.0, 200}}) {
+    const TemporaryFolder root;
+    TrajectoryStore store = openStore(root.getPath());
+    const CountingSimulator simulator;
+    simulateMissing(store, simulator, makeFailingPoints(200), makeGivingUp(2, allowed));
+    EXPECT_EQ(simulator.getCount(), simulated) << allowed;
+  }
+}
+
+TEST(GivingUp, FewerThanADozenAreAllSimulated) {
+  const TemporaryFolder root;
+  TrajectoryStore store = openStore(root.getPath());
+  const StoredTrajectories result =
+      simulateMissing(store, CountingSimulator(), makeFailingPoints(11), makeGivingUp(3));
+  EXPECT_EQ(result.counts.simulated, 11);
+  EXPECT_EQ(result.counts.given_up, 0);
+  EXPECT_FALSE(result.stopped);
+}
+
+TEST(GivingUp, WhereSamplesSucceedTheResultIsTheSame) {
+  const MatrixXd points = makeCountedPoints(40);
+  const Trajectories reference = generateSamples(CountingSimulator(), points);
+  for (const int threads : {1, 3}) {
+    const TemporaryFolder root;
+    TrajectoryStore store = openStore(root.getPath());
+    EXPECT_TRUE(areSame(
+        simulateMissing(store, CountingSimulator(), points, makeGivingUp(threads)).trajectories, reference));
+  }
+}
+
+TEST(GivingUp, AStopAmongTheDozenIsAStop) {
+  const TemporaryFolder root;
+  TrajectoryStore store = openStore(root.getPath());
+  std::atomic<bool> stop{false};
+  const CountingSimulator simulator([&](double p0) { stop = stop || p0 == 21.0; });
+  MissingOptions options = makeGivingUp(1);
+  options.stop = &stop;
+  const StoredTrajectories result = simulateMissing(store, simulator, makeFailingPoints(40), options);
+  EXPECT_TRUE(result.stopped);
+  EXPECT_EQ(result.counts.given_up, 0);
+  EXPECT_EQ(simulator.getCount(), 3);
 }
 
 }  // namespace
