@@ -7,10 +7,10 @@
 
 #include "framework/inference/inference_text.hpp"
 #include "framework/inference/replay_files.hpp"
+#include "framework/report/figure.hpp"
 #include "framework/report/html.hpp"
 #include "framework/report/response_panels.hpp"
 #include "framework/report/sections/verdict.hpp"
-#include "framework/report/vega.hpp"
 #include "framework/results/csv.hpp"
 #include "framework/spec/parameter_box.hpp"
 #include "framework/spec/yaml/number_text.hpp"
@@ -184,8 +184,7 @@ std::string makeHelp(const Replay& replay) {
 Figure makeFigure(const Replay& replay, Index output) {
   const auto o = static_cast<std::size_t>(output);
   const std::string table = "replay-" + std::to_string(output);
-  const ResponseData data{table, Json::array(), replay.layout.output_names[o], replay.layout.output_units[o],
-                          ""};
+  const ResponseData data{table, replay.layout.output_names[o], replay.layout.output_units[o]};
   constexpr ResponseLook kLook{true, true};
   return {table, replay.layout.output_names[o] + ": measured, nominal, updated",   makeHelp(replay),
           table, {makeResponsePanel(data, kLook), makeResidualPanel(data, kLook)}, {},

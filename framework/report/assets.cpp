@@ -6,6 +6,7 @@ extern const char twinmap_vega_lite_begin[], twinmap_vega_lite_end[];
 extern const char twinmap_vega_embed_begin[], twinmap_vega_embed_end[];
 extern const char twinmap_script_begin[], twinmap_script_end[];
 extern const char twinmap_style_begin[], twinmap_style_end[];
+extern const char twinmap_skeletons_begin[], twinmap_skeletons_end[];
 }
 
 namespace twinmap {
@@ -35,6 +36,10 @@ std::string_view getReportScript() {
 
 std::string_view getReportStyle() {
   return makeView(twinmap_style_begin, twinmap_style_end);
+}
+
+std::string_view getFigureSkeletons() {
+  return makeView(twinmap_skeletons_begin, twinmap_skeletons_end);
 }
 
 }  // namespace twinmap

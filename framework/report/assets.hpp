@@ -11,4 +11,7 @@ std::string_view getVegaEmbedScript();
 std::string_view getReportScript();
 std::string_view getReportStyle();
 
+/// A JSON object: each skeleton of web/figures by its name.
+std::string_view getFigureSkeletons();
+
 }  // namespace twinmap

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "framework/results/escape.hpp"
 #include "framework/spec/yaml/number_text.hpp"

@@ -1,22 +1,15 @@
 #pragma once
 
 #include <map>
-#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "framework/report/data_table.hpp"
+#include "framework/report/panel.hpp"
 
 namespace twinmap {
-
-using Json = nlohmann::ordered_json;
-
-/// One drawing of a figure: a Vega-Lite specification whose data names tables of the page.
-struct Panel {
-  std::string alt;  ///< what a reader who cannot see it should know
-  Json spec;
-};
 
 /// A choice that the reader makes: "{NAME}", "{NAME.label}" and "{NAME.domain}" in the panels' specifications
 /// stand for the chosen option.
@@ -24,7 +17,7 @@ struct Choice {
   struct Option {
     std::string value;
     std::string label;
-    Json domain;
+    std::vector<double> domain;  ///< lower and upper bound; empty if it has none
   };
   std::string name;
   std::string label;
@@ -51,13 +44,30 @@ struct Section {
   std::vector<Figure> figures;
 };
 
+/// The smallest and the largest value of an output.
+struct OutputRange {
+  std::string name;
+  double lower = 0.0, upper = 1.0;
+};
+
+/// Clean responses of samples, for the page's script to draw those that are highlighted.
+struct PackedResponses {
+  std::vector<double> times;
+  std::vector<OutputRange> outputs;
+  std::vector<double> samples;
+  int most = 0;  ///< samples that are drawn at a time
+  std::string
+      data;  ///< base64 of 16-bit fractions of each output's range: sample by sample, output by output
+};
+
 /// Everything that is on the page.
 struct Page {
   std::string title;
   std::vector<Section> sections;
   std::map<std::string, DataTable> tables;                 ///< data of figures
   std::vector<std::pair<std::string, std::string>> texts;  ///< name and text that a button copies
-  Json extras = Json::object();                            ///< further data for the page's script
+  std::optional<std::vector<double>> samples;              ///< that can be highlighted, if any
+  std::optional<PackedResponses> responses;
 };
 
 /// Adds a figure and its place in the section's HTML.

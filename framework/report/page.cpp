@@ -1,9 +1,16 @@
+#include <fmt/core.h>
+
+#include <nlohmann/json.hpp>
+
 #include "framework/report/assets.hpp"
 #include "framework/report/figure.hpp"
 #include "framework/report/html.hpp"
+#include "framework/report/skeleton.hpp"
 
 namespace twinmap {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 /// JSON for a script element: "<" is written so that no text can end the element or open a comment.
 std::string dumpForScript(const Json& json) {
@@ -24,7 +31,7 @@ std::string makeChoiceHtml(const Figure& figure, const Choice& choice) {
   std::string options;
   for (std::size_t i = 0; i < choice.options.size(); ++i) {
     options += makeElement("option", escapeHtml(choice.options[i].label),
-                           "value=\"" + std::to_string(i) + "\"" + (i == choice.chosen ? " selected" : ""));
+                           fmt::format("value=\"{}\"{}", i, i == choice.chosen ? " selected" : ""));
   }
   const std::string select = makeElement(
       "select", options,
@@ -44,10 +51,10 @@ std::string makeFigureHtml(const Figure& figure) {
   const std::string name = escapeHtml(figure.name);
   std::string panels;
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
-    panels += "<div class=\"panel\" id=\"" + name + "-" + std::to_string(i) +
-              "\" role=\"img\" aria-label=\"" + escapeHtml(figure.panels[i].alt) + "\"></div>\n";
+    panels += fmt::format("<div class=\"panel\" id=\"{}-{}\" role=\"img\" aria-label=\"{}\"></div>\n", name,
+                          i, escapeHtml(describePanel(figure.panels[i])));
   }
-  const std::string columns = figure.columns > 0 ? " columns-" + std::to_string(figure.columns) : "";
+  const std::string columns = figure.columns > 0 ? fmt::format(" columns-{}", figure.columns) : "";
   const std::string data = makeElement("button", "CSV",
                                        "type=\"button\" class=\"quiet\" data-table=\"" +
                                            escapeHtml(figure.table) + "\" title=\"Save this figure's data\"");
@@ -59,7 +66,8 @@ std::string makeFigureHtml(const Figure& figure) {
 Json toJson(const Choice& choice) {
   Json options = Json::array();
   for (const Choice::Option& option : choice.options) {
-    options.push_back({{"value", option.value}, {"label", option.label}, {"domain", option.domain}});
+    const Json domain = option.domain.empty() ? Json(nullptr) : Json(option.domain);
+    options.push_back({{"value", option.value}, {"label", option.label}, {"domain", domain}});
   }
   return {{"name", choice.name}, {"chosen", choice.chosen}, {"options", options}};
 }
@@ -67,13 +75,24 @@ Json toJson(const Choice& choice) {
 Json toJson(const Figure& figure) {
   Json panels = Json::array(), choices = Json::array();
   for (const Panel& panel : figure.panels) {
-    panels.push_back(panel.spec);
-    panels.back()["description"] = panel.alt;
+    panels.push_back(makeSpec(panel));
   }
   for (const Choice& choice : figure.choices) {
     choices.push_back(toJson(choice));
   }
   return {{"name", figure.name}, {"table", figure.table}, {"panels", panels}, {"choices", choices}};
+}
+
+Json toJson(const PackedResponses& responses) {
+  Json outputs = Json::array();
+  for (const OutputRange& output : responses.outputs) {
+    outputs.push_back({{"name", output.name}, {"lower", output.lower}, {"upper", output.upper}});
+  }
+  return {{"times", responses.times},
+          {"outputs", outputs},
+          {"samples", responses.samples},
+          {"most", responses.most},
+          {"data", responses.data}};
 }
 
 Json makePageData(const Page& page) {
@@ -89,7 +108,12 @@ Json makePageData(const Page& page) {
       data["figures"].push_back(toJson(figure));
     }
   }
-  data.update(page.extras);
+  if (page.samples) {
+    data["samples"] = *page.samples;
+  }
+  if (page.responses) {
+    data["responses"] = toJson(*page.responses);
+  }
   return data;
 }
 

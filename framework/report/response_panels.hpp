@@ -1,8 +1,9 @@
 #pragma once
 
+#include <set>
 #include <string>
 
-#include "framework/report/figure.hpp"
+#include "framework/report/panel.hpp"
 
 namespace twinmap {
 
@@ -10,9 +11,9 @@ namespace twinmap {
 /// and noise_stddev.
 struct ResponseData {
   std::string table;
-  Json transforms = Json::array();  ///< Vega-Lite transforms that leave the rows of the response
   std::string output, unit;
-  std::string which;  ///< response it is, for those who cannot see: "best case"; "" if there is one
+  std::string which =
+      {};  ///< of the table's cases: "best"; "" if the table holds one response, of one output
 };
 
 struct ResponseLook {

@@ -4,6 +4,8 @@
 #include <stdexcept>
 
 #include "framework/spec/experiment_file.hpp"
+#include "framework/store/map_summary.hpp"
+#include "framework/store/samples_file.hpp"
 
 namespace twinmap {
 namespace {
@@ -13,18 +15,6 @@ namespace fs = std::filesystem;
 std::string makeLabel(const fs::path& folder) {
   const fs::path whole = fs::absolute(folder).lexically_normal();
   return whole.has_filename() ? whole.filename().string() : whole.parent_path().filename().string();
-}
-
-nlohmann::ordered_json readJson(const fs::path& path) {
-  const std::string text = readTextFile(path);
-  if (text.empty()) {
-    return nullptr;
-  }
-  try {
-    return nlohmann::ordered_json::parse(text);
-  } catch (const nlohmann::json::parse_error& error) {
-    throw std::runtime_error(path.string() + ": " + error.what());
-  }
 }
 
 void readTables(const fs::path& path, RunFolder& run) {
@@ -53,12 +43,12 @@ RunFolder readRunFolder(const fs::path& path) {
   run.label = makeLabel(path);
   run.experiment = loadExperiment((path / "resolved.yaml").string());
   readTables(path, run);
-  run.provenance = readJson(path / "provenance.json");
+  run.provenance = readProvenanceRecord(path / "provenance.json");
   if (fs::exists(path / "samples.h5")) {
-    run.test_responses = readTestResponses(path / "samples.h5");
+    run.test_responses = std::make_shared<StoredResponses>(readTestResponses(path / "samples.h5"));
   }
   if (fs::exists(path / "maps.h5")) {
-    run.map = readMapSummary(path / "maps.h5");
+    run.map = std::make_shared<MapSummary>(readMapSummary(path / "maps.h5"));
   }
   return run;
 }

@@ -1,16 +1,17 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
-#include <optional>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "framework/results/provenance_record.hpp"
 #include "framework/spec/experiment_spec.hpp"
 #include "framework/store/csv_file.hpp"
-#include "framework/store/map_summary.hpp"
-#include "framework/store/samples_file.hpp"
 
 namespace twinmap {
+
+struct MapSummary;
+struct StoredResponses;
 
 /// What a run left in its folder: all that the report knows. Files that are not there leave an empty table.
 struct RunFolder {
@@ -29,9 +30,9 @@ struct RunFolder {
   CsvTable posterior;
   CsvTable baselines;
   CsvTable responses;
-  nlohmann::ordered_json provenance;  ///< null if absent
-  std::optional<StoredResponses> test_responses;
-  std::optional<MapSummary> map;
+  ProvenanceRecord provenance;
+  std::shared_ptr<const StoredResponses> test_responses;  ///< nullptr if absent
+  std::shared_ptr<const MapSummary> map;                  ///< nullptr if absent
 };
 
 /// Reads a run's folder (docs/file-formats.md). Throws std::runtime_error naming a damaged file, or the

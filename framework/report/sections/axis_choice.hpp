@@ -9,7 +9,7 @@ namespace twinmap {
 Choice makeParameterChoice(const std::string& name, const std::string& label,
                            const std::vector<ParameterSpec>& parameters, std::size_t chosen);
 
-/// The axis of the true value of the parameter that is chosen.
-Json makeChosenAxis(const std::string& choice);
+/// The domains of the axes "{x}" and "{y}" that the reader chooses, for the slots x_domain and y_domain.
+std::map<std::string, SlotValue> makeChosenDomains();
 
 }  // namespace twinmap

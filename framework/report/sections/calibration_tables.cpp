@@ -22,6 +22,13 @@ double calcNormalQuantile(double probability) {
   return boost::math::quantile(boost::math::normal(), probability);
 }
 
+/// Quantiles of the number of successes of n trials, which bound the central kConfidence.
+CountBand calcBinomialBand(int n, double probability) {
+  const boost::math::binomial_distribution<> binomial(n, probability);
+  return {boost::math::quantile(binomial, 0.5 * (1.0 - kConfidence)),
+          boost::math::quantile(binomial, 0.5 * (1.0 + kConfidence))};
+}
+
 std::vector<std::size_t> sortIndices(const std::vector<double>& values) {
   std::vector<std::size_t> order(values.size());
   for (std::size_t i = 0; i < order.size(); ++i) {
@@ -115,17 +122,21 @@ DataTable makeReliabilityBand(int n) {
   std::vector<double> level, lower, upper;
   for (int i = 0; i <= kSteps; ++i) {
     const double p = static_cast<double>(i) / kSteps;
-    const boost::math::binomial_distribution<> binomial(n, p);
     level.push_back(p);
     const bool certain = i == 0 || i == kSteps;
-    lower.push_back(certain ? p : boost::math::quantile(binomial, 0.5 * (1.0 - kConfidence)) / n);
-    upper.push_back(certain ? p : boost::math::quantile(binomial, 0.5 * (1.0 + kConfidence)) / n);
+    const CountBand band = certain ? CountBand{p * n, p * n} : calcBinomialBand(n, p);
+    lower.push_back(band.lower / n);
+    upper.push_back(band.upper / n);
   }
   DataTable table;
   table.add("level", level);
   table.add("lower", lower);
   table.add("upper", upper);
   return table;
+}
+
+CountBand calcCountBand(int n, int bins) {
+  return calcBinomialBand(n, 1.0 / bins);
 }
 
 DataTable makeQuantileTable(const RunFolder& run) {

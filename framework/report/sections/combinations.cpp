@@ -1,7 +1,8 @@
+#include <fmt/core.h>
+
 #include <cmath>
 
 #include "framework/report/html.hpp"
-#include "framework/report/sections/heat_spec.hpp"
 #include "framework/report/sections/sections.hpp"
 #include "framework/spec/check/check_experiment.hpp"
 #include "framework/spec/parameter_box.hpp"
@@ -61,7 +62,7 @@ DataTable makeTable(const RunFolder& run) {
   std::vector<double> weights, remaining;
   for (std::size_t row = 0; row < run.identifiability.rows.size(); ++row) {
     for (const std::string& name : collectNames(run.experiment.model.parameters)) {
-      combinations.push_back(std::to_string(row + 1) + ": " + toPercent(getRemaining(run, row)) + " left");
+      combinations.push_back(fmt::format("{}: {} left", row + 1, toPercent(getRemaining(run, row))));
       parameters.push_back(name);
       weights.push_back(run.identifiability.getNumber(row, name));
       remaining.push_back(100.0 * getRemaining(run, row));
@@ -82,22 +83,20 @@ void addCombinations(const RunFolder& run, Section& section, Page& page) {
     return;
   }
   page.tables[kTable] = makeTable(run);
-  const Json x = makeNominal("parameter", "weight [width of its range]",
-                             {{"sort", nullptr}, {"axis", {{"labelAngle", 0}}}});
-  const Json y = makeNominal("combination", "", {{"sort", nullptr}});
-  const Json spec = makeHeatSpec(kTable, static_cast<int>(run.identifiability.rows.size()), x, y,
-                                 makeSignedColor("weight"), "weight", "abs(datum.weight) > 0.6", ".2~f");
+  const std::string undetermined = describeUndetermined(run);
   addFigure({kTable,
              "Which combinations the data determine",
              "Each row is a combination of parameters that the data determine on its own (an eigenvector of "
              "the mean Fisher information), the weakest first, with the part of the sd allowed by the bounds "
              "that is left at best: near 100 % the data say nothing about it.",
              kTable,
-             {{"Weight of each parameter in each combination. " + describeUndetermined(run), spec}},
+             {{"combinations",
+               {{"undetermined", undetermined}},
+               {{"height", calcHeatHeight(run.identifiability.rows.size())}}}},
              {},
              1},
             section);
-  section.html += makeParagraph(describeUndetermined(run));
+  section.html += makeParagraph(undetermined);
 }
 
 }  // namespace twinmap

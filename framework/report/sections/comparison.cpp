@@ -1,9 +1,11 @@
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <cmath>
 
 #include "framework/report/html.hpp"
 #include "framework/report/sections/metric_columns.hpp"
 #include "framework/report/sections/sections.hpp"
-#include "framework/report/vega.hpp"
 #include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
@@ -17,7 +19,7 @@ std::vector<std::string> makeLabels(const std::vector<RunFolder>& runs) {
   for (const RunFolder& run : runs) {
     std::string label = run.label;
     for (int k = 2; std::find(labels.begin(), labels.end(), label) != labels.end(); ++k) {
-      label = run.label + " (" + std::to_string(k) + ")";
+      label = fmt::format("{} ({})", run.label, k);
     }
     labels.push_back(label);
   }
@@ -72,38 +74,16 @@ bool hasLimit(const std::vector<RunFolder>& runs, const std::string& parameter) 
 }
 
 /// One row per run: the metric with a bar of 2 standard errors, and a tick for what it is to be held against.
-Panel makePanel(const std::string& parameter, const std::string& metric, const std::string& title,
-                const Json& tick, const std::vector<std::string>& labels) {
+Panel makePanel(const std::string& figure, const std::string& parameter,
+                const std::vector<std::string>& labels) {
   constexpr int kRowHeight = 28, kFrame = 20;
-  Json spec = makePanelSpec(kTable, kFrame + kRowHeight * static_cast<int>(labels.size()));
-  spec.erase("params");
-  spec["title"] = parameter;
-  spec["transform"] = {
-      {{"filter", {{"field", "parameter"}, {"equal", parameter}}}},
-      {{"calculate", "datum['" + metric + "'] - 2 * datum['" + metric + "_se']"}, {"as", "low"}},
-      {{"calculate", "datum['" + metric + "'] + 2 * datum['" + metric + "_se']"}, {"as", "high"}}};
-  spec["encoding"] = {{"y", makeNominal("run", "", {{"sort", nullptr}})}};
-  const Json color = makeNominal("run", "", makeColorScale(labels));
-  Json points{
-      {"mark", {{"type", "point"}, {"filled", true}, {"size", 70}}},
-      {"encoding",
-       {{"x", makeQuantitative(metric, title, makeFreeScale())},
-        {"color", color},
-        {"tooltip", {makeNominal("run", "run"), makeQuantitative(metric, title, {{"format", ".4~g"}})}}}}};
-  points["encoding"]["color"]["legend"] = nullptr;
-  Json bars{{"transform", {{{"filter", "isValid(datum['" + metric + "_se'])"}}}},
-            {"mark", {{"type", "rule"}, {"color", "var(--ink)"}}},
-            {"encoding", {{"x", makeQuantitative("low", title)}, {"x2", {{"field", "high"}}}}}};
-  spec["layer"] = tick.is_null() ? Json{bars, points} : Json{tick, bars, points};
-  return {title + " of " + parameter + ", one row per run", spec};
+  return {figure,
+          {{"parameter", parameter}},
+          {{"height", calcHeight(labels.size(), kRowHeight, kFrame)}, {"runs", labels}}};
 }
 
 Figure makeErrorFigure(const std::vector<RunFolder>& runs, const std::vector<std::string>& parameters,
                        const std::vector<std::string>& labels) {
-  const std::string title = "sd of the relative error [%]";
-  const Json tick{{"transform", {{{"filter", "isValid(datum.limit_pct)"}}}},
-                  {"mark", {{"type", "tick"}, {"color", "var(--ink)"}, {"thickness", 2}}},
-                  {"encoding", {{"x", makeQuantitative("limit_pct", title)}}}};
   Figure figure{
       "errors-side-by-side",
       "Errors side by side",
@@ -114,18 +94,16 @@ Figure makeErrorFigure(const std::vector<RunFolder>& runs, const std::vector<std
       {},
       2};
   for (const std::string& parameter : parameters) {
-    figure.panels.push_back(
-        makePanel(parameter, "sd_pct", title, hasLimit(runs, parameter) ? tick : Json(), labels));
+    figure.panels.push_back(makePanel(figure.name, parameter, labels));
+    if (!hasLimit(runs, parameter)) {
+      figure.panels.back().without = {"limit"};
+    }
   }
   return figure;
 }
 
 Figure makeCoverageFigure(const std::vector<std::string>& parameters,
                           const std::vector<std::string>& labels) {
-  const std::string title = "coverage of 95 % intervals";
-  const Json tick{{"mark", {{"type", "rule"}, {"color", "var(--quiet)"}, {"strokeDash", {4, 3}}}},
-                  {"data", {{"values", {{{"v", 0.95}}}}}},
-                  {"encoding", {{"x", makeQuantitative("v", title)}, {"y", nullptr}}}};
   Figure figure{"coverage-side-by-side",
                 "Coverage side by side",
                 "On the dashed line the intervals are honest; left of it they are too narrow.",
@@ -134,7 +112,7 @@ Figure makeCoverageFigure(const std::vector<std::string>& parameters,
                 {},
                 2};
   for (const std::string& parameter : parameters) {
-    figure.panels.push_back(makePanel(parameter, "coverage95", title, tick, labels));
+    figure.panels.push_back(makePanel(figure.name, parameter, labels));
   }
   return figure;
 }

@@ -1,3 +1,5 @@
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <map>
 
@@ -5,7 +7,6 @@
 #include "framework/report/sections/axis_choice.hpp"
 #include "framework/report/sections/samples_table.hpp"
 #include "framework/report/sections/sections.hpp"
-#include "framework/report/vega.hpp"
 
 namespace twinmap {
 namespace {
@@ -81,27 +82,10 @@ void addFailures(const RunFolder& run, Section& section, Page& page) {
     return;
   }
   page.tables["failures"] = makeFailuresTable(run);
-  Json spec = makePanelSpec("failures", 220);
-  spec.erase("params");
-  spec["layer"] = Json::array();
-  const Json encoding{{"x", makeChosenAxis("x")}, {"y", makeChosenAxis("y")}};
-  if (!run.predictions.empty()) {
-    spec["layer"].push_back(
-        {{"data", {{"name", "samples"}}},
-         {"mark", {{"type", "point"}, {"filled", true}, {"size", 8}, {"color", "var(--line)"}}},
-         {"encoding", encoding}});
+  Panel panel{"failures", {}, makeChosenDomains()};
+  if (run.predictions.empty()) {
+    panel.without = {"samples"};
   }
-  Json crosses{{"mark",
-                {{"type", "point"},
-                 {"shape", "cross"},
-                 {"size", 70},
-                 {"strokeWidth", 1.5},
-                 {"filled", true},
-                 {"color", "var(--color-1)"}}},
-               {"encoding", encoding}};
-  crosses["encoding"]["tooltip"] = {makeNominal("set", "set"), makeNominal("failed_sample", "sample"),
-                                    makeNominal("reason", "reason")};
-  spec["layer"].push_back(crosses);
   const std::vector<ParameterSpec>& parameters = run.experiment.model.parameters;
   const std::size_t last = parameters.size() - 1;
   Figure figure{
@@ -110,7 +94,7 @@ void addFailures(const RunFolder& run, Section& section, Page& page) {
       "Crosses are the samples that could not be simulated, training and test; dots are test samples that "
       "could. Crosses along an edge ask for tighter bounds there.",
       "failures",
-      {{"Samples that could not be simulated over two parameters", spec}},
+      {panel},
       {},
       1};
   figure.choices = {makeParameterChoice("x", "across", parameters, last == 0 ? 0 : last - 1),
@@ -118,8 +102,8 @@ void addFailures(const RunFolder& run, Section& section, Page& page) {
   addFigure(std::move(figure), section);
   section.html += makeReasonTable(run.failures);
   if (run.failures.rows.size() > kMostFailures) {
-    section.html += makeParagraph("The first " + std::to_string(kMostFailures) + " of " +
-                                  std::to_string(run.failures.rows.size()) + " failures are drawn.");
+    section.html += makeParagraph(
+        fmt::format("The first {} of {} failures are drawn.", kMostFailures, run.failures.rows.size()));
   }
 }
 

@@ -1,10 +1,12 @@
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "framework/report/html.hpp"
 #include "framework/report/sections/sections.hpp"
-#include "framework/report/vega.hpp"
 #include "framework/spec/check/check_experiment.hpp"
+#include "framework/store/map_summary.hpp"
 
 namespace twinmap {
 namespace {
@@ -82,34 +84,17 @@ class SeriesTable {
   std::vector<double> time_, value_;
 };
 
-Panel makeSeriesPanel(const std::string& table, const std::string& output, const std::string& series,
-                      const std::string& value, const std::string& title,
-                      const std::vector<std::string>& names, const Json& scale = Json::object()) {
-  Json spec = makePanelSpec(table, 140);
-  spec.erase("params");
-  spec["title"] = "features of " + output;
-  spec["transform"] = {{{"filter", {{"field", "output"}, {"equal", output}}}},
-                       {{"filter", "isValid(datum.time)"}}};
-  spec["mark"] = {{"type", "line"}, {"strokeWidth", 1.5}};
-  spec["encoding"] = {{"x", makeQuantitative("time", "time [s]")},
-                      {"y", makeQuantitative(value, title, scale)},
-                      {"color", makeNominal(series, "", makeColorScale(names))},
-                      {"strokeDash", makeNominal(series, "", makeDashScale(names))},
-                      {"tooltip",
-                       {makeNominal("feature", "feature"), makeNominal(series, series),
-                        makeQuantitative(value, title, {{"format", ".3~g"}})}}};
-  return {title + " of the features of " + output + " over time, a line per " + series, spec};
-}
-
+/// A panel for each output, a line for each of `names`, which the skeleton of the figure's name calls
+/// `series`.
 Figure makeSeriesFigure(const std::string& name, const std::string& title, const std::string& help,
-                        std::vector<Panel> panels) {
-  const int columns = static_cast<int>(std::min<std::size_t>(panels.size(), 2));
-  return {name, title, help, name, std::move(panels), {}, columns};
+                        const std::vector<std::string>& outputs, const std::string& series,
+                        const std::vector<std::string>& names) {
+  Figure figure{name, title, help, name, {}, {}, static_cast<int>(std::min<std::size_t>(outputs.size(), 2))};
+  for (const std::string& output : outputs) {
+    figure.panels.push_back({name, {{"output", output}}, {{series, names}}});
+  }
+  return figure;
 }
-
-/// Linear up to 1, where a feature begins to say something, then logarithmic.
-const Json kSymmetricLog{{"scale", {{"type", "symlog"}, {"constant", 1}}},
-                         {"axis", {{"values", {0, 1, 10, 100, 1000, 10000, 100000}}}}};
 
 void addSensitivities(const RunFolder& run, const std::vector<FeaturePlace>& places, Section& section,
                       Page& page) {
@@ -128,18 +113,13 @@ void addSensitivities(const RunFolder& run, const std::vector<FeaturePlace>& pla
     }
   }
   page.tables["sensitivities"] = table.make("parameter", "sensitivity");
-  std::vector<Panel> panels;
-  for (const std::string& output : collectOutputs(places)) {
-    panels.push_back(makeSeriesPanel("sensitivities", output, "parameter", "sensitivity", "change / noise sd",
-                                     names, kSymmetricLog));
-  }
   addFigure(makeSeriesFigure(
                 "sensitivities", "Sensitivity of the features",
                 "How far a feature moves, in units of its noise sd, when a parameter crosses its whole "
                 "range (root mean square over the test set): the axis is logarithmic above 1. Where a line "
                 "is below 1, that feature alone "
                 "says nothing about the parameter.",
-                std::move(panels)),
+                collectOutputs(places), "parameters", names),
             section);
 }
 
@@ -163,25 +143,21 @@ void addLoadings(const RunFolder& run, const std::vector<FeaturePlace>& places, 
   std::vector<std::string> names;
   SeriesTable table;
   for (Eigen::Index k = 0; k < shown; ++k) {
-    names.push_back("component " + std::to_string(k + 1));
+    names.push_back(fmt::format("component {}", k + 1));
     for (Eigen::Index f = 0; f < projection->cols(); ++f) {
       table.add(places[static_cast<std::size_t>(f)], names.back(), (*projection)(k, f));
     }
   }
   page.tables["loadings"] = table.make("component", "loading");
-  std::vector<Panel> panels;
-  for (const std::string& output : collectOutputs(places)) {
-    panels.push_back(makeSeriesPanel("loadings", output, "component", "loading", "loading", names));
-  }
-  if (!panels.empty()) {
-    addFigure(
-        makeSeriesFigure("loadings", "Loadings of the components",
-                         "What the map sees of a response: each component is the sum of the scaled features "
-                         "weighted by these loadings (" +
-                             std::to_string(shown) + " of " + std::to_string(projection->rows()) +
-                             " components are drawn).",
-                         std::move(panels)),
-        section);
+  const std::vector<std::string> outputs = collectOutputs(places);
+  if (!outputs.empty()) {
+    addFigure(makeSeriesFigure(
+                  "loadings", "Loadings of the components",
+                  fmt::format("What the map sees of a response: each component is the sum of the scaled "
+                              "features weighted by these loadings ({} of {} components are drawn).",
+                              shown, projection->rows()),
+                  outputs, "components", names),
+              section);
   }
 }
 

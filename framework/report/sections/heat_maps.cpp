@@ -1,9 +1,8 @@
 #include <algorithm>
 
-#include "framework/report/sections/heat_spec.hpp"
 #include "framework/report/sections/sections.hpp"
-#include "framework/report/vega.hpp"
 #include "framework/spec/check/check_experiment.hpp"
+#include "framework/store/map_summary.hpp"
 
 namespace twinmap {
 
@@ -33,20 +32,13 @@ void addRelevance(const RunFolder& run, Section& section, Page& page) {
   table.add("length_scale", length_scale);
   table.add("relevance", relevance);
   page.tables["relevance"] = table;
-  const Json x =
-      makeNominal("input", "length scale of input", {{"sort", nullptr}, {"axis", {{"labelAngle", 0}}}});
-  const Json y = makeNominal("parameter", "", {{"sort", nullptr}});
-  const Json color = makeQuantitative("relevance", "shortest / length scale",
-                                      {{"scale", {{"scheme", "viridis"}, {"domain", {0, 1}}}}});
-  const Json spec = makeHeatSpec("relevance", static_cast<int>(names.size()), x, y, color, "relevance",
-                                 "datum.relevance < 0.55", ".2~g");
   addFigure(
       {"relevance",
        "Relevance of the inputs",
        "The shortest length scale of a parameter's process over that of each input: 1 for the input on which "
        "the parameter depends most sharply, near 0 for one that hardly matters.",
        "relevance",
-       {{"Relevance of each input for each parameter", spec}},
+       {{"relevance", {}, {{"height", calcHeatHeight(names.size())}}}},
        {},
        1},
       section);
@@ -71,18 +63,13 @@ void addCorrelations(const RunFolder& run, Section& section, Page& page) {
   table.add("other", b);
   table.add("correlation", correlation);
   page.tables["correlations"] = table;
-  const Json x = makeNominal("other", "", {{"sort", nullptr}, {"axis", {{"labelAngle", 0}}}});
-  const Json y = makeNominal("parameter", "", {{"sort", nullptr}});
-  const Json spec =
-      makeHeatSpec("correlations", static_cast<int>(names.size()), x, y, makeSignedColor("correlation"),
-                   "correlation", "abs(datum.correlation) > 0.6", ".2~f");
   addFigure({"correlations",
              "Correlation of the parameters",
              "How the data tie errors of two parameters together (from the mean Fisher information): near "
              "\u00b11 the "
              "response determines only a combination of them.",
              "correlations",
-             {{"Correlation between each pair of parameters", spec}},
+             {{"correlations", {}, {{"height", calcHeatHeight(names.size())}}}},
              {},
              1},
             section);

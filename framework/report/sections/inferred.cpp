@@ -4,55 +4,17 @@
 #include "framework/report/sections/samples_table.hpp"
 #include "framework/report/sections/sections.hpp"
 #include "framework/report/sections/selected_responses.hpp"
-#include "framework/report/vega.hpp"
 
 namespace twinmap {
 namespace {
 
-constexpr int kHeight = 180;
-
-/// What hovering over a sample shows: its index, its true parameters, and what was inferred of this one.
-Json makeTooltip(const std::vector<ParameterSpec>& parameters, const std::string& name) {
-  Json tooltip = Json::array({makeNominal("sample", "sample")});
+/// The true parameters, which hovering over a sample shows.
+std::vector<Texts> listParameters(const std::vector<ParameterSpec>& parameters) {
+  std::vector<Texts> listed;
   for (const ParameterSpec& parameter : parameters) {
-    tooltip.push_back(makeQuantitative(getTrueColumn(parameter.name.text), "true " + makeLabel(parameter),
-                                       {{"format", ".5~g"}}));
+    listed.push_back({{"each", parameter.name.text}, {"each_label", makeLabel(parameter)}});
   }
-  tooltip.push_back(makeQuantitative(getInferredColumn(name), "inferred " + name, {{"format", ".5~g"}}));
-  tooltip.push_back(makeQuantitative(getStddevColumn(name), "its sd", {{"format", ".3~g"}}));
-  tooltip.push_back(makeQuantitative(getScoreColumn(name), "error / sd", {{"format", ".3~g"}}));
-  return tooltip;
-}
-
-Json makePoints(const std::string& color, const Json& encoding) {
-  Json points{{"params", makeBrush()}, {"mark", {{"type", "point"}, {"filled", true}, {"color", color}}}};
-  points["encoding"] = encoding;
-  points["encoding"]["opacity"] = {{"condition", {{"test", kIsSelected}, {"value", 0.85}}}, {"value", 0.12}};
-  points["encoding"]["size"] = {
-      {"condition", {{"test", "selected && selected[datum.sample]"}, {"value", 60}}}, {"value", 14}};
-  return points;
-}
-
-/// +-2 sd as a bar through each point.
-Json makeBars(const std::string& color, const std::string& center, const std::string& stddev, const Json& x,
-              const std::string& title) {
-  return {{"transform",
-           {{{"calculate", "datum['" + center + "'] - 2 * datum['" + stddev + "']"}, {"as", "low"}},
-            {{"calculate", "datum['" + center + "'] + 2 * datum['" + stddev + "']"}, {"as", "high"}}}},
-          {"mark", {{"type", "rule"}, {"color", color}}},
-          {"encoding",
-           {{"x", x},
-            {"y", makeQuantitative("low", title)},
-            {"y2", {{"field", "high"}}},
-            {"opacity", {{"condition", {{"test", kIsSelected}, {"value", 0.35}}}, {"value", 0.05}}}}}};
-}
-
-Json makeReferenceLine(const Json& values) {
-  return {{"data", {{"values", values}}},
-          {"mark", {{"type", "line"}, {"color", "var(--quiet)"}, {"strokeDash", {4, 3}}, {"strokeWidth", 1}}},
-          {"encoding",
-           {{"x", {{"field", "x"}, {"type", "quantitative"}}},
-            {"y", {{"field", "y"}, {"type", "quantitative"}}}}}};
+  return listed;
 }
 
 /// True against inferred, or true against the error.
@@ -62,16 +24,18 @@ Panel makePanel(const RunFolder& run, std::size_t p, bool of_error) {
   const std::string& name = parameter.name.text;
   const Bounds& bounds = parameter.bounds;
   const std::string title = (of_error ? "error of " : "inferred ") + makeLabel(parameter);
-  const std::string column = of_error ? getErrorColumn(name) : getInferredColumn(name);
-  const Json x = makeQuantitative(getTrueColumn(name), "true " + makeLabel(parameter),
-                                  makeDomain(bounds.lower, bounds.upper));
-  const Json y = makeQuantitative(column, title, makeFreeScale());
-  const double low = of_error ? 0.0 : bounds.lower, high = of_error ? 0.0 : bounds.upper;
-  Json spec = makePanelSpec("samples", kHeight);
-  spec["layer"] = {makeReferenceLine({{{"x", bounds.lower}, {"y", low}}, {{"x", bounds.upper}, {"y", high}}}),
-                   makeBars(getColor(p), column, getStddevColumn(name), x, title),
-                   makePoints(getColor(p), {{"x", x}, {"y", y}, {"tooltip", makeTooltip(parameters, name)}})};
-  return {title + " over the true value, one point per test sample, bars of 2 standard deviations", spec};
+  const Texts texts{{"name", name},
+                    {"label", makeLabel(parameter)},
+                    {"title", title},
+                    {"column", of_error ? getErrorColumn(name) : getInferredColumn(name)},
+                    {"color", getColor(p)}};
+  return {"estimates",
+          texts,
+          {{"lower", bounds.lower},
+           {"upper", bounds.upper},
+           {"line_start", of_error ? 0.0 : bounds.lower},
+           {"line_end", of_error ? 0.0 : bounds.upper},
+           {"parameters", listParameters(parameters)}}};
 }
 
 Figure makeFigure(const RunFolder& run, bool of_error) {

@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "framework/report/sections/sections.hpp"
-#include "framework/report/vega.hpp"
 #include "framework/spec/check/check_experiment.hpp"
 
 namespace twinmap {
@@ -46,42 +45,6 @@ double findLargestStddev(const CsvTable& posterior, const std::string& parameter
   return largest;
 }
 
-Json makePoints(const char* column, const char* shape, const std::string& color, const Json& x,
-                const std::string& y_title) {
-  return {
-      {"transform", {{{"filter", "isValid(datum." + std::string(column) + ")"}}}},
-      {"mark", {{"type", "point"}, {"shape", shape}, {"size", 45}, {"color", color}, {"strokeWidth", 1.5}}},
-      {"encoding",
-       {{"x", x},
-        {"y", makeQuantitative(column, y_title)},
-        {"tooltip",
-         {makeNominal("sample", "sample"),
-          makeQuantitative("posterior_mean", "posterior mean", {{"format", ".5~g"}}),
-          makeQuantitative("map_mean", "inferred", {{"format", ".5~g"}}),
-          makeQuantitative("posterior_stddev", "posterior sd", {{"format", ".3~g"}}),
-          makeQuantitative("map_stddev", "inferred sd", {{"format", ".3~g"}}),
-          makeQuantitative("effective_sample_size", "effective sample size", {{"format", ".4~g"}})}}}}};
-}
-
-Panel makePanel(const CsvTable& posterior, const ParameterSpec& parameter, std::size_t p) {
-  const std::string& name = parameter.name.text;
-  const std::string y_title = "sd of the map, limit";
-  const Json x = makeQuantitative("posterior_stddev", "sd of the posterior", makeFreeScale());
-  const double largest = findLargestStddev(posterior, name);
-  Json spec = makePanelSpec(kTable, 140);
-  spec.erase("params");
-  spec["title"] = makeLabel(parameter);
-  spec["transform"] = {{{"filter", {{"field", "parameter"}, {"equal", name}}}}};
-  const Json diagonal{
-      {"data", {{"values", {{{"v", 0}}, {{"v", largest}}}}}},
-      {"mark", {{"type", "line"}, {"color", "var(--quiet)"}, {"strokeDash", {4, 3}}, {"strokeWidth", 1}}},
-      {"encoding",
-       {{"x", makeQuantitative("v", "sd of the posterior")}, {"y", makeQuantitative("v", y_title)}}}};
-  spec["layer"] = {diagonal, makePoints("limit_stddev", "cross", "var(--quiet)", x, y_title),
-                   makePoints("map_stddev", "circle", getColor(p), x, y_title)};
-  return {"Inferred sd and information limit of " + name + " against the sd of the exact posterior", spec};
-}
-
 }  // namespace
 
 void addPosterior(const RunFolder& run, Section& section, Page& page) {
@@ -101,7 +64,10 @@ void addPosterior(const RunFolder& run, Section& section, Page& page) {
   const std::vector<ParameterSpec>& parameters = run.experiment.model.parameters;
   figure.columns = parameters.size() >= 4 ? 4 : 0;
   for (std::size_t p = 0; p < parameters.size(); ++p) {
-    figure.panels.push_back(makePanel(run.posterior, parameters[p], p));
+    const std::string& name = parameters[p].name.text;
+    figure.panels.push_back({kTable,
+                             {{"name", name}, {"label", makeLabel(parameters[p])}, {"color", getColor(p)}},
+                             {{"largest", findLargestStddev(run.posterior, name)}}});
   }
   addFigure(std::move(figure), section);
 }

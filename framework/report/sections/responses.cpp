@@ -1,8 +1,11 @@
+#include <fmt/core.h>
+
 #include <algorithm>
 
 #include "framework/report/html.hpp"
 #include "framework/report/response_panels.hpp"
 #include "framework/report/sections/sections.hpp"
+#include "framework/store/samples_file.hpp"
 
 namespace twinmap {
 namespace {
@@ -59,13 +62,8 @@ DataTable makeTable(const CsvTable& responses) {
   return table;
 }
 
-Json makeFilter(const std::string& which, const std::string& output) {
-  return Json::array({{{"filter", {{"field", "case"}, {"equal", which}}}},
-                      {{"filter", {{"field", "output"}, {"equal", output}}}}});
-}
-
 ResponseData describeResponse(const RunFolder& run, const std::string& which, const std::string& output) {
-  return {kTable, makeFilter(which, output), output, findUnit(run, output), which + " case"};
+  return {kTable, output, findUnit(run, output), which};
 }
 
 }  // namespace
@@ -84,7 +82,7 @@ void addResponses(const RunFolder& run, Page& page) {
       "class=\"quiet\"");
   for (const std::string& which : collectDistinct(responses, "case")) {
     Figure figure{
-        "response-" + std::to_string(section.figures.size()),
+        fmt::format("response-{}", section.figures.size()),
         "The " + which + " case, test sample " + findSample(responses, which),
         "Points: the measured response; dashed: the model at the centre of the box; solid: the model at "
         "the inferred parameters. Where the updated model is right, 95 % of the residuals lie in the grey "

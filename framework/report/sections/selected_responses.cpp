@@ -1,10 +1,12 @@
 #include "framework/report/sections/selected_responses.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "framework/report/sections/samples_table.hpp"
-#include "framework/report/vega.hpp"
+#include "framework/store/samples_file.hpp"
 
 namespace twinmap {
 namespace {
@@ -13,10 +15,6 @@ constexpr const char* kTable = "selected-responses";
 constexpr int kMostShown = 12;
 constexpr Eigen::Index kMostTimes = 200;
 constexpr double kSteps = 65535.0;
-
-struct Range {
-  double lower = 0.0, upper = 1.0;
-};
 
 /// The rows of an output's response that are kept.
 std::vector<Eigen::Index> findKeptTimes(Eigen::Index count) {
@@ -28,20 +26,24 @@ std::vector<Eigen::Index> findKeptTimes(Eigen::Index count) {
   return kept;
 }
 
-Range findRange(const Eigen::MatrixXd& responses, Eigen::Index first_row, Eigen::Index rows) {
-  Range range{HUGE_VAL, -HUGE_VAL};
+OutputRange findRange(const StoredResponses& stored, std::size_t output) {
+  const Eigen::MatrixXd& responses = stored.responses;
+  const Eigen::Index rows = stored.times.size();
+  const Eigen::Index first_row = static_cast<Eigen::Index>(output) * rows;
+  OutputRange range{stored.output_names[output], HUGE_VAL, -HUGE_VAL};
   for (Eigen::Index column = 0; column < responses.cols(); ++column) {
     for (Eigen::Index row = first_row; row < first_row + rows; ++row) {
       const double value = responses(row, column);
       if (std::isfinite(value)) {
-        range = {std::min(range.lower, value), std::max(range.upper, value)};
+        range.lower = std::min(range.lower, value);
+        range.upper = std::max(range.upper, value);
       }
     }
   }
-  return range.lower < range.upper ? range : Range{};
+  return range.lower < range.upper ? range : OutputRange{range.name};
 }
 
-void appendFraction(double value, const Range& range, std::vector<unsigned char>& bytes) {
+void appendFraction(double value, const OutputRange& range, std::vector<unsigned char>& bytes) {
   const double fraction = std::clamp((value - range.lower) / (range.upper - range.lower), 0.0, 1.0);
   const auto step = static_cast<unsigned>(std::isfinite(value) ? std::lround(fraction * kSteps) : 0);
   bytes.push_back(static_cast<unsigned char>(step & 255U));
@@ -56,7 +58,7 @@ double getResponse(const StoredResponses& stored, Eigen::Index row, double sampl
 
 /// The drawn samples' responses, sample by sample, output by output.
 std::vector<unsigned char> packResponses(const StoredResponses& stored, const std::vector<double>& samples,
-                                         const std::vector<Range>& ranges) {
+                                         const std::vector<OutputRange>& ranges) {
   const Eigen::Index times = stored.times.size();
   const std::vector<Eigen::Index> kept = findKeptTimes(times);
   std::vector<unsigned char> bytes;
@@ -71,8 +73,8 @@ std::vector<unsigned char> packResponses(const StoredResponses& stored, const st
   return bytes;
 }
 
-Json makeTimes(const Eigen::VectorXd& times) {
-  Json kept = Json::array();
+std::vector<double> takeKeptTimes(const Eigen::VectorXd& times) {
+  std::vector<double> kept;
   for (const Eigen::Index time : findKeptTimes(times.size())) {
     kept.push_back(times[time]);
   }
@@ -87,16 +89,8 @@ std::vector<double> findDrawnSamples(const RunFolder& run) {
 }
 
 Panel makePanel(const StoredResponses& stored, std::size_t output) {
-  const std::string label = makeLabel(stored.output_names[output], stored.output_units[output]);
-  Json spec = makePanelSpec(kTable, 140);
-  spec.erase("params");
-  spec["transform"] = {{{"filter", {{"field", "output"}, {"equal", stored.output_names[output]}}}}};
-  spec["mark"] = {{"type", "line"}, {"strokeWidth", 1}, {"color", "var(--ink)"}, {"opacity", 0.7}};
-  spec["encoding"] = {{"x", makeQuantitative("time", "time [s]")},
-                      {"y", makeQuantitative("value", label, makeFreeScale())},
-                      {"detail", {{"field", "sample"}, {"type", "nominal"}}},
-                      {"tooltip", {makeNominal("sample", "sample")}}};
-  return {"Response " + label + " of the highlighted samples over time", spec};
+  const std::string& name = stored.output_names[output];
+  return {"selected-responses", {{"output", name}, {"label", makeLabel(name, stored.output_units[output])}}};
 }
 
 }  // namespace
@@ -117,33 +111,26 @@ std::string encodeBase64(const std::vector<unsigned char>& bytes) {
 
 void addSelectedResponses(const RunFolder& run, Section& section, Page& page) {
   const std::vector<double> samples = findDrawnSamples(run);
-  page.extras["samples"] = samples;
+  page.samples = samples;
   if (!run.test_responses || run.test_responses->times.size() == 0) {
     return;
   }
   const StoredResponses& stored = *run.test_responses;
-  std::vector<Range> ranges;
-  Json outputs = Json::array();
-  Figure figure{kTable,
-                "Responses of the highlighted samples",
-                "Clean simulated responses, as in samples.h5; at most " + std::to_string(kMostShown) +
-                    " samples are shown.",
-                kTable,
-                {},
-                {},
-                2};
+  std::vector<OutputRange> ranges;
+  Figure figure{
+      kTable,
+      "Responses of the highlighted samples",
+      fmt::format("Clean simulated responses, as in samples.h5; at most {} samples are shown.", kMostShown),
+      kTable,
+      {},
+      {},
+      2};
   for (std::size_t i = 0; i < stored.output_names.size(); ++i) {
-    const Eigen::Index times = stored.times.size();
-    ranges.push_back(findRange(stored.responses, static_cast<Eigen::Index>(i) * times, times));
-    outputs.push_back(
-        {{"name", stored.output_names[i]}, {"lower", ranges[i].lower}, {"upper", ranges[i].upper}});
+    ranges.push_back(findRange(stored, i));
     figure.panels.push_back(makePanel(stored, i));
   }
-  page.extras["responses"] = {{"times", makeTimes(stored.times)},
-                              {"outputs", outputs},
-                              {"samples", samples},
-                              {"most", kMostShown},
-                              {"data", encodeBase64(packResponses(stored, samples, ranges))}};
+  const std::string data = encodeBase64(packResponses(stored, samples, ranges));
+  page.responses = PackedResponses{takeKeptTimes(stored.times), ranges, samples, kMostShown, data};
   addFigure(std::move(figure), section);
 }
 

@@ -3,7 +3,6 @@
 #include "framework/report/sections/axis_choice.hpp"
 #include "framework/report/sections/samples_table.hpp"
 #include "framework/report/sections/sections.hpp"
-#include "framework/report/vega.hpp"
 
 namespace twinmap {
 namespace {
@@ -12,26 +11,7 @@ namespace {
 
 /// A point per test sample at its true parameters, coloured and sized by a value; the value is listed first.
 Panel makePanel(const std::string& column, const std::string& title, const std::string& tooltip) {
-  Json spec = makePanelSpec("samples", 190);
-  spec["title"] = title;
-  spec["transform"] = {{{"calculate", "abs(datum['" + column + "'])"}, {"as", "shown"}}};
-  spec["mark"] = {{"type", "point"}, {"filled", true}};
-  spec["params"].push_back(makeBrush()[0]);
-  spec["encoding"] = {
-      {"x", makeChosenAxis("x")},
-      {"y", makeChosenAxis("y")},
-      {"color",
-       makeQuantitative("shown", "",
-                        {{"scale", {{"scheme", "viridis"}}},
-                         {"legend", {{"orient", "right"}, {"gradientLength", 150}, {"format", ".2~g"}}}})},
-      {"opacity", {{"condition", {{"test", kIsSelected}, {"value", 0.95}}}, {"value", 0.15}}},
-      {"size",
-       {{"condition", {{"test", "selected && selected[datum.sample]"}, {"value", 90}}}, {"value", 28}}},
-      {"tooltip",
-       {makeNominal("sample", "sample"), makeQuantitative("shown", tooltip, {{"format", ".4~g"}}),
-        makeQuantitative(getTrueColumn("{x}"), "{x.label}", {{"format", ".4~g"}}),
-        makeQuantitative(getTrueColumn("{y}"), "{y.label}", {{"format", ".4~g"}})}}};
-  return {title + " over two parameters, a coloured point per test sample", spec};
+  return {"stddev", {{"column", column}, {"title", title}, {"what", tooltip}}, makeChosenDomains()};
 }
 
 std::size_t findParameter(const std::vector<ParameterSpec>& parameters, const ReportSpec& report,

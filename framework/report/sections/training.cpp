@@ -3,7 +3,6 @@
 
 #include "framework/report/html.hpp"
 #include "framework/report/sections/sections.hpp"
-#include "framework/report/vega.hpp"
 #include "framework/spec/check/check_experiment.hpp"
 
 namespace twinmap {
@@ -52,32 +51,19 @@ double findFurthestStart(const CsvTable& training) {
 
 void addStarts(const RunFolder& run, Section& section, Page& page) {
   constexpr int kRowHeight = 30, kFrame = 20;
-  const auto parameters = static_cast<int>(run.experiment.model.parameters.size());
+  const std::vector<std::string> names = collectNames(run.experiment.model.parameters);
   page.tables["starts"] = makeStartsTable(run.training);
-  const double furthest = findFurthestStart(run.training);
-  Json spec = makePanelSpec("starts", kFrame + kRowHeight * parameters);
-  spec.erase("params");
-  spec["mark"] = {{"type", "point"}, {"size", 70}, {"strokeWidth", 1.8}, {"opacity", 0.9}};
-  spec["encoding"] = {
-      {"x", makeQuantitative("above_best", "NLML above the best start [nats]",
-                             {{"scale", {{"type", "symlog"}, {"constant", 0.01}, {"domain", {0, furthest}}}},
-                              {"axis", {{"format", "~g"}, {"tickCount", 6}}}})},
-      {"y", makeNominal("parameter", "", {{"sort", nullptr}})},
-      {"shape",
-       makeNominal("found", "",
-                   {{"scale", {{"domain", {"kept", "other start"}}, {"range", {"circle", "cross"}}}}})},
-      {"color", makeNominal("parameter", "", makeColorScale(collectNames(run.experiment.model.parameters)))},
-      {"tooltip",
-       {makeNominal("parameter", "parameter"), makeQuantitative("start", "start"),
-        makeQuantitative("nlml", "NLML", {{"format", ".6~g"}})}}};
-  spec["encoding"]["color"]["legend"] = nullptr;
   addFigure(
       {"starts",
        "Searches for hyperparameters",
        "Each mark is the end of one search; several at the left mean that different starts agree on the "
        "optimum, one far to the right ended in a worse one and was discarded.",
        "starts",
-       {{"Negative log marginal likelihood at the end of each start above the best, per parameter", spec}},
+       {{"starts",
+         {},
+         {{"height", calcHeight(names.size(), kRowHeight, kFrame)},
+          {"furthest", findFurthestStart(run.training)},
+          {"parameters", names}}}},
        {},
        1},
       section);
@@ -148,23 +134,11 @@ void addHyperparameters(const RunFolder& run, Section& section, Page& page) {
   const std::size_t count = std::max<std::size_t>(1, run.hyperparameters.rows.size() / names.size());
   figure.columns = names.size() == 4 ? 2 : 0;
   constexpr int kRowHeight = 18, kFrame = 20;
+  constexpr std::size_t kMostRows = 30;  // beyond, rows share the height
   for (std::size_t p = 0; p < names.size(); ++p) {
-    Json spec = makePanelSpec("hyperparameters",
-                              kFrame + kRowHeight * static_cast<int>(std::min<std::size_t>(count, 30)));
-    spec.erase("params");
-    spec["title"] = names[p];
-    spec["transform"] = {{{"filter", {{"field", "parameter"}, {"equal", names[p]}}}}};
-    spec["mark"] = {{"type", "point"}, {"filled", true}, {"size", 50}, {"color", getColor(p)}};
-    spec["encoding"] = {
-        {"x", makeQuantitative("place", "between the bounds", makeDomain(0, 1))},
-        {"y", makeNominal("hyperparameter", "", {{"sort", nullptr}})},
-        {"tooltip",
-         {makeNominal("hyperparameter", "hyperparameter"), makeQuantitative("value", "value"),
-          makeQuantitative("lower", "lower bound"), makeQuantitative("upper", "upper bound")}}};
-    spec["encoding"]["x"]["axis"] = {
-        {"values", {0, 0.5, 1}},
-        {"labelExpr", "datum.value == 0 ? 'lower' : datum.value == 1 ? 'upper' : ''"}};
-    figure.panels.push_back({"Hyperparameters of " + names[p] + " between their bounds", spec});
+    figure.panels.push_back({"hyperparameters",
+                             {{"name", names[p]}, {"color", getColor(p)}},
+                             {{"height", calcHeight(std::min(count, kMostRows), kRowHeight, kFrame)}}});
   }
   addFigure(std::move(figure), section);
 }

@@ -58,18 +58,13 @@ std::string makeLead(const RunFolder& run) {
                      : ".");
 }
 
-std::string getProvenanceText(const RunFolder& run, const char* key) {
-  if (!run.provenance.is_object() || !run.provenance.contains(key)) {
-    return "not recorded";
-  }
-  const Json& value = run.provenance[key];
-  return value.is_string() ? value.get<std::string>() : value.dump();
-}
+constexpr const char* kNotRecorded = "not recorded";
 
 /// "2026-01-02T03:04:05Z" -> "2026-01-02 03:04 UTC".
 std::string makeDate(const RunFolder& run) {
   constexpr std::size_t kSeparator = 10, kMinutes = 16;
-  std::string date = getProvenanceText(run, "date");
+  const std::string* recorded = run.provenance.find("date");
+  std::string date = recorded == nullptr ? kNotRecorded : *recorded;
   if (date.size() > kMinutes && date[kSeparator] == 'T') {
     date = date.substr(0, kMinutes).replace(kSeparator, 1, " ") + " UTC";
   }
@@ -77,12 +72,12 @@ std::string makeDate(const RunFolder& run) {
 }
 
 std::string makeSeconds(const RunFolder& run) {
-  if (!run.provenance.is_object() || !run.provenance.contains("seconds")) {
-    return "not recorded";
+  if (run.provenance.seconds.empty()) {
+    return kNotRecorded;
   }
   double seconds = 0.0;
-  for (const auto& stage : run.provenance["seconds"]) {
-    seconds += stage.is_number() ? stage.get<double>() : 0.0;
+  for (const auto& [stage, time] : run.provenance.seconds) {
+    seconds += time;
   }
   return toShortText(seconds, 3) + " s";
 }

@@ -14,11 +14,7 @@ namespace {
 constexpr int kDigits = 3;
 
 void appendRecorded(const RunFolder& run, std::vector<std::string>& warnings) {
-  if (run.provenance.is_object() && run.provenance.contains("warnings")) {
-    for (const auto& warning : run.provenance["warnings"]) {
-      warnings.push_back(warning.get<std::string>());
-    }
-  }
+  warnings.insert(warnings.end(), run.provenance.warnings.begin(), run.provenance.warnings.end());
 }
 
 /// Whether the run itself warned about the parameter.

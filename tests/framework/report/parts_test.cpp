@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "framework/report/data_table.hpp"
 #include "framework/report/html.hpp"
