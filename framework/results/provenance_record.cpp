@@ -36,7 +36,8 @@ void appendEntries(const Json& record, const std::string& prefix, ProvenanceReco
 
 /// Takes what has a member of its own out of the JSON.
 void takeLists(Json& json, ProvenanceRecord& record) {
-  for (const auto& [stage, time] : json.value("seconds", Json::object()).items()) {
+  const Json seconds = json.value("seconds", Json::object());
+  for (const auto& [stage, time] : seconds.items()) {
     record.seconds.emplace_back(stage, time.get<double>());
   }
   for (const auto& warning : json.value("warnings", Json::array())) {

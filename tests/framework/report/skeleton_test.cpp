@@ -13,12 +13,13 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Panel makeEstimates() {
-  return {"estimates",
-          {{"name", "k"}, {"label", "k [N/m]"}, {"title", "error of k"}, {"column", "error_k"}, {"color", "red"}},
-          {{"lower", 80.0},
-           {"upper", 120.0},
-           {"parameters", std::vector<Texts>{{{"each", "k"}, {"each_label", "k [N/m]"}},
-                                             {{"each", "d"}, {"each_label", "d"}}}}}};
+  return {
+      "estimates",
+      {{"name", "k"}, {"label", "k [N/m]"}, {"title", "error of k"}, {"column", "error_k"}, {"color", "red"}},
+      {{"lower", 80.0},
+       {"upper", 120.0},
+       {"parameters", std::vector<Texts>{{{"each", "k"}, {"each_label", "k [N/m]"}},
+                                         {{"each", "d"}, {"each_label", "d"}}}}}};
 }
 
 TEST(Skeleton, TextsAndValuesStandInEveryPlaceOfTheirs) {
@@ -72,7 +73,8 @@ TEST(Skeleton, WhatATextHoldsIsNotReplacedAgain) {
 }
 
 TEST(Skeleton, ExamplesOfDataStayBehind) {
-  for (const auto& [name, skeleton] : Json::parse(getFigureSkeletons()).items()) {
+  const Json skeletons = Json::parse(getFigureSkeletons());
+  for (const auto& [name, skeleton] : skeletons.items()) {
     const Json spec = makeSpec({name});
     EXPECT_TRUE(skeleton.contains("datasets") && skeleton["usermeta"].contains("slots")) << name;
     EXPECT_FALSE(spec.contains("datasets") || spec.contains("usermeta")) << name;
