@@ -1,5 +1,7 @@
 #include "framework/report/report.hpp"
 
+#include <fmt/core.h>
+
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -94,7 +96,7 @@ Report makeComparisonReport(const std::vector<fs::path>& folders) {
     runs.push_back(readRunFolder(folder));
   }
   Page page;
-  page.title = std::to_string(runs.size()) + " runs side by side";
+  page.title = fmt::format("{} runs side by side", runs.size());
   addComparison(runs, page);
   return finish(page, {});
 }

@@ -1,5 +1,7 @@
 #include "framework/results/gates.hpp"
 
+#include <fmt/core.h>
+
 #include <cmath>
 
 #include "framework/spec/yaml/number_text.hpp"
@@ -31,7 +33,7 @@ std::string summarize(const std::string& passed, const std::string& failed, int 
   if (count <= kMostListed) {
     return failed.empty() ? passed : "failed: " + failed + (passed.empty() ? "" : "; passed: " + passed);
   }
-  const std::string counts = std::to_string(passed_count) + " of " + std::to_string(count) + " values passed";
+  const std::string counts = fmt::format("{} of {} values passed", passed_count, count);
   return failed.empty() ? counts : counts + "; failed first: " + failed.substr(0, failed.find(','));
 }
 

@@ -1,5 +1,7 @@
 #include "framework/report/sections/samples_table.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <boost/math/special_functions/erf.hpp>
 #include <cmath>
@@ -79,8 +81,8 @@ std::string describeDrawnSamples(const RunFolder& run) {
   const std::size_t count = countSamples(run.predictions);
   return count <= kMostDrawnSamples
              ? ""
-             : "The first " + std::to_string(kMostDrawnSamples) + " of " + std::to_string(count) +
-                   " test samples are drawn; the table counts all. ";
+             : fmt::format("The first {} of {} test samples are drawn; the table counts all. ",
+                           kMostDrawnSamples, count);
 }
 
 }  // namespace twinmap

@@ -1,3 +1,5 @@
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -113,8 +115,7 @@ void addSweepVerdict(const SweepFolder& sweep, const RunFolder* shown, const std
   for (const std::string& key : findVariedKeys(sweep.table)) {
     varied += (varied.empty() ? "" : ", ") + key;
   }
-  section.html +=
-      makeParagraph("A sweep of " + std::to_string(cases) + " cases over " + varied + ".", "class=\"lead\"");
+  section.html += makeParagraph(fmt::format("A sweep of {} cases over {}.", cases, varied), "class=\"lead\"");
   section.html += makeGateList(gates);
   section.html += makeParagraph(
       "The cases are summarised: one value per case and parameter, their means over the seeds in the table." +

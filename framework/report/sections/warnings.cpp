@@ -1,5 +1,7 @@
 #include "framework/report/sections/warnings.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -100,9 +102,9 @@ void appendCorrelations(const RunFolder& run, std::vector<std::string>& warnings
 void appendFailures(const RunFolder& run, std::vector<std::string>& warnings) {
   const std::size_t failed = run.failures.rows.size();
   if (failed > 0) {
-    warnings.push_back(
-        std::to_string(failed) + (failed == 1 ? " sample" : " samples") +
-        " could not be simulated, and the map was neither trained nor tested there: see Failures.");
+    warnings.push_back(fmt::format(
+        "{} {} could not be simulated, and the map was neither trained nor tested there: see Failures.",
+        failed, failed == 1 ? "sample" : "samples"));
   }
 }
 
