@@ -48,6 +48,10 @@ StoredTrajectories simulateSet(const std::string& set, const Eigen::MatrixXd& po
     throw Interrupted(fmt::format("interrupted: {} of {} {} samples are simulated and kept",
                                   stored.counts.reused + stored.counts.simulated, points.cols(), set));
   }
+  if (const int given_up = stored.counts.given_up; given_up > 0) {
+    spdlog::warn("all of the {} {} samples simulated failed; the other {} are given up",
+                 points.cols() - given_up, set, given_up);
+  }
   if (stored.counts.reused > 0) {
     spdlog::info("{} of the {} samples had been simulated before", stored.counts.reused, set);
   }

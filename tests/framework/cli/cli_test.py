@@ -17,6 +17,7 @@ import yaml
 from support import EXPERIMENTS, TWINMAP, OwnFolderTestCase, call, read_csv, run_once
 
 TABLE1 = EXPERIMENTS / "two_beam/table1.yaml"
+CART = EXPERIMENTS / "duffing/cart.yaml"
 CHAIN = EXPERIMENTS / "three_mass_chain"
 SMALL = ["design.train.samples=40", "design.test.samples=20"]
 NO_LIMIT = "evaluation.limit=false"  # a neighbourhood of simulations less at each test point
@@ -89,6 +90,38 @@ class ExitCodes(TestCase):
     def test_help_and_version_are_0(self):
         for arguments in (["--help"], ["--version"], ["run", "--help"], ["simulate", "--help"]):
             self.assertEqual(call(*arguments).returncode, 0)
+
+    def test_a_model_that_cannot_exist_is_found_by_check_and_before_a_run(self):
+        path = self.folder / "heavy.yaml"
+        path.write_text(TABLE1.read_text().replace("value: 0.13,", "value: -0.13,"))
+        line = next(i for i, text in enumerate(path.read_text().splitlines(), 1) if "mass: m2" in text)
+        for command in (["check", path], ["run", path, *SMALL, "--out", self.folder / "run"],
+                        ["check", path, "noise.scale=1,2"]):
+            self.assert_wrong_input(*command, message="at the centre of the parameter box: body 'beam2': mass = -0.13 kg "
+                                                      "must be positive")
+            self.assert_wrong_input(*command, message=f"{path}:{line}:")
+        self.assertFalse((self.folder / "run").exists())
+        self.assert_wrong_input("check", TABLE1, "system.bodies.beam1.mass=-1", message="command line: system.bodies.beam1.mass:")
+
+    def test_an_initial_state_that_cannot_be_is_found_by_check(self):
+        self.assert_wrong_input("check", CART, "system.force_laws[0].force=F + sqrt(x - 1)",
+                                message="the accelerations of the initial state are not finite")
+        for at in ("box_center", "sample"):
+            self.assert_wrong_input("check", CART, "system.force_laws[0].force=F + 1e3 + 1e9 * x^4",
+                                    f"initial={{equilibrium: {{at: {at}}}}}", message="static equilibrium not found")
+
+    def test_a_model_that_always_fails_is_given_up_after_a_dozen_of_each_set(self):
+        many = ["design.train.samples=3000", "design.test.samples=2000", "simulation.max_steps=3"]
+        result = call("run", TABLE1, *many, "--out", self.folder / "run")
+        self.assertEqual(result.returncode, 1)
+        self.assertRegex(result.stderr, "3000 of 3000 train samples failed, .*step limit of 3 reached")
+        self.assertIn("all of the 12 train samples simulated failed; the other 2988 are given up", result.stderr)
+        failures = read_csv(self.folder / "run/failures.csv")
+        simulated = [row for row in failures if row["reason"].startswith("step limit of 3 reached")]
+        self.assertEqual([(row["set"], int(row["sample"])) for row in simulated],
+                         [(group, i) for group in ("train", "test") for i in range(12)])
+        self.assertEqual({row["reason"][:50] for row in failures if row not in simulated},
+                         {"not simulated, since every sample before failed: s"})
 
     def test_failures_are_1(self):
         result = call("simulate", TABLE1, "simulation.max_steps=3")

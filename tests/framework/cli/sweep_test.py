@@ -435,6 +435,17 @@ class Failures(SweepTestCase):
         self.assertIn("8 of 8 train samples failed", again.stderr)
         self.run_sweep("run", sweep=self.FAILING, code=1)
 
+    def test_a_model_that_always_fails_is_given_up_and_holds_up_no_other(self):
+        for repeat in (1, 2):
+            self.run_sweep("run", sweep=[*LIMITS, "design.train.samples=40", "simulation.max_steps=3,100000"], code=1)
+            failures = read_csv(self.folder / "run/failed_cases.csv")
+            self.assertEqual([f["case"] for f in failures], ["max_steps-3"])
+            self.assertRegex(failures[0]["reason"], "40 of 40 train samples failed, .*step limit")
+            stored = {content.parent: sum(len(read_points(chunk)) for chunk in content.parent.glob("*.chunk"))
+                      for content in self.folder.glob("run/chunks/*/content.yaml")}
+            # A dozen and the few test samples; samples and neighbourhoods of the other.
+            self.assertEqual(sorted(stored.values()), [8, 12 + 8, 40 + 8], stored)
+
     def test_fail_fast_begins_no_other(self):
         result = self.run_sweep("run", "--fail-fast", "--threads", 1, "design.train.samples=8,16",
                                 "simulation.max_steps=3,100000", sweep=SMALL, code=1)
