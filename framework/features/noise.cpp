@@ -6,6 +6,7 @@
 
 #include "framework/autocorrelation/autocorrelation.hpp"
 #include "framework/features/layout_rows.hpp"
+#include "framework/spec/noise_correlation.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
