@@ -8,6 +8,7 @@
 #include "framework/features/feature_extractor.hpp"
 #include "framework/sampling/model_store.hpp"
 #include "framework/sampling/neighbourhoods.hpp"
+#include "framework/sampling/trajectory_content.hpp"
 #include "framework/spec/check/check_experiment.hpp"
 #include "framework/spec/check/check_features.hpp"
 #include "framework/spec/parameter_box.hpp"
