@@ -239,8 +239,7 @@ TEST(GpMap, InfersWithKnownInputsWhatTheFeaturesAloneLeaveOpen) {
 
 TEST(GpMapTraining, EndsWhereItIsAskedTo) {
   const Problem problem = makeProblem(60, 3);
-  TransformStepSpec z_score;
-  z_score.z_score.emplace();
+  const TransformStepSpec z_score{ZScoreSpec{}, {}};
   const LabelledFeatures samples{problem.infos,      problem.features,
                                  problem.parameters, Eigen::MatrixXd::Identity(4, 4),
                                  problem.replicates, {}};
