@@ -214,7 +214,8 @@ class Run(TestCase):
         self.assertFalse((self.folder / "run/features.csv").exists())
 
     def test_evaluation_writes_what_it_is_asked_for(self):
-        asked = "evaluation={posterior: {samples: 2}, baselines: [prior_mean, linear_regression, {least_squares: {samples: 3}}]}"
+        asked = ("evaluation={posterior: {samples: 2, draws: 250}, "
+                 "baselines: [prior_mean, linear_regression, {least_squares: {samples: 3}}]}")
         result = self.run_experiment("run", asked)
         self.assertIn("information limit of 20 test samples: ", result.stderr)  # its cost
         run = self.folder / "run"
