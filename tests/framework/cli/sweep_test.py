@@ -110,7 +110,7 @@ class Simulations(SweepTestCase):
         self.run_sweep("alone", sweep=[*LIMITS, "noise.scale=0.5", "features[0].samples.interval=0.07",
                                        "features[0].samples.count=60", "transform=[z_score]", "design.train.samples=12"])
         self.assert_same_files("run/cases/scale-0.5_interval-0.07_samples-12", "alone", [*RESULTS, "identifiability.csv"])
-        self.run_sweep("noiseless", sweep=[*LIMITS, "noise.scale=0", "transform=[z_score]"])
+        self.run_sweep("noiseless", sweep=[*LIMITS, "noise.scale=0", "transform=[z_score]", "design.train.samples=12"])
         self.assertEqual(self.get_stored("noiseless", neighbourhoods=True), set())
 
     def test_a_selection_by_fisher_information_shares_neighbourhoods_of_training_points(self):
