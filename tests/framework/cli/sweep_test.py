@@ -443,8 +443,8 @@ class Failures(SweepTestCase):
             self.assertRegex(failures[0]["reason"], "40 of 40 train samples failed, .*step limit")
             stored = {content.parent: sum(len(read_points(chunk)) for chunk in content.parent.glob("*.chunk"))
                       for content in self.folder.glob("run/chunks/*/content.yaml")}
-            # A dozen and the few test samples; samples and neighbourhoods of the other.
-            self.assertEqual(sorted(stored.values()), [8, 12 + 8, 40 + 8], stored)
+            # No neighbourhoods, a dozen and the few test samples; neighbourhoods and samples of the other.
+            self.assertEqual(sorted(stored.values()), [0, 8, 12 + 8, 40 + 8], stored)
 
     def test_fail_fast_begins_no_other(self):
         result = self.run_sweep("run", "--fail-fast", "--threads", 1, "design.train.samples=8,16",
