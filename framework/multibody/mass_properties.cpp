@@ -1,5 +1,7 @@
 #include "framework/multibody/mass_properties.hpp"
 
+#include <cmath>
+
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -30,6 +32,18 @@ void checkInertia(const std::string& owner, const Eigen::Vector3d& principal, co
   }
 }
 
+/// Simbody computes m c^2 and I / m, which must be numbers.
+void checkRange(const BodySpec& body, const std::string& owner, double mass, const Vec3& center) {
+  if (!std::isfinite(1.0 / mass)) {
+    throwUnusable({owner, "mass", "kg"}, mass, "is too small: its inverse must be finite", body.mass.where);
+  }
+  if (!std::isfinite(mass * center.normSqr())) {
+    throwUnusable({owner, "center_of_mass", "m"}, std::hypot(center[0], center[1], center[2]),
+                  "is too far away: the inertia about the body's origin must be finite",
+                  body.center_of_mass[0].where);
+  }
+}
+
 }  // namespace
 
 Vec3 calcVec3(NumberEvaluator& numbers, const Expression3& expressions, const Quantity& quantity) {
@@ -43,6 +57,7 @@ SimTK::MassProperties calcMassProperties(const BodySpec& body, NumberEvaluator& 
   const Vec3 center = calcVec3(numbers, body.center_of_mass, {owner, "center_of_mass", "m"});
   const Vec3 moments = calcVec3(numbers, body.inertia.moments, {owner, "inertia.moments", "kg m2"});
   const Vec3 products = calcVec3(numbers, body.inertia.products, {owner, "inertia.products", "kg m2"});
+  checkRange(body, owner, mass, center);
   checkInertia(owner, calcPrincipalMoments(moments, products), body.inertia.moments[0].where);
   SimTK::Inertia about_origin(moments, products);
   about_origin.shiftFromMassCenterInPlace(center, mass);

@@ -185,7 +185,9 @@ class MultibodySimulator::Impl {
     } catch (const SimulationFailure& failure) {
       throw makeCenterError(shared_->model, failure.getWhere(), failure.what());
     } catch (const SimTK::Exception::Base& error) {
-      throw makeCenterError(shared_->model, {}, std::string("Simbody: ") + error.getMessage());
+      std::string message = error.getMessage();
+      std::replace(message.begin(), message.end(), '\n', ' ');
+      throw makeCenterError(shared_->model, {}, "Simbody: " + message);
     }
   }
 

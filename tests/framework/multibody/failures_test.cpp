@@ -109,6 +109,16 @@ TEST(Failures, InertiaMustBeThatOfARealBody) {
             "body 'block': inertia: smallest principal moment = -0.2 kg m2 must not be negative");
 }
 
+TEST(Failures, MassAndPlaceMustNotExceedTheRangeOfNumbers) {
+  ModelSpec model = makeOscillator();
+  EXPECT_EQ(getReason(model, Eigen::Vector3d(1e-320, 10.0, 0.0)),
+            "body 'block': mass = 9.99988867e-321 kg is too small: its inverse must be finite");
+  model.system.bodies[0].center_of_mass = ex3("0", "0", "c");
+  EXPECT_EQ(getReason(model, Eigen::Vector3d(1.0, 10.0, 1e200)),
+            "body 'block': center_of_mass = 1e+200 m is too far away: the inertia about the body's origin "
+            "must be finite");
+}
+
 TEST(Failures, RotationWithoutInertiaIsSingular) {
   ModelSpec model = makeOscillator();
   model.system.bodies.push_back(
