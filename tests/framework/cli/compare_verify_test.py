@@ -291,6 +291,8 @@ class Verify(TestCase):
             shutil.copytree(self.folder / "run", sweep / "cases" / name)
         _, output = self.verify(sweep)
         self.assertEqual(output.count(f"{sweep}/cases/"), 3)
+        for name in ("b", "d"):  # two are enough of all
+            shutil.rmtree(sweep / "cases" / name)
         self.change_text(sweep / "cases/c/metrics.csv", 2, "d_y", "d_z")
         self.assertEqual(self.verify(sweep, "--all")[0], {"metrics.csv": "line 2, parameter: 'd_z' instead of 'd_y'"})
 
