@@ -1,0 +1,66 @@
+#include "kernels/program/interpreter.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cstdint>
+#include <limits>
+
+namespace twinmap::program {
+namespace {
+
+constexpr std::size_t kCacheLine = 64;  // bytes
+
+double* align(std::vector<double>& memory) {
+  const std::uintptr_t address = reinterpret_cast<std::uintptr_t>(memory.data());
+  return memory.data() + (kCacheLine - address % kCacheLine) % kCacheLine / sizeof(double);
+}
+
+}  // namespace
+
+const Engine& getBestEngine() {
+  return kEngine8.isSupported() ? kEngine8 : kEngine8Of4;
+}
+
+std::vector<const Engine*> getEngines() {
+  std::vector<const Engine*> engines{&kEngine4, &kEngine8, &kEngine8Of4, &kEngine16};
+  engines.erase(
+      std::remove_if(engines.begin(), engines.end(), [](const Engine* e) { return !e->isSupported(); }),
+      engines.end());
+  return engines;
+}
+
+Interpreter::Interpreter(const Program& program, const Engine& engine)
+    : engine_(&engine),
+      counts_(program.counts),
+      time_(program.getTimeSlot()),
+      parameter_(place(program.parameter)),
+      phase_(place(program.phase)),
+      evaluation_(place(program.evaluation)),
+      memory_(static_cast<std::size_t>(program.slot_count) * engine.lanes + kCacheLine / sizeof(double)),
+      slots_(align(memory_)) {
+  assert(memory_.size() < std::numeric_limits<std::uint32_t>::max());
+  for (const int slot : program.outputs) {
+    outputs_.push_back(static_cast<std::size_t>(slot) * engine.lanes);
+  }
+  for (const Literal& literal : program.literals) {
+    std::fill_n(updRow(literal.slot), engine.lanes, literal.value);
+  }
+}
+
+Interpreter::PlacedSegment Interpreter::place(const Segment& segment) const {
+  PlacedSegment placed;
+  for (const Run& run : segment.runs) {
+    placed.runs.push_back({run.operation, static_cast<std::uint32_t>(run.count)});
+  }
+  const auto getPlace = [this](int slot) {
+    return static_cast<std::uint32_t>(std::max(slot, 0) * engine_->lanes);
+  };
+  for (const Instruction& i : segment.instructions) {
+    const int last = i.targets[1] >= 0 ? i.targets[1] : i.operands[2];
+    placed.instructions.push_back(
+        {getPlace(i.targets[0]), getPlace(i.operands[0]), getPlace(i.operands[1]), getPlace(last)});
+  }
+  return placed;
+}
+
+}  // namespace twinmap::program
