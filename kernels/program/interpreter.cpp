@@ -1,22 +1,9 @@
 #include "kernels/program/interpreter.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cstdint>
-#include <limits>
 
 namespace twinmap::program {
-namespace {
-
-constexpr std::size_t kCacheLine = 64;  // bytes
-
-double* align(std::vector<double>& memory) {
-  const std::uintptr_t address = reinterpret_cast<std::uintptr_t>(memory.data());
-  return memory.data() + (kCacheLine - address % kCacheLine) % kCacheLine / sizeof(double);
-}
-
-}  // namespace
-
 const Engine& getBestEngine() {
   return kEngine8.isSupported() ? kEngine8 : kEngine8Of4;
 }
@@ -36,9 +23,7 @@ Interpreter::Interpreter(const Program& program, const Engine& engine)
       parameter_(place(program.parameter)),
       phase_(place(program.phase)),
       evaluation_(place(program.evaluation)),
-      memory_(static_cast<std::size_t>(program.slot_count) * engine.lanes + kCacheLine / sizeof(double)),
-      slots_(align(memory_)) {
-  assert(memory_.size() < std::numeric_limits<std::uint32_t>::max());
+      slots_(static_cast<std::size_t>(program.slot_count) * engine.lanes) {
   for (const int slot : program.outputs) {
     outputs_.push_back(static_cast<std::size_t>(slot) * engine.lanes);
   }

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "kernels/program/aligned_buffer.hpp"
 #include "kernels/program/engine.hpp"
 #include "kernels/program/program.hpp"
 
@@ -18,15 +19,13 @@ std::vector<const Engine*> getEngines();
 class Interpreter {
  public:
   explicit Interpreter(const Program& program, const Engine& engine = getBestEngine());
-  Interpreter(const Interpreter&) = delete;
-  Interpreter& operator=(const Interpreter&) = delete;
 
   int getLanes() const { return engine_->lanes; }
   double* updTime() { return updRow(time_); }
   double* updState(int index) { return updRow(time_ + 1 + index); }
   double* updParameter(int index) { return updRow(time_ + 1 + counts_.states + index); }
   double* updPhaseInput(int index) { return updRow(time_ + 1 + counts_.states + counts_.parameters + index); }
-  const double* getOutput(int index) const { return slots_ + outputs_[index]; }
+  const double* getOutput(int index) const { return slots_.get() + outputs_[index]; }
 
   /// After parameters changed; calcPhase() must follow.
   void calcParameters() { run(parameter_); }
@@ -40,11 +39,11 @@ class Interpreter {
     std::vector<PlacedRun> runs;
     std::vector<PlacedInstruction> instructions;
   };
-  double* updRow(int slot) { return slots_ + slot * engine_->lanes; }
+  double* updRow(int slot) { return slots_.get() + slot * engine_->lanes; }
   PlacedSegment place(const Segment& segment) const;
   void run(const PlacedSegment& segment) {
     engine_->run(segment.runs.data(), segment.runs.data() + segment.runs.size(), segment.instructions.data(),
-                 slots_);
+                 slots_.get());
   }
 
   const Engine* engine_;
@@ -52,8 +51,7 @@ class Interpreter {
   int time_;
   std::vector<std::size_t> outputs_;
   PlacedSegment parameter_, phase_, evaluation_;
-  std::vector<double> memory_;
-  double* slots_;
+  AlignedBuffer slots_;
 };
 
 }  // namespace twinmap::program

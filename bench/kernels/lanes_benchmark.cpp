@@ -1,0 +1,126 @@
+// The two-beam case, its closed-form equations recorded by hand: cost a sample of values alone and with four
+// derivatives, and the largest error against a tight integration, in parts of the range.
+
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <map>
+#include <random>
+
+#include "tests/kernels/lanes/two_beam.hpp"
+
+namespace twinmap::lanes {
+namespace {
+
+constexpr int kSamples = 256;
+constexpr int kValues = 200;
+
+struct Points {
+  std::vector<std::vector<double>> points;
+  Points() {
+    std::mt19937_64 engine(1);
+    std::uniform_real_distribution<> uniform;
+    for (int i = 0; i < kSamples; ++i) {
+      const double u[4] = {uniform(engine), uniform(engine), uniform(engine), uniform(engine)};
+      points.push_back(two_beam::makePoint(u));
+    }
+  }
+};
+
+const std::vector<std::vector<double>>& getPoints() {
+  static const Points points;
+  return points.points;
+}
+
+using Solution = std::vector<double>;
+
+/// Values or derivatives of all samples, by an integration without error control to speak of.
+struct Batch {
+  std::vector<double> outputs, derivatives;
+  std::vector<Sample> samples;
+  explicit Batch(int directions) : outputs(kSamples * kValues), derivatives(kSamples * kValues * directions) {
+    for (int i = 0; i < kSamples; ++i) {
+      samples.push_back(two_beam::makeSample(getPoints()[i], directions, &outputs[i * kValues],
+                                             derivatives.data() + i * kValues * directions));
+    }
+  }
+};
+
+double calcLargestError(const std::vector<double>& values, const std::vector<double>& expected) {
+  double largest = 0.0;
+  for (std::size_t begin = 0; begin < values.size(); begin += 100) {
+    const auto from = expected.begin() + begin;
+    const auto [low, high] = std::minmax_element(from, from + 100);
+    for (std::size_t i = begin; i < begin + 100; ++i) {
+      largest = std::max(largest, std::abs(values[i] - expected[i]) / (*high - *low));
+    }
+  }
+  return largest;
+}
+
+/// The same at 1e-4 of the tolerances; its own error is below 1e-9 of the range (tests/kernels/lanes).
+const Batch& getReference(int directions) {
+  static std::map<int, Batch> references;
+  const auto found = references.find(directions);
+  if (found != references.end()) {
+    return found->second;
+  }
+  Batch& batch = references.emplace(directions, Batch(directions)).first->second;
+  Options options;
+  options.relative_tolerance = 1e-12;
+  options.absolute_tolerance = 1e-14;
+  options.parameter_scales = {0.2, 5e-5, 10.0, 0.018};
+  options.parameter_scales.resize(directions);
+  std::vector<int> list{0, 1, 2, 3};
+  list.resize(directions);
+  Integrator integrator(two_beam::makeProblem(list), two_beam::makeTimes(), options);
+  integrate(integrator, batch.samples);
+  return batch;
+}
+
+void runTwoBeam(benchmark::State& state, int directions, const StepEngine& engine, double factor) {
+  std::vector<int> list{0, 1, 2, 3};
+  list.resize(directions);
+  Options options;
+  options.sensitivity_factor = factor;
+  options.parameter_scales = {0.2, 5e-5, 10.0, 0.018};
+  options.parameter_scales.resize(directions);
+  const Problem problem = two_beam::makeProblem(list);
+  Integrator integrator(problem, two_beam::makeTimes(), options, engine);
+  const Batch batch(directions);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(integrate(integrator, batch.samples));
+  }
+  const Statistics& s = integrator.getStatistics();
+  state.counters["us_a_sample"] = benchmark::Counter(
+      kSamples * state.iterations() * 1e-6, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  state.counters["error"] = calcLargestError(batch.outputs, getReference(directions).outputs);
+  if (directions > 0) {
+    state.counters["derivative_error"] =
+        calcLargestError(batch.derivatives, getReference(directions).derivatives);
+  }
+  state.counters["instructions"] = problem.derivative.evaluation.instructions.size();
+  state.counters["dispatches"] = problem.derivative.evaluation.runs.size();
+  state.counters["slots"] = problem.derivative.slot_count;
+  state.counters["steps"] = double(s.steps) / (kSamples * state.iterations());
+  state.counters["rejected_pct"] = 100.0 * s.rejected / s.steps;
+  state.counters["active_pct"] = 100.0 * s.active_lanes / (s.rounds * engine.program.lanes);
+}
+
+void registerAll() {
+  for (const int directions : {0, 4}) {
+    for (const StepEngine* engine : getEngines()) {
+      const std::string name = std::string("TwoBeam") + (directions > 0 ? "WithDerivatives" : "") +
+                               "/lanes:" + std::to_string(engine->program.lanes) +
+                               (engine == &kSteps8Of4 ? "_of_4" : "");
+      benchmark::RegisterBenchmark(name.c_str(), [directions, engine](benchmark::State& state) {
+        runTwoBeam(state, directions, *engine, 1.0);
+      })->Unit(benchmark::kMillisecond);
+    }
+  }
+}
+
+const bool registered = (registerAll(), true);
+
+}  // namespace
+}  // namespace twinmap::lanes

@@ -1,0 +1,171 @@
+#pragma once
+
+#include "kernels/lanes/step_engine.hpp"
+#include "kernels/program/exponential.hpp"
+
+namespace twinmap::lanes {
+
+/// Hairer, Norsett, Wanner: Solving Ordinary Differential Equations I, table II.5.2, and d of the dense
+/// output in section II.6. The weights of a stage are those of its row; those of stage 7 are the solution's.
+constexpr double kTimes[8] = {0, 0, 1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1, 1};
+constexpr double kWeights[8][7] = {
+    {},
+    {},
+    {0, 1.0 / 5},
+    {0, 3.0 / 40, 9.0 / 40},
+    {0, 44.0 / 45, -56.0 / 15, 32.0 / 9},
+    {0, 19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729},
+    {0, 9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
+    {0, 35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84},
+};
+constexpr double kErrorWeights[8] = {0,           71.0 / 57600,      0,          -71.0 / 16695,
+                                     71.0 / 1920, -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
+constexpr double kDenseWeights[8] = {0,
+                                     -12715105075.0 / 11282082432.0,
+                                     0,
+                                     87487479700.0 / 32700410799.0,
+                                     -10690763975.0 / 1880347072.0,
+                                     701980252875.0 / 199316789632.0,
+                                     -1453857185.0 / 822651844.0,
+                                     69997945.0 / 29380423.0};
+/// The second slopes enter neither; the last ones of the error come first.
+constexpr int kErrorStages[] = {1, 3, 4, 5, 6}, kDenseStages[] = {1, 3, 4, 5, 6, 7};
+/// With 0.9 a fifth of the steps were rejected, with 0.8 one in a hundred, at fewer steps in all and a
+/// smaller error.
+constexpr double kSafety = 0.8;
+
+template <typename P, int chains>
+class StepLoops {
+  static constexpr int kWidth = program::PacketTraits<P>::kWidth;
+  static constexpr int kLanes = chains * kWidth;
+
+ public:
+  static void prepareStage(int stage, const StepArrays& a) {
+    switch (stage) {
+      case 2:
+        return prepare<2>(a);
+      case 3:
+        return prepare<3>(a);
+      case 4:
+        return prepare<4>(a);
+      case 5:
+        return prepare<5>(a);
+      case 6:
+        return prepare<6>(a);
+      default:
+        return prepare<7>(a);
+    }
+  }
+
+  static void finish(const StepArrays& a) {
+    takePivots(a, false);
+    for (int k = 0; k < kLanes; k += kWidth) {
+      const P step = load(a.step + k);
+      P largest{}, spoilt{};
+      for (int row = 0; row < a.rows; ++row) {
+        const int at = row * kLanes + k;
+        const P last = load(a.derivatives[row] + k);
+        store(a.slopes[7] + at, last);
+        const P state = load(a.stage_state + at);
+        P sum = last * kErrorWeights[7];
+        for (const int j : kErrorStages) {
+          sum = program::fma(load(a.slopes[j] + at), broadcast(kErrorWeights[j]), sum);
+        }
+        const P before = program::abs(load(a.state + at)), after = program::abs(state);
+        const P size = program::select<P>(before > after, before, after);
+        const P scale =
+            program::fma(size, broadcast(a.relative_tolerance[row]), broadcast(a.absolute_tolerance[row]));
+        const P error = program::abs(step * sum) / scale;
+        largest = program::select<P>(error > largest, error, largest);
+        spoilt += (state - state) + (last - last);  // 0 or NaN
+      }
+      const P error = largest + spoilt;
+      store(a.error + k, error);
+      const P limited = program::select<P>(error > 1e-30, error, broadcast(1e-30));
+      store(a.factor + k, kSafety * program::exp(-0.2 * program::log(limited)));
+    }
+  }
+
+  static void accept(const double* accepted, const StepArrays& a) {
+    for (int k = 0; k < kLanes; k += kWidth) {
+      const program::Bits<P> take = load(accepted + k) != 0.0;
+      for (int at = k; at < a.rows * kLanes; at += kLanes) {
+        store(a.state + at, program::select<P>(take, load(a.stage_state + at), load(a.state + at)));
+        store(a.slopes[1] + at, program::select<P>(take, load(a.slopes[7] + at), load(a.slopes[1] + at)));
+      }
+    }
+  }
+
+  static void interpolate(const double* fractions, const StepArrays& a, double* states) {
+    for (int k = 0; k < kLanes; k += kWidth) {
+      P weights[8];
+      calcDenseWeights(load(fractions + k), weights);
+      for (const int j : kDenseStages) {
+        weights[j] *= load(a.step + k);
+      }
+      for (int at = k; at < a.rows * kLanes; at += kLanes) {
+        P sum = load(a.state + at);
+        for (const int j : kDenseStages) {
+          sum = program::fma(load(a.slopes[j] + at), weights[j], sum);
+        }
+        store(states + at, sum);
+      }
+    }
+  }
+
+ private:
+  static P load(const double* source) { return program::load<P>(source); }
+  static void store(double* target, P value) { program::store<P>(target, value); }
+  static P broadcast(double value) { return program::broadcast<P>(value); }
+
+  template <int stage>
+  static void prepare(const StepArrays& a) {
+    if (stage > 2) {
+      takePivots(a, stage == 3);
+    }
+    for (int k = 0; k < kLanes; k += kWidth) {
+      const P step = load(a.step + k);
+      store(a.stage_time + k, program::fma(step, broadcast(kTimes[stage]), load(a.time + k)));
+      for (int row = 0; row < a.rows; ++row) {
+        const int at = row * kLanes + k;
+        if (stage > 2) {
+          store(a.slopes[stage - 1] + at, load(a.derivatives[row] + k));
+        }
+        P sum = load(a.slopes[1] + at) * kWeights[stage][1];
+        for (int j = 2; j < stage; ++j) {
+          if (kWeights[stage][j] != 0.0) {
+            sum = program::fma(load(a.slopes[j] + at), broadcast(kWeights[stage][j]), sum);
+          }
+        }
+        store(a.stage_state + at, program::fma(step, sum, load(a.state + at)));
+      }
+    }
+  }
+
+  /// Of the stage just evaluated. A NaN is no small pivot: it shows in the error.
+  static void takePivots(const StepArrays& a, bool first) {
+    for (int k = 0; k < kLanes; k += kWidth) {
+      P smallest = first ? broadcast(__builtin_inf()) : load(a.smallest_pivot + k);
+      for (int i = 0; i < a.pivots; ++i) {
+        const P pivot = load(a.pivot_values[i] + k);
+        smallest = program::select<P>(pivot < smallest, pivot, smallest);
+      }
+      store(a.smallest_pivot + k, smallest);
+    }
+  }
+
+  /// The polynomials with which the slopes enter, fourth order; 0 at fraction 0 and the solution's weights
+  /// at 1.
+  static void calcDenseWeights(P fraction, P* weights) {
+    const P rest = 1.0 - fraction;
+    for (int j = 1; j < 8; ++j) {
+      const P solution = broadcast(j < 7 ? kWeights[7][j] : 0.0);
+      const P at_begin = broadcast(j == 1 ? 1.0 : 0.0) - solution;
+      const P at_end = solution - broadcast(j == 7 ? 1.0 : 0.0);
+      const P bent = program::fma(rest, broadcast(kDenseWeights[j]), at_end - at_begin);
+      weights[j] = fraction * program::fma(rest, program::fma(fraction, bent, at_begin), solution);
+    }
+  }
+};
+
+}  // namespace twinmap::lanes
