@@ -7,6 +7,7 @@
 #include <map>
 #include <random>
 
+#include "kernels/program/trigonometric.hpp"
 #include "tests/kernels/lanes/two_beam.hpp"
 
 namespace twinmap::lanes {
@@ -78,6 +79,11 @@ const Batch& getReference(int directions) {
   return batch;
 }
 
+const Problem& two_beam_problem() {
+  static const Problem problem = two_beam::makeProblem();
+  return problem;
+}
+
 void runTwoBeam(benchmark::State& state, int directions, const StepEngine& engine, double factor) {
   std::vector<int> list{0, 1, 2, 3};
   list.resize(directions);
@@ -107,14 +113,45 @@ void runTwoBeam(benchmark::State& state, int directions, const StepEngine& engin
   state.counters["active_pct"] = 100.0 * s.active_lanes / (s.rounds * engine.program.lanes);
 }
 
+#ifdef __AVX512F__
+/// The equations of motion in registers instead of a program: what no interpreter can beat.
+void runClosedForm(const program::PlacedRun* run, const program::PlacedRun* end, const program::PlacedInstruction*,
+                   double* slots) {
+  using namespace program;
+  if (end - run < 5) {
+    return;  // the hoisted segments
+  }
+  const auto get = [slots](int slot) { return load<Packet8>(slots + 8 * slot); };
+  const double m2 = 0.13, y_com = 0.034, z_com = 0.022, inertia = 1.3e-4, g = 9.81;
+  const double m11 = 3.3 + m2, m22 = inertia + m2 * (y_com * y_com + z_com * z_com);
+  const SineCosine<Packet8> sc = calcSineCosine(get(2));
+  const Packet8 a = y_com * sc.sine + z_com * sc.cosine, b = y_com * sc.cosine - z_com * sc.sine;
+  const Packet8 m12 = -m2 * a, pulse = get(9);
+  const Packet8 r1 = two_beam::kForce * pulse + m2 * b * get(4) * get(4) - get(5) * get(3) - get(7) * get(1);
+  const Packet8 r2 = two_beam::kMoment * pulse - get(6) * get(4) - get(8) * get(2) - m2 * g * b;
+  const Packet8 inverse = 1.0 / (m11 * m22 - m12 * m12);
+  const Problem& problem = two_beam_problem();
+  store(slots + 8 * problem.derivative.outputs[2], (m22 * r1 - m12 * r2) * inverse);
+  store(slots + 8 * problem.derivative.outputs[3], (m11 * r2 - m12 * r1) * inverse);
+}
+
+const program::Engine kClosedForm{8, program::kEngine8.isSupported, runClosedForm};
+const StepEngine kClosedFormSteps{kClosedForm, kSteps8.prepareStage, kSteps8.finish, kSteps8.accept, kSteps8.interpolate};
+#endif
+
 void registerAll() {
+#ifdef __AVX512F__
+  benchmark::RegisterBenchmark("TwoBeam/closed_form", [](benchmark::State& state) {
+    runTwoBeam(state, 0, kClosedFormSteps, 1.0);
+  })->Unit(benchmark::kMillisecond);
+#endif
   for (const int directions : {0, 4}) {
     for (const StepEngine* engine : getEngines()) {
       const std::string name = std::string("TwoBeam") + (directions > 0 ? "WithDerivatives" : "") +
                                "/lanes:" + std::to_string(engine->program.lanes) +
                                (engine == &kSteps8Of4 ? "_of_4" : "");
       benchmark::RegisterBenchmark(name.c_str(), [directions, engine](benchmark::State& state) {
-        runTwoBeam(state, directions, *engine, 1.0);
+        runTwoBeam(state, directions, *engine, getenv("F")?atof(getenv("F")):1.0);
       })->Unit(benchmark::kMillisecond);
     }
   }

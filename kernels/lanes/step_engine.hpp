@@ -19,7 +19,7 @@ struct StepArrays {
   const double* absolute_tolerance;  ///< one number a row
   const double* relative_tolerance;  ///< one number a row
   double* error;   ///< largest of all rows, in tolerances; NaN where something is not finite
-  double* factor;  ///< 0.8 error^(-1/5): by what the controller wants to change the step
+  double* factor;  ///< 0.85 error^(-1/5): by what the controller wants to change the step
 };
 
 /// Arithmetic of Dormand and Prince's 5(4) pair on all lanes at a time, for one number of lanes.
