@@ -41,8 +41,9 @@ struct Result {
 struct Options {
   double relative_tolerance = 3e-7;  ///< local error per step, relative to the state
   double absolute_tolerance = 1e-9;  ///< and absolute, in the state's own units
-  /// By how much more a sensitivity may err, since it need not be known as well as the state that it corrects. On the
-  /// two beams 1 costs 30 % more steps for an error of 2e-6 of the range, 10 none for 2.4e-5.
+  /// By how much more a sensitivity may err, since it need not be known as well as the state that it
+  /// corrects. On the two beams 1 costs 30 % more steps for an error of 2e-6 of the range, 10 none
+  /// for 2.4e-5.
   double sensitivity_factor = 10.0;
   /// For each direction, the change of its parameter that matters: the unit of its sensitivities' error.
   /// Empty: 1.

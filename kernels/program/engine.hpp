@@ -6,9 +6,13 @@
 
 namespace twinmap::program {
 
+/// The unit of places in an array of slots, in doubles: instructions are half as long for it, and stay in the
+/// cache.
+constexpr int kPlace = 4;
+
 /// An instruction with its slots as places in the array of slots, which depend on the number of lanes.
 struct PlacedInstruction {
-  std::uint32_t target, a, b, c;  ///< c is also the second target of kSinCos
+  std::uint16_t target, a, b, c;  ///< c is also the second target of kSinCos
 };
 
 struct PlacedRun {

@@ -12,7 +12,7 @@ double evaluate(Operation operation, double a, double b, double c) {
   std::fill_n(slots[1], 4, b);
   std::fill_n(slots[2], 4, c);
   const PlacedRun run{operation, 1};
-  const PlacedInstruction instruction{12, 0, 4, 8};
+  const PlacedInstruction instruction{3, 0, 1, 2};
   kEngine4.run(&run, &run + 1, &instruction, slots[0]);
   return slots[3][0];
 }

@@ -27,7 +27,7 @@ class InstructionLoops {
   static void unary(const I* i, const I* end, double* slots, const Function& function) {
     for (; i != end; ++i) {
       for (int k = 0; k < kLanes; k += PacketTraits<P>::kWidth) {
-        store<P>(slots + i->target + k, function(load<P>(slots + i->a + k)));
+        store<P>(at(slots, i->target) + k, function(load<P>(at(slots, i->a) + k)));
       }
     }
   }
@@ -36,7 +36,8 @@ class InstructionLoops {
   static void binary(const I* i, const I* end, double* slots, const Function& function) {
     for (; i != end; ++i) {
       for (int k = 0; k < kLanes; k += PacketTraits<P>::kWidth) {
-        store<P>(slots + i->target + k, function(load<P>(slots + i->a + k), load<P>(slots + i->b + k)));
+        store<P>(at(slots, i->target) + k,
+                 function(load<P>(at(slots, i->a) + k), load<P>(at(slots, i->b) + k)));
       }
     }
   }
@@ -45,8 +46,9 @@ class InstructionLoops {
   static void ternary(const I* i, const I* end, double* slots, const Function& function) {
     for (; i != end; ++i) {
       for (int k = 0; k < kLanes; k += PacketTraits<P>::kWidth) {
-        store<P>(slots + i->target + k,
-                 function(load<P>(slots + i->a + k), load<P>(slots + i->b + k), load<P>(slots + i->c + k)));
+        store<P>(at(slots, i->target) + k,
+                 function(load<P>(at(slots, i->a) + k), load<P>(at(slots, i->b) + k),
+                          load<P>(at(slots, i->c) + k)));
       }
     }
   }
@@ -54,13 +56,14 @@ class InstructionLoops {
   static void sineCosine(const I* i, const I* end, double* slots) {
     for (; i != end; ++i) {
       for (int k = 0; k < kLanes; k += PacketTraits<P>::kWidth) {
-        const SineCosine<P> value = calcSineCosine(load<P>(slots + i->a + k));
-        store<P>(slots + i->target + k, value.sine);
-        store<P>(slots + i->c + k, value.cosine);
+        const SineCosine<P> value = calcSineCosine(load<P>(at(slots, i->a) + k));
+        store<P>(at(slots, i->target) + k, value.sine);
+        store<P>(at(slots, i->c) + k, value.cosine);
       }
     }
   }
 
+  static double* at(double* slots, int place) { return slots + kPlace * place; }
   static P truth(Bits<P> condition) { return select<P>(condition, broadcast<P>(1.0), P{}); }
 
   static void runOne(Operation operation, const I* i, const I* end, double* slots) {

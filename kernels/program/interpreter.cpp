@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <stdexcept>
+#include <string>
 
 namespace twinmap::program {
-const Engine& getBestEngine() {
-  return kEngine8.isSupported() ? kEngine8 : kEngine8Of4;
-}
-
 std::vector<const Engine*> getEngines() {
   std::vector<const Engine*> engines{&kEngine4, &kEngine8, &kEngine8Of4, &kEngine16};
   engines.erase(
@@ -24,6 +22,10 @@ Interpreter::Interpreter(const Program& program, const Engine& engine)
       phase_(place(program.phase)),
       evaluation_(place(program.evaluation)),
       slots_(static_cast<std::size_t>(program.slot_count) * engine.lanes) {
+  if (program.slot_count > kLargestSlotCount) {
+    throw std::length_error("a program needs more than " + std::to_string(kLargestSlotCount) +
+                            " values at a time");
+  }
   for (const int slot : program.outputs) {
     outputs_.push_back(static_cast<std::size_t>(slot) * engine.lanes);
   }
@@ -38,7 +40,7 @@ Interpreter::PlacedSegment Interpreter::place(const Segment& segment) const {
     placed.runs.push_back({run.operation, static_cast<std::uint32_t>(run.count)});
   }
   const auto getPlace = [this](int slot) {
-    return static_cast<std::uint32_t>(std::max(slot, 0) * engine_->lanes);
+    return static_cast<std::uint16_t>(std::max(slot, 0) * engine_->lanes / kPlace);
   };
   for (const Instruction& i : segment.instructions) {
     const int last = i.targets[1] >= 0 ? i.targets[1] : i.operands[2];

@@ -9,16 +9,17 @@
 
 namespace twinmap::program {
 
-/// The fastest engine of this processor; all give the same bits.
-const Engine& getBestEngine();
-/// All engines of this processor.
+/// All engines of this processor; all give the same bits.
 std::vector<const Engine*> getEngines();
 
 /// Carries out a program for many samples at a time, one a lane. Rows are arrays of getLanes() doubles, at a
 /// multiple of 32 bytes, and stay where they are. No lane's values depend on another lane's.
 class Interpreter {
  public:
-  explicit Interpreter(const Program& program, const Engine& engine = getBestEngine());
+  static constexpr int kLargestSlotCount = 0x10000 * kPlace / 16;  ///< that 16 bits reach in 16 lanes
+
+  /// Throws std::length_error for a program of more than kLargestSlotCount slots.
+  explicit Interpreter(const Program& program, const Engine& engine = kEngine4);
 
   int getLanes() const { return engine_->lanes; }
   double* updTime() { return updRow(time_); }
