@@ -115,8 +115,8 @@ void runTwoBeam(benchmark::State& state, int directions, const StepEngine& engin
 
 #ifdef __AVX512F__
 /// The equations of motion in registers instead of a program: what no interpreter can beat.
-void runClosedForm(const program::PlacedRun* run, const program::PlacedRun* end, const program::PlacedInstruction*,
-                   double* slots) {
+void runClosedForm(const program::PlacedRun* run, const program::PlacedRun* end,
+                   const program::PlacedInstruction*, double* slots) {
   using namespace program;
   if (end - run < 5) {
     return;  // the hoisted segments
@@ -136,7 +136,8 @@ void runClosedForm(const program::PlacedRun* run, const program::PlacedRun* end,
 }
 
 const program::Engine kClosedForm{8, program::kEngine8.isSupported, runClosedForm};
-const StepEngine kClosedFormSteps{kClosedForm, kSteps8.prepareStage, kSteps8.finish, kSteps8.accept, kSteps8.interpolate};
+const StepEngine kClosedFormSteps{kClosedForm,    kSteps8.plan,        kSteps8.prepareStage,
+                                  kSteps8.finish, kSteps8.interpolate, kSteps8.accept};
 #endif
 
 void registerAll() {
@@ -151,7 +152,7 @@ void registerAll() {
                                "/lanes:" + std::to_string(engine->program.lanes) +
                                (engine == &kSteps8Of4 ? "_of_4" : "");
       benchmark::RegisterBenchmark(name.c_str(), [directions, engine](benchmark::State& state) {
-        runTwoBeam(state, directions, *engine, getenv("F")?atof(getenv("F")):1.0);
+        runTwoBeam(state, directions, *engine, 10.0);
       })->Unit(benchmark::kMillisecond);
     }
   }

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cassert>
+#include <chrono>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "kernels/lanes/lane.hpp"
@@ -13,6 +15,15 @@ namespace twinmap::lanes {
 
 using program::AlignedBuffer;
 using program::Interpreter;
+
+namespace {
+
+constexpr int kSingleRows = 13;  // of StepArrays
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kFirstGrowth = 100.0;   // the first size is a hundredth of the solution's own time, or less
+constexpr int kStepsBetweenClocks = 64;  // reading the clock costs as much as some instructions of all lanes
+
+}  // namespace
 
 const StepEngine& getBestEngine() {
   return kSteps8.program.isSupported() ? kSteps8 : kSteps8Of4;
@@ -39,19 +50,29 @@ class Integrator::Lanes {
   double* takeRows(int count) { return std::exchange(free_, free_ + count * count_); }
 
   bool load(int lane, SampleStream& stream);
+  void park(int lane);
   void release(int lane, SampleStream& stream);
-  void setPhase(int lane);
+  void beginPhase(int lane, int phase);
   void doRound();
-  void plan();
-  void evaluateStages();
+  unsigned doStep();
   void judge(int lane);
   void jump(int lane);
-  void keepOutputs();
-  bool keepPending(const double* states, double* fractions);
+  void keepOutputs(unsigned lanes);
   void advance(int lane);
   void beginSteps(int lane);
+  void endPhase(int lane);
+  void checkLimits(int lane);
   double calcNorm(int lane, const double* rows) const;
-  void finishSample(int lane);
+  void setNextOutput(int lane, int index);
+
+  template <typename Function>
+  void forEach(unsigned lanes, const Function& function) {
+    for (int lane = 0; lanes != 0; ++lane, lanes >>= 1) {
+      if ((lanes & 1) != 0 && lanes_[lane].mode != Mode::kIdle) {
+        function(lane);
+      }
+    }
+  }
 
   const std::vector<double> times_;
   const Options options_;
@@ -64,9 +85,9 @@ class Integrator::Lanes {
   std::vector<double> absolute_, relative_;
   AlignedBuffer buffer_;
   double* free_ = nullptr;
-  double *accepted_ = nullptr, *fractions_ = nullptr, *interpolated_ = nullptr;
   StepArrays arrays_{};
   std::vector<Lane> lanes_;
+  int active_ = 0;
   bool parameters_changed_ = true, phase_changed_ = true;
   Statistics statistics_;
 };
@@ -83,7 +104,7 @@ Integrator::Lanes::Lanes(const Problem& problem, const std::vector<double>& time
       directions_(static_cast<int>(problem.directions.size())),
       interpreter_(problem.derivative, engine.program),
       outputs_(problem, times, engine.program),
-      buffer_(static_cast<std::size_t>(9 * problem.getRowCount() + 8) * count_),
+      buffer_(static_cast<std::size_t>(9 * problem.getRowCount() + kSingleRows) * count_),
       lanes_(count_) {
   makeTolerances(problem);
   placeArrays(problem);
@@ -121,8 +142,9 @@ void Integrator::Lanes::placeArrays(const Problem& problem) {
   for (int j = 1; j <= 7; ++j) {
     a.slopes[j] = takeRows(rows);
   }
-  interpolated_ = takeRows(rows);
-  for (double** row : {&a.time, &a.step, &a.smallest_pivot, &a.error, &a.factor, &accepted_, &fractions_}) {
+  a.interpolated = takeRows(rows);
+  for (double** row : {&a.fraction, &a.time, &a.step, &a.end, &a.smallest_pivot, &a.error, &a.accepted,
+                       &a.proposed, &a.growth, &a.phase_end, &a.next_output, &a.steps, &a.next_check}) {
     *row = takeRows(1);
   }
   a.absolute_tolerance = absolute_.data();
@@ -130,83 +152,85 @@ void Integrator::Lanes::placeArrays(const Problem& problem) {
 }
 
 void Integrator::Lanes::run(SampleStream& stream) {
-  int active = 0;
   for (int lane = 0; lane < count_; ++lane) {
-    active += load(lane, stream) ? 1 : 0;
+    active_ += load(lane, stream) ? 1 : 0;
   }
-  while (active > 0) {
+  while (active_ > 0) {
     ++statistics_.rounds;
-    statistics_.active_lanes += active;
+    statistics_.active_lanes += active_;
     doRound();
     for (int lane = 0; lane < count_; ++lane) {
-      if (lanes_[lane].mode == Mode::kIdle && !lanes_[lane].sample.phases.empty()) {
+      if (lanes_[lane].mode == Mode::kIdle && lanes_[lane].is_occupied) {
         release(lane, stream);
-        active -= load(lane, stream) ? 0 : 1;
+        active_ -= load(lane, stream) ? 0 : 1;
       }
     }
   }
 }
 
-/// An idle lane computes along with the others, at a state of zeros.
 bool Integrator::Lanes::load(int lane, SampleStream& stream) {
   Lane& l = lanes_[lane];
-  const bool loaded = stream.next(l.sample);
-  for (int row = 0; row < arrays_.rows; ++row) {
-    arrays_.state[row * count_ + lane] = loaded ? l.sample.initial[row] : 0.0;
-    arrays_.slopes[1][row * count_ + lane] = 0.0;
-  }
-  if (!loaded) {
-    l.sample.phases.clear();
+  park(lane);
+  l.is_occupied = stream.next(l.sample);
+  if (!l.is_occupied) {
     return false;
+  }
+  for (int row = 0; row < arrays_.rows; ++row) {
+    arrays_.state[row * count_ + lane] = l.sample.initial[row];
   }
   for (int i = 0; i < parameters_; ++i) {
     interpreter_.updParameter(i)[lane] = l.sample.parameters[i];
   }
   parameters_changed_ = true;
-  l.begin();
-  setPhase(lane);
+  l.result = {};
+  l.start = std::chrono::steady_clock::now();
+  arrays_.next_check[lane] = 0.0;
+  setNextOutput(lane, 0);
+  beginPhase(lane, 0);
   return true;
 }
 
+/// An idle lane takes steps of size 0 at a state of zeros.
+void Integrator::Lanes::park(int lane) {
+  for (int row = 0; row < arrays_.rows; ++row) {
+    arrays_.state[row * count_ + lane] = 0.0;
+    arrays_.slopes[1][row * count_ + lane] = 0.0;
+  }
+  arrays_.time[lane] = arrays_.proposed[lane] = arrays_.steps[lane] = 0.0;
+  arrays_.phase_end[lane] = arrays_.next_output[lane] = arrays_.next_check[lane] = kInfinity;
+}
+
 void Integrator::Lanes::release(int lane, SampleStream& stream) {
-  const Lane& l = lanes_[lane];
+  Lane& l = lanes_[lane];
+  l.result.time = arrays_.time[lane];
+  l.result.steps = static_cast<int>(arrays_.steps[lane]);
   statistics_.steps += l.result.steps;
   statistics_.rejected += l.result.rejected;
   stream.finish(l.sample, l.result);
 }
 
-void Integrator::Lanes::setPhase(int lane) {
-  const Lane& l = lanes_[lane];
+void Integrator::Lanes::beginPhase(int lane, int phase) {
+  Lane& l = lanes_[lane];
+  l.phase = phase;
+  l.mode = Mode::kBegin;
   for (int i = 0; i < phase_inputs_; ++i) {
-    interpreter_.updPhaseInput(i)[lane] = l.sample.phases[l.phase].inputs[i];
+    interpreter_.updPhaseInput(i)[lane] = l.getPhase().inputs[i];
   }
   phase_changed_ = true;
+  arrays_.time[lane] = l.getPhase().begin;
+  arrays_.phase_end[lane] = l.getPhaseEnd();
+  arrays_.proposed[lane] = 0.0;
 }
 
 void Integrator::Lanes::doRound() {
-  plan();
-  evaluateStages();
-  for (int lane = 0; lane < count_; ++lane) {
-    judge(lane);
-  }
-  keepOutputs();
-  engine_.accept(accepted_, arrays_);
-  for (int lane = 0; lane < count_; ++lane) {
-    if (lanes_[lane].mode != Mode::kIdle) {
-      advance(lane);
-    }
-  }
+  const unsigned attention = doStep();
+  forEach(attention, [this](int lane) { judge(lane); });
+  keepOutputs(attention);
+  engine_.accept(arrays_);
+  forEach(attention, [this](int lane) { advance(lane); });
 }
 
-void Integrator::Lanes::plan() {
-  for (int lane = 0; lane < count_; ++lane) {
-    lanes_[lane].plan();
-    arrays_.time[lane] = lanes_[lane].time;
-    arrays_.step[lane] = lanes_[lane].planned;
-  }
-}
-
-void Integrator::Lanes::evaluateStages() {
+unsigned Integrator::Lanes::doStep() {
   if (parameters_changed_) {
     interpreter_.calcParameters();
   }
@@ -214,35 +238,29 @@ void Integrator::Lanes::evaluateStages() {
     interpreter_.calcPhase();
   }
   parameters_changed_ = phase_changed_ = false;
+  engine_.plan(arrays_);
   for (int stage = 2; stage <= 7; ++stage) {
     engine_.prepareStage(stage, arrays_);
     interpreter_.calcOutputs();
   }
-  engine_.finish(arrays_);
+  return engine_.finish(arrays_);
 }
 
-/// Whether the step is accepted, or what has failed.
+/// Before the new state is taken: what has failed, and where it has to be corrected.
 void Integrator::Lanes::judge(int lane) {
   Lane& l = lanes_[lane];
-  const bool is_step = l.mode == Mode::kFirst || l.mode == Mode::kStep;
-  const double error = arrays_.error[lane];
-  accepted_[lane] = l.mode != Mode::kIdle && error <= 1.0 ? 1.0 : 0.0;
-  if (l.mode == Mode::kIdle) {
-    return;
-  }
-  l.result.steps += is_step ? 1 : 0;
   if (arrays_.smallest_pivot[lane] <= 0.0) {
     l.fail(Outcome::kSingular);
-  } else if (!is_step && accepted_[lane] == 0.0) {
+  } else if (l.mode != Mode::kStep && arrays_.accepted[lane] == 0.0) {
     l.fail(Outcome::kNonFinite);
-  } else if (l.mode == Mode::kBegin && !l.sample.phases[l.phase].begin_slopes.empty() && l.phase > 0) {
+  } else if (l.mode == Mode::kBegin && l.hasJump()) {
     jump(lane);
   }
 }
 
 /// The solution is continuous where a phase begins, whenever that is: f- dt + ds- = f+ dt + ds+.
 void Integrator::Lanes::jump(int lane) {
-  const std::vector<double>& slopes = lanes_[lane].sample.phases[lanes_[lane].phase].begin_slopes;
+  const std::vector<double>& slopes = lanes_[lane].getPhase().begin_slopes;
   for (int j = 0; j < directions_; ++j) {
     for (int i = 0; i < states_; ++i) {
       const int at = i * count_ + lane;
@@ -253,68 +271,62 @@ void Integrator::Lanes::jump(int lane) {
 }
 
 /// The states at the output times that accepted steps have passed; one time of each lane in a pass.
-void Integrator::Lanes::keepOutputs() {
-  const int time_count = static_cast<int>(times_.size());
-  for (bool pending = true; pending;) {
-    pending = false;
-    for (int lane = 0; lane < count_; ++lane) {
-      const Lane& l = lanes_[lane];
-      const bool has =
-          accepted_[lane] != 0.0 && l.next_output < time_count && times_[l.next_output] < l.getPlannedEnd();
-      fractions_[lane] = has ? (times_[l.next_output] - l.time) / l.planned : -1.0;
-      pending = pending || has;
+void Integrator::Lanes::keepOutputs(unsigned lanes) {
+  const StepArrays& a = arrays_;
+  const auto isPending = [&a](int lane) {
+    return a.accepted[lane] != 0.0 && a.next_output[lane] < a.end[lane];
+  };
+  for (;;) {
+    unsigned pending = 0;
+    forEach(lanes, [&](int lane) {
+      pending |= isPending(lane) ? 1u << lane : 0u;
+      a.fraction[lane] = isPending(lane) ? (a.next_output[lane] - a.time[lane]) / a.step[lane] : 0.0;
+    });
+    if (pending == 0) {
+      return;
     }
-    if (pending) {
-      engine_.interpolate(fractions_, arrays_, interpolated_);
-    }
-    for (int lane = 0; lane < count_; ++lane) {
-      if (fractions_[lane] >= 0.0) {
-        outputs_.keep(lane, lanes_[lane].next_output++, lanes_[lane].phase, interpolated_);
-      }
-    }
+    engine_.interpolate(a);
+    forEach(pending, [this](int lane) {
+      outputs_.keep(lane, lanes_[lane].next_output, lanes_[lane].phase, arrays_.interpolated);
+      setNextOutput(lane, lanes_[lane].next_output + 1);
+    });
   }
+}
+
+void Integrator::Lanes::setNextOutput(int lane, int index) {
+  lanes_[lane].next_output = index;
+  arrays_.next_output[lane] = index < static_cast<int>(times_.size()) ? times_[index] : kInfinity;
 }
 
 void Integrator::Lanes::advance(int lane) {
   Lane& l = lanes_[lane];
-  if (l.result.outcome == Outcome::kDone) {
-    const bool jumped =
-        l.mode == Mode::kBegin && l.phase > 0 && !l.sample.phases[l.phase].begin_slopes.empty();
-    if (jumped) {
-      l.mode = Mode::kRestart;
-      return;
-    }
-    if (l.mode == Mode::kBegin || l.mode == Mode::kRestart) {
-      beginSteps(lane);
-    } else if (accepted_[lane] != 0.0) {
-      l.accept(arrays_.factor[lane]);
-    } else if (!l.reject(arrays_.error[lane], arrays_.factor[lane])) {
+  if (l.mode == Mode::kBegin && l.hasJump()) {
+    l.mode = Mode::kRestart;
+  } else if (l.mode != Mode::kStep) {
+    beginSteps(lane);
+  } else if (arrays_.accepted[lane] == 0.0) {
+    ++l.result.rejected;
+    const double time = std::max(std::abs(arrays_.time[lane]), 1e-9);
+    if (arrays_.proposed[lane] <= 8.0 * std::numeric_limits<double>::epsilon() * time) {
       l.fail(std::isfinite(arrays_.error[lane]) ? Outcome::kStepTooSmall : Outcome::kNonFinite);
     }
+  } else if (arrays_.time[lane] == arrays_.phase_end[lane]) {
+    endPhase(lane);
   }
-  l.result.time = l.time;
-  if (l.result.outcome != Outcome::kDone) {
-    l.mode = Mode::kIdle;
-  } else if (l.time < l.getPhaseEnd()) {
-    l.mode = l.isStopped(options_) ? Mode::kIdle : l.mode;
-  } else if (l.isInLastPhase()) {
-    finishSample(lane);
-  } else {
-    l.beginPhase(l.phase + 1);
-    setPhase(lane);
+  if (l.mode == Mode::kStep) {
+    checkLimits(lane);
   }
 }
 
 /// The first step is a hundredth of the time that the fastest state takes to change by its own size.
 void Integrator::Lanes::beginSteps(int lane) {
-  Lane& l = lanes_[lane];
   const double size = calcNorm(lane, arrays_.state);
   const double speed = calcNorm(lane, arrays_.slopes[1]);
-  const double length = l.getPhaseEnd() - l.time;
+  const double length = arrays_.phase_end[lane] - arrays_.time[lane];
   const double guess = size < 1e-5 || speed < 1e-5 ? 1e-6 : 0.01 * size / speed;
-  l.proposed = std::min(guess, 0.01 * length);
-  l.was_rejected = false;
-  l.mode = Mode::kFirst;
+  arrays_.proposed[lane] = std::min(guess, 0.01 * length);
+  arrays_.growth[lane] = kFirstGrowth;
+  lanes_[lane].mode = Mode::kStep;
 }
 
 double Integrator::Lanes::calcNorm(int lane, const double* rows) const {
@@ -327,13 +339,31 @@ double Integrator::Lanes::calcNorm(int lane, const double* rows) const {
   return largest;
 }
 
-void Integrator::Lanes::finishSample(int lane) {
+void Integrator::Lanes::endPhase(int lane) {
   Lane& l = lanes_[lane];
+  if (!l.isInLastPhase()) {
+    beginPhase(lane, l.phase + 1);
+    return;
+  }
   for (; l.next_output < static_cast<int>(times_.size()); ++l.next_output) {
     outputs_.keep(lane, l.next_output, l.phase, arrays_.state);
   }
   outputs_.write(lane, l.sample);
   l.mode = Mode::kIdle;
+}
+
+void Integrator::Lanes::checkLimits(int lane) {
+  Lane& l = lanes_[lane];
+  const double steps = arrays_.steps[lane];
+  if (steps >= options_.max_steps) {
+    l.fail(Outcome::kStepLimit);
+  } else if (steps >= arrays_.next_check[lane]) {
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - l.start;
+    if (elapsed.count() > options_.max_wall_time) {
+      l.fail(Outcome::kWallTime);
+    }
+    arrays_.next_check[lane] = std::min(steps + kStepsBetweenClocks, static_cast<double>(options_.max_steps));
+  }
 }
 
 Integrator::Integrator(const Problem& problem, const std::vector<double>& times, const Options& options,

@@ -32,6 +32,7 @@ constexpr double kDenseWeights[8] = {0,
 constexpr int kErrorStages[] = {1, 3, 4, 5, 6}, kDenseStages[] = {1, 3, 4, 5, 6, 7};
 /// With 0.9 every twelfth step of the two beams was rejected, with 0.85 one in 200.
 constexpr double kSafety = 0.85;
+constexpr double kLargestGrowth = 10.0, kSmallestFactor = 0.1;
 
 template <typename P, int chains>
 class StepLoops {
@@ -56,37 +57,34 @@ class StepLoops {
     }
   }
 
-  static void finish(const StepArrays& a) {
-    takePivots(a, false);
+  static void plan(const StepArrays& a) {
     for (int k = 0; k < kLanes; k += kWidth) {
-      const P step = load(a.step + k);
-      P largest{}, spoilt{};
-      for (int row = 0; row < a.rows; ++row) {
-        const int at = row * kLanes + k;
-        const P last = load(a.derivatives[row] + k);
-        store(a.slopes[7] + at, last);
-        const P state = load(a.stage_state + at);
-        P sum = last * kErrorWeights[7];
-        for (const int j : kErrorStages) {
-          sum = program::fma(load(a.slopes[j] + at), broadcast(kErrorWeights[j]), sum);
-        }
-        const P size = program::abs(load(a.state + at)) + program::abs(step * load(a.slopes[1] + at));
-        const P scale =
-            program::fma(size, broadcast(a.relative_tolerance[row]), broadcast(a.absolute_tolerance[row]));
-        const P error = program::abs(step * sum) / scale;
-        largest = program::select<P>(error > largest, error, largest);
-        spoilt += (state - state) + (last - last);  // 0 or NaN
-      }
-      const P error = largest + spoilt;
-      store(a.error + k, error);
-      const P limited = program::select<P>(error > 1e-30, error, broadcast(1e-30));
-      store(a.factor + k, kSafety * program::exp(-0.2 * program::log(limited)));
+      const P time = load(a.time + k), proposed = load(a.proposed + k), phase_end = load(a.phase_end + k);
+      const P rest = phase_end - time;
+      const program::Bits<P> is_last = 1.01 * proposed >= rest;
+      const P half = 0.5 * rest;
+      const P within = program::select<P>(proposed < half, proposed, half);
+      const P step = program::select<P>(is_last, rest, within);
+      store(a.step + k, step);
+      store(a.end + k, program::select<P>(is_last, phase_end, time + step));
     }
   }
 
-  static void accept(const double* accepted, const StepArrays& a) {
+  static unsigned finish(const StepArrays& a) {
+    takePivots(a, false);
+    unsigned attention = 0;
     for (int k = 0; k < kLanes; k += kWidth) {
-      const program::Bits<P> take = load(accepted + k) != 0.0;
+      const P error = calcError(a, k);
+      store(a.error + k, error);
+      attention |= program::toMask(control(a, k, error)) << k;
+    }
+    return attention;
+  }
+
+  static void accept(const StepArrays& a) {
+    for (int k = 0; k < kLanes; k += kWidth) {
+      const program::Bits<P> take = load(a.accepted + k) != 0.0;
+      store(a.time + k, program::select<P>(take, load(a.end + k), load(a.time + k)));
       for (int at = k; at < a.rows * kLanes; at += kLanes) {
         store(a.state + at, program::select<P>(take, load(a.stage_state + at), load(a.state + at)));
         store(a.slopes[1] + at, program::select<P>(take, load(a.slopes[7] + at), load(a.slopes[1] + at)));
@@ -94,10 +92,10 @@ class StepLoops {
     }
   }
 
-  static void interpolate(const double* fractions, const StepArrays& a, double* states) {
+  static void interpolate(const StepArrays& a) {
     for (int k = 0; k < kLanes; k += kWidth) {
       P weights[8];
-      calcDenseWeights(load(fractions + k), weights);
+      calcDenseWeights(load(a.fraction + k), weights);
       for (const int j : kDenseStages) {
         weights[j] *= load(a.step + k);
       }
@@ -106,7 +104,7 @@ class StepLoops {
         for (const int j : kDenseStages) {
           sum = program::fma(load(a.slopes[j] + at), weights[j], sum);
         }
-        store(states + at, sum);
+        store(a.interpolated + at, sum);
       }
     }
   }
@@ -138,6 +136,46 @@ class StepLoops {
         store(a.stage_state + at, program::fma(step, sum, load(a.state + at)));
       }
     }
+  }
+
+  static P calcError(const StepArrays& a, int k) {
+    const P step = load(a.step + k);
+    P largest{}, spoilt{};
+    for (int row = 0; row < a.rows; ++row) {
+      const int at = row * kLanes + k;
+      const P last = load(a.derivatives[row] + k);
+      store(a.slopes[7] + at, last);
+      P sum = last * kErrorWeights[7];
+      for (const int j : kErrorStages) {
+        sum = program::fma(load(a.slopes[j] + at), broadcast(kErrorWeights[j]), sum);
+      }
+      const P size = program::abs(load(a.state + at)) + program::abs(step * load(a.slopes[1] + at));
+      const P scale =
+          program::fma(size, broadcast(a.relative_tolerance[row]), broadcast(a.absolute_tolerance[row]));
+      const P error = program::abs(step * sum) / scale;
+      largest = program::select<P>(error > largest, error, largest);
+      const P state = load(a.stage_state + at);
+      spoilt += (state - state) + (last - last);  // 0 or NaN
+    }
+    return largest + spoilt;
+  }
+
+  /// The next step from this one's error, which is of order 5; returns where attention is needed.
+  static program::Bits<P> control(const StepArrays& a, int k, P error) {
+    const P step = load(a.step + k), end = load(a.end + k), growth = load(a.growth + k);
+    const P limited = program::select<P>(error > 1e-30, error, broadcast(1e-30));
+    P factor = kSafety * program::exp(-0.2 * program::log(limited));
+    factor = program::select<P>(factor > growth, growth, factor);
+    factor = program::select<P>(factor > kSmallestFactor, factor, broadcast(kSmallestFactor));
+    factor = program::select<P>(error == error, factor, broadcast(kSmallestFactor));
+    const program::Bits<P> accepted = error <= 1.0;
+    store(a.accepted + k, program::select<P>(accepted, broadcast(1.0), P{}));
+    store(a.proposed + k, step * factor);
+    store(a.growth + k, program::select<P>(accepted, broadcast(kLargestGrowth), broadcast(1.0)));
+    const P steps = load(a.steps + k) + program::select<P>(step > 0.0, broadcast(1.0), P{});
+    store(a.steps + k, steps);
+    return ~accepted | (step == 0.0) | (end >= load(a.phase_end + k)) | (end > load(a.next_output + k)) |
+           (load(a.smallest_pivot + k) <= 0.0) | (steps >= load(a.next_check + k));
   }
 
   /// Of the stage just evaluated. A NaN is no small pivot: it shows in the error.

@@ -8,8 +8,9 @@ using Two = StepLoops<program::Packet4, 2>;
 
 }  // namespace
 
-const StepEngine kSteps4{program::kEngine4, One::prepareStage, One::finish, One::accept, One::interpolate};
-const StepEngine kSteps8Of4{program::kEngine8Of4, Two::prepareStage, Two::finish, Two::accept,
-                            Two::interpolate};
+const StepEngine kSteps4{program::kEngine4, One::plan,        One::prepareStage,
+                         One::finish,       One::interpolate, One::accept};
+const StepEngine kSteps8Of4{program::kEngine8Of4, Two::plan,        Two::prepareStage,
+                            Two::finish,          Two::interpolate, Two::accept};
 
 }  // namespace twinmap::lanes

@@ -10,7 +10,9 @@ using Two = StepLoops<program::Packet8, 2>;
 
 }  // namespace
 
-const StepEngine kSteps8{program::kEngine8, One::prepareStage, One::finish, One::accept, One::interpolate};
-const StepEngine kSteps16{program::kEngine16, Two::prepareStage, Two::finish, Two::accept, Two::interpolate};
+const StepEngine kSteps8{program::kEngine8, One::plan,        One::prepareStage,
+                         One::finish,       One::interpolate, One::accept};
+const StepEngine kSteps16{program::kEngine16, Two::plan,        Two::prepareStage,
+                          Two::finish,        Two::interpolate, Two::accept};
 
 }  // namespace twinmap::lanes

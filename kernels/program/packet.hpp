@@ -79,6 +79,10 @@ static inline Packet8 floor(Packet8 x) {
 static inline bool any(Bits<Packet8> x) {
   return _mm512_test_epi64_mask(reinterpret_cast<__m512i>(x), reinterpret_cast<__m512i>(x)) != 0;
 }
+/// One bit a lane, from a comparison's result.
+static inline unsigned toMask(Bits<Packet8> x) {
+  return _mm512_movepi64_mask(reinterpret_cast<__m512i>(x));
+}
 #endif
 
 #if defined(__AVX2__) && defined(__FMA__)
@@ -102,6 +106,9 @@ static inline Packet4 floor(Packet4 x) {
 }
 static inline bool any(Bits<Packet4> x) {
   return _mm256_movemask_pd(reinterpret_cast<__m256d>(x)) != 0;
+}
+static inline unsigned toMask(Bits<Packet4> x) {
+  return static_cast<unsigned>(_mm256_movemask_pd(reinterpret_cast<__m256d>(x)));
 }
 #else
 static inline Packet4 fma(Packet4 a, Packet4 b, Packet4 c) {
@@ -136,6 +143,9 @@ static inline Packet4 floor(Packet4 x) {
 }
 static inline bool any(Bits<Packet4> x) {
   return (x[0] | x[1] | x[2] | x[3]) != 0;
+}
+static inline unsigned toMask(Bits<Packet4> x) {
+  return static_cast<unsigned>((x[0] & 1) | (x[1] & 2) | (x[2] & 4) | (x[3] & 8));
 }
 #endif
 
