@@ -251,6 +251,7 @@ void Integrator::Lanes::judge(int lane) {
   Lane& l = lanes_[lane];
   if (arrays_.smallest_pivot[lane] <= 0.0) {
     l.fail(Outcome::kSingular);
+    arrays_.accepted[lane] = 0.0;
   } else if (l.mode != Mode::kStep && arrays_.accepted[lane] == 0.0) {
     l.fail(Outcome::kNonFinite);
   } else if (l.mode == Mode::kBegin && l.hasJump()) {
@@ -304,14 +305,14 @@ void Integrator::Lanes::advance(int lane) {
     l.mode = Mode::kRestart;
   } else if (l.mode != Mode::kStep) {
     beginSteps(lane);
-  } else if (arrays_.accepted[lane] == 0.0) {
-    ++l.result.rejected;
-    const double time = std::max(std::abs(arrays_.time[lane]), 1e-9);
-    if (arrays_.proposed[lane] <= 8.0 * std::numeric_limits<double>::epsilon() * time) {
-      l.fail(std::isfinite(arrays_.error[lane]) ? Outcome::kStepTooSmall : Outcome::kNonFinite);
-    }
   } else if (arrays_.time[lane] == arrays_.phase_end[lane]) {
     endPhase(lane);
+  } else {
+    l.result.rejected += arrays_.accepted[lane] == 0.0 ? 1 : 0;
+    const double time = std::max(std::abs(arrays_.time[lane]), kSmallestTime);
+    if (arrays_.proposed[lane] <= kSmallestStep * time) {
+      l.fail(std::isfinite(arrays_.error[lane]) ? Outcome::kStepTooSmall : Outcome::kNonFinite);
+    }
   }
   if (l.mode == Mode::kStep) {
     checkLimits(lane);

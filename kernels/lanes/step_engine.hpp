@@ -33,6 +33,9 @@ struct StepArrays {
   double* next_check;   ///< number of steps at which to look at limits
 };
 
+/// A step of this part of the time, or of kSmallestTime (s), is too small: eight units in the last place.
+constexpr double kSmallestStep = 0x1p-49, kSmallestTime = 1e-9;
+
 /// Arithmetic of Dormand and Prince's 5(4) pair on all lanes at a time, for one number of lanes.
 struct StepEngine {
   const program::Engine& program;

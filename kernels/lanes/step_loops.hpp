@@ -170,12 +170,17 @@ class StepLoops {
     factor = program::select<P>(error == error, factor, broadcast(kSmallestFactor));
     const program::Bits<P> accepted = error <= 1.0;
     store(a.accepted + k, program::select<P>(accepted, broadcast(1.0), P{}));
-    store(a.proposed + k, step * factor);
+    const P proposed = step * factor;
+    store(a.proposed + k, proposed);
     store(a.growth + k, program::select<P>(accepted, broadcast(kLargestGrowth), broadcast(1.0)));
     const P steps = load(a.steps + k) + program::select<P>(step > 0.0, broadcast(1.0), P{});
     store(a.steps + k, steps);
-    return ~accepted | (step == 0.0) | (end >= load(a.phase_end + k)) | (end > load(a.next_output + k)) |
-           (load(a.smallest_pivot + k) <= 0.0) | (steps >= load(a.next_check + k));
+    const P time = program::abs(load(a.time + k));
+    const P smallest =
+        kSmallestStep * program::select<P>(time > kSmallestTime, time, broadcast(kSmallestTime));
+    return ~accepted | (proposed <= smallest) | (end >= load(a.phase_end + k)) |
+           (end > load(a.next_output + k)) | (load(a.smallest_pivot + k) <= 0.0) |
+           (steps >= load(a.next_check + k));
   }
 
   /// Of the stage just evaluated. A NaN is no small pivot: it shows in the error.
