@@ -8,6 +8,7 @@
 #include <random>
 
 #include "kernels/program/trigonometric.hpp"
+#include "tests/kernels/lanes/pendulum.hpp"
 #include "tests/kernels/lanes/two_beam.hpp"
 
 namespace twinmap::lanes {
@@ -70,11 +71,11 @@ const Batch& getReference(int directions) {
   Options options;
   options.relative_tolerance = 1e-12;
   options.absolute_tolerance = 1e-14;
-  options.parameter_scales = {0.2, 5e-5, 10.0, 0.018};
+  options.parameter_scales = std::vector<double>{0.2, 5e-5, 10.0, 0.018};
   options.parameter_scales.resize(directions);
   std::vector<int> list{0, 1, 2, 3};
   list.resize(directions);
-  Integrator integrator(two_beam::makeProblem(list), two_beam::makeTimes(), options);
+  Integrator integrator(two_beam::makeProblem(list), two_beam::makeTimes(), options, chooseEngine(kSamples));
   integrate(integrator, batch.samples);
   return batch;
 }
@@ -84,12 +85,23 @@ const Problem& two_beam_problem() {
   return problem;
 }
 
-void runTwoBeam(benchmark::State& state, int directions, const StepEngine& engine, double factor) {
+void setCounters(benchmark::State& state, const Problem& problem, const Statistics& s,
+                 const StepEngine& engine) {
+  state.counters["us_a_sample"] = benchmark::Counter(
+      kSamples * state.iterations() * 1e-6, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  state.counters["instructions"] = problem.derivative.evaluation.instructions.size();
+  state.counters["dispatches"] = problem.derivative.evaluation.runs.size();
+  state.counters["slots"] = problem.derivative.slot_count;
+  state.counters["steps"] = double(s.steps) / (kSamples * state.iterations());
+  state.counters["rejected_pct"] = 100.0 * s.rejected / s.steps;
+  state.counters["active_pct"] = 100.0 * s.active_lanes / (s.rounds * engine.program.lanes);
+}
+
+void runTwoBeam(benchmark::State& state, int directions, const StepEngine& engine) {
   std::vector<int> list{0, 1, 2, 3};
   list.resize(directions);
   Options options;
-  options.sensitivity_factor = factor;
-  options.parameter_scales = {0.2, 5e-5, 10.0, 0.018};
+  options.parameter_scales = std::vector<double>{0.2, 5e-5, 10.0, 0.018};
   options.parameter_scales.resize(directions);
   const Problem problem = two_beam::makeProblem(list);
   Integrator integrator(problem, two_beam::makeTimes(), options, engine);
@@ -97,20 +109,12 @@ void runTwoBeam(benchmark::State& state, int directions, const StepEngine& engin
   for (auto _ : state) {
     benchmark::DoNotOptimize(integrate(integrator, batch.samples));
   }
-  const Statistics& s = integrator.getStatistics();
-  state.counters["us_a_sample"] = benchmark::Counter(
-      kSamples * state.iterations() * 1e-6, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  setCounters(state, problem, integrator.getStatistics(), engine);
   state.counters["error"] = calcLargestError(batch.outputs, getReference(directions).outputs);
   if (directions > 0) {
     state.counters["derivative_error"] =
         calcLargestError(batch.derivatives, getReference(directions).derivatives);
   }
-  state.counters["instructions"] = problem.derivative.evaluation.instructions.size();
-  state.counters["dispatches"] = problem.derivative.evaluation.runs.size();
-  state.counters["slots"] = problem.derivative.slot_count;
-  state.counters["steps"] = double(s.steps) / (kSamples * state.iterations());
-  state.counters["rejected_pct"] = 100.0 * s.rejected / s.steps;
-  state.counters["active_pct"] = 100.0 * s.active_lanes / (s.rounds * engine.program.lanes);
 }
 
 #ifdef __AVX512F__
@@ -140,21 +144,49 @@ const StepEngine kClosedFormSteps{kClosedForm,    kSteps8.plan,        kSteps8.p
                                   kSteps8.finish, kSteps8.interpolate, kSteps8.accept};
 #endif
 
+/// Six masses that swing for 5 s, 100 outputs of each angle.
+void runChain(benchmark::State& state, int directions, const StepEngine& engine) {
+  constexpr int kMasses = 6;
+  std::vector<int> list{0, 1, 2};
+  list.resize(directions);
+  const Problem problem = pendulum::makeProblem(kMasses, list);
+  Integrator integrator(problem, two_beam::makeTimes(), {}, engine);
+  constexpr int kChainValues = (kMasses + 1) * 100;
+  std::vector<double> outputs(kChainValues * kSamples), derivatives(kChainValues * kSamples * directions);
+  std::vector<Sample> samples(kSamples);
+  for (int j = 0; j < kSamples; ++j) {
+    samples[j].parameters = std::vector<double>{1.0, 0.5 + 0.001 * j, 9.81};
+    samples[j].initial.assign(problem.getRowCount(), 0.0);
+    std::fill_n(samples[j].initial.begin(), 2 * kMasses, 0.3);
+    samples[j].phases = {{0.0, {}}};
+    samples[j].end = two_beam::kDuration;
+    samples[j].outputs = &outputs[kChainValues * j];
+    samples[j].derivatives = derivatives.data() + kChainValues * j * directions;
+  }
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(integrate(integrator, samples));
+  }
+  setCounters(state, problem, integrator.getStatistics(), engine);
+}
+
 void registerAll() {
 #ifdef __AVX512F__
   benchmark::RegisterBenchmark("TwoBeam/closed_form", [](benchmark::State& state) {
-    runTwoBeam(state, 0, kClosedFormSteps, 1.0);
+    runTwoBeam(state, 0, kClosedFormSteps);
   })->Unit(benchmark::kMillisecond);
 #endif
-  for (const int directions : {0, 4}) {
-    for (const StepEngine* engine : getEngines()) {
-      const std::string name = std::string("TwoBeam") + (directions > 0 ? "WithDerivatives" : "") +
-                               "/lanes:" + std::to_string(engine->program.lanes) +
-                               (engine == &kSteps8Of4 ? "_of_4" : "");
-      benchmark::RegisterBenchmark(name.c_str(), [directions, engine](benchmark::State& state) {
-        runTwoBeam(state, directions, *engine, 10.0);
+  for (const StepEngine* engine : getEngines()) {
+    const std::string lanes =
+        "/lanes:" + std::to_string(engine->program.lanes) + (engine == &kSteps8Of4 ? "_of_4" : "");
+    const auto add = [&lanes, engine](const std::string& name, auto run, int directions) {
+      benchmark::RegisterBenchmark((name + lanes).c_str(), [=](benchmark::State& state) {
+        run(state, directions, *engine);
       })->Unit(benchmark::kMillisecond);
-    }
+    };
+    add("TwoBeam", runTwoBeam, 0);
+    add("TwoBeamWithDerivatives", runTwoBeam, 4);
+    add("Chain", runChain, 0);
+    add("ChainWithDerivatives", runChain, 3);
   }
 }
 

@@ -25,8 +25,15 @@ constexpr int kStepsBetweenClocks = 64;  // reading the clock costs as much as s
 
 }  // namespace
 
-const StepEngine& getBestEngine() {
-  return kSteps8.program.isSupported() ? kSteps8 : kSteps8Of4;
+const StepEngine& chooseEngine(int samples) {
+  const bool has_wide = kSteps8.program.isSupported();
+  if (samples <= 4) {
+    return kSteps4;
+  }
+  if (has_wide) {
+    return samples <= 8 ? kSteps8 : kSteps16;
+  }
+  return kSteps8Of4;
 }
 
 std::vector<const StepEngine*> getEngines() {

@@ -9,8 +9,9 @@
 
 namespace twinmap::lanes {
 
-/// The fastest engine of this processor; all give the same bits.
-const StepEngine& getBestEngine();
+/// The engine of this processor that is fastest for so many samples. All engines give the same bits: many
+/// lanes hide the latency of instructions and share their decoding, but cost as much when they are empty.
+const StepEngine& chooseEngine(int samples);
 /// All engines of this processor.
 std::vector<const StepEngine*> getEngines();
 
@@ -37,7 +38,7 @@ class Integrator {
   /// `times`: increasing, when outputs are wanted; from the first phase's begin to the samples' end.
   /// `problem` is copied as far as it is needed.
   Integrator(const Problem& problem, const std::vector<double>& times, const Options& options,
-             const StepEngine& engine = getBestEngine());
+             const StepEngine& engine);
   ~Integrator();
 
   /// Until the stream has no samples left.

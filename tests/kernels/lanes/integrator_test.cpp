@@ -84,7 +84,7 @@ TEST(Lanes, TwoBeamsAreThoseOfATightIntegration) {
   for (const auto& point : points) {
     batch.add(two_beam::makeSample(point, 0, nullptr, nullptr), 200, 0);
   }
-  Integrator integrator(two_beam::makeProblem(), two_beam::makeTimes(), {});
+  Integrator integrator(two_beam::makeProblem(), two_beam::makeTimes(), {}, chooseEngine(8));
   batch.run(integrator);
   double largest = 0.0;
   for (std::size_t j = 0; j < points.size(); ++j) {
@@ -109,7 +109,8 @@ TEST(Lanes, SensitivitiesAreTheLimitOfDifferences) {
   for (const auto& point : points) {
     batch.add(two_beam::makeSample(point, 4, nullptr, nullptr), 200, 4);
   }
-  Integrator integrator(two_beam::makeProblem(directions), two_beam::makeTimes(), makeTwoBeamOptions(4));
+  Integrator integrator(two_beam::makeProblem(directions), two_beam::makeTimes(), makeTwoBeamOptions(4),
+                        chooseEngine(8));
   batch.run(integrator);
   double largest = 0.0;
   for (std::size_t j = 0; j < points.size(); ++j) {
@@ -140,8 +141,9 @@ TEST(Lanes, ValuesWithSensitivitiesAreAsGoodAsThoseAlone) {
     alone.add(two_beam::makeSample(point, 0, nullptr, nullptr), 200, 0);
     with.add(two_beam::makeSample(point, 4, nullptr, nullptr), 200, 4);
   }
-  Integrator of_values(two_beam::makeProblem(), two_beam::makeTimes(), {});
-  Integrator of_both(two_beam::makeProblem({0, 1, 2, 3}), two_beam::makeTimes(), makeTwoBeamOptions(4));
+  Integrator of_values(two_beam::makeProblem(), two_beam::makeTimes(), {}, chooseEngine(8));
+  Integrator of_both(two_beam::makeProblem({0, 1, 2, 3}), two_beam::makeTimes(), makeTwoBeamOptions(4),
+                     chooseEngine(8));
   alone.run(of_values);
   with.run(of_both);
   for (std::size_t i = 0; i < alone.outputs.size(); i += 100) {
@@ -220,7 +222,7 @@ TEST(Lanes, ThreadsMayShareAStream) {
   for (const auto& point : drawPoints(60)) {
     batch.add(two_beam::makeSample(point, 0, nullptr, nullptr), 200, 0);
   }
-  Integrator single(problem, two_beam::makeTimes(), {});
+  Integrator single(problem, two_beam::makeTimes(), {}, chooseEngine(8));
   batch.run(single);
   const std::vector<double> expected = batch.outputs;
   for (const int count : {2, 5}) {
@@ -228,7 +230,8 @@ TEST(Lanes, ThreadsMayShareAStream) {
     SharedStream stream(batch.samples);
     std::vector<std::thread> threads;
     for (int i = 0; i < count; ++i) {
-      threads.emplace_back([&] { Integrator(problem, two_beam::makeTimes(), {}).run(stream); });
+      threads.emplace_back(
+          [&] { Integrator(problem, two_beam::makeTimes(), {}, chooseEngine(8)).run(stream); });
     }
     for (std::thread& thread : threads) {
       thread.join();
@@ -244,7 +247,7 @@ TEST(Lanes, EnergyOfAChainStays) {
   for (int i = 0; i <= 50; ++i) {
     times.push_back(0.1 * i);
   }
-  Integrator integrator(pendulum::makeProblem(masses), times, {});
+  Integrator integrator(pendulum::makeProblem(masses), times, {}, chooseEngine(8));
   Batch batch;
   for (int j = 0; j < 11; ++j) {
     Sample sample;
@@ -303,7 +306,7 @@ struct Gate {
 
 TEST(Lanes, SolutionAndOutputsFollowThePhases) {
   const std::vector<double> times{0.0, 0.4, 1.25, 1.5, 3.0};
-  Integrator integrator(Gate::makeProblem({}), times, {});
+  Integrator integrator(Gate::makeProblem({}), times, {}, chooseEngine(8));
   Batch batch;
   for (int j = 0; j < 9; ++j) {
     batch.add(Gate::makeSample(3.0 + j, 1.25, false), 15, 0);
@@ -323,7 +326,7 @@ TEST(Lanes, SolutionAndOutputsFollowThePhases) {
 
 TEST(Lanes, SensitivitiesJumpWhereAnEventMoves) {
   const std::vector<double> times{0.5, 1.2, 1.9, 3.0};
-  Integrator integrator(Gate::makeProblem({0, 1}), times, {});
+  Integrator integrator(Gate::makeProblem({0, 1}), times, {}, chooseEngine(8));
   Batch batch;
   for (int j = 0; j < 5; ++j) {
     batch.add(Gate::makeSample(2.0 + j, 1.0 + 0.03 * j, true), 12, 2);
@@ -404,7 +407,7 @@ TEST(Lanes, AFailureIsNamedAndItsNeighboursKeepTheirBits) {
 }
 
 TEST(Lanes, FailuresHaveTheirTime) {
-  Integrator integrator(Hazard::makeProblem(), {2.0}, {});
+  Integrator integrator(Hazard::makeProblem(), {2.0}, {}, chooseEngine(8));
   Batch batch;
   batch.add(Hazard::makeSample(2.0, 99.0, 1.0), 1, 0);
   batch.add(Hazard::makeSample(0.0, 0.5, 1.0), 1, 0);
@@ -417,7 +420,7 @@ TEST(Lanes, FailuresHaveTheirTime) {
 TEST(Lanes, StepsAreLimited) {
   Options options;
   options.max_steps = 20;
-  Integrator integrator(two_beam::makeProblem(), two_beam::makeTimes(), options);
+  Integrator integrator(two_beam::makeProblem(), two_beam::makeTimes(), options, chooseEngine(8));
   Batch batch;
   batch.add(two_beam::makeSample(drawPoints(1)[0], 0, nullptr, nullptr), 200, 0);
   batch.run(integrator);
@@ -429,7 +432,7 @@ TEST(Lanes, StepsAreLimited) {
 TEST(Lanes, WallTimeIsLimited) {
   Options options;
   options.max_wall_time = 1e-9;
-  Integrator integrator(two_beam::makeProblem(), two_beam::makeTimes(), options);
+  Integrator integrator(two_beam::makeProblem(), two_beam::makeTimes(), options, chooseEngine(8));
   Batch batch;
   batch.add(two_beam::makeSample(drawPoints(1)[0], 0, nullptr, nullptr), 200, 0);
   batch.run(integrator);
@@ -443,7 +446,7 @@ TEST(Lanes, SystemAtRestAndAnIntegratorUsedTwice) {
   equations.counts = {1, 0, 0};
   equations.derivatives = {-r.state(0)};
   equations.outputs = {r.state(0), 5.0};
-  Integrator integrator(makeProblem(r, equations), {0.0, 1.0}, {});
+  Integrator integrator(makeProblem(r, equations), {0.0, 1.0}, {}, chooseEngine(8));
   for (const double initial : {0.0, 2.0}) {
     Sample sample;
     sample.initial = {initial};
@@ -460,14 +463,14 @@ TEST(Lanes, SystemAtRestAndAnIntegratorUsedTwice) {
 }
 
 TEST(Lanes, AreKeptBusy) {
-  Integrator integrator(two_beam::makeProblem(), two_beam::makeTimes(), {});
+  Integrator integrator(two_beam::makeProblem(), two_beam::makeTimes(), {}, chooseEngine(8));
   Batch batch;
   for (const auto& point : drawPoints(200)) {
     batch.add(two_beam::makeSample(point, 0, nullptr, nullptr), 200, 0);
   }
   batch.run(integrator);
   const Statistics& statistics = integrator.getStatistics();
-  EXPECT_GT(statistics.active_lanes, 0.98 * statistics.rounds * getBestEngine().program.lanes);
+  EXPECT_GT(statistics.active_lanes, 0.98 * statistics.rounds * 8);
 }
 
 }  // namespace
