@@ -26,6 +26,8 @@ class SampleStream {
   virtual void finish(const Sample& sample, const Result& result) = 0;
 };
 
+class LanePacket;
+
 /// Integrates samples, one a lane, by Dormand and Prince's 5(4) pair with its dense output of order 4
 /// (Hairer, Norsett, Wanner: Solving Ordinary Differential Equations I, II.4 to II.6). Every lane has its own
 /// parameters, time, step and phase, and takes the next sample when it is done: what a sample gives depends
@@ -47,8 +49,7 @@ class Integrator {
   const Statistics& getStatistics() const;
 
  private:
-  class Lanes;
-  std::unique_ptr<Lanes> lanes_;
+  std::unique_ptr<LanePacket> lanes_;
 };
 
 /// Integrates samples in their order; results[i] is that of samples[i].
