@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <unordered_map>
+#include <utility>
 
 namespace twinmap::program {
 namespace {
@@ -32,11 +33,12 @@ class Scheduler {
   }
 
   std::vector<Step> run() {
+    calcHeights();
     for (std::size_t i = 0; i < steps_.size(); ++i) {
       makeReadyIfComplete(static_cast<int>(i));
     }
     while (order_.size() < steps_.size()) {
-      emptyQueue(findLongestQueue());
+      emptyQueue(findMostUrgentQueue());
     }
     return std::move(order_);
   }
@@ -50,11 +52,42 @@ class Scheduler {
     }
   }
 
-  Queue& findLongestQueue() {
-    const auto longest = std::max_element(ready_.begin(), ready_.end(),
-                                          [](const Queue& a, const Queue& b) { return a.size() < b.size(); });
-    assert(!longest->empty());
-    return *longest;
+  /// How many steps follow each on the longest way to an end, itself included.
+  void calcHeights() {
+    std::vector<int> missing = missing_, order;
+    for (std::size_t i = 0; i < steps_.size(); ++i) {
+      if (missing[i] == 0) {
+        order.push_back(static_cast<int>(i));
+      }
+    }
+    for (std::size_t next = 0; next < order.size(); ++next) {
+      for (const int user : users_[order[next]]) {
+        if (--missing[user] == 0) {
+          order.push_back(user);
+        }
+      }
+    }
+    heights_.assign(steps_.size(), 1);
+    for (std::size_t i = order.size(); i-- > 0;) {
+      for (const int user : users_[order[i]]) {
+        heights_[order[i]] = std::max(heights_[order[i]], 1 + heights_[user]);
+      }
+    }
+  }
+
+  Queue& findMostUrgentQueue() {
+    const auto calcUrgency = [this](const Queue& queue) {
+      int height = 0;
+      for (const int step : queue) {
+        height = std::max(height, heights_[step]);
+      }
+      return std::make_pair(height, queue.size());
+    };
+    const auto most = std::max_element(ready_.begin(), ready_.end(), [&](const Queue& a, const Queue& b) {
+      return calcUrgency(a) < calcUrgency(b);
+    });
+    assert(!most->empty());
+    return *most;
   }
 
   /// Also of what becomes ready on the way.
@@ -73,6 +106,7 @@ class Scheduler {
   const std::vector<Step>& steps_;
   std::vector<std::vector<int>> users_;  ///< by step, once for each operand
   std::vector<int> missing_;             ///< operands not yet computed
+  std::vector<int> heights_;
   std::array<Queue, static_cast<int>(Operation::kCount)> ready_;
   std::vector<Step> order_;
 };
