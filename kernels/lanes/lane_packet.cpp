@@ -1,6 +1,7 @@
 // Which samples the lanes hold.
 #include "kernels/lanes/lane_packet.hpp"
 
+#include <cassert>
 #include <chrono>
 #include <limits>
 
@@ -95,6 +96,8 @@ bool LanePacket::load(int lane, SampleStream& stream) {
   if (!l.is_occupied) {
     return false;
   }
+  assert(static_cast<int>(l.sample.initial.size()) == arrays_.rows && !l.sample.phases.empty());
+  assert(static_cast<int>(l.sample.parameters.size()) == parameters_);
   for (int row = 0; row < arrays_.rows; ++row) {
     arrays_.state[row * count_ + lane] = l.sample.initial[row];
   }
@@ -137,6 +140,8 @@ void LanePacket::beginPhase(int lane, int phase) {
     interpreter_.updPhaseInput(i)[lane] = l.getPhase().inputs[i];
   }
   phase_changed_ = true;
+  assert(static_cast<int>(l.getPhase().inputs.size()) == phase_inputs_ &&
+         l.getPhase().begin < l.getPhaseEnd());
   arrays_.time[lane] = l.getPhase().begin;
   arrays_.phase_end[lane] = l.getPhaseEnd();
   arrays_.proposed[lane] = 0.0;

@@ -31,7 +31,7 @@ P expExtended(P high, P low) {
   const P value = 1.0 + fma(r * r, evaluatePolynomial(r, kSeries), r);
   const P half = fma(n, broadcast<P>(0.5), magic);
   const P other = (n - (half - magic)) + magic;
-  const auto calcPower = [](P k) { return fromBits<P>((asBits(k) + 1023) << 52); };
+  const auto calcPower = [](P k) { return fromWords<P>((asWords(k) + 1023) << 52); };
   return value * calcPower(half) * calcPower(other);
 }
 
@@ -49,11 +49,11 @@ Extended<P> calcLogExtended(P x) {
                                        2.0 / 17, 2.0 / 19, 2.0 / 21, 2.0 / 23, 2.0 / 25, 2.0 / 27};
   const Bits<P> subnormal = x < 0x1p-1022;
   const P scaled = select<P>(subnormal, x * 0x1p54, x);
-  const Bits<P> shifted = asBits(scaled) + (0x3FF0000000000000LL - 0x3FE6A09E667F3BCDLL);
-  const Bits<P> exponent = (shifted >> 52) & 0x7FF;
-  const P biased = fromBits<P>(exponent | 0x4330000000000000LL) - 0x1p52;
+  const Words<P> shifted = asWords(scaled) + (0x3FF0000000000000ULL - 0x3FE6A09E667F3BCDULL);
+  const Words<P> exponent = (shifted >> 52) & 0x7FF;
+  const P biased = fromWords<P>(exponent | 0x4330000000000000ULL) - 0x1p52;
   const P k = biased - select<P>(subnormal, broadcast<P>(1077.0), broadcast<P>(1023.0));
-  const P m = fromBits<P>((shifted & 0x000FFFFFFFFFFFFFLL) + 0x3FE6A09E667F3BCDLL);
+  const P m = fromWords<P>((shifted & 0x000FFFFFFFFFFFFFULL) + 0x3FE6A09E667F3BCDULL);
 
   const P f = m - 1.0;
   const P sum = 2.0 + f;

@@ -19,16 +19,21 @@ template <>
 struct PacketTraits<Packet4> {
   static constexpr int kWidth = 4;
   using Bits = long long __attribute__((vector_size(32)));
+  using Words = unsigned long long __attribute__((vector_size(32)));
 };
 template <>
 struct PacketTraits<Packet8> {
   static constexpr int kWidth = 8;
   using Bits = long long __attribute__((vector_size(64)));
+  using Words = unsigned long long __attribute__((vector_size(64)));
 };
 
-/// As many integers of 64 bits; a comparison gives -1 or 0 in each.
+/// What a comparison gives: -1 or 0 in each lane.
 template <typename P>
 using Bits = typename PacketTraits<P>::Bits;
+/// As many integers of 64 bits; their arithmetic wraps round.
+template <typename P>
+using Words = typename PacketTraits<P>::Words;
 
 template <typename P>
 P broadcast(double value) {
@@ -43,12 +48,13 @@ void store(double* target, P value) {
   *reinterpret_cast<P*>(target) = value;
 }
 
+/// The bits of each double.
 template <typename P>
-Bits<P> asBits(P x) {
-  return reinterpret_cast<Bits<P>>(x);
+Words<P> asWords(P x) {
+  return reinterpret_cast<Words<P>>(x);
 }
 template <typename P>
-P fromBits(Bits<P> x) {
+P fromWords(Words<P> x) {
   return reinterpret_cast<P>(x);
 }
 
@@ -149,14 +155,15 @@ static inline unsigned toMask(Bits<Packet4> x) {
 }
 #endif
 
+constexpr unsigned long long kSignBit = 0x8000000000000000ULL;
+
 template <typename P>
 P abs(P x) {
-  return fromBits<P>(asBits(x) & 0x7FFFFFFFFFFFFFFFLL);
+  return fromWords<P>(asWords(x) & ~kSignBit);
 }
 template <typename P>
 P copySign(P magnitude, P sign) {
-  return fromBits<P>((asBits(magnitude) & 0x7FFFFFFFFFFFFFFFLL) |
-                     (asBits(sign) & static_cast<long long>(0x8000000000000000ULL)));
+  return fromWords<P>((asWords(magnitude) & ~kSignBit) | (asWords(sign) & kSignBit));
 }
 /// Also of a NaN: false.
 template <typename P>

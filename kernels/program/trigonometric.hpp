@@ -41,17 +41,17 @@ SineCosine<P> calcSineCosine(P x) {
   const P n = shifted - magic;
   P r = fnma(n, broadcast<P>(kHalfPi), x);  // exact
   r = fnma(n, broadcast<P>(kHalfPiLow), r);
-  const Bits<P> sign = asBits(r) & static_cast<long long>(0x8000000000000000ULL);  // that of -0 too
+  const Words<P> sign = asWords(r) & kSignBit;  // that of -0 too
   r = fma(n, broadcast<P>(0x1.f1976b7ed8fbcp-110), r);
   const P z = r * r;
-  const P sine = fromBits<P>(asBits(calcSineKernel(r, z)) | sign);
+  const P sine = fromWords<P>(asWords(calcSineKernel(r, z)) | sign);
   const P cosine = calcCosineKernel(z);
-  const Bits<P> quadrant = asBits(shifted);
+  const Words<P> quadrant = asWords(shifted);
   const Bits<P> swap = (quadrant & 1) != 0;
-  const Bits<P> sine_sign = (quadrant & 2) << 62;
-  const Bits<P> cosine_sign = ((quadrant + 1) & 2) << 62;
-  const P s = fromBits<P>(asBits(select<P>(swap, cosine, sine)) ^ sine_sign);
-  const P c = fromBits<P>(asBits(select<P>(swap, sine, cosine)) ^ cosine_sign);
+  const Words<P> sine_sign = (quadrant & 2) << 62;
+  const Words<P> cosine_sign = ((quadrant + 1) & 2) << 62;
+  const P s = fromWords<P>(asWords(select<P>(swap, cosine, sine)) ^ sine_sign);
+  const P c = fromWords<P>(asWords(select<P>(swap, sine, cosine)) ^ cosine_sign);
   const Bits<P> large = abs(x) > 0x1p30;
   return {patch(s, large, x, x, [](double a, double) { return __builtin_sin(a); }),
           patch(c, large, x, x, [](double a, double) { return __builtin_cos(a); })};

@@ -150,10 +150,12 @@ struct Gate {
     equations.outputs = {r.state(0), r.state(1) * r.phaseInput(0), equations.derivatives[1]};
     return lanes::makeProblem(r, equations, directions);
   }
+  /// With sensitivities, or values alone.
   static Sample makeSample(double w, double when, bool moves) {
     Sample sample;
     sample.parameters = {w, when};
-    sample.initial = {1.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    sample.initial.assign(moves ? 6 : 2, 0.0);
+    sample.initial[0] = 1.0;
     sample.phases = {{0.0, {0.0}}, {when, {1.0}}};
     if (moves) {
       sample.phases[1].begin_slopes = {0.0, 1.0};
