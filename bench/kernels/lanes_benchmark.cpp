@@ -34,9 +34,7 @@ const std::vector<std::vector<double>>& getPoints() {
   return points.points;
 }
 
-using Solution = std::vector<double>;
-
-/// Values or derivatives of all samples, by an integration without error control to speak of.
+/// All samples and the memory of their results.
 struct Batch {
   std::vector<double> outputs, derivatives;
   std::vector<Sample> samples;
@@ -60,7 +58,7 @@ double calcLargestError(const std::vector<double>& values, const std::vector<dou
   return largest;
 }
 
-/// The same at 1e-4 of the tolerances; its own error is below 1e-9 of the range (tests/kernels/lanes).
+/// The same at tolerances of 1e-12 and 1e-14.
 const Batch& getReference(int directions) {
   static std::map<int, Batch> references;
   const auto found = references.find(directions);
@@ -80,7 +78,7 @@ const Batch& getReference(int directions) {
   return batch;
 }
 
-const Problem& two_beam_problem() {
+const Problem& getTwoBeamProblem() {
   static const Problem problem = two_beam::makeProblem();
   return problem;
 }
@@ -134,7 +132,7 @@ void runClosedForm(const program::PlacedRun* run, const program::PlacedRun* end,
   const Packet8 r1 = two_beam::kForce * pulse + m2 * b * get(4) * get(4) - get(5) * get(3) - get(7) * get(1);
   const Packet8 r2 = two_beam::kMoment * pulse - get(6) * get(4) - get(8) * get(2) - m2 * g * b;
   const Packet8 inverse = 1.0 / (m11 * m22 - m12 * m12);
-  const Problem& problem = two_beam_problem();
+  const Problem& problem = getTwoBeamProblem();
   store(slots + 8 * problem.derivative.outputs[2], (m22 * r1 - m12 * r2) * inverse);
   store(slots + 8 * problem.derivative.outputs[3], (m11 * r2 - m12 * r1) * inverse);
 }
