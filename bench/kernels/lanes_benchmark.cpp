@@ -3,9 +3,12 @@
 
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <random>
+#include <string>
+#include <vector>
 
 #include "kernels/program/trigonometric.hpp"
 #include "tests/kernels/lanes/pendulum.hpp"
