@@ -15,7 +15,7 @@ ALLOWED = {
     "measurement": {"response", "spec", "hdf5"},
     "design": {"spec"},
     "simulation": {"response", "spec"},
-    "multibody": {"response", "spec", "simulation"},
+    "multibody": {"response", "spec", "simulation", "kernels"},
     "features": {"autocorrelation", "response", "spec", "design"},
     "sensitivity": {"spec", "simulation", "features", "design"},
     "inverse_map": {"spec", "design", "simulation", "features", "sensitivity", "kernels"},
