@@ -1,4 +1,5 @@
 #include <iostream>
+#include <set>
 
 #include "framework/cli/commands.hpp"
 #include "framework/features/feature_extractor.hpp"
@@ -17,8 +18,14 @@ void requireModel(const ExperimentSpec& experiment) {
 
 void check(const ExperimentArguments& arguments) {
   const YamlNode tree = loadExperimentTree(arguments.file, arguments.overrides);
+  std::set<std::string> engines;
   for (const ModelGroup& group : groupByModel(expandCasesWithSignals(tree))) {  // what is wrong in any case
-    MultibodySimulator(group.model, group.times, group.modes).checkStart();
+    MultibodySimulator simulator(group.model, group.times, group.modes);
+    simulator.checkStart();
+    engines.insert(simulator.getEngine());
+  }
+  for (const std::string& engine : engines) {
+    std::cout << "# simulated by: " << engine << '\n';
   }
   std::cout << (tree.find("sweep") == nullptr ? writeExperiment(readExperimentWithSignals(tree))
                                               : writeIndependentDefaults(tree));

@@ -1,5 +1,7 @@
 #include "framework/experiment/run_experiment.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include "framework/experiment/evaluate_map.hpp"
 #include "framework/experiment/example_responses.hpp"
 #include "framework/experiment/fit_online.hpp"
@@ -167,6 +169,7 @@ RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& opt
 
   const MultibodySimulator simulator(experiment.model, collectTimes(experiment.features),
                                      countModes(experiment.features));
+  spdlog::info("simulated by: {}", simulator.getEngine());
   const FeatureExtractor extractor = makeExtractor(experiment, simulator.getLayout());
   checkTransformOf(extractor.getInfos(), experiment.transform);
   const OwnStores stores = openOwnStores(experiment, simulator, options);

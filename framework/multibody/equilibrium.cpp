@@ -12,19 +12,46 @@ constexpr double kStepTolerance = 1e-11;      ///< m or rad, relative to 1 + |co
 constexpr double kResidualTolerance = 1e-12;  ///< of the largest acceleration met
 constexpr double kDifferenceStep = 6e-6;      ///< cube root of the rounding unit, for central differences
 
-class EquilibriumSolver {
+/// By Simbody, with central differences.
+class LoadedSystemAtRest : public RestAccelerations {
  public:
-  explicit EquilibriumSolver(LoadedSystem& system)
+  explicit LoadedSystemAtRest(LoadedSystem& system)
       : system_(system), state_(system.getTree().getDefaultState()) {}
 
+  Eigen::VectorXd calc(const Eigen::VectorXd& q) override {
+    setState(system_, {q, Eigen::VectorXd::Zero(q.size())}, state_);
+    return system_.calcUDot(state_, 0.0);
+  }
+
+  Eigen::MatrixXd calcJacobian(const Eigen::VectorXd& q) override {
+    Eigen::MatrixXd jacobian(q.size(), q.size());
+    for (Eigen::Index i = 0; i < q.size(); ++i) {
+      const double h = kDifferenceStep * (1.0 + std::abs(q[i]));
+      Eigen::VectorXd forward = q, backward = q;
+      forward[i] += h;
+      backward[i] -= h;
+      jacobian.col(i) = (calc(forward) - calc(backward)) / (forward[i] - backward[i]);
+    }
+    return jacobian;
+  }
+
+ private:
+  LoadedSystem& system_;
+  SimTK::State state_;
+};
+
+class EquilibriumSolver {
+ public:
+  explicit EquilibriumSolver(RestAccelerations& system) : system_(system) {}
+
   Eigen::VectorXd solve(Eigen::VectorXd q) {
-    Eigen::VectorXd residual = calcAccelerations(q);
+    Eigen::VectorXd residual = system_.calc(q);
     for (int i = 0; i < kMaxIterations; ++i) {
       largest_ = std::max(largest_, residual.lpNorm<Eigen::Infinity>());
       if (residual.lpNorm<Eigen::Infinity>() <= kResidualTolerance * largest_) {
         return q;
       }
-      const Eigen::VectorXd step = -linalg::solveMinimumNorm(calcJacobian(q), residual);
+      const Eigen::VectorXd step = -linalg::solveMinimumNorm(system_.calcJacobian(q), residual);
       const double length = moveAlong(step, q, residual);
       const double change = length * (step.array().abs() / (1.0 + q.array().abs())).maxCoeff();
       if (change <= kStepTolerance && length == 1.0 && isSmall(residual)) {
@@ -38,28 +65,10 @@ class EquilibriumSolver {
   }
 
  private:
-  Eigen::VectorXd calcAccelerations(const Eigen::VectorXd& q) {
-    setState(system_, {q, Eigen::VectorXd::Zero(q.size())}, state_);
-    return system_.calcUDot(state_, 0.0);
-  }
-
-  Eigen::MatrixXd calcJacobian(const Eigen::VectorXd& q) {
-    Eigen::MatrixXd jacobian(q.size(), q.size());
-    for (Eigen::Index i = 0; i < q.size(); ++i) {
-      const double h = kDifferenceStep * (1.0 + std::abs(q[i]));
-      Eigen::VectorXd forward = q, backward = q;
-      forward[i] += h;
-      backward[i] -= h;
-      jacobian.col(i) =
-          (calcAccelerations(forward) - calcAccelerations(backward)) / (forward[i] - backward[i]);
-    }
-    return jacobian;
-  }
-
   /// Halves the step until the residual shrinks; returns the part of the step taken, 0 if none helped.
   double moveAlong(const Eigen::VectorXd& step, Eigen::VectorXd& q, Eigen::VectorXd& residual) {
     for (double length = 1.0; length > 1e-6; length *= 0.5) {
-      const Eigen::VectorXd trial = calcAccelerations(q + length * step);
+      const Eigen::VectorXd trial = system_.calc(q + length * step);
       if (trial.norm() < residual.norm()) {
         q += length * step;
         residual = trial;
@@ -85,15 +94,19 @@ class EquilibriumSolver {
     throw SimulationFailure(text);
   }
 
-  LoadedSystem& system_;
-  SimTK::State state_;
+  RestAccelerations& system_;
   double largest_ = 0.0;
 };
 
 }  // namespace
 
-Eigen::VectorXd solveEquilibrium(LoadedSystem& system, const Eigen::VectorXd& start) {
+Eigen::VectorXd solveEquilibrium(RestAccelerations& system, const Eigen::VectorXd& start) {
   return start.size() == 0 ? start : EquilibriumSolver(system).solve(start);
+}
+
+Eigen::VectorXd solveEquilibrium(LoadedSystem& system, const Eigen::VectorXd& start) {
+  LoadedSystemAtRest at_rest(system);
+  return solveEquilibrium(at_rest, start);
 }
 
 }  // namespace twinmap

@@ -15,10 +15,21 @@ struct InitialState {
 /// ExperimentError for a name that is no coordinate, SimulationFailure for values that are not finite.
 InitialState calcInitialValues(ModelContext& context);
 
-/// The coordinates at which all accelerations vanish at rest, at t = 0 and without excitation: damped Newton
-/// with a central-difference Jacobian of the accelerations, from `start`. Directions that no force depends on
-/// keep their start. Throws SimulationFailure, with the residual, if it does not converge.
-/// Cost: 2 n + 1 accelerations an iteration, usually 4 to 6 iterations.
+/// The accelerations of a system at rest, at t = 0 and without excitation, and their derivatives with respect
+/// to the coordinates. Throw SimulationFailure if the mass matrix is singular.
+class RestAccelerations {
+ public:
+  virtual ~RestAccelerations() = default;
+  virtual Eigen::VectorXd calc(const Eigen::VectorXd& coordinates) = 0;
+  virtual Eigen::MatrixXd calcJacobian(const Eigen::VectorXd& coordinates) = 0;
+};
+
+/// The coordinates at which all accelerations vanish: damped Newton from `start`. Directions that no force
+/// depends on keep their start. Throws SimulationFailure, with the residual, if it does not converge. Usually
+/// 4 to 6 iterations.
+Eigen::VectorXd solveEquilibrium(RestAccelerations& system, const Eigen::VectorXd& start);
+
+/// The same by Simbody, with a central-difference Jacobian. Cost: 2 n + 1 accelerations an iteration.
 Eigen::VectorXd solveEquilibrium(LoadedSystem& system, const Eigen::VectorXd& start);
 
 /// The initial state of a sample as its spec says; `box_center`: coordinates of the equilibrium at the box

@@ -27,12 +27,12 @@ Rotation calcAxisAlignment(const JointSpec& joint, NumberEvaluator& numbers, con
 
 struct Joint {
   MobilizedBody parent;
-  Transform in_parent, in_body;
+  const JointNumbers& numbers;
   const SimTK::Body& body;
 
-  template <typename Mobilizer>
-  void add() {
-    Mobilizer(parent, in_parent, body, in_body);
+  template <typename Mobilizer, typename... Numbers>
+  void add(Numbers... more) {
+    Mobilizer(parent, numbers.in_parent, body, numbers.in_body, more...);
   }
 };
 
@@ -45,12 +45,21 @@ Transform calcFrame(const FrameSpec& frame, NumberEvaluator& numbers, const std:
   return Transform(rotation, calcVec3(numbers, frame.point, {owner, "point", "m"}));
 }
 
-void addMobilizer(MobilizedBody parent, const SimTK::Body& body, const BodySpec& spec,
-                  NumberEvaluator& numbers) {
+JointNumbers calcJointNumbers(const BodySpec& spec, NumberEvaluator& numbers) {
   const std::string owner = "body '" + spec.name.text + "'";
   const Transform alignment(calcAxisAlignment(spec.joint, numbers, owner));
-  Joint joint{parent, calcFrame(spec.joint.in_parent, numbers, owner) * alignment,
-              calcFrame(spec.joint.in_body, numbers, owner) * alignment, body};
+  JointNumbers joint{calcFrame(spec.joint.in_parent, numbers, owner) * alignment,
+                     calcFrame(spec.joint.in_body, numbers, owner) * alignment, 0.0};
+  if (spec.joint.type == JointType::kScrew) {
+    joint.pitch = numbers.calc(spec.joint.pitch, {owner, "joint.pitch", "m/rad"});
+  }
+  return joint;
+}
+
+void addMobilizer(MobilizedBody parent, const SimTK::Body& body, const BodySpec& spec,
+                  NumberEvaluator& numbers) {
+  const JointNumbers values = calcJointNumbers(spec, numbers);
+  Joint joint{parent, values, body};
   switch (spec.joint.type) {
     case JointType::kWeld:
       return joint.add<MobilizedBody::Weld>();
@@ -76,10 +85,8 @@ void addMobilizer(MobilizedBody parent, const SimTK::Body& body, const BodySpec&
       return joint.add<MobilizedBody::Bushing>();
     case JointType::kFree:
       return joint.add<MobilizedBody::Free>();
-    case JointType::kScrew: {
-      const double pitch = numbers.calc(spec.joint.pitch, {owner, "joint.pitch", "m/rad"});
-      MobilizedBody::Screw(parent, joint.in_parent, body, joint.in_body, pitch);
-    }
+    case JointType::kScrew:
+      return joint.add<MobilizedBody::Screw>(values.pitch);
   }
 }
 

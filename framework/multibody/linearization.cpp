@@ -89,4 +89,18 @@ std::vector<Mode> calcModes(const MatrixXd& state_matrix) {
   return modes;
 }
 
+VectorXd collectLowestModes(const MatrixXd& state_matrix, int count) {
+  const std::vector<Mode> modes = calcModes(state_matrix);
+  if (static_cast<int>(modes.size()) < count) {
+    throw SimulationFailure("only " + std::to_string(modes.size()) + " of " + std::to_string(count) +
+                            " modes oscillate at the equilibrium");
+  }
+  VectorXd values(2 * count);
+  for (int i = 0; i < count; ++i) {
+    values[i] = modes[i].frequency;
+    values[count + i] = modes[i].damping_ratio;
+  }
+  return values;
+}
+
 }  // namespace twinmap

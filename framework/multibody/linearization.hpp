@@ -23,4 +23,8 @@ Eigen::MatrixXd calcStateMatrix(LoadedSystem& system, const Eigen::VectorXd& coo
 /// rigid body motion. Throws SimulationFailure for a matrix that is not finite.
 std::vector<Mode> calcModes(const Eigen::MatrixXd& state_matrix);
 
+/// The `count` lowest frequencies (Hz), then their damping ratios. Throws SimulationFailure as calcModes
+/// does, and if fewer oscillate.
+Eigen::VectorXd collectLowestModes(const Eigen::MatrixXd& state_matrix, int count);
+
 }  // namespace twinmap

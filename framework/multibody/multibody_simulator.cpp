@@ -6,6 +6,8 @@
 #include <mutex>
 #include <stdexcept>
 
+#include "framework/multibody/lanes/compare_with_simbody.hpp"
+#include "framework/multibody/lanes/lane_runner.hpp"
 #include "framework/multibody/linearization.hpp"
 #include "framework/multibody/run_sample.hpp"
 #include "framework/spec/check/check_experiment.hpp"
@@ -23,7 +25,13 @@ struct SharedModel {
   ModelSpec model;
   ResponseLayout layout;
   Eigen::VectorXd box_center;  ///< coordinates of the equilibrium there, if the spec asks for it
+  std::string engine = "simbody";
+  std::optional<LaneModel> lanes;             ///< if they are the engine
+  std::optional<LaneModel> lane_derivatives;  ///< made when first used
 };
+
+/// Samples handed out at once: enough to keep all lanes busy but at the end, few enough to share work.
+constexpr int kLaneBatch = 128;
 
 void checkTimes(const Eigen::VectorXd& times, double duration) {
   for (Eigen::Index i = 0; i < times.size(); ++i) {
@@ -79,6 +87,36 @@ void buildAtBoxCenter(ModelContext& context) {
   calcInitialValues(context);
 }
 
+/// Why the model cannot be simulated in lanes whatever its equations are, or "".
+std::string findObstacle(const ModelContext& context) {
+  if (context.model.simulation.engine == Engine::kSimbody) {
+    return "simulation.engine asks for it";
+  }
+  if (context.model.simulation.integrator != Integrator::kDopri5) {
+    return "simulation.integrator is one of Simbody's";
+  }
+  return context.names.getCoordinateNames().empty() ? "nothing can move" : "";
+}
+
+/// Compiles the model for lanes if it can be; returns why not, or "".
+std::string makeLanes(ModelContext& context, const Eigen::VectorXd& box_center,
+                      std::optional<LaneModel>& lanes) {
+  const std::string obstacle = findObstacle(context);
+  if (!obstacle.empty()) {
+    return obstacle;
+  }
+  try {
+    lanes = compileModel(recordModel(context.model, context.names, box_center), false);
+  } catch (const UnknownSyntax& error) {
+    return error.what();
+  }
+  const std::string difference = compareWithSimbody(context, *lanes);
+  if (!difference.empty()) {
+    lanes.reset();
+  }
+  return difference;
+}
+
 Eigen::VectorXd solveBoxCenter(ModelContext& context) {
   context.numbers.update(calcEquilibriumPoint(context));
   LoadedSystem system(context, false);
@@ -114,7 +152,8 @@ ExperimentError makeCenterError(const ModelSpec& model, SourceLocation where, co
 class MultibodySimulator::Impl {
  public:
   Impl(const ModelSpec& model, Eigen::VectorXd times, int modes)
-      : Impl(std::make_shared<SharedModel>(SharedModel{model, {{}, {}, std::move(times), modes}, {}})) {}
+      : Impl(std::make_shared<SharedModel>(
+            SharedModel{model, {{}, {}, std::move(times), modes}, {}, {}, {}, {}})) {}
 
   explicit Impl(std::shared_ptr<SharedModel> shared) : shared_(std::move(shared)), context_(shared_->model) {}
 
@@ -141,6 +180,7 @@ class MultibodySimulator::Impl {
         shared_->box_center = solveBoxCenter(context_);
       }
     });
+    chooseEngine();
   }
 
   void checkStart() {
@@ -150,12 +190,85 @@ class MultibodySimulator::Impl {
     });
   }
 
-  /// Takes the steps of `sequence` if there are any, else keeps there those it took.
+  /// All columns, in lanes or one after the other.
+  void simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters, Eigen::Ref<Eigen::MatrixXd> responses,
+                SampleStatus* statuses) {
+    if (shared_->lanes) {
+      simulateInLanes(parameters, responses, statuses);
+      return;
+    }
+    for (Eigen::Index i = 0; i < parameters.cols(); ++i) {
+      StepSequence own_steps;
+      statuses[i] = simulateOne(parameters.col(i), responses.col(i), own_steps);
+    }
+  }
+
+  void simulateWithDerivatives(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                               Eigen::Ref<Eigen::MatrixXd> responses, Eigen::MatrixXd& derivatives,
+                               SampleStatus* statuses) {
+    if (!derivative_runner_) {
+      derivative_runner_.emplace(getLaneDerivatives(), LaneTask{shared_->layout, shared_->box_center},
+                                 shared_->model);
+    }
+    derivative_runner_->run(context_, parameters, responses, &derivatives, statuses);
+  }
+
+  /// By Simbody. Takes the steps of `sequence` if there are any, else keeps there those it took.
   SampleStatus simulateOne(const Eigen::Ref<const Eigen::VectorXd>& parameters,
+                           Eigen::Ref<Eigen::VectorXd> response, StepSequence& sequence) {
+    return simulateOne(shared_->model.simulation, parameters, response, sequence);
+  }
+
+  const std::shared_ptr<SharedModel>& getShared() const { return shared_; }
+
+ private:
+  void chooseEngine() {
+    const std::string obstacle = makeLanes(context_, shared_->box_center, shared_->lanes);
+    if (!obstacle.empty() && shared_->model.simulation.engine == Engine::kLanes) {
+      throw ExperimentError("simulation.engine: lanes cannot simulate this model: " + obstacle);
+    }
+    shared_->engine = obstacle.empty() ? "lanes" : "simbody: " + obstacle;
+  }
+
+  void simulateInLanes(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                       Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
+    if (!runner_) {
+      runner_.emplace(*shared_->lanes, LaneTask{shared_->layout, shared_->box_center}, shared_->model);
+    }
+    for (const Eigen::Index i : runner_->run(context_, parameters, responses, nullptr, statuses)) {
+      tryImplicitly(parameters.col(i), responses.col(i), statuses[i]);
+    }
+  }
+
+  const LaneModel& getLaneDerivatives() {
+    const std::lock_guard<std::mutex> guard(building);
+    if (!shared_->lane_derivatives) {
+      shared_->lane_derivatives =
+          compileModel(recordModel(shared_->model, context_.names, shared_->box_center), true);
+    }
+    return *shared_->lane_derivatives;
+  }
+
+  /// What reached the step limit may be stiff: CPodes tries it once more.
+  void tryImplicitly(const Eigen::Ref<const Eigen::VectorXd>& parameters,
+                     Eigen::Ref<Eigen::VectorXd> response, SampleStatus& status) {
+    SimulationSpec simulation = shared_->model.simulation;
+    simulation.integrator = Integrator::kCpodes;
+    StepSequence unused;
+    SampleStatus again = simulateOne(simulation, parameters, response, unused);
+    again.second_try = true;
+    if (!again.ok) {
+      again.reason = status.reason + "; by CPodes: " + again.reason;
+    }
+    status = again;
+  }
+
+  SampleStatus simulateOne(const SimulationSpec& simulation,
+                           const Eigen::Ref<const Eigen::VectorXd>& parameters,
                            Eigen::Ref<Eigen::VectorXd> response, StepSequence& sequence) {
     SampleStatus status;
     try {
-      status.reason = run(parameters, response, sequence);
+      status.reason = run(simulation, parameters, response, sequence);
       if (status.reason.empty() && !response.allFinite()) {
         status.reason = "an output became non-finite";
       }
@@ -174,9 +287,6 @@ class MultibodySimulator::Impl {
     return status;
   }
 
-  const std::shared_ptr<SharedModel>& getShared() const { return shared_; }
-
- private:
   /// What fails in `build` is wrong input.
   template <typename Build>
   void atBoxCenter(const Build& build) const {
@@ -191,9 +301,8 @@ class MultibodySimulator::Impl {
     }
   }
 
-  std::string run(const Eigen::Ref<const Eigen::VectorXd>& parameters, Eigen::Ref<Eigen::VectorXd> response,
-                  StepSequence& sequence) {
-    const SimulationSpec& simulation = shared_->model.simulation;
+  std::string run(const SimulationSpec& simulation, const Eigen::Ref<const Eigen::VectorXd>& parameters,
+                  Eigen::Ref<Eigen::VectorXd> response, StepSequence& sequence) {
     const bool own = simulation.integrator == Integrator::kDopri5;
     context_.numbers.update(parameters);
     LoadedSystem system(context_, !own);
@@ -215,19 +324,13 @@ class MultibodySimulator::Impl {
     }
     const Eigen::VectorXd start =
         shared_->box_center.size() > 0 ? shared_->box_center : calcInitialValues(context_).coordinates;
-    const std::vector<Mode> modes = calcModes(calcStateMatrix(system, solveEquilibrium(system, start)));
-    if (static_cast<int>(modes.size()) < layout.modes) {
-      throw SimulationFailure("only " + std::to_string(modes.size()) + " of " + std::to_string(layout.modes) +
-                              " modes oscillate at the equilibrium");
-    }
-    for (int i = 0; i < layout.modes; ++i) {
-      response[layout.getFrequencyRow(i)] = modes[i].frequency;
-      response[layout.getDampingRow(i)] = modes[i].damping_ratio;
-    }
+    response.tail(2 * layout.modes) =
+        collectLowestModes(calcStateMatrix(system, solveEquilibrium(system, start)), layout.modes);
   }
 
   std::shared_ptr<SharedModel> shared_;
   ModelContext context_;
+  std::optional<LaneRunner> runner_, derivative_runner_;
 };
 
 MultibodySimulator::MultibodySimulator(const ModelSpec& model, Eigen::VectorXd times, int modes) {
@@ -248,13 +351,18 @@ void MultibodySimulator::checkStart() {
   impl_->checkStart();
 }
 
+const std::string& MultibodySimulator::getEngine() const {
+  return impl_->getShared()->engine;
+}
+
+int MultibodySimulator::getBatchSize() const {
+  return impl_->getShared()->lanes ? kLaneBatch : 1;
+}
+
 void MultibodySimulator::simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
                                   Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
   checkShapes(*impl_->getShared(), parameters, responses);
-  for (Eigen::Index i = 0; i < parameters.cols(); ++i) {
-    StepSequence own_steps;
-    statuses[i] = impl_->simulateOne(parameters.col(i), responses.col(i), own_steps);
-  }
+  impl_->simulate(parameters, responses, statuses);
 }
 
 void MultibodySimulator::simulateAround(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
@@ -264,6 +372,17 @@ void MultibodySimulator::simulateAround(const Eigen::Ref<const Eigen::MatrixXd>&
   for (Eigen::Index i = 0; i < parameters.cols(); ++i) {
     statuses[i] = impl_->simulateOne(parameters.col(i), responses.col(i), steps_of_center);
   }
+}
+
+bool MultibodySimulator::hasDerivatives() const {
+  return impl_->getShared()->lanes.has_value();
+}
+
+void MultibodySimulator::simulateWithDerivatives(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                                                 Eigen::Ref<Eigen::MatrixXd> responses,
+                                                 Eigen::MatrixXd& derivatives, SampleStatus* statuses) {
+  checkShapes(*impl_->getShared(), parameters, responses);
+  impl_->simulateWithDerivatives(parameters, responses, derivatives, statuses);
 }
 
 std::unique_ptr<Simulator> MultibodySimulator::clone() const {

@@ -22,7 +22,7 @@ void factorize(Eigen::MatrixXd& matrix) {
   for (Eigen::Index j = 0; j < matrix.rows(); ++j) {
     const double pivot = matrix(j, j) - matrix.row(j).head(j).squaredNorm();
     if (pivot <= kSingularPivot * matrix(j, j)) {  // false for NaN, which the integrator sees and rejects
-      throw SimulationFailure("the mass matrix is singular: a body without inertia can move freely");
+      throw SimulationFailure(kSingularMassMatrix);
     }
     matrix(j, j) = std::sqrt(pivot);
     for (Eigen::Index i = j + 1; i < matrix.rows(); ++i) {

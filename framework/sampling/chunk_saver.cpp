@@ -23,6 +23,7 @@ void ChunkSaver::addOne(const Trajectories& all, int sample) {
   waiting_.push_back({all.parameters.col(sample), all.responses.col(sample), all.statuses[sample]});
   ++counts_.simulated;
   counts_.failed += all.statuses[sample].ok ? 0 : 1;
+  counts_.implicit += all.statuses[sample].ok && all.statuses[sample].second_try ? 1 : 0;
   if (options_.progress) {
     options_.progress(counts_);
   }

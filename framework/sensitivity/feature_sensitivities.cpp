@@ -1,5 +1,6 @@
 #include "framework/sensitivity/feature_sensitivities.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "framework/sensitivity/neighbourhood_simulator.hpp"
@@ -28,18 +29,27 @@ LocalModel makeLocalModel(const FeatureExtractor& extractor, const std::vector<P
 
 LocalModel calcLocalModel(Simulator& simulator, const FeatureExtractor& extractor,
                           const std::vector<ParameterSpec>& parameters, const VectorXd& point) {
-  const MatrixXd points = makeNeighbours(parameters, point);
-  MatrixXd responses(simulator.getLayout().getRowCount(), points.cols());
-  const SampleStatus status = simulateNeighbours(simulator, points, responses);
-  return makeLocalModel(extractor, parameters, point, responses.reshaped(), status);
+  VectorXd neighbourhood(simulator.getLayout().getRowCount() * countNeighbours(parameters.size()));
+  SampleStatus status;
+  simulateNeighbourhoods(simulator, parameters, point, neighbourhood, &status);
+  return makeLocalModel(extractor, parameters, point, neighbourhood, status);
 }
 
 std::vector<LocalModel> calcLocalModels(const Simulator& prototype, const FeatureExtractor& extractor,
                                         const std::vector<ParameterSpec>& parameters, const MatrixXd& points,
                                         int threads) {
   std::vector<LocalModel> models(points.cols());
-  runOnTeam(prototype, static_cast<int>(points.cols()), threads, [&](Simulator& simulator, int i) {
-    models[i] = calcLocalModel(simulator, extractor, parameters, points.col(i));
+  const int batch = prototype.getBatchSize(), count = static_cast<int>(points.cols());
+  runOnTeam(prototype, (count + batch - 1) / batch, threads, [&](Simulator& simulator, int index) {
+    const int first = index * batch, size = std::min(batch, count - first);
+    MatrixXd neighbourhoods(simulator.getLayout().getRowCount() * countNeighbours(parameters.size()), size);
+    std::vector<SampleStatus> statuses(size);
+    simulateNeighbourhoods(simulator, parameters, points.middleCols(first, size), neighbourhoods,
+                           statuses.data());
+    for (int i = 0; i < size; ++i) {
+      models[first + i] =
+          makeLocalModel(extractor, parameters, points.col(first + i), neighbourhoods.col(i), statuses[i]);
+    }
   });
   return models;
 }

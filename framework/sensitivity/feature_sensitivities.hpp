@@ -23,10 +23,12 @@ struct LocalModel {
 using LocalModelSource = std::function<std::vector<LocalModel>(const Eigen::MatrixXd& points)>;
 
 /// At a point of the sampled box, to `parameters`, the first p of it (such as collectUnknown; the known
-/// inputs behind them stay), by central differences of the simulator, one-sided ones of second order where
-/// the step would leave the bounds. All simulations take the integration steps of the point itself
-/// (Simulator::simulateAround), so that a step of 1e-4 of the bounds' width holds more than 4 digits. A point
-/// fails if one of its simulations does, or if a feature is missing. Cost: 2 p + 1 simulations.
+/// inputs behind them stay). With the exact derivatives of the responses where the simulator has them, along
+/// which features are differenced; else by differences of simulations that all take the integration steps of
+/// the point itself (Simulator::simulateAround), so that a step of 1e-4 of the bounds' width holds more than
+/// 4 digits: central ones, one-sided ones of second order where the step would leave the bounds. A point
+/// fails if one of its simulations does, or if a feature is missing. Cost: one simulation with derivatives,
+/// or 2 p + 1 simulations.
 LocalModel calcLocalModel(Simulator& simulator, const FeatureExtractor& extractor,
                           const std::vector<ParameterSpec>& parameters, const Eigen::VectorXd& point);
 

@@ -1,5 +1,7 @@
 #include "framework/sensitivity/neighbourhood_simulator.hpp"
 
+#include <algorithm>
+
 #include "framework/sensitivity/stencil.hpp"
 
 namespace twinmap {
@@ -21,18 +23,46 @@ ResponseLayout repeat(const ResponseLayout& layout, int times) {
   return repeated;
 }
 
-}  // namespace
+SampleStatus findFirstFailure(const std::vector<SampleStatus>& statuses) {
+  const auto failed =
+      std::find_if(statuses.begin(), statuses.end(), [](const SampleStatus& status) { return !status.ok; });
+  return failed == statuses.end() ? SampleStatus{} : *failed;
+}
 
-SampleStatus simulateNeighbours(Simulator& simulator, const MatrixXd& points,
-                                Eigen::Ref<MatrixXd> responses) {
-  std::vector<SampleStatus> statuses(points.cols());
-  simulator.simulateAround(points, responses, statuses.data());
-  for (const SampleStatus& status : statuses) {
-    if (!status.ok) {
-      return status;
+void simulateEach(Simulator& simulator, const std::vector<ParameterSpec>& parameters,
+                  const Eigen::Ref<const MatrixXd>& points, Eigen::Ref<MatrixXd> responses,
+                  SampleStatus* statuses) {
+  MatrixXd own(simulator.getLayout().getRowCount(), countNeighbours(parameters.size()));
+  std::vector<SampleStatus> own_statuses(own.cols());
+  for (Index i = 0; i < points.cols(); ++i) {
+    simulator.simulateAround(makeNeighbours(parameters, points.col(i)), own, own_statuses.data());
+    statuses[i] = findFirstFailure(own_statuses);
+    responses.col(i) = own.reshaped();
+  }
+}
+
+void continueAlongDerivatives(Simulator& simulator, const std::vector<ParameterSpec>& parameters,
+                              const Eigen::Ref<const MatrixXd>& points, Eigen::Ref<MatrixXd> responses,
+                              SampleStatus* statuses) {
+  const Index p = points.rows(), rows = simulator.getLayout().getRowCount();
+  MatrixXd centers(rows, points.cols()), derivatives;
+  simulator.simulateWithDerivatives(points, centers, derivatives, statuses);
+  for (Index i = 0; i < points.cols(); ++i) {
+    const MatrixXd neighbours = makeNeighbours(parameters, points.col(i));
+    for (Index k = 0; k < neighbours.cols(); ++k) {
+      responses.col(i).segment(k * rows, rows) =
+          centers.col(i) + derivatives.middleCols(i * p, p) * (neighbours.col(k) - points.col(i));
     }
   }
-  return {};
+}
+
+}  // namespace
+
+void simulateNeighbourhoods(Simulator& simulator, const std::vector<ParameterSpec>& parameters,
+                            const Eigen::Ref<const MatrixXd>& points, Eigen::Ref<MatrixXd> responses,
+                            SampleStatus* statuses) {
+  const auto run = simulator.hasDerivatives() ? continueAlongDerivatives : simulateEach;
+  run(simulator, parameters, points, responses, statuses);
 }
 
 NeighbourhoodSimulator::NeighbourhoodSimulator(const Simulator& simulator,
@@ -43,11 +73,7 @@ NeighbourhoodSimulator::NeighbourhoodSimulator(const Simulator& simulator,
 
 void NeighbourhoodSimulator::simulate(const Eigen::Ref<const MatrixXd>& parameters,
                                       Eigen::Ref<MatrixXd> responses, SampleStatus* statuses) {
-  MatrixXd own(simulator_->getLayout().getRowCount(), countNeighbours(parameters_.size()));
-  for (Index i = 0; i < parameters.cols(); ++i) {
-    statuses[i] = simulateNeighbours(*simulator_, makeNeighbours(parameters_, parameters.col(i)), own);
-    responses.col(i) = own.reshaped();
-  }
+  simulateNeighbourhoods(*simulator_, parameters_, parameters, responses, statuses);
 }
 
 std::unique_ptr<Simulator> NeighbourhoodSimulator::clone() const {

@@ -13,16 +13,23 @@ inline int countNeighbours(std::size_t parameters) {
   return 2 * static_cast<int>(parameters) + 1;
 }
 
-/// Simulates a point together with the 2 p points beside it that its derivatives to p parameters, the first
-/// of the point, need (all with the integration steps of the point): a response is theirs, one below the
-/// other, the point's own first, then the two of each parameter. So a point's derivatives can be stored and
-/// shared like any sample. Its layout has as many rows; its outputs and modes are those of the simulator,
-/// repeated. Fails if one simulation does.
+/// Simulates points together with the 2 p points beside each that its derivatives to p parameters, the first
+/// of the point, need (makeNeighbours): a column of `responses` is theirs, one below the other, the point's
+/// own first, then the two of each parameter. With exact derivatives (Simulator::hasDerivatives) the
+/// responses beside a point are its own, continued along them; else all are simulated with the integration
+/// steps of the point. A point fails if one of its simulations does.
+void simulateNeighbourhoods(Simulator& simulator, const std::vector<ParameterSpec>& parameters,
+                            const Eigen::Ref<const Eigen::MatrixXd>& points,
+                            Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses);
+
+/// simulateNeighbourhoods as a simulator, so that a point's derivatives can be stored and shared like any
+/// sample. Its layout has as many rows; its outputs and modes are those of the simulator, repeated.
 class NeighbourhoodSimulator final : public Simulator {
  public:
   NeighbourhoodSimulator(const Simulator& simulator, const std::vector<ParameterSpec>& parameters);
 
   const ResponseLayout& getLayout() const override { return layout_; }
+  int getBatchSize() const override { return simulator_->getBatchSize(); }
   void simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters, Eigen::Ref<Eigen::MatrixXd> responses,
                 SampleStatus* statuses) override;
   std::unique_ptr<Simulator> clone() const override;
@@ -32,9 +39,5 @@ class NeighbourhoodSimulator final : public Simulator {
   std::vector<ParameterSpec> parameters_;
   ResponseLayout layout_;
 };
-
-/// Simulates a point and its neighbours (columns, as makeNeighbours gives them); the first failure, if any.
-SampleStatus simulateNeighbours(Simulator& simulator, const Eigen::MatrixXd& points,
-                                Eigen::Ref<Eigen::MatrixXd> responses);
 
 }  // namespace twinmap

@@ -16,11 +16,13 @@ class CubicSpline {
   /// that of one polynomial, for times that are equidistant or nearly so.
   double calc(double elapsed) const;
 
- private:
   struct Segment {
     double begin;                           ///< s after the first time
     double value, slope, curvature, third;  ///< of powers of the time since begin
   };
+  const std::vector<Segment>& getSegments() const { return segments_; }
+
+ private:
   std::size_t findSegment(double elapsed) const;
 
   std::vector<Segment> segments_;

@@ -81,5 +81,7 @@ class IntegrationGuard {
 
 /// "<what> at t = 0.3 s"
 std::string describeAt(const std::string& what, double t);
+std::string describeStepLimit(int max_steps, double t);
+std::string describeWallTime(double max_wall_time, double t);
 
 }  // namespace twinmap

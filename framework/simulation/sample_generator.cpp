@@ -45,7 +45,7 @@ void simulateBatch(Simulator& simulator, int first, int count, Trajectories& res
 }
 
 void check(const GeneratorOptions& options) {
-  if (options.batch_size < 1 || options.threads < 0) {
+  if (options.batch_size.value_or(1) < 1 || options.threads < 0) {
     throw std::invalid_argument("generateSamples: batch_size must be at least 1 and threads at least 0");
   }
 }
@@ -62,14 +62,15 @@ Trajectories generateSamples(const Simulator& prototype, const Eigen::MatrixXd& 
   check(options);
   Trajectories result = prepare(prototype, parameters);
   const int samples = result.getSampleCount();
-  const int batches = (samples + options.batch_size - 1) / options.batch_size;
+  const int size = options.batch_size.value_or(prototype.getBatchSize());
+  const int batches = (samples + size - 1) / size;
   Progress progress(options);
   runOnTeam(prototype, batches, options.threads, [&](Simulator& simulator, int batch) {
     if (options.stop != nullptr && options.stop->load(std::memory_order_relaxed)) {
       return;
     }
-    const int first = batch * options.batch_size;
-    const int count = std::min(options.batch_size, samples - first);
+    const int first = batch * size;
+    const int count = std::min(size, samples - first);
     simulateBatch(simulator, first, count, result);
     if (options.finished) {
       options.finished(result, first, count);

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <atomic>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,8 +14,8 @@ namespace twinmap {
 struct Trajectories;
 
 struct GeneratorOptions {
-  int threads = 0;     ///< 0: as many as OpenMP offers
-  int batch_size = 1;  ///< samples handed to the simulator at once; larger only for back ends that vectorise
+  int threads = 0;                  ///< 0: as many as OpenMP offers
+  std::optional<int> batch_size{};  ///< samples handed to the simulator at once; by default as it says
   /// Called with the number of samples done so far, from any thread but one at a time.
   std::function<void(int done)> progress;
   /// Once true, samples under way are finished and no other is begun; those keep "not simulated" as reason.

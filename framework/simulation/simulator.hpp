@@ -14,6 +14,7 @@ struct SampleStatus {
   bool ok = true;
   std::string reason;  ///< empty if ok: "body 'beam1': mass = 0 kg must be positive", "step limit ..."
   bool machine_dependent = false;  ///< a failure that another try may not repeat: the wall-time limit
+  bool second_try = false;  ///< by an implicit method, after the explicit one had reached its step limit
 };
 
 /// A model that maps parameter sets to responses (columns, see ResponseLayout). Not thread safe: clone() one
@@ -30,6 +31,9 @@ class Simulator {
   virtual void simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
                         Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) = 0;
 
+  /// Columns that are best handed to simulate() at once.
+  virtual int getBatchSize() const { return 1; }
+
   /// As simulate(), but all columns take the integration steps that column 0, their centre, needs: responses
   /// are then smooth functions of the parameters, and differences of them are derivatives to the accuracy of
   /// the integration itself. A simulator without step control leaves it as it is.
@@ -37,6 +41,16 @@ class Simulator {
                               Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
     simulate(parameters, responses, statuses);
   }
+
+  /// Whether simulateWithDerivatives() may be called.
+  virtual bool hasDerivatives() const { return false; }
+
+  /// As simulate(), with the exact derivatives of the responses, up to the integration's tolerance: column j
+  /// * p + k of `derivatives` (rows of the layout x n p, resized) is that of column j's response with respect
+  /// to parameter k of its point. Where a sample failed they may be anything.
+  virtual void simulateWithDerivatives(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                                       Eigen::Ref<Eigen::MatrixXd> responses, Eigen::MatrixXd& derivatives,
+                                       SampleStatus* statuses);
 
   virtual std::unique_ptr<Simulator> clone() const = 0;
 };

@@ -15,8 +15,21 @@ struct EnumNames<Integrator> {
   };
 };
 
+/// What evaluates the equations of motion; kAutomatic: lanes where they can.
+enum class Engine { kAutomatic, kLanes, kSimbody };
+
+template <>
+struct EnumNames<Engine> {
+  static constexpr EnumName<Engine> values[] = {
+      {"automatic", Engine::kAutomatic},
+      {"lanes", Engine::kLanes},
+      {"simbody", Engine::kSimbody},
+  };
+};
+
 struct SimulationSpec {
   double duration = 0.0;  ///< s; above 0 where features are made of outputs
+  Engine engine = Engine::kAutomatic;
   Integrator integrator = Integrator::kDopri5;
   double relative_tolerance = 3e-7;  ///< local error per step, relative to the state
   double absolute_tolerance = 1e-9;  ///< and absolute, in the state's own units
@@ -31,6 +44,8 @@ void describe(Fields& f, SimulationSpec& s) {
   constexpr NumberRule kAbsolute{1e-18, 1.0, true, "must be a number from 1e-18 to 1"};
   constexpr NumberRule kWallTime{0.0, 86400.0, false, "must be a number above 0, at most 86400 (a day)"};
   f.optional("duration", s.duration, "simulated time; s; needed for features of outputs", kNonNegative);
+  f.optional("engine", s.engine,
+             "several samples at a time in lanes, or Simbody; automatic: lanes if they can");
   f.optional("integrator", s.integrator, "dopri5, or one of Simbody's as a cross-check");
   f.optional("relative_tolerance", s.relative_tolerance, "local error per step, relative", kRelative);
   f.optional("absolute_tolerance", s.absolute_tolerance, "local error per step, absolute", kAbsolute);

@@ -15,7 +15,7 @@ ALLOWED = {
     "measurement": {"response", "spec", "hdf5"},
     "design": {"spec"},
     "simulation": {"response", "spec"},
-    "multibody": {"response", "spec", "simulation"},
+    "multibody": {"response", "spec", "simulation", "kernels"},
     "features": {"autocorrelation", "response", "spec", "design"},
     "sensitivity": {"spec", "simulation", "features", "design"},
     "inverse_map": {"spec", "design", "simulation", "features", "sensitivity", "kernels"},
@@ -58,7 +58,7 @@ LIBRARIES = {
     r"filesystem": {"spec", "inference", "hdf5", "monitoring", "measurement", "store", "sampling", "results", "report", "comparison", "experiment",
                      "sweep", "verification", "cli"},
     r"(omp\.h|fstream|chrono)": {"spec", "measurement/fstream", "monitoring/chrono", "simulation", "multibody", "evaluation/chrono",
-                                 "store", "sampling", "comparison", "experiment", "sweep", "verification", "cli", "kernels/omp.h",
+                                 "store", "sampling", "comparison", "experiment", "sweep", "verification", "cli", "kernels/omp.h", "kernels/chrono",
                                  "linalg/omp.h"},
 }
 

@@ -1,0 +1,72 @@
+#include "kernels/lanes/integrator.hpp"
+
+#include <algorithm>
+
+#include "kernels/lanes/lane_packet.hpp"
+
+namespace twinmap::lanes {
+
+const StepEngine& chooseEngine(int samples) {
+  const bool has_wide = kSteps8.program.isSupported();
+  if (samples <= 4) {
+    return kSteps4;
+  }
+  if (has_wide) {
+    return samples <= 8 ? kSteps8 : kSteps16;
+  }
+  return kSteps8Of4;
+}
+
+std::vector<const StepEngine*> getEngines() {
+  std::vector<const StepEngine*> engines{&kSteps4, &kSteps8, &kSteps8Of4, &kSteps16};
+  engines.erase(std::remove_if(engines.begin(), engines.end(),
+                               [](const StepEngine* e) { return !e->program.isSupported(); }),
+                engines.end());
+  return engines;
+}
+
+Integrator::Integrator(const Problem& problem, const std::vector<double>& times, const Options& options,
+                       const StepEngine& engine)
+    : lanes_(std::make_unique<LanePacket>(problem, times, options, engine)) {}
+Integrator::~Integrator() = default;
+
+void Integrator::run(SampleStream& stream) {
+  lanes_->run(stream);
+}
+
+const Statistics& Integrator::getStatistics() const {
+  return lanes_->getStatistics();
+}
+
+namespace {
+
+class ListedSamples : public SampleStream {
+ public:
+  explicit ListedSamples(const std::vector<Sample>& samples) : samples_(samples), results(samples.size()) {}
+  bool next(Sample& sample) override {
+    if (next_ == samples_.size()) {
+      return false;
+    }
+    sample = samples_[next_];
+    sample.index = static_cast<int>(next_++);
+    return true;
+  }
+  void finish(const Sample& sample, const Result& result) override { results[sample.index] = result; }
+
+ private:
+  const std::vector<Sample>& samples_;
+  std::size_t next_ = 0;
+
+ public:
+  std::vector<Result> results;
+};
+
+}  // namespace
+
+std::vector<Result> integrate(Integrator& integrator, const std::vector<Sample>& samples) {
+  ListedSamples stream(samples);
+  integrator.run(stream);
+  return stream.results;
+}
+
+}  // namespace twinmap::lanes

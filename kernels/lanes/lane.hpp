@@ -1,0 +1,38 @@
+#pragma once
+
+#include <chrono>
+
+#include "kernels/lanes/sample.hpp"
+
+namespace twinmap::lanes {
+
+/// What a lane's next step is for.
+enum class Mode {
+  kIdle,
+  kBegin,    ///< a step of size 0, whose last slopes are those at the phase's begin
+  kRestart,  ///< once more, since the sensitivities have jumped there
+  kStep,
+};
+
+/// One sample on its way; what changes at every step lies in StepArrays.
+struct Lane {
+  Mode mode = Mode::kIdle;
+  bool is_occupied = false;  ///< by a sample, also one that has ended
+  Sample sample;
+  Result result;
+  int phase = 0;
+  int next_output = 0;  ///< first time not yet kept
+  std::chrono::steady_clock::time_point start{};
+
+  const Phase& getPhase() const { return sample.phases[phase]; }
+  bool isInLastPhase() const { return phase + 1 == static_cast<int>(sample.phases.size()); }
+  double getPhaseEnd() const { return isInLastPhase() ? sample.end : sample.phases[phase + 1].begin; }
+  /// Whether the phase's begin moves with a parameter, so that the sensitivities jump.
+  bool hasJump() const { return phase > 0 && !getPhase().begin_slopes.empty(); }
+  void fail(Outcome outcome) {
+    result.outcome = outcome;
+    mode = Mode::kIdle;
+  }
+};
+
+}  // namespace twinmap::lanes

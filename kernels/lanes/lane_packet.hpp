@@ -1,0 +1,69 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "kernels/lanes/integrator.hpp"
+#include "kernels/lanes/lane.hpp"
+#include "kernels/lanes/output_recorder.hpp"
+#include "kernels/program/aligned_buffer.hpp"
+
+namespace twinmap::lanes {
+
+/// The lanes of one integrator: which samples they hold, and a step of all of them at a time.
+class LanePacket {
+ public:
+  LanePacket(const Problem& problem, const std::vector<double>& times, const Options& options,
+             const StepEngine& engine);
+  void run(SampleStream& stream);
+  const Statistics& getStatistics() const { return statistics_; }
+
+ private:
+  void makeTolerances(const Problem& problem);
+  void placeArrays(const Problem& problem);
+  double* takeRows(int count) { return std::exchange(free_, free_ + count * count_); }
+
+  bool load(int lane, SampleStream& stream);
+  void park(int lane);
+  void release(int lane, SampleStream& stream);
+  void beginPhase(int lane, int phase);
+  void doRound();
+  unsigned doStep();
+  void judge(int lane);
+  void jump(int lane);
+  void keepOutputs(unsigned lanes);
+  void advance(int lane);
+  void beginSteps(int lane);
+  void endPhase(int lane);
+  void checkLimits(int lane);
+  double calcNorm(int lane, const double* rows) const;
+  void setNextOutput(int lane, int index);
+
+  template <typename Function>
+  void forEach(unsigned lanes, const Function& function) {
+    for (int lane = 0; lanes != 0; ++lane, lanes >>= 1) {
+      if ((lanes & 1) != 0 && lanes_[lane].mode != Mode::kIdle) {
+        function(lane);
+      }
+    }
+  }
+
+  const std::vector<double> times_;
+  const Options options_;
+  const StepEngine& engine_;
+  const int count_;  ///< lanes
+  const int states_, parameters_, phase_inputs_, directions_;
+  program::Interpreter interpreter_;
+  OutputRecorder outputs_;
+  std::vector<const double*> derivatives_, pivots_;
+  std::vector<double> absolute_, relative_;
+  program::AlignedBuffer buffer_;
+  double* free_ = nullptr;
+  StepArrays arrays_{};
+  std::vector<Lane> lanes_;
+  int active_ = 0;
+  bool parameters_changed_ = true, phase_changed_ = true;
+  Statistics statistics_;
+};
+
+}  // namespace twinmap::lanes

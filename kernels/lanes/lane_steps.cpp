@@ -1,0 +1,156 @@
+// A step of all lanes, and what single lanes need after it.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "kernels/lanes/lane_packet.hpp"
+
+namespace twinmap::lanes {
+namespace {
+
+constexpr double kFirstGrowth = 100.0;   // the first size is a hundredth of the solution's own time, or less
+constexpr int kStepsBetweenClocks = 64;  // reading the clock costs as much as some instructions of all lanes
+
+}  // namespace
+
+void LanePacket::doRound() {
+  const unsigned attention = doStep();
+  forEach(attention, [this](int lane) { judge(lane); });
+  keepOutputs(attention);
+  engine_.accept(arrays_);
+  forEach(attention, [this](int lane) { advance(lane); });
+}
+
+unsigned LanePacket::doStep() {
+  if (parameters_changed_) {
+    interpreter_.calcParameters();
+  }
+  if (parameters_changed_ || phase_changed_) {
+    interpreter_.calcPhase();
+  }
+  parameters_changed_ = phase_changed_ = false;
+  engine_.plan(arrays_);
+  for (int stage = 2; stage <= 7; ++stage) {
+    engine_.prepareStage(stage, arrays_);
+    interpreter_.calcOutputs();
+  }
+  return engine_.finish(arrays_);
+}
+
+/// Before the new state is taken: what has failed, and where it has to be corrected.
+void LanePacket::judge(int lane) {
+  Lane& l = lanes_[lane];
+  if (arrays_.smallest_pivot[lane] <= 0.0) {
+    l.fail(Outcome::kSingular);
+    arrays_.accepted[lane] = 0.0;
+  } else if (l.mode != Mode::kStep && arrays_.accepted[lane] == 0.0) {
+    l.fail(Outcome::kNonFinite);
+  } else if (l.mode == Mode::kBegin && l.hasJump()) {
+    jump(lane);
+  }
+}
+
+/// The solution is continuous where a phase begins, whenever that is: f- dt + ds- = f+ dt + ds+.
+void LanePacket::jump(int lane) {
+  const std::vector<double>& slopes = lanes_[lane].getPhase().begin_slopes;
+  for (int j = 0; j < directions_; ++j) {
+    for (int i = 0; i < states_; ++i) {
+      const int at = i * count_ + lane;
+      const double difference = arrays_.slopes[1][at] - arrays_.slopes[7][at];
+      arrays_.stage_state[(1 + j) * states_ * count_ + at] += slopes[j] * difference;
+    }
+  }
+}
+
+/// The states at the output times that accepted steps have passed; one time of each lane in a pass.
+void LanePacket::keepOutputs(unsigned lanes) {
+  const StepArrays& a = arrays_;
+  const auto isPending = [&a](int lane) {
+    return a.accepted[lane] != 0.0 && a.next_output[lane] < a.end[lane];
+  };
+  for (;;) {
+    unsigned pending = 0;
+    forEach(lanes, [&](int lane) {
+      pending |= isPending(lane) ? 1u << lane : 0u;
+      a.fraction[lane] = isPending(lane) ? (a.next_output[lane] - a.time[lane]) / a.step[lane] : 0.0;
+    });
+    if (pending == 0) {
+      return;
+    }
+    engine_.interpolate(a);
+    forEach(pending, [this](int lane) {
+      outputs_.keep(lane, lanes_[lane].next_output, lanes_[lane].phase, arrays_.interpolated);
+      setNextOutput(lane, lanes_[lane].next_output + 1);
+    });
+  }
+}
+
+void LanePacket::advance(int lane) {
+  Lane& l = lanes_[lane];
+  if (l.mode == Mode::kBegin && l.hasJump()) {
+    l.mode = Mode::kRestart;
+  } else if (l.mode != Mode::kStep) {
+    beginSteps(lane);
+  } else if (arrays_.time[lane] == arrays_.phase_end[lane]) {
+    endPhase(lane);
+  } else {
+    l.result.rejected += arrays_.accepted[lane] == 0.0 ? 1 : 0;
+    const double time = std::max(std::abs(arrays_.time[lane]), kSmallestTime);
+    if (arrays_.proposed[lane] <= kSmallestStep * time) {
+      l.fail(std::isfinite(arrays_.error[lane]) ? Outcome::kStepTooSmall : Outcome::kNonFinite);
+    }
+  }
+  if (l.mode == Mode::kStep) {
+    checkLimits(lane);
+  }
+}
+
+/// The first step is a hundredth of the time that the fastest state takes to change by its own size.
+void LanePacket::beginSteps(int lane) {
+  const double size = calcNorm(lane, arrays_.state);
+  const double speed = calcNorm(lane, arrays_.slopes[1]);
+  const double length = arrays_.phase_end[lane] - arrays_.time[lane];
+  const double guess = size < 1e-5 || speed < 1e-5 ? 1e-6 : 0.01 * size / speed;
+  arrays_.proposed[lane] = std::min(guess, 0.01 * length);
+  arrays_.growth[lane] = kFirstGrowth;
+  lanes_[lane].mode = Mode::kStep;
+}
+
+double LanePacket::calcNorm(int lane, const double* rows) const {
+  double largest = 0.0;
+  for (int row = 0; row < arrays_.rows; ++row) {
+    const int at = row * count_ + lane;
+    const double scale = absolute_[row] + relative_[row] * std::abs(arrays_.state[at]);
+    largest = std::max(largest, std::abs(rows[at]) / scale);
+  }
+  return largest;
+}
+
+void LanePacket::endPhase(int lane) {
+  Lane& l = lanes_[lane];
+  if (!l.isInLastPhase()) {
+    beginPhase(lane, l.phase + 1);
+    return;
+  }
+  for (; l.next_output < static_cast<int>(times_.size()); ++l.next_output) {
+    outputs_.keep(lane, l.next_output, l.phase, arrays_.state);
+  }
+  outputs_.write(lane, l.sample);
+  l.mode = Mode::kIdle;
+}
+
+void LanePacket::checkLimits(int lane) {
+  Lane& l = lanes_[lane];
+  const double steps = arrays_.steps[lane];
+  if (steps >= options_.max_steps) {
+    l.fail(Outcome::kStepLimit);
+  } else if (steps >= arrays_.next_check[lane]) {
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - l.start;
+    if (elapsed.count() > options_.max_wall_time) {
+      l.fail(Outcome::kWallTime);
+    }
+    arrays_.next_check[lane] = std::min(steps + kStepsBetweenClocks, static_cast<double>(options_.max_steps));
+  }
+}
+
+}  // namespace twinmap::lanes
