@@ -55,8 +55,8 @@ std::vector<FeatureInfo> makeInfos(const std::vector<ComplexLine>& lines, Comple
 
 class MagnitudePhaseBlock final : public FeatureBlock {
  public:
-  MagnitudePhaseBlock(std::vector<FeatureInfo> infos, FeatureMatrix matrix)
-      : FeatureBlock(std::move(infos)), matrix_(std::move(matrix)) {}
+  MagnitudePhaseBlock(std::vector<FeatureInfo> infos, const FeatureMatrix& matrix)
+      : FeatureBlock(std::move(infos)), matrix_(matrix) {}
 
   void extract(const Eigen::Ref<const Eigen::MatrixXd>& responses,
                Eigen::Ref<Eigen::MatrixXd> features) const override {
@@ -98,9 +98,9 @@ std::shared_ptr<const FeatureBlock> makeComplexBlock(const std::vector<ComplexLi
   std::vector<FeatureInfo> infos = makeInfos(lines, parts);
   FeatureMatrix matrix = makeMatrix(lines, rows);
   if (parts == ComplexParts::kRealImaginary) {
-    return std::make_shared<LinearBlock>(std::move(infos), std::move(matrix));
+    return std::make_shared<LinearBlock>(std::move(infos), matrix);
   }
-  return std::make_shared<MagnitudePhaseBlock>(std::move(infos), std::move(matrix));
+  return std::make_shared<MagnitudePhaseBlock>(std::move(infos), matrix);
 }
 
 }  // namespace twinmap

@@ -43,8 +43,8 @@ class FeatureBlock {
 /// Features that are linear in the response.
 class LinearBlock final : public FeatureBlock {
  public:
-  LinearBlock(std::vector<FeatureInfo> infos, FeatureMatrix matrix)
-      : FeatureBlock(std::move(infos)), matrix_(std::move(matrix)) {}
+  LinearBlock(std::vector<FeatureInfo> infos, const FeatureMatrix& matrix)
+      : FeatureBlock(std::move(infos)), matrix_(matrix) {}
 
   void extract(const Eigen::Ref<const Eigen::MatrixXd>& responses,
                Eigen::Ref<Eigen::MatrixXd> features) const override {

@@ -23,7 +23,7 @@ std::shared_ptr<const FeatureBlock> makeModesBlock(const ModesFeatureSpec& spec,
   for (std::size_t i = 0; i < rows.size(); ++i) {
     matrix.insert(static_cast<Eigen::Index>(i), rows[i]) = 1.0;
   }
-  return std::make_shared<LinearBlock>(std::move(infos), std::move(matrix));
+  return std::make_shared<LinearBlock>(std::move(infos), matrix);
 }
 
 }  // namespace twinmap

@@ -26,7 +26,7 @@ std::shared_ptr<const FeatureBlock> makeSamplesBlock(const SamplesFeatureSpec& s
           {makeFeatureName(name.text, time), layout.output_units[output], static_cast<int>(output), time});
     }
   }
-  return std::make_shared<LinearBlock>(std::move(infos), std::move(matrix));
+  return std::make_shared<LinearBlock>(std::move(infos), matrix);
 }
 
 }  // namespace twinmap

@@ -93,7 +93,7 @@ std::shared_ptr<const FeatureBlock> makeMeans(const StatisticsFeatureSpec& spec,
     }
     infos.push_back(makeInfo(Statistic::kMean, layout, output, spec.window));
   }
-  return std::make_shared<LinearBlock>(std::move(infos), std::move(matrix));
+  return std::make_shared<LinearBlock>(std::move(infos), matrix);
 }
 
 }  // namespace

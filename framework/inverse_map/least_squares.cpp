@@ -1,11 +1,11 @@
 #include "framework/inverse_map/least_squares.hpp"
 
 #include <cmath>
-#include <unsupported/Eigen/NonLinearOptimization>
 
 #include "framework/sensitivity/feature_sensitivities.hpp"
 #include "framework/sensitivity/fisher_information.hpp"
 #include "framework/spec/parameter_box.hpp"
+#include "kernels/linalg/levenberg_marquardt.hpp"
 
 namespace twinmap {
 namespace {
@@ -35,7 +35,7 @@ class BoundedVariables {
   VectorXd center_, half_width_;
 };
 
-/// Residuals and their derivatives for Eigen's LevenbergMarquardt.
+/// Residuals and their derivatives; false of either ends the search.
 class Residuals {
  public:
   Residuals(Simulator& simulator, const LeastSquaresProblem& problem, int max_simulations)
@@ -44,10 +44,7 @@ class Residuals {
         variables_(problem.parameters),
         max_simulations_(max_simulations) {}
 
-  int inputs() const { return static_cast<int>(problem_.parameters.size()); }
-  int values() const { return static_cast<int>(problem_.noise.getMatrix().rows()); }
-
-  int operator()(const VectorXd& x, VectorXd& residual) {
+  bool calc(const VectorXd& x, VectorXd& residual) {
     constexpr double kRefused = 1e100;  // a failed simulation is no better than any other point
     MatrixXd response(simulator_.getLayout().getRowCount(), 1);
     SampleStatus status;
@@ -58,21 +55,21 @@ class Residuals {
       failure_ = status.ok ? "a feature is missing in the response" : status.reason;
       residual.setConstant(kRefused / std::sqrt(static_cast<double>(residual.size())));
     }
-    return simulations_ > max_simulations_ ? -1 : 0;
+    return simulations_ <= max_simulations_;
   }
 
-  int df(const VectorXd& x, MatrixXd& jacobian) {
+  bool derive(const VectorXd& x, MatrixXd& jacobian) {
     const LocalModel local = calcLocal(x);
     if (!local.status.ok) {
       failure_ = local.status.reason;
-      return -1;
+      return false;
     }
     jacobian = problem_.noise.apply(local.sensitivities) * variables_.calcSlopes(x).asDiagonal();
-    return 0;
+    return true;
   }
 
   LocalModel calcLocal(const VectorXd& x) {
-    simulations_ += 2 * inputs() + 1;
+    simulations_ += 2 * static_cast<int>(problem_.parameters.size()) + 1;
     return calcLocalModel(simulator_, problem_.extractor, problem_.parameters,
                           problem_.makePoint(variables_.toParameters(x)));
   }
@@ -92,16 +89,8 @@ class Residuals {
   std::string failure_;
 };
 
-bool hasConverged(Eigen::LevenbergMarquardtSpace::Status status) {
-  using namespace Eigen::LevenbergMarquardtSpace;
-  return status == RelativeReductionTooSmall || status == RelativeErrorTooSmall ||
-         status == RelativeErrorAndReductionTooSmall || status == CosinusTooSmall || status == FtolTooSmall ||
-         status == XtolTooSmall || status == GtolTooSmall;
-}
-
-void describeEnd(Eigen::LevenbergMarquardtSpace::Status status, const Residuals& residuals,
-                 int max_simulations, LeastSquaresFit& fit) {
-  fit.converged = hasConverged(status) && fit.chi_square < 1e99;
+void describeEnd(bool converged, const Residuals& residuals, int max_simulations, LeastSquaresFit& fit) {
+  fit.converged = converged && fit.chi_square < 1e99;
   if (fit.converged) {
     fit.message = "converged";
   } else if (residuals.getSimulationCount() > max_simulations) {
@@ -121,14 +110,12 @@ VectorXd LeastSquaresProblem::makePoint(const VectorXd& unknown) const {
 
 LeastSquaresFit fitLeastSquares(Simulator& simulator, const LeastSquaresProblem& problem,
                                 const VectorXd& start, int max_simulations) {
-  constexpr double kTolerance = 1e-6;  // of chi-square and of the variables, relative
   Residuals residuals(simulator, problem, max_simulations);
+  const linalg::ResidualFunction function{
+      problem.noise.getMatrix().rows(), [&](const VectorXd& x, VectorXd& r) { return residuals.calc(x, r); },
+      [&](const VectorXd& x, MatrixXd& j) { return residuals.derive(x, j); }};
   VectorXd x = residuals.getVariables().toVariables(start);
-  Eigen::LevenbergMarquardt<Residuals> search(residuals);
-  search.parameters.ftol = kTolerance;
-  search.parameters.xtol = kTolerance;
-  search.parameters.factor = 1.0;
-  const Eigen::LevenbergMarquardtSpace::Status status = search.minimize(x);
+  const bool converged = linalg::minimizeSquares(function, {}, x);
 
   LeastSquaresFit fit;
   fit.parameters = residuals.getVariables().toParameters(x);
@@ -136,7 +123,7 @@ LeastSquaresFit fitLeastSquares(Simulator& simulator, const LeastSquaresProblem&
   fit.chi_square = residuals.calcResidual(local.features).squaredNorm();
   fit.information = calcFisherInformation(problem.noise, local.sensitivities);
   fit.simulations = residuals.getSimulationCount();
-  describeEnd(status, residuals, max_simulations, fit);
+  describeEnd(converged, residuals, max_simulations, fit);
   fit.converged = fit.converged && local.status.ok;
   return fit;
 }

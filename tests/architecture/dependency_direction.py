@@ -43,7 +43,7 @@ COMMON = {"linalg"}
 
 # Libraries that stay behind one part. Eigen's decompositions take 3 to 15 s in each translation unit that has one.
 LIBRARIES = {
-    r"Eigen/(Cholesky|Dense|Eigen|Eigenvalues|Geometry|Householder|Jacobi|LU|QR|SVD)": {"linalg"},
+    r"Eigen/(Cholesky|Dense|Eigen|Eigenvalues|Geometry|Householder|Jacobi|LU|QR|SVD)|unsupported/Eigen/.*": {"linalg"},
     r"(Simbody|SimTK\w*|simbody/.*|simmath/.*)(\.h)?": {"multibody"},
     r"yaml-cpp/.*": {"spec"},
     r"muParser.*": {"spec"},
