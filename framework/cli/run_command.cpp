@@ -32,7 +32,8 @@ double getMostMemory(const RunArguments& arguments) {
 
 /// `line` must outlive it.
 RunControl makeControl(const RunArguments& arguments, ProgressLine& line) {
-  RunControl control{arguments.threads, &catchSignals(), nullptr};
+  const StopFlags flags = catchSignals();
+  RunControl control{arguments.threads, &flags.stop, &flags.abandon, nullptr};
   if (!arguments.quiet) {
     control.progress = [&line](const Progress& progress) { line.update(progress); };
   }

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kExitOfSignal = 128;
 
-std::atomic<bool> stop{false};
+std::atomic<bool> stop{false}, abandon{false};
 std::atomic<int> number{0};
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 
@@ -19,6 +19,7 @@ void handle(int signal) {
   if (number.exchange(signal) != 0) {
     ::_exit(kExitOfSignal + signal);
   }
+  abandon = signal == SIGTERM;
   stop = true;
   constexpr std::string_view kMessage =
       "\ntwinmap: stopping: what is under way is finished and kept; once more to stop at once\n";
@@ -27,14 +28,14 @@ void handle(int signal) {
 
 }  // namespace
 
-const std::atomic<bool>& catchSignals() {
+StopFlags catchSignals() {
   for (const int signal : {SIGINT, SIGTERM}) {
     struct sigaction action {};
     action.sa_handler = handle;
     action.sa_flags = SA_RESTART;
     ::sigaction(signal, &action, nullptr);
   }
-  return stop;
+  return {stop, abandon};
 }
 
 int getSignal() {

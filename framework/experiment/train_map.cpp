@@ -38,7 +38,7 @@ std::vector<TrainedHyperparameter> listHyperparameters(const std::vector<std::st
 }
 
 GpMapTraining trainInterruptibly(const ExperimentSpec& experiment, const std::vector<std::string>& names,
-                           const LabelledFeatures& samples, const TrainingControl& control) {
+                                 const LabelledFeatures& samples, const TrainingControl& control) {
   try {
     return trainGpMap(experiment.inverse_map.gp, experiment.transform, names, samples, control,
                       experiment.model.inputs);
@@ -54,7 +54,7 @@ Training trainMap(const ExperimentSpec& experiment, const LabelledFeatures& samp
   const std::vector<std::string> names = collectNames(experiment.model.parameters);
   Training training;
   GpMapTraining trained = timeStage("train the inverse map", training.notes, [&] {
-    return trainInterruptibly(experiment, names, samples, {control.threads, control.stop});
+    return trainInterruptibly(experiment, names, samples, {control.threads, control.abandon});
   });
   training.notes.warnings = std::move(trained.warnings);
   training.summary.leave_one_out = calcMetrics(experiment.model.parameters, samples.parameters,

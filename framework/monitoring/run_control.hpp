@@ -9,9 +9,11 @@ namespace twinmap {
 /// What every stage of a run obeys and reports to.
 struct RunControl {
   int threads = 1;  ///< results do not depend on it
-  /// Once true, the simulations under way are finished and kept, a training under way is abandoned; where
+  /// Once true, the simulations and cases under way are finished and kept, and no other is begun; where
   /// something is missing then, Interrupted is thrown.
   const std::atomic<bool>* stop = nullptr;
+  /// Once true, a training under way is not finished either; Interrupted is thrown.
+  const std::atomic<bool>* abandon = nullptr;
   ProgressCallback progress = nullptr;
 };
 

@@ -143,7 +143,7 @@ class Sweep {
     const SampleSource source{*samples.simulator, *samples.store,
                               neighbourhoods_[neighbourhoods_of_case_[index]].store.get()};
     run.samples = &source;
-    runExperiment(one.experiment, run, {threads, control_.stop, nullptr});
+    runExperiment(one.experiment, run, {threads, nullptr, control_.abandon, nullptr});
   }
 
   void noteFinished(int index, const CaseOutcome& outcome) {

@@ -36,9 +36,9 @@ struct SweepResult {
 /// folder): first all that is missing of the simulations, each point of a model once for all cases; then the
 /// cases that are not complete. The results of a case are those of runExperiment() alone, bit for bit, for
 /// any number of threads and however often the sweep was interrupted. Once `control`
-/// stops it, the simulations under way are finished and no other case is begun. A case that fails is reported
-/// and stops no other, unless fail_fast. Throws ExperimentError for a wrong experiment or a case that exceeds
-/// most_memory, before the folder is touched, and for a folder that holds another experiment;
+/// stops it, the simulations and cases under way are finished and no other case is begun. A case that fails
+/// is reported and stops no other, unless fail_fast. Throws ExperimentError for a wrong experiment or a case
+/// that exceeds most_memory, before the folder is touched, and for a folder that holds another experiment;
 /// std::runtime_error if a file cannot be written or another process has the folder or the store.
 SweepResult runSweep(const YamlNode& root, const SweepOptions& options, const RunControl& control);
 

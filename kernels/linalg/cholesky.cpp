@@ -9,7 +9,8 @@ using Eigen::VectorXd;
 
 Cholesky calcCholesky(const MatrixXd& a) {
   const Eigen::LLT<MatrixXd> factor(a);
-  const bool positive_definite = factor.info() == Eigen::Success;
+  // Eigen takes a pivot that is not a number for a positive one
+  const bool positive_definite = factor.info() == Eigen::Success && factor.matrixLLT().diagonal().allFinite();
   return {factor.matrixL(), positive_definite, positive_definite ? factor.rcond() : 0.0};
 }
 
