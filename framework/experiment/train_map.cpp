@@ -1,7 +1,5 @@
 #include "framework/experiment/train_map.hpp"
 
-#include <fmt/format.h>
-
 #include "framework/inverse_map/train_gp_map.hpp"
 #include "framework/monitoring/interrupted.hpp"
 #include "framework/monitoring/stage_timer.hpp"
@@ -9,6 +7,14 @@
 
 namespace twinmap {
 namespace {
+
+std::string join(const std::vector<std::string>& texts) {
+  std::string joined;
+  for (const std::string& text : texts) {
+    joined += (joined.empty() ? "" : "; ") + text;
+  }
+  return joined;
+}
 
 std::vector<TrainingStart> summarizeTraining(const std::vector<std::string>& parameters,
                                              const std::vector<gp::TrainingReport>& reports) {
@@ -18,8 +24,7 @@ std::vector<TrainingStart> summarizeTraining(const std::vector<std::string>& par
       const gp::StartReport& start = reports[p].starts[k];
       const bool best = static_cast<int>(k) == reports[p].best_start;
       rows.push_back({parameters[p], static_cast<int>(k), best, start.nlml, start.evaluations,
-                      start.noise_only, start.stop_reason,
-                      best ? fmt::format("{}", fmt::join(reports[p].at_bound, "; ")) : "",
+                      start.noise_only, start.stop_reason, best ? join(reports[p].at_bound) : "",
                       reports[p].condition, reports[p].jitter});
     }
   }
