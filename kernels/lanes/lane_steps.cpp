@@ -105,13 +105,15 @@ void LanePacket::advance(int lane) {
   }
 }
 
-/// The first step is a hundredth of the time that the fastest state takes to change by its own size.
+/// The first step is a hundredth of the time that the fastest state takes to change by its own size; a phase
+/// as short as rounding, between two events that mean the same time, is one step.
 void LanePacket::beginSteps(int lane) {
   const double size = calcNorm(lane, arrays_.state);
   const double speed = calcNorm(lane, arrays_.slopes[1]);
   const double length = arrays_.phase_end[lane] - arrays_.time[lane];
   const double guess = size < 1e-5 || speed < 1e-5 ? 1e-6 : 0.01 * size / speed;
-  arrays_.proposed[lane] = std::min(guess, 0.01 * length);
+  const double time = std::max(std::abs(arrays_.time[lane]), kSmallestTime);
+  arrays_.proposed[lane] = std::max(std::min(guess, 0.01 * length), 2.0 * kSmallestStep * time);
   arrays_.growth[lane] = kFirstGrowth;
   lanes_[lane].mode = Mode::kStep;
 }

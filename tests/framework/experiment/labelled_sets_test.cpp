@@ -42,7 +42,7 @@ TEST(LabelledSets, SamplesThatLackAFeatureFailWithTheReasonAndKeepTheirPlace) {
   sets.train.statuses[3] = {false, "step limit"};
   sets.train.responses.col(3).setConstant(std::nan(""));
   const FeatureExtractor extractor(experiment.features, sets.train.layout);
-  failIncompleteSamples(experiment, extractor, sets);
+  sets = failIncompleteSamples(experiment, extractor, std::move(sets));
 
   EXPECT_EQ(sets.train.statuses[0].reason, "feature 'y maximum 1 value' is missing in the response");
   EXPECT_EQ(sets.train.statuses[1].reason.rfind("feature 'y maximum 1 value' is missing in the response with "
@@ -87,8 +87,8 @@ TEST(LabelledSets, TheNoiseOfASampleDoesNotDependOnFailuresOfOthers) {
   SimulatedSets whole{makeBells({20.0, 25.0, 30.0}), makeBells({20.0, 25.0, 30.0})};
   SimulatedSets lacking{makeBells({20.0, 0.5, 30.0}), makeBells({20.0, 0.5, 30.0})};
   const FeatureExtractor extractor(experiment.features, whole.train.layout);
-  failIncompleteSamples(experiment, extractor, whole);
-  failIncompleteSamples(experiment, extractor, lacking);
+  whole = failIncompleteSamples(experiment, extractor, std::move(whole));
+  lacking = failIncompleteSamples(experiment, extractor, std::move(lacking));
   const FeatureNoise noise(extractor, Eigen::VectorXd::Constant(9, 0.3), 1);
   const Eigen::MatrixXd expected = makeLabelledSets(experiment, whole, extractor, noise).test.features;
   const Eigen::MatrixXd found = makeLabelledSets(experiment, lacking, extractor, noise).test.features;
