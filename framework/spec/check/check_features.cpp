@@ -121,7 +121,7 @@ std::string findParameter(const Expression& expression, const ModelSpec& model) 
       return name;
     }
     for (const ConstantSpec& constant : model.constants) {
-      std::string within = constant.name.text == name ? findParameter(constant.value, model) : "";
+      const std::string within = constant.name.text == name ? findParameter(constant.value, model) : "";
       if (!within.empty()) {
         return within;
       }

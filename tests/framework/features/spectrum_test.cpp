@@ -150,7 +150,7 @@ TEST(FrequencyResponse, NeedsEnergyInTheExcitation) {
   const ResponseLayout layout = makeLayout(features);
   const InputSignals inputs{{"F"}, {"N"}, calcSine(layout.times, 3.0, 1.5, 0.7)};
   try {
-    FeatureExtractor(features, layout, inputs);
+    const FeatureExtractor refused(features, layout, inputs);
     FAIL();
   } catch (const ExperimentError& error) {
     EXPECT_STREQ(error.what(),
