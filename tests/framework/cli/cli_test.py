@@ -135,6 +135,25 @@ class ExitCodes(TestCase):
         self.assertEqual(result.returncode, 1)
 
 
+class Terminated(TestCase):
+    def test_sigterm_abandons_a_training_under_way(self):
+        """With 3000 samples the training takes minutes, one evaluation of its likelihood about a second."""
+        command = [TWINMAP, "run", EXPERIMENTS / "two_beam/table1.yaml", "design.train.samples=3000",
+                   "evaluation.limit=false", "--out", self.folder / "run"]
+        child = subprocess.Popen(list(map(str, command)), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        deadline = time.monotonic() + 300
+        while not (self.folder / "run/failures.csv").exists():  # written last before the training
+            self.assertLess(time.monotonic(), deadline)
+            self.assertIsNone(child.poll())
+            time.sleep(0.05)
+        time.sleep(1.0)
+        child.terminate()
+        _, message = child.communicate(timeout=60)
+        self.assertEqual(child.returncode, 128 + 15, message)
+        self.assertIn("interrupted during training", message)
+        self.assertFalse((self.folder / "run/maps.h5").exists())
+
+
 class Simulate(TestCase):
     def test_writes_the_outputs_at_the_features_times(self):
         result = call("simulate", TABLE1, "parameters.k_y=7.5")
