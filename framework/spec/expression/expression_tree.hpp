@@ -51,8 +51,8 @@ enum class Operation {
 };
 
 /// An expression in muParser's grammar as a sequence of operations, operands before what uses them, so that
-/// it can be evaluated over any scalar (equations::calcExpression); an ExpressionScope evaluates numbers, by muParser
-/// itself.
+/// it can be evaluated over any scalar (equations::calcExpression); an ExpressionScope evaluates numbers, by
+/// muParser itself.
 struct ExpressionTree {
   struct Node {
     Operation operation;
