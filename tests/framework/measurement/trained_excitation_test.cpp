@@ -67,8 +67,9 @@ TEST(TrainedExcitation, IsRecognisedAtAnyRateAndStartUpToNoise) {
   }
 }
 
+// The jump lies between two samples: which side one on it belongs to would be a matter of rounding.
 TEST(TrainedExcitation, TheBeginningOfAPeriodicOneMayDiffer) {
-  EXPECT_EQ(getError(measure([](double t) { return t < 0.02 ? 0.0 : calcForce(t); })), "");
+  EXPECT_EQ(getError(measure([](double t) { return t < 0.015 ? 0.0 : calcForce(t); })), "");
 }
 
 TEST(TrainedExcitation, AnotherOneIsRefused) {
