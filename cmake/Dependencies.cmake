@@ -4,7 +4,8 @@ find_package(NLopt REQUIRED)
 find_package(OpenMP REQUIRED COMPONENTS CXX)
 # Threads are twinmap's own, outside Eigen: how Eigen cuts a product depends on their number.
 set_property(TARGET OpenMP::OpenMP_CXX APPEND PROPERTY INTERFACE_COMPILE_DEFINITIONS EIGEN_DONT_PARALLELIZE)
-link_libraries(OpenMP::OpenMP_CXX) # every target: precompiled headers need the same flags
+find_package(fmt REQUIRED)
+link_libraries(OpenMP::OpenMP_CXX fmt::fmt) # every target, as precompiled headers need the same flags
 find_package(Boost 1.74 REQUIRED)
 find_package(Simbody 3.7 REQUIRED)
 find_package(yaml-cpp 0.7 REQUIRED)

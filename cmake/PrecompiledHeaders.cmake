@@ -4,7 +4,7 @@
 set(TWINMAP_COMMON_HEADERS
   <kernels/linalg/eigen_products.hpp> <Eigen/Core> <Eigen/SparseCore> <algorithm> <array> <atomic> <chrono> <cmath> <cstdint> <cstring> <filesystem> <functional> <limits> <map>
   <memory> <mutex> <numeric> <optional> <set> <sstream> <stdexcept> <string> <string_view> <unordered_map> <utility>
-  <variant> <vector>)
+  <variant> <vector> <fmt/format.h>)
 
 # twinmap_precompile(<name> [HEADERS <headers...>] [LIBRARIES <targets...>]): the common headers and more of libraries,
 # for targets that ask for them by twinmap_use_precompiled(<target> <name>).
@@ -25,5 +25,4 @@ function(twinmap_use_precompiled target name)
 endfunction()
 
 twinmap_precompile(common)
-twinmap_precompile(json HEADERS <nlohmann/json.hpp> LIBRARIES nlohmann_json::nlohmann_json)
 twinmap_precompile(simbody HEADERS <Simbody.h> LIBRARIES SimTKsimbody SimTKmath SimTKcommon)
