@@ -142,15 +142,15 @@ ExactPosterior calcExactPosterior(Simulator& simulator, const LeastSquaresProble
 std::vector<ExactPosterior> calcExactPosteriors(const Simulator& prototype, const FeatureExtractor& extractor,
                                                 const NoiseWhitener& noise,
                                                 const std::vector<ParameterSpec>& parameters,
-                                                const MatrixXd& measured, const MatrixXd& starts,
-                                                const MatrixXd& inputs, int threads,
+                                                const PosteriorQuestions& questions,
                                                 const PosteriorOptions& options) {
-  std::vector<ExactPosterior> posteriors(measured.cols());
-  runOnTeam(prototype, static_cast<int>(measured.cols()), threads, [&](Simulator& simulator, int i) {
-    const VectorXd features = measured.col(i);
-    const VectorXd known = inputs.rows() > 0 ? VectorXd(inputs.col(i)) : VectorXd();
+  const int count = static_cast<int>(questions.features.cols());
+  std::vector<ExactPosterior> posteriors(count);
+  runOnTeam(prototype, count, options.threads, [&](Simulator& simulator, int i) {
+    const VectorXd features = questions.features.col(i);
+    const VectorXd known = questions.inputs.rows() > 0 ? VectorXd(questions.inputs.col(i)) : VectorXd();
     posteriors[i] = calcExactPosterior(simulator, {extractor, noise, parameters, features, known},
-                                       starts.col(i), i, options);
+                                       questions.starts.col(i), i, options);
   });
   return posteriors;
 }

@@ -26,17 +26,23 @@ struct ExactPosterior {
 struct PosteriorOptions {
   int draws = 500;
   std::uint64_t seed = 1;
+  int threads = 1;  ///< over measurements
 };
 ExactPosterior calcExactPosterior(Simulator& simulator, const LeastSquaresProblem& problem,
                                   const Eigen::VectorXd& start, int sample, const PosteriorOptions& options);
 
-/// The same for several measurements (columns of d x n, p x n and, where inputs are known, q x n), on a team
-/// of threads; the result does not depend on their number.
+/// Measurements, one a column, whose posteriors are asked for.
+struct PosteriorQuestions {
+  Eigen::MatrixXd features;  ///< d x n, measured
+  Eigen::MatrixXd starts;    ///< p x n, where the search for each begins
+  Eigen::MatrixXd inputs;    ///< q x n, known; empty if there are none
+};
+
+/// The same for several measurements, on a team of threads; the result does not depend on their number.
 std::vector<ExactPosterior> calcExactPosteriors(const Simulator& prototype, const FeatureExtractor& extractor,
                                                 const NoiseWhitener& noise,
                                                 const std::vector<ParameterSpec>& parameters,
-                                                const Eigen::MatrixXd& measured,
-                                                const Eigen::MatrixXd& starts, const Eigen::MatrixXd& inputs,
-                                                int threads, const PosteriorOptions& options);
+                                                const PosteriorQuestions& questions,
+                                                const PosteriorOptions& options);
 
 }  // namespace twinmap

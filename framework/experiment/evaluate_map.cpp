@@ -52,10 +52,11 @@ std::vector<ExactPosterior> calcPosteriors(const EvaluationContext& context, Ind
   const PosteriorSpec& spec = *context.experiment.evaluation.posterior;
   const LabelledFeatures& test = getTest(context);
   return timeStage(fmt::format("exact posterior of {} test samples", count), notes, [&] {
-    return calcExactPosteriors(context.simulator, context.extractor, NoiseWhitener(test.noise_covariance),
-                               collectUnknown(context.experiment.model), test.features.leftCols(count),
-                               test.collectUnknown().leftCols(count), test.inputs, context.threads,
-                               {spec.draws, context.experiment.seed});
+    return calcExactPosteriors(
+        context.simulator, context.extractor, NoiseWhitener(test.noise_covariance),
+        collectUnknown(context.experiment.model),
+        {test.features.leftCols(count), test.collectUnknown().leftCols(count), test.inputs},
+        {spec.draws, context.experiment.seed, context.threads});
   });
 }
 

@@ -42,41 +42,50 @@ MatrixXd selectColumns(const Eigen::Ref<const MatrixXd>& matrix, const std::vect
   return selected;
 }
 
+// What the processes of all targets share.
+struct SharedTraining {
+  const MatrixXd& inputs;
+  const MatrixXd& subset;  // of the inputs
+  const ModelStructure& structure;
+  const TrainingOptions& options;
+  const SparseOptions& sparse;
+};
+
 // The search box of the subset's scales, so that both searches know the same bounds.
-Hyperparameters refine(const VariationalBound& bound, const MatrixXd& subset, const VectorXd& target,
-                       const ModelStructure& structure, const TrainingOptions& options, int evaluations,
+Hyperparameters refine(const SharedTraining& shared, const VariationalBound& bound, const VectorXd& target,
                        const Hyperparameters& start, SparseTrainingResult& result) {
-  const TrainingSet set(subset, structure);
+  const ModelStructure& structure = shared.structure;
+  const TrainingSet set(shared.subset, structure);
   const double stddev = std::sqrt((target.array() - target.mean()).square().mean());
-  const SearchBox box = makeSearchBox(set, calcDataScales(set), stddev, options);
+  const SearchBox box = makeSearchBox(set, calcDataScales(set), stddev, shared.options);
   const Objective objective = [&](const VectorXd& point, VectorXd& gradient) {
     return bound.evaluate(fromLog(structure, point), gradient);
   };
-  const SearchResult found = minimize(objective, target.size(), toLog(structure, start), box,
-                                      {evaluations, options.tolerance, nullptr, options.stop});
+  const SearchResult found = minimize(
+      objective, target.size(), toLog(structure, start), box,
+      {shared.sparse.refine_evaluations / kRounds, shared.options.tolerance, nullptr, shared.options.stop});
   result.refine_evaluations += found.evaluations;
   return std::isfinite(found.objective) ? fromLog(structure, found.end) : start;
 }
 
-void fitSparse(const MatrixXd& inputs, const VectorXd& target, const MatrixXd& subset,
-               const ModelStructure& structure, const TrainingOptions& options, const SparseOptions& sparse,
-               const Hyperparameters& start, SparseTrainingResult& result) {
-  SparseGaussianProcessParts parts{structure, start, calcCenter(inputs), {}, {}};
+void fitSparse(const SharedTraining& shared, const VectorXd& target, const Hyperparameters& start,
+               SparseTrainingResult& result) {
+  const StopFlag stop = shared.options.stop;
+  SparseGaussianProcessParts parts{shared.structure, start, calcCenter(shared.inputs), {}, {}};
   bool definite = true;
-  for (int round = 0; round < kRounds && definite && !isStopRequested(options.stop); ++round) {
-    parts.inducing = chooseInducingPoints(inputs, structure, parts.hyperparameters, sparse.inducing);
-    const VariationalBound bound(inputs, target, parts.inducing, structure);
+  for (int round = 0; round < kRounds && definite && !isStopRequested(stop); ++round) {
+    parts.inducing =
+        chooseInducingPoints(shared.inputs, shared.structure, parts.hyperparameters, shared.sparse.inducing);
+    const VariationalBound bound(shared.inputs, target, parts.inducing, shared.structure);
     if (round == 0 && bound.calcPosterior(start, parts.posterior)) {
       result.subset_bound = parts.posterior.bound;
     }
-    const int evaluations = sparse.refine_evaluations / kRounds;
-    if (evaluations > 0) {
-      parts.hyperparameters =
-          refine(bound, subset, target, structure, options, evaluations, parts.hyperparameters, result);
+    if (shared.sparse.refine_evaluations >= kRounds) {
+      parts.hyperparameters = refine(shared, bound, target, parts.hyperparameters, result);
     }
     definite = bound.calcPosterior(parts.hyperparameters, parts.posterior);
   }
-  if (isStopRequested(options.stop)) {
+  if (isStopRequested(stop)) {
     return;
   }
   if (!definite) {
@@ -104,6 +113,7 @@ std::vector<SparseTrainingResult> trainSparse(const Eigen::Ref<const MatrixXd>& 
   }
   const std::vector<Index> indices = spreadIndices(inputs.cols(), sparse.subset);
   const MatrixXd all = inputs, subset = selectColumns(inputs, indices);
+  const SharedTraining shared{all, subset, structure, options, sparse};
   const auto exact = train(subset, selectColumns(targets, indices), structure, options);
   std::vector<SparseTrainingResult> results(exact.size());
   const int count = static_cast<int>(exact.size());
@@ -116,7 +126,7 @@ std::vector<SparseTrainingResult> trainSparse(const Eigen::Ref<const MatrixXd>& 
       continue;
     }
     const VectorXd target = targets.row(t).transpose();
-    fitSparse(all, target, subset, structure, options, sparse, exact[t].gp->getHyperparameters(), results[t]);
+    fitSparse(shared, target, exact[t].gp->getHyperparameters(), results[t]);
   }
   throwIfStopped(options.stop);
   return results;

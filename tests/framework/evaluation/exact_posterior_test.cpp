@@ -21,8 +21,8 @@ std::vector<ExactPosterior> calcPosteriors(const LinearSimulator& simulator,
   const FeatureExtractor extractor(makeAllFeatures(simulator), simulator.getLayout());
   const MatrixXd starts =
       MatrixXd::Constant(static_cast<Eigen::Index>(parameters.size()), measured.cols(), 0.5);
-  return calcExactPosteriors(simulator, extractor, NoiseWhitener(covariance), parameters, measured, starts,
-                             inputs, threads, {1000, 7});
+  return calcExactPosteriors(simulator, extractor, NoiseWhitener(covariance), parameters,
+                             {measured, starts, inputs}, {1000, 7, threads});
 }
 
 // With a wide box the posterior is normal, with the moments of the normal equations.
