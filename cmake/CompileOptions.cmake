@@ -58,14 +58,14 @@ endif()
 
 # twinmap_add_library(<target> SOURCES <files...> [PRECOMPILED <name>] [PUBLIC <targets...>] [PRIVATE <targets...>]):
 # a static library whose headers are included by their path from the project's root. PRECOMPILED as in
-# cmake/PrecompiledHeaders.cmake, common by default.
+# cmake/PrecompiledHeaders.cmake, framework by default.
 function(twinmap_add_library target)
   cmake_parse_arguments(ARG "" "PRECOMPILED" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   add_library(${target} STATIC ${ARG_SOURCES})
   target_include_directories(${target} PUBLIC "${PROJECT_SOURCE_DIR}")
   target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
   if(NOT ARG_PRECOMPILED)
-    set(ARG_PRECOMPILED common)
+    set(ARG_PRECOMPILED framework)
   endif()
   twinmap_use_precompiled(${target} ${ARG_PRECOMPILED})
 endfunction()

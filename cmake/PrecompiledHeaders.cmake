@@ -6,23 +6,33 @@ set(TWINMAP_COMMON_HEADERS
   <memory> <mutex> <numeric> <optional> <set> <sstream> <stdexcept> <string> <string_view> <unordered_map> <utility>
   <variant> <vector> <fmt/format.h>)
 
-# twinmap_precompile(<name> [HEADERS <headers...>] [LIBRARIES <targets...>]): the common headers and more of libraries,
-# for targets that ask for them by twinmap_use_precompiled(<target> <name>).
+# twinmap_precompile(<name> [HEADERS <headers...>] [LIBRARIES <targets...>] [OPTIONS <options...>]): the common headers and
+# more of libraries, compiled with options, for targets that ask for both by twinmap_use_precompiled(<target> <name>).
 file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/precompiled.cpp" CONTENT "")
 function(twinmap_precompile name)
-  cmake_parse_arguments(ARG "" "" "HEADERS;LIBRARIES" ${ARGN})
-  add_library(twinmap_precompiled_${name} OBJECT EXCLUDE_FROM_ALL "${PROJECT_BINARY_DIR}/precompiled.cpp")
-  target_include_directories(twinmap_precompiled_${name} PRIVATE "${PROJECT_SOURCE_DIR}")
-  target_link_libraries(twinmap_precompiled_${name} PRIVATE Eigen3::Eigen ${ARG_LIBRARIES})
-  target_precompile_headers(twinmap_precompiled_${name} PRIVATE ${TWINMAP_COMMON_HEADERS} ${ARG_HEADERS})
+  cmake_parse_arguments(ARG "" "" "HEADERS;LIBRARIES;OPTIONS" ${ARGN})
+  set(headers twinmap_precompiled_${name})
+  add_library(${headers} OBJECT EXCLUDE_FROM_ALL "${PROJECT_BINARY_DIR}/precompiled.cpp")
+  target_include_directories(${headers} PRIVATE "${PROJECT_SOURCE_DIR}")
+  target_link_libraries(${headers} PRIVATE Eigen3::Eigen ${ARG_LIBRARIES})
+  target_compile_options(${headers} PUBLIC ${ARG_OPTIONS})
+  target_precompile_headers(${headers} PRIVATE ${TWINMAP_COMMON_HEADERS} ${ARG_HEADERS})
 endfunction()
 
 function(twinmap_use_precompiled target name)
-  target_precompile_headers(${target} REUSE_FROM twinmap_precompiled_${name})
+  set(headers twinmap_precompiled_${name})
+  target_precompile_headers(${target} REUSE_FROM ${headers})
+  target_compile_options(${target} PRIVATE $<TARGET_PROPERTY:${headers},INTERFACE_COMPILE_OPTIONS>)
   if(NOT target STREQUAL "twinmap_linalg")
     target_link_libraries(${target} PRIVATE twinmap_linalg) # what eigen_products.hpp declares
   endif()
 endfunction()
 
+# Code that organises rather than computes: a third less time to compile than with -O3, and no slower where it counts.
+set(TWINMAP_LIGHT $<$<CONFIG:Release>:-O1>)
+set(TWINMAP_SPEC <framework/spec/experiment_spec.hpp>) # what most of the framework includes
+
 twinmap_precompile(common)
-twinmap_precompile(simbody HEADERS <Simbody.h> LIBRARIES SimTKsimbody SimTKmath SimTKcommon)
+twinmap_precompile(framework HEADERS ${TWINMAP_SPEC})
+twinmap_precompile(light HEADERS ${TWINMAP_SPEC} OPTIONS ${TWINMAP_LIGHT})
+twinmap_precompile(simbody HEADERS ${TWINMAP_SPEC} <Simbody.h> LIBRARIES SimTKsimbody SimTKmath SimTKcommon)
