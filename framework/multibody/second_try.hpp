@@ -15,7 +15,18 @@ class SecondTry {
   void simulate(const Eigen::Ref<const Eigen::VectorXd>& parameters, Eigen::Ref<Eigen::VectorXd> response,
                 SampleStatus& status) const;
 
+  /// The same with the derivatives (rows of the response x parameters), by differences (makeNeighbours)
+  /// of solutions with a thousandth of the tolerance: good to 1 % of the largest. Fails if one of the 2 p + 1
+  /// simulations does.
+  void simulateWithDerivatives(const Eigen::Ref<const Eigen::VectorXd>& parameters,
+                               Eigen::Ref<Eigen::VectorXd> response, Eigen::Ref<Eigen::MatrixXd> derivatives,
+                               SampleStatus& status) const;
+
  private:
+  SampleStatus simulateImplicitly(double tolerance_factor,
+                                  const Eigen::Ref<const Eigen::VectorXd>& parameters,
+                                  Eigen::Ref<Eigen::VectorXd> response) const;
+
   const ModelSpec& model_;
   SimbodyEngine& simbody_;
 };

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "framework/sensitivity/stencil.hpp"
+#include "framework/simulation/stencil.hpp"
 
 namespace twinmap {
 namespace {

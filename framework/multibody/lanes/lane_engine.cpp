@@ -21,7 +21,11 @@ void LaneEngine::simulateWithDerivatives(const Eigen::Ref<const MatrixXd>& param
   if (!derivative_runner_) {
     derivative_runner_.emplace(programs_.getDerivatives(context_.names), task_, context_.model);
   }
-  derivative_runner_->run(context_, parameters, responses, &derivatives, statuses);
+  const Index p = parameters.rows();
+  for (const Index i : derivative_runner_->run(context_, parameters, responses, &derivatives, statuses)) {
+    second_try_.simulateWithDerivatives(parameters.col(i), responses.col(i), derivatives.middleCols(i * p, p),
+                                        statuses[i]);
+  }
 }
 
 }  // namespace twinmap
