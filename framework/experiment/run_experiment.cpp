@@ -43,7 +43,7 @@ OwnStores openOwnStores(const ExperimentSpec& experiment, const Simulator& simul
   }
   const fs::path root = getStoreRoot(options.folder, options.store);
   OwnStores stores{openStore(experiment.model, simulator.getLayout(), root), nullptr};
-  if (listNeededNeighbourhoods(experiment).cols() > 0) {
+  if (!simulator.hasDerivatives() && listDerivativePoints(experiment).cols() > 0) {
     stores.neighbourhoods = openNeighbourhoodStore(experiment.model, simulator.getLayout(), root);
   }
   return stores;
@@ -118,8 +118,7 @@ StageNotes writeExamples(const RunContext& run, const Trajectories& test,
 RunSummary runStages(const RunContext& run) {
   const ExperimentSpec& experiment = run.experiment;
   const LocalModelSource local_models = [&](const Eigen::MatrixXd& points) {
-    return calcLocalModels(experiment, run.source, run.simulator.getLayout(), run.extractor, points,
-                           run.control.threads);
+    return calcLocalModels(experiment, run.source, run.simulator, run.extractor, points, run.control.threads);
   };
   const Samples samples = simulateSamples(run);
   const PreparedData data = prepareData(experiment, run.extractor, samples.sets, local_models);

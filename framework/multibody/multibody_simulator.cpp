@@ -1,16 +1,13 @@
 #include "framework/multibody/multibody_simulator.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <mutex>
 #include <stdexcept>
 
-#include "framework/multibody/lanes/compare_with_simbody.hpp"
-#include "framework/multibody/lanes/lane_runner.hpp"
-#include "framework/multibody/linearization.hpp"
-#include "framework/multibody/run_sample.hpp"
-#include "framework/spec/check/check_experiment.hpp"
+#include "framework/multibody/box_center.hpp"
+#include "framework/multibody/lanes/lane_engine.hpp"
+#include "framework/multibody/outputs.hpp"
+#include "framework/multibody/simbody_engine.hpp"
 #include "framework/spec/parameter_box.hpp"
 
 namespace twinmap {
@@ -24,10 +21,9 @@ std::mutex building;
 struct SharedModel {
   ModelSpec model;
   ResponseLayout layout;
-  Eigen::VectorXd box_center;  ///< coordinates of the equilibrium there, if the spec asks for it
-  std::string engine = "simbody";
-  std::optional<LaneModel> lanes;             ///< if they are the engine
-  std::optional<LaneModel> lane_derivatives;  ///< made when first used
+  Eigen::VectorXd box_center;           ///< solveBoxCenter()
+  std::unique_ptr<LanePrograms> lanes;  ///< null where Simbody simulates
+  std::string engine;
 };
 
 /// Samples handed out at once: enough to keep all lanes busy but at the end, few enough to share work.
@@ -60,111 +56,28 @@ void checkShapes(const SharedModel& shared, const Eigen::Ref<const Eigen::Matrix
   }
 }
 
-int findParameter(const ModelSpec& model, const Name& name) {
-  const std::vector<std::string> names = collectNames(collectSampled(model));
-  requireKnown(name, names, "a parameter");
-  return static_cast<int>(std::find(names.begin(), names.end(), name.text) - names.begin());
-}
-
-/// The box centre with the values that replace it; those may use the centre's parameters and constants.
-Eigen::VectorXd calcEquilibriumPoint(ModelContext& context) {
-  Eigen::VectorXd point = calcBoxCenter(collectSampled(context.model));
-  const std::optional<EquilibriumSpec>& equilibrium = context.model.initial.equilibrium;
-  if (equilibrium) {
-    for (const NamedExpression& value : equilibrium->parameters) {
-      const std::string owner = "initial.equilibrium";
-      point[findParameter(context.model, value.name)] =
-          context.numbers.updNumbers().calc(value.value, {owner, value.name.text.c_str(), ""});
-    }
+/// Throws where lanes are asked for and cannot simulate the model.
+void chooseEngine(ModelContext& context, SharedModel& shared) {
+  auto lanes = std::make_unique<LanePrograms>(context, shared.box_center);
+  const std::string& obstacle = lanes->getObstacle();
+  if (!obstacle.empty() && shared.model.simulation.engine == Engine::kLanes) {
+    throw ExperimentError("simulation.engine: lanes cannot simulate this model: " + obstacle);
   }
-  return point;
-}
-
-/// Builds everything at the box centre, so that all expressions are compiled and all names are known.
-void buildAtBoxCenter(ModelContext& context) {
-  const LoadedSystem system(context, false);
-  const Outputs outputs(context.model.outputs, context.names, context.numbers.updNumbers());
-  calcInitialValues(context);
-}
-
-/// Why the model cannot be simulated in lanes whatever its equations are, or "".
-std::string findObstacle(const ModelContext& context) {
-  if (context.model.simulation.engine == Engine::kSimbody) {
-    return "simulation.engine asks for it";
+  shared.engine = obstacle.empty() ? "lanes" : "simbody: " + obstacle;
+  if (obstacle.empty()) {
+    shared.lanes = std::move(lanes);
   }
-  if (context.model.simulation.integrator != Integrator::kDopri5) {
-    return "simulation.integrator is one of Simbody's";
-  }
-  return context.names.getCoordinateNames().empty() ? "nothing can move" : "";
-}
-
-/// Compiles the model for lanes if it can be; returns why not, or "".
-std::string makeLanes(ModelContext& context, const Eigen::VectorXd& box_center,
-                      std::optional<LaneModel>& lanes) {
-  const std::string obstacle = findObstacle(context);
-  if (!obstacle.empty()) {
-    return obstacle;
-  }
-  try {
-    lanes = compileModel(recordModel(context.model, context.names, box_center), false);
-  } catch (const UnknownSyntax& error) {
-    return error.what();
-  }
-  const std::string difference = compareWithSimbody(context, *lanes);
-  if (!difference.empty()) {
-    lanes.reset();
-  }
-  return difference;
-}
-
-Eigen::VectorXd solveBoxCenter(ModelContext& context) {
-  context.numbers.update(calcEquilibriumPoint(context));
-  LoadedSystem system(context, false);
-  return solveEquilibrium(system, calcInitialValues(context).coordinates);
-}
-
-/// The initial state at the current point exists and its accelerations are finite; else SimulationFailure.
-void checkInitialState(ModelContext& context, const Eigen::VectorXd& box_center) {
-  LoadedSystem system(context, false);
-  SimTK::State state = system.getTree().getDefaultState();
-  setState(system, calcInitialState(context, system, box_center), state);
-  context.excitation.beginPhase(0.0);
-  const bool finite = system.calcUDot(state, 0.0).allFinite();
-  context.excitation.mute();
-  if (!finite) {
-    throw SimulationFailure("the accelerations of the initial state are not finite");
-  }
-}
-
-/// What is wrong with the model at the centre of its box, with the number that is the cause, or `system`.
-ExperimentError makeCenterError(const ModelSpec& model, SourceLocation where, const std::string& reason) {
-  if (where.file.empty() && !model.system.bodies.empty()) {
-    where = model.system.bodies.front().name.where;
-    where.key_path = where.file.empty() ? "" : "system";
-  }
-  const std::string place = toString(where);
-  return ExperimentError((place.empty() ? "" : place + ": ") +
-                         "at the centre of the parameter box: " + reason);
 }
 
 }  // namespace
 
 class MultibodySimulator::Impl {
  public:
+  /// The first of the clones: completes what they share.
   Impl(const ModelSpec& model, Eigen::VectorXd times, int modes)
-      : Impl(std::make_shared<SharedModel>(
-            SharedModel{model, {{}, {}, std::move(times), modes}, {}, {}, {}, {}})) {}
-
-  explicit Impl(std::shared_ptr<SharedModel> shared) : shared_(std::move(shared)), context_(shared_->model) {}
-
-  /// Compiles all expressions now, while clones are made one after the other.
-  void compileAll() {
-    context_.numbers.update(calcBoxCenter(collectSampled(shared_->model)));
-    buildAtBoxCenter(context_);
-  }
-
-  /// Completes what the clones share.
-  void prepare() {
+      : shared_(
+            std::make_shared<SharedModel>(SharedModel{model, {{}, {}, std::move(times), modes}, {}, {}, {}})),
+        context_(shared_->model) {
     if (shared_->layout.times.size() > 0) {
       checkSimulation(shared_->model.simulation);
     }
@@ -173,170 +86,66 @@ class MultibodySimulator::Impl {
     for (const OutputSpec& output : shared_->model.outputs) {
       shared_->layout.output_names.push_back(output.name.text);
     }
-    atBoxCenter([this] {
-      compileAll();
-      const std::optional<EquilibriumSpec>& equilibrium = shared_->model.initial.equilibrium;
-      if (equilibrium && equilibrium->at == EquilibriumAt::kBoxCenter) {
-        shared_->box_center = solveBoxCenter(context_);
-      }
-    });
-    chooseEngine();
+    buildAtBoxCenter(context_);
+    shared_->box_center = solveBoxCenter(context_);
+    chooseEngine(context_, *shared_);
+    makeEngines();
   }
 
-  void checkStart() {
-    atBoxCenter([this] {
-      context_.numbers.update(calcBoxCenter(collectSampled(shared_->model)));
-      checkInitialState(context_, shared_->box_center);
-    });
+  /// Compiles all expressions now, while clones are made one after the other.
+  explicit Impl(std::shared_ptr<SharedModel> shared) : shared_(std::move(shared)), context_(shared_->model) {
+    buildAtBoxCenter(context_);
+    makeEngines();
   }
 
-  /// All columns, in lanes or one after the other.
+  void checkStart() { checkStartAtBoxCenter(context_, shared_->box_center); }
+
   void simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters, Eigen::Ref<Eigen::MatrixXd> responses,
                 SampleStatus* statuses) {
-    if (shared_->lanes) {
-      simulateInLanes(parameters, responses, statuses);
+    if (lanes_) {
+      lanes_->simulate(parameters, responses, statuses);
       return;
     }
     for (Eigen::Index i = 0; i < parameters.cols(); ++i) {
       StepSequence own_steps;
-      statuses[i] = simulateOne(parameters.col(i), responses.col(i), own_steps);
+      statuses[i] = simulateBySimbody(parameters.col(i), responses.col(i), own_steps);
     }
   }
 
-  void simulateWithDerivatives(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
-                               Eigen::Ref<Eigen::MatrixXd> responses, Eigen::MatrixXd& derivatives,
-                               SampleStatus* statuses) {
-    if (!derivative_runner_) {
-      derivative_runner_.emplace(getLaneDerivatives(), LaneTask{shared_->layout, shared_->box_center},
-                                 shared_->model);
+  void simulateAround(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                      Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
+    StepSequence steps_of_center;
+    for (Eigen::Index i = 0; i < parameters.cols(); ++i) {
+      statuses[i] = simulateBySimbody(parameters.col(i), responses.col(i), steps_of_center);
     }
-    derivative_runner_->run(context_, parameters, responses, &derivatives, statuses);
   }
 
-  /// By Simbody. Takes the steps of `sequence` if there are any, else keeps there those it took.
-  SampleStatus simulateOne(const Eigen::Ref<const Eigen::VectorXd>& parameters,
-                           Eigen::Ref<Eigen::VectorXd> response, StepSequence& sequence) {
-    return simulateOne(shared_->model.simulation, parameters, response, sequence);
-  }
-
+  LaneEngine& updLanes() { return lanes_.value(); }
   const std::shared_ptr<SharedModel>& getShared() const { return shared_; }
 
  private:
-  void chooseEngine() {
-    const std::string obstacle = makeLanes(context_, shared_->box_center, shared_->lanes);
-    if (!obstacle.empty() && shared_->model.simulation.engine == Engine::kLanes) {
-      throw ExperimentError("simulation.engine: lanes cannot simulate this model: " + obstacle);
-    }
-    shared_->engine = obstacle.empty() ? "lanes" : "simbody: " + obstacle;
-  }
-
-  void simulateInLanes(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
-                       Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
-    if (!runner_) {
-      runner_.emplace(*shared_->lanes, LaneTask{shared_->layout, shared_->box_center}, shared_->model);
-    }
-    for (const Eigen::Index i : runner_->run(context_, parameters, responses, nullptr, statuses)) {
-      tryImplicitly(parameters.col(i), responses.col(i), statuses[i]);
+  void makeEngines() {
+    const SampleTask task{shared_->layout, shared_->box_center};
+    simbody_.emplace(context_, task);
+    if (shared_->lanes) {
+      lanes_.emplace(*shared_->lanes, context_, task, *simbody_);
     }
   }
 
-  const LaneModel& getLaneDerivatives() {
-    const std::lock_guard<std::mutex> guard(building);
-    if (!shared_->lane_derivatives) {
-      shared_->lane_derivatives =
-          compileModel(recordModel(shared_->model, context_.names, shared_->box_center), true);
-    }
-    return *shared_->lane_derivatives;
-  }
-
-  /// What reached the step limit may be stiff: CPodes tries it once more.
-  void tryImplicitly(const Eigen::Ref<const Eigen::VectorXd>& parameters,
-                     Eigen::Ref<Eigen::VectorXd> response, SampleStatus& status) {
-    SimulationSpec simulation = shared_->model.simulation;
-    simulation.integrator = Integrator::kCpodes;
-    StepSequence unused;
-    SampleStatus again = simulateOne(simulation, parameters, response, unused);
-    again.second_try = true;
-    if (!again.ok) {
-      again.reason = status.reason + "; by CPodes: " + again.reason;
-    }
-    status = again;
-  }
-
-  SampleStatus simulateOne(const SimulationSpec& simulation,
-                           const Eigen::Ref<const Eigen::VectorXd>& parameters,
-                           Eigen::Ref<Eigen::VectorXd> response, StepSequence& sequence) {
-    SampleStatus status;
-    try {
-      status.reason = run(simulation, parameters, response, sequence);
-      if (status.reason.empty() && !response.allFinite()) {
-        status.reason = "an output became non-finite";
-      }
-    } catch (const WallTimeReached& failure) {
-      status.reason = failure.what();
-      status.machine_dependent = true;
-    } catch (const SimulationFailure& failure) {
-      status.reason = failure.what();
-    } catch (const SimTK::Exception::Base& error) {
-      status.reason = std::string("Simbody: ") + error.getMessage();
-    }
-    status.ok = status.reason.empty();
-    if (!status.ok) {
-      response.setConstant(std::numeric_limits<double>::quiet_NaN());
-    }
-    return status;
-  }
-
-  /// What fails in `build` is wrong input.
-  template <typename Build>
-  void atBoxCenter(const Build& build) const {
-    try {
-      build();
-    } catch (const SimulationFailure& failure) {
-      throw makeCenterError(shared_->model, failure.getWhere(), failure.what());
-    } catch (const SimTK::Exception::Base& error) {
-      std::string message = error.getMessage();
-      std::replace(message.begin(), message.end(), '\n', ' ');
-      throw makeCenterError(shared_->model, {}, "Simbody: " + message);
-    }
-  }
-
-  std::string run(const SimulationSpec& simulation, const Eigen::Ref<const Eigen::VectorXd>& parameters,
-                  Eigen::Ref<Eigen::VectorXd> response, StepSequence& sequence) {
-    const bool own = simulation.integrator == Integrator::kDopri5;
-    context_.numbers.update(parameters);
-    LoadedSystem system(context_, !own);
-    fillModes(system, response);  // before the integration, which switches the excitation on
-    if (shared_->layout.times.size() == 0) {
-      return "";
-    }
-    const Outputs outputs(shared_->model.outputs, context_.names, context_.numbers.updNumbers());
-    const InitialState initial = calcInitialState(context_, system, shared_->box_center);
-    const SampleRun sample{system,     context_.excitation,   outputs,        initial,
-                           simulation, shared_->layout.times, response.data()};
-    return own ? runDopri5(sample, sequence) : runSimbody(sample);
-  }
-
-  void fillModes(LoadedSystem& system, Eigen::Ref<Eigen::VectorXd> response) {
-    const ResponseLayout& layout = shared_->layout;
-    if (layout.modes == 0) {
-      return;
-    }
-    const Eigen::VectorXd start =
-        shared_->box_center.size() > 0 ? shared_->box_center : calcInitialValues(context_).coordinates;
-    response.tail(2 * layout.modes) =
-        collectLowestModes(calcStateMatrix(system, solveEquilibrium(system, start)), layout.modes);
+  SampleStatus simulateBySimbody(const Eigen::Ref<const Eigen::VectorXd>& parameters,
+                                 Eigen::Ref<Eigen::VectorXd> response, StepSequence& sequence) {
+    return simbody_->simulate(shared_->model.simulation, parameters, response, sequence);
   }
 
   std::shared_ptr<SharedModel> shared_;
   ModelContext context_;
-  std::optional<LaneRunner> runner_, derivative_runner_;
+  std::optional<SimbodyEngine> simbody_;
+  std::optional<LaneEngine> lanes_;
 };
 
 MultibodySimulator::MultibodySimulator(const ModelSpec& model, Eigen::VectorXd times, int modes) {
   const std::lock_guard<std::mutex> guard(building);
   impl_ = std::make_unique<Impl>(model, std::move(times), modes);
-  impl_->prepare();
 }
 
 MultibodySimulator::MultibodySimulator(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -368,28 +177,23 @@ void MultibodySimulator::simulate(const Eigen::Ref<const Eigen::MatrixXd>& param
 void MultibodySimulator::simulateAround(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
                                         Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
   checkShapes(*impl_->getShared(), parameters, responses);
-  StepSequence steps_of_center;
-  for (Eigen::Index i = 0; i < parameters.cols(); ++i) {
-    statuses[i] = impl_->simulateOne(parameters.col(i), responses.col(i), steps_of_center);
-  }
+  impl_->simulateAround(parameters, responses, statuses);
 }
 
 bool MultibodySimulator::hasDerivatives() const {
-  return impl_->getShared()->lanes.has_value();
+  return impl_->getShared()->lanes != nullptr;
 }
 
 void MultibodySimulator::simulateWithDerivatives(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
                                                  Eigen::Ref<Eigen::MatrixXd> responses,
                                                  Eigen::MatrixXd& derivatives, SampleStatus* statuses) {
   checkShapes(*impl_->getShared(), parameters, responses);
-  impl_->simulateWithDerivatives(parameters, responses, derivatives, statuses);
+  impl_->updLanes().simulateWithDerivatives(parameters, responses, derivatives, statuses);
 }
 
 std::unique_ptr<Simulator> MultibodySimulator::clone() const {
   const std::lock_guard<std::mutex> guard(building);
-  auto impl = std::make_unique<Impl>(impl_->getShared());
-  impl->compileAll();
-  return std::unique_ptr<Simulator>(new MultibodySimulator(std::move(impl)));
+  return std::unique_ptr<Simulator>(new MultibodySimulator(std::make_unique<Impl>(impl_->getShared())));
 }
 
 }  // namespace twinmap

@@ -59,7 +59,7 @@ bool selectsByFisherInformation(const ExperimentSpec& experiment) {
                      });
 }
 
-MatrixXd listNeededNeighbourhoods(const ExperimentSpec& experiment) {
+MatrixXd listDerivativePoints(const ExperimentSpec& experiment) {
   MatrixXd points(countSampled(experiment.model), 0);
   if (asksForInformationLimit(experiment)) {
     points = sampleTestPoints(experiment);
@@ -101,7 +101,7 @@ StageNotes simulateNeighbourhoods(const ExperimentSpec& experiment, const Sample
   if (source.neighbourhoods == nullptr) {
     return {};
   }
-  const MatrixXd points = dropFailed(listNeededNeighbourhoods(experiment), source.store);
+  const MatrixXd points = dropFailed(listDerivativePoints(experiment), source.store);
   if (source.neighbourhoods->findMissing(points).empty()) {
     return {};
   }
@@ -121,12 +121,12 @@ StageNotes simulateNeighbourhoods(const ExperimentSpec& experiment, const Sample
 }
 
 std::vector<LocalModel> calcLocalModels(const ExperimentSpec& experiment, const SampleSource& source,
-                                        const ResponseLayout& layout, const FeatureExtractor& extractor,
+                                        const Simulator& simulator, const FeatureExtractor& extractor,
                                         const MatrixXd& points, int threads) {
   const std::vector<ParameterSpec> unknown = collectUnknown(experiment.model);
   return source.neighbourhoods == nullptr
-             ? calcLocalModels(source.simulator, extractor, unknown, points, threads)
-             : calcStoredLocalModels(source, layout, extractor, unknown, points, threads);
+             ? calcLocalModels(simulator, extractor, unknown, points, threads)
+             : calcStoredLocalModels(source, simulator.getLayout(), extractor, unknown, points, threads);
 }
 
 }  // namespace twinmap

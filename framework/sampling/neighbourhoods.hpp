@@ -21,16 +21,16 @@ inline constexpr int kSensitivitySamples = 16;
 /// Whether a step of the transform selects features by Fisher information.
 bool selectsByFisherInformation(const ExperimentSpec& experiment);
 
-/// The points whose neighbourhoods a run of the experiment needs: the test points for the information limit,
+/// The points at which a run of the experiment needs derivatives: the test points for the information limit,
 /// and the first training points for a selection by Fisher information. Parameters x n, n = 0 if it needs
-/// none. Neighbourhoods of samples that fail are not needed after all.
-Eigen::MatrixXd listNeededNeighbourhoods(const ExperimentSpec& experiment);
+/// none. Those of samples that fail are not needed after all.
+Eigen::MatrixXd listDerivativePoints(const ExperimentSpec& experiment);
 
 /// Those of the points whose sample has not failed, as far as the store of the samples knows.
 Eigen::MatrixXd dropFailed(const Eigen::MatrixXd& points, const TrajectoryStore& samples);
 
-/// The store of the neighbourhoods of a model's points, for derivatives to its unknown parameters, in the
-/// folder `root`; `layout` is that of one response.
+/// The store of the neighbourhoods of a model's points, for derivatives to its unknown parameters by a
+/// simulator that has none of its own, in the folder `root`; `layout` is that of one response.
 std::unique_ptr<TrajectoryStore> openNeighbourhoodStore(const ModelSpec& model, const ResponseLayout& layout,
                                                         const std::filesystem::path& root,
                                                         StoreAccess access = StoreAccess::kReadWrite);
@@ -40,11 +40,11 @@ std::unique_ptr<TrajectoryStore> openNeighbourhoodStore(const ModelSpec& model, 
 StageNotes simulateNeighbourhoods(const ExperimentSpec& experiment, const SampleSource& source,
                                   const RunControl& control);
 
-/// The local models at points, from the source's neighbourhoods where it keeps them: what it has is not
-/// simulated again. `extractor`: of the experiment, for responses of `layout`, whose rows must be among those
-/// of the source. The result does not depend on `threads`.
+/// The local models at points: by `simulator`, or from the source's neighbourhoods where it keeps them, of
+/// which what it has is not simulated again. `simulator` and `extractor` are of the experiment; the rows of
+/// its responses must be among those of the source. The result does not depend on `threads`.
 std::vector<LocalModel> calcLocalModels(const ExperimentSpec& experiment, const SampleSource& source,
-                                        const ResponseLayout& layout, const FeatureExtractor& extractor,
+                                        const Simulator& simulator, const FeatureExtractor& extractor,
                                         const Eigen::MatrixXd& points, int threads);
 
 }  // namespace twinmap

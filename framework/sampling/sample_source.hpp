@@ -10,7 +10,7 @@ namespace twinmap {
 struct SampleSource {
   const Simulator& simulator;
   TrajectoryStore& store;                     ///< of the simulator's model and layout
-  TrajectoryStore* neighbourhoods = nullptr;  ///< openNeighbourhoodStore of them; null if none are needed
+  TrajectoryStore* neighbourhoods = nullptr;  ///< openNeighbourhoodStore; null if none are needed
 };
 
 /// The responses at the times and modes of `layout`, which must be among those that the trajectories have.

@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "framework/sensitivity/neighbourhood_simulator.hpp"
-#include "framework/sensitivity/stencil.hpp"
 #include "framework/simulation/simulator_team.hpp"
+#include "framework/simulation/stencil.hpp"
 
 namespace twinmap {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "framework/sensitivity/stencil.hpp"
+#include "framework/simulation/stencil.hpp"
 
 namespace twinmap {
 namespace {
@@ -73,7 +73,7 @@ NeighbourhoodSimulator::NeighbourhoodSimulator(const Simulator& simulator,
 
 void NeighbourhoodSimulator::simulate(const Eigen::Ref<const MatrixXd>& parameters,
                                       Eigen::Ref<MatrixXd> responses, SampleStatus* statuses) {
-  simulateNeighbourhoods(*simulator_, parameters_, parameters, responses, statuses);
+  simulateEach(*simulator_, parameters_, parameters, responses, statuses);
 }
 
 std::unique_ptr<Simulator> NeighbourhoodSimulator::clone() const {

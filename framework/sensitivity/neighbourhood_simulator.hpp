@@ -22,14 +22,13 @@ void simulateNeighbourhoods(Simulator& simulator, const std::vector<ParameterSpe
                             const Eigen::Ref<const Eigen::MatrixXd>& points,
                             Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses);
 
-/// simulateNeighbourhoods as a simulator, so that a point's derivatives can be stored and shared like any
-/// sample. Its layout has as many rows; its outputs and modes are those of the simulator, repeated.
+/// Simulates the neighbourhoods of a simulator that has no derivatives, so that they can be stored and shared
+/// like any sample. Its layout has as many rows; its outputs and modes are those of the simulator, repeated.
 class NeighbourhoodSimulator final : public Simulator {
  public:
   NeighbourhoodSimulator(const Simulator& simulator, const std::vector<ParameterSpec>& parameters);
 
   const ResponseLayout& getLayout() const override { return layout_; }
-  int getBatchSize() const override { return simulator_->getBatchSize(); }
   void simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters, Eigen::Ref<Eigen::MatrixXd> responses,
                 SampleStatus* statuses) override;
   std::unique_ptr<Simulator> clone() const override;

@@ -30,7 +30,7 @@ struct CaseCost {
 /// bytes: for exact processes with n samples, replicates included, m of them searched with, and P parameters,
 /// 8 m^2 (2.5 a search that runs at the same time + 1), at least 8 n^2 3.5 to fit one, and 8 n^2 1.5 P; and
 /// 10 numbers for every one of a response; and where there is an information limit, the neighbourhoods of the
-/// test samples; and the draws of exact posteriors.
+/// test samples, which exact derivatives stay below; and the draws of exact posteriors.
 CaseCost calcCaseCost(const ExperimentSpec& experiment, int threads);
 
 /// Throws ExperimentError, before any work begins, where a case needs more than `bytes`.

@@ -125,12 +125,12 @@ std::vector<ModelGroup> splitByBounds(const std::vector<SweepCase>& cases, const
   return parts;
 }
 
-Eigen::MatrixXd collectNeighbourhoods(const std::vector<SweepCase>& cases, const ModelGroup& group,
-                                      const std::vector<bool>& wanted) {
+Eigen::MatrixXd collectDerivativePoints(const std::vector<SweepCase>& cases, const ModelGroup& group,
+                                        const std::vector<bool>& wanted) {
   PointSet points;
   for (const int member : group.cases) {
     if (wanted[member]) {
-      points.add(listNeededNeighbourhoods(cases[member].experiment));
+      points.add(listDerivativePoints(cases[member].experiment));
     }
   }
   return points.get(countSampled(group.model));

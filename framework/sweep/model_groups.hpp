@@ -32,10 +32,10 @@ Eigen::MatrixXd collectPoints(const std::vector<SweepCase>& cases, const ModelGr
 /// cases.
 std::vector<ModelGroup> splitByBounds(const std::vector<SweepCase>& cases, const ModelGroup& group);
 
-/// The points whose neighbourhoods the cases of the group that `wanted` asks for need
-/// (listNeededNeighbourhoods), each once: parameters x n.
-Eigen::MatrixXd collectNeighbourhoods(const std::vector<SweepCase>& cases, const ModelGroup& group,
-                                      const std::vector<bool>& wanted);
+/// The points at which the cases of the group that `wanted` asks for need derivatives
+/// (listDerivativePoints), each once: parameters x n.
+Eigen::MatrixXd collectDerivativePoints(const std::vector<SweepCase>& cases, const ModelGroup& group,
+                                        const std::vector<bool>& wanted);
 
 /// The group's store in `root`, to see what it has.
 TrajectoryStore openToRead(const ModelGroup& group, const std::filesystem::path& root);

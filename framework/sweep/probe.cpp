@@ -109,7 +109,7 @@ ProbeTimes measure(const ExperimentSpec& experiment, double most_samples) {
   times.simulation = simulating / (kTrainSamples + kTestSamples);
   const double neighbourhoods = run.getStage("neighbourhoods of ");
   times.limit = limit / kTestSamples;
-  times.neighbourhood = neighbourhoods / std::max<double>(listNeededNeighbourhoods(small).cols(), 1.0);
+  times.neighbourhood = neighbourhoods / std::max<double>(listDerivativePoints(small).cols(), 1.0);
   const double preparing = run.getStage("prepare for ");
   times.preparation = preparing / (double(kTrainSamples) * countReferences(kTrainSamples));
   times.overhead =

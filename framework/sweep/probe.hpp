@@ -10,10 +10,10 @@ namespace twinmap {
 /// Times of one case, measured on one thread with some 80 simulations.
 struct ProbeTimes {
   double simulation = 0.0;     ///< s, of one sample
-  double neighbourhood = 0.0;  ///< s, of simulating one
+  double neighbourhood = 0.0;  ///< s, of simulating one; 0 where the simulator has derivatives
   TrainingTime training;
   double preparation = 0.0;  ///< s, for measurements, of one reference and training sample
-  double limit = 0.0;        ///< s, of the information limit of one test sample, from its neighbourhood
+  double limit = 0.0;        ///< s, of the information limit of one test sample, after its neighbourhood
   double overhead = 0.0;     ///< s, everything else: files, tables, other evaluations
   std::string failure;       ///< why there are no times; empty if there are
 

@@ -38,13 +38,14 @@ class Sweep {
         complete_(findComplete(options.folder, cases_)),
         store_(getStoreRoot(options.folder, options.store)),
         samples_of_case_(cases_.size()),
-        neighbourhoods_of_case_(cases_.size()) {
+        neighbourhoods_of_case_(cases_.size(), nullptr) {
     result_.cases = static_cast<int>(cases_.size());
     result_.skipped = static_cast<int>(std::count(complete_.begin(), complete_.end(), true));
     spdlog::info("{} cases, {} of them complete", result_.cases, result_.skipped);
   }
 
-  /// The samples, then the neighbourhoods of those that did not fail. False if it was stopped.
+  /// The samples, then, of models without derivatives, the neighbourhoods of those that did not fail. False
+  /// if it was stopped.
   bool simulate() {
     std::vector<bool> wanted = complete_;
     wanted.flip();
@@ -57,11 +58,12 @@ class Sweep {
     }
     for (std::size_t i = 0; i < groups.size(); ++i) {
       for (const ModelGroup& part : splitByBounds(cases_, groups[i])) {
-        addNeighbourhoods(part, collectNeighbourhoods(cases_, part, wanted), samples_[i]);
+        addNeighbourhoods(part, collectDerivativePoints(cases_, part, wanted), samples_[i]);
       }
     }
     const std::size_t unknown = collectUnknown(cases_[0].experiment.model).size();
-    return simulateAll(neighbourhoods_, "neighbourhoods", {kNeighbourhoodStage, countNeighbours(unknown)});
+    return neighbourhoods_.empty() ||
+           simulateAll(neighbourhoods_, "neighbourhoods", {kNeighbourhoodStage, countNeighbours(unknown)});
   }
 
   void runMissingCases() {
@@ -103,12 +105,13 @@ class Sweep {
 
   void addNeighbourhoods(const ModelGroup& group, const Eigen::MatrixXd& points,
                          const SharedSamples& samples) {
-    for (const int member : group.cases) {
-      neighbourhoods_of_case_[member] = neighbourhoods_.size();
+    if (points.cols() == 0 || samples.store == nullptr || samples.simulator->hasDerivatives()) {
+      return;
     }
-    const bool needed = points.cols() > 0 && samples.store != nullptr;
-    neighbourhoods_.push_back(needed ? openSharedNeighbourhoods(group, points, samples, store_)
-                                     : SharedSamples{});
+    neighbourhoods_.push_back(openSharedNeighbourhoods(group, points, samples, store_));
+    for (const int member : group.cases) {
+      neighbourhoods_of_case_[member] = neighbourhoods_.back().store.get();
+    }
   }
 
   struct Stage {
@@ -140,8 +143,7 @@ class Sweep {
       beginRun(run.folder, writeExperiment(one.experiment));
       throw std::runtime_error(samples.failure);
     }
-    const SampleSource source{*samples.simulator, *samples.store,
-                              neighbourhoods_[neighbourhoods_of_case_[index]].store.get()};
+    const SampleSource source{*samples.simulator, *samples.store, neighbourhoods_of_case_[index]};
     run.samples = &source;
     runExperiment(one.experiment, run, {threads, nullptr, control_.abandon, nullptr});
   }
@@ -177,9 +179,10 @@ class Sweep {
   const RunControl& control_;
   std::vector<bool> complete_;
   fs::path store_;
-  std::vector<std::size_t> samples_of_case_, neighbourhoods_of_case_;  ///< indices of the next two
+  std::vector<std::size_t> samples_of_case_;  ///< indices of samples_
   std::vector<SharedSamples> samples_, neighbourhoods_;
-  std::vector<int> todo_;  ///< cases that were not complete
+  std::vector<TrajectoryStore*> neighbourhoods_of_case_;  ///< null: the case needs none
+  std::vector<int> todo_;                                 ///< cases that were not complete
   std::vector<CaseCost> costs_;
   double work_ = 0.0, finished_work_ = 0.0;
   int finished_ = 0;

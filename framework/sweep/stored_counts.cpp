@@ -1,5 +1,6 @@
 #include "framework/sweep/stored_counts.hpp"
 
+#include "framework/multibody/multibody_simulator.hpp"
 #include "framework/sampling/neighbourhoods.hpp"
 #include "framework/sensitivity/neighbourhood_simulator.hpp"
 #include "framework/spec/parameter_box.hpp"
@@ -20,6 +21,36 @@ void addCounts(const TrajectoryStore& store, const MatrixXd& all, const MatrixXd
   counts.bytes += missing > 0 ? static_cast<double>(calcChunkSize(store.getShape(), missing)) : 0.0;
 }
 
+/// Whether derivatives come from neighbourhoods. Nothing is simulated of a model that cannot be built.
+bool needsNeighbourhoods(const ModelGroup& group) {
+  try {
+    return !MultibodySimulator(group.model, group.times, group.modes).hasDerivatives();
+  } catch (const ExperimentError&) {
+    return false;
+  }
+}
+
+/// What is asked for at the points of `all` and `todo`, one value a case.
+struct Asked {
+  const std::vector<SweepCase>& cases;
+  const std::vector<bool>& all;
+  const std::vector<bool>& todo;
+};
+
+void addNeighbourhoods(const Asked& asked, const ModelGroup& group, const TrajectoryStore& samples,
+                       const std::filesystem::path& store, PointCounts& counts) {
+  if (collectDerivativePoints(asked.cases, group, asked.all).cols() == 0 || !needsNeighbourhoods(group)) {
+    return;
+  }
+  for (const ModelGroup& part : splitByBounds(asked.cases, group)) {
+    const auto neighbourhoods =
+        openNeighbourhoodStore(part.model, makeLayout(part), store, StoreAccess::kReadOnly);
+    addCounts(*neighbourhoods, dropFailed(collectDerivativePoints(asked.cases, part, asked.all), samples),
+              dropFailed(collectDerivativePoints(asked.cases, part, asked.todo), samples),
+              countNeighbours(collectUnknown(part.model).size()), counts);
+  }
+}
+
 }  // namespace
 
 StoredCounts countStored(const std::vector<SweepCase>& cases, const std::vector<bool>& complete,
@@ -32,13 +63,7 @@ StoredCounts countStored(const std::vector<SweepCase>& cases, const std::vector<
     const TrajectoryStore samples = openToRead(group, store);
     addCounts(samples, collectPoints(cases, group, all), collectPoints(cases, group, todo), 1,
               counts.samples);
-    for (const ModelGroup& part : splitByBounds(cases, group)) {
-      const MatrixXd needed = dropFailed(collectNeighbourhoods(cases, part, all), samples);
-      const auto neighbourhoods =
-          openNeighbourhoodStore(part.model, makeLayout(part), store, StoreAccess::kReadOnly);
-      addCounts(*neighbourhoods, needed, dropFailed(collectNeighbourhoods(cases, part, todo), samples),
-                countNeighbours(collectUnknown(part.model).size()), counts.neighbourhoods);
-    }
+    addNeighbourhoods({cases, all, todo}, group, samples, store, counts.neighbourhoods);
   }
   return counts;
 }

@@ -146,7 +146,7 @@ std::string describeDamage(const TrajectoryStore& store) {
   return damaged.empty() ? "" : damaged[0].file.filename().string() + ": " + damaged[0].reason;
 }
 
-/// Opens the store and checks its chunks' checksums, and those of the neighbourhoods; null if that fails.
+/// Opens the store and checks its chunks' checksums, and those of neighbourhoods; null if that fails.
 std::unique_ptr<TrajectoryStore> openChunks(const ExperimentSpec& experiment, const Simulator& simulator,
                                             Verification& verification) {
   const ResponseLayout& layout = simulator.getLayout();
@@ -155,10 +155,12 @@ std::unique_ptr<TrajectoryStore> openChunks(const ExperimentSpec& experiment, co
     store = std::make_unique<TrajectoryStore>(
         findStore(verification.folder), writeStoreContent(experiment.model, layout),
         countSampled(experiment.model), layout.getRowCount(), StoreAccess::kReadOnly);
-    const auto neighbourhoods = openNeighbourhoodStore(
-        experiment.model, layout, findStore(verification.folder), StoreAccess::kReadOnly);
     const std::string damage = describeDamage(*store);
-    return damage.empty() ? describeDamage(*neighbourhoods) : damage;
+    if (!damage.empty() || simulator.hasDerivatives()) {
+      return damage;
+    }
+    return describeDamage(*openNeighbourhoodStore(experiment.model, layout, findStore(verification.folder),
+                                                  StoreAccess::kReadOnly));
   });
   return store;
 }

@@ -53,7 +53,7 @@ std::string describe(const lanes::Result& result, const SimulationSpec& simulati
 /// A batch on its way through the lanes: prepares one sample after the other, and notes how each ended.
 class LaneRunner::Impl : public lanes::SampleStream {
  public:
-  Impl(const LaneModel& model, const LaneTask& task, const ModelSpec& spec)
+  Impl(const LaneModel& model, const SampleTask& task, const ModelSpec& spec)
       : model_(model), task_(task), spec_(spec), start_(spec, model, task.box_center), modes_(model) {}
 
   std::vector<Index> run(ModelContext& context, const Eigen::Ref<const MatrixXd>& parameters,
@@ -175,7 +175,7 @@ class LaneRunner::Impl : public lanes::SampleStream {
   }
 
   const LaneModel& model_;
-  const LaneTask task_;
+  const SampleTask task_;
   const ModelSpec& spec_;
   LaneStart start_;
   LaneModes modes_;
@@ -191,7 +191,7 @@ class LaneRunner::Impl : public lanes::SampleStream {
   std::vector<Index> step_limits_;
 };
 
-LaneRunner::LaneRunner(const LaneModel& model, const LaneTask& task, const ModelSpec& spec)
+LaneRunner::LaneRunner(const LaneModel& model, const SampleTask& task, const ModelSpec& spec)
     : impl_(std::make_unique<Impl>(model, task, spec)) {}
 LaneRunner::~LaneRunner() = default;
 

@@ -6,22 +6,16 @@
 
 #include "framework/multibody/lanes/lane_model.hpp"
 #include "framework/multibody/loaded_system.hpp"
+#include "framework/multibody/sample_task.hpp"
 #include "framework/simulation/simulator.hpp"
 
 namespace twinmap {
 
-/// What a batch is simulated with, besides the model's programs.
-struct LaneTask {
-  const ResponseLayout& layout;
-  const Eigen::VectorXd&
-      box_center;  ///< coordinates of the equilibrium that all samples start from, or empty
-};
-
 /// Simulates parameter sets in lanes. Not thread safe; one for each thread.
 class LaneRunner {
  public:
-  /// `model` and `task` must outlive the runner.
-  LaneRunner(const LaneModel& model, const LaneTask& task, const ModelSpec& spec);
+  /// `model` and `spec` must outlive the runner.
+  LaneRunner(const LaneModel& model, const SampleTask& task, const ModelSpec& spec);
   ~LaneRunner();
 
   /// As Simulator::simulate. `derivatives`: null, or for each column of `parameters` one column a parameter;

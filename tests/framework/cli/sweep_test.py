@@ -20,7 +20,8 @@ CART = EXPERIMENTS / "duffing/cart.yaml"
 CHAIN = EXPERIMENTS / "three_mass_chain/modes.yaml"
 QUICK = ["evaluation.limit=false", "design.train.method=nested_latin_hypercube"]
 SMALL = [*QUICK, "design.test.samples=8", "inverse_map.gp.starts=1"]
-LIMITS = [*SMALL, "evaluation.limit=true"]
+DIFFERENCES = "simulation.engine=simbody"  # no derivatives of its own: neighbourhoods are simulated and kept
+LIMITS = [*SMALL, "evaluation.limit=true", DIFFERENCES]
 KILLED = [*LIMITS, "design.train.samples=8,16", "noise.scale=0.5,1", "seed=1..2", "design.test.samples=60"]
 FULL = [*LIMITS, "design.train.samples=8,16", "noise.scale=0.5,1"]
 SWEEP = [*SMALL, "design.train.samples=8,16", "noise.scale=0.5,1", "seed=1..2"]
@@ -115,12 +116,25 @@ class Simulations(SweepTestCase):
 
     def test_a_selection_by_fisher_information_shares_neighbourhoods_of_training_points(self):
         select = "transform=[{select: {fisher_information: {count: 6}}}, z_score]"
-        self.run_sweep("run", sweep=[*SMALL, select, "design.train.samples=20,30", "noise.scale=0.5,1"])
+        self.run_sweep("run", sweep=[*SMALL, select, "design.train.samples=20,30", "noise.scale=0.5,1", DIFFERENCES])
         self.assertEqual(len(self.get_stored("run", neighbourhoods=True)), 16)
 
     def test_other_bounds_have_other_neighbourhoods(self):
         self.run_sweep("run", sweep=[*LIMITS, "parameters.k.bounds=[80, 120],[90, 110]", "design.train.samples=12"])
         self.assertEqual(len(self.get_stored("run", neighbourhoods=True)), 2 * 8)
+
+    def test_exact_derivatives_need_no_neighbourhoods(self):
+        sweep = [*LIMITS, "simulation.engine=lanes", "noise.scale=0.5,1", "design.train.samples=12",
+                 "features[0].samples.interval=0.05,0.07", "features[0].samples.count=60"]
+        self.assertNotIn("limits", call("plan", CART, *sweep, "--out", self.folder / "run").stdout)
+        self.run_sweep("run", sweep=sweep)
+        self.assertEqual(list(map(len, self.get_all_stored("run"))), [12 + 8, 0])
+        self.assertEqual(len(list(self.folder.glob("run/chunks/*"))), 1)
+        self.assertNotIn("neighbourhoods", (self.folder / "run/run.log").read_text())
+        self.assertNotIn("limits", call("status", self.folder / "run").stdout)
+        self.run_sweep("alone", sweep=[*LIMITS, "simulation.engine=lanes", "noise.scale=0.5", "design.train.samples=12",
+                                       "features[0].samples.interval=0.07", "features[0].samples.count=60"])
+        self.assert_same_files("run/cases/scale-0.5_interval-0.07", "alone", [*RESULTS, "identifiability.csv"])
 
     def test_results_are_bitwise_the_same_for_any_number_of_threads_and_any_memory(self):
         self.run_sweep("1", "--threads", 1)
@@ -353,7 +367,7 @@ class ProgressShown(SweepTestCase):
         self.assertRegex(shown, r"\[#{30}\] cases: 8 of 8")
 
     def test_neighbourhoods_are_a_stage_that_counts_their_simulations(self):
-        shown = self.run_on_terminal("run", "evaluation.limit=true")
+        shown = self.run_on_terminal("run", "evaluation.limit=true", DIFFERENCES)
         self.assertRegex(shown, rf"\[#+-*\] simulate sensitivities: \d+ of {2 * 8 * 7}, \d+ simulations/s")
         self.assertIn("16 of 16 missing neighbourhoods simulated", (self.folder / "run/run.log").read_text())
 
@@ -388,9 +402,8 @@ class Plan(SweepTestCase):
         self.assertEqual(files, sorted((self.folder / "run").rglob("*")))
 
     def test_counts_what_is_stored_and_what_the_limits_need(self):
-        self.run_sweep("run", sweep=[*SMALL, "design.train.samples=8"])
-        plan = self.plan(*SMALL, "design.train.samples=8,24", "evaluation.limit=true", "--store",
-                         self.folder / "run/chunks")
+        self.run_sweep("run", sweep=[*SMALL, DIFFERENCES, "design.train.samples=8"])
+        plan = self.plan(*LIMITS, "design.train.samples=8,24", "--store", self.folder / "run/chunks")
         self.assertIn("simulations: 32 needed, 16 stored, 16 to do", plan)
         self.assertIn(f"neighbourhoods of 8 points needed, 0 stored, 8 to do: {8 * (2 * 3 + 1)} simulations", plan)
         store = ["--store", self.folder / "run/chunks"]
@@ -406,7 +419,7 @@ class Plan(SweepTestCase):
 
     def test_disk_is_about_what_is_written(self):
         sizes = [*SMALL, "design.train.samples=100,200", "noise.replicates=2", "inverse_map.gp.max_evaluations=2",
-                 "evaluation.limit=true", "design.test.samples=60"]
+                 "evaluation.limit=true", "design.test.samples=60", DIFFERENCES]
         number, unit = re.search(r"disk:        about ([\d.e+]+) (\w+)", self.plan(*sizes)).groups()
         planned = float(number) * {"MiB": 2**20, "GiB": 2**30}[unit]
         self.run_sweep("run", sweep=sizes)

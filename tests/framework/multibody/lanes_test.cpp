@@ -207,6 +207,61 @@ TEST(Lanes, TryWhatIsStiffOnceMoreImplicitly) {
   EXPECT_NEAR(responses(0, 1), std::exp(-2.0 / 1e6), 1e-4);  // creeps with k / c
 }
 
+/// A block of 1 kg that a spring pulls back slowly through a damper: rates c / m and k / c, a million to one.
+ModelSpec makeStiff() {
+  ModelSpec model = makeModel(2.0);
+  model.parameters = {parameter("k", 0.5e6, 1.5e6), parameter("c", 0.8e6, 1.2e6)};
+  model.system.bodies = {body("block", "1", kOrigin, kOrigin, joint(JointType::kSlider, {"x"}))};
+  model.system.springs = {{name("x"), ex("k"), ex("0")}};
+  model.system.dampers = {{name("x"), ex("c")}};
+  start(model, "x", "1");
+  model.outputs = {coordinateOutput("x")};
+  model.simulation.max_steps = 5000;
+  return model;
+}
+
+/// exp(-k t / c) and its derivatives, to the millionth that the fast rate takes.
+Eigen::MatrixXd calcCreep(const Eigen::VectorXd& times, double k, double c) {
+  Eigen::MatrixXd creep(times.size(), 3);
+  creep.col(0) = (-k / c * times.array()).exp();
+  creep.col(1) = -times.array() / c * creep.col(0).array();
+  creep.col(2) = k / (c * c) * times.array() * creep.col(0).array();
+  return creep;
+}
+
+TEST(LanesDerivatives, OfWhatIsStiffAreDifferencesOfImplicitSolutions) {
+  const Eigen::VectorXd times = Eigen::VectorXd::LinSpaced(9, 0.0, 2.0);
+  MultibodySimulator simulator(makeStiff(), times);
+  ASSERT_TRUE(simulator.hasDerivatives());
+  Eigen::MatrixXd points(2, 2), responses(9, 2), derivatives;
+  points << 1e6, 1.5e6, 0.9e6, 0.8e6;  // inside and in a corner of the box
+  std::vector<SampleStatus> statuses(2);
+  simulator.simulateWithDerivatives(points, responses, derivatives, statuses.data());
+  for (int j = 0; j < 2; ++j) {
+    ASSERT_TRUE(statuses[j].ok && statuses[j].second_try) << statuses[j].reason;
+    const Eigen::MatrixXd expected = calcCreep(times, points(0, j), points(1, j));
+    EXPECT_LT((responses.col(j) - expected.col(0)).cwiseAbs().maxCoeff(), 1e-5);
+    const Eigen::MatrixXd slopes = derivatives.middleCols(2 * j, 2);
+    for (int k = 0; k < 2; ++k) {
+      EXPECT_LT((slopes.col(k) - expected.col(1 + k)).cwiseAbs().maxCoeff(),
+                1e-4 * expected.col(1 + k).cwiseAbs().maxCoeff());
+    }
+  }
+}
+
+TEST(LanesDerivatives, FailWithBothReasonsWhereTheSecondTryFails) {
+  ModelSpec model = makeStiff();
+  model.simulation.max_steps = 10;
+  MultibodySimulator simulator(model, Eigen::VectorXd::Constant(1, 2.0));
+  Eigen::MatrixXd response(1, 1), derivatives;
+  SampleStatus status;
+  simulator.simulateWithDerivatives(Eigen::Vector2d(1e6, 1e6), response, derivatives, &status);
+  EXPECT_FALSE(status.ok);
+  EXPECT_TRUE(status.second_try);
+  EXPECT_NE(status.reason.find("by CPodes: step limit"), std::string::npos) << status.reason;
+  EXPECT_TRUE(std::isnan(response(0, 0)));
+}
+
 /// Derivatives at a point against central differences of tight simulations, 1e-4 of the bounds' width apart.
 void expectDerivatives(ModelSpec model, const Eigen::VectorXd& point, int modes = 0) {
   model.simulation.relative_tolerance = 1e-10;

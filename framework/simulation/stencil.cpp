@@ -1,4 +1,4 @@
-#include "framework/sensitivity/stencil.hpp"
+#include "framework/simulation/stencil.hpp"
 
 namespace twinmap {
 namespace {
@@ -6,8 +6,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-constexpr double kStep = 1e-4;  // of the bounds' width
 
 /// Two points beside the centre, in steps, and the weights of centre, first and second in the derivative.
 struct Stencil {
@@ -23,8 +21,8 @@ double calcWidth(const Bounds& bounds) {
   return bounds.upper - bounds.lower;
 }
 
-const Stencil& chooseStencil(const Bounds& bounds, double value) {
-  const double step = kStep * calcWidth(bounds);
+const Stencil& chooseStencil(const Bounds& bounds, double value, double relative_step) {
+  const double step = relative_step * calcWidth(bounds);
   if (value - step < bounds.lower) {
     return kForward;
   }
@@ -33,27 +31,27 @@ const Stencil& chooseStencil(const Bounds& bounds, double value) {
 
 }  // namespace
 
-MatrixXd makeNeighbours(const std::vector<ParameterSpec>& parameters, const VectorXd& point) {
+MatrixXd makeNeighbours(const std::vector<ParameterSpec>& parameters, const VectorXd& point, double step) {
   const auto count = static_cast<Index>(parameters.size());
   MatrixXd points = point.replicate(1, 2 * count + 1);
   for (Index j = 0; j < count; ++j) {
     const Bounds& bounds = parameters[j].bounds;
-    const Stencil& stencil = chooseStencil(bounds, point[j]);
-    points(j, 2 * j + 1) += stencil.first * kStep * calcWidth(bounds);
-    points(j, 2 * j + 2) += stencil.second * kStep * calcWidth(bounds);
+    const Stencil& stencil = chooseStencil(bounds, point[j], step);
+    points(j, 2 * j + 1) += stencil.first * step * calcWidth(bounds);
+    points(j, 2 * j + 2) += stencil.second * step * calcWidth(bounds);
   }
   return points;
 }
 
 MatrixXd calcDifferences(const MatrixXd& features, const std::vector<ParameterSpec>& parameters,
-                         const VectorXd& point) {
+                         const VectorXd& point, double step) {
   MatrixXd sensitivities(features.rows(), static_cast<Index>(parameters.size()));
   for (Index j = 0; j < sensitivities.cols(); ++j) {
-    const Stencil& stencil = chooseStencil(parameters[j].bounds, point[j]);
+    const Stencil& stencil = chooseStencil(parameters[j].bounds, point[j], step);
     sensitivities.col(j) =
         (stencil.weight_of_center * features.col(0) + stencil.weight_of_first * features.col(2 * j + 1) +
          stencil.weight_of_second * features.col(2 * j + 2)) /
-        kStep;
+        step;
   }
   return sensitivities;
 }
