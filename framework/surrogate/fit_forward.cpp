@@ -1,7 +1,7 @@
 #include "framework/surrogate/fit_forward.hpp"
 
 #include <algorithm>
-#include <numeric>
+#include <cmath>
 #include <optional>
 #include <stdexcept>
 
@@ -122,18 +122,22 @@ void assemble(std::vector<WindowFit>& windows, const std::vector<std::vector<Ind
     surrogate.scores.middleRows(first, size) = windows[w].scores(Eigen::all, chosen[w]).transpose();
     surrogate.error_variance.segment(first, size) = calcErrorVariance(process);
     standardised.middleCols(first, size) =
-        left_out.residual.array() / (left_out.variance * left_out.amplitude.transpose()).array().sqrt();
+        (left_out.residual.array() / (left_out.variance * left_out.amplitude.transpose()).array().sqrt());
+    // Points where all errors are large must not decide alone how errors go together.
+    constexpr double kFloor = 0.1;
+    standardised.middleCols(first, size).array().colwise() /= (process.getLeftOutRatio() + kFloor).sqrt();
     surrogate.windows.push_back(std::move(process));
     first += size;
   }
-  surrogate.error_correlation = calcShrunkCorrelation(standardised);
+  standardised.colwise().normalize();
+  surrogate.error_correlation = calcShrunkCorrelation(std::sqrt(static_cast<double>(n)) * standardised);
 }
 
 }  // namespace
 
 ForwardFit fitForward(const ForwardSamples& samples, const std::vector<gp::SharedChoice>& similar,
                       const TrainingControl& control) {
-  constexpr Index kMostScores = 300;  // an inference costs their number cubed
+  constexpr Index kMostScores = 200;  // an inference costs their number cubed
   const NoiseWhitener noise(samples.noise_covariance);
   ForwardFit fit;
   fit.surrogate.center = samples.clean_features.rowwise().mean();
@@ -151,7 +155,7 @@ ForwardFit fitForward(const ForwardSamples& samples, const std::vector<gp::Share
   for (const WindowFit& window : windows) {
     fit.choices.push_back(window.choice);
   }
-  const Index most = std::min(samples.points.cols() / 2, kMostScores);
+  const Index most = std::min(samples.points.cols() / 3, kMostScores);
   assemble(windows, chooseScores(windows, most), noise.getMatrix(), fit.surrogate);
   return fit;
 }

@@ -25,7 +25,7 @@ struct ForwardFit {
 };
 
 /// Fits processes to the principal components of each window of whitened features. Components that move less
-/// than 0.2 of the noise are left out; of the others the n / 2 (at most 300) are kept that say most about the
+/// than 0.2 of the noise are left out; of the others the n / 3 (at most 200) are kept that say most about the
 /// parameters: sd over sqrt(1 + error variance). `similar`: choices for nearly the same samples, to start
 /// from; empty to search anew. The correlation of the errors is that of the points left out, shrunk towards
 /// independence by at least 0.2 (Schaefer and Strimmer 2005).

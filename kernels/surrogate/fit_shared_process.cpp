@@ -20,10 +20,11 @@ namespace {
 constexpr Index kSearchPoints = 300;
 // Of variables within [-1, 1]: below, nothing is learnt between points; above, a process is a polynomial,
 // which the trend is already, and K singular.
-constexpr double kShortest = 0.2, kLongest = 6.0, kStart = 2.0;
+constexpr double kShortest = 0.2, kLongest = 6.0;
 // Below, K has no Cholesky factor; above, there is no smooth function.
-constexpr double kLeastNugget = 1e-10, kMostNugget = 1e-1, kStartNugget = 1e-6;
-constexpr int kFirstEvaluations = 40, kFurtherEvaluations = 20, kAdaptEvaluations = 8;
+constexpr double kLeastNugget = 1e-10, kMostNugget = 1e-1;
+constexpr int kAllEvaluations = 8;  // with all points, where they are more
+constexpr int kTrialEvaluations = 12, kFirstEvaluations = 30, kFurtherEvaluations = 20, kAdaptEvaluations = 8;
 constexpr double kTolerance = 0.002;  // nats a point and search: less changes no inference
 constexpr Index kPointsPerTerm = 4;   // below, the coefficients of a quadratic trend are guesses
 
@@ -75,6 +76,23 @@ SharedChoice search(const SearchData& data, const SharedStructure& structure, co
   return {structure, fromLog(result.end), result.objective};
 }
 
+/// The better of two beginnings: functions about as smooth as the box is wide, and functions that change within
+/// it, where the search would not come from the former: between them all points are far from each other.
+SharedChoice searchFromStarts(const SearchData& data, const SharedStructure& structure, StopFlag stop) {
+  constexpr double kLengthScales[] = {2.0, 0.7}, kNuggets[] = {1e-6, 1e-4};
+  const Index p = data.points.rows();
+  SharedChoice best;
+  best.negative_log_density = std::numeric_limits<double>::infinity();
+  for (const int i : {0, 1}) {
+    const SharedHyperparameters start{VectorXd::Constant(p, kLengthScales[i]), kNuggets[i]};
+    const SharedChoice tried = search(data, structure, toLog(start), kTrialEvaluations, stop);
+    if (i == 0 || tried.negative_log_density < best.negative_log_density) {
+      best = tried;
+    }
+  }
+  return search(data, structure, toLog(best.hyperparameters), kFirstEvaluations, stop);
+}
+
 void requireFound(const SharedChoice& choice) {
   if (!std::isfinite(choice.negative_log_density)) {
     throw std::runtime_error("no covariance of the surrogate is positive definite");
@@ -89,9 +107,7 @@ SharedChoice chooseSharedProcess(const MatrixXd& points, const MatrixXd& values,
     throw std::invalid_argument("a surrogate needs more simulations than parameters");
   }
   const SearchData data = takeSpread(points, values);
-  VectorXd start = VectorXd::Constant(p + 1, std::log(kStart));
-  start(p) = std::log(kStartNugget);
-  SharedChoice best = search(data, {}, start, kFirstEvaluations, stop);
+  SharedChoice best = searchFromStarts(data, {}, stop);
   const VectorXd found = toLog(best.hyperparameters);
   for (const Trend trend : {Trend::kLinear, Trend::kQuadratic}) {
     for (const SmoothCovariance covariance :
@@ -108,13 +124,16 @@ SharedChoice chooseSharedProcess(const MatrixXd& points, const MatrixXd& values,
     }
   }
   requireFound(best);
-  return best;
+  return points.cols() > kSearchPoints ? search({points, values}, best.structure, toLog(best.hyperparameters), kAllEvaluations, stop) : best;
 }
 
 SharedChoice adaptSharedProcess(const SharedChoice& similar, const MatrixXd& points, const MatrixXd& values,
                                 StopFlag stop) {
-  const SharedChoice adapted = search(takeSpread(points, values), similar.structure,
-                                      toLog(similar.hyperparameters), kAdaptEvaluations, stop);
+  if (points.cols() > kSearchPoints) {
+    return similar;
+  }
+  const SharedChoice adapted =
+      search({points, values}, similar.structure, toLog(similar.hyperparameters), kAdaptEvaluations, stop);
   requireFound(adapted);
   return adapted;
 }

@@ -1,6 +1,7 @@
 #include "kernels/surrogate/shared_process.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 
 #include "kernels/linalg/decompositions.hpp"
@@ -44,6 +45,14 @@ SharedProcess::SharedProcess(const MatrixXd& points, const MatrixXd& values, Sha
   term_factor_ = linalg::calcCholesky(solved_terms_.transpose() * solved_terms_).lower;
   factor_ = linalg::PackedLower(linalg::viewOf(factor.lower));
   scaled_points_ = points.transpose() * hyperparameters_.length_scales.cwiseInverse().asDiagonal();
+  updateLeftOutRatio();
+}
+
+void SharedProcess::updateLeftOutRatio() {
+  left_out_ratio_ = (left_out_.residual.array().square().rowwise() / left_out_.amplitude.transpose().array())
+                        .rowwise()
+                        .mean() /
+                    left_out_.variance.array();
 }
 
 void SharedProcess::select(const std::vector<Index>& functions) {
@@ -51,17 +60,19 @@ void SharedProcess::select(const std::vector<Index>& functions) {
   coefficients_ = MatrixXd(coefficients_(Eigen::all, functions));
   left_out_.residual = MatrixXd(left_out_.residual(Eigen::all, functions));
   left_out_.amplitude = VectorXd(left_out_.amplitude(functions));
+  updateLeftOutRatio();
 }
 
 void SharedProcess::evaluate(const Eigen::Ref<const VectorXd>& point, Eigen::Ref<VectorXd> values,
                              Workspace& workspace) const {
   MatrixXd& scaled = workspace.scaled;  // (z - x) / l, n x p
   scaled = scaled_points_;
-  workspace.covariance.setZero(scaled.rows());
+  workspace.squares.setZero(scaled.rows());
   for (Index v = 0; v < scaled.cols(); ++v) {
     scaled.col(v).array() -= point(v) / hyperparameters_.length_scales(v);
-    workspace.covariance += scaled.col(v).array().square();
+    workspace.squares += scaled.col(v).array().square();
   }
+  workspace.covariance = workspace.squares;
   workspace.slopes.resize(scaled.rows());
   calcSmoothCovariance(structure_.covariance, workspace.covariance, workspace.slopes);
   workspace.terms = calcTerms(structure_.trend, point);
@@ -81,6 +92,18 @@ void SharedProcess::derive(const Eigen::Ref<const VectorXd>& point, Eigen::Ref<M
   jacobian.noalias() += weights_.transpose().lazyProduct(workspace.scaled.leftCols(unknown));
 }
 
+double SharedProcess::calcLocalFactor(Workspace& workspace) const {
+  // As many neighbours as tell a variance to a third; where all are near, a fifth of the weight is the whole set's.
+  constexpr Index kNeighbours = 16;
+  constexpr double kOfAll = 4.0;
+  const Index n = workspace.squares.size(), reach = std::min(kNeighbours, n) - 1;
+  workspace.nearest = workspace.squares;
+  std::nth_element(workspace.nearest.data(), workspace.nearest.data() + reach, workspace.nearest.data() + n);
+  const double width = std::max(workspace.nearest(reach), std::numeric_limits<double>::min());
+  workspace.nearest = (-workspace.squares / width).exp();
+  return ((workspace.nearest * left_out_ratio_).sum() + kOfAll) / (workspace.nearest.sum() + kOfAll);
+}
+
 void SharedProcess::calcStddev(Eigen::Ref<VectorXd> stddev, Workspace& workspace) const {
   constexpr double kLeast = 1e-14;  // rounding leaves the sum of squares that near to 1
   const Index n = weights_.rows();
@@ -91,7 +114,7 @@ void SharedProcess::calcStddev(Eigen::Ref<VectorXd> stddev, Workspace& workspace
   const VectorXd rest = workspace.terms - solved_terms_.transpose() * solved;
   const double of_trend = linalg::solveLower(term_factor_, rest).squaredNorm();
   const double variance = std::max(1.0 - solved.squaredNorm(), kLeast) + hyperparameters_.nugget + of_trend;
-  stddev = (variance * left_out_.amplitude).cwiseSqrt();
+  stddev = (variance * calcLocalFactor(workspace) * left_out_.amplitude).cwiseSqrt();
 }
 
 }  // namespace twinmap::gp
