@@ -14,8 +14,8 @@ struct SurrogateMapTraining {
   StageNotes notes;
 };
 
-/// Trains a surrogate (trainSurrogate) on the clean training responses of an experiment; the labelled features'
-/// draws of the noise are what it infers in cross-validation. Throws Interrupted if it is stopped,
+/// Trains a surrogate (trainSurrogate) on the clean training responses of an experiment; the labelled
+/// features' draws of the noise are what it infers in cross-validation. Throws Interrupted if it is stopped,
 /// std::runtime_error where the experiment does not fit it: a feature without noise, too few samples.
 SurrogateMapTraining trainSurrogateMap(const ExperimentSpec& experiment, const SimulatedSets& sets,
                                        const FeatureExtractor& extractor, const LabelledFeatures& samples,

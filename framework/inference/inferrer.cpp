@@ -18,9 +18,10 @@ fs::path findMaps(const fs::path& run_or_maps) {
   const fs::path resolved = file.parent_path() / "resolved.yaml";
   if (!fs::exists(file) && fs::exists(resolved) &&
       loadExperiment(resolved.string()).inverse_map.findGp() == nullptr) {
-    throw std::runtime_error(file.parent_path().string() +
-                             ": its inverse map is a surrogate, which is not kept yet; measurements need a run "
-                             "with 'inverse_map: {gp: {}}'");
+    throw std::runtime_error(
+        file.parent_path().string() +
+        ": its inverse map is a surrogate, which is not kept yet; measurements need a run "
+        "with 'inverse_map: {gp: {}}'");
   }
   if (!fs::exists(file)) {
     throw std::runtime_error(file.string() +

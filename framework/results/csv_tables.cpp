@@ -140,8 +140,8 @@ std::string makeCrossValidationCsv(const RunSummary& run) {
   const CrossValidation& found = *run.training.cross_validation;
   for (std::size_t p = 0; p < run.parameters.size(); ++p) {
     const auto row = static_cast<Eigen::Index>(p);
-    rows.push_back({run.parameters[p].name.text, toText(found.coverage95[row]), toText(found.stddev_scale[row]),
-                    toText(found.log_density), found.status});
+    rows.push_back({run.parameters[p].name.text, toText(found.coverage95[row]),
+                    toText(found.stddev_scale[row]), toText(found.log_density), found.status});
   }
   return makeCsv(rows);
 }

@@ -56,7 +56,7 @@ struct CrossValidation {
 /// How the inverse map was trained.
 struct TrainingSummary {
   std::vector<ParameterMetrics> leave_one_out;  ///< of the training samples; empty where not available
-  std::vector<double> nlml;  ///< one per parameter, nats; NaN of a map without
+  std::vector<double> nlml;                     ///< one per parameter, nats; NaN of a map without
   std::vector<TrainingStart> starts;
   std::vector<TrainedHyperparameter> hyperparameters;
   std::optional<CrossValidation> cross_validation;

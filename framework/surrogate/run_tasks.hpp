@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <exception>
 #include <vector>
@@ -13,7 +14,8 @@ namespace twinmap {
 template <typename Action>
 void runTasks(int threads, std::size_t count, const Action& action) {
   std::vector<std::exception_ptr> errors(count);
-  linalg::parallelFor(threads, static_cast<Eigen::Index>(count), 1, [&](Eigen::Index i, int) {
+  const int team = static_cast<int>(std::min(static_cast<std::size_t>(threads), count));
+  linalg::parallelFor(std::max(team, 1), static_cast<Eigen::Index>(count), 1, [&](Eigen::Index i, int) {
     try {
       action(static_cast<std::size_t>(i));
     } catch (...) {

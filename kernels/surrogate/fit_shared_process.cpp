@@ -76,8 +76,9 @@ SharedChoice search(const SearchData& data, const SharedStructure& structure, co
   return {structure, fromLog(result.end), result.objective};
 }
 
-/// The better of two beginnings: functions about as smooth as the box is wide, and functions that change within
-/// it, where the search would not come from the former: between them all points are far from each other.
+/// The better of two beginnings: functions about as smooth as the box is wide, and functions that change
+/// within it, where the search would not come from the former: between them all points are far from each
+/// other.
 SharedChoice searchFromStarts(const SearchData& data, const SharedStructure& structure, StopFlag stop) {
   constexpr double kLengthScales[] = {2.0, 0.7}, kNuggets[] = {1e-6, 1e-4};
   const Index p = data.points.rows();
@@ -124,7 +125,9 @@ SharedChoice chooseSharedProcess(const MatrixXd& points, const MatrixXd& values,
     }
   }
   requireFound(best);
-  return points.cols() > kSearchPoints ? search({points, values}, best.structure, toLog(best.hyperparameters), kAllEvaluations, stop) : best;
+  return points.cols() > kSearchPoints
+             ? search({points, values}, best.structure, toLog(best.hyperparameters), kAllEvaluations, stop)
+             : best;
 }
 
 SharedChoice adaptSharedProcess(const SharedChoice& similar, const MatrixXd& points, const MatrixXd& values,

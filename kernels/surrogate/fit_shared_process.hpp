@@ -22,8 +22,8 @@ struct SharedChoice {
 SharedChoice chooseSharedProcess(const Eigen::MatrixXd& points, const Eigen::MatrixXd& values,
                                  StopFlag stop = nullptr);
 
-/// The same from a choice made on similar data: its structure, and a few steps from its numbers; where the points
-/// are more than 300, such as the rest of a cross-validation, its numbers as they are.
+/// The same from a choice made on similar data: its structure, and a few steps from its numbers; where the
+/// points are more than 300, such as the rest of a cross-validation, its numbers as they are.
 SharedChoice adaptSharedProcess(const SharedChoice& similar, const Eigen::MatrixXd& points,
                                 const Eigen::MatrixXd& values, StopFlag stop = nullptr);
 

@@ -73,14 +73,13 @@ void LeftOutDensity::calcGradient(const SharedHyperparameters& hyperparameters, 
   const Eigen::ArrayXXd by_total = 0.5 * (1.0 / total - by_residual.square());
   const ArrayXd by_amplitude =
       (by_total.colwise() * variance).colwise().sum().transpose() / static_cast<double>(n);
-  // Derivatives with respect to a = P s and to the diagonal of P.
-  const MatrixXd by_weights =
-      ((by_residual + 2.0 * (residual.rowwise() * by_amplitude.transpose())).colwise() * variance).matrix();
-  const Eigen::ArrayXXd of_diagonal =
-      by_residual * residual +
-      by_total.rowwise() * left_out_.amplitude.transpose().array() * variance.replicate(1, residual.cols()) +
-      residual.square().rowwise() * by_amplitude.transpose();
-  const VectorXd by_diagonal = -(of_diagonal.rowwise().sum() * variance);
+  // Derivatives with respect to a = P s and to the diagonal of P, of which e, the variance and t are
+  // functions.
+  const Eigen::ArrayXXd through_amplitude = residual.rowwise() * by_amplitude.transpose();
+  const MatrixXd by_weights = (by_residual.colwise() * variance + 2.0 * through_amplitude).matrix();
+  const ArrayXd of_total = (by_total.matrix() * left_out_.amplitude).array() * variance;
+  const VectorXd by_diagonal = -(((by_residual * residual).rowwise().sum() + of_total) * variance +
+                                 (through_amplitude * residual).rowwise().sum());
   // dP = -P dK P turns both into -tr(dK adjoint); only the symmetric part matters.
   adjoint_.noalias() = precision_ * by_diagonal.asDiagonal() * precision_;
   adjoint_.noalias() += weights_ * (precision_ * by_weights).transpose();

@@ -93,7 +93,8 @@ void SharedProcess::derive(const Eigen::Ref<const VectorXd>& point, Eigen::Ref<M
 }
 
 double SharedProcess::calcLocalFactor(Workspace& workspace) const {
-  // As many neighbours as tell a variance to a third; where all are near, a fifth of the weight is the whole set's.
+  // As many neighbours as tell a variance to a third; where all are near, a fifth of the weight is the whole
+  // set's.
   constexpr Index kNeighbours = 16;
   constexpr double kOfAll = 4.0;
   const Index n = workspace.squares.size(), reach = std::min(kNeighbours, n) - 1;

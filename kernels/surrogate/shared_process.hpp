@@ -10,8 +10,8 @@ namespace twinmap::gp {
 
 /// r smooth functions of p variables, known without noise at n points: a Gaussian process each, with one
 /// covariance function and trend for all. Each function's variance is the one with which the points that are
-/// left out agree (LeftOut::amplitude), times a local factor that all share: the ratio of the squared errors of
-/// the nearest points, left out, to their variance. Immutable.
+/// left out agree (LeftOut::amplitude), times a local factor that all share: the ratio of the squared errors
+/// of the nearest points, left out, to their variance. Immutable.
 class SharedProcess {
  public:
   /// The buffers of one thread.
