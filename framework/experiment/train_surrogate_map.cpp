@@ -36,10 +36,8 @@ SurrogateMapTraining trainSurrogateMap(const ExperimentSpec& experiment, const S
   });
   training.notes.warnings = std::move(trained.warnings);
   const SurrogateValidation& validation = trained.surrogate.validation;
-  const auto inferred = trained.held_out.mean.cols();
-  training.summary.leave_one_out =
-      calcMetrics(experiment.model.parameters, samples.parameters.leftCols(inferred), trained.held_out, {},
-                  static_cast<int>(inferred / simulated.points.cols()));
+  training.summary.leave_one_out = calcMetrics(experiment.model.parameters, trained.held_out_truth,
+                                               trained.held_out, {}, trained.held_out_draws);
   training.summary.nlml.assign(experiment.model.parameters.size(), std::numeric_limits<double>::quiet_NaN());
   training.summary.cross_validation = CrossValidation{validation.coverage95, validation.stddev_scale,
                                                       validation.log_density, toString(validation.status)};

@@ -129,7 +129,8 @@ bool ScoreInversion::step(const Metric& metric, VectorXd& unknown, double& objec
 }
 
 double ScoreInversion::improve(const Metric& metric, int steps, VectorXd& unknown) {
-  constexpr double kGain = 0.01;  // a tenth of a standard deviation
+  constexpr double kGain =
+      0.05;  // a step of less than a quarter of a standard deviation, and it converges fast
   double damping = 1e-3;
   double objective = calcObjective(metric, unknown);
   for (int i = 0; i < steps; ++i) {
@@ -161,19 +162,24 @@ void ScoreInversion::updateMetric(const VectorXd& unknown, Metric& metric) {
 }
 
 std::vector<ScoreInversion::Minimum> ScoreInversion::searchRoughly() {
-  constexpr int kSteps = 12;
-  constexpr double kApart = 0.05;     // in half widths
-  constexpr double kHopeless = 30.0;  // e^-15 of the evidence, and errors of the rough metric
+  constexpr int kFirstSteps = 3, kSteps = 9;
+  constexpr double kOnTheWay = 0.15, kApart = 0.05;  // in half widths, after the first steps and at the end
+  constexpr double kHopeless = 30.0;                 // e^-15 of the evidence, and errors of the rough metric
   std::vector<Minimum> minima;
+  const auto is_apart = [&](const VectorXd& point, double distance) {
+    return std::all_of(minima.begin(), minima.end(), [&](const Minimum& other) {
+      return (other.point - point).cwiseAbs().maxCoeff() > distance;
+    });
+  };
   for (const Index start : findStarts()) {
     Minimum minimum;
     minimum.point = surrogate_.points.col(start).head(unknown_);
-    minimum.objective = improve(rough_, kSteps, minimum.point);
-    const bool apart = std::all_of(minima.begin(), minima.end(), [&](const Minimum& other) {
-      return (other.point - minimum.point).cwiseAbs().maxCoeff() > kApart;
-    });
-    if (apart) {
-      minima.push_back(minimum);
+    improve(rough_, kFirstSteps, minimum.point);
+    if (is_apart(minimum.point, kOnTheWay)) {
+      minimum.objective = improve(rough_, kSteps, minimum.point);
+      if (is_apart(minimum.point, kApart)) {
+        minima.push_back(minimum);
+      }
     }
   }
   std::stable_sort(minima.begin(), minima.end(),
@@ -199,6 +205,15 @@ void ScoreInversion::refine(Minimum& minimum) {
   minimum.objective += metric.log_determinant + calcLogDeterminant(linalg::calcCholesky(posterior).lower);
 }
 
+/// Whether the better metric made a minimum one with an earlier one.
+bool ScoreInversion::hasEarlierTwin(const std::vector<Minimum>& minima, std::size_t index) {
+  constexpr double kSame = 0.02;  // in half widths
+  return std::any_of(minima.begin(), minima.begin() + static_cast<std::ptrdiff_t>(index),
+                     [&](const Minimum& other) {
+                       return (other.point - minima[index].point).cwiseAbs().maxCoeff() < kSame;
+                     });
+}
+
 gp::Moments ScoreInversion::infer(const Eigen::Ref<const VectorXd>& scores,
                                   const Eigen::Ref<const VectorXd>& known) {
   scores_ = scores;
@@ -212,12 +227,9 @@ gp::Moments ScoreInversion::infer(const Eigen::Ref<const VectorXd>& scores,
     parts.push_back(gp::calcBoxMoments(minima[i].information, minima[i].shift));
   }
   VectorXd weights = (-0.5 * (objectives.array() - objectives.minCoeff())).exp();
-  // Minima that became one by the better metric count once.
   for (std::size_t i = 1; i < minima.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      if ((minima[i].point - minima[j].point).cwiseAbs().maxCoeff() < 0.02) {
-        weights(static_cast<Index>(i)) = 0.0;
-      }
+    if (hasEarlierTwin(minima, i)) {
+      weights(static_cast<Index>(i)) = 0.0;
     }
   }
   return mix(parts, weights / weights.sum());

@@ -53,6 +53,7 @@ class ScoreInversion {
   void updateMetric(const Eigen::VectorXd& unknown, Metric& metric);
   std::vector<Minimum> searchRoughly();
   void refine(Minimum& minimum);
+  static bool hasEarlierTwin(const std::vector<Minimum>& minima, std::size_t index);
 
   const ForwardSurrogate& surrogate_;
   Eigen::Index unknown_;

@@ -17,6 +17,24 @@ std::string formatShare(double share) {
   return text.substr(0, text.find('.') + 3);
 }
 
+/// No more than an exact process is worth: the time grows with their number cubed.
+SurrogateSamples takeFirst(const SurrogateSamples& samples) {
+  constexpr Index kMost = 2000;
+  const Index n = samples.points.cols();
+  if (n <= kMost) {
+    return samples;
+  }
+  SurrogateSamples first{samples.infos, samples.points.leftCols(kMost),
+                         samples.clean_features.leftCols(kMost), samples.noise_covariance,
+                         MatrixXd(samples.measured.rows(), 0)};
+  const Index draws = samples.measured.cols() / n;
+  first.measured.resize(samples.measured.rows(), kMost * draws);
+  for (Index draw = 0; draw < draws; ++draw) {
+    first.measured.middleCols(draw * kMost, kMost) = samples.measured.middleCols(draw * n, kMost);
+  }
+  return first;
+}
+
 std::vector<std::string> listWarnings(const ModelSpec& model, const SurrogateValidation& validation) {
   constexpr double kHonest = 0.9;
   std::vector<std::string> warnings;
@@ -38,8 +56,9 @@ std::vector<std::string> listWarnings(const ModelSpec& model, const SurrogateVal
 
 }  // namespace
 
-SurrogateTraining trainSurrogate(const ModelSpec& model, const SurrogateSamples& samples,
+SurrogateTraining trainSurrogate(const ModelSpec& model, const SurrogateSamples& given,
                                  const TrainingControl& control) {
+  const SurrogateSamples samples = takeFirst(given);
   constexpr Index kFewest = 20;  // five folds of which are a cross-validation
   if (samples.points.cols() < kFewest + 2 * samples.points.rows()) {
     throw std::invalid_argument("a surrogate needs at least 20 training samples, and two a parameter more");
@@ -59,6 +78,8 @@ SurrogateTraining trainSurrogate(const ModelSpec& model, const SurrogateSamples&
   HeldOut held_out = crossValidate(surrogate, samples, forward, fit.choices, control);
   surrogate.validation = validate(held_out);
   training.held_out = std::move(held_out.predictions);
+  training.held_out_truth = std::move(held_out.truth);
+  training.held_out_draws = static_cast<int>(training.held_out.mean.cols() / samples.points.cols());
   training.held_out.stddev = surrogate.validation.stddev_scale.asDiagonal() * training.held_out.stddev;
   training.warnings = listWarnings(model, surrogate.validation);
   return training;

@@ -23,14 +23,18 @@ struct SurrogateSamples {
 /// A trained surrogate and what a person should know about it.
 struct SurrogateTraining {
   Surrogate surrogate;
-  Predictions held_out;  ///< p x n draws', of the measured features, by surrogates that had not seen them
+  Predictions
+      held_out;  ///< p x n draws, of measured features, by surrogates that had not seen their simulation
+  Eigen::MatrixXd held_out_truth;  ///< p x n draws
+  int held_out_draws = 1;          ///< of each simulation: column j + i n is draw i of simulation j
   std::vector<std::string> warnings;
 };
 
 /// Trains a surrogate on simulations of a model, and scales its standard deviations by what a five-fold
-/// cross-validation of everything, on the measured features, finds. Throws std::invalid_argument for a
-/// feature without noise and for too few simulations; gp::Stopped. Cost: fitForward() for all and, from its
-/// choices, five times for four fifths; an inference for each measured column (at most 1000).
+/// cross-validation of everything, on the measured features, finds. At most the first 2000 simulations are
+/// used. Throws std::invalid_argument for a feature without noise and for too few simulations; gp::Stopped.
+/// Cost: fitForward() for all and, from its choices, five times for four fifths; an inference for each
+/// measured column (at most 1000).
 SurrogateTraining trainSurrogate(const ModelSpec& model, const SurrogateSamples& samples,
                                  const TrainingControl& control);
 
