@@ -54,24 +54,40 @@ struct RankedScore {
   std::size_t window;
   Index index;
   double rank;
+  double error_share;  ///< of the variance of a measured score: that of the surrogate's error
 };
 
-std::vector<std::vector<Index>> chooseScores(const std::vector<WindowFit>& windows, Index most) {
+/// Those that say most first.
+std::vector<RankedScore> rankScores(const std::vector<WindowFit>& windows) {
   std::vector<RankedScore> ranked;
   for (std::size_t w = 0; w < windows.size(); ++w) {
     const auto count = static_cast<double>(windows[w].scores.rows());
     const ArrayXd variance = windows[w].scores.colwise().squaredNorm().transpose() / count;
-    const ArrayXd ranks = variance / (1.0 + calcErrorVariance(*windows[w].process));
-    for (Index j = 0; j < ranks.size(); ++j) {
-      ranked.push_back({w, j, ranks[j]});
+    const ArrayXd error = calcErrorVariance(*windows[w].process);
+    for (Index j = 0; j < error.size(); ++j) {
+      ranked.push_back({w, j, variance[j] / (1.0 + error[j]), error[j] / (1.0 + error[j])});
     }
   }
   std::stable_sort(ranked.begin(), ranked.end(),
                    [](const RankedScore& a, const RankedScore& b) { return a.rank > b.rank; });
-  ranked.resize(std::min(ranked.size(), static_cast<std::size_t>(most)));
+  return ranked;
+}
+
+/// The scores of each window that are kept. The errors of n simulations tell the correlations of some n / 3
+/// scores; a score counts by the share of its variance that is error.
+std::vector<std::vector<Index>> chooseScores(const std::vector<WindowFit>& windows, Index simulations) {
+  constexpr std::size_t kMostScores = 200;  // an inference costs their number cubed
+  const double most_errors = static_cast<double>(simulations) / 3.0;
   std::vector<std::vector<Index>> chosen(windows.size());
-  for (const RankedScore& score : ranked) {
+  double errors = 0.0;
+  std::size_t count = 0;
+  for (const RankedScore& score : rankScores(windows)) {
+    errors += score.error_share;
+    if (count == kMostScores || errors > most_errors) {
+      break;
+    }
     chosen[score.window].push_back(score.index);
+    ++count;
   }
   for (std::vector<Index>& indices : chosen) {
     std::sort(indices.begin(), indices.end());
@@ -137,7 +153,6 @@ void assemble(std::vector<WindowFit>& windows, const std::vector<std::vector<Ind
 
 ForwardFit fitForward(const ForwardSamples& samples, const std::vector<gp::SharedChoice>& similar,
                       const TrainingControl& control) {
-  constexpr Index kMostScores = 200;  // an inference costs their number cubed
   const NoiseWhitener noise(samples.noise_covariance);
   ForwardFit fit;
   fit.surrogate.center = samples.clean_features.rowwise().mean();
@@ -155,8 +170,7 @@ ForwardFit fitForward(const ForwardSamples& samples, const std::vector<gp::Share
   for (const WindowFit& window : windows) {
     fit.choices.push_back(window.choice);
   }
-  const Index most = std::min(samples.points.cols() / 3, kMostScores);
-  assemble(windows, chooseScores(windows, most), noise.getMatrix(), fit.surrogate);
+  assemble(windows, chooseScores(windows, samples.points.cols()), noise.getMatrix(), fit.surrogate);
   return fit;
 }
 

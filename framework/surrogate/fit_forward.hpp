@@ -25,13 +25,14 @@ struct ForwardFit {
 };
 
 /// Fits processes to the principal components of each window of whitened features. Components that move less
-/// than 0.2 of the noise are left out; of the others the n / 3 (at most 200) are kept that say most about the
-/// parameters: sd over sqrt(1 + error variance). `similar`: choices for nearly the same samples, to start
-/// from; empty to search anew. The correlation of the errors is that of the points left out, shrunk towards
-/// independence by at least 0.2 (Schaefer and Strimmer 2005).
-/// Throws std::invalid_argument for a feature without noise and for too few simulations, gp::Stopped.
-/// Cost: a window some 60 evaluations of gp::LeftOutDensity on 300 points, 8 from similar choices; then
-/// 2 n^3 flops.
+/// than 0.2 of the noise are left out; of the others those are kept that say most about the parameters, by sd
+/// over sqrt(1 + error variance): at most 200, and as many as the errors of n simulations tell the
+/// correlations of, n / 3 where the errors are far above the noise, and more the further they are below. The
+/// correlation of the errors is that of the points left out, shrunk towards independence by at least 0.2
+/// (Schaefer and Strimmer 2005). `similar`: choices for nearly the same samples, to start from; empty to
+/// search anew. Throws std::invalid_argument for a feature without noise and for too few simulations,
+/// gp::Stopped. Cost: a window some 60 evaluations of gp::LeftOutDensity on 300 points, 8 from similar
+/// choices; then 2 n^3 flops.
 ForwardFit fitForward(const ForwardSamples& samples, const std::vector<gp::SharedChoice>& similar,
                       const TrainingControl& control);
 
