@@ -73,11 +73,11 @@ std::vector<RankedScore> rankScores(const std::vector<WindowFit>& windows) {
   return ranked;
 }
 
-/// The scores of each window that are kept. The errors of n simulations tell the correlations of some n / 3
+/// The scores of each window that are kept. The errors of n simulations tell the correlations of some n / 4
 /// scores; a score counts by the share of its variance that is error.
 std::vector<std::vector<Index>> chooseScores(const std::vector<WindowFit>& windows, Index simulations) {
   constexpr std::size_t kMostScores = 200;  // an inference costs their number cubed
-  const double most_errors = static_cast<double>(simulations) / 3.0;
+  const double most_errors = static_cast<double>(simulations) / 4.0;
   std::vector<std::vector<Index>> chosen(windows.size());
   double errors = 0.0;
   std::size_t count = 0;

@@ -27,7 +27,7 @@ struct ForwardFit {
 /// Fits processes to the principal components of each window of whitened features. Components that move less
 /// than 0.2 of the noise are left out; of the others those are kept that say most about the parameters, by sd
 /// over sqrt(1 + error variance): at most 200, and as many as the errors of n simulations tell the
-/// correlations of, n / 3 where the errors are far above the noise, and more the further they are below. The
+/// correlations of, n / 4 where the errors are far above the noise, and more the further they are below. The
 /// correlation of the errors is that of the points left out, shrunk towards independence by at least 0.2
 /// (Schaefer and Strimmer 2005). `similar`: choices for nearly the same samples, to start from; empty to
 /// search anew. Throws std::invalid_argument for a feature without noise and for too few simulations,
