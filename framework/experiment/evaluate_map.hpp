@@ -1,12 +1,23 @@
 #pragma once
 
+#include <functional>
+
 #include "framework/experiment/prepare_data.hpp"
-#include "framework/inverse_map/gp_map.hpp"
+#include "framework/features/feature_transform.hpp"
+#include "framework/inverse_map/predictions.hpp"
 #include "framework/results/run_summary.hpp"
 #include "framework/sensitivity/feature_sensitivities.hpp"
 #include "framework/simulation/simulator.hpp"
 
 namespace twinmap {
+
+/// A trained map of any kind.
+struct EvaluatedMap {
+  /// Features (d x n) and known inputs (q x n) -> parameters (p x n each).
+  std::function<Predictions(const Eigen::MatrixXd& features, const Eigen::MatrixXd& inputs)> predict;
+  Eigen::MatrixXd residual_correlation;  ///< p x p, of the errors of a sample
+  FeatureTransform transform;            ///< what a linear regression is to see of the features
+};
 
 /// What the evaluation of a map looks at.
 struct EvaluationContext {
@@ -14,7 +25,7 @@ struct EvaluationContext {
   const Simulator& simulator;
   const FeatureExtractor& extractor;
   const PreparedData& data;
-  const GpMap& map;
+  const EvaluatedMap& map;
   LocalModelSource local_models;
   int threads = 1;
 };

@@ -4,28 +4,44 @@
 #include <chrono>
 
 namespace twinmap {
+namespace {
 
-OnlineTimes timeOnlineUpdates(const OnlineModel& model, const LabelledFeatures& testing) {
+/// Times update(i) for the first samples.
+template <class Update>
+OnlineTimes timeUpdates(Eigen::Index samples, const Update& update) {
   constexpr Eigen::Index kMostUpdates = 200;
-  const Eigen::Index updates = std::min(testing.features.cols(), kMostUpdates);
-  const OnlineMap map(model.map);
-  OnlineMap::Workspace inferring(map);
-  TrustWorkspace judging;
+  const Eigen::Index updates = std::min(samples, kMostUpdates);
   std::vector<double> microseconds;
   for (Eigen::Index i = 0; i < updates; ++i) {
-    const auto features = testing.features.col(i);
-    const auto known = testing.inputs.col(i);
     const auto start = std::chrono::steady_clock::now();
-    const Inference& inferred = map.infer(features, known, inferring);
-    if (model.trust) {
-      judge(*model.trust, features, known, inferred, judging);
-    }
+    update(i);
     const std::chrono::duration<double, std::micro> elapsed = std::chrono::steady_clock::now() - start;
     microseconds.push_back(elapsed.count());
   }
   std::sort(microseconds.begin(), microseconds.end());
   const auto last = microseconds.size() - 1;
   return {static_cast<int>(updates), microseconds[last / 2], microseconds[last * 99 / 100]};
+}
+
+}  // namespace
+
+OnlineTimes timeOnlineUpdates(const OnlineModel& model, const LabelledFeatures& testing) {
+  const OnlineMap map(model.map);
+  OnlineMap::Workspace inferring(map);
+  TrustWorkspace judging;
+  return timeUpdates(testing.features.cols(), [&](Eigen::Index i) {
+    const auto features = testing.features.col(i);
+    const auto known = testing.inputs.col(i);
+    const Inference& inferred = map.infer(features, known, inferring);
+    if (model.trust) {
+      judge(*model.trust, features, known, inferred, judging);
+    }
+  });
+}
+
+OnlineTimes timePredictions(const EvaluatedMap& map, const LabelledFeatures& testing) {
+  return timeUpdates(testing.features.cols(),
+                     [&](Eigen::Index i) { map.predict(testing.features.col(i), testing.inputs.col(i)); });
 }
 
 }  // namespace twinmap

@@ -9,6 +9,7 @@
 #include "framework/experiment/prepare_data.hpp"
 #include "framework/experiment/simulated_sets.hpp"
 #include "framework/experiment/train_map.hpp"
+#include "framework/experiment/train_surrogate_map.hpp"
 #include "framework/features/selections.hpp"
 #include "framework/monitoring/run_log.hpp"
 #include "framework/monitoring/stage_timer.hpp"
@@ -89,6 +90,14 @@ Samples simulateSamples(const RunContext& run) {
   return {std::move(sets), std::move(failures)};
 }
 
+/// A trained map of any kind.
+struct TrainedMap {
+  EvaluatedMap map;
+  TrainingSummary summary;
+  StageNotes notes;
+  std::optional<OnlineModel> online;  ///< none of a map that is not stored
+};
+
 /// Makes the map ready for measurements and writes both.
 OnlineFit prepareOnline(const RunContext& run, const SimulatedSets& sets, const LabelledSets& labelled,
                         const GpMap& map) {
@@ -99,6 +108,37 @@ OnlineFit prepareOnline(const RunContext& run, const SimulatedSets& sets, const 
   online.notes = notes;
   writeMapsFile(run.folder / "maps.h5", makeStoredMap(run.experiment, run.extractor, map, online.model));
   return online;
+}
+
+/// Trains one Gaussian process per parameter.
+TrainedMap trainProcesses(const RunContext& run, const SimulatedSets& sets, const LabelledSets& labelled) {
+  Training training = trainMap(run.experiment, labelled.train, run.control);
+  OnlineFit online = prepareOnline(run, sets, labelled, training.map);
+  training.notes.append(online.notes);
+  const auto map = std::make_shared<const GpMap>(std::move(training.map));
+  const auto predict = [map](const Eigen::MatrixXd& features, const Eigen::MatrixXd& inputs) {
+    return map->predict(features, inputs);
+  };
+  return {{predict, map->residual_correlation, map->transform},
+          std::move(training.summary),
+          std::move(training.notes),
+          std::move(online.model)};
+}
+
+/// Trains a surrogate. What is inferred with it does not depend on the threads.
+TrainedMap trainForward(const RunContext& run, const SimulatedSets& sets, const LabelledSets& labelled) {
+  SurrogateMapTraining training =
+      trainSurrogateMap(run.experiment, sets, run.extractor, labelled.train, run.control);
+  const auto surrogate = std::make_shared<const Surrogate>(std::move(training.surrogate));
+  const auto predict = [surrogate, threads = run.control.threads](const Eigen::MatrixXd& features,
+                                                                  const Eigen::MatrixXd& inputs) {
+    return surrogate->predict(features, inputs, threads);
+  };
+  return {{predict, surrogate->validation.residual_correlation,
+           fitTransform(run.experiment.transform, labelled.train)},
+          std::move(training.summary),
+          std::move(training.notes),
+          std::nullopt};
 }
 
 /// Writes responses.csv: the models of a few test samples beside what was measured.
@@ -122,24 +162,26 @@ RunSummary runStages(const RunContext& run) {
   };
   const Samples samples = simulateSamples(run);
   const PreparedData data = prepareData(experiment, run.extractor, samples.sets, local_models);
-  const Training training = trainMap(experiment, data.labelled.train, run.control);
-  const OnlineFit online = prepareOnline(run, samples.sets, data.labelled, training.map);
+  const auto train = experiment.inverse_map.findGp() != nullptr ? trainProcesses : trainForward;
+  const TrainedMap trained = train(run, samples.sets, data.labelled);
   const MapEvaluation evaluated = evaluateMap(
-      {experiment, run.simulator, run.extractor, data, training.map, local_models, run.control.threads});
+      {experiment, run.simulator, run.extractor, data, trained.map, local_models, run.control.threads});
 
   RunSummary summary;
   summary.parameters = experiment.model.parameters;
   summary.test_indices = data.test_indices;
-  summary.training = training.summary;
+  summary.training = trained.summary;
   summary.evaluation = evaluated.evaluation;
   summary.failures = samples.failures;
   summary.reused_samples = samples.sets.reused;
-  for (const StageNotes& notes : {samples.sets.notes, training.notes, online.notes, evaluated.notes}) {
+  for (const StageNotes& notes : {samples.sets.notes, trained.notes, evaluated.notes}) {
     summary.notes.append(notes);
   }
   summary.notes.append(writeExamples(run, samples.sets.test, data.test_indices, evaluated.evaluation));
-  summary.online = timeStage("time the inference of one measurement", summary.notes,
-                             [&] { return timeOnlineUpdates(online.model, data.labelled.test); });
+  summary.online = timeStage("time the inference of one measurement", summary.notes, [&] {
+    return trained.online ? timeOnlineUpdates(*trained.online, data.labelled.test)
+                          : timePredictions(trained.map, data.labelled.test);
+  });
   return summary;
 }
 

@@ -21,9 +21,9 @@ struct RunOptions {
 
 /// Runs an experiment from design to report. Samples that the store has are taken from it, so that an
 /// interrupted run continues; the result is the same bit for bit. Leaves in the folder: resolved.yaml,
-/// samples.h5, failures.csv, maps.h5, predictions.csv, metrics.csv, joint.csv, pit.csv, training.csv,
-/// table.md, table.tex, report.html, figures/*.csv, provenance.json. Progress goes to the log. Throws
-/// Interrupted where `control` stops it; std::runtime_error if more samples fail than
+/// samples.h5, failures.csv, maps.h5 (not of a surrogate), predictions.csv, metrics.csv, joint.csv, pit.csv,
+/// training.csv, table.md, table.tex, report.html, figures/*.csv, provenance.json. Progress goes to the log.
+/// Throws Interrupted where `control` stops it; std::runtime_error if more samples fail than
 /// simulation.allowed_failures permits (samples.h5 and failures.csv are there then), if a map cannot be
 /// trained, if a file cannot be written, or if another process has the folder or the store; ExperimentError
 /// if the folder holds the results of another experiment, whose differing keys it names.

@@ -45,7 +45,7 @@ std::vector<TrainedHyperparameter> listHyperparameters(const std::vector<std::st
 GpMapTraining trainInterruptibly(const ExperimentSpec& experiment, const std::vector<std::string>& names,
                                  const LabelledFeatures& samples, const TrainingControl& control) {
   try {
-    return trainGpMap(experiment.inverse_map.gp, experiment.transform, names, samples, control,
+    return trainGpMap(*experiment.inverse_map.findGp(), experiment.transform, names, samples, control,
                       experiment.model.inputs);
   } catch (const gp::Stopped&) {
     throw Interrupted("interrupted during training; the simulated samples are kept");

@@ -135,6 +135,17 @@ std::string makeFailuresCsv(const std::vector<ParameterSpec>& sampled,
   return makeCsv(rows);
 }
 
+std::string makeCrossValidationCsv(const RunSummary& run) {
+  std::vector<Row> rows{{"parameter", "coverage95", "stddev_scale", "log_density", "status"}};
+  const CrossValidation& found = *run.training.cross_validation;
+  for (std::size_t p = 0; p < run.parameters.size(); ++p) {
+    const auto row = static_cast<Eigen::Index>(p);
+    rows.push_back({run.parameters[p].name.text, toText(found.coverage95[row]),
+                    toText(found.stddev_scale[row]), toText(found.log_density), found.status});
+  }
+  return makeCsv(rows);
+}
+
 std::string makeHyperparametersCsv(const RunSummary& run) {
   std::vector<Row> rows{{"parameter", "hyperparameter", "value", "lower", "upper"}};
   for (const TrainedHyperparameter& trained : run.training.hyperparameters) {

@@ -34,6 +34,9 @@ void writeResults(const fs::path& folder, const RunSummary& run) {
   writeTextFile(folder / "predictions.csv", makePredictionsCsv(run));
   writeTextFile(folder / "training.csv", makeTrainingCsv(run));
   writeTextFile(folder / "hyperparameters.csv", makeHyperparametersCsv(run));
+  if (run.training.cross_validation) {
+    writeTextFile(folder / "cross_validation.csv", makeCrossValidationCsv(run));
+  }
   writeTextFile(folder / "table.md", makeMarkdownTable(run));
   writeTextFile(folder / "table.tex", makeLatexTable(run));
 }

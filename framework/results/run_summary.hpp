@@ -45,12 +45,21 @@ struct TrainedHyperparameter {
   double value = 0.0, lower = 0.0, upper = 0.0;
 };
 
+/// What the cross-validation of a map found that scales its standard deviations by it; p parameters.
+struct CrossValidation {
+  Eigen::VectorXd coverage95;    ///< of its own 95 % intervals
+  Eigen::VectorXd stddev_scale;  ///< by which standard deviations were multiplied
+  double log_density = 0.0;      ///< mean log joint density of the true parameters after that, in their units
+  std::string status;            ///< "ok", "map_limited"
+};
+
 /// How the inverse map was trained.
 struct TrainingSummary {
   std::vector<ParameterMetrics> leave_one_out;  ///< of the training samples; empty where not available
-  std::vector<double> nlml;                     ///< one per parameter, nats
+  std::vector<double> nlml;                     ///< one per parameter, nats; NaN of a map without
   std::vector<TrainingStart> starts;
   std::vector<TrainedHyperparameter> hyperparameters;
+  std::optional<CrossValidation> cross_validation;
 };
 
 /// How strongly each feature follows each parameter (InformationLimit::relevance).

@@ -29,6 +29,9 @@ std::string makeFailuresCsv(const std::vector<ParameterSpec>& sampled,
 /// at_bound, condition, jitter.
 std::string makeTrainingCsv(const RunSummary& run);
 
+/// cross_validation.csv: parameter, coverage95, stddev_scale, log_density, status.
+std::string makeCrossValidationCsv(const RunSummary& run);
+
 /// hyperparameters.csv: parameter, hyperparameter, value, lower, upper; of the start that was kept.
 std::string makeHyperparametersCsv(const RunSummary& run);
 

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <optional>
+#include <variant>
 
 #include "framework/spec/bounds_spec.hpp"
 #include "framework/spec/fields/fields.hpp"
+#include "framework/spec/fields/one_of.hpp"
 
 namespace twinmap {
 
@@ -124,13 +126,25 @@ void describe(Fields& f, GpMapSpec& s) {
          "must not have a linear_term with 'approximation: sgpr'");
 }
 
+/// A Gaussian process surrogate of the simulator, from parameters to features, inverted for each measurement.
+struct SurrogateMapSpec {};
+
+template <class Fields>
+void describe(Fields&, SurrogateMapSpec&) {}
+
 struct InverseMapSpec {
-  GpMapSpec gp;
+  std::variant<GpMapSpec, SurrogateMapSpec> kind;
+
+  /// Null for another kind.
+  const GpMapSpec* findGp() const { return std::get_if<GpMapSpec>(&kind); }
+  GpMapSpec* findGp() { return std::get_if<GpMapSpec>(&kind); }
 };
 
 template <class Fields>
 void describe(Fields& f, InverseMapSpec& s) {
-  f.optional("gp", s.gp, "one Gaussian process per parameter");
+  f.oneOf("must be one of", choice<GpMapSpec>("gp", s.kind, "one Gaussian process per parameter"),
+          choice<SurrogateMapSpec>("surrogate", s.kind,
+                                   "processes from parameters to features, inverted for each measurement"));
 }
 
 }  // namespace twinmap

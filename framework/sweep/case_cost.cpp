@@ -16,7 +16,8 @@ namespace {
 constexpr double kFitCost = 1.0 / 3.0;  // of an evaluation with its gradient
 
 bool isSparse(const ExperimentSpec& experiment) {
-  return experiment.inverse_map.gp.approximation == GpApproximation::kSgpr;
+  const GpMapSpec* gp = experiment.inverse_map.findGp();
+  return gp != nullptr && gp->approximation == GpApproximation::kSgpr;
 }
 
 double countColumns(const ExperimentSpec& experiment) {
@@ -26,7 +27,7 @@ double countColumns(const ExperimentSpec& experiment) {
 /// Samples of the largest exact process.
 double countExact(const ExperimentSpec& experiment) {
   const double columns = countColumns(experiment);
-  return isSparse(experiment) ? std::min<double>(columns, experiment.inverse_map.gp.subset) : columns;
+  return isSparse(experiment) ? std::min<double>(columns, experiment.inverse_map.findGp()->subset) : columns;
 }
 
 /// Of them, those that the hyperparameters are searched with.
@@ -48,6 +49,12 @@ double countSearches(const GpMapSpec& gp) {
   return gp.starts + (gp.length_scales == LengthScales::kShared ? 0.0 : std::min(gp.starts, 2));
 }
 
+/// Windows of a surrogate's features, at least.
+double countWindows(const ExperimentSpec& experiment) {
+  constexpr double kRowsPerWindow = 16.0;
+  return std::ceil(countRows(experiment) / kRowsPerWindow);
+}
+
 double square(double x) {
   return x * x;
 }
@@ -56,10 +63,41 @@ double cube(double x) {
   return x * x * x;
 }
 
+/// The search of each window on at most 300 samples, then some evaluations with all: the search's end, and
+/// that of each fold.
+std::vector<TrainingStep> listSurrogateSteps(const ExperimentSpec& experiment) {
+  constexpr double kSearched = 300.0, kSearches = 3.0, kEvaluationsOfAll = 40.0;
+  const double samples = experiment.design.train.samples, windows = countWindows(experiment);
+  return {{std::min(samples, kSearched), windows, kSearches}, {samples, windows, 0.0, kEvaluationsOfAll}};
+}
+
+/// Numbers of the matrices of a surrogate: its windows', and those of the search of each thread.
+double countSurrogateNumbers(const ExperimentSpec& experiment, int threads) {
+  constexpr double kCopies = 6.0;
+  return square(experiment.design.train.samples) * (2.0 * countWindows(experiment) + kCopies * threads);
+}
+
+/// The same of an inverse map's processes.
+double countProcessNumbers(const ExperimentSpec& experiment, const GpMapSpec& gp, int threads) {
+  constexpr double kSparseCopies = 6.0;
+  const auto parameters = static_cast<double>(experiment.model.parameters.size());
+  const double searches = std::min(double(threads), parameters * gp.starts);
+  const double exact = countExact(experiment);
+  double numbers = std::max(square(countSearched(experiment)) * (2.5 * searches + 1.0), 3.5 * square(exact)) +
+                   1.5 * parameters * square(exact);
+  if (isSparse(experiment)) {
+    numbers += kSparseCopies * countColumns(experiment) * gp.inducing * searches;
+  }
+  return numbers;
+}
+
 }  // namespace
 
 std::vector<TrainingStep> listTrainingSteps(const ExperimentSpec& experiment) {
-  const GpMapSpec& gp = experiment.inverse_map.gp;
+  if (experiment.inverse_map.findGp() == nullptr) {
+    return listSurrogateSteps(experiment);
+  }
+  const GpMapSpec& gp = *experiment.inverse_map.findGp();
   const auto parameters = static_cast<double>(experiment.model.parameters.size());
   const double exact = countExact(experiment), searched = countSearched(experiment);
   const double first = std::min<double>(exact, experiment.design.train.samples);
@@ -78,17 +116,11 @@ std::vector<TrainingStep> listTrainingSteps(const ExperimentSpec& experiment) {
 }
 
 CaseCost calcCaseCost(const ExperimentSpec& experiment, int threads) {
-  constexpr double kBytes = 8.0, kCopies = 10.0, kSparseCopies = 6.0, kLimitCopies = 1.5,
-                   kPosteriorCopies = 3.0;
-  const auto parameters = static_cast<double>(experiment.model.parameters.size());
-  const double searches = std::min(double(threads), parameters * experiment.inverse_map.gp.starts);
-  const double exact = countExact(experiment);
-  double numbers = std::max(square(countSearched(experiment)) * (2.5 * searches + 1.0), 3.5 * square(exact)) +
-                   1.5 * parameters * square(exact);
+  constexpr double kBytes = 8.0, kCopies = 10.0, kLimitCopies = 1.5, kPosteriorCopies = 3.0;
+  const GpMapSpec* gp = experiment.inverse_map.findGp();
+  double numbers = gp != nullptr ? countProcessNumbers(experiment, *gp, threads)
+                                 : countSurrogateNumbers(experiment, threads);
   numbers += kCopies * countRows(experiment) * (countColumns(experiment) + experiment.design.test.samples);
-  if (isSparse(experiment)) {
-    numbers += kSparseCopies * countColumns(experiment) * experiment.inverse_map.gp.inducing * searches;
-  }
   if (experiment.evaluation.limit) {
     numbers += kLimitCopies * countRows(experiment) *
                countNeighbours(collectUnknown(experiment.model).size()) * experiment.design.test.samples;

@@ -41,9 +41,9 @@ double countRows(const ExperimentSpec& e) {
 
 /// samples.h5, the factors in maps.h5, and the tables.
 double calcCaseDisk(const ExperimentSpec& e) {
-  const double columns = countTrainingColumns(e);
-  const bool sparse = e.inverse_map.gp.approximation == GpApproximation::kSgpr;
-  const double order = sparse ? 1.5 * e.inverse_map.gp.inducing : columns;
+  const GpMapSpec* gp = e.inverse_map.findGp();  // a surrogate is not stored
+  const bool sparse = gp != nullptr && gp->approximation == GpApproximation::kSgpr;
+  const double order = gp == nullptr ? 0.0 : (sparse ? 1.5 * gp->inducing : countTrainingColumns(e));
   return kNumber * (countRows(e) + double(countSampled(e.model))) * countSamples(e) +
          kNumber * countParameters(e) * order * order +
          kPredictionRow * countParameters(e) * e.design.test.samples + kReport;

@@ -56,7 +56,7 @@ ExperimentSpec makeSmall(ExperimentSpec experiment) {
   experiment.design.test.samples = kTestSamples;
   experiment.model.simulation.allowed_failures = kMostFailures;
   experiment.noise.replicates = 1;
-  experiment.inverse_map.gp.approximation = GpApproximation::kExact;
+  experiment.inverse_map.findGp()->approximation = GpApproximation::kExact;
   return experiment;
 }
 
@@ -65,8 +65,9 @@ ExperimentSpec makeShort(ExperimentSpec experiment, int replicates) {
   experiment.evaluation.limit = false;
   experiment.evaluation.posterior.reset();
   experiment.evaluation.baselines.clear();
-  experiment.inverse_map.gp.starts = 1;
-  experiment.inverse_map.gp.max_evaluations = kFewEvaluations;
+  GpMapSpec& gp = *experiment.inverse_map.findGp();
+  gp.starts = 1;
+  gp.max_evaluations = kFewEvaluations;
   experiment.noise.replicates = replicates;
   return experiment;
 }
@@ -101,6 +102,9 @@ double countEvaluationsOnAllDraws(const ExperimentSpec& experiment, ExperimentSp
 }
 
 ProbeTimes measure(const ExperimentSpec& experiment, double most_samples) {
+  if (experiment.inverse_map.findGp() == nullptr) {
+    throw std::runtime_error("how long a surrogate's training takes is not estimated");
+  }
   const TemporaryFolder folder;
   const ExperimentSpec small = makeSmall(experiment);
   const TimedRun run = timeRun(small, "small", folder.getPath());

@@ -108,7 +108,9 @@ void checkTransform(const ExperimentSpec& experiment) {
   for (const TransformStepSpec& step : experiment.transform) {
     const Context context{experiment, progress, step.where};
     std::visit([&context](const auto& kind) { check(kind, context); }, step.kind);
-    checkLengthScales(step, experiment.inverse_map.gp.length_scales);
+    if (const GpMapSpec* gp = experiment.inverse_map.findGp()) {
+      checkLengthScales(step, gp->length_scales);
+    }
     progress.whitened = whitens(step, experiment.noise);
     progress.mixed = progress.mixed || mixes(step);
   }

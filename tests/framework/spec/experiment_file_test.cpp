@@ -24,7 +24,7 @@ TEST(ExperimentFile, ReadsTheTwoBeamExperiment) {
   EXPECT_EQ(experiment.model.system.gravity[2].text, "-g");
   EXPECT_DOUBLE_EQ(experiment.noise.stddev[1].stddev, 0.015);
   EXPECT_EQ(std::get<SamplesFeatureSpec>(experiment.features[0]).count, 100);
-  EXPECT_EQ(experiment.inverse_map.gp.length_scales, LengthScales::kShared);
+  EXPECT_EQ(experiment.inverse_map.findGp()->length_scales, LengthScales::kShared);
 }
 
 TEST(ExperimentFile, ResolvedExperimentReadsBackAsItself) {
@@ -70,7 +70,7 @@ TEST(ExperimentFile, OverridesReplaceAddAndIndex) {
   EXPECT_DOUBLE_EQ(experiment.noise.scale, 0.1);
   EXPECT_DOUBLE_EQ(experiment.model.parameters[2].bounds.lower, 4.0);
   EXPECT_EQ(experiment.model.system.springs[1].rest.text, "0.25");
-  EXPECT_EQ(experiment.inverse_map.gp.length_scales, LengthScales::kPerOutput);
+  EXPECT_EQ(experiment.inverse_map.findGp()->length_scales, LengthScales::kPerOutput);
   EXPECT_EQ(experiment.model.system.force_laws.size(), 1u);
 }
 

@@ -158,6 +158,7 @@ const std::vector<Described> kKeyTables{
     {"key of `measured`", "excitation.*.tables.[].measured"},
     {"key", "simulation"},
     {"step of `transform`", "transform.[]"},
+    {"kind of map", "inverse_map"},
     {"key of `gp`", "inverse_map.gp"},
     {"baseline", "evaluation.baselines.[]"},
 };

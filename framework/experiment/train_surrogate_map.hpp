@@ -1,0 +1,24 @@
+#pragma once
+
+#include "framework/experiment/prepare_data.hpp"
+#include "framework/monitoring/run_control.hpp"
+#include "framework/results/run_summary.hpp"
+#include "framework/surrogate/surrogate.hpp"
+
+namespace twinmap {
+
+/// A trained surrogate and how that went.
+struct SurrogateMapTraining {
+  Surrogate surrogate;
+  TrainingSummary summary;  ///< its left-out samples are those of the cross-validation
+  StageNotes notes;
+};
+
+/// Trains a surrogate (trainSurrogate) on the clean training responses of an experiment; the labelled
+/// features' draws of the noise are what it infers in cross-validation. Throws Interrupted if it is stopped,
+/// std::runtime_error where the experiment does not fit it: a feature without noise, too few samples.
+SurrogateMapTraining trainSurrogateMap(const ExperimentSpec& experiment, const SimulatedSets& sets,
+                                       const FeatureExtractor& extractor, const LabelledFeatures& samples,
+                                       const RunControl& control);
+
+}  // namespace twinmap

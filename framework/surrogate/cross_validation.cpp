@@ -1,0 +1,110 @@
+#include "framework/surrogate/cross_validation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "framework/inverse_map/residual_correlation.hpp"
+#include "framework/surrogate/honest_stddev.hpp"
+#include "kernels/linalg/decompositions.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr Index kFolds = 5;
+constexpr double kTwoPi = 6.283185307179586;
+
+std::vector<Index> listSimulations(Index count, Index fold, bool left_out) {
+  std::vector<Index> listed;
+  for (Index i = 0; i < count; ++i) {
+    if ((i % kFolds == fold) == left_out) {
+      listed.push_back(i);
+    }
+  }
+  return listed;
+}
+
+/// How many draws of the noise are inferred: enough for quantiles, and no more than their time is worth.
+Index countDraws(const SurrogateSamples& samples) {
+  constexpr Index kMostColumns = 1000, kMostDraws = 4;
+  const Index n = samples.points.cols();
+  return std::clamp<Index>(std::min(samples.measured.cols() / n, kMostColumns / n), 1, kMostDraws);
+}
+
+Surrogate fitWithout(Index fold, const Surrogate& whole, const ForwardSamples& forward,
+                     const std::vector<gp::SharedChoice>& choices, const TrainingControl& control) {
+  const std::vector<Index> kept = listSimulations(forward.points.cols(), fold, false);
+  const ForwardSamples samples{forward.infos, forward.points(Eigen::all, kept),
+                               forward.clean_features(Eigen::all, kept), forward.noise_covariance};
+  Surrogate surrogate;
+  surrogate.forward = fitForward(samples, choices, control).surrogate;
+  surrogate.center = whole.center;
+  surrogate.half_width = whole.half_width;
+  surrogate.parameters = whole.parameters;
+  surrogate.unknown = whole.unknown;
+  surrogate.validation.stddev_scale = VectorXd::Ones(whole.parameters);
+  return surrogate;
+}
+
+double calcMeanLogDensity(const MatrixXd& standardised, const MatrixXd& stddev, const MatrixXd& correlation) {
+  const MatrixXd lower = linalg::calcCholesky(correlation).lower;
+  const auto n = static_cast<double>(stddev.cols()), p = static_cast<double>(stddev.rows());
+  return -0.5 * (linalg::solveLower(lower, standardised).squaredNorm() / n + p * std::log(kTwoPi)) -
+         lower.diagonal().array().log().sum() - stddev.array().log().sum() / n;
+}
+
+}  // namespace
+
+HeldOut crossValidate(const Surrogate& whole, const SurrogateSamples& samples, const ForwardSamples& forward,
+                      const std::vector<gp::SharedChoice>& choices, const TrainingControl& control) {
+  const Index n = samples.points.cols(), draws = countDraws(samples), p = whole.parameters;
+  const Index known = samples.points.rows() - whole.unknown;
+  HeldOut held_out;
+  held_out.predictions = {MatrixXd(p, n * draws), MatrixXd(p, n * draws)};
+  for (Index fold = 0; fold < kFolds; ++fold) {
+    const Surrogate fitted = fitWithout(fold, whole, forward, choices, control);
+    const std::vector<Index> left_out = listSimulations(n, fold, true);
+    const MatrixXd inputs = samples.points(Eigen::all, left_out).bottomRows(known);
+    for (Index draw = 0; draw < draws; ++draw) {
+      std::vector<Index> columns;
+      for (const Index simulation : left_out) {
+        columns.push_back(simulation + draw * n);
+      }
+      const Predictions found =
+          fitted.predict(samples.measured(Eigen::all, columns), inputs, control.threads);
+      held_out.predictions.mean(Eigen::all, columns) = found.mean;
+      held_out.predictions.stddev(Eigen::all, columns) = found.stddev;
+      gp::throwIfStopped(control.stop);
+    }
+  }
+  held_out.truth = samples.points.topRows(p).replicate(1, draws);
+  return held_out;
+}
+
+SurrogateValidation validate(const HeldOut& held_out) {
+  constexpr double kNormal95 = 1.959963984540054, kMapLimited = 0.8;
+  const Predictions& found = held_out.predictions;
+  const MatrixXd z = (found.mean - held_out.truth).cwiseQuotient(found.stddev);
+  const Index p = z.rows();
+  SurrogateValidation validation;
+  validation.stddev_scale.resize(p);
+  validation.coverage95.resize(p);
+  for (Index k = 0; k < p; ++k) {
+    const VectorXd absolute = z.row(k).cwiseAbs();
+    validation.stddev_scale(k) = calcStddevScale(absolute);
+    validation.coverage95(k) =
+        static_cast<double>((absolute.array() < kNormal95).count()) / static_cast<double>(absolute.size());
+  }
+  const MatrixXd scaled = validation.stddev_scale.cwiseInverse().asDiagonal() * z;
+  validation.residual_correlation = calcResidualCorrelation(scaled);
+  validation.log_density = calcMeanLogDensity(scaled, validation.stddev_scale.asDiagonal() * found.stddev,
+                                              validation.residual_correlation);
+  validation.status =
+      validation.coverage95.minCoeff() < kMapLimited ? SurrogateStatus::kMapLimited : SurrogateStatus::kOk;
+  return validation;
+}
+
+}  // namespace twinmap

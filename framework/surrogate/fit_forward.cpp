@@ -1,0 +1,177 @@
+#include "framework/surrogate/fit_forward.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include "framework/features/noise_whitener.hpp"
+#include "framework/features/principal_components.hpp"
+#include "framework/surrogate/feature_windows.hpp"
+#include "framework/surrogate/run_tasks.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::ArrayXd;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// The scores of one window and what was fitted to them.
+struct WindowFit {
+  MatrixXd directions;  // k x c, of all whitened features
+  MatrixXd scores;      // n x c
+  gp::SharedChoice choice;
+  std::optional<gp::SharedProcess> process;
+};
+
+void findScores(const FeatureWindow& rows, const MatrixXd& whitened, WindowFit& window) {
+  constexpr double kSmallestStddev = 0.2;
+  const PrincipalComponents components = calcPrincipalComponents(whitened(rows, Eigen::all));
+  const Index count =
+      std::max<Index>(1, (components.variances.array() > kSmallestStddev * kSmallestStddev).count());
+  const MatrixXd kept = components.directions.leftCols(count);
+  window.directions.setZero(whitened.rows(), count);
+  window.directions(rows, Eigen::all) = kept;
+  window.scores = whitened(rows, Eigen::all).transpose() * kept;
+}
+
+void fitWindow(const MatrixXd& points, const gp::SharedChoice* similar, gp::StopFlag stop,
+               WindowFit& window) {
+  window.choice = similar != nullptr ? gp::adaptSharedProcess(*similar, points, window.scores, stop)
+                                     : gp::chooseSharedProcess(points, window.scores, stop);
+  window.process.emplace(points, window.scores, window.choice.structure, window.choice.hyperparameters);
+}
+
+/// Mean variance of each score at points left out.
+ArrayXd calcErrorVariance(const gp::SharedProcess& process) {
+  return process.getLeftOut().amplitude.array() * process.getLeftOut().variance.mean();
+}
+
+/// A score among those of all windows.
+struct RankedScore {
+  std::size_t window;
+  Index index;
+  double rank;
+  double error_share;  ///< of the variance of a measured score: that of the surrogate's error
+};
+
+/// Those that say most first.
+std::vector<RankedScore> rankScores(const std::vector<WindowFit>& windows) {
+  std::vector<RankedScore> ranked;
+  for (std::size_t w = 0; w < windows.size(); ++w) {
+    const auto count = static_cast<double>(windows[w].scores.rows());
+    const ArrayXd variance = windows[w].scores.colwise().squaredNorm().transpose() / count;
+    const ArrayXd error = calcErrorVariance(*windows[w].process);
+    for (Index j = 0; j < error.size(); ++j) {
+      ranked.push_back({w, j, variance[j] / (1.0 + error[j]), error[j] / (1.0 + error[j])});
+    }
+  }
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const RankedScore& a, const RankedScore& b) { return a.rank > b.rank; });
+  return ranked;
+}
+
+/// The scores of each window that are kept. The errors of n simulations tell the correlations of some n / 4
+/// scores; a score counts by the share of its variance that is error.
+std::vector<std::vector<Index>> chooseScores(const std::vector<WindowFit>& windows, Index simulations) {
+  constexpr std::size_t kMostScores = 200;  // an inference costs their number cubed
+  const double most_errors = static_cast<double>(simulations) / 4.0;
+  std::vector<std::vector<Index>> chosen(windows.size());
+  double errors = 0.0;
+  std::size_t count = 0;
+  for (const RankedScore& score : rankScores(windows)) {
+    errors += score.error_share;
+    if (count == kMostScores || errors > most_errors) {
+      break;
+    }
+    chosen[score.window].push_back(score.index);
+    ++count;
+  }
+  for (std::vector<Index>& indices : chosen) {
+    std::sort(indices.begin(), indices.end());
+  }
+  return chosen;
+}
+
+/// Correlation of residuals (n x r, each of unit mean square), shrunk towards the identity.
+MatrixXd calcShrunkCorrelation(const MatrixXd& standardised) {
+  constexpr double kLeastShrinkage = 0.2;
+  const auto n = static_cast<double>(standardised.rows());
+  MatrixXd correlation = standardised.transpose() * standardised / n;
+  const MatrixXd squares = standardised.array().square().matrix();
+  const MatrixXd variances =
+      ((squares.transpose() * squares / n).array() - correlation.array().square()).matrix() / n;
+  const double of_estimates = variances.sum() - variances.trace();
+  const double of_correlation = correlation.squaredNorm() - correlation.diagonal().squaredNorm();
+  const double shrinkage =
+      of_correlation > 0.0 ? std::clamp(of_estimates / of_correlation, kLeastShrinkage, 1.0) : 1.0;
+  correlation *= 1.0 - shrinkage;
+  correlation.diagonal().setOnes();
+  return correlation;
+}
+
+/// Puts the chosen scores of all windows together.
+void assemble(std::vector<WindowFit>& windows, const std::vector<std::vector<Index>>& chosen,
+              const MatrixXd& whitener, ForwardSurrogate& surrogate) {
+  Index count = 0;
+  for (const auto& indices : chosen) {
+    count += static_cast<Index>(indices.size());
+  }
+  const Index n = surrogate.points.cols();
+  surrogate.projection.resize(count, whitener.cols());
+  surrogate.scores.resize(count, n);
+  surrogate.error_variance.resize(count);
+  MatrixXd standardised(n, count);
+  Index first = 0;
+  for (std::size_t w = 0; w < windows.size(); ++w) {
+    const auto size = static_cast<Index>(chosen[w].size());
+    if (size == 0) {
+      continue;
+    }
+    gp::SharedProcess& process = *windows[w].process;
+    process.select(chosen[w]);
+    const gp::LeftOut& left_out = process.getLeftOut();
+    surrogate.projection.middleRows(first, size) =
+        windows[w].directions(Eigen::all, chosen[w]).transpose() * whitener;
+    surrogate.scores.middleRows(first, size) = windows[w].scores(Eigen::all, chosen[w]).transpose();
+    surrogate.error_variance.segment(first, size) = calcErrorVariance(process);
+    standardised.middleCols(first, size) =
+        (left_out.residual.array() / (left_out.variance * left_out.amplitude.transpose()).array().sqrt());
+    // Points where all errors are large must not decide alone how errors go together.
+    constexpr double kFloor = 0.1;
+    standardised.middleCols(first, size).array().colwise() /= (process.getLeftOutRatio() + kFloor).sqrt();
+    surrogate.windows.push_back(std::move(process));
+    first += size;
+  }
+  standardised.colwise().normalize();
+  surrogate.error_correlation = calcShrunkCorrelation(std::sqrt(static_cast<double>(n)) * standardised);
+}
+
+}  // namespace
+
+ForwardFit fitForward(const ForwardSamples& samples, const std::vector<gp::SharedChoice>& similar,
+                      const TrainingControl& control) {
+  const NoiseWhitener noise(samples.noise_covariance);
+  ForwardFit fit;
+  fit.surrogate.center = samples.clean_features.rowwise().mean();
+  fit.surrogate.points = samples.points;
+  const MatrixXd whitened = noise.apply(samples.clean_features.colwise() - fit.surrogate.center);
+  const bool by_feature = whitened.rows() == static_cast<Index>(samples.infos.size());
+  const std::vector<FeatureWindow> rows =
+      by_feature ? makeFeatureWindows(samples.infos) : makeWindowsInOrder(whitened.rows());
+  std::vector<WindowFit> windows(rows.size());
+  runTasks(control.threads, rows.size(), [&](std::size_t w) {
+    findScores(rows[w], whitened, windows[w]);
+    fitWindow(samples.points, similar.empty() ? nullptr : &similar.at(w), control.stop, windows[w]);
+  });
+  gp::throwIfStopped(control.stop);
+  for (const WindowFit& window : windows) {
+    fit.choices.push_back(window.choice);
+  }
+  assemble(windows, chooseScores(windows, samples.points.cols()), noise.getMatrix(), fit.surrogate);
+  return fit;
+}
+
+}  // namespace twinmap

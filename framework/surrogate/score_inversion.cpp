@@ -1,0 +1,238 @@
+#include "framework/surrogate/score_inversion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "kernels/linalg/decompositions.hpp"
+
+namespace twinmap {
+
+using Eigen::ArrayXd;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double kBoxPrecision = 3.0;  // of a uniform variable on [-1, 1]
+
+/// log det of a matrix from its Cholesky factor.
+double calcLogDeterminant(const MatrixXd& lower) {
+  return 2.0 * lower.diagonal().array().log().sum();
+}
+
+/// Mixes normal distributions.
+gp::Moments mix(const std::vector<gp::Moments>& parts, const VectorXd& weights) {
+  gp::Moments mixed{VectorXd::Zero(parts.front().mean.size()), {}};
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    mixed.mean += weights(static_cast<Index>(i)) * parts[i].mean;
+  }
+  mixed.covariance.setZero(mixed.mean.size(), mixed.mean.size());
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const VectorXd apart = parts[i].mean - mixed.mean;
+    mixed.covariance += weights(static_cast<Index>(i)) * (parts[i].covariance + apart * apart.transpose());
+  }
+  return mixed;
+}
+
+}  // namespace
+
+ScoreInversion::ScoreInversion(const ForwardSurrogate& surrogate, Index unknown)
+    : surrogate_(surrogate),
+      unknown_(unknown),
+      workspaces_(surrogate.windows.size()),
+      point_(surrogate.points.rows()),
+      values_(surrogate.getScoreCount()),
+      stddev_(surrogate.getScoreCount()),
+      jacobian_(surrogate.getScoreCount(), unknown) {
+  rough_.weights = (1.0 + surrogate.error_variance.array()).rsqrt();
+}
+
+std::vector<Index> ScoreInversion::findStarts() const {
+  constexpr std::size_t kStarts = 3;
+  constexpr double kApart = 0.5;  // in half widths: nearer starts lead to the same minimum
+  VectorXd misfit = ((surrogate_.scores.colwise() - scores_).array().colwise() * rough_.weights)
+                        .matrix()
+                        .colwise()
+                        .squaredNorm();
+  std::vector<Index> order(static_cast<std::size_t>(misfit.size()));
+  std::iota(order.begin(), order.end(), Index{0});
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return misfit[a] < misfit[b]; });
+  const auto unknowns = surrogate_.points.topRows(unknown_);
+  std::vector<Index> starts;
+  for (std::size_t i = 0; i < order.size() && starts.size() < kStarts; ++i) {
+    const bool apart = std::all_of(starts.begin(), starts.end(), [&](Index start) {
+      return (unknowns.col(start) - unknowns.col(order[i])).cwiseAbs().maxCoeff() > kApart;
+    });
+    if (apart) {
+      starts.push_back(order[i]);
+    }
+  }
+  return starts;
+}
+
+void ScoreInversion::evaluate(const VectorXd& unknown) {
+  point_.head(unknown_) = unknown;
+  Index first = 0;
+  for (std::size_t w = 0; w < workspaces_.size(); ++w) {
+    const gp::SharedProcess& process = surrogate_.windows[w];
+    process.evaluate(point_, values_.segment(first, process.getFunctionCount()), workspaces_[w]);
+    first += process.getFunctionCount();
+  }
+}
+
+double ScoreInversion::calcObjective(const Metric& metric, const VectorXd& unknown) {
+  evaluate(unknown);
+  residual_ = scores_ - values_;
+  if (metric.diagonal) {
+    residual_.array() *= metric.weights;
+  } else {
+    residual_ = linalg::solveLower(metric.lower, residual_);
+  }
+  return residual_.squaredNorm() + kBoxPrecision * unknown.squaredNorm();
+}
+
+void ScoreInversion::linearize(const Metric& metric) {
+  Index first = 0;
+  for (std::size_t w = 0; w < workspaces_.size(); ++w) {
+    const gp::SharedProcess& process = surrogate_.windows[w];
+    process.derive(point_, jacobian_.middleRows(first, process.getFunctionCount()), workspaces_[w]);
+    first += process.getFunctionCount();
+  }
+  if (metric.diagonal) {
+    scaled_jacobian_ = jacobian_.array().colwise() * metric.weights;
+  } else {
+    scaled_jacobian_ = linalg::solveLower(metric.lower, jacobian_);
+  }
+  normal_.noalias() = scaled_jacobian_.transpose() * scaled_jacobian_;
+  gradient_.noalias() = scaled_jacobian_.transpose() * residual_;
+}
+
+bool ScoreInversion::step(const Metric& metric, VectorXd& unknown, double& objective, double& damping) {
+  constexpr double kFactor = 10.0, kMostDamping = 1e6, kLeastDamping = 1e-6;
+  const VectorXd downhill = gradient_ - kBoxPrecision * unknown;
+  for (; damping < kMostDamping; damping *= kFactor) {
+    MatrixXd damped = normal_;
+    damped.diagonal().array() += damping * damped.diagonal().array() + kBoxPrecision;
+    const VectorXd trial =
+        (unknown + linalg::solvePositiveDefinite(damped, downhill)).cwiseMax(-1.0).cwiseMin(1.0);
+    const double tried = calcObjective(metric, trial);
+    if (tried < objective) {
+      unknown = trial;
+      objective = tried;
+      damping = std::max(damping / kFactor, kLeastDamping);
+      return true;
+    }
+  }
+  return false;
+}
+
+double ScoreInversion::improve(const Metric& metric, int steps, VectorXd& unknown) {
+  constexpr double kGain =
+      0.05;  // a step of less than a quarter of a standard deviation, and it converges fast
+  double damping = 1e-3;
+  double objective = calcObjective(metric, unknown);
+  for (int i = 0; i < steps; ++i) {
+    linearize(metric);
+    const double before = objective;
+    if (!step(metric, unknown, objective, damping)) {
+      return calcObjective(metric, unknown);
+    }
+    if (before - objective < kGain) {
+      break;
+    }
+  }
+  return objective;
+}
+
+void ScoreInversion::updateMetric(const VectorXd& unknown, Metric& metric) {
+  evaluate(unknown);
+  Index first = 0;
+  for (std::size_t w = 0; w < workspaces_.size(); ++w) {
+    const gp::SharedProcess& process = surrogate_.windows[w];
+    process.calcStddev(stddev_.segment(first, process.getFunctionCount()), workspaces_[w]);
+    first += process.getFunctionCount();
+  }
+  MatrixXd covariance = stddev_.asDiagonal() * surrogate_.error_correlation * stddev_.asDiagonal();
+  covariance.diagonal().array() += 1.0;
+  metric.lower = linalg::calcCholesky(covariance).lower;
+  metric.log_determinant = calcLogDeterminant(metric.lower);
+  metric.diagonal = false;
+}
+
+std::vector<ScoreInversion::Minimum> ScoreInversion::searchRoughly() {
+  constexpr int kFirstSteps = 3, kSteps = 9;
+  constexpr double kOnTheWay = 0.15, kApart = 0.05;  // in half widths, after the first steps and at the end
+  constexpr double kHopeless = 30.0;                 // e^-15 of the evidence, and errors of the rough metric
+  std::vector<Minimum> minima;
+  const auto is_apart = [&](const VectorXd& point, double distance) {
+    return std::all_of(minima.begin(), minima.end(), [&](const Minimum& other) {
+      return (other.point - point).cwiseAbs().maxCoeff() > distance;
+    });
+  };
+  for (const Index start : findStarts()) {
+    Minimum minimum;
+    minimum.point = surrogate_.points.col(start).head(unknown_);
+    improve(rough_, kFirstSteps, minimum.point);
+    if (is_apart(minimum.point, kOnTheWay)) {
+      minimum.objective = improve(rough_, kSteps, minimum.point);
+      if (is_apart(minimum.point, kApart)) {
+        minima.push_back(minimum);
+      }
+    }
+  }
+  std::stable_sort(minima.begin(), minima.end(),
+                   [](const Minimum& a, const Minimum& b) { return a.objective < b.objective; });
+  const double worst = minima.front().objective + kHopeless;
+  while (minima.back().objective > worst) {
+    minima.pop_back();
+  }
+  return minima;
+}
+
+void ScoreInversion::refine(Minimum& minimum) {
+  constexpr int kFirstSteps = 5, kLastSteps = 3;
+  Metric metric;
+  for (const int steps : {kFirstSteps, kLastSteps}) {
+    updateMetric(minimum.point, metric);
+    minimum.objective = improve(metric, steps, minimum.point);
+  }
+  linearize(metric);
+  minimum.information = normal_;
+  minimum.shift = gradient_ + normal_ * minimum.point;
+  const MatrixXd posterior = normal_ + kBoxPrecision * MatrixXd::Identity(unknown_, unknown_);
+  minimum.objective += metric.log_determinant + calcLogDeterminant(linalg::calcCholesky(posterior).lower);
+}
+
+/// Whether the better metric made a minimum one with an earlier one.
+bool ScoreInversion::hasEarlierTwin(const std::vector<Minimum>& minima, std::size_t index) {
+  constexpr double kSame = 0.02;  // in half widths
+  return std::any_of(minima.begin(), minima.begin() + static_cast<std::ptrdiff_t>(index),
+                     [&](const Minimum& other) {
+                       return (other.point - minima[index].point).cwiseAbs().maxCoeff() < kSame;
+                     });
+}
+
+gp::Moments ScoreInversion::infer(const Eigen::Ref<const VectorXd>& scores,
+                                  const Eigen::Ref<const VectorXd>& known) {
+  scores_ = scores;
+  point_.tail(known.size()) = known;
+  std::vector<Minimum> minima = searchRoughly();
+  std::vector<gp::Moments> parts;
+  VectorXd objectives(static_cast<Index>(minima.size()));
+  for (std::size_t i = 0; i < minima.size(); ++i) {
+    refine(minima[i]);
+    objectives(static_cast<Index>(i)) = minima[i].objective;
+    parts.push_back(gp::calcBoxMoments(minima[i].information, minima[i].shift));
+  }
+  VectorXd weights = (-0.5 * (objectives.array() - objectives.minCoeff())).exp();
+  for (std::size_t i = 1; i < minima.size(); ++i) {
+    if (hasEarlierTwin(minima, i)) {
+      weights(static_cast<Index>(i)) = 0.0;
+    }
+  }
+  return mix(parts, weights / weights.sum());
+}
+
+}  // namespace twinmap

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "framework/surrogate/forward_surrogate.hpp"
+#include "kernels/surrogate/box_moments.hpp"
+
+namespace twinmap {
+
+/// Infers normalised unknowns (the first u variables of a point) from scores, under a uniform prior over the
+/// box.
+///
+/// Levenberg and Marquardt's method searches, from the training simulations of most similar scores, the least
+///   r' C^-1 r + log det C + 3 |x|^2,   r = scores - s(x),   C = 1 + D R D,
+/// first with the mean error variances alone for C, then twice with C at the point reached, held. 3 is the
+/// precision of the box; it keeps the search where the linearisation is worth something. The likelihood,
+/// linearised there and without that prior, is then restricted to the box (gp::calcBoxMoments). Distinct
+/// minima are mixed by their evidence, in Laplace's approximation.
+///
+/// One object a thread: it holds the buffers.
+class ScoreInversion {
+ public:
+  /// `surrogate` must outlive the object.
+  ScoreInversion(const ForwardSurrogate& surrogate, Eigen::Index unknown);
+
+  /// Mean (u) and covariance (u x u) given scores (r) and normalised known variables (m - u). Cost: some 20
+  /// evaluations of the processes, and per minimum two of their variances and of r^3 / 3 flops.
+  gp::Moments infer(const Eigen::Ref<const Eigen::VectorXd>& scores,
+                    const Eigen::Ref<const Eigen::VectorXd>& known);
+
+ private:
+  /// What residuals are divided by: standard deviations, or a Cholesky factor of their covariance.
+  struct Metric {
+    Eigen::ArrayXd weights;
+    Eigen::MatrixXd lower;
+    double log_determinant = 0.0;
+    bool diagonal = true;
+  };
+  /// A minimum and the normal likelihood around it.
+  struct Minimum {
+    Eigen::VectorXd point;  // u
+    double objective = 0.0;
+    Eigen::MatrixXd information;  // u x u
+    Eigen::VectorXd shift;        // u
+  };
+
+  std::vector<Eigen::Index> findStarts() const;
+  void evaluate(const Eigen::VectorXd& unknown);
+  double calcObjective(const Metric& metric, const Eigen::VectorXd& unknown);
+  void linearize(const Metric& metric);
+  bool step(const Metric& metric, Eigen::VectorXd& unknown, double& objective, double& damping);
+  double improve(const Metric& metric, int steps, Eigen::VectorXd& unknown);
+  void updateMetric(const Eigen::VectorXd& unknown, Metric& metric);
+  std::vector<Minimum> searchRoughly();
+  void refine(Minimum& minimum);
+  static bool hasEarlierTwin(const std::vector<Minimum>& minima, std::size_t index);
+
+  const ForwardSurrogate& surrogate_;
+  Eigen::Index unknown_;
+  Metric rough_;
+  std::vector<gp::SharedProcess::Workspace> workspaces_;
+  Eigen::VectorXd scores_, point_, values_, residual_, stddev_, gradient_;
+  Eigen::MatrixXd jacobian_, scaled_jacobian_, normal_;
+};
+
+}  // namespace twinmap

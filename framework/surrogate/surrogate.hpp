@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "framework/inverse_map/predictions.hpp"
+#include "framework/surrogate/forward_surrogate.hpp"
+
+namespace twinmap {
+
+/// How honest a surrogate's own standard deviations are.
+enum class SurrogateStatus {
+  kOk,
+  kMapLimited  ///< they had to be corrected much: more simulations, or another map, would do better
+};
+
+/// "ok", "map_limited".
+const char* toString(SurrogateStatus status);
+
+/// What the cross-validation of a surrogate found: simulations that it had not seen, with fresh noise.
+struct SurrogateValidation {
+  Eigen::VectorXd stddev_scale;          ///< p, by which standard deviations were multiplied
+  Eigen::VectorXd coverage95;            ///< p, of the 95 % intervals before that
+  Eigen::MatrixXd residual_correlation;  ///< p x p, of the errors of a sample
+  double log_density = 0.0;  ///< mean log joint density of the true parameters after that, in their units
+  SurrogateStatus status = SurrogateStatus::kOk;
+};
+
+/// A map from features to parameters by a forward surrogate, inverted for each measurement. A fitted,
+/// immutable value.
+struct Surrogate {
+  ForwardSurrogate forward;
+  Eigen::VectorXd center, half_width;  ///< m, of the sampled box
+  Eigen::Index parameters = 0;         ///< p: the first variables of a point, which are reported
+  Eigen::Index unknown = 0;            ///< u: with the nuisance parameters, which are marginalised
+  SurrogateValidation validation;
+
+  /// Features (d x n, finite) and known inputs (m - u x n) -> mean and standard deviation of the parameters
+  /// (p x n). The result does not depend on the number of threads. Throws std::invalid_argument for sizes
+  /// that do not fit. Cost: that of ScoreInversion, some ms a column.
+  Predictions predict(const Eigen::MatrixXd& features, const Eigen::MatrixXd& inputs = {},
+                      int threads = 1) const;
+};
+
+}  // namespace twinmap

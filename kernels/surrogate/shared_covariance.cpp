@@ -1,0 +1,41 @@
+#include "kernels/surrogate/shared_covariance.hpp"
+
+namespace twinmap::gp {
+
+using Eigen::ArrayXd;
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+void calcSmoothCovariance(SmoothCovariance covariance, Eigen::Ref<ArrayXd> squares_to_values,
+                          Eigen::Ref<ArrayXd> slopes) {
+  if (covariance == SmoothCovariance::kSquaredExponential) {
+    slopes = (-0.5 * squares_to_values).exp();
+    squares_to_values = slopes;
+    return;
+  }
+  constexpr double kFiveThirds = 5.0 / 3.0;
+  const ArrayXd distance = (5.0 * squares_to_values).sqrt();
+  const ArrayXd decay = (-distance).exp();
+  slopes = kFiveThirds * (1.0 + distance) * decay;
+  squares_to_values = (1.0 + distance + kFiveThirds * squares_to_values) * decay;
+}
+
+void calcSharedCovariance(const SharedStructure& structure, const SharedHyperparameters& hyperparameters,
+                          const MatrixXd& points, MatrixXd& covariance, MatrixXd& slopes) {
+  const Index n = points.cols();
+  const MatrixXd scaled = points.transpose() * hyperparameters.length_scales.cwiseInverse().asDiagonal();
+  covariance.setZero(n, n);
+  slopes.resize(n, n);
+  for (Index j = 0; j < n; ++j) {
+    auto squares = covariance.col(j).tail(n - j).array();
+    for (Index v = 0; v < scaled.cols(); ++v) {
+      squares += (scaled.col(v).tail(n - j).array() - scaled(j, v)).square();
+    }
+    calcSmoothCovariance(structure.covariance, squares, slopes.col(j).tail(n - j).array());
+    covariance.row(j).tail(n - j) = covariance.col(j).tail(n - j).transpose();
+    slopes.row(j).tail(n - j) = slopes.col(j).tail(n - j).transpose();
+    covariance(j, j) += hyperparameters.nugget;
+  }
+}
+
+}  // namespace twinmap::gp

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "kernels/surrogate/trend.hpp"
+
+namespace twinmap::gp {
+
+/// exp(-s / 2), or (1 + sqrt(5 s) + 5 s / 3) exp(-sqrt(5 s)), of s = sum over variables of (x - z)^2 / l^2.
+enum class SmoothCovariance { kSquaredExponential, kMatern52 };
+
+/// What the functions of a shared process have in common besides numbers.
+struct SharedStructure {
+  SmoothCovariance covariance = SmoothCovariance::kSquaredExponential;
+  Trend trend = Trend::kLinear;
+};
+
+/// Length scales l (p), and the variance of what is not smooth, over that of the process.
+struct SharedHyperparameters {
+  Eigen::VectorXd length_scales;
+  double nugget = 0.0;
+};
+
+/// Replaces scaled squared distances s by covariances k, and gives g = -2 dk / ds: the derivative of k with
+/// respect to log l is g (x - z)^2 / l^2, with respect to x it is -g (x - z) / l^2.
+void calcSmoothCovariance(SmoothCovariance covariance, Eigen::Ref<Eigen::ArrayXd> squares_to_values,
+                          Eigen::Ref<Eigen::ArrayXd> slopes);
+
+/// Covariances K (n x n, nugget on the diagonal) and slopes g of points (p x n), the distances by
+/// differences: products of coordinates would lose the half of their digits that close points differ in.
+/// Cost: n^2 (p + 20) flops.
+void calcSharedCovariance(const SharedStructure& structure, const SharedHyperparameters& hyperparameters,
+                          const Eigen::MatrixXd& points, Eigen::MatrixXd& covariance,
+                          Eigen::MatrixXd& slopes);
+
+}  // namespace twinmap::gp

@@ -1,0 +1,41 @@
+#include "framework/surrogate/honest_stddev.hpp"
+
+#include <gtest/gtest.h>
+
+#include <boost/math/distributions/normal.hpp>
+#include <cmath>
+
+namespace twinmap {
+namespace {
+
+/// Absolute values of a standard normal variable, evenly spread over its distribution, times a factor.
+Eigen::VectorXd makeErrors(Eigen::Index count, double factor) {
+  const boost::math::normal standard;
+  Eigen::VectorXd errors(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
+    errors(i) = factor * boost::math::quantile(standard, 0.5 + 0.5 * share);
+  }
+  return errors;
+}
+
+TEST(StddevScale, IsOneForHonestErrorsAndTheFactorForTooLargeOnes) {
+  EXPECT_NEAR(calcStddevScale(makeErrors(1000, 1.0)), 1.0, 0.02);
+  EXPECT_NEAR(calcStddevScale(makeErrors(1000, 2.5)), 2.5, 0.05);
+}
+
+TEST(StddevScale, FollowsTheTailWhereItIsHeavy) {
+  Eigen::VectorXd errors = makeErrors(1000, 1.0);
+  errors.tail(100) *= 3.0;
+  EXPECT_GT(calcStddevScale(errors), 2.5);
+}
+
+TEST(StddevScale, FallsBelowOneOnlyBeyondDoubt) {
+  EXPECT_EQ(calcStddevScale(makeErrors(50, 0.85)), 1.0);
+  const double scale = calcStddevScale(makeErrors(2000, 0.5));
+  EXPECT_GT(scale, 0.5);
+  EXPECT_LT(scale, 0.6);
+}
+
+}  // namespace
+}  // namespace twinmap

@@ -1,0 +1,203 @@
+#include "framework/surrogate/surrogate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "framework/design/random.hpp"
+#include "framework/surrogate/train_surrogate.hpp"
+#include "kernels/linalg/decompositions.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kNoise = 0.02;
+constexpr Index kTimes = 24;
+
+ParameterSpec makeParameter(const char* name, double lower, double upper) {
+  ParameterSpec parameter;
+  parameter.name.text = name;
+  parameter.bounds.lower = lower;
+  parameter.bounds.upper = upper;
+  return parameter;
+}
+
+/// Points of the box, and noise.
+MatrixXd samplePoints(const std::vector<ParameterSpec>& box, Index count, std::uint64_t seed) {
+  const RandomStream random(seed, RandomPurpose::kTrainDesign);
+  MatrixXd points(static_cast<Index>(box.size()), count);
+  for (Index j = 0; j < count; ++j) {
+    for (Index k = 0; k < points.rows(); ++k) {
+      const Bounds& bounds = box[static_cast<std::size_t>(k)].bounds;
+      points(k, j) = bounds.lower + (bounds.upper - bounds.lower) * random.calcUniform(j, k);
+    }
+  }
+  return points;
+}
+
+MatrixXd addNoise(MatrixXd features, std::uint64_t seed) {
+  const RandomStream random(seed, RandomPurpose::kTrainNoise);
+  for (Index j = 0; j < features.cols(); ++j) {
+    for (Index i = 0; i < features.rows(); ++i) {
+      features(i, j) += kNoise * random.calcNormal(j, i);
+    }
+  }
+  return features;
+}
+
+std::vector<FeatureInfo> makeInfos() {
+  std::vector<FeatureInfo> infos;
+  for (Index i = 0; i < kTimes; ++i) {
+    infos.push_back({"", "m", 0, 0.1 * static_cast<double>(i + 1)});
+  }
+  return infos;
+}
+
+MatrixXd invert(const MatrixXd& a) {
+  return linalg::solveCholesky(linalg::calcCholesky(a).lower, MatrixXd::Identity(a.rows(), a.cols()));
+}
+
+using Response = MatrixXd (*)(const MatrixXd& points);
+
+/// Features linear in two parameters and, by a tenth as much, in a nuisance parameter.
+MatrixXd calcLinear(const MatrixXd& points) {
+  MatrixXd slopes(kTimes, 3);
+  for (Index i = 0; i < kTimes; ++i) {
+    slopes.row(i) << std::sin(0.5 * i), 0.3 * std::cos(0.3 * i), 0.02 * std::sin(0.2 * i + 1.0);
+  }
+  return slopes * points;
+}
+
+/// A decaying oscillation: damping, stiffness, and a known amplitude.
+MatrixXd calcOscillation(const MatrixXd& points) {
+  MatrixXd features(kTimes, points.cols());
+  for (Index j = 0; j < points.cols(); ++j) {
+    for (Index i = 0; i < kTimes; ++i) {
+      const double t = 0.25 * static_cast<double>(i + 1);
+      features(i, j) = points(2, j) * std::exp(-points(0, j) * t) * std::sin(points(1, j) * t);
+    }
+  }
+  return features;
+}
+
+SurrogateSamples makeSamples(const MatrixXd& points, Response response) {
+  const MatrixXd clean = response(points);
+  return {makeInfos(), points, clean, kNoise * kNoise * MatrixXd::Identity(kTimes, kTimes),
+          addNoise(clean, 5)};
+}
+
+ModelSpec makeLinearModel() {
+  ModelSpec model;
+  model.parameters = {makeParameter("a", 1.0, 3.0), makeParameter("b", -1.0, 1.0)};
+  model.nuisance = {makeParameter("c", -1.0, 1.0)};
+  return model;
+}
+
+ModelSpec makeOscillationModel() {
+  ModelSpec model;
+  model.parameters = {makeParameter("d", 0.1, 0.3), makeParameter("w", 2.0, 3.0)};
+  model.inputs = {makeParameter("amplitude", 0.8, 1.2)};
+  return model;
+}
+
+std::vector<ParameterSpec> listBox(const ModelSpec& model) {
+  std::vector<ParameterSpec> box = model.parameters;
+  box.insert(box.end(), model.nuisance.begin(), model.nuisance.end());
+  box.insert(box.end(), model.inputs.begin(), model.inputs.end());
+  return box;
+}
+
+SurrogateTraining trainOn(const ModelSpec& model, Response response, Index count, int threads = 2) {
+  return trainSurrogate(model, makeSamples(samplePoints(listBox(model), count, 1), response), {threads});
+}
+
+TEST(Surrogate, OfALinearModelGivesTheClosedFormPosterior) {
+  const SurrogateTraining trained = trainOn(makeLinearModel(), calcLinear, 100);
+  const MatrixXd slopes = calcLinear(MatrixXd::Identity(3, 3));
+  // Far from the bounds of a and b the uniform prior says nothing of them; c is that of its box, to the
+  // accuracy that a normal prior of its variance stands for it: the features tell c to 0.3 of its box's
+  // deviation.
+  MatrixXd information = slopes.transpose() * slopes / (kNoise * kNoise);
+  information(2, 2) += 3.0;
+  const MatrixXd covariance = invert(information);
+  const MatrixXd points = (MatrixXd(3, 3) << 2.0, 1.7, 2.3, 0.1, -0.2, 0.3, 0.1, -0.1, 0.0).finished();
+  const MatrixXd clean = calcLinear(points);
+  const Predictions found = trained.surrogate.predict(clean, MatrixXd(0, 3));
+  for (Index j = 0; j < 3; ++j) {
+    const VectorXd mean = covariance * (slopes.transpose() * clean.col(j)) / (kNoise * kNoise);
+    for (Index k = 0; k < 2; ++k) {
+      const double stddev = std::sqrt(covariance(k, k));
+      EXPECT_NEAR(found.mean(k, j), mean(k), 0.1 * stddev);
+      EXPECT_NEAR(found.stddev(k, j) / trained.surrogate.validation.stddev_scale(k) / stddev, 1.0, 0.1);
+    }
+  }
+}
+
+TEST(Surrogate, CoversTheTruthNearTheLimitOfANonlinearModelWithAKnownInput) {
+  const ModelSpec model = makeOscillationModel();
+  const SurrogateTraining trained = trainOn(model, calcOscillation, 120);
+  EXPECT_EQ(trained.surrogate.validation.status, SurrogateStatus::kOk);
+  constexpr Index kTests = 400;
+  const MatrixXd points = samplePoints(listBox(model), kTests, 2);
+  const Predictions found =
+      trained.surrogate.predict(addNoise(calcOscillation(points), 3), points.bottomRows(1), 2);
+  const MatrixXd z = (found.mean - points.topRows(2)).cwiseQuotient(found.stddev);
+  for (Index k = 0; k < 2; ++k) {
+    const double covered = static_cast<double>((z.row(k).array().abs() < 1.96).count()) / kTests;
+    EXPECT_NEAR(covered, 0.95, 0.035) << k;  // three standard errors
+  }
+  constexpr double kStep = 1e-5;  // the limit in the middle of the box
+  const VectorXd middle = (VectorXd(3) << 0.2, 2.5, 1.0).finished();
+  MatrixXd slopes(kTimes, 2);
+  for (Index k = 0; k < 2; ++k) {
+    const VectorXd moved = kStep * VectorXd::Unit(3, k);
+    slopes.col(k) = (calcOscillation(middle + moved) - calcOscillation(middle - moved)) / (2.0 * kStep);
+  }
+  const MatrixXd limit = invert(slopes.transpose() * slopes / (kNoise * kNoise));
+  const Predictions at = trained.surrogate.predict(calcOscillation(middle), middle.tail(1));
+  for (Index k = 0; k < 2; ++k) {
+    EXPECT_NEAR(at.stddev(k, 0) / std::sqrt(limit(k, k)), 1.0, 0.25) << k;
+  }
+}
+
+TEST(Surrogate, StaysWithinTheBoundsWhateverIsMeasured) {
+  const SurrogateTraining trained = trainOn(makeLinearModel(), calcLinear, 60);
+  const MatrixXd points = (MatrixXd(3, 2) << 3.5, 40.0, 0.9, -30.0, 0.0, 0.0).finished();
+  const Predictions found = trained.surrogate.predict(calcLinear(points), MatrixXd(0, 2));
+  EXPECT_TRUE(found.mean.allFinite() && found.stddev.allFinite());
+  EXPECT_LE(found.mean.row(0).maxCoeff(), 3.0);
+  EXPECT_GE(found.mean.row(1).minCoeff(), -1.0);
+  EXPECT_GT(found.stddev.minCoeff(), 0.0);
+}
+
+TEST(Surrogate, DoesNotDependOnTheThreads) {
+  const ModelSpec model = makeOscillationModel();
+  const SurrogateTraining one = trainOn(model, calcOscillation, 60, 1),
+                          three = trainOn(model, calcOscillation, 60, 3);
+  EXPECT_TRUE(one.held_out.mean == three.held_out.mean && one.held_out.stddev == three.held_out.stddev);
+  const MatrixXd points = samplePoints(listBox(model), 40, 2),
+                 features = addNoise(calcOscillation(points), 3);
+  const Predictions a = one.surrogate.predict(features, points.bottomRows(1), 1);
+  const Predictions b = three.surrogate.predict(features, points.bottomRows(1), 3);
+  EXPECT_TRUE(a.mean == b.mean && a.stddev == b.stddev);
+}
+
+TEST(Surrogate, RefusesFeaturesWithoutNoiseTooFewSamplesAndMissingInputs) {
+  const ModelSpec model = makeOscillationModel();
+  SurrogateSamples samples = makeSamples(samplePoints(listBox(model), 60, 1), calcOscillation);
+  const SurrogateTraining trained = trainSurrogate(model, samples, {});
+  EXPECT_THROW((void)trained.surrogate.predict(samples.measured), std::invalid_argument);
+  EXPECT_THROW((void)trained.surrogate.predict(samples.measured.topRows(3), samples.points.bottomRows(1)),
+               std::invalid_argument);
+  samples.noise_covariance(3, 3) = 0.0;
+  EXPECT_THROW((void)trainSurrogate(model, samples, {}), std::invalid_argument);
+  EXPECT_THROW((void)trainOn(model, calcOscillation, 20), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace twinmap
