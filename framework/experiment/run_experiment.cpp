@@ -7,6 +7,7 @@
 #include "framework/experiment/fit_online.hpp"
 #include "framework/experiment/online_timing.hpp"
 #include "framework/experiment/prepare_data.hpp"
+#include "framework/experiment/refine_test_samples.hpp"
 #include "framework/experiment/simulated_sets.hpp"
 #include "framework/experiment/train_map.hpp"
 #include "framework/features/selections.hpp"
@@ -125,8 +126,11 @@ RunSummary runStages(const RunContext& run) {
   const PreparedData data = prepareData(experiment, run.extractor, samples.sets, local_models);
   const Training training = trainMap(experiment, data.labelled.train, run.control);
   const OnlineFit online = prepareOnline(run, samples.sets, data.labelled, training.map);
-  const MapEvaluation evaluated = evaluateMap(
+  MapEvaluation evaluated = evaluateMap(
       {experiment, run.simulator, run.extractor, data, training.map, local_models, run.control.threads});
+  evaluated.notes.append(
+      evaluateRefinement({experiment, run.simulator, run.extractor, data, online.model, run.control.threads},
+                         evaluated.evaluation));
 
   RunSummary summary;
   summary.parameters = experiment.model.parameters;

@@ -1,0 +1,149 @@
+#include "framework/refinement/refine.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "framework/refinement/acceptance.hpp"
+#include "framework/refinement/search.hpp"
+#include "framework/simulation/simulator_team.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+/// The attempts at one measurement.
+class Refinement {
+ public:
+  Refinement(Simulator& simulator, const RefinementModel& model, const RefinementTask& task)
+      : model_(model),
+        task_(task),
+        box_(model.getUnknown(), task.searched, task.starts.front().point),
+        misfit_(simulator, model, box_, task.features) {
+    best_.point = task.starts.front().point;
+  }
+
+  Refined run() {
+    for (const RefinementStart& start : task_.starts) {
+      if (tryWhole(box_.normalize(start.point), start.name)) {
+        return finish();
+      }
+    }
+    for (const RefinementStart& start : task_.starts) {
+      if (task_.insist && model_.getWindows().size() > 1 && tryGrowing(start)) {
+        break;
+      }
+    }
+    return finish();
+  }
+
+ private:
+  bool tryWhole(const VectorXd& start, const std::string& name) {
+    misfit_.setWindow(model_.getWhole());
+    SearchEnd end = search(misfit_, start);
+    iterations_ += end.iterations;
+    if (end.converged && !model_.getWhole().whitener) {
+      misfit_.renewNoise();
+      end = search(misfit_, end.local.at);
+      iterations_ += end.iterations;
+    }
+    return keep(end, name);
+  }
+
+  /// Fits more and more of the response, each from the last one's answer: a chaotic response has many minima,
+  /// but its beginning has few, and they lie where the next ones do.
+  bool tryGrowing(const RefinementStart& start) {
+    VectorXd at = box_.normalize(start.point);
+    for (std::size_t i = 0; i + 1 < model_.getWindows().size(); ++i) {
+      misfit_.setWindow(model_.getWindows()[i]);
+      const SearchEnd end = search(misfit_, at);
+      iterations_ += end.iterations;
+      if (end.local.status.ok) {
+        at = end.local.at;
+      }
+    }
+    return tryWhole(at, start.name + ", growing window");
+  }
+
+  /// Judges where a search ended; true if it is accepted.
+  bool keep(const SearchEnd& end, const std::string& name) {
+    Refined found;
+    found.start = name;
+    found.message = end.message;
+    if (end.local.status.ok) {
+      found.point = box_.makePoint(end.local.at);
+      found.chi_square = end.local.chi_square;
+      const VectorXd way = end.local.at - box_.normalize(task_.starts.front().point);
+      found.distance = std::sqrt(way.dot(end.local.calcHessian() * way));
+    }
+    if (end.converged) {
+      judge(end.local, found);
+    }
+    if (isBetter(found)) {
+      best_ = found;
+    }
+    return found.isAccepted();
+  }
+
+  void judge(const LocalMisfit& minimum, Refined& found) {
+    const Acceptance acceptance = testMinimum(misfit_, minimum);
+    found.status = acceptance.status;
+    found.message = acceptance.message;
+    if (found.isAccepted()) {
+      const VectorXd& scale = box_.getHalfWidths();
+      found.covariance = scale.asDiagonal() * minimum.calcCovariance() * scale.asDiagonal();
+      found.stddev = found.covariance.diagonal().cwiseSqrt();
+    }
+  }
+
+  /// Accepted before nonlinear before the rest, of which the least chi-square is kept.
+  bool isBetter(const Refined& found) const {
+    const auto rank = [](const Refined& refined) {
+      return refined.isAccepted() ? 3 : refined.status == RefinementStatus::kNonlinear ? 2 : refined.point.size() > 0 ? 1 : 0;
+    };
+    if (best_.start.empty() || rank(found) != rank(best_)) {
+      return best_.start.empty() || rank(found) > rank(best_);
+    }
+    return found.chi_square < best_.chi_square;
+  }
+
+  Refined finish() {
+    best_.iterations = iterations_;
+    best_.simulations = misfit_.getSimulations();
+    if (best_.point.size() == 0) {
+      best_.point = task_.starts.front().point;
+    }
+    return best_;
+  }
+
+  const RefinementModel& model_;
+  const RefinementTask& task_;
+  const SearchBox box_;
+  Misfit misfit_;
+  Refined best_;
+  int iterations_ = 0;
+};
+
+}  // namespace
+
+Refined refine(Simulator& simulator, const RefinementModel& model, const RefinementTask& task) {
+  if (task.starts.empty()) {
+    throw std::invalid_argument("a refinement needs a start");
+  }
+  return Refinement(simulator, model, task).run();
+}
+
+std::vector<Refined> refineAll(const Simulator& prototype, const RefinementModel& model,
+                               const std::vector<RefinementTask>& tasks, int threads) {
+  std::vector<Refined> refined(tasks.size());
+  runOnTeam(prototype, static_cast<int>(tasks.size()), threads, [&](Simulator& simulator, int i) {
+    refined[static_cast<std::size_t>(i)] = refine(simulator, model, tasks[static_cast<std::size_t>(i)]);
+  });
+  return refined;
+}
+
+}  // namespace twinmap

@@ -1,0 +1,107 @@
+#include "framework/refinement/search.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "kernels/linalg/decompositions.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+/// From nearly a Gauss-Newton step to a short one along the steepest descent: one of them fits wherever the
+/// linear model holds for some length, so that no iteration is lost on finding it.
+constexpr std::array<double, 4> kDampings{0.01, 1.0, 30.0, 1000.0};
+constexpr double kFirstDamping = 1e-3, kLeastDamping = 1e-10, kMostDamping = 1e7;
+constexpr double kLongestStep = 0.3;  // half-widths
+constexpr double kConverged = 0.03;   // standard deviations: adds 0.05 % to the error
+
+/// The parameters that a step may move: those at a limit whose descent points outwards are held.
+std::vector<Index> findFree(const LocalMisfit& local, const SearchBox& box) {
+  std::vector<Index> free;
+  for (Index j = 0; j < local.at.size(); ++j) {
+    const bool held = (local.at[j] <= box.getLower()[j] && local.descent[j] < 0.0) ||
+                      (local.at[j] >= box.getUpper()[j] && local.descent[j] > 0.0);
+    if (!held) {
+      free.push_back(j);
+    }
+  }
+  return free;
+}
+
+/// (H + damping diag(H)) step = descent for the free parameters; the others stay.
+VectorXd calcStep(const LocalMisfit& local, const SearchBox& box, double damping) {
+  const std::vector<Index> free = findFree(local, box);
+  VectorXd step = VectorXd::Zero(local.at.size());
+  if (!free.empty()) {
+    MatrixXd damped = local.calcHessian()(free, free);
+    damped.diagonal() *= 1.0 + damping;
+    step(free) = linalg::solvePositiveDefinite(damped, local.descent(free));
+  }
+  return step;
+}
+
+VectorXd take(const LocalMisfit& local, const SearchBox& box, const VectorXd& step) {
+  const double length = step.cwiseAbs().maxCoeff();
+  return box.clamp(local.at + std::min(1.0, kLongestStep / length) * step);
+}
+
+/// Whether the Gauss-Newton step leads nowhere.
+bool hasConverged(const LocalMisfit& local, const SearchBox& box) {
+  const VectorXd stddev = local.calcCovariance().diagonal().cwiseSqrt();
+  const VectorXd step = box.clamp(local.at + calcStep(local, box, 0.0)) - local.at;
+  return (step.array().abs() < kConverged * stddev.array()).all();
+}
+
+/// Tries all dampings from `local`. Where one improves the misfit, moves there and centres the damping on it;
+/// else raises the damping beyond all that were tried.
+bool improve(Misfit& misfit, LocalMisfit& local, double& damping) {
+  MatrixXd tried(local.at.size(), kDampings.size());
+  for (std::size_t i = 0; i < kDampings.size(); ++i) {
+    const VectorXd step = calcStep(local, misfit.getBox(), damping * kDampings[i]);
+    tried.col(static_cast<Index>(i)) = take(local, misfit.getBox(), step);
+  }
+  Index best = 0;
+  const double least = misfit.evaluate(tried).minCoeff(&best);
+  if (least < local.misfit) {
+    LocalMisfit next = misfit.linearize(tried.col(best));
+    if (next.status.ok) {
+      damping = std::max(damping * kDampings[static_cast<std::size_t>(best)], kLeastDamping);
+      local = std::move(next);
+      return true;
+    }
+  }
+  damping *= 10.0 * kDampings.back();
+  return false;
+}
+
+}  // namespace
+
+SearchEnd search(Misfit& misfit, const VectorXd& start, int max_iterations) {
+  SearchEnd end;
+  end.local = misfit.linearize(start);
+  if (!end.local.status.ok) {
+    end.message = end.local.status.reason;
+    return end;
+  }
+  double damping = kFirstDamping;
+  while (!(end.converged = hasConverged(end.local, misfit.getBox()))) {
+    if (end.iterations == max_iterations) {
+      end.message = "the search did not converge in " + std::to_string(max_iterations) + " iterations";
+      break;
+    }
+    ++end.iterations;
+    if (!improve(misfit, end.local, damping) && damping > kMostDamping) {
+      end.message = "no step improves the misfit";
+      break;
+    }
+  }
+  return end;
+}
+
+}  // namespace twinmap
