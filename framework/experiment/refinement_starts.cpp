@@ -12,8 +12,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Beyond some eight similar simulations a ninth has rescued next to nothing.
-constexpr std::size_t kTrainingStarts = 8;
+/// More than four similar simulations have rescued no measurement that these had not.
+constexpr std::size_t kTrainingStarts = 4;
 
 /// The training simulations by how similar their features are.
 std::vector<Index> rankTraining(const ForwardModel& forward, const VectorXd& features) {

@@ -29,12 +29,7 @@ class Refinement {
 
   Refined run() {
     for (const RefinementStart& start : task_.starts) {
-      if (tryWhole(box_.normalize(start.point), start.name)) {
-        return finish();
-      }
-    }
-    for (const RefinementStart& start : task_.starts) {
-      if (task_.insist && model_.getWindows().size() > 1 && tryGrowing(start)) {
+      if (tryWhole(box_.normalize(start.point), start.name) || (task_.insist && tryGrowing(start))) {
         break;
       }
     }
@@ -57,6 +52,9 @@ class Refinement {
   /// Fits more and more of the response, each from the last one's answer: a chaotic response has many minima,
   /// but its beginning has few, and they lie where the next ones do.
   bool tryGrowing(const RefinementStart& start) {
+    if (model_.getWindows().size() == 1) {
+      return false;
+    }
     VectorXd at = box_.normalize(start.point);
     for (std::size_t i = 0; i + 1 < model_.getWindows().size(); ++i) {
       misfit_.setWindow(model_.getWindows()[i]);
@@ -81,7 +79,7 @@ class Refinement {
       found.distance = std::sqrt(way.dot(end.local.calcHessian() * way));
     }
     if (end.converged) {
-      judge(end.local, found);
+      judge(end, found);
     }
     if (isBetter(found)) {
       best_ = found;
@@ -89,13 +87,14 @@ class Refinement {
     return found.isAccepted();
   }
 
-  void judge(const LocalMisfit& minimum, Refined& found) {
-    const Acceptance acceptance = testMinimum(misfit_, minimum);
+  void judge(const SearchEnd& end, Refined& found) {
+    const Acceptance acceptance = testMinimum(misfit_, end.local);
     found.status = acceptance.status;
     found.message = acceptance.message;
     if (found.isAccepted()) {
       const VectorXd& scale = box_.getHalfWidths();
-      found.covariance = scale.asDiagonal() * minimum.calcCovariance() * scale.asDiagonal();
+      const MatrixXd covariance = end.local.calcCovariance() + end.rest * end.rest.transpose();
+      found.covariance = scale.asDiagonal() * covariance * scale.asDiagonal();
       found.stddev = found.covariance.diagonal().cwiseSqrt();
     }
   }

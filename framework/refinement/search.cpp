@@ -1,5 +1,7 @@
 #include "framework/refinement/search.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,6 +22,7 @@ constexpr std::array<double, 4> kDampings{0.01, 1.0, 30.0, 1000.0};
 constexpr double kFirstDamping = 1e-3, kLeastDamping = 1e-10, kMostDamping = 1e7;
 constexpr double kLongestStep = 0.3;  // half-widths
 constexpr double kConverged = 0.03;   // standard deviations: adds 0.05 % to the error
+constexpr double kHidden = 0.3;       // the same where the misfit is too rough to go on: adds 4 %
 
 /// The parameters that a step may move: those at a limit whose descent points outwards are held.
 std::vector<Index> findFree(const LocalMisfit& local, const SearchBox& box) {
@@ -51,11 +54,16 @@ VectorXd take(const LocalMisfit& local, const SearchBox& box, const VectorXd& st
   return box.clamp(local.at + std::min(1.0, kLongestStep / length) * step);
 }
 
-/// Whether the Gauss-Newton step leads nowhere.
-bool hasConverged(const LocalMisfit& local, const SearchBox& box) {
+/// The Gauss-Newton step as far as the limits allow it, and its largest component in standard deviations.
+struct NewtonStep {
+  VectorXd step;
+  double length;
+};
+
+NewtonStep calcNewtonStep(const LocalMisfit& local, const SearchBox& box) {
   const VectorXd stddev = local.calcCovariance().diagonal().cwiseSqrt();
   const VectorXd step = box.clamp(local.at + calcStep(local, box, 0.0)) - local.at;
-  return (step.array().abs() < kConverged * stddev.array()).all();
+  return {step, step.cwiseQuotient(stddev).cwiseAbs().maxCoeff()};
 }
 
 /// Tries all dampings from `local`. Where one improves the misfit, moves there and centres the damping on it;
@@ -90,16 +98,19 @@ SearchEnd search(Misfit& misfit, const VectorXd& start, int max_iterations) {
     return end;
   }
   double damping = kFirstDamping;
-  while (!(end.converged = hasConverged(end.local, misfit.getBox()))) {
-    if (end.iterations == max_iterations) {
-      end.message = "the search did not converge in " + std::to_string(max_iterations) + " iterations";
-      break;
-    }
+  NewtonStep newton = calcNewtonStep(end.local, misfit.getBox());
+  while (!(newton.length < kConverged) && end.iterations < max_iterations && damping < kMostDamping) {
     ++end.iterations;
-    if (!improve(misfit, end.local, damping) && damping > kMostDamping) {
-      end.message = "no step improves the misfit";
-      break;
+    if (improve(misfit, end.local, damping)) {
+      newton = calcNewtonStep(end.local, misfit.getBox());
     }
+  }
+  end.converged = newton.length < kHidden;
+  if (end.converged) {
+    end.rest = newton.step;
+  } else {
+    end.message = damping < kMostDamping ? fmt::format("the search did not converge in {} iterations", max_iterations)
+                                         : "no step improves the misfit";
   }
   return end;
 }

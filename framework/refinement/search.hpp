@@ -10,6 +10,7 @@ namespace twinmap {
 struct SearchEnd {
   LocalMisfit local;  ///< its status is not ok where the start itself could not be simulated
   bool converged = false;
+  Eigen::VectorXd rest;  ///< s, the Gauss-Newton step that was not taken; empty unless converged
   int iterations = 0;
   std::string message;  ///< why it has not converged
 };
@@ -18,7 +19,10 @@ struct SearchEnd {
 /// the box. An iteration linearises the misfit, then tries four dampings at once and takes the best; a step
 /// is at most 0.3 half-widths in any parameter, because a linear model that reaches further is not to be
 /// believed. It has converged where the Gauss-Newton step, parameters at a limit held, is below 0.03 standard
-/// deviations in every parameter. A simulation that fails is a step not taken.
+/// deviations in every parameter; and also where no step improves the misfit any more, or the iterations are
+/// used up, but that step is below 0.3: on chaotic responses the error of the integration makes the misfit
+/// rough, which hides smaller improvements. What such a step leaves open is `rest`, part of the answer's
+/// uncertainty. A simulation that fails is a step not taken.
 /// Cost: one simulation with derivatives and four without an iteration; 2 to 6 iterations from a good start.
 SearchEnd search(Misfit& misfit, const Eigen::VectorXd& start, int max_iterations = 30);
 
