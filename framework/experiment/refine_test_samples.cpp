@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "framework/experiment/refinement_starts.hpp"
+#include "framework/monitoring/interrupted.hpp"
 #include "framework/monitoring/stage_timer.hpp"
 #include "framework/refinement/refine.hpp"
 #include "framework/spec/parameter_box.hpp"
@@ -76,7 +77,11 @@ std::string describe(const std::vector<Refined>& refined) {
 std::vector<Refined> refineTestSamples(const RefinementContext& context) {
   const RefinementModel model(collectUnknown(context.experiment.model), context.extractor,
                               context.data.noise);
-  return refineAll(context.simulator, model, makeTasks(context), context.threads);
+  return refineAll(context.simulator, model, makeTasks(context), context.control.threads, [&] {
+    if (context.control.abandon != nullptr && *context.control.abandon) {
+      throw Interrupted("interrupted during refinement; the simulated samples are kept");
+    }
+  });
 }
 
 std::vector<MethodSummary> compareMethods(const std::vector<ParameterSpec>& parameters,

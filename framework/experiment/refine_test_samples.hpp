@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "framework/experiment/prepare_data.hpp"
+#include "framework/monitoring/run_control.hpp"
 #include "framework/online/online_model.hpp"
 #include "framework/refinement/refined.hpp"
 #include "framework/results/run_summary.hpp"
@@ -17,10 +18,11 @@ struct RefinementContext {
   const FeatureExtractor& extractor;
   const PreparedData& data;
   const OnlineModel& online;
-  int threads = 1;
+  const RunControl& control;
 };
 
-/// Refines every test sample as `twinmap infer` does a measurement. Cost: some 10 to 60 simulations each,
+/// Refines every test sample as `twinmap infer` does a measurement. Throws Interrupted where `control` abandons
+/// the run. Cost: some 10 to 60 simulations each,
 /// more where the first start is not accepted.
 std::vector<Refined> refineTestSamples(const RefinementContext& context);
 

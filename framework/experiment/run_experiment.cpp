@@ -129,7 +129,7 @@ RunSummary runStages(const RunContext& run) {
   MapEvaluation evaluated = evaluateMap(
       {experiment, run.simulator, run.extractor, data, training.map, local_models, run.control.threads});
   evaluated.notes.append(
-      evaluateRefinement({experiment, run.simulator, run.extractor, data, online.model, run.control.threads},
+      evaluateRefinement({experiment, run.simulator, run.extractor, data, online.model, run.control},
                          evaluated.evaluation));
 
   RunSummary summary;

@@ -19,7 +19,7 @@ struct Acceptance {
 ///   beyond which a standard deviation would be wrong by a factor of 2. Where the limits of the search come
 ///   first, the rise is that at the limit, and none is asked for within half a standard deviation: there the
 ///   box decides and not the model.
-/// Cost: 2 s simulations, one batch.
+/// Cost: 2 s + 1 simulations, one batch.
 Acceptance testMinimum(Misfit& misfit, const LocalMisfit& minimum);
 
 }  // namespace twinmap

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "framework/sensitivity/feature_sensitivities.hpp"
+#include "framework/sensitivity/neighbourhood_simulator.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -36,11 +36,32 @@ const NoiseWhitener& Misfit::getWhitener() const {
   return window_->whitener ? *window_->whitener : *whitener_;
 }
 
-LocalMisfit Misfit::linearize(const VectorXd& at) {
+MatrixXd Misfit::makePoints(const MatrixXd& points) const {
+  MatrixXd sampled(box_.makePoint(points.col(0)).size(), points.cols());
+  for (Index i = 0; i < points.cols(); ++i) {
+    sampled.col(i) = box_.makePoint(points.col(i));
+  }
+  return sampled;
+}
+
+std::vector<LocalMisfit> Misfit::linearizeAll(const MatrixXd& points) {
+  const MatrixXd sampled = makePoints(points);
+  const int neighbours = countNeighbours(model_.getUnknown().size());
+  MatrixXd neighbourhoods(simulator_.getLayout().getRowCount() * neighbours, points.cols());
+  std::vector<SampleStatus> statuses(static_cast<std::size_t>(points.cols()));
+  simulateNeighbourhoods(simulator_, model_.getUnknown(), sampled, neighbourhoods, statuses.data());
+  simulations_ += static_cast<int>(points.cols()) * (simulator_.hasDerivatives() ? 1 : neighbours);
+  std::vector<LocalMisfit> local;
+  for (Index i = 0; i < points.cols(); ++i) {
+    local.push_back(makeLocalMisfit(points.col(i), makeLocalModel(model_.getExtractor(), model_.getUnknown(),
+                                                                  sampled.col(i), neighbourhoods.col(i),
+                                                                  statuses[static_cast<std::size_t>(i)])));
+  }
+  return local;
+}
+
+LocalMisfit Misfit::makeLocalMisfit(const VectorXd& at, const LocalModel& local) {
   const SearchedParameters& searched = box_.getSearched();
-  const LocalModel local =
-      calcLocalModel(simulator_, model_.getExtractor(), model_.getUnknown(), box_.makePoint(at));
-  simulations_ += simulator_.hasDerivatives() ? 1 : 2 * static_cast<int>(model_.getUnknown().size()) + 1;
   if (!local.status.ok) {
     return {local.status, {}, 0.0, 0.0, 0, {}, {}};
   }
@@ -63,10 +84,7 @@ LocalMisfit Misfit::linearize(const VectorXd& at) {
 }
 
 VectorXd Misfit::evaluate(const MatrixXd& points) {
-  MatrixXd sampled(box_.makePoint(points.col(0)).size(), points.cols());
-  for (Index i = 0; i < points.cols(); ++i) {
-    sampled.col(i) = box_.makePoint(points.col(i));
-  }
+  const MatrixXd sampled = makePoints(points);
   MatrixXd responses(simulator_.getLayout().getRowCount(), points.cols());
   std::vector<SampleStatus> statuses(static_cast<std::size_t>(points.cols()));
   simulator_.simulate(sampled, responses, statuses.data());

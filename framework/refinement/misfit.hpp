@@ -4,6 +4,7 @@
 
 #include "framework/refinement/refinement_model.hpp"
 #include "framework/refinement/search_box.hpp"
+#include "framework/sensitivity/feature_sensitivities.hpp"
 #include "framework/simulation/simulator.hpp"
 
 namespace twinmap {
@@ -40,8 +41,13 @@ class Misfit {
   /// is renewed, so that misfits can be compared.
   void renewNoise() { whitener_.reset(); }
 
-  /// By exact derivatives where the simulator has them (calcLocalModel).
-  LocalMisfit linearize(const Eigen::VectorXd& at);
+  /// By exact derivatives where the simulator has them (simulateNeighbourhoods).
+  LocalMisfit linearize(const Eigen::VectorXd& at) { return linearizeAll(at).front(); }
+  /// At all columns of `points` (s x n), simulated as one batch.
+  std::vector<LocalMisfit> linearizeAll(const Eigen::MatrixXd& points);
+
+  /// Whether four points are linearised about as fast as one: exact derivatives in lanes.
+  bool linearizesTogether() const { return simulator_.hasDerivatives() && simulator_.getBatchSize() >= 4; }
 
   /// The misfits at the columns of `points` (s x n), simulated as one batch; infinity where a simulation
   /// fails. After linearize().
@@ -49,6 +55,8 @@ class Misfit {
 
  private:
   const NoiseWhitener& getWhitener() const;
+  Eigen::MatrixXd makePoints(const Eigen::MatrixXd& points) const;
+  LocalMisfit makeLocalMisfit(const Eigen::VectorXd& at, const LocalModel& local);
 
   Simulator& simulator_;
   const RefinementModel& model_;

@@ -137,9 +137,13 @@ Refined refine(Simulator& simulator, const RefinementModel& model, const Refinem
 }
 
 std::vector<Refined> refineAll(const Simulator& prototype, const RefinementModel& model,
-                               const std::vector<RefinementTask>& tasks, int threads) {
+                               const std::vector<RefinementTask>& tasks, int threads,
+                               const std::function<void()>& before_each) {
   std::vector<Refined> refined(tasks.size());
   runOnTeam(prototype, static_cast<int>(tasks.size()), threads, [&](Simulator& simulator, int i) {
+    if (before_each) {
+      before_each();
+    }
     refined[static_cast<std::size_t>(i)] = refine(simulator, model, tasks[static_cast<std::size_t>(i)]);
   });
   return refined;

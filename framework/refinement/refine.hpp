@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -28,8 +29,10 @@ struct RefinementTask {
 /// testMinimum); where none is, the best of them with the reason.
 Refined refine(Simulator& simulator, const RefinementModel& model, const RefinementTask& task);
 
-/// Measurements side by side on a team of threads; the result does not depend on their number.
+/// Measurements side by side on a team of threads; the result does not depend on their number. `before_each`
+/// is called by any thread before it begins one; what it throws ends the team.
 std::vector<Refined> refineAll(const Simulator& prototype, const RefinementModel& model,
-                               const std::vector<RefinementTask>& tasks, int threads);
+                               const std::vector<RefinementTask>& tasks, int threads,
+                               const std::function<void()>& before_each = nullptr);
 
 }  // namespace twinmap

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "kernels/linalg/decompositions.hpp"
 
@@ -66,26 +67,55 @@ NewtonStep calcNewtonStep(const LocalMisfit& local, const SearchBox& box) {
   return {step, step.cwiseQuotient(stddev).cwiseAbs().maxCoeff()};
 }
 
+/// The points that the dampings lead to, a column each.
+MatrixXd makeTrials(const LocalMisfit& local, const SearchBox& box, double damping) {
+  MatrixXd trials(local.at.size(), kDampings.size());
+  for (std::size_t i = 0; i < kDampings.size(); ++i) {
+    trials.col(static_cast<Index>(i)) = take(local, box, calcStep(local, box, damping * kDampings[i]));
+  }
+  return trials;
+}
+
+/// The best of the trials and its index, where it is better than `local`: with derivatives at all of them, or,
+/// where that costs more, at the best alone.
+struct BestTrial {
+  std::optional<LocalMisfit> local;
+  Index index = 0;
+};
+
+BestTrial findBest(Misfit& misfit, const LocalMisfit& local, const MatrixXd& trials) {
+  BestTrial best;
+  if (!misfit.linearizesTogether()) {
+    if (misfit.evaluate(trials).minCoeff(&best.index) < local.misfit) {
+      best.local = misfit.linearize(trials.col(best.index));
+    }
+  } else {
+    const std::vector<LocalMisfit> all = misfit.linearizeAll(trials);
+    double least = local.misfit;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (all[i].status.ok && all[i].misfit < least) {
+        least = all[i].misfit;
+        best = {all[i], static_cast<Index>(i)};
+      }
+    }
+  }
+  if (best.local && !best.local->status.ok) {
+    best.local.reset();
+  }
+  return best;
+}
+
 /// Tries all dampings from `local`. Where one improves the misfit, moves there and centres the damping on it;
 /// else raises the damping beyond all that were tried.
 bool improve(Misfit& misfit, LocalMisfit& local, double& damping) {
-  MatrixXd tried(local.at.size(), kDampings.size());
-  for (std::size_t i = 0; i < kDampings.size(); ++i) {
-    const VectorXd step = calcStep(local, misfit.getBox(), damping * kDampings[i]);
-    tried.col(static_cast<Index>(i)) = take(local, misfit.getBox(), step);
+  BestTrial best = findBest(misfit, local, makeTrials(local, misfit.getBox(), damping));
+  if (!best.local) {
+    damping *= 10.0 * kDampings.back();
+    return false;
   }
-  Index best = 0;
-  const double least = misfit.evaluate(tried).minCoeff(&best);
-  if (least < local.misfit) {
-    LocalMisfit next = misfit.linearize(tried.col(best));
-    if (next.status.ok) {
-      damping = std::max(damping * kDampings[static_cast<std::size_t>(best)], kLeastDamping);
-      local = std::move(next);
-      return true;
-    }
-  }
-  damping *= 10.0 * kDampings.back();
-  return false;
+  damping = std::max(damping * kDampings[static_cast<std::size_t>(best.index)], kLeastDamping);
+  local = std::move(*best.local);
+  return true;
 }
 
 }  // namespace
