@@ -20,12 +20,6 @@ constexpr double kChiSquareLevel = 0.999;
 constexpr double kReach = 2.0, kLeastReach = 0.5;        // standard deviations
 constexpr double kLeastRise = 0.25, kLargestRise = 3.0;  // of what the linear model says
 
-double calcChiSquareLimit(const LocalMisfit& minimum) {
-  const double determined = minimum.calcCovariance().cwiseProduct(minimum.information).sum();
-  const double degrees = std::max(1.0, static_cast<double>(minimum.residuals) - determined);
-  return boost::math::quantile(boost::math::chi_squared(degrees), kChiSquareLevel);
-}
-
 /// How far one can go from `at` along `way` within the limits, in lengths of `way`, at most `most`.
 double calcReach(const SearchBox& box, const VectorXd& at, const VectorXd& way, double most) {
   double reach = most;
@@ -60,6 +54,12 @@ Probes makeProbes(const SearchBox& box, const LocalMisfit& minimum) {
 }
 
 }  // namespace
+
+double calcChiSquareLimit(const LocalMisfit& minimum) {
+  const double determined = minimum.calcCovariance().cwiseProduct(minimum.information).sum();
+  const double degrees = std::max(1.0, static_cast<double>(minimum.residuals) - determined);
+  return boost::math::quantile(boost::math::chi_squared(degrees), kChiSquareLevel);
+}
 
 Acceptance testMinimum(Misfit& misfit, const LocalMisfit& minimum) {
   const double limit = calcChiSquareLimit(minimum);

@@ -11,6 +11,9 @@ struct Acceptance {
   std::string message;
 };
 
+/// The largest chi-square that noise explains: its 99.9 % quantile.
+double calcChiSquareLimit(const LocalMisfit& minimum);
+
 /// Accepts a minimum if
 /// - its chi-square is below the 99.9 % quantile for as many degrees of freedom as there are residuals less
 ///   the parameters that the residuals, not the box, determine (trace of J'J (J'J + prior)^-1), at least one;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include "framework/refinement/acceptance.hpp"
@@ -20,7 +22,8 @@ namespace {
 class Refinement {
  public:
   Refinement(Simulator& simulator, const RefinementModel& model, const RefinementTask& task)
-      : model_(model),
+      : simulator_(simulator),
+        model_(model),
         task_(task),
         box_(model.getUnknown(), task.searched, task.starts.front().point),
         misfit_(simulator, model, box_, task.features) {
@@ -37,16 +40,32 @@ class Refinement {
   }
 
  private:
+  /// Searches all features from a point; true if no further start is needed.
   bool tryWhole(const VectorXd& start, const std::string& name) {
     misfit_.setWindow(model_.getWhole());
-    SearchEnd end = search(misfit_, start);
+    SearchEnd end = searchWhole(misfit_, start);
+    Refined found = judge(misfit_, end, name);
+    if (!found.isAccepted() && liesNear(end) && preparePrecise()) {
+      end = searchWhole(*precise_misfit_, end.local.at);
+      found = judge(*precise_misfit_, end, name + ", precisely");
+      addIntegrationError(end, found);
+    }
+    if (isBetter(found)) {
+      best_ = found;
+    }
+    return found.isAccepted() || found.status == RefinementStatus::kNonlinear;
+  }
+
+  /// Renews a noise that depends on the response once, where the search ended.
+  SearchEnd searchWhole(Misfit& misfit, const VectorXd& start) {
+    SearchEnd end = search(misfit, start);
     iterations_ += end.iterations;
     if (end.converged && !model_.getWhole().whitener) {
-      misfit_.renewNoise();
-      end = search(misfit_, end.local.at);
+      misfit.renewNoise();
+      end = search(misfit, end.local.at);
       iterations_ += end.iterations;
     }
-    return keep(end, name);
+    return end;
   }
 
   /// Fits more and more of the response, each from the last one's answer: a chaotic response has many minima,
@@ -67,8 +86,24 @@ class Refinement {
     return tryWhole(at, start.name + ", growing window");
   }
 
-  /// Judges where a search ended; true if it is accepted.
-  bool keep(const SearchEnd& end, const std::string& name) {
+  /// Whether a search may have been stopped by the errors of the integration: they make the misfit rough by a
+  /// few units, so that it ends a little above what noise explains.
+  static bool liesNear(const SearchEnd& end) {
+    constexpr double kTimes = 3.0;
+    return end.local.status.ok && end.local.chi_square < kTimes * calcChiSquareLimit(end.local);
+  }
+
+  bool preparePrecise() {
+    if (!precise_) {
+      precise_ = simulator_.clonePrecisely();
+      if (precise_) {
+        precise_misfit_.emplace(*precise_, model_, box_, task_.features);
+      }
+    }
+    return precise_ != nullptr;
+  }
+
+  Refined judge(Misfit& misfit, const SearchEnd& end, const std::string& name) const {
     Refined found;
     found.start = name;
     found.message = end.message;
@@ -79,24 +114,35 @@ class Refinement {
       found.distance = std::sqrt(way.dot(end.local.calcHessian() * way));
     }
     if (end.converged) {
-      judge(end, found);
+      const Acceptance acceptance = testMinimum(misfit, end.local);
+      found.status = acceptance.status;
+      found.message = acceptance.message;
     }
-    if (isBetter(found)) {
-      best_ = found;
+    if (found.isAccepted()) {
+      setCovariance(end.local.calcCovariance() + end.rest * end.rest.transpose(), found);
     }
-    return found.isAccepted();
+    return found;
   }
 
-  void judge(const SearchEnd& end, Refined& found) {
-    const Acceptance acceptance = testMinimum(misfit_, end.local);
-    found.status = acceptance.status;
-    found.message = acceptance.message;
-    if (found.isAccepted()) {
-      const VectorXd& scale = box_.getHalfWidths();
-      const MatrixXd covariance = end.local.calcCovariance() + end.rest * end.rest.transpose();
-      found.covariance = scale.asDiagonal() * covariance * scale.asDiagonal();
-      found.stddev = found.covariance.diagonal().cwiseSqrt();
+  void setCovariance(const MatrixXd& covariance, Refined& found) const {
+    const VectorXd& scale = box_.getHalfWidths();
+    found.covariance = scale.asDiagonal() * covariance * scale.asDiagonal();
+    found.stddev = found.covariance.diagonal().cwiseSqrt();
+  }
+
+  /// What the usual tolerance would move the answer by counts as uncertainty: whoever compares with simulations
+  /// of that tolerance, such as test samples, meets it. Cost: one simulation with derivatives.
+  void addIntegrationError(const SearchEnd& end, Refined& found) {
+    if (!found.isAccepted()) {
+      return;
     }
+    const LocalMisfit usual = misfit_.linearize(end.local.at);
+    MatrixXd covariance = end.local.calcCovariance() + end.rest * end.rest.transpose();
+    if (usual.status.ok) {
+      const VectorXd moved = end.local.calcCovariance() * (usual.descent - end.local.descent);
+      covariance += moved * moved.transpose();
+    }
+    setCovariance(covariance, found);
   }
 
   /// Accepted before nonlinear before the rest, of which the least chi-square is kept.
@@ -112,17 +158,20 @@ class Refinement {
 
   Refined finish() {
     best_.iterations = iterations_;
-    best_.simulations = misfit_.getSimulations();
+    best_.simulations = misfit_.getSimulations() + (precise_misfit_ ? precise_misfit_->getSimulations() : 0);
     if (best_.point.size() == 0) {
       best_.point = task_.starts.front().point;
     }
     return best_;
   }
 
+  Simulator& simulator_;
   const RefinementModel& model_;
   const RefinementTask& task_;
   const SearchBox box_;
   Misfit misfit_;
+  std::unique_ptr<Simulator> precise_;  // made when first needed
+  std::optional<Misfit> precise_misfit_;
   Refined best_;
   int iterations_ = 0;
 };
