@@ -168,7 +168,9 @@ void addRefine(CLI::App& command, std::optional<bool>& refine) {
       "--refine", [&refine] { refine = true; },
       "Refine what was inferred by least squares on the simulator, accepted by a test (default: as the "
       "experiment's 'refine' says)");
-  command.add_flag_callback("--no-refine", [&refine] { refine = false; }, "Leave it as the map infers it")
+  command
+      .add_flag_callback(
+          "--no-refine", [&refine] { refine = false; }, "Leave it as the map infers it")
       ->excludes(on);
 }
 

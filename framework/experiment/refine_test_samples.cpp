@@ -115,8 +115,7 @@ std::vector<MethodSummary> compareMethods(const std::vector<ParameterSpec>& para
 
 StageNotes evaluateRefinement(const RefinementContext& context, Evaluation& evaluation) {
   StageNotes notes;
-  if (!shouldRefine(context.experiment.refine, context.simulator, context.extractor,
-                    context.data.noise)) {
+  if (!shouldRefine(context.experiment.refine, context.simulator, context.extractor, context.data.noise)) {
     return notes;
   }
   try {

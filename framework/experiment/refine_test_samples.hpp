@@ -21,9 +21,8 @@ struct RefinementContext {
   const RunControl& control;
 };
 
-/// Refines every test sample as `twinmap infer` does a measurement. Throws Interrupted where `control` abandons
-/// the run. Cost: some 10 to 60 simulations each,
-/// more where the first start is not accepted.
+/// Refines every test sample as `twinmap infer` does a measurement. Throws Interrupted where `control`
+/// abandons the run. Cost: some 10 to 60 simulations each, more where the first start is not accepted.
 std::vector<Refined> refineTestSamples(const RefinementContext& context);
 
 /// The rows of methods.csv: the map on all test samples, and what of them was refined and accepted.

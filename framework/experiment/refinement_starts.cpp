@@ -24,10 +24,9 @@ std::vector<Index> rankTraining(const ForwardModel& forward, const VectorXd& fea
   std::vector<Index> order(static_cast<std::size_t>(distances.size()));
   std::iota(order.begin(), order.end(), 0);
   const std::size_t count = std::min(kTrainingStarts, order.size());
-  std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), order.end(),
-                    [&](Index a, Index b) {
-                      return std::make_pair(distances[a], a) < std::make_pair(distances[b], b);
-                    });
+  std::partial_sort(
+      order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), order.end(),
+      [&](Index a, Index b) { return std::make_pair(distances[a], a) < std::make_pair(distances[b], b); });
   order.resize(count);
   return order;
 }

@@ -128,9 +128,8 @@ RunSummary runStages(const RunContext& run) {
   const OnlineFit online = prepareOnline(run, samples.sets, data.labelled, training.map);
   MapEvaluation evaluated = evaluateMap(
       {experiment, run.simulator, run.extractor, data, training.map, local_models, run.control.threads});
-  evaluated.notes.append(
-      evaluateRefinement({experiment, run.simulator, run.extractor, data, online.model, run.control},
-                         evaluated.evaluation));
+  evaluated.notes.append(evaluateRefinement(
+      {experiment, run.simulator, run.extractor, data, online.model, run.control}, evaluated.evaluation));
 
   RunSummary summary;
   summary.parameters = experiment.model.parameters;

@@ -76,8 +76,8 @@ std::string describeRefined(const Refined& refined) {
     return fmt::format("  not refined ({}): {}; the map's answer, which nothing confirms:\n",
                        toString(refined.status), refined.message);
   }
-  return fmt::format("  refined by {} steps ({} simulations), {:.2g} sd from the map's:\n", refined.iterations,
-                     refined.simulations, refined.distance);
+  return fmt::format("  refined by {} steps ({} simulations), {:.2g} sd from the map's:\n",
+                     refined.iterations, refined.simulations, refined.distance);
 }
 
 std::string makeEstimateTable(const Eigen::VectorXd& mean, const Eigen::VectorXd& stddev,
@@ -99,8 +99,9 @@ std::string describeTrust(const InferredMeasurement& inferred, const std::vector
            "not judged (the run has no trust model)\n";
   }
   const Trust& trust = *inferred.trust;
-  std::string text = fmt::format("{}: {} (p = {:.2g}, chi-square {:.1f} of {} residuals)\n", inferred.source,
-                                 joinStatuses(inferred, ", "), trust.p_value, trust.chi_square, trust.residuals);
+  std::string text =
+      fmt::format("{}: {} (p = {:.2g}, chi-square {:.1f} of {} residuals)\n", inferred.source,
+                  joinStatuses(inferred, ", "), trust.p_value, trust.chi_square, trust.residuals);
   for (const TrustStatus status : trust.statuses) {
     text += explainStatus(status, trust, features);
   }
@@ -149,8 +150,7 @@ std::string makeInferenceCsvRows(const InferredMeasurement& inferred,
     text += fmt::format("{},{},{},{},{},{},{},{},{},{}", escapeCsv(inferred.source), toText(inferred.start),
                         escapeCsv(parameters[p].name.text), escapeCsv(parameters[p].unit), toText(mean),
                         toText(stddev), toText(mean - kNormal95 * stddev), toText(mean + kNormal95 * stddev),
-                        joinStatuses(inferred, " "),
-                        inferred.trust ? toText(inferred.trust->p_value) : "");
+                        joinStatuses(inferred, " "), inferred.trust ? toText(inferred.trust->p_value) : "");
     if (inferred.refined) {
       text += answer.refined ? fmt::format(",{},{}", toText(mean), toText(stddev)) : ",,";
       text += fmt::format(",{},{}", toText(by_map.mean[i]), toText(by_map.stddev[i]));

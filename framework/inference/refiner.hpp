@@ -24,9 +24,9 @@ class SimulatorRefiner {
   /// Whether the experiment's `refine` asks for it (shouldRefine).
   bool isWanted() const { return wanted_; }
 
-  /// Searches all unknown parameters from what was inferred (makeRefinementTask). known: q. The covariance and
-  /// the standard deviations are those of the updating parameters. Throws std::invalid_argument for a feature
-  /// without noise.
+  /// Searches all unknown parameters from what was inferred (makeRefinementTask). known: q. The covariance
+  /// and the standard deviations are those of the updating parameters. Throws std::invalid_argument for a
+  /// feature without noise.
   Refined refine(const InferredMeasurement& inferred, const Eigen::VectorXd& features,
                  const Eigen::VectorXd& known, const TrustModel* trust) const;
 
@@ -42,7 +42,7 @@ class SimulatorRefiner {
   const MultibodySimulator simulator_;
   const FeatureNoise noise_;  // of extractor_
   const bool wanted_;
-  const std::unique_ptr<Simulator> own_;         // a clone, which simulates
+  const std::unique_ptr<Simulator> own_;           // a clone, which simulates
   mutable std::optional<RefinementModel> shared_;  // made when first used
 };
 

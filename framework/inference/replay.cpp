@@ -103,8 +103,9 @@ class Replayer {
 
   MatrixXd draw() const {
     const RandomStream random(inferrer_.getExperiment().seed, RandomPurpose::kEnsemble);
-    return clipToBounds(drawNormal(answer_.mean, answer_.stddev, calcCorrelation(), replay_.options.draws, random),
-                        model_.parameters);
+    return clipToBounds(
+        drawNormal(answer_.mean, answer_.stddev, calcCorrelation(), replay_.options.draws, random),
+        model_.parameters);
   }
 
   /// Of the answer's errors.

@@ -156,8 +156,7 @@ ExperimentError makeCenterError(const ModelSpec& model, SourceLocation where, co
 class MultibodySimulator::Impl {
  public:
   Impl(const ModelSpec& model, Eigen::VectorXd times, int modes)
-      : Impl(std::make_shared<SharedModel>(
-            model, ResponseLayout{{}, {}, std::move(times), modes})) {}
+      : Impl(std::make_shared<SharedModel>(model, ResponseLayout{{}, {}, std::move(times), modes})) {}
 
   explicit Impl(std::shared_ptr<SharedModel> shared) : shared_(std::move(shared)), context_(shared_->model) {}
 

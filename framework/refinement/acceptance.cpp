@@ -32,8 +32,8 @@ double calcReach(const SearchBox& box, const VectorXd& at, const VectorXd& way, 
   return std::max(reach, 0.0);
 }
 
-/// Points beside a minimum and the minimum itself, last; and how far each is along its eigenvector, in standard
-/// deviations.
+/// Points beside a minimum and the minimum itself, last; and how far each is along its eigenvector, in
+/// standard deviations.
 struct Probes {
   MatrixXd points;
   VectorXd reach;
@@ -46,7 +46,8 @@ Probes makeProbes(const SearchBox& box, const LocalMisfit& minimum) {
   probes.points.col(2 * count) = minimum.at;
   for (Index i = 0; i < 2 * count; ++i) {
     const double side = i < count ? 1.0 : -1.0;
-    const VectorXd way = side * std::sqrt(std::max(eigen.values[i % count], 0.0)) * eigen.vectors.col(i % count);
+    const VectorXd way =
+        side * std::sqrt(std::max(eigen.values[i % count], 0.0)) * eigen.vectors.col(i % count);
     probes.reach[i] = calcReach(box, minimum.at, way, kReach);
     probes.points.col(i) = box.clamp(minimum.at + probes.reach[i] * way);
   }
@@ -76,8 +77,9 @@ Acceptance testMinimum(Misfit& misfit, const LocalMisfit& minimum) {
     const double rise = misfits[i] - bottom - slope, expected = reach * reach;
     if (reach > kLeastReach && !(rise > kLeastRise * expected && rise < kLargestRise * expected)) {
       return {RefinementStatus::kNonlinear,
-              fmt::format("{:.2g} standard deviations beside the answer chi-square rises by {:.3g} instead of {:.3g}",
-                          reach, rise, expected)};
+              fmt::format(
+                  "{:.2g} standard deviations beside the answer chi-square rises by {:.3g} instead of {:.3g}",
+                  reach, rise, expected)};
     }
   }
   return {};

@@ -18,10 +18,10 @@ double calcChiSquareLimit(const LocalMisfit& minimum);
 /// - its chi-square is below the 99.9 % quantile for as many degrees of freedom as there are residuals less
 ///   the parameters that the residuals, not the box, determine (trace of J'J (J'J + prior)^-1), at least one;
 /// - the misfit rises along each eigenvector of the posterior covariance, on both sides, as its linear model
-///   says: by 4 at 2 standard deviations, where 1 to 12 is accepted. That is a curvature within a factor 3 to 4,
-///   beyond which a standard deviation would be wrong by a factor of 2. Where the limits of the search come
-///   first, the rise is that at the limit, and none is asked for within half a standard deviation: there the
-///   box decides and not the model.
+///   says: by 4 at 2 standard deviations, where 1 to 12 is accepted. That is a curvature within a factor 3 to
+///   4, beyond which a standard deviation would be wrong by a factor of 2. Where the limits of the search
+///   come first, the rise is that at the limit, and none is asked for within half a standard deviation: there
+///   the box decides and not the model.
 /// Cost: 2 s + 1 simulations, one batch.
 Acceptance testMinimum(Misfit& misfit, const LocalMisfit& minimum);
 

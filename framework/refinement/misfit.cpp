@@ -53,9 +53,9 @@ std::vector<LocalMisfit> Misfit::linearizeAll(const MatrixXd& points) {
   simulations_ += static_cast<int>(points.cols()) * (simulator_.hasDerivatives() ? 1 : neighbours);
   std::vector<LocalMisfit> local;
   for (Index i = 0; i < points.cols(); ++i) {
-    local.push_back(makeLocalMisfit(points.col(i), makeLocalModel(model_.getExtractor(), model_.getUnknown(),
-                                                                  sampled.col(i), neighbourhoods.col(i),
-                                                                  statuses[static_cast<std::size_t>(i)])));
+    local.push_back(makeLocalMisfit(
+        points.col(i), makeLocalModel(model_.getExtractor(), model_.getUnknown(), sampled.col(i),
+                                      neighbourhoods.col(i), statuses[static_cast<std::size_t>(i)])));
   }
   return local;
 }

@@ -37,8 +37,8 @@ class Misfit {
 
   /// Looks at the features of a window alone from now on.
   void setWindow(const FeatureWindow& window);
-  /// Takes the noise at the next point that is linearised, where it depends on the response; it stays until it
-  /// is renewed, so that misfits can be compared.
+  /// Takes the noise at the next point that is linearised, where it depends on the response; it stays until
+  /// it is renewed, so that misfits can be compared.
   void renewNoise() { whitener_.reset(); }
 
   /// By exact derivatives where the simulator has them (simulateNeighbourhoods).

@@ -130,8 +130,8 @@ class Refinement {
     found.stddev = found.covariance.diagonal().cwiseSqrt();
   }
 
-  /// What the usual tolerance would move the answer by counts as uncertainty: whoever compares with simulations
-  /// of that tolerance, such as test samples, meets it. Cost: one simulation with derivatives.
+  /// What the usual tolerance would move the answer by counts as uncertainty: whoever compares with
+  /// simulations of that tolerance, such as test samples, meets it. Cost: one simulation with derivatives.
   void addIntegrationError(const SearchEnd& end, Refined& found) {
     if (!found.isAccepted()) {
       return;
@@ -148,7 +148,10 @@ class Refinement {
   /// Accepted before nonlinear before the rest, of which the least chi-square is kept.
   bool isBetter(const Refined& found) const {
     const auto rank = [](const Refined& refined) {
-      return refined.isAccepted() ? 3 : refined.status == RefinementStatus::kNonlinear ? 2 : refined.point.size() > 0 ? 1 : 0;
+      return refined.isAccepted()                             ? 3
+             : refined.status == RefinementStatus::kNonlinear ? 2
+             : refined.point.size() > 0                       ? 1
+                                                              : 0;
     };
     if (best_.start.empty() || rank(found) != rank(best_)) {
       return best_.start.empty() || rank(found) > rank(best_);

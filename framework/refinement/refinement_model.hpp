@@ -27,8 +27,8 @@ class RefinementModel {
   const std::vector<ParameterSpec>& getUnknown() const { return unknown_; }
   const FeatureExtractor& getExtractor() const { return extractor_; }
 
-  /// Windows that grow: the samples of the first eighth, quarter and half of the time that samples take, where
-  /// these are more than the unknown parameters; the last is all features.
+  /// Windows that grow: the samples of the first eighth, quarter and half of the time that samples take,
+  /// where these are more than the unknown parameters; the last is all features.
   const std::vector<FeatureWindow>& getWindows() const { return windows_; }
   const FeatureWindow& getWhole() const { return windows_.back(); }
 

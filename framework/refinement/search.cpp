@@ -76,8 +76,8 @@ MatrixXd makeTrials(const LocalMisfit& local, const SearchBox& box, double dampi
   return trials;
 }
 
-/// The best of the trials and its index, where it is better than `local`: with derivatives at all of them, or,
-/// where that costs more, at the best alone.
+/// The best of the trials and its index, where it is better than `local`: with derivatives at all of them,
+/// or, where that costs more, at the best alone.
 struct BestTrial {
   std::optional<LocalMisfit> local;
   Index index = 0;
@@ -139,8 +139,9 @@ SearchEnd search(Misfit& misfit, const VectorXd& start, int max_iterations) {
   if (end.converged) {
     end.rest = newton.step;
   } else {
-    end.message = damping < kMostDamping ? fmt::format("the search did not converge in {} iterations", max_iterations)
-                                         : "no step improves the misfit";
+    end.message = damping < kMostDamping
+                      ? fmt::format("the search did not converge in {} iterations", max_iterations)
+                      : "no step improves the misfit";
   }
   return end;
 }

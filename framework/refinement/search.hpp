@@ -23,8 +23,8 @@ struct SearchEnd {
 /// used up, but that step is below 0.3: on chaotic responses the error of the integration makes the misfit
 /// rough, which hides smaller improvements. What such a step leaves open is `rest`, part of the answer's
 /// uncertainty. A simulation that fails is a step not taken.
-/// Cost: a batch of four simulations with derivatives an iteration in lanes, which costs what one does; else four
-/// simulations and then one with derivatives. One to three iterations from a good start.
+/// Cost: a batch of four simulations with derivatives an iteration in lanes, which costs what one does; else
+/// four simulations and then one with derivatives. One to three iterations from a good start.
 SearchEnd search(Misfit& misfit, const Eigen::VectorXd& start, int max_iterations = 30);
 
 }  // namespace twinmap

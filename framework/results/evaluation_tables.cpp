@@ -113,7 +113,8 @@ std::string makeMethodsCsv(const RunSummary& run) {
 }
 
 std::string makeRefinedCsv(const RunSummary& run) {
-  CsvRow header{"sample", "status", "start", "chi_square", "distance", "iterations", "simulations", "message"};
+  CsvRow header{"sample",   "status",     "start",       "chi_square",
+                "distance", "iterations", "simulations", "message"};
   for (const ParameterSpec& parameter : run.parameters) {
     for (const char* column : {"_true", "_refined", "_stddev"}) {
       header.push_back(parameter.name.text + column);
@@ -122,9 +123,9 @@ std::string makeRefinedCsv(const RunSummary& run) {
   std::vector<CsvRow> rows{header};
   for (std::size_t i = 0; i < run.evaluation.refined.size(); ++i) {
     const Refined& one = run.evaluation.refined[i];
-    rows.push_back({std::to_string(run.test_indices[i]), toString(one.status), one.start, toText(one.chi_square),
-                    toText(one.distance), std::to_string(one.iterations), std::to_string(one.simulations),
-                    one.message});
+    rows.push_back({std::to_string(run.test_indices[i]), toString(one.status), one.start,
+                    toText(one.chi_square), toText(one.distance), std::to_string(one.iterations),
+                    std::to_string(one.simulations), one.message});
     for (Index j = 0; j < run.evaluation.truth.rows(); ++j) {
       rows.back().push_back(toText(run.evaluation.truth(j, static_cast<Index>(i))));
       rows.back().push_back(one.isAccepted() ? toText(one.point[j]) : "");

@@ -116,9 +116,8 @@ ProbeTimes measure(const ExperimentSpec& experiment, double most_samples) {
   times.refinement = refining / kTestSamples;
   const double preparing = run.getStage("prepare for ");
   times.preparation = preparing / (double(kTrainSamples) * countReferences(kTrainSamples));
-  times.overhead =
-      std::max(run.seconds - simulating - neighbourhoods - limit - refining - run.getTraining() - preparing,
-               0.0);
+  times.overhead = std::max(
+      run.seconds - simulating - neighbourhoods - limit - refining - run.getTraining() - preparing, 0.0);
   times.training.measured = measureEvaluations(small, most_samples, folder.getPath());
   times.training.evaluations = 1.0;
   times.training.evaluations = run.getTraining() / times.training.calcTraining(small);

@@ -80,26 +80,28 @@ MatrixXd makeMatrix(Index rows, Index columns) {
 TEST(Refine, FindsTheExactPosteriorOfALinearModel) {
   constexpr double kNoise = 0.3;
   const MatrixXd matrix = makeMatrix(30, 3);
-  Problem problem(30, [&](const VectorXd& x) { return VectorXd(matrix * x); },
-                  testing::makeParameters(3, -1.0, 1.0), kNoise);
+  Problem problem(
+      30, [&](const VectorXd& x) { return VectorXd(matrix * x); }, testing::makeParameters(3, -1.0, 1.0),
+      kNoise);
   const VectorXd features = problem.measure(makeVector({0.4, -0.7, 0.1}), kNoise);
   const Refined refined = problem.refineFrom(features, {{"map", makeVector({0.0, 0.0, 0.0})}});
 
-  const MatrixXd precision =
-      matrix.transpose() * matrix / (kNoise * kNoise) + 3.0 * MatrixXd::Identity(3, 3);
+  const MatrixXd precision = matrix.transpose() * matrix / (kNoise * kNoise) + 3.0 * MatrixXd::Identity(3, 3);
   const MatrixXd covariance = test::calcInverse(precision);
   const VectorXd mean = covariance * matrix.transpose() * features / (kNoise * kNoise);
   ASSERT_EQ(refined.status, RefinementStatus::kAccepted) << refined.message;
   EXPECT_LT((refined.covariance - covariance).norm(), 1e-6 * covariance.norm());
   EXPECT_LT(((refined.point - mean).array() / refined.stddev.array()).abs().maxCoeff(), 0.03);
-  EXPECT_NEAR(refined.chi_square, (features - matrix * refined.point).squaredNorm() / (kNoise * kNoise), 1e-9);
+  EXPECT_NEAR(refined.chi_square, (features - matrix * refined.point).squaredNorm() / (kNoise * kNoise),
+              1e-9);
 }
 
 TEST(Refine, MarginalisesTheNuisanceAndHoldsWhatIsNotSearched) {
   constexpr double kNoise = 0.3;
   const MatrixXd matrix = makeMatrix(30, 3);
-  Problem problem(30, [&](const VectorXd& x) { return VectorXd(matrix * x); },
-                  testing::makeParameters(2, -1.0, 1.0), kNoise);
+  Problem problem(
+      30, [&](const VectorXd& x) { return VectorXd(matrix * x); }, testing::makeParameters(2, -1.0, 1.0),
+      kNoise);
   const VectorXd features = problem.measure(makeVector({0.4, -0.7, 0.5}), kNoise);
   const Refined refined =
       refine(problem.simulator, problem.model, {features, {{"map", makeVector({0.0, 0.0, 0.5})}}, {0, 2}});
@@ -162,8 +164,9 @@ TEST(Refine, FollowsAChaoticResponseFromItsBeginning) {
 }
 
 TEST(Refine, StaysWithinTheEnlargedBox) {
-  Problem problem(20, [](const VectorXd& x) { return VectorXd::Constant(20, x[0] * x[0]); },
-                  testing::makeParameters(1, 1.0, 2.0), 0.05);
+  Problem problem(
+      20, [](const VectorXd& x) { return VectorXd::Constant(20, x[0] * x[0]); },
+      testing::makeParameters(1, 1.0, 2.0), 0.05);
   const VectorXd features = VectorXd::Constant(20, 2.2 * 2.2);
   const Refined refined = problem.refineFrom(features, {{"map", makeVector({1.5})}});
   EXPECT_DOUBLE_EQ(refined.point[0], 2.05);
@@ -171,8 +174,9 @@ TEST(Refine, StaysWithinTheEnlargedBox) {
 }
 
 TEST(Refine, AcceptsAnAnswerAtABound) {
-  Problem problem(20, [](const VectorXd& x) { return VectorXd::Constant(20, x[0] * x[0]); },
-                  testing::makeParameters(1, 1.0, 2.0), 0.5);
+  Problem problem(
+      20, [](const VectorXd& x) { return VectorXd::Constant(20, x[0] * x[0]); },
+      testing::makeParameters(1, 1.0, 2.0), 0.5);
   const Refined refined =
       problem.refineFrom(VectorXd::Constant(20, 2.03 * 2.03), {{"map", makeVector({1.5})}});
   ASSERT_TRUE(refined.isAccepted()) << refined.message;
@@ -180,17 +184,18 @@ TEST(Refine, AcceptsAnAnswerAtABound) {
 }
 
 TEST(Refine, DoesNotAcceptAModelThatIsWrong) {
-  Problem problem(20, [](const VectorXd& x) { return VectorXd::Constant(20, x[0]); },
-                  testing::makeParameters(1, 1.0, 2.0), 0.1);
-  const Refined refined =
-      problem.refineFrom(VectorXd::LinSpaced(20, 1.0, 2.0), {{"map", makeVector({1.5})}});
+  Problem problem(
+      20, [](const VectorXd& x) { return VectorXd::Constant(20, x[0]); },
+      testing::makeParameters(1, 1.0, 2.0), 0.1);
+  const Refined refined = problem.refineFrom(VectorXd::LinSpaced(20, 1.0, 2.0), {{"map", makeVector({1.5})}});
   EXPECT_EQ(refined.status, RefinementStatus::kMisfit);
   EXPECT_NE(refined.message.find("chi-square"), std::string::npos);
 }
 
 TEST(Refine, DoesNotAcceptAMinimumThatIsNoParaboloid) {
-  Problem problem(20, [](const VectorXd& x) { return VectorXd::Constant(20, x[0] * x[0]); },
-                  testing::makeParameters(1, -1.0, 1.0), 0.1);
+  Problem problem(
+      20, [](const VectorXd& x) { return VectorXd::Constant(20, x[0] * x[0]); },
+      testing::makeParameters(1, -1.0, 1.0), 0.1);
   const Refined refined = problem.refineFrom(VectorXd::Zero(20), {{"map", makeVector({0.0})}});
   EXPECT_EQ(refined.status, RefinementStatus::kNonlinear);
   EXPECT_EQ(refined.stddev.size(), 0);
