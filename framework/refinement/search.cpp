@@ -23,6 +23,7 @@ constexpr std::array<double, 4> kDampings{0.01, 1.0, 30.0, 1000.0};
 constexpr double kFirstDamping = 1e-3, kLeastDamping = 1e-10, kMostDamping = 1e7;
 constexpr double kLongestStep = 0.3;  // half-widths
 constexpr double kConverged = 0.03;   // standard deviations: adds 0.05 % to the error
+constexpr double kBeyondLimit = 1.0;  // the same where the limits of the box stop it
 constexpr double kHidden = 0.3;       // the same where the misfit is too rough to go on: adds 4 %
 
 /// The parameters that a step may move: those at a limit whose descent points outwards are held.
@@ -120,6 +121,16 @@ bool improve(Misfit& misfit, LocalMisfit& local, double& damping) {
 
 }  // namespace
 
+namespace {
+
+/// How far the step goes where the limits do not stop it, in standard deviations.
+double calcFreeLength(const LocalMisfit& local) {
+  const MatrixXd covariance = local.calcCovariance();
+  return (covariance * local.descent).cwiseQuotient(covariance.diagonal().cwiseSqrt()).cwiseAbs().maxCoeff();
+}
+
+}  // namespace
+
 SearchEnd search(Misfit& misfit, const VectorXd& start, int max_iterations) {
   SearchEnd end;
   end.local = misfit.linearize(start);
@@ -135,9 +146,12 @@ SearchEnd search(Misfit& misfit, const VectorXd& start, int max_iterations) {
       newton = calcNewtonStep(end.local, misfit.getBox());
     }
   }
-  end.converged = newton.length < kHidden;
+  const bool at_rest = newton.length < kHidden;
+  end.converged = at_rest && calcFreeLength(end.local) < kBeyondLimit;
   if (end.converged) {
     end.rest = newton.step;
+  } else if (at_rest) {
+    end.message = "the search ended at a limit of the box, and the minimum lies beyond";
   } else {
     end.message = damping < kMostDamping
                       ? fmt::format("the search did not converge in {} iterations", max_iterations)

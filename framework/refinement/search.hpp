@@ -22,7 +22,8 @@ struct SearchEnd {
 /// deviations in every parameter; and also where no step improves the misfit any more, or the iterations are
 /// used up, but that step is below 0.3: on chaotic responses the error of the integration makes the misfit
 /// rough, which hides smaller improvements. What such a step leaves open is `rest`, part of the answer's
-/// uncertainty. A simulation that fails is a step not taken.
+/// uncertainty. Where a limit stops a step of more than one standard deviation there is no minimum that a
+/// covariance could describe: that has not converged. A simulation that fails is a step not taken.
 /// Cost: a batch of four simulations with derivatives an iteration in lanes, which costs what one does; else
 /// four simulations and then one with derivatives. One to three iterations from a good start.
 SearchEnd search(Misfit& misfit, const Eigen::VectorXd& start, int max_iterations = 30);

@@ -170,7 +170,8 @@ TEST(Refine, StaysWithinTheEnlargedBox) {
   const VectorXd features = VectorXd::Constant(20, 2.2 * 2.2);
   const Refined refined = problem.refineFrom(features, {{"map", makeVector({1.5})}});
   EXPECT_DOUBLE_EQ(refined.point[0], 2.05);
-  EXPECT_EQ(refined.status, RefinementStatus::kMisfit);
+  EXPECT_EQ(refined.status, RefinementStatus::kFailed);
+  EXPECT_NE(refined.message.find("limit"), std::string::npos);
 }
 
 TEST(Refine, AcceptsAnAnswerAtABound) {
