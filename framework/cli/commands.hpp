@@ -81,7 +81,7 @@ struct InferArguments {
   std::vector<double> starts;      ///< times in each file that are 0 of the model; empty: the experiment's
   bool json = false, csv = false;  ///< at most one; neither: a table for people
   bool follow = false;             ///< measurements from the standard input, JSON lines out
-  bool refine = false;
+  std::optional<bool> refine;      ///< none: as the experiment says
 };
 
 struct ReplayArguments {
@@ -91,7 +91,7 @@ struct ReplayArguments {
   std::string from;                  ///< the measurement that parameters are inferred from; "": the same
   std::optional<double> from_start;  ///< default: `start` of the same file, else the experiment's
   std::vector<std::string> known;    ///< "NAME=VALUE" of the inputs
-  bool refine = false;
+  std::optional<bool> refine;        ///< none: as the experiment says
   int draws = 50;
   int threads = 1;
   std::string out;  ///< "": RUN/replay/STEM

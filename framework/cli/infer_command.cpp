@@ -32,11 +32,14 @@ class InferCommand {
     if (starts_.empty()) {
       starts_.emplace_back(std::nullopt);
     }
-    if (arguments.refine) {
+    if (arguments.refine.value_or(inferrer_.getExperiment().refine != RefineMode::kNever)) {
       refiner_.emplace(inferrer_.getExperiment(), inferrer_.getLayout());
+      if (!arguments.refine && !refiner_->isWanted()) {
+        refiner_.reset();
+      }
     }
     if (format_ == Format::kCsv) {
-      std::cout << makeInferenceCsvHeader(arguments.refine);
+      std::cout << makeInferenceCsvHeader(refiner_.has_value());
     }
   }
 
@@ -96,7 +99,8 @@ class InferCommand {
     inferred.source = source;
     inferred.start = getStart(start);
     if (refiner_) {
-      inferred.refined = refiner_->refine(inferred, features, known_);
+      const std::optional<TrustModel>& trust = inferrer_.getTrustModel();
+      inferred.refined = refiner_->refine(inferred, features, known_, trust ? &*trust : nullptr);
     }
     return inferred;
   }

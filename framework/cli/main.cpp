@@ -162,6 +162,18 @@ void addReport(CLI::App& app, cli::ReportArguments& arguments) {
   command->callback([&arguments] { cli::report(arguments); });
 }
 
+/// Both flags overrule what the experiment says.
+void addRefine(CLI::App& command, std::optional<bool>& refine) {
+  CLI::Option* on = command.add_flag_callback(
+      "--refine", [&refine] { refine = true; },
+      "Refine what was inferred by least squares on the simulator, accepted by a test (default: as the "
+      "experiment's 'refine' says)");
+  command
+      .add_flag_callback(
+          "--no-refine", [&refine] { refine = false; }, "Leave it as the map infers it")
+      ->excludes(on);
+}
+
 void addInfer(CLI::App& app, cli::InferArguments& arguments) {
   CLI::App* command = app.add_subcommand("infer",
                                          "Infer the parameters of measured responses with a trained map: "
@@ -188,8 +200,7 @@ void addInfer(CLI::App& app, cli::InferArguments& arguments) {
           "Read CSV measurements one after another from the standard input, each ended by an empty line, "
           "and print a line of JSON for each at once")
       ->excludes(csv);
-  command->add_flag("--refine", arguments.refine,
-                    "Then a few Gauss-Newton steps on the simulator from what was inferred");
+  addRefine(*command, arguments.refine);
   command->callback([&arguments] { cli::infer(arguments); });
 }
 
@@ -216,8 +227,7 @@ void addReplay(CLI::App& app, cli::ReplayArguments& arguments) {
       ->type_name("S");
   command->add_option("--set", arguments.known, "Value of a known input of the set-up; for each of them")
       ->type_name("NAME=VALUE");
-  command->add_flag("--refine", arguments.refine,
-                    "Refine what was inferred by a few Gauss-Newton steps on the simulator");
+  addRefine(*command, arguments.refine);
   command
       ->add_option("--draws", arguments.draws,
                    "Simulations with parameters drawn from what was inferred, for the band (default: 50)")

@@ -7,6 +7,7 @@
 #include "framework/experiment/fit_online.hpp"
 #include "framework/experiment/online_timing.hpp"
 #include "framework/experiment/prepare_data.hpp"
+#include "framework/experiment/refine_test_samples.hpp"
 #include "framework/experiment/simulated_sets.hpp"
 #include "framework/experiment/train_map.hpp"
 #include "framework/experiment/train_surrogate_map.hpp"
@@ -164,8 +165,11 @@ RunSummary runStages(const RunContext& run) {
   const PreparedData data = prepareData(experiment, run.extractor, samples.sets, local_models);
   const auto train = experiment.inverse_map.findGp() != nullptr ? trainProcesses : trainForward;
   const TrainedMap trained = train(run, samples.sets, data.labelled);
-  const MapEvaluation evaluated = evaluateMap(
+  MapEvaluation evaluated = evaluateMap(
       {experiment, run.simulator, run.extractor, data, trained.map, local_models, run.control.threads});
+  evaluated.notes.append(evaluateRefinement({experiment, run.simulator, run.extractor, data,
+                                             trained.online ? &*trained.online : nullptr, run.control},
+                                            evaluated.evaluation));
 
   RunSummary summary;
   summary.parameters = experiment.model.parameters;

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "framework/inference/answer.hpp"
 #include "framework/inference/inference_text.hpp"
 
 namespace twinmap {
@@ -41,15 +42,19 @@ Json toJson(const Trust& trust, const std::vector<FeatureInfo>& features) {
 }
 
 Json toJson(const Refined& refined, const std::vector<ParameterSpec>& parameters) {
-  if (!refined.status.ok) {
-    return {{"error", refined.status.reason}};
+  Json json{{"status", toString(refined.status)}};
+  if (refined.isAccepted()) {
+    json["parameters"] = makeEstimates(refined.point, refined.stddev, parameters);
+  } else {
+    json[refined.hasConverged() ? "message" : "error"] = refined.message;
   }
-  return {{"parameters", makeEstimates(refined.point, refined.stddev, parameters)},
-          {"distance", refined.distance},
-          {"chi_square", refined.chi_square},
-          {"steps", refined.steps},
-          {"simulations", refined.simulations},
-          {"converged", refined.converged}};
+  json["start"] = refined.start;
+  json["distance"] = refined.distance;
+  json["chi_square"] = refined.chi_square;
+  json["steps"] = refined.iterations;
+  json["simulations"] = refined.simulations;
+  json["converged"] = refined.hasConverged();
+  return json;
 }
 
 std::string dump(const Json& json) {
@@ -62,20 +67,21 @@ std::string makeInferenceJson(const InferredMeasurement& inferred,
                               const std::vector<ParameterSpec>& parameters,
                               const std::vector<FeatureInfo>& features) {
   Json json{{"source", inferred.source}, {"start", inferred.start}};
-  if (inferred.trust) {
-    json["status"] = toString(inferred.trust->statuses.front());
-    for (const TrustStatus status : inferred.trust->statuses) {
-      json["statuses"].push_back(toString(status));
-    }
-  } else {
-    json["status"] = nullptr;
+  const std::vector<std::string> statuses = listStatuses(inferred);
+  json["status"] = statuses.empty() ? Json() : Json(statuses.front());
+  if (!statuses.empty()) {
+    json["statuses"] = statuses;
   }
-  json["parameters"] = makeEstimates(inferred.inference.mean, inferred.inference.stddev, parameters);
+  const Answer answer = chooseAnswer(inferred);
+  json["method"] = answer.refined ? "refined" : "inverse_map";
+  json["parameters"] = makeEstimates(answer.mean, answer.stddev, parameters);
   if (inferred.trust) {
     json["trust"] = toJson(*inferred.trust, features);
   }
   if (inferred.refined) {
     json["refined"] = toJson(*inferred.refined, parameters);
+    json["inverse_map"]["parameters"] =
+        makeEstimates(inferred.inference.mean, inferred.inference.stddev, parameters);
   }
   return dump(json);
 }

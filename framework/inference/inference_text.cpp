@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "framework/inference/answer.hpp"
 #include "framework/results/escape.hpp"
 #include "framework/spec/parameter_box.hpp"
 #include "framework/spec/yaml/number_text.hpp"
@@ -13,10 +14,10 @@ namespace {
 
 using Eigen::Index;
 
-std::string joinStatuses(const Trust& trust, const char* separator) {
+std::string joinStatuses(const InferredMeasurement& inferred, const char* separator) {
   std::string joined;
-  for (const TrustStatus status : trust.statuses) {
-    joined += (joined.empty() ? "" : separator) + std::string(toString(status));
+  for (const std::string& status : listStatuses(inferred)) {
+    joined += (joined.empty() ? "" : separator) + status;
   }
   return joined;
 }
@@ -69,23 +70,38 @@ std::string align(const std::vector<Row>& rows) {
   return text;
 }
 
+/// How the refinement went; the table of its answer follows where it was accepted.
 std::string describeRefined(const Refined& refined) {
-  if (!refined.status.ok) {
-    return "  refined: failed: " + refined.status.reason + "\n";
+  if (!refined.isAccepted()) {
+    return fmt::format("  not refined ({}): {}; the map's answer, which nothing confirms:\n",
+                       toString(refined.status), refined.message);
   }
-  return fmt::format("  refined by {} steps ({} simulations), {:.2g} sd from the map's{}:\n", refined.steps,
-                     refined.simulations, refined.distance, refined.converged ? "" : "; not converged");
+  return fmt::format("  refined by {} steps ({} simulations), {:.2g} sd from the map's:\n",
+                     refined.iterations, refined.simulations, refined.distance);
+}
+
+std::string makeEstimateTable(const Eigen::VectorXd& mean, const Eigen::VectorXd& stddev,
+                              const std::vector<ParameterSpec>& parameters) {
+  std::vector<Row> rows{{"parameter", "unit", "mean", "sd", "95 % interval"}};
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const auto i = static_cast<Index>(p);
+    rows.push_back(makeRow(parameters[p], mean[i], stddev[i]));
+  }
+  return align(rows);
 }
 
 }  // namespace
 
 std::string describeTrust(const InferredMeasurement& inferred, const std::vector<FeatureInfo>& features) {
   if (!inferred.trust) {
-    return inferred.source + ": not judged (the run has no trust model)\n";
+    const std::string statuses = joinStatuses(inferred, ", ");
+    return inferred.source + ": " + statuses + (statuses.empty() ? "" : "; ") +
+           "not judged (the run has no trust model)\n";
   }
   const Trust& trust = *inferred.trust;
-  std::string text = fmt::format("{}: {} (p = {:.2g}, chi-square {:.1f} of {} residuals)\n", inferred.source,
-                                 joinStatuses(trust, ", "), trust.p_value, trust.chi_square, trust.residuals);
+  std::string text =
+      fmt::format("{}: {} (p = {:.2g}, chi-square {:.1f} of {} residuals)\n", inferred.source,
+                  joinStatuses(inferred, ", "), trust.p_value, trust.chi_square, trust.residuals);
   for (const TrustStatus status : trust.statuses) {
     text += explainStatus(status, trust, features);
   }
@@ -105,42 +121,39 @@ std::string describeBurst(const Trust& trust, const std::vector<FeatureInfo>& fe
 std::string makeInferenceTable(const InferredMeasurement& inferred,
                                const std::vector<ParameterSpec>& parameters,
                                const std::vector<FeatureInfo>& features) {
-  std::vector<Row> rows{{"parameter", "unit", "mean", "sd", "95 % interval"}};
-  std::vector<Row> refined = rows;
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    const auto i = static_cast<Index>(p);
-    rows.push_back(makeRow(parameters[p], inferred.inference.mean[i], inferred.inference.stddev[i]));
-    if (inferred.refined && inferred.refined->status.ok) {
-      refined.push_back(makeRow(parameters[p], inferred.refined->point[i], inferred.refined->stddev[i]));
-    }
-  }
-  std::string text = describeTrust(inferred, features) + align(rows);
+  const Inference& by_map = inferred.inference;
+  const Answer answer = chooseAnswer(inferred);
+  std::string text = describeTrust(inferred, features);
   if (inferred.refined) {
-    text += describeRefined(*inferred.refined) + (refined.size() > 1 ? align(refined) : "");
+    text += describeRefined(*inferred.refined);
+  }
+  text += makeEstimateTable(answer.mean, answer.stddev, parameters);
+  if (answer.refined) {
+    text += "  the map's:\n" + makeEstimateTable(by_map.mean, by_map.stddev, parameters);
   }
   return text;
 }
 
 std::string makeInferenceCsvHeader(bool refined) {
   return std::string("source,start,parameter,unit,mean,sd,lower,upper,status,p_value") +
-         (refined ? ",refined_mean,refined_sd" : "") + "\n";
+         (refined ? ",refined_mean,refined_sd,map_mean,map_sd" : "") + "\n";
 }
 
 std::string makeInferenceCsvRows(const InferredMeasurement& inferred,
                                  const std::vector<ParameterSpec>& parameters) {
+  const Answer answer = chooseAnswer(inferred);
+  const Inference& by_map = inferred.inference;
   std::string text;
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const auto i = static_cast<Index>(p);
-    const double mean = inferred.inference.mean[i], stddev = inferred.inference.stddev[i];
+    const double mean = answer.mean[i], stddev = answer.stddev[i];
     text += fmt::format("{},{},{},{},{},{},{},{},{},{}", escapeCsv(inferred.source), toText(inferred.start),
                         escapeCsv(parameters[p].name.text), escapeCsv(parameters[p].unit), toText(mean),
                         toText(stddev), toText(mean - kNormal95 * stddev), toText(mean + kNormal95 * stddev),
-                        inferred.trust ? joinStatuses(*inferred.trust, " ") : "",
-                        inferred.trust ? toText(inferred.trust->p_value) : "");
+                        joinStatuses(inferred, " "), inferred.trust ? toText(inferred.trust->p_value) : "");
     if (inferred.refined) {
-      text += inferred.refined->status.ok ? fmt::format(",{},{}", toText(inferred.refined->point[i]),
-                                                        toText(inferred.refined->stddev[i]))
-                                          : ",,";
+      text += answer.refined ? fmt::format(",{},{}", toText(mean), toText(stddev)) : ",,";
+      text += fmt::format(",{},{}", toText(by_map.mean[i]), toText(by_map.stddev[i]));
     }
     text += "\n";
   }

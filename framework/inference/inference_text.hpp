@@ -13,12 +13,13 @@ constexpr double kNormal95 = 1.959963984540054;
 /// The status with its numbers, and a line for each thing that is wrong.
 std::string describeTrust(const InferredMeasurement& inferred, const std::vector<FeatureInfo>& features);
 
-/// A table for people: the status with its numbers, then a row per parameter.
+/// A table for people: the status with its numbers, then a row per parameter; where a refinement was accepted
+/// its answer first, then the map's.
 std::string makeInferenceTable(const InferredMeasurement& inferred,
                                const std::vector<ParameterSpec>& parameters,
                                const std::vector<FeatureInfo>& features);
 
-/// CSV: a row per measurement and parameter.
+/// CSV: a row per measurement and parameter; `refined`: with the columns of a refinement.
 std::string makeInferenceCsvHeader(bool refined);
 std::string makeInferenceCsvRows(const InferredMeasurement& inferred,
                                  const std::vector<ParameterSpec>& parameters);

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "framework/features/feature_extractor.hpp"
-#include "framework/inference/refine.hpp"
 #include "framework/measurement/measurement.hpp"
 #include "framework/online/online_map.hpp"
 #include "framework/online/online_model.hpp"
+#include "framework/refinement/refined.hpp"
 #include "framework/spec/experiment_spec.hpp"
 
 namespace twinmap {
@@ -21,7 +21,7 @@ struct InferredMeasurement {
   Inference inference;             ///< by the map
   std::optional<Trust> trust;      ///< none where the run could fit no trust model
   Eigen::VectorXd explanation;     ///< sampled point that explains the features best; empty without trust
-  std::optional<Refined> refined;  ///< where it was asked for
+  std::optional<Refined> refined;  ///< on the simulator, where that was tried; accepted or not
 };
 
 /// The features of a response (rows of the layout). Throws MeasurementError, naming `source`, where the

@@ -1,6 +1,7 @@
 #include "framework/inference/refiner.hpp"
 
 #include "framework/experiment/prepare_data.hpp"
+#include "framework/experiment/refinement_starts.hpp"
 #include "framework/features/noise.hpp"
 #include "framework/spec/parameter_box.hpp"
 
@@ -13,14 +14,27 @@ SimulatorRefiner::SimulatorRefiner(const ExperimentSpec& experiment, const Respo
     : model_(experiment.model),
       extractor_(makeExtractor(experiment, layout)),
       simulator_(experiment.model, layout.times, layout.modes),
-      noise_(extractor_, ResponseNoise(experiment.noise, layout), experiment.seed) {}
+      noise_(extractor_, ResponseNoise(experiment.noise, layout), experiment.seed),
+      wanted_(shouldRefine(experiment.refine, simulator_, extractor_, noise_)),
+      own_(simulator_.clone()) {}
+
+const RefinementModel& SimulatorRefiner::getModel() const {
+  if (!shared_) {
+    shared_.emplace(collectUnknown(model_), extractor_, noise_);
+  }
+  return *shared_;
+}
 
 Refined SimulatorRefiner::refine(const InferredMeasurement& inferred, const VectorXd& features,
-                                 const VectorXd& known) const {
-  const VectorXd start = makePoint(model_, inferred.inference.mean, inferred.explanation, known);
-  const SearchedParameters all{0, static_cast<Index>(collectUnknown(model_).size())};
-  Refined refined = twinmap::refine(model_, simulator_, extractor_, noise_, features, start, all);
-  refined.stddev.conservativeResize(std::min<Index>(refined.stddev.size(), inferred.inference.mean.size()));
+                                 const VectorXd& known, const TrustModel* trust) const {
+  const RefinementTask task =
+      makeRefinementTask(model_, trust, features, {inferred.inference.mean, inferred.explanation, known});
+  Refined refined = twinmap::refine(*own_, getModel(), task);
+  if (refined.isAccepted()) {
+    const Index p = inferred.inference.mean.size();
+    refined.stddev.conservativeResize(p);
+    refined.covariance.conservativeResize(p, p);
+  }
   return refined;
 }
 
@@ -29,19 +43,11 @@ Refined SimulatorRefiner::fitNuisance(const VectorXd& point, const VectorXd& fea
                                     static_cast<Index>(model_.nuisance.size())};
   if (nuisance.count == 0) {
     Refined held;
+    held.status = RefinementStatus::kAccepted;
     held.point = point;
-    held.converged = true;
     return held;
   }
-  return twinmap::refine(model_, simulator_, extractor_, noise_, features, point, nuisance);
-}
-
-VectorXd makePoint(const ModelSpec& model, const VectorXd& parameters, const VectorXd& explanation,
-                   const VectorXd& known) {
-  VectorXd point = explanation.size() > 0 ? explanation : calcBoxCenter(collectSampled(model));
-  point.head(parameters.size()) = parameters;
-  point.tail(known.size()) = known;
-  return point;
+  return twinmap::refine(*own_, getModel(), {features, {{"given", point}}, nuisance, false});
 }
 
 }  // namespace twinmap

@@ -1,14 +1,16 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "framework/features/feature_noise.hpp"
 #include "framework/inference/inferrer.hpp"
 #include "framework/multibody/multibody_simulator.hpp"
+#include "framework/refinement/refine.hpp"
 
 namespace twinmap {
 
-/// Refines inferences of one run on its simulator.
+/// Refines inferences of one run on its simulator; for one thread.
 class SimulatorRefiner {
  public:
   /// `experiment`: that of the run, with the excitation of the measurement where it is measured.
@@ -19,25 +21,29 @@ class SimulatorRefiner {
   const MultibodySimulator& getSimulator() const { return simulator_; }
   const FeatureExtractor& getExtractor() const { return extractor_; }
 
-  /// Searches all unknown parameters from the inferred ones and the nuisance parameters that explain the
-  /// features best. known: q.
+  /// Whether the experiment's `refine` asks for it (shouldRefine).
+  bool isWanted() const { return wanted_; }
+
+  /// Searches all unknown parameters from what was inferred (makeRefinementTask). known: q. The covariance
+  /// and the standard deviations are those of the updating parameters. Throws std::invalid_argument for a
+  /// feature without noise.
   Refined refine(const InferredMeasurement& inferred, const Eigen::VectorXd& features,
-                 const Eigen::VectorXd& known) const;
+                 const Eigen::VectorXd& known, const TrustModel* trust) const;
 
   /// Searches the nuisance parameters alone, the others held at `point`; without nuisance parameters the
-  /// point itself.
+  /// point itself, accepted.
   Refined fitNuisance(const Eigen::VectorXd& point, const Eigen::VectorXd& features) const;
 
  private:
+  const RefinementModel& getModel() const;
+
   const ModelSpec model_;
   const FeatureExtractor extractor_;
   const MultibodySimulator simulator_;
   const FeatureNoise noise_;  // of extractor_
+  const bool wanted_;
+  const std::unique_ptr<Simulator> own_;           // a clone, which simulates
+  mutable std::optional<RefinementModel> shared_;  // made when first used
 };
-
-/// A point of the sampled box: the given parameters, the nuisance parameters of `explanation` (a point of the
-/// box, or empty: their centre), the known inputs.
-Eigen::VectorXd makePoint(const ModelSpec& model, const Eigen::VectorXd& parameters,
-                          const Eigen::VectorXd& explanation, const Eigen::VectorXd& known);
 
 }  // namespace twinmap

@@ -3,7 +3,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "framework/experiment/refinement_starts.hpp"
 #include "framework/features/noise.hpp"
+#include "framework/inference/answer.hpp"
 #include "framework/inference/ensemble.hpp"
 #include "framework/inference/refiner.hpp"
 #include "framework/measurement/measured_signals.hpp"
@@ -53,9 +55,10 @@ InferredMeasurement infer(const Inferrer& inferrer, const Window& window, const 
   InferredMeasurement inferred = inferrer.infer(window.features, options.known, workspace);
   inferred.source = options.from.file.string();
   inferred.start = options.from.start;
-  if (options.refine) {
-    inferred.refined = window.refiner.refine(inferred, window.features, options.known);
-    requireOk(inferred.refined->status, "a step of the refinement");
+  if (options.refine.value_or(window.refiner.isWanted())) {
+    const std::optional<TrustModel>& trust = inferrer.getTrustModel();
+    inferred.refined =
+        window.refiner.refine(inferred, window.features, options.known, trust ? &*trust : nullptr);
   }
   return inferred;
 }
@@ -67,21 +70,20 @@ class Replayer {
         model_(inferrer.getExperiment().model),
         window_(window),
         replay_(replay),
-        refined_(replay.inferred.refined) {
+        answer_(chooseAnswer(replay.inferred)) {
     if (replay.options.measurement == replay.options.from) {
-      explanation_ = refined_ ? refined_->point : replay.inferred.explanation;
+      explanation_ = answer_.refined ? replay.inferred.refined->point : replay.inferred.explanation;
     }
   }
 
   void run() {
     const Index p = static_cast<Index>(model_.parameters.size());
-    const VectorXd mean = refined_ ? VectorXd(refined_->point.head(p)) : replay_.inferred.inference.mean;
     fitNuisance(calcBoxCenter(model_.parameters), replay_.nominal);
-    fitNuisance(clipToBounds(mean, model_.parameters), replay_.updated);
+    fitNuisance(clipToBounds(answer_.mean, model_.parameters), replay_.updated);
     MatrixXd points(replay_.updated.point.size(), 2 + replay_.options.draws);
     points.colwise() = replay_.updated.point;
     points.col(0) = replay_.nominal.point;
-    points.topRightCorner(p, replay_.options.draws) = draw(mean);
+    points.topRightCorner(p, replay_.options.draws) = draw();
     const MatrixXd responses = simulate(points);
     setResponse(responses.col(0), replay_.nominal);
     setResponse(responses.col(1), replay_.updated);
@@ -96,15 +98,23 @@ class Replayer {
     const VectorXd start = makePoint(model_, parameters, explanation_, replay_.options.known);
     const Refined fitted = window_.refiner.fitNuisance(start, window_.features);
     model.point = fitted.point;
-    model.nuisance_converged = fitted.status.ok && fitted.converged;
+    model.nuisance_converged = fitted.hasConverged();
   }
 
-  MatrixXd draw(const VectorXd& mean) const {
-    const VectorXd& stddev = refined_ ? refined_->stddev : replay_.inferred.inference.stddev;
+  MatrixXd draw() const {
     const RandomStream random(inferrer_.getExperiment().seed, RandomPurpose::kEnsemble);
-    return clipToBounds(drawNormal(mean, stddev, inferrer_.getMap().getMap().residual_correlation,
-                                   replay_.options.draws, random),
-                        model_.parameters);
+    return clipToBounds(
+        drawNormal(answer_.mean, answer_.stddev, calcCorrelation(), replay_.options.draws, random),
+        model_.parameters);
+  }
+
+  /// Of the answer's errors.
+  MatrixXd calcCorrelation() const {
+    if (!answer_.refined) {
+      return inferrer_.getMap().getMap().residual_correlation;
+    }
+    const VectorXd scale = answer_.stddev.cwiseInverse();
+    return scale.asDiagonal() * replay_.inferred.refined->covariance * scale.asDiagonal();
   }
 
   MatrixXd simulate(const MatrixXd& points) const {
@@ -128,7 +138,7 @@ class Replayer {
   const ModelSpec& model_;
   const Window& window_;
   Replay& replay_;
-  const std::optional<Refined>& refined_;
+  const Answer answer_;
   VectorXd explanation_;  // of the window; empty: its nuisance parameters are sought from the box's centre
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "framework/inference/inferrer.hpp"
@@ -18,12 +19,12 @@ inline bool operator==(const MeasuredWindow& a, const MeasuredWindow& b) {
 }
 
 struct ReplayOptions {
-  MeasuredWindow measurement;  ///< what is simulated again
-  MeasuredWindow from;         ///< what the parameters are inferred from
-  Eigen::VectorXd known;       ///< inputs of the set-up (q), the same in both
-  bool refine = false;         ///< the inference, on the simulator
-  int draws = 50;              ///< of the ensemble, at least 2
-  int threads = 0;             ///< 0: as many as OpenMP offers
+  MeasuredWindow measurement;       ///< what is simulated again
+  MeasuredWindow from;              ///< what the parameters are inferred from
+  Eigen::VectorXd known;            ///< inputs of the set-up (q), the same in both
+  std::optional<bool> refine = {};  ///< the inference, on the simulator; none: as the experiment says
+  int draws = 50;                   ///< of the ensemble, at least 2
+  int threads = 0;                  ///< 0: as many as OpenMP offers
 };
 
 /// How well a model follows a measured output.
@@ -55,10 +56,11 @@ struct Replay {
 /// excitation that was measured there, if the excitation is measured. The nuisance parameters of that window
 /// (its initial state, its offset) are fitted to it, for the nominal and for the updated model alike; the
 /// updating parameters are held. The ensemble: `draws` of the updating parameters from the normal
-/// distribution of covariance D R D (GpMap) around the inferred ones, the nuisance parameters held at those
-/// of the updated model. Points are moved into the box. The result does not depend on `threads`.
-/// Throws MeasurementError for a file that cannot be used, std::runtime_error for a simulation that fails.
-/// Cost: draws + 2 simulations, and 2 u + 1 for each of at most 5 steps of either fit, u unknown parameters.
+/// distribution of covariance D R D (GpMap), or of that of an accepted refinement, around the inferred ones,
+/// the nuisance parameters held at those of the updated model. Points are moved into the box. The result does
+/// not depend on `threads`. Throws MeasurementError for a file that cannot be used, std::runtime_error for a
+/// simulation that fails. A refinement that is not accepted leaves the map's answer. Cost: draws + 2
+/// simulations, and those of the searches (refine).
 Replay replay(const Inferrer& inferrer, const ReplayOptions& options);
 
 /// The fits of each output of a response (rows of the layout).

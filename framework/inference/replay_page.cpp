@@ -54,8 +54,8 @@ std::vector<std::string> collectWarnings(const Replay& replay) {
           fmt::format("the search for the nuisance parameters of the {} model did not converge", name));
     }
   }
-  if (replay.inferred.refined && !replay.inferred.refined->converged) {
-    warnings.emplace_back("the refinement did not converge");
+  if (replay.inferred.refined && !replay.inferred.refined->isAccepted()) {
+    warnings.emplace_back("the refinement was not accepted: " + replay.inferred.refined->message);
   }
   return warnings;
 }
@@ -86,7 +86,7 @@ using Cells = std::vector<HtmlCell>;
 std::string makeParameterTable(const Inferrer& inferrer, const Replay& replay) {
   constexpr int kStddevDigits = 3;
   const std::vector<ParameterSpec>& parameters = inferrer.getExperiment().model.parameters;
-  const bool refined = replay.inferred.refined.has_value();
+  const bool refined = replay.inferred.refined && replay.inferred.refined->isAccepted();
   std::vector<std::string> headings{"parameter", "unit", "inferred", "sd", "95 % from", "to"};
   if (refined) {
     headings.insert(headings.end(), {"refined", "its sd"});

@@ -19,11 +19,15 @@ std::mutex building;
 
 /// What all clones share.
 struct SharedModel {
+  SharedModel(ModelSpec of, ResponseLayout rows) : model(std::move(of)), layout(std::move(rows)) {}
+
   ModelSpec model;
   ResponseLayout layout;
   Eigen::VectorXd box_center;           ///< solveBoxCenter()
   std::unique_ptr<LanePrograms> lanes;  ///< null where Simbody simulates
   std::string engine;
+  std::mutex making_precise{};
+  std::unique_ptr<MultibodySimulator> precise{};  ///< made when first used
 };
 
 /// Samples handed out at once: enough to keep all lanes busy but at the end, few enough to share work.
@@ -75,8 +79,7 @@ class MultibodySimulator::Impl {
  public:
   /// The first of the clones: completes what they share.
   Impl(const ModelSpec& model, Eigen::VectorXd times, int modes)
-      : shared_(
-            std::make_shared<SharedModel>(SharedModel{model, {{}, {}, std::move(times), modes}, {}, {}, {}})),
+      : shared_(std::make_shared<SharedModel>(model, ResponseLayout{{}, {}, std::move(times), modes})),
         context_(shared_->model) {
     if (shared_->layout.times.size() > 0) {
       checkSimulation(shared_->model.simulation);
@@ -189,6 +192,20 @@ void MultibodySimulator::simulateWithDerivatives(const Eigen::Ref<const Eigen::M
                                                  Eigen::MatrixXd& derivatives, SampleStatus* statuses) {
   checkShapes(*impl_->getShared(), parameters, responses);
   impl_->updLanes().simulateWithDerivatives(parameters, responses, derivatives, statuses);
+}
+
+std::unique_ptr<Simulator> MultibodySimulator::clonePrecisely() const {
+  constexpr double kShare = 0.01, kLeastRelative = 1e-13, kLeastAbsolute = 1e-18;
+  SharedModel& shared = *impl_->getShared();
+  const std::lock_guard<std::mutex> guard(shared.making_precise);
+  if (!shared.precise) {
+    ModelSpec model = shared.model;
+    SimulationSpec& simulation = model.simulation;
+    simulation.relative_tolerance = std::max(kShare * simulation.relative_tolerance, kLeastRelative);
+    simulation.absolute_tolerance = std::max(kShare * simulation.absolute_tolerance, kLeastAbsolute);
+    shared.precise = std::make_unique<MultibodySimulator>(model, shared.layout.times, shared.layout.modes);
+  }
+  return shared.precise->clone();
 }
 
 std::unique_ptr<Simulator> MultibodySimulator::clone() const {

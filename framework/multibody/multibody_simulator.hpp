@@ -47,6 +47,9 @@ class MultibodySimulator final : public Simulator {
                                Eigen::Ref<Eigen::MatrixXd> responses, Eigen::MatrixXd& derivatives,
                                SampleStatus* statuses) override;
   std::unique_ptr<Simulator> clone() const override;
+  /// With a hundredth of the tolerances, at least 1e-13 and 1e-18; some 2.5 times the steps of dopri5. The
+  /// first call builds and compiles the model once more.
+  std::unique_ptr<Simulator> clonePrecisely() const override;
 
  private:
   class Impl;

@@ -1,5 +1,7 @@
 #include "framework/results/evaluation_tables.hpp"
 
+#include <cmath>
+
 #include "framework/results/csv.hpp"
 #include "framework/spec/yaml/number_text.hpp"
 
@@ -83,6 +85,51 @@ std::string makeBaselinesCsv(const RunSummary& run) {
       }
       row.push_back(std::to_string(baseline.unconverged));
       rows.push_back(row);
+    }
+  }
+  return makeCsv(rows);
+}
+
+std::string makeMethodsCsv(const RunSummary& run) {
+  std::vector<CsvRow> rows{{"method", "parameter", "bias_pct", "sd_pct", "mare_pct", "limit_pct",
+                            "ratio_to_limit", "coverage50", "coverage90", "coverage95", "samples", "accepted",
+                            "median_simulations"}};
+  for (const MethodSummary& method : run.evaluation.methods) {
+    const double share = static_cast<double>(method.accepted) / static_cast<double>(method.samples);
+    for (std::size_t p = 0; p < run.parameters.size(); ++p) {
+      const ParameterMetrics& m = method.metrics[p];
+      CsvRow row{method.method, run.parameters[p].name.text};
+      for (const double value : {m.bias_pct, m.sd_pct, m.mare_pct, m.limit_pct, m.ratio_to_limit,
+                                 m.coverage50, m.coverage90, m.coverage95}) {
+        row.push_back(method.accepted > 0 && std::isfinite(value) ? toText(value) : "");
+      }
+      row.push_back(std::to_string(method.samples));
+      row.push_back(toText(share));
+      row.push_back(std::to_string(method.median_simulations));
+      rows.push_back(row);
+    }
+  }
+  return makeCsv(rows);
+}
+
+std::string makeRefinedCsv(const RunSummary& run) {
+  CsvRow header{"sample",   "status",     "start",       "chi_square",
+                "distance", "iterations", "simulations", "message"};
+  for (const ParameterSpec& parameter : run.parameters) {
+    for (const char* column : {"_true", "_refined", "_stddev"}) {
+      header.push_back(parameter.name.text + column);
+    }
+  }
+  std::vector<CsvRow> rows{header};
+  for (std::size_t i = 0; i < run.evaluation.refined.size(); ++i) {
+    const Refined& one = run.evaluation.refined[i];
+    rows.push_back({std::to_string(run.test_indices[i]), toString(one.status), one.start,
+                    toText(one.chi_square), toText(one.distance), std::to_string(one.iterations),
+                    std::to_string(one.simulations), one.message});
+    for (Index j = 0; j < run.evaluation.truth.rows(); ++j) {
+      rows.back().push_back(toText(run.evaluation.truth(j, static_cast<Index>(i))));
+      rows.back().push_back(one.isAccepted() ? toText(one.point[j]) : "");
+      rows.back().push_back(one.isAccepted() ? toText(one.stddev[j]) : "");
     }
   }
   return makeCsv(rows);

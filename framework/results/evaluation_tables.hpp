@@ -25,4 +25,13 @@ std::string makePosteriorCsv(const RunSummary& run);
 /// seconds_per_update, unconverged.
 std::string makeBaselinesCsv(const RunSummary& run);
 
+/// methods.csv: method, parameter, bias_pct, sd_pct, mare_pct, limit_pct, ratio_to_limit, coverage50,
+/// coverage90, coverage95, samples, accepted (share), median_simulations; figures are those of the accepted
+/// samples, the limit too.
+std::string makeMethodsCsv(const RunSummary& run);
+
+/// refined.csv: sample, status, start, chi_square, distance, iterations, simulations, message; then for each
+/// parameter NAME_true, NAME_refined, NAME_stddev, the last two only where it is accepted.
+std::string makeRefinedCsv(const RunSummary& run);
+
 }  // namespace twinmap

@@ -12,6 +12,7 @@
 #include "framework/features/feature_block.hpp"
 #include "framework/inverse_map/predictions.hpp"
 #include "framework/monitoring/stage_notes.hpp"
+#include "framework/refinement/refined.hpp"
 #include "framework/results/gates.hpp"
 #include "framework/spec/model_spec.hpp"
 
@@ -85,6 +86,14 @@ struct BaselineSummary {
   int unconverged = 0;
 };
 
+/// How well a method infers the test samples.
+struct MethodSummary {
+  std::string method;  ///< "inverse_map", "refined"
+  Eigen::Index samples = 0, accepted = 0;
+  int median_simulations = 0;             ///< of a measurement
+  std::vector<ParameterMetrics> metrics;  ///< of the accepted
+};
+
 /// How well the inverse map infers the test samples: p parameters, n samples that could be simulated.
 struct Evaluation {
   Eigen::MatrixXd truth;         ///< p x n
@@ -97,6 +106,8 @@ struct Evaluation {
   std::optional<Identifiability> identifiability;
   std::vector<PosteriorComparison> posteriors;
   std::vector<BaselineSummary> baselines;
+  std::vector<Refined> refined;        ///< n; empty where nothing was refined
+  std::vector<MethodSummary> methods;  ///< empty where nothing was refined
 };
 
 /// What one online update costs: the inference of all parameters from one feature vector.

@@ -53,6 +53,10 @@ class Simulator {
                                        SampleStatus* statuses);
 
   virtual std::unique_ptr<Simulator> clone() const = 0;
+
+  /// The same model, integrated with errors some hundred times smaller; null where it cannot be. For
+  /// responses that amplify the errors of the integration. From any thread.
+  virtual std::unique_ptr<Simulator> clonePrecisely() const { return nullptr; }
 };
 
 }  // namespace twinmap

@@ -12,6 +12,7 @@
 #include "framework/spec/measurement_spec.hpp"
 #include "framework/spec/model_spec.hpp"
 #include "framework/spec/noise_spec.hpp"
+#include "framework/spec/refinement_spec.hpp"
 #include "framework/spec/transform_spec.hpp"
 
 namespace twinmap {
@@ -50,6 +51,7 @@ struct ExperimentSpec {
   DesignSpec design;
   InverseMapSpec inverse_map;
   EvaluationSpec evaluation;
+  RefineMode refine = RefineMode::kAutomatic;
   TrustSpec trust;
   std::vector<GateSpec> gates;
   MeasurementSpec measurement;  ///< for inferring from files; no simulation depends on it
@@ -76,6 +78,8 @@ void describe(Fields& f, ExperimentSpec& s) {
   f.optional("design", s.design, "where the parameter box is sampled");
   f.optional("inverse_map", s.inverse_map, "from features to parameters");
   f.optional("evaluation", s.evaluation, "what is found out about the map besides its errors");
+  f.optional("refine", s.refine,
+             "whether answers are refined on the simulator; automatic: where that is cheap");
   f.optional("trust", s.trust, "how inferences from measurements are judged");
   f.optional("gates", s.gates, "conditions on the metrics; the report says which passed");
   f.optional("measurement", s.measurement, "how files of measurements are read");

@@ -63,6 +63,7 @@ ExperimentSpec makeSmall(ExperimentSpec experiment) {
 /// Few evaluations of one search.
 ExperimentSpec makeShort(ExperimentSpec experiment, int replicates) {
   experiment.evaluation.limit = false;
+  experiment.refine = RefineMode::kNever;
   experiment.evaluation.posterior.reset();
   experiment.evaluation.baselines.clear();
   GpMapSpec& gp = *experiment.inverse_map.findGp();
@@ -97,6 +98,7 @@ double countEvaluationsOnAllDraws(const ExperimentSpec& experiment, ExperimentSp
                                   const fs::path& folder) {
   small.noise.replicates = experiment.noise.replicates;
   small.evaluation = makeShort(small, 1).evaluation;
+  small.refine = RefineMode::kNever;
   return timeRun(small, "all", folder).countEvaluations() /
          static_cast<double>(experiment.model.parameters.size());
 }
@@ -114,10 +116,12 @@ ProbeTimes measure(const ExperimentSpec& experiment, double most_samples) {
   const double neighbourhoods = run.getStage("neighbourhoods of ");
   times.limit = limit / kTestSamples;
   times.neighbourhood = neighbourhoods / std::max<double>(listDerivativePoints(small).cols(), 1.0);
+  const double refining = run.getStage("refine ");
+  times.refinement = refining / kTestSamples;
   const double preparing = run.getStage("prepare for ");
   times.preparation = preparing / (double(kTrainSamples) * countReferences(kTrainSamples));
-  times.overhead =
-      std::max(run.seconds - simulating - neighbourhoods - limit - run.getTraining() - preparing, 0.0);
+  times.overhead = std::max(
+      run.seconds - simulating - neighbourhoods - limit - refining - run.getTraining() - preparing, 0.0);
   times.training.measured = measureEvaluations(small, most_samples, folder.getPath());
   times.training.evaluations = 1.0;
   times.training.evaluations = run.getTraining() / times.training.calcTraining(small);

@@ -14,6 +14,7 @@ struct ProbeTimes {
   TrainingTime training;
   double preparation = 0.0;  ///< s, for measurements, of one reference and training sample
   double limit = 0.0;        ///< s, of the information limit of one test sample, after its neighbourhood
+  double refinement = 0.0;   ///< s, of one test sample
   double overhead = 0.0;     ///< s, everything else: files, tables, other evaluations
   std::string failure;       ///< why there are no times; empty if there are
 

@@ -95,6 +95,30 @@ class Infer(InferCase):
             self.assertLess(abs(estimate["mean"] - true), 4 * estimate["sd"], name)
         self.assertIn("refined by", self.infer(self.measurement, "--refine"))
 
+    def test_the_answer_is_the_refined_one_where_it_is_accepted(self):
+        inferred = self.infer_json(self.measurement)
+        self.assertEqual(inferred["method"], "refined")
+        self.assertEqual(inferred["refined"]["status"], "accepted")
+        self.assertEqual(inferred["parameters"], inferred["refined"]["parameters"])
+        by_map = self.infer_json(self.measurement, "--no-refine")
+        self.assertEqual(by_map["method"], "inverse_map")
+        self.assertNotIn("refined", by_map)
+        self.assertEqual(by_map["parameters"], inferred["inverse_map"]["parameters"])
+
+    def test_what_is_not_accepted_leaves_the_answer_of_the_map(self):
+        wrong = dict(self.columns)
+        wrong["y"] = np.roll(wrong["y"], 7)
+        path = self.folder / "wrong.csv"
+        write_csv(path, ["t", "y", "theta"], [wrong[name] for name in ("t", "y", "theta")])
+        inferred = self.infer_json(path)
+        self.assertIn("not_refined", inferred["statuses"])
+        self.assertEqual(inferred["method"], "inverse_map")
+        self.assertEqual(inferred["parameters"], inferred["inverse_map"]["parameters"])
+        self.assertNotIn("parameters", inferred["refined"])
+        self.assertIn("not refined", self.infer(path))
+        row = next(csv.DictReader(io.StringIO(self.infer("--csv", path))))
+        self.assertEqual((row["refined_mean"], row["refined_sd"]), ("", ""))
+
     def test_follows_a_stream(self):
         text = self.measurement.read_text()
         lines = self.infer("--follow", input=text + text + "\n").splitlines()

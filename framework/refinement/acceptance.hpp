@@ -1,0 +1,28 @@
+#pragma once
+
+#include "framework/refinement/misfit.hpp"
+#include "framework/refinement/refined.hpp"
+
+namespace twinmap {
+
+/// What two tests say about a minimum.
+struct Acceptance {
+  RefinementStatus status = RefinementStatus::kAccepted;
+  std::string message;
+};
+
+/// The largest chi-square that noise explains: its 99.9 % quantile.
+double calcChiSquareLimit(const LocalMisfit& minimum);
+
+/// Accepts a minimum if
+/// - its chi-square is below the 99.9 % quantile for as many degrees of freedom as there are residuals less
+///   the parameters that the residuals, not the box, determine (trace of J'J (J'J + prior)^-1), at least one;
+/// - the misfit rises along each eigenvector of the posterior covariance, on both sides, as its linear model
+///   says: by 4 at 2 standard deviations, where 1 to 12 is accepted. That is a curvature within a factor 3 to
+///   4, beyond which a standard deviation would be wrong by a factor of 2. Where the limits of the search
+///   come first, the rise is that at the limit, and none is asked for within half a standard deviation: there
+///   the box decides and not the model.
+/// Cost: 2 s + 1 simulations, one batch.
+Acceptance testMinimum(Misfit& misfit, const LocalMisfit& minimum);
+
+}  // namespace twinmap

@@ -1,0 +1,103 @@
+#include "framework/refinement/misfit.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "framework/sensitivity/neighbourhood_simulator.hpp"
+#include "kernels/linalg/decompositions.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+MatrixXd LocalMisfit::calcHessian() const {
+  MatrixXd hessian = information;
+  hessian.diagonal().array() += kPriorInformation;
+  return hessian;
+}
+
+MatrixXd LocalMisfit::calcCovariance() const {
+  return linalg::solveCholesky(linalg::calcCholesky(calcHessian()).lower,
+                               MatrixXd::Identity(information.rows(), information.cols()));
+}
+
+Misfit::Misfit(Simulator& simulator, const RefinementModel& model, const SearchBox& box,
+               const VectorXd& measured)
+    : simulator_(simulator), model_(model), box_(box), measured_(measured), window_(&model.getWhole()) {}
+
+void Misfit::setWindow(const FeatureWindow& window) {
+  window_ = &window;
+  renewNoise();
+}
+
+const NoiseWhitener& Misfit::getWhitener() const {
+  return window_->whitener ? *window_->whitener : *whitener_;
+}
+
+MatrixXd Misfit::makePoints(const MatrixXd& points) const {
+  MatrixXd sampled(box_.makePoint(points.col(0)).size(), points.cols());
+  for (Index i = 0; i < points.cols(); ++i) {
+    sampled.col(i) = box_.makePoint(points.col(i));
+  }
+  return sampled;
+}
+
+std::vector<LocalMisfit> Misfit::linearizeAll(const MatrixXd& points) {
+  const MatrixXd sampled = makePoints(points);
+  const int neighbours = countNeighbours(model_.getUnknown().size());
+  MatrixXd neighbourhoods(simulator_.getLayout().getRowCount() * neighbours, points.cols());
+  std::vector<SampleStatus> statuses(static_cast<std::size_t>(points.cols()));
+  simulateNeighbourhoods(simulator_, model_.getUnknown(), sampled, neighbourhoods, statuses.data());
+  simulations_ += static_cast<int>(points.cols()) * (simulator_.hasDerivatives() ? 1 : neighbours);
+  std::vector<LocalMisfit> local;
+  for (Index i = 0; i < points.cols(); ++i) {
+    local.push_back(makeLocalMisfit(
+        points.col(i), makeLocalModel(model_.getExtractor(), model_.getUnknown(), sampled.col(i),
+                                      neighbourhoods.col(i), statuses[static_cast<std::size_t>(i)])));
+  }
+  return local;
+}
+
+LocalMisfit Misfit::makeLocalMisfit(const VectorXd& at, const LocalModel& local) {
+  const SearchedParameters& searched = box_.getSearched();
+  if (!local.status.ok) {
+    return {local.status, {}, 0.0, 0.0, 0, {}, {}};
+  }
+  if (!window_->whitener && !whitener_) {
+    whitener_ = model_.makeWhitener(*window_, local.response);
+  }
+  const VectorXd difference = (measured_ - local.features)(window_->features);
+  const VectorXd residual = getWhitener().apply(difference);
+  const MatrixXd sensitivities =
+      0.5 * local.sensitivities(window_->features, Eigen::seqN(searched.first, searched.count));
+  const MatrixXd jacobian = getWhitener().apply(sensitivities);
+  const double chi_square = residual.squaredNorm();
+  return {local.status,
+          at,
+          chi_square,
+          chi_square + kPriorInformation * at.squaredNorm(),
+          residual.size(),
+          jacobian.transpose() * jacobian,
+          jacobian.transpose() * residual - kPriorInformation * at};
+}
+
+VectorXd Misfit::evaluate(const MatrixXd& points) {
+  const MatrixXd sampled = makePoints(points);
+  MatrixXd responses(simulator_.getLayout().getRowCount(), points.cols());
+  std::vector<SampleStatus> statuses(static_cast<std::size_t>(points.cols()));
+  simulator_.simulate(sampled, responses, statuses.data());
+  simulations_ += static_cast<int>(points.cols());
+  const MatrixXd differences = (-model_.getExtractor().extract(responses)).colwise() + measured_;
+  VectorXd misfits = getWhitener().apply(differences(window_->features, Eigen::all)).colwise().squaredNorm();
+  misfits += kPriorInformation * points.colwise().squaredNorm().transpose();
+  for (Index i = 0; i < points.cols(); ++i) {
+    if (!statuses[static_cast<std::size_t>(i)].ok || !std::isfinite(misfits[i])) {
+      misfits[i] = std::numeric_limits<double>::infinity();
+    }
+  }
+  return misfits;
+}
+
+}  // namespace twinmap

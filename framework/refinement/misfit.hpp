@@ -1,0 +1,70 @@
+#pragma once
+
+#include <optional>
+
+#include "framework/refinement/refinement_model.hpp"
+#include "framework/refinement/search_box.hpp"
+#include "framework/sensitivity/feature_sensitivities.hpp"
+#include "framework/simulation/simulator.hpp"
+
+namespace twinmap {
+
+/// The misfit and its linear model at a point `at` (s, half-widths): with the whitened residual r and its
+/// derivatives -J,
+///   misfit(at + step) ~ misfit - 2 step' descent + step' (information + prior) step.
+struct LocalMisfit {
+  SampleStatus status;  ///< if not ok, the rest is empty
+  Eigen::VectorXd at;
+  double chi_square = 0.0;      ///< |r|^2
+  double misfit = 0.0;          ///< chi_square + 3 |at|^2, the box as a normal distribution of its variance
+  Eigen::Index residuals = 0;   ///< k
+  Eigen::MatrixXd information;  ///< J'J, s x s
+  Eigen::VectorXd descent;      ///< J'r - 3 at
+
+  Eigen::MatrixXd calcHessian() const;     ///< information + prior
+  Eigen::MatrixXd calcCovariance() const;  ///< its inverse, in half-widths
+};
+
+/// How badly the simulator explains measured features, in units of their noise. One measurement, one thread.
+class Misfit {
+ public:
+  /// All must outlive the object.
+  Misfit(Simulator& simulator, const RefinementModel& model, const SearchBox& box,
+         const Eigen::VectorXd& measured);
+
+  const SearchBox& getBox() const { return box_; }
+  int getSimulations() const { return simulations_; }
+
+  /// Looks at the features of a window alone from now on.
+  void setWindow(const FeatureWindow& window);
+  /// Takes the noise at the next point that is linearised, where it depends on the response; it stays until
+  /// it is renewed, so that misfits can be compared.
+  void renewNoise() { whitener_.reset(); }
+
+  /// By exact derivatives where the simulator has them (simulateNeighbourhoods).
+  LocalMisfit linearize(const Eigen::VectorXd& at) { return linearizeAll(at).front(); }
+  /// At all columns of `points` (s x n), simulated as one batch.
+  std::vector<LocalMisfit> linearizeAll(const Eigen::MatrixXd& points);
+
+  /// Whether four points are linearised about as fast as one: exact derivatives in lanes.
+  bool linearizesTogether() const { return simulator_.hasDerivatives() && simulator_.getBatchSize() >= 4; }
+
+  /// The misfits at the columns of `points` (s x n), simulated as one batch; infinity where a simulation
+  /// fails. After linearize().
+  Eigen::VectorXd evaluate(const Eigen::MatrixXd& points);
+
+ private:
+  const NoiseWhitener& getWhitener() const;
+  Eigen::MatrixXd makePoints(const Eigen::MatrixXd& points) const;
+  LocalMisfit makeLocalMisfit(const Eigen::VectorXd& at, const LocalModel& local);
+
+  Simulator& simulator_;
+  const RefinementModel& model_;
+  const SearchBox& box_;
+  const Eigen::VectorXd& measured_;
+  const FeatureWindow* window_;
+  std::optional<NoiseWhitener> whitener_;  // where the noise depends on the response
+  int simulations_ = 0;
+};
+
+}  // namespace twinmap

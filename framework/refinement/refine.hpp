@@ -1,0 +1,38 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "framework/refinement/refined.hpp"
+#include "framework/refinement/refinement_model.hpp"
+#include "framework/refinement/search_box.hpp"
+#include "framework/simulation/simulator.hpp"
+
+namespace twinmap {
+
+/// A point where a refinement may begin: the answer of a map, or a simulation that is similar.
+struct RefinementStart {
+  std::string name;       ///< "inverse_map", "training 3"
+  Eigen::VectorXd point;  ///< of the sampled box; what is not searched is held there
+};
+
+/// One measurement to refine.
+struct RefinementTask {
+  Eigen::VectorXd features;             ///< d, finite
+  std::vector<RefinementStart> starts;  ///< at least one, in the order they are tried
+  SearchedParameters searched;
+  bool insist = true;  ///< where no start is accepted, fit growing windows of time; else the starts alone
+};
+
+/// Least squares on the simulator from one start after another, until an answer is accepted (search,
+/// testMinimum); where none is, the best of them with the reason.
+Refined refine(Simulator& simulator, const RefinementModel& model, const RefinementTask& task);
+
+/// Measurements side by side on a team of threads; the result does not depend on their number. `before_each`
+/// is called by any thread before it begins one; what it throws ends the team.
+std::vector<Refined> refineAll(const Simulator& prototype, const RefinementModel& model,
+                               const std::vector<RefinementTask>& tasks, int threads,
+                               const std::function<void()>& before_each = nullptr);
+
+}  // namespace twinmap
