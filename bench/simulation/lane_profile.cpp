@@ -28,8 +28,10 @@ double countOperations(Operation operation) {
 }
 
 /// All but the time.
-ProgramCost countCost(const program::Segment& segment) {
+ProgramCost countCost(const program::Program& program, int lanes) {
+  const program::Segment& segment = program.evaluation;
   ProgramCost cost;
+  cost.memory = 8.0 * program.slot_count * lanes;
   cost.instructions = static_cast<int>(segment.instructions.size());
   cost.dispatches = static_cast<int>(segment.runs.size());
   for (const program::Run& run : segment.runs) {
@@ -61,7 +63,7 @@ ProgramCost measureProgram(program::Recorder& recorder, const std::vector<progra
   for (int i = 0; i < states; ++i) {
     std::fill_n(interpreter.updState(i), interpreter.getLanes(), 0.1 * (i + 1));
   }
-  ProgramCost cost = countCost(program.evaluation);
+  ProgramCost cost = countCost(program, interpreter.getLanes());
   cost.time_ns = measureEvaluation(interpreter, cost.instructions);
   return cost;
 }
@@ -82,7 +84,7 @@ ProgramCost measureDerivative(const lanes::Problem& problem, const lanes::StepEn
       interpreter.updPhaseInput(i)[lane] = sample.phases[0].inputs[i];
     }
   }
-  ProgramCost cost = countCost(problem.derivative.evaluation);
+  ProgramCost cost = countCost(problem.derivative, interpreter.getLanes());
   cost.time_ns = measureEvaluation(interpreter, cost.instructions);
   return cost;
 }

@@ -12,6 +12,7 @@ namespace twinmap::bench {
 struct ProgramCost {
   int instructions = 0, dispatches = 0;
   double operations = 0.0, bytes = 0.0;
+  double memory = 0.0;   ///< bytes of all values in all lanes
   double time_ns = 0.0;  ///< processor time; of all lanes together, divided by their number
 };
 

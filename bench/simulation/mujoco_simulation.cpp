@@ -2,11 +2,16 @@
 
 #include <array>
 #include <stdexcept>
+#include <utility>
 
 namespace twinmap::bench {
 namespace {
 
+/// MuJoCo would write them to a file; a solution that is lost shows in its error.
+void ignoreWarning(const char*) {}
+
 mjModel* loadModel(const std::string& file) {
+  mju_user_warning = ignoreWarning;
   std::array<char, 1000> error{};
   mjModel* model = mj_loadXML(file.c_str(), nullptr, error.data(), static_cast<int>(error.size()));
   if (model == nullptr) {

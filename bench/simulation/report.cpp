@@ -2,13 +2,15 @@
 
 #include <fmt/core.h>
 
+#include <string>
+
 namespace twinmap::bench {
 namespace {
 
 void printCost(const std::string& name, const ProgramCost& cost) {
-  fmt::print("| {} | {} | {} | {:.0f} | {:.1f} | {:.2f} | {:.1f} | {:.0f} |\n", name, cost.instructions,
-             cost.dispatches, cost.operations, cost.time_ns, cost.time_ns / cost.instructions,
-             cost.operations / cost.time_ns, cost.bytes / cost.time_ns);
+  fmt::print("| {} | {} | {} | {:.0f} | {:.0f} KiB | {:.1f} | {:.2f} | {:.1f} | {:.0f} |\n", name,
+             cost.instructions, cost.dispatches, cost.operations, cost.memory / 1024.0, cost.time_ns,
+             cost.time_ns / cost.instructions, cost.operations / cost.time_ns, cost.bytes / cost.time_ns);
 }
 
 }  // namespace
@@ -18,7 +20,7 @@ void printComparisons(const std::vector<Comparison>& comparisons) {
   for (const Comparison& c : comparisons) {
     fmt::print("| {} | MuJoCo, step {:.2f} ms (a quarter: {:.0e}) | {:.1e} | {:.0f} | {:.1f} |\n", c.name,
                1e3 * c.mujoco_step, c.fine_mujoco_error, c.mujoco_error, c.mujoco_time,
-               c.mujoco_time / c.lane_time);
+               c.calcMujocoTimeAtEqualError() / c.lane_time);
     fmt::print("| | lanes | {:.1e} | {:.1f} | 1 |\n", c.lane_error, c.lane_time);
     fmt::print("| | simbody | {:.1e} | {:.0f} | {:.1f} |\n", c.simbody_error, c.simbody_time,
                c.simbody_time / c.lane_time);
@@ -44,9 +46,10 @@ void printLanes(const std::vector<Comparison>& comparisons) {
 void printPrograms(const std::vector<Comparison>& comparisons, const ProgramCost& multiply_adds,
                    const ProgramCost& sines) {
   fmt::print(
-      "\n| derivative of | instructions | dispatches | operations | ns a sample | ns an instruction | "
+      "\n| derivative of | instructions | dispatches | operations | values | ns a sample | ns an instruction "
+      "| "
       "Gflop/s | GB/s |\n"
-      "|---|--:|--:|--:|--:|--:|--:|--:|\n");
+      "|---|--:|--:|--:|--:|--:|--:|--:|--:|\n");
   for (const Comparison& c : comparisons) {
     printCost(c.name, c.profile.derivative);
   }
