@@ -510,7 +510,7 @@ class Run(TestCase):
         self.assertEqual(provenance["threads"], 2)
         self.assertEqual(provenance["seed"], 1)
         self.assertIn("design.train.samples=40", provenance["command"])
-        self.assertEqual(len(provenance["seconds"]), 9)
+        self.assertEqual(len(provenance["seconds"]), 8)
         self.assertEqual(provenance["online"]["updates"], 20)
         self.assertGreaterEqual(provenance["online"]["p99_us"], provenance["online"]["median_us"])
         self.assertGreater(provenance["peak_memory_mb"], 1)
