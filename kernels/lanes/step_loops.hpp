@@ -30,9 +30,10 @@ constexpr double kDenseWeights[8] = {0,
                                      69997945.0 / 29380423.0};
 /// The second slopes enter neither; the last ones of the error come first.
 constexpr int kErrorStages[] = {1, 3, 4, 5, 6}, kDenseStages[] = {1, 3, 4, 5, 6, 7};
-/// Of 0.75, 0.8, 0.85, 0.9 and 0.95 on nine mechanisms (beams, crane, oscillators, chains with and without dry
-/// friction, pendula, a spatial arm), 0.85 tried fewest steps on seven; 0.9 tried 3 and 4 % fewer on the other
-/// two and 2 to 8 % more on most, 0.8 up to 6 % more. It rejects 0.2 % (silverbox) to 9 % (dry friction).
+/// Of 0.75, 0.8, 0.85, 0.9 and 0.95 on nine mechanisms (beams, crane, oscillators, chains with and without
+/// dry friction, pendula, a spatial arm), 0.85 tried fewest steps on seven; 0.9 tried 3 and 4 % fewer on the
+/// other two and 2 to 8 % more on most, 0.8 up to 6 % more. It rejects 0.2 % (silverbox) to 9 % (dry
+/// friction).
 constexpr double kSafety = 0.85;
 constexpr double kLargestGrowth = 10.0, kSmallestFactor = 0.1;
 
