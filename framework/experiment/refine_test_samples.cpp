@@ -87,13 +87,24 @@ std::string describe(const std::vector<Refined>& refined) {
   return text;
 }
 
+/// A warning where a user would not get a refined answer to one measurement in ten or more.
+void warnOfFew(const std::vector<Refined>& refined, StageNotes& notes) {
+  constexpr double kMost = 0.9;
+  const std::size_t accepted = findAccepted(refined).size();
+  if (static_cast<double>(accepted) < kMost * static_cast<double>(refined.size())) {
+    notes.warnings.push_back(fmt::format(
+        "refinement: {} of {} test samples were accepted ({}); answers to the others are the map's alone",
+        accepted, refined.size(), describe(refined)));
+  }
+}
+
 }  // namespace
 
 std::vector<Refined> refineTestSamples(const RefinementContext& context, const Predictions& answers) {
   const RefinementModel model(collectUnknown(context.experiment.model), context.extractor,
                               context.data.noise);
   const auto tasks = context.online != nullptr ? makeOnlineTasks(context) : makeTasks(context, answers);
-  return refineAll(context.simulator, model, tasks, context.control.threads, [&] {
+  return refineWhileHopeful(context.simulator, model, tasks, context.control.threads, [&] {
     if (context.control.abandon != nullptr && *context.control.abandon) {
       throw Interrupted("interrupted during refinement; the simulated samples are kept");
     }
@@ -140,6 +151,7 @@ StageNotes evaluateRefinement(const RefinementContext& context, Evaluation& eval
     const std::vector<Refined> refined = timeStage(
         "refine the test samples", notes, [&] { return refineTestSamples(context, evaluation.predictions); });
     spdlog::info("refined: {}", describe(refined));
+    warnOfFew(refined, notes);
     evaluation.refined = refined;
     evaluation.methods = compareMethods(context.experiment, evaluation, refined);
   } catch (const std::invalid_argument& error) {

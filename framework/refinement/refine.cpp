@@ -1,5 +1,7 @@
 #include "framework/refinement/refine.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -198,6 +200,27 @@ std::vector<Refined> refineAll(const Simulator& prototype, const RefinementModel
     }
     refined[static_cast<std::size_t>(i)] = refine(simulator, model, tasks[static_cast<std::size_t>(i)]);
   });
+  return refined;
+}
+
+std::vector<Refined> refineWhileHopeful(const Simulator& prototype, const RefinementModel& model,
+                                        const std::vector<RefinementTask>& tasks, int threads,
+                                        const std::function<void()>& before_each) {
+  constexpr std::ptrdiff_t kFirst = 16;
+  const auto middle = tasks.begin() + std::min(kFirst, static_cast<std::ptrdiff_t>(tasks.size()));
+  std::vector<Refined> refined = refineAll(prototype, model, {tasks.begin(), middle}, threads, before_each);
+  const std::vector<RefinementTask> others(middle, tasks.end());
+  if (std::any_of(refined.begin(), refined.end(), [](const Refined& one) { return one.isAccepted(); })) {
+    const std::vector<Refined> more = refineAll(prototype, model, others, threads, before_each);
+    refined.insert(refined.end(), more.begin(), more.end());
+    return refined;
+  }
+  for (const RefinementTask& task : others) {
+    Refined untried;
+    untried.message = fmt::format("not tried: none of the first {} was accepted", kFirst);
+    untried.point = task.starts.front().point;
+    refined.push_back(untried);
+  }
   return refined;
 }
 

@@ -35,4 +35,11 @@ std::vector<Refined> refineAll(const Simulator& prototype, const RefinementModel
                                const std::vector<RefinementTask>& tasks, int threads,
                                const std::function<void()>& before_each = nullptr);
 
+/// As refineAll(), but the first 16 alone before the others, which are not tried if none of these is
+/// accepted: a model whose answers least squares cannot find (one whose forces jump with its state, for
+/// example) would take all starts for each of them, some seconds.
+std::vector<Refined> refineWhileHopeful(const Simulator& prototype, const RefinementModel& model,
+                                        const std::vector<RefinementTask>& tasks, int threads,
+                                        const std::function<void()>& before_each = nullptr);
+
 }  // namespace twinmap

@@ -238,5 +238,33 @@ TEST(Refine, GivesTheSameBitsForAnyNumberOfThreads) {
   }
 }
 
+TEST(Refine, IsGivenUpWhereTheFirstAllFail) {
+  Problem hopeless(20, failAboveHalf, testing::makeParameters(1, -1.0, 1.0), 0.002);
+  const RefinementTask task{VectorXd::Zero(20), {{"map", makeVector({0.8})}}, {0, 1}};
+  const std::vector<Refined> refined =
+      refineWhileHopeful(hopeless.simulator, hopeless.model, std::vector<RefinementTask>(18, task), 2);
+  ASSERT_EQ(refined.size(), 18u);
+  EXPECT_EQ(refined[15].message, "cannot be");
+  EXPECT_EQ(refined[16].message, "not tried: none of the first 16 was accepted");
+  EXPECT_EQ(refined[17].status, RefinementStatus::kFailed);
+  EXPECT_EQ(refined[17].point, makeVector({0.8}));
+  EXPECT_EQ(refined[17].simulations, 0);
+}
+
+TEST(Refine, GoesOnWhereOneOfTheFirstIsAccepted) {
+  Problem problem = makeSine();
+  const VectorXd truth = makeVector({0.9});
+  const RefinementTask good{problem.measure(truth, kSineNoise, 3), {{"map", truth * 1.01}}, {0, 1}};
+  const RefinementTask bad{VectorXd::Constant(good.features.size(), 100.0), {{"map", truth}}, {0, 1}, false};
+  std::vector<RefinementTask> tasks(20, bad);
+  tasks[7] = good;
+  tasks[18] = good;
+  const std::vector<Refined> refined = refineWhileHopeful(problem.simulator, problem.model, tasks, 2);
+  EXPECT_TRUE(refined[7].isAccepted());
+  EXPECT_TRUE(refined[18].isAccepted());
+  EXPECT_FALSE(refined[19].isAccepted());
+  EXPECT_GT(refined[19].simulations, 0);
+}
+
 }  // namespace
 }  // namespace twinmap
