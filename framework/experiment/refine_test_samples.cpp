@@ -48,7 +48,7 @@ std::vector<RefinementTask> makeOnlineTasks(const RefinementContext& context) {
     answer.mean = inference.mean;
     if (trust != nullptr) {
       judge(*trust, test.features.col(i), answer.known, inference, judging);
-      answer.explanation = trust->center + trust->half_width.cwiseProduct(judging.explanation.best.point);
+      answer.explanation = trust->makeSampledPoint(judging.explanation.best.point);
     }
     tasks.push_back(makeRefinementTask(context.experiment.model, trust, test.features.col(i), answer));
   }
@@ -74,7 +74,7 @@ std::vector<Index> findAccepted(const std::vector<Refined>& refined) {
   return accepted;
 }
 
-/// "accepted 58, misfit 2; inverse_map 50, training 1 8"
+/// "121 accepted from inverse_map, 5 nonlinear"
 std::string describe(const std::vector<Refined>& refined) {
   std::map<std::string, int> counts;
   for (const Refined& one : refined) {
@@ -88,13 +88,13 @@ std::string describe(const std::vector<Refined>& refined) {
 }
 
 /// A warning where a user would not get a refined answer to one measurement in ten or more.
-void warnOfFew(const std::vector<Refined>& refined, StageNotes& notes) {
-  constexpr double kMost = 0.9;
+void warnOfFew(const std::vector<Refined>& refined, const std::string& outcome, StageNotes& notes) {
+  constexpr double kLeast = 0.9;
   const std::size_t accepted = findAccepted(refined).size();
-  if (static_cast<double>(accepted) < kMost * static_cast<double>(refined.size())) {
+  if (static_cast<double>(accepted) < kLeast * static_cast<double>(refined.size())) {
     notes.warnings.push_back(fmt::format(
         "refinement: {} of {} test samples were accepted ({}); answers to the others are the map's alone",
-        accepted, refined.size(), describe(refined)));
+        accepted, refined.size(), outcome));
   }
 }
 
@@ -150,8 +150,9 @@ StageNotes evaluateRefinement(const RefinementContext& context, Evaluation& eval
   try {
     const std::vector<Refined> refined = timeStage(
         "refine the test samples", notes, [&] { return refineTestSamples(context, evaluation.predictions); });
-    spdlog::info("refined: {}", describe(refined));
-    warnOfFew(refined, notes);
+    const std::string outcome = describe(refined);
+    spdlog::info("refined: {}", outcome);
+    warnOfFew(refined, outcome, notes);
     evaluation.refined = refined;
     evaluation.methods = compareMethods(context.experiment, evaluation, refined);
   } catch (const std::invalid_argument& error) {

@@ -57,8 +57,8 @@ RefinementTask makeRefinementTask(const ModelSpec& model, const TrustModel* trus
   const Eigen::MatrixXd& points = trust->forward.score_map.getParts().points;
   int rank = 0;
   for (const Index sample : rankTraining(trust->forward, features)) {
-    task.starts.push_back({"training " + std::to_string(++rank),
-                           trust->center + trust->half_width.cwiseProduct(points.col(sample))});
+    task.starts.push_back(
+        {"training " + std::to_string(++rank), trust->makeSampledPoint(points.col(sample))});
   }
   return task;
 }

@@ -1,7 +1,7 @@
 #include "framework/experiment/train_map.hpp"
 
+#include "framework/experiment/train_interruptibly.hpp"
 #include "framework/inverse_map/train_gp_map.hpp"
-#include "framework/monitoring/interrupted.hpp"
 #include "framework/monitoring/stage_timer.hpp"
 #include "framework/spec/check/check_experiment.hpp"
 
@@ -42,16 +42,6 @@ std::vector<TrainedHyperparameter> listHyperparameters(const std::vector<std::st
   return listed;
 }
 
-GpMapTraining trainInterruptibly(const ExperimentSpec& experiment, const std::vector<std::string>& names,
-                                 const LabelledFeatures& samples, const TrainingControl& control) {
-  try {
-    return trainGpMap(*experiment.inverse_map.findGp(), experiment.transform, names, samples, control,
-                      experiment.model.inputs);
-  } catch (const gp::Stopped&) {
-    throw Interrupted("interrupted during training; the simulated samples are kept");
-  }
-}
-
 }  // namespace
 
 Training trainMap(const ExperimentSpec& experiment, const LabelledFeatures& samples,
@@ -59,7 +49,10 @@ Training trainMap(const ExperimentSpec& experiment, const LabelledFeatures& samp
   const std::vector<std::string> names = collectNames(experiment.model.parameters);
   Training training;
   GpMapTraining trained = timeStage("train the inverse map", training.notes, [&] {
-    return trainInterruptibly(experiment, names, samples, {control.threads, control.abandon});
+    return trainInterruptibly([&] {
+      return trainGpMap(*experiment.inverse_map.findGp(), experiment.transform, names, samples,
+                        {control.threads, control.abandon}, experiment.model.inputs);
+    });
   });
   training.notes.warnings = std::move(trained.warnings);
   training.summary.leave_one_out = calcMetrics(experiment.model.parameters, samples.parameters,

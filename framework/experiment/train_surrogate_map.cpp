@@ -3,19 +3,17 @@
 #include <limits>
 #include <stdexcept>
 
-#include "framework/monitoring/interrupted.hpp"
+#include "framework/experiment/train_interruptibly.hpp"
 #include "framework/monitoring/stage_timer.hpp"
 #include "framework/surrogate/train_surrogate.hpp"
 
 namespace twinmap {
 namespace {
 
-SurrogateTraining trainInterruptibly(const ModelSpec& model, const SurrogateSamples& samples,
-                                     const TrainingControl& control) {
+SurrogateTraining train(const ModelSpec& model, const SurrogateSamples& samples,
+                        const TrainingControl& control) {
   try {
-    return trainSurrogate(model, samples, control);
-  } catch (const gp::Stopped&) {
-    throw Interrupted("interrupted during training; the simulated samples are kept");
+    return trainInterruptibly([&] { return trainSurrogate(model, samples, control); });
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(std::string("the surrogate cannot be trained: ") + error.what());
   }
@@ -32,7 +30,7 @@ SurrogateMapTraining trainSurrogateMap(const ExperimentSpec& experiment, const S
                                    samples.noise_covariance, samples.features};
   SurrogateMapTraining training;
   SurrogateTraining trained = timeStage("train the surrogate", training.notes, [&] {
-    return trainInterruptibly(experiment.model, simulated, {control.threads, control.abandon});
+    return train(experiment.model, simulated, {control.threads, control.abandon});
   });
   training.notes.warnings = std::move(trained.warnings);
   const SurrogateValidation& validation = trained.surrogate.validation;

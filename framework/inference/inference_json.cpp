@@ -3,6 +3,7 @@
 
 #include "framework/inference/answer.hpp"
 #include "framework/inference/inference_text.hpp"
+#include "framework/inverse_map/predictions.hpp"
 
 namespace twinmap {
 namespace {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "framework/inference/answer.hpp"
+#include "framework/inverse_map/predictions.hpp"
 #include "framework/results/escape.hpp"
 #include "framework/spec/parameter_box.hpp"
 #include "framework/spec/yaml/number_text.hpp"

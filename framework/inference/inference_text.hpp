@@ -7,9 +7,6 @@
 
 namespace twinmap {
 
-/// The 95 % interval of a normal distribution is mean +- this many standard deviations.
-constexpr double kNormal95 = 1.959963984540054;
-
 /// The status with its numbers, and a line for each thing that is wrong.
 std::string describeTrust(const InferredMeasurement& inferred, const std::vector<FeatureInfo>& features);
 

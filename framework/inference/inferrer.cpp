@@ -92,8 +92,7 @@ InferredMeasurement Inferrer::infer(const Eigen::VectorXd& features, const Eigen
   inferred.inference = map_.infer(features, known, workspace.map);
   if (trust_) {
     inferred.trust = judge(*trust_, features, known, inferred.inference, workspace.trust);
-    inferred.explanation =
-        trust_->center + trust_->half_width.cwiseProduct(workspace.trust.explanation.best.point);
+    inferred.explanation = trust_->makeSampledPoint(workspace.trust.explanation.best.point);
   }
   return inferred;
 }

@@ -7,6 +7,7 @@
 
 #include "framework/inference/inference_text.hpp"
 #include "framework/inference/replay_files.hpp"
+#include "framework/inverse_map/predictions.hpp"
 #include "framework/report/figure.hpp"
 #include "framework/report/html.hpp"
 #include "framework/report/response_panels.hpp"

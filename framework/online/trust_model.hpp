@@ -61,6 +61,11 @@ struct TrustModel {
   Eigen::VectorXd center, half_width;  ///< m, of the sampled box
   Eigen::Index unknown = 0;            ///< leading variables of a point that a measurement leaves open
   double level = 0.01;                 ///< false alarms of model_mismatch
+
+  /// The point of the sampled box that a normalised one stands for.
+  Eigen::VectorXd makeSampledPoint(const Eigen::Ref<const Eigen::VectorXd>& normalised) const {
+    return center + half_width.cwiseProduct(normalised);
+  }
 };
 
 /// The buffers of one thread.

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "framework/sensitivity/neighbourhood_simulator.hpp"
+#include "framework/spec/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -14,7 +15,7 @@ using Eigen::VectorXd;
 
 MatrixXd LocalMisfit::calcHessian() const {
   MatrixXd hessian = information;
-  hessian.diagonal().array() += kPriorInformation;
+  hessian.diagonal().array() += kHalfWidthInformation;
   return hessian;
 }
 
@@ -77,10 +78,10 @@ LocalMisfit Misfit::makeLocalMisfit(const VectorXd& at, const LocalModel& local)
   return {local.status,
           at,
           chi_square,
-          chi_square + kPriorInformation * at.squaredNorm(),
+          chi_square + kHalfWidthInformation * at.squaredNorm(),
           residual.size(),
           jacobian.transpose() * jacobian,
-          jacobian.transpose() * residual - kPriorInformation * at};
+          jacobian.transpose() * residual - kHalfWidthInformation * at};
 }
 
 VectorXd Misfit::evaluate(const MatrixXd& points) {
@@ -91,7 +92,7 @@ VectorXd Misfit::evaluate(const MatrixXd& points) {
   simulations_ += static_cast<int>(points.cols());
   const MatrixXd differences = (-model_.getExtractor().extract(responses)).colwise() + measured_;
   VectorXd misfits = getWhitener().apply(differences(window_->features, Eigen::all)).colwise().squaredNorm();
-  misfits += kPriorInformation * points.colwise().squaredNorm().transpose();
+  misfits += kHalfWidthInformation * points.colwise().squaredNorm().transpose();
   for (Index i = 0; i < points.cols(); ++i) {
     if (!statuses[static_cast<std::size_t>(i)].ok || !std::isfinite(misfits[i])) {
       misfits[i] = std::numeric_limits<double>::infinity();

@@ -121,9 +121,14 @@ class Refinement {
       found.message = acceptance.message;
     }
     if (found.isAccepted()) {
-      setCovariance(end.local.calcCovariance() + end.rest * end.rest.transpose(), found);
+      setCovariance(calcCovariance(end), found);
     }
     return found;
+  }
+
+  /// With the step that was not taken.
+  static MatrixXd calcCovariance(const SearchEnd& end) {
+    return end.local.calcCovariance() + end.rest * end.rest.transpose();
   }
 
   void setCovariance(const MatrixXd& covariance, Refined& found) const {
@@ -139,7 +144,7 @@ class Refinement {
       return;
     }
     const LocalMisfit usual = misfit_.linearize(end.local.at);
-    MatrixXd covariance = end.local.calcCovariance() + end.rest * end.rest.transpose();
+    MatrixXd covariance = calcCovariance(end);
     if (usual.status.ok) {
       const VectorXd moved = end.local.calcCovariance() * (usual.descent - end.local.descent);
       covariance += moved * moved.transpose();

@@ -119,10 +119,6 @@ bool improve(Misfit& misfit, LocalMisfit& local, double& damping) {
   return true;
 }
 
-}  // namespace
-
-namespace {
-
 /// How far the step goes where the limits do not stop it, in standard deviations.
 double calcFreeLength(const LocalMisfit& local) {
   const MatrixXd covariance = local.calcCovariance();

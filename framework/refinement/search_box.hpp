@@ -13,10 +13,6 @@ struct SearchedParameters {
   Eigen::Index first = 0, count = 0;
 };
 
-/// What the box says of each searched parameter before the measurement, per half-width squared: 1 / variance
-/// of a uniform distribution over [-1, 1] (calcLimitCovariance has it per width).
-constexpr double kPriorInformation = 3.0;
-
 /// The searched parameters in half-widths of their bounds from the middle, so that [-1, 1] is the box, and
 /// where the search may go: noise puts the best answer a little outside. Immutable.
 class SearchBox {

@@ -38,5 +38,7 @@ inline Eigen::VectorXd calcBoxCenter(const std::vector<ParameterSpec>& parameter
 constexpr double kUniformStddev = 0.28867513459481287;
 /// 1 / variance of the same.
 constexpr double kUniformInformation = 12.0;
+/// The same in half-widths, for variables normalised to [-1, 1].
+constexpr double kHalfWidthInformation = kUniformInformation / 4.0;
 
 }  // namespace twinmap

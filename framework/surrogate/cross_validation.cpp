@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/inverse_map/predictions.hpp"
 #include "framework/inverse_map/residual_correlation.hpp"
 #include "framework/surrogate/honest_stddev.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -85,7 +86,7 @@ HeldOut crossValidate(const Surrogate& whole, const SurrogateSamples& samples, c
 }
 
 SurrogateValidation validate(const HeldOut& held_out) {
-  constexpr double kNormal95 = 1.959963984540054, kMapLimited = 0.8;
+  constexpr double kMapLimited = 0.8;
   const Predictions& found = held_out.predictions;
   const MatrixXd z = (found.mean - held_out.truth).cwiseQuotient(found.stddev);
   const Index p = z.rows();

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/inverse_map/predictions.hpp"
+
 namespace twinmap {
 namespace {
 
-constexpr double kNormal95 = 1.959963984540054, kNormal68 = 0.994457883209753;
+constexpr double kNormal68 = 0.994457883209753;
 
 /// The value below which a further sample lies with probability `level`; the largest if there are too few.
 double calcQuantile(const Eigen::VectorXd& sorted, double level) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "framework/spec/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -14,8 +15,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
-
-constexpr double kBoxPrecision = 3.0;  // of a uniform variable on [-1, 1]
 
 /// log det of a matrix from its Cholesky factor.
 double calcLogDeterminant(const MatrixXd& lower) {
@@ -90,7 +89,7 @@ double ScoreInversion::calcObjective(const Metric& metric, const VectorXd& unkno
   } else {
     residual_ = linalg::solveLower(metric.lower, residual_);
   }
-  return residual_.squaredNorm() + kBoxPrecision * unknown.squaredNorm();
+  return residual_.squaredNorm() + kHalfWidthInformation * unknown.squaredNorm();
 }
 
 void ScoreInversion::linearize(const Metric& metric) {
@@ -111,10 +110,10 @@ void ScoreInversion::linearize(const Metric& metric) {
 
 bool ScoreInversion::step(const Metric& metric, VectorXd& unknown, double& objective, double& damping) {
   constexpr double kFactor = 10.0, kMostDamping = 1e6, kLeastDamping = 1e-6;
-  const VectorXd downhill = gradient_ - kBoxPrecision * unknown;
+  const VectorXd downhill = gradient_ - kHalfWidthInformation * unknown;
   for (; damping < kMostDamping; damping *= kFactor) {
     MatrixXd damped = normal_;
-    damped.diagonal().array() += damping * damped.diagonal().array() + kBoxPrecision;
+    damped.diagonal().array() += damping * damped.diagonal().array() + kHalfWidthInformation;
     const VectorXd trial =
         (unknown + linalg::solvePositiveDefinite(damped, downhill)).cwiseMax(-1.0).cwiseMin(1.0);
     const double tried = calcObjective(metric, trial);
@@ -201,7 +200,7 @@ void ScoreInversion::refine(Minimum& minimum) {
   linearize(metric);
   minimum.information = normal_;
   minimum.shift = gradient_ + normal_ * minimum.point;
-  const MatrixXd posterior = normal_ + kBoxPrecision * MatrixXd::Identity(unknown_, unknown_);
+  const MatrixXd posterior = normal_ + kHalfWidthInformation * MatrixXd::Identity(unknown_, unknown_);
   minimum.objective += metric.log_determinant + calcLogDeterminant(linalg::calcCholesky(posterior).lower);
 }
 

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "framework/monitoring/interrupted.hpp"
+#include "kernels/gp/stop.hpp"
+
+namespace twinmap {
+
+/// What train() returns; throws Interrupted where it was stopped.
+template <typename Train>
+auto trainInterruptibly(const Train& train) {
+  try {
+    return train();
+  } catch (const gp::Stopped&) {
+    throw Interrupted("interrupted during training; the simulated samples are kept");
+  }
+}
+
+}  // namespace twinmap
