@@ -50,7 +50,7 @@ Training trainMap(const ExperimentSpec& experiment, const LabelledFeatures& samp
   Training training;
   GpMapTraining trained = timeStage("train the inverse map", training.notes, [&] {
     return trainInterruptibly([&] {
-      return trainGpMap(*experiment.inverse_map.findGp(), experiment.transform, names, samples,
+      return trainGpMap(*experiment.inverse_map.findProcesses(), experiment.transform, names, samples,
                         {control.threads, control.abandon}, experiment.model.inputs);
     });
   });

@@ -56,12 +56,21 @@ std::vector<std::string> listWarnings(const ModelSpec& model, const SurrogateVal
 
 }  // namespace
 
+std::string findSurrogateObstacle(const ModelSpec& model, Index simulations,
+                                  const MatrixXd& noise_covariance) {
+  constexpr Index kFewest = 20;  // five folds of which are a cross-validation
+  if (simulations < kFewest + 2 * static_cast<Index>(collectSampled(model).size())) {
+    return "a surrogate needs at least 20 training samples, and two a parameter more";
+  }
+  return noise_covariance.diagonal().minCoeff() > 0.0 ? "" : "the noise of a feature is 0";
+}
+
 SurrogateTraining trainSurrogate(const ModelSpec& model, const SurrogateSamples& given,
                                  const TrainingControl& control) {
   const SurrogateSamples samples = takeFirst(given);
-  constexpr Index kFewest = 20;  // five folds of which are a cross-validation
-  if (samples.points.cols() < kFewest + 2 * samples.points.rows()) {
-    throw std::invalid_argument("a surrogate needs at least 20 training samples, and two a parameter more");
+  const std::string obstacle = findSurrogateObstacle(model, samples.points.cols(), samples.noise_covariance);
+  if (!obstacle.empty()) {
+    throw std::invalid_argument(obstacle);
   }
   const std::vector<ParameterSpec> sampled = collectSampled(model);
   SurrogateTraining training;
