@@ -37,7 +37,7 @@ std::optional<InformationLimit> findLimit(const EvaluationContext& context, Stag
     });
   }
   if (context.experiment.evaluation.limit) {
-    notes.warnings.emplace_back("no information limit: the noise of a feature is 0");
+    notes.warn(Gravity::kRemark, "no information limit: the noise of a feature is 0");
   }
   return std::nullopt;
 }
@@ -75,8 +75,8 @@ std::vector<PosteriorComparison> comparePosteriors(const EvaluationContext& cont
                         predictions.stddev.col(i),
                         limit_stddev.cols() > 0 ? VectorXd(limit_stddev.col(i)) : VectorXd()});
     if (!exact[i].warning.empty()) {
-      notes.warnings.push_back(
-          fmt::format("exact posterior of test sample {}: {}", sample, exact[i].warning));
+      notes.warn(Gravity::kRemark,
+                 fmt::format("exact posterior of test sample {}: {}", sample, exact[i].warning));
     }
   }
   return compared;
@@ -112,8 +112,8 @@ BaselineResult timeBaseline(const BaselineSpec& spec, const EvaluationContext& c
   });
   notes.times.back().stage = "baseline " + result.method;
   if (result.unconverged > 0) {
-    notes.warnings.push_back(fmt::format("baseline {}: {} of {} searches did not converge", result.method,
-                                         result.unconverged, result.samples));
+    notes.warn(Gravity::kRemark, fmt::format("baseline {}: {} of {} searches did not converge", result.method,
+                                             result.unconverged, result.samples));
   }
   return result;
 }
@@ -148,9 +148,10 @@ void addLimit(const EvaluationContext& context, const InformationLimit& limit, M
   result.evaluation.relevance =
       FeatureRelevance{test.infos, test.noise_covariance.diagonal().cwiseSqrt(), limit.relevance};
   result.evaluation.identifiability = calcIdentifiability(limit, getParameters(context));
-  result.notes.append({result.evaluation.identifiability->warnings, {}});
+  result.notes.warn(Gravity::kPoor, result.evaluation.identifiability->warnings);
   if (limit.failures > 0) {
-    result.notes.warnings.push_back(
+    result.notes.warn(
+        Gravity::kRemark,
         fmt::format("the information limit of {} test samples could not be computed", limit.failures));
   }
 }

@@ -75,8 +75,8 @@ OnlineFit fitOnline(const ExperimentSpec& experiment, const SimulatedSets& sets,
     fit.model.trust = fitTrustModel(makeTrustTraining(experiment, sets, extractor, labelled),
                                     OnlineMap(fit.model.map), experiment.trust.level);
   } catch (const std::invalid_argument& error) {
-    fit.notes.warnings.push_back(std::string("measurements cannot be judged (no trust model): ") +
-                                 error.what());
+    fit.notes.warn(Gravity::kMisleading,
+                   std::string("measurements cannot be judged (no trust model): ") + error.what());
   }
   return fit;
 }

@@ -72,9 +72,11 @@ void warnOfFew(const std::vector<Refined>& refined, const std::string& outcome, 
   constexpr double kLeast = 0.9;
   const std::size_t accepted = findAccepted(refined).size();
   if (static_cast<double>(accepted) < kLeast * static_cast<double>(refined.size())) {
-    notes.warnings.push_back(fmt::format(
-        "refinement: {} of {} test samples were accepted ({}); answers to the others are the map's alone",
-        accepted, refined.size(), outcome));
+    notes.warn(
+        Gravity::kPoor,
+        fmt::format(
+            "refinement: {} of {} test samples were accepted ({}); answers to the others are the map's alone",
+            accepted, refined.size(), outcome));
   }
 }
 
@@ -102,7 +104,7 @@ RefinedTests refineTestSamples(const RefinementContext& context) {
     spdlog::info("refined: {}", outcome);
     warnOfFew(tests.refined, outcome, tests.notes);
   } catch (const std::invalid_argument& error) {
-    tests.notes.warnings.push_back(std::string("test samples cannot be refined: ") + error.what());
+    tests.notes.warn(Gravity::kPoor, std::string("test samples cannot be refined: ") + error.what());
   }
   return tests;
 }

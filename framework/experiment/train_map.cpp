@@ -54,7 +54,7 @@ Training trainMap(const ExperimentSpec& experiment, const LabelledFeatures& samp
                         {control.threads, control.abandon}, experiment.model.inputs);
     });
   });
-  training.notes.warnings = std::move(trained.warnings);
+  training.notes.warn(Gravity::kRemark, trained.warnings);
   training.summary.leave_one_out = calcMetrics(experiment.model.parameters, samples.parameters,
                                                trained.leave_one_out, {}, samples.replicates);
   training.summary.starts = summarizeTraining(names, trained.reports);

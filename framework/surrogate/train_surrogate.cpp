@@ -1,8 +1,11 @@
 #include "framework/surrogate/train_surrogate.hpp"
 
+#include <fmt/format.h>
+
 #include <stdexcept>
 
 #include "framework/spec/parameter_box.hpp"
+#include "framework/spec/yaml/nearest_name.hpp"
 #include "framework/surrogate/cross_validation.hpp"
 #include "framework/surrogate/fit_forward.hpp"
 
@@ -11,11 +14,6 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-
-std::string formatShare(double share) {
-  const std::string text = std::to_string(share);
-  return text.substr(0, text.find('.') + 3);
-}
 
 /// No more than an exact process is worth: the time grows with their number cubed.
 SurrogateSamples takeFirst(const SurrogateSamples& samples) {
@@ -37,19 +35,24 @@ SurrogateSamples takeFirst(const SurrogateSamples& samples) {
 
 std::vector<std::string> listWarnings(const ModelSpec& model, const SurrogateValidation& validation) {
   constexpr double kHonest = 0.9;
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings, told;
   for (Index k = 0; k < validation.coverage95.size(); ++k) {
     if (validation.coverage95(k) < kHonest) {
-      warnings.push_back("parameter '" + model.parameters[static_cast<std::size_t>(k)].name.text +
-                         "': only " + formatShare(validation.coverage95(k)) +
-                         " of the surrogate's own 95 % intervals held in cross-validation; its standard "
-                         "deviations are multiplied by " +
-                         formatShare(validation.stddev_scale(k)));
+      told.push_back(fmt::format("{} ({:.2f}, {:.2f})",
+                                 model.parameters[static_cast<std::size_t>(k)].name.text,
+                                 validation.coverage95(k), validation.stddev_scale(k)));
     }
+  }
+  if (!told.empty()) {
+    warnings.push_back(
+        "the surrogate's own 95 % intervals held too seldom in cross-validation, so that its "
+        "standard deviations are multiplied (share, factor): " +
+        listNames(told));
   }
   if (validation.status == SurrogateStatus::kMapLimited) {
     warnings.emplace_back(
-        "map_limited: the surrogate does not know its own error; more training samples would help");
+        "map_limited: the surrogate does not know its own error; refine the answers on the simulator, or add "
+        "simulations");
   }
   return warnings;
 }

@@ -86,6 +86,7 @@ RunSummary summarize(const Inputs& inputs, const GpMapTraining& trained, const O
   run.evaluation =
       evaluateAnswers(run.parameters, labelled.test.parameters,
                       makeAnswers(predictions, trained.map.residual_correlation, refined.refined), limit);
+  run.evaluation.refined = refined.refined;
   run.training.leave_one_out = calcMetrics(run.parameters, labelled.train.parameters, trained.leave_one_out,
                                            {}, labelled.train.replicates);
   for (const gp::Process& process : trained.map.processes) {
