@@ -104,7 +104,10 @@ OnlineFit prepareOnline(const RunContext& run, const SimulatedSets& sets, const 
                         const GpMap& map) {
   StageNotes notes;
   OnlineFit online = timeStage("prepare for measurements", notes,
-                               [&] { return fitOnline(run.experiment, sets, run.extractor, labelled, map); });
+                               [&] {
+                                 return fitOnline(run.experiment, sets, run.extractor, labelled, map,
+                                                  {run.control.threads, run.control.abandon});
+                               });
   notes.append(online.notes);
   online.notes = notes;
   writeMapsFile(run.folder / "maps.h5", makeStoredMap(run.experiment, run.extractor, map, online.model));

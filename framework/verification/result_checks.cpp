@@ -37,7 +37,7 @@ struct Inputs {
 
 std::string findMapDifference(const std::filesystem::path& file, const Inputs& inputs, const GpMap& map) {
   const OnlineFit online =
-      fitOnline(inputs.experiment, inputs.sets, inputs.extractor, inputs.data.labelled, map);
+      fitOnline(inputs.experiment, inputs.sets, inputs.extractor, inputs.data.labelled, map, {inputs.threads});
   const TemporaryFolder temporary;
   writeMapsFile(temporary.getPath() / "maps.h5",
                 makeStoredMap(inputs.experiment, inputs.extractor, map, online.model));
