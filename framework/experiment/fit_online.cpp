@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "framework/experiment/train_interruptibly.hpp"
 #include "framework/features/noise.hpp"
 #include "framework/online/fit_trust.hpp"
 #include "framework/spec/experiment_file.hpp"
 #include "framework/spec/parameter_box.hpp"
+#include "framework/surrogate/fit_forward.hpp"
 
 namespace twinmap {
 namespace {
@@ -49,8 +51,11 @@ void simulateMeasurements(const ExperimentSpec& experiment, const SimulatedSets&
 
 TrustTraining makeTrustTraining(const ExperimentSpec& experiment, const SimulatedSets& sets,
                                 const FeatureExtractor& extractor, const LabelledSets& labelled) {
-  const std::vector<int> samples = findSuccessful(sets.train);
+  constexpr std::size_t kMostSimulations = 500;
+  std::vector<int> samples = findSuccessful(sets.train);
+  samples.resize(std::min(samples.size(), kMostSimulations));
   TrustTraining training;
+  training.seed = experiment.seed;
   training.sampled = collectSampled(experiment.model);
   training.unknown = static_cast<Index>(collectUnknown(experiment.model).size());
   training.infos = extractor.getInfos();
@@ -61,6 +66,15 @@ TrustTraining makeTrustTraining(const ExperimentSpec& experiment, const Simulate
   return training;
 }
 
+ForwardSurrogate fitSurrogate(const TrustTraining& training, const TrainingControl& control) {
+  const Eigen::VectorXd center = calcBoxCenter(training.sampled);
+  const Eigen::VectorXd half_width = 0.5 * calcWidths(training.sampled);
+  const MatrixXd normalized = half_width.cwiseInverse().asDiagonal() * (training.points.colwise() - center);
+  return fitForward({training.infos, normalized, training.clean_features, training.noise_covariance}, {},
+                    control)
+      .surrogate;
+}
+
 }  // namespace
 
 int countReferences(int train_samples) {
@@ -69,11 +83,14 @@ int countReferences(int train_samples) {
 }
 
 OnlineFit fitOnline(const ExperimentSpec& experiment, const SimulatedSets& sets,
-                    const FeatureExtractor& extractor, const LabelledSets& labelled, const GpMap& map) {
+                    const FeatureExtractor& extractor, const LabelledSets& labelled, const GpMap& map,
+                    const TrainingControl& control) {
   OnlineFit fit{{compressMap(map), {}}};
   try {
-    fit.model.trust = fitTrustModel(makeTrustTraining(experiment, sets, extractor, labelled),
-                                    OnlineMap(fit.model.map), experiment.trust.level);
+    const TrustTraining training = makeTrustTraining(experiment, sets, extractor, labelled);
+    ForwardSurrogate surrogate = trainInterruptibly([&] { return fitSurrogate(training, control); });
+    fit.model.trust = fitTrustModel(training, std::move(surrogate), OnlineMap(fit.model.map),
+                                    experiment.trust.level, control.threads);
   } catch (const std::invalid_argument& error) {
     fit.notes.warn(Gravity::kMisleading,
                    std::string("measurements cannot be judged (no trust model): ") + error.what());

@@ -37,8 +37,11 @@ std::vector<RefinementTask> makeOnlineTasks(const RefinementContext& context) {
   const LabelledFeatures& test = context.data.labelled.test;
   const OnlineMap map(context.online->map);
   OnlineMap::Workspace inferring(map);
-  TrustWorkspace judging;
   const TrustModel* trust = context.online->trust ? &*context.online->trust : nullptr;
+  std::optional<TrustWorkspace> judging;
+  if (trust != nullptr) {
+    judging.emplace(*trust);
+  }
   std::vector<RefinementTask> tasks;
   for (Index i = 0; i < test.features.cols(); ++i) {
     MapAnswer answer;
@@ -46,8 +49,8 @@ std::vector<RefinementTask> makeOnlineTasks(const RefinementContext& context) {
     const Inference& inference = map.infer(test.features.col(i), answer.known, inferring);
     answer.mean = inference.mean;
     if (trust != nullptr) {
-      judge(*trust, test.features.col(i), answer.known, inference, judging);
-      answer.explanation = trust->makeSampledPoint(judging.explanation.best.point);
+      judge(*trust, test.features.col(i), answer.known, inference, *judging);
+      answer.explanation = trust->makeSampledPoint(judging->explanation.point);
     }
     tasks.push_back(makeRefinementTask(context.experiment.model, trust, test.features.col(i), answer));
   }

@@ -18,7 +18,8 @@ namespace {
 OnlineFit prepareOnline(const MapTrainingContext& context, const GpMap& map) {
   StageNotes notes;
   OnlineFit online = timeStage("prepare for measurements", notes, [&] {
-    return fitOnline(context.experiment, context.sets, context.extractor, context.labelled, map);
+    return fitOnline(context.experiment, context.sets, context.extractor, context.labelled, map,
+                     {context.control.threads, context.control.abandon});
   });
   notes.append(online.notes);
   online.notes = notes;

@@ -86,13 +86,19 @@ Eigen::VectorXd extractFeatures(const FeatureExtractor& extractor, const Eigen::
   return features;
 }
 
+Inferrer::Workspace::Workspace(const Inferrer& inferrer) : map(inferrer.getMap()) {
+  if (inferrer.getTrustModel()) {
+    trust.emplace(*inferrer.getTrustModel());
+  }
+}
+
 InferredMeasurement Inferrer::infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
                                     Workspace& workspace) const {
   InferredMeasurement inferred;
   inferred.inference = map_.infer(features, known, workspace.map);
   if (trust_) {
-    inferred.trust = judge(*trust_, features, known, inferred.inference, workspace.trust);
-    inferred.explanation = trust_->makeSampledPoint(workspace.trust.explanation.best.point);
+    inferred.trust = judge(*trust_, features, known, inferred.inference, *workspace.trust);
+    inferred.explanation = trust_->makeSampledPoint(workspace.trust->explanation.point);
   }
   return inferred;
 }
