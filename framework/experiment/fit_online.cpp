@@ -49,9 +49,9 @@ void simulateMeasurements(const ExperimentSpec& experiment, const SimulatedSets&
   training.known = inputs(Eigen::all, complete);
 }
 
-TrustTraining makeTrustTraining(const ExperimentSpec& experiment, const SimulatedSets& sets,
-                                const FeatureExtractor& extractor, const LabelledSets& labelled) {
+TrustTraining makeTrustTraining(const OnlineContext& context) {
   constexpr std::size_t kMostSimulations = 500;
+  const auto& [experiment, sets, extractor, labelled, control] = context;
   std::vector<int> samples = findSuccessful(sets.train);
   samples.resize(std::min(samples.size(), kMostSimulations));
   TrustTraining training;
@@ -75,6 +75,11 @@ ForwardSurrogate fitSurrogate(const TrustTraining& training, const TrainingContr
       .surrogate;
 }
 
+void noteMissingTrust(const std::invalid_argument& error, OnlineFit& fit) {
+  fit.notes.warn(Gravity::kMisleading,
+                 std::string("measurements cannot be judged (no trust model): ") + error.what());
+}
+
 }  // namespace
 
 int countReferences(int train_samples) {
@@ -82,18 +87,26 @@ int countReferences(int train_samples) {
   return std::clamp(train_samples, kFewest / kPerSimulation, kMost / kPerSimulation) * kPerSimulation;
 }
 
-OnlineFit fitOnline(const ExperimentSpec& experiment, const SimulatedSets& sets,
-                    const FeatureExtractor& extractor, const LabelledSets& labelled, const GpMap& map,
-                    const TrainingControl& control) {
+OnlineFit fitOnline(const OnlineContext& context, const GpMap& map) {
   OnlineFit fit{{compressMap(map), {}}};
   try {
-    const TrustTraining training = makeTrustTraining(experiment, sets, extractor, labelled);
-    ForwardSurrogate surrogate = trainInterruptibly([&] { return fitSurrogate(training, control); });
+    const TrustTraining training = makeTrustTraining(context);
+    ForwardSurrogate surrogate = trainInterruptibly([&] { return fitSurrogate(training, context.control); });
     fit.model.trust = fitTrustModel(training, std::move(surrogate), OnlineMap(fit.model.map),
-                                    experiment.trust.level, control.threads);
+                                    context.experiment.trust.level, context.control.threads);
   } catch (const std::invalid_argument& error) {
-    fit.notes.warn(Gravity::kMisleading,
-                   std::string("measurements cannot be judged (no trust model): ") + error.what());
+    noteMissingTrust(error, fit);
+  }
+  return fit;
+}
+
+OnlineFit fitOnline(const OnlineContext& context, std::shared_ptr<const Surrogate> surrogate) {
+  OnlineFit fit{{surrogate, {}}};
+  try {
+    fit.model.trust = fitTrustModel(makeTrustTraining(context), surrogate->forward, OnlineMap(surrogate),
+                                    context.experiment.trust.level, context.control.threads);
+  } catch (const std::invalid_argument& error) {
+    noteMissingTrust(error, fit);
   }
   return fit;
 }

@@ -14,24 +14,29 @@
 namespace twinmap {
 namespace {
 
-/// Makes the map ready for measurements and writes both.
-OnlineFit prepareOnline(const MapTrainingContext& context, const GpMap& map) {
+/// Makes the map ready for measurements and writes both. `exact`: without processes for a surrogate.
+template <class Map>
+OnlineFit prepareOnline(const MapTrainingContext& context, const Map& map, const GpMap& exact) {
   StageNotes notes;
   OnlineFit online = timeStage("prepare for measurements", notes, [&] {
-    return fitOnline(context.experiment, context.sets, context.extractor, context.labelled, map,
-                     {context.control.threads, context.control.abandon});
+    return fitOnline({context.experiment,
+                      context.sets,
+                      context.extractor,
+                      context.labelled,
+                      {context.control.threads, context.control.abandon}},
+                     map);
   });
   notes.append(online.notes);
   online.notes = notes;
   writeMapsFile(context.folder / "maps.h5",
-                makeStoredMap(context.experiment, context.extractor, map, online.model));
+                makeStoredMap(context.experiment, context.extractor, exact, online.model));
   return online;
 }
 
 /// Trains one Gaussian process per parameter.
 TrainedMap trainProcesses(const MapTrainingContext& context) {
   Training training = trainMap(context.experiment, context.labelled.train, context.control);
-  OnlineFit online = prepareOnline(context, training.map);
+  OnlineFit online = prepareOnline(context, training.map, training.map);
   training.notes.append(online.notes);
   const auto map = std::make_shared<const GpMap>(std::move(training.map));
   const auto predict = [map](const Eigen::MatrixXd& features, const Eigen::MatrixXd& inputs) {
@@ -51,6 +56,8 @@ TrainedMap trainForward(const MapTrainingContext& context) {
   SurrogateMapTraining training = trainSurrogateMap(context.experiment, context.sets, context.extractor,
                                                     context.labelled.train, context.control);
   const auto surrogate = std::make_shared<const Surrogate>(std::move(training.surrogate));
+  OnlineFit online = prepareOnline(context, surrogate, {});
+  training.notes.append(online.notes);
   const auto predict = [surrogate, threads = context.control.threads](const Eigen::MatrixXd& features,
                                                                       const Eigen::MatrixXd& inputs) {
     return surrogate->predict(features, inputs, threads);
@@ -61,7 +68,7 @@ TrainedMap trainForward(const MapTrainingContext& context) {
           fitTransform(context.experiment.transform, context.labelled.train),
           std::move(training.summary),
           std::move(training.notes),
-          std::nullopt};
+          std::move(online.model)};
 }
 
 TrainedMap trainAutomatically(const MapTrainingContext& context) {

@@ -35,7 +35,7 @@ TrainingCloud makeCloud(const OnlineMap& map, const TrustTraining& training, con
   constexpr Index kMost = 1000;
   const Index n = std::min(training.points.cols(), kMost);
   TrainingCloud cloud;
-  cloud.inputs = map.getMap().makeProcessInputs(training.clean_features.leftCols(n), known.leftCols(n));
+  cloud.inputs = map.makeInputs(training.clean_features.leftCols(n), known.leftCols(n));
   cloud.scale = fitZScore(cloud.inputs).scale;
   cloud.inputs = cloud.scale.cwiseInverse().asDiagonal() * cloud.inputs;
   return cloud;
@@ -100,8 +100,8 @@ TrustModel fitTrustModel(const TrustTraining& training, ForwardSurrogate surroga
   }
   TrustModel model;
   model.forward = std::move(surrogate);
-  model.space = fitResidualSpace(training.infos, training.clean_features, training.noise_covariance,
-                                 model.forward);
+  model.space =
+      fitResidualSpace(training.infos, training.clean_features, training.noise_covariance, model.forward);
   model.cloud = makeCloud(map, training, training.points.bottomRows(training.known.rows()));
   model.center = calcBoxCenter(training.sampled);
   model.half_width = 0.5 * calcWidths(training.sampled);

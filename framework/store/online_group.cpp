@@ -11,6 +11,7 @@ namespace {
 using Eigen::Index;
 
 constexpr const char* kTrust = "/online/trust";
+constexpr const char* kSurrogate = "/online/surrogate";
 
 std::string getMapGroup(const std::string& parameter) {
   return "/online/maps/" + parameter;
@@ -79,21 +80,40 @@ TrustModel readTrust(const Hdf5Reader& file, const std::string& group) {
   return trust;
 }
 
+void writeCompressed(Hdf5Writer& file, const std::vector<std::string>& parameters, const GpMap& map) {
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    if (isSparse(map.processes[p])) {
+      writeProcess(file, getMapGroup(parameters[p]), map.processes[p]);
+    }
+  }
+}
+
+/// What the trust model's forward surrogate lacks to be a map.
+void writeSurrogate(Hdf5Writer& file, const Surrogate& surrogate) {
+  const std::string group = kSurrogate;
+  const SurrogateValidation& validation = surrogate.validation;
+  file.write(group + "/stddev_scale", validation.stddev_scale);
+  file.write(group + "/coverage95", validation.coverage95);
+  file.writeSamples(group + "/residual_correlation", validation.residual_correlation);
+  file.write(group + "/log_density", validation.log_density);
+  file.write(group + "/status", static_cast<double>(validation.status));
+}
+
 }  // namespace
 
 void writeOnlineGroup(Hdf5Writer& file, const std::vector<std::string>& parameters,
                       const OnlineModel& model) {
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    if (isSparse(model.map.processes[p])) {
-      writeProcess(file, getMapGroup(parameters[p]), model.map.processes[p]);
-    }
+  if (const auto* map = std::get_if<GpMap>(&model.map)) {
+    writeCompressed(file, parameters, *map);
+  } else {
+    writeSurrogate(file, *std::get<std::shared_ptr<const Surrogate>>(model.map));
   }
   if (model.trust) {
     writeTrust(file, kTrust, *model.trust);
   }
 }
 
-void readOnlineGroup(const Hdf5Reader& file, const std::vector<std::string>& parameters, OnlineModel& model) {
+void readOnlineProcesses(const Hdf5Reader& file, const std::vector<std::string>& parameters, GpMap& map) {
   std::shared_ptr<const Eigen::MatrixXd> inputs;
   for (const std::string& parameter : parameters) {
     std::string group = getMapGroup(parameter);
@@ -103,11 +123,31 @@ void readOnlineGroup(const Hdf5Reader& file, const std::vector<std::string>& par
         inputs = std::make_shared<const Eigen::MatrixXd>(file.readSamples("/training_inputs"));
       }
     }
-    model.map.processes.push_back(readProcess(file, group, inputs));
+    map.processes.push_back(readProcess(file, group, inputs));
   }
-  if (file.contains(std::string(kTrust) + "/level")) {
-    model.trust = readTrust(file, kTrust);
-  }
+}
+
+bool holdsSurrogate(const Hdf5Reader& file) {
+  return file.contains(std::string(kSurrogate) + "/stddev_scale");
+}
+
+std::optional<TrustModel> readTrustModel(const Hdf5Reader& file) {
+  return file.contains(std::string(kTrust) + "/level") ? std::optional(readTrust(file, kTrust))
+                                                       : std::nullopt;
+}
+
+std::shared_ptr<const Surrogate> readSurrogate(const Hdf5Reader& file, const TrustModel& trust) {
+  const std::string group = kSurrogate;
+  const Eigen::VectorXd scale = file.readVector(group + "/stddev_scale");
+  return std::make_shared<const Surrogate>(
+      Surrogate{trust.forward,
+                trust.center,
+                trust.half_width,
+                scale.size(),
+                trust.unknown,
+                {scale, file.readVector(group + "/coverage95"),
+                 file.readSamples(group + "/residual_correlation"), file.readNumber(group + "/log_density"),
+                 static_cast<SurrogateStatus>(file.readNumber(group + "/status"))}});
 }
 
 }  // namespace twinmap

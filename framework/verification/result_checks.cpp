@@ -124,8 +124,12 @@ void checkMapAndTables(const Inputs& inputs, const std::vector<int>& limits, Ver
     trained = refitGpMap(readMapsFile(folder / "maps.h5").map, *inputs.experiment.inverse_map.findGp(),
                          inputs.experiment.transform, inputs.data.labelled.train, inputs.threads,
                          inputs.experiment.model.inputs);
-    online = fitOnline(inputs.experiment, inputs.sets, inputs.extractor, inputs.data.labelled, trained.map,
-                       {inputs.threads, nullptr})
+    online = fitOnline({inputs.experiment,
+                        inputs.sets,
+                        inputs.extractor,
+                        inputs.data.labelled,
+                        {inputs.threads, nullptr}},
+                       trained.map)
                  .model;
     return findMapDifference(folder / "maps.h5", inputs, trained.map, online);
   });
