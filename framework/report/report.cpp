@@ -48,6 +48,7 @@ Report makeRunReport(const fs::path& folder) {
   page.title = run.experiment.name.text;
   addVerdict(run, gates, page);
   addMetrics(run, page);
+  addMethods(run, page);
   addSampleChapters(run, page);
   addModelChapters(run, page);
   return finish(page, gates);

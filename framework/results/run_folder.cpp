@@ -20,6 +20,7 @@ std::string makeLabel(const fs::path& folder) {
 void readTables(const fs::path& path, RunFolder& run) {
   run.metrics = readCsvFile(path / "metrics.csv");
   run.joint = readCsvFile(path / "joint.csv");
+  run.methods = readCsvFile(path / "methods.csv");
   run.predictions = readCsvFile(path / "predictions.csv");
   run.training = readCsvFile(path / "training.csv");
   run.hyperparameters = readCsvFile(path / "hyperparameters.csv");

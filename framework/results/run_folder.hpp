@@ -20,6 +20,7 @@ struct RunFolder {
   ExperimentSpec experiment;
   CsvTable metrics;
   CsvTable joint;
+  CsvTable methods;
   CsvTable predictions;
   CsvTable training;
   CsvTable hyperparameters;

@@ -13,6 +13,8 @@ namespace twinmap {
 
 void addVerdict(const RunFolder& run, const std::vector<GateResult>& gates, Page& page);
 void addMetrics(const RunFolder& run, Page& page);
+/// How good the map alone is, and what refinement makes of its answers.
+void addMethods(const RunFolder& run, Page& page);
 void addInferred(const RunFolder& run, Page& page);
 void addStddevOverBox(const RunFolder& run, Page& page);
 void addCalibration(const RunFolder& run, Page& page);
