@@ -20,7 +20,7 @@ struct MapTrainingContext {
 
 /// Trains the map that the experiment asks for, prepares it for measurements and writes maps.h5. Automatic is
 /// a surrogate, and Gaussian processes from features to parameters where it cannot be trained: on eleven
-/// mechanisms of different kinds the surrogate was the better map of 46 parameters of 48, with honest
+/// mechanisms of different kinds the surrogate was the better map of 52 parameters of 56, with honest
 /// standard deviations, in a tenth of the time (docs/maps.md). Throws Interrupted if it is stopped,
 /// std::runtime_error where the experiment does not fit the map.
 TrainedMap trainChosenMap(const MapTrainingContext& context);
