@@ -145,6 +145,22 @@ std::vector<MethodSummary> compareMethods(const ExperimentSpec& experiment, cons
   return methods;
 }
 
+RefinementReference collectReference(const std::vector<Refined>& refined) {
+  RefinementReference reference;
+  std::vector<double> unexplained;
+  for (const Refined& one : refined) {
+    const bool tried = !one.start.empty();
+    reference.tried += tried ? 1 : 0;
+    if (tried && !one.explained) {
+      unexplained.push_back(one.calcReducedChiSquare());
+    }
+  }
+  std::sort(unexplained.begin(), unexplained.end());
+  reference.unexplained =
+      Eigen::Map<const Eigen::VectorXd>(unexplained.data(), static_cast<Index>(unexplained.size()));
+  return reference;
+}
+
 StageNotes evaluateRefinement(const RefinementContext& context, Evaluation& evaluation) {
   StageNotes notes;
   if (!shouldRefine(context.experiment.refine, context.simulator, context.extractor, context.data.noise)) {

@@ -31,6 +31,9 @@ std::vector<Refined> refineTestSamples(const RefinementContext& context, const P
 std::vector<MethodSummary> compareMethods(const ExperimentSpec& experiment, const Evaluation& evaluation,
                                           const std::vector<Refined>& refined);
 
+/// What refined test samples tell a trust model: how many were not explained, and how badly.
+RefinementReference collectReference(const std::vector<Refined>& refined);
+
 /// Where the experiment asks for it, refines the test samples and adds both methods to the evaluation; a
 /// stage of its own.
 StageNotes evaluateRefinement(const RefinementContext& context, Evaluation& evaluation);

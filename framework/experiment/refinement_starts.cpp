@@ -40,8 +40,8 @@ RefinementTask makeRefinementTask(const ModelSpec& model, const TrustModel* trus
   const ForwardSurrogate& forward = trust->forward;
   const std::vector<Index> similar = rankSimulations(forward, forward.calcScores(features));
   for (std::size_t rank = 0; rank < std::min(kTrainingStarts, similar.size()); ++rank) {
-    task.starts.push_back({"training " + std::to_string(rank + 1),
-                           trust->makeSampledPoint(forward.points.col(similar[rank]))});
+    task.starts.push_back(
+        {"training " + std::to_string(rank + 1), trust->makeSampledPoint(forward.points.col(similar[rank]))});
   }
   return task;
 }

@@ -96,21 +96,20 @@ struct TrainedMap {
   EvaluatedMap map;
   TrainingSummary summary;
   StageNotes notes;
-  std::optional<OnlineModel> online;  ///< none of a map that is not stored
+  std::optional<OnlineModel> online;         ///< none of a map that is not stored
+  std::shared_ptr<const GpMap> processes{};  ///< that are stored with it
 };
 
-/// Makes the map ready for measurements and writes both.
+/// Makes the map ready for measurements.
 OnlineFit prepareOnline(const RunContext& run, const SimulatedSets& sets, const LabelledSets& labelled,
                         const GpMap& map) {
   StageNotes notes;
-  OnlineFit online = timeStage("prepare for measurements", notes,
-                               [&] {
-                                 return fitOnline(run.experiment, sets, run.extractor, labelled, map,
-                                                  {run.control.threads, run.control.abandon});
-                               });
+  OnlineFit online = timeStage("prepare for measurements", notes, [&] {
+    return fitOnline(run.experiment, sets, run.extractor, labelled, map,
+                     {run.control.threads, run.control.abandon});
+  });
   notes.append(online.notes);
   online.notes = notes;
-  writeMapsFile(run.folder / "maps.h5", makeStoredMap(run.experiment, run.extractor, map, online.model));
   return online;
 }
 
@@ -126,7 +125,19 @@ TrainedMap trainProcesses(const RunContext& run, const SimulatedSets& sets, cons
   return {{predict, map->residual_correlation, map->transform},
           std::move(training.summary),
           std::move(training.notes),
-          std::move(online.model)};
+          std::move(online.model),
+          map};
+}
+
+/// Writes a map that can be stored, with what the refinement of the test samples tells its trust model.
+void storeMap(const RunContext& run, const std::vector<Refined>& refined, TrainedMap& trained) {
+  if (trained.online) {
+    if (trained.online->trust) {
+      trained.online->trust->refinement = collectReference(refined);
+    }
+    writeMapsFile(run.folder / "maps.h5",
+                  makeStoredMap(run.experiment, run.extractor, *trained.processes, *trained.online));
+  }
 }
 
 /// Trains a surrogate. What is inferred with it does not depend on the threads.
@@ -167,12 +178,13 @@ RunSummary runStages(const RunContext& run) {
   const Samples samples = simulateSamples(run);
   const PreparedData data = prepareData(experiment, run.extractor, samples.sets, local_models);
   const auto train = experiment.inverse_map.findGp() != nullptr ? trainProcesses : trainForward;
-  const TrainedMap trained = train(run, samples.sets, data.labelled);
+  TrainedMap trained = train(run, samples.sets, data.labelled);
   MapEvaluation evaluated = evaluateMap(
       {experiment, run.simulator, run.extractor, data, trained.map, local_models, run.control.threads});
   evaluated.notes.append(evaluateRefinement({experiment, run.simulator, run.extractor, data,
                                              trained.online ? &*trained.online : nullptr, run.control},
                                             evaluated.evaluation));
+  storeMap(run, evaluated.evaluation.refined, trained);
 
   RunSummary summary;
   summary.parameters = experiment.model.parameters;

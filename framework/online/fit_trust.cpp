@@ -100,8 +100,8 @@ TrustModel fitTrustModel(const TrustTraining& training, ForwardSurrogate surroga
   }
   TrustModel model;
   model.forward = std::move(surrogate);
-  model.space = fitResidualSpace(training.infos, training.clean_features, training.noise_covariance,
-                                 model.forward);
+  model.space =
+      fitResidualSpace(training.infos, training.clean_features, training.noise_covariance, model.forward);
   model.cloud = makeCloud(map, training, training.points.bottomRows(training.known.rows()));
   model.center = calcBoxCenter(training.sampled);
   model.half_width = 0.5 * calcWidths(training.sampled);

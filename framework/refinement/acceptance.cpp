@@ -57,9 +57,7 @@ Probes makeProbes(const SearchBox& box, const LocalMisfit& minimum) {
 }  // namespace
 
 double calcChiSquareLimit(const LocalMisfit& minimum) {
-  const double determined = minimum.calcCovariance().cwiseProduct(minimum.information).sum();
-  const double degrees = std::max(1.0, static_cast<double>(minimum.residuals) - determined);
-  return boost::math::quantile(boost::math::chi_squared(degrees), kChiSquareLevel);
+  return boost::math::quantile(boost::math::chi_squared(minimum.calcDegrees()), kChiSquareLevel);
 }
 
 Acceptance testMinimum(Misfit& misfit, const LocalMisfit& minimum) {

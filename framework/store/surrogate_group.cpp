@@ -107,8 +107,7 @@ gp::SharedProcessParts take(const WindowTable& table, std::size_t window, Index 
   gp::SharedProcessParts parts;
   parts.structure = {parseCovariance(table.covariances.at(window)), parseTrend(table.trends.at(window))};
   const Index functions = table.functions.at(window), terms = gp::countTerms(parts.structure.trend, p);
-  const Index tiles =
-      numbers.factor_tiles.getNumbers().size() / static_cast<Index>(table.functions.size());
+  const Index tiles = numbers.factor_tiles.getNumbers().size() / static_cast<Index>(table.functions.size());
   parts.hyperparameters = {numbers.length_scales.take(p, 1), table.nuggets(static_cast<Index>(window))};
   parts.scaled_points = numbers.scaled_points.take(n, p);
   parts.weights = numbers.weights.take(n, functions);
@@ -133,9 +132,8 @@ void writeWindows(Hdf5Writer& file, const std::string& group, const std::vector<
   file.write(group + "/trend", table.trends);
   file.write(group + "/functions", table.functions);
   file.write(group + "/nugget", table.nuggets);
-  forEachKind(numbers, [&](const char* name, const Flat& flat) {
-    file.write(group + "/" + name, flat.getNumbers());
-  });
+  forEachKind(numbers,
+              [&](const char* name, const Flat& flat) { file.write(group + "/" + name, flat.getNumbers()); });
 }
 
 std::vector<gp::SharedProcess> readWindows(const Hdf5Reader& file, const std::string& group, Index p,
@@ -172,8 +170,7 @@ ForwardSurrogate readSurrogateGroup(const Hdf5Reader& file, const std::string& g
   surrogate.scores = file.readSamples(group + "/scores");
   surrogate.error_correlation = file.readSamples(group + "/error_correlation");
   surrogate.error_variance = file.readVector(group + "/error_variance");
-  surrogate.windows =
-      readWindows(file, group + "/windows", surrogate.points.rows(), surrogate.points.cols());
+  surrogate.windows = readWindows(file, group + "/windows", surrogate.points.rows(), surrogate.points.cols());
   return surrogate;
 }
 

@@ -35,9 +35,21 @@ struct Inputs {
   int threads;
 };
 
+/// What the refinement of all test samples told is not computed again: that would take most of the run's
+/// time.
+void takeRefinementReference(const std::filesystem::path& file, TrustModel& trust) {
+  const StoredOnlineModel stored = readOnlineModel(file);
+  if (stored.model.trust) {
+    trust.refinement = stored.model.trust->refinement;
+  }
+}
+
 std::string findMapDifference(const std::filesystem::path& file, const Inputs& inputs, const GpMap& map) {
-  const OnlineFit online =
-      fitOnline(inputs.experiment, inputs.sets, inputs.extractor, inputs.data.labelled, map, {inputs.threads});
+  OnlineFit online = fitOnline(inputs.experiment, inputs.sets, inputs.extractor, inputs.data.labelled, map,
+                               {inputs.threads});
+  if (online.model.trust) {
+    takeRefinementReference(file, *online.model.trust);
+  }
   const TemporaryFolder temporary;
   writeMapsFile(temporary.getPath() / "maps.h5",
                 makeStoredMap(inputs.experiment, inputs.extractor, map, online.model));
