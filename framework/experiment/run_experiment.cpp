@@ -11,6 +11,7 @@
 #include "framework/experiment/simulated_sets.hpp"
 #include "framework/experiment/train_map.hpp"
 #include "framework/experiment/train_surrogate_map.hpp"
+#include "framework/experiment/trust_power.hpp"
 #include "framework/features/selections.hpp"
 #include "framework/monitoring/run_log.hpp"
 #include "framework/monitoring/stage_timer.hpp"
@@ -140,6 +141,22 @@ void storeMap(const RunContext& run, const std::vector<Refined>& refined, Traine
   }
 }
 
+/// Writes trust_power.csv: what the trust model finds.
+StageNotes writeTrustPower(const RunContext& run, const Samples& samples, const PreparedData& data,
+                           const TrainedMap& trained) {
+  StageNotes notes;
+  if (!trained.online || !trained.online->trust) {
+    return notes;
+  }
+  const auto changes = timeStage("power of the trust status", notes, [&] {
+    return calcTrustPower({run.experiment, samples.sets, run.extractor, data.labelled.train.noise_covariance,
+                           *trained.online, run.control.threads});
+  });
+  notes.warnings = listPowerWarnings(changes);
+  writeTextFile(run.folder / "trust_power.csv", makeTrustPowerCsv(changes));
+  return notes;
+}
+
 /// Trains a surrogate. What is inferred with it does not depend on the threads.
 TrainedMap trainForward(const RunContext& run, const SimulatedSets& sets, const LabelledSets& labelled) {
   SurrogateMapTraining training =
@@ -185,6 +202,7 @@ RunSummary runStages(const RunContext& run) {
                                              trained.online ? &*trained.online : nullptr, run.control},
                                             evaluated.evaluation));
   storeMap(run, evaluated.evaluation.refined, trained);
+  evaluated.notes.append(writeTrustPower(run, samples, data, trained));
 
   RunSummary summary;
   summary.parameters = experiment.model.parameters;

@@ -56,8 +56,12 @@ Probes makeProbes(const SearchBox& box, const LocalMisfit& minimum) {
 
 }  // namespace
 
+double calcChiSquareLimit(double degrees) {
+  return boost::math::quantile(boost::math::chi_squared(degrees), kChiSquareLevel);
+}
+
 double calcChiSquareLimit(const LocalMisfit& minimum) {
-  return boost::math::quantile(boost::math::chi_squared(minimum.calcDegrees()), kChiSquareLevel);
+  return calcChiSquareLimit(minimum.calcDegrees());
 }
 
 Acceptance testMinimum(Misfit& misfit, const LocalMisfit& minimum) {

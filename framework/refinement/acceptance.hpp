@@ -11,7 +11,10 @@ struct Acceptance {
   std::string message;
 };
 
-/// The largest chi-square that noise explains: its 99.9 % quantile.
+/// The largest chi-square that noise explains: the 99.9 % quantile for `degrees` of freedom.
+double calcChiSquareLimit(double degrees);
+
+/// That of a minimum (LocalMisfit::calcDegrees()).
 double calcChiSquareLimit(const LocalMisfit& minimum);
 
 /// Accepts a minimum if
