@@ -2,7 +2,7 @@
 
 Usage: wrong_masses.py TWINMAP [--good N] [--bad N] [--keep FOLDER] EXPERIMENT...
 Trains each EXPERIMENT, then infers fresh simulated measurements with noise (default: 400) and, for each constant with the
-unit kg, measurements (default: 100) of machines in which it is 3 % larger. A row each: the share called model_mismatch, of
+unit kg and each body whose mass is a number, measurements (default: 100) of machines in which it is 3 % larger. A row each: the share called model_mismatch, of
 bad ones also of those whose clean response is more than 5 noise standard deviations from what any parameters of the model
 give (the least misfit that a refinement of the clean response finds). Needs outputs whose noise is a number.
 """
@@ -67,8 +67,13 @@ class Case:
         self.rng = np.random.default_rng(1)
 
     def list_masses(self):
-        return [name for name, constant in self.spec.get("constants", {}).items()
-                if isinstance(constant, dict) and constant.get("unit") == "kg"]
+        """Name -> key path and value."""
+        constants = {name: (f"constants.{name}.value", float(constant["value"]))
+                     for name, constant in self.spec.get("constants", {}).items()
+                     if isinstance(constant, dict) and constant.get("unit") == "kg"}
+        bodies = {name: (f"system.bodies.{name}.mass", float(body["mass"]))
+                  for name, body in self.spec["system"]["bodies"].items() if isinstance(body["mass"], (int, float))}
+        return {**constants, **bodies}
 
     def measure(self, clean):
         return clean + self.noise * self.rng.standard_normal(clean.shape)
@@ -86,9 +91,8 @@ class Case:
         clean, times = simulate(self.twinmap, self.experiment, folder / "good", good)
         answers = self.infer(folder, times, self.measure(clean), "good")
         print(f"{name:22s} good              {describe(is_mismatch(answers))}", flush=True)
-        for mass in self.list_masses():
-            value = WRONG * float(self.spec["constants"][mass]["value"])
-            wrong, _ = simulate(self.twinmap, self.experiment, folder / mass, bad, f"constants.{mass}.value={value!r}")
+        for mass, (key, value) in self.list_masses().items():
+            wrong, _ = simulate(self.twinmap, self.experiment, folder / mass, bad, f"{key}={WRONG * value!r}")
             far = calc_misfits(self.infer(folder, times, wrong, mass + "_clean")) > FAR
             found = is_mismatch(self.infer(folder, times, self.measure(wrong), mass))
             print(f"{name:22s} {mass:6s} 3 % wrong {describe(found)}; above 5 sd {describe(found[far])}", flush=True)

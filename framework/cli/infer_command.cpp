@@ -100,7 +100,7 @@ class InferCommand {
     inferred.start = getStart(start);
     if (refiner_) {
       const std::optional<TrustModel>& trust = inferrer_.getTrustModel();
-      inferred.refined = refiner_->refine(inferred, features, known_, trust ? &*trust : nullptr);
+      refiner_->refineAndJudge(features, known_, trust ? &*trust : nullptr, inferred);
     }
     return inferred;
   }

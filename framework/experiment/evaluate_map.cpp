@@ -134,11 +134,9 @@ std::vector<BaselineSummary> runBaselines(const EvaluationContext& context, Stag
 }
 
 /// The test samples refined, where the experiment asks for it.
-std::vector<Refined> refine(const EvaluationContext& context, const Predictions& predictions,
-                            StageNotes& notes) {
-  RefinedTests refined =
-      refineTestSamples({context.experiment, context.simulator, context.extractor, context.data,
-                         context.map.online ? &*context.map.online : nullptr, predictions, context.control});
+std::vector<Refined> refine(const EvaluationContext& context, StageNotes& notes) {
+  RefinedTests refined = refineTestSamples({context.experiment, context.simulator, context.extractor,
+                                            context.data, context.map.online, context.control});
   notes.append(refined.notes);
   return std::move(refined.refined);
 }
@@ -166,7 +164,7 @@ MapEvaluation evaluateMap(const EvaluationContext& context) {
                                             [&] { return context.map.predict(test.features, test.inputs); });
   const std::optional<InformationLimit> limit = findLimit(context, result.notes);
   const Eigen::MatrixXd limit_stddev = limit ? limit->stddev : Eigen::MatrixXd();
-  const std::vector<Refined> refined = refine(context, predictions, result.notes);
+  const std::vector<Refined> refined = refine(context, result.notes);
   result.evaluation =
       evaluateAnswers(parameters, test.parameters,
                       makeAnswers(predictions, context.map.residual_correlation, refined), limit_stddev);

@@ -6,7 +6,6 @@
 #include "framework/experiment/train_interruptibly.hpp"
 #include "framework/features/noise.hpp"
 #include "framework/online/fit_trust.hpp"
-#include "framework/spec/experiment_file.hpp"
 #include "framework/spec/parameter_box.hpp"
 #include "framework/surrogate/fit_forward.hpp"
 
@@ -109,16 +108,6 @@ OnlineFit fitOnline(const OnlineContext& context, std::shared_ptr<const Surrogat
     noteMissingTrust(error, fit);
   }
   return fit;
-}
-
-StoredMap makeStoredMap(const ExperimentSpec& experiment, const FeatureExtractor& extractor, const GpMap& map,
-                        const OnlineModel& online) {
-  StoredMap stored{experiment.model.parameters, {},     map,
-                   experiment.model.inputs,     online, writeExperiment(experiment)};
-  for (const FeatureInfo& info : extractor.getInfos()) {
-    stored.feature_names.push_back(info.name);
-  }
-  return stored;
 }
 
 }  // namespace twinmap

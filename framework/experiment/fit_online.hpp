@@ -1,14 +1,12 @@
 #pragma once
 
-#include <string>
-#include <vector>
+#include <memory>
 
 #include "framework/experiment/prepare_data.hpp"
 #include "framework/experiment/simulated_sets.hpp"
 #include "framework/features/feature_extractor.hpp"
 #include "framework/inverse_map/training_control.hpp"
 #include "framework/online/online_model.hpp"
-#include "framework/store/maps_file.hpp"
 
 namespace twinmap {
 
@@ -39,9 +37,5 @@ OnlineFit fitOnline(const OnlineContext& context, const GpMap& map);
 
 /// The same of a surrogate, which is its own trust model's.
 OnlineFit fitOnline(const OnlineContext& context, std::shared_ptr<const Surrogate> surrogate);
-
-/// All of maps.h5. `map`: exact; without processes where the online one is a surrogate.
-StoredMap makeStoredMap(const ExperimentSpec& experiment, const FeatureExtractor& extractor, const GpMap& map,
-                        const OnlineModel& online);
 
 }  // namespace twinmap

@@ -43,9 +43,4 @@ OnlineTimes timeOnlineUpdates(const OnlineModel& model, const LabelledFeatures& 
   });
 }
 
-OnlineTimes timePredictions(const TrainedMap& map, const LabelledFeatures& testing) {
-  return timeUpdates(testing.features.cols(),
-                     [&](Eigen::Index i) { map.predict(testing.features.col(i), testing.inputs.col(i)); });
-}
-
 }  // namespace twinmap

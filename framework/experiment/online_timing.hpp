@@ -1,6 +1,5 @@
 #pragma once
 
-#include "framework/experiment/evaluate_map.hpp"
 #include "framework/features/labelled_features.hpp"
 #include "framework/online/online_model.hpp"
 #include "framework/results/run_summary.hpp"
@@ -11,8 +10,5 @@ namespace twinmap {
 /// on the first (at most 200) test samples: median and 99 % quantile. For provenance.json only: times are not
 /// reproducible.
 OnlineTimes timeOnlineUpdates(const OnlineModel& model, const LabelledFeatures& testing);
-
-/// The same of a map of any kind, without a judgement.
-OnlineTimes timePredictions(const TrainedMap& map, const LabelledFeatures& testing);
 
 }  // namespace twinmap

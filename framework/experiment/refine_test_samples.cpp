@@ -22,22 +22,12 @@ Eigen::VectorXd getKnown(const LabelledFeatures& test, Index i) {
   return test.inputs.rows() > 0 ? Eigen::VectorXd(test.inputs.col(i)) : Eigen::VectorXd();
 }
 
+/// From what the online map and its trust model say.
 std::vector<RefinementTask> makeTasks(const RefinementContext& context) {
   const LabelledFeatures& test = context.data.labelled.test;
-  std::vector<RefinementTask> tasks;
-  for (Index i = 0; i < test.features.cols(); ++i) {
-    tasks.push_back(makeRefinementTask(context.experiment.model, nullptr, test.features.col(i),
-                                       {context.answers.mean.col(i), {}, getKnown(test, i)}));
-  }
-  return tasks;
-}
-
-/// From what the online map and its trust model say.
-std::vector<RefinementTask> makeOnlineTasks(const RefinementContext& context) {
-  const LabelledFeatures& test = context.data.labelled.test;
-  const OnlineMap map(context.online->map);
+  const OnlineMap map(context.online.map);
   OnlineMap::Workspace inferring(map);
-  const TrustModel* trust = context.online->trust ? &*context.online->trust : nullptr;
+  const TrustModel* trust = context.online.trust ? &*context.online.trust : nullptr;
   std::optional<TrustWorkspace> judging;
   if (trust != nullptr) {
     judging.emplace(*trust);
@@ -86,8 +76,7 @@ void warnOfFew(const std::vector<Refined>& refined, const std::string& outcome, 
 std::vector<Refined> refineAll(const RefinementContext& context) {
   const RefinementModel model(collectUnknown(context.experiment.model), context.extractor,
                               context.data.noise);
-  const auto tasks = context.online != nullptr ? makeOnlineTasks(context) : makeTasks(context);
-  return refineWhileHopeful(context.simulator, model, tasks, context.control.threads, [&] {
+  return refineWhileHopeful(context.simulator, model, makeTasks(context), context.control.threads, [&] {
     if (context.control.abandon != nullptr && *context.control.abandon) {
       throw Interrupted("interrupted during refinement; the simulated samples are kept");
     }

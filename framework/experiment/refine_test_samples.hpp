@@ -17,8 +17,7 @@ struct RefinementContext {
   const Simulator& simulator;
   const FeatureExtractor& extractor;
   const PreparedData& data;
-  const OnlineModel* online;   ///< of the map; null for a map that has none
-  const Predictions& answers;  ///< of the map, where it has no online model
+  const OnlineModel& online;
   const RunControl& control;
 };
 

@@ -7,7 +7,9 @@
 #include "framework/experiment/online_timing.hpp"
 #include "framework/experiment/prepare_data.hpp"
 #include "framework/experiment/simulated_sets.hpp"
+#include "framework/experiment/store_map.hpp"
 #include "framework/experiment/train_maps.hpp"
+#include "framework/experiment/trust_power.hpp"
 #include "framework/features/selections.hpp"
 #include "framework/monitoring/run_log.hpp"
 #include "framework/monitoring/stage_timer.hpp"
@@ -87,6 +89,22 @@ Samples simulateSamples(const RunContext& run) {
   return {std::move(sets), std::move(failures)};
 }
 
+/// Writes trust_power.csv: what the trust model finds.
+StageNotes writeTrustPower(const RunContext& run, const Samples& samples, const PreparedData& data,
+                           const TrainedMap& trained) {
+  StageNotes notes;
+  if (!trained.online.trust) {
+    return notes;
+  }
+  const auto changes = timeStage("power of the trust status", notes, [&] {
+    return calcTrustPower({run.experiment, samples.sets, run.extractor, data.labelled.train.noise_covariance,
+                           trained.online, run.control.threads});
+  });
+  notes.warn(Gravity::kPoor, listPowerWarnings(changes));
+  writeTextFile(run.folder / "trust_power.csv", makeTrustPowerCsv(changes));
+  return notes;
+}
+
 /// Writes responses.csv: the models of a few test samples beside what was measured.
 StageNotes writeExamples(const RunContext& run, const Trajectories& test,
                          const std::vector<int>& test_indices, const Evaluation& evaluation) {
@@ -108,10 +126,11 @@ RunSummary runStages(const RunContext& run) {
   };
   const Samples samples = simulateSamples(run);
   const PreparedData data = prepareData(experiment, run.extractor, samples.sets, local_models);
-  const TrainedMap trained =
-      trainChosenMap({experiment, samples.sets, run.extractor, data.labelled, run.folder, run.control});
-  const MapEvaluation evaluated =
+  TrainedMap trained = trainChosenMap({experiment, samples.sets, run.extractor, data.labelled, run.control});
+  MapEvaluation evaluated =
       evaluateMap({experiment, run.simulator, run.extractor, data, trained, local_models, run.control});
+  storeMap(run.folder / "maps.h5", experiment, run.extractor, evaluated.evaluation.refined, trained);
+  evaluated.notes.append(writeTrustPower(run, samples, data, trained));
 
   RunSummary summary;
   summary.parameters = experiment.model.parameters;
@@ -124,10 +143,8 @@ RunSummary runStages(const RunContext& run) {
     summary.notes.append(notes);
   }
   summary.notes.append(writeExamples(run, samples.sets.test, data.test_indices, evaluated.evaluation));
-  summary.online = timeStage("time the inference of one measurement", summary.notes, [&] {
-    return trained.online ? timeOnlineUpdates(*trained.online, data.labelled.test)
-                          : timePredictions(trained, data.labelled.test);
-  });
+  summary.online = timeStage("time the inference of one measurement", summary.notes,
+                             [&] { return timeOnlineUpdates(trained.online, data.labelled.test); });
   return summary;
 }
 

@@ -1,7 +1,6 @@
 #include "framework/experiment/train_map.hpp"
 
 #include "framework/experiment/train_interruptibly.hpp"
-#include "framework/inverse_map/train_gp_map.hpp"
 #include "framework/monitoring/stage_timer.hpp"
 #include "framework/spec/check/check_experiment.hpp"
 
@@ -44,16 +43,10 @@ std::vector<TrainedHyperparameter> listHyperparameters(const std::vector<std::st
 
 }  // namespace
 
-Training trainMap(const ExperimentSpec& experiment, const LabelledFeatures& samples,
-                  const RunControl& control) {
+Training makeTraining(const ExperimentSpec& experiment, const LabelledFeatures& samples,
+                      GpMapTraining trained) {
   const std::vector<std::string> names = collectNames(experiment.model.parameters);
   Training training;
-  GpMapTraining trained = timeStage("train the inverse map", training.notes, [&] {
-    return trainInterruptibly([&] {
-      return trainGpMap(*experiment.inverse_map.findProcesses(), experiment.transform, names, samples,
-                        {control.threads, control.abandon}, experiment.model.inputs);
-    });
-  });
   training.notes.warn(Gravity::kRemark, trained.warnings);
   training.summary.leave_one_out = calcMetrics(experiment.model.parameters, samples.parameters,
                                                trained.leave_one_out, {}, samples.replicates);
@@ -63,6 +56,21 @@ Training trainMap(const ExperimentSpec& experiment, const LabelledFeatures& samp
     training.summary.nlml.push_back(gp::getNlml(process));
   }
   training.map = std::move(trained.map);
+  return training;
+}
+
+Training trainMap(const ExperimentSpec& experiment, const LabelledFeatures& samples,
+                  const RunControl& control) {
+  StageNotes notes;
+  GpMapTraining trained = timeStage("train the inverse map", notes, [&] {
+    return trainInterruptibly([&] {
+      return trainGpMap(*experiment.inverse_map.findProcesses(), experiment.transform,
+                        collectNames(experiment.model.parameters), samples,
+                        {control.threads, control.abandon}, experiment.model.inputs);
+    });
+  });
+  Training training = makeTraining(experiment, samples, std::move(trained));
+  training.notes.times = notes.times;
   return training;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "framework/features/labelled_features.hpp"
-#include "framework/inverse_map/gp_map.hpp"
+#include "framework/inverse_map/train_gp_map.hpp"
 #include "framework/monitoring/run_control.hpp"
 #include "framework/monitoring/stage_notes.hpp"
 #include "framework/results/run_summary.hpp"
@@ -15,6 +15,10 @@ struct Training {
   TrainingSummary summary;
   StageNotes notes;
 };
+
+/// A map trained on samples and what its training reports tell.
+Training makeTraining(const ExperimentSpec& experiment, const LabelledFeatures& samples,
+                      GpMapTraining trained);
 
 /// Trains the inverse map of an experiment on its training samples (trainGpMap). Throws Interrupted if it is
 /// stopped, after one evaluation of the likelihood at most.

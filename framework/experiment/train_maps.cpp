@@ -5,18 +5,16 @@
 #include <memory>
 
 #include "framework/experiment/fit_online.hpp"
-#include "framework/experiment/train_map.hpp"
 #include "framework/experiment/train_surrogate_map.hpp"
 #include "framework/monitoring/stage_timer.hpp"
-#include "framework/store/maps_file.hpp"
 #include "framework/surrogate/train_surrogate.hpp"
 
 namespace twinmap {
 namespace {
 
-/// Makes the map ready for measurements and writes both. `exact`: without processes for a surrogate.
+/// Makes the map ready for measurements.
 template <class Map>
-OnlineFit prepareOnline(const MapTrainingContext& context, const Map& map, const GpMap& exact) {
+OnlineFit prepareOnline(const MapTrainingContext& context, const Map& map) {
   StageNotes notes;
   OnlineFit online = timeStage("prepare for measurements", notes, [&] {
     return fitOnline({context.experiment,
@@ -28,27 +26,7 @@ OnlineFit prepareOnline(const MapTrainingContext& context, const Map& map, const
   });
   notes.append(online.notes);
   online.notes = notes;
-  writeMapsFile(context.folder / "maps.h5",
-                makeStoredMap(context.experiment, context.extractor, exact, online.model));
   return online;
-}
-
-/// Trains one Gaussian process per parameter.
-TrainedMap trainProcesses(const MapTrainingContext& context) {
-  Training training = trainMap(context.experiment, context.labelled.train, context.control);
-  OnlineFit online = prepareOnline(context, training.map, training.map);
-  training.notes.append(online.notes);
-  const auto map = std::make_shared<const GpMap>(std::move(training.map));
-  const auto predict = [map](const Eigen::MatrixXd& features, const Eigen::MatrixXd& inputs) {
-    return map->predict(features, inputs);
-  };
-  return {"inverse_map",
-          predict,
-          map->residual_correlation,
-          map->transform,
-          std::move(training.summary),
-          std::move(training.notes),
-          std::move(online.model)};
 }
 
 /// Trains a surrogate. What is inferred with it does not depend on the threads.
@@ -56,7 +34,7 @@ TrainedMap trainForward(const MapTrainingContext& context) {
   SurrogateMapTraining training = trainSurrogateMap(context.experiment, context.sets, context.extractor,
                                                     context.labelled.train, context.control);
   const auto surrogate = std::make_shared<const Surrogate>(std::move(training.surrogate));
-  OnlineFit online = prepareOnline(context, surrogate, {});
+  OnlineFit online = prepareOnline(context, surrogate);
   training.notes.append(online.notes);
   const auto predict = [surrogate, threads = context.control.threads](const Eigen::MatrixXd& features,
                                                                       const Eigen::MatrixXd& inputs) {
@@ -68,7 +46,13 @@ TrainedMap trainForward(const MapTrainingContext& context) {
           fitTransform(context.experiment.transform, context.labelled.train),
           std::move(training.summary),
           std::move(training.notes),
-          std::move(online.model)};
+          std::move(online.model),
+          {}};
+}
+
+/// Trains one Gaussian process per parameter.
+TrainedMap trainProcesses(const MapTrainingContext& context) {
+  return makeTrainedMap(context, trainMap(context.experiment, context.labelled.train, context.control));
 }
 
 TrainedMap trainAutomatically(const MapTrainingContext& context) {
@@ -83,6 +67,23 @@ TrainedMap trainAutomatically(const MapTrainingContext& context) {
 }
 
 }  // namespace
+
+TrainedMap makeTrainedMap(const MapTrainingContext& context, Training training) {
+  OnlineFit online = prepareOnline(context, training.map);
+  training.notes.append(online.notes);
+  const auto map = std::make_shared<const GpMap>(std::move(training.map));
+  const auto predict = [map](const Eigen::MatrixXd& features, const Eigen::MatrixXd& inputs) {
+    return map->predict(features, inputs);
+  };
+  return {"inverse_map",
+          predict,
+          map->residual_correlation,
+          map->transform,
+          std::move(training.summary),
+          std::move(training.notes),
+          std::move(online.model),
+          *map};
+}
 
 TrainedMap trainChosenMap(const MapTrainingContext& context) {
   const InverseMapSpec& spec = context.experiment.inverse_map;

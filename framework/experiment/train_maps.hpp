@@ -1,8 +1,7 @@
 #pragma once
 
-#include <filesystem>
-
 #include "framework/experiment/prepare_data.hpp"
+#include "framework/experiment/train_map.hpp"
 #include "framework/experiment/trained_map.hpp"
 #include "framework/monitoring/run_control.hpp"
 
@@ -14,11 +13,13 @@ struct MapTrainingContext {
   const SimulatedSets& sets;
   const FeatureExtractor& extractor;
   const LabelledSets& labelled;
-  const std::filesystem::path& folder;  ///< where maps.h5 is written
   const RunControl& control;
 };
 
-/// Trains the map that the experiment asks for, prepares it for measurements and writes maps.h5. Automatic is
+/// A map of processes, prepared for measurements.
+TrainedMap makeTrainedMap(const MapTrainingContext& context, Training training);
+
+/// Trains the map that the experiment asks for and prepares it for measurements. Automatic is
 /// a surrogate, and Gaussian processes from features to parameters where it cannot be trained: on eleven
 /// mechanisms of different kinds the surrogate was the better map of 52 parameters of 56, with honest
 /// standard deviations, in a tenth of the time (docs/maps.md). Throws Interrupted if it is stopped,

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,7 +22,8 @@ struct TrainedMap {
   FeatureTransform transform;            ///< what a linear regression is to see of the features
   TrainingSummary summary;
   StageNotes notes;
-  std::optional<OnlineModel> online;  ///< none of a map that is not stored
+  OnlineModel online;
+  GpMap exact;  ///< what online was compressed from; without processes where it is a surrogate
 };
 
 }  // namespace twinmap

@@ -61,8 +61,8 @@ class Inferrer {
     std::optional<TrustWorkspace> trust;
   };
 
-  /// Infers and judges. features: d, finite; known: the inputs of the set-up (q). Cost: that of OnlineMap::infer()
-  /// and judge().
+  /// Infers and judges. features: d, finite; known: the inputs of the set-up (q). Cost: that of
+  /// OnlineMap::infer() and judge().
   InferredMeasurement infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
                             Workspace& workspace) const;
 

@@ -38,6 +38,21 @@ Refined SimulatorRefiner::refine(const InferredMeasurement& inferred, const Vect
   return refined;
 }
 
+void SimulatorRefiner::refineAndJudge(const VectorXd& features, const VectorXd& known,
+                                      const TrustModel* trust, InferredMeasurement& inferred) const {
+  inferred.refined = refine(inferred, features, known, trust);
+  const Refined& refined = *inferred.refined;
+  if (trust != nullptr) {
+    SimulatorResidual found{
+        refined.residual, refined.calcReducedChiSquare(), refined.degrees, refined.explained, {}, {}};
+    if (refined.isAccepted()) {
+      found.mean = refined.point.head(refined.stddev.size());
+      found.stddev = refined.stddev;
+    }
+    inferred.trust = judgeAnew(*trust, *inferred.trust, found);
+  }
+}
+
 Refined SimulatorRefiner::fitNuisance(const VectorXd& point, const VectorXd& features) const {
   const SearchedParameters nuisance{static_cast<Index>(model_.parameters.size()),
                                     static_cast<Index>(model_.nuisance.size())};

@@ -30,6 +30,10 @@ class SimulatorRefiner {
   Refined refine(const InferredMeasurement& inferred, const Eigen::VectorXd& features,
                  const Eigen::VectorXd& known, const TrustModel* trust) const;
 
+  /// refine(), and what follows for the measurement's trust (judgeAnew): sets both.
+  void refineAndJudge(const Eigen::VectorXd& features, const Eigen::VectorXd& known, const TrustModel* trust,
+                      InferredMeasurement& inferred) const;
+
   /// Searches the nuisance parameters alone, the others held at `point`; without nuisance parameters the
   /// point itself, accepted.
   Refined fitNuisance(const Eigen::VectorXd& point, const Eigen::VectorXd& features) const;

@@ -57,8 +57,7 @@ InferredMeasurement infer(const Inferrer& inferrer, const Window& window, const 
   inferred.start = options.from.start;
   if (options.refine.value_or(window.refiner.isWanted())) {
     const std::optional<TrustModel>& trust = inferrer.getTrustModel();
-    inferred.refined =
-        window.refiner.refine(inferred, window.features, options.known, trust ? &*trust : nullptr);
+    window.refiner.refineAndJudge(window.features, options.known, trust ? &*trust : nullptr, inferred);
   }
   return inferred;
 }

@@ -74,7 +74,7 @@ class UnexplainedShare {
 
   /// Whether enough were refined that the worst of all would be an alarm.
   bool isKnown() const { return rare_ || calcPValue(std::numeric_limits<double>::infinity()) < level_; }
-  double getFactorOfExplained() const { return rare_ ? 1.0 / (1.0 - all_ / level_) : 1.0 / kShareOfLevel; }
+  double getFactorOfExplained() const { return 1.0 / (1.0 - (rare_ ? all_ / level_ : kShareOfLevel)); }
   double calcPValue(double reduced_chi_square) const {
     const double share = calcShareAbove(reduced_chi_square);
     return rare_ ? share : std::min(1.0, share / kShareOfLevel);
@@ -178,15 +178,17 @@ Trust judgeAnew(const TrustModel& model, const Trust& trust, const SimulatorResi
     return trust;
   }
   Trust anew = trust;
-  setResidual(model, found.residual, anew);
-  anew.burst_p_value = model.noise_burst.calcPValue(anew.burst.score);
-  anew.chi_square_p_value =
-      boost::math::cdf(boost::math::complement(boost::math::chi_squared(found.degrees), found.chi_square));
+  if (found.residual.size() > 0) {
+    setResidual(model, found.residual, anew);
+    anew.burst_p_value = model.noise_burst.calcPValue(anew.burst.score);
+    anew.chi_square_p_value =
+        boost::math::cdf(boost::math::complement(boost::math::chi_squared(found.degrees), anew.chi_square));
+  }
   if (found.explained) {
     combinePValues(anew);
     anew.p_value = std::min(1.0, anew.p_value * share.getFactorOfExplained());
   } else {
-    anew.p_value = share.calcPValue(found.chi_square / found.degrees);
+    anew.p_value = share.calcPValue(found.reduced_chi_square);
   }
   replaceStatuses(model, found, anew);
   return anew;

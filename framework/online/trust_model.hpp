@@ -96,12 +96,12 @@ Trust judge(const TrustModel& model, const Eigen::Ref<const Eigen::VectorXd>& fe
 
 /// What a search on the simulator left of a measurement.
 struct SimulatorResidual {
-  Eigen::VectorXd residual;  ///< k, in noise standard deviations
-  double chi_square = 0.0;   ///< its square
-  double degrees = 1.0;      ///< of freedom: k less the parameters that were determined
-  bool explained = false;    ///< whether noise explains chi_square, at a level far below TrustModel::level
-  Eigen::VectorXd mean;      ///< p, the answer where it was accepted; else empty
-  Eigen::VectorXd stddev;    ///< p
+  Eigen::VectorXd residual;  ///< k, in noise standard deviations; empty where nothing could be simulated
+  double reduced_chi_square = 0.0;  ///< over its degrees of freedom
+  double degrees = 0.0;             ///< of freedom: k less the parameters that were determined
+  bool explained = false;  ///< whether noise explains the residual, at a level far below TrustModel::level
+  Eigen::VectorXd mean;    ///< p, the answer where it was accepted; else empty
+  Eigen::VectorXd stddev;  ///< p
 };
 
 /// Judges a measurement anew by what the simulator leaves of it, which has no error of a surrogate: replaces

@@ -56,10 +56,12 @@ Probes makeProbes(const SearchBox& box, const LocalMisfit& minimum) {
 
 }  // namespace
 
-double calcChiSquareLimit(const LocalMisfit& minimum) {
-  const double determined = minimum.calcCovariance().cwiseProduct(minimum.information).sum();
-  const double degrees = std::max(1.0, static_cast<double>(minimum.residuals) - determined);
+double calcChiSquareLimit(double degrees) {
   return boost::math::quantile(boost::math::chi_squared(degrees), kChiSquareLevel);
+}
+
+double calcChiSquareLimit(const LocalMisfit& minimum) {
+  return calcChiSquareLimit(minimum.calcDegrees());
 }
 
 Acceptance testMinimum(Misfit& misfit, const LocalMisfit& minimum) {

@@ -11,12 +11,14 @@ struct Acceptance {
   std::string message;
 };
 
-/// The largest chi-square that noise explains: its 99.9 % quantile.
+/// The largest chi-square that noise explains: the 99.9 % quantile for `degrees` of freedom.
+double calcChiSquareLimit(double degrees);
+
+/// That of a minimum (LocalMisfit::calcDegrees()).
 double calcChiSquareLimit(const LocalMisfit& minimum);
 
 /// Accepts a minimum if
-/// - its chi-square is below the 99.9 % quantile for as many degrees of freedom as there are residuals less
-///   the parameters that the residuals, not the box, determine (trace of J'J (J'J + prior)^-1), at least one;
+/// - its chi-square is below the 99.9 % quantile for LocalMisfit::calcDegrees();
 /// - the misfit rises along each eigenvector of the posterior covariance, on both sides, as its linear model
 ///   says: by 4 at 2 standard deviations, where 1 to 12 is accepted. That is a curvature within a factor 3 to
 ///   4, beyond which a standard deviation would be wrong by a factor of 2. Where the limits of the search

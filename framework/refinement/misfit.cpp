@@ -1,5 +1,6 @@
 #include "framework/refinement/misfit.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -22,6 +23,11 @@ MatrixXd LocalMisfit::calcHessian() const {
 MatrixXd LocalMisfit::calcCovariance() const {
   return linalg::solveCholesky(linalg::calcCholesky(calcHessian()).lower,
                                MatrixXd::Identity(information.rows(), information.cols()));
+}
+
+double LocalMisfit::calcDegrees() const {
+  const double determined = calcCovariance().cwiseProduct(information).sum();
+  return std::max(1.0, static_cast<double>(residuals) - determined);
 }
 
 Misfit::Misfit(Simulator& simulator, const RefinementModel& model, const SearchBox& box,
@@ -64,7 +70,7 @@ std::vector<LocalMisfit> Misfit::linearizeAll(const MatrixXd& points) {
 LocalMisfit Misfit::makeLocalMisfit(const VectorXd& at, const LocalModel& local) {
   const SearchedParameters& searched = box_.getSearched();
   if (!local.status.ok) {
-    return {local.status, {}, 0.0, 0.0, 0, {}, {}};
+    return {local.status, {}, 0.0, 0.0, 0, {}, {}, {}};
   }
   if (!window_->whitener && !whitener_) {
     whitener_ = model_.makeWhitener(*window_, local.response);
@@ -81,7 +87,8 @@ LocalMisfit Misfit::makeLocalMisfit(const VectorXd& at, const LocalModel& local)
           chi_square + kHalfWidthInformation * at.squaredNorm(),
           residual.size(),
           jacobian.transpose() * jacobian,
-          jacobian.transpose() * residual - kHalfWidthInformation * at};
+          jacobian.transpose() * residual - kHalfWidthInformation * at,
+          residual};
 }
 
 VectorXd Misfit::evaluate(const MatrixXd& points) {

@@ -20,6 +20,11 @@ struct LocalMisfit {
   Eigen::Index residuals = 0;   ///< k
   Eigen::MatrixXd information;  ///< J'J, s x s
   Eigen::VectorXd descent;      ///< J'r - 3 at
+  Eigen::VectorXd residual;     ///< r, k
+
+  /// Degrees of freedom: residuals less the parameters that they, not the box, determine (trace of
+  /// J'J (J'J + prior)^-1), at least one.
+  double calcDegrees() const;
 
   Eigen::MatrixXd calcHessian() const;     ///< information + prior
   Eigen::MatrixXd calcCovariance() const;  ///< its inverse, in half-widths

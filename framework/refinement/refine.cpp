@@ -112,6 +112,9 @@ class Refinement {
     if (end.local.status.ok) {
       found.point = box_.makePoint(end.local.at);
       found.chi_square = end.local.chi_square;
+      found.degrees = end.local.calcDegrees();
+      found.residual = end.local.residual;
+      found.explained = end.local.chi_square < calcChiSquareLimit(end.local);
       const VectorXd way = end.local.at - box_.normalize(task_.starts.front().point);
       found.distance = std::sqrt(way.dot(end.local.calcHessian() * way));
     }

@@ -1,6 +1,12 @@
 #include "framework/refinement/refined.hpp"
 
+#include <limits>
+
 namespace twinmap {
+
+double Refined::calcReducedChiSquare() const {
+  return degrees > 0.0 ? chi_square / degrees : std::numeric_limits<double>::infinity();
+}
 
 const char* toString(RefinementStatus status) {
   switch (status) {

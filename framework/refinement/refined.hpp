@@ -24,11 +24,16 @@ struct Refined {
   Eigen::MatrixXd covariance;  ///< s x s of the searched parameters, in their units; empty unless accepted
   Eigen::VectorXd stddev;      ///< s; empty unless accepted
   double chi_square = 0.0;     ///< of the residual, in noise variances
+  double degrees = 0.0;        ///< of freedom of the residual; 0 where nothing could be simulated
+  Eigen::VectorXd residual;    ///< of all features, in noise standard deviations; empty likewise
+  bool explained = false;      ///< whether noise explains chi_square (calcChiSquareLimit), accepted or not
   double distance = 0.0;       ///< from the first start, in standard deviations (Mahalanobis)
   int iterations = 0;          ///< of all attempts
   int simulations = 0;         ///< those with derivatives count once
   std::string start;           ///< the start that led there
 
+  /// chi_square over degrees; infinite where nothing could be simulated.
+  double calcReducedChiSquare() const;
   bool isAccepted() const { return status == RefinementStatus::kAccepted; }
   /// Whether the point is a minimum of the misfit, be it accepted or not.
   bool hasConverged() const { return status != RefinementStatus::kFailed; }

@@ -143,6 +143,12 @@ StoredMap readMapsFile(const std::filesystem::path& path) {
   return stored;
 }
 
+bool holdsProcesses(const std::filesystem::path& path) {
+  const Hdf5Reader file(path);
+  requireFormat(file, path);
+  return !holdsSurrogate(file);
+}
+
 StoredOnlineModel readOnlineModel(const std::filesystem::path& path) {
   const Hdf5Reader file(path);
   requireFormat(file, path);

@@ -34,6 +34,10 @@ void writeMapsFile(const std::filesystem::path& path, const StoredMap& stored);
 /// for a file that is no maps.h5, or that of a surrogate.
 StoredMap readMapsFile(const std::filesystem::path& path);
 
+/// Whether the map is one of processes; a surrogate is not. Throws std::runtime_error for a file that is no
+/// maps.h5.
+bool holdsProcesses(const std::filesystem::path& path);
+
 /// Reads the online model alone, a fraction of the file. Throws std::runtime_error for a file that is no
 /// maps.h5 or has none.
 StoredOnlineModel readOnlineModel(const std::filesystem::path& path);

@@ -40,10 +40,8 @@ gp::Moments mix(const std::vector<gp::Moments>& parts, const VectorXd& weights) 
 std::vector<Index> rankSimulations(const ForwardSurrogate& surrogate,
                                    const Eigen::Ref<const VectorXd>& scores) {
   const ArrayXd weights = (1.0 + surrogate.error_variance.array()).rsqrt();
-  const VectorXd misfit = ((surrogate.scores.colwise() - scores).array().colwise() * weights)
-                              .matrix()
-                              .colwise()
-                              .squaredNorm();
+  const VectorXd misfit =
+      ((surrogate.scores.colwise() - scores).array().colwise() * weights).matrix().colwise().squaredNorm();
   std::vector<Index> order(static_cast<std::size_t>(misfit.size()));
   std::iota(order.begin(), order.end(), Index{0});
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return misfit[a] < misfit[b]; });
@@ -169,8 +167,7 @@ void ScoreInversion::updateMetric(const VectorXd& unknown, Metric& metric) {
   metric.diagonal = false;
 }
 
-std::vector<ScoreInversion::Minimum> ScoreInversion::searchRoughly(
-    const std::vector<VectorXd>& starts) {
+std::vector<ScoreInversion::Minimum> ScoreInversion::searchRoughly(const std::vector<VectorXd>& starts) {
   constexpr int kFirstSteps = 3, kSteps = 9;
   constexpr double kOnTheWay = 0.15, kApart = 0.05;  // in half widths, after the first steps and at the end
   constexpr double kHopeless = 30.0;                 // e^-15 of the evidence, and errors of the rough metric

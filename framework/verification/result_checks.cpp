@@ -5,9 +5,10 @@
 
 #include "framework/evaluation/information_limit.hpp"
 #include "framework/experiment/answers.hpp"
-#include "framework/experiment/fit_online.hpp"
 #include "framework/experiment/prepare_data.hpp"
 #include "framework/experiment/refine_test_samples.hpp"
+#include "framework/experiment/store_map.hpp"
+#include "framework/experiment/train_maps.hpp"
 #include "framework/inverse_map/train_gp_map.hpp"
 #include "framework/results/tables.hpp"
 #include "framework/sensitivity/fisher_information.hpp"
@@ -35,14 +36,6 @@ struct Inputs {
   const PreparedData& data;
   int threads;
 };
-
-std::string findMapDifference(const std::filesystem::path& file, const Inputs& inputs, const GpMap& map,
-                              const OnlineModel& online) {
-  const TemporaryFolder temporary;
-  writeMapsFile(temporary.getPath() / "maps.h5",
-                makeStoredMap(inputs.experiment, inputs.extractor, map, online));
-  return findHdf5Difference(file, temporary.getPath() / "maps.h5");
-}
 
 /// The limit of all test samples as the file has it, and of `chosen` ones computed again.
 MatrixXd calcLimit(const Inputs& inputs, const std::vector<int>& chosen,
@@ -72,26 +65,45 @@ MatrixXd calcLimit(const Inputs& inputs, const std::vector<int>& chosen,
   return limit;
 }
 
-RunSummary summarize(const Inputs& inputs, const GpMapTraining& trained, const OnlineModel& online,
-                     const MatrixXd& limit) {
-  const LabelledSets& labelled = inputs.data.labelled;
-  const Predictions predictions = trained.map.predict(labelled.test.features, labelled.test.inputs);
+RunControl makeControl(const Inputs& inputs) {
   RunControl control;
   control.threads = inputs.threads;
-  const RefinedTests refined = refineTestSamples(
-      {inputs.experiment, inputs.simulator, inputs.extractor, inputs.data, &online, predictions, control});
+  return control;
+}
+
+/// Processes are fitted at the hyperparameters of the file, without a search; a surrogate is trained again.
+TrainedMap trainAgain(const Inputs& inputs, const std::filesystem::path& file) {
+  const RunControl control = makeControl(inputs);
+  const MapTrainingContext context{inputs.experiment, inputs.sets, inputs.extractor, inputs.data.labelled,
+                                   control};
+  const LabelledFeatures& train = inputs.data.labelled.train;
+  if (!holdsProcesses(file)) {
+    return trainChosenMap(context);
+  }
+  GpMapTraining fitted =
+      refitGpMap(readMapsFile(file).map, *inputs.experiment.inverse_map.findProcesses(),
+                 inputs.experiment.transform, train, inputs.threads, inputs.experiment.model.inputs);
+  return makeTrainedMap(context, makeTraining(inputs.experiment, train, std::move(fitted)));
+}
+
+std::vector<Refined> refineAgain(const Inputs& inputs, const TrainedMap& map) {
+  const RunControl control = makeControl(inputs);
+  return refineTestSamples(
+             {inputs.experiment, inputs.simulator, inputs.extractor, inputs.data, map.online, control})
+      .refined;
+}
+
+RunSummary summarize(const Inputs& inputs, const TrainedMap& map, const std::vector<Refined>& refined,
+                     const MatrixXd& limit) {
+  const LabelledFeatures& test = inputs.data.labelled.test;
   RunSummary run;
   run.parameters = inputs.experiment.model.parameters;
   run.test_indices = inputs.data.test_indices;
-  run.evaluation =
-      evaluateAnswers(run.parameters, labelled.test.parameters,
-                      makeAnswers(predictions, trained.map.residual_correlation, refined.refined), limit);
-  run.evaluation.refined = refined.refined;
-  run.training.leave_one_out = calcMetrics(run.parameters, labelled.train.parameters, trained.leave_one_out,
-                                           {}, labelled.train.replicates);
-  for (const gp::Process& process : trained.map.processes) {
-    run.training.nlml.push_back(gp::getNlml(process));
-  }
+  run.evaluation = evaluateAnswers(
+      run.parameters, test.parameters,
+      makeAnswers(map.predict(test.features, test.inputs), map.residual_correlation, refined), limit);
+  run.evaluation.refined = refined;
+  run.training = map.summary;
   return run;
 }
 
@@ -113,33 +125,22 @@ std::string findDifference(const std::filesystem::path& file, const std::string&
 
 void checkMapAndTables(const Inputs& inputs, const std::vector<int>& limits, Verification& verification) {
   const std::filesystem::path& folder = verification.folder;
-  if (inputs.experiment.inverse_map.findGp() == nullptr) {
-    verification.notes.emplace_back(
-        "a surrogate is not kept: predictions and tables are compared by --all alone, which trains it again");
-    return;
-  }
-  GpMapTraining trained;
-  OnlineModel online;
-  verification.check("maps.h5: refitted at its hyperparameters", [&] {
-    trained = refitGpMap(readMapsFile(folder / "maps.h5").map, *inputs.experiment.inverse_map.findGp(),
-                         inputs.experiment.transform, inputs.data.labelled.train, inputs.threads,
-                         inputs.experiment.model.inputs);
-    online = fitOnline({inputs.experiment,
-                        inputs.sets,
-                        inputs.extractor,
-                        inputs.data.labelled,
-                        {inputs.threads, nullptr}},
-                       trained.map)
-                 .model;
-    return findMapDifference(folder / "maps.h5", inputs, trained.map, online);
+  std::optional<TrainedMap> map;
+  std::vector<Refined> refined;
+  verification.check("maps.h5: fitted again", [&] {
+    map = trainAgain(inputs, folder / "maps.h5");
+    refined = refineAgain(inputs, *map);
+    const TemporaryFolder temporary;
+    storeMap(temporary.getPath() / "maps.h5", inputs.experiment, inputs.extractor, refined, *map);
+    return findHdf5Difference(folder / "maps.h5", temporary.getPath() / "maps.h5");
   });
-  if (trained.map.processes.empty()) {
+  if (!map) {
     verification.notes.emplace_back("predictions and tables are not compared, for they follow from maps.h5");
     return;
   }
   RunSummary run;
   verification.check("predictions.csv: all test samples inferred again", [&] {
-    run = summarize(inputs, trained, online, calcLimit(inputs, limits, folder / "predictions.csv"));
+    run = summarize(inputs, *map, refined, calcLimit(inputs, limits, folder / "predictions.csv"));
     return findDifference(folder / "predictions.csv", makePredictionsCsv(run));
   });
   if (run.evaluation.metrics.empty()) {

@@ -77,7 +77,7 @@ std::vector<int> chooseSome(int count, int total, std::uint64_t seed, int stream
 }
 
 Verification verifyRun(const fs::path& folder, const VerifyOptions& options) {
-  requireFinishedRun(folder, {"samples.h5", "predictions.csv", "metrics.csv"});
+  requireFinishedRun(folder, {"samples.h5", "maps.h5", "predictions.csv", "metrics.csv"});
   Verification verification;
   verification.folder = folder;
   const std::string provenance = readBytes(folder / "provenance.json");
@@ -85,9 +85,6 @@ Verification verifyRun(const fs::path& folder, const VerifyOptions& options) {
   verification.check("files: digests in provenance.json",
                      [&] { return findChangedFile(provenance, folder); });
   const ExperimentSpec experiment = loadExperiment((folder / "resolved.yaml").string());
-  if (experiment.inverse_map.findGp() != nullptr) {
-    requireFinishedRun(folder, {"maps.h5"});
-  }
   (options.all ? verifyAll : verifyPart)(experiment, options, verification);
   return verification;
 }

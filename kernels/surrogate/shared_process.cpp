@@ -70,8 +70,9 @@ SharedProcess::SharedProcess(SharedProcessParts parts)
 }
 
 SharedProcessParts SharedProcess::getParts() const {
-  return {structure_,         hyperparameters_, scaled_points_, weights_,            coefficients_,
-          factor_.getTiles(), solved_terms_,    term_factor_,   left_out_.amplitude, left_out_ratio_};
+  return {structure_,          hyperparameters_,   scaled_points_, weights_,
+          coefficients_,       factor_.getTiles(), solved_terms_,  term_factor_,
+          left_out_.amplitude, left_out_ratio_};
 }
 
 void SharedProcess::updateLeftOutRatio() {

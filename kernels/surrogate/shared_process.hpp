@@ -12,14 +12,14 @@ namespace twinmap::gp {
 struct SharedProcessParts {
   SharedStructure structure;
   SharedHyperparameters hyperparameters;
-  Eigen::MatrixXd scaled_points;  ///< n x p, over the length scales
-  Eigen::MatrixXd weights;        ///< K^-1 (values - trend), n x r
-  Eigen::MatrixXd coefficients;   ///< of the trend, q x r
-  Eigen::VectorXd factor_tiles;   ///< of K's lower factor (linalg::PackedLower)
-  Eigen::MatrixXd solved_terms;   ///< L^-1 H', n x q
-  Eigen::MatrixXd term_factor;    ///< lower factor of H K^-1 H', q x q
-  Eigen::VectorXd amplitude;      ///< LeftOut::amplitude, r
-  Eigen::VectorXd left_out_ratio; ///< n
+  Eigen::MatrixXd scaled_points;   ///< n x p, over the length scales
+  Eigen::MatrixXd weights;         ///< K^-1 (values - trend), n x r
+  Eigen::MatrixXd coefficients;    ///< of the trend, q x r
+  Eigen::VectorXd factor_tiles;    ///< of K's lower factor (linalg::PackedLower)
+  Eigen::MatrixXd solved_terms;    ///< L^-1 H', n x q
+  Eigen::MatrixXd term_factor;     ///< lower factor of H K^-1 H', q x q
+  Eigen::VectorXd amplitude;       ///< LeftOut::amplitude, r
+  Eigen::VectorXd left_out_ratio;  ///< n
 };
 
 /// r smooth functions of p variables, known without noise at n points: a Gaussian process each, with one

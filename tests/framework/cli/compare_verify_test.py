@@ -221,7 +221,7 @@ class Verify(TestCase):
             run = self.copy("run")
             self.flip_number(run / "maps.h5", dataset, index)
             differing, output = self.verify(run)
-            self.assertEqual(list(differing), ["maps.h5: refitted at its hyperparameters"], output)
+            self.assertEqual(list(differing), ["maps.h5: fitted again"], output)
             self.assertEqual(self.changed, "maps.h5 is not as it was written")
             self.assertRegex(list(differing.values())[0], rf"^/{dataset}.*: \S+ instead of \S+$")
             shutil.rmtree(run)

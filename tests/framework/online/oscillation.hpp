@@ -6,6 +6,7 @@
 #include "framework/design/random.hpp"
 #include "framework/inverse_map/train_gp_map.hpp"
 #include "framework/online/fit_trust.hpp"
+#include "framework/surrogate/fit_forward.hpp"
 
 namespace twinmap::testing {
 
@@ -63,11 +64,17 @@ struct Oscillation {
     return kNoise * kNoise * Eigen::MatrixXd::Identity(kSamples, kSamples);
   }
 
+  static std::vector<FeatureInfo> makeInfos() {
+    std::vector<FeatureInfo> infos;
+    for (int i = 0; i < kSamples; ++i) {
+      infos.push_back({"y(" + std::to_string(i) + ")", "m", 0, 0.1 * (i + 1)});
+    }
+    return infos;
+  }
+
   GpMap trainMap(int n = 150) const {
     LabelledFeatures samples;
-    for (int i = 0; i < kSamples; ++i) {
-      samples.infos.push_back({"y(" + std::to_string(i) + ")", "m", 0, 0.1 * (i + 1)});
-    }
+    samples.infos = makeInfos();
     samples.parameters = samplePoints(n, 1);
     samples.features = addNoise(calcClean(samples.parameters), 1);
     samples.noise_covariance = getNoiseCovariance();
@@ -75,11 +82,21 @@ struct Oscillation {
     return trainGpMap({}, transform, {"d", "w"}, samples, {1}).map;
   }
 
+  /// Of the training simulations.
+  static ForwardSurrogate fitSurrogate(const TrustTraining& training) {
+    Eigen::MatrixXd normalized = training.points;
+    normalized.row(0).array() = (normalized.row(0).array() - 0.2) / 0.1;
+    normalized.row(1).array() = (normalized.row(1).array() - 2.5) / 0.5;
+    return fitForward({training.infos, normalized, training.clean_features, training.noise_covariance}, {},
+                      {})
+        .surrogate;
+  }
+
   TrustTraining makeTrustTraining() const {
     TrustTraining training;
     training.sampled = parameters;
     training.unknown = 2;
-    training.infos.resize(kSamples);
+    training.infos = makeInfos();
     training.points = samplePoints(150, 1);
     training.clean_features = calcClean(training.points);
     training.noise_covariance = getNoiseCovariance();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "framework/design/random.hpp"
 #include "tests/framework/online/oscillation.hpp"
 
 namespace twinmap {
@@ -17,7 +18,8 @@ class TrustTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     map_ = new OnlineMap(compressMap(Oscillation().trainMap()));
-    model_ = new TrustModel(fitTrustModel(Oscillation().makeTrustTraining(), *map_, 0.01));
+    const TrustTraining training = Oscillation().makeTrustTraining();
+    model_ = new TrustModel(fitTrustModel(training, Oscillation::fitSurrogate(training), *map_, 0.01, 2));
   }
   static void TearDownTestSuite() {
     delete model_;
@@ -26,7 +28,7 @@ class TrustTest : public ::testing::Test {
 
   static Trust judgeFeatures(const VectorXd& features) {
     OnlineMap::Workspace inferring(*map_);
-    TrustWorkspace judging;
+    TrustWorkspace judging(*model_);
     return judge(*model_, features, VectorXd(0), map_->infer(features, VectorXd(0), inferring), judging);
   }
 
@@ -85,9 +87,66 @@ TEST_F(TrustTest, SaysWhereItIsUninformed) {
   OnlineMap::Workspace workspace(*map_);
   const VectorXd features = Oscillation::calcClean(0.2, 2.5);
   inference.inputs = map_->infer(features, VectorXd(0), workspace).inputs;
-  TrustWorkspace judging;
+  TrustWorkspace judging(*model_);
   const Trust trust = judge(*model_, features, VectorXd(0), inference, judging);
   EXPECT_EQ(trust.statuses, std::vector<TrustStatus>{TrustStatus::kUninformative});
+}
+
+TEST_F(TrustTest, DoesNotDependOnTheThreads) {
+  TrustTraining training = Oscillation().makeTrustTraining();
+  training.measured = training.measured.leftCols(40).eval();
+  training.known.resize(0, 40);
+  const ForwardSurrogate surrogate = Oscillation::fitSurrogate(training);
+  const TrustModel alone = fitTrustModel(training, surrogate, *map_, 0.01, 1);
+  const TrustModel together = fitTrustModel(training, surrogate, *map_, 0.01, 3);
+  EXPECT_EQ(alone.chi_square.sorted, together.chi_square.sorted);
+  EXPECT_EQ(alone.burst.sorted, together.burst.sorted);
+  EXPECT_EQ(alone.cloud.reach, together.cloud.reach);
+}
+
+/// What the simulator leaves of a measurement whose residual is `scale` times white noise.
+SimulatorResidual makeResidual(std::uint64_t sample, double scale, bool explained) {
+  const RandomStream random(5, RandomPurpose::kTestNoise);
+  SimulatorResidual found;
+  found.residual = VectorXd::NullaryExpr(Oscillation::kSamples, [&](Eigen::Index i) {
+    return scale * random.calcNormal(sample, static_cast<std::uint64_t>(i));
+  });
+  found.degrees = static_cast<double>(Oscillation::kSamples);
+  found.reduced_chi_square = found.residual.squaredNorm() / found.degrees;
+  found.explained = explained;
+  return found;
+}
+
+bool isMismatch(const Trust& trust) {
+  return std::count(trust.statuses.begin(), trust.statuses.end(), TrustStatus::kModelMismatch) > 0;
+}
+
+TEST_F(TrustTest, JudgesWhatTheSimulatorExplainsAgainstNoiseAtTheLevel) {
+  TrustModel model = *model_;
+  model.refinement.tried = 2000;
+  const Trust by_surrogate = judgeFeatures(Oscillation::calcClean(0.2, 2.5));
+  int found = 0;
+  for (std::uint64_t i = 0; i < 3000; ++i) {
+    found += isMismatch(judgeAnew(model, by_surrogate, makeResidual(i, 1.0, true))) ? 1 : 0;
+  }
+  EXPECT_NEAR(found / 3000.0, 0.01, 0.007);  // three standard errors and that of 4000 references
+  EXPECT_TRUE(isMismatch(judgeAnew(model, by_surrogate, makeResidual(1, 1.6, true))));
+}
+
+TEST_F(TrustTest, SuspectsWhatTheSimulatorDoesNotExplainAsFarAsThatIsRare) {
+  TrustModel model = *model_;
+  const Trust by_surrogate = judgeFeatures(Oscillation::calcClean(0.2, 2.5));
+  ASSERT_FALSE(isMismatch(by_surrogate));
+  const auto judge_scaled = [&](double scale) {
+    return isMismatch(judgeAnew(model, by_surrogate, makeResidual(1, scale, false)));
+  };
+  EXPECT_FALSE(judge_scaled(30.0));  // nothing was ever refined: the surrogate's word stays
+  model.refinement.tried = 400;
+  EXPECT_TRUE(judge_scaled(3.0));                                      // never seen
+  model.refinement.unexplained = VectorXd::LinSpaced(12, 4.0, 400.0);  // 3 %: half of the level is 2 of 400
+  EXPECT_FALSE(judge_scaled(3.0));
+  EXPECT_FALSE(judge_scaled(15.0));
+  EXPECT_TRUE(judge_scaled(30.0));
 }
 
 TEST(ReferenceDistribution, GivesTheShareAtLeastAsLarge) {

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "framework/experiment/simulated_sets.hpp"
+#include "framework/features/feature_extractor.hpp"
+#include "framework/online/online_model.hpp"
+
+namespace twinmap {
+
+/// What a trust model finds of one thing that may be wrong.
+struct DetectableChange {
+  std::string kind;  ///< "constant", or "output" with a constant offset
+  std::string name;
+  std::string unit;       ///< of the change: "" of a constant, whose change is relative
+  double smallest = 0.0;  ///< found in 95 % of the cases; NaN where none up to `largest` is
+  double largest = 0.0;   ///< half of the constant, or the range of the output
+  double found = 0.0;     ///< the share of cases in which `largest` is found
+};
+
+/// What the power of a trust model is computed from.
+struct PowerContext {
+  const ExperimentSpec& experiment;
+  const SimulatedSets& sets;
+  const FeatureExtractor& extractor;
+  const Eigen::MatrixXd& noise_covariance;  ///< d x d, of the features
+  const OnlineModel& online;                ///< with a trust model
+  int threads = 1;
+};
+
+/// The smallest relative change of each constant of the model, and the smallest constant offset of each
+/// output, that is called a model mismatch in 95 % of the cases, by bisection at the first test samples. The
+/// features move in proportion to the change, which is where a small change leads. Where the run's test
+/// samples were refined, it is the answer of the simulator that is judged: the parameters take up what they
+/// can of the change, linearly. Otherwise the surrogate judges the changed features. Constants that are
+/// expressions or zero, and those that change no feature, are left out. Test samples whose derivatives cannot
+/// be simulated, too; empty if all are. Deterministic.
+/// Cost: 10 simulations with derivatives along the unknown parameters and the constants; then a change takes
+/// some 10 ms, by the surrogate 1 s.
+std::vector<DetectableChange> calcTrustPower(const PowerContext& context);
+
+/// trust_power.csv (docs/file-formats.md).
+std::string makeTrustPowerCsv(const std::vector<DetectableChange>& changes);
+
+/// One warning that names all that is not found even in half of the cases; empty if there is none.
+std::vector<std::string> listPowerWarnings(const std::vector<DetectableChange>& changes);
+
+}  // namespace twinmap
