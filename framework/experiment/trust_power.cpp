@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <cstdlib>
 #include <limits>
 #include <memory>
 
@@ -104,105 +104,135 @@ std::vector<Neighbourhood> simulateNeighbourhoods(const PowerContext& context,
   return found;
 }
 
-/// Judges features of one neighbourhood with noise, `sample`-th draw, that are moved by `change`.
+/// What parameters take up of whitened residuals: J (J'J + prior)^-1 J', J per half-width.
+class Absorption {
+ public:
+  explicit Absorption(MatrixXd jacobian) : jacobian_(std::move(jacobian)) {
+    hessian_ = jacobian_.transpose() * jacobian_;
+    hessian_.diagonal().array() += kHalfWidthInformation;
+  }
+
+  VectorXd remove(const VectorXd& residual) const {
+    return residual - jacobian_ * linalg::solvePositiveDefinite(hessian_, jacobian_.transpose() * residual);
+  }
+
+  /// Residuals less what is determined of the parameters.
+  double calcDegrees() const {
+    const MatrixXd information = jacobian_.transpose() * jacobian_;
+    const double determined =
+        linalg::solveCholesky(linalg::calcCholesky(hessian_).lower, information).trace();
+    return std::max(1.0, static_cast<double>(jacobian_.rows()) - determined);
+  }
+
+ private:
+  MatrixXd jacobian_, hessian_;
+};
+
+/// Judges features of one neighbourhood.
 class Judge {
  public:
   virtual ~Judge() = default;
-  virtual int countDraws() const = 0;
-  virtual Trust judgeMoved(const VectorXd& change, std::uint64_t sample) = 0;
+  /// The p-value where the features are moved, by change and noise together.
+  virtual double calcPValue(const VectorXd& moved) const = 0;
 };
 
-/// What the simulator leaves where the parameters take up what they can of noise and change.
+/// By what the simulator leaves.
 class RefinedJudge final : public Judge {
  public:
-  RefinedJudge(const TrustModel& trust, const NoiseWhitener& noise, const Neighbourhood& at,
-               const RandomStream& random)
-      : trust_(trust), noise_(noise), random_(random), jacobian_(noise.apply(at.sensitivities)) {
-    const MatrixXd information = jacobian_.transpose() * jacobian_;
-    hessian_ = information;
-    hessian_.diagonal().array() += kHalfWidthInformation;
-    const MatrixXd factor = linalg::calcCholesky(hessian_).lower;
-    const double determined = linalg::solveCholesky(factor, information).trace();
-    degrees_ = std::max(1.0, static_cast<double>(jacobian_.rows()) - determined);
-    limit_ = calcChiSquareLimit(degrees_);
-  }
+  RefinedJudge(const TrustModel& trust, const NoiseWhitener& noise, const Neighbourhood& at)
+      : trust_(trust),
+        noise_(noise),
+        absorption_(noise.apply(at.sensitivities)),
+        degrees_(absorption_.calcDegrees()),
+        limit_(calcChiSquareLimit(degrees_)) {}
 
-  int countDraws() const override { return 20; }
-
-  Trust judgeMoved(const VectorXd& change, std::uint64_t sample) override {
-    VectorXd residual = noise_.apply(change);
-    for (Index i = 0; i < residual.size(); ++i) {
-      residual[i] += random_.calcNormal(sample, static_cast<std::uint64_t>(i));
-    }
-    const VectorXd step = linalg::solvePositiveDefinite(hessian_, jacobian_.transpose() * residual);
-    residual -= jacobian_ * step;
+  double calcPValue(const VectorXd& moved) const override {
+    const VectorXd residual = absorption_.remove(noise_.apply(moved));
     const double chi_square = residual.squaredNorm();
-    return judgeAnew(trust_, {}, {residual, chi_square / degrees_, degrees_, chi_square < limit_, {}, {}});
+    const SimulatorResidual found{residual, chi_square / degrees_, degrees_, chi_square < limit_, {}, {}};
+    return judgeAnew(trust_, {}, found).p_value;
   }
 
  private:
   const TrustModel& trust_;
   const NoiseWhitener& noise_;
-  const RandomStream& random_;
-  MatrixXd jacobian_, hessian_;
-  double degrees_ = 1.0, limit_ = 0.0;
+  const Absorption absorption_;
+  const double degrees_, limit_;
 };
 
-/// The map and its trust model.
-class OnlineJudge final : public Judge {
+/// By what the surrogate leaves, linearised where it explains the features without noise: its error there is
+/// part of what is judged.
+class SurrogateJudge final : public Judge {
  public:
-  OnlineJudge(const OnlineMap& map, const TrustModel& trust, const MatrixXd& noise_factor,
-              const Neighbourhood& at, const RandomStream& random)
-      : map_(map),
-        trust_(trust),
-        noise_factor_(noise_factor),
-        at_(at),
-        random_(random),
-        inferring_(map),
-        judging_(trust) {}
+  SurrogateJudge(const OnlineMap& map, const TrustModel& trust, const Neighbourhood& at)
+      : trust_(trust),
+        explanation_(explain(map, trust, at)),
+        absorption_(explanation_.jacobian),
+        centered_(at.features - trust.forward.center) {}
 
-  int countDraws() const override { return 5; }
-
-  Trust judgeMoved(const VectorXd& change, std::uint64_t sample) override {
-    VectorXd noise(noise_factor_.cols());
-    for (Index i = 0; i < noise.size(); ++i) {
-      noise[i] = random_.calcNormal(sample, static_cast<std::uint64_t>(i));
-    }
-    const VectorXd features = at_.features + change + noise_factor_ * noise;
-    return judge(trust_, features, at_.known, map_.inferMean(features, at_.known, inferring_), judging_);
+  double calcPValue(const VectorXd& moved) const override {
+    const VectorXd scores = trust_.forward.projection * moved;
+    const VectorXd innovation =
+        explanation_.innovation + absorption_.remove(linalg::solveLower(explanation_.lower, scores));
+    VectorXd residual;
+    trust_.space.calcResidual(centered_ + moved, innovation, residual);
+    Trust trust;
+    compareWithSimulated(trust_, residual, trust);
+    return trust.p_value;
   }
 
  private:
-  const OnlineMap& map_;
+  static ScoreExplanation explain(const OnlineMap& map, const TrustModel& trust, const Neighbourhood& at) {
+    OnlineMap::Workspace inferring(map);
+    TrustWorkspace judging(trust);
+    judge(trust, at.features, at.known, map.inferMean(at.features, at.known, inferring), judging);
+    return judging.explanation;
+  }
+
   const TrustModel& trust_;
-  const MatrixXd& noise_factor_;
-  const Neighbourhood& at_;
-  const RandomStream& random_;
-  OnlineMap::Workspace inferring_;
-  TrustWorkspace judging_;
+  const ScoreExplanation explanation_;
+  const Absorption absorption_;
+  const VectorXd centered_;
 };
 
-/// All neighbourhoods with their judges.
-using Judges = std::vector<std::unique_ptr<Judge>>;
+/// Where the power is looked at, and how.
+struct PowerCases {
+  std::vector<std::unique_ptr<Judge>> judges;  // one a neighbourhood
+  MatrixXd noise;                              // d x kDraws of each judge
+  double level = 0.0;
+};
 
-/// The share of cases found where neighbourhood i is moved by size * directions[i].
-double calcShareFound(const Judges& judges, const std::vector<VectorXd>& directions, double size,
-                      double level) {
-  int found = 0, count = 0;
-  for (std::size_t i = 0; i < judges.size(); ++i) {
-    for (int draw = 0; draw < judges[i]->countDraws(); ++draw, ++count) {
-      const VectorXd change = size * directions[i];
-      found += judges[i]->judgeMoved(change, static_cast<std::uint64_t>(count)).p_value < level ? 1 : 0;
+constexpr Index kDraws = 20;  // of each judge: 200 tell a share of 95 % to 1.5 %
+
+/// Noise of the covariance factor factor', d x count.
+MatrixXd drawNoise(const MatrixXd& factor, Index count, std::uint64_t seed) {
+  const RandomStream random(seed, RandomPurpose::kTrustPower);
+  MatrixXd white(factor.cols(), count);
+  for (Index draw = 0; draw < count; ++draw) {
+    for (Index i = 0; i < white.rows(); ++i) {
+      white(i, draw) = random.calcNormal(static_cast<std::uint64_t>(draw), static_cast<std::uint64_t>(i));
     }
   }
-  return static_cast<double>(found) / count;
+  return factor * white;
+}
+
+/// The share of cases found where neighbourhood i is moved by size * directions[i].
+double calcShareFound(const PowerCases& cases, const std::vector<VectorXd>& directions, double size) {
+  int found = 0;
+  for (std::size_t i = 0; i < cases.judges.size(); ++i) {
+    for (Index draw = 0; draw < kDraws; ++draw) {
+      const VectorXd moved = size * directions[i] + cases.noise.col(static_cast<Index>(i) * kDraws + draw);
+      found += cases.judges[i]->calcPValue(moved) < cases.level ? 1 : 0;
+    }
+  }
+  return static_cast<double>(found) / static_cast<double>(cases.noise.cols());
 }
 
 /// Bisects the logarithm of the size, to 5 %.
-void findSmallest(const Judges& judges, const std::vector<VectorXd>& directions, double level,
+void findSmallest(const PowerCases& cases, const std::vector<VectorXd>& directions,
                   DetectableChange& change) {
   constexpr double kSpan = 1e-8, kStep = 1.05;  // of `largest`; the ratio at which the search ends
-  change.found = calcShareFound(judges, directions, change.largest, level);
+  change.found = calcShareFound(cases, directions, change.largest);
   change.smallest = std::numeric_limits<double>::quiet_NaN();
   if (change.found < kFound) {
     return;
@@ -210,7 +240,7 @@ void findSmallest(const Judges& judges, const std::vector<VectorXd>& directions,
   double below = kSpan * change.largest, above = change.largest;
   while (above > kStep * below) {
     const double middle = std::sqrt(below * above);
-    (calcShareFound(judges, directions, middle, level) < kFound ? below : above) = middle;
+    (calcShareFound(cases, directions, middle) < kFound ? below : above) = middle;
   }
   change.smallest = above;
 }
@@ -242,19 +272,22 @@ bool areUsable(const std::vector<VectorXd>& directions) {
                      [](const VectorXd& one) { return one.cwiseAbs().maxCoeff() > 0.0; });
 }
 
-Judges makeJudges(const PowerContext& context, const NoiseWhitener& noise, const MatrixXd& noise_factor,
-                  const OnlineMap& map, const RandomStream& random,
-                  const std::vector<Neighbourhood>& around) {
+PowerCases makeCases(const PowerContext& context, const NoiseWhitener& noise,
+                     const std::vector<Neighbourhood>& around) {
   const TrustModel& trust = *context.online.trust;
-  Judges judges;
+  const OnlineMap map(context.online.map);
+  PowerCases cases;
+  cases.level = trust.level;
   for (const Neighbourhood& at : around) {
     if (trust.refinement.tried > 0) {
-      judges.push_back(std::make_unique<RefinedJudge>(trust, noise, at, random));
+      cases.judges.push_back(std::make_unique<RefinedJudge>(trust, noise, at));
     } else {
-      judges.push_back(std::make_unique<OnlineJudge>(map, trust, noise_factor, at, random));
+      cases.judges.push_back(std::make_unique<SurrogateJudge>(map, trust, at));
     }
   }
-  return judges;
+  const MatrixXd factor = context.noise_covariance * noise.getMatrix().transpose();  // W C W' = 1
+  cases.noise = drawNoise(factor, kDraws * static_cast<Index>(around.size()), context.experiment.seed);
+  return cases;
 }
 
 }  // namespace
@@ -267,13 +300,10 @@ std::vector<DetectableChange> calcTrustPower(const PowerContext& context) {
     return changes;
   }
   const NoiseWhitener noise(context.noise_covariance);
-  const MatrixXd noise_factor = context.noise_covariance * noise.getMatrix().transpose();  // W C W' = 1
-  const OnlineMap map(context.online.map);
-  const RandomStream random(context.experiment.seed, RandomPurpose::kTrustPower);
-  const Judges judges = makeJudges(context, noise, noise_factor, map, random, around);
+  const PowerCases cases = makeCases(context, noise, around);
   const auto add = [&](DetectableChange change, const std::vector<VectorXd>& directions) {
     if (areUsable(directions)) {
-      findSmallest(judges, directions, context.online.trust->level, change);
+      findSmallest(cases, directions, change);
       changes.push_back(change);
     }
   };

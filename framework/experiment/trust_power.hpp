@@ -32,12 +32,12 @@ struct PowerContext {
 /// The smallest relative change of each constant of the model, and the smallest constant offset of each
 /// output, that is called a model mismatch in 95 % of the cases, by bisection at the first test samples. The
 /// features move in proportion to the change, which is where a small change leads. Where the run's test
-/// samples were refined, it is the answer of the simulator that is judged: the parameters take up what they
-/// can of the change, linearly. Otherwise the surrogate judges the changed features. Constants that are
+/// samples were refined, it is the answer of the simulator that is judged, else that of the surrogate: the
+/// parameters take up what they can of noise and change, linearly. Constants that are
 /// expressions or zero, and those that change no feature, are left out. Test samples whose derivatives cannot
 /// be simulated, too; empty if all are. Deterministic.
-/// Cost: 10 simulations with derivatives along the unknown parameters and the constants; then a change takes
-/// some 10 ms, by the surrogate 1 s.
+/// Cost: 10 simulations with derivatives along the unknown parameters and the constants; then some 30 ms for
+/// each change.
 std::vector<DetectableChange> calcTrustPower(const PowerContext& context);
 
 /// trust_power.csv (docs/file-formats.md).

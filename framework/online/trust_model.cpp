@@ -159,17 +159,21 @@ Trust judge(const TrustModel& model, const Eigen::Ref<const VectorXd>& features,
   makeStart(model, known, inference, workspace.start);
   workspace.centered = features - model.forward.center;
   workspace.scores.noalias() = model.forward.projection * workspace.centered;
-  workspace.explanation = workspace.inversion.explain(workspace.scores, workspace.start.tail(known.size()),
-                                                      workspace.start.head(model.unknown));
+  workspace.inversion.explain(workspace.scores, workspace.start.tail(known.size()),
+                              workspace.start.head(model.unknown));
   model.space.calcResidual(workspace.centered, workspace.explanation.innovation, workspace.residual);
   Trust trust;
-  setResidual(model, workspace.residual, trust);
-  trust.chi_square_p_value = model.chi_square.calcPValue(trust.chi_square);
-  trust.burst_p_value = model.burst.calcPValue(trust.burst.score);
-  combinePValues(trust);
+  compareWithSimulated(model, workspace.residual, trust);
   trust.distance = model.cloud.calcDistance(inference.inputs, workspace.distance);
   setStatuses(model, inference.mean, inference.stddev, trust);
   return trust;
+}
+
+void compareWithSimulated(const TrustModel& model, const VectorXd& residual, Trust& trust) {
+  setResidual(model, residual, trust);
+  trust.chi_square_p_value = model.chi_square.calcPValue(trust.chi_square);
+  trust.burst_p_value = model.burst.calcPValue(trust.burst.score);
+  combinePValues(trust);
 }
 
 Trust judgeAnew(const TrustModel& model, const Trust& trust, const SimulatorResidual& found) {

@@ -81,10 +81,12 @@ struct TrustModel {
 /// The buffers of one thread; the model must outlive them.
 struct TrustWorkspace {
   explicit TrustWorkspace(const TrustModel& model) : inversion(model.forward, model.unknown) {}
+  TrustWorkspace(const TrustWorkspace&) = delete;
+  TrustWorkspace& operator=(const TrustWorkspace&) = delete;
 
   ScoreInversion inversion;
-  ScoreExplanation explanation;                                 ///< of the measurement judged last
-  Eigen::VectorXd start, centered, scores, residual, distance;  // the start is normalised
+  const ScoreExplanation& explanation = inversion.getExplanation();  ///< of the measurement judged last
+  Eigen::VectorXd start, centered, scores, residual, distance;       // the start is normalised
 };
 
 /// Judges an inference from features (d, finite) and known inputs (q), by the point of the box that explains
@@ -93,6 +95,9 @@ struct TrustWorkspace {
 Trust judge(const TrustModel& model, const Eigen::Ref<const Eigen::VectorXd>& features,
             const Eigen::Ref<const Eigen::VectorXd>& known, const Inference& inference,
             TrustWorkspace& workspace);
+
+/// Sets residual, statistics and p-values of `trust` from what the surrogate leaves (ResidualSpace).
+void compareWithSimulated(const TrustModel& model, const Eigen::VectorXd& residual, Trust& trust);
 
 /// What a search on the simulator left of a measurement.
 struct SimulatorResidual {

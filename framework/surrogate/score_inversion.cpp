@@ -209,6 +209,8 @@ void ScoreInversion::refine(Minimum& minimum) {
   minimum.information = normal_;
   minimum.shift = gradient_ + normal_ * minimum.point;
   const MatrixXd posterior = normal_ + kHalfWidthInformation * MatrixXd::Identity(unknown_, unknown_);
+  minimum.jacobian = scaled_jacobian_;
+  minimum.lower = std::move(metric.lower);
   minimum.objective += metric.log_determinant + calcLogDeterminant(linalg::calcCholesky(posterior).lower);
 }
 
@@ -255,12 +257,14 @@ const ScoreExplanation& ScoreInversion::explain(const Eigen::Ref<const VectorXd>
   for (Minimum& minimum : minima) {
     refine(minimum);
   }
-  const Minimum& best =
-      *std::min_element(minima.begin(), minima.end(),
-                        [](const Minimum& a, const Minimum& b) { return a.objective < b.objective; });
+  Minimum& best = *std::min_element(minima.begin(), minima.end(), [](const Minimum& a, const Minimum& b) {
+    return a.objective < b.objective;
+  });
   explanation_.point = point_;
   explanation_.point.head(unknown_) = best.point;
-  explanation_.innovation = best.residual;
+  explanation_.innovation = std::move(best.residual);
+  explanation_.lower = std::move(best.lower);
+  explanation_.jacobian = std::move(best.jacobian);
   return explanation_;
 }
 

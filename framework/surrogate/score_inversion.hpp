@@ -17,6 +17,8 @@ std::vector<Eigen::Index> rankSimulations(const ForwardSurrogate& surrogate,
 struct ScoreExplanation {
   Eigen::VectorXd point;       ///< m, normalised
   Eigen::VectorXd innovation;  ///< L^-1 r with L L' = C: independent, of unit variance, if all is right
+  Eigen::MatrixXd lower;       ///< L, r x r
+  Eigen::MatrixXd jacobian;    ///< L^-1 ds / dx, r x u
 };
 
 /// Infers normalised unknowns (the first u variables of a point) from scores, under a uniform prior over the
@@ -40,6 +42,8 @@ class ScoreInversion {
   gp::Moments infer(const Eigen::Ref<const Eigen::VectorXd>& scores,
                     const Eigen::Ref<const Eigen::VectorXd>& known);
 
+  const ScoreExplanation& getExplanation() const { return explanation_; }
+
   /// The minimum of most evidence, searched from `start` (u, normalised; moved into the box) too. The result
   /// is valid until the next call. Cost: that of infer().
   const ScoreExplanation& explain(const Eigen::Ref<const Eigen::VectorXd>& scores,
@@ -59,6 +63,8 @@ class ScoreInversion {
     Eigen::VectorXd point;  // u
     double objective = 0.0;
     Eigen::VectorXd residual;     // L^-1 r, r
+    Eigen::MatrixXd lower;        // L, r x r
+    Eigen::MatrixXd jacobian;     // L^-1 ds / dx, r x u
     Eigen::MatrixXd information;  // u x u
     Eigen::VectorXd shift;        // u
   };

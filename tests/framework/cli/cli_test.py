@@ -23,7 +23,7 @@ SMALL = ["design.train.samples=40", "design.test.samples=20"]
 NO_LIMIT = "evaluation.limit=false"  # a neighbourhood of simulations less at each test point
 RESULTS = ["correlations.csv", "failures.csv", "features.csv", "hyperparameters.csv", "identifiability.csv", "joint.csv",
            "maps.h5", "metrics.csv", "pit.csv", "predictions.csv", "resolved.yaml", "responses.csv", "samples.h5", "table.md",
-           "table.tex", "training.csv"]
+           "table.tex", "training.csv", "trust_power.csv"]
 
 
 def read_table(lines):
