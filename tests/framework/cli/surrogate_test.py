@@ -1,11 +1,12 @@
-"""A run whose inverse map is a surrogate: what it leaves, and what says that it is not kept yet."""
+"""A run whose map is a surrogate: what it leaves, and what is inferred with it."""
 import filecmp
+import json
 import unittest
 
 from support import EXPERIMENTS, OwnFolderTestCase, call, read_csv
 
 TABLE1 = EXPERIMENTS / "two_beam/table1.yaml"
-SMALL = ["inverse_map={surrogate: {}}", "design.train.samples=60", "design.test.samples=30"]
+SMALL = ["inverse_map=surrogate", "design.train.samples=60", "design.test.samples=30"]
 
 
 class Surrogate(OwnFolderTestCase):
@@ -23,7 +24,7 @@ class Surrogate(OwnFolderTestCase):
             self.assertGreater(float(row["loo_coverage95"]), 0.9)
             self.assertGreater(float(validated["stddev_scale"]), 0)
             self.assertEqual(validated["status"], "ok")
-        self.assertFalse((run / "maps.h5").exists())
+        self.assertEqual({row["method"] for row in read_csv(run / "methods.csv")}, {"surrogate"})
         self.assertTrue((run / "report.html").exists())
 
     def test_results_do_not_depend_on_the_threads(self):
@@ -31,21 +32,40 @@ class Surrogate(OwnFolderTestCase):
         names = ["predictions.csv", "metrics.csv", "cross_validation.csv"]
         self.assertEqual(filecmp.cmpfiles(one, three, names, shallow=False), (names, [], []))
 
-    def test_measurements_are_refused_with_the_reason(self):
+    def test_infers_measurements_from_its_file_alone(self):
         run = self.run_experiment("run")
-        result = call("infer", run, "any.csv")
-        self.assertEqual(result.returncode, 1)
-        self.assertIn("is a surrogate, which is not kept yet", result.stderr)
+        measured = self.folder / "measured.csv"
+        given = {"k_y": 8.0, "k_theta": 0.04}
+        overrides = [f"parameters.{name}={value}" for name, value in given.items()]
+        self.assertEqual(call("simulate", TABLE1, *overrides, "--csv", measured).returncode, 0)
+        (run / "maps.h5").rename(self.folder / "maps.h5")
+        result = call("infer", self.folder / "maps.h5", measured, "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        answer = json.loads(result.stdout)
+        self.assertEqual(answer["status"], "ok")
+        for name, value in given.items():
+            found = answer["parameters"][name]
+            self.assertLess(abs(found["mean"] - value), 3 * found["sd"], name)
 
-    def test_verification_says_what_it_leaves_out(self):
+    def test_is_verified_by_training_it_again(self):
         result = call("verify", self.run_experiment("run"))
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertIn("a surrogate is not kept", result.stdout)
+        self.assertIn("ok       maps.h5: fitted again", result.stdout)
 
     def test_a_feature_without_noise_is_named_as_the_reason(self):
         result = call("run", TABLE1, *SMALL, "noise.stddev.y=0", "--out", self.folder / "silent")
         self.assertNotEqual(result.returncode, 0)
         self.assertIn("the surrogate cannot be trained: the noise of a feature is 0", result.stderr)
+
+    def test_the_automatic_map_is_a_surrogate_where_one_can_be_trained(self):
+        few = ["inverse_map=automatic", "design.test.samples=20"]
+        for name, overrides, method in [("enough", ["design.train.samples=40"], "surrogate"),
+                                        ("too_few", ["design.train.samples=20"], "inverse_map"),
+                                        ("silent", ["design.train.samples=40", "noise.stddev.y=0"], "inverse_map")]:
+            run = self.folder / name
+            result = call("run", TABLE1, *few, *overrides, "transform=[z_score]", "--out", run)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertEqual({row["method"] for row in read_csv(run / "methods.csv")}, {method}, name)
 
 
 if __name__ == "__main__":
