@@ -136,30 +136,6 @@ class Judge {
   virtual double calcPValue(const VectorXd& moved) const = 0;
 };
 
-/// By what the simulator leaves.
-class RefinedJudge final : public Judge {
- public:
-  RefinedJudge(const TrustModel& trust, const NoiseWhitener& noise, const Neighbourhood& at)
-      : trust_(trust),
-        noise_(noise),
-        absorption_(noise.apply(at.sensitivities)),
-        degrees_(absorption_.calcDegrees()),
-        limit_(calcChiSquareLimit(degrees_)) {}
-
-  double calcPValue(const VectorXd& moved) const override {
-    const VectorXd residual = absorption_.remove(noise_.apply(moved));
-    const double chi_square = residual.squaredNorm();
-    const SimulatorResidual found{residual, chi_square / degrees_, degrees_, chi_square < limit_, {}, {}};
-    return judgeAnew(trust_, {}, found).p_value;
-  }
-
- private:
-  const TrustModel& trust_;
-  const NoiseWhitener& noise_;
-  const Absorption absorption_;
-  const double degrees_, limit_;
-};
-
 /// By what the surrogate leaves, linearised where it explains the features without noise: its error there is
 /// part of what is judged.
 class SurrogateJudge final : public Judge {
@@ -193,6 +169,37 @@ class SurrogateJudge final : public Judge {
   const ScoreExplanation explanation_;
   const Absorption absorption_;
   const VectorXd centered_;
+};
+
+/// By what the simulator leaves; by the surrogate where that does not decide.
+class RefinedJudge final : public Judge {
+ public:
+  RefinedJudge(const OnlineMap& map, const TrustModel& trust, const NoiseWhitener& noise,
+               const Neighbourhood& at)
+      : trust_(trust),
+        noise_(noise),
+        absorption_(noise.apply(at.sensitivities)),
+        degrees_(absorption_.calcDegrees()),
+        limit_(calcChiSquareLimit(degrees_)),
+        surrogate_(map, trust, at) {}
+
+  double calcPValue(const VectorXd& moved) const override {
+    const VectorXd residual = absorption_.remove(noise_.apply(moved));
+    const double chi_square = residual.squaredNorm();
+    const SimulatorResidual found{residual, chi_square / degrees_, degrees_, chi_square < limit_, {}, {}};
+    Trust by_surrogate;
+    if (!found.explained) {
+      by_surrogate.p_value = surrogate_.calcPValue(moved);
+    }
+    return judgeAnew(trust_, by_surrogate, found).p_value;
+  }
+
+ private:
+  const TrustModel& trust_;
+  const NoiseWhitener& noise_;
+  const Absorption absorption_;
+  const double degrees_, limit_;
+  const SurrogateJudge surrogate_;
 };
 
 /// Where the power is looked at, and how.
@@ -280,7 +287,7 @@ PowerCases makeCases(const PowerContext& context, const NoiseWhitener& noise,
   cases.level = trust.level;
   for (const Neighbourhood& at : around) {
     if (trust.refinement.tried > 0) {
-      cases.judges.push_back(std::make_unique<RefinedJudge>(trust, noise, at));
+      cases.judges.push_back(std::make_unique<RefinedJudge>(map, trust, noise, at));
     } else {
       cases.judges.push_back(std::make_unique<SurrogateJudge>(map, trust, at));
     }

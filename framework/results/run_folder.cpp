@@ -25,6 +25,7 @@ void readTables(const fs::path& path, RunFolder& run) {
   run.training = readCsvFile(path / "training.csv");
   run.hyperparameters = readCsvFile(path / "hyperparameters.csv");
   run.failures = readCsvFile(path / "failures.csv");
+  run.trust_power = readCsvFile(path / "trust_power.csv");
   run.features = readCsvFile(path / "features.csv");
   run.correlations = readCsvFile(path / "correlations.csv");
   run.identifiability = readCsvFile(path / "identifiability.csv");

@@ -25,6 +25,7 @@ struct RunFolder {
   CsvTable training;
   CsvTable hyperparameters;
   CsvTable failures;
+  CsvTable trust_power;
   CsvTable features;
   CsvTable correlations;
   CsvTable identifiability;

@@ -112,6 +112,7 @@ void addCost(const RunFolder& run, Page& page) {
   Section section{"cost", "Cost, failures, provenance", "", {}};
   section.html = makeCostFacts(run);
   addStages(run, section, page);
+  addTrustPower(run, section);
   addFailures(run, section, page);
   addProvenance(run, section);
   page.sections.push_back(std::move(section));

@@ -54,6 +54,16 @@ class Infer(InferCase):
             self.assertAlmostEqual(estimate["upper"] - estimate["lower"], 3.92 * estimate["sd"],
                                    delta=1e-3 * estimate["sd"])
 
+    def test_finds_what_its_power_says_it_finds(self):
+        rows = read_csv(self.run_folder / "trust_power.csv")
+        power = {row["name"]: float(row["smallest_change"]) for row in rows if row["smallest_change"]}
+        self.assertEqual({row["name"] for row in rows}, {"m1", "m2", "y_COM", "z_COM", "I", "g", "y", "theta"})
+        self.assertIn("m1", power)
+        heavier = self.simulate("heavier.csv", f"constants.m1.value={3.3 * (1 + 3 * power['m1'])}", *POINT)
+        self.assertEqual(self.infer_json(heavier)["status"], "model_mismatch")
+        moved = self.write("moved.csv", y=self.columns["y"] + 3 * power["y"])
+        self.assertEqual(self.infer_json(moved)["status"], "model_mismatch")
+
     def test_infers_the_clean_test_responses_of_the_run(self):
         with h5py.File(self.run_folder / "samples.h5") as file:
             times, names = file["times"][:], [name.decode() for name in file["parameters/name"]]
