@@ -1,4 +1,4 @@
-#include "framework/online/online_map.hpp"
+#include "framework/online/online_processes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,9 +11,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using testing::Oscillation;
 
-void expectSame(const OnlineMap& online, const MatrixXd& features) {
+void expectSame(const OnlineProcesses& online, const MatrixXd& features) {
   const Predictions expected = online.getMap().predict(features);
-  OnlineMap::Workspace workspace(online);
+  OnlineProcesses::Workspace workspace(online);
   for (Eigen::Index i = 0; i < features.cols(); ++i) {
     const Inference& inferred = online.infer(features.col(i), VectorXd(0), workspace);
     EXPECT_TRUE(inferred.mean.isApprox(expected.mean.col(i), 1e-9));
@@ -21,15 +21,15 @@ void expectSame(const OnlineMap& online, const MatrixXd& features) {
   }
 }
 
-TEST(OnlineMap, InfersWhatItsMapPredicts) {
+TEST(OnlineProcesses, InfersWhatItsMapPredicts) {
   const MatrixXd features =
       Oscillation::addNoise(Oscillation::calcClean(Oscillation::samplePoints(20, 5)), 5);
   const GpMap exact = Oscillation().trainMap();
-  expectSame(OnlineMap(exact), features);               // exact processes
-  expectSame(OnlineMap(compressMap(exact)), features);  // packed ones
+  expectSame(OnlineProcesses(exact), features);               // exact processes
+  expectSame(OnlineProcesses(compressMap(exact)), features);  // packed ones
 }
 
-TEST(OnlineMap, ACompressedMapPredictsAsTheExactOne) {
+TEST(OnlineProcesses, ACompressedMapPredictsAsTheExactOne) {
   const MatrixXd features =
       Oscillation::addNoise(Oscillation::calcClean(Oscillation::samplePoints(200, 5)), 5);
   const GpMap exact = Oscillation().trainMap(400);
