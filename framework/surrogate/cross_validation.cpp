@@ -38,8 +38,13 @@ Index countDraws(const SurrogateSamples& samples) {
 Surrogate fitWithout(Index fold, const Surrogate& whole, const ForwardSamples& forward,
                      const std::vector<gp::SharedChoice>& choices, const TrainingControl& control) {
   const std::vector<Index> kept = listSimulations(forward.points.cols(), fold, false);
-  const ForwardSamples samples{forward.infos, forward.points(Eigen::all, kept),
-                               forward.clean_features(Eigen::all, kept), forward.noise_covariance};
+  ForwardSamples samples{forward.infos, forward.points(Eigen::all, kept),
+                         forward.clean_features(Eigen::all, kept), forward.noise_covariance};
+  for (const Index i : kept) {
+    if (!forward.slopes.empty()) {
+      samples.slopes.push_back(forward.slopes[static_cast<std::size_t>(i)]);
+    }
+  }
   Surrogate surrogate;
   surrogate.forward = fitForward(samples, choices, control).surrogate;
   surrogate.center = whole.center;

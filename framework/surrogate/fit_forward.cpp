@@ -9,6 +9,7 @@
 #include "framework/features/principal_components.hpp"
 #include "framework/surrogate/feature_windows.hpp"
 #include "framework/surrogate/run_tasks.hpp"
+#include "kernels/surrogate/fit_slopes.hpp"
 
 namespace twinmap {
 namespace {
@@ -18,29 +19,103 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+/// Simulations in the order in which processes take them, those with slopes first.
+struct WhitenedSamples {
+  MatrixXd points;       // m x n
+  MatrixXd features;     // k x n, whitened
+  gp::SlopeData slopes;  // of the whitened features
+};
+
+/// The first `most` simulations that have slopes, then the others.
+std::vector<Index> orderBySlopes(const ForwardSamples& samples, Index& with_slopes) {
+  std::vector<Index> order, others;
+  Index unknown = 0;
+  for (const MatrixXd& slopes : samples.slopes) {
+    unknown = std::max(unknown, slopes.cols());
+  }
+  const Index n = samples.points.cols(), most = unknown > 0 ? countSlopePoints(n, unknown) : 0;
+  for (Index i = 0; i < n; ++i) {
+    const bool has =
+        static_cast<Index>(order.size()) < most && samples.slopes[static_cast<std::size_t>(i)].size() > 0;
+    (has ? order : others).push_back(i);
+  }
+  with_slopes = static_cast<Index>(order.size());
+  order.insert(order.end(), others.begin(), others.end());
+  return order;
+}
+
+WhitenedSamples whiten(const ForwardSamples& samples, const VectorXd& center, const NoiseWhitener& noise) {
+  Index with_slopes = 0;
+  const std::vector<Index> order = orderBySlopes(samples, with_slopes);
+  WhitenedSamples whitened{samples.points(Eigen::all, order),
+                           noise.apply(samples.clean_features(Eigen::all, order).colwise() - center),
+                           {}};
+  if (with_slopes == 0) {
+    return whitened;
+  }
+  const Index unknown = samples.slopes[static_cast<std::size_t>(order[0])].cols();
+  whitened.slopes.variables = unknown;
+  whitened.slopes.values.resize(unknown * with_slopes, whitened.features.rows());
+  for (Index i = 0; i < with_slopes; ++i) {
+    const MatrixXd slopes = noise.apply(samples.slopes[static_cast<std::size_t>(order[i])]);
+    for (Index v = 0; v < unknown; ++v) {
+      whitened.slopes.values.row(v * with_slopes + i) = slopes.col(v).transpose();
+    }
+  }
+  return whitened;
+}
+
 /// The scores of one window and what was fitted to them.
 struct WindowFit {
-  MatrixXd directions;  // k x c, of all whitened features
-  MatrixXd scores;      // n x c
+  MatrixXd directions;   // k x c, of all whitened features
+  MatrixXd scores;       // n x c
+  gp::SlopeData slopes;  // of the scores
   gp::SharedChoice choice;
   std::optional<gp::SharedProcess> process;
 };
 
-void findScores(const FeatureWindow& rows, const MatrixXd& whitened, WindowFit& window) {
+void findScores(const FeatureWindow& rows, const WhitenedSamples& whitened, WindowFit& window) {
   constexpr double kSmallestStddev = 0.2;
-  const PrincipalComponents components = calcPrincipalComponents(whitened(rows, Eigen::all));
+  const MatrixXd features = whitened.features(rows, Eigen::all);
+  const PrincipalComponents components = calcPrincipalComponents(features);
   const Index count =
       std::max<Index>(1, (components.variances.array() > kSmallestStddev * kSmallestStddev).count());
   const MatrixXd kept = components.directions.leftCols(count);
-  window.directions.setZero(whitened.rows(), count);
+  window.directions.setZero(whitened.features.rows(), count);
   window.directions(rows, Eigen::all) = kept;
-  window.scores = whitened(rows, Eigen::all).transpose() * kept;
+  window.scores = features.transpose() * kept;
+  if (whitened.slopes.variables > 0) {
+    window.slopes = {whitened.slopes.values(Eigen::all, rows) * kept, whitened.slopes.variables};
+  }
+}
+
+/// From slopes as well; false where rounding leaves their joint covariance without a Cholesky factor.
+bool fitWithSlopes(const MatrixXd& points, WindowFit& window) {
+  try {
+    window.process.emplace(points, window.scores, window.slopes, window.choice.structure,
+                           window.choice.hyperparameters);
+    return true;
+  } catch (const std::runtime_error&) {
+    return false;
+  }
 }
 
 void fitWindow(const MatrixXd& points, const gp::SharedChoice* similar, gp::StopFlag stop,
                WindowFit& window) {
-  window.choice = similar != nullptr ? gp::adaptSharedProcess(*similar, points, window.scores, stop)
-                                     : gp::chooseSharedProcess(points, window.scores, stop);
+  const bool slopes = window.slopes.variables > 0;
+  if (similar != nullptr && similar->structure.slopes && slopes) {
+    window.choice = *similar;
+  } else {
+    window.choice = similar != nullptr ? gp::adaptSharedProcess(*similar, points, window.scores, stop)
+                                       : gp::chooseSharedProcess(points, window.scores, stop);
+    if (similar == nullptr && slopes) {
+      window.choice = gp::chooseWithSlopes(window.choice, points, window.scores, window.slopes, stop);
+    }
+  }
+  if (window.choice.structure.slopes && fitWithSlopes(points, window)) {
+    return;
+  }
+  window.choice.structure.slopes = false;
   window.process.emplace(points, window.scores, window.choice.structure, window.choice.hyperparameters);
 }
 
@@ -151,20 +226,25 @@ void assemble(std::vector<WindowFit>& windows, const std::vector<std::vector<Ind
 
 }  // namespace
 
+Index countSlopePoints(Index simulations, Index unknown) {
+  constexpr Index kMostRows = 2000;
+  return std::clamp<Index>((kMostRows - simulations) / std::max<Index>(unknown, 1), 0, simulations);
+}
+
 ForwardFit fitForward(const ForwardSamples& samples, const std::vector<gp::SharedChoice>& similar,
                       const TrainingControl& control) {
   const NoiseWhitener noise(samples.noise_covariance);
   ForwardFit fit;
   fit.surrogate.center = samples.clean_features.rowwise().mean();
-  fit.surrogate.points = samples.points;
-  const MatrixXd whitened = noise.apply(samples.clean_features.colwise() - fit.surrogate.center);
-  const bool by_feature = whitened.rows() == static_cast<Index>(samples.infos.size());
+  const WhitenedSamples whitened = whiten(samples, fit.surrogate.center, noise);
+  fit.surrogate.points = whitened.points;
+  const bool by_feature = whitened.features.rows() == static_cast<Index>(samples.infos.size());
   const std::vector<FeatureWindow> rows =
-      by_feature ? makeFeatureWindows(samples.infos) : makeWindowsInOrder(whitened.rows());
+      by_feature ? makeFeatureWindows(samples.infos) : makeWindowsInOrder(whitened.features.rows());
   std::vector<WindowFit> windows(rows.size());
   runTasks(control.threads, rows.size(), [&](std::size_t w) {
     findScores(rows[w], whitened, windows[w]);
-    fitWindow(samples.points, similar.empty() ? nullptr : &similar.at(w), control.stop, windows[w]);
+    fitWindow(whitened.points, similar.empty() ? nullptr : &similar.at(w), control.stop, windows[w]);
   });
   gp::throwIfStopped(control.stop);
   for (const WindowFit& window : windows) {

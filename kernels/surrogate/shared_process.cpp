@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "kernels/linalg/decompositions.hpp"
+#include "kernels/surrogate/joint_fit.hpp"
 
 namespace twinmap::gp {
 
@@ -26,13 +27,17 @@ LeftOut calcLeftOut(const MatrixXd& points, const MatrixXd& values, const Shared
 
 }  // namespace
 
+void SharedProcess::requireSizes(const MatrixXd& points, const MatrixXd& values) const {
+  if (values.rows() != points.cols() || hyperparameters_.length_scales.size() != points.rows() ||
+      points.cols() <= countTerms(structure_.trend, points.rows())) {
+    throw std::invalid_argument("SharedProcess: more points than terms, a row of values for each");
+  }
+}
+
 SharedProcess::SharedProcess(const MatrixXd& points, const MatrixXd& values, SharedStructure structure,
                              SharedHyperparameters hyperparameters)
     : structure_(structure), hyperparameters_(std::move(hyperparameters)) {
-  if (values.rows() != points.cols() || hyperparameters_.length_scales.size() != points.rows() ||
-      points.cols() <= countTerms(structure.trend, points.rows())) {
-    throw std::invalid_argument("SharedProcess: more points than terms, a row of values for each");
-  }
+  requireSizes(points, values);
   left_out_ = calcLeftOut(points, values, structure_, hyperparameters_);
   MatrixXd covariance, slopes;
   calcSharedCovariance(structure_, hyperparameters_, points, covariance, slopes);
@@ -46,6 +51,45 @@ SharedProcess::SharedProcess(const MatrixXd& points, const MatrixXd& values, Sha
   factor_ = linalg::PackedLower(linalg::viewOf(factor.lower));
   scaled_points_ = points.transpose() * hyperparameters_.length_scales.cwiseInverse().asDiagonal();
   updateLeftOutRatio();
+}
+
+SharedProcess::SharedProcess(const MatrixXd& points, const MatrixXd& values, const SlopeData& slopes,
+                             SharedStructure structure, SharedHyperparameters hyperparameters)
+    : structure_(structure),
+      hyperparameters_(std::move(hyperparameters)),
+      slope_points_(slopes.countPoints()),
+      slope_variables_(slopes.variables),
+      local_variance_(structure.covariance, hyperparameters_.nugget) {
+  requireSizes(points, values);
+  if (slope_points_ < 1 || slope_points_ > points.cols() || slope_variables_ > points.rows() ||
+      slopes.values.cols() != values.cols()) {
+    throw std::invalid_argument("SharedProcess: slopes of all functions, at some of the points");
+  }
+  JointFit fit;
+  if (!fitJointly(structure_, hyperparameters_, points, values, slopes, fit)) {
+    throw std::runtime_error("a surrogate's joint covariance of values and slopes is not positive definite");
+  }
+  coefficients_ = std::move(fit.coefficients);
+  weights_ = std::move(fit.weights);
+  scaled_points_ = points.transpose() * hyperparameters_.length_scales.cwiseInverse().asDiagonal();
+  leaveOutLocally(points, fit.residual);
+  updateLeftOutRatio();
+}
+
+/// The residuals are of the whole process, the variance that of the nearest points.
+void SharedProcess::leaveOutLocally(const MatrixXd& points, const MatrixXd& residual) {
+  const Index n = points.cols();
+  Workspace workspace;
+  left_out_.residual = residual;
+  left_out_.variance.resize(n);
+  for (Index i = 0; i < n; ++i) {
+    calcPointCovariance(structure_.covariance, scaled_points_, scaled_points_.row(i).transpose(), false,
+                        workspace.at);
+    left_out_.variance(i) =
+        local_variance_.calc(scaled_points_, workspace.at.squares, workspace.at.values, i, workspace.local);
+  }
+  left_out_.amplitude =
+      (residual.array().square().colwise() / left_out_.variance.array()).colwise().mean().transpose();
 }
 
 void SharedProcess::updateLeftOutRatio() {
@@ -65,19 +109,14 @@ void SharedProcess::select(const std::vector<Index>& functions) {
 
 void SharedProcess::evaluate(const Eigen::Ref<const VectorXd>& point, Eigen::Ref<VectorXd> values,
                              Workspace& workspace) const {
-  MatrixXd& scaled = workspace.scaled;  // (z - x) / l, n x p
-  scaled = scaled_points_;
-  workspace.squares.setZero(scaled.rows());
-  for (Index v = 0; v < scaled.cols(); ++v) {
-    scaled.col(v).array() -= point(v) / hyperparameters_.length_scales(v);
-    workspace.squares += scaled.col(v).array().square();
-  }
-  workspace.covariance = workspace.squares;
-  workspace.slopes.resize(scaled.rows());
-  calcSmoothCovariance(structure_.covariance, workspace.covariance, workspace.slopes);
+  workspace.scaled_point = point.cwiseQuotient(hyperparameters_.length_scales);
+  calcPointCovariance(structure_.covariance, scaled_points_, workspace.scaled_point, slope_points_ > 0,
+                      workspace.at);
+  workspace.row.resize(weights_.rows());
+  fillValueRow(workspace.at, slope_points_, slope_variables_, workspace.row);
   workspace.terms = calcTerms(structure_.trend, point);
   values.noalias() = coefficients_.transpose() * workspace.terms;
-  values.noalias() += weights_.transpose() * workspace.covariance.matrix();
+  values.noalias() += weights_.transpose() * workspace.row;
 }
 
 void SharedProcess::derive(const Eigen::Ref<const VectorXd>& point, Eigen::Ref<MatrixXd> jacobian,
@@ -85,11 +124,13 @@ void SharedProcess::derive(const Eigen::Ref<const VectorXd>& point, Eigen::Ref<M
   const Index unknown = jacobian.cols();
   calcTermDerivatives(structure_.trend, point, workspace.term_derivatives);
   jacobian.noalias() = coefficients_.transpose() * workspace.term_derivatives.leftCols(unknown);
+  workspace.slope_rows.resize(weights_.rows(), unknown);
   for (Index v = 0; v < unknown; ++v) {
-    workspace.scaled.col(v).array() *= workspace.slopes / hyperparameters_.length_scales(v);
+    fillSlopeRow(workspace.at, slope_points_, slope_variables_, v, workspace.slope_rows.col(v));
+    workspace.slope_rows.col(v) /= hyperparameters_.length_scales(v);
   }
   // Few columns: dot products beat a blocked product, which would copy the weights first.
-  jacobian.noalias() += weights_.transpose().lazyProduct(workspace.scaled.leftCols(unknown));
+  jacobian.noalias() += weights_.transpose().lazyProduct(workspace.slope_rows);
 }
 
 double SharedProcess::calcLocalFactor(Workspace& workspace) const {
@@ -97,24 +138,30 @@ double SharedProcess::calcLocalFactor(Workspace& workspace) const {
   // set's.
   constexpr Index kNeighbours = 16;
   constexpr double kOfAll = 4.0;
-  const Index n = workspace.squares.size(), reach = std::min(kNeighbours, n) - 1;
-  workspace.nearest = workspace.squares;
+  const Index n = workspace.at.squares.size(), reach = std::min(kNeighbours, n) - 1;
+  workspace.nearest = workspace.at.squares;
   std::nth_element(workspace.nearest.data(), workspace.nearest.data() + reach, workspace.nearest.data() + n);
   const double width = std::max(workspace.nearest(reach), std::numeric_limits<double>::min());
-  workspace.nearest = (-workspace.squares / width).exp();
+  workspace.nearest = (-workspace.at.squares / width).exp();
   return ((workspace.nearest * left_out_ratio_).sum() + kOfAll) / (workspace.nearest.sum() + kOfAll);
 }
 
-void SharedProcess::calcStddev(Eigen::Ref<VectorXd> stddev, Workspace& workspace) const {
+double SharedProcess::calcOwnVariance(Workspace& workspace) const {
   constexpr double kLeast = 1e-14;  // rounding leaves the sum of squares that near to 1
   const Index n = weights_.rows();
   workspace.solved.setZero(factor_.paddedSize());
-  workspace.solved.head(n) = workspace.covariance.matrix();
+  workspace.solved.head(n) = workspace.at.values.matrix();
   factor_.solve(workspace.solved.data());
   const auto solved = workspace.solved.head(n);
   const VectorXd rest = workspace.terms - solved_terms_.transpose() * solved;
   const double of_trend = linalg::solveLower(term_factor_, rest).squaredNorm();
-  const double variance = std::max(1.0 - solved.squaredNorm(), kLeast) + hyperparameters_.nugget + of_trend;
+  return std::max(1.0 - solved.squaredNorm(), kLeast) + hyperparameters_.nugget + of_trend;
+}
+
+void SharedProcess::calcStddev(Eigen::Ref<VectorXd> stddev, Workspace& workspace) const {
+  const double variance = slope_points_ > 0 ? local_variance_.calc(scaled_points_, workspace.at.squares,
+                                                                   workspace.at.values, -1, workspace.local)
+                                            : calcOwnVariance(workspace);
   stddev = (variance * calcLocalFactor(workspace) * left_out_.amplitude).cwiseSqrt();
 }
 

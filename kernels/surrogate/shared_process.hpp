@@ -5,26 +5,36 @@
 
 #include "kernels/linalg/packed_lower.hpp"
 #include "kernels/surrogate/left_out_density.hpp"
+#include "kernels/surrogate/local_variance.hpp"
+#include "kernels/surrogate/slope_covariance.hpp"
 
 namespace twinmap::gp {
 
-/// r smooth functions of p variables, known without noise at n points: a Gaussian process each, with one
-/// covariance function and trend for all. Each function's variance is the one with which the points that are
-/// left out agree (LeftOut::amplitude), times a local factor that all share: the ratio of the squared errors
-/// of the nearest points, left out, to their variance. Immutable.
+/// r smooth functions of p variables, known without noise at n points, with their slopes at the first m: a
+/// Gaussian process each, with one covariance function and trend for all. Each function's variance is the one
+/// with which the points that are left out agree (LeftOut::amplitude), times a local factor that all share:
+/// the ratio of the squared errors of the nearest points, left out, to their variance. The variance that both
+/// multiply is the process's own, or where slopes are known the LocalVariance, for which n p numbers suffice.
+/// Immutable.
 class SharedProcess {
  public:
   /// The buffers of one thread.
   struct Workspace {
-    Eigen::MatrixXd scaled, term_derivatives;
-    Eigen::ArrayXd squares, covariance, slopes, nearest;
-    Eigen::VectorXd terms, solved;
+    Eigen::MatrixXd term_derivatives, slope_rows;
+    PointCovariance at;
+    LocalVariance::Workspace local;
+    Eigen::ArrayXd nearest;
+    Eigen::VectorXd scaled_point, row, terms, solved;
   };
 
   /// points: p x n; values: n x r. Throws std::invalid_argument for sizes that do not fit,
   /// std::runtime_error if the covariance is not positive definite. Cost: 2 n^3 flops.
   SharedProcess(const Eigen::MatrixXd& points, const Eigen::MatrixXd& values, SharedStructure structure,
                 SharedHyperparameters hyperparameters);
+
+  /// Learns from slopes as well. Cost: 2 / 3 (n + u m)^3 flops.
+  SharedProcess(const Eigen::MatrixXd& points, const Eigen::MatrixXd& values, const SlopeData& slopes,
+                SharedStructure structure, SharedHyperparameters hyperparameters);
 
   Eigen::Index getFunctionCount() const { return weights_.cols(); }
   const SharedStructure& getStructure() const { return structure_; }
@@ -36,30 +46,36 @@ class SharedProcess {
   /// Keeps some of the functions.
   void select(const std::vector<Eigen::Index>& functions);
 
-  /// Values (r) at a point (p). Cost: 2 n (p + r) flops and n exponentials.
+  /// Values (r) at a point (p). Cost: 2 (n + u m) (p + r) flops and n exponentials.
   void evaluate(const Eigen::Ref<const Eigen::VectorXd>& point, Eigen::Ref<Eigen::VectorXd> values,
                 Workspace& workspace) const;
 
-  /// Derivatives (r x u) with respect to the first u variables, of the point evaluated last. Cost: 2 n u r.
+  /// Derivatives (r x u) with respect to the first u variables, of the point evaluated last. Cost: 2 (n + u
+  /// m) u r.
   void derive(const Eigen::Ref<const Eigen::VectorXd>& point, Eigen::Ref<Eigen::MatrixXd> jacobian,
               Workspace& workspace) const;
 
   /// Standard deviations (r) of the values at the point evaluated last, nugget and local factor included.
-  /// Cost: n^2 flops.
+  /// Cost: n^2 flops; where slopes are known that of LocalVariance.
   void calcStddev(Eigen::Ref<Eigen::VectorXd> stddev, Workspace& workspace) const;
 
  private:
+  void requireSizes(const Eigen::MatrixXd& points, const Eigen::MatrixXd& values) const;
   void updateLeftOutRatio();
+  void leaveOutLocally(const Eigen::MatrixXd& points, const Eigen::MatrixXd& residual);
+  double calcOwnVariance(Workspace& workspace) const;
   double calcLocalFactor(Workspace& workspace) const;
 
   SharedStructure structure_;
   SharedHyperparameters hyperparameters_;
-  Eigen::MatrixXd scaled_points_;  // n x p, over the length scales
-  Eigen::MatrixXd weights_;        // n x r
-  Eigen::MatrixXd coefficients_;   // of the trend, q x r
-  linalg::PackedLower factor_;     // of K
-  Eigen::MatrixXd solved_terms_;   // L^-1 H', n x q
-  Eigen::MatrixXd term_factor_;    // lower factor of H K^-1 H', q x q
+  Eigen::MatrixXd scaled_points_;                        // n x p, over the length scales
+  Eigen::Index slope_points_ = 0, slope_variables_ = 0;  // m, u
+  Eigen::MatrixXd weights_;                              // n + u m x r
+  Eigen::MatrixXd coefficients_;                         // of the trend, q x r
+  linalg::PackedLower factor_;    // of K; this and the next two only where no slopes are known
+  Eigen::MatrixXd solved_terms_;  // L^-1 H', n x q
+  Eigen::MatrixXd term_factor_;   // lower factor of H K^-1 H', q x q
+  LocalVariance local_variance_;
   LeftOut left_out_;
   Eigen::ArrayXd left_out_ratio_;  // n
 };
