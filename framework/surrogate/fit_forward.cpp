@@ -100,18 +100,26 @@ bool fitWithSlopes(const MatrixXd& points, WindowFit& window) {
   }
 }
 
+/// From values and slopes where that predicts better: the search with all values is then not needed.
+gp::SharedChoice choose(const MatrixXd& points, const WindowFit& window, gp::StopFlag stop) {
+  gp::SharedChoice choice = gp::chooseOnSpread(points, window.scores, stop);
+  if (window.slopes.variables > 0) {
+    choice = gp::chooseWithSlopes(choice, points, window.scores, window.slopes, stop);
+  }
+  return choice.structure.slopes ? choice : gp::finishOnAll(choice, points, window.scores, stop);
+}
+
+gp::SharedChoice adapt(const gp::SharedChoice& similar, const MatrixXd& points, const WindowFit& window,
+                       gp::StopFlag stop) {
+  return similar.structure.slopes && window.slopes.variables > 0
+             ? similar
+             : gp::adaptSharedProcess(similar, points, window.scores, stop);
+}
+
 void fitWindow(const MatrixXd& points, const gp::SharedChoice* similar, gp::StopFlag stop,
                WindowFit& window) {
-  const bool slopes = window.slopes.variables > 0;
-  if (similar != nullptr && similar->structure.slopes && slopes) {
-    window.choice = *similar;
-  } else {
-    window.choice = similar != nullptr ? gp::adaptSharedProcess(*similar, points, window.scores, stop)
-                                       : gp::chooseSharedProcess(points, window.scores, stop);
-    if (similar == nullptr && slopes) {
-      window.choice = gp::chooseWithSlopes(window.choice, points, window.scores, window.slopes, stop);
-    }
-  }
+  window.choice =
+      similar != nullptr ? adapt(*similar, points, window, stop) : choose(points, window, stop);
   if (window.choice.structure.slopes && fitWithSlopes(points, window)) {
     return;
   }

@@ -112,25 +112,50 @@ void SharedProcess::evaluate(const Eigen::Ref<const VectorXd>& point, Eigen::Ref
   workspace.scaled_point = point.cwiseQuotient(hyperparameters_.length_scales);
   calcPointCovariance(structure_.covariance, scaled_points_, workspace.scaled_point, slope_points_ > 0,
                       workspace.at);
-  workspace.row.resize(weights_.rows());
-  fillValueRow(workspace.at, slope_points_, slope_variables_, workspace.row);
   workspace.terms = calcTerms(structure_.trend, point);
   values.noalias() = coefficients_.transpose() * workspace.terms;
-  values.noalias() += weights_.transpose() * workspace.row;
+  values.noalias() += weights_.topRows(scaled_points_.rows()).transpose() * workspace.at.values.matrix();
+  if (slope_points_ > 0) {
+    addSlopes(values, workspace);
+  }
+}
+
+/// Each weight is read once: the sums over the variables serve the derivatives too.
+void SharedProcess::addSlopes(Eigen::Ref<VectorXd> values, Workspace& workspace) const {
+  const Index n = scaled_points_.rows(), m = slope_points_;
+  workspace.projected.resize(m, values.size());
+  const auto slopes = workspace.at.slopes.head(m);
+  for (Index j = 0; j < values.size(); ++j) {
+    auto sum = workspace.projected.col(j);
+    const auto weights = weights_.col(j).array();
+    sum = workspace.at.differences.col(0).head(m) * weights.segment(n, m);
+    for (Index v = 1; v < slope_variables_; ++v) {
+      sum += workspace.at.differences.col(v).head(m) * weights.segment(n + v * m, m);
+    }
+    values(j) += (slopes * sum).sum();
+  }
 }
 
 void SharedProcess::derive(const Eigen::Ref<const VectorXd>& point, Eigen::Ref<MatrixXd> jacobian,
                            Workspace& workspace) const {
-  const Index unknown = jacobian.cols();
+  const Index n = scaled_points_.rows(), m = slope_points_, unknown = jacobian.cols();
+  const PointCovariance& at = workspace.at;
   calcTermDerivatives(structure_.trend, point, workspace.term_derivatives);
   jacobian.noalias() = coefficients_.transpose() * workspace.term_derivatives.leftCols(unknown);
-  workspace.slope_rows.resize(weights_.rows(), unknown);
-  for (Index v = 0; v < unknown; ++v) {
-    fillSlopeRow(workspace.at, slope_points_, slope_variables_, v, workspace.slope_rows.col(v));
-    workspace.slope_rows.col(v) /= hyperparameters_.length_scales(v);
+  for (Index j = 0; j < jacobian.rows(); ++j) {
+    const auto weights = weights_.col(j).array();
+    workspace.falling = at.slopes * weights.head(n);
+    if (m > 0) {
+      workspace.falling.head(m) += at.curvatures.head(m) * workspace.projected.col(j);
+    }
+    for (Index v = 0; v < unknown; ++v) {
+      double slope = -(at.differences.col(v) * workspace.falling).sum();
+      if (v < slope_variables_) {
+        slope += (at.slopes.head(m) * weights.segment(n + v * m, m)).sum();
+      }
+      jacobian(j, v) += slope / hyperparameters_.length_scales(v);
+    }
   }
-  // Few columns: dot products beat a blocked product, which would copy the weights first.
-  jacobian.noalias() += weights_.transpose().lazyProduct(workspace.slope_rows);
 }
 
 double SharedProcess::calcLocalFactor(Workspace& workspace) const {

@@ -20,11 +20,12 @@ class SharedProcess {
  public:
   /// The buffers of one thread.
   struct Workspace {
-    Eigen::MatrixXd term_derivatives, slope_rows;
+    Eigen::MatrixXd term_derivatives;
     PointCovariance at;
     LocalVariance::Workspace local;
-    Eigen::ArrayXd nearest;
-    Eigen::VectorXd scaled_point, row, terms, solved;
+    Eigen::ArrayXXd projected;  // sums over variables of D times weights of slopes, m x r
+    Eigen::ArrayXd nearest, falling;
+    Eigen::VectorXd scaled_point, terms, solved;
   };
 
   /// points: p x n; values: n x r. Throws std::invalid_argument for sizes that do not fit,
@@ -63,6 +64,7 @@ class SharedProcess {
   void requireSizes(const Eigen::MatrixXd& points, const Eigen::MatrixXd& values) const;
   void updateLeftOutRatio();
   void leaveOutLocally(const Eigen::MatrixXd& points, const Eigen::MatrixXd& residual);
+  void addSlopes(Eigen::Ref<Eigen::VectorXd> values, Workspace& workspace) const;
   double calcOwnVariance(Workspace& workspace) const;
   double calcLocalFactor(Workspace& workspace) const;
 
