@@ -118,8 +118,7 @@ gp::SharedChoice adapt(const gp::SharedChoice& similar, const MatrixXd& points, 
 
 void fitWindow(const MatrixXd& points, const gp::SharedChoice* similar, gp::StopFlag stop,
                WindowFit& window) {
-  window.choice =
-      similar != nullptr ? adapt(*similar, points, window, stop) : choose(points, window, stop);
+  window.choice = similar != nullptr ? adapt(*similar, points, window, stop) : choose(points, window, stop);
   if (window.choice.structure.slopes && fitWithSlopes(points, window)) {
     return;
   }

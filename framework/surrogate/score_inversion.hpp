@@ -12,10 +12,10 @@ namespace twinmap {
 ///
 /// Levenberg and Marquardt's method searches, from the training simulations of most similar scores, the least
 ///   r' C^-1 r + log det C + 3 |x|^2,   r = scores - s(x),   C = 1 + D R D,
-/// first with the mean error variances alone for C, then twice with C at the point reached, held. 3 is the
-/// precision of the box; it keeps the search where the linearisation is worth something. The likelihood,
-/// linearised there and without that prior, is then restricted to the box (gp::calcBoxMoments). Distinct
-/// minima are mixed by their evidence, in Laplace's approximation.
+/// first with the mean error variances alone for C and the scores that say most, then twice with C at the
+/// point reached, held. 3 is the precision of the box; it keeps the search where the linearisation is worth
+/// something. The likelihood, linearised there and without that prior, is then restricted to the box
+/// (gp::calcBoxMoments). Distinct minima are mixed by their evidence, in Laplace's approximation.
 ///
 /// One object a thread: it holds the buffers.
 class ScoreInversion {
@@ -35,6 +35,11 @@ class ScoreInversion {
     Eigen::MatrixXd lower;
     double log_determinant = 0.0;
     bool diagonal = true;
+    std::vector<Eigen::Index> counts;  ///< of each window, the first scores that take part; empty: all do
+
+    Eigen::Index count(std::size_t window, const gp::SharedProcess& process) const {
+      return counts.empty() ? process.getFunctionCount() : counts[window];
+    }
   };
   /// A minimum and the normal likelihood around it.
   struct Minimum {
@@ -45,7 +50,8 @@ class ScoreInversion {
   };
 
   std::vector<Eigen::Index> findStarts() const;
-  void evaluate(const Eigen::VectorXd& unknown);
+  void takeLeading();
+  void evaluate(const Metric& metric, const Eigen::VectorXd& unknown);
   double calcObjective(const Metric& metric, const Eigen::VectorXd& unknown);
   void linearize(const Metric& metric);
   bool step(const Metric& metric, Eigen::VectorXd& unknown, double& objective, double& damping);
@@ -57,7 +63,8 @@ class ScoreInversion {
 
   const ForwardSurrogate& surrogate_;
   Eigen::Index unknown_;
-  Metric rough_;
+  Metric rough_, leading_;
+  bool evaluated_ = false;  ///< all values, at point_
   std::vector<gp::SharedProcess::Workspace> workspaces_;
   Eigen::VectorXd scores_, point_, values_, residual_, stddev_, gradient_;
   Eigen::MatrixXd jacobian_, scaled_jacobian_, normal_;

@@ -113,8 +113,9 @@ void SharedProcess::evaluate(const Eigen::Ref<const VectorXd>& point, Eigen::Ref
   calcPointCovariance(structure_.covariance, scaled_points_, workspace.scaled_point, slope_points_ > 0,
                       workspace.at);
   workspace.terms = calcTerms(structure_.trend, point);
-  values.noalias() = coefficients_.transpose() * workspace.terms;
-  values.noalias() += weights_.topRows(scaled_points_.rows()).transpose() * workspace.at.values.matrix();
+  const Index n = scaled_points_.rows(), count = values.size();
+  values.noalias() = coefficients_.leftCols(count).transpose() * workspace.terms;
+  values.noalias() += weights_.topLeftCorner(n, count).transpose() * workspace.at.values.matrix();
   if (slope_points_ > 0) {
     addSlopes(values, workspace);
   }
@@ -141,7 +142,8 @@ void SharedProcess::derive(const Eigen::Ref<const VectorXd>& point, Eigen::Ref<M
   const Index n = scaled_points_.rows(), m = slope_points_, unknown = jacobian.cols();
   const PointCovariance& at = workspace.at;
   calcTermDerivatives(structure_.trend, point, workspace.term_derivatives);
-  jacobian.noalias() = coefficients_.transpose() * workspace.term_derivatives.leftCols(unknown);
+  jacobian.noalias() =
+      coefficients_.leftCols(jacobian.rows()).transpose() * workspace.term_derivatives.leftCols(unknown);
   for (Index j = 0; j < jacobian.rows(); ++j) {
     const auto weights = weights_.col(j).array();
     workspace.falling = at.slopes * weights.head(n);

@@ -47,11 +47,13 @@ class SharedProcess {
   /// Keeps some of the functions.
   void select(const std::vector<Eigen::Index>& functions);
 
-  /// Values (r) at a point (p). Cost: 2 (n + u m) (p + r) flops and n exponentials.
+  /// Values of the first functions (at most r, as many as `values`) at a point (p). Cost: 2 (n + u m) (p + r)
+  /// flops and n exponentials.
   void evaluate(const Eigen::Ref<const Eigen::VectorXd>& point, Eigen::Ref<Eigen::VectorXd> values,
                 Workspace& workspace) const;
 
-  /// Derivatives (r x u) with respect to the first u variables, of the point evaluated last. Cost: 2 (n + u
+  /// Derivatives of as many functions as were evaluated last (rows), with respect to the first variables
+  /// (columns), at that point. Cost: 2 (n + u
   /// m) u r.
   void derive(const Eigen::Ref<const Eigen::VectorXd>& point, Eigen::Ref<Eigen::MatrixXd> jacobian,
               Workspace& workspace) const;
