@@ -129,7 +129,7 @@ TrainedMap trainProcesses(const RunContext& run, const SimulatedSets& sets, cons
 /// Trains a surrogate. What is inferred with it does not depend on the threads.
 TrainedMap trainForward(const RunContext& run, const SimulatedSets& sets, const LabelledSets& labelled) {
   SurrogateMapTraining training =
-      trainSurrogateMap(run.experiment, sets, run.extractor, labelled.train, run.control);
+      trainSurrogateMap(run.experiment, sets, run.simulator, run.extractor, labelled.train, run.control);
   const auto surrogate = std::make_shared<const Surrogate>(std::move(training.surrogate));
   const auto predict = [surrogate, threads = run.control.threads](const Eigen::MatrixXd& features,
                                                                   const Eigen::MatrixXd& inputs) {
