@@ -2,14 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <stdexcept>
+#include <iterator>
 
 #include "framework/features/noise_whitener.hpp"
-#include "framework/features/principal_components.hpp"
-#include "framework/surrogate/feature_windows.hpp"
 #include "framework/surrogate/run_tasks.hpp"
-#include "kernels/surrogate/fit_slopes.hpp"
+#include "framework/surrogate/window_fit.hpp"
 
 namespace twinmap {
 namespace {
@@ -18,113 +15,6 @@ using Eigen::ArrayXd;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-/// Simulations in the order in which processes take them, those with slopes first.
-struct WhitenedSamples {
-  MatrixXd points;       // m x n
-  MatrixXd features;     // k x n, whitened
-  gp::SlopeData slopes;  // of the whitened features
-};
-
-/// The first `most` simulations that have slopes, then the others.
-std::vector<Index> orderBySlopes(const ForwardSamples& samples, Index& with_slopes) {
-  std::vector<Index> order, others;
-  Index unknown = 0;
-  for (const MatrixXd& slopes : samples.slopes) {
-    unknown = std::max(unknown, slopes.cols());
-  }
-  const Index n = samples.points.cols(), most = unknown > 0 ? countSlopePoints(n, unknown) : 0;
-  for (Index i = 0; i < n; ++i) {
-    const bool has =
-        static_cast<Index>(order.size()) < most && samples.slopes[static_cast<std::size_t>(i)].size() > 0;
-    (has ? order : others).push_back(i);
-  }
-  with_slopes = static_cast<Index>(order.size());
-  order.insert(order.end(), others.begin(), others.end());
-  return order;
-}
-
-WhitenedSamples whiten(const ForwardSamples& samples, const VectorXd& center, const NoiseWhitener& noise) {
-  Index with_slopes = 0;
-  const std::vector<Index> order = orderBySlopes(samples, with_slopes);
-  WhitenedSamples whitened{samples.points(Eigen::all, order),
-                           noise.apply(samples.clean_features(Eigen::all, order).colwise() - center),
-                           {}};
-  if (with_slopes == 0) {
-    return whitened;
-  }
-  const Index unknown = samples.slopes[static_cast<std::size_t>(order[0])].cols();
-  whitened.slopes.variables = unknown;
-  whitened.slopes.values.resize(unknown * with_slopes, whitened.features.rows());
-  for (Index i = 0; i < with_slopes; ++i) {
-    const MatrixXd slopes = noise.apply(samples.slopes[static_cast<std::size_t>(order[i])]);
-    for (Index v = 0; v < unknown; ++v) {
-      whitened.slopes.values.row(v * with_slopes + i) = slopes.col(v).transpose();
-    }
-  }
-  return whitened;
-}
-
-/// The scores of one window and what was fitted to them.
-struct WindowFit {
-  MatrixXd directions;   // k x c, of all whitened features
-  MatrixXd scores;       // n x c
-  gp::SlopeData slopes;  // of the scores
-  gp::SharedChoice choice;
-  std::optional<gp::SharedProcess> process;
-};
-
-void findScores(const FeatureWindow& rows, const WhitenedSamples& whitened, WindowFit& window) {
-  constexpr double kSmallestStddev = 0.2;
-  const MatrixXd features = whitened.features(rows, Eigen::all);
-  const PrincipalComponents components = calcPrincipalComponents(features);
-  const Index count =
-      std::max<Index>(1, (components.variances.array() > kSmallestStddev * kSmallestStddev).count());
-  const MatrixXd kept = components.directions.leftCols(count);
-  window.directions.setZero(whitened.features.rows(), count);
-  window.directions(rows, Eigen::all) = kept;
-  window.scores = features.transpose() * kept;
-  if (whitened.slopes.variables > 0) {
-    window.slopes = {whitened.slopes.values(Eigen::all, rows) * kept, whitened.slopes.variables};
-  }
-}
-
-/// From slopes as well; false where rounding leaves their joint covariance without a Cholesky factor.
-bool fitWithSlopes(const MatrixXd& points, WindowFit& window) {
-  try {
-    window.process.emplace(points, window.scores, window.slopes, window.choice.structure,
-                           window.choice.hyperparameters);
-    return true;
-  } catch (const std::runtime_error&) {
-    return false;
-  }
-}
-
-/// From values and slopes where that predicts better: the search with all values is then not needed.
-gp::SharedChoice choose(const MatrixXd& points, const WindowFit& window, gp::StopFlag stop) {
-  gp::SharedChoice choice = gp::chooseOnSpread(points, window.scores, stop);
-  if (window.slopes.variables > 0) {
-    choice = gp::chooseWithSlopes(choice, points, window.scores, window.slopes, stop);
-  }
-  return choice.structure.slopes ? choice : gp::finishOnAll(choice, points, window.scores, stop);
-}
-
-gp::SharedChoice adapt(const gp::SharedChoice& similar, const MatrixXd& points, const WindowFit& window,
-                       gp::StopFlag stop) {
-  return similar.structure.slopes && window.slopes.variables > 0
-             ? similar
-             : gp::adaptSharedProcess(similar, points, window.scores, stop);
-}
-
-void fitWindow(const MatrixXd& points, const gp::SharedChoice* similar, gp::StopFlag stop,
-               WindowFit& window) {
-  window.choice = similar != nullptr ? adapt(*similar, points, window, stop) : choose(points, window, stop);
-  if (window.choice.structure.slopes && fitWithSlopes(points, window)) {
-    return;
-  }
-  window.choice.structure.slopes = false;
-  window.process.emplace(points, window.scores, window.choice.structure, window.choice.hyperparameters);
-}
 
 /// Mean variance of each score at points left out.
 ArrayXd calcErrorVariance(const gp::SharedProcess& process) {
@@ -233,29 +123,60 @@ void assemble(std::vector<WindowFit>& windows, const std::vector<std::vector<Ind
 
 }  // namespace
 
-Index countSlopePoints(Index simulations, Index unknown) {
-  constexpr Index kMostRows = 2000;
-  return std::clamp<Index>((kMostRows - simulations) / std::max<Index>(unknown, 1), 0, simulations);
+namespace {
+
+std::vector<WindowChoice> chooseWindows(const ForwardSamples& samples, const WhitenedSamples& whitened,
+                                        const TrainingControl& control) {
+  const bool by_feature = whitened.features.rows() == static_cast<Index>(samples.infos.size());
+  const std::vector<FeatureWindow> rows =
+      by_feature ? makeFeatureWindows(samples.infos) : makeWindowsInOrder(whitened.features.rows());
+  const std::vector<FeatureInfo> infos = by_feature ? samples.infos : std::vector<FeatureInfo>{};
+  std::vector<std::vector<WindowChoice>> parts(rows.size());
+  runTasks(control.threads, rows.size(),
+           [&](std::size_t w) { parts[w] = divideWindow(rows[w], infos, whitened, control.stop); });
+  std::vector<WindowChoice> windows;
+  for (std::vector<WindowChoice>& of_window : parts) {
+    std::move(of_window.begin(), of_window.end(), std::back_inserter(windows));
+  }
+  return windows;
 }
 
-ForwardFit fitForward(const ForwardSamples& samples, const std::vector<gp::SharedChoice>& similar,
+std::vector<WindowFit> fitAnew(const ForwardSamples& samples, const WhitenedSamples& whitened,
+                               const TrainingControl& control, ForwardChoices& choices) {
+  const std::vector<WindowChoice> chosen = chooseWindows(samples, whitened, control);
+  std::vector<WindowFit> windows(chosen.size());
+  runTasks(control.threads, chosen.size(),
+           [&](std::size_t w) { windows[w] = fitWindow(chosen[w], whitened, control.stop); });
+  for (const WindowChoice& window : chosen) {
+    choices.windows.push_back(window.rows);
+  }
+  return windows;
+}
+
+std::vector<WindowFit> refit(const ForwardChoices& similar, const WhitenedSamples& whitened,
+                             const TrainingControl& control) {
+  std::vector<WindowFit> windows(similar.windows.size());
+  runTasks(control.threads, windows.size(), [&](std::size_t w) {
+    windows[w] = refitWindow(similar.windows[w], similar.processes[w], whitened, control.stop);
+  });
+  return windows;
+}
+
+}  // namespace
+
+ForwardFit fitForward(const ForwardSamples& samples, const ForwardChoices& similar,
                       const TrainingControl& control) {
   const NoiseWhitener noise(samples.noise_covariance);
   ForwardFit fit;
   fit.surrogate.center = samples.clean_features.rowwise().mean();
   const WhitenedSamples whitened = whiten(samples, fit.surrogate.center, noise);
   fit.surrogate.points = whitened.points;
-  const bool by_feature = whitened.features.rows() == static_cast<Index>(samples.infos.size());
-  const std::vector<FeatureWindow> rows =
-      by_feature ? makeFeatureWindows(samples.infos) : makeWindowsInOrder(whitened.features.rows());
-  std::vector<WindowFit> windows(rows.size());
-  runTasks(control.threads, rows.size(), [&](std::size_t w) {
-    findScores(rows[w], whitened, windows[w]);
-    fitWindow(whitened.points, similar.empty() ? nullptr : &similar.at(w), control.stop, windows[w]);
-  });
+  fit.choices.windows = similar.windows;
+  std::vector<WindowFit> windows = similar.windows.empty() ? fitAnew(samples, whitened, control, fit.choices)
+                                                           : refit(similar, whitened, control);
   gp::throwIfStopped(control.stop);
   for (const WindowFit& window : windows) {
-    fit.choices.push_back(window.choice);
+    fit.choices.processes.push_back(window.choice);
   }
   assemble(windows, chooseScores(windows, samples.points.cols()), noise.getMatrix(), fit.surrogate);
   return fit;

@@ -3,35 +3,28 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "framework/features/feature_block.hpp"
 #include "framework/inverse_map/training_control.hpp"
+#include "framework/surrogate/feature_windows.hpp"
+#include "framework/surrogate/forward_samples.hpp"
 #include "framework/surrogate/forward_surrogate.hpp"
 #include "kernels/surrogate/fit_shared_process.hpp"
 
 namespace twinmap {
 
-/// Simulations that a forward surrogate learns from.
-struct ForwardSamples {
-  std::vector<FeatureInfo> infos;    ///< d
-  Eigen::MatrixXd points;            ///< m x n, normalised
-  Eigen::MatrixXd clean_features;    ///< d x n
-  Eigen::MatrixXd noise_covariance;  ///< d x d
-  /// n, or none: derivatives of the features (d x u) with respect to the first u variables, normalised; empty
-  /// where a simulation has none.
-  std::vector<Eigen::MatrixXd> slopes{};
+/// What was chosen for each window of features.
+struct ForwardChoices {
+  std::vector<FeatureWindow> windows;
+  std::vector<gp::SharedChoice> processes;
 };
 
-/// At how many of n simulations slopes with respect to u variables are learnt from: of all, as long as there
-/// are at most 2000 values and slopes in all, which keeps a fit of a window below a second.
-Eigen::Index countSlopePoints(Eigen::Index simulations, Eigen::Index unknown);
-
-/// A forward surrogate, and what was chosen for each window of features.
+/// A forward surrogate, and what was chosen for it.
 struct ForwardFit {
   ForwardSurrogate surrogate;
-  std::vector<gp::SharedChoice> choices;
+  ForwardChoices choices;
 };
 
-/// Fits processes to the principal components of each window of whitened features. Components that move less
+/// Fits processes to the principal components of each window of whitened features (makeFeatureWindows, parted
+/// further where that is worth it: divideWindow). Components that move less
 /// than 0.2 of the noise are left out; of the others those are kept that say most about the parameters, by sd
 /// over sqrt(1 + error variance): at most 200, and as many as the errors of n simulations tell the
 /// correlations of, n / 4 where the errors are far above the noise, and more the further they are below. The
@@ -41,7 +34,7 @@ struct ForwardFit {
 /// samples, to start from; empty to search anew. Throws std::invalid_argument for a feature without noise and
 /// for too few simulations, gp::Stopped. Cost: a window some 60 evaluations of gp::LeftOutDensity on 300
 /// points, 8 from similar choices; then 2 n^3 flops, with slopes 2 / 3 (n + u m)^3.
-ForwardFit fitForward(const ForwardSamples& samples, const std::vector<gp::SharedChoice>& similar,
+ForwardFit fitForward(const ForwardSamples& samples, const ForwardChoices& similar,
                       const TrainingControl& control);
 
 }  // namespace twinmap
