@@ -42,6 +42,7 @@ ScoreInversion::ScoreInversion(const ForwardSurrogate& surrogate, Index unknown)
     : surrogate_(surrogate),
       unknown_(unknown),
       workspaces_(surrogate.windows.size()),
+      widening_(surrogate.windows.size(), 1.0),
       point_(surrogate.points.rows()),
       values_(VectorXd::Zero(surrogate.getScoreCount())),
       stddev_(surrogate.getScoreCount()),
@@ -184,7 +185,9 @@ void ScoreInversion::updateMetric(const VectorXd& unknown, Metric& metric) {
   Index first = 0;
   for (std::size_t w = 0; w < workspaces_.size(); ++w) {
     const gp::SharedProcess& process = surrogate_.windows[w];
-    process.calcStddev(stddev_.segment(first, process.getFunctionCount()), workspaces_[w]);
+    auto stddev = stddev_.segment(first, process.getFunctionCount());
+    process.calcStddev(stddev, workspaces_[w]);
+    stddev *= widening_[w];
     first += process.getFunctionCount();
   }
   MatrixXd covariance = stddev_.asDiagonal() * surrogate_.error_correlation * stddev_.asDiagonal();
@@ -224,12 +227,47 @@ std::vector<ScoreInversion::Minimum> ScoreInversion::searchRoughly() {
   return minima;
 }
 
+/// Four standard deviations above the mean of chi-square: one in 10000 by chance.
+bool ScoreInversion::isMisfit(double chi_square, Index count) {
+  constexpr double kDeviations = 4.0;
+  const auto n = static_cast<double>(count);
+  return chi_square > n + kDeviations * std::sqrt(2.0 * n);
+}
+
+/// Where the residuals at a minimum are beyond what the errors allow, those of the windows that are to blame
+/// are taken to be as large as that; false where nothing is. Next to a jump, such as that of a contact made
+/// or missed, no simulation tells how wrong a process is.
+bool ScoreInversion::widen(const Metric& metric, const VectorXd& unknown) {
+  (void)calcObjective(metric, unknown);
+  if (!isMisfit(residual_.squaredNorm(), residual_.size())) {
+    return false;
+  }
+  bool widened = false;
+  Index first = 0;
+  for (std::size_t w = 0; w < workspaces_.size(); ++w) {
+    const Index count = surrogate_.windows[w].getFunctionCount();
+    const auto variance = stddev_.segment(first, count).array().square();
+    const auto square = (scores_ - values_).segment(first, count).array().square();
+    if (isMisfit((square / (1.0 + variance)).sum(), count)) {
+      widening_[w] *= std::sqrt(std::max(1.0, (square.mean() - 1.0) / variance.mean()));
+      widened = true;
+    }
+    first += count;
+  }
+  return widened;
+}
+
 void ScoreInversion::refine(Minimum& minimum) {
-  constexpr int kFirstSteps = 5, kLastSteps = 3;
+  constexpr int kFirstSteps = 5, kLastSteps = 3, kMostWidenings = 4;
+  std::fill(widening_.begin(), widening_.end(), 1.0);
   Metric metric;
   for (const int steps : {kFirstSteps, kLastSteps}) {
     updateMetric(minimum.point, metric);
     minimum.objective = improve(metric, steps, minimum.point);
+  }
+  for (int i = 0; i < kMostWidenings && widen(metric, minimum.point); ++i) {
+    updateMetric(minimum.point, metric);
+    minimum.objective = improve(metric, kFirstSteps, minimum.point);
   }
   linearize(metric);
   minimum.information = normal_;

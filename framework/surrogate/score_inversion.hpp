@@ -13,7 +13,8 @@ namespace twinmap {
 /// Levenberg and Marquardt's method searches, from the training simulations of most similar scores, the least
 ///   r' C^-1 r + log det C + 3 |x|^2,   r = scores - s(x),   C = 1 + D R D,
 /// first with the mean error variances alone for C and the scores that say most, then twice with C at the
-/// point reached, held. 3 is the precision of the box; it keeps the search where the linearisation is worth
+/// point reached, held, and again while the residuals are beyond it, the errors of the windows to blame
+/// enlarged to them. 3 is the precision of the box; it keeps the search where the linearisation is worth
 /// something. The likelihood, linearised there and without that prior, is then restricted to the box
 /// (gp::calcBoxMoments). Distinct minima are mixed by their evidence, in Laplace's approximation.
 ///
@@ -58,6 +59,8 @@ class ScoreInversion {
   double improve(const Metric& metric, int steps, Eigen::VectorXd& unknown);
   void updateMetric(const Eigen::VectorXd& unknown, Metric& metric);
   std::vector<Minimum> searchRoughly();
+  static bool isMisfit(double chi_square, Eigen::Index count);
+  bool widen(const Metric& metric, const Eigen::VectorXd& unknown);
   void refine(Minimum& minimum);
   static bool hasEarlierTwin(const std::vector<Minimum>& minima, std::size_t index);
 
@@ -66,6 +69,7 @@ class ScoreInversion {
   Metric rough_, leading_;
   bool evaluated_ = false;  ///< all values, at point_
   std::vector<gp::SharedProcess::Workspace> workspaces_;
+  std::vector<double> widening_;  ///< of each window's standard deviations
   Eigen::VectorXd scores_, point_, values_, residual_, stddev_, gradient_;
   Eigen::MatrixXd jacobian_, scaled_jacobian_, normal_;
 };
