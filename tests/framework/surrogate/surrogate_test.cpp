@@ -290,5 +290,18 @@ TEST(DivideWindow, PartsWhereResponsesBeginToBeUnpredictable) {
   EXPECT_EQ(divideWindow(rows, {}, makeTurning(4), nullptr).size(), 1U);     // no times
 }
 
+TEST(Surrogate, TakesTheErrorOfAWindowForLargeWhereTheMeasurementContradictsIt) {
+  const SurrogateTraining trained = trainOn(makeLinearModel(), calcLinear, 100);
+  const VectorXd point = (VectorXd(3) << 2.0, 0.1, 0.0).finished();
+  MatrixXd features = calcLinear(point);
+  const Predictions clean = trained.surrogate.predict(features, MatrixXd(0, 1));
+  features.bottomRows(8).array() += 200.0 * kNoise;  // the last of three windows
+  const Predictions found = trained.surrogate.predict(features, MatrixXd(0, 1));
+  for (Index k = 0; k < 2; ++k) {
+    EXPECT_LT(std::abs(found.mean(k, 0) - point(k)), 3.0 * found.stddev(k, 0)) << k;
+    EXPECT_GT(found.stddev(k, 0), clean.stddev(k, 0)) << k;
+  }
+}
+
 }  // namespace
 }  // namespace twinmap
