@@ -126,7 +126,8 @@ RunSummary runStages(const RunContext& run) {
   };
   const Samples samples = simulateSamples(run);
   const PreparedData data = prepareData(experiment, run.extractor, samples.sets, local_models);
-  TrainedMap trained = trainChosenMap({experiment, samples.sets, run.extractor, data.labelled, run.control});
+  TrainedMap trained =
+      trainChosenMap({experiment, samples.sets, run.simulator, run.extractor, data.labelled, run.control});
   MapEvaluation evaluated =
       evaluateMap({experiment, run.simulator, run.extractor, data, trained, local_models, run.control});
   storeMap(run.folder / "maps.h5", experiment, run.extractor, evaluated.evaluation.refined, trained);

@@ -31,8 +31,9 @@ OnlineFit prepareOnline(const MapTrainingContext& context, const Map& map) {
 
 /// Trains a surrogate. What is inferred with it does not depend on the threads.
 TrainedMap trainForward(const MapTrainingContext& context) {
-  SurrogateMapTraining training = trainSurrogateMap(context.experiment, context.sets, context.extractor,
-                                                    context.labelled.train, context.control);
+  SurrogateMapTraining training =
+      trainSurrogateMap(context.experiment, context.sets, context.simulator, context.extractor,
+                        context.labelled.train, context.control);
   const auto surrogate = std::make_shared<const Surrogate>(std::move(training.surrogate));
   OnlineFit online = prepareOnline(context, surrogate);
   training.notes.append(online.notes);

@@ -11,6 +11,7 @@ namespace twinmap {
 struct MapTrainingContext {
   const ExperimentSpec& experiment;
   const SimulatedSets& sets;
+  const Simulator& simulator;
   const FeatureExtractor& extractor;
   const LabelledSets& labelled;
   const RunControl& control;

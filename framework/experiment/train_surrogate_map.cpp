@@ -5,6 +5,9 @@
 
 #include "framework/experiment/train_interruptibly.hpp"
 #include "framework/monitoring/stage_timer.hpp"
+#include "framework/sensitivity/feature_sensitivities.hpp"
+#include "framework/spec/parameter_box.hpp"
+#include "framework/surrogate/fit_forward.hpp"
 #include "framework/surrogate/train_surrogate.hpp"
 
 namespace twinmap {
@@ -19,16 +22,39 @@ SurrogateTraining train(const ModelSpec& model, const SurrogateSamples& samples,
   }
 }
 
+/// Slopes at the first training points, of which the surrogate takes no more; none where a simulation with
+/// derivatives fails.
+std::vector<Eigen::MatrixXd> simulateSlopes(const ExperimentSpec& experiment, const Simulator& simulator,
+                                            const FeatureExtractor& extractor, const Eigen::MatrixXd& points,
+                                            const RunControl& control) {
+  const std::vector<ParameterSpec> unknown = collectUnknown(experiment.model);
+  const Eigen::Index count = countSlopePoints(points.cols(), static_cast<Eigen::Index>(unknown.size()));
+  std::vector<Eigen::MatrixXd> slopes(static_cast<std::size_t>(points.cols()));
+  const std::vector<LocalModel> local =
+      calcLocalModels(simulator, extractor, unknown, points.leftCols(count), control.threads);
+  for (std::size_t i = 0; i < local.size(); ++i) {
+    if (local[i].status.ok) {
+      slopes[i] = local[i].sensitivities;
+    }
+  }
+  return slopes;
+}
+
 }  // namespace
 
 SurrogateMapTraining trainSurrogateMap(const ExperimentSpec& experiment, const SimulatedSets& sets,
-                                       const FeatureExtractor& extractor, const LabelledFeatures& samples,
-                                       const RunControl& control) {
+                                       const Simulator& simulator, const FeatureExtractor& extractor,
+                                       const LabelledFeatures& samples, const RunControl& control) {
   const std::vector<int> successful = findSuccessful(sets.train);
-  const SurrogateSamples simulated{samples.infos, sets.train.parameters(Eigen::all, successful),
-                                   extractor.extract(sets.train.responses(Eigen::all, successful)),
-                                   samples.noise_covariance, samples.features};
+  SurrogateSamples simulated{samples.infos, sets.train.parameters(Eigen::all, successful),
+                             extractor.extract(sets.train.responses(Eigen::all, successful)),
+                             samples.noise_covariance, samples.features};
   SurrogateMapTraining training;
+  if (simulator.hasDerivatives()) {
+    simulated.slopes = timeStage("simulate slopes of the training samples", training.notes, [&] {
+      return simulateSlopes(experiment, simulator, extractor, simulated.points, control);
+    });
+  }
   SurrogateTraining trained = timeStage("train the surrogate", training.notes, [&] {
     return train(experiment.model, simulated, {control.threads, control.abandon});
   });

@@ -15,10 +15,12 @@ struct SurrogateMapTraining {
 };
 
 /// Trains a surrogate (trainSurrogate) on the clean training responses of an experiment; the labelled
-/// features' draws of the noise are what it infers in cross-validation. Throws Interrupted if it is stopped,
-/// std::runtime_error where the experiment does not fit it: a feature without noise, too few samples.
+/// features' draws of the noise are what it infers in cross-validation. Where the simulator has exact
+/// derivatives, those at the training points are simulated and learnt from. Throws Interrupted if it is
+/// stopped, std::runtime_error where the experiment does not fit it: a feature without noise, too few
+/// samples.
 SurrogateMapTraining trainSurrogateMap(const ExperimentSpec& experiment, const SimulatedSets& sets,
-                                       const FeatureExtractor& extractor, const LabelledFeatures& samples,
-                                       const RunControl& control);
+                                       const Simulator& simulator, const FeatureExtractor& extractor,
+                                       const LabelledFeatures& samples, const RunControl& control);
 
 }  // namespace twinmap

@@ -61,7 +61,7 @@ class Flat {
 /// What differs in size or kind from window to window.
 struct WindowTable {
   std::vector<std::string> covariances, trends;
-  std::vector<std::int64_t> functions;
+  std::vector<std::int64_t> functions, slope_points, slope_variables;
   VectorXd nuggets;
 };
 
@@ -90,6 +90,8 @@ void append(const gp::SharedProcessParts& parts, WindowTable& table, WindowNumbe
   table.covariances.emplace_back(matern ? kMatern52 : kSquaredExponential);
   table.trends.emplace_back(parts.structure.trend == gp::Trend::kQuadratic ? kQuadratic : kLinear);
   table.functions.push_back(parts.weights.cols());
+  table.slope_points.push_back(parts.slope_points);
+  table.slope_variables.push_back(parts.slope_variables);
   numbers.length_scales.append(parts.hyperparameters.length_scales);
   numbers.scaled_points.append(parts.scaled_points);
   numbers.weights.append(parts.weights);
@@ -106,15 +108,19 @@ gp::SharedProcessParts take(const WindowTable& table, std::size_t window, Index 
                             WindowNumbers& numbers) {
   gp::SharedProcessParts parts;
   parts.structure = {parseCovariance(table.covariances.at(window)), parseTrend(table.trends.at(window))};
+  parts.slope_points = table.slope_points.at(window);
+  parts.slope_variables = table.slope_variables.at(window);
+  parts.structure.slopes = parts.slope_points > 0;
   const Index functions = table.functions.at(window), terms = gp::countTerms(parts.structure.trend, p);
-  const Index tiles = numbers.factor_tiles.getNumbers().size() / static_cast<Index>(table.functions.size());
   parts.hyperparameters = {numbers.length_scales.take(p, 1), table.nuggets(static_cast<Index>(window))};
   parts.scaled_points = numbers.scaled_points.take(n, p);
-  parts.weights = numbers.weights.take(n, functions);
+  parts.weights = numbers.weights.take(n + parts.slope_points * parts.slope_variables, functions);
   parts.coefficients = numbers.coefficients.take(terms, functions);
-  parts.factor_tiles = numbers.factor_tiles.take(tiles, 1);
-  parts.solved_terms = numbers.solved_terms.take(n, terms);
-  parts.term_factor = numbers.term_factors.take(terms, terms);
+  if (!parts.structure.slopes) {
+    parts.factor_tiles = numbers.factor_tiles.take(linalg::PackedLower::countTiles(n), 1);
+    parts.solved_terms = numbers.solved_terms.take(n, terms);
+    parts.term_factor = numbers.term_factors.take(terms, terms);
+  }
   parts.amplitude = numbers.amplitudes.take(functions, 1);
   parts.left_out_ratio = numbers.left_out_ratios.take(n, 1);
   return parts;
@@ -131,6 +137,8 @@ void writeWindows(Hdf5Writer& file, const std::string& group, const std::vector<
   file.write(group + "/covariance", table.covariances);
   file.write(group + "/trend", table.trends);
   file.write(group + "/functions", table.functions);
+  file.write(group + "/slope_points", table.slope_points);
+  file.write(group + "/slope_variables", table.slope_variables);
   file.write(group + "/nugget", table.nuggets);
   forEachKind(numbers,
               [&](const char* name, const Flat& flat) { file.write(group + "/" + name, flat.getNumbers()); });
@@ -138,8 +146,10 @@ void writeWindows(Hdf5Writer& file, const std::string& group, const std::vector<
 
 std::vector<gp::SharedProcess> readWindows(const Hdf5Reader& file, const std::string& group, Index p,
                                            Index n) {
-  const WindowTable table{file.readTexts(group + "/covariance"), file.readTexts(group + "/trend"),
-                          file.readIntegers(group + "/functions"), file.readVector(group + "/nugget")};
+  const WindowTable table{
+      file.readTexts(group + "/covariance"),         file.readTexts(group + "/trend"),
+      file.readIntegers(group + "/functions"),       file.readIntegers(group + "/slope_points"),
+      file.readIntegers(group + "/slope_variables"), file.readVector(group + "/nugget")};
   WindowNumbers numbers;
   forEachKind(numbers,
               [&](const char* name, Flat& flat) { flat = Flat(file.readVector(group + "/" + name)); });

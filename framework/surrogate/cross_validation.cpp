@@ -36,10 +36,15 @@ Index countDraws(const SurrogateSamples& samples) {
 }
 
 Surrogate fitWithout(Index fold, const Surrogate& whole, const ForwardSamples& forward,
-                     const std::vector<gp::SharedChoice>& choices, const TrainingControl& control) {
+                     const ForwardChoices& choices, const TrainingControl& control) {
   const std::vector<Index> kept = listSimulations(forward.points.cols(), fold, false);
-  const ForwardSamples samples{forward.infos, forward.points(Eigen::all, kept),
-                               forward.clean_features(Eigen::all, kept), forward.noise_covariance};
+  ForwardSamples samples{forward.infos, forward.points(Eigen::all, kept),
+                         forward.clean_features(Eigen::all, kept), forward.noise_covariance};
+  for (const Index i : kept) {
+    if (!forward.slopes.empty()) {
+      samples.slopes.push_back(forward.slopes[static_cast<std::size_t>(i)]);
+    }
+  }
   Surrogate surrogate;
   surrogate.forward = fitForward(samples, choices, control).surrogate;
   surrogate.center = whole.center;
@@ -60,7 +65,7 @@ double calcMeanLogDensity(const MatrixXd& standardised, const MatrixXd& stddev, 
 }  // namespace
 
 HeldOut crossValidate(const Surrogate& whole, const SurrogateSamples& samples, const ForwardSamples& forward,
-                      const std::vector<gp::SharedChoice>& choices, const TrainingControl& control) {
+                      const ForwardChoices& choices, const TrainingControl& control) {
   const Index n = samples.points.cols(), draws = countDraws(samples), p = whole.parameters;
   const Index known = samples.points.rows() - whole.unknown;
   HeldOut held_out;

@@ -15,7 +15,7 @@ struct HeldOut {
 /// Leaves out every fifth simulation in turn, fits everything anew from the choices made for all, and infers
 /// the measured features of those left out. `whole` gives box and sizes.
 HeldOut crossValidate(const Surrogate& whole, const SurrogateSamples& samples, const ForwardSamples& forward,
-                      const std::vector<gp::SharedChoice>& choices, const TrainingControl& control);
+                      const ForwardChoices& choices, const TrainingControl& control);
 
 /// What follows for the standard deviations.
 SurrogateValidation validate(const HeldOut& held_out);

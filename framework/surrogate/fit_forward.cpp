@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <stdexcept>
+#include <iterator>
 
 #include "framework/features/noise_whitener.hpp"
-#include "framework/features/principal_components.hpp"
-#include "framework/surrogate/feature_windows.hpp"
 #include "framework/surrogate/run_tasks.hpp"
+#include "framework/surrogate/window_fit.hpp"
 
 namespace twinmap {
 namespace {
@@ -17,32 +15,6 @@ using Eigen::ArrayXd;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-/// The scores of one window and what was fitted to them.
-struct WindowFit {
-  MatrixXd directions;  // k x c, of all whitened features
-  MatrixXd scores;      // n x c
-  gp::SharedChoice choice;
-  std::optional<gp::SharedProcess> process;
-};
-
-void findScores(const FeatureWindow& rows, const MatrixXd& whitened, WindowFit& window) {
-  constexpr double kSmallestStddev = 0.2;
-  const PrincipalComponents components = calcPrincipalComponents(whitened(rows, Eigen::all));
-  const Index count =
-      std::max<Index>(1, (components.variances.array() > kSmallestStddev * kSmallestStddev).count());
-  const MatrixXd kept = components.directions.leftCols(count);
-  window.directions.setZero(whitened.rows(), count);
-  window.directions(rows, Eigen::all) = kept;
-  window.scores = whitened(rows, Eigen::all).transpose() * kept;
-}
-
-void fitWindow(const MatrixXd& points, const gp::SharedChoice* similar, gp::StopFlag stop,
-               WindowFit& window) {
-  window.choice = similar != nullptr ? gp::adaptSharedProcess(*similar, points, window.scores, stop)
-                                     : gp::chooseSharedProcess(points, window.scores, stop);
-  window.process.emplace(points, window.scores, window.choice.structure, window.choice.hyperparameters);
-}
 
 /// Mean variance of each score at points left out.
 ArrayXd calcErrorVariance(const gp::SharedProcess& process) {
@@ -151,24 +123,60 @@ void assemble(std::vector<WindowFit>& windows, const std::vector<std::vector<Ind
 
 }  // namespace
 
-ForwardFit fitForward(const ForwardSamples& samples, const std::vector<gp::SharedChoice>& similar,
+namespace {
+
+std::vector<WindowChoice> chooseWindows(const ForwardSamples& samples, const WhitenedSamples& whitened,
+                                        const TrainingControl& control) {
+  const bool by_feature = whitened.features.rows() == static_cast<Index>(samples.infos.size());
+  const std::vector<FeatureWindow> rows =
+      by_feature ? makeFeatureWindows(samples.infos) : makeWindowsInOrder(whitened.features.rows());
+  const std::vector<FeatureInfo> infos = by_feature ? samples.infos : std::vector<FeatureInfo>{};
+  std::vector<std::vector<WindowChoice>> parts(rows.size());
+  runTasks(control.threads, rows.size(),
+           [&](std::size_t w) { parts[w] = divideWindow(rows[w], infos, whitened, control.stop); });
+  std::vector<WindowChoice> windows;
+  for (std::vector<WindowChoice>& of_window : parts) {
+    std::move(of_window.begin(), of_window.end(), std::back_inserter(windows));
+  }
+  return windows;
+}
+
+std::vector<WindowFit> fitAnew(const ForwardSamples& samples, const WhitenedSamples& whitened,
+                               const TrainingControl& control, ForwardChoices& choices) {
+  const std::vector<WindowChoice> chosen = chooseWindows(samples, whitened, control);
+  std::vector<WindowFit> windows(chosen.size());
+  runTasks(control.threads, chosen.size(),
+           [&](std::size_t w) { windows[w] = fitWindow(chosen[w], whitened, control.stop); });
+  for (const WindowChoice& window : chosen) {
+    choices.windows.push_back(window.rows);
+  }
+  return windows;
+}
+
+std::vector<WindowFit> refit(const ForwardChoices& similar, const WhitenedSamples& whitened,
+                             const TrainingControl& control) {
+  std::vector<WindowFit> windows(similar.windows.size());
+  runTasks(control.threads, windows.size(), [&](std::size_t w) {
+    windows[w] = refitWindow(similar.windows[w], similar.processes[w], whitened, control.stop);
+  });
+  return windows;
+}
+
+}  // namespace
+
+ForwardFit fitForward(const ForwardSamples& samples, const ForwardChoices& similar,
                       const TrainingControl& control) {
   const NoiseWhitener noise(samples.noise_covariance);
   ForwardFit fit;
   fit.surrogate.center = samples.clean_features.rowwise().mean();
-  fit.surrogate.points = samples.points;
-  const MatrixXd whitened = noise.apply(samples.clean_features.colwise() - fit.surrogate.center);
-  const bool by_feature = whitened.rows() == static_cast<Index>(samples.infos.size());
-  const std::vector<FeatureWindow> rows =
-      by_feature ? makeFeatureWindows(samples.infos) : makeWindowsInOrder(whitened.rows());
-  std::vector<WindowFit> windows(rows.size());
-  runTasks(control.threads, rows.size(), [&](std::size_t w) {
-    findScores(rows[w], whitened, windows[w]);
-    fitWindow(samples.points, similar.empty() ? nullptr : &similar.at(w), control.stop, windows[w]);
-  });
+  const WhitenedSamples whitened = whiten(samples, fit.surrogate.center, noise);
+  fit.surrogate.points = whitened.points;
+  fit.choices.windows = similar.windows;
+  std::vector<WindowFit> windows = similar.windows.empty() ? fitAnew(samples, whitened, control, fit.choices)
+                                                           : refit(similar, whitened, control);
   gp::throwIfStopped(control.stop);
   for (const WindowFit& window : windows) {
-    fit.choices.push_back(window.choice);
+    fit.choices.processes.push_back(window.choice);
   }
   assemble(windows, chooseScores(windows, samples.points.cols()), noise.getMatrix(), fit.surrogate);
   return fit;

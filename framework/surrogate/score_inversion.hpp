@@ -26,10 +26,11 @@ struct ScoreExplanation {
 ///
 /// Levenberg and Marquardt's method searches, from the training simulations of most similar scores, the least
 ///   r' C^-1 r + log det C + 3 |x|^2,   r = scores - s(x),   C = 1 + D R D,
-/// first with the mean error variances alone for C, then twice with C at the point reached, held. 3 is the
-/// precision of the box; it keeps the search where the linearisation is worth something. The likelihood,
-/// linearised there and without that prior, is then restricted to the box (gp::calcBoxMoments). Distinct
-/// minima are mixed by their evidence, in Laplace's approximation.
+/// first with the mean error variances alone for C and the scores that say most, then twice with C at the
+/// point reached, held, and again while the residuals are beyond it, the errors of the windows to blame
+/// enlarged to them. 3 is the precision of the box; it keeps the search where the linearisation is worth
+/// something. The likelihood, linearised there and without that prior, is then restricted to the box
+/// (gp::calcBoxMoments). Distinct minima are mixed by their evidence, in Laplace's approximation.
 ///
 /// One object a thread: it holds the buffers.
 class ScoreInversion {
@@ -44,8 +45,10 @@ class ScoreInversion {
 
   const ScoreExplanation& getExplanation() const { return explanation_; }
 
-  /// The minimum of most evidence, searched from `start` (u, normalised; moved into the box) too. The result
-  /// is valid until the next call. Cost: that of infer().
+  /// The minimum of most evidence, searched from `start` (u, normalised; moved into the box), and, if that
+  /// explains too little, from the most similar simulations. Errors are not enlarged: what a measurement
+  /// contradicts is to be seen. The result is valid until the next call. Cost: some 10 evaluations of the
+  /// processes where `start` suffices, else that of infer().
   const ScoreExplanation& explain(const Eigen::Ref<const Eigen::VectorXd>& scores,
                                   const Eigen::Ref<const Eigen::VectorXd>& known,
                                   const Eigen::Ref<const Eigen::VectorXd>& start);
@@ -57,6 +60,11 @@ class ScoreInversion {
     Eigen::MatrixXd lower;
     double log_determinant = 0.0;
     bool diagonal = true;
+    std::vector<Eigen::Index> counts;  ///< of each window, the first scores that take part; empty: all do
+
+    Eigen::Index count(std::size_t window, const gp::SharedProcess& process) const {
+      return counts.empty() ? process.getFunctionCount() : counts[window];
+    }
   };
   /// A minimum and the normal likelihood around it.
   struct Minimum {
@@ -70,20 +78,25 @@ class ScoreInversion {
   };
 
   std::vector<Eigen::VectorXd> findStarts() const;
-  void evaluate(const Eigen::VectorXd& unknown);
+  void takeLeading();
+  void evaluate(const Metric& metric, const Eigen::VectorXd& unknown);
   double calcObjective(const Metric& metric, const Eigen::VectorXd& unknown);
   void linearize(const Metric& metric);
   bool step(const Metric& metric, Eigen::VectorXd& unknown, double& objective, double& damping);
   double improve(const Metric& metric, int steps, Eigen::VectorXd& unknown);
   void updateMetric(const Eigen::VectorXd& unknown, Metric& metric);
   std::vector<Minimum> searchRoughly(const std::vector<Eigen::VectorXd>& starts);
-  void refine(Minimum& minimum);
+  static bool isMisfit(double chi_square, Eigen::Index count);
+  bool widen(const Metric& metric, const Eigen::VectorXd& unknown);
+  void refine(Minimum& minimum, bool may_widen);
   static bool hasEarlierTwin(const std::vector<Minimum>& minima, std::size_t index);
 
   const ForwardSurrogate& surrogate_;
   Eigen::Index unknown_;
-  Metric rough_;
+  Metric rough_, leading_;
+  bool evaluated_ = false;  ///< all values, at point_
   std::vector<gp::SharedProcess::Workspace> workspaces_;
+  std::vector<double> widening_;  ///< of each window's standard deviations
   Eigen::VectorXd scores_, point_, values_, residual_, stddev_, gradient_;
   Eigen::MatrixXd jacobian_, scaled_jacobian_, normal_;
   ScoreExplanation explanation_;

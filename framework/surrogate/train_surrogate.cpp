@@ -22,9 +22,15 @@ SurrogateSamples takeFirst(const SurrogateSamples& samples) {
   if (n <= kMost) {
     return samples;
   }
-  SurrogateSamples first{samples.infos, samples.points.leftCols(kMost),
-                         samples.clean_features.leftCols(kMost), samples.noise_covariance,
-                         MatrixXd(samples.measured.rows(), 0)};
+  SurrogateSamples first{samples.infos,
+                         samples.points.leftCols(kMost),
+                         samples.clean_features.leftCols(kMost),
+                         samples.noise_covariance,
+                         MatrixXd(samples.measured.rows(), 0),
+                         samples.slopes};
+  if (!first.slopes.empty()) {
+    first.slopes.resize(kMost);
+  }
   const Index draws = samples.measured.cols() / n;
   first.measured.resize(samples.measured.rows(), kMost * draws);
   for (Index draw = 0; draw < draws; ++draw) {
@@ -84,7 +90,10 @@ SurrogateTraining trainSurrogate(const ModelSpec& model, const SurrogateSamples&
   surrogate.unknown = surrogate.parameters + static_cast<Index>(model.nuisance.size());
   const MatrixXd normalized =
       surrogate.half_width.cwiseInverse().asDiagonal() * (samples.points.colwise() - surrogate.center);
-  const ForwardSamples forward{samples.infos, normalized, samples.clean_features, samples.noise_covariance};
+  ForwardSamples forward{samples.infos, normalized, samples.clean_features, samples.noise_covariance};
+  for (const MatrixXd& per_width : samples.slopes) {
+    forward.slopes.push_back(0.5 * per_width);  // per half width
+  }
   ForwardFit fit = fitForward(forward, {}, control);
   surrogate.forward = std::move(fit.surrogate);
   HeldOut held_out = crossValidate(surrogate, samples, forward, fit.choices, control);

@@ -18,6 +18,9 @@ struct SurrogateSamples {
   Eigen::MatrixXd clean_features;    ///< d x n
   Eigen::MatrixXd noise_covariance;  ///< d x d
   Eigen::MatrixXd measured;          ///< d x n draws, with noise: column j + i n is draw i of simulation j
+  /// n, or none: derivatives of the clean features (d x u) with respect to the unknowns, the first u
+  /// variables, per width of their bounds; empty where a simulation has none.
+  std::vector<Eigen::MatrixXd> slopes{};
 };
 
 /// A trained surrogate and what a person should know about it.

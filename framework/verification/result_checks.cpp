@@ -74,8 +74,8 @@ RunControl makeControl(const Inputs& inputs) {
 /// Processes are fitted at the hyperparameters of the file, without a search; a surrogate is trained again.
 TrainedMap trainAgain(const Inputs& inputs, const std::filesystem::path& file) {
   const RunControl control = makeControl(inputs);
-  const MapTrainingContext context{inputs.experiment, inputs.sets, inputs.extractor, inputs.data.labelled,
-                                   control};
+  const MapTrainingContext context{inputs.experiment, inputs.sets,          inputs.simulator,
+                                   inputs.extractor,  inputs.data.labelled, control};
   const LabelledFeatures& train = inputs.data.labelled.train;
   if (!holdsProcesses(file)) {
     return trainChosenMap(context);

@@ -22,6 +22,12 @@ class PackedLower {
   const Eigen::VectorXd& getTiles() const { return tiles_; }
   static PackedLower fromTiles(Eigen::VectorXd tiles);
 
+  /// How many numbers getTiles() has for n rows.
+  static constexpr Index countTiles(Index n) {
+    const Index blocks = (n + kTile - 1) / kTile;
+    return blocks * (blocks + 1) / 2 * kTile * kTile;
+  }
+
   /// n rounded up to whole tiles.
   Index paddedSize() const { return blocks_ * kTile; }
 

@@ -102,7 +102,7 @@ void requireFound(const SharedChoice& choice) {
 
 }  // namespace
 
-SharedChoice chooseSharedProcess(const MatrixXd& points, const MatrixXd& values, StopFlag stop) {
+SharedChoice chooseOnSpread(const MatrixXd& points, const MatrixXd& values, StopFlag stop) {
   const Index p = points.rows();
   if (points.cols() < p + 3) {
     throw std::invalid_argument("a surrogate needs more simulations than parameters");
@@ -125,9 +125,18 @@ SharedChoice chooseSharedProcess(const MatrixXd& points, const MatrixXd& values,
     }
   }
   requireFound(best);
+  return best;
+}
+
+SharedChoice finishOnAll(const SharedChoice& found, const MatrixXd& points, const MatrixXd& values,
+                         StopFlag stop) {
   return points.cols() > kSearchPoints
-             ? search({points, values}, best.structure, toLog(best.hyperparameters), kAllEvaluations, stop)
-             : best;
+             ? search({points, values}, found.structure, toLog(found.hyperparameters), kAllEvaluations, stop)
+             : found;
+}
+
+SharedChoice chooseSharedProcess(const MatrixXd& points, const MatrixXd& values, StopFlag stop) {
+  return finishOnAll(chooseOnSpread(points, values, stop), points, values, stop);
 }
 
 SharedChoice adaptSharedProcess(const SharedChoice& similar, const MatrixXd& points, const MatrixXd& values,

@@ -22,6 +22,13 @@ struct SharedChoice {
 SharedChoice chooseSharedProcess(const Eigen::MatrixXd& points, const Eigen::MatrixXd& values,
                                  StopFlag stop = nullptr);
 
+/// The two halves of it: the choice on at most 300 points, and where there are more, 8 further evaluations
+/// with all of them, which take most of the time.
+SharedChoice chooseOnSpread(const Eigen::MatrixXd& points, const Eigen::MatrixXd& values,
+                            StopFlag stop = nullptr);
+SharedChoice finishOnAll(const SharedChoice& found, const Eigen::MatrixXd& points,
+                         const Eigen::MatrixXd& values, StopFlag stop = nullptr);
+
 /// The same from a choice made on similar data: its structure, and a few steps from its numbers; where the
 /// points are more than 300, such as the rest of a cross-validation, its numbers as they are.
 SharedChoice adaptSharedProcess(const SharedChoice& similar, const Eigen::MatrixXd& points,

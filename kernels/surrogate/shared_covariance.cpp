@@ -20,6 +20,18 @@ void calcSmoothCovariance(SmoothCovariance covariance, Eigen::Ref<ArrayXd> squar
   squares_to_values = (1.0 + distance + kFiveThirds * squares_to_values) * decay;
 }
 
+void calcSmoothCovariance(SmoothCovariance covariance, Eigen::Ref<ArrayXd> squares_to_values,
+                          Eigen::Ref<ArrayXd> slopes, Eigen::Ref<ArrayXd> curvatures) {
+  if (covariance == SmoothCovariance::kSquaredExponential) {
+    calcSmoothCovariance(covariance, squares_to_values, slopes);
+    curvatures = slopes;
+    return;
+  }
+  constexpr double kTwentyFiveThirds = 25.0 / 3.0;
+  curvatures = kTwentyFiveThirds * (-(5.0 * squares_to_values).sqrt()).exp();
+  calcSmoothCovariance(covariance, squares_to_values, slopes);
+}
+
 void calcSharedCovariance(const SharedStructure& structure, const SharedHyperparameters& hyperparameters,
                           const MatrixXd& points, MatrixXd& covariance, MatrixXd& slopes) {
   const Index n = points.cols();

@@ -13,18 +13,25 @@ enum class SmoothCovariance { kSquaredExponential, kMatern52 };
 struct SharedStructure {
   SmoothCovariance covariance = SmoothCovariance::kSquaredExponential;
   Trend trend = Trend::kLinear;
+  bool slopes = false;  ///< learnt from slopes as well, where they are known
 };
 
-/// Length scales l (p), and the variance of what is not smooth, over that of the process.
+/// Length scales l (p), and the variance of what is not smooth, over that of the process: of values, and of
+/// slopes times length scales.
 struct SharedHyperparameters {
   Eigen::VectorXd length_scales;
   double nugget = 0.0;
+  double slope_nugget = 0.0;
 };
 
 /// Replaces scaled squared distances s by covariances k, and gives g = -2 dk / ds: the derivative of k with
 /// respect to log l is g (x - z)^2 / l^2, with respect to x it is -g (x - z) / l^2.
 void calcSmoothCovariance(SmoothCovariance covariance, Eigen::Ref<Eigen::ArrayXd> squares_to_values,
                           Eigen::Ref<Eigen::ArrayXd> slopes);
+
+/// The same, and the curvatures h = -2 dg / ds.
+void calcSmoothCovariance(SmoothCovariance covariance, Eigen::Ref<Eigen::ArrayXd> squares_to_values,
+                          Eigen::Ref<Eigen::ArrayXd> slopes, Eigen::Ref<Eigen::ArrayXd> curvatures);
 
 /// Covariances K (n x n, nugget on the diagonal) and slopes g of points (p x n), the distances by
 /// differences: products of coordinates would lose the half of their digits that close points differ in.

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "kernels/linalg/decompositions.hpp"
+#include "kernels/surrogate/joint_fit.hpp"
 
 namespace twinmap::gp {
 
@@ -26,13 +27,17 @@ LeftOut calcLeftOut(const MatrixXd& points, const MatrixXd& values, const Shared
 
 }  // namespace
 
+void SharedProcess::requireSizes(const MatrixXd& points, const MatrixXd& values) const {
+  if (values.rows() != points.cols() || hyperparameters_.length_scales.size() != points.rows() ||
+      points.cols() <= countTerms(structure_.trend, points.rows())) {
+    throw std::invalid_argument("SharedProcess: more points than terms, a row of values for each");
+  }
+}
+
 SharedProcess::SharedProcess(const MatrixXd& points, const MatrixXd& values, SharedStructure structure,
                              SharedHyperparameters hyperparameters)
     : structure_(structure), hyperparameters_(std::move(hyperparameters)) {
-  if (values.rows() != points.cols() || hyperparameters_.length_scales.size() != points.rows() ||
-      points.cols() <= countTerms(structure.trend, points.rows())) {
-    throw std::invalid_argument("SharedProcess: more points than terms, a row of values for each");
-  }
+  requireSizes(points, values);
   left_out_ = calcLeftOut(points, values, structure_, hyperparameters_);
   MatrixXd covariance, slopes;
   calcSharedCovariance(structure_, hyperparameters_, points, covariance, slopes);
@@ -52,27 +57,81 @@ SharedProcess::SharedProcess(SharedProcessParts parts)
     : structure_(parts.structure),
       hyperparameters_(std::move(parts.hyperparameters)),
       scaled_points_(std::move(parts.scaled_points)),
+      slope_points_(parts.slope_points),
+      slope_variables_(parts.slope_variables),
       weights_(std::move(parts.weights)),
       coefficients_(std::move(parts.coefficients)),
-      factor_(linalg::PackedLower::fromTiles(std::move(parts.factor_tiles))),
       solved_terms_(std::move(parts.solved_terms)),
       term_factor_(std::move(parts.term_factor)),
+      local_variance_(structure_.covariance, hyperparameters_.nugget),
       left_out_ratio_(std::move(parts.left_out_ratio)) {
   left_out_.amplitude = std::move(parts.amplitude);
-  const Index n = scaled_points_.rows(), p = scaled_points_.cols(), r = weights_.cols();
-  const Index q = countTerms(structure_.trend, p);
-  if (hyperparameters_.length_scales.size() != p || weights_.rows() != n || coefficients_.rows() != q ||
-      coefficients_.cols() != r || factor_.paddedSize() < n || solved_terms_.rows() != n ||
-      solved_terms_.cols() != q || term_factor_.rows() != q || term_factor_.cols() != q ||
-      left_out_.amplitude.size() != r || left_out_ratio_.size() != n) {
+  if (slope_points_ == 0) {
+    factor_ = linalg::PackedLower::fromTiles(std::move(parts.factor_tiles));
+  }
+  if (!fitTogether()) {
     throw std::invalid_argument("SharedProcess: parts that do not fit each other");
   }
 }
 
+bool SharedProcess::fitTogether() const {
+  const Index n = scaled_points_.rows(), p = scaled_points_.cols(), r = weights_.cols();
+  const Index q = countTerms(structure_.trend, p);
+  const bool own_variance = factor_.paddedSize() >= n && solved_terms_.rows() == n &&
+                            solved_terms_.cols() == q && term_factor_.rows() == q && term_factor_.cols() == q;
+  return hyperparameters_.length_scales.size() == p && slope_points_ >= 0 && slope_points_ <= n &&
+         slope_variables_ >= 0 && slope_variables_ <= p &&
+         weights_.rows() == n + slope_points_ * slope_variables_ && coefficients_.rows() == q &&
+         coefficients_.cols() == r && left_out_.amplitude.size() == r && left_out_ratio_.size() == n &&
+         (slope_points_ > 0 || own_variance);
+}
+
 SharedProcessParts SharedProcess::getParts() const {
-  return {structure_,          hyperparameters_,   scaled_points_, weights_,
-          coefficients_,       factor_.getTiles(), solved_terms_,  term_factor_,
+  return {structure_,          hyperparameters_,
+          scaled_points_,      slope_points_,
+          slope_variables_,    weights_,
+          coefficients_,       slope_points_ > 0 ? VectorXd() : VectorXd(factor_.getTiles()),
+          solved_terms_,       term_factor_,
           left_out_.amplitude, left_out_ratio_};
+}
+
+SharedProcess::SharedProcess(const MatrixXd& points, const MatrixXd& values, const SlopeData& slopes,
+                             SharedStructure structure, SharedHyperparameters hyperparameters)
+    : structure_(structure),
+      hyperparameters_(std::move(hyperparameters)),
+      slope_points_(slopes.countPoints()),
+      slope_variables_(slopes.variables),
+      local_variance_(structure.covariance, hyperparameters_.nugget) {
+  requireSizes(points, values);
+  if (slope_points_ < 1 || slope_points_ > points.cols() || slope_variables_ > points.rows() ||
+      slopes.values.cols() != values.cols()) {
+    throw std::invalid_argument("SharedProcess: slopes of all functions, at some of the points");
+  }
+  JointFit fit;
+  if (!fitJointly(structure_, hyperparameters_, points, values, slopes, fit)) {
+    throw std::runtime_error("a surrogate's joint covariance of values and slopes is not positive definite");
+  }
+  coefficients_ = std::move(fit.coefficients);
+  weights_ = std::move(fit.weights);
+  scaled_points_ = points.transpose() * hyperparameters_.length_scales.cwiseInverse().asDiagonal();
+  leaveOutLocally(points, fit.residual);
+  updateLeftOutRatio();
+}
+
+/// The residuals are of the whole process, the variance that of the nearest points.
+void SharedProcess::leaveOutLocally(const MatrixXd& points, const MatrixXd& residual) {
+  const Index n = points.cols();
+  Workspace workspace;
+  left_out_.residual = residual;
+  left_out_.variance.resize(n);
+  for (Index i = 0; i < n; ++i) {
+    calcPointCovariance(structure_.covariance, scaled_points_, scaled_points_.row(i).transpose(), false,
+                        workspace.at);
+    left_out_.variance(i) =
+        local_variance_.calc(scaled_points_, workspace.at.squares, workspace.at.values, i, workspace.local);
+  }
+  left_out_.amplitude =
+      (residual.array().square().colwise() / left_out_.variance.array()).colwise().mean().transpose();
 }
 
 void SharedProcess::updateLeftOutRatio() {
@@ -92,31 +151,55 @@ void SharedProcess::select(const std::vector<Index>& functions) {
 
 void SharedProcess::evaluate(const Eigen::Ref<const VectorXd>& point, Eigen::Ref<VectorXd> values,
                              Workspace& workspace) const {
-  MatrixXd& scaled = workspace.scaled;  // (z - x) / l, n x p
-  scaled = scaled_points_;
-  workspace.squares.setZero(scaled.rows());
-  for (Index v = 0; v < scaled.cols(); ++v) {
-    scaled.col(v).array() -= point(v) / hyperparameters_.length_scales(v);
-    workspace.squares += scaled.col(v).array().square();
-  }
-  workspace.covariance = workspace.squares;
-  workspace.slopes.resize(scaled.rows());
-  calcSmoothCovariance(structure_.covariance, workspace.covariance, workspace.slopes);
+  workspace.scaled_point = point.cwiseQuotient(hyperparameters_.length_scales);
+  calcPointCovariance(structure_.covariance, scaled_points_, workspace.scaled_point, slope_points_ > 0,
+                      workspace.at);
   workspace.terms = calcTerms(structure_.trend, point);
-  values.noalias() = coefficients_.transpose() * workspace.terms;
-  values.noalias() += weights_.transpose() * workspace.covariance.matrix();
+  const Index n = scaled_points_.rows(), count = values.size();
+  values.noalias() = coefficients_.leftCols(count).transpose() * workspace.terms;
+  values.noalias() += weights_.topLeftCorner(n, count).transpose() * workspace.at.values.matrix();
+  if (slope_points_ > 0) {
+    addSlopes(values, workspace);
+  }
+}
+
+/// Each weight is read once: the sums over the variables serve the derivatives too.
+void SharedProcess::addSlopes(Eigen::Ref<VectorXd> values, Workspace& workspace) const {
+  const Index n = scaled_points_.rows(), m = slope_points_;
+  workspace.projected.resize(m, values.size());
+  const auto slopes = workspace.at.slopes.head(m);
+  for (Index j = 0; j < values.size(); ++j) {
+    auto sum = workspace.projected.col(j);
+    const auto weights = weights_.col(j).array();
+    sum = workspace.at.differences.col(0).head(m) * weights.segment(n, m);
+    for (Index v = 1; v < slope_variables_; ++v) {
+      sum += workspace.at.differences.col(v).head(m) * weights.segment(n + v * m, m);
+    }
+    values(j) += (slopes * sum).sum();
+  }
 }
 
 void SharedProcess::derive(const Eigen::Ref<const VectorXd>& point, Eigen::Ref<MatrixXd> jacobian,
                            Workspace& workspace) const {
-  const Index unknown = jacobian.cols();
+  const Index n = scaled_points_.rows(), m = slope_points_, unknown = jacobian.cols();
+  const PointCovariance& at = workspace.at;
   calcTermDerivatives(structure_.trend, point, workspace.term_derivatives);
-  jacobian.noalias() = coefficients_.transpose() * workspace.term_derivatives.leftCols(unknown);
-  for (Index v = 0; v < unknown; ++v) {
-    workspace.scaled.col(v).array() *= workspace.slopes / hyperparameters_.length_scales(v);
+  jacobian.noalias() =
+      coefficients_.leftCols(jacobian.rows()).transpose() * workspace.term_derivatives.leftCols(unknown);
+  for (Index j = 0; j < jacobian.rows(); ++j) {
+    const auto weights = weights_.col(j).array();
+    workspace.falling = at.slopes * weights.head(n);
+    if (m > 0) {
+      workspace.falling.head(m) += at.curvatures.head(m) * workspace.projected.col(j);
+    }
+    for (Index v = 0; v < unknown; ++v) {
+      double slope = -(at.differences.col(v) * workspace.falling).sum();
+      if (v < slope_variables_) {
+        slope += (at.slopes.head(m) * weights.segment(n + v * m, m)).sum();
+      }
+      jacobian(j, v) += slope / hyperparameters_.length_scales(v);
+    }
   }
-  // Few columns: dot products beat a blocked product, which would copy the weights first.
-  jacobian.noalias() += weights_.transpose().lazyProduct(workspace.scaled.leftCols(unknown));
 }
 
 double SharedProcess::calcLocalFactor(Workspace& workspace) const {
@@ -124,24 +207,30 @@ double SharedProcess::calcLocalFactor(Workspace& workspace) const {
   // set's.
   constexpr Index kNeighbours = 16;
   constexpr double kOfAll = 4.0;
-  const Index n = workspace.squares.size(), reach = std::min(kNeighbours, n) - 1;
-  workspace.nearest = workspace.squares;
+  const Index n = workspace.at.squares.size(), reach = std::min(kNeighbours, n) - 1;
+  workspace.nearest = workspace.at.squares;
   std::nth_element(workspace.nearest.data(), workspace.nearest.data() + reach, workspace.nearest.data() + n);
   const double width = std::max(workspace.nearest(reach), std::numeric_limits<double>::min());
-  workspace.nearest = (-workspace.squares / width).exp();
+  workspace.nearest = (-workspace.at.squares / width).exp();
   return ((workspace.nearest * left_out_ratio_).sum() + kOfAll) / (workspace.nearest.sum() + kOfAll);
 }
 
-void SharedProcess::calcStddev(Eigen::Ref<VectorXd> stddev, Workspace& workspace) const {
+double SharedProcess::calcOwnVariance(Workspace& workspace) const {
   constexpr double kLeast = 1e-14;  // rounding leaves the sum of squares that near to 1
   const Index n = weights_.rows();
   workspace.solved.setZero(factor_.paddedSize());
-  workspace.solved.head(n) = workspace.covariance.matrix();
+  workspace.solved.head(n) = workspace.at.values.matrix();
   factor_.solve(workspace.solved.data());
   const auto solved = workspace.solved.head(n);
   const VectorXd rest = workspace.terms - solved_terms_.transpose() * solved;
   const double of_trend = linalg::solveLower(term_factor_, rest).squaredNorm();
-  const double variance = std::max(1.0 - solved.squaredNorm(), kLeast) + hyperparameters_.nugget + of_trend;
+  return std::max(1.0 - solved.squaredNorm(), kLeast) + hyperparameters_.nugget + of_trend;
+}
+
+void SharedProcess::calcStddev(Eigen::Ref<VectorXd> stddev, Workspace& workspace) const {
+  const double variance = slope_points_ > 0 ? local_variance_.calc(scaled_points_, workspace.at.squares,
+                                                                   workspace.at.values, -1, workspace.local)
+                                            : calcOwnVariance(workspace);
   stddev = (variance * calcLocalFactor(workspace) * left_out_.amplitude).cwiseSqrt();
 }
 

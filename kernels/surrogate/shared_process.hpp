@@ -5,6 +5,8 @@
 
 #include "kernels/linalg/packed_lower.hpp"
 #include "kernels/surrogate/left_out_density.hpp"
+#include "kernels/surrogate/local_variance.hpp"
+#include "kernels/surrogate/slope_covariance.hpp"
 
 namespace twinmap::gp {
 
@@ -12,27 +14,35 @@ namespace twinmap::gp {
 struct SharedProcessParts {
   SharedStructure structure;
   SharedHyperparameters hyperparameters;
-  Eigen::MatrixXd scaled_points;   ///< n x p, over the length scales
-  Eigen::MatrixXd weights;         ///< K^-1 (values - trend), n x r
-  Eigen::MatrixXd coefficients;    ///< of the trend, q x r
-  Eigen::VectorXd factor_tiles;    ///< of K's lower factor (linalg::PackedLower)
-  Eigen::MatrixXd solved_terms;    ///< L^-1 H', n x q
-  Eigen::MatrixXd term_factor;     ///< lower factor of H K^-1 H', q x q
-  Eigen::VectorXd amplitude;       ///< LeftOut::amplitude, r
-  Eigen::VectorXd left_out_ratio;  ///< n
+  Eigen::MatrixXd scaled_points;     ///< n x p, over the length scales
+  Eigen::Index slope_points = 0;     ///< m: the first points, whose slopes are known ...
+  Eigen::Index slope_variables = 0;  ///< ... with respect to the first u variables
+  Eigen::MatrixXd weights;           ///< of values, then of slopes, n + u m x r
+  Eigen::MatrixXd coefficients;      ///< of the trend, q x r
+  Eigen::VectorXd factor_tiles;      ///< of K's lower factor (linalg::PackedLower); this and the next two are
+                                     ///< empty where slopes are known
+  Eigen::MatrixXd solved_terms;      ///< L^-1 H', n x q
+  Eigen::MatrixXd term_factor;       ///< lower factor of H K^-1 H', q x q
+  Eigen::VectorXd amplitude;         ///< LeftOut::amplitude, r
+  Eigen::VectorXd left_out_ratio;    ///< n
 };
 
-/// r smooth functions of p variables, known without noise at n points: a Gaussian process each, with one
-/// covariance function and trend for all. Each function's variance is the one with which the points that are
-/// left out agree (LeftOut::amplitude), times a local factor that all share: the ratio of the squared errors
-/// of the nearest points, left out, to their variance. Immutable.
+/// r smooth functions of p variables, known without noise at n points, with their slopes at the first m: a
+/// Gaussian process each, with one covariance function and trend for all. Each function's variance is the one
+/// with which the points that are left out agree (LeftOut::amplitude), times a local factor that all share:
+/// the ratio of the squared errors of the nearest points, left out, to their variance. The variance that both
+/// multiply is the process's own, or where slopes are known the LocalVariance, for which n p numbers suffice.
+/// Immutable.
 class SharedProcess {
  public:
   /// The buffers of one thread.
   struct Workspace {
-    Eigen::MatrixXd scaled, term_derivatives;
-    Eigen::ArrayXd squares, covariance, slopes, nearest;
-    Eigen::VectorXd terms, solved;
+    Eigen::MatrixXd term_derivatives;
+    PointCovariance at;
+    LocalVariance::Workspace local;
+    Eigen::ArrayXXd projected;  // sums over variables of D times weights of slopes, m x r
+    Eigen::ArrayXd nearest, falling;
+    Eigen::VectorXd scaled_point, terms, solved;
   };
 
   /// points: p x n; values: n x r. Throws std::invalid_argument for sizes that do not fit,
@@ -44,6 +54,9 @@ class SharedProcess {
   /// amplitude. Throws std::invalid_argument for sizes that do not fit.
   explicit SharedProcess(SharedProcessParts parts);
   SharedProcessParts getParts() const;
+  /// Learns from slopes as well. Cost: 2 / 3 (n + u m)^3 flops.
+  SharedProcess(const Eigen::MatrixXd& points, const Eigen::MatrixXd& values, const SlopeData& slopes,
+                SharedStructure structure, SharedHyperparameters hyperparameters);
 
   Eigen::Index getFunctionCount() const { return weights_.cols(); }
   const SharedStructure& getStructure() const { return structure_; }
@@ -55,30 +68,40 @@ class SharedProcess {
   /// Keeps some of the functions.
   void select(const std::vector<Eigen::Index>& functions);
 
-  /// Values (r) at a point (p). Cost: 2 n (p + r) flops and n exponentials.
+  /// Values of the first functions (at most r, as many as `values`) at a point (p). Cost: 2 (n + u m) (p + r)
+  /// flops and n exponentials.
   void evaluate(const Eigen::Ref<const Eigen::VectorXd>& point, Eigen::Ref<Eigen::VectorXd> values,
                 Workspace& workspace) const;
 
-  /// Derivatives (r x u) with respect to the first u variables, of the point evaluated last. Cost: 2 n u r.
+  /// Derivatives of as many functions as were evaluated last (rows), with respect to the first variables
+  /// (columns), at that point. Cost: 2 (n + u
+  /// m) u r.
   void derive(const Eigen::Ref<const Eigen::VectorXd>& point, Eigen::Ref<Eigen::MatrixXd> jacobian,
               Workspace& workspace) const;
 
   /// Standard deviations (r) of the values at the point evaluated last, nugget and local factor included.
-  /// Cost: n^2 flops.
+  /// Cost: n^2 flops; where slopes are known that of LocalVariance.
   void calcStddev(Eigen::Ref<Eigen::VectorXd> stddev, Workspace& workspace) const;
 
  private:
+  bool fitTogether() const;
+  void requireSizes(const Eigen::MatrixXd& points, const Eigen::MatrixXd& values) const;
   void updateLeftOutRatio();
+  void leaveOutLocally(const Eigen::MatrixXd& points, const Eigen::MatrixXd& residual);
+  void addSlopes(Eigen::Ref<Eigen::VectorXd> values, Workspace& workspace) const;
+  double calcOwnVariance(Workspace& workspace) const;
   double calcLocalFactor(Workspace& workspace) const;
 
   SharedStructure structure_;
   SharedHyperparameters hyperparameters_;
-  Eigen::MatrixXd scaled_points_;  // n x p, over the length scales
-  Eigen::MatrixXd weights_;        // n x r
-  Eigen::MatrixXd coefficients_;   // of the trend, q x r
-  linalg::PackedLower factor_;     // of K
-  Eigen::MatrixXd solved_terms_;   // L^-1 H', n x q
-  Eigen::MatrixXd term_factor_;    // lower factor of H K^-1 H', q x q
+  Eigen::MatrixXd scaled_points_;                        // n x p, over the length scales
+  Eigen::Index slope_points_ = 0, slope_variables_ = 0;  // m, u
+  Eigen::MatrixXd weights_;                              // n + u m x r
+  Eigen::MatrixXd coefficients_;                         // of the trend, q x r
+  linalg::PackedLower factor_;    // of K; this and the next two only where no slopes are known
+  Eigen::MatrixXd solved_terms_;  // L^-1 H', n x q
+  Eigen::MatrixXd term_factor_;   // lower factor of H K^-1 H', q x q
+  LocalVariance local_variance_;
   LeftOut left_out_;
   Eigen::ArrayXd left_out_ratio_;  // n
 };

@@ -6,7 +6,9 @@
 #include <stdexcept>
 
 #include "framework/design/random.hpp"
+#include "framework/surrogate/fit_forward.hpp"
 #include "framework/surrogate/train_surrogate.hpp"
+#include "framework/surrogate/window_fit.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -197,6 +199,108 @@ TEST(Surrogate, RefusesFeaturesWithoutNoiseTooFewSamplesAndMissingInputs) {
   samples.noise_covariance(3, 3) = 0.0;
   EXPECT_THROW((void)trainSurrogate(model, samples, {}), std::invalid_argument);
   EXPECT_THROW((void)trainOn(model, calcOscillation, 20), std::invalid_argument);
+}
+
+/// Derivatives of the oscillation with respect to damping and stiffness, per width of their bounds, by hand;
+/// none at every seventh point.
+std::vector<MatrixXd> calcOscillationSlopes(const MatrixXd& points) {
+  std::vector<MatrixXd> slopes(static_cast<std::size_t>(points.cols()));
+  for (Index j = 0; j < points.cols(); ++j) {
+    if (j % 7 == 6) {
+      continue;
+    }
+    MatrixXd& at = slopes[static_cast<std::size_t>(j)];
+    at.resize(kTimes, 2);
+    for (Index i = 0; i < kTimes; ++i) {
+      const double t = 0.25 * static_cast<double>(i + 1);
+      const double decayed = points(2, j) * std::exp(-points(0, j) * t);
+      at(i, 0) = -t * decayed * std::sin(points(1, j) * t) * 0.2;
+      at(i, 1) = t * decayed * std::cos(points(1, j) * t) * 1.0;
+    }
+  }
+  return slopes;
+}
+
+/// Root mean square error of the scores of simulations not seen, in standard deviations of the noise.
+double measureScores(const ForwardSurrogate& forward, const MatrixXd& points, const MatrixXd& normalized) {
+  const MatrixXd scores = forward.calcScores(calcOscillation(points));
+  gp::SharedProcess::Workspace workspace;
+  double sum = 0.0;
+  for (Index j = 0; j < points.cols(); ++j) {
+    Index first = 0;
+    for (const gp::SharedProcess& process : forward.windows) {
+      VectorXd values(process.getFunctionCount());
+      process.evaluate(normalized.col(j), values, workspace);
+      sum += (values - scores.col(j).segment(first, values.size())).squaredNorm();
+      first += values.size();
+    }
+  }
+  return std::sqrt(sum / static_cast<double>(scores.size()));
+}
+
+TEST(Surrogate, LearnsFromSlopesWhereSimulationsHaveThem) {
+  const ModelSpec model = makeOscillationModel();
+  SurrogateSamples samples = makeSamples(samplePoints(listBox(model), 30, 1), calcOscillation);
+  const Surrogate without = trainSurrogate(model, samples, {2}).surrogate;
+  samples.slopes = calcOscillationSlopes(samples.points);
+  const SurrogateTraining one = trainSurrogate(model, samples, {1}),
+                          two = trainSurrogate(model, samples, {2});
+  EXPECT_TRUE(one.held_out.mean == two.held_out.mean && one.held_out.stddev == two.held_out.stddev);
+  const MatrixXd tests = samplePoints(listBox(model), 200, 2);
+  const MatrixXd normalized =
+      without.half_width.cwiseInverse().asDiagonal() * (tests.colwise() - without.center);
+  EXPECT_LT(measureScores(one.surrogate.forward, tests, normalized),
+            0.5 * measureScores(without.forward, tests, normalized));
+}
+
+TEST(SlopePoints, AreAllUntilValuesAndSlopesAreTwoThousand) {
+  EXPECT_EQ(countSlopePoints(250, 5), 250);
+  EXPECT_EQ(countSlopePoints(1000, 5), 200);
+  EXPECT_EQ(countSlopePoints(2500, 5), 0);
+  EXPECT_EQ(countSlopePoints(100, 0), 100);  // no unknown, no slopes
+}
+
+/// Samples of an output at eight times: a smooth function of the points, from some time on a rough one.
+WhitenedSamples makeTurning(Index rough_from) {
+  WhitenedSamples samples{MatrixXd(2, 120), MatrixXd(8, 120), {}};
+  const RandomStream random(1, RandomPurpose::kTrainDesign);
+  for (Index j = 0; j < 120; ++j) {
+    const double a = 2.0 * random.calcUniform(j, 0) - 1.0, b = 2.0 * random.calcUniform(j, 1) - 1.0;
+    samples.points.col(j) << a, b;
+    for (Index i = 0; i < 8; ++i) {
+      const double rate = i < rough_from ? 1.0 : 40.0;
+      samples.features(i, j) = 50.0 * std::sin(rate * a + 0.3 * static_cast<double>(i) * b);
+    }
+  }
+  return samples;
+}
+
+TEST(DivideWindow, PartsWhereResponsesBeginToBeUnpredictable) {
+  std::vector<FeatureInfo> infos = makeInfos();
+  infos.resize(8);
+  const FeatureWindow rows = {0, 1, 2, 3, 4, 5, 6, 7};
+  const std::vector<WindowChoice> parts = divideWindow(rows, infos, makeTurning(4), nullptr);
+  ASSERT_EQ(parts.size(), 2U);
+  EXPECT_EQ(parts[0].rows, (FeatureWindow{0, 1, 2, 3}));
+  EXPECT_EQ(parts[1].rows, (FeatureWindow{4, 5, 6, 7}));
+  EXPECT_LT(parts[0].error, 0.1);
+  EXPECT_GT(parts[1].error, 1.0);
+  EXPECT_EQ(divideWindow(rows, infos, makeTurning(8), nullptr).size(), 1U);  // smooth throughout
+  EXPECT_EQ(divideWindow(rows, infos, makeTurning(0), nullptr).size(), 1U);  // rough throughout
+  EXPECT_EQ(divideWindow(rows, {}, makeTurning(4), nullptr).size(), 1U);     // no times
+}
+
+TEST(Surrogate, TakesTheErrorOfAWindowForLargeWhereTheMeasurementContradictsIt) {
+  const SurrogateTraining trained = trainOn(makeLinearModel(), calcLinear, 100);
+  const VectorXd point = (VectorXd(3) << 2.0, 0.1, 0.0).finished();
+  MatrixXd features = calcLinear(point);
+  const Predictions clean = trained.surrogate.predict(features, MatrixXd(0, 1));
+  features.bottomRows(8).array() += 200.0 * kNoise;  // the last of three windows
+  const Predictions found = trained.surrogate.predict(features, MatrixXd(0, 1));
+  for (Index k = 0; k < 2; ++k) {
+    EXPECT_LT(std::abs(found.mean(k, 0) - point(k)), 3.0 * found.stddev(k, 0)) << k;
+    EXPECT_GT(found.stddev(k, 0), clean.stddev(k, 0)) << k;
+  }
 }
 
 }  // namespace
