@@ -200,8 +200,8 @@ class HybridIntegration {
     if (isRunning() && problem_.getNextEventTime() <= end) {
       handleEvent();
     }
-    const bool all = next_output_ >= output_times_.size();
-    if (report_.failure.empty() && problem_.isOver() && !all && output_times_[next_output_] > t_) {
+    const bool complete = output_times_.size() == 0 || output_times_[output_times_.size() - 1] <= t_;
+    if (report_.failure.empty() && problem_.isOver() && !complete) {
       report_.failure = describeAt("the model ended its simulation", t_);
     }
     for (; report_.failure.empty() && next_output_ < output_times_.size(); ++next_output_) {
