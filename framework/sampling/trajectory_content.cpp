@@ -5,6 +5,7 @@
 #include "framework/spec/check/check_experiment.hpp"
 #include "framework/spec/fields/write_value.hpp"
 #include "framework/spec/parameter_box.hpp"
+#include "framework/store/digest.hpp"
 
 namespace twinmap {
 namespace {
@@ -14,6 +15,23 @@ void erase(YamlNode& map, const std::string& key) {
   entries.erase(
       std::remove_if(entries.begin(), entries.end(), [&](const YamlEntry& e) { return e.key == key; }),
       entries.end());
+}
+
+/// What of a model from elsewhere determines a response.
+struct SourceContent {
+  std::vector<std::string> variables, units;
+  std::string fmu;
+  std::optional<FmuKind> kind;
+  std::optional<double> step;
+};
+
+template <class Fields>
+void describe(Fields& f, SourceContent& s) {
+  f.required("variables", s.variables, "");
+  f.required("units", s.units, "");
+  f.required("fmu", s.fmu, "");
+  f.optional("kind", s.kind, "");
+  f.optional("step", s.step, "");
 }
 
 YamlNode writeSimulation(const SimulationSpec& simulation) {
@@ -57,6 +75,22 @@ bool startsAtBoxCenter(const InitialSpec& initial) {
   return initial.equilibrium && initial.equilibrium->at == EquilibriumAt::kBoxCenter;
 }
 
+/// The names of variables, and the FMU's bytes, wherever it lies; how much memory it may take decides
+/// nothing.
+SourceContent describeSource(const SourceSpec& source, const std::vector<ParameterSpec>& sampled) {
+  SourceContent content;
+  for (const ParameterSpec& parameter : sampled) {
+    content.variables.push_back((parameter.variable ? *parameter.variable : parameter.name).text);
+    content.units.push_back(parameter.unit);
+  }
+  if (source.fmu) {
+    content.fmu = toHex(calcFileDigest(source.fmu->file.text));
+    content.kind = source.fmu->kind;
+    content.step = source.fmu->step;
+  }
+  return content;
+}
+
 YamlNode writeResponse(const ResponseLayout& layout) {
   // A new member must be written here, or left out on purpose: the binding then no longer compiles.
   const auto& [output_names, output_units, times, modes] = layout;
@@ -71,8 +105,8 @@ YamlNode writeResponse(const ResponseLayout& layout) {
 
 std::string writeTrajectoryContent(const ModelSpec& model, const ResponseLayout& layout) {
   // A new member must be written here, or left out on purpose: the binding then no longer compiles.
-  const auto& [parameters, nuisance, inputs, constants, system, excitation, initial, outputs, simulation] =
-      model;
+  const auto& [parameters, nuisance, inputs, constants, system, source, excitation, initial, outputs,
+               simulation] = model;
   const std::vector<ParameterSpec> sampled = collectSampled(model);  // all three; which is which is no matter
   FieldWriter content;
   content.required("parameters", collectNames(sampled), "");
@@ -80,7 +114,11 @@ std::string writeTrajectoryContent(const ModelSpec& model, const ResponseLayout&
     content.required("box_center", calcCenter(sampled), "");
   }
   content.requiredMap("constants", withoutTexts(constants), "");
-  content.required("system", system, "");
+  if (source) {
+    content.required("model", describeSource(*source, sampled), "");
+  } else {
+    content.required("system", system, "");
+  }
   content.requiredMap("excitation", withoutSources(excitation), "");
   content.required("initial", initial, "");
   content.requiredMap("outputs", outputs, "");

@@ -41,10 +41,12 @@ void resolveSignalFiles(YamlNode& root, const std::string& path) {
   };
   constexpr const char* kFile[] = {"excitation", "*", "tables", "*", "measured", "file"};
   visitNodes(root, std::begin(kFile), std::end(kFile), resolve);
+  constexpr const char* kFmu[] = {"model", "fmu", "file"};
+  visitNodes(root, std::begin(kFmu), std::end(kFmu), resolve);
   constexpr const char* kSwept[] = {"sweep", "over"};
   visitNodes(root, std::begin(kSwept), std::end(kSwept), [&](YamlNode& over) {
     for (YamlEntry& swept : over.entries) {
-      if (endsWith(swept.key, ".measured.file")) {
+      if ((endsWith(swept.key, ".measured.file") || swept.key == "model.fmu.file")) {
         std::for_each(swept.value.items.begin(), swept.value.items.end(), resolve);
       }
     }

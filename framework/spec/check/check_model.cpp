@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <filesystem>
 
 #include "framework/spec/check/check_experiment.hpp"
 #include "framework/spec/check/check_scope.hpp"
@@ -58,6 +59,7 @@ class ModelCheck {
     checkExcitation();
     checkInitial();
     checkOutputs();
+    checkVariables();
   }
 
  private:
@@ -257,6 +259,46 @@ class ModelCheck {
         }
       }
       checkSensor(output);
+    }
+  }
+
+  /// Variables are those of a model from elsewhere, which has no coordinates.
+  void checkVariables() const {
+    const bool elsewhere = model_.source.has_value();
+    for (const OutputSpec& output : model_.outputs) {
+      if (output.variable.has_value() != elsewhere) {
+        throw ExperimentError(output.name.where, output.name.text,
+                              elsewhere ? "must give the variable of the FMU that it is"
+                                        : "is a variable, which only an FMU has");
+      }
+      if (!elsewhere && !output.unit.empty()) {
+        throw ExperimentError(output.name.where, output.name.text,
+                              "has the unit of what it measures; state none");
+      }
+      CheckScope::readUnit(output.unit, output.name.where);
+    }
+    const auto refuse = [&](const auto& items) {
+      for (const auto& item : items) {
+        if (item.variable && !elsewhere) {
+          throw ExperimentError(item.variable->where, item.variable->text,
+                                "is a variable, which only an FMU has");
+        }
+      }
+    };
+    refuse(collectSampled(model_));
+    refuse(model_.constants);
+    refuse(model_.excitation);
+    if (elsewhere) {
+      const Name& file = model_.source->fmu->file;
+      std::error_code ignored;
+      if (!std::filesystem::is_regular_file(file.text, ignored)) {
+        throw ExperimentError(file.where, file.text, "is no file");
+      }
+    }
+    const InitialSpec& initial = model_.initial;
+    if (elsewhere && (!initial.coordinates.empty() || !initial.speeds.empty() || initial.equilibrium)) {
+      throw ExperimentError({model_.parameters.front().name.where.file, 0, 0, "initial"}, "",
+                            "is for a system; set the start values of an FMU by constants with a variable");
     }
   }
 

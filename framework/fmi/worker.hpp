@@ -1,0 +1,24 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+
+#include "framework/process/worker_process.hpp"
+#include "framework/simulation/simulator.hpp"
+
+namespace twinmap::fmi {
+
+/// The first argument of this program that makes it a worker: `twinmap fmu-worker`.
+constexpr const char* kWorkerArgument = "fmu-worker";
+
+/// Answers requests of encodeJob() and encodePoint() with one FMU in this process. Never returns.
+[[noreturn]] void runWorker();
+
+// Frames of bytes. A job is answered by an empty reason, or why the FMU cannot be used.
+Frame encodeJob(const std::string& job);
+Frame encodePoint(const Eigen::Ref<const Eigen::VectorXd>& parameters);
+Frame encodeAnswer(const SampleStatus& status, const Eigen::Ref<const Eigen::VectorXd>& response);
+/// The response is written where the status is ok. Throws WorkerFailure for another size.
+SampleStatus decodeAnswer(const Frame& frame, Eigen::Ref<Eigen::VectorXd> response, bool& last);
+
+}  // namespace twinmap::fmi
