@@ -11,7 +11,7 @@
 #include "framework/features/selections.hpp"
 #include "framework/monitoring/run_log.hpp"
 #include "framework/monitoring/stage_timer.hpp"
-#include "framework/multibody/multibody_simulator.hpp"
+#include "framework/model_source/make_simulator.hpp"
 #include "framework/report/report.hpp"
 #include "framework/results/result_files.hpp"
 #include "framework/results/run_state.hpp"
@@ -154,8 +154,9 @@ RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& opt
   beginFolder(experiment, options);
   const std::unique_ptr<RunLog> log = options.samples ? nullptr : std::make_unique<RunLog>(options.folder);
 
-  const MultibodySimulator simulator(experiment.model, collectTimes(experiment.features),
-                                     countModes(experiment.features));
+  const std::unique_ptr<Simulator> made =
+      makeSimulator(experiment.model, collectTimes(experiment.features), countModes(experiment.features));
+  const Simulator& simulator = *made;
   spdlog::info("simulated by: {}", simulator.getEngine());
   const FeatureExtractor extractor = makeExtractor(experiment, simulator.getLayout());
   checkTransformOf(extractor.getInfos(), experiment.transform);
