@@ -5,10 +5,10 @@
 #include <thread>
 #include <twinmap/build_info.hpp>
 
-#include "framework/fmi/worker.hpp"
 #include "framework/cli/commands.hpp"
 #include "framework/cli/log.hpp"
 #include "framework/cli/signals.hpp"
+#include "framework/fmi/worker.hpp"
 #include "framework/monitoring/interrupted.hpp"
 #include "framework/spec/yaml/source_location.hpp"
 
@@ -266,7 +266,8 @@ void addSchema(CLI::App& app) {
 
 void addVariables(CLI::App& app, std::string& file) {
   CLI::App* command = app.add_subcommand(
-      "variables", "Print the variables of an FMU, which an experiment can name: causality, type, unit, start value");
+      "variables",
+      "Print the variables of an FMU, which an experiment can name: causality, type, unit, start value");
   command->add_option("FMU", file, "File of FMI 2.0 or 3.0")->required()->option_text(" ");
   command->callback([&file] { cli::printVariables(file); });
 }

@@ -10,6 +10,7 @@
 #include "framework/measurement/signal_experiment.hpp"
 #include "framework/monitoring/interrupted.hpp"
 #include "framework/results/tables.hpp"
+#include "framework/results/warnings.hpp"
 #include "framework/spec/experiment_file.hpp"
 #include "framework/store/atomic_file.hpp"
 #include "framework/sweep/case_cost.hpp"
@@ -51,12 +52,8 @@ void runSingle(const ExperimentSpec& experiment, const RunArguments& arguments, 
   const RunSummary summary = runExperiment(experiment, options, makeControl(arguments, line));
   line.clear();
   std::cout << makeMarkdownTable(summary);
-  for (const std::string& warning : summary.notes.warnings) {
+  for (const std::string& warning : collectWarnings(summary)) {
     std::cerr << "twinmap: warning: " << warning << "\n";
-  }
-  if (!summary.failures.empty()) {
-    std::cerr << "twinmap: warning: " << summary.failures.size() << " samples failed; see "
-              << (options.folder / "failures.csv").string() << "\n";
   }
   std::cerr << "Report: " << (options.folder / "report.html").string() << "\n";
   requireGates(summary.gates, arguments.fail_on_gates);

@@ -17,6 +17,7 @@ enum class RandomPurpose : std::uint64_t {
   kVerification = 9,
   kTrust = 10,     // simulated measurements that real ones are compared with
   kEnsemble = 11,  // parameters drawn from what was inferred
+  kNoiseBurst = 12,  // noise that refined answers are compared with
 };
 
 /// Counter-based random numbers (Philox 4x64-10, Salmon et al. 2011): a number depends on

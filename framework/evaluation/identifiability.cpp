@@ -78,7 +78,7 @@ Identifiability calcIdentifiability(const InformationLimit& limit,
   result.eigenvectors = fixSigns(eigen.vectors);
   result.remaining = limit.mean_covariance.diagonal().cwiseSqrt() / kUniformStddev;
   for (Index j = 0; j < result.remaining.size(); ++j) {
-    if (result.remaining[j] > kUndetermined) {
+    if (result.isUndetermined(j)) {
       result.warnings.push_back(explain(j, result.remaining[j], limit, parameters));
     }
   }

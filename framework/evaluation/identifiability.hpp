@@ -16,10 +16,12 @@ struct Identifiability {
   Eigen::MatrixXd eigenvectors;  ///< p x p, columns, in widths; the largest entry of each is positive
   Eigen::VectorXd remaining;     ///< p: root mean square limit over the box's own standard deviation, (0, 1]
   std::vector<std::string> warnings;  ///< one for each parameter that stays undetermined, with the reason
+
+  /// Whether even the limit leaves more than half of the standard deviation that the bounds alone give.
+  bool isUndetermined(Eigen::Index parameter) const { return remaining[parameter] > 0.5; }
 };
 
-/// A parameter is undetermined if even the limit leaves more than half of the standard deviation it has by
-/// its bounds alone. The reason is that no feature follows it, or that others do the same to the features:
+/// The reason why a parameter is undetermined is that no feature follows it, or that others do the same to the features:
 /// then those are named whose errors go with its own (correlation above 0.5 in the mean of the limit's
 /// covariances; the mean information itself may look well conditioned although every sample's is singular,
 /// each in another direction).

@@ -13,34 +13,51 @@ namespace {
 
 using Eigen::ArrayXd;
 
+/// Of each sample: the squared Mahalanobis distance, and log det R / 2.
+struct Distances {
+  ArrayXd squared, half_log_determinant;
+};
+
+Distances calcDistances(const Eigen::MatrixXd& z, const std::vector<Eigen::MatrixXd>& correlations) {
+  const Eigen::Index n = z.cols();
+  Distances distances{ArrayXd(n), ArrayXd(n)};
+  linalg::Cholesky factor;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (i == 0 || correlations.size() > 1) {
+      factor = linalg::calcCholesky(correlations[static_cast<std::size_t>(i)]);
+      assert(factor.positive_definite);
+    }
+    distances.squared[i] = linalg::solveLower(factor.lower, z.col(i)).squaredNorm();
+    distances.half_log_determinant[i] = factor.lower.diagonal().array().log().sum();
+  }
+  return distances;
+}
+
 /// Rows as in kJointColumns.
 Eigen::MatrixXd calcTerms(const Eigen::MatrixXd& truth, const Predictions& predictions,
-                          const Eigen::MatrixXd& residual_correlation) {
-  const linalg::Cholesky factor = linalg::calcCholesky(residual_correlation);
-  assert(factor.positive_definite);
-  const Eigen::MatrixXd z = (predictions.mean - truth).cwiseQuotient(predictions.stddev);
-  const ArrayXd squared_distance = linalg::solveLower(factor.lower, z).colwise().squaredNorm();
+                          const std::vector<Eigen::MatrixXd>& correlations) {
+  const Distances distances =
+      calcDistances((predictions.mean - truth).cwiseQuotient(predictions.stddev), correlations);
   const auto parameters = static_cast<double>(truth.rows());
   const boost::math::chi_squared chi_squared(parameters);
   const auto within = [&](double probability) -> Eigen::RowVectorXd {
-    return (squared_distance < boost::math::quantile(chi_squared, probability)).cast<double>().transpose();
+    return (distances.squared < boost::math::quantile(chi_squared, probability)).cast<double>().transpose();
   };
-  const double log_normalization = factor.lower.diagonal().array().log().sum() +
-                                   0.5 * parameters * std::log(boost::math::constants::two_pi<double>());
+  const double log_normalization = 0.5 * parameters * std::log(boost::math::constants::two_pi<double>());
   Eigen::MatrixXd terms(kJointColumns.size(), truth.cols());
   terms.row(0) = within(0.95);
   terms.row(1) = within(0.90);
   terms.row(2) = within(0.50);
-  terms.row(3) = 0.5 * squared_distance.transpose() + predictions.stddev.array().log().colwise().sum() +
-                 log_normalization;
+  terms.row(3) = (0.5 * distances.squared + distances.half_log_determinant + log_normalization).transpose() +
+                 predictions.stddev.array().log().colwise().sum();
   return terms;
 }
 
 }  // namespace
 
 JointMetrics calcJointMetrics(const Eigen::MatrixXd& truth, const Predictions& predictions,
-                              const Eigen::MatrixXd& residual_correlation) {
-  const Estimates estimates = calcWithJackknife(calcTerms(truth, predictions, residual_correlation),
+                              const std::vector<Eigen::MatrixXd>& correlations) {
+  const Estimates estimates = calcWithJackknife(calcTerms(truth, predictions, correlations),
                                                 [](const Eigen::VectorXd& mean, double) { return mean; });
   JointMetrics metrics;
   for (std::size_t i = 0; i < kJointColumns.size(); ++i) {

@@ -2,13 +2,14 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <vector>
 
 #include "framework/inverse_map/predictions.hpp"
 
 namespace twinmap {
 
 /// How honest the predictions are for all parameters of a sample together: the joint predictive distribution
-/// is normal with covariance D R D, D = diag(stddev) and R the map's residual correlation.
+/// is normal with covariance D R D, D = diag(stddev) and R the correlation of the errors.
 struct JointFigures {
   double coverage95 = 0.0;  ///< fraction of samples whose squared Mahalanobis distance is below the 95 %
   double coverage90 = 0.0;  ///< quantile of chi-square with p degrees of freedom
@@ -31,8 +32,9 @@ constexpr std::array<JointColumn, 4> kJointColumns{{{"coverage95", &JointFigures
                                                     {"coverage50", &JointFigures::coverage50},
                                                     {"nlpd", &JointFigures::nlpd}}};
 
-/// `truth` is p x n; `residual_correlation` is p x p, positive definite. O(p^2 n).
+/// `truth` is p x n; `correlations`: R (p x p, positive definite), one for all samples or one for each.
+/// O(p^2 n), O(p^3 n) for one each.
 JointMetrics calcJointMetrics(const Eigen::MatrixXd& truth, const Predictions& predictions,
-                              const Eigen::MatrixXd& residual_correlation);
+                              const std::vector<Eigen::MatrixXd>& correlations);
 
 }  // namespace twinmap

@@ -6,8 +6,9 @@
 #include <chrono>
 
 #include "framework/evaluation/baselines.hpp"
-#include "framework/evaluation/calibration.hpp"
 #include "framework/evaluation/information_limit.hpp"
+#include "framework/experiment/answers.hpp"
+#include "framework/experiment/refine_test_samples.hpp"
 #include "framework/monitoring/stage_timer.hpp"
 #include "framework/sensitivity/fisher_information.hpp"
 #include "framework/spec/parameter_box.hpp"
@@ -36,7 +37,7 @@ std::optional<InformationLimit> findLimit(const EvaluationContext& context, Stag
     });
   }
   if (context.experiment.evaluation.limit) {
-    notes.warnings.emplace_back("no information limit: the noise of a feature is 0");
+    notes.warn(Gravity::kRemark, "no information limit: the noise of a feature is 0");
   }
   return std::nullopt;
 }
@@ -56,7 +57,7 @@ std::vector<ExactPosterior> calcPosteriors(const EvaluationContext& context, Ind
         context.simulator, context.extractor, NoiseWhitener(test.noise_covariance),
         collectUnknown(context.experiment.model),
         {test.features.leftCols(count), test.collectUnknown().leftCols(count), test.inputs},
-        {spec.draws, context.experiment.seed, context.threads});
+        {spec.draws, context.experiment.seed, context.control.threads});
   });
 }
 
@@ -74,8 +75,8 @@ std::vector<PosteriorComparison> comparePosteriors(const EvaluationContext& cont
                         predictions.stddev.col(i),
                         limit_stddev.cols() > 0 ? VectorXd(limit_stddev.col(i)) : VectorXd()});
     if (!exact[i].warning.empty()) {
-      notes.warnings.push_back(
-          fmt::format("exact posterior of test sample {}: {}", sample, exact[i].warning));
+      notes.warn(Gravity::kRemark,
+                 fmt::format("exact posterior of test sample {}: {}", sample, exact[i].warning));
     }
   }
   return compared;
@@ -105,14 +106,14 @@ BaselineResult runMap(const EvaluationContext& context, int samples) {
 BaselineResult timeBaseline(const BaselineSpec& spec, const EvaluationContext& context, StageNotes& notes) {
   const std::vector<ParameterSpec> unknown = collectUnknown(context.experiment.model);
   const BaselineContext baseline{context.simulator,      context.extractor, context.map.transform,
-                                 getParameters(context), unknown,           context.threads};
+                                 getParameters(context), unknown,           context.control.threads};
   BaselineResult result = timeStage("baseline", notes, [&] {
     return runBaseline(spec, baseline, context.data.labelled.train, getTest(context));
   });
   notes.times.back().stage = "baseline " + result.method;
   if (result.unconverged > 0) {
-    notes.warnings.push_back(fmt::format("baseline {}: {} of {} searches did not converge", result.method,
-                                         result.unconverged, result.samples));
+    notes.warn(Gravity::kRemark, fmt::format("baseline {}: {} of {} searches did not converge", result.method,
+                                             result.unconverged, result.samples));
   }
   return result;
 }
@@ -132,51 +133,54 @@ std::vector<BaselineSummary> runBaselines(const EvaluationContext& context, Stag
   return rows;
 }
 
+/// The test samples refined, where the experiment asks for it.
+std::vector<Refined> refine(const EvaluationContext& context, const Predictions& predictions,
+                            StageNotes& notes) {
+  RefinedTests refined =
+      refineTestSamples({context.experiment, context.simulator, context.extractor, context.data,
+                         context.map.online ? &*context.map.online : nullptr, predictions, context.control});
+  notes.append(refined.notes);
+  return std::move(refined.refined);
+}
+
 void addLimit(const EvaluationContext& context, const InformationLimit& limit, MapEvaluation& result) {
   const LabelledFeatures& test = getTest(context);
   result.evaluation.relevance =
       FeatureRelevance{test.infos, test.noise_covariance.diagonal().cwiseSqrt(), limit.relevance};
   result.evaluation.identifiability = calcIdentifiability(limit, getParameters(context));
-  result.notes.append({result.evaluation.identifiability->warnings, {}});
+  result.notes.warn(Gravity::kPoor, result.evaluation.identifiability->warnings);
   if (limit.failures > 0) {
-    result.notes.warnings.push_back(
+    result.notes.warn(
+        Gravity::kRemark,
         fmt::format("the information limit of {} test samples could not be computed", limit.failures));
   }
 }
 
 }  // namespace
 
-Evaluation evaluatePredictions(const std::vector<ParameterSpec>& parameters, const Eigen::MatrixXd& truth,
-                               const Predictions& predictions, const Eigen::MatrixXd& limit_stddev,
-                               const Eigen::MatrixXd& residual_correlation) {
-  Evaluation evaluation;
-  evaluation.truth = truth;
-  evaluation.predictions = predictions;
-  evaluation.limit_stddev = limit_stddev;
-  evaluation.metrics = calcMetrics(parameters, truth, predictions, limit_stddev);
-  evaluation.joint = calcJointMetrics(truth, predictions, residual_correlation);
-  const Eigen::MatrixXd pit = calcPit(truth, predictions);
-  for (const auto& row : pit.rowwise()) {
-    evaluation.pit_counts.push_back(countPit(row.transpose()));
-  }
-  return evaluation;
-}
-
 MapEvaluation evaluateMap(const EvaluationContext& context) {
   const LabelledFeatures& test = getTest(context);
+  const std::vector<ParameterSpec>& parameters = getParameters(context);
   MapEvaluation result;
   const Predictions predictions = timeStage("infer the test samples", result.notes,
                                             [&] { return context.map.predict(test.features, test.inputs); });
   const std::optional<InformationLimit> limit = findLimit(context, result.notes);
+  const Eigen::MatrixXd limit_stddev = limit ? limit->stddev : Eigen::MatrixXd();
+  const std::vector<Refined> refined = refine(context, predictions, result.notes);
   result.evaluation =
-      evaluatePredictions(getParameters(context), test.parameters, predictions,
-                          limit ? limit->stddev : Eigen::MatrixXd(), context.map.residual_correlation);
+      evaluateAnswers(parameters, test.parameters,
+                      makeAnswers(predictions, context.map.residual_correlation, refined), limit_stddev);
+  result.evaluation.methods = {
+      summarizeMap(context.map.name, parameters, test.parameters, predictions, limit_stddev)};
+  if (!refined.empty()) {
+    result.evaluation.methods.push_back(summarizeRefined(parameters, test.parameters, refined, limit_stddev));
+    result.evaluation.refined = refined;
+  }
   if (limit) {
     addLimit(context, *limit, result);
   }
   if (context.experiment.evaluation.posterior) {
-    result.evaluation.posteriors =
-        comparePosteriors(context, predictions, result.evaluation.limit_stddev, result.notes);
+    result.evaluation.posteriors = comparePosteriors(context, predictions, limit_stddev, result.notes);
   }
   result.evaluation.baselines = runBaselines(context, result.notes);
   return result;

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "framework/experiment/train_interruptibly.hpp"
 #include "framework/features/noise.hpp"
 #include "framework/online/fit_trust.hpp"
 #include "framework/spec/experiment_file.hpp"
 #include "framework/spec/parameter_box.hpp"
+#include "framework/surrogate/fit_forward.hpp"
 
 namespace twinmap {
 namespace {
@@ -47,10 +49,13 @@ void simulateMeasurements(const ExperimentSpec& experiment, const SimulatedSets&
   training.known = inputs(Eigen::all, complete);
 }
 
-TrustTraining makeTrustTraining(const ExperimentSpec& experiment, const SimulatedSets& sets,
-                                const FeatureExtractor& extractor, const LabelledSets& labelled) {
-  const std::vector<int> samples = findSuccessful(sets.train);
+TrustTraining makeTrustTraining(const OnlineContext& context) {
+  constexpr std::size_t kMostSimulations = 500;
+  const auto& [experiment, sets, extractor, labelled, control] = context;
+  std::vector<int> samples = findSuccessful(sets.train);
+  samples.resize(std::min(samples.size(), kMostSimulations));
   TrustTraining training;
+  training.seed = experiment.seed;
   training.sampled = collectSampled(experiment.model);
   training.unknown = static_cast<Index>(collectUnknown(experiment.model).size());
   training.infos = extractor.getInfos();
@@ -61,6 +66,20 @@ TrustTraining makeTrustTraining(const ExperimentSpec& experiment, const Simulate
   return training;
 }
 
+ForwardSurrogate fitSurrogate(const TrustTraining& training, const TrainingControl& control) {
+  const Eigen::VectorXd center = calcBoxCenter(training.sampled);
+  const Eigen::VectorXd half_width = 0.5 * calcWidths(training.sampled);
+  const MatrixXd normalized = half_width.cwiseInverse().asDiagonal() * (training.points.colwise() - center);
+  return fitForward({training.infos, normalized, training.clean_features, training.noise_covariance}, {},
+                    control)
+      .surrogate;
+}
+
+void noteMissingTrust(const std::invalid_argument& error, OnlineFit& fit) {
+  fit.notes.warn(Gravity::kMisleading,
+                 std::string("measurements cannot be judged (no trust model): ") + error.what());
+}
+
 }  // namespace
 
 int countReferences(int train_samples) {
@@ -68,15 +87,26 @@ int countReferences(int train_samples) {
   return std::clamp(train_samples, kFewest / kPerSimulation, kMost / kPerSimulation) * kPerSimulation;
 }
 
-OnlineFit fitOnline(const ExperimentSpec& experiment, const SimulatedSets& sets,
-                    const FeatureExtractor& extractor, const LabelledSets& labelled, const GpMap& map) {
+OnlineFit fitOnline(const OnlineContext& context, const GpMap& map) {
   OnlineFit fit{{compressMap(map), {}}};
   try {
-    fit.model.trust = fitTrustModel(makeTrustTraining(experiment, sets, extractor, labelled),
-                                    OnlineMap(fit.model.map), experiment.trust.level);
+    const TrustTraining training = makeTrustTraining(context);
+    ForwardSurrogate surrogate = trainInterruptibly([&] { return fitSurrogate(training, context.control); });
+    fit.model.trust = fitTrustModel(training, std::move(surrogate), OnlineMap(fit.model.map),
+                                    context.experiment.trust.level, context.control.threads);
   } catch (const std::invalid_argument& error) {
-    fit.notes.warnings.push_back(std::string("measurements cannot be judged (no trust model): ") +
-                                 error.what());
+    noteMissingTrust(error, fit);
+  }
+  return fit;
+}
+
+OnlineFit fitOnline(const OnlineContext& context, std::shared_ptr<const Surrogate> surrogate) {
+  OnlineFit fit{{surrogate, {}}};
+  try {
+    fit.model.trust = fitTrustModel(makeTrustTraining(context), surrogate->forward, OnlineMap(surrogate),
+                                    context.experiment.trust.level, context.control.threads);
+  } catch (const std::invalid_argument& error) {
+    noteMissingTrust(error, fit);
   }
   return fit;
 }

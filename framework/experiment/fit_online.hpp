@@ -6,6 +6,7 @@
 #include "framework/experiment/prepare_data.hpp"
 #include "framework/experiment/simulated_sets.hpp"
 #include "framework/features/feature_extractor.hpp"
+#include "framework/inverse_map/training_control.hpp"
 #include "framework/online/online_model.hpp"
 #include "framework/store/maps_file.hpp"
 
@@ -20,13 +21,26 @@ struct OnlineFit {
 /// Of how many simulated measurements a trust model's references are made: as fine as the map deserves.
 int countReferences(int train_samples);
 
-/// Compresses the map and fits its trust model: the forward model to the clean training responses, the
-/// reference distributions to some 2000 simulated measurements (fewer below 200 training samples), the test
-/// responses with noise drawn for that alone. Deterministic. Cost: some seconds at most.
-OnlineFit fitOnline(const ExperimentSpec& experiment, const SimulatedSets& sets,
-                    const FeatureExtractor& extractor, const LabelledSets& labelled, const GpMap& map);
+/// What an online model is fitted to.
+struct OnlineContext {
+  const ExperimentSpec& experiment;
+  const SimulatedSets& sets;
+  const FeatureExtractor& extractor;
+  const LabelledSets& labelled;
+  TrainingControl control;
+};
 
-/// All of maps.h5.
+/// Compresses a map of processes and fits its trust model: a forward surrogate to the clean responses of at
+/// most the first 500 training samples (its size and the time of a judgement grow with their number squared),
+/// the reference distributions to some 2000 simulated measurements (fewer below 200 training samples), the
+/// test responses with noise drawn for that alone. Does not depend on the threads. Cost: that of fitForward()
+/// and some 2000 inferences of some ms. Throws Interrupted.
+OnlineFit fitOnline(const OnlineContext& context, const GpMap& map);
+
+/// The same of a surrogate, which is its own trust model's.
+OnlineFit fitOnline(const OnlineContext& context, std::shared_ptr<const Surrogate> surrogate);
+
+/// All of maps.h5. `map`: exact; without processes where the online one is a surrogate.
 StoredMap makeStoredMap(const ExperimentSpec& experiment, const FeatureExtractor& extractor, const GpMap& map,
                         const OnlineModel& online);
 

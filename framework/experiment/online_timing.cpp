@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 
 namespace twinmap {
 namespace {
@@ -28,18 +29,21 @@ OnlineTimes timeUpdates(Eigen::Index samples, const Update& update) {
 OnlineTimes timeOnlineUpdates(const OnlineModel& model, const LabelledFeatures& testing) {
   const OnlineMap map(model.map);
   OnlineMap::Workspace inferring(map);
-  TrustWorkspace judging;
+  std::optional<TrustWorkspace> judging;
+  if (model.trust) {
+    judging.emplace(*model.trust);
+  }
   return timeUpdates(testing.features.cols(), [&](Eigen::Index i) {
     const auto features = testing.features.col(i);
     const auto known = testing.inputs.col(i);
     const Inference& inferred = map.infer(features, known, inferring);
     if (model.trust) {
-      judge(*model.trust, features, known, inferred, judging);
+      judge(*model.trust, features, known, inferred, *judging);
     }
   });
 }
 
-OnlineTimes timePredictions(const EvaluatedMap& map, const LabelledFeatures& testing) {
+OnlineTimes timePredictions(const TrainedMap& map, const LabelledFeatures& testing) {
   return timeUpdates(testing.features.cols(),
                      [&](Eigen::Index i) { map.predict(testing.features.col(i), testing.inputs.col(i)); });
 }

@@ -13,6 +13,6 @@ namespace twinmap {
 OnlineTimes timeOnlineUpdates(const OnlineModel& model, const LabelledFeatures& testing);
 
 /// The same of a map of any kind, without a judgement.
-OnlineTimes timePredictions(const EvaluatedMap& map, const LabelledFeatures& testing);
+OnlineTimes timePredictions(const TrainedMap& map, const LabelledFeatures& testing);
 
 }  // namespace twinmap

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
 #include <map>
 #include <stdexcept>
 
+#include "framework/experiment/answers.hpp"
 #include "framework/experiment/refinement_starts.hpp"
 #include "framework/monitoring/interrupted.hpp"
 #include "framework/monitoring/stage_timer.hpp"
@@ -17,18 +17,17 @@ namespace twinmap {
 namespace {
 
 using Eigen::Index;
-using Eigen::MatrixXd;
 
 Eigen::VectorXd getKnown(const LabelledFeatures& test, Index i) {
   return test.inputs.rows() > 0 ? Eigen::VectorXd(test.inputs.col(i)) : Eigen::VectorXd();
 }
 
-std::vector<RefinementTask> makeTasks(const RefinementContext& context, const Predictions& answers) {
+std::vector<RefinementTask> makeTasks(const RefinementContext& context) {
   const LabelledFeatures& test = context.data.labelled.test;
   std::vector<RefinementTask> tasks;
   for (Index i = 0; i < test.features.cols(); ++i) {
     tasks.push_back(makeRefinementTask(context.experiment.model, nullptr, test.features.col(i),
-                                       {answers.mean.col(i), {}, getKnown(test, i)}));
+                                       {context.answers.mean.col(i), {}, getKnown(test, i)}));
   }
   return tasks;
 }
@@ -38,8 +37,11 @@ std::vector<RefinementTask> makeOnlineTasks(const RefinementContext& context) {
   const LabelledFeatures& test = context.data.labelled.test;
   const OnlineMap map(context.online->map);
   OnlineMap::Workspace inferring(map);
-  TrustWorkspace judging;
   const TrustModel* trust = context.online->trust ? &*context.online->trust : nullptr;
+  std::optional<TrustWorkspace> judging;
+  if (trust != nullptr) {
+    judging.emplace(*trust);
+  }
   std::vector<RefinementTask> tasks;
   for (Index i = 0; i < test.features.cols(); ++i) {
     MapAnswer answer;
@@ -47,31 +49,12 @@ std::vector<RefinementTask> makeOnlineTasks(const RefinementContext& context) {
     const Inference& inference = map.infer(test.features.col(i), answer.known, inferring);
     answer.mean = inference.mean;
     if (trust != nullptr) {
-      judge(*trust, test.features.col(i), answer.known, inference, judging);
-      answer.explanation = trust->makeSampledPoint(judging.explanation.best.point);
+      judge(*trust, test.features.col(i), answer.known, inference, *judging);
+      answer.explanation = trust->makeSampledPoint(judging->explanation.point);
     }
     tasks.push_back(makeRefinementTask(context.experiment.model, trust, test.features.col(i), answer));
   }
   return tasks;
-}
-
-int calcMedian(std::vector<int> values) {
-  if (values.empty()) {
-    return 0;
-  }
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-std::vector<Index> findAccepted(const std::vector<Refined>& refined) {
-  std::vector<Index> accepted;
-  for (std::size_t i = 0; i < refined.size(); ++i) {
-    if (refined[i].isAccepted()) {
-      accepted.push_back(static_cast<Index>(i));
-    }
-  }
-  return accepted;
 }
 
 /// "121 accepted from inverse_map, 5 nonlinear"
@@ -92,18 +75,18 @@ void warnOfFew(const std::vector<Refined>& refined, const std::string& outcome, 
   constexpr double kLeast = 0.9;
   const std::size_t accepted = findAccepted(refined).size();
   if (static_cast<double>(accepted) < kLeast * static_cast<double>(refined.size())) {
-    notes.warnings.push_back(fmt::format(
-        "refinement: {} of {} test samples were accepted ({}); answers to the others are the map's alone",
-        accepted, refined.size(), outcome));
+    notes.warn(
+        Gravity::kPoor,
+        fmt::format(
+            "refinement: {} of {} test samples were accepted ({}); answers to the others are the map's alone",
+            accepted, refined.size(), outcome));
   }
 }
 
-}  // namespace
-
-std::vector<Refined> refineTestSamples(const RefinementContext& context, const Predictions& answers) {
+std::vector<Refined> refineAll(const RefinementContext& context) {
   const RefinementModel model(collectUnknown(context.experiment.model), context.extractor,
                               context.data.noise);
-  const auto tasks = context.online != nullptr ? makeOnlineTasks(context) : makeTasks(context, answers);
+  const auto tasks = context.online != nullptr ? makeOnlineTasks(context) : makeTasks(context);
   return refineWhileHopeful(context.simulator, model, tasks, context.control.threads, [&] {
     if (context.control.abandon != nullptr && *context.control.abandon) {
       throw Interrupted("interrupted during refinement; the simulated samples are kept");
@@ -111,54 +94,22 @@ std::vector<Refined> refineTestSamples(const RefinementContext& context, const P
   });
 }
 
-std::vector<MethodSummary> compareMethods(const ExperimentSpec& experiment, const Evaluation& evaluation,
-                                          const std::vector<Refined>& refined) {
-  constexpr Index kFewest = 3;  // for a standard error
-  const Index p = evaluation.truth.rows(), n = evaluation.truth.cols();
-  const char* map = experiment.inverse_map.findGp() != nullptr ? "inverse_map" : "surrogate";
-  std::vector<MethodSummary> methods{{map, n, n, 0, evaluation.metrics}};
-  const std::vector<Index> accepted = findAccepted(refined);
-  const auto count = static_cast<Index>(accepted.size());
-  std::vector<int> simulations;
-  for (const Refined& one : refined) {
-    simulations.push_back(one.simulations);
-  }
-  MethodSummary summary{"refined", n, count, calcMedian(simulations), {}};
-  if (count >= kFewest) {
-    Predictions predictions{MatrixXd(p, count), MatrixXd(p, count)};
-    for (Index i = 0; i < count; ++i) {
-      const Refined& one = refined[static_cast<std::size_t>(accepted[static_cast<std::size_t>(i)])];
-      predictions.mean.col(i) = one.point.head(p);
-      predictions.stddev.col(i) = one.stddev.head(p);
-    }
-    const MatrixXd& limit = evaluation.limit_stddev;
-    summary.metrics =
-        calcMetrics(experiment.model.parameters, evaluation.truth(Eigen::all, accepted), predictions,
-                    limit.cols() > 0 ? MatrixXd(limit(Eigen::all, accepted)) : MatrixXd());
-  } else {
-    summary.metrics.assign(static_cast<std::size_t>(p), {});
-  }
-  methods.push_back(summary);
-  return methods;
-}
+}  // namespace
 
-StageNotes evaluateRefinement(const RefinementContext& context, Evaluation& evaluation) {
-  StageNotes notes;
+RefinedTests refineTestSamples(const RefinementContext& context) {
+  RefinedTests tests;
   if (!shouldRefine(context.experiment.refine, context.simulator, context.extractor, context.data.noise)) {
-    return notes;
+    return tests;
   }
   try {
-    const std::vector<Refined> refined = timeStage(
-        "refine the test samples", notes, [&] { return refineTestSamples(context, evaluation.predictions); });
-    const std::string outcome = describe(refined);
+    tests.refined = timeStage("refine the test samples", tests.notes, [&] { return refineAll(context); });
+    const std::string outcome = describe(tests.refined);
     spdlog::info("refined: {}", outcome);
-    warnOfFew(refined, outcome, notes);
-    evaluation.refined = refined;
-    evaluation.methods = compareMethods(context.experiment, evaluation, refined);
+    warnOfFew(tests.refined, outcome, tests.notes);
   } catch (const std::invalid_argument& error) {
-    notes.warnings.push_back(std::string("test samples cannot be refined: ") + error.what());
+    tests.notes.warn(Gravity::kPoor, std::string("test samples cannot be refined: ") + error.what());
   }
-  return notes;
+  return tests;
 }
 
 }  // namespace twinmap

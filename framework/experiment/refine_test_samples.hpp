@@ -17,22 +17,20 @@ struct RefinementContext {
   const Simulator& simulator;
   const FeatureExtractor& extractor;
   const PreparedData& data;
-  const OnlineModel* online;  ///< of the map; null for a map that has none: a surrogate
+  const OnlineModel* online;   ///< of the map; null for a map that has none
+  const Predictions& answers;  ///< of the map, where it has no online model
   const RunControl& control;
 };
 
-/// Refines every test sample as `twinmap infer` does a measurement, from the map's `answers`. Throws
-/// Interrupted where `control` abandons the run. Cost: some 10 to 60 simulations each, more where the first
-/// start is not accepted.
-std::vector<Refined> refineTestSamples(const RefinementContext& context, const Predictions& answers);
+/// The test samples, refined, and how that went.
+struct RefinedTests {
+  std::vector<Refined> refined;  ///< one for each sample; none where the experiment does not ask for it
+  StageNotes notes;
+};
 
-/// The rows of methods.csv: the map (named as its key) on all test samples, and what of them was refined and
-/// accepted.
-std::vector<MethodSummary> compareMethods(const ExperimentSpec& experiment, const Evaluation& evaluation,
-                                          const std::vector<Refined>& refined);
-
-/// Where the experiment asks for it, refines the test samples and adds both methods to the evaluation; a
-/// stage of its own.
-StageNotes evaluateRefinement(const RefinementContext& context, Evaluation& evaluation);
+/// Where the experiment asks for it, refines every test sample as `twinmap infer` does a measurement; a stage
+/// of its own. Throws Interrupted where `control` abandons the run. Cost: some 10 to 60 simulations each,
+/// more where the first start is not accepted.
+RefinedTests refineTestSamples(const RefinementContext& context);
 
 }  // namespace twinmap

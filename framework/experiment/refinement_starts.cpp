@@ -1,7 +1,6 @@
 #include "framework/experiment/refinement_starts.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 #include "framework/spec/parameter_box.hpp"
 
@@ -14,22 +13,6 @@ namespace {
 
 /// More than four similar simulations have rescued no measurement that these had not.
 constexpr std::size_t kTrainingStarts = 4;
-
-/// The training simulations by how similar their features are.
-std::vector<Index> rankTraining(const ForwardModel& forward, const VectorXd& features) {
-  VectorXd whitened;
-  forward.whiten(features, whitened);
-  const VectorXd scores = forward.components.transpose() * whitened;
-  const VectorXd distances = (forward.scores.colwise() - scores).colwise().squaredNorm();
-  std::vector<Index> order(static_cast<std::size_t>(distances.size()));
-  std::iota(order.begin(), order.end(), 0);
-  const std::size_t count = std::min(kTrainingStarts, order.size());
-  std::partial_sort(
-      order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), order.end(),
-      [&](Index a, Index b) { return std::make_pair(distances[a], a) < std::make_pair(distances[b], b); });
-  order.resize(count);
-  return order;
-}
 
 }  // namespace
 
@@ -54,11 +37,11 @@ RefinementTask makeRefinementTask(const ModelSpec& model, const TrustModel* trus
   if (answer.explanation.size() > 0) {
     task.starts.push_back({"explanation", answer.explanation});
   }
-  const Eigen::MatrixXd& points = trust->forward.score_map.getParts().points;
-  int rank = 0;
-  for (const Index sample : rankTraining(trust->forward, features)) {
+  const ForwardSurrogate& forward = trust->forward;
+  const std::vector<Index> similar = rankSimulations(forward, forward.calcScores(features));
+  for (std::size_t rank = 0; rank < std::min(kTrainingStarts, similar.size()); ++rank) {
     task.starts.push_back(
-        {"training " + std::to_string(++rank), trust->makeSampledPoint(points.col(sample))});
+        {"training " + std::to_string(rank + 1), trust->makeSampledPoint(forward.points.col(similar[rank]))});
   }
   return task;
 }

@@ -4,13 +4,10 @@
 
 #include "framework/experiment/evaluate_map.hpp"
 #include "framework/experiment/example_responses.hpp"
-#include "framework/experiment/fit_online.hpp"
 #include "framework/experiment/online_timing.hpp"
 #include "framework/experiment/prepare_data.hpp"
-#include "framework/experiment/refine_test_samples.hpp"
 #include "framework/experiment/simulated_sets.hpp"
-#include "framework/experiment/train_map.hpp"
-#include "framework/experiment/train_surrogate_map.hpp"
+#include "framework/experiment/train_maps.hpp"
 #include "framework/features/selections.hpp"
 #include "framework/monitoring/run_log.hpp"
 #include "framework/monitoring/stage_timer.hpp"
@@ -25,7 +22,6 @@
 #include "framework/spec/parameter_box.hpp"
 #include "framework/store/atomic_file.hpp"
 #include "framework/store/folder_lock.hpp"
-#include "framework/store/maps_file.hpp"
 #include "framework/store/samples_file.hpp"
 
 namespace twinmap {
@@ -91,57 +87,6 @@ Samples simulateSamples(const RunContext& run) {
   return {std::move(sets), std::move(failures)};
 }
 
-/// A trained map of any kind.
-struct TrainedMap {
-  EvaluatedMap map;
-  TrainingSummary summary;
-  StageNotes notes;
-  std::optional<OnlineModel> online;  ///< none of a map that is not stored
-};
-
-/// Makes the map ready for measurements and writes both.
-OnlineFit prepareOnline(const RunContext& run, const SimulatedSets& sets, const LabelledSets& labelled,
-                        const GpMap& map) {
-  StageNotes notes;
-  OnlineFit online = timeStage("prepare for measurements", notes,
-                               [&] { return fitOnline(run.experiment, sets, run.extractor, labelled, map); });
-  notes.append(online.notes);
-  online.notes = notes;
-  writeMapsFile(run.folder / "maps.h5", makeStoredMap(run.experiment, run.extractor, map, online.model));
-  return online;
-}
-
-/// Trains one Gaussian process per parameter.
-TrainedMap trainProcesses(const RunContext& run, const SimulatedSets& sets, const LabelledSets& labelled) {
-  Training training = trainMap(run.experiment, labelled.train, run.control);
-  OnlineFit online = prepareOnline(run, sets, labelled, training.map);
-  training.notes.append(online.notes);
-  const auto map = std::make_shared<const GpMap>(std::move(training.map));
-  const auto predict = [map](const Eigen::MatrixXd& features, const Eigen::MatrixXd& inputs) {
-    return map->predict(features, inputs);
-  };
-  return {{predict, map->residual_correlation, map->transform},
-          std::move(training.summary),
-          std::move(training.notes),
-          std::move(online.model)};
-}
-
-/// Trains a surrogate. What is inferred with it does not depend on the threads.
-TrainedMap trainForward(const RunContext& run, const SimulatedSets& sets, const LabelledSets& labelled) {
-  SurrogateMapTraining training =
-      trainSurrogateMap(run.experiment, sets, run.extractor, labelled.train, run.control);
-  const auto surrogate = std::make_shared<const Surrogate>(std::move(training.surrogate));
-  const auto predict = [surrogate, threads = run.control.threads](const Eigen::MatrixXd& features,
-                                                                  const Eigen::MatrixXd& inputs) {
-    return surrogate->predict(features, inputs, threads);
-  };
-  return {{predict, surrogate->validation.residual_correlation,
-           fitTransform(run.experiment.transform, labelled.train)},
-          std::move(training.summary),
-          std::move(training.notes),
-          std::nullopt};
-}
-
 /// Writes responses.csv: the models of a few test samples beside what was measured.
 StageNotes writeExamples(const RunContext& run, const Trajectories& test,
                          const std::vector<int>& test_indices, const Evaluation& evaluation) {
@@ -163,13 +108,10 @@ RunSummary runStages(const RunContext& run) {
   };
   const Samples samples = simulateSamples(run);
   const PreparedData data = prepareData(experiment, run.extractor, samples.sets, local_models);
-  const auto train = experiment.inverse_map.findGp() != nullptr ? trainProcesses : trainForward;
-  const TrainedMap trained = train(run, samples.sets, data.labelled);
-  MapEvaluation evaluated = evaluateMap(
-      {experiment, run.simulator, run.extractor, data, trained.map, local_models, run.control.threads});
-  evaluated.notes.append(evaluateRefinement({experiment, run.simulator, run.extractor, data,
-                                             trained.online ? &*trained.online : nullptr, run.control},
-                                            evaluated.evaluation));
+  const TrainedMap trained =
+      trainChosenMap({experiment, samples.sets, run.extractor, data.labelled, run.folder, run.control});
+  const MapEvaluation evaluated =
+      evaluateMap({experiment, run.simulator, run.extractor, data, trained, local_models, run.control});
 
   RunSummary summary;
   summary.parameters = experiment.model.parameters;
@@ -184,7 +126,7 @@ RunSummary runStages(const RunContext& run) {
   summary.notes.append(writeExamples(run, samples.sets.test, data.test_indices, evaluated.evaluation));
   summary.online = timeStage("time the inference of one measurement", summary.notes, [&] {
     return trained.online ? timeOnlineUpdates(*trained.online, data.labelled.test)
-                          : timePredictions(trained.map, data.labelled.test);
+                          : timePredictions(trained, data.labelled.test);
   });
   return summary;
 }

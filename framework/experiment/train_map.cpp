@@ -50,11 +50,11 @@ Training trainMap(const ExperimentSpec& experiment, const LabelledFeatures& samp
   Training training;
   GpMapTraining trained = timeStage("train the inverse map", training.notes, [&] {
     return trainInterruptibly([&] {
-      return trainGpMap(*experiment.inverse_map.findGp(), experiment.transform, names, samples,
+      return trainGpMap(*experiment.inverse_map.findProcesses(), experiment.transform, names, samples,
                         {control.threads, control.abandon}, experiment.model.inputs);
     });
   });
-  training.notes.warnings = std::move(trained.warnings);
+  training.notes.warn(Gravity::kRemark, trained.warnings);
   training.summary.leave_one_out = calcMetrics(experiment.model.parameters, samples.parameters,
                                                trained.leave_one_out, {}, samples.replicates);
   training.summary.starts = summarizeTraining(names, trained.reports);

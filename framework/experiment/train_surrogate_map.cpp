@@ -32,7 +32,7 @@ SurrogateMapTraining trainSurrogateMap(const ExperimentSpec& experiment, const S
   SurrogateTraining trained = timeStage("train the surrogate", training.notes, [&] {
     return train(experiment.model, simulated, {control.threads, control.abandon});
   });
-  training.notes.warnings = std::move(trained.warnings);
+  training.notes.warn(Gravity::kPoor, trained.warnings);
   const SurrogateValidation& validation = trained.surrogate.validation;
   training.summary.leave_one_out = calcMetrics(experiment.model.parameters, trained.held_out_truth,
                                                trained.held_out, {}, trained.held_out_draws);

@@ -204,11 +204,11 @@ std::unique_ptr<Simulator> FmuSimulator::clone() const {
 std::unique_ptr<Simulator> FmuSimulator::clonePrecisely() const {
   constexpr double kShare = 0.01, kLeastRelative = 1e-13, kLeastAbsolute = 1e-18;  // as MultibodySimulator
   return shared_->clonePrecise([this] {
-  ModelSpec model = shared_->getModel();
-  SimulationSpec& simulation = model.simulation;
-  simulation.relative_tolerance = std::max(kShare * simulation.relative_tolerance, kLeastRelative);
-  simulation.absolute_tolerance = std::max(kShare * simulation.absolute_tolerance, kLeastAbsolute);
-  return std::make_unique<FmuSimulator>(model, getLayout().times, 0);
+    ModelSpec model = shared_->getModel();
+    SimulationSpec& simulation = model.simulation;
+    simulation.relative_tolerance = std::max(kShare * simulation.relative_tolerance, kLeastRelative);
+    simulation.absolute_tolerance = std::max(kShare * simulation.absolute_tolerance, kLeastAbsolute);
+    return std::make_unique<FmuSimulator>(model, getLayout().times, 0);
   });
 }
 

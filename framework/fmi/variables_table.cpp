@@ -37,7 +37,9 @@ Row makeRow(const Variable& variable) {
           toText(variable.variability),
           describeType(variable),
           variable.unit.empty() ? "-" : variable.unit,
-          start.empty() ? "-" : start.size() > kLongestStart ? start.substr(0, kLongestStart) + "..." : start,
+          start.empty()                  ? "-"
+          : start.size() > kLongestStart ? start.substr(0, kLongestStart) + "..."
+                                         : start,
           describeUse(variable),
           variable.description};
 }
@@ -68,7 +70,8 @@ std::string makeVariablesTable(const std::string& file) {
   const ModelDescription& model = package.getDescription();
   std::string head = "# " + model.model_name + ": FMI " + model.version_text;
   for (const Kind kind : {Kind::kCoSimulation, Kind::kModelExchange}) {
-    const bool has = kind == Kind::kCoSimulation ? model.co_simulation.has_value() : model.model_exchange.has_value();
+    const bool has =
+        kind == Kind::kCoSimulation ? model.co_simulation.has_value() : model.model_exchange.has_value();
     head += has ? std::string(", ") + toText(kind) : "";
   }
   head += model.description.empty() ? "\n" : "\n# " + model.description + "\n";

@@ -15,14 +15,6 @@ namespace fs = std::filesystem;
 
 fs::path findMaps(const fs::path& run_or_maps) {
   const fs::path file = fs::is_directory(run_or_maps) ? run_or_maps / "maps.h5" : run_or_maps;
-  const fs::path resolved = file.parent_path() / "resolved.yaml";
-  if (!fs::exists(file) && fs::exists(resolved) &&
-      loadExperiment(resolved.string()).inverse_map.findGp() == nullptr) {
-    throw std::runtime_error(
-        file.parent_path().string() +
-        ": its inverse map is a surrogate, which is not kept yet; measurements need a run "
-        "with 'inverse_map: {gp: {}}'");
-  }
   if (!fs::exists(file)) {
     throw std::runtime_error(file.string() +
                              ": does not exist; give the folder of a finished run, or its maps.h5");
@@ -86,13 +78,19 @@ Eigen::VectorXd extractFeatures(const FeatureExtractor& extractor, const Eigen::
   return features;
 }
 
+Inferrer::Workspace::Workspace(const Inferrer& inferrer) : map(inferrer.getMap()) {
+  if (inferrer.getTrustModel()) {
+    trust.emplace(*inferrer.getTrustModel());
+  }
+}
+
 InferredMeasurement Inferrer::infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
                                     Workspace& workspace) const {
   InferredMeasurement inferred;
   inferred.inference = map_.infer(features, known, workspace.map);
   if (trust_) {
-    inferred.trust = judge(*trust_, features, known, inferred.inference, workspace.trust);
-    inferred.explanation = trust_->makeSampledPoint(workspace.trust.explanation.best.point);
+    inferred.trust = judge(*trust_, features, known, inferred.inference, *workspace.trust);
+    inferred.explanation = trust_->makeSampledPoint(workspace.trust->explanation.point);
   }
   return inferred;
 }

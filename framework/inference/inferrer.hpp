@@ -56,12 +56,13 @@ class Inferrer {
   Eigen::VectorXd extractFeatures(const Eigen::VectorXd& response, const std::string& source) const;
 
   struct Workspace {
-    explicit Workspace(const Inferrer& inferrer) : map(inferrer.getMap()) {}
+    explicit Workspace(const Inferrer& inferrer);
     OnlineMap::Workspace map;
-    TrustWorkspace trust;
+    std::optional<TrustWorkspace> trust;
   };
 
-  /// Infers and judges. features: d, finite; known: the inputs of the set-up (q). Cost: some 50 us.
+  /// Infers and judges. features: d, finite; known: the inputs of the set-up (q). Cost: that of OnlineMap::infer()
+  /// and judge().
   InferredMeasurement infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
                             Workspace& workspace) const;
 

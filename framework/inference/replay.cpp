@@ -111,7 +111,7 @@ class Replayer {
   /// Of the answer's errors.
   MatrixXd calcCorrelation() const {
     if (!answer_.refined) {
-      return inferrer_.getMap().getMap().residual_correlation;
+      return inferrer_.getMap().getResidualCorrelation();
     }
     const VectorXd scale = answer_.stddev.cwiseInverse();
     return scale.asDiagonal() * replay_.inferred.refined->covariance * scale.asDiagonal();

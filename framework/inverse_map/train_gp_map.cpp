@@ -1,6 +1,7 @@
 #include "framework/inverse_map/train_gp_map.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <stdexcept>
 
 #include "framework/inverse_map/kernel_options.hpp"
@@ -20,6 +21,27 @@ const gp::TrainingReport& getReport(const gp::SparseTrainingResult& result) {
   return result.subset_report;
 }
 
+std::string dropDigits(std::string text) {
+  const auto is_digit = [](unsigned char c) { return std::isdigit(c) != 0; };
+  text.erase(std::remove_if(text.begin(), text.end(), is_digit), text.end());
+  return text;
+}
+
+/// Adds what is to be told of a parameter, with the names of others of which the same was told but for
+/// numbers: "parameter 'k', 'd': the best start ...".
+void addWarning(const std::string& parameter, const std::string& message,
+                std::vector<std::string>& warnings) {
+  const std::string kind = ": " + dropDigits(message);
+  for (std::string& warning : warnings) {
+    const std::string told = dropDigits(warning);
+    if (told.size() > kind.size() && told.compare(told.size() - kind.size(), kind.size(), kind) == 0) {
+      warning.insert(warning.find(": "), ", '" + parameter + "'");
+      return;
+    }
+  }
+  warnings.push_back("parameter '" + parameter + "': " + message);
+}
+
 /// Keeps the processes of training results and what a person should know about them.
 template <class Result>
 void keepResults(const std::vector<Result>& results, const std::vector<std::string>& parameter_names,
@@ -32,7 +54,7 @@ void keepResults(const std::vector<Result>& results, const std::vector<std::stri
     training.map.processes.emplace_back(results[p].gp);
     training.reports.push_back(getReport(results[p]));
     if (results[p].status != gp::TrainingStatus::kConverged) {
-      training.warnings.push_back("parameter '" + parameter_names[p] + "': " + results[p].message);
+      addWarning(parameter_names[p], results[p].message, training.warnings);
     }
   }
 }

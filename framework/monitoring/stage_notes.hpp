@@ -1,7 +1,10 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "framework/monitoring/warning.hpp"
 
 namespace twinmap {
 
@@ -13,9 +16,15 @@ struct StageTime {
 
 /// What stages leave beside their results.
 struct StageNotes {
-  std::vector<std::string> warnings;  ///< for people
+  std::vector<Warning> warnings;
   std::vector<StageTime> times;
 
+  void warn(Gravity gravity, std::string text) { warnings.push_back({gravity, std::move(text)}); }
+  void warn(Gravity gravity, const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) {
+      warn(gravity, text);
+    }
+  }
   void append(const StageNotes& later) {
     warnings.insert(warnings.end(), later.warnings.begin(), later.warnings.end());
     times.insert(times.end(), later.times.begin(), later.times.end());

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "framework/design/random.hpp"
 #include "framework/features/scaling_steps.hpp"
 #include "framework/spec/parameter_box.hpp"
+#include "framework/surrogate/run_tasks.hpp"
 
 namespace twinmap {
 
@@ -33,7 +35,7 @@ TrainingCloud makeCloud(const OnlineMap& map, const TrustTraining& training, con
   constexpr Index kMost = 1000;
   const Index n = std::min(training.points.cols(), kMost);
   TrainingCloud cloud;
-  cloud.inputs = map.getMap().makeProcessInputs(training.clean_features.leftCols(n), known.leftCols(n));
+  cloud.inputs = map.makeInputs(training.clean_features.leftCols(n), known.leftCols(n));
   cloud.scale = fitZScore(cloud.inputs).scale;
   cloud.inputs = cloud.scale.cwiseInverse().asDiagonal() * cloud.inputs;
   return cloud;
@@ -45,46 +47,70 @@ void sort(VectorXd& values) {
 
 /// The statistics of the simulated measurements, by a model whose references are still empty. None depends on
 /// the inferred standard deviation.
-void fitReferences(const TrustTraining& training, const OnlineMap& map, TrustModel& model) {
+void fitReferences(const TrustTraining& training, const OnlineMap& map, int threads, TrustModel& model) {
+  constexpr Index kChunk = 16;  // measurements that share buffers
   const Index count = training.measured.cols();
-  model.chi_square.sorted.resize(count);
-  model.burst.sorted.resize(count);
-  OnlineMap::Workspace inferring(map);
-  TrustWorkspace judging;
-  double reach = 0.0;
-  for (Index i = 0; i < count; ++i) {
-    const auto features = training.measured.col(i);
-    const auto known = training.known.col(i);
-    const Trust trust = judge(model, features, known, map.inferMean(features, known, inferring), judging);
-    model.chi_square.sorted[i] = trust.chi_square;
-    model.burst.sorted[i] = trust.burst.score;
-    reach = std::max(reach, trust.distance);
-  }
-  sort(model.chi_square.sorted);
-  sort(model.burst.sorted);
+  VectorXd chi_squares(count), bursts(count), distances(count);
+  const auto judge_chunk = [&](std::size_t chunk) {
+    OnlineMap::Workspace inferring(map);
+    TrustWorkspace judging(model);
+    const Index first = static_cast<Index>(chunk) * kChunk;
+    for (Index i = first; i < std::min(count, first + kChunk); ++i) {
+      const auto features = training.measured.col(i);
+      const auto known = training.known.col(i);
+      const Trust trust = judge(model, features, known, map.inferMean(features, known, inferring), judging);
+      chi_squares[i] = trust.chi_square;
+      bursts[i] = trust.burst.score;
+      distances[i] = trust.distance;
+    }
+  };
+  runTasks(threads, static_cast<std::size_t>((count + kChunk - 1) / kChunk), judge_chunk);
+  sort(chi_squares);
+  sort(bursts);
+  model.chi_square.sorted = std::move(chi_squares);
+  model.burst.sorted = std::move(bursts);
+  const double reach = distances.maxCoeff();
   model.cloud.reach = reach > 0.0 ? reach : 1.0;
+}
+
+/// Bursts of noise that nothing was fitted to: a search leaves a little less.
+ReferenceDistribution calcNoiseBursts(const std::vector<ResidualRun>& runs, Index residuals,
+                                      std::uint64_t seed) {
+  constexpr Index kDraws = 4000;  // the 0.25 % quantile, half of half of the usual level, to a third
+  const RandomStream random(seed, RandomPurpose::kNoiseBurst);
+  ReferenceDistribution bursts;
+  bursts.sorted.resize(kDraws);
+  VectorXd noise(residuals);
+  for (Index draw = 0; draw < kDraws; ++draw) {
+    for (Index i = 0; i < residuals; ++i) {
+      noise[i] = random.calcNormal(static_cast<std::uint64_t>(draw), static_cast<std::uint64_t>(i));
+    }
+    bursts.sorted[draw] = findBurst(noise, runs).score;
+  }
+  sort(bursts.sorted);
+  return bursts;
 }
 
 }  // namespace
 
-TrustModel fitTrustModel(const TrustTraining& training, const OnlineMap& map, double level) {
+TrustModel fitTrustModel(const TrustTraining& training, ForwardSurrogate surrogate, const OnlineMap& map,
+                         double level, int threads) {
   if (training.measured.cols() == 0) {
     throw std::invalid_argument("a trust model needs simulated measurements");
   }
-  const VectorXd center = calcBoxCenter(training.sampled);
-  const VectorXd half_width = 0.5 * calcWidths(training.sampled);
-  const MatrixXd normalized = half_width.cwiseInverse().asDiagonal() * (training.points.colwise() - center);
-  TrustModel model{fitForwardModel(normalized, training.clean_features, training.noise_covariance),
-                   {},
-                   {},
-                   {},
-                   makeCloud(map, training, training.points.bottomRows(training.known.rows())),
-                   center,
-                   half_width,
-                   training.unknown,
-                   level};
-  model.runs = collectRuns(training.infos, model.forward.components.rows());
-  fitReferences(training, map, model);
+  TrustModel model;
+  model.forward = std::move(surrogate);
+  model.space =
+      fitResidualSpace(training.infos, training.clean_features, training.noise_covariance, model.forward);
+  model.cloud = makeCloud(map, training, training.points.bottomRows(training.known.rows()));
+  model.center = calcBoxCenter(training.sampled);
+  model.half_width = 0.5 * calcWidths(training.sampled);
+  model.unknown = training.unknown;
+  model.level = level;
+  const Index residuals = model.space.directions.rows();
+  model.runs = collectRuns(training.infos, residuals);
+  model.noise_burst = calcNoiseBursts(model.runs, residuals, training.seed);
+  fitReferences(training, map, threads, model);
   return model;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
 #include "framework/features/feature_block.hpp"
@@ -19,11 +20,14 @@ struct TrustTraining {
   Eigen::MatrixXd noise_covariance;    ///< d x d, of the features
   Eigen::MatrixXd measured;            ///< d x s, simulated measurements, other than the training's
   Eigen::MatrixXd known;               ///< q x s, their known inputs
+  std::uint64_t seed = 0;              ///< of the noise that refined answers are compared with
 };
 
-/// Fits the forward model and its reference distributions: judges every simulated measurement as if it were
-/// one. Throws std::invalid_argument as fitForwardModel() does, and where there are no simulated
-/// measurements. Cost: that of fitForwardModel() and of s inferences.
-TrustModel fitTrustModel(const TrustTraining& training, const OnlineMap& map, double level);
+/// Fits the reference distributions of a surrogate that was fitted to the training simulations, or to the
+/// first of them: judges every simulated measurement as if it were one. The surrogate must not have seen
+/// their simulations. Throws std::invalid_argument for a feature without noise, and where there are no
+/// simulated measurements. The result does not depend on the threads. Cost: that of s inferences.
+TrustModel fitTrustModel(const TrustTraining& training, ForwardSurrogate surrogate, const OnlineMap& map,
+                         double level, int threads);
 
 }  // namespace twinmap

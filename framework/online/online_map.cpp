@@ -1,99 +1,58 @@
 #include "framework/online/online_map.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <memory>
-#include <vector>
-
-#include "kernels/sparse/compression.hpp"
-
 namespace twinmap {
+namespace {
 
-using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-namespace {
-
-using ExactProcess = std::shared_ptr<const gp::GaussianProcess>;
+std::variant<OnlineProcesses, OnlineSurrogate> prepare(AnyMap map) {
+  if (auto* processes = std::get_if<GpMap>(&map)) {
+    return OnlineProcesses(std::move(*processes));
+  }
+  return OnlineSurrogate(std::get<std::shared_ptr<const Surrogate>>(std::move(map)));
+}
 
 }  // namespace
 
-OnlineMap::OnlineMap(GpMap map) : map_(std::move(map)), predictor_(map_.processes) {
-  matrix_ = map_.transform.calcMatrix();
-  offset_ = map_.transform.apply(VectorXd::Zero(matrix_.cols()));
-  noise_variance_.resize(static_cast<Index>(map_.processes.size()));
-  for (Index p = 0; p < noise_variance_.size(); ++p) {
-    noise_variance_[p] = gp::getNoiseVariance(map_.processes[p]);
+OnlineMap::OnlineMap(AnyMap map) : kind_(prepare(std::move(map))) {}
+
+OnlineMap::Workspace::Workspace(const OnlineMap& map)
+    : kind(std::visit(
+          [](const auto& prepared) -> decltype(kind) {
+            return typename std::decay_t<decltype(prepared)>::Workspace(prepared);
+          },
+          map.kind_)) {}
+
+const MatrixXd& OnlineMap::getResidualCorrelation() const {
+  if (const auto* processes = std::get_if<OnlineProcesses>(&kind_)) {
+    return processes->getMap().residual_correlation;
   }
-}
-
-OnlineMap::Workspace::Workspace(const OnlineMap& map) : predictor(map.predictor_) {
-  const auto parameters = static_cast<Index>(map.map_.processes.size());
-  inference.mean.setZero(parameters);
-  inference.stddev.setZero(parameters);
-  inference.inputs.setZero(map.matrix_.rows() + map.map_.known_inputs.center.size());
-  slope.setZero(map.map_.noise.directions.cols());
-}
-
-void OnlineMap::makeInputs(const Eigen::Ref<const VectorXd>& features,
-                           const Eigen::Ref<const VectorXd>& known, VectorXd& inputs) const {
-  auto transformed = inputs.head(offset_.size());
-  transformed = offset_;
-  transformed.noalias() += matrix_ * features;
-  inputs.tail(known.size()) = (known - map_.known_inputs.center).cwiseQuotient(map_.known_inputs.half_width);
+  return std::get<OnlineSurrogate>(kind_).getSurrogate().validation.residual_correlation;
 }
 
 const Inference& OnlineMap::infer(const Eigen::Ref<const VectorXd>& features,
                                   const Eigen::Ref<const VectorXd>& known, Workspace& workspace) const {
-  Inference& inference = workspace.inference;
-  makeInputs(features, known, inference.inputs);
-  if (map_.noise.isConstant()) {
-    predictor_.predict(inference.inputs, workspace.predictor);
-  } else {
-    predictor_.predictWithGradient(inference.inputs, workspace.predictor);
+  if (const auto* processes = std::get_if<OnlineProcesses>(&kind_)) {
+    return processes->infer(features, known, std::get<OnlineProcesses::Workspace>(workspace.kind));
   }
-  const gp::OnlinePredictor::Values& values = workspace.predictor.values;
-  inference.mean = map_.target_offset + map_.target_scale.cwiseProduct(values.mean);
-  for (Index p = 0; p < inference.stddev.size(); ++p) {
-    const double factor = calcNoiseFactor(p, values.gradient.col(p), workspace.slope);
-    inference.stddev[p] =
-        map_.target_scale[p] * std::sqrt(values.latent_variance[p] + noise_variance_[p] * factor);
-  }
-  return inference;
+  return std::get<OnlineSurrogate>(kind_).infer(features, known,
+                                                std::get<OnlineSurrogate::Workspace>(workspace.kind));
 }
 
 const Inference& OnlineMap::inferMean(const Eigen::Ref<const VectorXd>& features,
                                       const Eigen::Ref<const VectorXd>& known, Workspace& workspace) const {
-  Inference& inference = workspace.inference;
-  makeInputs(features, known, inference.inputs);
-  predictor_.predictMean(inference.inputs, workspace.predictor);
-  inference.mean = map_.target_offset + map_.target_scale.cwiseProduct(workspace.predictor.values.mean);
-  inference.stddev.setZero();
-  return inference;
+  if (const auto* processes = std::get_if<OnlineProcesses>(&kind_)) {
+    return processes->inferMean(features, known, std::get<OnlineProcesses::Workspace>(workspace.kind));
+  }
+  return infer(features, known, workspace);
 }
 
-double OnlineMap::calcNoiseFactor(Index parameter, const Eigen::Ref<const VectorXd>& gradient,
-                                  VectorXd& slope) const {
-  const NoiseProfile& noise = map_.noise;
-  if (noise.isConstant() || !(noise.mean_of_slope[parameter] > 0.0)) {
-    return 1.0;
+MatrixXd OnlineMap::makeInputs(const MatrixXd& features, const MatrixXd& known) const {
+  if (const auto* processes = std::get_if<OnlineProcesses>(&kind_)) {
+    return processes->getMap().makeProcessInputs(features, known);
   }
-  slope.noalias() = noise.directions.transpose() * gradient.head(noise.directions.rows());
-  return std::max(slope.squaredNorm() / noise.mean_of_slope[parameter], NoiseProfile::kSmallestFactor);
-}
-
-GpMap compressMap(const GpMap& map) {
-  constexpr double kTolerance = 1e-4;
-  GpMap compact = map;
-  for (gp::Process& process : compact.processes) {
-    if (const auto* exact = std::get_if<ExactProcess>(&process)) {
-      if (const auto sparse = gp::compress(**exact, kTolerance)) {
-        process = sparse;
-      }
-    }
-  }
-  return compact;
+  return std::get<OnlineSurrogate>(kind_).makeInputs(features, known);
 }
 
 }  // namespace twinmap

@@ -1,62 +1,48 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
+#include <variant>
 
-#include "framework/inverse_map/gp_map.hpp"
-#include "kernels/online/online_predictor.hpp"
+#include "framework/online/online_processes.hpp"
+#include "framework/online/online_surrogate.hpp"
 
 namespace twinmap {
 
-/// What is inferred from one measurement.
-struct Inference {
-  Eigen::VectorXd mean, stddev;  ///< p, in the parameters' units
-  Eigen::VectorXd inputs;        ///< of the map's processes, k
-};
+/// A trained map of any kind, as values.
+using AnyMap = std::variant<GpMap, std::shared_ptr<const Surrogate>>;
 
-/// An inverse map made ready for one measurement after another: the transform's steps become one, the
-/// processes are packed. Predictions are those of the map to rounding. Immutable.
+/// A trained map made ready for one measurement after another. Immutable.
 class OnlineMap {
  public:
-  explicit OnlineMap(GpMap map);
+  explicit OnlineMap(AnyMap map);
 
-  const GpMap& getMap() const { return map_; }
+  /// The correlation of the errors of a sample's parameters, p x p.
+  const Eigen::MatrixXd& getResidualCorrelation() const;
 
   /// The buffers of one thread, and the result.
   class Workspace {
    public:
     explicit Workspace(const OnlineMap& map);
-    Inference inference;
 
    private:
     friend class OnlineMap;
-    gp::OnlinePredictor::Workspace predictor;
-    Eigen::VectorXd slope;
+    std::variant<OnlineProcesses::Workspace, OnlineSurrogate::Workspace> kind;
   };
 
   /// features: d, finite; known: the inputs of the set-up (q). The result lies in the workspace until its
-  /// next use. It allocates nothing.
-  /// Cost: 2 k d flops, then those of OnlinePredictor; some 10 us for four parameters.
+  /// next use. Cost: some 10 us for the processes of four parameters, a ms by a surrogate.
   const Inference& infer(const Eigen::Ref<const Eigen::VectorXd>& features,
                          const Eigen::Ref<const Eigen::VectorXd>& known, Workspace& workspace) const;
-  /// Mean and inputs alone; the stddev is zero.
+  /// Mean and inputs alone, where that is cheaper; the stddev may be zero.
   const Inference& inferMean(const Eigen::Ref<const Eigen::VectorXd>& features,
                              const Eigen::Ref<const Eigen::VectorXd>& known, Workspace& workspace) const;
 
+  /// What the inferences' inputs are for features (d x n) and known inputs (q x n).
+  Eigen::MatrixXd makeInputs(const Eigen::MatrixXd& features, const Eigen::MatrixXd& known) const;
+
  private:
-  void makeInputs(const Eigen::Ref<const Eigen::VectorXd>& features,
-                  const Eigen::Ref<const Eigen::VectorXd>& known, Eigen::VectorXd& inputs) const;
-  double calcNoiseFactor(Eigen::Index parameter, const Eigen::Ref<const Eigen::VectorXd>& gradient,
-                         Eigen::VectorXd& slope) const;
-
-  GpMap map_;
-  Eigen::MatrixXd matrix_;  // inputs = matrix features + offset
-  Eigen::VectorXd offset_;
-  Eigen::VectorXd noise_variance_;
-  gp::OnlinePredictor predictor_;
+  std::variant<OnlineProcesses, OnlineSurrogate> kind_;
 };
-
-/// The map with its exact processes compressed (gp::compress), where that makes them smaller: means within
-/// some 0.01 standard deviations, standard deviations within 0.2 % of the exact ones.
-GpMap compressMap(const GpMap& map);
 
 }  // namespace twinmap

@@ -2,14 +2,14 @@
 
 #include <optional>
 
-#include "framework/inverse_map/gp_map.hpp"
+#include "framework/online/online_map.hpp"
 #include "framework/online/trust_model.hpp"
 
 namespace twinmap {
 
 /// All that is needed to infer from a measurement and to judge that.
 struct OnlineModel {
-  GpMap map;                        ///< compressed
+  AnyMap map;                       ///< processes compressed; a surrogate is that of the trust model
   std::optional<TrustModel> trust;  ///< none where a feature has no noise or the simulations are too few
 };
 

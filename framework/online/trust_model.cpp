@@ -1,7 +1,9 @@
 #include "framework/online/trust_model.hpp"
 
 #include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
+#include <limits>
 
 #include "framework/spec/parameter_box.hpp"
 
@@ -16,17 +18,102 @@ constexpr double kFarAway = 1.5;  // times the reach of simulated measurements
 constexpr double kBeyondBoundsStddevs = 1.0;
 constexpr double kShareOfPrior = 0.9;  // of the box's standard deviation
 
-bool liesBeyondBounds(const TrustModel& model, const Inference& inference) {
-  const Index p = inference.mean.size();
-  const Eigen::ArrayXd beyond = (inference.mean - model.center.head(p)).array().abs() -
-                                model.half_width.head(p).array() -
-                                kBeyondBoundsStddevs * inference.stddev.array();
+bool liesBeyondBounds(const TrustModel& model, const VectorXd& mean, const VectorXd& stddev) {
+  const Index p = mean.size();
+  const Eigen::ArrayXd beyond = (mean - model.center.head(p)).array().abs() -
+                                model.half_width.head(p).array() - kBeyondBoundsStddevs * stddev.array();
   return beyond.maxCoeff() > 0.0;
 }
 
-bool isUninformative(const TrustModel& model, const Inference& inference) {
-  const Eigen::ArrayXd prior = 2.0 * kUniformStddev * model.half_width.head(inference.mean.size()).array();
-  return (inference.stddev.array() > kShareOfPrior * prior).any();
+bool isUninformative(const TrustModel& model, const VectorXd& stddev) {
+  const Eigen::ArrayXd prior = 2.0 * kUniformStddev * model.half_width.head(stddev.size()).array();
+  return (stddev.array() > kShareOfPrior * prior).any();
+}
+
+/// All that apply to an answer, by the p-value and the distance found.
+void setStatuses(const TrustModel& model, const VectorXd& mean, const VectorXd& stddev, Trust& trust) {
+  trust.statuses.clear();
+  if (trust.p_value < model.level) {
+    trust.statuses.push_back(TrustStatus::kModelMismatch);
+  }
+  if (trust.distance > kFarAway) {
+    trust.statuses.push_back(TrustStatus::kOutsideTraining);
+  }
+  if (liesBeyondBounds(model, mean, stddev)) {
+    trust.statuses.push_back(TrustStatus::kAtBounds);
+  }
+  if (isUninformative(model, stddev)) {
+    trust.statuses.push_back(TrustStatus::kUninformative);
+  }
+  if (trust.statuses.empty()) {
+    trust.statuses.push_back(TrustStatus::kOk);
+  }
+}
+
+/// Residual, chi-square and burst, without their p-values.
+void setResidual(const TrustModel& model, const VectorXd& residual, Trust& trust) {
+  trust.chi_square = residual.squaredNorm();
+  trust.residuals = residual.size();
+  trust.burst = findBurst(residual, model.runs);
+}
+
+void combinePValues(Trust& trust) {
+  trust.p_value = std::min(1.0, 2.0 * std::min(trust.chi_square_p_value, trust.burst_p_value));
+}
+
+/// How rare it is that the simulator explains nothing of a simulated measurement, and how the level of false
+/// alarms is shared between those that are explained and those that are not: where these are rarer than half
+/// of the level, each of them is an alarm, else half of the level is theirs, the worst of them.
+class UnexplainedShare {
+ public:
+  explicit UnexplainedShare(const TrustModel& model)
+      : reference_(model.refinement),
+        all_(calcShareAbove(-std::numeric_limits<double>::infinity())),
+        rare_(all_ <= kShareOfLevel * model.level),
+        level_(model.level) {}
+
+  /// Whether enough were refined that the worst of all would be an alarm.
+  bool isKnown() const { return rare_ || calcPValue(std::numeric_limits<double>::infinity()) < level_; }
+  double getFactorOfExplained() const { return rare_ ? 1.0 / (1.0 - all_ / level_) : 1.0 / kShareOfLevel; }
+  double calcPValue(double reduced_chi_square) const {
+    const double share = calcShareAbove(reduced_chi_square);
+    return rare_ ? share : std::min(1.0, share / kShareOfLevel);
+  }
+
+ private:
+  static constexpr double kShareOfLevel = 0.5;
+
+  /// Of simulated measurements those that are unexplained and at least as bad; half a measurement more, for
+  /// none of a few says little.
+  double calcShareAbove(double reduced_chi_square) const {
+    const VectorXd& sorted = reference_.unexplained;
+    const double* end = sorted.data() + sorted.size();
+    const auto above = static_cast<double>(end - std::lower_bound(sorted.data(), end, reduced_chi_square));
+    return (above + 0.5) / (static_cast<double>(reference_.tried) + 1.0);
+  }
+
+  const RefinementReference& reference_;
+  double all_;
+  bool rare_;
+  double level_;
+};
+
+/// Of the refined answer where there is one; else the map's stay, but for the mismatch.
+void replaceStatuses(const TrustModel& model, const SimulatorResidual& found, Trust& trust) {
+  if (found.mean.size() > 0) {
+    setStatuses(model, found.mean, found.stddev, trust);
+    return;
+  }
+  std::vector<TrustStatus> kept;
+  if (trust.p_value < model.level) {
+    kept.push_back(TrustStatus::kModelMismatch);
+  }
+  for (const TrustStatus status : trust.statuses) {
+    if (status != TrustStatus::kModelMismatch && status != TrustStatus::kOk) {
+      kept.push_back(status);
+    }
+  }
+  trust.statuses = kept.empty() ? std::vector<TrustStatus>{TrustStatus::kOk} : kept;
 }
 
 /// The inferred parameters, the middle of the nuisance parameters' box, the known inputs; normalised.
@@ -70,32 +157,39 @@ double TrainingCloud::calcDistance(const Eigen::Ref<const VectorXd>& at, VectorX
 Trust judge(const TrustModel& model, const Eigen::Ref<const VectorXd>& features,
             const Eigen::Ref<const VectorXd>& known, const Inference& inference, TrustWorkspace& workspace) {
   makeStart(model, known, inference, workspace.start);
-  const Explanation& explanation =
-      explain(model.forward, features, workspace.start, model.unknown, workspace.explanation);
+  workspace.centered = features - model.forward.center;
+  workspace.scores.noalias() = model.forward.projection * workspace.centered;
+  workspace.explanation = workspace.inversion.explain(workspace.scores, workspace.start.tail(known.size()),
+                                                      workspace.start.head(model.unknown));
+  model.space.calcResidual(workspace.centered, workspace.explanation.innovation, workspace.residual);
   Trust trust;
-  trust.chi_square = explanation.chi_square;
-  trust.residuals = explanation.residual.size();
-  trust.burst = findBurst(explanation.residual, model.runs);
+  setResidual(model, workspace.residual, trust);
   trust.chi_square_p_value = model.chi_square.calcPValue(trust.chi_square);
   trust.burst_p_value = model.burst.calcPValue(trust.burst.score);
-  trust.p_value = std::min(1.0, 2.0 * std::min(trust.chi_square_p_value, trust.burst_p_value));
+  combinePValues(trust);
   trust.distance = model.cloud.calcDistance(inference.inputs, workspace.distance);
-  if (trust.p_value < model.level) {
-    trust.statuses.push_back(TrustStatus::kModelMismatch);
-  }
-  if (trust.distance > kFarAway) {
-    trust.statuses.push_back(TrustStatus::kOutsideTraining);
-  }
-  if (liesBeyondBounds(model, inference)) {
-    trust.statuses.push_back(TrustStatus::kAtBounds);
-  }
-  if (isUninformative(model, inference)) {
-    trust.statuses.push_back(TrustStatus::kUninformative);
-  }
-  if (trust.statuses.empty()) {
-    trust.statuses.push_back(TrustStatus::kOk);
-  }
+  setStatuses(model, inference.mean, inference.stddev, trust);
   return trust;
+}
+
+Trust judgeAnew(const TrustModel& model, const Trust& trust, const SimulatorResidual& found) {
+  const UnexplainedShare share(model);
+  if (!found.explained && !share.isKnown()) {
+    return trust;
+  }
+  Trust anew = trust;
+  setResidual(model, found.residual, anew);
+  anew.burst_p_value = model.noise_burst.calcPValue(anew.burst.score);
+  anew.chi_square_p_value =
+      boost::math::cdf(boost::math::complement(boost::math::chi_squared(found.degrees), found.chi_square));
+  if (found.explained) {
+    combinePValues(anew);
+    anew.p_value = std::min(1.0, anew.p_value * share.getFactorOfExplained());
+  } else {
+    anew.p_value = share.calcPValue(found.chi_square / found.degrees);
+  }
+  replaceStatuses(model, found, anew);
+  return anew;
 }
 
 }  // namespace twinmap

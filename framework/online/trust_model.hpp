@@ -5,8 +5,9 @@
 #include <vector>
 
 #include "framework/online/burst.hpp"
-#include "framework/online/forward_model.hpp"
 #include "framework/online/online_map.hpp"
+#include "framework/online/residual_space.hpp"
+#include "framework/surrogate/score_inversion.hpp"
 
 namespace twinmap {
 
@@ -26,7 +27,7 @@ const char* toString(TrustStatus status);
 struct Trust {
   std::vector<TrustStatus> statuses;  ///< all that apply, the gravest first; {kOk} if none does
   double p_value = 1.0;               ///< of the residual, as if the model were right
-  double chi_square = 0.0;            ///< sum of the squared residuals, in noise variances
+  double chi_square = 0.0;            ///< sum of the squared residuals, in variances
   Eigen::Index residuals = 0;         ///< how many
   Burst burst;                        ///< the most conspicuous stretch of residuals
   double burst_p_value = 1.0, chi_square_p_value = 1.0;  ///< each test's own
@@ -39,6 +40,12 @@ struct ReferenceDistribution {
 
   /// The share of simulated measurements whose statistic is at least `value`: (count + 1) / (n + 1).
   double calcPValue(double value) const;
+};
+
+/// What a refinement on the simulator made of simulated measurements.
+struct RefinementReference {
+  Eigen::Index tried = 0;       ///< measurements; 0 where none was refined
+  Eigen::VectorXd unexplained;  ///< sorted: chi-square over its degrees of freedom, of those not explained
 };
 
 /// Where the map was trained: its inputs, each in standard deviations.
@@ -54,9 +61,12 @@ struct TrainingCloud {
 /// Tells whether a measurement is one that the simulator could have given. All but the level is found from
 /// simulations; the reference distributions include whatever the approximations leave.
 struct TrustModel {
-  ForwardModel forward;
+  ForwardSurrogate forward;
+  ResidualSpace space;
   std::vector<ResidualRun> runs;
-  ReferenceDistribution chi_square, burst;
+  ReferenceDistribution chi_square, burst;  ///< of simulated measurements, judged with the surrogate
+  ReferenceDistribution noise_burst;        ///< of noise alone: of answers that the simulator explains
+  RefinementReference refinement;
   TrainingCloud cloud;
   Eigen::VectorXd center, half_width;  ///< m, of the sampled box
   Eigen::Index unknown = 0;            ///< leading variables of a point that a measurement leaves open
@@ -68,16 +78,37 @@ struct TrustModel {
   }
 };
 
-/// The buffers of one thread.
+/// The buffers of one thread; the model must outlive them.
 struct TrustWorkspace {
-  ExplanationWorkspace explanation;
-  Eigen::VectorXd start, distance;  // the start is normalised
+  explicit TrustWorkspace(const TrustModel& model) : inversion(model.forward, model.unknown) {}
+
+  ScoreInversion inversion;
+  ScoreExplanation explanation;                                 ///< of the measurement judged last
+  Eigen::VectorXd start, centered, scores, residual, distance;  // the start is normalised
 };
 
-/// Judges an inference from features (d, finite) and known inputs (q). Cost: that of explain() and of one
-/// pass over the training cloud; some 20 to 40 us for 200 features.
+/// Judges an inference from features (d, finite) and known inputs (q), by the point of the box that explains
+/// them best according to the surrogate. Cost: that of ScoreInversion and of one pass over the training
+/// cloud; about 1 ms for 200 features.
 Trust judge(const TrustModel& model, const Eigen::Ref<const Eigen::VectorXd>& features,
             const Eigen::Ref<const Eigen::VectorXd>& known, const Inference& inference,
             TrustWorkspace& workspace);
+
+/// What a search on the simulator left of a measurement.
+struct SimulatorResidual {
+  Eigen::VectorXd residual;  ///< k, in noise standard deviations
+  double chi_square = 0.0;   ///< its square
+  double degrees = 1.0;      ///< of freedom: k less the parameters that were determined
+  bool explained = false;    ///< whether noise explains chi_square, at a level far below TrustModel::level
+  Eigen::VectorXd mean;      ///< p, the answer where it was accepted; else empty
+  Eigen::VectorXd stddev;    ///< p
+};
+
+/// Judges a measurement anew by what the simulator leaves of it, which has no error of a surrogate: replaces
+/// residual, p-values and the statuses that follow. What it explains is tested against noise alone; what it
+/// does not explain is as suspicious as such measurements are rare among simulated ones
+/// (RefinementReference): their common level is TrustModel::level. Where too few were refined to tell, the
+/// surrogate's judgement of what is not explained stays.
+Trust judgeAnew(const TrustModel& model, const Trust& trust, const SimulatorResidual& found);
 
 }  // namespace twinmap

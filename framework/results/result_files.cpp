@@ -2,6 +2,7 @@
 
 #include "framework/results/evaluation_tables.hpp"
 #include "framework/results/tables.hpp"
+#include "framework/results/warnings.hpp"
 #include "framework/store/atomic_file.hpp"
 
 namespace twinmap {
@@ -51,7 +52,7 @@ void writeProvenance(const fs::path& folder, Provenance provenance, const RunSum
   provenance.online_updates = run.online.updates;
   provenance.online_median_us = run.online.median_us;
   provenance.online_p99_us = run.online.p99_us;
-  provenance.warnings = run.notes.warnings;
+  provenance.warnings = collectWarnings(run);
   for (const StageTime& time : run.notes.times) {
     provenance.stage_seconds.emplace_back(time.stage, time.seconds);
   }

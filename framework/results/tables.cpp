@@ -1,5 +1,7 @@
 #include "framework/results/tables.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "framework/results/escape.hpp"
@@ -62,10 +64,23 @@ std::vector<Row> makeRows(const RunSummary& run, std::string (*escape)(const std
   return rows;
 }
 
+/// How many of the answers are refined, where any was to be.
+std::string makeRefinementLegend(const RunSummary& run) {
+  const std::vector<Refined>& refined = run.evaluation.refined;
+  if (refined.empty()) {
+    return "";
+  }
+  const auto accepted =
+      std::count_if(refined.begin(), refined.end(), [](const Refined& one) { return one.isAccepted(); });
+  return fmt::format("Refined on the simulator: {} of {} answers; methods.csv has those of the map alone.\n",
+                     accepted, refined.size());
+}
+
 }  // namespace
 
 std::string makeMarkdownTable(const RunSummary& run) {
-  return makeAlignedTable(makeRows(run, escapeMarkdown), kTextColumns) + "\n" + kLegend;
+  return makeAlignedTable(makeRows(run, escapeMarkdown), kTextColumns) + "\n" + kLegend +
+         makeRefinementLegend(run);
 }
 
 std::string makeLatexTable(const RunSummary& run) {

@@ -132,17 +132,35 @@ struct SurrogateMapSpec {};
 template <class Fields>
 void describe(Fields&, SurrogateMapSpec&) {}
 
-struct InverseMapSpec {
-  std::variant<GpMapSpec, SurrogateMapSpec> kind;
+/// A surrogate where it can be trained: all features have noise, and the samples suffice; else gp, with its
+/// defaults.
+struct AutomaticMapSpec {
+  GpMapSpec gp;
+};
 
+template <class Fields>
+void describe(Fields&, AutomaticMapSpec&) {}
+
+struct InverseMapSpec {
+  std::variant<AutomaticMapSpec, GpMapSpec, SurrogateMapSpec> kind;
+
+  bool isAutomatic() const { return std::holds_alternative<AutomaticMapSpec>(kind); }
   /// Null for another kind.
   const GpMapSpec* findGp() const { return std::get_if<GpMapSpec>(&kind); }
   GpMapSpec* findGp() { return std::get_if<GpMapSpec>(&kind); }
+  /// Of Gaussian processes from features to parameters, where there are to be any; null for a surrogate.
+  const GpMapSpec* findProcesses() const {
+    const auto* automatic = std::get_if<AutomaticMapSpec>(&kind);
+    return automatic != nullptr ? &automatic->gp : findGp();
+  }
 };
 
 template <class Fields>
 void describe(Fields& f, InverseMapSpec& s) {
-  f.oneOf("must be one of", choice<GpMapSpec>("gp", s.kind, "one Gaussian process per parameter"),
+  f.scalarIsKey();
+  f.oneOf("must be one of",
+          choice<AutomaticMapSpec>("automatic", s.kind, "a surrogate where it can be trained, else gp"),
+          choice<GpMapSpec>("gp", s.kind, "one Gaussian process per parameter"),
           choice<SurrogateMapSpec>("surrogate", s.kind,
                                    "processes from parameters to features, inverted for each measurement"));
 }

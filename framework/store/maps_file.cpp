@@ -13,7 +13,7 @@
 namespace twinmap {
 namespace {
 
-constexpr const char* kFormat = "twinmap maps 1";
+constexpr const char* kFormat = "twinmap maps 2";
 constexpr const char* kParameters = "/parameters";
 constexpr const char* kInputs = "/inputs";
 constexpr const char* kExperiment = "/online/experiment";
@@ -77,6 +77,30 @@ const gp::GaussianProcess* findExact(const GpMap& map) {
   return nullptr;
 }
 
+/// The exact map.
+void writeProcesses(Hdf5Writer& file, const StoredMap& stored) {
+  writeTransform(file, stored.map.transform);
+  file.write("/target/offset", stored.map.target_offset);
+  file.write("/target/scale", stored.map.target_scale);
+  file.writeSamples("/residual_correlation", stored.map.residual_correlation);
+  file.writeSamples("/noise/directions", stored.map.noise.directions);
+  file.write("/noise/mean_of_slope", stored.map.noise.mean_of_slope);
+  if (const gp::GaussianProcess* exact = findExact(stored.map)) {
+    file.writeSamples("/training_inputs", exact->getInputs());
+  }
+  for (std::size_t p = 0; p < stored.parameters.size(); ++p) {
+    const std::string group = "/maps/" + stored.parameters[p].name.text;
+    writeProcess(file, group, stored.map.processes[p]);
+  }
+}
+
+/// Why a file holds no processes, where it should.
+void requireProcesses(const Hdf5Reader& file, const std::filesystem::path& path) {
+  if (holdsSurrogate(file)) {
+    throw std::runtime_error(path.string() + ": holds a surrogate, not an inverse map's processes");
+  }
+}
+
 }  // namespace
 
 void writeMapsFile(const std::filesystem::path& path, const StoredMap& stored) {
@@ -88,20 +112,10 @@ void writeMapsFile(const std::filesystem::path& path, const StoredMap& stored) {
       writeParametersGroup(file, kInputs, stored.inputs);
     }
     file.write("/features/name", stored.feature_names);
-    writeTransform(file, stored.map.transform);
-    file.write("/target/offset", stored.map.target_offset);
-    file.write("/target/scale", stored.map.target_scale);
-    file.writeSamples("/residual_correlation", stored.map.residual_correlation);
-    file.writeSamples("/noise/directions", stored.map.noise.directions);
-    file.write("/noise/mean_of_slope", stored.map.noise.mean_of_slope);
-    if (const gp::GaussianProcess* exact = findExact(stored.map)) {
-      file.writeSamples("/training_inputs", exact->getInputs());
+    if (!stored.map.processes.empty()) {
+      writeProcesses(file, stored);
     }
-    for (std::size_t p = 0; p < stored.parameters.size(); ++p) {
-      const std::string group = "/maps/" + stored.parameters[p].name.text;
-      writeProcess(file, group, stored.map.processes[p]);
-    }
-    if (!stored.online.map.processes.empty()) {
+    if (!stored.experiment.empty()) {
       writeOnlineGroup(file, collectNames(stored.parameters), stored.online);
       file.write(kExperiment, std::vector<std::string>{stored.experiment});
     }
@@ -112,6 +126,7 @@ void writeMapsFile(const std::filesystem::path& path, const StoredMap& stored) {
 StoredMap readMapsFile(const std::filesystem::path& path) {
   const Hdf5Reader file(path);
   requireFormat(file, path);
+  requireProcesses(file, path);
   StoredMap stored;
   stored.parameters = readParametersGroup(file, kParameters);
   stored.inputs = readInputs(file);
@@ -135,8 +150,14 @@ StoredOnlineModel readOnlineModel(const std::filesystem::path& path) {
     throw std::runtime_error(path.string() + ": has no online model; run its experiment again");
   }
   StoredOnlineModel stored;
-  stored.model.map = readSharedParts(file);
-  readOnlineGroup(file, collectNames(readParametersGroup(file, kParameters)), stored.model);
+  stored.model.trust = readTrustModel(file);
+  if (holdsSurrogate(file)) {
+    stored.model.map = readSurrogate(file, stored.model.trust.value());
+  } else {
+    GpMap map = readSharedParts(file);
+    readOnlineProcesses(file, collectNames(readParametersGroup(file, kParameters)), map);
+    stored.model.map = std::move(map);
+  }
   stored.experiment = file.readTexts(kExperiment).at(0);
   return stored;
 }
@@ -144,7 +165,11 @@ StoredOnlineModel readOnlineModel(const std::filesystem::path& path) {
 MapSummary readMapSummary(const std::filesystem::path& path) {
   const Hdf5Reader file(path);
   requireFormat(file, path);
-  MapSummary summary{file.readTexts("/features/name"), readTransform(file), {}, {}};
+  MapSummary summary{file.readTexts("/features/name"), {}, {}, {}};
+  if (holdsSurrogate(file)) {
+    return summary;
+  }
+  summary.transform = readTransform(file);
   for (const ParameterSpec& parameter : readParametersGroup(file, kParameters)) {
     const std::string group = "/maps/" + parameter.name.text;
     summary.structures.push_back(readStructure(file, group));

@@ -15,10 +15,10 @@ namespace twinmap {
 struct StoredMap {
   std::vector<ParameterSpec> parameters;
   std::vector<std::string> feature_names;
-  GpMap map;
+  GpMap map;                            ///< exact; without processes where the map is a surrogate
   std::vector<ParameterSpec> inputs{};  ///< known, with a measurement; their bounds scale them
-  OnlineModel online{};                 ///< written where it has processes; not read back
-  std::string experiment{};             ///< resolved.yaml's text, written with the online model
+  OnlineModel online{};                 ///< written where there is an experiment; not read back
+  std::string experiment{};             ///< resolved.yaml's text, for the online model
 };
 
 /// What infers from measurements.
@@ -31,7 +31,7 @@ struct StoredOnlineModel {
 void writeMapsFile(const std::filesystem::path& path, const StoredMap& stored);
 
 /// Reads it back; predictions are those of the map that was written, bit for bit. Throws std::runtime_error
-/// for a file that is no maps.h5.
+/// for a file that is no maps.h5, or that of a surrogate.
 StoredMap readMapsFile(const std::filesystem::path& path);
 
 /// Reads the online model alone, a fraction of the file. Throws std::runtime_error for a file that is no

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "framework/store/process_group.hpp"
+#include "framework/store/surrogate_group.hpp"
 
 namespace twinmap {
 namespace {
@@ -10,6 +11,7 @@ namespace {
 using Eigen::Index;
 
 constexpr const char* kTrust = "/online/trust";
+constexpr const char* kSurrogate = "/online/surrogate";
 
 std::string getMapGroup(const std::string& parameter) {
   return "/online/maps/" + parameter;
@@ -36,34 +38,18 @@ std::vector<ResidualRun> unflatten(const std::vector<std::int64_t>& flat) {
   return runs;
 }
 
-void writeForward(Hdf5Writer& file, const std::string& group, const ForwardModel& forward) {
-  const gp::InterpolatorParts& parts = forward.score_map.getParts();
-  file.writeSamples(group + "/whitener", forward.whitener);
-  file.write(group + "/center", forward.center);
-  file.writeSamples(group + "/components", forward.components);
-  file.writeSamples(group + "/scores", forward.scores);
-  file.writeSamples(group + "/points", parts.points);
-  file.write(group + "/length_scales", parts.length_scales);
-  file.writeSamples(group + "/weights", parts.weights.transpose());
-  file.write(group + "/mean", parts.mean);
-  file.write(group + "/left_out_variance", parts.left_out_variance);
-}
-
-ForwardModel readForward(const Hdf5Reader& file, const std::string& group) {
-  gp::InterpolatorParts parts{file.readSamples(group + "/points"), file.readVector(group + "/length_scales"),
-                              file.readSamples(group + "/weights").transpose(),
-                              file.readVector(group + "/mean"),
-                              file.readVector(group + "/left_out_variance")};
-  return {file.readSamples(group + "/whitener"), file.readVector(group + "/center"),
-          file.readSamples(group + "/components"), file.readSamples(group + "/scores"),
-          gp::Interpolator(std::move(parts))};
-}
-
 void writeTrust(Hdf5Writer& file, const std::string& group, const TrustModel& trust) {
-  writeForward(file, group + "/forward", trust.forward);
+  writeSurrogateGroup(file, group + "/forward", trust.forward);
+  file.writeSamples(group + "/space/whitener", trust.space.whitener);
+  file.writeSamples(group + "/space/directions", trust.space.directions);
+  file.writeSamples(group + "/space/unlearnt", trust.space.unlearnt);
+  file.write(group + "/space/unlearnt_stddev", trust.space.unlearnt_stddev);
   file.write(group + "/runs", flatten(trust.runs));
   file.write(group + "/reference/chi_square", trust.chi_square.sorted);
   file.write(group + "/reference/burst", trust.burst.sorted);
+  file.write(group + "/reference/noise_burst", trust.noise_burst.sorted);
+  file.write(group + "/reference/refinement/tried", static_cast<double>(trust.refinement.tried));
+  file.write(group + "/reference/refinement/unexplained", trust.refinement.unexplained);
   file.writeSamples(group + "/cloud/inputs", trust.cloud.inputs);
   file.write(group + "/cloud/scale", trust.cloud.scale);
   file.write(group + "/cloud/reach", trust.cloud.reach);
@@ -74,33 +60,60 @@ void writeTrust(Hdf5Writer& file, const std::string& group, const TrustModel& tr
 }
 
 TrustModel readTrust(const Hdf5Reader& file, const std::string& group) {
-  return {readForward(file, group + "/forward"),
-          unflatten(file.readIntegers(group + "/runs")),
-          {file.readVector(group + "/reference/chi_square")},
-          {file.readVector(group + "/reference/burst")},
-          {file.readSamples(group + "/cloud/inputs"), file.readVector(group + "/cloud/scale"),
-           file.readNumber(group + "/cloud/reach")},
-          file.readVector(group + "/box/center"),
-          file.readVector(group + "/box/half_width"),
-          static_cast<Index>(file.readNumber(group + "/unknown")),
-          file.readNumber(group + "/level")};
+  TrustModel trust;
+  trust.forward = readSurrogateGroup(file, group + "/forward");
+  trust.space = {file.readSamples(group + "/space/whitener"), file.readSamples(group + "/space/directions"),
+                 file.readSamples(group + "/space/unlearnt"),
+                 file.readVector(group + "/space/unlearnt_stddev")};
+  trust.runs = unflatten(file.readIntegers(group + "/runs"));
+  trust.chi_square = {file.readVector(group + "/reference/chi_square")};
+  trust.burst = {file.readVector(group + "/reference/burst")};
+  trust.noise_burst = {file.readVector(group + "/reference/noise_burst")};
+  trust.refinement = {static_cast<Index>(file.readNumber(group + "/reference/refinement/tried")),
+                      file.readVector(group + "/reference/refinement/unexplained")};
+  trust.cloud = {file.readSamples(group + "/cloud/inputs"), file.readVector(group + "/cloud/scale"),
+                 file.readNumber(group + "/cloud/reach")};
+  trust.center = file.readVector(group + "/box/center");
+  trust.half_width = file.readVector(group + "/box/half_width");
+  trust.unknown = static_cast<Index>(file.readNumber(group + "/unknown"));
+  trust.level = file.readNumber(group + "/level");
+  return trust;
+}
+
+void writeCompressed(Hdf5Writer& file, const std::vector<std::string>& parameters, const GpMap& map) {
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    if (isSparse(map.processes[p])) {
+      writeProcess(file, getMapGroup(parameters[p]), map.processes[p]);
+    }
+  }
+}
+
+/// What the trust model's forward surrogate lacks to be a map.
+void writeSurrogate(Hdf5Writer& file, const Surrogate& surrogate) {
+  const std::string group = kSurrogate;
+  const SurrogateValidation& validation = surrogate.validation;
+  file.write(group + "/stddev_scale", validation.stddev_scale);
+  file.write(group + "/coverage95", validation.coverage95);
+  file.writeSamples(group + "/residual_correlation", validation.residual_correlation);
+  file.write(group + "/log_density", validation.log_density);
+  file.write(group + "/status", static_cast<double>(validation.status));
 }
 
 }  // namespace
 
 void writeOnlineGroup(Hdf5Writer& file, const std::vector<std::string>& parameters,
                       const OnlineModel& model) {
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    if (isSparse(model.map.processes[p])) {
-      writeProcess(file, getMapGroup(parameters[p]), model.map.processes[p]);
-    }
+  if (const auto* map = std::get_if<GpMap>(&model.map)) {
+    writeCompressed(file, parameters, *map);
+  } else {
+    writeSurrogate(file, *std::get<std::shared_ptr<const Surrogate>>(model.map));
   }
   if (model.trust) {
     writeTrust(file, kTrust, *model.trust);
   }
 }
 
-void readOnlineGroup(const Hdf5Reader& file, const std::vector<std::string>& parameters, OnlineModel& model) {
+void readOnlineProcesses(const Hdf5Reader& file, const std::vector<std::string>& parameters, GpMap& map) {
   std::shared_ptr<const Eigen::MatrixXd> inputs;
   for (const std::string& parameter : parameters) {
     std::string group = getMapGroup(parameter);
@@ -110,11 +123,31 @@ void readOnlineGroup(const Hdf5Reader& file, const std::vector<std::string>& par
         inputs = std::make_shared<const Eigen::MatrixXd>(file.readSamples("/training_inputs"));
       }
     }
-    model.map.processes.push_back(readProcess(file, group, inputs));
+    map.processes.push_back(readProcess(file, group, inputs));
   }
-  if (file.contains(std::string(kTrust) + "/level")) {
-    model.trust = readTrust(file, kTrust);
-  }
+}
+
+bool holdsSurrogate(const Hdf5Reader& file) {
+  return file.contains(std::string(kSurrogate) + "/stddev_scale");
+}
+
+std::optional<TrustModel> readTrustModel(const Hdf5Reader& file) {
+  return file.contains(std::string(kTrust) + "/level") ? std::optional(readTrust(file, kTrust))
+                                                       : std::nullopt;
+}
+
+std::shared_ptr<const Surrogate> readSurrogate(const Hdf5Reader& file, const TrustModel& trust) {
+  const std::string group = kSurrogate;
+  const Eigen::VectorXd scale = file.readVector(group + "/stddev_scale");
+  return std::make_shared<const Surrogate>(
+      Surrogate{trust.forward,
+                trust.center,
+                trust.half_width,
+                scale.size(),
+                trust.unknown,
+                {scale, file.readVector(group + "/coverage95"),
+                 file.readSamples(group + "/residual_correlation"), file.readNumber(group + "/log_density"),
+                 static_cast<SurrogateStatus>(file.readNumber(group + "/status"))}});
 }
 
 }  // namespace twinmap

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,12 +10,22 @@
 
 namespace twinmap {
 
-/// Writes the processes of the online map and the trust model below /online; what the map shares with the
-/// exact one (transform, targets, noise profile) is left to the caller. `parameters`: names, one per process.
+/// Writes the online map and the trust model below /online: of a surrogate what the trust model's lacks, of
+/// processes those that are compressed; what these share with the exact ones (transform, targets, noise
+/// profile) is left to the caller. `parameters`: names.
 void writeOnlineGroup(Hdf5Writer& file, const std::vector<std::string>& parameters, const OnlineModel& model);
 
-/// Reads it back into a model whose shared parts the caller has set. `inputs`: training inputs of processes
-/// that are exact; read on demand.
-void readOnlineGroup(const Hdf5Reader& file, const std::vector<std::string>& parameters, OnlineModel& model);
+/// Whether the map is a surrogate.
+bool holdsSurrogate(const Hdf5Reader& file);
+
+/// None where the run could fit none.
+std::optional<TrustModel> readTrustModel(const Hdf5Reader& file);
+
+/// The surrogate, its forward part that of the trust model.
+std::shared_ptr<const Surrogate> readSurrogate(const Hdf5Reader& file, const TrustModel& trust);
+
+/// Reads the processes into a map whose shared parts the caller has set; those that are not compressed are
+/// the exact ones.
+void readOnlineProcesses(const Hdf5Reader& file, const std::vector<std::string>& parameters, GpMap& map);
 
 }  // namespace twinmap

@@ -37,6 +37,19 @@ gp::Moments mix(const std::vector<gp::Moments>& parts, const VectorXd& weights) 
 
 }  // namespace
 
+std::vector<Index> rankSimulations(const ForwardSurrogate& surrogate,
+                                   const Eigen::Ref<const VectorXd>& scores) {
+  const ArrayXd weights = (1.0 + surrogate.error_variance.array()).rsqrt();
+  const VectorXd misfit = ((surrogate.scores.colwise() - scores).array().colwise() * weights)
+                              .matrix()
+                              .colwise()
+                              .squaredNorm();
+  std::vector<Index> order(static_cast<std::size_t>(misfit.size()));
+  std::iota(order.begin(), order.end(), Index{0});
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return misfit[a] < misfit[b]; });
+  return order;
+}
+
 ScoreInversion::ScoreInversion(const ForwardSurrogate& surrogate, Index unknown)
     : surrogate_(surrogate),
       unknown_(unknown),
@@ -48,24 +61,20 @@ ScoreInversion::ScoreInversion(const ForwardSurrogate& surrogate, Index unknown)
   rough_.weights = (1.0 + surrogate.error_variance.array()).rsqrt();
 }
 
-std::vector<Index> ScoreInversion::findStarts() const {
+std::vector<VectorXd> ScoreInversion::findStarts() const {
   constexpr std::size_t kStarts = 3;
   constexpr double kApart = 0.5;  // in half widths: nearer starts lead to the same minimum
-  VectorXd misfit = ((surrogate_.scores.colwise() - scores_).array().colwise() * rough_.weights)
-                        .matrix()
-                        .colwise()
-                        .squaredNorm();
-  std::vector<Index> order(static_cast<std::size_t>(misfit.size()));
-  std::iota(order.begin(), order.end(), Index{0});
-  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return misfit[a] < misfit[b]; });
-  const auto unknowns = surrogate_.points.topRows(unknown_);
-  std::vector<Index> starts;
-  for (std::size_t i = 0; i < order.size() && starts.size() < kStarts; ++i) {
-    const bool apart = std::all_of(starts.begin(), starts.end(), [&](Index start) {
-      return (unknowns.col(start) - unknowns.col(order[i])).cwiseAbs().maxCoeff() > kApart;
+  std::vector<VectorXd> starts;
+  for (const Index simulation : rankSimulations(surrogate_, scores_)) {
+    const VectorXd point = surrogate_.points.col(simulation).head(unknown_);
+    const bool apart = std::all_of(starts.begin(), starts.end(), [&](const VectorXd& start) {
+      return (start - point).cwiseAbs().maxCoeff() > kApart;
     });
     if (apart) {
-      starts.push_back(order[i]);
+      starts.push_back(point);
+    }
+    if (starts.size() == kStarts) {
+      break;
     }
   }
   return starts;
@@ -160,7 +169,8 @@ void ScoreInversion::updateMetric(const VectorXd& unknown, Metric& metric) {
   metric.diagonal = false;
 }
 
-std::vector<ScoreInversion::Minimum> ScoreInversion::searchRoughly() {
+std::vector<ScoreInversion::Minimum> ScoreInversion::searchRoughly(
+    const std::vector<VectorXd>& starts) {
   constexpr int kFirstSteps = 3, kSteps = 9;
   constexpr double kOnTheWay = 0.15, kApart = 0.05;  // in half widths, after the first steps and at the end
   constexpr double kHopeless = 30.0;                 // e^-15 of the evidence, and errors of the rough metric
@@ -170,9 +180,9 @@ std::vector<ScoreInversion::Minimum> ScoreInversion::searchRoughly() {
       return (other.point - point).cwiseAbs().maxCoeff() > distance;
     });
   };
-  for (const Index start : findStarts()) {
+  for (const VectorXd& start : starts) {
     Minimum minimum;
-    minimum.point = surrogate_.points.col(start).head(unknown_);
+    minimum.point = start;
     improve(rough_, kFirstSteps, minimum.point);
     if (is_apart(minimum.point, kOnTheWay)) {
       minimum.objective = improve(rough_, kSteps, minimum.point);
@@ -197,6 +207,7 @@ void ScoreInversion::refine(Minimum& minimum) {
     updateMetric(minimum.point, metric);
     minimum.objective = improve(metric, steps, minimum.point);
   }
+  minimum.residual = residual_;
   linearize(metric);
   minimum.information = normal_;
   minimum.shift = gradient_ + normal_ * minimum.point;
@@ -217,7 +228,7 @@ gp::Moments ScoreInversion::infer(const Eigen::Ref<const VectorXd>& scores,
                                   const Eigen::Ref<const VectorXd>& known) {
   scores_ = scores;
   point_.tail(known.size()) = known;
-  std::vector<Minimum> minima = searchRoughly();
+  std::vector<Minimum> minima = searchRoughly(findStarts());
   std::vector<gp::Moments> parts;
   VectorXd objectives(static_cast<Index>(minima.size()));
   for (std::size_t i = 0; i < minima.size(); ++i) {
@@ -232,6 +243,28 @@ gp::Moments ScoreInversion::infer(const Eigen::Ref<const VectorXd>& scores,
     }
   }
   return mix(parts, weights / weights.sum());
+}
+
+const ScoreExplanation& ScoreInversion::explain(const Eigen::Ref<const VectorXd>& scores,
+                                                const Eigen::Ref<const VectorXd>& known,
+                                                const Eigen::Ref<const VectorXd>& start) {
+  scores_ = scores;
+  point_.tail(known.size()) = known;
+  std::vector<VectorXd> starts{start.cwiseMax(-1.0).cwiseMin(1.0)};
+  for (const VectorXd& similar : findStarts()) {
+    starts.push_back(similar);
+  }
+  std::vector<Minimum> minima = searchRoughly(starts);
+  for (Minimum& minimum : minima) {
+    refine(minimum);
+  }
+  const Minimum& best =
+      *std::min_element(minima.begin(), minima.end(),
+                        [](const Minimum& a, const Minimum& b) { return a.objective < b.objective; });
+  explanation_.point = point_;
+  explanation_.point.head(unknown_) = best.point;
+  explanation_.innovation = best.residual;
+  return explanation_;
 }
 
 }  // namespace twinmap

@@ -1,11 +1,23 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "framework/surrogate/forward_surrogate.hpp"
 #include "kernels/surrogate/box_moments.hpp"
 
 namespace twinmap {
+
+/// The training simulations in the order of how similar their scores are to those given (r): by the squares
+/// of the differences over 1 + error variance.
+std::vector<Eigen::Index> rankSimulations(const ForwardSurrogate& surrogate,
+                                          const Eigen::Ref<const Eigen::VectorXd>& scores);
+
+/// The point that explains scores best, and what it leaves of them.
+struct ScoreExplanation {
+  Eigen::VectorXd point;       ///< m, normalised
+  Eigen::VectorXd innovation;  ///< L^-1 r with L L' = C: independent, of unit variance, if all is right
+};
 
 /// Infers normalised unknowns (the first u variables of a point) from scores, under a uniform prior over the
 /// box.
@@ -28,6 +40,12 @@ class ScoreInversion {
   gp::Moments infer(const Eigen::Ref<const Eigen::VectorXd>& scores,
                     const Eigen::Ref<const Eigen::VectorXd>& known);
 
+  /// The minimum of most evidence, searched from `start` (u, normalised; moved into the box) too. The result
+  /// is valid until the next call. Cost: that of infer().
+  const ScoreExplanation& explain(const Eigen::Ref<const Eigen::VectorXd>& scores,
+                                  const Eigen::Ref<const Eigen::VectorXd>& known,
+                                  const Eigen::Ref<const Eigen::VectorXd>& start);
+
  private:
   /// What residuals are divided by: standard deviations, or a Cholesky factor of their covariance.
   struct Metric {
@@ -40,18 +58,19 @@ class ScoreInversion {
   struct Minimum {
     Eigen::VectorXd point;  // u
     double objective = 0.0;
+    Eigen::VectorXd residual;     // L^-1 r, r
     Eigen::MatrixXd information;  // u x u
     Eigen::VectorXd shift;        // u
   };
 
-  std::vector<Eigen::Index> findStarts() const;
+  std::vector<Eigen::VectorXd> findStarts() const;
   void evaluate(const Eigen::VectorXd& unknown);
   double calcObjective(const Metric& metric, const Eigen::VectorXd& unknown);
   void linearize(const Metric& metric);
   bool step(const Metric& metric, Eigen::VectorXd& unknown, double& objective, double& damping);
   double improve(const Metric& metric, int steps, Eigen::VectorXd& unknown);
   void updateMetric(const Eigen::VectorXd& unknown, Metric& metric);
-  std::vector<Minimum> searchRoughly();
+  std::vector<Minimum> searchRoughly(const std::vector<Eigen::VectorXd>& starts);
   void refine(Minimum& minimum);
   static bool hasEarlierTwin(const std::vector<Minimum>& minima, std::size_t index);
 
@@ -61,6 +80,7 @@ class ScoreInversion {
   std::vector<gp::SharedProcess::Workspace> workspaces_;
   Eigen::VectorXd scores_, point_, values_, residual_, stddev_, gradient_;
   Eigen::MatrixXd jacobian_, scaled_jacobian_, normal_;
+  ScoreExplanation explanation_;
 };
 
 }  // namespace twinmap

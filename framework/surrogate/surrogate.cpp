@@ -16,6 +16,13 @@ const char* toString(SurrogateStatus status) {
   return status == SurrogateStatus::kOk ? "ok" : "map_limited";
 }
 
+void Surrogate::answer(const gp::Moments& normalised, VectorXd& mean, VectorXd& stddev) const {
+  const auto widths = half_width.head(parameters).array();
+  mean = center.head(parameters).array() + widths * normalised.mean.head(parameters).array();
+  stddev = validation.stddev_scale.array() * widths *
+           normalised.covariance.diagonal().head(parameters).array().sqrt();
+}
+
 Predictions Surrogate::predict(const MatrixXd& features, const MatrixXd& inputs, int threads) const {
   constexpr Index kChunk = 16;  // measurements that share buffers
   const Index n = features.cols(), known = center.size() - unknown;
@@ -27,17 +34,15 @@ Predictions Surrogate::predict(const MatrixXd& features, const MatrixXd& inputs,
   Predictions predictions{MatrixXd(parameters, n), MatrixXd(parameters, n)};
   runTasks(threads, static_cast<std::size_t>((n + kChunk - 1) / kChunk), [&](std::size_t chunk) {
     ScoreInversion inversion(forward, unknown);
+    VectorXd mean, stddev;
     const Index first = static_cast<Index>(chunk) * kChunk;
     for (Index i = first; i < std::min(n, first + kChunk); ++i) {
       const VectorXd at =
           known > 0 ? VectorXd((inputs.col(i) - center.tail(known)).cwiseQuotient(half_width.tail(known)))
                     : VectorXd();
-      const gp::Moments found = inversion.infer(scores.col(i), at);
-      const auto widths = half_width.head(parameters).array();
-      predictions.mean.col(i) =
-          center.head(parameters).array() + widths * found.mean.head(parameters).array();
-      predictions.stddev.col(i) = validation.stddev_scale.array() * widths *
-                                  found.covariance.diagonal().head(parameters).array().sqrt();
+      answer(inversion.infer(scores.col(i), at), mean, stddev);
+      predictions.mean.col(i) = mean;
+      predictions.stddev.col(i) = stddev;
     }
   });
   return predictions;

@@ -4,6 +4,7 @@
 
 #include "framework/inverse_map/predictions.hpp"
 #include "framework/surrogate/forward_surrogate.hpp"
+#include "kernels/surrogate/box_moments.hpp"
 
 namespace twinmap {
 
@@ -33,6 +34,9 @@ struct Surrogate {
   Eigen::Index parameters = 0;         ///< p: the first variables of a point, which are reported
   Eigen::Index unknown = 0;            ///< u: with the nuisance parameters, which are marginalised
   SurrogateValidation validation;
+
+  /// Mean and standard deviation (p) of the parameters, in their units, for moments of normalised unknowns.
+  void answer(const gp::Moments& normalised, Eigen::VectorXd& mean, Eigen::VectorXd& stddev) const;
 
   /// Features (d x n, finite) and known inputs (m - u x n) -> mean and standard deviation of the parameters
   /// (p x n). The result does not depend on the number of threads. Throws std::invalid_argument for sizes

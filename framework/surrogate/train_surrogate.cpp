@@ -1,8 +1,11 @@
 #include "framework/surrogate/train_surrogate.hpp"
 
+#include <fmt/format.h>
+
 #include <stdexcept>
 
 #include "framework/spec/parameter_box.hpp"
+#include "framework/spec/yaml/nearest_name.hpp"
 #include "framework/surrogate/cross_validation.hpp"
 #include "framework/surrogate/fit_forward.hpp"
 
@@ -11,11 +14,6 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-
-std::string formatShare(double share) {
-  const std::string text = std::to_string(share);
-  return text.substr(0, text.find('.') + 3);
-}
 
 /// No more than an exact process is worth: the time grows with their number cubed.
 SurrogateSamples takeFirst(const SurrogateSamples& samples) {
@@ -37,31 +35,45 @@ SurrogateSamples takeFirst(const SurrogateSamples& samples) {
 
 std::vector<std::string> listWarnings(const ModelSpec& model, const SurrogateValidation& validation) {
   constexpr double kHonest = 0.9;
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings, told;
   for (Index k = 0; k < validation.coverage95.size(); ++k) {
     if (validation.coverage95(k) < kHonest) {
-      warnings.push_back("parameter '" + model.parameters[static_cast<std::size_t>(k)].name.text +
-                         "': only " + formatShare(validation.coverage95(k)) +
-                         " of the surrogate's own 95 % intervals held in cross-validation; its standard "
-                         "deviations are multiplied by " +
-                         formatShare(validation.stddev_scale(k)));
+      told.push_back(fmt::format("{} ({:.2f}, {:.2f})",
+                                 model.parameters[static_cast<std::size_t>(k)].name.text,
+                                 validation.coverage95(k), validation.stddev_scale(k)));
     }
+  }
+  if (!told.empty()) {
+    warnings.push_back(
+        "the surrogate's own 95 % intervals held too seldom in cross-validation, so that its "
+        "standard deviations are multiplied (share, factor): " +
+        listNames(told));
   }
   if (validation.status == SurrogateStatus::kMapLimited) {
     warnings.emplace_back(
-        "map_limited: the surrogate does not know its own error; more training samples would help");
+        "map_limited: the surrogate does not know its own error; refine the answers on the simulator, or add "
+        "simulations");
   }
   return warnings;
 }
 
 }  // namespace
 
+std::string findSurrogateObstacle(const ModelSpec& model, Index simulations,
+                                  const MatrixXd& noise_covariance) {
+  constexpr Index kFewest = 20;  // five folds of which are a cross-validation
+  if (simulations < kFewest + 2 * static_cast<Index>(collectSampled(model).size())) {
+    return "a surrogate needs at least 20 training samples, and two a parameter more";
+  }
+  return noise_covariance.diagonal().minCoeff() > 0.0 ? "" : "the noise of a feature is 0";
+}
+
 SurrogateTraining trainSurrogate(const ModelSpec& model, const SurrogateSamples& given,
                                  const TrainingControl& control) {
   const SurrogateSamples samples = takeFirst(given);
-  constexpr Index kFewest = 20;  // five folds of which are a cross-validation
-  if (samples.points.cols() < kFewest + 2 * samples.points.rows()) {
-    throw std::invalid_argument("a surrogate needs at least 20 training samples, and two a parameter more");
+  const std::string obstacle = findSurrogateObstacle(model, samples.points.cols(), samples.noise_covariance);
+  if (!obstacle.empty()) {
+    throw std::invalid_argument(obstacle);
   }
   const std::vector<ParameterSpec> sampled = collectSampled(model);
   SurrogateTraining training;

@@ -30,6 +30,10 @@ struct SurrogateTraining {
   std::vector<std::string> warnings;
 };
 
+/// Why a surrogate cannot be trained on so many simulations with such noise; empty if it can.
+std::string findSurrogateObstacle(const ModelSpec& model, Eigen::Index simulations,
+                                  const Eigen::MatrixXd& noise_covariance);
+
 /// Trains a surrogate on simulations of a model, and scales its standard deviations by what a five-fold
 /// cross-validation of everything, on the measured features, finds. At most the first 2000 simulations are
 /// used. Throws std::invalid_argument for a feature without noise and for too few simulations; gp::Stopped.

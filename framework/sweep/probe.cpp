@@ -16,6 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kTrainSamples = 60, kTestSamples = 20, kFewEvaluations = 5;
+constexpr int kMoreTrainSamples = 200;  // of a surrogate, whose time grows with the cube from there on
 
 struct TimedRun {
   RunSummary summary;
@@ -56,16 +57,24 @@ ExperimentSpec makeSmall(ExperimentSpec experiment) {
   experiment.design.test.samples = kTestSamples;
   experiment.model.simulation.allowed_failures = kMostFailures;
   experiment.noise.replicates = 1;
-  experiment.inverse_map.findGp()->approximation = GpApproximation::kExact;
+  if (GpMapSpec* gp = experiment.inverse_map.findGp()) {
+    gp->approximation = GpApproximation::kExact;
+  }
+  return experiment;
+}
+
+/// The map alone.
+ExperimentSpec makeBare(ExperimentSpec experiment) {
+  experiment.evaluation.limit = false;
+  experiment.refine = RefineMode::kNever;
+  experiment.evaluation.posterior.reset();
+  experiment.evaluation.baselines.clear();
   return experiment;
 }
 
 /// Few evaluations of one search.
 ExperimentSpec makeShort(ExperimentSpec experiment, int replicates) {
-  experiment.evaluation.limit = false;
-  experiment.refine = RefineMode::kNever;
-  experiment.evaluation.posterior.reset();
-  experiment.evaluation.baselines.clear();
+  experiment = makeBare(std::move(experiment));
   GpMapSpec& gp = *experiment.inverse_map.findGp();
   gp.starts = 1;
   gp.max_evaluations = kFewEvaluations;
@@ -97,16 +106,32 @@ std::vector<EvaluationTime> measureEvaluations(const ExperimentSpec& small, doub
 double countEvaluationsOnAllDraws(const ExperimentSpec& experiment, ExperimentSpec small,
                                   const fs::path& folder) {
   small.noise.replicates = experiment.noise.replicates;
-  small.evaluation = makeShort(small, 1).evaluation;
-  small.refine = RefineMode::kNever;
-  return timeRun(small, "all", folder).countEvaluations() /
+  return timeRun(makeBare(small), "all", folder).countEvaluations() /
          static_cast<double>(experiment.model.parameters.size());
 }
 
+/// Of processes from features to parameters.
+TrainingTime measureProcesses(const ExperimentSpec& experiment, const ExperimentSpec& small,
+                              const TimedRun& run, double most_samples, const fs::path& folder) {
+  TrainingTime time;
+  time.measured = measureEvaluations(small, most_samples, folder);
+  time.evaluations = 1.0;
+  time.evaluations = run.getTraining() / time.calcTraining(small);
+  time.evaluations_all = countEvaluationsOnAllDraws(experiment, small, folder);
+  return time;
+}
+
+/// Of a surrogate: whole trainings.
+TrainingTime measureSurrogate(ExperimentSpec small, const TimedRun& run, const fs::path& folder) {
+  small.design.train.samples = kMoreTrainSamples;
+  const TimedRun more = timeRun(makeBare(small), "more", folder);
+  TrainingTime time;
+  time.measured = {{double(kTrainSamples), run.getTraining()},
+                   {double(kMoreTrainSamples), more.getTraining()}};
+  return time;
+}
+
 ProbeTimes measure(const ExperimentSpec& experiment, double most_samples) {
-  if (experiment.inverse_map.findGp() == nullptr) {
-    throw std::runtime_error("how long a surrogate's training takes is not estimated");
-  }
   const TemporaryFolder folder;
   const ExperimentSpec small = makeSmall(experiment);
   const TimedRun run = timeRun(small, "small", folder.getPath());
@@ -122,10 +147,9 @@ ProbeTimes measure(const ExperimentSpec& experiment, double most_samples) {
   times.preparation = preparing / (double(kTrainSamples) * countReferences(kTrainSamples));
   times.overhead = std::max(
       run.seconds - simulating - neighbourhoods - limit - refining - run.getTraining() - preparing, 0.0);
-  times.training.measured = measureEvaluations(small, most_samples, folder.getPath());
-  times.training.evaluations = 1.0;
-  times.training.evaluations = run.getTraining() / times.training.calcTraining(small);
-  times.training.evaluations_all = countEvaluationsOnAllDraws(experiment, small, folder.getPath());
+  times.training = experiment.inverse_map.findGp() != nullptr
+                       ? measureProcesses(experiment, small, run, most_samples, folder.getPath())
+                       : measureSurrogate(small, run, folder.getPath());
   return times;
 }
 

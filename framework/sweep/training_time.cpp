@@ -31,6 +31,9 @@ double TrainingTime::calcEvaluation(double samples) const {
 }
 
 double TrainingTime::calcTraining(const ExperimentSpec& experiment) const {
+  if (experiment.inverse_map.findGp() == nullptr) {
+    return calcEvaluation(experiment.design.train.samples);
+  }
   double seconds = 0.0, of_search = evaluations;
   for (const TrainingStep& step : listTrainingSteps(experiment)) {
     const double count = step.searches > 0.0 ? step.searches * of_search : 1.0;

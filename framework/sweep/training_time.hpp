@@ -6,7 +6,8 @@
 
 namespace twinmap {
 
-/// Measured: one evaluation of the marginal likelihood with n samples takes so long on one thread.
+/// Measured: one evaluation of the marginal likelihood with n samples, or the whole training of a surrogate,
+/// takes so long on one thread.
 struct EvaluationTime {
   double samples = 0.0;
   double seconds = 0.0;

@@ -4,9 +4,10 @@
 #include <limits>
 
 #include "framework/evaluation/information_limit.hpp"
-#include "framework/experiment/evaluate_map.hpp"
+#include "framework/experiment/answers.hpp"
 #include "framework/experiment/fit_online.hpp"
 #include "framework/experiment/prepare_data.hpp"
+#include "framework/experiment/refine_test_samples.hpp"
 #include "framework/inverse_map/train_gp_map.hpp"
 #include "framework/results/tables.hpp"
 #include "framework/sensitivity/fisher_information.hpp"
@@ -35,12 +36,11 @@ struct Inputs {
   int threads;
 };
 
-std::string findMapDifference(const std::filesystem::path& file, const Inputs& inputs, const GpMap& map) {
-  const OnlineFit online =
-      fitOnline(inputs.experiment, inputs.sets, inputs.extractor, inputs.data.labelled, map);
+std::string findMapDifference(const std::filesystem::path& file, const Inputs& inputs, const GpMap& map,
+                              const OnlineModel& online) {
   const TemporaryFolder temporary;
   writeMapsFile(temporary.getPath() / "maps.h5",
-                makeStoredMap(inputs.experiment, inputs.extractor, map, online.model));
+                makeStoredMap(inputs.experiment, inputs.extractor, map, online));
   return findHdf5Difference(file, temporary.getPath() / "maps.h5");
 }
 
@@ -72,14 +72,21 @@ MatrixXd calcLimit(const Inputs& inputs, const std::vector<int>& chosen,
   return limit;
 }
 
-RunSummary summarize(const Inputs& inputs, const GpMapTraining& trained, const MatrixXd& limit) {
+RunSummary summarize(const Inputs& inputs, const GpMapTraining& trained, const OnlineModel& online,
+                     const MatrixXd& limit) {
   const LabelledSets& labelled = inputs.data.labelled;
+  const Predictions predictions = trained.map.predict(labelled.test.features, labelled.test.inputs);
+  RunControl control;
+  control.threads = inputs.threads;
+  const RefinedTests refined = refineTestSamples(
+      {inputs.experiment, inputs.simulator, inputs.extractor, inputs.data, &online, predictions, control});
   RunSummary run;
   run.parameters = inputs.experiment.model.parameters;
   run.test_indices = inputs.data.test_indices;
-  run.evaluation = evaluatePredictions(run.parameters, labelled.test.parameters,
-                                       trained.map.predict(labelled.test.features, labelled.test.inputs),
-                                       limit, trained.map.residual_correlation);
+  run.evaluation =
+      evaluateAnswers(run.parameters, labelled.test.parameters,
+                      makeAnswers(predictions, trained.map.residual_correlation, refined.refined), limit);
+  run.evaluation.refined = refined.refined;
   run.training.leave_one_out = calcMetrics(run.parameters, labelled.train.parameters, trained.leave_one_out,
                                            {}, labelled.train.replicates);
   for (const gp::Process& process : trained.map.processes) {
@@ -112,11 +119,19 @@ void checkMapAndTables(const Inputs& inputs, const std::vector<int>& limits, Ver
     return;
   }
   GpMapTraining trained;
+  OnlineModel online;
   verification.check("maps.h5: refitted at its hyperparameters", [&] {
     trained = refitGpMap(readMapsFile(folder / "maps.h5").map, *inputs.experiment.inverse_map.findGp(),
                          inputs.experiment.transform, inputs.data.labelled.train, inputs.threads,
                          inputs.experiment.model.inputs);
-    return findMapDifference(folder / "maps.h5", inputs, trained.map);
+    online = fitOnline({inputs.experiment,
+                        inputs.sets,
+                        inputs.extractor,
+                        inputs.data.labelled,
+                        {inputs.threads, nullptr}},
+                       trained.map)
+                 .model;
+    return findMapDifference(folder / "maps.h5", inputs, trained.map, online);
   });
   if (trained.map.processes.empty()) {
     verification.notes.emplace_back("predictions and tables are not compared, for they follow from maps.h5");
@@ -124,7 +139,7 @@ void checkMapAndTables(const Inputs& inputs, const std::vector<int>& limits, Ver
   }
   RunSummary run;
   verification.check("predictions.csv: all test samples inferred again", [&] {
-    run = summarize(inputs, trained, calcLimit(inputs, limits, folder / "predictions.csv"));
+    run = summarize(inputs, trained, online, calcLimit(inputs, limits, folder / "predictions.csv"));
     return findDifference(folder / "predictions.csv", makePredictionsCsv(run));
   });
   if (run.evaluation.metrics.empty()) {

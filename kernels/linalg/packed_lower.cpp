@@ -1,6 +1,8 @@
 #include "kernels/linalg/packed_lower.hpp"
 
 #include <algorithm>
+#include <stdexcept>
+#include <utility>
 
 #include "kernels/linalg/packet.hpp"
 #include "kernels/linalg/triangular.hpp"
@@ -68,6 +70,18 @@ PackedLower::PackedLower(ConstView lower)
     storeInverse(lower.block(r, r, rows, rows), tile, scratch);
     tile += kTileElements;
   }
+}
+
+PackedLower PackedLower::fromTiles(Eigen::VectorXd tiles) {
+  PackedLower packed;
+  while (packed.blocks_ * (packed.blocks_ + 1) / 2 * kTileElements < tiles.size()) {
+    ++packed.blocks_;
+  }
+  if (packed.blocks_ * (packed.blocks_ + 1) / 2 * kTileElements != tiles.size()) {
+    throw std::invalid_argument("PackedLower: tiles of another size");
+  }
+  packed.tiles_ = std::move(tiles);
+  return packed;
 }
 
 void PackedLower::solve(double* x) const {

@@ -17,6 +17,11 @@ class PackedLower {
   /// lower: n x n, nonzero diagonal; only its lower triangle is read. Cost: n^2 copies.
   explicit PackedLower(ConstView lower);
 
+  /// All that the matrix consists of, for storage, and the matrix from it, bit for bit. Throws
+  /// std::invalid_argument for a size that is none of whole tiles.
+  const Eigen::VectorXd& getTiles() const { return tiles_; }
+  static PackedLower fromTiles(Eigen::VectorXd tiles);
+
   /// n rounded up to whole tiles.
   Index paddedSize() const { return blocks_ * kTile; }
 

@@ -48,6 +48,32 @@ SharedProcess::SharedProcess(const MatrixXd& points, const MatrixXd& values, Sha
   updateLeftOutRatio();
 }
 
+SharedProcess::SharedProcess(SharedProcessParts parts)
+    : structure_(parts.structure),
+      hyperparameters_(std::move(parts.hyperparameters)),
+      scaled_points_(std::move(parts.scaled_points)),
+      weights_(std::move(parts.weights)),
+      coefficients_(std::move(parts.coefficients)),
+      factor_(linalg::PackedLower::fromTiles(std::move(parts.factor_tiles))),
+      solved_terms_(std::move(parts.solved_terms)),
+      term_factor_(std::move(parts.term_factor)),
+      left_out_ratio_(std::move(parts.left_out_ratio)) {
+  left_out_.amplitude = std::move(parts.amplitude);
+  const Index n = scaled_points_.rows(), p = scaled_points_.cols(), r = weights_.cols();
+  const Index q = countTerms(structure_.trend, p);
+  if (hyperparameters_.length_scales.size() != p || weights_.rows() != n || coefficients_.rows() != q ||
+      coefficients_.cols() != r || factor_.paddedSize() < n || solved_terms_.rows() != n ||
+      solved_terms_.cols() != q || term_factor_.rows() != q || term_factor_.cols() != q ||
+      left_out_.amplitude.size() != r || left_out_ratio_.size() != n) {
+    throw std::invalid_argument("SharedProcess: parts that do not fit each other");
+  }
+}
+
+SharedProcessParts SharedProcess::getParts() const {
+  return {structure_,         hyperparameters_, scaled_points_, weights_,            coefficients_,
+          factor_.getTiles(), solved_terms_,    term_factor_,   left_out_.amplitude, left_out_ratio_};
+}
+
 void SharedProcess::updateLeftOutRatio() {
   left_out_ratio_ = (left_out_.residual.array().square().rowwise() / left_out_.amplitude.transpose().array())
                         .rowwise()

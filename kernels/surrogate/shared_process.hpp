@@ -8,6 +8,20 @@
 
 namespace twinmap::gp {
 
+/// The numbers that a SharedProcess predicts from: n points, p variables, q terms of the trend, r functions.
+struct SharedProcessParts {
+  SharedStructure structure;
+  SharedHyperparameters hyperparameters;
+  Eigen::MatrixXd scaled_points;  ///< n x p, over the length scales
+  Eigen::MatrixXd weights;        ///< K^-1 (values - trend), n x r
+  Eigen::MatrixXd coefficients;   ///< of the trend, q x r
+  Eigen::VectorXd factor_tiles;   ///< of K's lower factor (linalg::PackedLower)
+  Eigen::MatrixXd solved_terms;   ///< L^-1 H', n x q
+  Eigen::MatrixXd term_factor;    ///< lower factor of H K^-1 H', q x q
+  Eigen::VectorXd amplitude;      ///< LeftOut::amplitude, r
+  Eigen::VectorXd left_out_ratio; ///< n
+};
+
 /// r smooth functions of p variables, known without noise at n points: a Gaussian process each, with one
 /// covariance function and trend for all. Each function's variance is the one with which the points that are
 /// left out agree (LeftOut::amplitude), times a local factor that all share: the ratio of the squared errors
@@ -25,6 +39,11 @@ class SharedProcess {
   /// std::runtime_error if the covariance is not positive definite. Cost: 2 n^3 flops.
   SharedProcess(const Eigen::MatrixXd& points, const Eigen::MatrixXd& values, SharedStructure structure,
                 SharedHyperparameters hyperparameters);
+
+  /// A process that predicts bit for bit as the one that the parts are of; it has no LeftOut but the
+  /// amplitude. Throws std::invalid_argument for sizes that do not fit.
+  explicit SharedProcess(SharedProcessParts parts);
+  SharedProcessParts getParts() const;
 
   Eigen::Index getFunctionCount() const { return weights_.cols(); }
   const SharedStructure& getStructure() const { return structure_; }

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "framework/report/sections/sections.hpp"
-#include "framework/report/sections/warnings.hpp"
 #include "framework/spec/check/check_experiment.hpp"
 #include "framework/spec/yaml/number_text.hpp"
 
@@ -133,7 +132,7 @@ void addVerdict(const RunFolder& run, const std::vector<GateResult>& gates, Page
                              {"could not be simulated", std::to_string(run.failures.rows.size())},
                              {"seed", std::to_string(experiment.seed)},
                              {"wall time", makeSeconds(run)}});
-  section.html += makeGateList(gates) + makeWarningList(collectWarnings(run));
+  section.html += makeGateList(gates) + makeWarningList(run.provenance.warnings);
   page.sections.push_back(std::move(section));
 }
 

@@ -168,7 +168,7 @@ TEST(JointCalibration, NeedsTheCorrelationOfTheExactPosterior) {
   const LinearGaussian problem = makeLinearGaussian();
   const MatrixXd identity = MatrixXd::Identity(3, 3);
   EXPECT_GT((problem.correlation - identity).cwiseAbs().maxCoeff(), 0.3);  // there is something to find
-  const JointMetrics honest = calcJointMetrics(problem.truth, problem.posterior, problem.correlation);
+  const JointMetrics honest = calcJointMetrics(problem.truth, problem.posterior, {problem.correlation});
   EXPECT_NEAR(honest.coverage95, 0.95, kErrors * honest.se.coverage95);
   EXPECT_NEAR(honest.coverage90, 0.90, kErrors * honest.se.coverage90);
   EXPECT_NEAR(honest.coverage50, 0.50, kErrors * honest.se.coverage50);
@@ -177,7 +177,7 @@ TEST(JointCalibration, NeedsTheCorrelationOfTheExactPosterior) {
                          0.5 * std::log(test::calcDeterminant(problem.correlation));
   EXPECT_NEAR(honest.nlpd, entropy, kErrors * honest.se.nlpd);
   EXPECT_NEAR(honest.se.nlpd, std::sqrt(0.5 * 3 / kSamples), 1e-4);  // half a chi-square of 3
-  const JointMetrics independent = calcJointMetrics(problem.truth, problem.posterior, identity);
+  const JointMetrics independent = calcJointMetrics(problem.truth, problem.posterior, {identity});
   EXPECT_GT(independent.nlpd, honest.nlpd + 20 * honest.se.nlpd);
   EXPECT_GT(std::abs(independent.coverage50 - 0.5), 5 * honest.se.coverage50);
 }
@@ -191,7 +191,7 @@ TEST(JointCalibration, ByHand) {
   predictions.stddev << 1, 1, 3, 3;
   Eigen::Matrix2d correlation;
   correlation << 1, 0.6, 0.6, 1;
-  const JointMetrics metrics = calcJointMetrics(truth, predictions, correlation);
+  const JointMetrics metrics = calcJointMetrics(truth, predictions, {correlation});
   EXPECT_DOUBLE_EQ(metrics.coverage50, 0.5);
   EXPECT_DOUBLE_EQ(metrics.coverage95, 0.5);
   EXPECT_NEAR(metrics.nlpd, 0.5 * (1.25 + 20) / 2 + std::log(3.0) + 0.5 * std::log(0.64) + std::log(2 * M_PI),

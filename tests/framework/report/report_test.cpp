@@ -83,12 +83,8 @@ TEST_F(ReportTest, GatesAreListedAndAnswered) {
   EXPECT_NE(report.html.find("0.9 \u2264 coverage95, every parameter"), std::string::npos);
 }
 
-TEST_F(ReportTest, WarningsSayWhatToDo) {
-  const std::string html = make().html;
-  EXPECT_NE(html.find("1 sample could not be simulated"), std::string::npos);
-  EXPECT_NE(html.find("The response says little about d"), std::string::npos);
-  EXPECT_NE(html.find("Hyperparameters of d ended at a bound (noise_stddev"), std::string::npos);
-  EXPECT_EQ(html.find("Hyperparameters of k ended at a bound"), std::string::npos);  // an irrelevant input
+TEST_F(ReportTest, WarningsOfTheRunAreShown) {
+  EXPECT_NE(make().html.find("1 sample could not be simulated"), std::string::npos);
 }
 
 TEST_F(ReportTest, MissingFilesLeaveTheirChapterOut) {

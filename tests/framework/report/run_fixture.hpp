@@ -72,7 +72,8 @@ inline void writeRunFolder(const std::filesystem::path& folder, const std::strin
                 "d,0,1,-3,22,0,tolerance,noise_stddev at its lower bound 1e-05,1e6,0\n");
   writeTextFile(
       folder / "provenance.json",
-      R"({"date": "2026-01-02T03:04:05Z", "command": "twinmap run </script>", "seconds": {"simulate": 2}})");
+      R"({"date": "2026-01-02T03:04:05Z", "command": "twinmap run </script>", "seconds": {"simulate": 2},
+"warnings": ["1 sample could not be simulated"]})");
 }
 
 }  // namespace twinmap

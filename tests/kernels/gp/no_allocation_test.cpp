@@ -7,7 +7,6 @@
 #include <cstdlib>
 
 #include "kernels/gp/fit.hpp"
-#include "kernels/interpolation/interpolator.hpp"
 #include "kernels/online/online_predictor.hpp"
 #include "kernels/sparse/compression.hpp"
 #include "tests/kernels/support/random_data.hpp"
@@ -128,15 +127,6 @@ TEST_F(NoAllocation, InAnOnlinePredictionOfCompactProcesses) {
   OnlinePredictor::Workspace workspace(predictor);
   const VectorXd x = inputs.col(3);
   EXPECT_EQ(allocationsOf([&] { predictor.predictWithGradient(x, workspace); }), 0);
-}
-
-TEST_F(NoAllocation, InAnInterpolationAfterTheFirst) {
-  const MatrixXd points = test::randomMatrix(3, 60, 1);
-  const Interpolator interpolator = fitInterpolator(points, test::randomMatrix(5, 3, 2) * points);
-  Interpolator::Workspace workspace;
-  const VectorXd x = points.col(3);
-  interpolator.evaluate(x, workspace);
-  EXPECT_EQ(allocationsOf([&] { interpolator.evaluate(x, workspace); }), 0);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "framework/multibody/calc_input_signals.hpp"
+#include "framework/simulation/calc_input_signals.hpp"
 
 #include "framework/simulation/model_numbers.hpp"
 #include "framework/simulation/excitation.hpp"

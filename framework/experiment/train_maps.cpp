@@ -1,0 +1,95 @@
+#include "framework/experiment/train_maps.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <memory>
+
+#include "framework/experiment/fit_online.hpp"
+#include "framework/experiment/train_map.hpp"
+#include "framework/experiment/train_surrogate_map.hpp"
+#include "framework/monitoring/stage_timer.hpp"
+#include "framework/store/maps_file.hpp"
+#include "framework/surrogate/train_surrogate.hpp"
+
+namespace twinmap {
+namespace {
+
+/// Makes the map ready for measurements and writes both. `exact`: without processes for a surrogate.
+template <class Map>
+OnlineFit prepareOnline(const MapTrainingContext& context, const Map& map, const GpMap& exact) {
+  StageNotes notes;
+  OnlineFit online = timeStage("prepare for measurements", notes, [&] {
+    return fitOnline({context.experiment,
+                      context.sets,
+                      context.extractor,
+                      context.labelled,
+                      {context.control.threads, context.control.abandon}},
+                     map);
+  });
+  notes.append(online.notes);
+  online.notes = notes;
+  writeMapsFile(context.folder / "maps.h5",
+                makeStoredMap(context.experiment, context.extractor, exact, online.model));
+  return online;
+}
+
+/// Trains one Gaussian process per parameter.
+TrainedMap trainProcesses(const MapTrainingContext& context) {
+  Training training = trainMap(context.experiment, context.labelled.train, context.control);
+  OnlineFit online = prepareOnline(context, training.map, training.map);
+  training.notes.append(online.notes);
+  const auto map = std::make_shared<const GpMap>(std::move(training.map));
+  const auto predict = [map](const Eigen::MatrixXd& features, const Eigen::MatrixXd& inputs) {
+    return map->predict(features, inputs);
+  };
+  return {"inverse_map",
+          predict,
+          map->residual_correlation,
+          map->transform,
+          std::move(training.summary),
+          std::move(training.notes),
+          std::move(online.model)};
+}
+
+/// Trains a surrogate. What is inferred with it does not depend on the threads.
+TrainedMap trainForward(const MapTrainingContext& context) {
+  SurrogateMapTraining training = trainSurrogateMap(context.experiment, context.sets, context.extractor,
+                                                    context.labelled.train, context.control);
+  const auto surrogate = std::make_shared<const Surrogate>(std::move(training.surrogate));
+  OnlineFit online = prepareOnline(context, surrogate, {});
+  training.notes.append(online.notes);
+  const auto predict = [surrogate, threads = context.control.threads](const Eigen::MatrixXd& features,
+                                                                      const Eigen::MatrixXd& inputs) {
+    return surrogate->predict(features, inputs, threads);
+  };
+  return {"surrogate",
+          predict,
+          surrogate->validation.residual_correlation,
+          fitTransform(context.experiment.transform, context.labelled.train),
+          std::move(training.summary),
+          std::move(training.notes),
+          std::move(online.model)};
+}
+
+TrainedMap trainAutomatically(const MapTrainingContext& context) {
+  const LabelledFeatures& train = context.labelled.train;
+  const std::string obstacle = findSurrogateObstacle(
+      context.experiment.model, train.features.cols() / train.replicates, train.noise_covariance);
+  if (obstacle.empty()) {
+    return trainForward(context);
+  }
+  spdlog::info("inverse map: Gaussian processes, because {}", obstacle);
+  return trainProcesses(context);
+}
+
+}  // namespace
+
+TrainedMap trainChosenMap(const MapTrainingContext& context) {
+  const InverseMapSpec& spec = context.experiment.inverse_map;
+  if (spec.isAutomatic()) {
+    return trainAutomatically(context);
+  }
+  return spec.findGp() != nullptr ? trainProcesses(context) : trainForward(context);
+}
+
+}  // namespace twinmap

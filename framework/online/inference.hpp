@@ -1,0 +1,13 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace twinmap {
+
+/// What is inferred from one measurement.
+struct Inference {
+  Eigen::VectorXd mean, stddev;  ///< p, in the parameters' units
+  Eigen::VectorXd inputs;        ///< what the map sees of the features and known inputs, k
+};
+
+}  // namespace twinmap

@@ -1,0 +1,179 @@
+#include "framework/results/warnings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "framework/spec/parameter_box.hpp"
+#include "framework/spec/yaml/nearest_name.hpp"
+#include "framework/spec/yaml/number_text.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+
+/// "k (0.71), c (0.8)" of the parameters for which number(p) is to be told; "" of none.
+template <class Number, class IsTold>
+std::string listParameters(const RunSummary& run, const Number& number, const IsTold& is_told) {
+  constexpr int kDigits = 2;
+  std::vector<std::string> told;
+  for (std::size_t p = 0; p < run.parameters.size(); ++p) {
+    if (is_told(p)) {
+      told.push_back(run.parameters[p].name.text + " (" + toShortText(number(p), kDigits) + ")");
+    }
+  }
+  return listNames(told);
+}
+
+/// 95 % intervals that hold too few or too many true values: further from 0.95 than three standard errors.
+void appendCoverage(const RunSummary& run, std::vector<Warning>& warnings) {
+  constexpr double kNominal = 0.95, kErrors = 3.0;
+  const auto coverage = [&](std::size_t p) { return run.evaluation.metrics[p].coverage95; };
+  const auto band = [&](std::size_t p) {
+    return kErrors * std::sqrt(kNominal * (1.0 - kNominal) / run.evaluation.metrics[p].samples);
+  };
+  const std::string narrow =
+      listParameters(run, coverage, [&](std::size_t p) { return coverage(p) < kNominal - band(p); });
+  const std::string wide =
+      listParameters(run, coverage, [&](std::size_t p) { return coverage(p) > kNominal + band(p); });
+  if (!narrow.empty()) {
+    warnings.push_back({Gravity::kMisleading,
+                        "the 95 % intervals hold too few of the true values, the standard deviations are too "
+                        "small: " +
+                            narrow + ". Refine the answers on the simulator, or train on more samples"});
+  }
+  if (!wide.empty()) {
+    warnings.push_back(
+        {Gravity::kRemark, "the 95 % intervals hold more of the true values than they claim: " + wide +
+                               ". More training samples make them narrower"});
+  }
+}
+
+void appendLimit(const RunSummary& run, std::vector<Warning>& warnings) {
+  constexpr double kFar = 1.5;
+  const auto ratio = [&](std::size_t p) { return run.evaluation.metrics[p].ratio_to_limit; };
+  const std::string far = listParameters(run, ratio, [&](std::size_t p) { return ratio(p) > kFar; });
+  if (!far.empty()) {
+    warnings.push_back({Gravity::kPoor,
+                        "the answers are worse than the measurement allows, in standard deviations so many "
+                        "times: " +
+                            far + ". Refine them on the simulator, or add simulations"});
+  }
+}
+
+/// Whether the information limit has told already that the parameter is not determined.
+bool isUndetermined(const RunSummary& run, std::size_t p) {
+  return run.evaluation.identifiability && run.evaluation.identifiability->isUndetermined(Index(p));
+}
+
+/// Inferred standard deviations close to that of the box: nothing was learnt.
+void appendUninformed(const RunSummary& run, std::vector<Warning>& warnings) {
+  constexpr double kUninformed = 0.7;
+  const auto share = [&](std::size_t p) {
+    const auto stddev = run.evaluation.predictions.stddev.row(Index(p));
+    const Bounds& bounds = run.parameters[p].bounds;
+    return std::sqrt(stddev.squaredNorm() / double(stddev.size())) /
+           (kUniformStddev * (bounds.upper - bounds.lower));
+  };
+  const std::string uninformed = listParameters(
+      run, share, [&](std::size_t p) { return share(p) > kUninformed && !isUndetermined(run, p); });
+  if (!uninformed.empty()) {
+    warnings.push_back({Gravity::kPoor,
+                        "the answers say little more than the bounds do, in shares of their standard "
+                        "deviation: " +
+                            uninformed +
+                            ". Measure another output, excite differently, or do not infer them"});
+  }
+}
+
+void appendCorrelations(const RunSummary& run, std::vector<Warning>& warnings) {
+  constexpr double kInseparable = 0.95;
+  constexpr int kDigits = 3;
+  if (!run.evaluation.identifiability) {
+    return;
+  }
+  const Eigen::MatrixXd& correlation = run.evaluation.identifiability->correlation;
+  std::vector<std::string> pairs;
+  for (std::size_t row = 0; row < run.parameters.size(); ++row) {
+    for (std::size_t other = 0; other < row; ++other) {
+      const double value = correlation(Index(row), Index(other));
+      if (std::abs(value) > kInseparable && !isUndetermined(run, row) && !isUndetermined(run, other)) {
+        pairs.push_back(fmt::format("{} and {} ({})", run.parameters[other].name.text,
+                                    run.parameters[row].name.text, toShortText(value, kDigits)));
+      }
+    }
+  }
+  if (!pairs.empty()) {
+    warnings.push_back(
+        {Gravity::kPoor, "the response hardly tells parameters apart (correlation): " + listNames(pairs) +
+                             ". Only a combination of them is determined: measure another output or excite "
+                             "differently"});
+  }
+}
+
+void appendFailures(const RunSummary& run, std::vector<Warning>& warnings) {
+  const std::size_t failed = run.failures.size();
+  if (failed > 0) {
+    warnings.push_back(
+        {Gravity::kMisleading,
+         fmt::format("{} {} could not be simulated, and the map was neither trained nor tested there: see "
+                     "failures.csv",
+                     failed, failed == 1 ? "sample" : "samples")});
+  }
+}
+
+/// Without the length scales at their upper bound: these merely say that an input is irrelevant.
+std::string dropLongLengthScales(const std::string& at_bound) {
+  std::string kept;
+  std::istringstream items(at_bound);
+  for (std::string item; std::getline(items, item, ';');) {
+    item.erase(0, item.find_first_not_of(' '));
+    const bool is_long = item.rfind("length_scale", 0) == 0 && item.find("upper bound") != std::string::npos;
+    kept += is_long ? "" : (kept.empty() ? "" : "; ") + item;
+  }
+  return kept;
+}
+
+void appendTraining(const RunSummary& run, std::vector<Warning>& warnings) {
+  std::vector<std::string> noise_only, at_bound;
+  for (const TrainingStart& start : run.training.starts) {
+    if (!start.best) {
+      continue;
+    }
+    if (start.noise_only) {
+      noise_only.push_back(start.parameter);
+    }
+    const std::string kept = dropLongLengthScales(start.at_bound);
+    if (!kept.empty()) {
+      at_bound.push_back(start.parameter + " (" + kept + ")");
+    }
+  }
+  if (!noise_only.empty()) {
+    warnings.push_back(
+        {Gravity::kPoor, "the map explains a parameter as noise alone: " + listNames(noise_only) +
+                             ". More inverse_map.gp.starts or other features may find a signal"});
+  }
+  if (!at_bound.empty()) {
+    warnings.push_back({Gravity::kRemark, "hyperparameters ended at a bound: " + listNames(at_bound) +
+                                              ". Widen inverse_map.gp.bounds"});
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> collectWarnings(const RunSummary& run) {
+  std::vector<Warning> warnings;
+  appendFailures(run, warnings);
+  appendCoverage(run, warnings);
+  warnings.insert(warnings.end(), run.notes.warnings.begin(), run.notes.warnings.end());
+  appendLimit(run, warnings);
+  appendUninformed(run, warnings);
+  appendCorrelations(run, warnings);
+  appendTraining(run, warnings);
+  return listTexts(std::move(warnings));
+}
+
+}  // namespace twinmap

@@ -1,0 +1,98 @@
+#include "framework/results/warnings.hpp"
+
+#include <gtest/gtest.h>
+
+namespace twinmap {
+namespace {
+
+constexpr int kSamples = 400;
+
+/// Three parameters of bounds [0, 1], inferred as they should be.
+RunSummary makeRun() {
+  RunSummary run;
+  for (const char* name : {"k", "d", "m"}) {
+    ParameterSpec parameter;
+    parameter.name.text = name;
+    parameter.bounds = {0.0, 1.0, {}};
+    run.parameters.push_back(parameter);
+    ParameterMetrics metrics;
+    metrics.coverage95 = 0.95;
+    metrics.ratio_to_limit = 1.0;
+    metrics.samples = kSamples;
+    run.evaluation.metrics.push_back(metrics);
+  }
+  run.evaluation.predictions.stddev = Eigen::MatrixXd::Constant(3, kSamples, 0.01);
+  return run;
+}
+
+TEST(Warnings, AnHonestRunHasNone) {
+  EXPECT_TRUE(collectWarnings(makeRun()).empty());
+}
+
+TEST(Warnings, AreToldOnceForAllParameters) {
+  RunSummary run = makeRun();
+  run.evaluation.metrics[0].coverage95 = 0.7;
+  run.evaluation.metrics[2].coverage95 = 0.81;
+  const std::vector<std::string> warnings = collectWarnings(run);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("k (0.7), m (0.81)"), std::string::npos) << warnings[0];
+  EXPECT_EQ(warnings[0].find("d ("), std::string::npos);
+}
+
+// The standard error of a coverage of 0.95 from 400 samples is 0.0109.
+TEST(Warnings, CoverageWithinThreeStandardErrorsIsChance) {
+  RunSummary run = makeRun();
+  run.evaluation.metrics[1].coverage95 = 0.92;
+  EXPECT_TRUE(collectWarnings(run).empty());
+  run.evaluation.metrics[1].coverage95 = 0.915;
+  EXPECT_EQ(collectWarnings(run).size(), 1U);
+}
+
+TEST(Warnings, TheGravestComesFirst) {
+  RunSummary run = makeRun();
+  run.notes.warn(Gravity::kRemark, "a remark");
+  run.notes.warn(Gravity::kMisleading, "misleading");
+  run.evaluation.metrics[1].ratio_to_limit = 5.2;
+  run.failures = {{"test", 1, Eigen::Vector3d(0, 0, 0), "step limit"}};
+  const std::vector<std::string> warnings = collectWarnings(run);
+  ASSERT_EQ(warnings.size(), 4U);
+  EXPECT_NE(warnings[0].find("1 sample could not be simulated"), std::string::npos);
+  EXPECT_EQ(warnings[1], "misleading");
+  EXPECT_NE(warnings[2].find("d (5.2)"), std::string::npos);
+  EXPECT_EQ(warnings[3], "a remark");
+}
+
+TEST(Warnings, NameWhatTheResponseSaysLittleOf) {
+  RunSummary run = makeRun();
+  run.evaluation.predictions.stddev.row(1).setConstant(0.25);  // that of the bounds is 0.289
+  const std::vector<std::string> warnings = collectWarnings(run);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("d (0.87)"), std::string::npos) << warnings[0];
+}
+
+TEST(Warnings, ParametersThatCannotBeToldApartAreNamedUnlessUndetermined) {
+  RunSummary run = makeRun();
+  Identifiability found;
+  found.correlation = Eigen::Matrix3d::Identity();
+  found.correlation(1, 0) = found.correlation(0, 1) = -0.97;
+  found.remaining = Eigen::Vector3d(0.1, 0.1, 0.1);
+  run.evaluation.identifiability = found;
+  const std::vector<std::string> warnings = collectWarnings(run);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("k and d (-0.97)"), std::string::npos) << warnings[0];
+  run.evaluation.identifiability->remaining[0] = 0.9;  // told by the stage that found it
+  EXPECT_TRUE(collectWarnings(run).empty());
+}
+
+TEST(Warnings, LengthScalesAtTheirUpperBoundAreNoReasonToWarn) {
+  RunSummary run = makeRun();
+  run.training.starts = {{"k", 0, true, 0, 0, false, "", "length_scale[1] at its upper bound 9"},
+                         {"d", 0, true, 0, 0, false, "", "noise_stddev at its lower bound 1e-05"}};
+  const std::vector<std::string> warnings = collectWarnings(run);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("d (noise_stddev at its lower bound 1e-05)"), std::string::npos);
+  EXPECT_EQ(warnings[0].find("k ("), std::string::npos);
+}
+
+}  // namespace
+}  // namespace twinmap
