@@ -18,10 +18,18 @@ namespace {
 
 constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kSanitized = true;  // whose shadow memory takes terabytes of addresses
+#else
+constexpr bool kSanitized = false;
+#endif
+
 void limitMemory(double gibibytes) {
   const double bytes = std::min(gibibytes * kGibibyte, 1e18);
   const rlimit limit{static_cast<rlim_t>(bytes), static_cast<rlim_t>(bytes)};
-  setrlimit(RLIMIT_AS, &limit);
+  if (!kSanitized) {
+    setrlimit(RLIMIT_AS, &limit);
+  }
   const rlimit no_core{0, 0};  // a crash is expected and leaves no file
   setrlimit(RLIMIT_CORE, &no_core);
 }
@@ -129,6 +137,7 @@ Frame begin(const Frame& request, std::optional<FmuWorker>& worker) {
   try {
     WorkerJob job = readWorkerJob({request.begin(), request.end()});
     limitMemory(job.model.source->fmu->memory);
+    std::filesystem::current_path(job.folder);  // what the model writes by relative names goes with the folder
     worker.emplace(std::move(job));
     return {};
   } catch (const std::exception& error) {
