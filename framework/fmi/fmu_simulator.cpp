@@ -89,9 +89,11 @@ class FmuSimulator::Shared {
     const std::string library = package_.requireLibrary(kind_).string();
     job_ = fmi::writeWorkerJob({model.source->fmu->file.text, package_.getFolder().string(), library,
                                 fmi::toFmuKind(kind_), model_, toVector(layout_.times)});
-    engine_ = "fmu " + getFileName(model.source->fmu->file.text) + " (FMI " +
-              package_.getDescription().version_text + ", " + toText(kind_) +
-              (package_.getDescription().getCapabilities(kind_).needs_execution_tool ? ", needs its tool" : "") + ")";
+    engine_ =
+        "fmu " + getFileName(model.source->fmu->file.text) + " (FMI " +
+        package_.getDescription().version_text + ", " + toText(kind_) +
+        (package_.getDescription().getCapabilities(kind_).needs_execution_tool ? ", needs its tool" : "") +
+        ")";
   }
 
   std::unique_ptr<Worker> takeWorker() {

@@ -137,7 +137,8 @@ Frame begin(const Frame& request, std::optional<FmuWorker>& worker) {
   try {
     WorkerJob job = readWorkerJob({request.begin(), request.end()});
     limitMemory(job.model.source->fmu->memory);
-    std::filesystem::current_path(job.folder);  // what the model writes by relative names goes with the folder
+    std::filesystem::current_path(
+        job.folder);  // what the model writes by relative names goes with the folder
     worker.emplace(std::move(job));
     return {};
   } catch (const std::exception& error) {
