@@ -1,5 +1,6 @@
 #include "framework/fmi/fmu_simulator.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <mutex>
 #include <stdexcept>
@@ -62,10 +63,16 @@ class FmuSimulator::Worker {
     }
   }
 
-  SampleStatus simulate(const Eigen::Ref<const Eigen::VectorXd>& parameters,
-                        Eigen::Ref<Eigen::VectorXd> response, double limit) {
-    return fmi::decodeAnswer(process_.exchange(fmi::encodePoint(parameters), limit + kGrace), response,
-                             last_);
+  /// `limit`: s a sample.
+  void simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters, Eigen::Ref<Eigen::MatrixXd> responses,
+                SampleStatus* statuses, double limit) {
+    const double timeout = static_cast<double>(parameters.cols()) * limit + kGrace;
+    const Frame answers = process_.exchange(fmi::encodePoints(parameters), timeout);
+    std::size_t begin = 1;
+    for (Eigen::Index i = 0; i < parameters.cols(); ++i) {
+      statuses[i] = fmi::decodeAnswer(answers, begin, responses.col(i));
+    }
+    last_ = answers.front() != 0;
   }
 
   /// Whether it has ended by itself after its last answer.
@@ -158,9 +165,10 @@ const std::string& FmuSimulator::getEngine() const {
 }
 
 void FmuSimulator::checkStart() {
-  const Eigen::VectorXd center = calcBoxCenter(collectSampled(shared_->getModel()));
-  Eigen::VectorXd response(getLayout().getRowCount());
-  const SampleStatus status = simulateOne(center, response);
+  const Eigen::MatrixXd center = calcBoxCenter(collectSampled(shared_->getModel()));
+  Eigen::MatrixXd response(getLayout().getRowCount(), 1);
+  SampleStatus status;
+  simulate(center, response, &status);
   if (!status.ok) {
     const Name& file = shared_->getModel().source->fmu->file;
     throw ExperimentError(file.where, file.text,
@@ -168,35 +176,47 @@ void FmuSimulator::checkStart() {
   }
 }
 
-void FmuSimulator::simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
-                            Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
+void FmuSimulator::checkShapes(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                               const Eigen::Ref<Eigen::MatrixXd>& responses) const {
   if (parameters.rows() != countSampled(shared_->getModel()) ||
       responses.rows() != getLayout().getRowCount() || responses.cols() != parameters.cols()) {
     throw std::invalid_argument("FmuSimulator::simulate: a matrix has the wrong shape");
   }
+}
+
+void FmuSimulator::simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                            Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
+  checkShapes(parameters, responses);
   for (Eigen::Index i = 0; i < parameters.cols(); ++i) {
-    statuses[i] = simulateOne(parameters.col(i), responses.col(i));
-    if (!statuses[i].ok) {
-      responses.col(i).setConstant(std::numeric_limits<double>::quiet_NaN());
-    }
+    simulateTogether(parameters.col(i), responses.col(i), &statuses[i]);
   }
 }
 
-SampleStatus FmuSimulator::simulateOne(const Eigen::Ref<const Eigen::VectorXd>& parameters,
-                                       Eigen::Ref<Eigen::VectorXd> response) {
+void FmuSimulator::simulateAround(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                                  Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
+  checkShapes(parameters, responses);
+  simulateTogether(parameters, responses, statuses);
+}
+
+void FmuSimulator::simulateTogether(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                                    Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
   try {
     if (worker_ == nullptr) {
       worker_ = shared_->takeWorker();
     }
-    const SampleStatus status =
-        worker_->simulate(parameters, response, shared_->getModel().simulation.max_wall_time);
+    worker_->simulate(parameters, responses, statuses, shared_->getModel().simulation.max_wall_time);
     if (worker_->hasEnded()) {
       worker_ = nullptr;
     }
-    return status;
   } catch (const WorkerFailure& failure) {
     worker_ = nullptr;  // the next sample starts another
-    return {false, failure.what(), failure.hasTimedOut()};
+    std::fill(statuses, statuses + parameters.cols(),
+              SampleStatus{false, failure.what(), failure.hasTimedOut()});
+  }
+  for (Eigen::Index i = 0; i < parameters.cols(); ++i) {
+    if (!statuses[i].ok) {
+      responses.col(i).setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
   }
 }
 
@@ -205,8 +225,8 @@ std::unique_ptr<Simulator> FmuSimulator::clone() const {
 }
 
 std::unique_ptr<Simulator> FmuSimulator::clonePrecisely() const {
-  constexpr double kShare = 0.01, kLeastRelative = 1e-13, kLeastAbsolute = 1e-18;  // as MultibodySimulator
   return shared_->clonePrecise([this] {
+    constexpr double kShare = 0.01, kLeastRelative = 1e-13, kLeastAbsolute = 1e-18;  // as MultibodySimulator
     ModelSpec model = shared_->getModel();
     SimulationSpec& simulation = model.simulation;
     simulation.relative_tolerance = std::max(kShare * simulation.relative_tolerance, kLeastRelative);

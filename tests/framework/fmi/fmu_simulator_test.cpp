@@ -71,6 +71,23 @@ TEST_F(FmuProcesses, SamplesHaveTheSameBitsWithAnyNumberOfThreads) {
   }
 }
 
+TEST_F(FmuProcesses, NeighboursShareTheStepsOfTheirCentre) {
+  ModelSpec model = makeFaulty();
+  model.source->fmu->kind = FmuKind::kModelExchange;
+  FmuSimulator simulator(model, Eigen::VectorXd::LinSpaced(10, 0.1, 1.0), 0);
+  const double difference = 1e-7;  // rounding 1e-9 of the slope; steps of their own would leave some 1e-2
+  Eigen::MatrixXd points(2, 3);
+  points << 0.0, 0.0, 0.0, 1.0, 1.0 - difference, 1.0 + difference;
+  Eigen::MatrixXd responses(10, 3);
+  std::vector<SampleStatus> statuses(3);
+  simulator.simulateAround(points, responses, statuses.data());
+  ASSERT_TRUE(statuses[2].ok) << statuses[2].reason;
+  for (Eigen::Index i = 0; i < 10; ++i) {
+    const double slope = (responses(i, 2) - responses(i, 1)) / (2.0 * difference);
+    EXPECT_NEAR(slope, std::exp(-simulator.getLayout().times[i]), 1e-6);
+  }
+}
+
 TEST_F(FmuProcesses, AHangEndsWithItsTimeAndMayBeTriedAgain) {
   Eigen::MatrixXd response(10, 1);
   SampleStatus status;
