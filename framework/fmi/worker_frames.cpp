@@ -7,8 +7,9 @@ namespace twinmap::fmi {
 namespace {
 
 void append(Frame& frame, const void* bytes, std::size_t size) {
-  const char* begin = static_cast<const char*>(bytes);
-  frame.insert(frame.end(), begin, begin + size);
+  const std::size_t before = frame.size();
+  frame.resize(before + size);  // not insert(), for which GCC 12 reports overflows that there are none
+  std::memcpy(frame.data() + before, bytes, size);
 }
 
 /// What an answer begins with.

@@ -6,7 +6,7 @@
 #include "framework/fmi/package.hpp"
 #include "framework/spec/yaml/source_location.hpp"
 #include "tests/framework/fmi/fmu_case.hpp"
-#include "tests/framework/temporary_folder.hpp"  // before twinmap::testing is there
+#include "tests/framework/temporary_folder.hpp"
 
 namespace twinmap::testing {
 namespace {
