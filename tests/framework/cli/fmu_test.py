@@ -182,7 +182,7 @@ class FmuTest(OwnFolderTestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         metrics = {row["parameter"]: row for row in read_csv(out / "metrics.csv")}
         self.assertEqual(set(metrics), {"c", "d", "mu"})
-        self.assertLess(float(metrics["c"]["sd_percent"]), 1.0)
+        self.assertLess(float(metrics["c"]["sd_pct"]), 0.1)
         result = self.call("verify", out, "--samples", "3")
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
         self.check_nothing_is_left()
