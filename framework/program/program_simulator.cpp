@@ -8,6 +8,7 @@
 #include "framework/program/program_pool.hpp"
 #include "framework/program/requests.hpp"
 #include "framework/program/sensors.hpp"
+#include "framework/spec/check/check_experiment.hpp"
 #include "framework/spec/parameter_box.hpp"
 
 namespace twinmap {
