@@ -82,9 +82,11 @@ bool tell(int channel, Record record) {
 int ProcessGuard::getChannel() {
   static std::mutex starting;
   static int channel = -1;
+  static pid_t owner = -1;  // a fork of this process has an end of its own, which it needs another guard for
   const std::lock_guard<std::mutex> lock(starting);
-  if (channel < 0) {
+  if (owner != getpid()) {
     channel = startGuard();
+    owner = getpid();
   }
   return channel;
 }

@@ -9,9 +9,11 @@ namespace twinmap::testing {
 namespace {
 
 Trajectories simulatePlant(int batch, int threads, int samples) {
-  ModelSpec model = loadExperiment(TWINMAP_SOURCE_DIR "/experiments/python_plant/python_plant.yaml",
-                                   {"model.program.batch=" + std::to_string(batch)})
-                        .model;
+  ModelSpec model =
+      loadExperiment(TWINMAP_SOURCE_DIR "/experiments/python_plant/python_plant.yaml",
+                     {"model.program.batch=" + std::to_string(batch),
+                      "model.program.command=[/usr/bin/python3, plant.py]"})  // that of the packages
+          .model;
   GeneratorOptions options;
   options.threads = threads;
   return generateSamples(ProgramSimulator(model, makeTwoBeamTimes(), 0), makeTwoBeamPoints(samples), options);
