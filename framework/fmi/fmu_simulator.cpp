@@ -1,5 +1,6 @@
 #include "framework/fmi/fmu_simulator.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <mutex>
 #include <stdexcept>
@@ -62,10 +63,16 @@ class FmuSimulator::Worker {
     }
   }
 
-  SampleStatus simulate(const Eigen::Ref<const Eigen::VectorXd>& parameters,
-                        Eigen::Ref<Eigen::VectorXd> response, double limit) {
-    return fmi::decodeAnswer(process_.exchange(fmi::encodePoint(parameters), limit + kGrace), response,
-                             last_);
+  /// `limit`: s a sample.
+  void simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters, Eigen::Ref<Eigen::MatrixXd> responses,
+                SampleStatus* statuses, double limit) {
+    const double timeout = static_cast<double>(parameters.cols()) * limit + kGrace;
+    const Frame answers = process_.exchange(fmi::encodePoints(parameters), timeout);
+    std::size_t begin = 1;
+    for (Eigen::Index i = 0; i < parameters.cols(); ++i) {
+      statuses[i] = fmi::decodeAnswer(answers, begin, responses.col(i));
+    }
+    last_ = answers.front() != 0;
   }
 
   /// Whether it has ended by itself after its last answer.
@@ -89,8 +96,11 @@ class FmuSimulator::Shared {
     const std::string library = package_.requireLibrary(kind_).string();
     job_ = fmi::writeWorkerJob({model.source->fmu->file.text, package_.getFolder().string(), library,
                                 fmi::toFmuKind(kind_), model_, toVector(layout_.times)});
-    engine_ = "fmu " + getFileName(model.source->fmu->file.text) + " (FMI " +
-              package_.getDescription().version_text + ", " + toText(kind_) + ")";
+    engine_ =
+        "fmu " + getFileName(model.source->fmu->file.text) + " (FMI " +
+        package_.getDescription().version_text + ", " + toText(kind_) +
+        (package_.getDescription().getCapabilities(kind_).needs_execution_tool ? ", needs its tool" : "") +
+        ")";
   }
 
   std::unique_ptr<Worker> takeWorker() {
@@ -110,6 +120,13 @@ class FmuSimulator::Shared {
     idle_.push_back(std::move(worker));
   }
 
+  template <class Make>
+  std::unique_ptr<Simulator> clonePrecise(const Make& make) {
+    const std::lock_guard<std::mutex> guard(making_precise_);
+    precise_ = precise_ != nullptr ? std::move(precise_) : make();
+    return precise_->clone();
+  }
+
   const ModelSpec& getModel() const { return model_; }
   const ResponseLayout& getLayout() const { return layout_; }
   const std::string& getEngine() const { return engine_; }
@@ -121,6 +138,8 @@ class FmuSimulator::Shared {
   const ResponseLayout layout_;
   std::string job_, engine_;
   std::mutex access_;
+  std::mutex making_precise_;
+  std::unique_ptr<FmuSimulator> precise_;  ///< made when first used
   std::vector<std::unique_ptr<Worker>> idle_;
 };
 
@@ -146,9 +165,10 @@ const std::string& FmuSimulator::getEngine() const {
 }
 
 void FmuSimulator::checkStart() {
-  const Eigen::VectorXd center = calcBoxCenter(collectSampled(shared_->getModel()));
-  Eigen::VectorXd response(getLayout().getRowCount());
-  const SampleStatus status = simulateOne(center, response);
+  const Eigen::MatrixXd center = calcBoxCenter(collectSampled(shared_->getModel()));
+  Eigen::MatrixXd response(getLayout().getRowCount(), 1);
+  SampleStatus status;
+  simulate(center, response, &status);
   if (!status.ok) {
     const Name& file = shared_->getModel().source->fmu->file;
     throw ExperimentError(file.where, file.text,
@@ -156,35 +176,47 @@ void FmuSimulator::checkStart() {
   }
 }
 
-void FmuSimulator::simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
-                            Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
+void FmuSimulator::checkShapes(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                               const Eigen::Ref<Eigen::MatrixXd>& responses) const {
   if (parameters.rows() != countSampled(shared_->getModel()) ||
       responses.rows() != getLayout().getRowCount() || responses.cols() != parameters.cols()) {
     throw std::invalid_argument("FmuSimulator::simulate: a matrix has the wrong shape");
   }
+}
+
+void FmuSimulator::simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                            Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
+  checkShapes(parameters, responses);
   for (Eigen::Index i = 0; i < parameters.cols(); ++i) {
-    statuses[i] = simulateOne(parameters.col(i), responses.col(i));
-    if (!statuses[i].ok) {
-      responses.col(i).setConstant(std::numeric_limits<double>::quiet_NaN());
-    }
+    simulateTogether(parameters.col(i), responses.col(i), &statuses[i]);
   }
 }
 
-SampleStatus FmuSimulator::simulateOne(const Eigen::Ref<const Eigen::VectorXd>& parameters,
-                                       Eigen::Ref<Eigen::VectorXd> response) {
+void FmuSimulator::simulateAround(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                                  Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
+  checkShapes(parameters, responses);
+  simulateTogether(parameters, responses, statuses);
+}
+
+void FmuSimulator::simulateTogether(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                                    Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
   try {
     if (worker_ == nullptr) {
       worker_ = shared_->takeWorker();
     }
-    const SampleStatus status =
-        worker_->simulate(parameters, response, shared_->getModel().simulation.max_wall_time);
+    worker_->simulate(parameters, responses, statuses, shared_->getModel().simulation.max_wall_time);
     if (worker_->hasEnded()) {
       worker_ = nullptr;
     }
-    return status;
   } catch (const WorkerFailure& failure) {
     worker_ = nullptr;  // the next sample starts another
-    return {false, failure.what(), failure.hasTimedOut()};
+    std::fill(statuses, statuses + parameters.cols(),
+              SampleStatus{false, failure.what(), failure.hasTimedOut()});
+  }
+  for (Eigen::Index i = 0; i < parameters.cols(); ++i) {
+    if (!statuses[i].ok) {
+      responses.col(i).setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
   }
 }
 
@@ -193,12 +225,14 @@ std::unique_ptr<Simulator> FmuSimulator::clone() const {
 }
 
 std::unique_ptr<Simulator> FmuSimulator::clonePrecisely() const {
-  constexpr double kShare = 0.01, kLeastRelative = 1e-13, kLeastAbsolute = 1e-18;  // as MultibodySimulator
-  ModelSpec model = shared_->getModel();
-  SimulationSpec& simulation = model.simulation;
-  simulation.relative_tolerance = std::max(kShare * simulation.relative_tolerance, kLeastRelative);
-  simulation.absolute_tolerance = std::max(kShare * simulation.absolute_tolerance, kLeastAbsolute);
-  return std::make_unique<FmuSimulator>(model, getLayout().times, 0);
+  return shared_->clonePrecise([this] {
+    constexpr double kShare = 0.01, kLeastRelative = 1e-13, kLeastAbsolute = 1e-18;  // as MultibodySimulator
+    ModelSpec model = shared_->getModel();
+    SimulationSpec& simulation = model.simulation;
+    simulation.relative_tolerance = std::max(kShare * simulation.relative_tolerance, kLeastRelative);
+    simulation.absolute_tolerance = std::max(kShare * simulation.absolute_tolerance, kLeastAbsolute);
+    return std::make_unique<FmuSimulator>(model, getLayout().times, 0);
+  });
 }
 
 }  // namespace twinmap

@@ -23,6 +23,10 @@ class FmuSimulator final : public Simulator {
   /// Some 20 us a sample beside the FMU's own time.
   void simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters, Eigen::Ref<Eigen::MatrixXd> responses,
                 SampleStatus* statuses) override;
+  /// With the steps of the centre where it has no state events, for Model Exchange; for Co-Simulation as
+  /// simulate().
+  void simulateAround(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                      Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) override;
   std::unique_ptr<Simulator> clone() const override;
   /// With a hundredth of the tolerances, which Model Exchange is integrated with and Co-Simulation told.
   std::unique_ptr<Simulator> clonePrecisely() const override;
@@ -32,8 +36,11 @@ class FmuSimulator final : public Simulator {
   class Worker;
   explicit FmuSimulator(std::shared_ptr<Shared> shared);
 
-  SampleStatus simulateOne(const Eigen::Ref<const Eigen::VectorXd>& parameters,
-                           Eigen::Ref<Eigen::VectorXd> response);
+  void checkShapes(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                   const Eigen::Ref<Eigen::MatrixXd>& responses) const;
+  /// In one exchange with the process.
+  void simulateTogether(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                        Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses);
 
   std::shared_ptr<Shared> shared_;
   std::unique_ptr<Worker> worker_;

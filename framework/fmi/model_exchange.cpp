@@ -127,10 +127,14 @@ void runModelExchange(SampleRun& run) {
   std::vector<double> boundaries = run.excitation.calcEventTimes(run.setting.duration);
   boundaries.insert(boundaries.begin(), 0.0);
   boundaries.push_back(run.setting.duration);
-  const IntegrationReport report =
-      integrateHybrid(problem, problem.makeState(), boundaries, run.setting.times, run.setting.integration);
+  HybridReport report =
+      integrateHybrid(problem, problem.makeState(), boundaries, run.setting.times, run.setting.integration,
+                      run.sequence.empty() ? nullptr : &run.sequence);
   if (!report.failure.empty()) {
     throw FmuFailure(report.failure);
+  }
+  if (run.sequence.empty() && report.state_events == 0) {
+    run.sequence = std::move(report.sequence);
   }
 }
 

@@ -15,10 +15,12 @@ Runner::Runner(const InstanceSource& source, RunSetting setting, int signals)
       instance_(factory_.make()) {}
 
 SampleStatus Runner::run(const double* parameters, Excitation& excitation,
-                         Eigen::Ref<Eigen::VectorXd> response) {
+                         Eigen::Ref<Eigen::VectorXd> response, StepSequence& sequence) {
+  Task task{parameters, excitation, response, sequence};
+  const bool given = !sequence.empty();
   SampleStatus status;
   try {
-    simulate(parameters, excitation, response);
+    simulate(task);
   } catch (const WallTimeReached& failure) {
     status = {false, failure.what(), true};
   } catch (const FmuFailure& failure) {
@@ -27,10 +29,14 @@ SampleStatus Runner::run(const double* parameters, Excitation& excitation,
   } catch (const SimulationFailure& failure) {
     status = {false, failure.what()};
   }
+  fresh_ = false;
+  if (!status.ok && usable_ && given) {
+    StepSequence own;
+    return run(parameters, excitation, response, own);
+  }
   if (!status.ok) {
     response.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
-  fresh_ = false;
   return status;
 }
 
@@ -42,13 +48,12 @@ double Runner::chooseStep() const {
       defaults.step.value_or(can.internal_step.value_or(setting_.duration / kStepsByDefault)));
 }
 
-void Runner::simulate(const double* parameters, Excitation& excitation,
-                      Eigen::Ref<Eigen::VectorXd> response) {
+void Runner::simulate(Task& task) {
   constexpr int kMostHalvings = 10;  // to a thousandth of the step
   double step = chooseStep();
   for (int i = 0;; ++i, step *= 0.5) {
     try {
-      return simulateOnce(parameters, excitation, response, step);
+      return simulateOnce(task, step);
     } catch (const StepDiscarded&) {  // a step cannot be taken back; a simulation can begin again
       if (i == kMostHalvings) {
         throw;
@@ -58,16 +63,16 @@ void Runner::simulate(const double* parameters, Excitation& excitation,
   }
 }
 
-void Runner::simulateOnce(const double* parameters, Excitation& excitation,
-                          Eigen::Ref<Eigen::VectorXd> response, double largest_step) {
+void Runner::simulateOnce(Task& task, double largest_step) {
   if (!fresh_) {
     renew();
   }
   if (!parameters_.isEmpty()) {
-    parameters_.set(*instance_, parameters);
+    parameters_.set(*instance_, task.parameters);
   }
-  SampleRun run{*instance_, setting_, source_.description.getCapabilities(setting_.kind), excitation, inputs_,
-                outputs_,   response};
+  SampleRun run{*instance_,      setting_,     source_.description.getCapabilities(setting_.kind),
+                task.excitation, inputs_,      outputs_,
+                task.response,   task.sequence};
   setting_.kind == Kind::kCoSimulation ? runCoSimulation(run, largest_step) : runModelExchange(run);
   instance_->terminate();
 }

@@ -17,16 +17,24 @@ class Runner {
   Runner(const InstanceSource& source, RunSetting setting, int signals);
 
   /// `parameters`: the experiment's point; `excitation`: updated for it. The response is NaN where the status
-  /// is not ok.
-  SampleStatus run(const double* parameters, Excitation& excitation, Eigen::Ref<Eigen::VectorXd> response);
+  /// is not ok. `sequence`: steps of Model Exchange to take, or an empty one that gets those that were taken
+  /// unless there were state events; a sample that cannot take the steps chooses its own.
+  SampleStatus run(const double* parameters, Excitation& excitation, Eigen::Ref<Eigen::VectorXd> response,
+                   StepSequence& sequence);
 
   /// False once the FMU has ended with Fatal, or can neither be reset nor made anew: this process is to end.
   bool isUsable() const { return usable_; }
 
  private:
-  void simulate(const double* parameters, Excitation& excitation, Eigen::Ref<Eigen::VectorXd> response);
-  void simulateOnce(const double* parameters, Excitation& excitation, Eigen::Ref<Eigen::VectorXd> response,
-                    double largest_step);
+  /// A sample on its way.
+  struct Task {
+    const double* parameters;
+    Excitation& excitation;
+    Eigen::Ref<Eigen::VectorXd> response;
+    StepSequence& sequence;
+  };
+  void simulate(Task& task);
+  void simulateOnce(Task& task, double largest_step);
   void renew();
   double chooseStep() const;
 

@@ -32,6 +32,7 @@ struct SampleRun {
   DrivenInputs& inputs;
   BoundGroup& outputs;
   Eigen::Ref<Eigen::VectorXd> response;  ///< output by output, as ResponseLayout
+  StepSequence& sequence;  ///< of Model Exchange: steps to take, or, where it is empty, those that were taken
 
   /// Reads the outputs at output time `index` from the instance. Throws FmuFailure for one that is not
   /// finite.

@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstring>
 #include <fstream>
 #include <limits>
@@ -12,16 +13,25 @@
 #include "framework/fmi/worker_job.hpp"
 #include "framework/process/serve_frames.hpp"
 #include "framework/simulation/model_numbers.hpp"
+#include "framework/spec/parameter_box.hpp"
 
 namespace twinmap::fmi {
 namespace {
 
 constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kSanitized = true;  // whose shadow memory takes terabytes of addresses
+#else
+constexpr bool kSanitized = false;
+#endif
+
 void limitMemory(double gibibytes) {
   const double bytes = std::min(gibibytes * kGibibyte, 1e18);
   const rlimit limit{static_cast<rlim_t>(bytes), static_cast<rlim_t>(bytes)};
-  setrlimit(RLIMIT_AS, &limit);
+  if (!kSanitized) {
+    setrlimit(RLIMIT_AS, &limit);
+  }
   const rlimit no_core{0, 0};  // a crash is expected and leaves no file
   setrlimit(RLIMIT_CORE, &no_core);
 }
@@ -60,6 +70,7 @@ class FmuWorker {
       : job_(std::move(job)),
         description_(
             readModelDescription(std::filesystem::path(job_.folder) / "modelDescription.xml", job_.file)),
+        sampled_(static_cast<std::size_t>(countSampled(job_.model))),
         numbers_(job_.model),
         excitation_(job_.model.excitation),
         response_(static_cast<Eigen::Index>(job_.model.outputs.size() * job_.times.size())),
@@ -68,22 +79,33 @@ class FmuWorker {
             makeRunSetting(description_, toKind(job_.kind), job_.model, job_.times),
             excitation_.getSignalCount()) {}
 
+  /// The first byte tells whether this process ends now; then an answer for each point.
   Frame answer(const Frame& request, bool& last) {
-    Eigen::VectorXd point(static_cast<Eigen::Index>(request.size() / sizeof(double)));
-    std::memcpy(point.data(), request.data(), request.size());
-    const SampleStatus status = simulate(point);
+    const std::size_t size = std::max<std::size_t>(sampled_ * sizeof(double), 1);
+    const std::size_t count = std::max<std::size_t>(request.size() / size, 1);
+    Eigen::MatrixXd points(static_cast<Eigen::Index>(sampled_), static_cast<Eigen::Index>(count));
+    std::memcpy(points.data(), request.data(), std::min(request.size(), count * size));
+    StepSequence steps_of_center;
+    Frame frame{0};
+    for (const auto& point : points.colwise()) {
+      const SampleStatus status = simulate(point, steps_of_center);
+      const Frame one = encodeAnswer(status, response_);
+      frame.insert(frame.end(), one.begin(), one.end());
+    }
     last = !runner_.isUsable() || growth_.hasGrown();
-    Frame frame = encodeAnswer(status, response_);
-    frame[2] = static_cast<char>(last);
+    frame[0] = static_cast<char>(last);
     return frame;
   }
 
  private:
-  SampleStatus simulate(const Eigen::VectorXd& point) {
+  SampleStatus simulate(const Eigen::VectorXd& point, StepSequence& sequence) {
+    if (!runner_.isUsable()) {
+      return {false, "the FMU has ended with Fatal at a neighbour"};
+    }
     try {
       numbers_.update(point);
       excitation_.update(numbers_.updNumbers());
-      SampleStatus status = runner_.run(collectValues(point).data(), excitation_, response_);
+      SampleStatus status = runner_.run(collectValues(point).data(), excitation_, response_, sequence);
       if (status.ok) {
         applySensors();
       }
@@ -118,6 +140,7 @@ class FmuWorker {
 
   const WorkerJob job_;
   const ModelDescription description_;
+  const std::size_t sampled_;  ///< parameters of a point
   ModelNumbers numbers_;
   Excitation excitation_;
   Eigen::VectorXd response_;
@@ -129,6 +152,8 @@ Frame begin(const Frame& request, std::optional<FmuWorker>& worker) {
   try {
     WorkerJob job = readWorkerJob({request.begin(), request.end()});
     limitMemory(job.model.source->fmu->memory);
+    std::filesystem::current_path(
+        job.folder);  // what the model writes by relative names goes with the folder
     worker.emplace(std::move(job));
     return {};
   } catch (const std::exception& error) {

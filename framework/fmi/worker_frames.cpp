@@ -1,3 +1,4 @@
+#include <cstdint>
 #include <cstring>
 
 #include "framework/fmi/worker.hpp"
@@ -10,39 +11,53 @@ void append(Frame& frame, const void* bytes, std::size_t size) {
   frame.insert(frame.end(), begin, begin + size);
 }
 
+/// What an answer begins with.
+struct AnswerHead {
+  std::uint64_t size;  ///< of what follows, bytes: the response, or why there is none
+  bool ok, machine_dependent;
+};
+
 }  // namespace
 
 Frame encodeJob(const std::string& job) {
   return {job.begin(), job.end()};
 }
 
-Frame encodePoint(const Eigen::Ref<const Eigen::VectorXd>& parameters) {
+Frame encodePoints(const Eigen::Ref<const Eigen::MatrixXd>& parameters) {
   Frame frame;
-  append(frame, parameters.data(), static_cast<std::size_t>(parameters.size()) * sizeof(double));
+  for (const auto& column : parameters.colwise()) {
+    append(frame, column.data(), static_cast<std::size_t>(column.size()) * sizeof(double));
+  }
   return frame;
 }
 
 Frame encodeAnswer(const SampleStatus& status, const Eigen::Ref<const Eigen::VectorXd>& response) {
-  Frame frame{static_cast<char>(status.ok), static_cast<char>(status.machine_dependent), 0};
-  if (status.ok) {
-    append(frame, response.data(), static_cast<std::size_t>(response.size()) * sizeof(double));
-  } else {
-    append(frame, status.reason.data(), status.reason.size());
-  }
+  const std::size_t size =
+      status.ok ? static_cast<std::size_t>(response.size()) * sizeof(double) : status.reason.size();
+  const AnswerHead head{size, status.ok, status.machine_dependent};
+  Frame frame;
+  append(frame, &head, sizeof head);
+  append(frame, status.ok ? static_cast<const void*>(response.data()) : status.reason.data(), size);
   return frame;
 }
 
-SampleStatus decodeAnswer(const Frame& frame, Eigen::Ref<Eigen::VectorXd> response, bool& last) {
-  constexpr std::size_t kHead = 3;
+SampleStatus decodeAnswer(const Frame& frame, std::size_t& begin, Eigen::Ref<Eigen::VectorXd> response) {
+  AnswerHead head{};
   const std::size_t size = static_cast<std::size_t>(response.size()) * sizeof(double);
-  if (frame.size() < kHead || (frame[0] != 0 && frame.size() != kHead + size)) {
+  const bool has_head = frame.size() >= begin + sizeof head;
+  if (has_head) {
+    std::memcpy(&head, frame.data() + begin, sizeof head);
+    begin += sizeof head;
+  }
+  if (!has_head || head.size > frame.size() - begin || (head.ok && head.size != size)) {
     throw WorkerFailure("the model's process answers with a response of another size");
   }
-  last = frame[2] != 0;
-  if (frame[0] == 0) {
-    return {false, std::string(frame.begin() + kHead, frame.end()), frame[1] != 0};
+  const char* content = frame.data() + begin;
+  begin += head.size;
+  if (!head.ok) {
+    return {false, std::string(content, head.size), head.machine_dependent};
   }
-  std::memcpy(response.data(), frame.data() + kHead, size);
+  std::memcpy(response.data(), content, size);
   return {};
 }
 

@@ -21,8 +21,9 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 class HybridIntegration {
  public:
   HybridIntegration(HybridProblem& problem, State x, const Eigen::VectorXd& output_times,
-                    const IntegrationOptions& options)
+                    const IntegrationOptions& options, const StepSequence* given)
       : problem_(problem),
+        given_(given),
         output_times_(output_times),
         options_(options),
         guard_(options),
@@ -36,7 +37,7 @@ class HybridIntegration {
         indicators_(problem.getIndicatorCount()),
         indicators_new_(problem.getIndicatorCount()) {}
 
-  IntegrationReport run(const std::vector<double>& boundaries) {
+  HybridReport run(const std::vector<double>& boundaries) {
     for (std::size_t i = 0; i + 1 < boundaries.size() && isRunning(); ++i) {
       t_ = boundaries[i];
       problem_.enterPhase(t_, x_);
@@ -86,14 +87,48 @@ class HybridIntegration {
     if (!indicators_.empty()) {
       problem_.calcIndicators(t_, x_, indicators_.data());
     }
+    begin_ = t_;
+    report_.sequence.emplace_back();
   }
 
   /// Until `stop`, or until an event, for which it returns true.
   bool runSteps(double stop) {
+    if (given_ != nullptr) {
+      return replaySteps(stop);
+    }
     double dt = report_.failure.empty() ? calcFirstStep(problem_, t_, x_, dxdt_, stop - t_, options_) : 0.0;
     bool event = false;
     while (t_ < stop && !event && report_.failure.empty()) {
       dt = step(dt, stop, event);
+    }
+    return event;
+  }
+
+  /// As runSteps(); a state event is a failure.
+  bool replaySteps(double stop) {
+    bool event = false;
+    if (report_.sequence.size() > given_->size()) {
+      report_.failure = describeAt("events are not those of the centre", t_);
+    }
+    for (std::size_t i = 0; report_.failure.empty() && i < (*given_)[report_.sequence.size() - 1].size();
+         ++i) {
+      const double fraction = (*given_)[report_.sequence.size() - 1][i];
+      event = replayStep(fraction == 1.0 ? stop : begin_ + fraction * (stop - begin_), stop);
+    }
+    return event;
+  }
+
+  bool replayStep(double t_new, double stop) {
+    const auto f = [this](const State& x, State& dxdt, double t) { problem_.calcDerivative(t, x, dxdt); };
+    ++report_.steps;
+    stepper_.stepper().do_step(f, x_, dxdt_, t_, x_new_, dxdt_new_, t_new - t_);
+    if (!isFinite(x_new_) || !isFinite(dxdt_new_)) {
+      report_.failure = describeAt("state became non-finite", t_);
+      return false;
+    }
+    const bool event = accept(t_new, stop);
+    if (event && t_ < stop) {
+      report_.failure = describeAt("events are not those of the centre", t_);
     }
     return event;
   }
@@ -113,7 +148,7 @@ class HybridIntegration {
     const bool accepted =
         stepper_.try_step(f, x_, dxdt_, t_new, x_new_, dxdt_new_, proposed) == odeint::success;
     if (accepted && isFinite(x_new_) && isFinite(dxdt_new_)) {
-      event = accept(last ? stop : t_new);
+      event = accept(last ? stop : t_new, stop);
       return std::max(proposed, planned);
     }
     ++report_.rejected;
@@ -129,7 +164,7 @@ class HybridIntegration {
   }
 
   /// Goes to t_new or to the first event before it; true at an event.
-  bool accept(double t_new) {
+  bool accept(double t_new, double stop) {
     double t_end = t_new;
     const bool crossed = !indicators_.empty() && findEvent(t_new, t_end);
     recordBefore(t_end, t_new);
@@ -142,6 +177,8 @@ class HybridIntegration {
     }
     t_ = t_end;
     indicators_.swap(indicators_new_);  // those at t_end
+    report_.state_events += crossed ? 1 : 0;
+    report_.sequence.back().push_back(t_ == stop ? 1.0 : (t_ - begin_) / (stop - begin_));
     return problem_.completeStep(t_, x_) || crossed;
   }
 
@@ -210,12 +247,13 @@ class HybridIntegration {
   }
 
   HybridProblem& problem_;
+  const StepSequence* given_;
   const Eigen::VectorXd& output_times_;
   const IntegrationOptions& options_;
   IntegrationGuard guard_;
   ControlledDopri5 stepper_;
-  IntegrationReport report_;
-  double t_ = 0.0;
+  HybridReport report_;
+  double t_ = 0.0, begin_ = 0.0;  ///< s; begin_: of the steps since the last event
   State x_, dxdt_, x_new_, dxdt_new_, x_between_;
   std::vector<double> indicators_, indicators_new_;
   Eigen::Index next_output_ = 0;
@@ -225,10 +263,10 @@ class HybridIntegration {
 
 }  // namespace
 
-IntegrationReport integrateHybrid(HybridProblem& problem, OdeProblem::State x,
-                                  const std::vector<double>& boundaries, const Eigen::VectorXd& output_times,
-                                  const IntegrationOptions& options) {
-  return HybridIntegration(problem, std::move(x), output_times, options).run(boundaries);
+HybridReport integrateHybrid(HybridProblem& problem, OdeProblem::State x,
+                             const std::vector<double>& boundaries, const Eigen::VectorXd& output_times,
+                             const IntegrationOptions& options, const StepSequence* given) {
+  return HybridIntegration(problem, std::move(x), output_times, options, given).run(boundaries);
 }
 
 }  // namespace twinmap

@@ -29,13 +29,19 @@ class HybridProblem : public OdeProblem {
   virtual bool isOver() const = 0;
 };
 
+struct HybridReport : IntegrationReport {
+  int state_events = 0;  ///< without any, `sequence` can be given to neighbours
+};
+
 /// As integrateDopri5 for a problem with events. Time events are met exactly. State events are looked for at
 /// four points of every step and located on its dense output, to a few units in the last place of t; the
-/// integration restarts after each event. Outputs at the time of an event are those after it. Fails as
-/// integrateDopri5 does, if events follow one another without any progress, and if the problem is over before
-/// the last output.
-IntegrationReport integrateHybrid(HybridProblem& problem, OdeProblem::State x,
-                                  const std::vector<double>& boundaries, const Eigen::VectorXd& output_times,
-                                  const IntegrationOptions& options);
+/// integration restarts after each event. Outputs at the time of an event are those after it.
+/// `given`: the steps of another integration instead of an error control, as in replayDopri5; null: none. It
+/// then fails where a state event comes, or another number of phases and time events.
+/// Fails as integrateDopri5 does, if events follow one another without any progress, and if the problem is
+/// over before the last output.
+HybridReport integrateHybrid(HybridProblem& problem, OdeProblem::State x,
+                             const std::vector<double>& boundaries, const Eigen::VectorXd& output_times,
+                             const IntegrationOptions& options, const StepSequence* given = nullptr);
 
 }  // namespace twinmap

@@ -5,9 +5,8 @@
 
 #include "framework/fmi/package.hpp"
 #include "framework/spec/yaml/source_location.hpp"
-#include "tests/framework/temporary_folder.hpp"  // before twinmap::testing is there
-
 #include "tests/framework/fmi/fmu_case.hpp"
+#include "tests/framework/temporary_folder.hpp"  // before twinmap::testing is there
 
 namespace twinmap::testing {
 namespace {
@@ -33,8 +32,8 @@ class Archive : public ::testing::Test {
   }
 
   std::size_t countLeftovers() const {
-    return static_cast<std::size_t>(
-        std::distance(fs::recursive_directory_iterator(folder_.getPath()), fs::recursive_directory_iterator()));
+    return static_cast<std::size_t>(std::distance(fs::recursive_directory_iterator(folder_.getPath()),
+                                                  fs::recursive_directory_iterator()));
   }
 
   TemporaryFolder folder_;

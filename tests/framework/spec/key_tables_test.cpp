@@ -154,6 +154,7 @@ struct Described {
 
 const std::vector<Described> kKeyTables{
     {"key", ""},
+    {"key of `fmu`", "model.fmu"},
     {"key", "system.bodies.*"},
     {"key of `measured`", "excitation.*.tables.[].measured"},
     {"key", "simulation"},
