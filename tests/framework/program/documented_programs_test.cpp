@@ -81,5 +81,19 @@ TEST_F(DocumentedProgram, InCAnswersAsItSays) {
   expectDecay({"./plant"});
 }
 
+TEST_F(DocumentedProgram, ForFilesFillsInTemplatesAndReadsWhatACommandWrites) {
+  std::ofstream(folder_ / "plant.txt.template") << "{a}\n{b}\n{c}\n";
+  std::ofstream(folder_ / "solver.py") << "import math\n"
+                                          "a, b, other = open('plant.txt').read().split()\n"
+                                          "assert other == '{c}'\n"
+                                          "with open('out.csv', 'w') as file:\n"
+                                          "    print('time, x', file=file)\n"
+                                          "    for i in range(101):\n"
+                                          "        print(repr(i / 100), repr(float(a) * math.exp(-float(b) * "
+                                          "i / 100)), sep=', ', file=file)\n";
+  expectDecay({TWINMAP_SOURCE_DIR "/scripts/twinmap-files", "--template", "plant.txt.template", "--results",
+               "out.csv", "--", "python3", "solver.py"});
+}
+
 }  // namespace
 }  // namespace twinmap::testing
