@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/prctl.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -53,7 +54,26 @@ constexpr int kMostGroups = 4096;  // far above the number of workers at a time
   _exit(0);
 }
 
-int startGuard() {
+/// The guard of this process. At a usual end it is waited for, so that it is not left as a zombie where
+/// nobody else collects those.
+struct RunningGuard {
+  int channel = -1;
+  pid_t process = -1;
+  pid_t owner = -1;  ///< a fork of this process has an end of its own, which it needs another guard for
+
+  ~RunningGuard() {
+    if (owner != getpid()) {
+      return;
+    }
+    close(channel);
+    constexpr int kTries = 1000, kMicroseconds = 1000;  // forks that still live keep it from ending
+    for (int i = 0; i < kTries && waitpid(process, nullptr, WNOHANG) == 0; ++i) {
+      usleep(kMicroseconds);
+    }
+  }
+};
+
+void start(RunningGuard& running) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) {
     throw WorkerFailure(std::string("no pipe can be made: ") + std::strerror(errno));
@@ -66,7 +86,9 @@ int startGuard() {
     guard(ends[0]);
   }
   close(ends[0]);
-  return ends[1];
+  running.channel = ends[1];
+  running.process = process;
+  running.owner = getpid();
 }
 
 bool tell(int channel, Record record) {
@@ -81,14 +103,12 @@ bool tell(int channel, Record record) {
 
 int ProcessGuard::getChannel() {
   static std::mutex starting;
-  static int channel = -1;
-  static pid_t owner = -1;  // a fork of this process has an end of its own, which it needs another guard for
+  static RunningGuard running;
   const std::lock_guard<std::mutex> lock(starting);
-  if (owner != getpid()) {
-    channel = startGuard();
-    owner = getpid();
+  if (running.owner != getpid()) {
+    start(running);
   }
-  return channel;
+  return running.channel;
 }
 
 bool guardGroup(int channel, int leader) {
