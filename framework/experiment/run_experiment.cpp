@@ -9,13 +9,14 @@
 #include "framework/experiment/simulated_sets.hpp"
 #include "framework/experiment/train_maps.hpp"
 #include "framework/features/selections.hpp"
+#include "framework/model_source/make_simulator.hpp"
 #include "framework/monitoring/run_log.hpp"
 #include "framework/monitoring/stage_timer.hpp"
-#include "framework/model_source/make_simulator.hpp"
 #include "framework/report/report.hpp"
 #include "framework/results/result_files.hpp"
 #include "framework/results/run_state.hpp"
 #include "framework/results/tables.hpp"
+#include "framework/sampling/ineffective_parameters.hpp"
 #include "framework/sampling/model_store.hpp"
 #include "framework/sampling/neighbourhoods.hpp"
 #include "framework/spec/experiment_file.hpp"
@@ -54,6 +55,15 @@ void beginFolder(const ExperimentSpec& experiment, const RunOptions& options) {
   beginRun(options.folder, resolved);
   if (options.samples == nullptr) {
     noteStore(options.folder, options.store);
+  }
+}
+
+/// A model from elsewhere may ignore a name.
+void warnOfIneffective(const ModelSpec& model, const Simulator& simulator) {
+  const std::string warning =
+      model.source ? describeIneffective(findIneffective(simulator, collectSampled(model))) : "";
+  if (!warning.empty()) {
+    spdlog::warn("{}", warning);
   }
 }
 
@@ -158,6 +168,9 @@ RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& opt
       makeSimulator(experiment.model, collectTimes(experiment.features), countModes(experiment.features));
   const Simulator& simulator = *made;
   spdlog::info("simulated by: {}", simulator.getEngine());
+  if (options.samples == nullptr) {
+    warnOfIneffective(experiment.model, simulator);
+  }
   const FeatureExtractor extractor = makeExtractor(experiment, simulator.getLayout());
   checkTransformOf(extractor.getInfos(), experiment.transform);
   const OwnStores stores = openOwnStores(experiment, simulator, options);

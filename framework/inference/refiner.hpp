@@ -39,7 +39,7 @@ class SimulatorRefiner {
 
   const ModelSpec model_;
   const FeatureExtractor extractor_;
-  const std::unique_ptr<const Simulator> simulator_;
+  const std::unique_ptr<Simulator> simulator_;
   const FeatureNoise noise_;  // of extractor_
   const bool wanted_;
   const std::unique_ptr<Simulator> own_;           // a clone, which simulates

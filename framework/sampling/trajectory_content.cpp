@@ -1,6 +1,7 @@
 #include "framework/sampling/trajectory_content.hpp"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "framework/spec/check/check_experiment.hpp"
 #include "framework/spec/fields/write_value.hpp"
@@ -23,6 +24,9 @@ struct SourceContent {
   std::string fmu;
   std::optional<FmuKind> kind;
   std::optional<double> step;
+  std::vector<std::string> command, files;  ///< of a program; digests of the files it names and depends on
+  std::vector<EnvironmentSpec> environment;
+  std::optional<double> excitation_interval;
 };
 
 template <class Fields>
@@ -32,6 +36,10 @@ void describe(Fields& f, SourceContent& s) {
   f.required("fmu", s.fmu, "");
   f.optional("kind", s.kind, "");
   f.optional("step", s.step, "");
+  f.optional("command", s.command, "");
+  f.optional("files", s.files, "");
+  f.optionalMap("environment", s.environment, "");
+  f.optional("excitation_interval", s.excitation_interval, "");
 }
 
 YamlNode writeSimulation(const SimulationSpec& simulation) {
@@ -75,6 +83,20 @@ bool startsAtBoxCenter(const InitialSpec& initial) {
   return initial.equilibrium && initial.equilibrium->at == EquilibriumAt::kBoxCenter;
 }
 
+/// Of the files that the command names and those that the program depends on, wherever their folder lies.
+std::vector<std::string> calcFileDigests(const ProgramSpec& program) {
+  const std::filesystem::path folder = program.working_folder;
+  std::vector<std::string> digests;
+  for (const std::vector<std::string>* names : {&program.command, &program.depends_on}) {
+    for (const std::string& name : *names) {
+      std::error_code ignored;
+      const bool is_file = std::filesystem::is_regular_file(folder / name, ignored);
+      digests.push_back(is_file ? toHex(calcFileDigest(folder / name)) : "");
+    }
+  }
+  return digests;
+}
+
 /// The names of variables, and the FMU's bytes, wherever it lies; how much memory it may take decides
 /// nothing.
 SourceContent describeSource(const SourceSpec& source, const std::vector<ParameterSpec>& sampled) {
@@ -87,6 +109,12 @@ SourceContent describeSource(const SourceSpec& source, const std::vector<Paramet
     content.fmu = toHex(calcFileDigest(source.fmu->file.text));
     content.kind = source.fmu->kind;
     content.step = source.fmu->step;
+  }
+  if (source.program) {
+    content.command = source.program->command;
+    content.files = calcFileDigests(*source.program);
+    content.environment = source.program->environment;
+    content.excitation_interval = source.program->excitation_interval;
   }
   return content;
 }

@@ -155,7 +155,7 @@ struct SignalSpec {
 template <class Fields>
 void describe(Fields& f, SignalSpec& s) {
   f.optional("unit", s.unit, "unit of the signal");
-  f.optional("variable", s.variable, "the input of the FMU that it drives; default: its own name");
+  f.optional("variable", s.variable, "the input of the FMU or program that it drives; default: its own name");
   f.optional("pulses", s.pulses, "constant within an interval");
   f.optional("sines", s.sines, "single frequencies");
   f.optional("chirps", s.chirps, "sweeping frequencies");

@@ -42,7 +42,7 @@ void describe(Fields& f, OutputSpec& s) {
           choice("position", s.position, "of a station, along a direction; m"),
           choice("velocity", s.velocity, "of a station, along a direction; m/s"),
           choice("acceleration", s.acceleration, "of a station, along a direction; m/s2"),
-          choice("variable", s.variable, "of an FMU"));
+          choice("variable", s.variable, "of an FMU or a program"));
   f.optional("unit", s.unit, "coherent SI unit of a variable");
   f.optional("gain", s.gain, "of the sensor, which measures gain * quantity + offset; default 1");
   f.optional("offset", s.offset, "of the sensor, in the quantity's unit; default 0");

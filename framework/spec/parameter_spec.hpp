@@ -35,7 +35,7 @@ void describe(Fields& f, ParameterSpec& s) {
   f.optional("description", s.description, "for people");
   f.optional("relative_to", s.relative_to,
              "what relative errors are relative to: the value, or upper - lower");
-  f.optional("variable", s.variable, "its name in the FMU; default: its own");
+  f.optional("variable", s.variable, "its name in the FMU or program; default: its own");
 }
 
 /// A named value of the model; may use parameters of any kind and the constants declared before it.
@@ -53,7 +53,7 @@ void describe(Fields& f, ConstantSpec& s) {
   f.required("value", s.value, "number, or expression of parameters and constants declared before");
   f.optional("unit", s.unit, "coherent SI unit; checked where the constant is used");
   f.optional("description", s.description, "for people");
-  f.optional("variable", s.variable, "a parameter or start value of the FMU that is set to it");
+  f.optional("variable", s.variable, "a parameter or start value of the FMU or program that is set to it");
 }
 
 }  // namespace twinmap
