@@ -25,3 +25,5 @@ set_target_properties(matio PROPERTIES
   INTERFACE_LINK_LIBRARIES "HDF5::HDF5")
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
+pkg_check_modules(libzip REQUIRED IMPORTED_TARGET libzip)
+find_package(pugixml REQUIRED)

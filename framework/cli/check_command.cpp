@@ -4,7 +4,7 @@
 #include "framework/cli/commands.hpp"
 #include "framework/features/feature_extractor.hpp"
 #include "framework/measurement/signal_experiment.hpp"
-#include "framework/multibody/multibody_simulator.hpp"
+#include "framework/model_source/make_simulator.hpp"
 #include "framework/spec/check/check_features.hpp"
 #include "framework/spec/experiment_file.hpp"
 #include "framework/sweep/model_groups.hpp"
@@ -12,17 +12,17 @@
 namespace twinmap::cli {
 
 void requireModel(const ExperimentSpec& experiment) {
-  MultibodySimulator(experiment.model, collectTimes(experiment.features), countModes(experiment.features))
-      .checkStart();
+  makeSimulator(experiment.model, collectTimes(experiment.features), countModes(experiment.features))
+      ->checkStart();
 }
 
 void check(const ExperimentArguments& arguments) {
   const YamlNode tree = loadExperimentTree(arguments.file, arguments.overrides);
   std::set<std::string> engines;
   for (const ModelGroup& group : groupByModel(expandCasesWithSignals(tree))) {  // what is wrong in any case
-    MultibodySimulator simulator(group.model, group.times, group.modes);
-    simulator.checkStart();
-    engines.insert(simulator.getEngine());
+    const std::unique_ptr<Simulator> simulator = makeSimulator(group.model, group.times, group.modes);
+    simulator->checkStart();
+    engines.insert(simulator->getEngine());
   }
   for (const std::string& engine : engines) {
     std::cout << "# simulated by: " << engine << '\n';

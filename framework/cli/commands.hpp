@@ -104,6 +104,9 @@ struct ReplayArguments {
 /// prints it with all defaults.
 void check(const ExperimentArguments& arguments);
 
+/// Prints the variables of an FMU: name, causality, variability, type, unit, start value, description.
+void printVariables(const std::string& file);
+
 /// Prints the JSON schema of experiment files.
 void printSchema();
 
@@ -120,8 +123,8 @@ void status(const StatusArguments& arguments);
 /// Prints what run() would do with the same arguments, and does nothing of it.
 void plan(const RunArguments& arguments);
 
-/// Builds the model at the centre of the parameter box (MultibodySimulator); simulates nothing. Throws
-/// ExperimentError if it or its initial state cannot exist there.
+/// Builds the model at the centre of the parameter box (Simulator::checkStart). Throws ExperimentError if it
+/// cannot exist there.
 void requireModel(const ExperimentSpec& experiment);
 
 /// What run() takes where the arguments leave it open: results/NAME, and half of the machine's memory

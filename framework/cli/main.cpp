@@ -8,6 +8,7 @@
 #include "framework/cli/commands.hpp"
 #include "framework/cli/log.hpp"
 #include "framework/cli/signals.hpp"
+#include "framework/fmi/worker.hpp"
 #include "framework/monitoring/interrupted.hpp"
 #include "framework/spec/yaml/source_location.hpp"
 
@@ -263,6 +264,14 @@ void addSchema(CLI::App& app) {
   command->callback([] { cli::printSchema(); });
 }
 
+void addVariables(CLI::App& app, std::string& file) {
+  CLI::App* command = app.add_subcommand(
+      "variables",
+      "Print the variables of an FMU, which an experiment can name: causality, type, unit, start value");
+  command->add_option("FMU", file, "File of FMI 2.0 or 3.0")->required()->option_text(" ");
+  command->callback([&file] { cli::printVariables(file); });
+}
+
 int runCommand(int count, char** arguments) {
   CLI::App app(
       "twinmap keeps digital twins true: it simulates a model for many parameter sets, trains maps "
@@ -283,6 +292,7 @@ int runCommand(int count, char** arguments) {
   cli::RunArguments run;
   cli::VerifyArguments verify;
   cli::InferArguments infer;
+  std::string variables;
   cli::ReplayArguments replay;
   verify.seed = std::random_device()();
   replay.threads = verify.threads = run.threads =
@@ -300,6 +310,7 @@ int runCommand(int count, char** arguments) {
   addReport(app, report);
   addVerify(app, verify);
   addSchema(app);
+  addVariables(app, variables);
   try {
     app.parse(count, arguments);
   } catch (const CLI::ParseError& error) {
@@ -311,6 +322,9 @@ int runCommand(int count, char** arguments) {
 }  // namespace
 
 int main(int count, char** arguments) {
+  if (count == 2 && std::string(arguments[1]) == twinmap::fmi::kWorkerArgument) {
+    twinmap::fmi::runWorker();  // a process of this program itself, which no user starts
+  }
   cli::setUpLog();
   try {
     return runCommand(count, arguments);

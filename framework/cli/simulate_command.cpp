@@ -7,7 +7,7 @@
 #include "framework/features/noise.hpp"
 #include "framework/measurement/signal_experiment.hpp"
 #include "framework/measurement/table.hpp"
-#include "framework/multibody/multibody_simulator.hpp"
+#include "framework/model_source/make_simulator.hpp"
 #include "framework/spec/check/check_experiment.hpp"
 #include "framework/spec/experiment_file.hpp"
 #include "framework/spec/parameter_box.hpp"
@@ -102,8 +102,9 @@ void simulate(const SimulateArguments& arguments) {
   const ExperimentSpec experiment =
       readExperimentWithSignals(loadExperimentTree(arguments.experiment.file, overrides));
   const Eigen::MatrixXd point = makePoint(experiment.model, values);
-  MultibodySimulator simulator(experiment.model, collectTimes(experiment.features),
-                               countModes(experiment.features));
+  const std::unique_ptr<Simulator> made =
+      makeSimulator(experiment.model, collectTimes(experiment.features), countModes(experiment.features));
+  Simulator& simulator = *made;
   Eigen::MatrixXd response(simulator.getLayout().getRowCount(), 1);
   SampleStatus status;
   simulator.simulate(point, response, &status);

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "framework/features/noise.hpp"
-#include "framework/multibody/calc_input_signals.hpp"
+#include "framework/simulation/calc_input_signals.hpp"
 #include "framework/sampling/neighbourhoods.hpp"
 #include "framework/spec/expression/output_units.hpp"
 #include "framework/spec/parameter_box.hpp"

@@ -11,13 +11,14 @@
 #include "framework/experiment/train_maps.hpp"
 #include "framework/experiment/trust_power.hpp"
 #include "framework/features/selections.hpp"
+#include "framework/model_source/make_simulator.hpp"
 #include "framework/monitoring/run_log.hpp"
 #include "framework/monitoring/stage_timer.hpp"
-#include "framework/multibody/multibody_simulator.hpp"
 #include "framework/report/report.hpp"
 #include "framework/results/result_files.hpp"
 #include "framework/results/run_state.hpp"
 #include "framework/results/tables.hpp"
+#include "framework/sampling/ineffective_parameters.hpp"
 #include "framework/sampling/model_store.hpp"
 #include "framework/sampling/neighbourhoods.hpp"
 #include "framework/spec/experiment_file.hpp"
@@ -56,6 +57,15 @@ void beginFolder(const ExperimentSpec& experiment, const RunOptions& options) {
   beginRun(options.folder, resolved);
   if (options.samples == nullptr) {
     noteStore(options.folder, options.store);
+  }
+}
+
+/// A model from elsewhere may ignore a name.
+void warnOfIneffective(const ModelSpec& model, const Simulator& simulator) {
+  const std::string warning =
+      model.source ? describeIneffective(findIneffective(simulator, collectSampled(model))) : "";
+  if (!warning.empty()) {
+    spdlog::warn("{}", warning);
   }
 }
 
@@ -172,9 +182,13 @@ RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& opt
   beginFolder(experiment, options);
   const std::unique_ptr<RunLog> log = options.samples ? nullptr : std::make_unique<RunLog>(options.folder);
 
-  const MultibodySimulator simulator(experiment.model, collectTimes(experiment.features),
-                                     countModes(experiment.features));
+  const std::unique_ptr<Simulator> made =
+      makeSimulator(experiment.model, collectTimes(experiment.features), countModes(experiment.features));
+  const Simulator& simulator = *made;
   spdlog::info("simulated by: {}", simulator.getEngine());
+  if (options.samples == nullptr) {
+    warnOfIneffective(experiment.model, simulator);
+  }
   const FeatureExtractor extractor = makeExtractor(experiment, simulator.getLayout());
   checkTransformOf(extractor.getInfos(), experiment.transform);
   const OwnStores stores = openOwnStores(experiment, simulator, options);

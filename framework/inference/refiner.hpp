@@ -5,7 +5,7 @@
 
 #include "framework/features/feature_noise.hpp"
 #include "framework/inference/inferrer.hpp"
-#include "framework/multibody/multibody_simulator.hpp"
+#include "framework/model_source/make_simulator.hpp"
 #include "framework/refinement/refine.hpp"
 
 namespace twinmap {
@@ -18,7 +18,7 @@ class SimulatorRefiner {
   SimulatorRefiner(const SimulatorRefiner&) = delete;
   SimulatorRefiner& operator=(const SimulatorRefiner&) = delete;
 
-  const MultibodySimulator& getSimulator() const { return simulator_; }
+  const Simulator& getSimulator() const { return *simulator_; }
   const FeatureExtractor& getExtractor() const { return extractor_; }
 
   /// Whether the experiment's `refine` asks for it (shouldRefine).
@@ -43,7 +43,7 @@ class SimulatorRefiner {
 
   const ModelSpec model_;
   const FeatureExtractor extractor_;
-  const MultibodySimulator simulator_;
+  const std::unique_ptr<Simulator> simulator_;
   const FeatureNoise noise_;  // of extractor_
   const bool wanted_;
   const std::unique_ptr<Simulator> own_;           // a clone, which simulates

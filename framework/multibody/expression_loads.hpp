@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "framework/multibody/forces.hpp"
-#include "framework/multibody/model_numbers.hpp"
+#include "framework/simulation/model_numbers.hpp"
 
 namespace twinmap {
 

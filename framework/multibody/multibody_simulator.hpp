@@ -26,12 +26,12 @@ class MultibodySimulator final : public Simulator {
   const ResponseLayout& getLayout() const override;
 
   /// "lanes", or "simbody: " and why not lanes.
-  const std::string& getEngine() const;
+  const std::string& getEngine() const override;
 
   int getBatchSize() const override;
   /// Throws ExperimentError unless a simulation at the box centre could begin: the initial state exists, its
   /// equilibrium is found if it has one, and its accelerations are finite. Nothing is integrated; a few ms.
-  void checkStart();
+  void checkStart() override;
 
   /// As Simulator::simulate; throws std::invalid_argument for matrices of the wrong shape. Cost for the
   /// two-beam case: 0.05 ms a sample of 5 s in lanes, 5 ms by Simbody.

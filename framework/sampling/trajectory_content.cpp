@@ -1,10 +1,12 @@
 #include "framework/sampling/trajectory_content.hpp"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "framework/spec/check/check_experiment.hpp"
 #include "framework/spec/fields/write_value.hpp"
 #include "framework/spec/parameter_box.hpp"
+#include "framework/store/digest.hpp"
 
 namespace twinmap {
 namespace {
@@ -14,6 +16,30 @@ void erase(YamlNode& map, const std::string& key) {
   entries.erase(
       std::remove_if(entries.begin(), entries.end(), [&](const YamlEntry& e) { return e.key == key; }),
       entries.end());
+}
+
+/// What of a model from elsewhere determines a response.
+struct SourceContent {
+  std::vector<std::string> variables, units;
+  std::string fmu;
+  std::optional<FmuKind> kind;
+  std::optional<double> step;
+  std::vector<std::string> command, files;  ///< of a program; digests of the files it names and depends on
+  std::vector<EnvironmentSpec> environment;
+  std::optional<double> excitation_interval;
+};
+
+template <class Fields>
+void describe(Fields& f, SourceContent& s) {
+  f.required("variables", s.variables, "");
+  f.required("units", s.units, "");
+  f.required("fmu", s.fmu, "");
+  f.optional("kind", s.kind, "");
+  f.optional("step", s.step, "");
+  f.optional("command", s.command, "");
+  f.optional("files", s.files, "");
+  f.optionalMap("environment", s.environment, "");
+  f.optional("excitation_interval", s.excitation_interval, "");
 }
 
 YamlNode writeSimulation(const SimulationSpec& simulation) {
@@ -57,6 +83,42 @@ bool startsAtBoxCenter(const InitialSpec& initial) {
   return initial.equilibrium && initial.equilibrium->at == EquilibriumAt::kBoxCenter;
 }
 
+/// Of the files that the command names and those that the program depends on, wherever their folder lies.
+std::vector<std::string> calcFileDigests(const ProgramSpec& program) {
+  const std::filesystem::path folder = program.working_folder;
+  std::vector<std::string> digests;
+  for (const std::vector<std::string>* names : {&program.command, &program.depends_on}) {
+    for (const std::string& name : *names) {
+      std::error_code ignored;
+      const bool is_file = std::filesystem::is_regular_file(folder / name, ignored);
+      digests.push_back(is_file ? toHex(calcFileDigest(folder / name)) : "");
+    }
+  }
+  return digests;
+}
+
+/// The names of variables, and the FMU's bytes, wherever it lies; how much memory it may take decides
+/// nothing.
+SourceContent describeSource(const SourceSpec& source, const std::vector<ParameterSpec>& sampled) {
+  SourceContent content;
+  for (const ParameterSpec& parameter : sampled) {
+    content.variables.push_back((parameter.variable ? *parameter.variable : parameter.name).text);
+    content.units.push_back(parameter.unit);
+  }
+  if (source.fmu) {
+    content.fmu = toHex(calcFileDigest(source.fmu->file.text));
+    content.kind = source.fmu->kind;
+    content.step = source.fmu->step;
+  }
+  if (source.program) {
+    content.command = source.program->command;
+    content.files = calcFileDigests(*source.program);
+    content.environment = source.program->environment;
+    content.excitation_interval = source.program->excitation_interval;
+  }
+  return content;
+}
+
 YamlNode writeResponse(const ResponseLayout& layout) {
   // A new member must be written here, or left out on purpose: the binding then no longer compiles.
   const auto& [output_names, output_units, times, modes] = layout;
@@ -71,8 +133,8 @@ YamlNode writeResponse(const ResponseLayout& layout) {
 
 std::string writeTrajectoryContent(const ModelSpec& model, const ResponseLayout& layout) {
   // A new member must be written here, or left out on purpose: the binding then no longer compiles.
-  const auto& [parameters, nuisance, inputs, constants, system, excitation, initial, outputs, simulation] =
-      model;
+  const auto& [parameters, nuisance, inputs, constants, system, source, excitation, initial, outputs,
+               simulation] = model;
   const std::vector<ParameterSpec> sampled = collectSampled(model);  // all three; which is which is no matter
   FieldWriter content;
   content.required("parameters", collectNames(sampled), "");
@@ -80,7 +142,11 @@ std::string writeTrajectoryContent(const ModelSpec& model, const ResponseLayout&
     content.required("box_center", calcCenter(sampled), "");
   }
   content.requiredMap("constants", withoutTexts(constants), "");
-  content.required("system", system, "");
+  if (source) {
+    content.required("model", describeSource(*source, sampled), "");
+  } else {
+    content.required("system", system, "");
+  }
   content.requiredMap("excitation", withoutSources(excitation), "");
   content.required("initial", initial, "");
   content.requiredMap("outputs", outputs, "");

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "framework/simulation/first_step.hpp"
+
 namespace twinmap {
 namespace {
 
@@ -13,28 +15,6 @@ namespace odeint = boost::numeric::odeint;
 using State = OdeProblem::State;
 using Dopri5 = odeint::runge_kutta_dopri5<State>;
 using ControlledDopri5 = odeint::controlled_runge_kutta<Dopri5>;
-
-bool isFinite(const State& x) {
-  return std::all_of(x.begin(), x.end(), [](double value) { return std::isfinite(value); });
-}
-
-/// Root mean square of values / (absolute + relative |x|).
-double calcScaledNorm(const State& values, const State& x, const IntegrationOptions& options) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const double scale = options.absolute_tolerance + options.relative_tolerance * std::abs(x[i]);
-    sum += values[i] * values[i] / (scale * scale);
-  }
-  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(values.size(), 1)));
-}
-
-State addScaled(const State& x, double factor, const State& direction) {
-  State sum(x);
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    sum[i] += factor * direction[i];
-  }
-  return sum;
-}
 
 class Integration {
  public:
@@ -83,7 +63,7 @@ class Integration {
   }
 
   void controlSteps(double begin, double end) {
-    double dt = calcFirstStep(end - begin);
+    double dt = calcFirstStep(problem_, begin, x_, dxdt_, end - begin, options_);
     while (t_ < end && report_.failure.empty()) {
       const double t_before = t_;
       dt = step(dt, end);
@@ -106,19 +86,6 @@ class Integration {
       }
       accept(t_new);
     }
-  }
-
-  /// Hairer, Norsett, Wanner I, II.4, algorithm for the starting step size.
-  double calcFirstStep(double length) {
-    const double d0 = calcScaledNorm(x_, x_, options_);
-    const double d1 = calcScaledNorm(dxdt_, x_, options_);
-    const double h0 = std::min(d0 < 1e-5 || d1 < 1e-5 ? 1e-6 : 0.01 * d0 / d1, length);
-    calcDerivative(addScaled(x_, h0, dxdt_), dxdt_new_, t_ + h0);
-    const double d2 = calcScaledNorm(addScaled(dxdt_new_, -1.0, dxdt_), x_, options_) / h0;
-    const double largest = std::max(d1, d2);
-    const double h1 = largest <= 1e-15 ? std::max(1e-6, 1e-3 * h0) : std::pow(0.01 / largest, 0.2);
-    const double h = std::min(100.0 * h0, h1);
-    return std::isfinite(h) ? h : h0;
   }
 
   /// Tries one step of size dt at most; returns the size to try next.

@@ -9,4 +9,9 @@ void Simulator::simulateWithDerivatives(const Eigen::Ref<const Eigen::MatrixXd>&
   throw std::logic_error("Simulator::simulateWithDerivatives: this simulator has no derivatives");
 }
 
+const std::string& Simulator::getEngine() const {
+  static const std::string kUnnamed;
+  return kUnnamed;
+}
+
 }  // namespace twinmap

@@ -54,6 +54,13 @@ class Simulator {
 
   virtual std::unique_ptr<Simulator> clone() const = 0;
 
+  /// What simulates, for the log: "lanes", "fmu crane.fmu (FMI 2.0, co_simulation)".
+  virtual const std::string& getEngine() const;
+
+  /// Throws ExperimentError unless a simulation at the centre of the parameter box could begin. Cheap beside
+  /// many simulations.
+  virtual void checkStart() {}
+
   /// The same model, integrated with errors some hundred times smaller; null where it cannot be. For
   /// responses that amplify the errors of the integration. From any thread.
   virtual std::unique_ptr<Simulator> clonePrecisely() const { return nullptr; }

@@ -149,11 +149,13 @@ struct SignalSpec {
   std::vector<ChirpSpec> chirps;
   std::vector<MultisineSpec> multisines;
   std::vector<TableSpec> tables;
+  std::optional<Name> variable{};  ///< an input of a model from elsewhere; default: the name
 };
 
 template <class Fields>
 void describe(Fields& f, SignalSpec& s) {
   f.optional("unit", s.unit, "unit of the signal");
+  f.optional("variable", s.variable, "the input of the FMU or program that it drives; default: its own name");
   f.optional("pulses", s.pulses, "constant within an interval");
   f.optional("sines", s.sines, "single frequencies");
   f.optional("chirps", s.chirps, "sweeping frequencies");

@@ -67,7 +67,8 @@ void describe(Fields& f, ExperimentSpec& s) {
   f.optionalMap("nuisance", s.model.nuisance, "unknown parameters that are sampled, but not inferred");
   f.optionalMap("inputs", s.model.inputs, "known settings, sampled in training, given with a measurement");
   f.optionalMap("constants", s.model.constants, "named values for expressions");
-  f.required("system", s.model.system, "the multibody model");
+  f.oneOf("must give exactly one of", choice("system", s.model.system, "the multibody model"),
+          choice("model", s.model.source, "or a model that comes as a file"));
   f.optionalMap("excitation", s.model.excitation, "named signals for forces and moments");
   f.optional("initial", s.model.initial, "initial condition");
   f.optionalMap("outputs", s.model.outputs, "what is measured");

@@ -7,6 +7,7 @@
 #include "framework/spec/output_spec.hpp"
 #include "framework/spec/parameter_spec.hpp"
 #include "framework/spec/simulation_spec.hpp"
+#include "framework/spec/source_spec.hpp"
 #include "framework/spec/system_spec.hpp"
 
 namespace twinmap {
@@ -17,7 +18,8 @@ struct ModelSpec {
   std::vector<ParameterSpec> nuisance;    ///< unknown too, but not inferred: initial state, offset, friction
   std::vector<ParameterSpec> inputs;      ///< known settings of the set-up, given with a measurement
   std::vector<ConstantSpec> constants;
-  SystemSpec system;
+  SystemSpec system;                 ///< without bodies where `source` is the model
+  std::optional<SourceSpec> source;  ///< a model from elsewhere
   std::vector<SignalSpec> excitation;
   InitialSpec initial;
   std::vector<OutputSpec> outputs;

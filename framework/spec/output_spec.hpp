@@ -29,6 +29,8 @@ struct OutputSpec {
   std::optional<StationOutputSpec> position;
   std::optional<StationOutputSpec> velocity;
   std::optional<StationOutputSpec> acceleration;
+  std::optional<Name> variable;
+  std::string unit;           ///< of a variable
   Expression gain{"", {}};    ///< of the sensor, dimensionless; 1 if not given
   Expression offset{"", {}};  ///< of the sensor, in the quantity's unit; 0 if not given
 };
@@ -39,7 +41,9 @@ void describe(Fields& f, OutputSpec& s) {
           choice("speed", s.speed, "time derivative of a joint coordinate; m/s or rad/s"),
           choice("position", s.position, "of a station, along a direction; m"),
           choice("velocity", s.velocity, "of a station, along a direction; m/s"),
-          choice("acceleration", s.acceleration, "of a station, along a direction; m/s2"));
+          choice("acceleration", s.acceleration, "of a station, along a direction; m/s2"),
+          choice("variable", s.variable, "of an FMU or a program"));
+  f.optional("unit", s.unit, "coherent SI unit of a variable");
   f.optional("gain", s.gain, "of the sensor, which measures gain * quantity + offset; default 1");
   f.optional("offset", s.offset, "of the sensor, in the quantity's unit; default 0");
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "framework/spec/bounds_spec.hpp"
@@ -24,6 +25,7 @@ struct ParameterSpec {
   std::string unit;  ///< coherent SI unit, "" if not stated
   std::string description;
   RelativeTo relative_to = RelativeTo::kValue;  ///< of an updating parameter
+  std::optional<Name> variable;                 ///< of a model from elsewhere; default: the name
 };
 
 template <class Fields>
@@ -33,6 +35,7 @@ void describe(Fields& f, ParameterSpec& s) {
   f.optional("description", s.description, "for people");
   f.optional("relative_to", s.relative_to,
              "what relative errors are relative to: the value, or upper - lower");
+  f.optional("variable", s.variable, "its name in the FMU or program; default: its own");
 }
 
 /// A named value of the model; may use parameters of any kind and the constants declared before it.
@@ -41,6 +44,7 @@ struct ConstantSpec {
   Expression value;
   std::string unit;
   std::string description;
+  std::optional<Name> variable;  ///< of a model from elsewhere, which is set to it
 };
 
 template <class Fields>
@@ -49,6 +53,7 @@ void describe(Fields& f, ConstantSpec& s) {
   f.required("value", s.value, "number, or expression of parameters and constants declared before");
   f.optional("unit", s.unit, "coherent SI unit; checked where the constant is used");
   f.optional("description", s.description, "for people");
+  f.optional("variable", s.variable, "a parameter or start value of the FMU or program that is set to it");
 }
 
 }  // namespace twinmap

@@ -20,6 +20,10 @@ struct SystemSpec {
   std::vector<ForceLawSpec> force_laws;
 };
 
+inline bool isGiven(const SystemSpec& system) {
+  return !system.bodies.empty();
+}
+
 template <class Fields>
 void describe(Fields& f, SystemSpec& s) {
   f.optional("gravity", s.gravity, "in the ground frame; m/s2");

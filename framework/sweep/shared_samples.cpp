@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "framework/multibody/multibody_simulator.hpp"
+#include "framework/model_source/make_simulator.hpp"
 #include "framework/sampling/model_store.hpp"
 #include "framework/sampling/neighbourhoods.hpp"
 #include "framework/sensitivity/neighbourhood_simulator.hpp"
@@ -90,7 +90,7 @@ SharedSamples openSharedSamples(const ModelGroup& group, const Eigen::MatrixXd& 
                                 const std::filesystem::path& root) {
   SharedSamples samples;
   try {
-    auto simulator = std::make_unique<MultibodySimulator>(group.model, group.times, group.modes);
+    auto simulator = makeSimulator(group.model, group.times, group.modes);
     simulator->checkStart();
     samples.simulator = std::move(simulator);
   } catch (const ExperimentError& error) {

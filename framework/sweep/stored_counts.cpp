@@ -1,6 +1,6 @@
 #include "framework/sweep/stored_counts.hpp"
 
-#include "framework/multibody/multibody_simulator.hpp"
+#include "framework/model_source/make_simulator.hpp"
 #include "framework/sampling/neighbourhoods.hpp"
 #include "framework/sensitivity/neighbourhood_simulator.hpp"
 #include "framework/spec/parameter_box.hpp"
@@ -24,7 +24,7 @@ void addCounts(const TrajectoryStore& store, const MatrixXd& all, const MatrixXd
 /// Whether derivatives come from neighbourhoods. Nothing is simulated of a model that cannot be built.
 bool needsNeighbourhoods(const ModelGroup& group) {
   try {
-    return !MultibodySimulator(group.model, group.times, group.modes).hasDerivatives();
+    return !makeSimulator(group.model, group.times, group.modes)->hasDerivatives();
   } catch (const ExperimentError&) {
     return false;
   }

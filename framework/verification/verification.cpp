@@ -4,7 +4,7 @@
 
 #include "framework/design/slices.hpp"
 #include "framework/experiment/run_experiment.hpp"
-#include "framework/multibody/multibody_simulator.hpp"
+#include "framework/model_source/make_simulator.hpp"
 #include "framework/spec/experiment_file.hpp"
 #include "framework/store/atomic_file.hpp"
 #include "framework/store/finished_run.hpp"
@@ -20,8 +20,9 @@ namespace {
 namespace fs = std::filesystem;
 
 void verifyPart(const ExperimentSpec& experiment, const VerifyOptions& options, Verification& verification) {
-  const MultibodySimulator simulator(experiment.model, collectTimes(experiment.features),
-                                     countModes(experiment.features));
+  const std::unique_ptr<Simulator> made =
+      makeSimulator(experiment.model, collectTimes(experiment.features), countModes(experiment.features));
+  const Simulator& simulator = *made;
   const ChosenSamples chosen{chooseSome(options.samples, experiment.design.train.samples, options.seed, 0),
                              chooseSome(options.samples, experiment.design.test.samples, options.seed, 1)};
   try {

@@ -14,7 +14,7 @@ namespace twinmap {
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
+    const ::testing::TestInfo* test = ::testing::UnitTest::GetInstance()->current_test_info();
     path_ = std::filesystem::temp_directory_path() /
             (std::string("twinmap_") + test->name() + "_" + std::to_string(::getpid()));
     std::filesystem::create_directories(path_);

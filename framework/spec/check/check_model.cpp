@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <filesystem>
 
 #include "framework/spec/check/check_experiment.hpp"
 #include "framework/spec/check/check_scope.hpp"
@@ -58,6 +59,7 @@ class ModelCheck {
     checkExcitation();
     checkInitial();
     checkOutputs();
+    checkVariables();
   }
 
  private:
@@ -257,6 +259,62 @@ class ModelCheck {
         }
       }
       checkSensor(output);
+    }
+  }
+
+  void checkSourceFiles(const SourceSpec& source) const {
+    std::error_code ignored;
+    if (source.fmu && !std::filesystem::is_regular_file(source.fmu->file.text, ignored)) {
+      throw ExperimentError(source.fmu->file.where, source.fmu->file.text, "is no file");
+    }
+    if (!source.program) {
+      return;
+    }
+    const std::filesystem::path folder = source.program->working_folder;
+    const SourceLocation where{model_.parameters.front().name.where.file, 0, 0, "model.program"};
+    if (!std::filesystem::is_directory(folder, ignored)) {
+      throw ExperimentError(where, folder.string(), "is no folder");
+    }
+    for (const std::string& file : source.program->depends_on) {
+      if (!std::filesystem::is_regular_file(folder / file, ignored)) {
+        throw ExperimentError(where, file, "is no file that it could depend on");
+      }
+    }
+  }
+
+  /// Variables are those of a model from elsewhere, which has no coordinates.
+  void checkVariables() const {
+    const bool elsewhere = model_.source.has_value();
+    for (const OutputSpec& output : model_.outputs) {
+      if (output.variable.has_value() != elsewhere) {
+        throw ExperimentError(output.name.where, output.name.text,
+                              elsewhere ? "must give the variable of the model that it is"
+                                        : "is a variable, which only an FMU or a program has");
+      }
+      if (!elsewhere && !output.unit.empty()) {
+        throw ExperimentError(output.name.where, output.name.text,
+                              "has the unit of what it measures; state none");
+      }
+      CheckScope::readUnit(output.unit, output.name.where);
+    }
+    const auto refuse = [&](const auto& items) {
+      for (const auto& item : items) {
+        if (item.variable && !elsewhere) {
+          throw ExperimentError(item.variable->where, item.variable->text,
+                                "is a variable, which only an FMU or a program has");
+        }
+      }
+    };
+    refuse(collectSampled(model_));
+    refuse(model_.constants);
+    refuse(model_.excitation);
+    if (elsewhere) {
+      checkSourceFiles(*model_.source);
+    }
+    const InitialSpec& initial = model_.initial;
+    if (elsewhere && (!initial.coordinates.empty() || !initial.speeds.empty() || initial.equilibrium)) {
+      throw ExperimentError({model_.parameters.front().name.where.file, 0, 0, "initial"}, "",
+                            "is for a system; set the start values of a model from elsewhere by constants with a variable");
     }
   }
 

@@ -12,6 +12,9 @@ const char* getOutputUnit(const OutputSpec& output, CoordinateKind kind) {
 }
 
 std::string findOutputUnit(const OutputSpec& output, const SystemSpec& system) {
+  if (output.variable) {
+    return output.unit;
+  }
   if (!output.coordinate && !output.speed) {
     return getOutputUnit(output, {});
   }

@@ -5,7 +5,7 @@
 #include <complex>
 
 #include "framework/features/feature_extractor.hpp"
-#include "framework/multibody/calc_input_signals.hpp"
+#include "framework/simulation/calc_input_signals.hpp"
 #include "framework/multibody/multibody_simulator.hpp"
 #include "framework/spec/experiment_file.hpp"
 

@@ -29,6 +29,27 @@ TEST(TrajectoryContent, WhatDeterminesAResponseChangesIt) {
   }
 }
 
+/// Of experiments/python_plant.
+std::string writePlant(const std::string& override) {
+  const std::string file = std::string(TWINMAP_SOURCE_DIR) + "/experiments/python_plant/python_plant.yaml";
+  const std::vector<std::string> overrides(override.empty() ? 0 : 1, override);
+  return writeTrajectoryContent(loadExperiment(file, overrides).model, makeLayout());
+}
+
+TEST(TrajectoryContent, OfAProgramIsItsCommandAndTheFilesThatItReads) {
+  const std::string reference = writePlant("");
+  for (const char* change :
+       {"model.program.command=[/usr/bin/python3, python_plant.yaml]",
+        "model.program.depends_on=[python_plant.yaml]", "model.program.environment={A: b}",
+        "model.program.excitation_interval=0.1", "parameters.k_y.variable=other"}) {
+    EXPECT_NE(writePlant(change), reference) << change;
+  }
+  for (const char* same : {"model.program.timeout=3", "model.program.batch=7", "model.program.workers=1",
+                           "model.program.memory=2", "model.program.start_timeout=5"}) {
+    EXPECT_EQ(writePlant(same), reference) << same;
+  }
+}
+
 TEST(TrajectoryContent, WhatDoesNotChangeAResponseDoesNot) {
   const std::string reference = write({});
   for (const char* same :

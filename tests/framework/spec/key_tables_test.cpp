@@ -154,6 +154,8 @@ struct Described {
 
 const std::vector<Described> kKeyTables{
     {"key", ""},
+    {"key of `fmu`", "model.fmu"},
+    {"key of `program`", "model.program"},
     {"key", "system.bodies.*"},
     {"key of `measured`", "excitation.*.tables.[].measured"},
     {"key", "simulation"},

@@ -1,4 +1,4 @@
-#include "framework/multibody/model_numbers.hpp"
+#include "framework/simulation/model_numbers.hpp"
 
 #include <cmath>
 

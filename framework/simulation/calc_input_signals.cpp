@@ -1,6 +1,6 @@
-#include "framework/multibody/calc_input_signals.hpp"
+#include "framework/simulation/calc_input_signals.hpp"
 
-#include "framework/multibody/model_numbers.hpp"
+#include "framework/simulation/model_numbers.hpp"
 #include "framework/simulation/excitation.hpp"
 #include "framework/spec/parameter_box.hpp"
 

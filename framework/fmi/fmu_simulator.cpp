@@ -1,0 +1,238 @@
+#include "framework/fmi/fmu_simulator.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <mutex>
+#include <stdexcept>
+
+#include "framework/fmi/package.hpp"
+#include "framework/fmi/worker.hpp"
+#include "framework/fmi/worker_job.hpp"
+#include "framework/spec/check/check_experiment.hpp"
+#include "framework/spec/parameter_box.hpp"
+
+namespace twinmap {
+namespace {
+
+constexpr double kStartTime = 60.0;  // s that an FMU may take to be loaded
+constexpr double kGrace = 2.0;  // s beyond a sample's limit, which the process keeps itself unless it hangs
+
+std::vector<double> toVector(const Eigen::VectorXd& values) {
+  return {values.begin(), values.end()};
+}
+
+std::optional<fmi::Kind> getKind(const FmuSpec& spec) {
+  return spec.kind ? std::optional<fmi::Kind>(fmi::toKind(*spec.kind)) : std::nullopt;
+}
+
+void checkLayout(const ModelSpec& model, const Eigen::VectorXd& times, int modes) {
+  if (modes > 0) {
+    throw ExperimentError(model.source->fmu->file.where, model.source->fmu->file.text,
+                          "has no natural frequencies: features of modes need a system");
+  }
+  for (Eigen::Index i = 0; i < times.size(); ++i) {
+    if (!(times[i] >= 0.0 && times[i] <= model.simulation.duration) || (i > 0 && times[i] <= times[i - 1])) {
+      throw ExperimentError("sample time " + std::to_string(times[i]) +
+                            " s must lie within the simulation's duration and after the one before");
+    }
+  }
+}
+
+ResponseLayout makeLayout(const ModelSpec& model, Eigen::VectorXd times) {
+  ResponseLayout layout{collectNames(model.outputs), {}, std::move(times), 0};
+  for (const OutputSpec& output : model.outputs) {
+    layout.output_units.push_back(output.unit);
+  }
+  return layout;
+}
+
+/// Without the name of the file, which messages have.
+std::string getFileName(const std::string& path) {
+  return path.substr(path.rfind('/') + 1);
+}
+
+}  // namespace
+
+/// A process with the FMU.
+class FmuSimulator::Worker {
+ public:
+  explicit Worker(const std::string& job) : process_({getWorkerExecutable(), {fmi::kWorkerArgument}}) {
+    const Frame refusal = process_.exchange(fmi::encodeJob(job), kStartTime);
+    if (!refusal.empty()) {
+      throw WorkerFailure(std::string(refusal.begin(), refusal.end()));
+    }
+  }
+
+  /// `limit`: s a sample.
+  void simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters, Eigen::Ref<Eigen::MatrixXd> responses,
+                SampleStatus* statuses, double limit) {
+    const double timeout = static_cast<double>(parameters.cols()) * limit + kGrace;
+    const Frame answers = process_.exchange(fmi::encodePoints(parameters), timeout);
+    std::size_t begin = 1;
+    for (Eigen::Index i = 0; i < parameters.cols(); ++i) {
+      statuses[i] = fmi::decodeAnswer(answers, begin, responses.col(i));
+    }
+    last_ = answers.front() != 0;
+  }
+
+  /// Whether it has ended by itself after its last answer.
+  bool hasEnded() const { return last_; }
+
+ private:
+  WorkerProcess process_;
+  bool last_ = false;
+};
+
+/// What all clones share: the unpacked FMU, and processes that no clone uses at present.
+class FmuSimulator::Shared {
+ public:
+  Shared(const ModelSpec& model, Eigen::VectorXd times)
+      : model_(model),
+        package_(model.source->fmu->file.text),
+        kind_(package_.chooseKind(getKind(*model.source->fmu))),
+        layout_(makeLayout(model, std::move(times))) {
+    fmi::makeRunSetting(package_.getDescription(), kind_, model_,
+                        toVector(layout_.times));  // names and units fit
+    const std::string library = package_.requireLibrary(kind_).string();
+    job_ = fmi::writeWorkerJob({model.source->fmu->file.text, package_.getFolder().string(), library,
+                                fmi::toFmuKind(kind_), model_, toVector(layout_.times)});
+    engine_ =
+        "fmu " + getFileName(model.source->fmu->file.text) + " (FMI " +
+        package_.getDescription().version_text + ", " + toText(kind_) +
+        (package_.getDescription().getCapabilities(kind_).needs_execution_tool ? ", needs its tool" : "") +
+        ")";
+  }
+
+  std::unique_ptr<Worker> takeWorker() {
+    {
+      const std::lock_guard<std::mutex> guard(access_);
+      if (!idle_.empty()) {
+        std::unique_ptr<Worker> worker = std::move(idle_.back());
+        idle_.pop_back();
+        return worker;
+      }
+    }
+    return std::make_unique<Worker>(job_);
+  }
+
+  void giveBack(std::unique_ptr<Worker> worker) {
+    const std::lock_guard<std::mutex> guard(access_);
+    idle_.push_back(std::move(worker));
+  }
+
+  template <class Make>
+  std::unique_ptr<Simulator> clonePrecise(const Make& make) {
+    const std::lock_guard<std::mutex> guard(making_precise_);
+    precise_ = precise_ != nullptr ? std::move(precise_) : make();
+    return precise_->clone();
+  }
+
+  const ModelSpec& getModel() const { return model_; }
+  const ResponseLayout& getLayout() const { return layout_; }
+  const std::string& getEngine() const { return engine_; }
+
+ private:
+  const ModelSpec model_;
+  const fmi::Package package_;
+  const fmi::Kind kind_;
+  const ResponseLayout layout_;
+  std::string job_, engine_;
+  std::mutex access_;
+  std::mutex making_precise_;
+  std::unique_ptr<FmuSimulator> precise_;  ///< made when first used
+  std::vector<std::unique_ptr<Worker>> idle_;
+};
+
+FmuSimulator::FmuSimulator(const ModelSpec& model, Eigen::VectorXd times, int modes) {
+  checkLayout(model, times, modes);
+  shared_ = std::make_shared<Shared>(model, std::move(times));
+}
+
+FmuSimulator::FmuSimulator(std::shared_ptr<Shared> shared) : shared_(std::move(shared)) {}
+
+FmuSimulator::~FmuSimulator() {
+  if (worker_ != nullptr) {
+    shared_->giveBack(std::move(worker_));
+  }
+}
+
+const ResponseLayout& FmuSimulator::getLayout() const {
+  return shared_->getLayout();
+}
+
+const std::string& FmuSimulator::getEngine() const {
+  return shared_->getEngine();
+}
+
+void FmuSimulator::checkStart() {
+  const Eigen::MatrixXd center = calcBoxCenter(collectSampled(shared_->getModel()));
+  Eigen::MatrixXd response(getLayout().getRowCount(), 1);
+  SampleStatus status;
+  simulate(center, response, &status);
+  if (!status.ok) {
+    const Name& file = shared_->getModel().source->fmu->file;
+    throw ExperimentError(file.where, file.text,
+                          "cannot be simulated at the centre of the parameter box: " + status.reason);
+  }
+}
+
+void FmuSimulator::checkShapes(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                               const Eigen::Ref<Eigen::MatrixXd>& responses) const {
+  if (parameters.rows() != countSampled(shared_->getModel()) ||
+      responses.rows() != getLayout().getRowCount() || responses.cols() != parameters.cols()) {
+    throw std::invalid_argument("FmuSimulator::simulate: a matrix has the wrong shape");
+  }
+}
+
+void FmuSimulator::simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                            Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
+  checkShapes(parameters, responses);
+  for (Eigen::Index i = 0; i < parameters.cols(); ++i) {
+    simulateTogether(parameters.col(i), responses.col(i), &statuses[i]);
+  }
+}
+
+void FmuSimulator::simulateAround(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                                  Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
+  checkShapes(parameters, responses);
+  simulateTogether(parameters, responses, statuses);
+}
+
+void FmuSimulator::simulateTogether(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                                    Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
+  try {
+    if (worker_ == nullptr) {
+      worker_ = shared_->takeWorker();
+    }
+    worker_->simulate(parameters, responses, statuses, shared_->getModel().simulation.max_wall_time);
+    if (worker_->hasEnded()) {
+      worker_ = nullptr;
+    }
+  } catch (const WorkerFailure& failure) {
+    worker_ = nullptr;  // the next sample starts another
+    std::fill(statuses, statuses + parameters.cols(),
+              SampleStatus{false, failure.what(), failure.hasTimedOut()});
+  }
+  for (Eigen::Index i = 0; i < parameters.cols(); ++i) {
+    if (!statuses[i].ok) {
+      responses.col(i).setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+}
+
+std::unique_ptr<Simulator> FmuSimulator::clone() const {
+  return std::unique_ptr<Simulator>(new FmuSimulator(shared_));
+}
+
+std::unique_ptr<Simulator> FmuSimulator::clonePrecisely() const {
+  return shared_->clonePrecise([this] {
+    constexpr double kShare = 0.01, kLeastRelative = 1e-13, kLeastAbsolute = 1e-18;  // as MultibodySimulator
+    ModelSpec model = shared_->getModel();
+    SimulationSpec& simulation = model.simulation;
+    simulation.relative_tolerance = std::max(kShare * simulation.relative_tolerance, kLeastRelative);
+    simulation.absolute_tolerance = std::max(kShare * simulation.absolute_tolerance, kLeastAbsolute);
+    return std::make_unique<FmuSimulator>(model, getLayout().times, 0);
+  });
+}
+
+}  // namespace twinmap

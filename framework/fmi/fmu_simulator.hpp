@@ -1,0 +1,49 @@
+#pragma once
+
+#include "framework/simulation/simulator.hpp"
+#include "framework/spec/model_spec.hpp"
+
+namespace twinmap {
+
+/// Simulates a model that comes as an FMU (docs/fmu.md). Each clone that simulates has the FMU in a process
+/// of its own, which its successors use again: what happens to it there, a crash, an end, a hang, is a failed
+/// sample.
+class FmuSimulator final : public Simulator {
+ public:
+  /// Unpacks the FMU and finds the model's names among its variables; starts nothing. `times`: of the
+  /// outputs, s, increasing, within [0, duration]. Throws ExperimentError for an FMU that cannot be used, a
+  /// name or unit that does not fit, and for modes, which an FMU has not.
+  FmuSimulator(const ModelSpec& model, Eigen::VectorXd times, int modes);
+  ~FmuSimulator() override;
+
+  const ResponseLayout& getLayout() const override;
+  const std::string& getEngine() const override;
+  /// Simulates the centre of the box.
+  void checkStart() override;
+  /// Some 20 us a sample beside the FMU's own time.
+  void simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters, Eigen::Ref<Eigen::MatrixXd> responses,
+                SampleStatus* statuses) override;
+  /// With the steps of the centre where it has no state events, for Model Exchange; for Co-Simulation as
+  /// simulate().
+  void simulateAround(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                      Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) override;
+  std::unique_ptr<Simulator> clone() const override;
+  /// With a hundredth of the tolerances, which Model Exchange is integrated with and Co-Simulation told.
+  std::unique_ptr<Simulator> clonePrecisely() const override;
+
+ private:
+  class Shared;
+  class Worker;
+  explicit FmuSimulator(std::shared_ptr<Shared> shared);
+
+  void checkShapes(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                   const Eigen::Ref<Eigen::MatrixXd>& responses) const;
+  /// In one exchange with the process.
+  void simulateTogether(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                        Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses);
+
+  std::shared_ptr<Shared> shared_;
+  std::unique_ptr<Worker> worker_;
+};
+
+}  // namespace twinmap

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <memory>
+
+#include "framework/fmi/run_setting.hpp"
+#include "framework/fmi/sample_run.hpp"
+#include "framework/simulation/simulator.hpp"
+
+namespace twinmap::fmi {
+
+/// Simulates samples by one FMU in this process, one after another: the instance is reset between them, or
+/// made anew where it cannot be. Not thread safe.
+class Runner {
+ public:
+  /// Loads the library and makes an instance. `source` and its description outlive the runner. `signals`: of
+  /// the excitation. Throws ExperimentError or FmuFailure where the FMU cannot be used.
+  Runner(const InstanceSource& source, RunSetting setting, int signals);
+
+  /// `parameters`: the experiment's point; `excitation`: updated for it. The response is NaN where the status
+  /// is not ok. `sequence`: steps of Model Exchange to take, or an empty one that gets those that were taken
+  /// unless there were state events; a sample that cannot take the steps chooses its own.
+  SampleStatus run(const double* parameters, Excitation& excitation, Eigen::Ref<Eigen::VectorXd> response,
+                   StepSequence& sequence);
+
+  /// False once the FMU has ended with Fatal, or can neither be reset nor made anew: this process is to end.
+  bool isUsable() const { return usable_; }
+
+ private:
+  /// A sample on its way.
+  struct Task {
+    const double* parameters;
+    Excitation& excitation;
+    Eigen::Ref<Eigen::VectorXd> response;
+    StepSequence& sequence;
+  };
+  void simulate(Task& task);
+  void simulateOnce(Task& task, double largest_step);
+  void renew();
+  double chooseStep() const;
+
+  InstanceSource source_;
+  RunSetting setting_;
+  InstanceFactory factory_;
+  BoundGroup parameters_, outputs_;
+  DrivenInputs inputs_;
+  std::unique_ptr<Instance> instance_;
+  bool fresh_ = true, usable_ = true;
+};
+
+}  // namespace twinmap::fmi

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "framework/fmi/failure.hpp"
+#include "framework/fmi/run_setting.hpp"
+#include "framework/simulation/excitation.hpp"
+
+namespace twinmap::fmi {
+
+/// An FMU's inputs, driven by the excitation: those that may change between events, and the discrete ones,
+/// which change at events and communication points only.
+class DrivenInputs {
+ public:
+  DrivenInputs(const BoundVariables& inputs, int signals);
+
+  bool hasContinuous() const { return !continuous_.isEmpty(); }
+  bool isEmpty() const { return continuous_.isEmpty() && discrete_.isEmpty(); }
+
+  void setAll(Instance& instance, const Excitation& excitation, double t);
+  void setContinuous(Instance& instance, const Excitation& excitation, double t);
+
+ private:
+  BoundGroup continuous_, discrete_;
+  std::vector<double> values_;
+};
+
+/// One sample while it runs: all that the two kinds share.
+struct SampleRun {
+  Instance& instance;
+  const RunSetting& setting;
+  const Capabilities& capabilities;
+  Excitation& excitation;  ///< updated for the sample
+  DrivenInputs& inputs;
+  BoundGroup& outputs;
+  Eigen::Ref<Eigen::VectorXd> response;  ///< output by output, as ResponseLayout
+  StepSequence& sequence;  ///< of Model Exchange: steps to take, or, where it is empty, those that were taken
+
+  /// Reads the outputs at output time `index` from the instance. Throws FmuFailure for one that is not
+  /// finite.
+  void record(int index);
+
+  /// Initialises the FMU at t = 0 with the excitation of its first phase.
+  void initialise();
+};
+
+/// Simulate a sample from an instance whose parameters are set. Throw SimulationFailure where they cannot.
+void runCoSimulation(SampleRun& run, double largest_step);
+void runModelExchange(SampleRun& run);
+
+/// A communication step was refused, which a smaller one may cure.
+class StepDiscarded : public FmuFailure {
+ public:
+  using FmuFailure::FmuFailure;
+};
+
+}  // namespace twinmap::fmi

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+
+#include "framework/process/worker_process.hpp"
+#include "framework/simulation/simulator.hpp"
+
+namespace twinmap::fmi {
+
+/// The first argument of this program that makes it a worker: `twinmap fmu-worker`.
+constexpr const char* kWorkerArgument = "fmu-worker";
+
+/// Answers requests of encodeJob() and encodePoints() with one FMU in this process. Never returns.
+[[noreturn]] void runWorker();
+
+// Frames of bytes. A job is answered by an empty reason, or why the FMU cannot be used.
+Frame encodeJob(const std::string& job);
+/// Of one point, or of a centre and its neighbours, which share its integration steps.
+Frame encodePoints(const Eigen::Ref<const Eigen::MatrixXd>& parameters);
+Frame encodeAnswer(const SampleStatus& status, const Eigen::Ref<const Eigen::VectorXd>& response);
+/// Takes the first of the answers off the frame, from `begin` on. The response is written where the status is
+/// ok. Throws WorkerFailure for another size.
+SampleStatus decodeAnswer(const Frame& frame, std::size_t& begin, Eigen::Ref<Eigen::VectorXd> response);
+
+}  // namespace twinmap::fmi

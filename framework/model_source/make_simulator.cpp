@@ -1,0 +1,19 @@
+#include "framework/model_source/make_simulator.hpp"
+
+#include "framework/fmi/fmu_simulator.hpp"
+#include "framework/multibody/multibody_simulator.hpp"
+#include "framework/program/program_simulator.hpp"
+
+namespace twinmap {
+
+std::unique_ptr<Simulator> makeSimulator(const ModelSpec& model, const Eigen::VectorXd& times, int modes) {
+  if (model.source && model.source->program) {
+    return std::make_unique<ProgramSimulator>(model, times, modes);
+  }
+  if (model.source) {
+    return std::make_unique<FmuSimulator>(model, times, modes);
+  }
+  return std::make_unique<MultibodySimulator>(model, times, modes);
+}
+
+}  // namespace twinmap

@@ -1,0 +1,126 @@
+#include "framework/program/answer.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "framework/program/requests.hpp"
+
+namespace twinmap {
+namespace {
+
+using nlohmann::json;
+
+/// The beginning of a line, for people.
+std::string shorten(const std::string& line) {
+  constexpr std::size_t kMost = 80;
+  return line.size() <= kMost ? line : line.substr(0, kMost) + "...";
+}
+
+/// NaN and Infinity, which many languages write and JSON does not know, as null: outside texts.
+std::string replaceNonFinite(const std::string& line) {
+  std::string result;
+  bool in_text = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    in_text = in_text != (line[i] == '"' && (i == 0 || line[i - 1] != '\\'));
+    bool replaced = false;
+    for (const char* word : {"-Infinity", "Infinity", "-NaN", "NaN"}) {
+      const std::string text = word;
+      if (!in_text && !replaced && line.compare(i, text.size(), text) == 0) {
+        result += "null";
+        i += text.size() - 1;
+        replaced = true;
+      }
+    }
+    if (!replaced) {
+      result += line[i];
+    }
+  }
+  return result;
+}
+
+json parse(const std::string& line) {
+  json answer = json::parse(line, nullptr, false);
+  if (answer.is_discarded()) {
+    answer = json::parse(replaceNonFinite(line), nullptr, false);
+  }
+  if (!answer.is_object()) {
+    throw ProtocolError("the program's answer is no JSON object: " + shorten(line));
+  }
+  return answer;
+}
+
+/// Why the values of an output cannot be taken, or "".
+std::string readOutput(const json& values, const std::string& name, const ResponseLayout& layout,
+                       Eigen::Ref<Eigen::VectorXd> rows) {
+  const auto count = static_cast<Eigen::Index>(values.size());
+  if (!values.is_array() || count != rows.size()) {
+    return fmt::format("output '{}' has {} values instead of {}, one for each time", name,
+                       values.is_array() ? count : 0, rows.size());
+  }
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const json& value = values[static_cast<std::size_t>(i)];
+    rows[i] = value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
+    if (!std::isfinite(rows[i])) {
+      return fmt::format("output '{}' is not finite at t = {:g} s", name, layout.times[i]);
+    }
+  }
+  return "";
+}
+
+SampleStatus readSample(const json& answer, const std::vector<std::string>& names,
+                        const ResponseLayout& layout, Eigen::Ref<Eigen::VectorXd> response) {
+  if (const auto failed = answer.find("failed"); failed != answer.end()) {
+    return {false, failed->is_string() ? failed->get<std::string>() : failed->dump()};
+  }
+  const auto outputs = answer.find("outputs");
+  if (outputs == answer.end() || !outputs->is_object()) {
+    throw ProtocolError("the program's answer has neither 'outputs' nor 'failed': " + shorten(answer.dump()));
+  }
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto values = outputs->find(names[i]);
+    const Eigen::Index first = layout.getRow(static_cast<Eigen::Index>(i), 0);
+    const std::string failure =
+        values == outputs->end()
+            ? "the answer lacks output '" + names[i] + "'"
+            : readOutput(*values, names[i], layout, response.segment(first, layout.times.size()));
+    if (!failure.empty()) {
+      return {false, failure};
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+void checkHello(const std::string& line) {
+  const json answer = parse(line);
+  const auto version = answer.find("twinmap");
+  if (version == answer.end() || *version != kProtocolVersion) {
+    throw ProtocolError(fmt::format("the program's first answer must be {{\"twinmap\": {}}}, not {}",
+                                    kProtocolVersion, shorten(line)));
+  }
+}
+
+SampleStatus readAnswer(const std::string& line, const std::vector<std::string>& names,
+                        const ResponseLayout& layout, Eigen::Ref<Eigen::VectorXd> response) {
+  return readSample(parse(line), names, layout, response);
+}
+
+void readAnswers(const std::string& line, const std::vector<std::string>& names, const ResponseLayout& layout,
+                 Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
+  const json answer = parse(line);
+  const auto samples = answer.find("samples");
+  if (samples == answer.end() || !samples->is_array() ||
+      static_cast<Eigen::Index>(samples->size()) != responses.cols()) {
+    throw ProtocolError(
+        fmt::format("the program's answer to a batch of {} must have as many 'samples'", responses.cols()));
+  }
+  for (Eigen::Index i = 0; i < responses.cols(); ++i) {
+    statuses[i] = readSample((*samples)[static_cast<std::size_t>(i)], names, layout, responses.col(i));
+  }
+}
+
+}  // namespace twinmap

@@ -1,0 +1,124 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/framework/fmi/fmu_case.hpp"
+
+namespace twinmap::testing {
+namespace {
+
+using fmi::Kind;
+
+/// Height at t of a ball that falls from rest at `height` under g and bounces with e; for times before it
+/// rests.
+double calcBall(double height, double g, double e, double t) {
+  double fall = std::sqrt(2.0 * height / g), speed = g * fall;
+  if (t <= fall) {
+    return height - 0.5 * g * t * t;
+  }
+  t -= fall;
+  for (speed *= e; t > 2.0 * speed / g; speed *= e) {
+    t -= 2.0 * speed / g;
+  }
+  return speed * t - 0.5 * g * t * t;
+}
+
+class Ball : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(Ball, BouncesAsTheParabolasSay) {
+  FmuCase fmu;
+  fmu.name = GetParam();
+  fmu.kind = Kind::kModelExchange;
+  fmu.parameters = {{"e", 0.8}, {"h", 1.3}};  // h: a start value
+  fmu.units = {{"h", "m"}};
+  fmu.outputs = {"h"};
+  fmu.times = Eigen::VectorXd::LinSpaced(61, 0.0, 3.0);
+  fmu.duration = 3.0;
+  const FmuResult result = simulate(fmu, 2);
+  ASSERT_TRUE(result.status.ok) << result.status.reason;
+  for (Eigen::Index i = 0; i < fmu.times.size(); ++i) {
+    EXPECT_NEAR(result.outputs(i, 0), calcBall(1.3, 9.81, 0.8, fmu.times[i]), 1e-10) << fmu.times[i];
+  }
+}
+
+TEST_P(Ball, BouncesInCoSimulationToItsOwnStep) {
+  FmuCase fmu;
+  fmu.name = GetParam();
+  fmu.outputs = {"h"};
+  fmu.units = {{"h", "m"}};
+  fmu.times = Eigen::VectorXd::LinSpaced(16, 0.0, 1.5);
+  fmu.duration = 1.5;
+  const FmuResult result = simulate(fmu);
+  ASSERT_TRUE(result.status.ok) << result.status.reason;
+  for (Eigen::Index i = 0; i < fmu.times.size(); ++i) {
+    EXPECT_NEAR(result.outputs(i, 0), calcBall(1.0, 9.81, 0.7, fmu.times[i]), 3e-3) << fmu.times[i];
+  }
+}
+
+TEST_P(Ball, ComesToRestAfterInfinitelyManyBounces) {
+  FmuCase fmu;
+  fmu.name = GetParam();
+  fmu.kind = Kind::kModelExchange;
+  fmu.outputs = {"h"};
+  fmu.units = {{"h", "m"}};
+  fmu.times = Eigen::VectorXd::LinSpaced(2, 3.0, 10.0);
+  fmu.duration = 10.0;
+  const FmuResult result = simulate(fmu);
+  ASSERT_TRUE(result.status.ok) << result.status.reason;
+  EXPECT_NEAR(result.outputs(1, 0), 0.0, 1e-9);
+}
+
+INSTANTIATE_TEST_SUITE_P(Versions, Ball, ::testing::Values("bouncing_ball_2", "bouncing_ball_3"));
+
+struct Way {
+  const char* fmu;
+  Kind kind;
+};
+
+class Stairs : public ::testing::TestWithParam<Way> {};
+
+TEST_P(Stairs, RisesAtEverySecondExactly) {
+  FmuCase fmu;
+  fmu.name = GetParam().fmu;
+  fmu.kind = GetParam().kind;
+  fmu.outputs = {"counter"};
+  fmu.times = (Eigen::VectorXd(6) << 0.0, 0.99999, 1.0, 1.00001, 5.5, 9.5).finished();
+  fmu.duration = 9.5;
+  const FmuResult result = simulate(fmu);
+  ASSERT_TRUE(result.status.ok) << result.status.reason;
+  EXPECT_EQ(result.outputs.col(0), (Eigen::VectorXd(6) << 1, 1, 2, 2, 6, 10).finished());
+}
+
+TEST_P(Stairs, MayEndItsSimulationWithTheLastOutput) {
+  FmuCase fmu;
+  fmu.name = GetParam().fmu;
+  fmu.kind = GetParam().kind;
+  fmu.outputs = {"counter"};
+  fmu.times = Eigen::VectorXd::LinSpaced(11, 0.0, 10.0);
+  fmu.duration = 10.0;
+  const FmuResult result = simulate(fmu, 2);
+  ASSERT_TRUE(result.status.ok) << result.status.reason;
+  EXPECT_EQ(result.outputs(10, 0), 11.0);
+}
+
+TEST_P(Stairs, FailsWhereItEndsItsSimulationEarlier) {
+  FmuCase fmu;
+  fmu.name = GetParam().fmu;
+  fmu.kind = GetParam().kind;
+  fmu.outputs = {"counter"};
+  fmu.times = Eigen::VectorXd::LinSpaced(12, 0.0, 11.0);
+  fmu.duration = 11.0;
+  const FmuResult result = simulate(fmu);
+  EXPECT_FALSE(result.status.ok);
+  EXPECT_NE(result.status.reason.find("ended its simulation at t = 10 s"), std::string::npos)
+      << result.status.reason;
+}
+
+INSTANTIATE_TEST_SUITE_P(Ways, Stairs,
+                         ::testing::Values(Way{"stairs_2", Kind::kCoSimulation},
+                                           Way{"stairs_3", Kind::kCoSimulation},
+                                           Way{"stairs_2", Kind::kModelExchange},
+                                           Way{"stairs_3", Kind::kModelExchange}));
+
+}  // namespace
+}  // namespace twinmap::testing

@@ -1,0 +1,44 @@
+#include <gtest/gtest.h>
+
+#include "framework/program/program_simulator.hpp"
+#include "framework/simulation/sample_generator.hpp"
+#include "framework/spec/experiment_file.hpp"
+#include "tests/framework/multibody/two_beam.hpp"
+
+namespace twinmap::testing {
+namespace {
+
+Trajectories simulatePlant(int batch, int threads, int samples) {
+  ModelSpec model =
+      loadExperiment(TWINMAP_SOURCE_DIR "/experiments/python_plant/python_plant.yaml",
+                     {"model.program.batch=" + std::to_string(batch),
+                      "model.program.command=[/usr/bin/python3, plant.py]"})  // that of the packages
+          .model;
+  GeneratorOptions options;
+  options.threads = threads;
+  return generateSamples(ProgramSimulator(model, makeTwoBeamTimes(), 0), makeTwoBeamPoints(samples), options);
+}
+
+TEST(PythonPlant, FollowsTheClosedFormOfTheTwoBeams) {
+  const Trajectories result = simulatePlant(4, 1, 4);
+  const Eigen::Index times = result.layout.times.size();
+  for (Eigen::Index j = 0; j < result.parameters.cols(); ++j) {
+    ASSERT_TRUE(result.statuses[j].ok) << result.statuses[j].reason;
+    const Eigen::MatrixXd exact = integrateTwoBeam(result.parameters.col(j), result.layout.times);
+    for (Eigen::Index o = 0; o < 2; ++o) {
+      const double range = exact.row(o).maxCoeff() - exact.row(o).minCoeff();
+      const Eigen::VectorXd error =
+          result.responses.col(j).segment(o * times, times) - exact.row(o).transpose();
+      EXPECT_LT(error.cwiseAbs().maxCoeff(), 2e-5 * range);  // what the built-in model is asked for
+    }
+  }
+}
+
+TEST(PythonPlant, GivesTheSameBitsInAnyBatchAndOnAnyNumberOfThreads) {
+  const Trajectories one = simulatePlant(1, 1, 6);
+  EXPECT_EQ(one.responses, simulatePlant(4, 2, 6).responses);
+  EXPECT_EQ(one.responses, simulatePlant(6, 1, 6).responses);
+}
+
+}  // namespace
+}  // namespace twinmap::testing
