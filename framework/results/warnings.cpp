@@ -138,23 +138,15 @@ std::string dropLongLengthScales(const std::string& at_bound) {
 }
 
 void appendTraining(const RunSummary& run, std::vector<Warning>& warnings) {
-  std::vector<std::string> noise_only, at_bound;
+  std::vector<std::string> at_bound;
   for (const TrainingStart& start : run.training.starts) {
     if (!start.best) {
       continue;
-    }
-    if (start.noise_only) {
-      noise_only.push_back(start.parameter);
     }
     const std::string kept = dropLongLengthScales(start.at_bound);
     if (!kept.empty()) {
       at_bound.push_back(start.parameter + " (" + kept + ")");
     }
-  }
-  if (!noise_only.empty()) {
-    warnings.push_back(
-        {Gravity::kPoor, "the map explains a parameter as noise alone: " + listNames(noise_only) +
-                             ". More inverse_map.gp.starts or other features may find a signal"});
   }
   if (!at_bound.empty()) {
     warnings.push_back({Gravity::kRemark, "hyperparameters ended at a bound: " + listNames(at_bound) +
