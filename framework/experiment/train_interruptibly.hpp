@@ -1,7 +1,7 @@
 #pragma once
 
 #include "framework/monitoring/interrupted.hpp"
-#include "kernels/gp/stop.hpp"
+#include "framework/inverse_map/training_control.hpp"
 
 namespace twinmap {
 

@@ -8,7 +8,7 @@
 
 #include "framework/design/random.hpp"
 #include "framework/features/noise_whitener.hpp"
-#include "framework/multibody/multibody_simulator.hpp"
+#include "framework/model_source/make_simulator.hpp"
 #include "framework/refinement/acceptance.hpp"
 #include "framework/results/escape.hpp"
 #include "framework/sensitivity/feature_sensitivities.hpp"
@@ -28,15 +28,17 @@ constexpr double kConstantSpan = 0.2;   // relative; the interval of a constant 
 constexpr double kLargestChange = 0.5;  // of a constant
 constexpr double kFound = 0.95, kHardlyFound = 0.5;
 
-/// The constants whose values are numbers other than zero.
+/// The constants whose values are numbers other than zero; of a model from elsewhere those that it knows.
 std::vector<ParameterSpec> listConstants(const ModelSpec& model) {
   std::vector<ParameterSpec> constants;
   for (const ConstantSpec& constant : model.constants) {
     char* end = nullptr;
     const double value = std::strtod(constant.value.text.c_str(), &end);
-    if (*end == '\0' && std::abs(value) > 0.0) {
+    const bool is_used = !model.source || constant.variable;
+    if (*end == '\0' && std::abs(value) > 0.0 && is_used) {
       ParameterSpec parameter;
       parameter.name = constant.name;
+      parameter.variable = constant.variable;
       parameter.unit = constant.unit;
       const double span = kConstantSpan * std::abs(value);
       parameter.bounds = {value - span, value + span, constant.value.where};
@@ -85,13 +87,13 @@ std::vector<Neighbourhood> simulateNeighbourhoods(const PowerContext& context,
                                                   const std::vector<ParameterSpec>& constants) {
   const ModelSpec model = makeConstantsUnknown(context.experiment.model, constants);
   const ResponseLayout& layout = context.sets.test.layout;
-  const MultibodySimulator simulator(model, layout.times, layout.modes);
+  const std::unique_ptr<Simulator> simulator = makeSimulator(model, layout.times, layout.modes);
   const MatrixXd points = makePoints(context.experiment, context.sets, constants);
   const auto count = static_cast<Index>(constants.size());
   std::vector<Neighbourhood> found;
   Index column = 0;
   for (const LocalModel& local :
-       calcLocalModels(simulator, context.extractor, collectUnknown(model), points, context.threads)) {
+       calcLocalModels(*simulator, context.extractor, collectUnknown(model), points, context.threads)) {
     if (local.status.ok) {
       const Index unknown = local.sensitivities.cols() - count;
       found.push_back({local.features,

@@ -23,8 +23,8 @@ CHECK_TIMEOUT, RUN_TIMEOUT, MEMORY = 60, 300, 12 << 30
 def list_files():
     """(experiment file, name of the mutation, path that it touches, content)."""
     for file in sorted(EXPERIMENTS.glob("*/*.yaml")):
-        # mechanisms are made of the same keys as the others, whose mutations take a minute; an FMU lies beside its experiment
-        if file.parent.name in ("mechanisms", "fmu"):
+        # mechanisms are made of the same keys as the others, whose mutations take a minute; an FMU or program lies beside its experiment
+        if file.parent.name in ("mechanisms", "fmu", "python_plant"):
             continue
         for mutation in mutations.mutate_trees(file.stem, file.read_text()):
             yield (file, *mutation)

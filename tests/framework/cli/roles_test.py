@@ -37,6 +37,7 @@ features:
   - samples: {outputs: [y], start: 0.1, interval: 0.1, count: 40}
 noise: {stddev: {y: 1e-3}, correlation: {y: {autoregression: [0.5]}}}
 design: {train: {samples: 200}, test: {samples: 40}}
+inverse_map: {gp: {}}
 evaluation:
   posterior: {samples: 1, draws: 200}
   baselines: [linear_regression, {least_squares: {samples: 3}}]

@@ -243,7 +243,7 @@ TEST(WrongInput, WhatCannotExistAtTheBoxCenterIsNamedWithItsPlace) {
                                  "body 'block': inertia: largest principal moment = 3 kg m2 must not exceed "
                                  "the sum of the other two");
   model.system.bodies[0].inertia.moments = kOrigin;
-  model.constants = {{name("n"), {"1 / (m - 1)", at(3, "constants.n")}, "", ""}};
+  model.constants = {{name("n"), {"1 / (m - 1)", at(3, "constants.n")}, "", "", {}}};
   EXPECT_EQ(getError(model), "cart.yaml:3:12: constants.n" + centre + "constant: n = inf must be finite");
 }
 

@@ -8,7 +8,8 @@
 namespace twinmap {
 namespace {
 
-ExperimentSpec load(const std::vector<std::string>& overrides) {
+ExperimentSpec load(std::vector<std::string> overrides) {
+  overrides.insert(overrides.begin(), "inverse_map={gp: {}}");
   return loadExperiment(std::string(TWINMAP_SOURCE_DIR) + "/experiments/duffing/cart.yaml", overrides);
 }
 
