@@ -216,7 +216,7 @@ test('brushing highlights the same samples in every figure and shows their respo
   await close(page);
 });
 
-const kTall = {viewport: {width: 1280, height: 1600}};  // the first figure is in sight
+const kTall = {viewport: {width: 1280, height: 2100}};  // the first figure is in sight
 
 /** Idle time comes when the test says so. */
 function holdIdleTime() {
