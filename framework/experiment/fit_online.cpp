@@ -82,7 +82,8 @@ void noteMissingTrust(const std::invalid_argument& error, OnlineFit& fit) {
 }  // namespace
 
 int countReferences(int train_samples) {
-  constexpr int kFewest = 200, kMost = 2000, kPerSimulation = 10;
+  // a thousand place the 1 % quantile to a third of it
+  constexpr int kFewest = 200, kMost = 1000, kPerSimulation = 10;
   return std::clamp(train_samples, kFewest / kPerSimulation, kMost / kPerSimulation) * kPerSimulation;
 }
 

@@ -10,7 +10,7 @@ namespace {
 /// Times update(i) for the first samples.
 template <class Update>
 OnlineTimes timeUpdates(Eigen::Index samples, const Update& update) {
-  constexpr Eigen::Index kMostUpdates = 200;
+  constexpr Eigen::Index kMostUpdates = 100;
   const Eigen::Index updates = std::min(samples, kMostUpdates);
   std::vector<double> microseconds;
   for (Eigen::Index i = 0; i < updates; ++i) {

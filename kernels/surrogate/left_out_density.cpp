@@ -80,18 +80,22 @@ void LeftOutDensity::calcGradient(const SharedHyperparameters& hyperparameters, 
   const ArrayXd of_total = (by_total.matrix() * left_out_.amplitude).array() * variance;
   const VectorXd by_diagonal = -(((by_residual * residual).rowwise().sum() + of_total) * variance +
                                  (through_amplitude * residual).rowwise().sum());
-  // dP = -P dK P turns both into -tr(dK adjoint); only the symmetric part matters.
-  adjoint_.noalias() = precision_ * by_diagonal.asDiagonal() * precision_;
-  adjoint_.noalias() += weights_ * (precision_ * by_weights).transpose();
+  // dP = -P dK P turns both into -tr(dK adjoint / 2), of which the symmetric part's lower half is enough.
+  const MatrixXd by_precision = precision_ * by_weights;
+  const MatrixXd twice = precision_ * (2.0 * by_diagonal).asDiagonal();
+  adjoint_.resize(n, n);
+  adjoint_.triangularView<Eigen::Lower>() = twice * precision_;
+  adjoint_.triangularView<Eigen::Lower>() += weights_ * by_precision.transpose();
+  adjoint_.triangularView<Eigen::Lower>() += by_precision * weights_.transpose();
   gradient.resize(p + 1);
-  gradient(p) = -hyperparameters.nugget * adjoint_.diagonal().sum();
-  const auto weighted = (adjoint_.array() * slopes_.array()).matrix();
-  adjoint_ = weighted.eval();
+  gradient(p) = -0.5 * hyperparameters.nugget * adjoint_.diagonal().sum();
+  adjoint_.triangularView<Eigen::StrictlyLower>() = adjoint_.cwiseProduct(slopes_);
   for (Index v = 0; v < p; ++v) {
     const VectorXd x = points_.row(v).transpose() / hyperparameters.length_scales(v);
     double sum = 0.0;
     for (Index j = 0; j < n; ++j) {
-      sum += (adjoint_.col(j).array() * (x.array() - x(j)).square()).sum();
+      const Index below = n - j - 1;
+      sum += (adjoint_.col(j).tail(below).array() * (x.tail(below).array() - x(j)).square()).sum();
     }
     gradient(v) = -sum;
   }
