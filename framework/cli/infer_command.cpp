@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <iostream>
 #include <map>
 #include <sstream>
@@ -70,8 +72,7 @@ class InferCommand {
   void finish() const {
     std::cout.flush();
     if (errors_ > 0) {
-      throw std::runtime_error(std::to_string(errors_) + " of " + std::to_string(count_) +
-                               " measurements could not be used");
+      throw std::runtime_error(fmt::format("{} of {} measurements could not be used", errors_, count_));
     }
   }
 

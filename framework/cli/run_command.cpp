@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <iostream>
@@ -79,9 +80,9 @@ void runCases(const YamlNode& tree, const RunArguments& arguments, const fs::pat
     throw Interrupted("interrupted");
   }
   if (!result.failures.empty()) {
-    throw std::runtime_error(std::to_string(result.failures.size()) + " of " + std::to_string(result.cases) +
-                             " cases failed; reasons and commands are in " +
-                             (folder / "failed_cases.csv").string());
+    throw std::runtime_error(fmt::format("{} of {} cases failed; reasons and commands are in {}",
+                                         result.failures.size(), result.cases,
+                                         (folder / "failed_cases.csv").string()));
   }
   requireGates(result.gates, arguments.fail_on_gates);
 }

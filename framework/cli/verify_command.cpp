@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <iostream>
 #include <stdexcept>
 
@@ -64,8 +66,7 @@ void verify(const VerifyArguments& arguments) {
     std::cout << "Samples were chosen with --seed " << arguments.seed << ".\n";
   }
   if (differences > 0) {
-    throw std::runtime_error(std::to_string(differences) + " of " + std::to_string(checks) +
-                             " checks found a difference");
+    throw std::runtime_error(fmt::format("{} of {} checks found a difference", differences, checks));
   }
 }
 

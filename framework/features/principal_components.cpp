@@ -1,5 +1,7 @@
 #include "framework/features/principal_components.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -18,8 +20,8 @@ Index chooseRank(const PrincipalComponentsSpec& spec, const PrincipalComponents&
   const Index most = components.variances.size();
   if (spec.components.number) {
     if (*spec.components.number > most) {
-      throw std::invalid_argument("principal_components: asked for " +
-                                  std::to_string(*spec.components.number) + " of " + std::to_string(most));
+      throw std::invalid_argument(
+          fmt::format("principal_components: asked for {} of {}", *spec.components.number, most));
     }
     return *spec.components.number;
   }

@@ -1,5 +1,7 @@
 #include "framework/multibody/linearization.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -92,8 +94,8 @@ std::vector<Mode> calcModes(const MatrixXd& state_matrix) {
 VectorXd collectLowestModes(const MatrixXd& state_matrix, int count) {
   const std::vector<Mode> modes = calcModes(state_matrix);
   if (static_cast<int>(modes.size()) < count) {
-    throw SimulationFailure("only " + std::to_string(modes.size()) + " of " + std::to_string(count) +
-                            " modes oscillate at the equilibrium");
+    throw SimulationFailure(
+        fmt::format("only {} of {} modes oscillate at the equilibrium", modes.size(), count));
   }
   VectorXd values(2 * count);
   for (int i = 0; i < count; ++i) {

@@ -1,5 +1,7 @@
 #include "framework/spec/yaml/source_location.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace twinmap {
@@ -35,7 +37,7 @@ std::string message(const SourceLocation& where, const std::string& value, const
 std::string toString(const SourceLocation& where) {
   std::string text = where.file;
   if (where.line > 0) {
-    text += ":" + std::to_string(where.line) + ":" + std::to_string(where.column);
+    text += fmt::format(":{}:{}", where.line, where.column);
   }
   if (!where.key_path.empty()) {
     text += (text.empty() ? "" : ": ") + where.key_path;
