@@ -31,6 +31,9 @@ Functions3::Functions3(const SharedLibrary& library, Kind kind)
   if (kind == Kind::kCoSimulation) {
     instantiateCoSimulation = library.require<fmi3InstantiateCoSimulationTYPE>("fmi3InstantiateCoSimulation");
     doStep = library.require<fmi3DoStepTYPE>("fmi3DoStep");
+    enterEventMode = library.find<fmi3EnterEventModeTYPE>("fmi3EnterEventMode");
+    updateDiscreteStates = library.find<fmi3UpdateDiscreteStatesTYPE>("fmi3UpdateDiscreteStates");
+    enterStepMode = library.find<fmi3EnterStepModeTYPE>("fmi3EnterStepMode");
     return;
   }
   instantiateModelExchange =

@@ -53,6 +53,7 @@ struct Functions3 {
 
   fmi3InstantiateCoSimulationTYPE* instantiateCoSimulation = nullptr;
   fmi3DoStepTYPE* doStep = nullptr;
+  fmi3EnterStepModeTYPE* enterStepMode = nullptr;  ///< null: the library has no event mode
 };
 
 }  // namespace twinmap::fmi

@@ -82,16 +82,8 @@ class ModelExchangeProblem final : public HybridProblem {
 
   /// Event iteration, then back to continuous time with the states that it left.
   void iterate(double t, State& x) {
-    constexpr int kMostIterations = 10000;  // of discrete states that depend on one another
-    EventInfo info;
-    int count = 0;
-    do {
-      info = fmu_.updateDiscreteStates();
-      over_ = over_ || info.terminate;
-      if (++count > kMostIterations) {
-        throw FmuFailure(describeAt("the event iteration does not end", t));
-      }
-    } while (info.again && !over_);
+    const EventInfo info = iterateEvents(fmu_, t);
+    over_ = over_ || info.terminate;
     next_event_ = info.next_time.value_or(std::numeric_limits<double>::infinity());
     fmu_.enterContinuousTimeMode();
     readStates(x);

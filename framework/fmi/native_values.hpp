@@ -11,8 +11,8 @@
 namespace twinmap::fmi {
 
 /// The value as the native type, rounded to the nearest; of bool, true from one half on. Throws FmuFailure
-/// for a number that the type cannot hold. The largest integer of 64 bits is between two doubles: the one above
-/// stands for it.
+/// for a number that the type cannot hold. The largest integer of 64 bits is between two doubles: the one
+/// above stands for it.
 template <class Native>
 Native toNative(double value) {
   if constexpr (std::is_floating_point_v<Native>) {

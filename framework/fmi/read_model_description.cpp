@@ -32,6 +32,7 @@ std::optional<Capabilities> readCapabilities(const pugi::xml_node& node, Version
   can.variable_step = findFlag(node, "canHandleVariableCommunicationStepSize");
   can.internal_step = findNumber(node, "fixedInternalStepSize", file);
   can.might_return_early = findFlag(node, "mightReturnEarlyFromDoStep");
+  can.event_mode = findFlag(node, "hasEventMode");
   can.needs_completed_integrator_step = version == Version::k2
                                             ? !findFlag(node, "completedIntegratorStepNotNeeded")
                                             : findFlag(node, "needsCompletedIntegratorStep");

@@ -14,13 +14,16 @@ class DrivenInputs {
 
   bool hasContinuous() const { return !continuous_.isEmpty(); }
   bool isEmpty() const { return continuous_.isEmpty() && discrete_.isEmpty(); }
+  /// Whether a discrete input at t is not what it was set to last.
+  bool hasDiscreteChanged(const Excitation& excitation, double t);
 
   void setAll(Instance& instance, const Excitation& excitation, double t);
+  void setDiscrete(Instance& instance, const Excitation& excitation, double t);
   void setContinuous(Instance& instance, const Excitation& excitation, double t);
 
  private:
   BoundGroup continuous_, discrete_;
-  std::vector<double> values_;
+  std::vector<double> values_, discrete_values_;
 };
 
 /// One sample while it runs: all that the two kinds share.
@@ -41,6 +44,10 @@ struct SampleRun {
   /// Initialises the FMU at t = 0 with the excitation of its first phase.
   void initialise();
 };
+
+/// Updates discrete states, in event mode, until none needs another update. Throws FmuFailure where that does
+/// not end.
+EventInfo iterateEvents(Instance& instance, double t);
 
 /// Simulate a sample from an instance whose parameters are set. Throw SimulationFailure where they cannot.
 void runCoSimulation(SampleRun& run, double largest_step);

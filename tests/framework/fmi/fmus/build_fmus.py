@@ -102,7 +102,7 @@ def describe_2(variables, identifier, indicators, variable_step):
 <ModelStructure><Derivatives>{unknowns}</Derivatives></ModelStructure></fmiModelDescription>"""
 
 
-def describe_3(variables, identifier, indicators, variable_step, early="false"):
+def describe_3(variables, identifier, indicators, variable_step, early="false", events="false"):
     references = {variable[0]: variable[1] for variable in variables}
     lines, structure = [], ""
     for name, reference, kind, causality, variability, extra in variables:
@@ -123,7 +123,7 @@ def describe_3(variables, identifier, indicators, variable_step, early="false"):
 <fmiModelDescription fmiVersion="3.0" modelName="{identifier}" instantiationToken="{TOKEN[3]}">
 <ModelExchange modelIdentifier="{identifier}" needsCompletedIntegratorStep="true"/>
 <CoSimulation modelIdentifier="{identifier}" canHandleVariableCommunicationStepSize="{variable_step}"
- mightReturnEarlyFromDoStep="{early}"/>
+ mightReturnEarlyFromDoStep="{early}" hasEventMode="{events}"/>
 {UNITS}<TypeDefinitions><EnumerationType name="Kind"><Item name="one" value="1"/><Item name="two" value="2"/></EnumerationType>
 </TypeDefinitions><LogCategories><Category name="logStatusError"/></LogCategories>
 <DefaultExperiment startTime="0" stopTime="5"/><ModelVariables>{chr(10).join(lines)}</ModelVariables>
@@ -147,9 +147,9 @@ def main():
     out, compiler, headers = Path(sys.argv[1]), sys.argv[2], sys.argv[3]
     out.mkdir(parents=True, exist_ok=True)
 
-    def make(name, model, version, variables, indicators=0, defines=(), step="true", extra=None, xml=None, early="false"):
+    def make(name, model, version, variables, indicators=0, defines=(), step="true", extra=None, xml=None, early="false", events="false"):
         description = xml or (describe_2(variables, model, indicators, step) if version == 2 else
-                              describe_3(variables, model, indicators, step, early))
+                              describe_3(variables, model, indicators, step, early, events))
         library = compile_model(out, compiler, headers, model, version, list(defines))
         write(out / f"{name}.fmu", {"modelDescription.xml": description,
                                     f"binaries/{PLATFORM[version]}/{model}.so": library.read_bytes(), **(extra or {})})
@@ -167,6 +167,13 @@ def main():
     make("discards", "two_beam", 2, TWO_BEAM, defines=["-DLONGEST_STEP=0.004"])
     make("no_reset", "two_beam", 2, TWO_BEAM, defines=["-DNO_RESET"])
     make("early_return", "two_beam", 3, TWO_BEAM, defines=["-DEARLY_RETURN"], early="true")
+    make("bouncing_ball_events", "bouncing_ball", 3, BALL, indicators=1, events="true")
+    make("stairs_events", "stairs", 3, STAIRS, events="true")
+    make("feedthrough_events", "feedthrough", 3, FEEDTHROUGH, events="true")
+    clocked = describe_3(STAIRS, "stairs", 0, "true", events="true").replace(
+        "</ModelVariables>", '<Clock name="clock" valueReference="950" causality="input" intervalVariability="constant"'
+        ' intervalDecimal="1"/></ModelVariables>')
+    make("clocked", "stairs", 3, STAIRS, xml=clocked)
     make("missing_function", "faulty", 2, FAULTY, defines=["-DNO_SET_REAL"])
 
     description = describe_2(FAULTY, "faulty", 0, "true")

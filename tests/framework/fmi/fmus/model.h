@@ -34,5 +34,7 @@ Status model_initialise(Model*);
 Status model_calc(Model*);
 void model_indicate(const Model*, double* indicators);
 void model_event(Model*);
+/* Optional: whether a real may be set at events only. */
+bool model_is_discrete(uint32_t reference) __attribute__((weak));
 
 #endif
