@@ -75,6 +75,17 @@ class FmuSimulator::Worker {
     last_ = answers.front() != 0;
   }
 
+  /// `answer`: the response and its derivatives. `limit`: s a sample.
+  void simulateWithDerivatives(const Eigen::Ref<const Eigen::VectorXd>& point,
+                               Eigen::Ref<Eigen::VectorXd> answer, SampleStatus& status, double limit) {
+    const auto samples =
+        static_cast<double>(4 * point.size() + 4);  // by differences, and those of the centre
+    const Frame answers = process_.exchange(fmi::encodePoint(point), samples * limit + kGrace);
+    std::size_t begin = 1;
+    status = fmi::decodeAnswer(answers, begin, answer);
+    last_ = answers.front() != 0;
+  }
+
   /// Whether it has ended by itself after its last answer.
   bool hasEnded() const { return last_; }
 
@@ -91,8 +102,9 @@ class FmuSimulator::Shared {
         package_(model.source->fmu->file.text),
         kind_(package_.chooseKind(getKind(*model.source->fmu))),
         layout_(makeLayout(model, std::move(times))) {
-    fmi::makeRunSetting(package_.getDescription(), kind_, model_,
-                        toVector(layout_.times));  // names and units fit
+    const fmi::RunSetting setting = fmi::makeRunSetting(package_.getDescription(), kind_, model_,
+                                                        toVector(layout_.times));  // names and units fit
+    has_derivatives_ = fmi::makeSensitivityPlan(package_.getDescription(), model_, setting).has_value();
     const std::string library = package_.requireLibrary(kind_).string();
     job_ = fmi::writeWorkerJob({model.source->fmu->file.text, package_.getFolder().string(), library,
                                 fmi::toFmuKind(kind_), model_, toVector(layout_.times)});
@@ -100,7 +112,7 @@ class FmuSimulator::Shared {
         "fmu " + getFileName(model.source->fmu->file.text) + " (FMI " +
         package_.getDescription().version_text + ", " + toText(kind_) +
         (package_.getDescription().getCapabilities(kind_).needs_execution_tool ? ", needs its tool" : "") +
-        ")";
+        (has_derivatives_ ? ", its derivatives" : "") + ")";
   }
 
   std::unique_ptr<Worker> takeWorker() {
@@ -130,6 +142,7 @@ class FmuSimulator::Shared {
   const ModelSpec& getModel() const { return model_; }
   const ResponseLayout& getLayout() const { return layout_; }
   const std::string& getEngine() const { return engine_; }
+  bool hasDerivatives() const { return has_derivatives_; }
 
  private:
   const ModelSpec model_;
@@ -137,6 +150,7 @@ class FmuSimulator::Shared {
   const fmi::Kind kind_;
   const ResponseLayout layout_;
   std::string job_, engine_;
+  bool has_derivatives_ = false;
   std::mutex access_;
   std::mutex making_precise_;
   std::unique_ptr<FmuSimulator> precise_;  ///< made when first used
@@ -200,23 +214,57 @@ void FmuSimulator::simulateAround(const Eigen::Ref<const Eigen::MatrixXd>& param
 
 void FmuSimulator::simulateTogether(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
                                     Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
+  attempt(
+      [&](Worker& worker) {
+        worker.simulate(parameters, responses, statuses, shared_->getModel().simulation.max_wall_time);
+      },
+      statuses, parameters.cols());
+  for (Eigen::Index i = 0; i < parameters.cols(); ++i) {
+    if (!statuses[i].ok) {
+      responses.col(i).setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+}
+
+template <class Exchange>
+void FmuSimulator::attempt(const Exchange& exchange, SampleStatus* statuses, Eigen::Index count) {
   try {
     if (worker_ == nullptr) {
       worker_ = shared_->takeWorker();
     }
-    worker_->simulate(parameters, responses, statuses, shared_->getModel().simulation.max_wall_time);
+    exchange(*worker_);
     if (worker_->hasEnded()) {
       worker_ = nullptr;
     }
   } catch (const WorkerFailure& failure) {
     worker_ = nullptr;  // the next sample starts another
-    std::fill(statuses, statuses + parameters.cols(),
-              SampleStatus{false, failure.what(), failure.hasTimedOut()});
+    std::fill(statuses, statuses + count, SampleStatus{false, failure.what(), failure.hasTimedOut()});
   }
+}
+
+bool FmuSimulator::hasDerivatives() const {
+  return shared_->hasDerivatives();
+}
+
+void FmuSimulator::simulateWithDerivatives(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                                           Eigen::Ref<Eigen::MatrixXd> responses,
+                                           Eigen::MatrixXd& derivatives, SampleStatus* statuses) {
+  checkShapes(parameters, responses);
+  const Eigen::Index p = parameters.rows();
+  derivatives.resize(responses.rows(), p * parameters.cols());
+  Eigen::VectorXd answer(responses.rows() * (1 + p));
   for (Eigen::Index i = 0; i < parameters.cols(); ++i) {
+    attempt(
+        [&](Worker& worker) {
+          worker.simulateWithDerivatives(parameters.col(i), answer, statuses[i],
+                                         shared_->getModel().simulation.max_wall_time);
+        },
+        &statuses[i], 1);
     if (!statuses[i].ok) {
-      responses.col(i).setConstant(std::numeric_limits<double>::quiet_NaN());
+      answer.setConstant(std::numeric_limits<double>::quiet_NaN());
     }
+    responses.col(i) = answer.head(responses.rows());
+    derivatives.middleCols(i * p, p) = answer.tail(responses.rows() * p).reshaped(responses.rows(), p);
   }
 }
 

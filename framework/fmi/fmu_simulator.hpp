@@ -27,6 +27,14 @@ class FmuSimulator final : public Simulator {
   /// simulate().
   void simulateAround(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
                       Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) override;
+  /// Whether the FMU offers directional derivatives by all parameters (fmi/sensitivity_plan.hpp).
+  bool hasDerivatives() const override;
+  /// By the FMU's directional derivatives along the steps of the simulation. By differences of neighbours
+  /// with these steps at points where an event intervenes, and everywhere if those of the FMU are not the
+  /// same at the centre of the box.
+  void simulateWithDerivatives(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                               Eigen::Ref<Eigen::MatrixXd> responses, Eigen::MatrixXd& derivatives,
+                               SampleStatus* statuses) override;
   std::unique_ptr<Simulator> clone() const override;
   /// With a hundredth of the tolerances, which Model Exchange is integrated with and Co-Simulation told.
   std::unique_ptr<Simulator> clonePrecisely() const override;
@@ -41,6 +49,10 @@ class FmuSimulator final : public Simulator {
   /// In one exchange with the process.
   void simulateTogether(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
                         Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses);
+
+  /// `exchange(worker)`; a worker that fails there is its `count` statuses.
+  template <class Exchange>
+  void attempt(const Exchange& exchange, SampleStatus* statuses, Eigen::Index count);
 
   std::shared_ptr<Shared> shared_;
   std::unique_ptr<Worker> worker_;

@@ -49,6 +49,7 @@ Functions3::Functions3(const SharedLibrary& library, Kind kind)
   getEventIndicators = library.require<fmi3GetEventIndicatorsTYPE>("fmi3GetEventIndicators");
   getContinuousStates = library.require<fmi3GetContinuousStatesTYPE>("fmi3GetContinuousStates");
   getNominals = library.require<fmi3GetNominalsOfContinuousStatesTYPE>("fmi3GetNominalsOfContinuousStates");
+  getDirectionalDerivative = library.find<fmi3GetDirectionalDerivativeTYPE>("fmi3GetDirectionalDerivative");
   getIndicatorCount = library.find<fmi3GetNumberOfEventIndicatorsTYPE>("fmi3GetNumberOfEventIndicators");
   getStateCount = library.find<fmi3GetNumberOfContinuousStatesTYPE>("fmi3GetNumberOfContinuousStates");
 }

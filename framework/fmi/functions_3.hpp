@@ -48,6 +48,7 @@ struct Functions3 {
   fmi3GetEventIndicatorsTYPE* getEventIndicators = nullptr;
   fmi3GetContinuousStatesTYPE* getContinuousStates = nullptr;
   fmi3GetNominalsOfContinuousStatesTYPE* getNominals = nullptr;
+  fmi3GetDirectionalDerivativeTYPE* getDirectionalDerivative = nullptr;
   fmi3GetNumberOfEventIndicatorsTYPE* getIndicatorCount = nullptr;
   fmi3GetNumberOfContinuousStatesTYPE* getStateCount = nullptr;
 

@@ -61,6 +61,10 @@ class Instance {
   virtual bool getDerivatives(double* derivatives, std::size_t count) = 0;
   virtual void getIndicators(double* indicators, std::size_t count) = 0;
   virtual IntegratorStepEnd completeIntegratorStep() = 0;
+  /// sum over the knowns of d unknown / d known * seed, of value references of scalars.
+  virtual void getDirectionalDerivative(const std::vector<std::uint32_t>& unknowns,
+                                        const std::vector<std::uint32_t>& knowns,
+                                        const std::vector<double>& seed, double* sensitivity) = 0;
 
   // Co-Simulation
   virtual CommunicationStepEnd doStep(double time, double step) = 0;

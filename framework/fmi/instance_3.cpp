@@ -140,6 +140,14 @@ class Instance3 final : public Instance {
     check(f_.completedIntegratorStep(instance_, true, &event, &terminate), "fmi3CompletedIntegratorStep");
     return {event, terminate};
   }
+  void getDirectionalDerivative(const std::vector<std::uint32_t>& unknowns,
+                                const std::vector<std::uint32_t>& knowns, const std::vector<double>& seed,
+                                double* sensitivity) override {
+    require(f_.getDirectionalDerivative, "fmi3GetDirectional", "Derivative");
+    check(f_.getDirectionalDerivative(instance_, unknowns.data(), unknowns.size(), knowns.data(),
+                                      knowns.size(), seed.data(), seed.size(), sensitivity, unknowns.size()),
+          "fmi3GetDirectionalDerivative");
+  }
 
   CommunicationStepEnd doStep(double time, double step) override {
     bool event = false, terminate = false, early = false;

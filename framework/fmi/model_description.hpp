@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -109,6 +110,8 @@ struct ModelDescription {
   std::vector<Variable> variables;
   std::vector<int> state_derivatives;  ///< indices of variables
   std::size_t event_indicators = 0;
+  /// FMI 3.0: what outputs and state derivatives are said to depend on; value references.
+  std::set<std::uint32_t> dependencies;
   std::vector<std::string> log_categories;
 
   const Capabilities& getCapabilities(Kind kind) const;

@@ -1,4 +1,5 @@
 #include <map>
+#include <sstream>
 
 #include "framework/fmi/model_description.hpp"
 #include "framework/fmi/read_variables.hpp"
@@ -74,6 +75,13 @@ void readStructure2(const pugi::xml_node& structure, const XmlFile& file, ModelD
   }
 }
 
+void readDependencies(const pugi::xml_node& unknown, ModelDescription& model) {
+  std::istringstream words(unknown.attribute("dependencies").value());
+  for (std::uint32_t reference = 0; words >> reference;) {
+    model.dependencies.insert(reference);
+  }
+}
+
 void readStructure3(const pugi::xml_node& structure, const XmlFile& file, ModelDescription& model) {
   std::map<std::uint32_t, int> indices;
   for (std::size_t i = 0; i < model.variables.size(); ++i) {
@@ -85,6 +93,10 @@ void readStructure3(const pugi::xml_node& structure, const XmlFile& file, ModelD
       file.fail("ModelStructure names a state derivative that does not exist");
     }
     model.state_derivatives.push_back(found->second);
+    readDependencies(node, model);
+  }
+  for (const pugi::xml_node& node : structure.children("Output")) {
+    readDependencies(node, model);
   }
   for (const pugi::xml_node& node : structure.children("EventIndicator")) {
     static_cast<void>(node);

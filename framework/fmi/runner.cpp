@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "framework/fmi/sensitivity_run.hpp"
+
 namespace twinmap::fmi {
 
 Runner::Runner(const InstanceSource& source, RunSetting setting, int signals)
@@ -40,6 +42,22 @@ SampleStatus Runner::run(const double* parameters, Excitation& excitation,
   return status;
 }
 
+bool Runner::runDerivatives(const double* parameters, Excitation& excitation, StepSequence& sequence,
+                            const SensitivityPlan& plan, Eigen::Ref<Eigen::MatrixXd> derivatives) {
+  Eigen::VectorXd response(derivatives.rows());
+  Task task{parameters, excitation, response, sequence, &plan, &derivatives};
+  try {
+    simulate(task);
+  } catch (const FmuFailure& failure) {
+    usable_ = usable_ && !failure.isFatal();
+    task.has_derivatives = false;
+  } catch (const SimulationFailure&) {
+    task.has_derivatives = false;
+  }
+  fresh_ = false;
+  return task.has_derivatives && derivatives.allFinite();
+}
+
 double Runner::chooseStep() const {
   constexpr double kStepsByDefault = 1000.0;  // per duration, where neither the user nor the FMU says one
   const Capabilities& can = source_.description.getCapabilities(setting_.kind);
@@ -73,7 +91,11 @@ void Runner::simulateOnce(Task& task, double largest_step) {
   SampleRun run{*instance_,      setting_,     source_.description.getCapabilities(setting_.kind),
                 task.excitation, inputs_,      outputs_,
                 task.response,   task.sequence};
-  setting_.kind == Kind::kCoSimulation ? runCoSimulation(run, largest_step) : runModelExchange(run);
+  if (task.plan != nullptr) {
+    task.has_derivatives = runSensitivities(run, *task.plan, *task.derivatives);
+  } else {
+    setting_.kind == Kind::kCoSimulation ? runCoSimulation(run, largest_step) : runModelExchange(run);
+  }
   instance_->terminate();
 }
 

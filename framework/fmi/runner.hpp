@@ -4,6 +4,7 @@
 
 #include "framework/fmi/run_setting.hpp"
 #include "framework/fmi/sample_run.hpp"
+#include "framework/fmi/sensitivity_plan.hpp"
 #include "framework/simulation/simulator.hpp"
 
 namespace twinmap::fmi {
@@ -22,6 +23,11 @@ class Runner {
   SampleStatus run(const double* parameters, Excitation& excitation, Eigen::Ref<Eigen::VectorXd> response,
                    StepSequence& sequence);
 
+  /// The derivatives of the response (rows x parameters of the plan) at a sample that run() has simulated
+  /// with the steps `sequence`, which are not empty. False where they cannot be had from the FMU there.
+  bool runDerivatives(const double* parameters, Excitation& excitation, StepSequence& sequence,
+                      const SensitivityPlan& plan, Eigen::Ref<Eigen::MatrixXd> derivatives);
+
   /// False once the FMU has ended with Fatal, or can neither be reset nor made anew: this process is to end.
   bool isUsable() const { return usable_; }
 
@@ -32,6 +38,9 @@ class Runner {
     Excitation& excitation;
     Eigen::Ref<Eigen::VectorXd> response;
     StepSequence& sequence;
+    const SensitivityPlan* plan = nullptr;  ///< null: no derivatives
+    Eigen::Ref<Eigen::MatrixXd>* derivatives = nullptr;
+    bool has_derivatives = false;
   };
   void simulate(Task& task);
   void simulateOnce(Task& task, double largest_step);

@@ -25,10 +25,16 @@ Frame encodeJob(const std::string& job) {
 }
 
 Frame encodePoints(const Eigen::Ref<const Eigen::MatrixXd>& parameters) {
-  Frame frame;
+  Frame frame{static_cast<char>(Request::kResponses)};
   for (const auto& column : parameters.colwise()) {
     append(frame, column.data(), static_cast<std::size_t>(column.size()) * sizeof(double));
   }
+  return frame;
+}
+
+Frame encodePoint(const Eigen::Ref<const Eigen::VectorXd>& point) {
+  Frame frame{static_cast<char>(Request::kDerivatives)};
+  append(frame, point.data(), static_cast<std::size_t>(point.size()) * sizeof(double));
   return frame;
 }
 

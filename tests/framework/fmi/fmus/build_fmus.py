@@ -36,6 +36,16 @@ BALL = [
     ("twice", 20, "Real", "calculatedParameter", "fixed", {}),
     ("pi", 21, "Real", "local", "constant", {"start": "3.14"}),
 ]
+OSCILLATOR = [
+    ("x", 0, "Real", "output", "continuous", {"start": "0.1", "initial": "exact", "unit": "m"}),
+    ("v", 1, "Real", "local", "continuous", {"start": "0", "initial": "exact", "unit": "m/s"}),
+    ("der(x)", 2, "Real", "local", "continuous", {"derivative": "x"}),
+    ("der(v)", 3, "Real", "local", "continuous", {"derivative": "v"}),
+    ("c", 4, "Real", "parameter", "tunable", {"start": "40"}),
+    ("d", 5, "Real", "parameter", "tunable", {"start": "0.5"}),
+    ("F", 6, "Real", "input", "continuous", {"start": "0"}),
+    ("p", 7, "Real", "output", "continuous", {}),
+]
 STAIRS = [("counter", 0, "Real", "output", "discrete", {"start": "1", "initial": "exact"})]
 FEEDTHROUGH = [
     ("u", 0, "Real", "input", "continuous", {"start": "0"}), ("y", 1, "Real", "output", "continuous", {}),
@@ -130,6 +140,13 @@ def describe_3(variables, identifier, indicators, variable_step, early="false", 
 <ModelStructure>{structure}</ModelStructure></fmiModelDescription>"""
 
 
+def offer_derivatives(xml):
+    """Of OSCILLATOR; FMI 3.0 lists the tunable parameters that a state derivative depends on."""
+    return (xml.replace('<ModelExchange ', '<ModelExchange providesDirectionalDerivatives="true" providesDirectionalDerivative="true" ')
+            .replace('<ContinuousStateDerivative valueReference="3"/>', '<ContinuousStateDerivative valueReference="3" '
+                     'dependencies="0 1 4 5 6"/><Output valueReference="7" dependencies="1 5"/>'))
+
+
 def compile_model(out, compiler, headers, model, version, defines):
     library = out / f"{model}_{version}{''.join(defines)}.so"
     subprocess.run([compiler, "-shared", "-fPIC", "-O2", "-Wall", f"-DFMI={version}", *defines, f"-I{headers}", f"-I{HERE}",
@@ -174,6 +191,11 @@ def main():
         "</ModelVariables>", '<Clock name="clock" valueReference="950" causality="input" intervalVariability="constant"'
         ' intervalDecimal="1"/></ModelVariables>')
     make("clocked", "stairs", 3, STAIRS, xml=clocked)
+    for version in (2, 3):
+        make(f"oscillator_{version}", "oscillator", version, OSCILLATOR, xml=offer_derivatives(
+            (describe_2 if version == 2 else describe_3)(OSCILLATOR, "oscillator", 0, "true")))
+    make("oscillator_wrong", "oscillator", 3, OSCILLATOR, defines=["-DWRONG_DERIVATIVE"],
+         xml=offer_derivatives(describe_3(OSCILLATOR, "oscillator", 0, "true")))
     make("missing_function", "faulty", 2, FAULTY, defines=["-DNO_SET_REAL"])
 
     description = describe_2(FAULTY, "faulty", 0, "true")

@@ -247,6 +247,22 @@ STATUS NAME(GetEventIndicators)(void* c, double* z, size_t n) {
 }
 
 
+static STATUS differentiate(Instance* own, const uint32_t* unknowns, size_t n, const uint32_t* knowns, size_t m,
+                            const double* seed, double* sensitivity) {
+  calc(own);
+  for (size_t i = 0; i < n; ++i) {
+    sensitivity[i] = 0.0;
+    for (size_t j = 0; j < m; ++j) {
+      double value = 0.0;
+      if (model_differentiate == NULL || !model_differentiate(&own->model, unknowns[i], knowns[j], &value)) {
+        return report(own, STATUS_ERROR, "there is no such derivative");
+      }
+      sensitivity[i] += value * seed[j];
+    }
+  }
+  return (STATUS)STATUS_OK;
+}
+
 #if FMI == 2
 #include "wrapper_2.inc"
 #else
