@@ -1,5 +1,7 @@
 #include "framework/fmi/fmu_simulator.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <limits>
 #include <mutex>
@@ -139,6 +141,24 @@ class FmuSimulator::Shared {
     return precise_->clone();
   }
 
+  /// Whether neighbours always take the integration steps of their centre: then they are smooth.
+  bool sharesSteps() const {
+    return kind_ == fmi::Kind::kModelExchange && package_.getDescription().event_indicators == 0;
+  }
+
+  template <class Measure>
+  const DifferenceSteps& getDifferenceSteps(const Measure& measure) {
+    std::call_once(measuring_steps_, [&] {
+      steps_ = measure();
+      spdlog::info(
+          "{}: noise of the solver {:.1e} of the outputs; differences over {:.1e} to {:.1e} of the bounds",
+          getFileName(model_.source->fmu->file.text), steps_.noise,
+          steps_.steps.size() > 0 ? steps_.steps.minCoeff() : 0.0,
+          steps_.steps.size() > 0 ? steps_.steps.maxCoeff() : 0.0);
+    });
+    return steps_;
+  }
+
   const ModelSpec& getModel() const { return model_; }
   const ResponseLayout& getLayout() const { return layout_; }
   const std::string& getEngine() const { return engine_; }
@@ -151,6 +171,8 @@ class FmuSimulator::Shared {
   const ResponseLayout layout_;
   std::string job_, engine_;
   bool has_derivatives_ = false;
+  std::once_flag measuring_steps_;
+  DifferenceSteps steps_;
   std::mutex access_;
   std::mutex making_precise_;
   std::unique_ptr<FmuSimulator> precise_;  ///< made when first used
@@ -209,7 +231,25 @@ void FmuSimulator::simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
 void FmuSimulator::simulateAround(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
                                   Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
   checkShapes(parameters, responses);
-  simulateTogether(parameters, responses, statuses);
+  if (shared_->sharesSteps() || getDifferenceSteps().areShared()) {
+    return simulateTogether(parameters, responses, statuses);
+  }
+  simulateOnTangent(
+      collectSampled(shared_->getModel()), getDifferenceSteps(),
+      [this](const Eigen::MatrixXd& points, Eigen::MatrixXd& found, std::vector<SampleStatus>& own) {
+        simulateTogether(points, found, own.data());
+      },
+      parameters, responses, statuses);
+}
+
+const DifferenceSteps& FmuSimulator::getDifferenceSteps() {
+  return shared_->getDifferenceSteps([this] {
+    return measureDifferenceSteps(
+        collectSampled(shared_->getModel()), getLayout(),
+        [this](const Eigen::MatrixXd& points, Eigen::MatrixXd& found, std::vector<SampleStatus>& own) {
+          simulateTogether(points, found, own.data());
+        });
+  });
 }
 
 void FmuSimulator::simulateTogether(const Eigen::Ref<const Eigen::MatrixXd>& parameters,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "framework/simulation/difference_steps.hpp"
 #include "framework/simulation/simulator.hpp"
 #include "framework/spec/model_spec.hpp"
 
@@ -23,8 +24,9 @@ class FmuSimulator final : public Simulator {
   /// Some 20 us a sample beside the FMU's own time.
   void simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters, Eigen::Ref<Eigen::MatrixXd> responses,
                 SampleStatus* statuses) override;
-  /// With the steps of the centre where it has no state events, for Model Exchange; for Co-Simulation as
-  /// simulate().
+  /// With the steps of the centre where it has no state events, for Model Exchange. Where the responses are
+  /// noisy, on the tangent at the centre: the noise is measured once a model, at the centre of the box, and
+  /// logged.
   void simulateAround(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
                       Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) override;
   /// Whether the FMU offers directional derivatives by all parameters (fmi/sensitivity_plan.hpp).
@@ -46,6 +48,7 @@ class FmuSimulator final : public Simulator {
 
   void checkShapes(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
                    const Eigen::Ref<Eigen::MatrixXd>& responses) const;
+  const DifferenceSteps& getDifferenceSteps();
   /// In one exchange with the process.
   void simulateTogether(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
                         Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses);

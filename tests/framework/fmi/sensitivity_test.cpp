@@ -140,5 +140,43 @@ TEST_F(DirectionalDerivatives, AreNotOfferedInCoSimulation) {
   EXPECT_FALSE(FmuSimulator(model, getTimes(), 0).hasDerivatives());
 }
 
+/// Derivatives of x by c and d in Co-Simulation at some points, from neighbours as the framework makes them:
+/// around their centre, or each by itself.
+Eigen::MatrixXd calcByNeighbours(const std::string& fmu, const Eigen::VectorXd& times, bool around = true) {
+  const std::vector<ParameterSpec> parameters{makeParameter("c", 30, 50), makeParameter("d", 0.3, 0.7)};
+  ModelSpec model = makeOscillator(fmu, parameters);
+  FmuSpec& spec = *model.source->fmu;
+  spec.kind = FmuKind::kCoSimulation;
+  spec.step = 0.1;
+  FmuSimulator simulator(model, times, 0);
+  constexpr int kPoints = 5;
+  Eigen::MatrixXd derivatives(kPoints * times.size(), 2);
+  for (int i = 0; i < kPoints; ++i) {
+    const Eigen::Vector2d point(36.0 + 2.1 * i, 0.35 + 0.07 * i);
+    const Eigen::MatrixXd points = makeNeighbours(parameters, point);
+    Eigen::MatrixXd responses(simulator.getLayout().getRowCount(), points.cols());
+    std::vector<SampleStatus> statuses(points.cols());
+    around ? simulator.simulateAround(points, responses, statuses.data())
+           : simulator.simulate(points, responses, statuses.data());
+    EXPECT_TRUE(statuses.back().ok) << statuses.back().reason;
+    derivatives.middleRows(i * times.size(), times.size()) =
+        calcDifferences(responses, parameters, point).topRows(times.size());
+  }
+  return derivatives;
+}
+
+TEST_F(DirectionalDerivatives, OfANoisySolverAreDifferencesOverWiderSteps) {
+  const Eigen::MatrixXd smooth = calcByNeighbours("oscillator_3", getTimes());
+  const Eigen::MatrixXd around = calcByNeighbours("oscillator_noisy", getTimes());
+  const Eigen::MatrixXd alone = calcByNeighbours("oscillator_noisy", getTimes(), false);
+  const auto calcError = [&](const Eigen::MatrixXd& derivatives, int k) {
+    return (derivatives - smooth).col(k).lpNorm<Eigen::Infinity>() / smooth.col(k).lpNorm<Eigen::Infinity>();
+  };
+  for (int k = 0; k < 2; ++k) {
+    EXPECT_LT(calcError(around, k), 0.01) << k;
+    EXPECT_LT(calcError(around, k), 0.1 * calcError(alone, k)) << k;
+  }
+}
+
 }  // namespace
 }  // namespace twinmap::testing

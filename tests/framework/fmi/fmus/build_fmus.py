@@ -196,6 +196,7 @@ def main():
             (describe_2 if version == 2 else describe_3)(OSCILLATOR, "oscillator", 0, "true")))
     make("oscillator_wrong", "oscillator", 3, OSCILLATOR, defines=["-DWRONG_DERIVATIVE"],
          xml=offer_derivatives(describe_3(OSCILLATOR, "oscillator", 0, "true")))
+    make("oscillator_noisy", "oscillator", 3, OSCILLATOR, defines=["-DNOISY"])
     make("missing_function", "faulty", 2, FAULTY, defines=["-DNO_SET_REAL"])
 
     description = describe_2(FAULTY, "faulty", 0, "true")

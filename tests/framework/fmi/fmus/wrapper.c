@@ -159,7 +159,12 @@ static STATUS handle_events(Instance* own, bool* pending) {
 
 /* Steps of at most model_step; stops where the model ends its simulation, and at an event that is pending. */
 static STATUS step(Instance* own, double length, bool* pending) {
-  const long count = lround(ceil(length / model_step - 1e-9));
+#ifdef NOISY /* steps that jump with a parameter, as those of an error control do */
+  const double own_step = model_step * (20.0 + 10.0 * fmod(98615.0 * own->model.real[4] + 132250.0 * own->model.real[5], 1.0));
+#else
+  const double own_step = model_step;
+#endif
+  const long count = lround(ceil(length / own_step - 1e-9));
   for (long i = 0; i < count && !own->model.terminate && !*pending; ++i) {
     STATUS status = integrate(own, length / (double)count);
     if (status == (STATUS)STATUS_OK) {
