@@ -141,7 +141,7 @@ class FmuSimulator::Shared {
     return precise_->clone();
   }
 
-  /// Whether neighbours always take the integration steps of their centre: then they are smooth.
+  /// Whether neighbours take the integration steps of their centre: then they are smooth.
   bool sharesSteps() const {
     return kind_ == fmi::Kind::kModelExchange && package_.getDescription().event_indicators == 0;
   }

@@ -100,14 +100,17 @@ void runModelExchange(SampleRun& run) {
   run.initialise();
   run.excitation.mute();  // its first phase begins again
   ModelExchangeProblem problem(run);
-  HybridReport report =
-      integrateHybrid(problem, problem.makeState(), collectBoundaries(run), run.setting.times,
-                      run.setting.integration, run.sequence.empty() ? nullptr : &run.sequence);
+  HybridReport report = integrateHybrid(problem, problem.makeState(), collectBoundaries(run),
+                                        run.setting.times, run.setting.integration,
+                                        run.path.steps.empty() ? nullptr : &run.path.steps, run.path.method);
+  if (report.reached_step_limit && run.path.method == HybridMethod::kExplicit) {
+    throw StepLimitReached(report.failure);
+  }
   if (!report.failure.empty()) {
     throw FmuFailure(report.failure);
   }
-  if (run.sequence.empty() && report.state_events == 0) {
-    run.sequence = std::move(report.sequence);
+  if (run.path.steps.empty() && report.state_events == 0) {
+    run.path.steps = std::move(report.sequence);
   }
 }
 

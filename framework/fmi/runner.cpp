@@ -17,12 +17,13 @@ Runner::Runner(const InstanceSource& source, RunSetting setting, int signals)
       instance_(factory_.make()) {}
 
 SampleStatus Runner::run(const double* parameters, Excitation& excitation,
-                         Eigen::Ref<Eigen::VectorXd> response, StepSequence& sequence) {
-  Task task{parameters, excitation, response, sequence};
-  const bool given = !sequence.empty();
+                         Eigen::Ref<Eigen::VectorXd> response, IntegrationPath& path) {
+  Task task{parameters, excitation, response, path};
+  const bool given = !path.steps.empty();
   SampleStatus status;
   try {
     simulate(task);
+    status.second_try = path.method == HybridMethod::kImplicit;
   } catch (const WallTimeReached& failure) {
     status = {false, failure.what(), true};
   } catch (const FmuFailure& failure) {
@@ -33,7 +34,7 @@ SampleStatus Runner::run(const double* parameters, Excitation& excitation,
   }
   fresh_ = false;
   if (!status.ok && usable_ && given) {
-    StepSequence own;
+    IntegrationPath own;
     return run(parameters, excitation, response, own);
   }
   if (!status.ok) {
@@ -42,10 +43,10 @@ SampleStatus Runner::run(const double* parameters, Excitation& excitation,
   return status;
 }
 
-bool Runner::runDerivatives(const double* parameters, Excitation& excitation, StepSequence& sequence,
+bool Runner::runDerivatives(const double* parameters, Excitation& excitation, IntegrationPath& path,
                             const SensitivityPlan& plan, Eigen::Ref<Eigen::MatrixXd> derivatives) {
   Eigen::VectorXd response(derivatives.rows());
-  Task task{parameters, excitation, response, sequence, &plan, &derivatives};
+  Task task{parameters, excitation, response, path, &plan, &derivatives};
   try {
     simulate(task);
   } catch (const FmuFailure& failure) {
@@ -77,6 +78,9 @@ void Runner::simulate(Task& task) {
         throw;
       }
       fresh_ = false;
+    } catch (const StepLimitReached&) {
+      task.path = {{}, HybridMethod::kImplicit};
+      fresh_ = false;
     }
   }
 }
@@ -88,9 +92,9 @@ void Runner::simulateOnce(Task& task, double largest_step) {
   if (!parameters_.isEmpty()) {
     parameters_.set(*instance_, task.parameters);
   }
-  SampleRun run{*instance_,      setting_,     source_.description.getCapabilities(setting_.kind),
-                task.excitation, inputs_,      outputs_,
-                task.response,   task.sequence};
+  SampleRun run{*instance_,      setting_, source_.description.getCapabilities(setting_.kind),
+                task.excitation, inputs_,  outputs_,
+                task.response,   task.path};
   if (task.plan != nullptr) {
     task.has_derivatives = runSensitivities(run, *task.plan, *task.derivatives);
   } else {

@@ -18,14 +18,15 @@ class Runner {
   Runner(const InstanceSource& source, RunSetting setting, int signals);
 
   /// `parameters`: the experiment's point; `excitation`: updated for it. The response is NaN where the status
-  /// is not ok. `sequence`: steps of Model Exchange to take, or an empty one that gets those that were taken
-  /// unless there were state events; a sample that cannot take the steps chooses its own.
+  /// is not ok. `path`: steps of Model Exchange to take, or an empty one that gets those that were taken
+  /// unless there were state events; a sample that cannot take the steps chooses its own. What reaches the
+  /// step limit is integrated once more by an implicit method.
   SampleStatus run(const double* parameters, Excitation& excitation, Eigen::Ref<Eigen::VectorXd> response,
-                   StepSequence& sequence);
+                   IntegrationPath& path);
 
   /// The derivatives of the response (rows x parameters of the plan) at a sample that run() has simulated
-  /// with the steps `sequence`, which are not empty. False where they cannot be had from the FMU there.
-  bool runDerivatives(const double* parameters, Excitation& excitation, StepSequence& sequence,
+  /// with the steps of `path`. False where they cannot be had from the FMU there.
+  bool runDerivatives(const double* parameters, Excitation& excitation, IntegrationPath& path,
                       const SensitivityPlan& plan, Eigen::Ref<Eigen::MatrixXd> derivatives);
 
   /// False once the FMU has ended with Fatal, or can neither be reset nor made anew: this process is to end.
@@ -37,7 +38,7 @@ class Runner {
     const double* parameters;
     Excitation& excitation;
     Eigen::Ref<Eigen::VectorXd> response;
-    StepSequence& sequence;
+    IntegrationPath& path;
     const SensitivityPlan* plan = nullptr;  ///< null: no derivatives
     Eigen::Ref<Eigen::MatrixXd>* derivatives = nullptr;
     bool has_derivatives = false;

@@ -3,6 +3,7 @@
 #include "framework/fmi/failure.hpp"
 #include "framework/fmi/run_setting.hpp"
 #include "framework/simulation/excitation.hpp"
+#include "framework/simulation/hybrid_stepper.hpp"
 
 namespace twinmap::fmi {
 
@@ -26,6 +27,12 @@ class DrivenInputs {
   std::vector<double> values_, discrete_values_;
 };
 
+/// The steps of a Model Exchange simulation, which neighbours can take too.
+struct IntegrationPath {
+  StepSequence steps;  ///< empty: none that they could take
+  HybridMethod method = HybridMethod::kExplicit;
+};
+
 /// One sample while it runs: all that the two kinds share.
 struct SampleRun {
   Instance& instance;
@@ -35,7 +42,7 @@ struct SampleRun {
   DrivenInputs& inputs;
   BoundGroup& outputs;
   Eigen::Ref<Eigen::VectorXd> response;  ///< output by output, as ResponseLayout
-  StepSequence& sequence;  ///< of Model Exchange: steps to take, or, where it is empty, those that were taken
+  IntegrationPath& path;  ///< of Model Exchange: steps to take, or, where it has none, those that were taken
 
   /// Reads the outputs at output time `index` from the instance. Throws FmuFailure for one that is not
   /// finite.
@@ -51,7 +58,13 @@ EventInfo iterateEvents(Instance& instance, double t);
 
 /// Simulate a sample from an instance whose parameters are set. Throw SimulationFailure where they cannot.
 void runCoSimulation(SampleRun& run, double largest_step);
-void runModelExchange(SampleRun& run);
+void runModelExchange(SampleRun& run);  // by the path's method
+
+/// An explicit method has reached the step limit, which an implicit one may cure.
+class StepLimitReached : public FmuFailure {
+ public:
+  using FmuFailure::FmuFailure;
+};
 
 /// A communication step was refused, which a smaller one may cure.
 class StepDiscarded : public FmuFailure {

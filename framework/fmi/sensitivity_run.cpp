@@ -101,7 +101,7 @@ bool runSensitivities(SampleRun& run, const SensitivityPlan& plan, Eigen::Ref<Ei
   run.excitation.mute();  // its first phase begins again
   SensitivityProblem problem(run, plan, derivatives);
   const HybridReport report = integrateHybrid(problem, problem.makeState(), collectBoundaries(run),
-                                              run.setting.times, run.setting.integration, &run.sequence);
+                                              run.setting.times, run.setting.integration, &run.path.steps);
   if (!report.failure.empty()) {
     throw FmuFailure(report.failure);
   }

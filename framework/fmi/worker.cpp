@@ -84,7 +84,7 @@ class FmuWorker {
   /// The first byte tells whether this process ends now; then an answer for each point.
   Frame answer(const Frame& request, bool& last) {
     const Eigen::MatrixXd points = decodePoints(request);
-    StepSequence steps_of_center;
+    IntegrationPath path_of_center;
     Frame frame{0};
     if (!request.empty() && request[0] == static_cast<char>(Request::kDerivatives)) {
       Eigen::MatrixXd answer(response_.size(), 1 + points.rows());
@@ -92,7 +92,7 @@ class FmuWorker {
       frame = join(frame, encodeAnswer(status, answer.reshaped()));
     } else {
       for (const auto& point : points.colwise()) {
-        const SampleStatus status = simulate(point, steps_of_center);
+        const SampleStatus status = simulate(point, path_of_center);
         frame = join(frame, encodeAnswer(status, response_));
       }
     }
@@ -119,22 +119,22 @@ class FmuWorker {
   /// The response, then its derivatives: from the FMU, or else by differences of neighbours with the same
   /// steps.
   SampleStatus simulateWithDerivatives(const Eigen::VectorXd& point, Eigen::Ref<Eigen::MatrixXd> answer) {
-    StepSequence sequence;
+    IntegrationPath path;
     const bool trusted = trustsDerivatives();
-    SampleStatus status = simulate(point, sequence);
+    SampleStatus status = simulate(point, path);
     answer.col(0) = response_;
-    if (status.ok && !(trusted && calcExactly(point, sequence, answer.rightCols(point.size())))) {
-      status = calcByDifferences(point, sequence, answer.rightCols(point.size()));
+    if (status.ok && !(trusted && calcExactly(point, path, answer.rightCols(point.size())))) {
+      status = calcByDifferences(point, path, answer.rightCols(point.size()));
     }
     return status;
   }
 
   /// False where the FMU cannot tell.
-  bool calcExactly(const Eigen::VectorXd& point, StepSequence& sequence,
+  bool calcExactly(const Eigen::VectorXd& point, IntegrationPath& path,
                    Eigen::Ref<Eigen::MatrixXd> derivatives) {
     const bool exact =
-        plan_ && !sequence.empty() &&
-        runner_.runDerivatives(collectValues(point).data(), excitation_, sequence, *plan_, derivatives);
+        plan_ && !path.steps.empty() && path.method == HybridMethod::kExplicit &&
+        runner_.runDerivatives(collectValues(point).data(), excitation_, path, *plan_, derivatives);
     if (exact) {
       forEachOutput([&](const OutputSpec& output, Eigen::Index first, Eigen::Index times) {
         if (!output.gain.text.empty()) {
@@ -145,14 +145,14 @@ class FmuWorker {
     return exact;
   }
 
-  SampleStatus calcByDifferences(const Eigen::VectorXd& point, StepSequence& sequence,
+  SampleStatus calcByDifferences(const Eigen::VectorXd& point, IntegrationPath& path,
                                  Eigen::Ref<Eigen::MatrixXd> derivatives) {
     const std::vector<ParameterSpec> sampled = collectSampled(job_.model);
     const Eigen::MatrixXd points = makeNeighbours(sampled, point);
     Eigen::MatrixXd responses(response_.size(), points.cols());
     SampleStatus status;
     for (Eigen::Index i = 0; i < points.cols() && status.ok; ++i) {
-      status = simulate(points.col(i), sequence);
+      status = simulate(points.col(i), path);
       responses.col(i) = response_;
     }
     derivatives = calcDifferences(responses, sampled, point) * calcWidths(sampled).asDiagonal().inverse();
@@ -166,9 +166,9 @@ class FmuWorker {
     if (!trusts_) {
       const Eigen::VectorXd center = calcBoxCenter(collectSampled(job_.model));
       Eigen::MatrixXd exact(response_.size(), center.size()), differences(response_.size(), center.size());
-      StepSequence sequence;
-      trusts_ = simulate(center, sequence).ok && calcExactly(center, sequence, exact) &&
-                calcByDifferences(center, sequence, differences).ok &&
+      IntegrationPath path;
+      trusts_ = simulate(center, path).ok && calcExactly(center, path, exact) &&
+                calcByDifferences(center, path, differences).ok &&
                 ((exact - differences).colwise().lpNorm<Eigen::Infinity>().array() <=
                  kAgreement * differences.colwise().lpNorm<Eigen::Infinity>().array())
                     .all();
@@ -176,14 +176,14 @@ class FmuWorker {
     return *trusts_;
   }
 
-  SampleStatus simulate(const Eigen::VectorXd& point, StepSequence& sequence) {
+  SampleStatus simulate(const Eigen::VectorXd& point, IntegrationPath& path) {
     if (!runner_.isUsable()) {
       return {false, "the FMU has ended with Fatal at a neighbour"};
     }
     try {
       numbers_.update(point);
       excitation_.update(numbers_.updNumbers());
-      SampleStatus status = runner_.run(collectValues(point).data(), excitation_, response_, sequence);
+      SampleStatus status = runner_.run(collectValues(point).data(), excitation_, response_, path);
       if (status.ok) {
         applySensors();
       }

@@ -156,5 +156,25 @@ TEST(Clocks, ThatFollowTheTimeAreLeftToCoSimulation) {
   }
 }
 
+/// x'' = -c x - d x' with a strong damper creeps back: (s1 exp(s2 t) - s2 exp(s1 t)) / (s1 - s2).
+TEST(StiffModels, AreIntegratedImplicitlyAfterTheStepLimit) {
+  constexpr double kDamping = 1e6, kStiffness = 4e5;
+  FmuCase fmu;
+  fmu.name = "oscillator_2";
+  fmu.kind = Kind::kModelExchange;
+  fmu.parameters = {{"c", kStiffness}, {"d", kDamping}};
+  fmu.outputs = {"x"};
+  fmu.units = {{"x", "m"}};
+  fmu.times = Eigen::VectorXd::LinSpaced(11, 0.0, 5.0);
+  fmu.duration = 5.0;
+  const FmuResult result = simulate(fmu, 2);
+  ASSERT_TRUE(result.status.ok) << result.status.reason;
+  EXPECT_TRUE(result.status.second_try);
+  const double slow = 2.0 * kStiffness / (kDamping + std::sqrt(kDamping * kDamping - 4.0 * kStiffness));
+  for (Eigen::Index i = 0; i < fmu.times.size(); ++i) {
+    EXPECT_NEAR(result.outputs(i, 0), 0.1 * std::exp(-slow * fmu.times[i]), 1e-6) << fmu.times[i];
+  }
+}
+
 }  // namespace
 }  // namespace twinmap::testing
