@@ -1,5 +1,7 @@
 #include "framework/fmi/fmu_simulator.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <limits>
 #include <mutex>
@@ -75,6 +77,17 @@ class FmuSimulator::Worker {
     last_ = answers.front() != 0;
   }
 
+  /// `answer`: the response and its derivatives. `limit`: s a sample.
+  void simulateWithDerivatives(const Eigen::Ref<const Eigen::VectorXd>& point,
+                               Eigen::Ref<Eigen::VectorXd> answer, SampleStatus& status, double limit) {
+    const auto samples =
+        static_cast<double>(4 * point.size() + 4);  // by differences, and those of the centre
+    const Frame answers = process_.exchange(fmi::encodePoint(point), samples * limit + kGrace);
+    std::size_t begin = 1;
+    status = fmi::decodeAnswer(answers, begin, answer);
+    last_ = answers.front() != 0;
+  }
+
   /// Whether it has ended by itself after its last answer.
   bool hasEnded() const { return last_; }
 
@@ -91,8 +104,9 @@ class FmuSimulator::Shared {
         package_(model.source->fmu->file.text),
         kind_(package_.chooseKind(getKind(*model.source->fmu))),
         layout_(makeLayout(model, std::move(times))) {
-    fmi::makeRunSetting(package_.getDescription(), kind_, model_,
-                        toVector(layout_.times));  // names and units fit
+    const fmi::RunSetting setting = fmi::makeRunSetting(package_.getDescription(), kind_, model_,
+                                                        toVector(layout_.times));  // names and units fit
+    has_derivatives_ = fmi::makeSensitivityPlan(package_.getDescription(), model_, setting).has_value();
     const std::string library = package_.requireLibrary(kind_).string();
     job_ = fmi::writeWorkerJob({model.source->fmu->file.text, package_.getFolder().string(), library,
                                 fmi::toFmuKind(kind_), model_, toVector(layout_.times)});
@@ -100,7 +114,7 @@ class FmuSimulator::Shared {
         "fmu " + getFileName(model.source->fmu->file.text) + " (FMI " +
         package_.getDescription().version_text + ", " + toText(kind_) +
         (package_.getDescription().getCapabilities(kind_).needs_execution_tool ? ", needs its tool" : "") +
-        ")";
+        (has_derivatives_ ? ", its derivatives" : "") + ")";
   }
 
   std::unique_ptr<Worker> takeWorker() {
@@ -127,9 +141,28 @@ class FmuSimulator::Shared {
     return precise_->clone();
   }
 
+  /// Whether neighbours take the integration steps of their centre: then they are smooth.
+  bool sharesSteps() const {
+    return kind_ == fmi::Kind::kModelExchange && package_.getDescription().event_indicators == 0;
+  }
+
+  template <class Measure>
+  const DifferenceSteps& getDifferenceSteps(const Measure& measure) {
+    std::call_once(measuring_steps_, [&] {
+      steps_ = measure();
+      spdlog::info(
+          "{}: noise of the solver {:.1e} of the outputs; differences over {:.1e} to {:.1e} of the bounds",
+          getFileName(model_.source->fmu->file.text), steps_.noise,
+          steps_.steps.size() > 0 ? steps_.steps.minCoeff() : 0.0,
+          steps_.steps.size() > 0 ? steps_.steps.maxCoeff() : 0.0);
+    });
+    return steps_;
+  }
+
   const ModelSpec& getModel() const { return model_; }
   const ResponseLayout& getLayout() const { return layout_; }
   const std::string& getEngine() const { return engine_; }
+  bool hasDerivatives() const { return has_derivatives_; }
 
  private:
   const ModelSpec model_;
@@ -137,6 +170,9 @@ class FmuSimulator::Shared {
   const fmi::Kind kind_;
   const ResponseLayout layout_;
   std::string job_, engine_;
+  bool has_derivatives_ = false;
+  std::once_flag measuring_steps_;
+  DifferenceSteps steps_;
   std::mutex access_;
   std::mutex making_precise_;
   std::unique_ptr<FmuSimulator> precise_;  ///< made when first used
@@ -195,28 +231,80 @@ void FmuSimulator::simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
 void FmuSimulator::simulateAround(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
                                   Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
   checkShapes(parameters, responses);
-  simulateTogether(parameters, responses, statuses);
+  if (shared_->sharesSteps() || getDifferenceSteps().areShared()) {
+    return simulateTogether(parameters, responses, statuses);
+  }
+  simulateOnTangent(
+      collectSampled(shared_->getModel()), getDifferenceSteps(),
+      [this](const Eigen::MatrixXd& points, Eigen::MatrixXd& found, std::vector<SampleStatus>& own) {
+        simulateTogether(points, found, own.data());
+      },
+      parameters, responses, statuses);
+}
+
+const DifferenceSteps& FmuSimulator::getDifferenceSteps() {
+  return shared_->getDifferenceSteps([this] {
+    return measureDifferenceSteps(
+        collectSampled(shared_->getModel()), getLayout(),
+        [this](const Eigen::MatrixXd& points, Eigen::MatrixXd& found, std::vector<SampleStatus>& own) {
+          simulateTogether(points, found, own.data());
+        });
+  });
 }
 
 void FmuSimulator::simulateTogether(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
                                     Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
+  attempt(
+      [&](Worker& worker) {
+        worker.simulate(parameters, responses, statuses, shared_->getModel().simulation.max_wall_time);
+      },
+      statuses, parameters.cols());
+  for (Eigen::Index i = 0; i < parameters.cols(); ++i) {
+    if (!statuses[i].ok) {
+      responses.col(i).setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+}
+
+template <class Exchange>
+void FmuSimulator::attempt(const Exchange& exchange, SampleStatus* statuses, Eigen::Index count) {
   try {
     if (worker_ == nullptr) {
       worker_ = shared_->takeWorker();
     }
-    worker_->simulate(parameters, responses, statuses, shared_->getModel().simulation.max_wall_time);
+    exchange(*worker_);
     if (worker_->hasEnded()) {
       worker_ = nullptr;
     }
   } catch (const WorkerFailure& failure) {
     worker_ = nullptr;  // the next sample starts another
-    std::fill(statuses, statuses + parameters.cols(),
-              SampleStatus{false, failure.what(), failure.hasTimedOut()});
+    std::fill(statuses, statuses + count, SampleStatus{false, failure.what(), failure.hasTimedOut()});
   }
+}
+
+bool FmuSimulator::hasDerivatives() const {
+  return shared_->hasDerivatives();
+}
+
+void FmuSimulator::simulateWithDerivatives(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                                           Eigen::Ref<Eigen::MatrixXd> responses,
+                                           Eigen::MatrixXd& derivatives, SampleStatus* statuses) {
+  checkShapes(parameters, responses);
+  const Eigen::Index p = parameters.rows();
+  derivatives.resize(responses.rows(), p * parameters.cols());
+  Eigen::VectorXd answer(responses.rows() * (1 + p));
   for (Eigen::Index i = 0; i < parameters.cols(); ++i) {
+    attempt(
+        [&](Worker& worker) {
+          worker.simulateWithDerivatives(parameters.col(i), answer, statuses[i],
+                                         shared_->getModel().simulation.max_wall_time);
+        },
+        &statuses[i], 1);
     if (!statuses[i].ok) {
-      responses.col(i).setConstant(std::numeric_limits<double>::quiet_NaN());
+      answer.setConstant(std::numeric_limits<double>::quiet_NaN());
     }
+    responses.col(i) = answer.head(responses.rows());
+    derivatives.middleCols(i * p, p) = answer.tail(responses.rows() * p).reshaped(responses.rows(), p);
   }
 }
 

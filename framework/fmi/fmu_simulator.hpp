@@ -1,5 +1,6 @@
 #pragma once
 
+#include "framework/simulation/difference_steps.hpp"
 #include "framework/simulation/simulator.hpp"
 #include "framework/spec/model_spec.hpp"
 
@@ -23,10 +24,19 @@ class FmuSimulator final : public Simulator {
   /// Some 20 us a sample beside the FMU's own time.
   void simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters, Eigen::Ref<Eigen::MatrixXd> responses,
                 SampleStatus* statuses) override;
-  /// With the steps of the centre where it has no state events, for Model Exchange; for Co-Simulation as
-  /// simulate().
+  /// With the steps of the centre where it has no state events, for Model Exchange. Where the responses are
+  /// noisy, on the tangent at the centre: the noise is measured once a model, at the centre of the box, and
+  /// logged.
   void simulateAround(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
                       Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) override;
+  /// Whether the FMU offers directional derivatives by all parameters (fmi/sensitivity_plan.hpp).
+  bool hasDerivatives() const override;
+  /// By the FMU's directional derivatives along the steps of the simulation. By differences of neighbours
+  /// with these steps at points where an event intervenes, and everywhere if those of the FMU are not the
+  /// same at the centre of the box.
+  void simulateWithDerivatives(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                               Eigen::Ref<Eigen::MatrixXd> responses, Eigen::MatrixXd& derivatives,
+                               SampleStatus* statuses) override;
   std::unique_ptr<Simulator> clone() const override;
   /// With a hundredth of the tolerances, which Model Exchange is integrated with and Co-Simulation told.
   std::unique_ptr<Simulator> clonePrecisely() const override;
@@ -38,9 +48,14 @@ class FmuSimulator final : public Simulator {
 
   void checkShapes(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
                    const Eigen::Ref<Eigen::MatrixXd>& responses) const;
+  const DifferenceSteps& getDifferenceSteps();
   /// In one exchange with the process.
   void simulateTogether(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
                         Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses);
+
+  /// `exchange(worker)`; a worker that fails there is its `count` statuses.
+  template <class Exchange>
+  void attempt(const Exchange& exchange, SampleStatus* statuses, Eigen::Index count);
 
   std::shared_ptr<Shared> shared_;
   std::unique_ptr<Worker> worker_;

@@ -35,6 +35,7 @@ Functions2::Functions2(const SharedLibrary& library, Kind kind)
   getEventIndicators = library.require<fmi2GetEventIndicatorsTYPE>("fmi2GetEventIndicators");
   getContinuousStates = library.require<fmi2GetContinuousStatesTYPE>("fmi2GetContinuousStates");
   getNominals = library.require<fmi2GetNominalsOfContinuousStatesTYPE>("fmi2GetNominalsOfContinuousStates");
+  getDirectionalDerivative = library.find<fmi2GetDirectionalDerivativeTYPE>("fmi2GetDirectionalDerivative");
 }
 
 }  // namespace twinmap::fmi

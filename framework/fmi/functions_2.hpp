@@ -36,6 +36,7 @@ struct Functions2 {
   fmi2GetDerivativesTYPE* getDerivatives = nullptr;
   fmi2GetEventIndicatorsTYPE* getEventIndicators = nullptr;
   fmi2GetContinuousStatesTYPE* getContinuousStates = nullptr;
+  fmi2GetDirectionalDerivativeTYPE* getDirectionalDerivative = nullptr;
   fmi2GetNominalsOfContinuousStatesTYPE* getNominals = nullptr;
 
   fmi2DoStepTYPE* doStep = nullptr;

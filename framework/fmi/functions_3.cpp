@@ -31,6 +31,9 @@ Functions3::Functions3(const SharedLibrary& library, Kind kind)
   if (kind == Kind::kCoSimulation) {
     instantiateCoSimulation = library.require<fmi3InstantiateCoSimulationTYPE>("fmi3InstantiateCoSimulation");
     doStep = library.require<fmi3DoStepTYPE>("fmi3DoStep");
+    enterEventMode = library.find<fmi3EnterEventModeTYPE>("fmi3EnterEventMode");
+    updateDiscreteStates = library.find<fmi3UpdateDiscreteStatesTYPE>("fmi3UpdateDiscreteStates");
+    enterStepMode = library.find<fmi3EnterStepModeTYPE>("fmi3EnterStepMode");
     return;
   }
   instantiateModelExchange =
@@ -46,6 +49,7 @@ Functions3::Functions3(const SharedLibrary& library, Kind kind)
   getEventIndicators = library.require<fmi3GetEventIndicatorsTYPE>("fmi3GetEventIndicators");
   getContinuousStates = library.require<fmi3GetContinuousStatesTYPE>("fmi3GetContinuousStates");
   getNominals = library.require<fmi3GetNominalsOfContinuousStatesTYPE>("fmi3GetNominalsOfContinuousStates");
+  getDirectionalDerivative = library.find<fmi3GetDirectionalDerivativeTYPE>("fmi3GetDirectionalDerivative");
   getIndicatorCount = library.find<fmi3GetNumberOfEventIndicatorsTYPE>("fmi3GetNumberOfEventIndicators");
   getStateCount = library.find<fmi3GetNumberOfContinuousStatesTYPE>("fmi3GetNumberOfContinuousStates");
 }

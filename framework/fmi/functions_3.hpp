@@ -48,11 +48,13 @@ struct Functions3 {
   fmi3GetEventIndicatorsTYPE* getEventIndicators = nullptr;
   fmi3GetContinuousStatesTYPE* getContinuousStates = nullptr;
   fmi3GetNominalsOfContinuousStatesTYPE* getNominals = nullptr;
+  fmi3GetDirectionalDerivativeTYPE* getDirectionalDerivative = nullptr;
   fmi3GetNumberOfEventIndicatorsTYPE* getIndicatorCount = nullptr;
   fmi3GetNumberOfContinuousStatesTYPE* getStateCount = nullptr;
 
   fmi3InstantiateCoSimulationTYPE* instantiateCoSimulation = nullptr;
   fmi3DoStepTYPE* doStep = nullptr;
+  fmi3EnterStepModeTYPE* enterStepMode = nullptr;  ///< null: the library has no event mode
 };
 
 }  // namespace twinmap::fmi

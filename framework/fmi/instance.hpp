@@ -27,6 +27,7 @@ struct CommunicationStepEnd {
   double time = 0.0;       ///< s, up to which the solution is known
   bool discarded = false;  ///< the FMU refused the rest of the step
   bool terminate = false;
+  bool event = false;  ///< to be handled in event mode
 };
 
 /// One instance of an FMU: FMI 2.0 and 3.0 behind one interface, with the modes of the standard's state
@@ -60,9 +61,17 @@ class Instance {
   virtual bool getDerivatives(double* derivatives, std::size_t count) = 0;
   virtual void getIndicators(double* indicators, std::size_t count) = 0;
   virtual IntegratorStepEnd completeIntegratorStep() = 0;
+  /// sum over the knowns of d unknown / d known * seed, of value references of scalars.
+  virtual void getDirectionalDerivative(const std::vector<std::uint32_t>& unknowns,
+                                        const std::vector<std::uint32_t>& knowns,
+                                        const std::vector<double>& seed, double* sensitivity) = 0;
 
   // Co-Simulation
   virtual CommunicationStepEnd doStep(double time, double step) = 0;
+  /// Whether events are handled in event mode, where the initialisation then ends; enterEventMode() and
+  /// updateDiscreteStates() are those of Model Exchange.
+  virtual bool hasEventMode() const { return false; }
+  virtual void enterStepMode() {}
 };
 
 /// Where an instance comes from.

@@ -123,6 +123,16 @@ class Instance2 final : public Instance {
     check(f_.completedIntegratorStep(instance_, fmi2True, &event, &terminate), "fmi2CompletedIntegratorStep");
     return {event != fmi2False, terminate != fmi2False};
   }
+  void getDirectionalDerivative(const std::vector<std::uint32_t>& unknowns,
+                                const std::vector<std::uint32_t>& knowns, const std::vector<double>& seed,
+                                double* sensitivity) override {
+    if (f_.getDirectionalDerivative == nullptr) {
+      throw FmuFailure("the FMU's library has no function fmi2GetDirectionalDerivative");
+    }
+    check(f_.getDirectionalDerivative(instance_, unknowns.data(), unknowns.size(), knowns.data(),
+                                      knowns.size(), seed.data(), sensitivity),
+          "fmi2GetDirectionalDerivative");
+  }
 
   CommunicationStepEnd doStep(double time, double step) override {
     const fmi2Status status = f_.doStep(instance_, time, step, fmi2True);

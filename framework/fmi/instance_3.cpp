@@ -17,20 +17,28 @@ void logMessage(fmi3InstanceEnvironment environment, fmi3Status status, fmi3Stri
   }
 }
 
+/// Clocks that follow the time would have to be ticked in event mode; without it the FMU does.
+bool mayUseEventMode(const Functions3& functions, const InstanceSource& source) {
+  return source.kind == Kind::kCoSimulation && source.description.co_simulation->event_mode &&
+         source.description.findTimedClock() == nullptr && functions.enterEventMode != nullptr &&
+         functions.updateDiscreteStates != nullptr && functions.enterStepMode != nullptr;
+}
+
 class Instance3 final : public Instance {
  public:
   Instance3(const Functions3& functions, const InstanceSource& source)
       : f_(functions),
         states_(source.description.state_derivatives.size()),
         indicators_(source.description.event_indicators),
-        completes_steps_(source.description.getCapabilities(source.kind).needs_completed_integrator_step) {
+        completes_steps_(source.description.getCapabilities(source.kind).needs_completed_integrator_step),
+        event_mode_(mayUseEventMode(functions, source)) {
     const std::string resources = source.resources.string() + "/";
     if (source.kind == Kind::kCoSimulation) {
       const Capabilities& can = source.description.getCapabilities(source.kind);
       // a step that ends early goes on with a step of another size
-      const bool early = can.might_return_early && can.variable_step;
+      const bool early = (can.might_return_early || event_mode_) && can.variable_step;
       instance_ = f_.instantiateCoSimulation("twinmap", source.description.token.c_str(), resources.c_str(),
-                                             fmi3False, fmi3False, fmi3False, early, nullptr, 0, &log_,
+                                             fmi3False, fmi3False, event_mode_, early, nullptr, 0, &log_,
                                              logMessage, nullptr);
     } else {
       instance_ = f_.instantiateModelExchange("twinmap", source.description.token.c_str(), resources.c_str(),
@@ -132,6 +140,14 @@ class Instance3 final : public Instance {
     check(f_.completedIntegratorStep(instance_, true, &event, &terminate), "fmi3CompletedIntegratorStep");
     return {event, terminate};
   }
+  void getDirectionalDerivative(const std::vector<std::uint32_t>& unknowns,
+                                const std::vector<std::uint32_t>& knowns, const std::vector<double>& seed,
+                                double* sensitivity) override {
+    require(f_.getDirectionalDerivative, "fmi3GetDirectional", "Derivative");
+    check(f_.getDirectionalDerivative(instance_, unknowns.data(), unknowns.size(), knowns.data(),
+                                      knowns.size(), seed.data(), seed.size(), sensitivity, unknowns.size()),
+          "fmi3GetDirectionalDerivative");
+  }
 
   CommunicationStepEnd doStep(double time, double step) override {
     bool event = false, terminate = false, early = false;
@@ -141,8 +157,10 @@ class Instance3 final : public Instance {
       return {last, true, terminate};
     }
     check(status, "fmi3DoStep");
-    return {early || terminate ? last : time + step, false, terminate};
+    return {early || terminate ? last : time + step, false, terminate, event};
   }
+  bool hasEventMode() const override { return event_mode_; }
+  void enterStepMode() override { check(f_.enterStepMode(instance_), "fmi3EnterStepMode"); }
 
  private:
   void check(fmi3Status status, const char* function, const char* type = "") {
@@ -206,7 +224,7 @@ class Instance3 final : public Instance {
   MessageLog log_;
   fmi3Instance instance_ = nullptr;
   std::size_t states_, indicators_;
-  bool completes_steps_;
+  bool completes_steps_, event_mode_;
   bool fatal_ = false;
 };
 

@@ -5,7 +5,8 @@
 
 namespace twinmap::fmi {
 
-/// An instance by FMI 3.0. Event mode is not used in Co-Simulation: the FMU handles its events itself.
+/// An instance by FMI 3.0. Co-Simulation uses event mode where the FMU has it, and no clocks that follow the
+/// time.
 std::unique_ptr<Instance> makeInstance3(const Functions3& functions, const InstanceSource& source);
 
 }  // namespace twinmap::fmi

@@ -1,5 +1,6 @@
 #include "framework/fmi/model_description.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace twinmap::fmi {
@@ -45,6 +46,12 @@ const Capabilities& ModelDescription::getCapabilities(Kind kind) const {
     throw std::logic_error("the FMU has no such kind");
   }
   return *own;
+}
+
+const Variable* ModelDescription::findTimedClock() const {
+  const auto found = std::find_if(variables.begin(), variables.end(),
+                                  [](const Variable& variable) { return variable.timed_clock; });
+  return found == variables.end() ? nullptr : &*found;
 }
 
 }  // namespace twinmap::fmi

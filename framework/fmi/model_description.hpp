@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -67,6 +68,7 @@ struct Variable {
   std::optional<double> minimum, maximum, nominal;
   bool relative_quantity = false;       ///< units are converted without their offset
   std::vector<std::size_t> dimensions;  ///< empty: a scalar; the sizes that the start values give
+  bool timed_clock = false;             ///< an input clock whose ticks the FMU asks for at times
   int derivative_of = -1;               ///< index of the state that this is the derivative of; -1: none
 
   std::size_t getSize() const;
@@ -88,6 +90,7 @@ struct Capabilities {
   bool variable_step = false;           ///< canHandleVariableCommunicationStepSize
   std::optional<double> internal_step;  ///< s; fixedInternalStepSize (FMI 3.0)
   bool might_return_early = false;      ///< mightReturnEarlyFromDoStep (FMI 3.0)
+  bool event_mode = false;              ///< hasEventMode (FMI 3.0), of Co-Simulation
   bool needs_completed_integrator_step = true;
   bool directional_derivatives = false;
 };
@@ -107,9 +110,13 @@ struct ModelDescription {
   std::vector<Variable> variables;
   std::vector<int> state_derivatives;  ///< indices of variables
   std::size_t event_indicators = 0;
+  /// FMI 3.0: what outputs and state derivatives are said to depend on; value references.
+  std::set<std::uint32_t> dependencies;
   std::vector<std::string> log_categories;
 
   const Capabilities& getCapabilities(Kind kind) const;
+  /// The first input clock that follows the time; null if there is none.
+  const Variable* findTimedClock() const;
 };
 
 /// Reads modelDescription.xml of FMI 2.0 or 3.0. `file_name` is what messages call it. Throws ExperimentError

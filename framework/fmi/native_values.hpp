@@ -11,7 +11,8 @@
 namespace twinmap::fmi {
 
 /// The value as the native type, rounded to the nearest; of bool, true from one half on. Throws FmuFailure
-/// for a number that the type cannot hold.
+/// for a number that the type cannot hold. The largest integer of 64 bits is between two doubles: the one
+/// above stands for it.
 template <class Native>
 Native toNative(double value) {
   if constexpr (std::is_floating_point_v<Native>) {
@@ -23,6 +24,9 @@ Native toNative(double value) {
     // 2^digits is exact as a double, the largest integer itself may not be
     const double above = std::ldexp(1.0, std::numeric_limits<Native>::digits);
     const double lowest = static_cast<double>(std::numeric_limits<Native>::lowest());
+    if (rounded == above && std::numeric_limits<Native>::digits > std::numeric_limits<double>::digits) {
+      return std::numeric_limits<Native>::max();
+    }
     if (!(rounded >= lowest && rounded < above)) {
       throw FmuFailure("a value of " + std::to_string(value) + " does not fit the variable's integer type");
     }

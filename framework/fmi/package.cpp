@@ -59,6 +59,11 @@ Kind Package::chooseKind(std::optional<Kind> asked) const {
     throw ExperimentError(getFile() + ": the FMU offers no " + toText(kind) + ", only " +
                           toText(description.co_simulation ? Kind::kCoSimulation : Kind::kModelExchange));
   }
+  const Variable* clock = description.findTimedClock();
+  if (kind == Kind::kModelExchange && clock != nullptr) {
+    throw ExperimentError(getFile() + ": its clock '" + clock->name +
+                          "' has to be ticked at times, which is not supported in Model Exchange");
+  }
   return kind;
 }
 

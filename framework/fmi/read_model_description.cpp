@@ -1,4 +1,5 @@
 #include <map>
+#include <sstream>
 
 #include "framework/fmi/model_description.hpp"
 #include "framework/fmi/read_variables.hpp"
@@ -32,6 +33,7 @@ std::optional<Capabilities> readCapabilities(const pugi::xml_node& node, Version
   can.variable_step = findFlag(node, "canHandleVariableCommunicationStepSize");
   can.internal_step = findNumber(node, "fixedInternalStepSize", file);
   can.might_return_early = findFlag(node, "mightReturnEarlyFromDoStep");
+  can.event_mode = findFlag(node, "hasEventMode");
   can.needs_completed_integrator_step = version == Version::k2
                                             ? !findFlag(node, "completedIntegratorStepNotNeeded")
                                             : findFlag(node, "needsCompletedIntegratorStep");
@@ -73,6 +75,13 @@ void readStructure2(const pugi::xml_node& structure, const XmlFile& file, ModelD
   }
 }
 
+void readDependencies(const pugi::xml_node& unknown, ModelDescription& model) {
+  std::istringstream words(unknown.attribute("dependencies").value());
+  for (std::uint32_t reference = 0; words >> reference;) {
+    model.dependencies.insert(reference);
+  }
+}
+
 void readStructure3(const pugi::xml_node& structure, const XmlFile& file, ModelDescription& model) {
   std::map<std::uint32_t, int> indices;
   for (std::size_t i = 0; i < model.variables.size(); ++i) {
@@ -84,6 +93,10 @@ void readStructure3(const pugi::xml_node& structure, const XmlFile& file, ModelD
       file.fail("ModelStructure names a state derivative that does not exist");
     }
     model.state_derivatives.push_back(found->second);
+    readDependencies(node, model);
+  }
+  for (const pugi::xml_node& node : structure.children("Output")) {
+    readDependencies(node, model);
   }
   for (const pugi::xml_node& node : structure.children("EventIndicator")) {
     static_cast<void>(node);

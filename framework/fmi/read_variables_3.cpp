@@ -60,6 +60,8 @@ Variable readVariable(const pugi::xml_node& node, const Nodes& types, const Node
   for (const pugi::xml_node& dimension : node.children("Dimension")) {
     variable.dimensions.push_back(readSize(dimension, references, file));
   }
+  variable.timed_clock = variable.type == Type::kClock && variable.causality == Causality::kInput &&
+                         node.attribute("intervalVariability").value() != std::string("triggered");
   if (variable.start.empty() && node.child("Start")) {  // of String and Binary
     variable.start = node.child("Start").attribute("value").value();
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -42,6 +43,12 @@ class BoundGroup {
       values_[i] = variables_.units[i].apply(values[variables_.sources[i]]);
     }
     instance.set(group_, values_.data());
+  }
+
+  /// Whether both sets of the experiment's values set the same.
+  bool isSame(const std::vector<double>& one, const std::vector<double>& other) const {
+    return std::all_of(variables_.sources.begin(), variables_.sources.end(),
+                       [&](std::size_t source) { return one[source] == other[source]; });
   }
 
   const std::vector<double>& get(Instance& instance) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "framework/fmi/sensitivity_run.hpp"
+
 namespace twinmap::fmi {
 
 Runner::Runner(const InstanceSource& source, RunSetting setting, int signals)
@@ -15,12 +17,13 @@ Runner::Runner(const InstanceSource& source, RunSetting setting, int signals)
       instance_(factory_.make()) {}
 
 SampleStatus Runner::run(const double* parameters, Excitation& excitation,
-                         Eigen::Ref<Eigen::VectorXd> response, StepSequence& sequence) {
-  Task task{parameters, excitation, response, sequence};
-  const bool given = !sequence.empty();
+                         Eigen::Ref<Eigen::VectorXd> response, IntegrationPath& path) {
+  Task task{parameters, excitation, response, path};
+  const bool given = !path.steps.empty();
   SampleStatus status;
   try {
     simulate(task);
+    status.second_try = path.method == HybridMethod::kImplicit;
   } catch (const WallTimeReached& failure) {
     status = {false, failure.what(), true};
   } catch (const FmuFailure& failure) {
@@ -31,13 +34,29 @@ SampleStatus Runner::run(const double* parameters, Excitation& excitation,
   }
   fresh_ = false;
   if (!status.ok && usable_ && given) {
-    StepSequence own;
+    IntegrationPath own;
     return run(parameters, excitation, response, own);
   }
   if (!status.ok) {
     response.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
   return status;
+}
+
+bool Runner::runDerivatives(const double* parameters, Excitation& excitation, IntegrationPath& path,
+                            const SensitivityPlan& plan, Eigen::Ref<Eigen::MatrixXd> derivatives) {
+  Eigen::VectorXd response(derivatives.rows());
+  Task task{parameters, excitation, response, path, &plan, &derivatives};
+  try {
+    simulate(task);
+  } catch (const FmuFailure& failure) {
+    usable_ = usable_ && !failure.isFatal();
+    task.has_derivatives = false;
+  } catch (const SimulationFailure&) {
+    task.has_derivatives = false;
+  }
+  fresh_ = false;
+  return task.has_derivatives && derivatives.allFinite();
 }
 
 double Runner::chooseStep() const {
@@ -59,6 +78,9 @@ void Runner::simulate(Task& task) {
         throw;
       }
       fresh_ = false;
+    } catch (const StepLimitReached&) {
+      task.path = {{}, HybridMethod::kImplicit};
+      fresh_ = false;
     }
   }
 }
@@ -70,10 +92,14 @@ void Runner::simulateOnce(Task& task, double largest_step) {
   if (!parameters_.isEmpty()) {
     parameters_.set(*instance_, task.parameters);
   }
-  SampleRun run{*instance_,      setting_,     source_.description.getCapabilities(setting_.kind),
-                task.excitation, inputs_,      outputs_,
-                task.response,   task.sequence};
-  setting_.kind == Kind::kCoSimulation ? runCoSimulation(run, largest_step) : runModelExchange(run);
+  SampleRun run{*instance_,      setting_, source_.description.getCapabilities(setting_.kind),
+                task.excitation, inputs_,  outputs_,
+                task.response,   task.path};
+  if (task.plan != nullptr) {
+    task.has_derivatives = runSensitivities(run, *task.plan, *task.derivatives);
+  } else {
+    setting_.kind == Kind::kCoSimulation ? runCoSimulation(run, largest_step) : runModelExchange(run);
+  }
   instance_->terminate();
 }
 

@@ -4,6 +4,7 @@
 
 #include "framework/fmi/run_setting.hpp"
 #include "framework/fmi/sample_run.hpp"
+#include "framework/fmi/sensitivity_plan.hpp"
 #include "framework/simulation/simulator.hpp"
 
 namespace twinmap::fmi {
@@ -17,10 +18,16 @@ class Runner {
   Runner(const InstanceSource& source, RunSetting setting, int signals);
 
   /// `parameters`: the experiment's point; `excitation`: updated for it. The response is NaN where the status
-  /// is not ok. `sequence`: steps of Model Exchange to take, or an empty one that gets those that were taken
-  /// unless there were state events; a sample that cannot take the steps chooses its own.
+  /// is not ok. `path`: steps of Model Exchange to take, or an empty one that gets those that were taken
+  /// unless there were state events; a sample that cannot take the steps chooses its own. What reaches the
+  /// step limit is integrated once more by an implicit method.
   SampleStatus run(const double* parameters, Excitation& excitation, Eigen::Ref<Eigen::VectorXd> response,
-                   StepSequence& sequence);
+                   IntegrationPath& path);
+
+  /// The derivatives of the response (rows x parameters of the plan) at a sample that run() has simulated
+  /// with the steps of `path`. False where they cannot be had from the FMU there.
+  bool runDerivatives(const double* parameters, Excitation& excitation, IntegrationPath& path,
+                      const SensitivityPlan& plan, Eigen::Ref<Eigen::MatrixXd> derivatives);
 
   /// False once the FMU has ended with Fatal, or can neither be reset nor made anew: this process is to end.
   bool isUsable() const { return usable_; }
@@ -31,7 +38,10 @@ class Runner {
     const double* parameters;
     Excitation& excitation;
     Eigen::Ref<Eigen::VectorXd> response;
-    StepSequence& sequence;
+    IntegrationPath& path;
+    const SensitivityPlan* plan = nullptr;  ///< null: no derivatives
+    Eigen::Ref<Eigen::MatrixXd>* derivatives = nullptr;
+    bool has_derivatives = false;
   };
   void simulate(Task& task);
   void simulateOnce(Task& task, double largest_step);

@@ -23,11 +23,24 @@ DrivenInputs::DrivenInputs(const BoundVariables& inputs, int signals)
     : continuous_(select(inputs, true)), discrete_(select(inputs, false)), values_(signals) {}
 
 void DrivenInputs::setAll(Instance& instance, const Excitation& excitation, double t) {
+  setDiscrete(instance, excitation, t);
+  setContinuous(instance, excitation, t);
+}
+
+void DrivenInputs::setDiscrete(Instance& instance, const Excitation& excitation, double t) {
   if (!discrete_.isEmpty()) {
     excitation.calcValues(t, values_);
     discrete_.set(instance, values_.data());
+    discrete_values_ = values_;
   }
-  setContinuous(instance, excitation, t);
+}
+
+bool DrivenInputs::hasDiscreteChanged(const Excitation& excitation, double t) {
+  if (discrete_.isEmpty()) {
+    return false;
+  }
+  excitation.calcValues(t, values_);
+  return !discrete_.isSame(values_, discrete_values_);
 }
 
 void DrivenInputs::setContinuous(Instance& instance, const Excitation& excitation, double t) {
@@ -47,6 +60,22 @@ void SampleRun::record(int index) {
     }
     response[static_cast<Eigen::Index>(i) * times + index] = values[i];
   }
+}
+
+EventInfo iterateEvents(Instance& instance, double t) {
+  constexpr int kMostIterations = 10000;  // of discrete states that depend on one another
+  EventInfo last, all;
+  int count = 0;
+  do {
+    last = instance.updateDiscreteStates();
+    all.terminate = all.terminate || last.terminate;
+    all.states_changed = all.states_changed || last.states_changed;
+    if (++count > kMostIterations) {
+      throw FmuFailure(describeAt("the event iteration does not end", t));
+    }
+  } while (last.again && !all.terminate);
+  all.next_time = last.next_time;
+  return all;
 }
 
 void SampleRun::initialise() {

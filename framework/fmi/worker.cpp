@@ -13,6 +13,7 @@
 #include "framework/fmi/worker_job.hpp"
 #include "framework/process/serve_frames.hpp"
 #include "framework/simulation/model_numbers.hpp"
+#include "framework/simulation/stencil.hpp"
 #include "framework/spec/parameter_box.hpp"
 
 namespace twinmap::fmi {
@@ -74,23 +75,26 @@ class FmuWorker {
         numbers_(job_.model),
         excitation_(job_.model.excitation),
         response_(static_cast<Eigen::Index>(job_.model.outputs.size() * job_.times.size())),
+        setting_(makeRunSetting(description_, toKind(job_.kind), job_.model, job_.times)),
+        plan_(makeSensitivityPlan(description_, job_.model, setting_)),
         runner_(
             {description_, toKind(job_.kind), job_.library, std::filesystem::path(job_.folder) / "resources"},
-            makeRunSetting(description_, toKind(job_.kind), job_.model, job_.times),
-            excitation_.getSignalCount()) {}
+            setting_, excitation_.getSignalCount()) {}
 
   /// The first byte tells whether this process ends now; then an answer for each point.
   Frame answer(const Frame& request, bool& last) {
-    const std::size_t size = std::max<std::size_t>(sampled_ * sizeof(double), 1);
-    const std::size_t count = std::max<std::size_t>(request.size() / size, 1);
-    Eigen::MatrixXd points(static_cast<Eigen::Index>(sampled_), static_cast<Eigen::Index>(count));
-    std::memcpy(points.data(), request.data(), std::min(request.size(), count * size));
-    StepSequence steps_of_center;
+    const Eigen::MatrixXd points = decodePoints(request);
+    IntegrationPath path_of_center;
     Frame frame{0};
-    for (const auto& point : points.colwise()) {
-      const SampleStatus status = simulate(point, steps_of_center);
-      const Frame one = encodeAnswer(status, response_);
-      frame.insert(frame.end(), one.begin(), one.end());
+    if (!request.empty() && request[0] == static_cast<char>(Request::kDerivatives)) {
+      Eigen::MatrixXd answer(response_.size(), 1 + points.rows());
+      const SampleStatus status = simulateWithDerivatives(points.col(0), answer);
+      frame = join(frame, encodeAnswer(status, answer.reshaped()));
+    } else {
+      for (const auto& point : points.colwise()) {
+        const SampleStatus status = simulate(point, path_of_center);
+        frame = join(frame, encodeAnswer(status, response_));
+      }
     }
     last = !runner_.isUsable() || growth_.hasGrown();
     frame[0] = static_cast<char>(last);
@@ -98,14 +102,88 @@ class FmuWorker {
   }
 
  private:
-  SampleStatus simulate(const Eigen::VectorXd& point, StepSequence& sequence) {
+  static Frame join(Frame first, const Frame& second) {
+    first.insert(first.end(), second.begin(), second.end());
+    return first;
+  }
+
+  Eigen::MatrixXd decodePoints(const Frame& request) const {
+    const std::size_t size = std::max<std::size_t>(sampled_ * sizeof(double), 1);
+    const std::size_t bytes = request.empty() ? 0 : request.size() - 1;  // behind what is asked for
+    const std::size_t count = std::max<std::size_t>(bytes / size, 1);
+    Eigen::MatrixXd points(static_cast<Eigen::Index>(sampled_), static_cast<Eigen::Index>(count));
+    std::memcpy(points.data(), request.data() + 1, std::min(bytes, count * size));
+    return points;
+  }
+
+  /// The response, then its derivatives: from the FMU, or else by differences of neighbours with the same
+  /// steps.
+  SampleStatus simulateWithDerivatives(const Eigen::VectorXd& point, Eigen::Ref<Eigen::MatrixXd> answer) {
+    IntegrationPath path;
+    const bool trusted = trustsDerivatives();
+    SampleStatus status = simulate(point, path);
+    answer.col(0) = response_;
+    if (status.ok && !(trusted && calcExactly(point, path, answer.rightCols(point.size())))) {
+      status = calcByDifferences(point, path, answer.rightCols(point.size()));
+    }
+    return status;
+  }
+
+  /// False where the FMU cannot tell.
+  bool calcExactly(const Eigen::VectorXd& point, IntegrationPath& path,
+                   Eigen::Ref<Eigen::MatrixXd> derivatives) {
+    const bool exact =
+        plan_ && !path.steps.empty() && path.method == HybridMethod::kExplicit &&
+        runner_.runDerivatives(collectValues(point).data(), excitation_, path, *plan_, derivatives);
+    if (exact) {
+      forEachOutput([&](const OutputSpec& output, Eigen::Index first, Eigen::Index times) {
+        if (!output.gain.text.empty()) {
+          derivatives.middleRows(first, times) *= calcSensor(output, output.gain, "gain");
+        }
+      });
+    }
+    return exact;
+  }
+
+  SampleStatus calcByDifferences(const Eigen::VectorXd& point, IntegrationPath& path,
+                                 Eigen::Ref<Eigen::MatrixXd> derivatives) {
+    const std::vector<ParameterSpec> sampled = collectSampled(job_.model);
+    const Eigen::MatrixXd points = makeNeighbours(sampled, point);
+    Eigen::MatrixXd responses(response_.size(), points.cols());
+    SampleStatus status;
+    for (Eigen::Index i = 0; i < points.cols() && status.ok; ++i) {
+      status = simulate(points.col(i), path);
+      responses.col(i) = response_;
+    }
+    derivatives = calcDifferences(responses, sampled, point) * calcWidths(sampled).asDiagonal().inverse();
+    return status;
+  }
+
+  /// Whether the derivatives that the FMU offers are those of its outputs: compared with differences at the
+  /// centre of the box, once.
+  bool trustsDerivatives() {
+    constexpr double kAgreement = 1e-3;  // of the largest; differences err by less, what is wrong by more
+    if (!trusts_) {
+      const Eigen::VectorXd center = calcBoxCenter(collectSampled(job_.model));
+      Eigen::MatrixXd exact(response_.size(), center.size()), differences(response_.size(), center.size());
+      IntegrationPath path;
+      trusts_ = simulate(center, path).ok && calcExactly(center, path, exact) &&
+                calcByDifferences(center, path, differences).ok &&
+                ((exact - differences).colwise().lpNorm<Eigen::Infinity>().array() <=
+                 kAgreement * differences.colwise().lpNorm<Eigen::Infinity>().array())
+                    .all();
+    }
+    return *trusts_;
+  }
+
+  SampleStatus simulate(const Eigen::VectorXd& point, IntegrationPath& path) {
     if (!runner_.isUsable()) {
       return {false, "the FMU has ended with Fatal at a neighbour"};
     }
     try {
       numbers_.update(point);
       excitation_.update(numbers_.updNumbers());
-      SampleStatus status = runner_.run(collectValues(point).data(), excitation_, response_, sequence);
+      SampleStatus status = runner_.run(collectValues(point).data(), excitation_, response_, path);
       if (status.ok) {
         applySensors();
       }
@@ -125,16 +203,27 @@ class FmuWorker {
   }
 
   void applySensors() {
-    const auto times = static_cast<Eigen::Index>(job_.times.size());
-    for (std::size_t i = 0; i < job_.model.outputs.size(); ++i) {
-      const OutputSpec& output = job_.model.outputs[i];
-      auto rows = response_.segment(static_cast<Eigen::Index>(i) * times, times);
+    forEachOutput([this](const OutputSpec& output, Eigen::Index first, Eigen::Index times) {
+      auto rows = response_.segment(first, times);
       if (!output.gain.text.empty()) {
-        rows *= numbers_.updNumbers().calc(output.gain, {output.name.text, "gain", ""});
+        rows *= calcSensor(output, output.gain, "gain");
       }
       if (!output.offset.text.empty()) {
-        rows.array() += numbers_.updNumbers().calc(output.offset, {output.name.text, "offset", ""});
+        rows.array() += calcSensor(output, output.offset, "offset");
       }
+    });
+  }
+
+  double calcSensor(const OutputSpec& output, const Expression& expression, const char* key) {
+    return numbers_.updNumbers().calc(expression, {output.name.text, key, ""});
+  }
+
+  /// Calls use(output, its first row, its rows).
+  template <class Use>
+  void forEachOutput(const Use& use) const {
+    const auto times = static_cast<Eigen::Index>(job_.times.size());
+    for (std::size_t i = 0; i < job_.model.outputs.size(); ++i) {
+      use(job_.model.outputs[i], static_cast<Eigen::Index>(i) * times, times);
     }
   }
 
@@ -144,6 +233,9 @@ class FmuWorker {
   ModelNumbers numbers_;
   Excitation excitation_;
   Eigen::VectorXd response_;
+  const RunSetting setting_;
+  const std::optional<SensitivityPlan> plan_;
+  std::optional<bool> trusts_;  ///< none: not compared yet
   Runner runner_;
   GrowthWatch growth_;
 };

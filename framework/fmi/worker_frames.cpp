@@ -15,7 +15,7 @@ void append(Frame& frame, const void* bytes, std::size_t size) {
 /// What an answer begins with.
 struct AnswerHead {
   std::uint64_t size;  ///< of what follows, bytes: the response, or why there is none
-  bool ok, machine_dependent;
+  bool ok, machine_dependent, second_try;
 };
 
 }  // namespace
@@ -25,17 +25,23 @@ Frame encodeJob(const std::string& job) {
 }
 
 Frame encodePoints(const Eigen::Ref<const Eigen::MatrixXd>& parameters) {
-  Frame frame;
+  Frame frame{static_cast<char>(Request::kResponses)};
   for (const auto& column : parameters.colwise()) {
     append(frame, column.data(), static_cast<std::size_t>(column.size()) * sizeof(double));
   }
   return frame;
 }
 
+Frame encodePoint(const Eigen::Ref<const Eigen::VectorXd>& point) {
+  Frame frame{static_cast<char>(Request::kDerivatives)};
+  append(frame, point.data(), static_cast<std::size_t>(point.size()) * sizeof(double));
+  return frame;
+}
+
 Frame encodeAnswer(const SampleStatus& status, const Eigen::Ref<const Eigen::VectorXd>& response) {
   const std::size_t size =
       status.ok ? static_cast<std::size_t>(response.size()) * sizeof(double) : status.reason.size();
-  const AnswerHead head{size, status.ok, status.machine_dependent};
+  const AnswerHead head{size, status.ok, status.machine_dependent, status.second_try};
   Frame frame;
   append(frame, &head, sizeof head);
   append(frame, status.ok ? static_cast<const void*>(response.data()) : status.reason.data(), size);
@@ -56,10 +62,12 @@ SampleStatus decodeAnswer(const Frame& frame, std::size_t& begin, Eigen::Ref<Eig
   const char* content = frame.data() + begin;
   begin += head.size;
   if (!head.ok) {
-    return {false, std::string(content, head.size), head.machine_dependent};
+    return {false, std::string(content, head.size), head.machine_dependent, head.second_try};
   }
   std::memcpy(response.data(), content, size);
-  return {};
+  SampleStatus status;
+  status.second_try = head.second_try;
+  return status;
 }
 
 }  // namespace twinmap::fmi

@@ -141,6 +141,16 @@ RunSetting makeRunSetting(const ModelDescription& description, Kind kind, const 
   return setting;
 }
 
+std::optional<SensitivityPlan> makeSensitivityPlan(const ModelDescription& description,
+                                                   const ModelSpec& model, const RunSetting& setting) {
+  const std::set<std::string> used = collectUsedNames(model);
+  const std::vector<ParameterSpec> sampled = collectSampled(model);
+  const bool elsewhere = std::any_of(sampled.begin(), sampled.end(), [&](const ParameterSpec& parameter) {
+    return used.count(parameter.name.text) > 0;
+  });
+  return elsewhere ? std::nullopt : planSensitivities(description, setting, sampled.size());
+}
+
 Kind toKind(FmuKind kind) {
   return kind == FmuKind::kCoSimulation ? Kind::kCoSimulation : Kind::kModelExchange;
 }

@@ -6,6 +6,7 @@
 
 #include "framework/fmi/package.hpp"
 #include "framework/fmi/run_setting.hpp"
+#include "framework/fmi/sensitivity_plan.hpp"
 #include "framework/spec/model_spec.hpp"
 
 namespace twinmap::fmi {
@@ -27,6 +28,10 @@ WorkerJob readWorkerJob(const std::string& text);
 /// know must be used in an expression. Throws ExperimentError for what does not fit (bind_variables.hpp).
 RunSetting makeRunSetting(const ModelDescription& description, Kind kind, const ModelSpec& model,
                           const std::vector<double>& times);
+
+/// planSensitivities() for the sampled parameters; none where an expression uses one of them too.
+std::optional<SensitivityPlan> makeSensitivityPlan(const ModelDescription& description,
+                                                   const ModelSpec& model, const RunSetting& setting);
 
 Kind toKind(FmuKind kind);
 FmuKind toFmuKind(Kind kind);

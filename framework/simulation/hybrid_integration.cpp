@@ -1,8 +1,6 @@
 #include "framework/simulation/hybrid_integration.hpp"
 
 #include <algorithm>
-#include <boost/numeric/odeint/stepper/controlled_runge_kutta.hpp>
-#include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
 #include <cmath>
 #include <limits>
 
@@ -11,36 +9,33 @@
 namespace twinmap {
 namespace {
 
-namespace odeint = boost::numeric::odeint;
 using State = OdeProblem::State;
-using Dopri5 = odeint::runge_kutta_dopri5<State>;
-using ControlledDopri5 = odeint::controlled_runge_kutta<Dopri5>;
+using Point = HybridStepper::Point;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 class HybridIntegration {
  public:
   HybridIntegration(HybridProblem& problem, State x, const Eigen::VectorXd& output_times,
-                    const IntegrationOptions& options, const StepSequence* given)
+                    const IntegrationOptions& options, const StepSequence* given, HybridMethod method)
       : problem_(problem),
         given_(given),
         output_times_(output_times),
         options_(options),
         guard_(options),
-        stepper_(
-            ControlledDopri5::error_checker_type(options.absolute_tolerance, options.relative_tolerance)),
-        x_(std::move(x)),
-        dxdt_(x_.size()),
-        x_new_(x_.size()),
-        dxdt_new_(x_.size()),
-        x_between_(x_.size()),
+        stepper_(makeHybridStepper(method, options)),
+        now_{0.0, std::move(x), {}},
+        x_between_(now_.x.size()),
         indicators_(problem.getIndicatorCount()),
-        indicators_new_(problem.getIndicatorCount()) {}
+        indicators_new_(problem.getIndicatorCount()) {
+    now_.dxdt.resize(now_.x.size());
+    new_ = now_;
+  }
 
   HybridReport run(const std::vector<double>& boundaries) {
     for (std::size_t i = 0; i + 1 < boundaries.size() && isRunning(); ++i) {
       t_ = boundaries[i];
-      problem_.enterPhase(t_, x_);
+      problem_.enterPhase(t_, now_.x);
       runPhase(boundaries[i + 1]);
     }
     finish(boundaries.back());
@@ -75,17 +70,17 @@ class HybridIntegration {
     report_.failure = events_here_ > kMostAtOnce ? describeAt("events follow one another without end", t_)
                                                  : guard_.check(report_.steps, t_);
     if (report_.failure.empty()) {
-      problem_.handleEvent(t_, x_);
+      problem_.handleEvent(t_, now_.x);
     }
   }
 
   void restart() {
-    problem_.calcDerivative(t_, x_, dxdt_);
-    if (!isFinite(x_) || !isFinite(dxdt_)) {
+    problem_.calcDerivative(t_, now_.x, now_.dxdt);
+    if (!isFinite(now_.x) || !isFinite(now_.dxdt)) {
       report_.failure = describeAt("state became non-finite", t_);
     }
     if (!indicators_.empty()) {
-      problem_.calcIndicators(t_, x_, indicators_.data());
+      problem_.calcIndicators(t_, now_.x, indicators_.data());
     }
     begin_ = t_;
     report_.sequence.emplace_back();
@@ -96,7 +91,8 @@ class HybridIntegration {
     if (given_ != nullptr) {
       return replaySteps(stop);
     }
-    double dt = report_.failure.empty() ? calcFirstStep(problem_, t_, x_, dxdt_, stop - t_, options_) : 0.0;
+    double dt =
+        report_.failure.empty() ? calcFirstStep(problem_, t_, now_.x, now_.dxdt, stop - t_, options_) : 0.0;
     bool event = false;
     while (t_ < stop && !event && report_.failure.empty()) {
       dt = step(dt, stop, event);
@@ -119,10 +115,9 @@ class HybridIntegration {
   }
 
   bool replayStep(double t_new, double stop) {
-    const auto f = [this](const State& x, State& dxdt, double t) { problem_.calcDerivative(t, x, dxdt); };
     ++report_.steps;
-    stepper_.stepper().do_step(f, x_, dxdt_, t_, x_new_, dxdt_new_, t_new - t_);
-    if (!isFinite(x_new_) || !isFinite(dxdt_new_)) {
+    stepper_->doStep(problem_, now_, t_new, new_);
+    if (!isFinite(new_.x) || !isFinite(new_.dxdt)) {
       report_.failure = describeAt("state became non-finite", t_);
       return false;
     }
@@ -137,27 +132,33 @@ class HybridIntegration {
   double step(double dt, double stop, bool& event) {
     report_.failure = guard_.check(report_.steps, t_);
     if (!report_.failure.empty()) {
+      report_.reached_step_limit = true;
       return dt;
     }
-    const bool last = t_ + 1.01 * dt >= stop;
-    const double planned = last ? stop - t_ : std::min(dt, 0.5 * (stop - t_));
-    double t_new = t_;
+    const double target = chooseTarget(stop);
+    const bool last = t_ + 1.01 * dt >= target;
+    const double planned = last ? target - t_ : std::min(dt, 0.5 * (target - t_));
     double proposed = planned;
     ++report_.steps;
-    const auto f = [this](const State& x, State& dxdt, double t) { problem_.calcDerivative(t, x, dxdt); };
-    const bool accepted =
-        stepper_.try_step(f, x_, dxdt_, t_new, x_new_, dxdt_new_, proposed) == odeint::success;
-    if (accepted && isFinite(x_new_) && isFinite(dxdt_new_)) {
-      event = accept(last ? stop : t_new, stop);
+    const bool accepted = stepper_->tryStep(problem_, now_, new_, proposed);
+    if (accepted && isFinite(new_.x) && isFinite(new_.dxdt)) {
+      event = accept(last ? target : new_.t, stop);
       return std::max(proposed, planned);
     }
     ++report_.rejected;
     return shrink(accepted || !std::isfinite(proposed) ? 0.1 * planned : proposed);
   }
 
+  double chooseTarget(double stop) const {
+    const bool past = next_output_ < output_times_.size() && output_times_[next_output_] <= t_;
+    const Eigen::Index next = next_output_ + (past ? 1 : 0);  // that of now is recorded with the next step
+    const bool ends = !stepper_->interpolatesAccurately() && next < output_times_.size();
+    return ends ? std::min(stop, output_times_[next]) : stop;
+  }
+
   double shrink(double dt) {
     if (dt <= 8.0 * kEpsilon * std::max(std::abs(t_), 1e-9)) {
-      const bool finite = isFinite(x_new_) && isFinite(dxdt_new_);
+      const bool finite = isFinite(new_.x) && isFinite(new_.dxdt);
       report_.failure = describeAt(finite ? "step size became too small" : "state became non-finite", t_);
     }
     return dt;
@@ -166,37 +167,38 @@ class HybridIntegration {
   /// Goes to t_new or to the first event before it; true at an event.
   bool accept(double t_new, double stop) {
     double t_end = t_new;
+    new_.t = t_new;
     const bool crossed = !indicators_.empty() && findEvent(t_new, t_end);
-    recordBefore(t_end, t_new);
+    recordBefore(t_end);
     if (crossed && t_end < t_new) {
-      interpolate(t_end, t_new);
-      x_.swap(x_between_);
+      interpolate(t_end);
+      now_.x.swap(x_between_);
     } else {
-      x_.swap(x_new_);
-      dxdt_.swap(dxdt_new_);
+      now_.x.swap(new_.x);
+      now_.dxdt.swap(new_.dxdt);
     }
     t_ = t_end;
     indicators_.swap(indicators_new_);  // those at t_end
     report_.state_events += crossed ? 1 : 0;
     report_.sequence.back().push_back(t_ == stop ? 1.0 : (t_ - begin_) / (stop - begin_));
-    return problem_.completeStep(t_, x_) || crossed;
+    return problem_.completeStep(t_, now_.x) || crossed;
   }
 
-  const State& interpolate(double t, double t_new) {
-    stepper_.stepper().calc_state(t, x_between_, x_, dxdt_, t_, x_new_, dxdt_new_, t_new);
+  const State& interpolate(double t) {
+    stepper_->interpolate(t, now_, new_, x_between_);
     return x_between_;
   }
 
-  void recordBefore(double t_end, double t_new) {
+  void recordBefore(double t_end) {
     for (; next_output_ < output_times_.size() && output_times_[next_output_] < t_end; ++next_output_) {
       const double t = output_times_[next_output_];
-      problem_.recordOutput(static_cast<int>(next_output_), t, interpolate(t, t_new));
+      problem_.recordOutput(static_cast<int>(next_output_), t, interpolate(t));
     }
   }
 
   /// Whether any indicator at t, on the step to t_new, is on another side than where the step began.
   bool isCrossed(double t, double t_new) {
-    const State& x = t < t_new ? interpolate(t, t_new) : x_new_;
+    const State& x = t < t_new ? interpolate(t) : new_.x;
     problem_.calcIndicators(t, x, indicators_new_.data());
     for (std::size_t i = 0; i < indicators_.size(); ++i) {
       if ((indicators_[i] > 0.0) != (indicators_new_[i] > 0.0)) {
@@ -242,7 +244,7 @@ class HybridIntegration {
       report_.failure = describeAt("the model ended its simulation", t_);
     }
     for (; report_.failure.empty() && next_output_ < output_times_.size(); ++next_output_) {
-      problem_.recordOutput(static_cast<int>(next_output_), t_, x_);
+      problem_.recordOutput(static_cast<int>(next_output_), t_, now_.x);
     }
   }
 
@@ -251,10 +253,12 @@ class HybridIntegration {
   const Eigen::VectorXd& output_times_;
   const IntegrationOptions& options_;
   IntegrationGuard guard_;
-  ControlledDopri5 stepper_;
+  std::unique_ptr<HybridStepper> stepper_;
   HybridReport report_;
-  double t_ = 0.0, begin_ = 0.0;  ///< s; begin_: of the steps since the last event
-  State x_, dxdt_, x_new_, dxdt_new_, x_between_;
+  double begin_ = 0.0;  ///< s, of the steps since the last event
+  Point now_, new_;     ///< new_: the end of a step that is tried
+  double& t_ = now_.t;
+  State x_between_;
   std::vector<double> indicators_, indicators_new_;
   Eigen::Index next_output_ = 0;
   double last_event_ = -1.0;
@@ -265,8 +269,9 @@ class HybridIntegration {
 
 HybridReport integrateHybrid(HybridProblem& problem, OdeProblem::State x,
                              const std::vector<double>& boundaries, const Eigen::VectorXd& output_times,
-                             const IntegrationOptions& options, const StepSequence* given) {
-  return HybridIntegration(problem, std::move(x), output_times, options, given).run(boundaries);
+                             const IntegrationOptions& options, const StepSequence* given,
+                             HybridMethod method) {
+  return HybridIntegration(problem, std::move(x), output_times, options, given, method).run(boundaries);
 }
 
 }  // namespace twinmap

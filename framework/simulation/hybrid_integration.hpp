@@ -1,6 +1,6 @@
 #pragma once
 
-#include "framework/simulation/integration.hpp"
+#include "framework/simulation/hybrid_stepper.hpp"
 
 namespace twinmap {
 
@@ -30,7 +30,8 @@ class HybridProblem : public OdeProblem {
 };
 
 struct HybridReport : IntegrationReport {
-  int state_events = 0;  ///< without any, `sequence` can be given to neighbours
+  int state_events = 0;             ///< without any, `sequence` can be given to neighbours
+  bool reached_step_limit = false;  ///< the failure that stiffness has with an explicit method
 };
 
 /// As integrateDopri5 for a problem with events. Time events are met exactly. State events are looked for at
@@ -42,6 +43,7 @@ struct HybridReport : IntegrationReport {
 /// over before the last output.
 HybridReport integrateHybrid(HybridProblem& problem, OdeProblem::State x,
                              const std::vector<double>& boundaries, const Eigen::VectorXd& output_times,
-                             const IntegrationOptions& options, const StepSequence* given = nullptr);
+                             const IntegrationOptions& options, const StepSequence* given = nullptr,
+                             HybridMethod method = HybridMethod::kExplicit);
 
 }  // namespace twinmap

@@ -36,7 +36,8 @@ class Simulator {
 
   /// As simulate(), but all columns take the integration steps that column 0, their centre, needs: responses
   /// are then smooth functions of the parameters, and differences of them are derivatives to the accuracy of
-  /// the integration itself. A simulator without step control leaves it as it is.
+  /// the integration itself. A simulator without step control leaves it as it is; one whose responses are
+  /// noisy puts the columns on the tangent at the centre, from differences of its own steps.
   virtual void simulateAround(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
                               Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
     simulate(parameters, responses, statuses);

@@ -32,26 +32,38 @@ const Stencil& chooseStencil(const Bounds& bounds, double value, double relative
 }  // namespace
 
 MatrixXd makeNeighbours(const std::vector<ParameterSpec>& parameters, const VectorXd& point, double step) {
+  return makeNeighbours(parameters, point,
+                        VectorXd(VectorXd::Constant(static_cast<Index>(parameters.size()), step)));
+}
+
+MatrixXd makeNeighbours(const std::vector<ParameterSpec>& parameters, const VectorXd& point,
+                        const VectorXd& steps) {
   const auto count = static_cast<Index>(parameters.size());
   MatrixXd points = point.replicate(1, 2 * count + 1);
   for (Index j = 0; j < count; ++j) {
     const Bounds& bounds = parameters[j].bounds;
-    const Stencil& stencil = chooseStencil(bounds, point[j], step);
-    points(j, 2 * j + 1) += stencil.first * step * calcWidth(bounds);
-    points(j, 2 * j + 2) += stencil.second * step * calcWidth(bounds);
+    const Stencil& stencil = chooseStencil(bounds, point[j], steps[j]);
+    points(j, 2 * j + 1) += stencil.first * steps[j] * calcWidth(bounds);
+    points(j, 2 * j + 2) += stencil.second * steps[j] * calcWidth(bounds);
   }
   return points;
+}
+
+VectorXd calcDifference(const Eigen::Ref<const VectorXd>& center,
+                        const Eigen::Ref<const MatrixXd>& neighbours, const Bounds& bounds, double at,
+                        double step) {
+  const Stencil& stencil = chooseStencil(bounds, at, step);
+  return (stencil.weight_of_center * center + stencil.weight_of_first * neighbours.col(0) +
+          stencil.weight_of_second * neighbours.col(1)) /
+         step;
 }
 
 MatrixXd calcDifferences(const MatrixXd& features, const std::vector<ParameterSpec>& parameters,
                          const VectorXd& point, double step) {
   MatrixXd sensitivities(features.rows(), static_cast<Index>(parameters.size()));
   for (Index j = 0; j < sensitivities.cols(); ++j) {
-    const Stencil& stencil = chooseStencil(parameters[j].bounds, point[j], step);
-    sensitivities.col(j) =
-        (stencil.weight_of_center * features.col(0) + stencil.weight_of_first * features.col(2 * j + 1) +
-         stencil.weight_of_second * features.col(2 * j + 2)) /
-        step;
+    sensitivities.col(j) = calcDifference(features.col(0), features.middleCols(2 * j + 1, 2),
+                                          parameters[j].bounds, point[j], step);
   }
   return sensitivities;
 }

@@ -17,6 +17,16 @@ constexpr double kSharedStepsDifference = 1e-4;
 Eigen::MatrixXd makeNeighbours(const std::vector<ParameterSpec>& parameters, const Eigen::VectorXd& point,
                                double step = kSharedStepsDifference);
 
+/// The same with a step for each parameter.
+Eigen::MatrixXd makeNeighbours(const std::vector<ParameterSpec>& parameters, const Eigen::VectorXd& point,
+                               const Eigen::VectorXd& steps);
+
+/// The derivative per width of the bounds by one parameter, of value `at`, from the values at the point and
+/// at its two neighbours.
+Eigen::VectorXd calcDifference(const Eigen::Ref<const Eigen::VectorXd>& center,
+                               const Eigen::Ref<const Eigen::MatrixXd>& neighbours, const Bounds& bounds,
+                               double at, double step);
+
 /// Differences of second order of values at these points (d x 2 p + 1): derivatives (d x p) per width of the
 /// bounds.
 Eigen::MatrixXd calcDifferences(const Eigen::MatrixXd& values, const std::vector<ParameterSpec>& parameters,

@@ -64,7 +64,7 @@ FmuResult simulate(const FmuCase& fmu, int runs) {
   }
   FmuResult result{{}, Eigen::MatrixXd(fmu.times.size(), static_cast<Eigen::Index>(fmu.outputs.size()))};
   for (int i = 0; i < runs; ++i) {
-    StepSequence own_steps;
+    fmi::IntegrationPath own_steps;
     result.status = runner.run(values.data(), excitation, result.outputs.reshaped(), own_steps);
   }
   return result;

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "framework/fmi/package.hpp"
+#include "framework/spec/yaml/source_location.hpp"
 #include "tests/framework/fmi/fmu_case.hpp"
 
 namespace twinmap::testing {
@@ -68,7 +70,8 @@ TEST_P(Ball, ComesToRestAfterInfinitelyManyBounces) {
   EXPECT_NEAR(result.outputs(1, 0), 0.0, 1e-9);
 }
 
-INSTANTIATE_TEST_SUITE_P(Versions, Ball, ::testing::Values("bouncing_ball_2", "bouncing_ball_3"));
+INSTANTIATE_TEST_SUITE_P(Versions, Ball,
+                         ::testing::Values("bouncing_ball_2", "bouncing_ball_3", "bouncing_ball_events"));
 
 struct Way {
   const char* fmu;
@@ -117,8 +120,61 @@ TEST_P(Stairs, FailsWhereItEndsItsSimulationEarlier) {
 INSTANTIATE_TEST_SUITE_P(Ways, Stairs,
                          ::testing::Values(Way{"stairs_2", Kind::kCoSimulation},
                                            Way{"stairs_3", Kind::kCoSimulation},
+                                           Way{"stairs_events", Kind::kCoSimulation},
                                            Way{"stairs_2", Kind::kModelExchange},
                                            Way{"stairs_3", Kind::kModelExchange}));
+
+TEST(EventMode, TakesChangesOfDiscreteInputs) {
+  FmuCase fmu;
+  fmu.name = "feedthrough_events";
+  fmu.excitation = {makePulse("u", "", 3.0, 0.25, 0.5), makePulse("du", "", 2.0, 0.25, 0.5)};
+  fmu.outputs = {"y", "dy"};
+  fmu.times = Eigen::VectorXd::LinSpaced(11, 0.0, 1.0);
+  const FmuResult result = simulate(fmu, 2);
+  ASSERT_TRUE(result.status.ok) << result.status.reason;
+  for (Eigen::Index i = 0; i < fmu.times.size(); ++i) {
+    const bool on = fmu.times[i] >= 0.25 && fmu.times[i] < 0.5;
+    EXPECT_EQ(result.outputs(i, 0), on ? 3.0 : 0.0) << fmu.times[i];
+    EXPECT_EQ(result.outputs(i, 1), on ? 2.0 : 0.0) << fmu.times[i];
+  }
+}
+
+TEST(Clocks, ThatFollowTheTimeAreLeftToCoSimulation) {
+  FmuCase fmu;
+  fmu.name = "clocked";
+  fmu.outputs = {"counter"};
+  fmu.times = Eigen::VectorXd::LinSpaced(3, 1.0, 3.0);
+  fmu.duration = 3.0;
+  const FmuResult result = simulate(fmu);
+  ASSERT_TRUE(result.status.ok) << result.status.reason;
+  EXPECT_EQ(result.outputs.col(0), Eigen::Vector3d(2, 3, 4));
+  try {
+    fmi::Package(findFmu("clocked")).chooseKind(Kind::kModelExchange);
+    FAIL();
+  } catch (const ExperimentError& error) {
+    EXPECT_NE(std::string(error.what()).find("clock 'clock'"), std::string::npos) << error.what();
+  }
+}
+
+/// x'' = -c x - d x' with a strong damper creeps back: (s1 exp(s2 t) - s2 exp(s1 t)) / (s1 - s2).
+TEST(StiffModels, AreIntegratedImplicitlyAfterTheStepLimit) {
+  constexpr double kDamping = 1e6, kStiffness = 4e5;
+  FmuCase fmu;
+  fmu.name = "oscillator_2";
+  fmu.kind = Kind::kModelExchange;
+  fmu.parameters = {{"c", kStiffness}, {"d", kDamping}};
+  fmu.outputs = {"x"};
+  fmu.units = {{"x", "m"}};
+  fmu.times = Eigen::VectorXd::LinSpaced(11, 0.0, 5.0);
+  fmu.duration = 5.0;
+  const FmuResult result = simulate(fmu, 2);
+  ASSERT_TRUE(result.status.ok) << result.status.reason;
+  EXPECT_TRUE(result.status.second_try);
+  const double slow = 2.0 * kStiffness / (kDamping + std::sqrt(kDamping * kDamping - 4.0 * kStiffness));
+  for (Eigen::Index i = 0; i < fmu.times.size(); ++i) {
+    EXPECT_NEAR(result.outputs(i, 0), 0.1 * std::exp(-slow * fmu.times[i]), 1e-6) << fmu.times[i];
+  }
+}
 
 }  // namespace
 }  // namespace twinmap::testing

@@ -1,8 +1,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 #include "framework/fmi/bind_variables.hpp"
+#include "framework/fmi/native_values.hpp"
 #include "framework/fmi/package.hpp"
 #include "tests/framework/fmi/fmu_case.hpp"
 
@@ -156,6 +159,14 @@ TEST(Values, AResponseThatIsNotFiniteIsAFailure) {
   fmu.parameters = {{"fault", 3.0}};
   fmu.outputs = {"x"};
   EXPECT_NE(simulate(fmu).status.reason.find("not finite"), std::string::npos);
+}
+
+TEST(NativeValues, HoldTheLargestIntegerOf64Bits) {
+  EXPECT_EQ(fmi::toNative<std::int64_t>(9223372036854775807.0), std::numeric_limits<std::int64_t>::max());
+  EXPECT_EQ(fmi::toNative<std::int64_t>(-9223372036854775808.0), std::numeric_limits<std::int64_t>::min());
+  EXPECT_EQ(fmi::toNative<std::uint64_t>(18446744073709551615.0), std::numeric_limits<std::uint64_t>::max());
+  EXPECT_THROW(fmi::toNative<std::int64_t>(9.3e18), fmi::FmuFailure);
+  EXPECT_THROW(fmi::toNative<std::int32_t>(2147483648.0), fmi::FmuFailure);
 }
 
 }  // namespace

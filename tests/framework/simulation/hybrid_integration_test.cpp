@@ -77,5 +77,60 @@ TEST(HybridIntegration, EventsWithoutEndAreAFailure) {
   EXPECT_NE(report.failure.find("without end"), std::string::npos) << report.failure;
 }
 
+/// Prothero and Robinson: x' = -stiffness (x - cos t) - sin t, whose solution from 1 is cos t.
+class Stiff : public HybridProblem {
+ public:
+  explicit Stiff(int outputs) : values_(outputs) {}
+
+  std::size_t getIndicatorCount() const override { return 1; }
+  void calcIndicators(double t, const State& x, double* indicators) override {
+    indicators[0] = x[0] - 0.5 * (t < 2.0 ? 1.0 : -9.0);
+  }
+  bool completeStep(double, const State&) override { return false; }
+  void handleEvent(double t, State&) override { events_.push_back(t); }
+  void enterPhase(double, State&) override {}
+  double getNextEventTime() const override { return std::numeric_limits<double>::infinity(); }
+  bool isOver() const override { return false; }
+  void calcDerivative(double t, const State& x, State& dxdt) override {
+    dxdt[0] = -1e6 * (x[0] - std::cos(t)) - std::sin(t);
+  }
+  void recordOutput(int index, double, const State& x) override { values_[index] = x[0]; }
+
+  std::vector<double> values_, events_;
+};
+
+TEST(HybridIntegration, IntegratesAStiffProblemImplicitly) {
+  const Eigen::VectorXd times = Eigen::VectorXd::LinSpaced(16, 0.0, 1.5);
+  const IntegrationOptions options{1e-7, 1e-9, 10000, 60.0};
+  Stiff limited(16);
+  const HybridReport failed = integrateHybrid(limited, {1.0}, {0.0, 1.5}, times, options);
+  EXPECT_TRUE(failed.reached_step_limit);
+  Stiff problem(16);
+  const HybridReport report =
+      integrateHybrid(problem, {1.0}, {0.0, 0.7, 1.5}, times, options, nullptr, HybridMethod::kImplicit);
+  ASSERT_EQ(report.failure, "");
+  EXPECT_LT(report.steps, 300);
+  for (int i = 0; i < 16; ++i) {
+    EXPECT_NEAR(problem.values_[i], std::cos(times[i]), 1e-6) << times[i];
+  }
+  ASSERT_EQ(problem.events_.size(), 1U);
+  EXPECT_NEAR(problem.events_[0], std::acos(0.5), 1e-6);
+}
+
+TEST(HybridIntegration, ReplaysImplicitSteps) {
+  const Eigen::VectorXd times = Eigen::VectorXd::LinSpaced(11, 0.0, 1.0);
+  const IntegrationOptions options{1e-7, 1e-9, 10000, 60.0};
+  Stiff first(11), second(11);
+  const HybridReport report =
+      integrateHybrid(first, {1.0}, {0.0, 1.0}, times, options, nullptr, HybridMethod::kImplicit);
+  ASSERT_EQ(report.failure, "");
+  const HybridReport again =
+      integrateHybrid(second, {1.0}, {0.0, 1.0}, times, options, &report.sequence, HybridMethod::kImplicit);
+  ASSERT_EQ(again.failure, "");
+  for (int i = 0; i < 11; ++i) {
+    EXPECT_NEAR(first.values_[i], second.values_[i], 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace twinmap

@@ -36,6 +36,16 @@ BALL = [
     ("twice", 20, "Real", "calculatedParameter", "fixed", {}),
     ("pi", 21, "Real", "local", "constant", {"start": "3.14"}),
 ]
+OSCILLATOR = [
+    ("x", 0, "Real", "output", "continuous", {"start": "0.1", "initial": "exact", "unit": "m"}),
+    ("v", 1, "Real", "local", "continuous", {"start": "0", "initial": "exact", "unit": "m/s"}),
+    ("der(x)", 2, "Real", "local", "continuous", {"derivative": "x"}),
+    ("der(v)", 3, "Real", "local", "continuous", {"derivative": "v"}),
+    ("c", 4, "Real", "parameter", "tunable", {"start": "40"}),
+    ("d", 5, "Real", "parameter", "tunable", {"start": "0.5"}),
+    ("F", 6, "Real", "input", "continuous", {"start": "0"}),
+    ("p", 7, "Real", "output", "continuous", {}),
+]
 STAIRS = [("counter", 0, "Real", "output", "discrete", {"start": "1", "initial": "exact"})]
 FEEDTHROUGH = [
     ("u", 0, "Real", "input", "continuous", {"start": "0"}), ("y", 1, "Real", "output", "continuous", {}),
@@ -102,7 +112,7 @@ def describe_2(variables, identifier, indicators, variable_step):
 <ModelStructure><Derivatives>{unknowns}</Derivatives></ModelStructure></fmiModelDescription>"""
 
 
-def describe_3(variables, identifier, indicators, variable_step, early="false"):
+def describe_3(variables, identifier, indicators, variable_step, early="false", events="false"):
     references = {variable[0]: variable[1] for variable in variables}
     lines, structure = [], ""
     for name, reference, kind, causality, variability, extra in variables:
@@ -123,11 +133,18 @@ def describe_3(variables, identifier, indicators, variable_step, early="false"):
 <fmiModelDescription fmiVersion="3.0" modelName="{identifier}" instantiationToken="{TOKEN[3]}">
 <ModelExchange modelIdentifier="{identifier}" needsCompletedIntegratorStep="true"/>
 <CoSimulation modelIdentifier="{identifier}" canHandleVariableCommunicationStepSize="{variable_step}"
- mightReturnEarlyFromDoStep="{early}"/>
+ mightReturnEarlyFromDoStep="{early}" hasEventMode="{events}"/>
 {UNITS}<TypeDefinitions><EnumerationType name="Kind"><Item name="one" value="1"/><Item name="two" value="2"/></EnumerationType>
 </TypeDefinitions><LogCategories><Category name="logStatusError"/></LogCategories>
 <DefaultExperiment startTime="0" stopTime="5"/><ModelVariables>{chr(10).join(lines)}</ModelVariables>
 <ModelStructure>{structure}</ModelStructure></fmiModelDescription>"""
+
+
+def offer_derivatives(xml):
+    """Of OSCILLATOR; FMI 3.0 lists the tunable parameters that a state derivative depends on."""
+    return (xml.replace('<ModelExchange ', '<ModelExchange providesDirectionalDerivatives="true" providesDirectionalDerivative="true" ')
+            .replace('<ContinuousStateDerivative valueReference="3"/>', '<ContinuousStateDerivative valueReference="3" '
+                     'dependencies="0 1 4 5 6"/><Output valueReference="7" dependencies="1 5"/>'))
 
 
 def compile_model(out, compiler, headers, model, version, defines):
@@ -147,9 +164,9 @@ def main():
     out, compiler, headers = Path(sys.argv[1]), sys.argv[2], sys.argv[3]
     out.mkdir(parents=True, exist_ok=True)
 
-    def make(name, model, version, variables, indicators=0, defines=(), step="true", extra=None, xml=None, early="false"):
+    def make(name, model, version, variables, indicators=0, defines=(), step="true", extra=None, xml=None, early="false", events="false"):
         description = xml or (describe_2(variables, model, indicators, step) if version == 2 else
-                              describe_3(variables, model, indicators, step, early))
+                              describe_3(variables, model, indicators, step, early, events))
         library = compile_model(out, compiler, headers, model, version, list(defines))
         write(out / f"{name}.fmu", {"modelDescription.xml": description,
                                     f"binaries/{PLATFORM[version]}/{model}.so": library.read_bytes(), **(extra or {})})
@@ -167,6 +184,19 @@ def main():
     make("discards", "two_beam", 2, TWO_BEAM, defines=["-DLONGEST_STEP=0.004"])
     make("no_reset", "two_beam", 2, TWO_BEAM, defines=["-DNO_RESET"])
     make("early_return", "two_beam", 3, TWO_BEAM, defines=["-DEARLY_RETURN"], early="true")
+    make("bouncing_ball_events", "bouncing_ball", 3, BALL, indicators=1, events="true")
+    make("stairs_events", "stairs", 3, STAIRS, events="true")
+    make("feedthrough_events", "feedthrough", 3, FEEDTHROUGH, events="true")
+    clocked = describe_3(STAIRS, "stairs", 0, "true", events="true").replace(
+        "</ModelVariables>", '<Clock name="clock" valueReference="950" causality="input" intervalVariability="constant"'
+        ' intervalDecimal="1"/></ModelVariables>')
+    make("clocked", "stairs", 3, STAIRS, xml=clocked)
+    for version in (2, 3):
+        make(f"oscillator_{version}", "oscillator", version, OSCILLATOR, xml=offer_derivatives(
+            (describe_2 if version == 2 else describe_3)(OSCILLATOR, "oscillator", 0, "true")))
+    make("oscillator_wrong", "oscillator", 3, OSCILLATOR, defines=["-DWRONG_DERIVATIVE"],
+         xml=offer_derivatives(describe_3(OSCILLATOR, "oscillator", 0, "true")))
+    make("oscillator_noisy", "oscillator", 3, OSCILLATOR, defines=["-DNOISY"])
     make("missing_function", "faulty", 2, FAULTY, defines=["-DNO_SET_REAL"])
 
     description = describe_2(FAULTY, "faulty", 0, "true")

@@ -32,3 +32,4 @@ Status model_calc(Model* model) {
 }
 void model_indicate(const Model* model, double* indicators) { (void)model, (void)indicators; }
 void model_event(Model* model) { (void)model; }
+bool model_is_discrete(uint32_t reference) { return reference == 4; }

@@ -34,5 +34,9 @@ Status model_initialise(Model*);
 Status model_calc(Model*);
 void model_indicate(const Model*, double* indicators);
 void model_event(Model*);
+/* Optional: whether a real may be set at events only. */
+bool model_is_discrete(uint32_t reference) __attribute__((weak));
+/* Optional: d unknown / d known, of reals; false where the standard does not permit to ask. */
+bool model_differentiate(const Model*, uint32_t unknown, uint32_t known, double* value) __attribute__((weak));
 
 #endif

@@ -1,0 +1,167 @@
+#include "framework/simulation/difference_steps.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "framework/simulation/stencil.hpp"
+#include "framework/spec/parameter_box.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kLargestStep = 0.05;  // of the width: beyond it third derivatives are not those of the point
+constexpr double kProbe = 0.125;       // of the width: the distance of the points of third derivatives
+
+bool haveSucceeded(const std::vector<SampleStatus>& statuses) {
+  return std::all_of(statuses.begin(), statuses.end(), [](const SampleStatus& status) { return status.ok; });
+}
+
+/// Root mean square of each output over the times.
+VectorXd calcScales(const ResponseLayout& layout, const VectorXd& response) {
+  VectorXd scales(layout.getOutputCount());
+  for (Index i = 0; i < scales.size(); ++i) {
+    scales[i] = std::sqrt(response.segment(layout.getRow(i, 0), layout.times.size()).squaredNorm() /
+                          static_cast<double>(std::max<Index>(layout.times.size(), 1)));
+  }
+  return scales;
+}
+
+/// Root mean square over the outputs of values / scales; outputs that are 0 say nothing.
+double calcRelative(const VectorXd& values, const VectorXd& scales) {
+  const auto moves = scales.array() > 0.0;
+  const auto count = static_cast<double>(std::max<Index>(moves.count(), 1));
+  return std::sqrt(moves.select(values.array() / scales.array(), 0.0).square().sum() / count);
+}
+
+double calcMedian(VectorXd values) {
+  if (values.size() == 0) {
+    return 0.0;
+  }
+  const auto middle = values.begin() + values.size() / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Of each output. Fourth differences of independent errors have 1 + 16 + 36 + 16 + 1 = 70 times their
+/// variance; the median of the size of a normal variable is 0.6745 of its standard deviation.
+VectorXd calcNoise(const ResponseLayout& layout, const MatrixXd& line) {
+  MatrixXd differences = line;
+  for (int order = 0; order < 4; ++order) {
+    const Index count = differences.cols() - 1;
+    differences = (differences.rightCols(count) - differences.leftCols(count)).eval();
+  }
+  VectorXd noise(layout.getOutputCount());
+  for (Index i = 0; i < noise.size(); ++i) {
+    const MatrixXd own = differences.middleRows(layout.getRow(i, 0), layout.times.size()).cwiseAbs();
+    noise[i] = calcMedian(own.reshaped()) / (0.6745 * std::sqrt(70.0));
+  }
+  return noise;
+}
+
+MatrixXd makeLine(const VectorXd& center, const VectorXd& widths) {
+  constexpr Index kPoints = 9;
+  MatrixXd points = center.replicate(1, kPoints);
+  for (Index i = 0; i < kPoints; ++i) {
+    points.col(i) += static_cast<double>(i) * kSharedStepsDifference * widths;
+  }
+  return points;
+}
+
+/// The centre, then for each parameter two points on each side.
+MatrixXd makeProbes(const VectorXd& center, const VectorXd& widths) {
+  MatrixXd points = center.replicate(1, 1 + 4 * center.size());
+  for (Index j = 0; j < center.size(); ++j) {
+    for (Index i = 0; i < 4; ++i) {
+      constexpr double kPositions[] = {-2.0, -1.0, 1.0, 2.0};
+      points(j, 1 + 4 * j + i) += kPositions[i] * kProbe * widths[j];
+    }
+  }
+  return points;
+}
+
+/// Per width^3.
+VectorXd calcThirdDerivative(const MatrixXd& probes, Index parameter) {
+  const auto at = [&](Index i) { return probes.col(1 + 4 * parameter + i); };
+  return (at(3) - 2.0 * at(2) + 2.0 * at(1) - at(0)) / (2.0 * kProbe * kProbe * kProbe);
+}
+
+bool hasMoved(const Eigen::Ref<const MatrixXd>& points, Index parameter) {
+  return (points.row(parameter).array() != points(parameter, 0)).any();
+}
+
+}  // namespace
+
+bool DifferenceSteps::areShared() const {
+  return (steps.array() == kSharedStepsDifference).all();
+}
+
+DifferenceSteps measureDifferenceSteps(const std::vector<ParameterSpec>& sampled,
+                                       const ResponseLayout& layout, const SimulateNeighbours& simulate) {
+  const VectorXd center = calcBoxCenter(sampled), widths = calcWidths(sampled);
+  DifferenceSteps result{0.0, VectorXd::Constant(center.size(), kSharedStepsDifference)};
+  const auto run = [&](const MatrixXd& points, MatrixXd& responses) {
+    std::vector<SampleStatus> statuses(static_cast<std::size_t>(points.cols()));
+    responses.resize(layout.getRowCount(), points.cols());
+    simulate(points, responses, statuses);
+    return haveSucceeded(statuses);
+  };
+  MatrixXd line, probes;
+  if (!run(makeLine(center, widths), line)) {
+    return result;
+  }
+  const VectorXd scales = calcScales(layout, line.col(0));
+  result.noise = calcRelative(calcNoise(layout, line), scales);
+  if (!run(makeProbes(center, widths), probes)) {
+    return result;
+  }
+  for (Index j = 0; j < center.size(); ++j) {
+    const double third = calcRelative(calcScales(layout, calcThirdDerivative(probes, j)), scales);
+    const double best = std::cbrt(3.0 * result.noise / third);
+    result.steps[j] =
+        std::isnan(best) ? kSharedStepsDifference : std::clamp(best, kSharedStepsDifference, kLargestStep);
+  }
+  return result;
+}
+
+void simulateOnTangent(const std::vector<ParameterSpec>& sampled, const DifferenceSteps& differences,
+                       const SimulateNeighbours& simulate, const Eigen::Ref<const MatrixXd>& points,
+                       Eigen::Ref<MatrixXd> responses, SampleStatus* statuses) {
+  const VectorXd center = points.col(0), widths = calcWidths(sampled);
+  std::vector<Index> moved;
+  for (Index j = 0; j < points.rows(); ++j) {
+    if (hasMoved(points, j)) {
+      moved.push_back(j);
+    }
+  }
+  const MatrixXd all = makeNeighbours(sampled, center, differences.steps);
+  MatrixXd needed = center.replicate(1, 1 + 2 * static_cast<Index>(moved.size()));
+  for (std::size_t k = 0; k < moved.size(); ++k) {
+    needed.middleCols(1 + 2 * static_cast<Index>(k), 2) = all.middleCols(1 + 2 * moved[k], 2);
+  }
+  MatrixXd found(responses.rows(), needed.cols());
+  std::vector<SampleStatus> found_statuses(static_cast<std::size_t>(needed.cols()));
+  simulate(needed, found, found_statuses);
+  responses.colwise() = found.col(0);
+  std::fill(statuses, statuses + points.cols(), found_statuses[0]);
+  for (std::size_t k = 0; k < moved.size(); ++k) {
+    const Index j = moved[k];
+    const VectorXd slope =
+        calcDifference(found.col(0), found.middleCols(1 + 2 * static_cast<Index>(k), 2),
+                       sampled[static_cast<std::size_t>(j)].bounds, center[j], differences.steps[j]);
+    for (Index i = 0; i < points.cols(); ++i) {
+      if (points(j, i) == center[j]) {
+        continue;
+      }
+      responses.col(i) += slope * ((points(j, i) - center[j]) / widths[j]);
+      for (const std::size_t own : {2 * k + 1, 2 * k + 2}) {
+        statuses[i] = statuses[i].ok ? found_statuses[own] : statuses[i];
+      }
+    }
+  }
+}
+
+}  // namespace twinmap
