@@ -36,8 +36,8 @@ int limitByTime(const ExperimentSpec& experiment, Simulator& simulator);
 /// until
 /// - all parameters are near the limit, or the last doubling took their errors to no less than 0.7
 ///   (SimulationGain), by cross-validation;
-/// - a surrogate of twice as many would take longer than design.train.time, by its operations at a nominal
-///   2e9 a second (the same on every machine);
+/// - a surrogate of twice as many would take longer than design.train.time, at a nominal
+///   speed (predicted by its size, the same on every machine);
 /// - `most` are reached.
 /// Where no surrogate can be trained, 250, which is what processes from features to parameters take. Tells
 /// the log. Throws Interrupted, std::runtime_error as simulateSets() and trainSurrogateMap().

@@ -98,9 +98,10 @@ TEST(ExperimentFile, DefaultsAreWhitenedComponentsAndReplicates) {
 }
 
 TEST(ExperimentFile, AnAutomaticNumberOfTrainingSamplesStaysAutomaticAndHasADesignThatGrows) {
-  for (const ExperimentSpec& experiment :
-       {loadExperiment(kCart), readResolved(writeExperiment(loadExperiment(kCart))),
-        loadExperiment(kTable1, {"design.train.samples=automatic", "inverse_map=surrogate"})}) {
+  for (const std::string design : {"", "design={train: {samples: automatic}}"}) {
+    const ExperimentSpec experiment =
+        loadExperiment(kCart, design.empty() ? std::vector<std::string>{} : std::vector<std::string>{design});
+    EXPECT_TRUE(readResolved(writeExperiment(experiment)).design.train.samples.automatic);
     const PointSetSpec& train = experiment.design.train;
     EXPECT_TRUE(train.samples.automatic);
     EXPECT_EQ(train.samples, 800);  // the most
