@@ -41,13 +41,12 @@ double predictTrainingSeconds(const Surrogate& surrogate, Index samples) {
   return seconds;
 }
 
-/// Whether the cross-validation lets expect that twice as many samples lead to smaller errors that matter.
+/// Whether the cross-validation lets expect that twice as many samples lead to smaller errors that matter. Of
+/// fewer than 100 simulations too little is learnt to tell whether others would not help.
 bool promisesMore(const CrossValidation& found) {
   constexpr double kNearLimit = 1.1, kWorthIt = 0.7;
-  if (found.half == 0) {
-    return true;
-  }
-  return ((found.limit_ratio.array() > kNearLimit) && (found.error_ratio.array() < kWorthIt)).any();
+  const auto far = found.limit_ratio.array() > kNearLimit;
+  return found.half < kFirst ? far.any() : (far && found.error_ratio.array() < kWorthIt).any();
 }
 
 /// Why no more than `samples` are taken; empty where more are.

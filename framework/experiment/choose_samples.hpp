@@ -34,7 +34,7 @@ int limitByTime(const ExperimentSpec& experiment, Simulator& simulator);
 
 /// Trains surrogates on 100, 200, 400 ... samples, the shorter set being the beginning of the longer one,
 /// until
-/// - all parameters are near the limit, or the last doubling took their errors to no less than 0.7
+/// - all parameters are near the limit, or from 100 on a doubling took their errors to no less than 0.7
 ///   (SimulationGain), by cross-validation;
 /// - a surrogate of twice as many would take longer than design.train.time, at a nominal
 ///   speed (predicted by its size, the same on every machine);
