@@ -1,7 +1,7 @@
 """Runs mechanisms of many kinds and writes docs/mechanisms.md: how near the information limit, and how honest, they are.
 
 Usage: mechanisms.py TWINMAP [--threads N] [--tests N] [--page FILE] [--results FOLDER] [EXPERIMENT ...]
-Each experiment (default: those listed in the page) runs with its own settings, 250 training samples and 400 test samples.
+Each experiment (default: those listed in the page) runs with the default map, 250 training samples and 400 test samples.
 The runs stay in FOLDER (default: results/mechanisms), so that a second call continues, or only writes the page.
 """
 import argparse
@@ -9,6 +9,7 @@ import csv
 import json
 import subprocess
 import sys
+import textwrap
 from pathlib import Path
 
 import yaml
@@ -19,9 +20,9 @@ ROOT = Path(__file__).parents[1]
 SHOWS = {
     "two_beam/best": "Nearly linear: the map alone is at the limit, and a refinement confirms it.",
     "three_mass_chain/frequency_response": "Linear, seen through frequency response functions instead of samples in time.",
-    "crane/crane": "Masses, a length and a cubic stiffness at once; two springs in parallel, of which the response tells only "
-                   "the sum: the limit says so, and the answers keep the width that their bounds leave.",
-    "mechanisms/double_pendulum_mild": "Smooth but not linear: the map alone is a little off the limit, its intervals hold.",
+    "crane/crane": "Masses, a length and a cubic stiffness at once. The response tells only the sum of two springs in parallel: the "
+                   "limit says so, and the answers keep the width that the bounds leave.",
+    "mechanisms/double_pendulum_mild": "Smooth, so that values and slopes of 250 simulations suffice for the limit.",
     "mechanisms/double_pendulum": "Chaotic: late samples say much in principle and nothing to a map. Its intervals stay honest; "
                                   "the refinement finds the limit by growing windows of time, and says where it does not.",
     "mechanisms/cubic_chain": "Dry friction and a cubic spring bend the response so that 250 simulations do not teach it to "
@@ -44,7 +45,7 @@ def parse_arguments():
     parser.add_argument("--tests", type=int, default=400)
     parser.add_argument("--page", type=Path, default=ROOT / "docs/mechanisms.md")
     parser.add_argument("--results", type=Path, default=ROOT / "results/mechanisms")
-    return parser.parse_args()
+    return parser.parse_intermixed_args()
 
 
 def run(arguments, name):
@@ -52,8 +53,8 @@ def run(arguments, name):
     folder = arguments.results / name.replace("/", "_")
     if not (folder / "report.html").exists():
         print(name, file=sys.stderr, flush=True)
-        command = [arguments.twinmap, "run", ROOT / "experiments" / f"{name}.yaml", "design.train.samples=250",
-                   f"design.test.samples={arguments.tests}", "--threads", str(arguments.threads), "--out", folder, "--quiet"]
+        command = [arguments.twinmap, "run", ROOT / "experiments" / f"{name}.yaml", "inverse_map=automatic",
+                   "design.train.samples=250", f"design.test.samples={arguments.tests}", "--threads", str(arguments.threads), "--out", folder, "--quiet"]
         subprocess.run(list(map(str, command)), check=True, stdout=subprocess.DEVNULL)
     return folder
 
@@ -81,21 +82,31 @@ def span(rows, column, decimals):
     return low if low == high else f"{low} - {high}"
 
 
-def describe_time(seconds, begins):
-    total = sum(time for stage, time in seconds.items() if stage.startswith(begins))
-    return f"{total:.0f} s" if total >= 10 else f"{total:.1f} s"
+def sum_times(seconds, begins):
+    return sum(time for stage, time in seconds.items() if stage.startswith(begins))
+
+
+def describe_seconds(seconds):
+    return f"{seconds:.0f} s" if seconds >= 10 else f"{seconds:.1f} s"
+
+
+def make_title(name):
+    folder, file = name.split("/")
+    return file if folder == "mechanisms" else folder
 
 
 def make_row(name, figures):
-    methods, foretold, seconds, _ = figures
+    methods, foretold, seconds, experiment = figures
     of_map = next(iter(methods.values()))
     refined = methods.get("refined", [])
     share = f"{100 * float(refined[0]['accepted']):.1f} %" if refined else "not refined"
     simulations = refined[0]["median_simulations"] if refined else ""
-    cells = [f"[{name.split('/')[-1]}](#{name.split('/')[-1]})" if "/" in name else name,
+    refinement = 1000 * sum_times(seconds, "refine") / experiment["design"]["test"]["samples"] if refined else 0
+    cells = [f"[{make_title(name)}](#{make_title(name)})",
              span(of_map, "ratio_to_limit", 1), span(foretold, "limit_ratio", 1), span(of_map, "coverage95", 2),
              share, span(refined, "ratio_to_limit", 2), span(refined, "coverage95", 2), simulations,
-             describe_time(seconds, "train"), describe_time(seconds, "")]
+             describe_seconds(sum_times(seconds, "train")), f"{refinement:.0f} ms" if refined else "",
+             describe_seconds(sum_times(seconds, ""))]
     return "| " + " | ".join(cells) + " |"
 
 
@@ -104,8 +115,8 @@ def make_section(name, figures):
     of_map = next(iter(methods.values()))
     refined = {row["parameter"]: row for row in methods.get("refined", [])}
     told = {row["parameter"]: row for row in foretold}
-    lines = [f"## {name.split('/')[-1]}", "", f"`experiments/{name}.yaml`. {experiment.get('description', '')}.", SHOWS.get(name, ""),
-             "", "| parameter | limit % | map: sd % | ratio | foretold | coverage | refined: sd % | ratio | coverage |",
+    lines = [f"## {make_title(name)}", "", f"`experiments/{name}.yaml`: {experiment.get('description', '')}.",
+             textwrap.fill(SHOWS.get(name, ""), 140), "", "| parameter | limit % | map: sd % | ratio | foretold | coverage | refined: sd % | ratio | coverage |",
              "|---|--:|--:|--:|--:|--:|--:|--:|--:|"]
     for row in of_map:
         parameter, answer = row["parameter"], refined.get(row["parameter"], {})
@@ -123,14 +134,14 @@ def number(text, digits):
 HEAD = """# Mechanisms of many kinds
 
 Written by `bench/mechanisms.py TWINMAP`: {count} mechanisms, each with its own experiment file, 250 training samples, {tests} test
-samples, defaults otherwise, {threads}. Ratio: standard deviation of the errors over the information limit
+samples, the default map (a surrogate) and defaults otherwise, {threads}. Ratio: standard deviation of the errors over the information limit
 ([experiment-file.md](experiment-file.md#evaluation)), smallest and largest over the parameters. Foretold: the same as the map predicts it
 without the simulator. Coverage: share of true values within the 95 % intervals. Accepted: share of the test samples whose
 refinement on the simulator passed its test ([refinement.md](refinement.md)); ratio and coverage are of these. Simulations: median of a
-refinement. Times on a shared machine: training the map, and the whole run.
+refinement. Times on a shared machine: training the map, one refinement, the whole run.
 
-| mechanism | map: ratio | foretold | coverage | refined: accepted | ratio | coverage | simulations | training | run |
-|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|
+| mechanism | map: ratio | foretold | coverage | refined: accepted | ratio | coverage | simulations | training | a refinement | run |
+|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|
 """
 
 
