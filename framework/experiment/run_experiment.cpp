@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "framework/experiment/choose_samples.hpp"
 #include "framework/experiment/evaluate_map.hpp"
 #include "framework/experiment/example_responses.hpp"
 #include "framework/experiment/online_timing.hpp"
@@ -23,6 +24,7 @@
 #include "framework/sampling/neighbourhoods.hpp"
 #include "framework/spec/experiment_file.hpp"
 #include "framework/spec/parameter_box.hpp"
+#include "framework/spec/resolve_defaults.hpp"
 #include "framework/store/atomic_file.hpp"
 #include "framework/store/folder_lock.hpp"
 #include "framework/store/samples_file.hpp"
@@ -79,6 +81,13 @@ struct RunContext {
   const RunControl& control;
 };
 
+LocalModelSource makeLocalModelSource(const RunContext& run) {
+  return [run](const Eigen::MatrixXd& points) {
+    return calcLocalModels(run.experiment, run.source, run.simulator, run.extractor, points,
+                           run.control.threads);
+  };
+}
+
 /// The samples of a run, and those of them that failed.
 struct Samples {
   SimulatedSets sets;
@@ -128,16 +137,36 @@ StageNotes writeExamples(const RunContext& run, const Trajectories& test,
   return notes;
 }
 
+/// How many training samples are taken, and what was found out about it.
+SampleChoice chooseSamples(const RunContext& run, const RunOptions& options) {
+  const SampleCount& asked = run.experiment.design.train.samples;
+  const fs::path recorded = run.folder / "samples.h5";
+  if (!asked.automatic || options.train_samples > 0) {
+    return {asked.automatic ? options.train_samples : asked.number, 0, {}, {}};
+  }
+  if (fs::exists(recorded)) {
+    return {countTrainingSamples(recorded), 0, {}, {}};
+  }
+  const int most = options.samples != nullptr ? asked.number  // a sweep has limited it
+                                              : limitByTime(run.experiment, *run.simulator.clone());
+  const LocalModelSource local_models = makeLocalModelSource(run);
+  return chooseTrainingSamples(
+      {run.experiment, run.simulator, run.extractor, run.source, local_models, run.control}, most);
+}
+
+/// The map of the choice where that was trained, else a new one.
+TrainedMap trainOrTake(const MapTrainingContext& context, SampleChoice& choice) {
+  return choice.training ? makeTrainedMap(context, std::move(*choice.training)) : trainChosenMap(context);
+}
+
 /// The stages of a run, one after the other.
-RunSummary runStages(const RunContext& run) {
+RunSummary runStages(const RunContext& run, SampleChoice choice) {
   const ExperimentSpec& experiment = run.experiment;
-  const LocalModelSource local_models = [&](const Eigen::MatrixXd& points) {
-    return calcLocalModels(experiment, run.source, run.simulator, run.extractor, points, run.control.threads);
-  };
+  const LocalModelSource local_models = makeLocalModelSource(run);
   const Samples samples = simulateSamples(run);
   const PreparedData data = prepareData(experiment, run.extractor, samples.sets, local_models);
-  TrainedMap trained =
-      trainChosenMap({experiment, samples.sets, run.simulator, run.extractor, data.labelled, run.control});
+  TrainedMap trained = trainOrTake(
+      {experiment, samples.sets, run.simulator, run.extractor, data.labelled, run.control}, choice);
   MapEvaluation evaluated =
       evaluateMap({experiment, run.simulator, run.extractor, data, trained, local_models, run.control});
   storeMap(run.folder / "maps.h5", experiment, run.extractor, evaluated.evaluation.refined, trained);
@@ -149,8 +178,8 @@ RunSummary runStages(const RunContext& run) {
   summary.training = trained.summary;
   summary.evaluation = evaluated.evaluation;
   summary.failures = samples.failures;
-  summary.reused_samples = samples.sets.reused;
-  for (const StageNotes& notes : {samples.sets.notes, trained.notes, evaluated.notes}) {
+  summary.reused_samples = samples.sets.reused - choice.simulated;
+  for (const StageNotes& notes : {choice.notes, samples.sets.notes, trained.notes, evaluated.notes}) {
     summary.notes.append(notes);
   }
   summary.notes.append(writeExamples(run, samples.sets.test, data.test_indices, evaluated.evaluation));
@@ -196,7 +225,13 @@ RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& opt
                                   ? *options.samples
                                   : SampleSource{simulator, *stores.samples, stores.neighbourhoods.get()};
 
-  RunSummary run = runStages({experiment, simulator, extractor, source, options.folder, control});
+  const RunContext asked{experiment, simulator, extractor, source, options.folder, control};
+  SampleChoice choice = chooseSamples(asked, options);
+  const ExperimentSpec chosen = experiment.design.train.samples.automatic
+                                    ? takeTrainingSamples(experiment, choice.samples)
+                                    : experiment;
+  RunSummary run =
+      runStages({chosen, simulator, extractor, source, options.folder, control}, std::move(choice));
   run.gates = writeFolder(experiment, options, control.threads, run);
   return run;
 }

@@ -31,24 +31,9 @@ OnlineFit prepareOnline(const MapTrainingContext& context, const Map& map) {
 
 /// Trains a surrogate. What is inferred with it does not depend on the threads.
 TrainedMap trainForward(const MapTrainingContext& context) {
-  SurrogateMapTraining training =
-      trainSurrogateMap(context.experiment, context.sets, context.simulator, context.extractor,
-                        context.labelled.train, context.control);
-  const auto surrogate = std::make_shared<const Surrogate>(std::move(training.surrogate));
-  OnlineFit online = prepareOnline(context, surrogate);
-  training.notes.append(online.notes);
-  const auto predict = [surrogate, threads = context.control.threads](const Eigen::MatrixXd& features,
-                                                                      const Eigen::MatrixXd& inputs) {
-    return surrogate->predict(features, inputs, threads);
-  };
-  return {"surrogate",
-          predict,
-          surrogate->validation.residual_correlation,
-          fitTransform(context.experiment.transform, context.labelled.train),
-          std::move(training.summary),
-          std::move(training.notes),
-          std::move(online.model),
-          {}};
+  return makeTrainedMap(
+      context, trainSurrogateMap(context.experiment, context.sets, context.simulator, context.extractor,
+                                 context.labelled.train, context.control));
 }
 
 /// Trains one Gaussian process per parameter.
@@ -84,6 +69,24 @@ TrainedMap makeTrainedMap(const MapTrainingContext& context, Training training) 
           std::move(training.notes),
           std::move(online.model),
           *map};
+}
+
+TrainedMap makeTrainedMap(const MapTrainingContext& context, SurrogateMapTraining training) {
+  const auto surrogate = std::make_shared<const Surrogate>(std::move(training.surrogate));
+  OnlineFit online = prepareOnline(context, surrogate);
+  training.notes.append(online.notes);
+  const auto predict = [surrogate, threads = context.control.threads](const Eigen::MatrixXd& features,
+                                                                      const Eigen::MatrixXd& inputs) {
+    return surrogate->predict(features, inputs, threads);
+  };
+  return {"surrogate",
+          predict,
+          surrogate->validation.residual_correlation,
+          fitTransform(context.experiment.transform, context.labelled.train),
+          std::move(training.summary),
+          std::move(training.notes),
+          std::move(online.model),
+          {}};
 }
 
 TrainedMap trainChosenMap(const MapTrainingContext& context) {

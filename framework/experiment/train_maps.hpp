@@ -2,6 +2,7 @@
 
 #include "framework/experiment/prepare_data.hpp"
 #include "framework/experiment/train_map.hpp"
+#include "framework/experiment/train_surrogate_map.hpp"
 #include "framework/experiment/trained_map.hpp"
 #include "framework/monitoring/run_control.hpp"
 
@@ -26,5 +27,8 @@ TrainedMap makeTrainedMap(const MapTrainingContext& context, Training training);
 /// standard deviations, in a tenth of the time (docs/maps.md). Throws Interrupted if it is stopped,
 /// std::runtime_error where the experiment does not fit the map.
 TrainedMap trainChosenMap(const MapTrainingContext& context);
+
+/// Prepares a surrogate for measurements that was trained on the context's samples.
+TrainedMap makeTrainedMap(const MapTrainingContext& context, SurrogateMapTraining training);
 
 }  // namespace twinmap

@@ -63,8 +63,14 @@ SurrogateMapTraining trainSurrogateMap(const ExperimentSpec& experiment, const S
   training.summary.leave_one_out = calcMetrics(experiment.model.parameters, trained.held_out_truth,
                                                trained.held_out, {}, trained.held_out_draws);
   training.summary.nlml.assign(experiment.model.parameters.size(), std::numeric_limits<double>::quiet_NaN());
-  training.summary.cross_validation = CrossValidation{validation.coverage95, validation.stddev_scale,
-                                                      validation.log_density, toString(validation.status)};
+  training.summary.cross_validation = CrossValidation{validation.coverage95,
+                                                      validation.stddev_scale,
+                                                      validation.log_density,
+                                                      toString(validation.status),
+                                                      validation.limit_ratio,
+                                                      static_cast<int>(trained.gain.half),
+                                                      static_cast<int>(trained.gain.all),
+                                                      trained.gain.error_ratio};
   training.surrogate = std::move(trained.surrogate);
   return training;
 }

@@ -16,9 +16,19 @@ struct Answer {
 /// The refined answer where it was accepted, else the map's.
 Answer chooseAnswer(const InferredMeasurement& inferred);
 
+/// By how much the map's standard deviations are above what the measurement allows, as the map foretells it
+/// (p); empty where it cannot.
+Eigen::VectorXd calcRatioToLimit(const Inference& inference);
+
+/// From this ratio on an answer of the map is map_limited.
+constexpr double kMapLimitedRatio = 1.5;
+
+/// Whether the answer is the map's and its errors are mostly the map's own, or not known to it.
+bool isMapLimited(const InferredMeasurement& inferred);
+
 /// Names of all that is to be said against an answer, the gravest first: what the trust model says, then
-/// "nonlinear" or "not_refined" where a refinement was tried and not accepted. {"ok"} where nothing is; empty
-/// where nobody has judged.
+/// "nonlinear" or "not_refined" where a refinement was tried and not accepted, then "map_limited". {"ok"}
+/// where nothing is; empty where nobody has judged.
 std::vector<std::string> listStatuses(const InferredMeasurement& inferred);
 
 }  // namespace twinmap

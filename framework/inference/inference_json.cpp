@@ -30,6 +30,16 @@ Json makeEstimates(const Eigen::VectorXd& mean, const Eigen::VectorXd& stddev,
   return estimates;
 }
 
+/// The map's, with how far they are from what the measurement allows.
+Json makeMapEstimates(const Inference& inference, const std::vector<ParameterSpec>& parameters) {
+  Json estimates = makeEstimates(inference.mean, inference.stddev, parameters);
+  const Eigen::VectorXd ratio = calcRatioToLimit(inference);
+  for (Eigen::Index p = 0; p < ratio.size(); ++p) {
+    estimates[parameters[static_cast<std::size_t>(p)].name.text]["ratio_to_limit"] = ratio[p];
+  }
+  return estimates;
+}
+
 Json toJson(const Trust& trust, const std::vector<FeatureInfo>& features) {
   Json json;
   json["p_value"] = trust.p_value;
@@ -75,14 +85,14 @@ std::string makeInferenceJson(const InferredMeasurement& inferred,
   }
   const Answer answer = chooseAnswer(inferred);
   json["method"] = answer.refined ? "refined" : "inverse_map";
-  json["parameters"] = makeEstimates(answer.mean, answer.stddev, parameters);
+  json["parameters"] = answer.refined ? makeEstimates(answer.mean, answer.stddev, parameters)
+                                      : makeMapEstimates(inferred.inference, parameters);
   if (inferred.trust) {
     json["trust"] = toJson(*inferred.trust, features);
   }
   if (inferred.refined) {
     json["refined"] = toJson(*inferred.refined, parameters);
-    json["inverse_map"]["parameters"] =
-        makeEstimates(inferred.inference.mean, inferred.inference.stddev, parameters);
+    json["inverse_map"]["parameters"] = makeMapEstimates(inferred.inference, parameters);
   }
   return dump(json);
 }

@@ -8,6 +8,7 @@
 #include "framework/inverse_map/predictions.hpp"
 #include "framework/results/escape.hpp"
 #include "framework/spec/parameter_box.hpp"
+#include "framework/spec/yaml/nearest_name.hpp"
 #include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
@@ -119,12 +120,34 @@ std::string describeBurst(const Trust& trust, const std::vector<FeatureInfo>& fe
   return "it is worst at " + (burst.count == 1 ? first : first + " to " + last);
 }
 
+std::string describeMapLimit(const InferredMeasurement& inferred,
+                             const std::vector<ParameterSpec>& parameters) {
+  if (!isMapLimited(inferred)) {
+    return "";
+  }
+  const char* advice = inferred.refined ? "add simulations" : "refine, or add simulations";
+  const Eigen::VectorXd ratio = calcRatioToLimit(inferred.inference);
+  std::vector<std::string> far;
+  for (Index p = 0; p < ratio.size(); ++p) {
+    if (ratio[p] > kMapLimitedRatio) {
+      far.push_back(
+          fmt::format("{} is {:.2g} times", parameters[static_cast<std::size_t>(p)].name.text, ratio[p]));
+    }
+  }
+  std::string text =
+      far.empty() ? "" : fmt::format("  {} above what the measurement allows: {}.\n", listNames(far), advice);
+  if (!inferred.map_is_honest) {
+    text += fmt::format("  The map does not know its own errors (cross-validation): {}.\n", advice);
+  }
+  return text;
+}
+
 std::string makeInferenceTable(const InferredMeasurement& inferred,
                                const std::vector<ParameterSpec>& parameters,
                                const std::vector<FeatureInfo>& features) {
   const Inference& by_map = inferred.inference;
   const Answer answer = chooseAnswer(inferred);
-  std::string text = describeTrust(inferred, features);
+  std::string text = describeTrust(inferred, features) + describeMapLimit(inferred, parameters);
   if (inferred.refined) {
     text += describeRefined(*inferred.refined);
   }

@@ -19,6 +19,7 @@ struct InferredMeasurement {
   std::string source;              ///< the file
   double start = 0.0;              ///< time in the file that is 0 of the model, s
   Inference inference;             ///< by the map
+  bool map_is_honest = true;       ///< OnlineMap::isHonest()
   std::optional<Trust> trust;      ///< none where the run could fit no trust model
   Eigen::VectorXd explanation;     ///< sampled point that explains the features best; empty without trust
   std::optional<Refined> refined;  ///< on the simulator, where that was tried; accepted or not

@@ -31,6 +31,11 @@ const MatrixXd& OnlineMap::getResidualCorrelation() const {
   return std::get<OnlineSurrogate>(kind_).getSurrogate().validation.residual_correlation;
 }
 
+bool OnlineMap::isHonest() const {
+  const auto* surrogate = std::get_if<OnlineSurrogate>(&kind_);
+  return surrogate == nullptr || surrogate->getSurrogate().validation.status == SurrogateStatus::kOk;
+}
+
 const Inference& OnlineMap::infer(const Eigen::Ref<const VectorXd>& features,
                                   const Eigen::Ref<const VectorXd>& known, Workspace& workspace) const {
   if (const auto* processes = std::get_if<OnlineProcesses>(&kind_)) {

@@ -17,6 +17,9 @@ class OnlineMap {
  public:
   explicit OnlineMap(AnyMap map);
 
+  /// Whether nothing is known against the map's standard deviations (SurrogateStatus).
+  bool isHonest() const;
+
   /// The correlation of the errors of a sample's parameters, p x p.
   const Eigen::MatrixXd& getResidualCorrelation() const;
 

@@ -136,12 +136,15 @@ std::string makeFailuresCsv(const std::vector<ParameterSpec>& sampled,
 }
 
 std::string makeCrossValidationCsv(const RunSummary& run) {
-  std::vector<Row> rows{{"parameter", "coverage95", "stddev_scale", "log_density", "status"}};
+  std::vector<Row> rows{{"parameter", "coverage95", "stddev_scale", "log_density", "status", "limit_ratio",
+                         "halved_to", "error_ratio"}};
   const CrossValidation& found = *run.training.cross_validation;
   for (std::size_t p = 0; p < run.parameters.size(); ++p) {
     const auto row = static_cast<Eigen::Index>(p);
     rows.push_back({run.parameters[p].name.text, toText(found.coverage95[row]),
-                    toText(found.stddev_scale[row]), toText(found.log_density), found.status});
+                    toText(found.stddev_scale[row]), toText(found.log_density), found.status,
+                    toText(found.limit_ratio[row]), found.half > 0 ? std::to_string(found.half) : "",
+                    found.half > 0 ? toText(found.error_ratio[row]) : ""});
   }
   return makeCsv(rows);
 }

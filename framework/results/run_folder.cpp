@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "framework/spec/experiment_file.hpp"
+#include "framework/spec/resolve_defaults.hpp"
 #include "framework/store/map_summary.hpp"
 #include "framework/store/samples_file.hpp"
 
@@ -47,6 +48,10 @@ RunFolder readRunFolder(const fs::path& path) {
   readTables(path, run);
   run.provenance = readProvenanceRecord(path / "provenance.json");
   if (fs::exists(path / "samples.h5")) {
+    if (run.experiment.design.train.samples.automatic) {
+      run.experiment =
+          takeTrainingSamples(std::move(run.experiment), countTrainingSamples(path / "samples.h5"));
+    }
     run.test_responses = std::make_shared<StoredResponses>(readTestResponses(path / "samples.h5"));
   }
   if (fs::exists(path / "maps.h5")) {

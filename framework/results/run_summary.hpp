@@ -52,6 +52,9 @@ struct CrossValidation {
   Eigen::VectorXd stddev_scale;  ///< by which standard deviations were multiplied
   double log_density = 0.0;      ///< mean log joint density of the true parameters after that, in their units
   std::string status;            ///< "ok", "map_limited"
+  Eigen::VectorXd limit_ratio;   ///< predicted: standard deviations over what the measurements allow
+  int half = 0, all = 0;         ///< simulations compared; 0 where they were too few
+  Eigen::VectorXd error_ratio;   ///< errors with all simulations over those with half of them; empty likewise
 };
 
 /// How the inverse map was trained.

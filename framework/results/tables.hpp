@@ -29,7 +29,8 @@ std::string makeFailuresCsv(const std::vector<ParameterSpec>& sampled,
 /// at_bound, condition, jitter.
 std::string makeTrainingCsv(const RunSummary& run);
 
-/// cross_validation.csv: parameter, coverage95, stddev_scale, log_density, status.
+/// cross_validation.csv: parameter, coverage95, stddev_scale, log_density, status, limit_ratio, halved_to,
+/// error_ratio.
 std::string makeCrossValidationCsv(const RunSummary& run);
 
 /// hyperparameters.csv: parameter, hyperparameter, value, lower, upper; of the start that was kept.

@@ -64,6 +64,31 @@ void appendLimit(const RunSummary& run, std::vector<Warning>& warnings) {
   }
 }
 
+/// Whether errors would fall with more simulations, where the map is not near the limit: as little as they
+/// fell when the simulations were doubled.
+void appendGain(const RunSummary& run, std::vector<Warning>& warnings) {
+  constexpr double kLittle = 0.7, kNearLimit = 1.1, kPercent = 100.0;
+  if (!run.training.cross_validation || run.training.cross_validation->half == 0) {
+    return;
+  }
+  const CrossValidation& found = *run.training.cross_validation;
+  std::vector<std::string> told;
+  for (std::size_t p = 0; p < run.parameters.size(); ++p) {
+    const double left = found.error_ratio[Index(p)];
+    if (found.limit_ratio[Index(p)] >= kNearLimit && left > kLittle) {
+      told.push_back(
+          fmt::format("{} ({:.0f} %)", run.parameters[p].name.text, kPercent * std::max(0.0, 1.0 - left)));
+    }
+  }
+  if (!told.empty()) {
+    warnings.push_back(
+        {Gravity::kRemark,
+         fmt::format("more simulations will hardly help the map: from {} to {} its errors fell "
+                     "by less than 30 % for {}",
+                     found.half, found.all, listNames(told))});
+  }
+}
+
 /// Whether the information limit has told already that the parameter is not determined.
 bool isUndetermined(const RunSummary& run, std::size_t p) {
   return run.evaluation.identifiability && run.evaluation.identifiability->isUndetermined(Index(p));
@@ -165,6 +190,7 @@ std::vector<std::string> collectWarnings(const RunSummary& run) {
   appendUninformed(run, warnings);
   appendCorrelations(run, warnings);
   appendTraining(run, warnings);
+  appendGain(run, warnings);
   return listTexts(std::move(warnings));
 }
 

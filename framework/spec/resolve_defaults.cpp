@@ -35,6 +35,30 @@ void resolveProminence(const NoiseSpec& noise, ExtremaFeatureSpec& extrema) {
   }
 }
 
+/// A surrogate's cross-validation tells what more samples are worth; processes from features to parameters
+/// take the paper's number. 100 samples are the fewest that five folds of 8 unknowns can be learnt from; a
+/// longer set must begin with the shorter one.
+void resolveTrainingSamples(const InverseMapSpec& map, PointSetSpec& train) {
+  constexpr int kSmallest = 100, kMost = 800, kOfProcesses = 250;
+  constexpr double kSeconds = 10.0;
+  if (!train.samples.automatic) {
+    return;
+  }
+  if (map.findGp() != nullptr) {
+    train.samples = kOfProcesses;
+    train.time.reset();
+    return;
+  }
+  train.samples.number = kMost;
+  train.time = train.time.value_or(kSeconds);
+  if (train.method == DesignMethod::kLatinHypercube) {
+    train.method = DesignMethod::kNestedLatinHypercube;
+  }
+  if (train.method == DesignMethod::kNestedLatinHypercube) {
+    train.smallest = train.smallest.value_or(kSmallest);
+  }
+}
+
 /// 4 draws; fewer where the training set would have more than 3000 columns.
 void resolveReplicates(int samples, NoiseSpec& noise) {
   constexpr int kMostReplicates = 4, kMostColumns = 3000;
@@ -54,7 +78,17 @@ void resolveDefaults(ExperimentSpec& experiment) {
       resolveProminence(experiment.noise, *extrema);
     }
   }
-  resolveReplicates(experiment.design.train.samples, experiment.noise);
+  resolveTrainingSamples(experiment.inverse_map, experiment.design.train);
+  if (!experiment.design.train.samples.automatic) {
+    resolveReplicates(experiment.design.train.samples, experiment.noise);
+  }
+}
+
+ExperimentSpec takeTrainingSamples(ExperimentSpec experiment, int samples) {
+  experiment.design.train.samples = samples;
+  experiment.design.train.time.reset();
+  resolveReplicates(samples, experiment.noise);
+  return experiment;
 }
 
 }  // namespace twinmap

@@ -13,7 +13,7 @@
 namespace twinmap {
 namespace {
 
-constexpr const char* kFormat = "twinmap maps 2";
+constexpr const char* kFormat = "twinmap maps 3";
 constexpr const char* kParameters = "/parameters";
 constexpr const char* kInputs = "/inputs";
 constexpr const char* kExperiment = "/online/experiment";

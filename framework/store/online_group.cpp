@@ -96,6 +96,8 @@ void writeSurrogate(Hdf5Writer& file, const Surrogate& surrogate) {
   file.write(group + "/coverage95", validation.coverage95);
   file.writeSamples(group + "/residual_correlation", validation.residual_correlation);
   file.write(group + "/log_density", validation.log_density);
+  file.write(group + "/limit_scale", validation.limit_scale);
+  file.write(group + "/limit_ratio", validation.limit_ratio);
   file.write(group + "/status", static_cast<double>(validation.status));
 }
 
@@ -147,6 +149,7 @@ std::shared_ptr<const Surrogate> readSurrogate(const Hdf5Reader& file, const Tru
                 trust.unknown,
                 {scale, file.readVector(group + "/coverage95"),
                  file.readSamples(group + "/residual_correlation"), file.readNumber(group + "/log_density"),
+                 file.readVector(group + "/limit_scale"), file.readVector(group + "/limit_ratio"),
                  static_cast<SurrogateStatus>(file.readNumber(group + "/status"))}});
 }
 

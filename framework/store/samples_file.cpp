@@ -78,6 +78,10 @@ void writeSamplesFile(const std::filesystem::path& path, const ModelSpec& model,
   });
 }
 
+int countTrainingSamples(const std::filesystem::path& path) {
+  return static_cast<int>(Hdf5Reader(path).readIntegers("/train/ok").size());
+}
+
 StoredResponses readTestResponses(const std::filesystem::path& path) {
   const Hdf5Reader file(path);
   return {file.readTexts("/outputs/name"), file.readTexts("/outputs/unit"), file.readVector("/times"),

@@ -12,6 +12,10 @@ namespace twinmap {
 void writeSamplesFile(const std::filesystem::path& path, const ModelSpec& model, const Trajectories& train,
                       const Trajectories& test);
 
+/// How many training samples a samples.h5 has, failed ones included. Throws std::runtime_error for a file
+/// that is no samples.h5.
+int countTrainingSamples(const std::filesystem::path& path);
+
 /// The clean responses of the test set, with the times they are known at.
 struct StoredResponses {
   std::vector<std::string> output_names;

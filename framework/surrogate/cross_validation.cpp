@@ -6,6 +6,7 @@
 #include "framework/inverse_map/predictions.hpp"
 #include "framework/inverse_map/residual_correlation.hpp"
 #include "framework/surrogate/honest_stddev.hpp"
+#include "framework/surrogate/predicted_limit.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -35,26 +36,6 @@ Index countDraws(const SurrogateSamples& samples) {
   return std::clamp<Index>(std::min(samples.measured.cols() / n, kMostColumns / n), 1, kMostDraws);
 }
 
-Surrogate fitWithout(Index fold, const Surrogate& whole, const ForwardSamples& forward,
-                     const ForwardChoices& choices, const TrainingControl& control) {
-  const std::vector<Index> kept = listSimulations(forward.points.cols(), fold, false);
-  ForwardSamples samples{forward.infos, forward.points(Eigen::all, kept),
-                         forward.clean_features(Eigen::all, kept), forward.noise_covariance};
-  for (const Index i : kept) {
-    if (!forward.slopes.empty()) {
-      samples.slopes.push_back(forward.slopes[static_cast<std::size_t>(i)]);
-    }
-  }
-  Surrogate surrogate;
-  surrogate.forward = fitForward(samples, choices, control).surrogate;
-  surrogate.center = whole.center;
-  surrogate.half_width = whole.half_width;
-  surrogate.parameters = whole.parameters;
-  surrogate.unknown = whole.unknown;
-  surrogate.validation.stddev_scale = VectorXd::Ones(whole.parameters);
-  return surrogate;
-}
-
 double calcMeanLogDensity(const MatrixXd& standardised, const MatrixXd& stddev, const MatrixXd& correlation) {
   const MatrixXd lower = linalg::calcCholesky(correlation).lower;
   const auto n = static_cast<double>(stddev.cols()), p = static_cast<double>(stddev.rows());
@@ -64,14 +45,41 @@ double calcMeanLogDensity(const MatrixXd& standardised, const MatrixXd& stddev, 
 
 }  // namespace
 
+ForwardSamples selectSimulations(const ForwardSamples& samples, const std::vector<Index>& kept) {
+  ForwardSamples selected{samples.infos, samples.points(Eigen::all, kept),
+                          samples.clean_features(Eigen::all, kept), samples.noise_covariance};
+  for (const Index i : kept) {
+    if (!samples.slopes.empty()) {
+      selected.slopes.push_back(samples.slopes[static_cast<std::size_t>(i)]);
+    }
+  }
+  return selected;
+}
+
+Surrogate fitSimilar(const Surrogate& whole, const ForwardSamples& samples, const ForwardChoices& choices,
+                     const TrainingControl& control) {
+  Surrogate surrogate;
+  surrogate.forward = fitForward(samples, choices, control).surrogate;
+  surrogate.center = whole.center;
+  surrogate.half_width = whole.half_width;
+  surrogate.parameters = whole.parameters;
+  surrogate.unknown = whole.unknown;
+  surrogate.validation.stddev_scale = VectorXd::Ones(whole.parameters);
+  surrogate.validation.limit_scale =
+      calcLimitScale(surrogate.forward, samples, whole.unknown).head(whole.parameters);
+  return surrogate;
+}
+
 HeldOut crossValidate(const Surrogate& whole, const SurrogateSamples& samples, const ForwardSamples& forward,
                       const ForwardChoices& choices, const TrainingControl& control) {
   const Index n = samples.points.cols(), draws = countDraws(samples), p = whole.parameters;
   const Index known = samples.points.rows() - whole.unknown;
   HeldOut held_out;
   held_out.predictions = {MatrixXd(p, n * draws), MatrixXd(p, n * draws)};
+  held_out.limit_stddev.resize(p, n * draws);
   for (Index fold = 0; fold < kFolds; ++fold) {
-    const Surrogate fitted = fitWithout(fold, whole, forward, choices, control);
+    const Surrogate fitted =
+        fitSimilar(whole, selectSimulations(forward, listSimulations(n, fold, false)), choices, control);
     const std::vector<Index> left_out = listSimulations(n, fold, true);
     const MatrixXd inputs = samples.points(Eigen::all, left_out).bottomRows(known);
     for (Index draw = 0; draw < draws; ++draw) {
@@ -79,10 +87,11 @@ HeldOut crossValidate(const Surrogate& whole, const SurrogateSamples& samples, c
       for (const Index simulation : left_out) {
         columns.push_back(simulation + draw * n);
       }
-      const Predictions found =
-          fitted.predict(samples.measured(Eigen::all, columns), inputs, control.threads);
-      held_out.predictions.mean(Eigen::all, columns) = found.mean;
-      held_out.predictions.stddev(Eigen::all, columns) = found.stddev;
+      const SurrogateAnswers found =
+          fitted.infer(samples.measured(Eigen::all, columns), inputs, control.threads);
+      held_out.predictions.mean(Eigen::all, columns) = found.predictions.mean;
+      held_out.predictions.stddev(Eigen::all, columns) = found.predictions.stddev;
+      held_out.limit_stddev(Eigen::all, columns) = found.limit_stddev;
       gp::throwIfStopped(control.stop);
     }
   }
@@ -104,6 +113,10 @@ SurrogateValidation validate(const HeldOut& held_out) {
     validation.coverage95(k) =
         static_cast<double>((absolute.array() < kNormal95).count()) / static_cast<double>(absolute.size());
   }
+  validation.limit_ratio =
+      validation.stddev_scale.array() *
+      (found.stddev.rowwise().squaredNorm().array() / held_out.limit_stddev.rowwise().squaredNorm().array())
+          .sqrt();
   const MatrixXd scaled = validation.stddev_scale.cwiseInverse().asDiagonal() * z;
   validation.residual_correlation = calcResidualCorrelation(scaled);
   validation.log_density = calcMeanLogDensity(scaled, validation.stddev_scale.asDiagonal() * found.stddev,

@@ -280,6 +280,7 @@ void ScoreInversion::refine(Minimum& minimum, bool may_widen) {
   }
   linearize(metric);
   minimum.information = normal_;
+  minimum.noise_information.noalias() = jacobian_.transpose() * jacobian_;
   minimum.shift = gradient_ + normal_ * minimum.point;
   const MatrixXd posterior = normal_ + kHalfWidthInformation * MatrixXd::Identity(unknown_, unknown_);
   minimum.jacobian = scaled_jacobian_;
@@ -315,6 +316,9 @@ gp::Moments ScoreInversion::infer(const Eigen::Ref<const VectorXd>& scores,
       weights(static_cast<Index>(i)) = 0.0;
     }
   }
+  Index best = 0;
+  weights.maxCoeff(&best);
+  noise_information_ = std::move(minima[static_cast<std::size_t>(best)].noise_information);
   return mix(parts, weights / weights.sum());
 }
 

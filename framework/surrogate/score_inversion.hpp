@@ -43,6 +43,10 @@ class ScoreInversion {
   gp::Moments infer(const Eigen::Ref<const Eigen::VectorXd>& scores,
                     const Eigen::Ref<const Eigen::VectorXd>& known);
 
+  /// What the scores would say about the unknowns (u x u) at the minimum of most evidence that infer() found
+  /// last, were there no error but the noise: J'J, of J = ds / dx.
+  const Eigen::MatrixXd& getNoiseInformation() const { return noise_information_; }
+
   const ScoreExplanation& getExplanation() const { return explanation_; }
 
   /// The minimum of most evidence, searched from `start` (u, normalised; moved into the box), and, if that
@@ -70,11 +74,12 @@ class ScoreInversion {
   struct Minimum {
     Eigen::VectorXd point;  // u
     double objective = 0.0;
-    Eigen::VectorXd residual;     // L^-1 r, r
-    Eigen::MatrixXd lower;        // L, r x r
-    Eigen::MatrixXd jacobian;     // L^-1 ds / dx, r x u
-    Eigen::MatrixXd information;  // u x u
-    Eigen::VectorXd shift;        // u
+    Eigen::VectorXd residual;           // L^-1 r, r
+    Eigen::MatrixXd lower;              // L, r x r
+    Eigen::MatrixXd jacobian;           // L^-1 ds / dx, r x u
+    Eigen::MatrixXd information;        // u x u
+    Eigen::MatrixXd noise_information;  // the same without the surrogate's errors
+    Eigen::VectorXd shift;              // u
   };
 
   std::vector<Eigen::VectorXd> findStarts() const;
@@ -98,7 +103,7 @@ class ScoreInversion {
   std::vector<gp::SharedProcess::Workspace> workspaces_;
   std::vector<double> widening_;  ///< of each window's standard deviations
   Eigen::VectorXd scores_, point_, values_, residual_, stddev_, gradient_;
-  Eigen::MatrixXd jacobian_, scaled_jacobian_, normal_;
+  Eigen::MatrixXd jacobian_, scaled_jacobian_, normal_, noise_information_;
   ScoreExplanation explanation_;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "framework/surrogate/predicted_limit.hpp"
 #include "framework/surrogate/run_tasks.hpp"
 #include "framework/surrogate/score_inversion.hpp"
 
@@ -23,7 +24,12 @@ void Surrogate::answer(const gp::Moments& normalised, VectorXd& mean, VectorXd& 
            normalised.covariance.diagonal().head(parameters).array().sqrt();
 }
 
-Predictions Surrogate::predict(const MatrixXd& features, const MatrixXd& inputs, int threads) const {
+VectorXd Surrogate::calcLimit(const MatrixXd& noise_information) const {
+  return validation.limit_scale.array() * half_width.head(parameters).array() *
+         calcScoreLimit(noise_information).head(parameters).array();
+}
+
+SurrogateAnswers Surrogate::infer(const MatrixXd& features, const MatrixXd& inputs, int threads) const {
   constexpr Index kChunk = 16;  // measurements that share buffers
   const Index n = features.cols(), known = center.size() - unknown;
   if (features.rows() != forward.center.size() || inputs.rows() != known ||
@@ -31,7 +37,7 @@ Predictions Surrogate::predict(const MatrixXd& features, const MatrixXd& inputs,
     throw std::invalid_argument("a surrogate needs all features, and all known inputs");
   }
   const MatrixXd scores = forward.calcScores(features);
-  Predictions predictions{MatrixXd(parameters, n), MatrixXd(parameters, n)};
+  SurrogateAnswers answers{{MatrixXd(parameters, n), MatrixXd(parameters, n)}, MatrixXd(parameters, n)};
   runTasks(threads, static_cast<std::size_t>((n + kChunk - 1) / kChunk), [&](std::size_t chunk) {
     ScoreInversion inversion(forward, unknown);
     VectorXd mean, stddev;
@@ -41,11 +47,12 @@ Predictions Surrogate::predict(const MatrixXd& features, const MatrixXd& inputs,
           known > 0 ? VectorXd((inputs.col(i) - center.tail(known)).cwiseQuotient(half_width.tail(known)))
                     : VectorXd();
       answer(inversion.infer(scores.col(i), at), mean, stddev);
-      predictions.mean.col(i) = mean;
-      predictions.stddev.col(i) = stddev;
+      answers.predictions.mean.col(i) = mean;
+      answers.predictions.stddev.col(i) = stddev;
+      answers.limit_stddev.col(i) = calcLimit(inversion.getNoiseInformation());
     }
   });
-  return predictions;
+  return answers;
 }
 
 }  // namespace twinmap

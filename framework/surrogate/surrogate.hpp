@@ -22,8 +22,16 @@ struct SurrogateValidation {
   Eigen::VectorXd stddev_scale;          ///< p, by which standard deviations were multiplied
   Eigen::VectorXd coverage95;            ///< p, of the 95 % intervals before that
   Eigen::MatrixXd residual_correlation;  ///< p x p, of the errors of a sample
-  double log_density = 0.0;  ///< mean log joint density of the true parameters after that, in their units
+  double log_density = 0.0;     ///< mean log joint density of the true parameters after that, in their units
+  Eigen::VectorXd limit_scale;  ///< p: calcLimitScale()
+  Eigen::VectorXd limit_ratio;  ///< p, root of the mean variance over that of the limit, both as predicted
   SurrogateStatus status = SurrogateStatus::kOk;
+};
+
+/// What a surrogate says of n measurements.
+struct SurrogateAnswers {
+  Predictions predictions;       ///< p x n
+  Eigen::MatrixXd limit_stddev;  ///< p x n, what the measurement would allow without the surrogate's errors
 };
 
 /// A map from features to parameters by a forward surrogate, inverted for each measurement. A fitted,
@@ -38,11 +46,21 @@ struct Surrogate {
   /// Mean and standard deviation (p) of the parameters, in their units, for moments of normalised unknowns.
   void answer(const gp::Moments& normalised, Eigen::VectorXd& mean, Eigen::VectorXd& stddev) const;
 
+  /// The standard deviations (p, in the parameters' units) that a measurement allows whose scores have the
+  /// information J'J (u x u, normalised) about the unknowns: of (J'J + 3)^-1, the box as a prior of its
+  /// variance, times validation.limit_scale, for what other scores would say.
+  Eigen::VectorXd calcLimit(const Eigen::MatrixXd& noise_information) const;
+
   /// Features (d x n, finite) and known inputs (m - u x n) -> mean and standard deviation of the parameters
   /// (p x n). The result does not depend on the number of threads. Throws std::invalid_argument for sizes
   /// that do not fit. Cost: that of ScoreInversion, some ms a column.
+  SurrogateAnswers infer(const Eigen::MatrixXd& features, const Eigen::MatrixXd& inputs = {},
+                         int threads = 1) const;
+  /// The same without the limit.
   Predictions predict(const Eigen::MatrixXd& features, const Eigen::MatrixXd& inputs = {},
-                      int threads = 1) const;
+                      int threads = 1) const {
+    return infer(features, inputs, threads).predictions;
+  }
 };
 
 }  // namespace twinmap

@@ -8,6 +8,7 @@
 #include "framework/spec/yaml/nearest_name.hpp"
 #include "framework/surrogate/cross_validation.hpp"
 #include "framework/surrogate/fit_forward.hpp"
+#include "framework/surrogate/predicted_limit.hpp"
 
 namespace twinmap {
 namespace {
@@ -98,6 +99,9 @@ SurrogateTraining trainSurrogate(const ModelSpec& model, const SurrogateSamples&
   surrogate.forward = std::move(fit.surrogate);
   HeldOut held_out = crossValidate(surrogate, samples, forward, fit.choices, control);
   surrogate.validation = validate(held_out);
+  surrogate.validation.limit_scale =
+      calcLimitScale(surrogate.forward, forward, surrogate.unknown).head(surrogate.parameters);
+  training.gain = calcSimulationGain(surrogate, samples, forward, fit.choices, held_out, control);
   training.held_out = std::move(held_out.predictions);
   training.held_out_truth = std::move(held_out.truth);
   training.held_out_draws = static_cast<int>(training.held_out.mean.cols() / samples.points.cols());

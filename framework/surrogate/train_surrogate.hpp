@@ -7,6 +7,7 @@
 #include "framework/features/feature_block.hpp"
 #include "framework/inverse_map/training_control.hpp"
 #include "framework/spec/model_spec.hpp"
+#include "framework/surrogate/simulation_gain.hpp"
 #include "framework/surrogate/surrogate.hpp"
 
 namespace twinmap {
@@ -29,7 +30,8 @@ struct SurrogateTraining {
   Predictions
       held_out;  ///< p x n draws, of measured features, by surrogates that had not seen their simulation
   Eigen::MatrixXd held_out_truth;  ///< p x n draws
-  int held_out_draws = 1;          ///< of each simulation: column j + i n is draw i of simulation j
+  SimulationGain gain;
+  int held_out_draws = 1;  ///< of each simulation: column j + i n is draw i of simulation j
   std::vector<std::string> warnings;
 };
 

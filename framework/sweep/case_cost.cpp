@@ -143,8 +143,8 @@ void requireMemory(const ExperimentSpec& experiment, int threads, double bytes) 
         {experiment.name.where.file, 0, 0, "design"}, "",
         fmt::format("needs about {:.3g} GiB of memory for {} training samples x {} draws of noise, {} test "
                     "samples and {:.3g} numbers in a response; {:.3g} GiB are allowed (--memory)",
-                    needed / kGibibyte, experiment.design.train.samples,
-                    experiment.noise.replicates.value_or(1), experiment.design.test.samples,
+                    needed / kGibibyte, experiment.design.train.samples.number,
+                    experiment.noise.replicates.value_or(1), experiment.design.test.samples.number,
                     countRows(experiment), bytes / kGibibyte));
   }
 }

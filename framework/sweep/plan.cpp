@@ -127,6 +127,17 @@ void warnAboutPlainDesigns(const std::vector<SweepCase>& cases, SweepPlan& plan)
   }
 }
 
+void noteAutomaticSamples(const std::vector<SweepCase>& cases, SweepPlan& plan) {
+  for (const SweepCase& one : cases) {
+    if (one.experiment.design.train.samples.automatic) {
+      plan.warnings.push_back(fmt::format(
+          "design.train.samples is automatic: all figures are for {} training samples, the most there may be",
+          one.experiment.design.train.samples.number));
+      return;
+    }
+  }
+}
+
 std::vector<bool> findTodo(const YamlNode& root, const std::vector<SweepCase>& cases,
                            const PlanOptions& options) {
   std::vector<bool> todo = findComplete(options.folder, cases);
@@ -186,6 +197,7 @@ SweepPlan planRun(const YamlNode& root, const PlanOptions& options) {
   plan.complete = static_cast<int>(std::count(complete.begin(), complete.end(), true));
   plan.stored = countStored(cases, complete, getStoreRoot(options.folder, options.store));
   warnAboutPlainDesigns(cases, plan);
+  noteAutomaticSamples(cases, plan);
   if (plan.complete == plan.cases) {
     return plan;
   }

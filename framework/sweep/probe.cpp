@@ -7,6 +7,7 @@
 #include "framework/experiment/fit_online.hpp"
 #include "framework/experiment/run_experiment.hpp"
 #include "framework/sampling/neighbourhoods.hpp"
+#include "framework/spec/resolve_defaults.hpp"
 #include "framework/store/temporary_folder.hpp"
 #include "framework/sweep/case_cost.hpp"
 
@@ -53,7 +54,7 @@ TimedRun timeRun(const ExperimentSpec& experiment, const std::string& name, cons
 
 ExperimentSpec makeSmall(ExperimentSpec experiment) {
   constexpr double kMostFailures = 0.9;
-  experiment.design.train.samples = kTrainSamples;
+  experiment = takeTrainingSamples(std::move(experiment), kTrainSamples);
   experiment.design.test.samples = kTestSamples;
   experiment.model.simulation.allowed_failures = kMostFailures;
   experiment.noise.replicates = 1;
@@ -123,7 +124,7 @@ TrainingTime measureProcesses(const ExperimentSpec& experiment, const Experiment
 
 /// Of a surrogate: whole trainings.
 TrainingTime measureSurrogate(ExperimentSpec small, const TimedRun& run, const fs::path& folder) {
-  small.design.train.samples = kMoreTrainSamples;
+  small = takeTrainingSamples(std::move(small), kMoreTrainSamples);
   const TimedRun more = timeRun(makeBare(small), "more", folder);
   TrainingTime time;
   time.measured = {{double(kTrainSamples), run.getTraining()},

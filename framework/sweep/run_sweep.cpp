@@ -6,8 +6,10 @@
 #include <chrono>
 #include <numeric>
 
+#include "framework/experiment/choose_samples.hpp"
 #include "framework/experiment/run_experiment.hpp"
 #include "framework/measurement/signal_experiment.hpp"
+#include "framework/model_source/make_simulator.hpp"
 #include "framework/monitoring/log_context.hpp"
 #include "framework/monitoring/run_log.hpp"
 #include "framework/report/report.hpp"
@@ -26,6 +28,21 @@ namespace twinmap {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Of the automatic numbers of training samples, no more than their simulations' time allows: all cases'
+/// samples are simulated before the first case says how many it takes.
+void limitAutomaticSamples(std::vector<SweepCase>& cases) {
+  for (const ModelGroup& group : groupByModel(cases)) {
+    std::unique_ptr<Simulator> simulator;
+    for (const int member : group.cases) {
+      SampleCount& samples = cases[static_cast<std::size_t>(member)].experiment.design.train.samples;
+      if (samples.automatic) {
+        simulator = simulator ? std::move(simulator) : makeSimulator(group.model, group.times, group.modes);
+        samples.number = limitByTime(cases[static_cast<std::size_t>(member)].experiment, *simulator);
+      }
+    }
+  }
+}
 
 class Sweep {
  public:
@@ -205,6 +222,7 @@ SweepResult runSweep(const YamlNode& root, const SweepOptions& options, const Ru
   const RunLog log(options.folder);
   spdlog::info("{}", options.command);
 
+  limitAutomaticSamples(cases);
   Sweep sweep(listSweptKeys(root), std::move(cases), options, control);
   if (sweep.simulate()) {
     sweep.runMissingCases();

@@ -6,9 +6,11 @@
 #include "framework/experiment/run_experiment.hpp"
 #include "framework/model_source/make_simulator.hpp"
 #include "framework/spec/experiment_file.hpp"
+#include "framework/spec/resolve_defaults.hpp"
 #include "framework/store/atomic_file.hpp"
 #include "framework/store/finished_run.hpp"
 #include "framework/store/provenance.hpp"
+#include "framework/store/samples_file.hpp"
 #include "framework/store/temporary_folder.hpp"
 #include "framework/verification/file_difference.hpp"
 #include "framework/verification/result_checks.hpp"
@@ -34,6 +36,13 @@ void verifyPart(const ExperimentSpec& experiment, const VerifyOptions& options, 
   }
 }
 
+/// With the number of training samples that the run took, where that is automatic.
+ExperimentSpec takeRecordedSamples(const ExperimentSpec& experiment, const fs::path& folder) {
+  return experiment.design.train.samples.automatic
+             ? takeTrainingSamples(experiment, countTrainingSamples(folder / "samples.h5"))
+             : experiment;
+}
+
 /// All files of a run that follow from its experiment alone.
 std::vector<fs::path> listResults(const fs::path& folder) {
   std::vector<fs::path> files;
@@ -54,6 +63,7 @@ void verifyAll(const ExperimentSpec& experiment, const VerifyOptions& options, V
   const TemporaryFolder temporary;
   RunOptions run;
   run.folder = temporary.getPath();
+  run.train_samples = countTrainingSamples(verification.folder / "samples.h5");
   RunControl control;
   control.threads = options.threads;
   runExperiment(experiment, run, control);
@@ -86,7 +96,11 @@ Verification verifyRun(const fs::path& folder, const VerifyOptions& options) {
   verification.check("files: digests in provenance.json",
                      [&] { return findChangedFile(provenance, folder); });
   const ExperimentSpec experiment = loadExperiment((folder / "resolved.yaml").string());
-  (options.all ? verifyAll : verifyPart)(experiment, options, verification);
+  if (options.all) {
+    verifyAll(experiment, options, verification);
+  } else {
+    verifyPart(takeRecordedSamples(experiment, folder), options, verification);
+  }
   return verification;
 }
 

@@ -41,10 +41,16 @@ Json makeSchema(const Bounds&) {
   return {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 2}, {"maxItems", 2}};
 }
 
-Json makeSchema(const ComponentCount&) {
+Json makeCountOrAutomatic(const NumberRule& rule) {
   const Json automatic{{"const", "automatic"}};
-  const Json number{{"type", "integer"}, {"minimum", 1}};
+  const Json number{{"type", "integer"}, {"minimum", rule.minimum}, {"maximum", rule.maximum}};
   return {{"oneOf", Json::array({number, automatic})}};
+}
+Json makeSchema(const ComponentCount&) {
+  return makeCountOrAutomatic(kCount);
+}
+Json makeSchema(const SampleCount&) {
+  return makeCountOrAutomatic(kSampleCount);
 }
 
 Json makeSchema(const SweptKeys&) {

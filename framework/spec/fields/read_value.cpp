@@ -129,11 +129,28 @@ void readValue(const YamlNode& node, ColumnSpec& value) {
   }
 }
 
+namespace {
+
+bool isAutomatic(const YamlNode& node) {
+  return node.kind == YamlNode::Kind::kScalar && node.scalar == "automatic";
+}
+
+}  // namespace
+
 void readValue(const YamlNode& node, ComponentCount& value) {
   constexpr NumberRule kCountOrAutomatic{kCount.minimum, kCount.maximum, true,
                                          "must be automatic or a whole number from 1 to 10000000"};
   value.number.reset();
-  if (node.kind != YamlNode::Kind::kScalar || node.scalar != "automatic") {
+  if (!isAutomatic(node)) {
+    readValue(node, value.number, kCountOrAutomatic);
+  }
+}
+
+void readValue(const YamlNode& node, SampleCount& value) {
+  constexpr NumberRule kCountOrAutomatic{kSampleCount.minimum, kSampleCount.maximum, true,
+                                         "must be automatic or a whole number from 1 to 1000000"};
+  value.automatic = isAutomatic(node);
+  if (!value.automatic) {
     readValue(node, value.number, kCountOrAutomatic);
   }
 }

@@ -34,6 +34,7 @@ void readValue(const YamlNode& node, Bounds& value);
 void readValue(const YamlNode& node, ColumnSpec& value);
 /// A whole number above 0, or automatic.
 void readValue(const YamlNode& node, ComponentCount& value);
+void readValue(const YamlNode& node, SampleCount& value);
 
 /// Throws unless `node` is of the kind; the message says what was expected.
 void requireKind(const YamlNode& node, YamlNode::Kind kind, const std::string& expected);

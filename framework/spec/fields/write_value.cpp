@@ -26,6 +26,9 @@ YamlNode writeValue(const Name& value) {
 YamlNode writeValue(const ComponentCount& value) {
   return value.number ? writeValue(*value.number) : makeScalar("automatic");
 }
+YamlNode writeValue(const SampleCount& value) {
+  return value.automatic ? makeScalar("automatic") : writeValue(value.number);
+}
 YamlNode writeValue(const Bounds& value) {
   return writeSequence(std::array<double, 2>{value.lower, value.upper});
 }

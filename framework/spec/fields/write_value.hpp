@@ -22,6 +22,7 @@ YamlNode writeValue(const std::string& value);
 YamlNode writeValue(const Expression& value);
 YamlNode writeValue(const Name& value);
 YamlNode writeValue(const ComponentCount& value);
+YamlNode writeValue(const SampleCount& value);
 YamlNode writeValue(const Bounds& value);
 YamlNode writeValue(const ColumnSpec& value);
 

@@ -1,6 +1,7 @@
 """A run whose map is a surrogate: what it leaves, and what is inferred with it."""
 import filecmp
 import json
+import re
 import unittest
 
 from support import EXPERIMENTS, OwnFolderTestCase, call, read_csv
@@ -66,6 +67,33 @@ class Surrogate(OwnFolderTestCase):
             result = call("run", TABLE1, *few, *overrides, "transform=[z_score]", "--out", run)
             self.assertEqual(result.returncode, 0, result.stderr)
             self.assertEqual({row["method"] for row in read_csv(run / "methods.csv")}, {method}, name)
+
+    def test_an_automatic_number_of_samples_is_recorded_and_taken_again(self):
+        automatic = ["design.train.samples=automatic", "evaluation.limit=false"]
+        run = self.run_experiment("automatic", *automatic)
+        log = (run / "run.log").read_text()
+        samples = int(re.search(r"training samples: (\d+) \(automatic\)", log)[1])
+        self.assertIn(samples, [100, 200, 400, 800])
+        self.assertIn("samples: automatic", (run / "resolved.yaml").read_text())
+        self.assertIn(f"<dd>{samples}</dd>", (run / "report.html").read_text())
+        before = (run / "predictions.csv").read_bytes()
+        self.assertEqual(call("verify", run).returncode, 0)
+        self.assertEqual(call("verify", run, "--all").returncode, 0)
+        self.run_experiment("automatic", *automatic)
+        self.assertEqual((run / "predictions.csv").read_bytes(), before)
+        fixed = self.run_experiment("fixed", f"design.train={{method: nested_latin_hypercube, samples: {samples}, smallest: 100}}",
+                                    "evaluation.limit=false")
+        self.assertEqual((fixed / "predictions.csv").read_bytes(), before)
+
+    def test_a_sweep_chooses_the_samples_of_each_case(self):
+        swept = ["design.train.samples=automatic", "evaluation.limit=false", "noise.scale=0.5,1"]
+        alone = self.run_experiment("alone", *swept[:2])
+        plan = call("plan", TABLE1, *SMALL, *swept)
+        self.assertIn("800 training samples, the most there may be", plan.stdout)
+        sweep = self.run_experiment("sweep", *swept)
+        cases = sorted((sweep / "cases").iterdir())
+        self.assertEqual(len(cases), 2)
+        self.assertEqual((cases[1] / "predictions.csv").read_bytes(), (alone / "predictions.csv").read_bytes())
 
 
 if __name__ == "__main__":

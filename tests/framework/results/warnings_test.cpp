@@ -48,6 +48,22 @@ TEST(Warnings, CoverageWithinThreeStandardErrorsIsChance) {
   EXPECT_EQ(collectWarnings(run).size(), 1U);
 }
 
+TEST(Warnings, TellWhereMoreSimulationsHardlyHelpAMapFarFromTheLimit) {
+  RunSummary run = makeRun();
+  CrossValidation& found = run.training.cross_validation.emplace();
+  found.half = 125;
+  found.all = 250;
+  found.limit_ratio = Eigen::Vector3d(2.0, 2.0, 1.05);
+  found.error_ratio = Eigen::Vector3d(0.92, 0.5, 1.0);
+  const std::vector<std::string> warnings = collectWarnings(run);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_EQ(warnings[0],
+            "more simulations will hardly help the map: from 125 to 250 its errors fell by less than 30 % "
+            "for k (8 %)");
+  found.half = 0;
+  EXPECT_TRUE(collectWarnings(run).empty());
+}
+
 TEST(Warnings, TheGravestComesFirst) {
   RunSummary run = makeRun();
   run.notes.warn(Gravity::kRemark, "a remark");

@@ -5,6 +5,7 @@
 #include "framework/spec/check/check_experiment.hpp"
 #include "framework/spec/joint_type.hpp"
 #include "framework/spec/parameter_box.hpp"
+#include "framework/spec/resolve_defaults.hpp"
 
 namespace twinmap {
 namespace {
@@ -90,10 +91,37 @@ TEST(ExperimentFile, DefaultsAreWhitenedComponentsAndReplicates) {
   ASSERT_EQ(experiment.transform.size(), 2u);
   EXPECT_TRUE(std::holds_alternative<WhitenSpec>(experiment.transform[0].kind));
   EXPECT_TRUE(std::holds_alternative<PrincipalComponentsSpec>(experiment.transform[1].kind));
-  EXPECT_EQ(experiment.noise.replicates, 4);
+  EXPECT_EQ(takeTrainingSamples(experiment, 250).noise.replicates, 4);
   EXPECT_EQ(loadExperiment(kTable1, {"noise={stddev: {y: 1, theta: 1}}", "design.train.samples=1000"})
                 .noise.replicates,
             3);
+}
+
+TEST(ExperimentFile, AnAutomaticNumberOfTrainingSamplesStaysAutomaticAndHasADesignThatGrows) {
+  for (const std::string design : {"", "design={train: {samples: automatic}}"}) {
+    const ExperimentSpec experiment =
+        loadExperiment(kCart, design.empty() ? std::vector<std::string>{} : std::vector<std::string>{design});
+    EXPECT_TRUE(readResolved(writeExperiment(experiment)).design.train.samples.automatic);
+    const PointSetSpec& train = experiment.design.train;
+    EXPECT_TRUE(train.samples.automatic);
+    EXPECT_EQ(train.samples, 800);  // the most
+    EXPECT_EQ(train.method, DesignMethod::kNestedLatinHypercube);
+    EXPECT_EQ(train.smallest, 100);
+    EXPECT_EQ(train.time, 10.0);
+    EXPECT_FALSE(experiment.noise.replicates.has_value());
+    const ExperimentSpec taken = takeTrainingSamples(experiment, 1000);
+    EXPECT_FALSE(taken.design.train.samples.automatic);
+    EXPECT_EQ(taken.design.train.samples, 1000);
+    EXPECT_EQ(taken.noise.replicates, 3);
+    EXPECT_EQ(writeExperiment(readResolved(writeExperiment(taken))), writeExperiment(taken));
+  }
+}
+
+TEST(ExperimentFile, ProcessesTakeTwoHundredAndFiftyTrainingSamplesByDefault) {
+  const PointSetSpec train = loadExperiment(kCart, {"inverse_map=gp"}).design.train;
+  EXPECT_FALSE(train.samples.automatic);
+  EXPECT_EQ(train.samples, 250);
+  EXPECT_EQ(train.method, DesignMethod::kLatinHypercube);
 }
 
 TEST(ExperimentFile, WhiteningNeedsNoise) {

@@ -253,6 +253,50 @@ TEST(Surrogate, LearnsFromSlopesWhereSimulationsHaveThem) {
             0.5 * measureScores(without.forward, tests, normalized));
 }
 
+/// Slopes of the linear features with respect to all three unknowns, per width of their bounds.
+std::vector<MatrixXd> makeLinearSlopes(Index count) {
+  const MatrixXd per_unit = calcLinear(MatrixXd::Identity(3, 3));
+  return std::vector<MatrixXd>(static_cast<std::size_t>(count), 2.0 * per_unit);  // all bounds are 2 apart
+}
+
+TEST(PredictedLimit, OfALinearModelIsThatOfItsFisherInformation) {
+  const ModelSpec model = makeLinearModel();
+  SurrogateSamples samples = makeSamples(samplePoints(listBox(model), 80, 1), calcLinear);
+  const SurrogateTraining without = trainSurrogate(model, samples, {2});
+  samples.slopes = makeLinearSlopes(80);
+  const SurrogateTraining with = trainSurrogate(model, samples, {2});
+  const MatrixXd slopes = calcLinear(MatrixXd::Identity(3, 3));  // half-widths are 1
+  const MatrixXd limit =
+      invert(slopes.transpose() * slopes / (kNoise * kNoise) + 3.0 * MatrixXd::Identity(3, 3));
+  const VectorXd point = (VectorXd(3) << 2.0, 0.1, 0.0).finished();
+  for (const SurrogateTraining* trained : {&without, &with}) {
+    const SurrogateAnswers found = trained->surrogate.infer(calcLinear(point));
+    for (Index k = 0; k < 2; ++k) {
+      EXPECT_NEAR(found.limit_stddev(k, 0) / std::sqrt(limit(k, k)), 1.0, 0.02) << k;
+      EXPECT_NEAR(trained->surrogate.validation.limit_ratio(k), 1.0, 0.15) << k;
+    }
+  }
+}
+
+TEST(SimulationGain, IsNoneOfALinearModelAndMuchOfAnOscillationFromFewSimulations) {
+  const SurrogateTraining linear = trainOn(makeLinearModel(), calcLinear, 100);
+  EXPECT_EQ(linear.gain.half, 50);
+  EXPECT_EQ(linear.gain.all, 100);
+  EXPECT_GT(linear.gain.error_ratio.minCoeff(), 0.9);
+  const ModelSpec model = makeOscillationModel();
+  const MatrixXd points = samplePoints(listBox(model), 60, 1);
+  SurrogateSamples silent = makeSamples(points, calcOscillation);
+  silent.noise_covariance *= 1e-6;  // a thousandth of the noise: all errors are the surrogate's
+  silent.measured = silent.clean_features;
+  EXPECT_LT(trainSurrogate(model, silent, {2}).gain.error_ratio.maxCoeff(), 0.7);
+}
+
+TEST(SimulationGain, IsUnknownOfTooFewSimulationsToBeHalved) {
+  const SurrogateTraining trained = trainOn(makeLinearModel(), calcLinear, 40);
+  EXPECT_EQ(trained.gain.half, 0);
+  EXPECT_EQ(trained.gain.error_ratio.size(), 0);
+}
+
 TEST(SlopePoints, AreAllUntilValuesAndSlopesAreTwoThousand) {
   EXPECT_EQ(countSlopePoints(250, 5), 250);
   EXPECT_EQ(countSlopePoints(1000, 5), 200);

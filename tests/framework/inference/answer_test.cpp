@@ -1,0 +1,81 @@
+#include "framework/inference/answer.hpp"
+
+#include <gtest/gtest.h>
+
+#include "framework/inference/inference_text.hpp"
+
+namespace twinmap {
+namespace {
+
+/// The map is twice above what the measurement allows for k, at the limit for c.
+InferredMeasurement makeInferred() {
+  InferredMeasurement inferred;
+  inferred.inference.mean = Eigen::Vector2d(1.0, 2.0);
+  inferred.inference.stddev = Eigen::Vector2d(0.2, 0.1);
+  inferred.inference.limit_stddev = Eigen::Vector2d(0.1, 0.1);
+  inferred.trust.emplace();
+  inferred.trust->statuses = {TrustStatus::kOk};
+  return inferred;
+}
+
+std::vector<ParameterSpec> makeParameters() {
+  std::vector<ParameterSpec> parameters(2);
+  parameters[0].name.text = "k";
+  parameters[1].name.text = "c";
+  return parameters;
+}
+
+Refined makeRefined(RefinementStatus status) {
+  Refined refined;
+  refined.status = status;
+  refined.point = Eigen::Vector2d(1.0, 2.0);
+  refined.stddev = Eigen::Vector2d(0.1, 0.1);
+  return refined;
+}
+
+using Statuses = std::vector<std::string>;
+
+TEST(Answer, OfAMapFarAboveWhatTheMeasurementAllowsIsMapLimited) {
+  const InferredMeasurement inferred = makeInferred();
+  EXPECT_EQ(listStatuses(inferred), Statuses{"map_limited"});
+  EXPECT_EQ(describeMapLimit(inferred, makeParameters()),
+            "  k is 2 times above what the measurement allows: refine, or add simulations.\n");
+}
+
+TEST(Answer, OfAMapNearTheLimitIsOk) {
+  InferredMeasurement inferred = makeInferred();
+  inferred.inference.limit_stddev = Eigen::Vector2d(0.15, 0.1);
+  EXPECT_EQ(listStatuses(inferred), Statuses{"ok"});
+  EXPECT_EQ(describeMapLimit(inferred, makeParameters()), "");
+}
+
+TEST(Answer, OfAMapWhoseLimitNobodyKnowsIsOk) {
+  InferredMeasurement inferred = makeInferred();
+  inferred.inference.limit_stddev.resize(0);
+  EXPECT_EQ(listStatuses(inferred), Statuses{"ok"});
+}
+
+TEST(Answer, OfAMapThatDoesNotKnowItsErrorsIsMapLimitedWhateverItsDeviation) {
+  InferredMeasurement inferred = makeInferred();
+  inferred.inference.stddev = inferred.inference.limit_stddev;
+  inferred.map_is_honest = false;
+  EXPECT_EQ(listStatuses(inferred), Statuses{"map_limited"});
+}
+
+TEST(Answer, RefinedIsNotLimitedByTheMap) {
+  InferredMeasurement inferred = makeInferred();
+  inferred.refined = makeRefined(RefinementStatus::kAccepted);
+  EXPECT_EQ(listStatuses(inferred), Statuses{"ok"});
+}
+
+TEST(Answer, NotRefinedIsTheMapsWithAllItsLimits) {
+  InferredMeasurement inferred = makeInferred();
+  inferred.trust->statuses = {TrustStatus::kAtBounds};
+  inferred.refined = makeRefined(RefinementStatus::kMisfit);
+  EXPECT_EQ(listStatuses(inferred), (Statuses{"at_bounds", "not_refined", "map_limited"}));
+  EXPECT_EQ(describeMapLimit(inferred, makeParameters()),
+            "  k is 2 times above what the measurement allows: add simulations.\n");
+}
+
+}  // namespace
+}  // namespace twinmap
