@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "framework/simulation/stencil.hpp"
 #include "framework/spec/parameter_box.hpp"
@@ -125,6 +126,17 @@ DifferenceSteps measureDifferenceSteps(const std::vector<ParameterSpec>& sampled
         std::isnan(best) ? kSharedStepsDifference : std::clamp(best, kSharedStepsDifference, kLargestStep);
   }
   return result;
+}
+
+std::string describe(const DifferenceSteps& differences) {
+  std::ostringstream text;
+  text.precision(2);
+  text << "noise of the solver " << differences.noise << " of the outputs";
+  if (differences.steps.size() > 0) {
+    text << ": differences over " << differences.steps.minCoeff() << " to " << differences.steps.maxCoeff()
+         << " of the bounds";
+  }
+  return text.str();
 }
 
 void simulateOnTangent(const std::vector<ParameterSpec>& sampled, const DifferenceSteps& differences,
