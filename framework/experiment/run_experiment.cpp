@@ -62,6 +62,15 @@ void beginFolder(const ExperimentSpec& experiment, const RunOptions& options) {
   }
 }
 
+/// Where derivatives are differences of noisy responses.
+void tellDifferences(const ExperimentSpec& experiment, Simulator& simulator) {
+  if (!simulator.hasDerivatives() && listDerivativePoints(experiment).cols() > 0) {
+    if (const std::string text = simulator.describeDifferences(); !text.empty()) {
+      spdlog::info("{}", text);
+    }
+  }
+}
+
 /// A model from elsewhere may ignore a name.
 void warnOfIneffective(const ModelSpec& model, const Simulator& simulator) {
   const std::string warning =
@@ -217,6 +226,7 @@ RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& opt
   spdlog::info("simulated by: {}", simulator.getEngine());
   if (options.samples == nullptr) {
     warnOfIneffective(experiment.model, simulator);
+    tellDifferences(experiment, *made);
   }
   const FeatureExtractor extractor = makeExtractor(experiment, simulator.getLayout());
   checkTransformOf(extractor.getInfos(), experiment.transform);

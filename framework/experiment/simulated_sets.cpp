@@ -53,8 +53,9 @@ StoredTrajectories simulateSet(const std::string& set, const Eigen::MatrixXd& po
                  points.cols() - given_up, set, given_up);
   }
   if (stored.counts.implicit > 0) {
-    spdlog::warn("{} of the {} samples reached the step limit and were simulated by CPodes instead",
-                 stored.counts.implicit, set);
+    spdlog::warn(
+        "{} of the {} samples reached the step limit and were simulated by an implicit method instead",
+        stored.counts.implicit, set);
   }
   if (stored.counts.reused > 0) {
     spdlog::info("{} of the {} samples had been simulated before", stored.counts.reused, set);

@@ -1,7 +1,5 @@
 #include "framework/fmi/fmu_simulator.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <limits>
 #include <mutex>
@@ -148,14 +146,7 @@ class FmuSimulator::Shared {
 
   template <class Measure>
   const DifferenceSteps& getDifferenceSteps(const Measure& measure) {
-    std::call_once(measuring_steps_, [&] {
-      steps_ = measure();
-      spdlog::info(
-          "{}: noise of the solver {:.1e} of the outputs; differences over {:.1e} to {:.1e} of the bounds",
-          getFileName(model_.source->fmu->file.text), steps_.noise,
-          steps_.steps.size() > 0 ? steps_.steps.minCoeff() : 0.0,
-          steps_.steps.size() > 0 ? steps_.steps.maxCoeff() : 0.0);
-    });
+    std::call_once(measuring_steps_, [&] { steps_ = measure(); });
     return steps_;
   }
 
@@ -264,6 +255,10 @@ void FmuSimulator::simulateTogether(const Eigen::Ref<const Eigen::MatrixXd>& par
       responses.col(i).setConstant(std::numeric_limits<double>::quiet_NaN());
     }
   }
+}
+
+std::string FmuSimulator::describeDifferences() {
+  return shared_->sharesSteps() ? "" : describe(getDifferenceSteps());
 }
 
 template <class Exchange>

@@ -25,8 +25,7 @@ class FmuSimulator final : public Simulator {
   void simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters, Eigen::Ref<Eigen::MatrixXd> responses,
                 SampleStatus* statuses) override;
   /// With the steps of the centre where it has no state events, for Model Exchange. Where the responses are
-  /// noisy, on the tangent at the centre: the noise is measured once a model, at the centre of the box, and
-  /// logged.
+  /// noisy, on the tangent at the centre: the noise is measured once a model, at the centre of the box.
   void simulateAround(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
                       Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) override;
   /// Whether the FMU offers directional derivatives by all parameters (fmi/sensitivity_plan.hpp).
@@ -37,6 +36,7 @@ class FmuSimulator final : public Simulator {
   void simulateWithDerivatives(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
                                Eigen::Ref<Eigen::MatrixXd> responses, Eigen::MatrixXd& derivatives,
                                SampleStatus* statuses) override;
+  std::string describeDifferences() override;
   std::unique_ptr<Simulator> clone() const override;
   /// With a hundredth of the tolerances, which Model Exchange is integrated with and Co-Simulation told.
   std::unique_ptr<Simulator> clonePrecisely() const override;

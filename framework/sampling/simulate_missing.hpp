@@ -14,7 +14,7 @@ struct SimulationProgress {
   int total = 0;      ///< samples that were not in the store
   int simulated = 0;  ///< of them, until now
   int failed = 0;     ///< of those
-  int implicit = 0;   ///< simulated by CPodes after the step limit (SampleStatus::second_try)
+  int implicit = 0;   ///< simulated by an implicit method after the step limit (SampleStatus::second_try)
   int reused = 0;     ///< samples that were in the store
   int given_up = 0;   ///< of the total: not simulated, since all before had failed (MissingOptions)
 };

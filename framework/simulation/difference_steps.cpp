@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "framework/simulation/stencil.hpp"
 #include "framework/spec/parameter_box.hpp"
@@ -89,8 +90,15 @@ VectorXd calcThirdDerivative(const MatrixXd& probes, Index parameter) {
   return (at(3) - 2.0 * at(2) + 2.0 * at(1) - at(0)) / (2.0 * kProbe * kProbe * kProbe);
 }
 
-bool hasMoved(const Eigen::Ref<const MatrixXd>& points, Index parameter) {
-  return (points.row(parameter).array() != points(parameter, 0)).any();
+/// The parameters in which any column differs from the first.
+std::vector<Index> collectMoved(const Eigen::Ref<const MatrixXd>& points) {
+  std::vector<Index> moved;
+  for (Index j = 0; j < points.rows(); ++j) {
+    if ((points.row(j).array() != points(j, 0)).any()) {
+      moved.push_back(j);
+    }
+  }
+  return moved;
 }
 
 }  // namespace
@@ -127,38 +135,46 @@ DifferenceSteps measureDifferenceSteps(const std::vector<ParameterSpec>& sampled
   return result;
 }
 
+std::string describe(const DifferenceSteps& differences) {
+  std::ostringstream text;
+  text.precision(2);
+  text << "noise of the solver " << differences.noise << " of the outputs";
+  if (differences.steps.size() > 0) {
+    const double least = differences.steps.minCoeff(), most = differences.steps.maxCoeff();
+    text << ": differences over " << least;
+    if (most > least) {
+      text << " to " << most;
+    }
+    text << " of the bounds";
+  }
+  return text.str();
+}
+
 void simulateOnTangent(const std::vector<ParameterSpec>& sampled, const DifferenceSteps& differences,
                        const SimulateNeighbours& simulate, const Eigen::Ref<const MatrixXd>& points,
                        Eigen::Ref<MatrixXd> responses, SampleStatus* statuses) {
-  const VectorXd center = points.col(0), widths = calcWidths(sampled);
-  std::vector<Index> moved;
-  for (Index j = 0; j < points.rows(); ++j) {
-    if (hasMoved(points, j)) {
-      moved.push_back(j);
-    }
-  }
-  const MatrixXd all = makeNeighbours(sampled, center, differences.steps);
-  MatrixXd needed = center.replicate(1, 1 + 2 * static_cast<Index>(moved.size()));
+  const std::vector<Index> moved = collectMoved(points);
+  const MatrixXd neighbours = makeNeighbours(sampled, points.col(0), differences.steps);
+  MatrixXd stencil = points.col(0).replicate(1, 1 + 2 * static_cast<Index>(moved.size()));
   for (std::size_t k = 0; k < moved.size(); ++k) {
-    needed.middleCols(1 + 2 * static_cast<Index>(k), 2) = all.middleCols(1 + 2 * moved[k], 2);
+    stencil.middleCols(1 + 2 * static_cast<Index>(k), 2) = neighbours.middleCols(1 + 2 * moved[k], 2);
   }
-  MatrixXd found(responses.rows(), needed.cols());
-  std::vector<SampleStatus> found_statuses(static_cast<std::size_t>(needed.cols()));
-  simulate(needed, found, found_statuses);
+  MatrixXd found(responses.rows(), stencil.cols());
+  std::vector<SampleStatus> found_statuses(static_cast<std::size_t>(stencil.cols()));
+  simulate(stencil, found, found_statuses);
   responses.colwise() = found.col(0);
   std::fill(statuses, statuses + points.cols(), found_statuses[0]);
   for (std::size_t k = 0; k < moved.size(); ++k) {
     const Index j = moved[k];
-    const VectorXd slope =
-        calcDifference(found.col(0), found.middleCols(1 + 2 * static_cast<Index>(k), 2),
-                       sampled[static_cast<std::size_t>(j)].bounds, center[j], differences.steps[j]);
+    const Bounds& bounds = sampled[static_cast<std::size_t>(j)].bounds;
+    const VectorXd slope = calcDifference(found.col(0), found.middleCols(1 + 2 * static_cast<Index>(k), 2),
+                                          bounds, points(j, 0), differences.steps[j]) /
+                           (bounds.upper - bounds.lower);
     for (Index i = 0; i < points.cols(); ++i) {
-      if (points(j, i) == center[j]) {
-        continue;
-      }
-      responses.col(i) += slope * ((points(j, i) - center[j]) / widths[j]);
-      for (const std::size_t own : {2 * k + 1, 2 * k + 2}) {
-        statuses[i] = statuses[i].ok ? found_statuses[own] : statuses[i];
+      const double distance = points(j, i) - points(j, 0);
+      if (std::abs(distance) > 0.0 && statuses[i].ok) {
+        responses.col(i) += distance * slope;
+        statuses[i] = found_statuses[2 * k + 1].ok ? found_statuses[2 * k + 2] : found_statuses[2 * k + 1];
       }
     }
   }

@@ -58,6 +58,10 @@ class Simulator {
   /// What simulates, for the log: "lanes", "fmu crane.fmu (FMI 2.0, co_simulation)".
   virtual const std::string& getEngine() const;
 
+  /// How noisy the responses are and what differences of them are taken over, for the log; "" where they are
+  /// smooth for a known reason. Measures the noise if that has not been done yet.
+  virtual std::string describeDifferences() { return ""; }
+
   /// Throws ExperimentError unless a simulation at the centre of the parameter box could begin. Cheap beside
   /// many simulations.
   virtual void checkStart() {}

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "framework/simulation/stencil.hpp"
 
@@ -81,6 +82,9 @@ TEST(DifferenceSteps, FailWithTheSimulationThatTheyNeed) {
     responses.setZero();
     for (Eigen::Index j = 0; j < points.cols(); ++j) {
       statuses[j] = {points(1, j) <= 0.5, "too large"};
+      if (!statuses[j].ok) {
+        responses.col(j).setConstant(std::numeric_limits<double>::quiet_NaN());
+      }
     }
   };
   const DifferenceSteps steps{1e-6, Eigen::Vector2d(1e-2, 1e-2)};
@@ -89,6 +93,7 @@ TEST(DifferenceSteps, FailWithTheSimulationThatTheyNeed) {
   std::vector<SampleStatus> statuses(points.cols());
   simulateOnTangent(getParameters(), steps, fails, points, responses, statuses.data());
   EXPECT_TRUE(statuses[0].ok && statuses[1].ok && statuses[2].ok);
+  EXPECT_TRUE(responses.leftCols(3).allFinite());
   EXPECT_EQ(statuses[3].reason, "too large");
   EXPECT_EQ(statuses[4].reason, "too large");
 }
