@@ -63,9 +63,8 @@ std::vector<std::string> collectWarnings(const Replay& replay) {
 
 Section makeVerdict(const Inferrer& inferrer, const Replay& replay) {
   Section section{"verdict", "Verdict", "", {}};
-  std::istringstream trust(
-      describeTrust(replay.inferred, inferrer.getExtractor().getInfos()) +
-      describeMapLimit(replay.inferred, inferrer.getExperiment().model.parameters));
+  std::istringstream trust(describeTrust(replay.inferred, inferrer.getExtractor().getInfos()) +
+                           describeMapLimit(replay.inferred, inferrer.getExperiment().model.parameters));
   for (std::string line; std::getline(trust, line);) {
     section.html += makeParagraph(line, "class=\"lead\"");
   }

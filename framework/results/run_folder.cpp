@@ -51,6 +51,7 @@ RunFolder readRunFolder(const fs::path& path) {
     if (run.experiment.design.train.samples.automatic) {
       run.experiment =
           takeTrainingSamples(std::move(run.experiment), countTrainingSamples(path / "samples.h5"));
+      run.experiment.design.train.samples.automatic = true;
     }
     run.test_responses = std::make_shared<StoredResponses>(readTestResponses(path / "samples.h5"));
   }

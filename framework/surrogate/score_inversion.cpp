@@ -318,7 +318,11 @@ gp::Moments ScoreInversion::infer(const Eigen::Ref<const VectorXd>& scores,
   }
   Index best = 0;
   weights.maxCoeff(&best);
-  noise_information_ = std::move(minima[static_cast<std::size_t>(best)].noise_information);
+  const Minimum& likeliest = minima[static_cast<std::size_t>(best)];
+  noise_stddev_ =
+      gp::calcBoxMoments(likeliest.noise_information, likeliest.noise_information * likeliest.point)
+          .covariance.diagonal()
+          .cwiseSqrt();
   return mix(parts, weights / weights.sum());
 }
 

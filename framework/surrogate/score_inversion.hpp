@@ -43,9 +43,9 @@ class ScoreInversion {
   gp::Moments infer(const Eigen::Ref<const Eigen::VectorXd>& scores,
                     const Eigen::Ref<const Eigen::VectorXd>& known);
 
-  /// What the scores would say about the unknowns (u x u) at the minimum of most evidence that infer() found
-  /// last, were there no error but the noise: J'J, of J = ds / dx.
-  const Eigen::MatrixXd& getNoiseInformation() const { return noise_information_; }
+  /// Standard deviations (u) that the last infer() would have found at the minimum of most evidence, were
+  /// there no error but the noise: of the box moments of J'J, J = ds / dx.
+  const Eigen::VectorXd& getNoiseStddev() const { return noise_stddev_; }
 
   const ScoreExplanation& getExplanation() const { return explanation_; }
 
@@ -102,8 +102,8 @@ class ScoreInversion {
   bool evaluated_ = false;  ///< all values, at point_
   std::vector<gp::SharedProcess::Workspace> workspaces_;
   std::vector<double> widening_;  ///< of each window's standard deviations
-  Eigen::VectorXd scores_, point_, values_, residual_, stddev_, gradient_;
-  Eigen::MatrixXd jacobian_, scaled_jacobian_, normal_, noise_information_;
+  Eigen::VectorXd scores_, point_, values_, residual_, stddev_, gradient_, noise_stddev_;
+  Eigen::MatrixXd jacobian_, scaled_jacobian_, normal_;
   ScoreExplanation explanation_;
 };
 

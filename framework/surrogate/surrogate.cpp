@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "framework/surrogate/predicted_limit.hpp"
 #include "framework/surrogate/run_tasks.hpp"
 #include "framework/surrogate/score_inversion.hpp"
 
@@ -24,9 +23,9 @@ void Surrogate::answer(const gp::Moments& normalised, VectorXd& mean, VectorXd& 
            normalised.covariance.diagonal().head(parameters).array().sqrt();
 }
 
-VectorXd Surrogate::calcLimit(const MatrixXd& noise_information) const {
+VectorXd Surrogate::calcLimit(const VectorXd& noise_stddev) const {
   return validation.limit_scale.array() * half_width.head(parameters).array() *
-         calcScoreLimit(noise_information).head(parameters).array();
+         noise_stddev.head(parameters).array();
 }
 
 SurrogateAnswers Surrogate::infer(const MatrixXd& features, const MatrixXd& inputs, int threads) const {
@@ -49,7 +48,7 @@ SurrogateAnswers Surrogate::infer(const MatrixXd& features, const MatrixXd& inpu
       answer(inversion.infer(scores.col(i), at), mean, stddev);
       answers.predictions.mean.col(i) = mean;
       answers.predictions.stddev.col(i) = stddev;
-      answers.limit_stddev.col(i) = calcLimit(inversion.getNoiseInformation());
+      answers.limit_stddev.col(i) = calcLimit(inversion.getNoiseStddev());
     }
   });
   return answers;

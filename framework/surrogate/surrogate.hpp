@@ -46,10 +46,10 @@ struct Surrogate {
   /// Mean and standard deviation (p) of the parameters, in their units, for moments of normalised unknowns.
   void answer(const gp::Moments& normalised, Eigen::VectorXd& mean, Eigen::VectorXd& stddev) const;
 
-  /// The standard deviations (p, in the parameters' units) that a measurement allows whose scores have the
-  /// information J'J (u x u, normalised) about the unknowns: of (J'J + 3)^-1, the box as a prior of its
-  /// variance, times validation.limit_scale, for what other scores would say.
-  Eigen::VectorXd calcLimit(const Eigen::MatrixXd& noise_information) const;
+  /// The standard deviations (p, in the parameters' units) that a measurement allows, from those that the
+  /// noise of the scores leaves of normalised unknowns (u): times validation.limit_scale, for what other
+  /// scores would say.
+  Eigen::VectorXd calcLimit(const Eigen::VectorXd& noise_stddev) const;
 
   /// Features (d x n, finite) and known inputs (m - u x n) -> mean and standard deviation of the parameters
   /// (p x n). The result does not depend on the number of threads. Throws std::invalid_argument for sizes

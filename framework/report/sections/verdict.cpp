@@ -121,13 +121,17 @@ std::string makeWarningList(const std::vector<std::string>& warnings) {
              : makeElement("h3", "Warnings") + "\n" + makeElement("ul", items, "class=\"warnings\"") + "\n";
 }
 
+std::string describeCount(const SampleCount& samples) {
+  return std::to_string(samples.number) + (samples.automatic ? ", chosen automatically" : "");
+}
+
 void addVerdict(const RunFolder& run, const std::vector<GateResult>& gates, Page& page) {
   const ExperimentSpec& experiment = run.experiment;
   Section section{"verdict", "Verdict", "", {}};
   section.html += experiment.description.empty() ? "" : makeParagraph(experiment.description);
   section.html += makeParagraph(makeLead(run), "class=\"lead\"");
   section.html += makeFacts({{"date", makeDate(run)},
-                             {"training samples", std::to_string(experiment.design.train.samples)},
+                             {"training samples", describeCount(experiment.design.train.samples)},
                              {"test samples", std::to_string(experiment.design.test.samples)},
                              {"could not be simulated", std::to_string(run.failures.rows.size())},
                              {"seed", std::to_string(experiment.seed)},

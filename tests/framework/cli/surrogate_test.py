@@ -75,7 +75,7 @@ class Surrogate(OwnFolderTestCase):
         samples = int(re.search(r"training samples: (\d+) \(automatic\)", log)[1])
         self.assertIn(samples, [100, 200, 400, 800])
         self.assertIn("samples: automatic", (run / "resolved.yaml").read_text())
-        self.assertIn(f"<dd>{samples}</dd>", (run / "report.html").read_text())
+        self.assertIn(f"<dd>{samples}, chosen automatically</dd>", (run / "report.html").read_text())
         before = (run / "predictions.csv").read_bytes()
         self.assertEqual(call("verify", run).returncode, 0)
         self.assertEqual(call("verify", run, "--all").returncode, 0)
