@@ -13,6 +13,7 @@
 #include "framework/fmi/worker_job.hpp"
 #include "framework/process/serve_frames.hpp"
 #include "framework/simulation/model_numbers.hpp"
+#include "framework/simulation/sensors.hpp"
 #include "framework/spec/parameter_box.hpp"
 
 namespace twinmap::fmi {
@@ -107,7 +108,7 @@ class FmuWorker {
       excitation_.update(numbers_.updNumbers());
       SampleStatus status = runner_.run(collectValues(point).data(), excitation_, response_, sequence);
       if (status.ok) {
-        applySensors();
+        applySensors(job_.model, numbers_, response_);
       }
       return status;
     } catch (const SimulationFailure& failure) {
@@ -122,20 +123,6 @@ class FmuWorker {
       values.push_back(numbers_.updNumbers().calc(constant.value, {constant.name.text, "value", ""}));
     }
     return values;
-  }
-
-  void applySensors() {
-    const auto times = static_cast<Eigen::Index>(job_.times.size());
-    for (std::size_t i = 0; i < job_.model.outputs.size(); ++i) {
-      const OutputSpec& output = job_.model.outputs[i];
-      auto rows = response_.segment(static_cast<Eigen::Index>(i) * times, times);
-      if (!output.gain.text.empty()) {
-        rows *= numbers_.updNumbers().calc(output.gain, {output.name.text, "gain", ""});
-      }
-      if (!output.offset.text.empty()) {
-        rows.array() += numbers_.updNumbers().calc(output.offset, {output.name.text, "offset", ""});
-      }
-    }
   }
 
   const WorkerJob job_;

@@ -55,13 +55,17 @@ json parse(const std::string& line) {
 /// Why the values of an output cannot be taken, or "".
 std::string readOutput(const json& values, const std::string& name, const ResponseLayout& layout,
                        Eigen::Ref<Eigen::VectorXd> rows) {
+  const bool single = values.is_number();  // as MATLAB and Octave write a list of one
   const auto count = static_cast<Eigen::Index>(values.size());
-  if (!values.is_array() || count != rows.size()) {
-    return fmt::format("output '{}' has {} values instead of {}, one for each time", name,
-                       values.is_array() ? count : 0, rows.size());
+  if (!single && !values.is_array()) {
+    return fmt::format("output '{}' is no list of numbers: {}", name, shorten(values.dump()));
+  }
+  if (count != rows.size()) {
+    return fmt::format("output '{}' has {} value{} instead of {}, one for each time", name, count,
+                       count == 1 ? "" : "s", rows.size());
   }
   for (Eigen::Index i = 0; i < count; ++i) {
-    const json& value = values[static_cast<std::size_t>(i)];
+    const json& value = single ? values : values[static_cast<std::size_t>(i)];
     rows[i] = value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
     if (!std::isfinite(rows[i])) {
       return fmt::format("output '{}' is not finite at t = {:g} s", name, layout.times[i]);

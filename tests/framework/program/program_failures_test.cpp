@@ -64,7 +64,7 @@ TEST(ProgramSimulator, NamesEveryFailureWithItsReason) {
   EXPECT_EQ(getReason(2), "the program ended with exit code 3");
   EXPECT_EQ(getReason(3), "the program did not answer within 1 s");
   EXPECT_EQ(getReason(4), "output 'x' is not finite at t = 1 s");
-  EXPECT_EQ(getReason(5), "output 'x' has 1 values instead of 2, one for each time");
+  EXPECT_EQ(getReason(5), "output 'x' has 1 value instead of 2, one for each time");
   EXPECT_EQ(getReason(6), "the program's answer is no JSON object: {no JSON");
   EXPECT_EQ(getReason(7), "no equilibrium");
 }
