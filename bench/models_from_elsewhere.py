@@ -160,7 +160,7 @@ def check_reasons(out):
             counts[row["reason"]] = counts.get(row["reason"], 0) + 1
     with h5py.File(out / "samples.h5") as file:
         points = []
-        file.visititems(lambda name, item: points.extend(item[:, 0]) if name.endswith("parameters") else None)
+        file.visititems(lambda name, item: points.extend(item[:, 0]) if name.endswith("/parameters") else None)
     expected = sum(bool(name_fate(a)) for a in points)
     if sum(counts.values()) != expected:
         sys.exit(f"{sum(counts.values())} failures are listed, {expected} must be")
@@ -194,16 +194,25 @@ def measure_troubled(bench, kind, samples):
         sys.exit("killed and continued, the run differs, or it had ended before")
 
 
+def find_stage(provenance):
+    """Wall time of the simulation of the test samples, s."""
+    for key, value in provenance.items():
+        if key.startswith("simulate") and key.endswith("test samples"):
+            return value
+        if isinstance(value, dict) and find_stage(value) is not None:
+            return find_stage(value)
+    return None
+
+
 def measure_scaling(bench, kind, rounds):
-    samples = 450
-    file = write_experiment(bench.folder, kind, False, samples)
+    samples = 400
+    file = write_experiment(bench.folder, kind, False, samples + 50)
     times = {1: [], 2: []}
     for index in range(rounds):
         for workers in (1, 2):
             out = bench.folder / f"run{index}_{workers}"
             bench.finish(bench.start(file, out, "--threads", str(workers)))
-            stages = json.loads((out / "summary.json").read_text())["stages"]
-            times[workers].append(next(stage["wall_s"] for stage in stages if stage["name"].startswith("simulate")))
+            times[workers].append(find_stage(json.loads((out / "provenance.json").read_text())))
             print(workers, times[workers][-1], os.getloadavg()[0], flush=True)
     one, two = statistics.median(times[1]), statistics.median(times[2])
     print(json.dumps({"rounds": rounds, "one_worker_s": one, "two_workers_s": two, "ratio": one / two,

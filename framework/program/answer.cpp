@@ -74,6 +74,14 @@ std::string readOutput(const json& values, const std::string& name, const Respon
   return "";
 }
 
+std::string listNames(const json& outputs) {
+  std::string text;
+  for (const auto& item : outputs.items()) {
+    text += (text.empty() ? "'" : ", '") + item.key() + "'";
+  }
+  return text.empty() ? "nothing" : shorten(text);
+}
+
 SampleStatus readSample(const json& answer, const std::vector<std::string>& names,
                         const ResponseLayout& layout, Eigen::Ref<Eigen::VectorXd> response) {
   if (const auto failed = answer.find("failed"); failed != answer.end()) {
@@ -88,7 +96,7 @@ SampleStatus readSample(const json& answer, const std::vector<std::string>& name
     const Eigen::Index first = layout.getRow(static_cast<Eigen::Index>(i), 0);
     const std::string failure =
         values == outputs->end()
-            ? "the answer lacks output '" + names[i] + "'"
+            ? fmt::format("the answer lacks output '{}'; it has {}", names[i], listNames(*outputs))
             : readOutput(*values, names[i], layout, response.segment(first, layout.times.size()));
     if (!failure.empty()) {
       return {false, failure};
@@ -99,12 +107,16 @@ SampleStatus readSample(const json& answer, const std::vector<std::string>& name
 
 }  // namespace
 
+std::string writeHelloAnswer() {
+  return fmt::format(R"({{"twinmap": {}}})", kProtocolVersion);
+}
+
 void checkHello(const std::string& line) {
   const json answer = parse(line);
   const auto version = answer.find("twinmap");
   if (version == answer.end() || *version != kProtocolVersion) {
-    throw ProtocolError(fmt::format("the program's first answer must be {{\"twinmap\": {}}}, not {}",
-                                    kProtocolVersion, shorten(line)));
+    throw ProtocolError(
+        fmt::format("the program's first answer must be {}, not {}", writeHelloAnswer(), shorten(line)));
   }
 }
 
