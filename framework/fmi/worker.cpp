@@ -13,6 +13,7 @@
 #include "framework/fmi/worker_job.hpp"
 #include "framework/process/serve_frames.hpp"
 #include "framework/simulation/model_numbers.hpp"
+#include "framework/simulation/sensors.hpp"
 #include "framework/simulation/stencil.hpp"
 #include "framework/spec/parameter_box.hpp"
 
@@ -136,11 +137,7 @@ class FmuWorker {
         plan_ && !path.steps.empty() && path.method == HybridMethod::kExplicit &&
         runner_.runDerivatives(collectValues(point).data(), excitation_, path, *plan_, derivatives);
     if (exact) {
-      forEachOutput([&](const OutputSpec& output, Eigen::Index first, Eigen::Index times) {
-        if (!output.gain.text.empty()) {
-          derivatives.middleRows(first, times) *= calcSensor(output, output.gain, "gain");
-        }
-      });
+      applyGains(job_.model, numbers_, derivatives);
     }
     return exact;
   }
@@ -185,7 +182,7 @@ class FmuWorker {
       excitation_.update(numbers_.updNumbers());
       SampleStatus status = runner_.run(collectValues(point).data(), excitation_, response_, path);
       if (status.ok) {
-        applySensors();
+        applySensors(job_.model, numbers_, response_);
       }
       return status;
     } catch (const SimulationFailure& failure) {
@@ -200,31 +197,6 @@ class FmuWorker {
       values.push_back(numbers_.updNumbers().calc(constant.value, {constant.name.text, "value", ""}));
     }
     return values;
-  }
-
-  void applySensors() {
-    forEachOutput([this](const OutputSpec& output, Eigen::Index first, Eigen::Index times) {
-      auto rows = response_.segment(first, times);
-      if (!output.gain.text.empty()) {
-        rows *= calcSensor(output, output.gain, "gain");
-      }
-      if (!output.offset.text.empty()) {
-        rows.array() += calcSensor(output, output.offset, "offset");
-      }
-    });
-  }
-
-  double calcSensor(const OutputSpec& output, const Expression& expression, const char* key) {
-    return numbers_.updNumbers().calc(expression, {output.name.text, key, ""});
-  }
-
-  /// Calls use(output, its first row, its rows).
-  template <class Use>
-  void forEachOutput(const Use& use) const {
-    const auto times = static_cast<Eigen::Index>(job_.times.size());
-    for (std::size_t i = 0; i < job_.model.outputs.size(); ++i) {
-      use(job_.model.outputs[i], static_cast<Eigen::Index>(i) * times, times);
-    }
   }
 
   const WorkerJob job_;

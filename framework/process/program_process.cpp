@@ -6,11 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
-#include <chrono>
-#include <cmath>
-#include <cstring>
 #include <fstream>
 
 #include "framework/process/process_guard.hpp"
@@ -19,10 +15,6 @@
 namespace twinmap {
 namespace {
 
-double getTime() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 /// Writing to a program that has ended must be an error of write() rather than the end of this process.
 void ignoreBrokenPipes() {
   struct sigaction action {};
@@ -30,13 +22,6 @@ void ignoreBrokenPipes() {
   if (action.sa_handler == SIG_DFL) {
     signal(SIGPIPE, SIG_IGN);
   }
-}
-
-std::string describeEnd(int status) {
-  if (WIFSIGNALED(status)) {
-    return "the program crashed: " + std::string(strsignal(WTERMSIG(status)));
-  }
-  return "the program ended with exit code " + std::to_string(WEXITSTATUS(status));
 }
 
 }  // namespace
@@ -48,12 +33,12 @@ ProgramProcess::ProgramProcess(const ProgramStart& start) {
   process_ = started.process;
   input_ = started.input;
   output_ = started.output;
-  messages_ = started.messages;
+  words_.open(started.messages);
 }
 
 ProgramProcess::~ProgramProcess() {
   end(nullptr);
-  for (const int file : {input_, output_, messages_}) {
+  for (const int file : {input_, output_}) {
     if (file >= 0) {
       close(file);
     }
@@ -71,42 +56,40 @@ void ProgramProcess::end(int* status) {
 }
 
 std::string ProgramProcess::exchange(const std::string& request, double timeout) {
-  const double deadline = getTime() + timeout;
+  const Deadline deadline(timeout);
   const std::string text = request + "\n";
-  readMessages();
-  last_words_.clear();  // of the sample before
+  words_.forget();  // those of the sample before
   for (std::size_t sent = 0; sent < text.size();) {
     const ssize_t count = write(input_, text.data() + sent, text.size() - sent);
     if (count > 0) {
       sent += static_cast<std::size_t>(count);
     } else if (errno == EAGAIN || errno == EWOULDBLOCK) {
-      wait(true, deadline, timeout);
+      wait(true, deadline);
     } else if (errno != EINTR) {
       fail();
     }
   }
   std::string line;
   while (!takeLine(line)) {
-    wait(false, deadline, timeout);
+    wait(false, deadline);
   }
   return line;
 }
 
-void ProgramProcess::wait(bool sending, double deadline, double timeout) {
-  pollfd files[] = {{output_, POLLIN, 0}, {messages_, POLLIN, 0}, {sending ? input_ : -1, POLLOUT, 0}};
-  constexpr double kLongest = 1e9;  // ms; what an int holds
-  const double left = std::clamp(1000.0 * (deadline - getTime()), 0.0, kLongest);
-  const int ready = poll(files, 3, static_cast<int>(std::ceil(left)));
+void ProgramProcess::wait(bool sending, const Deadline& deadline) {
+  pollfd files[] = {{output_, POLLIN, 0}, {words_.getFile(), POLLIN, 0}, {sending ? input_ : -1, POLLOUT, 0}};
+  const int ready = poll(files, 3, deadline.calcPollTime());
   if (ready > 0 && files[1].revents != 0) {
-    readMessages();
+    words_.read();
   }
   if (ready > 0 && files[0].revents != 0) {
     readAnswer();
   }
-  if (ready == 0 && getTime() >= deadline) {
-    readMessages();
+  if (ready == 0 && deadline.isOver()) {
+    words_.read();
     throw WorkerFailure(
-        "the program did not answer within " + fmt::format("{:g} s", timeout) + describeMessages(), true);
+        fmt::format("the program did not answer within {:g} s{}", deadline.getSeconds(), words_.describe()),
+        true);
   }
 }
 
@@ -128,34 +111,9 @@ bool ProgramProcess::takeLine(std::string& line) {
     if (!line.empty() && line.front() == '{') {
       return true;
     }
-    keepMessage(line + "\n");
+    words_.keep(line + "\n");
   }
   return false;
-}
-
-void ProgramProcess::keepMessage(const std::string& text) {
-  constexpr std::size_t kMostKept = 1000;  // characters: what people read of it
-  last_words_ += text;
-  if (last_words_.size() > kMostKept) {
-    last_words_.erase(0, last_words_.size() - kMostKept);
-  }
-}
-
-void ProgramProcess::readMessages() {
-  char buffer[4096];
-  ssize_t count = 0;
-  while (messages_ >= 0 && (count = read(messages_, buffer, sizeof buffer)) > 0) {
-    keepMessage({buffer, static_cast<std::size_t>(count)});
-  }
-  if (count == 0 && messages_ >= 0) {  // closed; poll would report it again and again
-    close(messages_);
-    messages_ = -1;
-  }
-}
-
-std::string ProgramProcess::describeMessages() {
-  const std::size_t last = last_words_.find_last_not_of(" \n\r\t");
-  return last == std::string::npos ? "" : "; it said: " + last_words_.substr(0, last + 1);
 }
 
 void ProgramProcess::fail() {
@@ -163,7 +121,7 @@ void ProgramProcess::fail() {
   constexpr int kTries = 100, kMicroseconds = 2000;
   siginfo_t info{};
   for (int i = 0; i < kTries && info.si_pid == 0; ++i) {
-    readMessages();
+    words_.read();
     waitid(P_PID, static_cast<id_t>(process_), &info, WEXITED | WNOHANG | WNOWAIT);
     if (info.si_pid == 0) {
       usleep(kMicroseconds);
@@ -172,9 +130,10 @@ void ProgramProcess::fail() {
   int status = 0;
   const bool ended = info.si_pid != 0;
   end(&status);
-  readMessages();
-  throw WorkerFailure((ended ? describeEnd(status) : std::string("the program closed its output")) +
-                      describeMessages());
+  words_.read();
+  throw WorkerFailure(
+      (ended ? describeEnd("the program", status) : std::string("the program closed its output")) +
+      words_.describe());
 }
 
 double ProgramProcess::getResidentSize() const {

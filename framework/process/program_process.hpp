@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "framework/process/deadline.hpp"
+#include "framework/process/last_words.hpp"
 #include "framework/process/worker_process.hpp"
 
 namespace twinmap {
@@ -40,19 +42,17 @@ class ProgramProcess {
   double getResidentSize() const;
 
  private:
-  void wait(bool sending, double deadline, double timeout);
+  void wait(bool sending, const Deadline& deadline);
   void readAnswer();
-  void readMessages();
   bool takeLine(std::string& line);
-  void keepMessage(const std::string& text);
-  std::string describeMessages();
   [[noreturn]] void fail();
   void end(int* status);
 
-  int input_ = -1, output_ = -1, messages_ = -1;
+  int input_ = -1, output_ = -1;
   int guard_ = -1;
   pid_t process_ = -1;
-  std::string received_, last_words_;
+  LastWords words_;
+  std::string received_;
 };
 
 }  // namespace twinmap

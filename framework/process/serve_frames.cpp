@@ -8,6 +8,7 @@
 
 #include <cerrno>
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
 #include <thread>
 
@@ -57,6 +58,7 @@ void serveFrames(const std::function<Frame(const Frame& request, bool& last)>& a
     Frame request(size);
     receive(channel, request.data(), request.size());
     const Frame reply = answer(request, last);
+    std::fflush(nullptr);  // what the model has printed belongs to this request
     const std::uint64_t reply_size = reply.size();
     send(channel, reinterpret_cast<const char*>(&reply_size), sizeof reply_size);
     send(channel, reply.data(), reply.size());

@@ -8,18 +8,12 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <chrono>
-#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
 
 namespace twinmap {
 namespace {
-
-double getTime() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// The files of a process that is to be started, closed at the end.
 class SpawnFiles {
@@ -70,13 +64,6 @@ int moveUp(int descriptor) {
   return moved;
 }
 
-std::string describeEnd(int status) {
-  if (WIFSIGNALED(status)) {
-    return "the model's process crashed: " + std::string(strsignal(WTERMSIG(status)));
-  }
-  return "the model's process ended with exit code " + std::to_string(WEXITSTATUS(status));
-}
-
 }  // namespace
 
 WorkerProcess::WorkerProcess(const WorkerCommand& command) {
@@ -85,16 +72,15 @@ WorkerProcess::WorkerProcess(const WorkerCommand& command) {
     throw WorkerFailure(std::string("no connection to a worker can be made: ") + std::strerror(errno));
   }
   channel_ = moveUp(ends[0]);
-  messages_ = moveUp(pipe[0]);
+  words_.open(moveUp(pipe[0]));
   const int their_channel = moveUp(ends[1]), their_messages = moveUp(pipe[1]);
-  fcntl(messages_, F_SETFL, O_NONBLOCK);
+  fcntl(words_.getFile(), F_SETFL, O_NONBLOCK);
   try {
     process_ = SpawnFiles().start(command, their_channel, their_messages);
   } catch (const WorkerFailure&) {
     close(their_channel);
     close(their_messages);
     close(channel_);
-    close(messages_);
     throw;
   }
   close(their_channel);
@@ -108,11 +94,11 @@ WorkerProcess::~WorkerProcess() {
     }
   }
   close(channel_);
-  close(messages_);
 }
 
 Frame WorkerProcess::exchange(const Frame& request, double timeout) {
-  const double deadline = getTime() + timeout;
+  words_.forget();  // those of the request before
+  const Deadline deadline(timeout);
   send(request, deadline);
   std::uint64_t size = 0;
   receive(reinterpret_cast<char*>(&size), sizeof size, deadline);
@@ -121,7 +107,7 @@ Frame WorkerProcess::exchange(const Frame& request, double timeout) {
   return answer;
 }
 
-void WorkerProcess::send(const Frame& request, double deadline) {
+void WorkerProcess::send(const Frame& request, const Deadline& deadline) {
   const std::uint64_t size = request.size();
   Frame bytes(sizeof size + request.size());
   std::memcpy(bytes.data(), &size, sizeof size);
@@ -139,7 +125,7 @@ void WorkerProcess::send(const Frame& request, double deadline) {
   }
 }
 
-void WorkerProcess::receive(char* data, std::size_t size, double deadline) {
+void WorkerProcess::receive(char* data, std::size_t size, const Deadline& deadline) {
   for (std::size_t received = 0; received < size;) {
     const ssize_t count = recv(channel_, data + received, size - received, MSG_DONTWAIT);
     if (count > 0) {
@@ -152,34 +138,15 @@ void WorkerProcess::receive(char* data, std::size_t size, double deadline) {
   }
 }
 
-void WorkerProcess::waitFor(short events, double deadline) {
-  pollfd files[] = {{channel_, events, 0}, {messages_, POLLIN, 0}};
-  const double left = deadline - getTime();
-  constexpr double kLongest = 1e9;  // ms; what an int holds
-  const int wait = static_cast<int>(std::ceil(std::min(std::max(1000.0 * left, 0.0), kLongest)));
-  const int ready = poll(files, (files[1].fd >= 0) ? 2 : 1, wait);
+void WorkerProcess::waitFor(short events, const Deadline& deadline) {
+  pollfd files[] = {{channel_, events, 0}, {words_.getFile(), POLLIN, 0}};
+  const int ready = poll(files, 2, deadline.calcPollTime());
   if (ready > 0 && files[1].revents != 0) {
-    readMessages();
+    words_.read();
   }
-  if (ready == 0 && getTime() >= deadline) {
-    readMessages();
-    throw WorkerFailure("the model does not answer within its time" + last_words_, true);
-  }
-}
-
-void WorkerProcess::readMessages() {
-  constexpr std::size_t kMostKept = 1000;  // characters: what people read of it
-  char buffer[4096];
-  ssize_t count = 0;
-  while (messages_ >= 0 && (count = read(messages_, buffer, sizeof buffer)) > 0) {
-    last_words_.append(buffer, static_cast<std::size_t>(count));
-    if (last_words_.size() > kMostKept) {
-      last_words_.erase(0, last_words_.size() - kMostKept);
-    }
-  }
-  if (count == 0 && messages_ >= 0) {  // closed; poll would report it again and again
-    close(messages_);
-    messages_ = -1;
+  if (ready == 0 && deadline.isOver()) {
+    words_.read();
+    throw WorkerFailure("the model does not answer within its time" + words_.describe(), true);
   }
 }
 
@@ -188,10 +155,9 @@ void WorkerProcess::fail() {
   kill(-process_, SIGKILL);  // one that has closed its channel and goes on
   const bool known = waitpid(process_, &status, 0) == process_;
   process_ = -1;
-  readMessages();
-  const std::size_t end = last_words_.find_last_not_of(" \n\r\t");
-  const std::string words = end == std::string::npos ? "" : "; it said: " + last_words_.substr(0, end + 1);
-  throw WorkerFailure((known ? describeEnd(status) : std::string("the model's process is gone")) + words);
+  words_.read();
+  throw WorkerFailure((known ? describeEnd("the model's process", status) : "the model's process is gone") +
+                      words_.describe());
 }
 
 std::string getWorkerExecutable() {

@@ -6,6 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "framework/process/deadline.hpp"
+#include "framework/process/last_words.hpp"
+
 namespace twinmap {
 
 /// A worker crashed, ended, did not answer in time, or could not be started.
@@ -46,15 +49,14 @@ class WorkerProcess {
   Frame exchange(const Frame& request, double timeout);
 
  private:
-  void send(const Frame& request, double deadline);
-  void receive(char* data, std::size_t size, double deadline);
-  void waitFor(short events, double deadline);
-  void readMessages();
+  void send(const Frame& request, const Deadline& deadline);
+  void receive(char* data, std::size_t size, const Deadline& deadline);
+  void waitFor(short events, const Deadline& deadline);
   [[noreturn]] void fail();
 
-  int channel_ = -1, messages_ = -1;
+  int channel_ = -1;
   pid_t process_ = -1;
-  std::string last_words_;
+  LastWords words_;
 };
 
 constexpr int kWorkerChannel = 3;

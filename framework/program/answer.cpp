@@ -55,19 +55,31 @@ json parse(const std::string& line) {
 /// Why the values of an output cannot be taken, or "".
 std::string readOutput(const json& values, const std::string& name, const ResponseLayout& layout,
                        Eigen::Ref<Eigen::VectorXd> rows) {
+  const bool single = values.is_number();  // as MATLAB and Octave write a list of one
   const auto count = static_cast<Eigen::Index>(values.size());
-  if (!values.is_array() || count != rows.size()) {
-    return fmt::format("output '{}' has {} values instead of {}, one for each time", name,
-                       values.is_array() ? count : 0, rows.size());
+  if (!single && !values.is_array()) {
+    return fmt::format("output '{}' is no list of numbers: {}", name, shorten(values.dump()));
+  }
+  if (count != rows.size()) {
+    return fmt::format("output '{}' has {} value{} instead of {}, one for each time", name, count,
+                       count == 1 ? "" : "s", rows.size());
   }
   for (Eigen::Index i = 0; i < count; ++i) {
-    const json& value = values[static_cast<std::size_t>(i)];
+    const json& value = single ? values : values[static_cast<std::size_t>(i)];
     rows[i] = value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
     if (!std::isfinite(rows[i])) {
       return fmt::format("output '{}' is not finite at t = {:g} s", name, layout.times[i]);
     }
   }
   return "";
+}
+
+std::string listNames(const json& outputs) {
+  std::string text;
+  for (const auto& item : outputs.items()) {
+    text += (text.empty() ? "'" : ", '") + item.key() + "'";
+  }
+  return text.empty() ? "nothing" : shorten(text);
 }
 
 SampleStatus readSample(const json& answer, const std::vector<std::string>& names,
@@ -84,7 +96,7 @@ SampleStatus readSample(const json& answer, const std::vector<std::string>& name
     const Eigen::Index first = layout.getRow(static_cast<Eigen::Index>(i), 0);
     const std::string failure =
         values == outputs->end()
-            ? "the answer lacks output '" + names[i] + "'"
+            ? fmt::format("the answer lacks output '{}'; it has {}", names[i], listNames(*outputs))
             : readOutput(*values, names[i], layout, response.segment(first, layout.times.size()));
     if (!failure.empty()) {
       return {false, failure};
@@ -95,12 +107,16 @@ SampleStatus readSample(const json& answer, const std::vector<std::string>& name
 
 }  // namespace
 
+std::string writeHelloAnswer() {
+  return fmt::format(R"({{"twinmap": {}}})", kProtocolVersion);
+}
+
 void checkHello(const std::string& line) {
   const json answer = parse(line);
   const auto version = answer.find("twinmap");
   if (version == answer.end() || *version != kProtocolVersion) {
-    throw ProtocolError(fmt::format("the program's first answer must be {{\"twinmap\": {}}}, not {}",
-                                    kProtocolVersion, shorten(line)));
+    throw ProtocolError(
+        fmt::format("the program's first answer must be {}, not {}", writeHelloAnswer(), shorten(line)));
   }
 }
 

@@ -1,5 +1,7 @@
 #include "framework/program/program_pool.hpp"
 
+#include <fmt/format.h>
+
 #include "framework/program/answer.hpp"
 
 namespace twinmap {
@@ -16,7 +18,14 @@ ProgramStart makeStart(const ProgramSpec& spec) {
 }  // namespace
 
 ProgramWorker::ProgramWorker(const ProgramSpec& spec, const std::string& hello) : process_(makeStart(spec)) {
-  checkHello(process_.exchange(hello, spec.start_timeout));
+  std::string answer;
+  try {
+    answer = process_.exchange(hello, spec.start_timeout);
+  } catch (const WorkerFailure& failure) {
+    throw WorkerFailure(fmt::format("before its first answer, {}, {}", writeHelloAnswer(), failure.what()),
+                        failure.hasTimedOut());
+  }
+  checkHello(answer);
 }
 
 std::string ProgramWorker::exchange(const std::string& request, int samples, double timeout) {

@@ -7,7 +7,8 @@
 #include "framework/program/answer.hpp"
 #include "framework/program/program_pool.hpp"
 #include "framework/program/requests.hpp"
-#include "framework/program/sensors.hpp"
+#include "framework/simulation/model_numbers.hpp"
+#include "framework/simulation/sensors.hpp"
 #include "framework/spec/check/check_experiment.hpp"
 #include "framework/spec/parameter_box.hpp"
 
@@ -63,7 +64,7 @@ class ProgramSimulator::Sampler {
     try {
       update(calcBoxCenter(collectSampled(model)));
       Eigen::VectorXd response = Eigen::VectorXd::Zero(layout.getRowCount());
-      applySensors(model_, layout_, numbers_, response);
+      applySensors(model_, numbers_, response);
       usual_ = calcTable();
     } catch (const SimulationFailure& failure) {
       throw ExperimentError(toString(failure.getWhere()) +
@@ -82,7 +83,7 @@ class ProgramSimulator::Sampler {
 
   void applySensorsOf(const Eigen::Ref<const Eigen::VectorXd>& point, Eigen::Ref<Eigen::VectorXd> response) {
     numbers_.update(point);
-    applySensors(model_, layout_, numbers_, response);
+    applySensors(model_, numbers_, response);
   }
 
  private:

@@ -18,6 +18,7 @@ class ProgramSimulator final : public Simulator {
   const ResponseLayout& getLayout() const override;
   const std::string& getEngine() const override;
   int getBatchSize() const override;
+  bool mixesNeighbours() const override { return true; }
 
   /// Starts the program and simulates the centre of the box. Throws ExperimentError where that fails.
   void checkStart() override;

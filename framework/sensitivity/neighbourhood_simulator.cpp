@@ -41,6 +41,33 @@ void simulateEach(Simulator& simulator, const std::vector<ParameterSpec>& parame
   }
 }
 
+/// As one batch, so that its size is that of the simulator whatever a point's number of neighbours is.
+void simulateMixed(Simulator& simulator, const std::vector<ParameterSpec>& parameters,
+                   const Eigen::Ref<const MatrixXd>& points, Eigen::Ref<MatrixXd> responses,
+                   SampleStatus* statuses) {
+  const Index each = countNeighbours(parameters.size()), rows = simulator.getLayout().getRowCount();
+  MatrixXd all(points.rows(), each * points.cols());
+  for (Index i = 0; i < points.cols(); ++i) {
+    all.middleCols(i * each, each) = makeNeighbours(parameters, points.col(i));
+  }
+  MatrixXd own(rows, all.cols());
+  std::vector<SampleStatus> own_statuses(own.cols());
+  simulator.simulate(all, own, own_statuses.data());
+  for (Index i = 0; i < points.cols(); ++i) {
+    const auto first = own_statuses.begin() + i * each;
+    statuses[i] = findFirstFailure({first, first + each});
+    responses.col(i) = own.middleCols(i * each, each).reshaped();
+  }
+}
+
+/// Without derivatives.
+void simulateAll(Simulator& simulator, const std::vector<ParameterSpec>& parameters,
+                 const Eigen::Ref<const MatrixXd>& points, Eigen::Ref<MatrixXd> responses,
+                 SampleStatus* statuses) {
+  const auto run = simulator.mixesNeighbours() ? simulateMixed : simulateEach;
+  run(simulator, parameters, points, responses, statuses);
+}
+
 void continueAlongDerivatives(Simulator& simulator, const std::vector<ParameterSpec>& parameters,
                               const Eigen::Ref<const MatrixXd>& points, Eigen::Ref<MatrixXd> responses,
                               SampleStatus* statuses) {
@@ -61,7 +88,7 @@ void continueAlongDerivatives(Simulator& simulator, const std::vector<ParameterS
 void simulateNeighbourhoods(Simulator& simulator, const std::vector<ParameterSpec>& parameters,
                             const Eigen::Ref<const MatrixXd>& points, Eigen::Ref<MatrixXd> responses,
                             SampleStatus* statuses) {
-  const auto run = simulator.hasDerivatives() ? continueAlongDerivatives : simulateEach;
+  const auto run = simulator.hasDerivatives() ? continueAlongDerivatives : simulateAll;
   run(simulator, parameters, points, responses, statuses);
 }
 
@@ -73,7 +100,12 @@ NeighbourhoodSimulator::NeighbourhoodSimulator(const Simulator& simulator,
 
 void NeighbourhoodSimulator::simulate(const Eigen::Ref<const MatrixXd>& parameters,
                                       Eigen::Ref<MatrixXd> responses, SampleStatus* statuses) {
-  simulateEach(*simulator_, parameters_, parameters, responses, statuses);
+  simulateAll(*simulator_, parameters_, parameters, responses, statuses);
+}
+
+int NeighbourhoodSimulator::getBatchSize() const {
+  const int each = countNeighbours(parameters_.size());
+  return simulator_->mixesNeighbours() ? std::max(1, simulator_->getBatchSize() / each) : 1;
 }
 
 std::unique_ptr<Simulator> NeighbourhoodSimulator::clone() const {

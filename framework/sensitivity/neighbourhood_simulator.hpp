@@ -17,7 +17,8 @@ inline int countNeighbours(std::size_t parameters) {
 /// of the point, need (makeNeighbours): a column of `responses` is theirs, one below the other, the point's
 /// own first, then the two of each parameter. With exact derivatives (Simulator::hasDerivatives) the
 /// responses beside a point are its own, continued along them; else all are simulated with the integration
-/// steps of the point. A point fails if one of its simulations does.
+/// steps of the point, or, by a simulator that mixes neighbours, as one batch. A point fails if one of its
+/// simulations does.
 void simulateNeighbourhoods(Simulator& simulator, const std::vector<ParameterSpec>& parameters,
                             const Eigen::Ref<const Eigen::MatrixXd>& points,
                             Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses);
@@ -29,6 +30,8 @@ class NeighbourhoodSimulator final : public Simulator {
   NeighbourhoodSimulator(const Simulator& simulator, const std::vector<ParameterSpec>& parameters);
 
   const ResponseLayout& getLayout() const override { return layout_; }
+  /// So many points as have their neighbours in one batch, where those of several points may mix.
+  int getBatchSize() const override;
   void simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters, Eigen::Ref<Eigen::MatrixXd> responses,
                 SampleStatus* statuses) override;
   std::unique_ptr<Simulator> clone() const override;

@@ -43,6 +43,9 @@ class Simulator {
     simulate(parameters, responses, statuses);
   }
 
+  /// Whether simulateAround() is simulate(): neighbours of several points may then come as one batch.
+  virtual bool mixesNeighbours() const { return false; }
+
   /// Whether simulateWithDerivatives() may be called.
   virtual bool hasDerivatives() const { return false; }
 

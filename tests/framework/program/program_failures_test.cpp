@@ -64,7 +64,7 @@ TEST(ProgramSimulator, NamesEveryFailureWithItsReason) {
   EXPECT_EQ(getReason(2), "the program ended with exit code 3");
   EXPECT_EQ(getReason(3), "the program did not answer within 1 s");
   EXPECT_EQ(getReason(4), "output 'x' is not finite at t = 1 s");
-  EXPECT_EQ(getReason(5), "output 'x' has 1 values instead of 2, one for each time");
+  EXPECT_EQ(getReason(5), "output 'x' has 1 value instead of 2, one for each time");
   EXPECT_EQ(getReason(6), "the program's answer is no JSON object: {no JSON");
   EXPECT_EQ(getReason(7), "no equilibrium");
 }
@@ -107,6 +107,48 @@ TEST(ProgramSimulator, ThrowsWhereTheProgramCannotBeStarted) {
   EXPECT_THROW(simulator.checkStart(), ExperimentError);
   model.source->program->command = {"true"};
   EXPECT_THROW(ProgramSimulator(model, kTimes, 0).checkStart(), ExperimentError);
+}
+
+std::string getStartError(const std::string& script) {
+  ModelSpec model = makeFaulty();
+  model.source->program->command = {"sh", "-c", script};
+  model.source->program->start_timeout = 1.0;
+  try {
+    ProgramSimulator(model, kTimes, 0).checkStart();
+  } catch (const ExperimentError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(ProgramSimulator, SaysAtTheStartWhatItWaitedForAndWhatItGot) {
+  const std::string centre = "model.program: cannot simulate the centre of the parameter box: ";
+  EXPECT_EQ(getStartError("echo licence expired; exit 4"),
+            "model.program: before its first answer, {\"twinmap\": 1}, the program ended with exit code 4; "
+            "it said: "
+            "licence expired");
+  EXPECT_EQ(
+      getStartError("sleep 100"),
+      "model.program: before its first answer, {\"twinmap\": 1}, the program did not answer within 1 s");
+  EXPECT_EQ(getStartError("echo '{\"twinmap\": 2}'; cat > /dev/null"),
+            "model.program: the program's first answer must be {\"twinmap\": 1}, not {\"twinmap\": 2}");
+  const std::string answering = "read first; echo '{\"twinmap\": 1}'; while read line; do echo ";
+  EXPECT_EQ(getStartError(answering + "'{\"outputs\": {\"y\": [1], \"z\": [1]}}'; done"),
+            centre + "the answer lacks output 'x'; it has 'y', 'z'");
+  EXPECT_EQ(getStartError(answering + "'{\"outputs\": {\"x\": \"none\"}}'; done"),
+            centre + "output 'x' is no list of numbers: \"none\"");
+}
+
+TEST(ProgramSimulator, TakesANumberForAListOfOne) {
+  ModelSpec model = makeFaulty();
+  model.source->program->command = {"sh", "-c",
+                                    "read first; echo '{\"twinmap\": 1}'; while read line; do echo "
+                                    "'{\"outputs\": {\"x\": 0.25}}'; done"};
+  Eigen::MatrixXd response(1, 1);
+  SampleStatus status;
+  ProgramSimulator(model, Eigen::VectorXd::Ones(1), 0).simulate(makePoints({0}), response, &status);
+  EXPECT_TRUE(status.ok) << status.reason;
+  EXPECT_EQ(response(0, 0), 0.25);
 }
 
 TEST(ProgramSimulator, RefusesFeaturesOfModes) {

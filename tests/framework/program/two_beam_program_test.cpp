@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/program/program_simulator.hpp"
+#include "framework/sensitivity/neighbourhood_simulator.hpp"
 #include "framework/simulation/sample_generator.hpp"
 #include "framework/spec/experiment_file.hpp"
 #include "tests/framework/multibody/two_beam.hpp"
@@ -8,12 +9,15 @@
 namespace twinmap::testing {
 namespace {
 
+ModelSpec loadPlant(int batch) {
+  return loadExperiment(TWINMAP_SOURCE_DIR "/experiments/python_plant/python_plant.yaml",
+                        {"model.program.batch=" + std::to_string(batch),
+                         "model.program.command=[/usr/bin/python3, plant.py]"})  // that of the packages
+      .model;
+}
+
 Trajectories simulatePlant(int batch, int threads, int samples) {
-  ModelSpec model =
-      loadExperiment(TWINMAP_SOURCE_DIR "/experiments/python_plant/python_plant.yaml",
-                     {"model.program.batch=" + std::to_string(batch),
-                      "model.program.command=[/usr/bin/python3, plant.py]"})  // that of the packages
-          .model;
+  const ModelSpec model = loadPlant(batch);
   GeneratorOptions options;
   options.threads = threads;
   return generateSamples(ProgramSimulator(model, makeTwoBeamTimes(), 0), makeTwoBeamPoints(samples), options);
@@ -38,6 +42,28 @@ TEST(PythonPlant, GivesTheSameBitsInAnyBatchAndOnAnyNumberOfThreads) {
   const Trajectories one = simulatePlant(1, 1, 6);
   EXPECT_EQ(one.responses, simulatePlant(4, 2, 6).responses);
   EXPECT_EQ(one.responses, simulatePlant(6, 1, 6).responses);
+}
+
+Eigen::MatrixXd simulatePlantsNeighbourhoods(int batch, int threads) {
+  const ModelSpec model = loadPlant(batch);
+  const ProgramSimulator simulator(model, makeTwoBeamTimes(), 0);
+  GeneratorOptions options;
+  options.threads = threads;
+  return generateSamples(NeighbourhoodSimulator(simulator, model.parameters), makeTwoBeamPoints(5), options)
+      .responses;
+}
+
+TEST(PythonPlant, GivesTheSameNeighbourhoodsWhetherTheyShareRequestsOrNot) {
+  const Eigen::MatrixXd alone = simulatePlantsNeighbourhoods(1, 1);
+  ASSERT_TRUE(alone.allFinite());
+  EXPECT_EQ(alone, simulatePlantsNeighbourhoods(20, 2));  // two points a request, and one for the last
+  EXPECT_EQ(alone, simulatePlantsNeighbourhoods(7, 1));   // a point's neighbours in two requests
+}
+
+TEST(PythonPlant, TakesAsManyPointsAsHaveTheirNeighboursInOneRequest) {
+  const ModelSpec model = loadPlant(50);
+  const ProgramSimulator simulator(model, makeTwoBeamTimes(), 0);
+  EXPECT_EQ(NeighbourhoodSimulator(simulator, model.parameters).getBatchSize(), 5);
 }
 
 }  // namespace
