@@ -1,10 +1,11 @@
 """FMUs and programs at batch scale, through the command.
 
-Usage: models_from_elsewhere.py TWINMAP troubled fmu|program [SAMPLES]
+Usage: models_from_elsewhere.py TWINMAP troubled|leaking fmu|program [SAMPLES]
        models_from_elsewhere.py TWINMAP scaling|waiting fmu|program [ROUNDS]
 troubled: SAMPLES (default: 10000) of a model that crashes for 1 %, hangs for 0.1 %, gives NaN for 1 % and leaks 100 kB a
 sample: fails unless every failure has its reason, nothing is left behind, and a run killed in the middle and continued
-gives the same bits; prints the most memory that twinmap and a worker took. scaling: 400 samples of 5 ms of processor time by
+gives the same bits; prints the most memory that twinmap and a worker took. leaking:
+the same memory where samples leak but never fail, so that only growth replaces a worker. scaling: 400 samples of 5 ms of processor time by
 one worker and by two, in alternation, medians of ROUNDS (default: 5). waiting: the same with samples that wait 5 ms, so that what
 else the machine does matters little: whether twinmap lets workers work at once. The FMU is compiled by cc.
 """
@@ -195,6 +196,18 @@ def measure_troubled(bench, kind, samples):
         sys.exit("killed and continued, the run differs, or it had ended before")
 
 
+def measure_leaking(bench, kind, samples):
+    file = write_experiment(bench.folder, kind, samples, trouble=1)
+    file.write_text(file.read_text().replace("[1, 2.001]", "[1.0005, 1.0009]"))  # where no sample fails
+    process = bench.start(file, bench.folder / "whole", "--threads", "1")
+    watch = Watch(process, bench.mark)
+    watch.start()
+    bench.finish(process)
+    watch.join()
+    bench.check_nothing_is_left()
+    print(json.dumps({"samples": samples, "twinmap_peak_MB": round(watch.own), "worker_peak_MB": round(watch.workers)}, indent=1))
+
+
 def find_stage(provenance):
     """Wall time of the simulation of the test samples, s."""
     for key, value in provenance.items():
@@ -224,9 +237,11 @@ def main():
     twinmap, job, kind = sys.argv[1:4]
     with tempfile.TemporaryDirectory() as folder:
         bench = Bench(twinmap, Path(folder))
-        count = int(sys.argv[4]) if len(sys.argv) > 4 else 10000 if job == "troubled" else 5
+        count = int(sys.argv[4]) if len(sys.argv) > 4 else 10000 if job in ("troubled", "leaking") else 5
         if job == "troubled":
             measure_troubled(bench, kind, count)
+        elif job == "leaking":
+            measure_leaking(bench, kind, count)
         else:
             measure_scaling(bench, kind, count, **{"work" if job == "scaling" else "wait": 5e-3})
 

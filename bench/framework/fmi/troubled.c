@@ -14,6 +14,8 @@ enum { X, DX, A, WORK, TROUBLE, WAIT };
 const int model_states = 1, model_indicators = 0;
 const double model_step = 0.1;
 
+static void* volatile leaked; /* else the compiler would leave the leak out */
+
 static void work(double seconds) {
   struct timespec now;
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
@@ -28,7 +30,8 @@ Status model_initialise(Model* model) {
   work(model->real[WORK]);
   usleep((useconds_t)(1e6 * model->real[WAIT]));
   if (model->real[TROUBLE] > 0.5) {
-    memset(malloc(100000), 1, 100000);
+    leaked = malloc(100000);
+    memset(leaked, 1, 100000);
     const double fate = fmod(model->real[A] * 1e6, 1000.0);
     if (fate < 10.0) {
       abort();
