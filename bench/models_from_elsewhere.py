@@ -1,12 +1,13 @@
 """FMUs and programs at batch scale, through the command.
 
-Usage: models_from_elsewhere.py TWINMAP troubled fmu|program [SAMPLES]
-       models_from_elsewhere.py TWINMAP scaling fmu|program [ROUNDS]
+Usage: models_from_elsewhere.py TWINMAP troubled|leaking fmu|program [SAMPLES]
+       models_from_elsewhere.py TWINMAP scaling|waiting fmu|program [ROUNDS]
 troubled: SAMPLES (default: 10000) of a model that crashes for 1 %, hangs for 0.1 %, gives NaN for 1 % and leaks 100 kB a
 sample: fails unless every failure has its reason, nothing is left behind, and a run killed in the middle and continued
-gives the same bits; prints the most memory that twinmap and a worker took. scaling: 400 samples of 5 ms of processor time by
-one worker and by two, in alternation, and what is left of each sample's time beside the model's own, medians of ROUNDS
-(default: 5). The FMU is compiled by cc.
+gives the same bits; prints the most memory that twinmap and a worker took. leaking:
+the same memory where samples leak but never fail, so that only growth replaces a worker. scaling: 400 samples of 5 ms of processor time by
+one worker and by two, in alternation, medians of ROUNDS (default: 5). waiting: the same with samples that wait 5 ms, so that what
+else the machine does matters little: whether twinmap lets workers work at once. The FMU is compiled by cc.
 """
 import csv
 import json
@@ -31,7 +32,7 @@ VARIABLES = [
     ("x", 0, "Real", "output", "continuous", {"start": "1", "initial": "exact"}),
     ("der(x)", 1, "Real", "local", "continuous", {"derivative": "x"}),
     ("a", 2, "Real", "parameter", "fixed", {"start": "1"}), ("work", 3, "Real", "parameter", "fixed", {"start": "0"}),
-    ("trouble", 4, "Real", "parameter", "fixed", {"start": "0"}),
+    ("trouble", 4, "Real", "parameter", "fixed", {"start": "0"}), ("wait", 5, "Real", "parameter", "fixed", {"start": "0"}),
 ]
 EXPERIMENT = """
 name: elsewhere
@@ -53,7 +54,8 @@ evaluation: {{limit: false}}
 TIMEOUT = 2  # s; far above a sample's own time, though the machine be busy
 
 
-def write_experiment(folder, kind, troubled, samples):
+def write_experiment(folder, kind, samples, *, work=0.0, wait=0.0, trouble=0):
+    """The experiment's file; `work` and `wait` are the seconds that a sample takes of the processor's time and beside it."""
     if kind == "fmu":
         library = folder / "troubled.so"
         subprocess.run(["cc", "-shared", "-fPIC", "-O2", "-DFMI=2", f"-I{ROOT / 'framework/fmi/headers'}", f"-I{FMUS}",
@@ -62,11 +64,11 @@ def write_experiment(folder, kind, troubled, samples):
             "modelDescription.xml": build_fmus.describe_2(VARIABLES, "troubled", 0, "true"),
             "binaries/linux64/troubled.so": library.read_bytes()})
         model, limit = "fmu: {file: troubled.fmu, kind: co_simulation}", f", max_wall_time: {TIMEOUT}"
-        constants = "trouble: {value: 1, variable: trouble}" if troubled else "work: {value: 5e-3, variable: work}"
     else:
-        name = "troubled.py" if troubled else "working.py"
+        name = "troubled.py" if trouble else "working.py"
         model, limit = f"program: {{command: [/usr/bin/python3, {PROGRAMS / name}], timeout: {TIMEOUT}}}", ""
-        constants = "" if troubled else "work: {value: 5e-3, variable: work}"
+    values = {"work": work, "wait": wait, "trouble": trouble}
+    constants = ", ".join(f"{name}: {{value: {value}, variable: {name}}}" for name, value in values.items())
     file = folder / "elsewhere.yaml"
     file.write_text(EXPERIMENT.format(model=model, constants=constants, simulation=limit, samples=samples - 50))
     return file
@@ -168,7 +170,7 @@ def check_reasons(out):
 
 
 def measure_troubled(bench, kind, samples):
-    file = write_experiment(bench.folder, kind, True, samples)
+    file = write_experiment(bench.folder, kind, samples, trouble=1)
     begin = time.time()
     process = bench.start(file, bench.folder / "whole", "--threads", "2")
     watch = Watch(process, bench.mark)
@@ -194,6 +196,18 @@ def measure_troubled(bench, kind, samples):
         sys.exit("killed and continued, the run differs, or it had ended before")
 
 
+def measure_leaking(bench, kind, samples):
+    file = write_experiment(bench.folder, kind, samples, trouble=1)
+    file.write_text(file.read_text().replace("[1, 2.001]", "[1.0005, 1.0009]"))  # where no sample fails
+    process = bench.start(file, bench.folder / "whole", "--threads", "1")
+    watch = Watch(process, bench.mark)
+    watch.start()
+    bench.finish(process)
+    watch.join()
+    bench.check_nothing_is_left()
+    print(json.dumps({"samples": samples, "twinmap_peak_MB": round(watch.own), "worker_peak_MB": round(watch.workers)}, indent=1))
+
+
 def find_stage(provenance):
     """Wall time of the simulation of the test samples, s."""
     for key, value in provenance.items():
@@ -204,9 +218,9 @@ def find_stage(provenance):
     return None
 
 
-def measure_scaling(bench, kind, rounds):
+def measure_scaling(bench, kind, rounds, **load):
     samples = 400
-    file = write_experiment(bench.folder, kind, False, samples + 50)
+    file = write_experiment(bench.folder, kind, samples + 50, **load)
     times = {1: [], 2: []}
     for index in range(rounds):
         for workers in (1, 2):
@@ -216,17 +230,20 @@ def measure_scaling(bench, kind, rounds):
             print(workers, times[workers][-1], os.getloadavg()[0], flush=True)
     one, two = statistics.median(times[1]), statistics.median(times[2])
     print(json.dumps({"rounds": rounds, "one_worker_s": one, "two_workers_s": two, "ratio": one / two,
-                      "best_ratio": min(times[1]) / min(times[2]),
-                      "beside_the_model_us": (min(times[1]) / samples - 5e-3) * 1e6}, indent=1))
+                      "ratio_of_the_best": min(times[1]) / min(times[2]), "load": os.getloadavg()}, indent=1))
 
 
 def main():
     twinmap, job, kind = sys.argv[1:4]
     with tempfile.TemporaryDirectory() as folder:
         bench = Bench(twinmap, Path(folder))
-        measure = {"troubled": (measure_troubled, 10000), "scaling": (measure_scaling, 5)}
-        function, default = measure[job]
-        function(bench, kind, int(sys.argv[4]) if len(sys.argv) > 4 else default)
+        count = int(sys.argv[4]) if len(sys.argv) > 4 else 10000 if job in ("troubled", "leaking") else 5
+        if job == "troubled":
+            measure_troubled(bench, kind, count)
+        elif job == "leaking":
+            measure_leaking(bench, kind, count)
+        else:
+            measure_scaling(bench, kind, count, **{"work" if job == "scaling" else "wait": 5e-3})
 
 
 if __name__ == "__main__":

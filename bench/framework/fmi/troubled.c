@@ -1,5 +1,6 @@
 /* x = 1 + a t that crashes for 1 % of the samples, hangs for 0.1 %, gives NaN for 1 % and leaks 100 kB a sample, as
-   bench/framework/program/troubled.py does; or, with `work`, takes so much processor time (s). With wrapper.c of the tests. */
+   bench/framework/program/troubled.py does; or takes `work` seconds of processor time and waits `wait` seconds. With wrapper.c of
+   the tests. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,10 +9,12 @@
 
 #include "model.h"
 
-enum { X, DX, A, WORK, TROUBLE };
+enum { X, DX, A, WORK, TROUBLE, WAIT };
 
 const int model_states = 1, model_indicators = 0;
 const double model_step = 0.1;
+
+static void* volatile leaked; /* else the compiler would leave the leak out */
 
 static void work(double seconds) {
   struct timespec now;
@@ -25,8 +28,10 @@ static void work(double seconds) {
 void model_start(Model* model) { model->real[X] = 1.0; }
 Status model_initialise(Model* model) {
   work(model->real[WORK]);
+  usleep((useconds_t)(1e6 * model->real[WAIT]));
   if (model->real[TROUBLE] > 0.5) {
-    memset(malloc(100000), 1, 100000);
+    leaked = malloc(100000);
+    memset(leaked, 1, 100000);
     const double fate = fmod(model->real[A] * 1e6, 1000.0);
     if (fate < 10.0) {
       abort();

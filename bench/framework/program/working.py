@@ -1,4 +1,4 @@
-"""Takes the processor time that the parameter `work` says (s) for each sample."""
+"""Takes `work` seconds of processor time for each sample, and waits `wait` seconds."""
 import json
 import sys
 import time
@@ -10,5 +10,6 @@ for line in sys.stdin:
     end = time.process_time() + p["work"]
     while time.process_time() < end:
         pass
+    time.sleep(p["wait"])
     x = [1.0 + p["a"] * t for t in hello["times"]]
     print(json.dumps({"outputs": {"x": x}}), flush=True)
