@@ -72,7 +72,7 @@ class FmuSimulator::Worker {
     for (Eigen::Index i = 0; i < parameters.cols(); ++i) {
       statuses[i] = fmi::decodeAnswer(answers, begin, responses.col(i));
     }
-    last_ = answers.front() != 0;
+    noteAnswer(answers);
   }
 
   /// `answer`: the response and its derivatives. `limit`: s a sample.
@@ -83,15 +83,21 @@ class FmuSimulator::Worker {
     const Frame answers = process_.exchange(fmi::encodePoint(point), samples * limit + kGrace);
     std::size_t begin = 1;
     status = fmi::decodeAnswer(answers, begin, answer);
-    last_ = answers.front() != 0;
+    noteAnswer(answers);
   }
 
   /// Whether it has ended by itself after its last answer.
   bool hasEnded() const { return last_; }
+  bool isFresh() const { return fresh_; }
 
  private:
+  void noteAnswer(const Frame& answers) {
+    last_ = answers.front() != 0;
+    fresh_ = false;
+  }
+
   WorkerProcess process_;
-  bool last_ = false;
+  bool last_ = false, fresh_ = true;
 };
 
 /// What all clones share: the unpacked FMU, and processes that no clone uses at present.
@@ -124,8 +130,10 @@ class FmuSimulator::Shared {
         return worker;
       }
     }
-    return std::make_unique<Worker>(job_);
+    return makeWorker();
   }
+
+  std::unique_ptr<Worker> makeWorker() const { return std::make_unique<Worker>(job_); }
 
   void giveBack(std::unique_ptr<Worker> worker) {
     const std::lock_guard<std::mutex> guard(access_);
@@ -263,17 +271,25 @@ std::string FmuSimulator::describeDifferences() {
 
 template <class Exchange>
 void FmuSimulator::attempt(const Exchange& exchange, SampleStatus* statuses, Eigen::Index count) {
-  try {
-    if (worker_ == nullptr) {
-      worker_ = shared_->takeWorker();
-    }
-    exchange(*worker_);
-    if (worker_->hasEnded()) {
+  for (const bool fresh : {false, true}) {
+    bool may_repeat = false;
+    try {
+      if (worker_ == nullptr) {
+        worker_ = fresh ? shared_->makeWorker() : shared_->takeWorker();
+      }
+      may_repeat = !worker_->isFresh();
+      exchange(*worker_);
+      if (worker_->hasEnded()) {
+        worker_ = nullptr;
+      }
+      return;
+    } catch (const WorkerFailure& failure) {
       worker_ = nullptr;
+      std::fill(statuses, statuses + count, SampleStatus{false, failure.what(), failure.hasTimedOut()});
+      if (!may_repeat || failure.hasTimedOut()) {
+        return;
+      }
     }
-  } catch (const WorkerFailure& failure) {
-    worker_ = nullptr;  // the next sample starts another
-    std::fill(statuses, statuses + count, SampleStatus{false, failure.what(), failure.hasTimedOut()});
   }
 }
 

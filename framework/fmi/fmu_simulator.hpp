@@ -53,7 +53,8 @@ class FmuSimulator final : public Simulator {
   void simulateTogether(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
                         Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses);
 
-  /// `exchange(worker)`; a worker that fails there is its `count` statuses.
+  /// `exchange(worker)`, once more with a new worker where one fails that samples before may have harmed; a
+  /// failure is the `count` statuses.
   template <class Exchange>
   void attempt(const Exchange& exchange, SampleStatus* statuses, Eigen::Index count);
 

@@ -97,6 +97,16 @@ TEST_F(FmuProcesses, AHangEndsWithItsTimeAndMayBeTriedAgain) {
   EXPECT_NE(status.reason.find("within its time"), std::string::npos) << status.reason;
 }
 
+TEST_F(FmuProcesses, WhatSamplesBeforeDidToAProcessDecidesNothing) {
+  Eigen::MatrixXd points(2, 3);
+  points << 0.0, 8.0, 0.0, 1.0, 1.1, 1.2;
+  Eigen::MatrixXd responses(10, 3);
+  std::vector<SampleStatus> statuses(3);
+  simulator_.simulate(points, responses, statuses.data());
+  ASSERT_TRUE(statuses[1].ok) << statuses[1].reason;
+  EXPECT_NEAR(responses(9, 1), 1.1 * std::exp(-1.0), 1e-9);
+}
+
 TEST_F(FmuProcesses, AWorkerThatCannotStartIsAFailedSample) {
   setenv("TWINMAP_WORKER", "/nowhere/twinmap", 1);
   Eigen::MatrixXd response(10, 1);

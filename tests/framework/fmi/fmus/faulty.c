@@ -7,14 +7,17 @@
 #include "model.h"
 
 enum { X, DX, FAULT };
-enum { NONE, CRASHES, HANGS, IS_NAN, ERROR, FATAL, EXITS, PRINTS };
+enum { NONE, CRASHES, HANGS, IS_NAN, ERROR, FATAL, EXITS, PRINTS, AGES };
 
 const int model_states = 1, model_indicators = 0;
 const double model_step = 0.01;
 
+static int simulations; /* of this process */
+
 void model_start(Model* model) { model->real[X] = 1.0; }
 Status model_initialise(Model* model) {
   (void)model;
+  ++simulations;
   return STATUS_OK;
 }
 Status model_calc(Model* model) {
@@ -42,6 +45,11 @@ Status model_calc(Model* model) {
       exit(3);
     case PRINTS:
       puts("what an FMU prints disturbs nobody");
+      return STATUS_OK;
+    case AGES:
+      if (simulations > 1) {
+        abort();
+      }
       return STATUS_OK;
     default:
       return STATUS_OK;
