@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <fstream>
 
@@ -58,7 +59,9 @@ void ProgramProcess::end(int* status) {
 std::string ProgramProcess::exchange(const std::string& request, double timeout) {
   const Deadline deadline(timeout);
   const std::string text = request + "\n";
-  words_.forget();  // those of the sample before
+  if (answered_) {
+    words_.forget();  // those of the sample before
+  }
   for (std::size_t sent = 0; sent < text.size();) {
     const ssize_t count = write(input_, text.data() + sent, text.size() - sent);
     if (count > 0) {
@@ -73,6 +76,7 @@ std::string ProgramProcess::exchange(const std::string& request, double timeout)
   while (!takeLine(line)) {
     wait(false, deadline);
   }
+  answered_ = true;
   return line;
 }
 
@@ -131,9 +135,20 @@ void ProgramProcess::fail() {
   const bool ended = info.si_pid != 0;
   end(&status);
   words_.read();
+  keepRest();
   throw WorkerFailure(
       (ended ? describeEnd("the program", status) : std::string("the program closed its output")) +
       words_.describe());
+}
+
+/// What the program has written as answers and nobody has read: where it is none, its last words.
+void ProgramProcess::keepRest() {
+  char buffer[65536];  // what a pipe holds; processes that outlive the program may go on writing
+  const ssize_t count = read(output_, buffer, sizeof buffer);
+  received_.append(buffer, static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+  received_ += '\n';
+  for (std::string answer; takeLine(answer);) {
+  }
 }
 
 double ProgramProcess::getResidentSize() const {

@@ -46,6 +46,7 @@ class ProgramProcess {
   void readAnswer();
   bool takeLine(std::string& line);
   [[noreturn]] void fail();
+  void keepRest();
   void end(int* status);
 
   int input_ = -1, output_ = -1;
@@ -53,6 +54,7 @@ class ProgramProcess {
   pid_t process_ = -1;
   LastWords words_;
   std::string received_;
+  bool answered_ = false;  ///< once
 };
 
 }  // namespace twinmap
