@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "framework/results/aligned_rows.hpp"
 #include "framework/results/escape.hpp"
 #include "framework/spec/yaml/number_text.hpp"
 
@@ -11,28 +12,6 @@ namespace twinmap {
 namespace {
 
 using Row = std::vector<std::string>;
-
-constexpr std::size_t kGap = 2;  // spaces between columns
-
-/// Columns padded to their widths: the first `left` to the left, the others to the right.
-std::string alignRows(const std::vector<Row>& rows, std::size_t left) {
-  std::vector<std::size_t> widths(rows[0].size(), 0);
-  for (const Row& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      widths[i] = std::max(widths[i], row[i].size());
-    }
-  }
-  std::string text;
-  for (const Row& row : rows) {
-    std::string line;
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      const std::string padding(widths[i] - row[i].size(), ' ');
-      line += (i == 0 ? "" : std::string(kGap, ' ')) + (i < left ? row[i] + padding : padding + row[i]);
-    }
-    text += line.erase(line.find_last_not_of(' ') + 1) + "\n";
-  }
-  return text;
-}
 
 std::string toCell(double value, int digits) {
   return std::isnan(value) ? "-" : toShortText(value, digits);

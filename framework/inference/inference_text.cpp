@@ -6,6 +6,7 @@
 
 #include "framework/inference/answer.hpp"
 #include "framework/inverse_map/predictions.hpp"
+#include "framework/results/aligned_rows.hpp"
 #include "framework/results/escape.hpp"
 #include "framework/spec/parameter_box.hpp"
 #include "framework/spec/yaml/nearest_name.hpp"
@@ -47,29 +48,13 @@ std::string explainStatus(TrustStatus status, const Trust& trust, const std::vec
 
 using Row = std::vector<std::string>;
 
+constexpr const char* kIndent = "  ";
+
 Row makeRow(const ParameterSpec& parameter, double mean, double stddev) {
   constexpr int kDigits = 6, kStddevDigits = 3;
   return {parameter.name.text, parameter.unit, toShortText(mean, kDigits), toShortText(stddev, kStddevDigits),
           fmt::format("{} .. {}", toShortText(mean - kNormal95 * stddev, kDigits),
                       toShortText(mean + kNormal95 * stddev, kDigits))};
-}
-
-std::string align(const std::vector<Row>& rows) {
-  std::vector<std::size_t> widths(rows.front().size(), 0);
-  for (const Row& row : rows) {
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      widths[c] = std::max(widths[c], row[c].size());
-    }
-  }
-  std::string text;
-  for (const Row& row : rows) {
-    std::string line = " ";
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      line += fmt::format(" {:<{}}", row[c], widths[c] + 1);
-    }
-    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
-  }
-  return text;
 }
 
 /// How the refinement went; the table of its answer follows where it was accepted.
@@ -89,7 +74,7 @@ std::string makeEstimateTable(const Eigen::VectorXd& mean, const Eigen::VectorXd
     const auto i = static_cast<Index>(p);
     rows.push_back(makeRow(parameters[p], mean[i], stddev[i]));
   }
-  return align(rows);
+  return alignRows(rows, rows.front().size(), kIndent);
 }
 
 }  // namespace

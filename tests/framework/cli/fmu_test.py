@@ -1,6 +1,4 @@
 """Models that come as FMUs, by the command: TWINMAP_TEST_FMUS holds the FMUs of tests/framework/fmi/fmus."""
-import csv
-import io
 import os
 import signal
 import subprocess
@@ -8,9 +6,7 @@ import time
 import unittest
 from pathlib import Path
 
-import h5py
-
-from support import EXPERIMENTS, TWINMAP, OwnFolderTestCase, call, read_csv
+from support import EXPERIMENTS, TWINMAP, OwnFolderTestCase, call, find_processes, read_columns, read_csv, read_datasets
 
 FMUS = Path(os.environ["TWINMAP_TEST_FMUS"])
 FAULTY = """
@@ -38,36 +34,13 @@ outputs:
 """
 
 
-def read_table(text):
-    rows = list(csv.DictReader(io.StringIO(text)))
-    return {name: [float(row[name]) for row in rows] for name in rows[0]}
-
-
-def read_datasets(path):
-    found = {}
-    with h5py.File(path) as file:
-        file.visititems(lambda name, item: found.update({name: repr(item[()].tolist()).encode()}) if hasattr(item, "dtype") else None)
-    return found
-
-
-def find_processes(folder):
-    """Ids of living processes whose environment has TMPDIR at the folder."""
-    found = []
-    for entry in Path("/proc").iterdir():
-        try:
-            if entry.name.isdigit() and f"TMPDIR={folder}".encode() in (entry / "environ").read_bytes():
-                found.append(int(entry.name))
-        except OSError:
-            pass
-    return found
-
-
 class FmuTest(OwnFolderTestCase):
     def setUp(self):
         super().setUp()
         self.tmp = self.folder / "tmp"
         self.tmp.mkdir()
         self.environment = dict(os.environ, TMPDIR=str(self.tmp))
+        self.mark = f"TMPDIR={self.tmp}"
 
     def call(self, *arguments):
         return call(*arguments, env=self.environment)
@@ -88,7 +61,7 @@ class FmuTest(OwnFolderTestCase):
                 skipping = line.split(":")[0] in ("constants", "system", "initial", "outputs")
             if not skipping:
                 kept.append(line)
-        start = read_table(call("simulate", EXPERIMENTS / "two_beam" / "table1.yaml",
+        start = read_columns(call("simulate", EXPERIMENTS / "two_beam" / "table1.yaml",
                                 "features=[{samples: {outputs: [y, theta], start: 0, interval: 0.1, count: 2}}]").stdout)
         # values that need no more digits than the table has: the error is 1e-6 of the range
         return self.write("\n".join(kept) + TWO_BEAM.format(file=FMUS / f"{name}.fmu", kind=kind, y=start["y"][0],
@@ -96,9 +69,9 @@ class FmuTest(OwnFolderTestCase):
 
     def check_nothing_is_left(self):
         deadline = time.time() + 10
-        while time.time() < deadline and (find_processes(self.tmp) or list(self.tmp.iterdir())):
+        while time.time() < deadline and (find_processes(self.mark) or list(self.tmp.iterdir())):
             time.sleep(0.05)
-        self.assertEqual(find_processes(self.tmp), [])
+        self.assertEqual(find_processes(self.mark), [])
         self.assertEqual(list(self.tmp.iterdir()), [])
 
     def test_variables_lists_what_can_be_named(self):
@@ -111,12 +84,12 @@ class FmuTest(OwnFolderTestCase):
 
     def test_all_ways_follow_the_built_in_model(self):
         point = ["parameters.k_y=7", "parameters.d_theta=1.8e-4"]
-        exact = read_table(call("simulate", EXPERIMENTS / "two_beam" / "table1.yaml", *point).stdout)
+        exact = read_columns(call("simulate", EXPERIMENTS / "two_beam" / "table1.yaml", *point).stdout)
         for name in ("two_beam_2", "two_beam_3"):
             for kind in ("co_simulation", "model_exchange"):
                 result = self.call("simulate", self.write_two_beam(name, kind), *point)
                 self.assertEqual(result.returncode, 0, result.stderr)
-                found = read_table(result.stdout)
+                found = read_columns(result.stdout)
                 for output in ("y", "theta"):
                     width = max(exact[output]) - min(exact[output])
                     error = max(abs(a - b) for a, b in zip(found[output], exact[output]))
@@ -136,7 +109,7 @@ class FmuTest(OwnFolderTestCase):
     def test_what_an_fmu_prints_disturbs_nobody(self):
         result = self.call("simulate", self.write_faulty(6.9, 7.1))
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertAlmostEqual(read_table(result.stdout)["x"][-1], 0.36787944, 6)
+        self.assertAlmostEqual(read_columns(result.stdout)["x"][-1], 0.36787944, 6)
 
     def test_a_run_survives_crashes_and_gives_the_same_bits_with_any_number_of_threads(self):
         file = self.write_faulty(-1.4, 1.4)  # rounded by the FMU: a third of the samples crash, but not the centre
@@ -147,7 +120,7 @@ class FmuTest(OwnFolderTestCase):
             self.assertEqual(result.returncode, 0, result.stderr)
             samples[threads] = read_datasets(out / "samples.h5")
         self.assertEqual(samples[1], samples[2])
-        self.assertTrue(any(b"crashed" in data for data in samples[1].values()))
+        self.assertTrue(any("crashed" in data for data in samples[1].values()))
         self.check_nothing_is_left()
 
     def test_nothing_is_left_when_twinmap_is_killed_while_the_fmu_hangs(self):
@@ -155,9 +128,9 @@ class FmuTest(OwnFolderTestCase):
         child = subprocess.Popen([TWINMAP, "simulate", str(file), "simulation.max_wall_time=1000"], env=self.environment,
                                  stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         deadline = time.time() + 20
-        while time.time() < deadline and len(find_processes(self.tmp)) < 3:  # twinmap, the guard, the worker
+        while time.time() < deadline and len(find_processes(self.mark)) < 3:  # twinmap, the guard, the worker
             time.sleep(0.05)
-        self.assertGreaterEqual(len(find_processes(self.tmp)), 3)
+        self.assertGreaterEqual(len(find_processes(self.mark)), 3)
         child.send_signal(signal.SIGKILL)
         child.wait()
         self.check_nothing_is_left()

@@ -1,6 +1,4 @@
 """Models that are programs, by the command."""
-import csv
-import io
 import os
 import signal
 import subprocess
@@ -8,9 +6,7 @@ import time
 import unittest
 from pathlib import Path
 
-import h5py
-
-from support import EXPERIMENTS, TWINMAP, OwnFolderTestCase, call
+from support import EXPERIMENTS, TWINMAP, OwnFolderTestCase, call, find_processes, read_columns, read_datasets
 
 PLANT = EXPERIMENTS / "python_plant" / "python_plant.yaml"
 FAULTY = Path(os.environ["TWINMAP_SOURCE_DIR"]) / "tests/framework/program/programs/faulty.py"
@@ -32,18 +28,6 @@ design: {{train: {{samples: 40}}, test: {{samples: 20}}}}
 """
 
 
-def read_table(text):
-    rows = list(csv.DictReader(io.StringIO(text)))
-    return {name: [float(row[name]) for row in rows] for name in rows[0]}
-
-
-def read_samples(path):
-    found = {}
-    with h5py.File(path) as file:
-        file.visititems(lambda name, item: found.update({name: repr(item[()].tolist())}) if hasattr(item, "dtype") else None)
-    return found
-
-
 class ProgramTest(OwnFolderTestCase):
     def setUp(self):
         super().setUp()
@@ -56,14 +40,7 @@ class ProgramTest(OwnFolderTestCase):
         return file
 
     def find_workers(self):
-        found = []
-        for entry in Path("/proc").iterdir():
-            try:
-                if entry.name.isdigit() and f"MARK={self.mark}".encode() in (entry / "environ").read_bytes():
-                    found.append(int(entry.name))
-            except OSError:
-                pass
-        return found
+        return find_processes(f"MARK={self.mark}")
 
     def check_nothing_is_left(self):
         deadline = time.time() + 10
@@ -73,10 +50,10 @@ class ProgramTest(OwnFolderTestCase):
 
     def test_the_plant_in_python_follows_the_built_in_model(self):
         point = ["parameters.k_y=7", "parameters.d_theta=1.8e-4"]
-        exact = read_table(call("simulate", EXPERIMENTS / "two_beam" / "best.yaml", *point).stdout)
+        exact = read_columns(call("simulate", EXPERIMENTS / "two_beam" / "best.yaml", *point).stdout)
         result = call("simulate", PLANT, *point)
         self.assertEqual(result.returncode, 0, result.stderr)
-        found = read_table(result.stdout)
+        found = read_columns(result.stdout)
         for output in ("y", "theta"):
             width = max(exact[output]) - min(exact[output])
             error = max(abs(a - b) for a, b in zip(found[output], exact[output]))
@@ -106,7 +83,7 @@ class ProgramTest(OwnFolderTestCase):
         self.check_nothing_is_left()
         result = call("run", file, *QUICK, "--threads", 2, "--out", broken, "--quiet")
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertEqual(read_samples(whole / "samples.h5"), read_samples(broken / "samples.h5"))
+        self.assertEqual(read_datasets(whole / "samples.h5"), read_datasets(broken / "samples.h5"))
         self.assertIn("crashed: Aborted; it said: the plant is on fire", (whole / "failures.csv").read_text())
         self.check_nothing_is_left()
 

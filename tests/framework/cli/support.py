@@ -1,11 +1,14 @@
 """What the tests of the command share."""
 import csv
 import functools
+import io
 import os
 import subprocess
 import tempfile
 import unittest
 from pathlib import Path
+
+import h5py
 
 TWINMAP = os.environ["TWINMAP"]
 EXPERIMENTS = Path(os.environ["TWINMAP_SOURCE_DIR"]) / "experiments"
@@ -33,6 +36,32 @@ def run_once(file, *arguments):
 def read_csv(path):
     with open(path, newline="") as file:
         return list(csv.DictReader(file))
+
+
+def read_columns(text):
+    """Name -> numbers, of CSV."""
+    rows = list(csv.DictReader(io.StringIO(text)))
+    return {name: [float(row[name]) for row in rows] for name in rows[0]}
+
+
+def read_datasets(path):
+    """Name -> all digits of its values, of an HDF5 file; NaNs are equal."""
+    found = {}
+    with h5py.File(path) as file:
+        file.visititems(lambda name, item: found.update({name: repr(item[()].tolist())}) if hasattr(item, "dtype") else None)
+    return found
+
+
+def find_processes(variable):
+    """Ids of living processes that have NAME=VALUE in their environment."""
+    found = []
+    for entry in Path("/proc").iterdir():
+        try:
+            if entry.name.isdigit() and variable.encode() in (entry / "environ").read_bytes():
+                found.append(int(entry.name))
+        except OSError:
+            pass
+    return found
 
 
 def write_csv(path, names, columns):
