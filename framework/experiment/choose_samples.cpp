@@ -33,7 +33,7 @@ double predictTrainingSeconds(const Surrogate& surrogate, Index samples) {
   constexpr double kWithSlopes = 3.7e-7, kWithout = 2.5e-6;  // s
   const Index slopes = surrogate.unknown * countSlopePoints(samples, surrogate.unknown);
   double seconds = 0.0;
-  for (const gp::SharedProcess& window : surrogate.forward.windows) {
+  for (const gp::SharedProcess& window : surrogate.forward->windows) {
     const bool has_slopes = window.getStructure().slopes;
     const auto learnt = static_cast<double>(samples + (has_slopes ? slopes : 0));
     seconds += (has_slopes ? kWithSlopes : kWithout) * learnt * learnt;

@@ -91,7 +91,8 @@ OnlineFit fitOnline(const OnlineContext& context, const GpMap& map) {
   OnlineFit fit{{compressMap(map), {}}};
   try {
     const TrustTraining training = makeTrustTraining(context);
-    ForwardSurrogate surrogate = trainInterruptibly([&] { return fitSurrogate(training, context.control); });
+    auto surrogate = std::make_shared<const ForwardSurrogate>(
+        trainInterruptibly([&] { return fitSurrogate(training, context.control); }));
     fit.model.trust = fitTrustModel(training, std::move(surrogate), OnlineMap(fit.model.map),
                                     context.experiment.trust.level, context.control.threads);
   } catch (const std::invalid_argument& error) {

@@ -38,7 +38,7 @@ OnlineTimes timeOnlineUpdates(const OnlineModel& model, const LabelledFeatures& 
     const auto known = testing.inputs.col(i);
     const Inference& inferred = map.infer(features, known, inferring);
     if (model.trust) {
-      judge(*model.trust, features, known, inferred, *judging);
+      judge(*model.trust, features, known, inferred, inferring.findExplanation(), *judging);
     }
   });
 }

@@ -39,8 +39,8 @@ std::vector<RefinementTask> makeTasks(const RefinementContext& context) {
     const Inference& inference = map.infer(test.features.col(i), answer.known, inferring);
     answer.mean = inference.mean;
     if (trust != nullptr) {
-      judge(*trust, test.features.col(i), answer.known, inference, *judging);
-      answer.explanation = trust->makeSampledPoint(judging->explanation.point);
+      judge(*trust, test.features.col(i), answer.known, inference, inferring.findExplanation(), *judging);
+      answer.explanation = trust->makeSampledPoint(judging->explanation->point);
     }
     tasks.push_back(makeRefinementTask(context.experiment.model, trust, test.features.col(i), answer));
   }

@@ -37,7 +37,7 @@ RefinementTask makeRefinementTask(const ModelSpec& model, const TrustModel* trus
   if (answer.explanation.size() > 0) {
     task.starts.push_back({"explanation", answer.explanation});
   }
-  const ForwardSurrogate& forward = trust->forward;
+  const ForwardSurrogate& forward = *trust->forward;
   const std::vector<Index> similar = rankSimulations(forward, forward.calcScores(features));
   for (std::size_t rank = 0; rank < std::min(kTrainingStarts, similar.size()); ++rank) {
     task.starts.push_back(

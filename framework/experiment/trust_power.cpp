@@ -146,10 +146,10 @@ class SurrogateJudge final : public Judge {
       : trust_(trust),
         explanation_(explain(map, trust, at)),
         absorption_(explanation_.jacobian),
-        centered_(at.features - trust.forward.center) {}
+        centered_(at.features - trust.forward->center) {}
 
   double calcPValue(const VectorXd& moved) const override {
-    const VectorXd scores = trust_.forward.projection * moved;
+    const VectorXd scores = trust_.forward->projection * moved;
     const VectorXd innovation =
         explanation_.innovation + absorption_.remove(linalg::solveLower(explanation_.lower, scores));
     VectorXd residual;
@@ -163,8 +163,9 @@ class SurrogateJudge final : public Judge {
   static ScoreExplanation explain(const OnlineMap& map, const TrustModel& trust, const Neighbourhood& at) {
     OnlineMap::Workspace inferring(map);
     TrustWorkspace judging(trust);
-    judge(trust, at.features, at.known, map.inferMean(at.features, at.known, inferring), judging);
-    return judging.explanation;
+    const Inference& inference = map.inferMean(at.features, at.known, inferring);
+    judge(trust, at.features, at.known, inference, inferring.findExplanation(), judging);
+    return *judging.explanation;
   }
 
   const TrustModel& trust_;

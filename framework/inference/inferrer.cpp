@@ -90,8 +90,9 @@ InferredMeasurement Inferrer::infer(const Eigen::VectorXd& features, const Eigen
   inferred.inference = map_.infer(features, known, workspace.map);
   inferred.map_is_honest = map_.isHonest();
   if (trust_) {
-    inferred.trust = judge(*trust_, features, known, inferred.inference, *workspace.trust);
-    inferred.explanation = trust_->makeSampledPoint(workspace.trust->explanation.point);
+    inferred.trust = judge(*trust_, features, known, inferred.inference, workspace.map.findExplanation(),
+                           *workspace.trust);
+    inferred.explanation = trust_->makeSampledPoint(workspace.trust->explanation->point);
   }
   return inferred;
 }

@@ -58,7 +58,8 @@ void fitReferences(const TrustTraining& training, const OnlineMap& map, int thre
     for (Index i = first; i < std::min(count, first + kChunk); ++i) {
       const auto features = training.measured.col(i);
       const auto known = training.known.col(i);
-      const Trust trust = judge(model, features, known, map.inferMean(features, known, inferring), judging);
+      const Inference& inference = map.inferMean(features, known, inferring);
+      const Trust trust = judge(model, features, known, inference, inferring.findExplanation(), judging);
       chi_squares[i] = trust.chi_square;
       bursts[i] = trust.burst.score;
       distances[i] = trust.distance;
@@ -93,15 +94,15 @@ ReferenceDistribution calcNoiseBursts(const std::vector<ResidualRun>& runs, Inde
 
 }  // namespace
 
-TrustModel fitTrustModel(const TrustTraining& training, ForwardSurrogate surrogate, const OnlineMap& map,
-                         double level, int threads) {
+TrustModel fitTrustModel(const TrustTraining& training, std::shared_ptr<const ForwardSurrogate> surrogate,
+                         const OnlineMap& map, double level, int threads) {
   if (training.measured.cols() == 0) {
     throw std::invalid_argument("a trust model needs simulated measurements");
   }
   TrustModel model;
   model.forward = std::move(surrogate);
   model.space =
-      fitResidualSpace(training.infos, training.clean_features, training.noise_covariance, model.forward);
+      fitResidualSpace(training.infos, training.clean_features, training.noise_covariance, *model.forward);
   model.cloud = makeCloud(map, training, training.points.bottomRows(training.known.rows()));
   model.center = calcBoxCenter(training.sampled);
   model.half_width = 0.5 * calcWidths(training.sampled);

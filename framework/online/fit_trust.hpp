@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "framework/features/feature_block.hpp"
@@ -27,7 +28,7 @@ struct TrustTraining {
 /// first of them: judges every simulated measurement as if it were one. The surrogate must not have seen
 /// their simulations. Throws std::invalid_argument for a feature without noise, and where there are no
 /// simulated measurements. The result does not depend on the threads. Cost: that of s inferences.
-TrustModel fitTrustModel(const TrustTraining& training, ForwardSurrogate surrogate, const OnlineMap& map,
-                         double level, int threads);
+TrustModel fitTrustModel(const TrustTraining& training, std::shared_ptr<const ForwardSurrogate> surrogate,
+                         const OnlineMap& map, double level, int threads);
 
 }  // namespace twinmap

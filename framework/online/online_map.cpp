@@ -24,6 +24,11 @@ OnlineMap::Workspace::Workspace(const OnlineMap& map)
           },
           map.kind_)) {}
 
+const ScoreExplanation* OnlineMap::Workspace::findExplanation() const {
+  const auto* surrogate = std::get_if<OnlineSurrogate::Workspace>(&kind);
+  return surrogate != nullptr ? surrogate->findExplanation() : nullptr;
+}
+
 const MatrixXd& OnlineMap::getResidualCorrelation() const {
   if (const auto* processes = std::get_if<OnlineProcesses>(&kind_)) {
     return processes->getMap().residual_correlation;

@@ -28,6 +28,10 @@ class OnlineMap {
    public:
     explicit Workspace(const OnlineMap& map);
 
+    /// Where the map is a surrogate, the point that explains the last measurement best by it
+    /// (ScoreInversion::findExplanation()); else null.
+    const ScoreExplanation* findExplanation() const;
+
    private:
     friend class OnlineMap;
     std::variant<OnlineProcesses::Workspace, OnlineSurrogate::Workspace> kind;

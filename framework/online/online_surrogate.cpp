@@ -10,7 +10,7 @@ const Inference& OnlineSurrogate::infer(const Eigen::Ref<const VectorXd>& featur
                                         const Eigen::Ref<const VectorXd>& known, Workspace& workspace) const {
   Inference& inference = workspace.inference;
   inference.inputs = makeInputs(features, known);
-  const Index r = surrogate_->forward.getScoreCount();
+  const Index r = surrogate_->forward->getScoreCount();
   surrogate_->answer(workspace.inversion.infer(inference.inputs.head(r), inference.inputs.tail(known.size())),
                      inference.mean, inference.stddev);
   inference.limit_stddev = surrogate_->calcLimit(workspace.inversion.getNoiseStddev());
@@ -19,8 +19,8 @@ const Inference& OnlineSurrogate::infer(const Eigen::Ref<const VectorXd>& featur
 
 MatrixXd OnlineSurrogate::makeInputs(const MatrixXd& features, const MatrixXd& known) const {
   const Index q = known.rows();
-  MatrixXd inputs(surrogate_->forward.getScoreCount() + q, features.cols());
-  inputs.topRows(inputs.rows() - q) = surrogate_->forward.calcScores(features);
+  MatrixXd inputs(surrogate_->forward->getScoreCount() + q, features.cols());
+  inputs.topRows(inputs.rows() - q) = surrogate_->forward->calcScores(features);
   if (q > 0) {
     inputs.bottomRows(q) = surrogate_->half_width.tail(q).cwiseInverse().asDiagonal() *
                            (known.colwise() - surrogate_->center.tail(q));

@@ -125,6 +125,14 @@ void makeStart(const TrustModel& model, const Eigen::Ref<const VectorXd>& known,
   start = (start - model.center).cwiseQuotient(model.half_width);
 }
 
+const ScoreExplanation& explain(const TrustModel& model, const Eigen::Ref<const VectorXd>& known,
+                                const Inference& inference, TrustWorkspace& workspace) {
+  makeStart(model, known, inference, workspace.start);
+  workspace.scores.noalias() = model.forward->projection * workspace.centered;
+  return workspace.inversion.explain(workspace.scores, workspace.start.tail(known.size()),
+                                     workspace.start.head(model.unknown));
+}
+
 }  // namespace
 
 const char* toString(TrustStatus status) {
@@ -155,13 +163,12 @@ double TrainingCloud::calcDistance(const Eigen::Ref<const VectorXd>& at, VectorX
 }
 
 Trust judge(const TrustModel& model, const Eigen::Ref<const VectorXd>& features,
-            const Eigen::Ref<const VectorXd>& known, const Inference& inference, TrustWorkspace& workspace) {
-  makeStart(model, known, inference, workspace.start);
-  workspace.centered = features - model.forward.center;
-  workspace.scores.noalias() = model.forward.projection * workspace.centered;
-  workspace.inversion.explain(workspace.scores, workspace.start.tail(known.size()),
-                              workspace.start.head(model.unknown));
-  model.space.calcResidual(workspace.centered, workspace.explanation.innovation, workspace.residual);
+            const Eigen::Ref<const VectorXd>& known, const Inference& inference,
+            const ScoreExplanation* explained, TrustWorkspace& workspace) {
+  workspace.centered = features - model.forward->center;
+  workspace.explanation =
+      explained != nullptr ? explained : &explain(model, known, inference, workspace);
+  model.space.calcResidual(workspace.centered, workspace.explanation->innovation, workspace.residual);
   Trust trust;
   compareWithSimulated(model, workspace.residual, trust);
   trust.distance = model.cloud.calcDistance(inference.inputs, workspace.distance);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -61,7 +62,7 @@ struct TrainingCloud {
 /// Tells whether a measurement is one that the simulator could have given. All but the level is found from
 /// simulations; the reference distributions include whatever the approximations leave.
 struct TrustModel {
-  ForwardSurrogate forward;
+  std::shared_ptr<const ForwardSurrogate> forward;  ///< that of the map, if it is a surrogate
   ResidualSpace space;
   std::vector<ResidualRun> runs;
   ReferenceDistribution chi_square, burst;  ///< of simulated measurements, judged with the surrogate
@@ -80,21 +81,22 @@ struct TrustModel {
 
 /// The buffers of one thread; the model must outlive them.
 struct TrustWorkspace {
-  explicit TrustWorkspace(const TrustModel& model) : inversion(model.forward, model.unknown) {}
+  explicit TrustWorkspace(const TrustModel& model) : inversion(*model.forward, model.unknown) {}
   TrustWorkspace(const TrustWorkspace&) = delete;
   TrustWorkspace& operator=(const TrustWorkspace&) = delete;
 
   ScoreInversion inversion;
-  const ScoreExplanation& explanation = inversion.getExplanation();  ///< of the measurement judged last
+  const ScoreExplanation* explanation = nullptr;  ///< of the measurement judged last, as long as `explained` lives
   Eigen::VectorXd start, centered, scores, residual, distance;       // the start is normalised
 };
 
 /// Judges an inference from features (d, finite) and known inputs (q), by the point of the box that explains
-/// them best according to the surrogate. Cost: that of ScoreInversion and of one pass over the training
-/// cloud; about 1 ms for 200 features.
+/// them best according to the surrogate: `explained`, where the map found it (OnlineMap::Workspace), else
+/// searched from the inference. Cost: that of one pass over the training cloud, and of the search, about 1 ms
+/// for 200 features.
 Trust judge(const TrustModel& model, const Eigen::Ref<const Eigen::VectorXd>& features,
             const Eigen::Ref<const Eigen::VectorXd>& known, const Inference& inference,
-            TrustWorkspace& workspace);
+            const ScoreExplanation* explained, TrustWorkspace& workspace);
 
 /// Sets residual, statistics and p-values of `trust` from what the surrogate leaves (ResidualSpace).
 void compareWithSimulated(const TrustModel& model, const Eigen::VectorXd& residual, Trust& trust);

@@ -39,7 +39,7 @@ std::vector<ResidualRun> unflatten(const std::vector<std::int64_t>& flat) {
 }
 
 void writeTrust(Hdf5Writer& file, const std::string& group, const TrustModel& trust) {
-  writeSurrogateGroup(file, group + "/forward", trust.forward);
+  writeSurrogateGroup(file, group + "/forward", *trust.forward);
   file.writeSamples(group + "/space/whitener", trust.space.whitener);
   file.writeSamples(group + "/space/directions", trust.space.directions);
   file.writeSamples(group + "/space/unlearnt", trust.space.unlearnt);
@@ -61,7 +61,7 @@ void writeTrust(Hdf5Writer& file, const std::string& group, const TrustModel& tr
 
 TrustModel readTrust(const Hdf5Reader& file, const std::string& group) {
   TrustModel trust;
-  trust.forward = readSurrogateGroup(file, group + "/forward");
+  trust.forward = std::make_shared<const ForwardSurrogate>(readSurrogateGroup(file, group + "/forward"));
   trust.space = {file.readSamples(group + "/space/whitener"), file.readSamples(group + "/space/directions"),
                  file.readSamples(group + "/space/unlearnt"),
                  file.readVector(group + "/space/unlearnt_stddev")};

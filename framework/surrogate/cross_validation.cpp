@@ -59,14 +59,14 @@ ForwardSamples selectSimulations(const ForwardSamples& samples, const std::vecto
 Surrogate fitSimilar(const Surrogate& whole, const ForwardSamples& samples, const ForwardChoices& choices,
                      const TrainingControl& control) {
   Surrogate surrogate;
-  surrogate.forward = fitForward(samples, choices, control).surrogate;
+  surrogate.forward = std::make_shared<const ForwardSurrogate>(fitForward(samples, choices, control).surrogate);
   surrogate.center = whole.center;
   surrogate.half_width = whole.half_width;
   surrogate.parameters = whole.parameters;
   surrogate.unknown = whole.unknown;
   surrogate.validation.stddev_scale = VectorXd::Ones(whole.parameters);
   surrogate.validation.limit_scale =
-      calcLimitScale(surrogate.forward, samples, whole.unknown).head(whole.parameters);
+      calcLimitScale(*surrogate.forward, samples, whole.unknown).head(whole.parameters);
   return surrogate;
 }
 

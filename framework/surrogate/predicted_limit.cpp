@@ -19,8 +19,7 @@ MatrixXd calcNoiseInformation(const ForwardSurrogate& surrogate, const VectorXd&
   for (const gp::SharedProcess& process : surrogate.windows) {
     const Index count = process.getFunctionCount();
     VectorXd values(count);
-    process.evaluate(point, values, workspace);
-    process.derive(point, jacobian.middleRows(first, count), workspace);
+    process.linearize(point, values, jacobian.middleRows(first, count), workspace);
     first += count;
   }
   return jacobian.transpose() * jacobian;

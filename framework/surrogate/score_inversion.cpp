@@ -104,17 +104,20 @@ std::vector<VectorXd> ScoreInversion::findStarts() const {
   return starts;
 }
 
+/// Values and derivatives, for a trial is nearly always accepted.
 void ScoreInversion::evaluate(const Metric& metric, const VectorXd& unknown) {
-  if (metric.counts.empty() && evaluated_ && point_.head(unknown_) == unknown) {
+  const Evaluated wanted = metric.counts.empty() ? Evaluated::kAll : Evaluated::kLeading;
+  if (evaluated_ >= wanted && point_.head(unknown_) == unknown) {
     return;
   }
-  evaluated_ = metric.counts.empty();
+  evaluated_ = wanted;
   point_.head(unknown_) = unknown;
   Index first = 0;
   for (std::size_t w = 0; w < workspaces_.size(); ++w) {
     const gp::SharedProcess& process = surrogate_.windows[w];
     if (const Index count = metric.count(w, process); count > 0) {
-      process.evaluate(point_, values_.segment(first, count), workspaces_[w]);
+      process.linearize(point_, values_.segment(first, count), jacobian_.middleRows(first, count),
+                        workspaces_[w]);
     }
     first += process.getFunctionCount();
   }
@@ -131,15 +134,8 @@ double ScoreInversion::calcObjective(const Metric& metric, const VectorXd& unkno
   return residual_.squaredNorm() + kHalfWidthInformation * unknown.squaredNorm();
 }
 
-void ScoreInversion::linearize(const Metric& metric) {
-  Index first = 0;
-  for (std::size_t w = 0; w < workspaces_.size(); ++w) {
-    const gp::SharedProcess& process = surrogate_.windows[w];
-    if (const Index count = metric.count(w, process); count > 0) {
-      process.derive(point_, jacobian_.middleRows(first, count), workspaces_[w]);
-    }
-    first += process.getFunctionCount();
-  }
+/// At the point evaluated last.
+void ScoreInversion::makeNormalEquations(const Metric& metric) {
   if (metric.diagonal) {
     scaled_jacobian_ = jacobian_.array().colwise() * metric.weights;
   } else {
@@ -149,41 +145,53 @@ void ScoreInversion::linearize(const Metric& metric) {
   gradient_.noalias() = scaled_jacobian_.transpose() * residual_;
 }
 
-bool ScoreInversion::step(const Metric& metric, VectorXd& unknown, double& objective, double& damping) {
+bool ScoreInversion::step(const Metric& metric, VectorXd& unknown, Descent& descent) {
   constexpr double kFactor = 10.0, kMostDamping = 1e6, kLeastDamping = 1e-6;
   const VectorXd downhill = gradient_ - kHalfWidthInformation * unknown;
-  for (; damping < kMostDamping; damping *= kFactor) {
+  for (; descent.damping < kMostDamping; descent.damping *= kFactor) {
     MatrixXd damped = normal_;
-    damped.diagonal().array() += damping * damped.diagonal().array() + kHalfWidthInformation;
+    damped.diagonal().array() += descent.damping * damped.diagonal().array() + kHalfWidthInformation;
     const VectorXd trial =
         (unknown + linalg::solvePositiveDefinite(damped, downhill)).cwiseMax(-1.0).cwiseMin(1.0);
     const double tried = calcObjective(metric, trial);
-    if (tried < objective) {
+    if (tried < descent.objective) {
       unknown = trial;
-      objective = tried;
-      damping = std::max(damping / kFactor, kLeastDamping);
+      descent.objective = tried;
+      descent.damping = std::max(descent.damping / kFactor, kLeastDamping);
       return true;
     }
   }
   return false;
 }
 
-double ScoreInversion::improve(const Metric& metric, int steps, VectorXd& unknown) {
-  constexpr double kGain =
-      0.05;  // a step of less than a quarter of a standard deviation, and it converges fast
-  double damping = 1e-3;
-  double objective = calcObjective(metric, unknown);
-  for (int i = 0; i < steps; ++i) {
-    linearize(metric);
-    const double before = objective;
-    if (!step(metric, unknown, objective, damping)) {
-      return calcObjective(metric, unknown);
-    }
-    if (before - objective < kGain) {
-      break;
-    }
+/// False where the search has converged: a step would gain little, as the linear model foretells, or did.
+bool ScoreInversion::advance(const Metric& metric, VectorXd& unknown, Descent& descent) {
+  constexpr double kGain = 0.01;  // a step of a tenth of a standard deviation: the linear model tells the rest
+  makeNormalEquations(metric);
+  if (foretellGain(unknown) < kGain) {
+    return false;
   }
-  return objective;
+  const double before = descent.objective;
+  if (!step(metric, unknown, descent)) {
+    descent.objective = calcObjective(metric, unknown);
+    return false;
+  }
+  return before - descent.objective >= kGain;
+}
+
+/// Of an undamped step that no bound stops.
+double ScoreInversion::foretellGain(const VectorXd& unknown) const {
+  const VectorXd downhill = gradient_ - kHalfWidthInformation * unknown;
+  MatrixXd hessian = normal_;
+  hessian.diagonal().array() += kHalfWidthInformation;
+  return downhill.dot(linalg::solvePositiveDefinite(hessian, downhill));
+}
+
+double ScoreInversion::improve(const Metric& metric, int steps, VectorXd& unknown) {
+  Descent descent{calcObjective(metric, unknown)};
+  for (int i = 0; i < steps && advance(metric, unknown, descent); ++i) {
+  }
+  return descent.objective;
 }
 
 void ScoreInversion::updateMetric(const VectorXd& unknown, Metric& metric) {
@@ -204,7 +212,7 @@ void ScoreInversion::updateMetric(const VectorXd& unknown, Metric& metric) {
 }
 
 std::vector<ScoreInversion::Minimum> ScoreInversion::searchRoughly(const std::vector<VectorXd>& starts) {
-  constexpr int kFirstSteps = 3, kSteps = 9;
+  constexpr int kFirstSteps = 3, kSteps = 12;
   constexpr double kOnTheWay = 0.15, kApart = 0.05;  // in half widths, after the first steps and at the end
   constexpr double kHopeless = 30.0;                 // e^-15 of the evidence, and errors of the rough metric
   std::vector<Minimum> minima;
@@ -216,13 +224,15 @@ std::vector<ScoreInversion::Minimum> ScoreInversion::searchRoughly(const std::ve
   for (const VectorXd& start : starts) {
     Minimum minimum;
     minimum.point = start;
-    improve(leading_, kFirstSteps, minimum.point);
-    if (is_apart(minimum.point, kOnTheWay)) {
-      improve(leading_, kSteps, minimum.point);
-      if (is_apart(minimum.point, kApart)) {
-        minimum.objective = calcObjective(rough_, minimum.point);
-        minima.push_back(minimum);
-      }
+    Descent descent{calcObjective(leading_, minimum.point)};
+    bool moves = true, apart = true;
+    for (int i = 0; i < kSteps && moves && apart; ++i) {
+      moves = advance(leading_, minimum.point, descent);
+      apart = is_apart(minimum.point, i < kFirstSteps ? kOnTheWay : kApart);
+    }
+    if (apart) {
+      minimum.objective = calcObjective(rough_, minimum.point);
+      minima.push_back(minimum);
     }
   }
   std::stable_sort(minima.begin(), minima.end(),
@@ -267,18 +277,23 @@ bool ScoreInversion::widen(const Metric& metric, const VectorXd& unknown) {
 /// `may_widen`: where a measurement is to be explained at any cost, not where it is to be judged.
 void ScoreInversion::refine(Minimum& minimum, bool may_widen) {
   constexpr int kFirstSteps = 5, kLastSteps = 3, kMostWidenings = 4;
+  constexpr double kStays = 0.01;  // in half widths: errors vary over some tenths
   std::fill(widening_.begin(), widening_.end(), 1.0);
   Metric metric;
-  for (const int steps : {kFirstSteps, kLastSteps}) {
+  const VectorXd before = minimum.point;
+  updateMetric(before, metric);
+  minimum.objective = improve(metric, kFirstSteps, minimum.point);
+  if ((minimum.point - before).cwiseAbs().maxCoeff() > kStays) {
     updateMetric(minimum.point, metric);
-    minimum.objective = improve(metric, steps, minimum.point);
+    minimum.objective = improve(metric, kLastSteps, minimum.point);
   }
   minimum.residual = residual_;
   for (int i = 0; may_widen && i < kMostWidenings && widen(metric, minimum.point); ++i) {
     updateMetric(minimum.point, metric);
     minimum.objective = improve(metric, kFirstSteps, minimum.point);
+    minimum.widened = true;
   }
-  linearize(metric);
+  makeNormalEquations(metric);
   minimum.information = normal_;
   minimum.noise_information.noalias() = jacobian_.transpose() * jacobian_;
   minimum.shift = gradient_ + normal_ * minimum.point;
@@ -286,6 +301,14 @@ void ScoreInversion::refine(Minimum& minimum, bool may_widen) {
   minimum.jacobian = scaled_jacobian_;
   minimum.lower = std::move(metric.lower);
   minimum.objective += metric.log_determinant + calcLogDeterminant(linalg::calcCholesky(posterior).lower);
+}
+
+void ScoreInversion::keepExplanation(Minimum& minimum) {
+  explanation_.point = point_;
+  explanation_.point.head(unknown_) = minimum.point;
+  explanation_.innovation = std::move(minimum.residual);
+  explanation_.lower = std::move(minimum.lower);
+  explanation_.jacobian = std::move(minimum.jacobian);
 }
 
 /// Whether the better metric made a minimum one with an earlier one.
@@ -300,7 +323,7 @@ bool ScoreInversion::hasEarlierTwin(const std::vector<Minimum>& minima, std::siz
 gp::Moments ScoreInversion::infer(const Eigen::Ref<const VectorXd>& scores,
                                   const Eigen::Ref<const VectorXd>& known) {
   scores_ = scores;
-  evaluated_ = false;
+  evaluated_ = Evaluated::kNone;
   point_.tail(known.size()) = known;
   std::vector<Minimum> minima = searchRoughly(findStarts());
   std::vector<gp::Moments> parts;
@@ -318,11 +341,15 @@ gp::Moments ScoreInversion::infer(const Eigen::Ref<const VectorXd>& scores,
   }
   Index best = 0;
   weights.maxCoeff(&best);
-  const Minimum& likeliest = minima[static_cast<std::size_t>(best)];
+  Minimum& likeliest = minima[static_cast<std::size_t>(best)];
   noise_stddev_ =
       gp::calcBoxMoments(likeliest.noise_information, likeliest.noise_information * likeliest.point)
           .covariance.diagonal()
           .cwiseSqrt();
+  explained_ = !likeliest.widened;
+  if (explained_) {
+    keepExplanation(likeliest);
+  }
   return mix(parts, weights / weights.sum());
 }
 
@@ -330,7 +357,7 @@ const ScoreExplanation& ScoreInversion::explain(const Eigen::Ref<const VectorXd>
                                                 const Eigen::Ref<const VectorXd>& known,
                                                 const Eigen::Ref<const VectorXd>& start) {
   scores_ = scores;
-  evaluated_ = false;
+  evaluated_ = Evaluated::kNone;
   point_.tail(known.size()) = known;
   const VectorXd within = start.cwiseMax(-1.0).cwiseMin(1.0);
   std::vector<Minimum> minima = searchRoughly({within});
@@ -345,11 +372,7 @@ const ScoreExplanation& ScoreInversion::explain(const Eigen::Ref<const VectorXd>
   Minimum& best = *std::min_element(minima.begin(), minima.end(), [](const Minimum& a, const Minimum& b) {
     return a.objective < b.objective;
   });
-  explanation_.point = point_;
-  explanation_.point.head(unknown_) = best.point;
-  explanation_.innovation = std::move(best.residual);
-  explanation_.lower = std::move(best.lower);
-  explanation_.jacobian = std::move(best.jacobian);
+  keepExplanation(best);
   return explanation_;
 }
 

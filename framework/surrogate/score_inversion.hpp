@@ -38,7 +38,7 @@ class ScoreInversion {
   /// `surrogate` must outlive the object.
   ScoreInversion(const ForwardSurrogate& surrogate, Eigen::Index unknown);
 
-  /// Mean (u) and covariance (u x u) given scores (r) and normalised known variables (m - u). Cost: some 20
+  /// Mean (u) and covariance (u x u) given scores (r) and normalised known variables (m - u). Cost: some 15
   /// evaluations of the processes, and per minimum two of their variances and of r^3 / 3 flops.
   gp::Moments infer(const Eigen::Ref<const Eigen::VectorXd>& scores,
                     const Eigen::Ref<const Eigen::VectorXd>& known);
@@ -47,7 +47,9 @@ class ScoreInversion {
   /// there no error but the noise: of the box moments of J'J, J = ds / dx.
   const Eigen::VectorXd& getNoiseStddev() const { return noise_stddev_; }
 
-  const ScoreExplanation& getExplanation() const { return explanation_; }
+  /// The minimum of most evidence that the last infer() found, as explain() would; null where that enlarged
+  /// errors. Valid until the next call.
+  const ScoreExplanation* findExplanation() const { return explained_ ? &explanation_ : nullptr; }
 
   /// The minimum of most evidence, searched from `start` (u, normalised; moved into the box), and, if that
   /// explains too little, from the most similar simulations. Errors are not enlarged: what a measurement
@@ -80,31 +82,43 @@ class ScoreInversion {
     Eigen::MatrixXd information;        // u x u
     Eigen::MatrixXd noise_information;  // the same without the surrogate's errors
     Eigen::VectorXd shift;              // u
+    bool widened = false;
   };
+  /// A search under way.
+  struct Descent {
+    double objective;
+    double damping = 1e-3;
+  };
+  /// Of which scores values_ and jacobian_ are those at point_.
+  enum class Evaluated { kNone, kLeading, kAll };
 
   std::vector<Eigen::VectorXd> findStarts() const;
   void takeLeading();
   void evaluate(const Metric& metric, const Eigen::VectorXd& unknown);
   double calcObjective(const Metric& metric, const Eigen::VectorXd& unknown);
-  void linearize(const Metric& metric);
-  bool step(const Metric& metric, Eigen::VectorXd& unknown, double& objective, double& damping);
+  void makeNormalEquations(const Metric& metric);
+  bool step(const Metric& metric, Eigen::VectorXd& unknown, Descent& descent);
+  bool advance(const Metric& metric, Eigen::VectorXd& unknown, Descent& descent);
+  double foretellGain(const Eigen::VectorXd& unknown) const;
   double improve(const Metric& metric, int steps, Eigen::VectorXd& unknown);
   void updateMetric(const Eigen::VectorXd& unknown, Metric& metric);
   std::vector<Minimum> searchRoughly(const std::vector<Eigen::VectorXd>& starts);
   static bool isMisfit(double chi_square, Eigen::Index count);
   bool widen(const Metric& metric, const Eigen::VectorXd& unknown);
   void refine(Minimum& minimum, bool may_widen);
+  void keepExplanation(Minimum& minimum);
   static bool hasEarlierTwin(const std::vector<Minimum>& minima, std::size_t index);
 
   const ForwardSurrogate& surrogate_;
   Eigen::Index unknown_;
   Metric rough_, leading_;
-  bool evaluated_ = false;  ///< all values, at point_
+  Evaluated evaluated_ = Evaluated::kNone;
   std::vector<gp::SharedProcess::Workspace> workspaces_;
   std::vector<double> widening_;  ///< of each window's standard deviations
   Eigen::VectorXd scores_, point_, values_, residual_, stddev_, gradient_, noise_stddev_;
   Eigen::MatrixXd jacobian_, scaled_jacobian_, normal_;
   ScoreExplanation explanation_;
+  bool explained_ = false;
 };
 
 }  // namespace twinmap

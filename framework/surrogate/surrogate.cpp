@@ -31,14 +31,14 @@ VectorXd Surrogate::calcLimit(const VectorXd& noise_stddev) const {
 SurrogateAnswers Surrogate::infer(const MatrixXd& features, const MatrixXd& inputs, int threads) const {
   constexpr Index kChunk = 16;  // measurements that share buffers
   const Index n = features.cols(), known = center.size() - unknown;
-  if (features.rows() != forward.center.size() || inputs.rows() != known ||
+  if (features.rows() != forward->center.size() || inputs.rows() != known ||
       (known > 0 && inputs.cols() != n)) {
     throw std::invalid_argument("a surrogate needs all features, and all known inputs");
   }
-  const MatrixXd scores = forward.calcScores(features);
+  const MatrixXd scores = forward->calcScores(features);
   SurrogateAnswers answers{{MatrixXd(parameters, n), MatrixXd(parameters, n)}, MatrixXd(parameters, n)};
   runTasks(threads, static_cast<std::size_t>((n + kChunk - 1) / kChunk), [&](std::size_t chunk) {
-    ScoreInversion inversion(forward, unknown);
+    ScoreInversion inversion(*forward, unknown);
     VectorXd mean, stddev;
     const Index first = static_cast<Index>(chunk) * kChunk;
     for (Index i = first; i < std::min(n, first + kChunk); ++i) {

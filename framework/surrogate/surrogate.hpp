@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 
 #include "framework/inverse_map/predictions.hpp"
 #include "framework/surrogate/forward_surrogate.hpp"
@@ -37,7 +38,7 @@ struct SurrogateAnswers {
 /// A map from features to parameters by a forward surrogate, inverted for each measurement. A fitted,
 /// immutable value.
 struct Surrogate {
-  ForwardSurrogate forward;
+  std::shared_ptr<const ForwardSurrogate> forward;
   Eigen::VectorXd center, half_width;  ///< m, of the sampled box
   Eigen::Index parameters = 0;         ///< p: the first variables of a point, which are reported
   Eigen::Index unknown = 0;            ///< u: with the nuisance parameters, which are marginalised

@@ -96,11 +96,11 @@ SurrogateTraining trainSurrogate(const ModelSpec& model, const SurrogateSamples&
     forward.slopes.push_back(0.5 * per_width);  // per half width
   }
   ForwardFit fit = fitForward(forward, {}, control);
-  surrogate.forward = std::move(fit.surrogate);
+  surrogate.forward = std::make_shared<const ForwardSurrogate>(std::move(fit.surrogate));
   HeldOut held_out = crossValidate(surrogate, samples, forward, fit.choices, control);
   surrogate.validation = validate(held_out);
   surrogate.validation.limit_scale =
-      calcLimitScale(surrogate.forward, forward, surrogate.unknown).head(surrogate.parameters);
+      calcLimitScale(*surrogate.forward, forward, surrogate.unknown).head(surrogate.parameters);
   training.gain = calcSimulationGain(surrogate, samples, forward, fit.choices, held_out, control);
   training.held_out = std::move(held_out.predictions);
   training.held_out_truth = std::move(held_out.truth);

@@ -149,56 +149,60 @@ void SharedProcess::select(const std::vector<Index>& functions) {
   updateLeftOutRatio();
 }
 
-void SharedProcess::evaluate(const Eigen::Ref<const VectorXd>& point, Eigen::Ref<VectorXd> values,
-                             Workspace& workspace) const {
+void SharedProcess::prepare(const Eigen::Ref<const VectorXd>& point, Workspace& workspace) const {
   workspace.scaled_point = point.cwiseQuotient(hyperparameters_.length_scales);
   calcPointCovariance(structure_.covariance, scaled_points_, workspace.scaled_point, slope_points_ > 0,
                       workspace.at);
   workspace.terms = calcTerms(structure_.trend, point);
-  const Index n = scaled_points_.rows(), count = values.size();
-  values.noalias() = coefficients_.leftCols(count).transpose() * workspace.terms;
-  values.noalias() += weights_.topLeftCorner(n, count).transpose() * workspace.at.values.matrix();
-  if (slope_points_ > 0) {
-    addSlopes(values, workspace);
-  }
 }
 
-/// Each weight is read once: the sums over the variables serve the derivatives too.
-void SharedProcess::addSlopes(Eigen::Ref<VectorXd> values, Workspace& workspace) const {
-  const Index n = scaled_points_.rows(), m = slope_points_;
-  workspace.projected.resize(m, values.size());
-  const auto slopes = workspace.at.slopes.head(m);
+void SharedProcess::evaluate(const Eigen::Ref<const VectorXd>& point, Eigen::Ref<VectorXd> values,
+                             Workspace& workspace) const {
+  prepare(point, workspace);
   for (Index j = 0; j < values.size(); ++j) {
-    auto sum = workspace.projected.col(j);
-    const auto weights = weights_.col(j).array();
-    sum = workspace.at.differences.col(0).head(m) * weights.segment(n, m);
-    for (Index v = 1; v < slope_variables_; ++v) {
-      sum += workspace.at.differences.col(v).head(m) * weights.segment(n + v * m, m);
-    }
-    values(j) += (slopes * sum).sum();
+    values(j) = calcValue(j, workspace);
   }
 }
 
-void SharedProcess::derive(const Eigen::Ref<const VectorXd>& point, Eigen::Ref<MatrixXd> jacobian,
-                           Workspace& workspace) const {
-  const Index n = scaled_points_.rows(), m = slope_points_, unknown = jacobian.cols();
-  const PointCovariance& at = workspace.at;
+void SharedProcess::linearize(const Eigen::Ref<const VectorXd>& point, Eigen::Ref<VectorXd> values,
+                              Eigen::Ref<MatrixXd> jacobian, Workspace& workspace) const {
+  prepare(point, workspace);
   calcTermDerivatives(structure_.trend, point, workspace.term_derivatives);
-  jacobian.noalias() =
-      coefficients_.leftCols(jacobian.rows()).transpose() * workspace.term_derivatives.leftCols(unknown);
-  for (Index j = 0; j < jacobian.rows(); ++j) {
-    const auto weights = weights_.col(j).array();
-    workspace.falling = at.slopes * weights.head(n);
-    if (m > 0) {
-      workspace.falling.head(m) += at.curvatures.head(m) * workspace.projected.col(j);
-    }
-    for (Index v = 0; v < unknown; ++v) {
-      double slope = -(at.differences.col(v) * workspace.falling).sum();
-      if (v < slope_variables_) {
-        slope += (at.slopes.head(m) * weights.segment(n + v * m, m)).sum();
-      }
-      jacobian(j, v) += slope / hyperparameters_.length_scales(v);
-    }
+  jacobian.noalias() = coefficients_.leftCols(jacobian.rows()).transpose() *
+                       workspace.term_derivatives.leftCols(jacobian.cols());
+  for (Index j = 0; j < values.size(); ++j) {
+    values(j) = calcValue(j, workspace);
+    addDerivatives(j, jacobian, workspace);
+  }
+}
+
+/// Leaves the sums of the slopes' weights, which the derivatives need too.
+double SharedProcess::calcValue(Index function, Workspace& workspace) const {
+  const Index n = scaled_points_.rows(), m = slope_points_;
+  const auto weights = weights_.col(function);
+  double value = coefficients_.col(function).dot(workspace.terms) +
+                 workspace.at.values.matrix().dot(weights.head(n));
+  if (m > 0) {
+    workspace.sums.calc(workspace.at,
+                        Eigen::Map<const MatrixXd>(weights.tail(weights.size() - n).data(), m, slope_variables_));
+    value += (workspace.at.slopes.head(m) * workspace.sums.projected).sum();
+  }
+  return value;
+}
+
+void SharedProcess::addDerivatives(Index function, Eigen::Ref<MatrixXd> jacobian,
+                                   Workspace& workspace) const {
+  const Index n = scaled_points_.rows(), m = slope_points_;
+  const PointCovariance& at = workspace.at;
+  workspace.falling = at.slopes * weights_.col(function).head(n).array();
+  if (m > 0) {
+    workspace.falling.head(m) += at.curvatures.head(m) * workspace.sums.projected;
+  }
+  workspace.falls.resize(jacobian.cols());
+  sumDifferences(at, workspace.falling, workspace.falls);
+  for (Index v = 0; v < jacobian.cols(); ++v) {
+    const double rises = v < slope_variables_ ? workspace.sums.weighted(v) : 0.0;
+    jacobian(function, v) += (rises - workspace.falls(v)) / hyperparameters_.length_scales(v);
   }
 }
 

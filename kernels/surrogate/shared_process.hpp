@@ -7,6 +7,7 @@
 #include "kernels/surrogate/left_out_density.hpp"
 #include "kernels/surrogate/local_variance.hpp"
 #include "kernels/surrogate/slope_covariance.hpp"
+#include "kernels/surrogate/slope_sums.hpp"
 
 namespace twinmap::gp {
 
@@ -40,9 +41,9 @@ class SharedProcess {
     Eigen::MatrixXd term_derivatives;
     PointCovariance at;
     LocalVariance::Workspace local;
-    Eigen::ArrayXXd projected;  // sums over variables of D times weights of slopes, m x r
+    SlopeSums sums;
     Eigen::ArrayXd nearest, falling;
-    Eigen::VectorXd scaled_point, terms, solved;
+    Eigen::VectorXd scaled_point, terms, solved, falls;
   };
 
   /// points: p x n; values: n x r. Throws std::invalid_argument for sizes that do not fit,
@@ -73,13 +74,12 @@ class SharedProcess {
   void evaluate(const Eigen::Ref<const Eigen::VectorXd>& point, Eigen::Ref<Eigen::VectorXd> values,
                 Workspace& workspace) const;
 
-  /// Derivatives of as many functions as were evaluated last (rows), with respect to the first variables
-  /// (columns), at that point. Cost: 2 (n + u
-  /// m) u r.
-  void derive(const Eigen::Ref<const Eigen::VectorXd>& point, Eigen::Ref<Eigen::MatrixXd> jacobian,
-              Workspace& workspace) const;
+  /// Values, and their derivatives (rows) with respect to the first variables (columns). Cost: twice that of
+  /// evaluate(); the weights, which fit no fast cache, are read once.
+  void linearize(const Eigen::Ref<const Eigen::VectorXd>& point, Eigen::Ref<Eigen::VectorXd> values,
+                 Eigen::Ref<Eigen::MatrixXd> jacobian, Workspace& workspace) const;
 
-  /// Standard deviations (r) of the values at the point evaluated last, nugget and local factor included.
+  /// Standard deviations (r) of the values at the point evaluated or linearised at last, nugget and local factor included.
   /// Cost: n^2 flops; where slopes are known that of LocalVariance.
   void calcStddev(Eigen::Ref<Eigen::VectorXd> stddev, Workspace& workspace) const;
 
@@ -88,7 +88,10 @@ class SharedProcess {
   void requireSizes(const Eigen::MatrixXd& points, const Eigen::MatrixXd& values) const;
   void updateLeftOutRatio();
   void leaveOutLocally(const Eigen::MatrixXd& points, const Eigen::MatrixXd& residual);
-  void addSlopes(Eigen::Ref<Eigen::VectorXd> values, Workspace& workspace) const;
+  void prepare(const Eigen::Ref<const Eigen::VectorXd>& point, Workspace& workspace) const;
+  double calcValue(Eigen::Index function, Workspace& workspace) const;
+  void addDerivatives(Eigen::Index function, Eigen::Ref<Eigen::MatrixXd> jacobian,
+                      Workspace& workspace) const;
   double calcOwnVariance(Workspace& workspace) const;
   double calcLocalFactor(Workspace& workspace) const;
 

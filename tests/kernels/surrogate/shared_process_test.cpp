@@ -62,8 +62,7 @@ TEST(SharedProcess, DerivativesAreThoseOfItsValues) {
     const VectorXd at = toMatrix(golden::kAt, 2);
     VectorXd above(3), below(3);
     MatrixXd jacobian(3, 2);
-    process.evaluate(at, above, workspace);
-    process.derive(at, jacobian, workspace);
+    process.linearize(at, above, jacobian, workspace);
     for (Index v = 0; v < 2; ++v) {
       process.evaluate(at + kStep * VectorXd::Unit(2, v), above, workspace);
       process.evaluate(at - kStep * VectorXd::Unit(2, v), below, workspace);

@@ -99,8 +99,7 @@ TEST(SharedProcess, WithSlopesPassesThroughValuesAndSlopes) {
     VectorXd values(2);
     MatrixXd jacobian(2, 3);
     for (const Index i : {Index{0}, Index{19}}) {
-      process.evaluate(points.col(i), values, workspace);
-      process.derive(points.col(i), jacobian, workspace);
+      process.linearize(points.col(i), values, jacobian, workspace);
       EXPECT_LT((values - calcAt(points.col(i))).cwiseAbs().maxCoeff(), 0.05);
       EXPECT_LT((jacobian.leftCols(2) - calcSlopesAt(points.col(i))).cwiseAbs().maxCoeff(), 0.5);
     }
@@ -129,8 +128,7 @@ TEST(SharedProcess, WithSlopesItsDerivativesAreThoseOfItsValues) {
     SharedProcess::Workspace workspace;
     VectorXd values(2);
     MatrixXd jacobian(2, 3);
-    process.evaluate(at, values, workspace);
-    process.derive(at, jacobian, workspace);
+    process.linearize(at, values, jacobian, workspace);
     for (Index v = 0; v < 3; ++v) {
       const VectorXd moved = kStep * VectorXd::Unit(3, v);
       const VectorXd expected =
@@ -148,10 +146,8 @@ TEST(SharedProcess, EvaluatesTheFirstFunctionsAlone) {
   SharedProcess::Workspace workspace;
   VectorXd first(1), all(2);
   MatrixXd jacobian(1, 2), of_all(2, 2);
-  process.evaluate(at, first, workspace);
-  process.derive(at, jacobian, workspace);
-  process.evaluate(at, all, workspace);
-  process.derive(at, of_all, workspace);
+  process.linearize(at, first, jacobian, workspace);
+  process.linearize(at, all, of_all, workspace);
   EXPECT_NEAR(first(0), all(0), 1e-9 * std::abs(all(0)));  // summed in another order
   EXPECT_TRUE(jacobian.isApprox(of_all.topRows(1), 1e-12));
 }
