@@ -166,8 +166,7 @@ Trust judge(const TrustModel& model, const Eigen::Ref<const VectorXd>& features,
             const Eigen::Ref<const VectorXd>& known, const Inference& inference,
             const ScoreExplanation* explained, TrustWorkspace& workspace) {
   workspace.centered = features - model.forward->center;
-  workspace.explanation =
-      explained != nullptr ? explained : &explain(model, known, inference, workspace);
+  workspace.explanation = explained != nullptr ? explained : &explain(model, known, inference, workspace);
   model.space.calcResidual(workspace.centered, workspace.explanation->innovation, workspace.residual);
   Trust trust;
   compareWithSimulated(model, workspace.residual, trust);

@@ -86,8 +86,9 @@ struct TrustWorkspace {
   TrustWorkspace& operator=(const TrustWorkspace&) = delete;
 
   ScoreInversion inversion;
-  const ScoreExplanation* explanation = nullptr;  ///< of the measurement judged last, as long as `explained` lives
-  Eigen::VectorXd start, centered, scores, residual, distance;       // the start is normalised
+  const ScoreExplanation* explanation =
+      nullptr;  ///< of the measurement judged last, as long as `explained` lives
+  Eigen::VectorXd start, centered, scores, residual, distance;  // the start is normalised
 };
 
 /// Judges an inference from features (d, finite) and known inputs (q), by the point of the box that explains

@@ -59,7 +59,8 @@ ForwardSamples selectSimulations(const ForwardSamples& samples, const std::vecto
 Surrogate fitSimilar(const Surrogate& whole, const ForwardSamples& samples, const ForwardChoices& choices,
                      const TrainingControl& control) {
   Surrogate surrogate;
-  surrogate.forward = std::make_shared<const ForwardSurrogate>(fitForward(samples, choices, control).surrogate);
+  surrogate.forward =
+      std::make_shared<const ForwardSurrogate>(fitForward(samples, choices, control).surrogate);
   surrogate.center = whole.center;
   surrogate.half_width = whole.half_width;
   surrogate.parameters = whole.parameters;

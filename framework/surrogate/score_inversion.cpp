@@ -166,7 +166,8 @@ bool ScoreInversion::step(const Metric& metric, VectorXd& unknown, Descent& desc
 
 /// False where the search has converged: a step would gain little, as the linear model foretells, or did.
 bool ScoreInversion::advance(const Metric& metric, VectorXd& unknown, Descent& descent) {
-  constexpr double kGain = 0.01;  // a step of a tenth of a standard deviation: the linear model tells the rest
+  constexpr double kGain =
+      0.01;  // a step of a tenth of a standard deviation: the linear model tells the rest
   makeNormalEquations(metric);
   if (foretellGain(unknown) < kGain) {
     return false;

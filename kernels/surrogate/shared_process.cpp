@@ -180,11 +180,11 @@ void SharedProcess::linearize(const Eigen::Ref<const VectorXd>& point, Eigen::Re
 double SharedProcess::calcValue(Index function, Workspace& workspace) const {
   const Index n = scaled_points_.rows(), m = slope_points_;
   const auto weights = weights_.col(function);
-  double value = coefficients_.col(function).dot(workspace.terms) +
-                 workspace.at.values.matrix().dot(weights.head(n));
+  double value =
+      coefficients_.col(function).dot(workspace.terms) + workspace.at.values.matrix().dot(weights.head(n));
   if (m > 0) {
-    workspace.sums.calc(workspace.at,
-                        Eigen::Map<const MatrixXd>(weights.tail(weights.size() - n).data(), m, slope_variables_));
+    workspace.sums.calc(workspace.at, Eigen::Map<const MatrixXd>(weights.tail(weights.size() - n).data(), m,
+                                                                 slope_variables_));
     value += (workspace.at.slopes.head(m) * workspace.sums.projected).sum();
   }
   return value;

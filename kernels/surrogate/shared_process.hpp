@@ -79,8 +79,8 @@ class SharedProcess {
   void linearize(const Eigen::Ref<const Eigen::VectorXd>& point, Eigen::Ref<Eigen::VectorXd> values,
                  Eigen::Ref<Eigen::MatrixXd> jacobian, Workspace& workspace) const;
 
-  /// Standard deviations (r) of the values at the point evaluated or linearised at last, nugget and local factor included.
-  /// Cost: n^2 flops; where slopes are known that of LocalVariance.
+  /// Standard deviations (r) of the values at the point evaluated or linearised at last, nugget and local
+  /// factor included. Cost: n^2 flops; where slopes are known that of LocalVariance.
   void calcStddev(Eigen::Ref<Eigen::VectorXd> stddev, Workspace& workspace) const;
 
  private:

@@ -53,8 +53,7 @@ void sumVariables(const PointCovariance& at, const ArrayXd& f, Index first,
   }
   const Index rest = n - whole;
   for (int v = 0; v < count; ++v) {
-    sums(first + v) =
-        together[v].sum() + (at.differences.col(first + v).tail(rest) * f.tail(rest)).sum();
+    sums(first + v) = together[v].sum() + (at.differences.col(first + v).tail(rest) * f.tail(rest)).sum();
   }
 }
 

@@ -1,6 +1,6 @@
 // What a measurement's inference by a trained map costs, its judgement, and its refinement on the simulator.
-// Usage: inference_bench RUN [options of Google Benchmark]; RUN is the folder of a run, the measurements are its
-// test samples with noise.
+// Usage: inference_bench RUN [options of Google Benchmark]; RUN is the folder of a run, the measurements are
+// its test samples with noise.
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
@@ -19,7 +19,8 @@ Eigen::MatrixXd measure(const Inferrer& inferrer, const std::filesystem::path& r
   const Eigen::MatrixXd responses = readSamplesFile(run / "samples.h5").test.responses;
   const ResponseNoise noise(inferrer.getExperiment().noise, inferrer.getLayout());
   const Eigen::MatrixXd measured = noise.add(responses, RandomStream{1, RandomPurpose::kTestNoise}, 0);
-  Eigen::MatrixXd features(static_cast<Eigen::Index>(inferrer.getExtractor().getInfos().size()), measured.cols());
+  Eigen::MatrixXd features(static_cast<Eigen::Index>(inferrer.getExtractor().getInfos().size()),
+                           measured.cols());
   for (Eigen::Index i = 0; i < measured.cols(); ++i) {
     features.col(i) = inferrer.extractFeatures(measured.col(i), "test sample");
   }

@@ -16,10 +16,14 @@ using testing::Oscillation;
 
 class TrustTest : public ::testing::Test {
  protected:
+  static std::shared_ptr<const ForwardSurrogate> shareSurrogate(const TrustTraining& training) {
+    return std::make_shared<const ForwardSurrogate>(Oscillation::fitSurrogate(training));
+  }
+
   static void SetUpTestSuite() {
     map_ = new OnlineMap(compressMap(Oscillation().trainMap()));
     const TrustTraining training = Oscillation().makeTrustTraining();
-    model_ = new TrustModel(fitTrustModel(training, Oscillation::fitSurrogate(training), *map_, 0.01, 2));
+    model_ = new TrustModel(fitTrustModel(training, shareSurrogate(training), *map_, 0.01, 2));
   }
   static void TearDownTestSuite() {
     delete model_;
@@ -29,7 +33,8 @@ class TrustTest : public ::testing::Test {
   static Trust judgeFeatures(const VectorXd& features) {
     OnlineMap::Workspace inferring(*map_);
     TrustWorkspace judging(*model_);
-    return judge(*model_, features, VectorXd(0), map_->infer(features, VectorXd(0), inferring), judging);
+    return judge(*model_, features, VectorXd(0), map_->infer(features, VectorXd(0), inferring), nullptr,
+                 judging);
   }
 
   /// The share of measurements with this status, each first changed by `disturb`.
@@ -88,15 +93,29 @@ TEST_F(TrustTest, SaysWhereItIsUninformed) {
   const VectorXd features = Oscillation::calcClean(0.2, 2.5);
   inference.inputs = map_->infer(features, VectorXd(0), workspace).inputs;
   TrustWorkspace judging(*model_);
-  const Trust trust = judge(*model_, features, VectorXd(0), inference, judging);
+  const Trust trust = judge(*model_, features, VectorXd(0), inference, nullptr, judging);
   EXPECT_EQ(trust.statuses, std::vector<TrustStatus>{TrustStatus::kUninformative});
+}
+
+TEST_F(TrustTest, TakesOverTheExplanationThatASurrogatesOwnSearchFound) {
+  const ForwardSurrogate& surrogate = *model_->forward;
+  const MatrixXd scores = surrogate.calcScores(
+      Oscillation::addNoise(Oscillation::calcClean(Oscillation::samplePoints(20, 21)), 22));
+  ScoreInversion inferring(surrogate, 2), searching(surrogate, 2);
+  for (Eigen::Index i = 0; i < scores.cols(); ++i) {
+    inferring.infer(scores.col(i), VectorXd(0));
+    ASSERT_NE(inferring.findExplanation(), nullptr);
+    const double from_center =
+        searching.explain(scores.col(i), VectorXd(0), VectorXd::Zero(2)).innovation.squaredNorm();
+    EXPECT_NEAR(inferring.findExplanation()->innovation.squaredNorm(), from_center, 0.05);  // a search's end
+  }
 }
 
 TEST_F(TrustTest, DoesNotDependOnTheThreads) {
   TrustTraining training = Oscillation().makeTrustTraining();
   training.measured = training.measured.leftCols(40).eval();
   training.known.resize(0, 40);
-  const ForwardSurrogate surrogate = Oscillation::fitSurrogate(training);
+  const auto surrogate = shareSurrogate(training);
   const TrustModel alone = fitTrustModel(training, surrogate, *map_, 0.01, 1);
   const TrustModel together = fitTrustModel(training, surrogate, *map_, 0.01, 3);
   EXPECT_EQ(alone.chi_square.sorted, together.chi_square.sorted);

@@ -249,8 +249,8 @@ TEST(Surrogate, LearnsFromSlopesWhereSimulationsHaveThem) {
   const MatrixXd tests = samplePoints(listBox(model), 200, 2);
   const MatrixXd normalized =
       without.half_width.cwiseInverse().asDiagonal() * (tests.colwise() - without.center);
-  EXPECT_LT(measureScores(one.surrogate.forward, tests, normalized),
-            0.5 * measureScores(without.forward, tests, normalized));
+  EXPECT_LT(measureScores(*one.surrogate.forward, tests, normalized),
+            0.5 * measureScores(*without.forward, tests, normalized));
 }
 
 /// Slopes of the linear features with respect to all three unknowns, per width of their bounds.
