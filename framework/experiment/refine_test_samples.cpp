@@ -41,6 +41,7 @@ std::vector<RefinementTask> makeTasks(const RefinementContext& context) {
     if (trust != nullptr) {
       judge(*trust, test.features.col(i), answer.known, inference, inferring.findExplanation(), *judging);
       answer.explanation = trust->makeSampledPoint(judging->explanation->point);
+      answer.covariance = judging->explanation->calcCovariance();
     }
     tasks.push_back(makeRefinementTask(context.experiment.model, trust, test.features.col(i), answer));
   }

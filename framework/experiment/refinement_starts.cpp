@@ -34,6 +34,7 @@ RefinementTask makeRefinementTask(const ModelSpec& model, const TrustModel* trus
     task.starts.push_back({"box_center", makePoint(model, {}, {}, answer.known)});
     return task;
   }
+  task.covariance = answer.covariance;
   if (answer.explanation.size() > 0) {
     task.starts.push_back({"explanation", answer.explanation});
   }

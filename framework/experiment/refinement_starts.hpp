@@ -10,9 +10,10 @@ namespace twinmap {
 
 /// What is known of a measurement before it is refined.
 struct MapAnswer {
-  Eigen::VectorXd mean;         ///< p, by the inverse map
-  Eigen::VectorXd explanation;  ///< sampled point that explains the features best; empty without trust model
-  Eigen::VectorXd known;        ///< q
+  Eigen::VectorXd mean;          ///< p, by the inverse map
+  Eigen::VectorXd explanation;   ///< sampled point that explains the features best; empty without trust model
+  Eigen::VectorXd known;         ///< q
+  Eigen::MatrixXd covariance{};  ///< u x u of the unknown there, in half-widths; empty without trust model
 };
 
 /// A point of the sampled box: the given parameters, the nuisance parameters of `explanation` (a point of the

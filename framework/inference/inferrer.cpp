@@ -93,6 +93,7 @@ InferredMeasurement Inferrer::infer(const Eigen::VectorXd& features, const Eigen
     inferred.trust = judge(*trust_, features, known, inferred.inference, workspace.map.findExplanation(),
                            *workspace.trust);
     inferred.explanation = trust_->makeSampledPoint(workspace.trust->explanation->point);
+    inferred.covariance = workspace.trust->explanation->calcCovariance();
   }
   return inferred;
 }

@@ -20,18 +20,6 @@ constexpr double kChiSquareLevel = 0.999;
 constexpr double kReach = 2.0, kLeastReach = 0.5;        // standard deviations
 constexpr double kLeastRise = 0.25, kLargestRise = 3.0;  // of what the linear model says
 
-/// How far one can go from `at` along `way` within the limits, in lengths of `way`, at most `most`.
-double calcReach(const SearchBox& box, const VectorXd& at, const VectorXd& way, double most) {
-  double reach = most;
-  for (Index j = 0; j < at.size(); ++j) {
-    const double room = way[j] > 0.0 ? box.getUpper()[j] - at[j] : at[j] - box.getLower()[j];
-    if (way[j] != 0.0) {
-      reach = std::min(reach, room / std::abs(way[j]));
-    }
-  }
-  return std::max(reach, 0.0);
-}
-
 /// Points beside a minimum and the minimum itself, last; and how far each is along its eigenvector, in
 /// standard deviations.
 struct Probes {
@@ -54,7 +42,45 @@ Probes makeProbes(const SearchBox& box, const LocalMisfit& minimum) {
   return probes;
 }
 
+bool isExplained(const LocalMisfit& minimum) {
+  return minimum.chi_square < calcChiSquareLimit(minimum);
+}
+
+Acceptance refuseMisfit(const LocalMisfit& minimum) {
+  return {RefinementStatus::kMisfit, fmt::format("chi-square is {:.4g}; at most {:.4g} can be noise",
+                                                 minimum.chi_square, calcChiSquareLimit(minimum))};
+}
+
+/// ways: s x n, from the minimum to where the misfits are; bottom: that of the minimum.
+Acceptance testRises(const LocalMisfit& minimum, double bottom, const MatrixXd& ways,
+                     const VectorXd& misfits) {
+  const MatrixXd hessian = minimum.calcHessian();
+  for (Index i = 0; i < ways.cols(); ++i) {
+    const VectorXd way = ways.col(i);
+    const double expected = way.dot(hessian * way), reach = std::sqrt(expected);
+    const double rise = misfits[i] - bottom + 2.0 * minimum.descent.dot(way);
+    if (reach > kLeastReach && !(rise > kLeastRise * expected && rise < kLargestRise * expected)) {
+      return {RefinementStatus::kNonlinear,
+              fmt::format(
+                  "{:.2g} standard deviations beside the answer chi-square rises by {:.3g} instead of {:.3g}",
+                  reach, rise, expected)};
+    }
+  }
+  return {};
+}
+
 }  // namespace
+
+double calcReach(const SearchBox& box, const VectorXd& at, const VectorXd& way, double most) {
+  double reach = most;
+  for (Index j = 0; j < at.size(); ++j) {
+    const double room = way[j] > 0.0 ? box.getUpper()[j] - at[j] : at[j] - box.getLower()[j];
+    if (way[j] != 0.0) {
+      reach = std::min(reach, room / std::abs(way[j]));
+    }
+  }
+  return std::max(reach, 0.0);
+}
 
 double calcChiSquareLimit(double degrees) {
   return boost::math::quantile(boost::math::chi_squared(degrees), kChiSquareLevel);
@@ -65,26 +91,24 @@ double calcChiSquareLimit(const LocalMisfit& minimum) {
 }
 
 Acceptance testMinimum(Misfit& misfit, const LocalMisfit& minimum) {
-  const double limit = calcChiSquareLimit(minimum);
-  if (!(minimum.chi_square < limit)) {
-    return {RefinementStatus::kMisfit,
-            fmt::format("chi-square is {:.4g}; at most {:.4g} can be noise", minimum.chi_square, limit)};
+  if (!isExplained(minimum)) {
+    return refuseMisfit(minimum);
   }
   const Probes probes = makeProbes(misfit.getBox(), minimum);
   const VectorXd misfits = misfit.evaluate(probes.points);
-  const double bottom = misfits[probes.reach.size()];  // simulated as the others: integration errors differ
-  for (Index i = 0; i < probes.reach.size(); ++i) {
-    const double reach = probes.reach[i];
-    const double slope = -2.0 * minimum.descent.dot(probes.points.col(i) - minimum.at);
-    const double rise = misfits[i] - bottom - slope, expected = reach * reach;
-    if (reach > kLeastReach && !(rise > kLeastRise * expected && rise < kLargestRise * expected)) {
-      return {RefinementStatus::kNonlinear,
-              fmt::format(
-                  "{:.2g} standard deviations beside the answer chi-square rises by {:.3g} instead of {:.3g}",
-                  reach, rise, expected)};
-    }
+  const Index last = probes.reach.size();
+  // the bottom is simulated as the others: integration errors differ
+  return testRises(minimum, misfits[last], probes.points.leftCols(last).colwise() - minimum.at,
+                   misfits.head(last));
+}
+
+Acceptance testProbed(const ProbedMisfit& minimum) {
+  if (!isExplained(minimum.local)) {
+    return refuseMisfit(minimum.local);
   }
-  return {};
+  MatrixXd ways(minimum.ways.rows(), 2 * minimum.ways.cols());
+  ways << minimum.ways, -minimum.ways;
+  return testRises(minimum.local, minimum.local.misfit, ways, minimum.misfits);
 }
 
 }  // namespace twinmap

@@ -27,4 +27,10 @@ double calcChiSquareLimit(const LocalMisfit& minimum);
 /// Cost: 2 s + 1 simulations, one batch.
 Acceptance testMinimum(Misfit& misfit, const LocalMisfit& minimum);
 
+/// The same of a minimum and of the misfits that were simulated with it.
+Acceptance testProbed(const ProbedMisfit& minimum);
+
+/// How far one can go from `at` along `way` within the limits, in lengths of `way`, at most `most`.
+double calcReach(const SearchBox& box, const Eigen::VectorXd& at, const Eigen::VectorXd& way, double most);
+
 }  // namespace twinmap

@@ -14,6 +14,24 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+namespace {
+
+/// residual: whitened, k; jacobian: of the features, whitened, k x s.
+LocalMisfit combine(const SampleStatus& status, const VectorXd& at, const VectorXd& residual,
+                    const MatrixXd& jacobian) {
+  const double chi_square = residual.squaredNorm();
+  return {status,
+          at,
+          chi_square,
+          chi_square + kHalfWidthInformation * at.squaredNorm(),
+          residual.size(),
+          jacobian.transpose() * jacobian,
+          jacobian.transpose() * residual - kHalfWidthInformation * at,
+          residual};
+}
+
+}  // namespace
+
 MatrixXd LocalMisfit::calcHessian() const {
   MatrixXd hessian = information;
   hessian.diagonal().array() += kHalfWidthInformation;
@@ -76,29 +94,52 @@ LocalMisfit Misfit::makeLocalMisfit(const VectorXd& at, const LocalModel& local)
     whitener_ = model_.makeWhitener(*window_, local.response);
   }
   const VectorXd difference = (measured_ - local.features)(window_->features);
-  const VectorXd residual = getWhitener().apply(difference);
   const MatrixXd sensitivities =
       0.5 * local.sensitivities(window_->features, Eigen::seqN(searched.first, searched.count));
-  const MatrixXd jacobian = getWhitener().apply(sensitivities);
-  const double chi_square = residual.squaredNorm();
-  return {local.status,
-          at,
-          chi_square,
-          chi_square + kHalfWidthInformation * at.squaredNorm(),
-          residual.size(),
-          jacobian.transpose() * jacobian,
-          jacobian.transpose() * residual - kHalfWidthInformation * at,
-          residual};
+  return combine(local.status, at, getWhitener().apply(difference), getWhitener().apply(sensitivities));
 }
 
-VectorXd Misfit::evaluate(const MatrixXd& points) {
+/// Whitened residuals (k x n) at the columns of `points`.
+MatrixXd Misfit::simulateResiduals(const MatrixXd& points, std::vector<SampleStatus>& statuses) {
   const MatrixXd sampled = makePoints(points);
   MatrixXd responses(simulator_.getLayout().getRowCount(), points.cols());
-  std::vector<SampleStatus> statuses(static_cast<std::size_t>(points.cols()));
+  statuses.resize(static_cast<std::size_t>(points.cols()));
   simulator_.simulate(sampled, responses, statuses.data());
   simulations_ += static_cast<int>(points.cols());
   const MatrixXd differences = (-model_.getExtractor().extract(responses)).colwise() + measured_;
-  VectorXd misfits = getWhitener().apply(differences(window_->features, Eigen::all)).colwise().squaredNorm();
+  return getWhitener().apply(differences(window_->features, Eigen::all));
+}
+
+ProbedMisfit Misfit::probe(const VectorXd& at, const MatrixXd& ways) {
+  const Index s = at.size();
+  MatrixXd points(s, 2 * s + 1);
+  points.leftCols(s) = ways;
+  points.middleCols(s, s) = -ways;
+  points.col(2 * s).setZero();
+  points.colwise() += at;
+  std::vector<SampleStatus> statuses;
+  const MatrixXd residuals = simulateResiduals(points, statuses);
+  ProbedMisfit probed;
+  for (const SampleStatus& status : statuses) {
+    if (!status.ok) {
+      probed.local.status = status;
+      return probed;
+    }
+  }
+  const MatrixXd along = 0.5 * (residuals.middleCols(s, s) - residuals.leftCols(s));
+  const MatrixXd jacobian =
+      along * ways.colwise().squaredNorm().cwiseInverse().asDiagonal() * ways.transpose();
+  probed.local = combine({}, at, residuals.col(2 * s), jacobian);
+  probed.ways = ways;
+  probed.misfits = (residuals.leftCols(2 * s).colwise().squaredNorm() +
+                    kHalfWidthInformation * points.leftCols(2 * s).colwise().squaredNorm())
+                       .transpose();
+  return probed;
+}
+
+VectorXd Misfit::evaluate(const MatrixXd& points) {
+  std::vector<SampleStatus> statuses;
+  VectorXd misfits = simulateResiduals(points, statuses).colwise().squaredNorm();
   misfits += kHalfWidthInformation * points.colwise().squaredNorm().transpose();
   for (Index i = 0; i < points.cols(); ++i) {
     if (!statuses[static_cast<std::size_t>(i)].ok || !std::isfinite(misfits[i])) {

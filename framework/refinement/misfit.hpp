@@ -30,6 +30,13 @@ struct LocalMisfit {
   Eigen::MatrixXd calcCovariance() const;  ///< its inverse, in half-widths
 };
 
+/// A point with its linear model by central differences, and the misfits beside it.
+struct ProbedMisfit {
+  LocalMisfit local;
+  Eigen::MatrixXd ways;     ///< s x s, orthogonal: how far the points beside it are from it
+  Eigen::VectorXd misfits;  ///< 2 s: at + ways, then at - ways
+};
+
 /// How badly the simulator explains measured features, in units of their noise. One measurement, one thread.
 class Misfit {
  public:
@@ -54,12 +61,17 @@ class Misfit {
   /// Whether four points are linearised about as fast as one: exact derivatives in lanes.
   bool linearizesTogether() const { return simulator_.hasDerivatives() && simulator_.getBatchSize() >= 4; }
 
+  /// By the differences over `ways` (s x s, orthogonal columns) on both sides of `at`, where the window has a
+  /// whitener: 2 s + 1 simulations, one batch.
+  ProbedMisfit probe(const Eigen::VectorXd& at, const Eigen::MatrixXd& ways);
+
   /// The misfits at the columns of `points` (s x n), simulated as one batch; infinity where a simulation
   /// fails. After linearize().
   Eigen::VectorXd evaluate(const Eigen::MatrixXd& points);
 
  private:
   const NoiseWhitener& getWhitener() const;
+  Eigen::MatrixXd simulateResiduals(const Eigen::MatrixXd& points, std::vector<SampleStatus>& statuses);
   Eigen::MatrixXd makePoints(const Eigen::MatrixXd& points) const;
   LocalMisfit makeLocalMisfit(const Eigen::VectorXd& at, const LocalModel& local);
 

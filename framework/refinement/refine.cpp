@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "framework/refinement/acceptance.hpp"
+#include "framework/refinement/confirmation.hpp"
 #include "framework/refinement/search.hpp"
 #include "framework/simulation/simulator_team.hpp"
 
@@ -33,6 +34,9 @@ class Refinement {
   }
 
   Refined run() {
+    if (tryConfirmation()) {
+      return finish();
+    }
     for (const RefinementStart& start : task_.starts) {
       if (tryWhole(box_.normalize(start.point), start.name) || (task_.insist && tryGrowing(start))) {
         break;
@@ -42,6 +46,22 @@ class Refinement {
   }
 
  private:
+  /// True if the map's answer led to one that is accepted, at the least cost.
+  bool tryConfirmation() {
+    if (task_.covariance.size() == 0 || !model_.getWhole().whitener) {
+      return false;
+    }
+    const RefinementStart& start = task_.starts.front();
+    const auto end = confirm(misfit_, box_.normalize(start.point), task_.covariance);
+    if (end) {
+      iterations_ += end->iterations;
+      best_ = describe(*end, start.name);
+      best_.status = RefinementStatus::kAccepted;
+      setCovariance(calcCovariance(*end), best_);
+    }
+    return end.has_value();
+  }
+
   /// Searches all features from a point; true if no further start is needed.
   bool tryWhole(const VectorXd& start, const std::string& name) {
     misfit_.setWindow(model_.getWhole());
@@ -105,7 +125,7 @@ class Refinement {
     return precise_ != nullptr;
   }
 
-  Refined judge(Misfit& misfit, const SearchEnd& end, const std::string& name) const {
+  Refined describe(const SearchEnd& end, const std::string& name) const {
     Refined found;
     found.start = name;
     found.message = end.message;
@@ -118,6 +138,11 @@ class Refinement {
       const VectorXd way = end.local.at - box_.normalize(task_.starts.front().point);
       found.distance = std::sqrt(way.dot(end.local.calcHessian() * way));
     }
+    return found;
+  }
+
+  Refined judge(Misfit& misfit, const SearchEnd& end, const std::string& name) const {
+    Refined found = describe(end, name);
     if (end.converged) {
       const Acceptance acceptance = testMinimum(misfit, end.local);
       found.status = acceptance.status;

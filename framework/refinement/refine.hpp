@@ -23,6 +23,9 @@ struct RefinementTask {
   std::vector<RefinementStart> starts;  ///< at least one, in the order they are tried
   SearchedParameters searched;
   bool insist = true;  ///< where no start is accepted, fit growing windows of time; else the starts alone
+  /// Of the searched parameters (s x s, half-widths) around the first start, as the map sees it: an answer is
+  /// first sought at that distance (confirm()); empty: unknown.
+  Eigen::MatrixXd covariance{};
 };
 
 /// Least squares on the simulator from one start after another, until an answer is accepted (search,

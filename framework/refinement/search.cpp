@@ -22,8 +22,7 @@ namespace {
 constexpr std::array<double, 4> kDampings{0.01, 1.0, 30.0, 1000.0};
 constexpr double kFirstDamping = 1e-3, kLeastDamping = 1e-10, kMostDamping = 1e7;
 constexpr double kLongestStep = 0.3;  // half-widths
-constexpr double kConverged = 0.03;   // standard deviations: adds 0.05 % to the error
-constexpr double kBeyondLimit = 1.0;  // the same where the limits of the box stop it
+constexpr double kBeyondLimit = 1.0;  // as kConverged, where the limits of the box stop it
 constexpr double kHidden = 0.3;       // the same where the misfit is too rough to go on: adds 4 %
 
 /// The parameters that a step may move: those at a limit whose descent points outwards are held.
@@ -54,18 +53,6 @@ VectorXd calcStep(const LocalMisfit& local, const SearchBox& box, double damping
 VectorXd take(const LocalMisfit& local, const SearchBox& box, const VectorXd& step) {
   const double length = step.cwiseAbs().maxCoeff();
   return box.clamp(local.at + std::min(1.0, kLongestStep / length) * step);
-}
-
-/// The Gauss-Newton step as far as the limits allow it, and its largest component in standard deviations.
-struct NewtonStep {
-  VectorXd step;
-  double length;
-};
-
-NewtonStep calcNewtonStep(const LocalMisfit& local, const SearchBox& box) {
-  const VectorXd stddev = local.calcCovariance().diagonal().cwiseSqrt();
-  const VectorXd step = box.clamp(local.at + calcStep(local, box, 0.0)) - local.at;
-  return {step, step.cwiseQuotient(stddev).cwiseAbs().maxCoeff()};
 }
 
 /// The points that the dampings lead to, a column each.
@@ -126,6 +113,12 @@ double calcFreeLength(const LocalMisfit& local) {
 }
 
 }  // namespace
+
+NewtonStep calcNewtonStep(const LocalMisfit& local, const SearchBox& box) {
+  const VectorXd stddev = local.calcCovariance().diagonal().cwiseSqrt();
+  const VectorXd step = box.clamp(local.at + calcStep(local, box, 0.0)) - local.at;
+  return {step, step.cwiseQuotient(stddev).cwiseAbs().maxCoeff()};
+}
 
 SearchEnd search(Misfit& misfit, const VectorXd& start, int max_iterations) {
   SearchEnd end;

@@ -6,6 +6,15 @@
 
 namespace twinmap {
 
+constexpr double kConverged = 0.03;  ///< standard deviations: adds 0.05 % to the error
+
+/// The Gauss-Newton step as far as the limits allow it, and its largest component in standard deviations.
+struct NewtonStep {
+  Eigen::VectorXd step;
+  double length;
+};
+NewtonStep calcNewtonStep(const LocalMisfit& local, const SearchBox& box);
+
 /// Where a search ended.
 struct SearchEnd {
   LocalMisfit local;  ///< its status is not ok where the start itself could not be simulated

@@ -38,6 +38,13 @@ gp::Moments mix(const std::vector<gp::Moments>& parts, const VectorXd& weights) 
 
 }  // namespace
 
+MatrixXd ScoreExplanation::calcCovariance() const {
+  const Index u = jacobian.cols();
+  const MatrixXd identity = MatrixXd::Identity(u, u);
+  const MatrixXd information = jacobian.transpose() * jacobian + kHalfWidthInformation * identity;
+  return linalg::solveCholesky(linalg::calcCholesky(information).lower, identity);
+}
+
 std::vector<Index> rankSimulations(const ForwardSurrogate& surrogate,
                                    const Eigen::Ref<const VectorXd>& scores) {
   const ArrayXd weights = (1.0 + surrogate.error_variance.array()).rsqrt();

@@ -19,6 +19,9 @@ struct ScoreExplanation {
   Eigen::VectorXd innovation;  ///< L^-1 r with L L' = C: independent, of unit variance, if all is right
   Eigen::MatrixXd lower;       ///< L, r x r
   Eigen::MatrixXd jacobian;    ///< L^-1 ds / dx, r x u
+
+  /// Of the unknowns, the box as a normal distribution of its variance: (J'J + 3)^-1, u x u.
+  Eigen::MatrixXd calcCovariance() const;
 };
 
 /// Infers normalised unknowns (the first u variables of a point) from scores, under a uniform prior over the
