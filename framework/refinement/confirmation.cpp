@@ -14,7 +14,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kReach = 2.0, kLeastReach = 0.5;  // standard deviations, as the test has them
+constexpr double kReach = 2.0;                         // standard deviations, as the test has it
+constexpr double kLeastReach = 1.0, kMostReach = 3.0;  // what is taken for it
 
 /// Along the eigenvectors of a covariance, two standard deviations or as far as the limits allow on both
 /// sides; nothing where that is too short.
@@ -33,11 +34,12 @@ std::optional<MatrixXd> makeWays(const SearchBox& box, const VectorXd& at, const
 }
 
 /// Whether differences were taken over about the distance that the linear model itself calls two standard
-/// deviations, or less where the limits are.
+/// deviations.
 bool isRightlyScaled(const ProbedMisfit& probed) {
-  constexpr double kMost = 3.0;
   const MatrixXd hessian = probed.local.calcHessian();
-  return (probed.ways.array() * (hessian * probed.ways).array()).colwise().sum().maxCoeff() < kMost * kMost;
+  const Eigen::ArrayXd reach =
+      (probed.ways.array() * (hessian * probed.ways).array()).colwise().sum().sqrt().transpose();
+  return reach.minCoeff() >= kLeastReach && reach.maxCoeff() <= kMostReach;
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace twinmap {
 /// of a point, along the covariance's eigenvectors, give the linear model by central differences over the
 /// very distance for which it is needed, and the rises that testMinimum() asks for. A Gauss-Newton step leads
 /// to the next point, its covariance is that of the last one. Nothing, where that has not converged to an
-/// accepted minimum within four points, and where less than half a standard deviation is left to the limits
+/// accepted minimum within four points, and where less than one standard deviation is left to the limits
 /// of the box: then search() has to.
 /// The misfit's window must have a whitener. Cost: 2 s + 1 simulations a point, one batch; two points from
 /// the answer of a good map.
