@@ -76,18 +76,22 @@ void fitReferences(const TrustTraining& training, const OnlineMap& map, int thre
 
 /// Bursts of noise that nothing was fitted to: a search leaves a little less.
 ReferenceDistribution calcNoiseBursts(const std::vector<ResidualRun>& runs, Index residuals,
-                                      std::uint64_t seed) {
+                                      std::uint64_t seed, int threads) {
   constexpr Index kDraws = 4000;  // the 0.25 % quantile, half of half of the usual level, to a third
+  constexpr Index kChunk = 250;
   const RandomStream random(seed, RandomPurpose::kNoiseBurst);
   ReferenceDistribution bursts;
   bursts.sorted.resize(kDraws);
-  VectorXd noise(residuals);
-  for (Index draw = 0; draw < kDraws; ++draw) {
-    for (Index i = 0; i < residuals; ++i) {
-      noise[i] = random.calcNormal(static_cast<std::uint64_t>(draw), static_cast<std::uint64_t>(i));
+  runTasks(threads, kDraws / kChunk, [&](std::size_t chunk) {
+    VectorXd noise(residuals);
+    const Index first = static_cast<Index>(chunk) * kChunk;
+    for (Index draw = first; draw < first + kChunk; ++draw) {
+      for (Index i = 0; i < residuals; ++i) {
+        noise[i] = random.calcNormal(static_cast<std::uint64_t>(draw), static_cast<std::uint64_t>(i));
+      }
+      bursts.sorted[draw] = findBurst(noise, runs).score;
     }
-    bursts.sorted[draw] = findBurst(noise, runs).score;
-  }
+  });
   sort(bursts.sorted);
   return bursts;
 }
@@ -110,7 +114,7 @@ TrustModel fitTrustModel(const TrustTraining& training, std::shared_ptr<const Fo
   model.level = level;
   const Index residuals = model.space.directions.rows();
   model.runs = collectRuns(training.infos, residuals);
-  model.noise_burst = calcNoiseBursts(model.runs, residuals, training.seed);
+  model.noise_burst = calcNoiseBursts(model.runs, residuals, training.seed, threads);
   fitReferences(training, map, threads, model);
   return model;
 }

@@ -64,11 +64,21 @@ void appendLimit(const RunSummary& run, std::vector<Warning>& warnings) {
   }
 }
 
-/// Whether errors would fall with more simulations, where the map is not near the limit: as little as they
-/// fell when the simulations were doubled.
+/// Whether the answers are those of the simulator, of which the map is only the start.
+bool areRefined(const RunSummary& run) {
+  constexpr double kNearlyAll = 0.9;
+  return std::any_of(run.evaluation.methods.begin(), run.evaluation.methods.end(),
+                     [](const MethodSummary& summary) {
+                       return summary.method == "refined" &&
+                              double(summary.accepted) >= kNearlyAll * double(summary.samples);
+                     });
+}
+
+/// Whether errors would fall with more simulations, where the answers are a map's and not near the limit: as
+/// little as they fell when the simulations were doubled.
 void appendGain(const RunSummary& run, std::vector<Warning>& warnings) {
   constexpr double kLittle = 0.7, kNearLimit = 1.1, kPercent = 100.0;
-  if (!run.training.cross_validation || run.training.cross_validation->half == 0) {
+  if (!run.training.cross_validation || run.training.cross_validation->half == 0 || areRefined(run)) {
     return;
   }
   const CrossValidation& found = *run.training.cross_validation;
