@@ -2,19 +2,12 @@
 #include <set>
 
 #include "framework/cli/commands.hpp"
-#include "framework/features/feature_extractor.hpp"
 #include "framework/measurement/signal_experiment.hpp"
 #include "framework/model_source/make_simulator.hpp"
-#include "framework/spec/check/check_features.hpp"
 #include "framework/spec/experiment_file.hpp"
 #include "framework/sweep/model_groups.hpp"
 
 namespace twinmap::cli {
-
-void requireModel(const ExperimentSpec& experiment) {
-  makeSimulator(experiment.model, collectTimes(experiment.features), countModes(experiment.features))
-      ->checkStart();
-}
 
 void check(const ExperimentArguments& arguments) {
   const YamlNode tree = loadExperimentTree(arguments.file, arguments.overrides);

@@ -123,10 +123,6 @@ void status(const StatusArguments& arguments);
 /// Prints what run() would do with the same arguments, and does nothing of it.
 void plan(const RunArguments& arguments);
 
-/// Builds the model at the centre of the parameter box (Simulator::checkStart). Throws ExperimentError if it
-/// cannot exist there.
-void requireModel(const ExperimentSpec& experiment);
-
 /// What run() takes where the arguments leave it open: results/NAME, and half of the machine's memory
 /// (bytes).
 std::filesystem::path chooseFolder(const RunArguments& arguments, const ExperimentSpec& experiment);

@@ -9,8 +9,8 @@
 #include "framework/inference/inference_text.hpp"
 #include "framework/inference/inferrer.hpp"
 #include "framework/inference/known_value.hpp"
+#include "framework/inference/measurement_session.hpp"
 #include "framework/inference/measurement_stream.hpp"
-#include "framework/inference/refiner.hpp"
 
 namespace twinmap::cli {
 namespace {
@@ -30,26 +30,20 @@ class InferCommand {
         format_(chooseFormat(arguments)),
         starts_(arguments.starts.begin(), arguments.starts.end()),
         known_(collectKnown(inferrer_.getExperiment().model.inputs, parseKnownValues(arguments.known))),
-        workspace_(inferrer_) {
+        session_(inferrer_, arguments.refine) {
     if (starts_.empty()) {
       starts_.emplace_back(std::nullopt);
     }
-    if (arguments.refine.value_or(inferrer_.getExperiment().refine != RefineMode::kNever)) {
-      refiner_.emplace(inferrer_.getExperiment(), inferrer_.getLayout());
-      if (!arguments.refine && !refiner_->isWanted()) {
-        refiner_.reset();
-      }
-    }
     if (format_ == Format::kCsv) {
-      std::cout << makeInferenceCsvHeader(refiner_.has_value());
+      std::cout << makeInferenceCsvHeader(session_.refines());
     }
   }
 
   void inferFile(const std::string& file) {
     try {
-      inferTable(readTable(file, inferrer_.listColumns()), file);
+      inferTable(readTable(file, inferrer_.listColumns()));
     } catch (const std::exception& error) {
-      reportError(file, getStart(starts_.front()), error.what());
+      reportError(file, session_.getStart(starts_.front()), error.what());
     }
   }
 
@@ -60,9 +54,9 @@ class InferCommand {
       const std::string source = "measurement " + std::to_string(i);
       try {
         std::istringstream table(text);
-        inferTable(readCsv(table, source, inferrer_.listColumns()), source);
+        inferTable(readCsv(table, source, inferrer_.listColumns()));
       } catch (const std::exception& error) {
-        reportError(source, getStart(starts_.front()), error.what());
+        reportError(source, session_.getStart(starts_.front()), error.what());
       }
       std::cout.flush();
     }
@@ -77,33 +71,15 @@ class InferCommand {
   }
 
  private:
-  double getStart(const std::optional<double>& start) const {
-    return start.value_or(inferrer_.getExperiment().measurement.start);
-  }
-
-  void inferTable(const Table& table, const std::string& source) {
+  void inferTable(const Table& table) {
     for (const std::optional<double>& start : starts_) {
       try {
-        print(infer(table, source, start));
+        print(session_.infer(table, start, known_));
         ++count_;
       } catch (const std::exception& error) {
-        reportError(source, getStart(start), error.what());
+        reportError(table.source, session_.getStart(start), error.what());
       }
     }
-  }
-
-  InferredMeasurement infer(const Table& table, const std::string& source,
-                            const std::optional<double>& start) {
-    inferrer_.requireExcitation(table, start);
-    const Eigen::VectorXd features = inferrer_.extractFeatures(inferrer_.readResponse(table, start), source);
-    InferredMeasurement inferred = inferrer_.infer(features, known_, workspace_);
-    inferred.source = source;
-    inferred.start = getStart(start);
-    if (refiner_) {
-      const std::optional<TrustModel>& trust = inferrer_.getTrustModel();
-      refiner_->refineAndJudge(features, known_, trust ? &*trust : nullptr, inferred);
-    }
-    return inferred;
   }
 
   void print(const InferredMeasurement& inferred) {
@@ -136,8 +112,7 @@ class InferCommand {
   Format format_;
   std::vector<std::optional<double>> starts_;
   Eigen::VectorXd known_;
-  Inferrer::Workspace workspace_;
-  std::optional<SimulatorRefiner> refiner_;
+  MeasurementSession session_;
   int count_ = 0, errors_ = 0;
 };
 

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <iostream>
 
@@ -7,6 +6,7 @@
 #include "framework/cli/log.hpp"
 #include "framework/cli/progress_line.hpp"
 #include "framework/cli/signals.hpp"
+#include "framework/experiment/require_model.hpp"
 #include "framework/experiment/run_experiment.hpp"
 #include "framework/measurement/signal_experiment.hpp"
 #include "framework/monitoring/interrupted.hpp"
@@ -21,11 +21,6 @@ namespace twinmap::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Bytes.
-double getMachineMemory() {
-  return static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
-}
 
 /// What one case must not exceed: the machine's, or more where the user says so.
 double getMostMemory(const RunArguments& arguments) {

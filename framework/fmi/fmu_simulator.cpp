@@ -51,12 +51,18 @@ std::string getFileName(const std::string& path) {
   return path.substr(path.rfind('/') + 1);
 }
 
+WorkerCommand makeWorkerCommand() {
+  WorkerCommand command = getWorkerProgram();
+  command.arguments.emplace_back(fmi::kWorkerArgument);
+  return command;
+}
+
 }  // namespace
 
 /// A process with the FMU.
 class FmuSimulator::Worker {
  public:
-  explicit Worker(const std::string& job) : process_({getWorkerExecutable(), {fmi::kWorkerArgument}}) {
+  explicit Worker(const std::string& job) : process_(makeWorkerCommand()) {
     const Frame refusal = process_.exchange(fmi::encodeJob(job), kStartTime);
     if (!refusal.empty()) {
       throw WorkerFailure(std::string(refusal.begin(), refusal.end()));

@@ -17,16 +17,16 @@ double findValue(const ParameterSpec& input, const std::vector<KnownValue>& valu
   const auto found = std::find_if(values.begin(), values.end(), has_name);
   if (found == values.end()) {
     throw ExperimentError(
-        fmt::format("the input '{}' is not given; add --set {}=VALUE, in {} within [{}, {}]", input.name.text,
+        fmt::format("the input '{}' is not given; must be, in {} within [{}, {}] (--set {}=VALUE)",
                     input.name.text, input.unit.empty() ? "its unit" : input.unit, input.bounds.lower,
-                    input.bounds.upper));
+                    input.bounds.upper, input.name.text));
   }
   if (std::count_if(values.begin(), values.end(), has_name) > 1) {
-    throw ExperimentError(fmt::format("--set {}: is given twice", input.name.text));
+    throw ExperimentError(fmt::format("the input '{}' is given twice", input.name.text));
   }
-  if (found->value < input.bounds.lower || found->value > input.bounds.upper) {
+  if (!(found->value >= input.bounds.lower && found->value <= input.bounds.upper)) {
     throw ExperimentError(
-        fmt::format("--set {}={}: must be within the bounds [{}, {}] that the map was trained on",
+        fmt::format("the input {}={}: must be within the bounds [{}, {}] that the map was trained on",
                     input.name.text, found->value, input.bounds.lower, input.bounds.upper));
   }
   return found->value;
@@ -56,7 +56,7 @@ Eigen::VectorXd collectKnown(const std::vector<ParameterSpec>& inputs,
   const std::vector<std::string> names = collectNames(inputs);
   for (const KnownValue& value : values) {
     if (std::find(names.begin(), names.end(), value.name) == names.end()) {
-      throw ExperimentError("--set " + value.name + ": is no input of this experiment" +
+      throw ExperimentError("'" + value.name + "' is no input of this experiment" +
                             suggestName(value.name, names));
     }
   }

@@ -58,6 +58,14 @@ const Inference& OnlineMap::inferMean(const Eigen::Ref<const VectorXd>& features
   return infer(features, known, workspace);
 }
 
+Predictions OnlineMap::predict(const Eigen::Ref<const MatrixXd>& features,
+                               const Eigen::Ref<const MatrixXd>& known, int threads) const {
+  if (const auto* processes = std::get_if<OnlineProcesses>(&kind_)) {
+    return processes->predict(features, known, threads);
+  }
+  return std::get<OnlineSurrogate>(kind_).getSurrogate().predict(features, known, threads);
+}
+
 MatrixXd OnlineMap::makeInputs(const MatrixXd& features, const MatrixXd& known) const {
   if (const auto* processes = std::get_if<OnlineProcesses>(&kind_)) {
     return processes->getMap().makeProcessInputs(features, known);

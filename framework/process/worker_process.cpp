@@ -11,9 +11,13 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <mutex>
 
 namespace twinmap {
 namespace {
+
+std::mutex choosing_program;
+WorkerCommand worker_program{"/proc/self/exe", {}};
 
 /// The files of a process that is to be started, closed at the end.
 class SpawnFiles {
@@ -160,9 +164,18 @@ void WorkerProcess::fail() {
                       words_.describe());
 }
 
-std::string getWorkerExecutable() {
+WorkerCommand getWorkerProgram() {
   const char* other = std::getenv("TWINMAP_WORKER");
-  return other != nullptr && *other != '\0' ? other : "/proc/self/exe";
+  if (other != nullptr && *other != '\0') {
+    return {other, {}};
+  }
+  const std::lock_guard<std::mutex> guard(choosing_program);
+  return worker_program;
+}
+
+void setWorkerProgram(const WorkerCommand& program) {
+  const std::lock_guard<std::mutex> guard(choosing_program);
+  worker_program = program;
 }
 
 }  // namespace twinmap

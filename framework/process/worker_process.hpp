@@ -61,8 +61,12 @@ class WorkerProcess {
 
 constexpr int kWorkerChannel = 3;
 
-/// This program itself, whatever became of its file; TWINMAP_WORKER names another, for programs that are not
-/// twinmap.
-std::string getWorkerExecutable();
+/// The program that workers are processes of, with the arguments that come before theirs: this program
+/// itself, whatever became of its file, or what setWorkerProgram() said; TWINMAP_WORKER names another in any
+/// case.
+WorkerCommand getWorkerProgram();
+
+/// For programs that are not twinmap, such as those that use it as a library. From any thread.
+void setWorkerProgram(const WorkerCommand& program);
 
 }  // namespace twinmap

@@ -16,6 +16,15 @@ namespace {
 
 constexpr const char* kSweep = "sweep";
 
+/// With the overrides applied, and names of files relative to the folder of `path` made absolute.
+YamlNode finishTree(YamlNode root, const std::string& path, const std::vector<std::string>& overrides) {
+  for (const std::string& text : overrides) {
+    applyOverride(root, text);
+  }
+  resolveSignalFiles(root, path);
+  return root;
+}
+
 }  // namespace
 
 ExperimentSpec readExperiment(const YamlNode& root) {
@@ -28,12 +37,12 @@ ExperimentSpec readExperiment(const YamlNode& root) {
 }
 
 YamlNode loadExperimentTree(const std::string& path, const std::vector<std::string>& overrides) {
-  YamlNode root = loadYaml(path);
-  for (const std::string& text : overrides) {
-    applyOverride(root, text);
-  }
-  resolveSignalFiles(root, path);
-  return root;
+  return finishTree(loadYaml(path), path, overrides);
+}
+
+YamlNode parseExperimentTree(const std::string& text, const std::string& source,
+                             const std::vector<std::string>& overrides) {
+  return finishTree(parseYaml(text, source), source, overrides);
 }
 
 ExperimentSpec loadExperiment(const std::string& path, const std::vector<std::string>& overrides) {

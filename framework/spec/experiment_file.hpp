@@ -21,6 +21,10 @@ ExperimentSpec loadExperiment(const std::string& path, const std::vector<std::st
 /// `path`, and absolute from here on.
 YamlNode loadExperimentTree(const std::string& path, const std::vector<std::string>& overrides = {});
 
+/// The same of a text: `source`, which need not exist, stands for its file, in messages as well.
+YamlNode parseExperimentTree(const std::string& text, const std::string& source,
+                             const std::vector<std::string>& overrides = {});
+
 /// The experiment as YAML with every default written out; reading it back gives the same experiment.
 std::string writeExperiment(const ExperimentSpec& experiment);
 

@@ -1,6 +1,7 @@
 #include "framework/sweep/case_cost.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -134,6 +135,10 @@ CaseCost calcCaseCost(const ExperimentSpec& experiment, int threads) {
     cost.flops += step.processes * evaluations * step.relative_cost * cube(step.samples);
   }
   return cost;
+}
+
+double getMachineMemory() {
+  return static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
 }
 
 void requireMemory(const ExperimentSpec& experiment, int threads, double bytes) {

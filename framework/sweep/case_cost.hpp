@@ -36,6 +36,9 @@ CaseCost calcCaseCost(const ExperimentSpec& experiment, int threads);
 /// Throws ExperimentError, before any work begins, where a case needs more than `bytes`.
 void requireMemory(const ExperimentSpec& experiment, int threads, double bytes);
 
+/// Of the machine, bytes.
+double getMachineMemory();
+
 /// Evaluations of the marginal likelihood in one search.
 inline constexpr double kEvaluations = 30.0;
 

@@ -47,6 +47,7 @@ std::string toString(const SourceLocation& where) {
 
 ExperimentError::ExperimentError(const SourceLocation& where, const std::string& value,
                                  const std::string& rule)
-    : std::runtime_error(message(where, value, rule)) {}
+    : std::runtime_error(message(where, value, rule)),
+      problem_(std::make_shared<InputProblem>(InputProblem{where, value, rule})) {}
 
 }  // namespace twinmap

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <stdexcept>
 #include <string>
 
@@ -16,12 +17,25 @@ struct SourceLocation {
 /// "file:line:column: key.path"; parts that are unknown are left out.
 std::string toString(const SourceLocation& where);
 
+/// What is wrong with an input, in parts.
+struct InputProblem {
+  SourceLocation where;
+  std::string value;  ///< as found; "" where none is to be shown
+  std::string rule;   ///< that it breaks
+};
+
 /// Wrong input. The message names file:line:column, key path, the value found (its beginning) and the rule it
 /// breaks.
 class ExperimentError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
   ExperimentError(const SourceLocation& where, const std::string& value, const std::string& rule);
+
+  /// The parts of the message; null where it was made as one.
+  const InputProblem* getProblem() const { return problem_.get(); }
+
+ private:
+  std::shared_ptr<const InputProblem> problem_;  // shared, as copies of exceptions must not throw
 };
 
 }  // namespace twinmap

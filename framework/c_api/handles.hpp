@@ -1,0 +1,44 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/c_api/twinmap.h"
+#include "framework/inference/inferrer.hpp"
+#include "framework/inference/measurement_session.hpp"
+
+/// What twinmap_map stands for.
+struct twinmap_map {
+  explicit twinmap_map(const std::filesystem::path& run_or_maps);
+
+  twinmap::Inferrer inferrer;
+};
+
+/// What twinmap_inferrer stands for.
+struct twinmap_inferrer {
+  twinmap_inferrer(const twinmap::Inferrer& by, std::optional<bool> refine)
+      : inferrer(by), session(by, refine) {}
+
+  /// An inference, or what the last one left.
+  struct Answered {
+    twinmap::InferredMeasurement measurement;
+    Eigen::VectorXd mean, stddev;
+    bool refined = false;
+    std::vector<std::string> statuses;
+  };
+
+  /// Columns whose values come one by one.
+  struct Pushed {
+    std::vector<std::string> names;
+    std::vector<std::vector<double>> values;
+  };
+
+  const twinmap::Inferrer& inferrer;
+  twinmap::MeasurementSession session;
+  std::optional<double> start;
+  std::optional<Eigen::VectorXd> known;
+  Pushed pushed;
+  std::optional<Answered> answered;
+  std::string json;
+};

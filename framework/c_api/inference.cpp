@@ -1,0 +1,162 @@
+#include <cmath>
+#include <memory>
+
+#include "framework/c_api/guard.hpp"
+#include "framework/c_api/handles.hpp"
+#include "framework/inference/answer.hpp"
+#include "framework/inference/known_value.hpp"
+#include "framework/measurement/make_table.hpp"
+
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+using twinmap::c_api::guard;
+using twinmap::c_api::require;
+using twinmap::c_api::requireCount;
+using twinmap::c_api::WrongArgument;
+using ConstVector = Eigen::Map<const VectorXd>;
+
+std::optional<bool> toChoice(twinmap_refine refine) {
+  switch (refine) {
+    case TWINMAP_REFINE_NEVER:
+      return false;
+    case TWINMAP_REFINE_ALWAYS:
+      return true;
+    case TWINMAP_REFINE_AS_EXPERIMENT:
+      return std::nullopt;
+  }
+  throw WrongArgument("refine: " + std::to_string(refine) + " is none of its values");
+}
+
+const VectorXd& getKnown(twinmap_inferrer& inferrer) {
+  if (!inferrer.known) {  // says which are missing
+    inferrer.known = twinmap::collectKnown(inferrer.inferrer.getExperiment().model.inputs, {});
+  }
+  return *inferrer.known;
+}
+
+/// Infers by `infer`, which takes the known inputs; what was answered before is forgotten.
+template <class Infer>
+twinmap_result answer(twinmap_inferrer* inferrer, const Infer& infer) {
+  return guard([&] {
+    twinmap_inferrer& self = require(inferrer, "inferrer");
+    self.answered.reset();
+    twinmap_inferrer::Answered answered{infer(self, getKnown(self)), {}, {}, false, {}};
+    twinmap::Answer chosen = twinmap::chooseAnswer(answered.measurement);
+    answered.mean = std::move(chosen.mean);
+    answered.stddev = std::move(chosen.stddev);
+    answered.refined = chosen.refined;
+    answered.statuses = twinmap::listStatuses(answered.measurement);
+    self.answered = std::move(answered);
+  });
+}
+
+twinmap::InferredMeasurement inferTable(twinmap_inferrer& inferrer, const VectorXd& known,
+                                        const std::vector<twinmap::NamedValues>& columns) {
+  const twinmap::Table table = twinmap::makeTable("measurement", columns, inferrer.inferrer.listColumns());
+  return inferrer.session.infer(table, inferrer.start, known);
+}
+
+}  // namespace
+
+twinmap_result twinmap_new_inferrer(const twinmap_map* map, twinmap_refine refine,
+                                    twinmap_inferrer** inferrer) {
+  return guard([&] {
+    require(inferrer, "inferrer") = nullptr;
+    *inferrer = new twinmap_inferrer(require(map, "map").inferrer, toChoice(refine));
+  });
+}
+
+void twinmap_close_inferrer(twinmap_inferrer* inferrer) {
+  delete inferrer;
+}
+
+twinmap_result twinmap_set_inputs(twinmap_inferrer* inferrer, const double* values, size_t count) {
+  return guard([&] {
+    const std::vector<twinmap::ParameterSpec>& inputs =
+        require(inferrer, "inferrer").inferrer.getExperiment().model.inputs;
+    requireCount(count, inputs.size(), "values");
+    std::vector<twinmap::KnownValue> known;
+    for (std::size_t i = 0; i < count; ++i) {
+      known.push_back({inputs[i].name.text, (&require(values, "values"))[i]});
+    }
+    inferrer->known = twinmap::collectKnown(inputs, known);
+  });
+}
+
+twinmap_result twinmap_set_start(twinmap_inferrer* inferrer, double start) {
+  return guard([&] {
+    if (!std::isfinite(start)) {
+      throw WrongArgument("start: must be a finite time");
+    }
+    require(inferrer, "inferrer").start = start;
+  });
+}
+
+twinmap_result twinmap_infer_features(twinmap_inferrer* inferrer, const double* features, size_t count) {
+  return answer(inferrer, [&](twinmap_inferrer& self, const VectorXd& known) {
+    requireCount(count, static_cast<std::size_t>(self.inferrer.getExtractor().getFeatureCount()), "features");
+    const ConstVector values(&require(features, "features"), static_cast<Index>(count));
+    if (!values.allFinite()) {
+      throw WrongArgument("features: must be finite numbers");
+    }
+    return self.session.infer(VectorXd(values), known);
+  });
+}
+
+twinmap_result twinmap_infer_columns(twinmap_inferrer* inferrer, const twinmap_column* columns,
+                                     size_t count) {
+  return answer(inferrer, [&](twinmap_inferrer& self, const VectorXd& known) {
+    std::vector<twinmap::NamedValues> named;
+    for (std::size_t i = 0; i < count; ++i) {
+      const twinmap_column& column = (&require(columns, "columns"))[i];
+      named.push_back({&require(column.name, "name of a column"),
+                       ConstVector(column.count > 0 ? &require(column.values, column.name) : nullptr,
+                                   static_cast<Index>(column.count))});
+    }
+    return inferTable(self, known, named);
+  });
+}
+
+twinmap_result twinmap_infer_file(twinmap_inferrer* inferrer, const char* path) {
+  return answer(inferrer, [&](twinmap_inferrer& self, const VectorXd& known) {
+    const twinmap::Table table = twinmap::readTable(&require(path, "path"), self.inferrer.listColumns());
+    return self.session.infer(table, self.start, known);
+  });
+}
+
+twinmap_result twinmap_begin(twinmap_inferrer* inferrer, const char* const* names, size_t count) {
+  return guard([&] {
+    twinmap_inferrer::Pushed& pushed = require(inferrer, "inferrer").pushed;
+    pushed.names.clear();
+    for (std::size_t i = 0; i < count; ++i) {
+      pushed.names.emplace_back(&require((&require(names, "names"))[i], "name of a column"));
+    }
+    pushed.values.resize(count);
+    for (std::vector<double>& column : pushed.values) {
+      column.clear();
+    }
+  });
+}
+
+twinmap_result twinmap_push(twinmap_inferrer* inferrer, const double* values, size_t count) {
+  return guard([&] {
+    twinmap_inferrer::Pushed& pushed = require(inferrer, "inferrer").pushed;
+    requireCount(count, pushed.names.size(), "values");
+    for (std::size_t i = 0; i < count; ++i) {
+      pushed.values[i].push_back((&require(values, "values"))[i]);
+    }
+  });
+}
+
+twinmap_result twinmap_infer_pushed(twinmap_inferrer* inferrer) {
+  return answer(inferrer, [](twinmap_inferrer& self, const VectorXd& known) {
+    std::vector<twinmap::NamedValues> named;
+    for (std::size_t i = 0; i < self.pushed.names.size(); ++i) {
+      const std::vector<double>& values = self.pushed.values[i];
+      named.push_back({self.pushed.names[i], ConstVector(values.data(), static_cast<Index>(values.size()))});
+    }
+    return inferTable(self, known, named);
+  });
+}

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "framework/inference/inferrer.hpp"
+#include "framework/inference/refiner.hpp"
+
+namespace twinmap {
+
+/// Infers one measurement after another by a run, refined or not; for one thread. The inferrer must outlive
+/// it.
+class MeasurementSession {
+ public:
+  /// `refine`: whether answers are refined on the simulator; none: as the experiment's `refine` says. Throws
+  /// ExperimentError where the simulator cannot be made.
+  MeasurementSession(const Inferrer& inferrer, std::optional<bool> refine);
+
+  bool refines() const { return refiner_.has_value(); }
+
+  /// The time in a file that is the model's 0: `start`, or that of the experiment's `measurement:`.
+  double getStart(std::optional<double> start) const;
+
+  /// known: the inputs of the set-up (q). Throws MeasurementError for a table that cannot be used
+  /// (Inferrer::requireExcitation, readResponse, extractFeatures). Cost: that of Inferrer::infer() and
+  /// SimulatorRefiner::refineAndJudge().
+  InferredMeasurement infer(const Table& table, std::optional<double> start, const Eigen::VectorXd& known);
+
+  /// The same from features (d, finite) that were extracted elsewhere.
+  InferredMeasurement infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known);
+
+ private:
+  const Inferrer& inferrer_;
+  Inferrer::Workspace workspace_;
+  std::optional<SimulatorRefiner> refiner_;
+};
+
+/// The covariance (p x p, in the parameters' units) of what is believed of a measurement (chooseAnswer): that
+/// of the refinement, or D R D with the map's standard deviations and the correlation of its errors.
+Eigen::MatrixXd calcAnswerCovariance(const Inferrer& inferrer, const InferredMeasurement& inferred);
+
+}  // namespace twinmap

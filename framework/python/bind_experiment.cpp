@@ -1,0 +1,104 @@
+#include <pybind11/stl.h>
+
+#include "framework/features/noise.hpp"
+#include "framework/python/arrays.hpp"
+#include "framework/python/bindings.hpp"
+#include "framework/python/interruptible.hpp"
+#include "framework/python/python_experiment.hpp"
+#include "framework/python/quantity.hpp"
+#include "framework/simulation/sample_generator.hpp"
+#include "framework/spec/experiment_file.hpp"
+#include "framework/spec/parameter_box.hpp"
+
+namespace twinmap::python {
+namespace {
+
+using Texts = std::vector<std::string>;
+
+std::unique_ptr<PythonExperiment> load(const std::string& path, const Texts& overrides) {
+  return std::make_unique<PythonExperiment>(loadExperimentTree(path, overrides));
+}
+
+std::unique_ptr<PythonExperiment> parse(const std::string& text, const std::string& source,
+                                        const Texts& overrides) {
+  return std::make_unique<PythonExperiment>(parseExperimentTree(text, source, overrides));
+}
+
+std::string writeYaml(const PythonExperiment& experiment) {
+  return experiment.isSweep() ? writeIndependentDefaults(experiment.getTree())
+                              : writeExperiment(experiment.getSpec());
+}
+
+/// Responses (n, rows), and of each sample why it failed, or "".
+py::tuple simulate(const PythonExperiment& experiment, const Rows& points, int threads) {
+  const Eigen::MatrixXd parameters = viewColumns(points, countSampled(experiment.getSpec().model), "points");
+  std::atomic<bool> stop{false};
+  Trajectories trajectories;
+  runInterruptibly(
+      [&] {
+        GeneratorOptions options;
+        options.threads = threads;
+        options.stop = &stop;
+        trajectories = generateSamples(*experiment.getSimulator(), parameters, options);
+      },
+      stop);
+  Texts reasons;
+  for (const SampleStatus& status : trajectories.statuses) {
+    reasons.push_back(status.ok ? "" : status.reason);
+  }
+  return py::make_tuple(moveToRows(std::move(trajectories.responses)), reasons);
+}
+
+py::array_t<double> extract(const PythonExperiment& experiment, const Rows& responses) {
+  const auto columns = viewColumns(responses, experiment.getLayout().getRowCount(), "responses");
+  Eigen::MatrixXd features;
+  {
+    const py::gil_scoped_release release;
+    features = experiment.getExtractor()->extract(columns);
+  }
+  return moveToRows(std::move(features));
+}
+
+py::array_t<double> addMeasurementNoise(const PythonExperiment& experiment, const Rows& responses,
+                                        std::uint64_t seed) {
+  const auto columns = viewColumns(responses, experiment.getLayout().getRowCount(), "responses");
+  Eigen::MatrixXd noisy;
+  {
+    const py::gil_scoped_release release;
+    noisy = addNoise(columns, ResponseNoise(experiment.getSpec().noise, experiment.getLayout()),
+                     RandomStream(seed, RandomPurpose::kSingleNoise));
+  }
+  return moveToRows(std::move(noisy));
+}
+
+}  // namespace
+
+void bindExperiment(py::module_& module) {
+  const auto release = py::call_guard<py::gil_scoped_release>();
+  py::class_<PythonExperiment>(module, "Experiment")
+      .def_static("load", &load, release)
+      .def_static("parse", &parse, release)
+      .def("write_yaml", &writeYaml, release)
+      .def_property_readonly("name", [](const PythonExperiment& e) { return e.getSpec().name.text; })
+      .def_property_readonly("description", [](const PythonExperiment& e) { return e.getSpec().description; })
+      .def_property_readonly("seed", [](const PythonExperiment& e) { return e.getSpec().seed; })
+      .def_property_readonly("is_sweep", &PythonExperiment::isSweep)
+      .def_property_readonly("parameters",
+                             [](const PythonExperiment& e) { return describe(e.getSpec().model.parameters); })
+      .def_property_readonly(
+          "sampled", [](const PythonExperiment& e) { return describe(collectSampled(e.getSpec().model)); })
+      .def_property_readonly("inputs",
+                             [](const PythonExperiment& e) { return describe(e.getSpec().model.inputs); })
+      .def_property_readonly("outputs",
+                             [](const PythonExperiment& e) { return describeOutputs(e.getLayout()); })
+      .def_property_readonly("features",
+                             [](const PythonExperiment& e) { return describe(e.getExtractor()->getInfos()); })
+      .def_property_readonly("times",
+                             [](const PythonExperiment& e) { return copyVector(e.getLayout().times); })
+      .def_property_readonly("modes", [](const PythonExperiment& e) { return e.getLayout().modes; })
+      .def("simulate", &simulate, py::arg("points"), py::arg("threads"))
+      .def("extract", &extract, py::arg("responses"))
+      .def("add_noise", &addMeasurementNoise, py::arg("responses"), py::arg("seed"));
+}
+
+}  // namespace twinmap::python

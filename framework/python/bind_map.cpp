@@ -1,0 +1,161 @@
+#include <pybind11/stl.h>
+
+#include "framework/inference/answer.hpp"
+#include "framework/inference/inference_text.hpp"
+#include "framework/inference/known_value.hpp"
+#include "framework/measurement/make_table.hpp"
+#include "framework/python/arrays.hpp"
+#include "framework/python/bindings.hpp"
+#include "framework/python/python_map.hpp"
+#include "framework/python/quantity.hpp"
+#include "framework/spec/experiment_file.hpp"
+
+namespace twinmap::python {
+namespace {
+
+using Known = std::vector<std::pair<std::string, double>>;
+using Vector = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using NamedVectors = std::vector<std::pair<std::string, Vector>>;
+
+Eigen::Map<const Eigen::VectorXd> viewVector(const Vector& values, const std::string& what) {
+  if (values.ndim() != 1) {
+    throw MeasurementError(what + ": must be an array of one dimension");
+  }
+  return {values.data(), static_cast<Eigen::Index>(values.size())};
+}
+
+/// How measurements are to be taken.
+struct InferRequest {
+  Known known;
+  std::optional<double> start;
+  std::optional<bool> refine;
+};
+
+/// What Python makes its Inference of.
+struct Answered {
+  InferredMeasurement measurement;
+  Eigen::VectorXd mean, stddev;
+  Eigen::MatrixXd covariance;
+  std::string json, text;
+};
+
+Answered makeAnswered(const Inferrer& inferrer, InferredMeasurement measurement) {
+  const Answer answer = chooseAnswer(measurement);
+  const std::vector<ParameterSpec>& parameters = inferrer.getExperiment().model.parameters;
+  const std::vector<FeatureInfo>& features = inferrer.getExtractor().getInfos();
+  return {measurement,
+          answer.mean,
+          answer.stddev,
+          calcAnswerCovariance(inferrer, measurement),
+          makeInferenceJson(measurement, parameters, features),
+          makeInferenceTable(measurement, parameters, features)};
+}
+
+/// Infers by a borrowed session, without the interpreter's lock; `infer` takes it and the known inputs.
+template <class Infer>
+Answered answer(PythonMap& map, const InferRequest& request, const Infer& infer) {
+  const py::gil_scoped_release release;
+  const Inferrer& inferrer = map.getInferrer();
+  std::vector<KnownValue> values;
+  for (const auto& [name, value] : request.known) {
+    values.push_back({name, value});
+  }
+  const Eigen::VectorXd known = collectKnown(inferrer.getExperiment().model.inputs, values);
+  PythonMap::Session session = map.borrow(request.refine);
+  Answered answered = makeAnswered(inferrer, infer(*session, known));
+  map.giveBack(request.refine, std::move(session));
+  return answered;
+}
+
+Answered inferFile(PythonMap& map, const std::string& path, const InferRequest& request) {
+  return answer(map, request, [&](MeasurementSession& session, const Eigen::VectorXd& known) {
+    return session.infer(readTable(path, map.getInferrer().listColumns()), request.start, known);
+  });
+}
+
+Answered inferColumns(PythonMap& map, const NamedVectors& columns, const InferRequest& request) {
+  std::vector<NamedValues> named;
+  for (const auto& [name, values] : columns) {
+    named.push_back({name, viewVector(values, "column '" + name + "'")});
+  }
+  return answer(map, request, [&](MeasurementSession& session, const Eigen::VectorXd& known) {
+    const Table table = makeTable("measurement", named, map.getInferrer().listColumns());
+    return session.infer(table, request.start, known);
+  });
+}
+
+Answered inferFeatures(PythonMap& map, const Vector& features, const InferRequest& request) {
+  const Eigen::VectorXd values = viewVector(features, "features");
+  const Eigen::Index count = map.getInferrer().getExtractor().getFeatureCount();
+  if (values.size() != count || !values.allFinite()) {
+    throw MeasurementError("features: must be " + std::to_string(count) + " finite numbers");
+  }
+  return answer(map, request, [&](MeasurementSession& session, const Eigen::VectorXd& known) {
+    return session.infer(values, known);
+  });
+}
+
+py::tuple predict(const PythonMap& map, const Rows& features, const Rows& known, int threads) {
+  const Inferrer& inferrer = map.getInferrer();
+  const auto inputs = static_cast<Eigen::Index>(inferrer.getExperiment().model.inputs.size());
+  const auto columns = viewColumns(features, inferrer.getExtractor().getFeatureCount(), "X");
+  const auto settings = viewColumns(known, inputs, "inputs");
+  Predictions predictions;
+  {
+    const py::gil_scoped_release release;
+    predictions = inferrer.getMap().predict(columns, settings, threads);
+  }
+  return py::make_tuple(moveToRows(std::move(predictions.mean)), moveToRows(std::move(predictions.stddev)));
+}
+
+std::unique_ptr<PythonMap> load(const std::string& run_or_maps) {
+  return std::make_unique<PythonMap>(run_or_maps);
+}
+
+const ModelSpec& getModel(const PythonMap& map) {
+  return map.getInferrer().getExperiment().model;
+}
+
+void bindAnswered(py::module_& module) {
+  py::class_<Answered>(module, "Answered")
+      .def_property_readonly("mean", [](const Answered& a) { return copyVector(a.mean); })
+      .def_property_readonly("stddev", [](const Answered& a) { return copyVector(a.stddev); })
+      .def_property_readonly("covariance",
+                             [](const Answered& a) { return moveToRows(Eigen::MatrixXd(a.covariance)); })
+      .def_property_readonly("statuses", [](const Answered& a) { return listStatuses(a.measurement); })
+      .def_readonly("json", &Answered::json)
+      .def_readonly("text", &Answered::text);
+  py::class_<InferRequest>(module, "InferRequest")
+      .def(py::init<Known, std::optional<double>, std::optional<bool>>(), py::arg("known"), py::arg("start"),
+           py::arg("refine"));
+}
+
+}  // namespace
+
+void bindMap(py::module_& module) {
+  bindAnswered(module);
+  py::class_<PythonMap>(module, "Map")
+      .def_static("load", &load, py::call_guard<py::gil_scoped_release>())
+      .def("infer_file", &inferFile)
+      .def("infer_columns", &inferColumns)
+      .def("infer_features", &inferFeatures)
+      .def("predict", &predict, py::arg("features"), py::arg("inputs"), py::arg("threads"))
+      .def_property_readonly("parameters",
+                             [](const PythonMap& m) { return describe(getModel(m).parameters); })
+      .def_property_readonly("inputs", [](const PythonMap& m) { return describe(getModel(m).inputs); })
+      .def_property_readonly("outputs",
+                             [](const PythonMap& m) { return describeOutputs(m.getInferrer().getLayout()); })
+      .def_property_readonly(
+          "features", [](const PythonMap& m) { return describe(m.getInferrer().getExtractor().getInfos()); })
+      .def_property_readonly("name",
+                             [](const PythonMap& m) { return m.getInferrer().getExperiment().name.text; })
+      .def_property_readonly(
+          "residual_correlation",
+          [](const PythonMap& m) {
+            return moveToRows(Eigen::MatrixXd(m.getInferrer().getMap().getResidualCorrelation()));
+          })
+      .def("write_experiment",
+           [](const PythonMap& m) { return writeExperiment(m.getInferrer().getExperiment()); });
+}
+
+}  // namespace twinmap::python

@@ -1,0 +1,151 @@
+#include <pybind11/functional.h>
+#include <pybind11/stl.h>
+#include <spdlog/spdlog.h>
+
+#include <mutex>
+
+#include "framework/experiment/require_model.hpp"
+#include "framework/experiment/run_experiment.hpp"
+#include "framework/monitoring/interrupted.hpp"
+#include "framework/python/bindings.hpp"
+#include "framework/python/interruptible.hpp"
+#include "framework/python/python_experiment.hpp"
+#include "framework/sweep/case_cost.hpp"
+#include "framework/sweep/run_sweep.hpp"
+
+namespace twinmap::python {
+namespace {
+
+namespace py = pybind11;
+
+/// How a run is to be done.
+struct Request {
+  std::string folder, store, command;
+  int threads = 1;
+  double memory = 0.0;  ///< GiB that a sweep may take; 0: half of the machine's
+};
+
+/// The latest progress, on its way from the run's threads to Python's.
+class ProgressMailbox {
+ public:
+  void put(const Progress& progress) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    latest_ = progress;
+  }
+  std::optional<Progress> take() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return std::exchange(latest_, std::nullopt);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::optional<Progress> latest_;
+};
+
+/// Runs of one process take turns: each has the log and all cores.
+class Turn {
+ public:
+  /// Throws Interrupted if `stop` is set before the turn comes.
+  explicit Turn(const std::atomic<bool>& stop) {
+    constexpr std::chrono::milliseconds kPeriod(20);
+    while (!mutex().try_lock_for(kPeriod)) {
+      if (stop) {
+        throw Interrupted("interrupted, before it began");
+      }
+    }
+  }
+  Turn(const Turn&) = delete;
+  Turn& operator=(const Turn&) = delete;
+  ~Turn() { mutex().unlock(); }
+
+ private:
+  static std::timed_mutex& mutex() {
+    static std::timed_mutex turns;
+    return turns;
+  }
+};
+
+/// The log goes to run.log alone.
+void silenceLog() {
+  static const bool done = (spdlog::set_default_logger(std::make_shared<spdlog::logger>("twinmap")), true);
+  static_cast<void>(done);
+}
+
+/// Does `work`, which obeys the control, with progress to a Python function (or none).
+void runWithProgress(int threads, const std::function<void(const Progress&)>& progress,
+                     const std::function<void(const RunControl&)>& work) {
+  std::atomic<bool> stop{false};
+  ProgressMailbox mailbox;
+  RunControl control{threads, &stop, &stop, nullptr};
+  if (progress) {
+    control.progress = [&mailbox](const Progress& latest) { mailbox.put(latest); };
+  }
+  runInterruptibly(
+      [&] {
+        const Turn turn(stop);
+        silenceLog();
+        work(control);
+      },
+      stop,
+      [&] {
+        if (const std::optional<Progress> latest = mailbox.take()) {
+          progress(*latest);
+        }
+      });
+}
+
+void run(const PythonExperiment& experiment, const Request& request,
+         const std::function<void(const Progress&)>& progress) {
+  runWithProgress(request.threads, progress, [&](const RunControl& control) {
+    requireMemory(experiment.getSpec(), request.threads, getMachineMemory());
+    requireModel(experiment.getSpec());
+    RunOptions options;
+    options.folder = request.folder;
+    options.store = request.store;
+    options.command = request.command;
+    runExperiment(experiment.getSpec(), options, control);
+  });
+}
+
+/// Cases, of them complete, and the names and reasons of those that failed.
+py::tuple sweep(const PythonExperiment& experiment, const Request& request,
+                const std::function<void(const Progress&)>& progress) {
+  SweepResult result;
+  runWithProgress(request.threads, progress, [&](const RunControl& control) {
+    constexpr double kShare = 0.5;
+    SweepOptions options;
+    options.folder = request.folder;
+    options.store = request.store;
+    options.most_memory = std::max(getMachineMemory(), request.memory * kGibibyte);
+    options.memory = request.memory > 0.0 ? request.memory * kGibibyte : kShare * getMachineMemory();
+    options.command = request.command;
+    result = runSweep(experiment.getTree(), options, control);
+  });
+  std::vector<std::pair<std::string, std::string>> failures;
+  for (const FailedCase& failure : result.failures) {
+    failures.emplace_back(failure.name, failure.reason);
+  }
+  return py::make_tuple(result.cases, result.complete, failures);
+}
+
+}  // namespace
+
+void bindRuns(py::module_& module) {
+  py::class_<Progress>(module, "Progress", "How far a stage of a run is")
+      .def_readonly("stage", &Progress::stage)
+      .def_readonly("done", &Progress::done)
+      .def_readonly("total", &Progress::total)
+      .def_readonly("failed", &Progress::failed)
+      .def_readonly("work", &Progress::work);
+  py::class_<Request>(module, "RunRequest")
+      .def(py::init<>())
+      .def_readwrite("folder", &Request::folder)
+      .def_readwrite("store", &Request::store)
+      .def_readwrite("command", &Request::command)
+      .def_readwrite("threads", &Request::threads)
+      .def_readwrite("memory", &Request::memory);
+  module.def("run", &run, py::arg("experiment"), py::arg("request"), py::arg("progress") = py::none());
+  module.def("sweep", &sweep, py::arg("experiment"), py::arg("request"), py::arg("progress") = py::none());
+}
+
+}  // namespace twinmap::python

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace twinmap::python {
+
+// What each file adds to the module twinmap._twinmap, which twinmap/*.py make a package for people of.
+void bindErrors(pybind11::module_& module);
+void bindQuantity(pybind11::module_& module);
+void bindExperiment(pybind11::module_& module);
+void bindRuns(pybind11::module_& module);
+void bindMap(pybind11::module_& module);
+
+}  // namespace twinmap::python

@@ -1,0 +1,24 @@
+#include <pybind11/stl.h>
+
+#include <twinmap/build_info.hpp>
+
+#include "framework/fmi/worker.hpp"
+#include "framework/process/worker_process.hpp"
+#include "framework/python/bindings.hpp"
+
+PYBIND11_MODULE(_twinmap, module) {
+  module.doc() = "The compiled part of the package twinmap";
+  module.attr("__version__") = twinmap::kVersion;
+  module.def(
+      "set_worker_program",
+      [](const std::string& executable, const std::vector<std::string>& arguments) {
+        twinmap::setWorkerProgram({executable, arguments});
+      },
+      "How processes are started that run_worker() is called in");
+  module.def("run_worker", &twinmap::fmi::runWorker, "Simulates FMUs for another process; never returns");
+  twinmap::python::bindErrors(module);
+  twinmap::python::bindQuantity(module);
+  twinmap::python::bindExperiment(module);
+  twinmap::python::bindRuns(module);
+  twinmap::python::bindMap(module);
+}

@@ -1,0 +1,28 @@
+#include "framework/python/python_experiment.hpp"
+
+#include "framework/experiment/prepare_data.hpp"
+#include "framework/measurement/signal_experiment.hpp"
+#include "framework/model_source/make_simulator.hpp"
+
+namespace twinmap::python {
+
+PythonExperiment::PythonExperiment(YamlNode tree)
+    : tree_(std::move(tree)), spec_(readExperimentWithSignals(tree_)), layout_(makeLayout(spec_)) {}
+
+std::shared_ptr<const Simulator> PythonExperiment::getSimulator() const {
+  const std::lock_guard<std::mutex> lock(making_);
+  if (!simulator_) {
+    simulator_ = makeSimulator(spec_.model, layout_.times, layout_.modes);
+  }
+  return simulator_;
+}
+
+std::shared_ptr<const FeatureExtractor> PythonExperiment::getExtractor() const {
+  const std::lock_guard<std::mutex> lock(making_);
+  if (!extractor_) {
+    extractor_ = std::make_shared<FeatureExtractor>(makeExtractor(spec_, layout_));
+  }
+  return extractor_;
+}
+
+}  // namespace twinmap::python

@@ -1,0 +1,157 @@
+"""Trained maps: from features or measurements to parameters."""
+import html
+import json
+import os
+from typing import Any, Dict, List, Mapping, Optional, Tuple, Union
+
+import numpy as np
+import pandas as pd
+
+from . import _twinmap
+from ._arguments import PathLike, Points, choose_threads, list_columns, list_known, make_points
+from ._twinmap import Quantity
+
+Measurement = Union[PathLike, pd.DataFrame, Mapping[str, Any], np.ndarray]
+_NORMAL95 = 1.959963984540054  # standard deviations on both sides of a normal distribution's mean: 95 %
+
+
+class Inference:
+    """What a measurement says of p parameters: a normal distribution and whether to trust it.
+
+    `names`, `units`: of the parameters. `mean`, `stddev` (p): in those units. `covariance` (p, p). `statuses`: ["ok"],
+    or what is to be said against the answer, the gravest first (docs/trust.md); empty where the run has no trust
+    model. `trust`: the numbers behind, as p_value and chi_square. `method`: "refined" where the answer was refined on
+    the simulator and accepted, else "inverse_map". `details`: all of it as `twinmap infer --json` prints it.
+    """
+
+    def __init__(self, answered: _twinmap.Answered, parameters: List[Quantity]) -> None:
+        self.names = [parameter.name for parameter in parameters]
+        self.units = [parameter.unit for parameter in parameters]
+        self.mean: np.ndarray = answered.mean
+        self.stddev: np.ndarray = answered.stddev
+        self.covariance: np.ndarray = answered.covariance
+        self.statuses: List[str] = answered.statuses
+        self.details: Dict[str, Any] = json.loads(answered.json)
+        self.trust: Dict[str, Any] = self.details.get("trust", {})
+        self.method: str = self.details["method"]
+        self._text: str = answered.text
+
+    @property
+    def status(self) -> Optional[str]:
+        """The gravest of the statuses; None where nobody has judged."""
+        return self.statuses[0] if self.statuses else None
+
+    @property
+    def interval(self) -> np.ndarray:
+        """The 95 % intervals (p, 2): lower and upper bound."""
+        return np.column_stack([self.mean - _NORMAL95 * self.stddev, self.mean + _NORMAL95 * self.stddev])
+
+    def to_frame(self) -> pd.DataFrame:
+        """A row for each parameter: unit, mean, stddev, lower, upper."""
+        lower, upper = self.interval.T
+        return pd.DataFrame({"unit": self.units, "mean": self.mean, "stddev": self.stddev, "lower": lower,
+                             "upper": upper}, index=pd.Index(self.names, name="parameter"))
+
+    def __getitem__(self, parameter: str) -> Tuple[float, float]:
+        """Mean and standard deviation of one parameter."""
+        if parameter not in self.names:
+            raise KeyError(f"{parameter}: the parameters are {', '.join(self.names)}")
+        index = self.names.index(parameter)
+        return float(self.mean[index]), float(self.stddev[index])
+
+    def __repr__(self) -> str:
+        return self._text.rstrip("\n")
+
+    def _repr_html_(self) -> str:
+        first_line = html.escape(self._text.split("\n", 1)[0])
+        return f"<p>{first_line}</p>{self.to_frame().to_html()}"
+
+
+class Map:
+    """A trained map, made ready for measurements. Immutable, for any number of threads at once."""
+
+    def __init__(self, map_: _twinmap.Map) -> None:
+        self._map = map_
+        self._parameters: List[Quantity] = map_.parameters
+
+    @staticmethod
+    def load(path: PathLike) -> "Map":
+        """Opens the folder of a finished run, or its maps.h5, which holds all that is needed."""
+        return Map(_twinmap.Map.load(os.fspath(path)))
+
+    @property
+    def name(self) -> str:
+        return self._map.name
+
+    @property
+    def parameters(self) -> List[Quantity]:
+        """What is inferred: the columns of predict()'s results."""
+        return list(self._parameters)
+
+    @property
+    def features(self) -> List[Quantity]:
+        """The columns of predict()'s X."""
+        return self._map.features
+
+    @property
+    def inputs(self) -> List[Quantity]:
+        """Settings of the set-up that must be known with a measurement."""
+        return self._map.inputs
+
+    @property
+    def outputs(self) -> List[Quantity]:
+        """Signals that a measurement holds."""
+        return self._map.outputs
+
+    @property
+    def residual_correlation(self) -> np.ndarray:
+        """R (p, p): the correlation of the errors of one measurement's parameters, so that the covariance of a
+        prediction is diag(stddev) R diag(stddev)."""
+        return self._map.residual_correlation
+
+    def to_yaml(self) -> str:
+        """The experiment that the map was trained by."""
+        return self._map.write_experiment()
+
+    def predict(self, X: np.ndarray, return_std: bool = False, *, inputs: Optional[Points] = None,
+                threads: int = 1) -> Union[np.ndarray, Tuple[np.ndarray, np.ndarray]]:
+        """The mean (n, p), and with return_std the standard deviation (n, p), for features X (n, d), like
+        scikit-learn's regressors; in the parameters' units. The map alone: no status, no refinement.
+
+        inputs: the known inputs (n, q), or a mapping from their names to values, where the map has any. The result does
+        not depend on the number of threads. An X of float64 in C order is not copied.
+        """
+        array = np.asarray(X, dtype=float)
+        known = np.empty((len(array), 0))
+        if inputs is not None or self.inputs:
+            known = self._spread(make_points({} if inputs is None else inputs, self.inputs, "inputs"), len(array))
+        mean, stddev = self._map.predict(array, known, choose_threads(threads))
+        return (mean, stddev) if return_std else mean
+
+    @staticmethod
+    def _spread(known: np.ndarray, count: int) -> np.ndarray:
+        """One row of known inputs stands for all measurements."""
+        return np.broadcast_to(known, (count, known.shape[1])) if len(known) == 1 else known
+
+    def infer(self, measurement: Measurement, *, known: Optional[Mapping[str, float]] = None,
+              start: Optional[float] = None, refine: Optional[bool] = None) -> Inference:
+        """Infers the parameters of one measurement and judges the answer.
+
+        measurement: a file (CSV, MATLAB, HDF5); a DataFrame or mapping from columns to samples, named as in a file ("t",
+        "enc1 [mm]"; a DataFrame's named index is a column as well); or an array (d) of features. known: values of the
+        known inputs by name. start: the time in the measurement (s) that is the model's 0, instead of the
+        experiment's. refine: on the simulator, or not; None: as the experiment says. Raises MeasurementError for a
+        measurement that cannot be used.
+        """
+        request = _twinmap.InferRequest(list_known(known), start, refine)
+        if isinstance(measurement, (pd.DataFrame, Mapping)):
+            answered = self._map.infer_columns(list_columns(measurement), request)
+        elif isinstance(measurement, (str, os.PathLike)):
+            answered = self._map.infer_file(os.fspath(measurement), request)
+        else:
+            answered = self._map.infer_features(np.asarray(measurement, dtype=float), request)
+        return Inference(answered, self._parameters)
+
+    def __repr__(self) -> str:
+        names = ", ".join(parameter.name for parameter in self._parameters)
+        return f"<twinmap.Map '{self.name}': {len(self.features)} features to {names}>"
