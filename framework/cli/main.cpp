@@ -1,11 +1,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <iostream>
 #include <random>
 #include <thread>
 #include <twinmap/build_info.hpp>
 
 #include "framework/cli/commands.hpp"
+#include "framework/cli/completion.hpp"
 #include "framework/cli/log.hpp"
 #include "framework/cli/signals.hpp"
 #include "framework/fmi/worker.hpp"
@@ -272,6 +274,58 @@ void addVariables(CLI::App& app, std::string& file) {
   command->callback([&file] { cli::printVariables(file); });
 }
 
+cli::Taken findTaken(const std::string& value) {
+  constexpr std::array kFiles = {"FILE", "FMU", "MEASUREMENT", "OUT", "RUN"};
+  constexpr std::array kFolders = {"DIR", "A", "B"};
+  const auto is_value = [&](const char* one) { return value == one; };
+  return std::any_of(kFiles.begin(), kFiles.end(), is_value)       ? cli::Taken::kFile
+         : std::any_of(kFolders.begin(), kFolders.end(), is_value) ? cli::Taken::kFolder
+                                                                   : cli::Taken::kOther;
+}
+
+cli::OptionDescription describe(const CLI::Option& option) {
+  if (option.get_positional()) {
+    return {{option.get_name()}, option.get_description(), option.get_name(), findTaken(option.get_name())};
+  }
+  cli::OptionDescription described;
+  for (const std::string& name : option.get_lnames()) {
+    described.names.push_back("--" + name);
+  }
+  for (const std::string& name : option.get_snames()) {
+    described.names.push_back("-" + name);
+  }
+  described.description = option.get_description();
+  if (option.get_expected_max() > 0) {
+    described.value = option.get_type_name();
+    described.taken = findTaken(described.value);
+  }
+  return described;
+}
+
+std::vector<cli::CommandDescription> describe(const CLI::App& app) {
+  std::vector<cli::CommandDescription> commands;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    cli::CommandDescription described{command->get_name(), command->get_description(), {}, {}};
+    for (const CLI::Option* option : command->get_options()) {
+      (option->get_positional() ? described.arguments : described.options).push_back(describe(*option));
+    }
+    commands.push_back(described);
+  }
+  return commands;
+}
+
+void addCompletion(CLI::App& app, std::string& shell) {
+  CLI::App* command = app.add_subcommand(
+      "completion",
+      "Print a script that completes command lines: source it, or install it where the shell "
+      "looks for such scripts");
+  command->add_option("SHELL", shell, "bash, zsh or fish")
+      ->required()
+      ->check(CLI::IsMember({"bash", "zsh", "fish"}))
+      ->option_text(" ");
+  command->callback([&app, &shell] { std::cout << cli::makeCompletion(shell, describe(app)); });
+}
+
 int runCommand(int count, char** arguments) {
   CLI::App app(
       "twinmap keeps digital twins true: it simulates a model for many parameter sets, trains maps "
@@ -292,7 +346,7 @@ int runCommand(int count, char** arguments) {
   cli::RunArguments run;
   cli::VerifyArguments verify;
   cli::InferArguments infer;
-  std::string variables;
+  std::string variables, shell;
   cli::ReplayArguments replay;
   verify.seed = std::random_device()();
   replay.threads = verify.threads = run.threads =
@@ -311,6 +365,7 @@ int runCommand(int count, char** arguments) {
   addVerify(app, verify);
   addSchema(app);
   addVariables(app, variables);
+  addCompletion(app, shell);
   try {
     app.parse(count, arguments);
   } catch (const CLI::ParseError& error) {
