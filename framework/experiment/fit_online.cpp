@@ -91,9 +91,10 @@ OnlineFit fitOnline(const OnlineContext& context, const GpMap& map) {
   OnlineFit fit{{compressMap(map), {}}};
   try {
     const TrustTraining training = makeTrustTraining(context);
-    ForwardSurrogate surrogate = trainInterruptibly([&] { return fitSurrogate(training, context.control); });
-    fit.model.trust = fitTrustModel(training, std::move(surrogate), OnlineMap(fit.model.map),
-                                    context.experiment.trust.level, context.control.threads);
+    fit.model.trust = trainInterruptibly([&] {
+      return fitTrustModel(training, fitSurrogate(training, context.control), OnlineMap(fit.model.map),
+                           context.experiment.trust.level, context.control);
+    });
   } catch (const std::invalid_argument& error) {
     noteMissingTrust(error, fit);
   }
@@ -103,8 +104,10 @@ OnlineFit fitOnline(const OnlineContext& context, const GpMap& map) {
 OnlineFit fitOnline(const OnlineContext& context, std::shared_ptr<const Surrogate> surrogate) {
   OnlineFit fit{{surrogate, {}}};
   try {
-    fit.model.trust = fitTrustModel(makeTrustTraining(context), surrogate->forward, OnlineMap(surrogate),
-                                    context.experiment.trust.level, context.control.threads);
+    fit.model.trust = trainInterruptibly([&] {
+      return fitTrustModel(makeTrustTraining(context), surrogate->forward, OnlineMap(surrogate),
+                           context.experiment.trust.level, context.control);
+    });
   } catch (const std::invalid_argument& error) {
     noteMissingTrust(error, fit);
   }
