@@ -142,6 +142,10 @@ without the simulator. Coverage: share of true values within the 95 % intervals.
 refinement on the simulator passed its test ([refinement.md](refinement.md)); ratio and coverage are of these. Simulations: median of a
 refinement. Time: of a processor, for the whole run.
 
+```sh
+twinmap run experiments/mechanisms/released_pendulum.yaml inverse_map=automatic design.train.samples=100 --out results/pendulum
+```
+
 | mechanism | map: ratio | foretold | coverage | refined: accepted | ratio | coverage | simulations | time |
 |---|--:|--:|--:|--:|--:|--:|--:|--:|
 """

@@ -10,9 +10,13 @@ namespace {
 
 using Commands = std::vector<CommandDescription>;
 
-/// Up to its first full stop, semicolon or colon: a line beside others.
+/// Its first clause: a line beside others.
 std::string makeSummary(const std::string& description) {
-  return description.substr(0, description.find_first_of(".;:\n"));
+  std::size_t end = description.size();
+  for (const char* mark : {". ", "; ", ": ", " (", "\n"}) {
+    end = std::min(end, description.find(mark));
+  }
+  return description.substr(0, end);
 }
 
 /// For a word between single quotes; `special` is escaped by a backslash as well.

@@ -296,7 +296,8 @@ cli::OptionDescription describe(const CLI::Option& option) {
   }
   described.description = option.get_description();
   if (option.get_expected_max() > 0) {
-    described.value = option.get_type_name();
+    const std::string type = option.get_type_name();  // "N:INT in [1 - 1024]"
+    described.value = type.substr(0, type.find(':'));
     described.taken = findTaken(described.value);
   }
   return described;

@@ -91,10 +91,11 @@ OnlineFit fitOnline(const OnlineContext& context, const GpMap& map) {
   OnlineFit fit{{compressMap(map), {}}};
   try {
     const TrustTraining training = makeTrustTraining(context);
-    auto surrogate = std::make_shared<const ForwardSurrogate>(
-        trainInterruptibly([&] { return fitSurrogate(training, context.control); }));
-    fit.model.trust = fitTrustModel(training, std::move(surrogate), OnlineMap(fit.model.map),
-                                    context.experiment.trust.level, context.control.threads);
+    fit.model.trust = trainInterruptibly([&] {
+      auto surrogate = std::make_shared<const ForwardSurrogate>(fitSurrogate(training, context.control));
+      return fitTrustModel(training, std::move(surrogate), OnlineMap(fit.model.map),
+                           context.experiment.trust.level, context.control);
+    });
   } catch (const std::invalid_argument& error) {
     noteMissingTrust(error, fit);
   }
@@ -104,8 +105,10 @@ OnlineFit fitOnline(const OnlineContext& context, const GpMap& map) {
 OnlineFit fitOnline(const OnlineContext& context, std::shared_ptr<const Surrogate> surrogate) {
   OnlineFit fit{{surrogate, {}}};
   try {
-    fit.model.trust = fitTrustModel(makeTrustTraining(context), surrogate->forward, OnlineMap(surrogate),
-                                    context.experiment.trust.level, context.control.threads);
+    fit.model.trust = trainInterruptibly([&] {
+      return fitTrustModel(makeTrustTraining(context), surrogate->forward, OnlineMap(surrogate),
+                           context.experiment.trust.level, context.control);
+    });
   } catch (const std::invalid_argument& error) {
     noteMissingTrust(error, fit);
   }

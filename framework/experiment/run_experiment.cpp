@@ -13,6 +13,7 @@
 #include "framework/experiment/trust_power.hpp"
 #include "framework/features/selections.hpp"
 #include "framework/model_source/make_simulator.hpp"
+#include "framework/monitoring/interrupted.hpp"
 #include "framework/monitoring/run_log.hpp"
 #include "framework/monitoring/stage_timer.hpp"
 #include "framework/report/report.hpp"
@@ -90,6 +91,13 @@ struct RunContext {
   const RunControl& control;
 };
 
+/// For stages that take a moment each: none begins once the run is abandoned.
+void requireWanted(const RunControl& control) {
+  if (control.abandon != nullptr && *control.abandon) {
+    throw Interrupted("interrupted; what was simulated is kept");
+  }
+}
+
 LocalModelSource makeLocalModelSource(const RunContext& run) {
   return [run](const Eigen::MatrixXd& points) {
     return calcLocalModels(run.experiment, run.source, run.simulator, run.extractor, points,
@@ -121,6 +129,7 @@ Samples simulateSamples(const RunContext& run) {
 StageNotes writeTrustPower(const RunContext& run, const Samples& samples, const PreparedData& data,
                            const TrainedMap& trained) {
   StageNotes notes;
+  requireWanted(run.control);
   if (!trained.online.trust) {
     return notes;
   }
@@ -137,6 +146,7 @@ StageNotes writeTrustPower(const RunContext& run, const Samples& samples, const 
 StageNotes writeExamples(const RunContext& run, const Trajectories& test,
                          const std::vector<int>& test_indices, const Evaluation& evaluation) {
   StageNotes notes;
+  requireWanted(run.control);
   const std::vector<ExampleResponse> examples = timeStage("simulate updated models", notes, [&] {
     return simulateExamples(run.experiment, run.simulator, test, test_indices, evaluation,
                             run.control.threads);
@@ -242,6 +252,7 @@ RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& opt
                                     : experiment;
   RunSummary run =
       runStages({chosen, simulator, extractor, source, options.folder, control}, std::move(choice));
+  requireWanted(control);
   run.gates = writeFolder(experiment, options, control.threads, run);
   return run;
 }

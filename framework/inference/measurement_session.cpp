@@ -40,7 +40,9 @@ InferredMeasurement MeasurementSession::infer(const Eigen::VectorXd& features, c
 Eigen::MatrixXd calcAnswerCovariance(const Inferrer& inferrer, const InferredMeasurement& inferred) {
   const Eigen::VectorXd stddev = chooseAnswer(inferred).stddev;
   if (inferred.refined && inferred.refined->isAccepted()) {
-    return inferred.refined->covariance.topLeftCorner(stddev.size(), stddev.size());
+    const Eigen::MatrixXd covariance =
+        inferred.refined->covariance.topLeftCorner(stddev.size(), stddev.size());
+    return 0.5 * (covariance + covariance.transpose());  // an inverse is symmetric to rounding only
   }
   return inferrer.getMap().getResidualCorrelation().cwiseProduct(stddev * stddev.transpose());
 }

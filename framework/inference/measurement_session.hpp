@@ -35,8 +35,9 @@ class MeasurementSession {
   std::optional<SimulatorRefiner> refiner_;
 };
 
-/// The covariance (p x p, in the parameters' units) of what is believed of a measurement (chooseAnswer): that
-/// of the refinement, or D R D with the map's standard deviations and the correlation of its errors.
+/// The covariance (p x p, symmetric, in the parameters' units) of what is believed of a measurement
+/// (chooseAnswer): that of the refinement, or D R D with the map's standard deviations and the correlation of
+/// its errors.
 Eigen::MatrixXd calcAnswerCovariance(const Inferrer& inferrer, const InferredMeasurement& inferred);
 
 }  // namespace twinmap

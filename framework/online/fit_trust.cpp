@@ -47,11 +47,13 @@ void sort(VectorXd& values) {
 
 /// The statistics of the simulated measurements, by a model whose references are still empty. None depends on
 /// the inferred standard deviation.
-void fitReferences(const TrustTraining& training, const OnlineMap& map, int threads, TrustModel& model) {
+void fitReferences(const TrustTraining& training, const OnlineMap& map, const TrainingControl& control,
+                   TrustModel& model) {
   constexpr Index kChunk = 16;  // measurements that share buffers
   const Index count = training.measured.cols();
   VectorXd chi_squares(count), bursts(count), distances(count);
   const auto judge_chunk = [&](std::size_t chunk) {
+    gp::throwIfStopped(control.stop);
     OnlineMap::Workspace inferring(map);
     TrustWorkspace judging(model);
     const Index first = static_cast<Index>(chunk) * kChunk;
@@ -65,7 +67,7 @@ void fitReferences(const TrustTraining& training, const OnlineMap& map, int thre
       distances[i] = trust.distance;
     }
   };
-  runTasks(threads, static_cast<std::size_t>((count + kChunk - 1) / kChunk), judge_chunk);
+  runTasks(control.threads, static_cast<std::size_t>((count + kChunk - 1) / kChunk), judge_chunk);
   sort(chi_squares);
   sort(bursts);
   model.chi_square.sorted = std::move(chi_squares);
@@ -99,7 +101,7 @@ ReferenceDistribution calcNoiseBursts(const std::vector<ResidualRun>& runs, Inde
 }  // namespace
 
 TrustModel fitTrustModel(const TrustTraining& training, std::shared_ptr<const ForwardSurrogate> surrogate,
-                         const OnlineMap& map, double level, int threads) {
+                         const OnlineMap& map, double level, const TrainingControl& control) {
   if (training.measured.cols() == 0) {
     throw std::invalid_argument("a trust model needs simulated measurements");
   }
@@ -114,8 +116,8 @@ TrustModel fitTrustModel(const TrustTraining& training, std::shared_ptr<const Fo
   model.level = level;
   const Index residuals = model.space.directions.rows();
   model.runs = collectRuns(training.infos, residuals);
-  model.noise_burst = calcNoiseBursts(model.runs, residuals, training.seed, threads);
-  fitReferences(training, map, threads, model);
+  model.noise_burst = calcNoiseBursts(model.runs, residuals, training.seed, control.threads);
+  fitReferences(training, map, control, model);
   return model;
 }
 

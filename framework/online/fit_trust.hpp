@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "framework/features/feature_block.hpp"
+#include "framework/inverse_map/training_control.hpp"
 #include "framework/online/trust_model.hpp"
 #include "framework/spec/model_spec.hpp"
 
@@ -27,8 +28,9 @@ struct TrustTraining {
 /// Fits the reference distributions of a surrogate that was fitted to the training simulations, or to the
 /// first of them: judges every simulated measurement as if it were one. The surrogate must not have seen
 /// their simulations. Throws std::invalid_argument for a feature without noise, and where there are no
-/// simulated measurements. The result does not depend on the threads. Cost: that of s inferences.
+/// simulated measurements. The result does not depend on the threads. Cost: that of s inferences. Throws
+/// gp::Stopped.
 TrustModel fitTrustModel(const TrustTraining& training, std::shared_ptr<const ForwardSurrogate> surrogate,
-                         const OnlineMap& map, double level, int threads);
+                         const OnlineMap& map, double level, const TrainingControl& control);
 
 }  // namespace twinmap

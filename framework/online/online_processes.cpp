@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "framework/surrogate/run_tasks.hpp"
 #include "kernels/sparse/compression.hpp"
 
 namespace twinmap {
@@ -84,14 +85,13 @@ Predictions OnlineProcesses::predict(const Eigen::Ref<const MatrixXd>& features,
   constexpr Index kBlock = 256;  // columns, whose covariances stay in a core's own cache
   const Index count = features.cols(), blocks = (count + kBlock - 1) / kBlock;
   Predictions all{MatrixXd(noise_variance_.size(), count), MatrixXd(noise_variance_.size(), count)};
-#pragma omp parallel for schedule(dynamic) num_threads(threads)
-  for (Index block = 0; block < blocks; ++block) {
-    const Index first = block * kBlock, columns = std::min(kBlock, count - first);
+  runTasks(threads, static_cast<std::size_t>(blocks), [&](std::size_t block) {
+    const Index first = static_cast<Index>(block) * kBlock, columns = std::min(kBlock, count - first);
     const Predictions part = map_.predict(features.middleCols(first, columns),
                                           known.rows() > 0 ? known.middleCols(first, columns) : MatrixXd());
     all.mean.middleCols(first, columns) = part.mean;
     all.stddev.middleCols(first, columns) = part.stddev;
-  }
+  });
   return all;
 }
 

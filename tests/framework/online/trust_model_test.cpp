@@ -23,7 +23,7 @@ class TrustTest : public ::testing::Test {
   static void SetUpTestSuite() {
     map_ = new OnlineMap(compressMap(Oscillation().trainMap()));
     const TrustTraining training = Oscillation().makeTrustTraining();
-    model_ = new TrustModel(fitTrustModel(training, shareSurrogate(training), *map_, 0.01, 2));
+    model_ = new TrustModel(fitTrustModel(training, shareSurrogate(training), *map_, 0.01, {2}));
   }
   static void TearDownTestSuite() {
     delete model_;
@@ -116,8 +116,8 @@ TEST_F(TrustTest, DoesNotDependOnTheThreads) {
   training.measured = training.measured.leftCols(40).eval();
   training.known.resize(0, 40);
   const auto surrogate = shareSurrogate(training);
-  const TrustModel alone = fitTrustModel(training, surrogate, *map_, 0.01, 1);
-  const TrustModel together = fitTrustModel(training, surrogate, *map_, 0.01, 3);
+  const TrustModel alone = fitTrustModel(training, surrogate, *map_, 0.01, {1});
+  const TrustModel together = fitTrustModel(training, surrogate, *map_, 0.01, {3});
   EXPECT_EQ(alone.chi_square.sorted, together.chi_square.sorted);
   EXPECT_EQ(alone.burst.sorted, together.burst.sorted);
   EXPECT_EQ(alone.cloud.reach, together.cloud.reach);

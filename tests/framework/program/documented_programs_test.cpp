@@ -16,7 +16,7 @@ std::string readBlock(const std::string& language) {
   std::ifstream file(TWINMAP_SOURCE_DIR "/docs/programs.md");
   std::stringstream page;
   page << file.rdbuf();
-  const std::string text = page.str(), begin = "```" + language + "\n";
+  const std::string text = page.str(), begin = "```" + language + " program\n";
   const std::size_t first = text.find(begin) + begin.size();
   return text.substr(first, text.find("```", first) - first);
 }

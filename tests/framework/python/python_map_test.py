@@ -1,0 +1,199 @@
+"""Maps in Python: predict like scikit-learn, infer like the command."""
+import ctypes
+import json
+import os
+import threading
+import time
+import unittest
+
+import h5py
+import numpy as np
+import pandas as pd
+
+import twinmap
+from package_support import FolderTestCase, run_once
+from support import call
+
+TRUE = {"d_y": 0.95, "d_theta": 2.1e-4, "k_y": 8.5, "k_theta": 0.034}
+PAYLOAD = """
+name: payload
+parameters: {k: {bounds: [80, 120], unit: N/m}}
+inputs: {payload: {bounds: [0, 1], unit: kg}}
+system:
+  bodies: {cart: {mass: 2 + payload, joint: {type: slider, coordinates: [x]}}}
+  springs: [{coordinate: x, stiffness: k}]
+  dampers: [{coordinate: x, damping: 1}]
+initial: {coordinates: {x: 0.1}}
+outputs: {x: {coordinate: x}}
+simulation: {duration: 2}
+features: [{samples: {outputs: [x], start: 0.02, interval: 0.02, count: 100}}]
+noise: {stddev: {x: 1e-3}}
+design: {train: {samples: 60}, test: {samples: 60}}
+evaluation: {limit: false}
+"""
+
+
+class TwoBeams(FolderTestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.experiment, cls.results = run_once()
+        cls.map = twinmap.Map.load(cls.results.folder)
+        cls.measurement = cls.experiment.simulate(TRUE, noise=True)
+        with h5py.File(cls.results.folder / "samples.h5") as file:  # (n, outputs, times)
+            responses = file["test/responses"][:]
+        cls.features = cls.experiment.extract(responses.reshape(len(responses), -1))
+
+
+class Predicting(TwoBeams):
+    def test_mean_and_standard_deviation_of_each_row(self):
+        mean, stddev = self.map.predict(self.features, return_std=True)
+        self.assertEqual(mean.shape, (len(self.features), 4))
+        self.assertEqual(stddev.shape, mean.shape)
+        np.testing.assert_array_equal(self.map.predict(self.features), mean)
+        for row in range(5):
+            answer = self.map.infer(self.features[row], refine=False)
+            np.testing.assert_allclose((mean[row] - answer.mean) / answer.stddev, 0, atol=1e-6)
+            np.testing.assert_allclose(stddev[row], answer.stddev, rtol=1e-6)
+
+    def test_forms_and_threads_make_no_difference(self):
+        rows = np.tile(self.features, (20, 1))
+        expected = self.map.predict(rows)
+        for other in [np.asfortranarray(rows), rows.tolist(), pd.DataFrame(rows)]:
+            np.testing.assert_array_equal(self.map.predict(other), expected)
+        np.testing.assert_array_equal(self.map.predict(rows, threads=3), expected)
+        self.assertEqual(self.map.predict(rows[:0]).shape, (0, 4))
+        with self.assertRaisesRegex(ValueError, r"X: must be an array of shape \(n, 200\)"):
+            self.map.predict(rows[:, :7])
+
+    def test_is_as_fast_as_the_library(self):
+        """1e5 rows within 1.2 times the C++, which libtwinmap calls directly; the best of several times."""
+        library = ctypes.CDLL(os.environ["TWINMAP_LIBRARY"])
+        handle = ctypes.c_void_p()
+        self.assertEqual(library.twinmap_open(os.fsencode(self.results.folder), ctypes.byref(handle)), 0)
+        rows = np.ascontiguousarray(np.resize(self.features, (100000, 200)))
+        mean, stddev = np.empty((len(rows), 4)), np.empty((len(rows), 4))
+        pointer = ctypes.POINTER(ctypes.c_double)
+
+        def predict_by_library():
+            result = library.twinmap_predict(handle, rows.ctypes.data_as(pointer), None, ctypes.c_size_t(len(rows)), 1,
+                                             mean.ctypes.data_as(pointer), stddev.ctypes.data_as(pointer))
+            self.assertEqual(result, 0)
+
+        def measure(predict):
+            start = time.perf_counter()
+            predict()
+            return time.perf_counter() - start
+
+        times = [(measure(predict_by_library), measure(lambda: self.map.predict(rows, return_std=True)))
+                 for _ in range(5)]
+        by_library, by_python = np.min(times, axis=0)
+        np.testing.assert_array_equal(self.map.predict(rows[:100]), mean[:100])
+        self.assertLess(by_python, 1.2 * by_library)
+        library.twinmap_close(handle)
+
+
+class Inferring(TwoBeams):
+    def test_finds_the_parameters(self):
+        answer = self.map.infer(self.measurement.to_frame())
+        self.assertEqual(answer.statuses, ["ok"])
+        for name, true in TRUE.items():
+            mean, stddev = answer[name]
+            self.assertLess(abs(mean - true), 4 * stddev, name)
+        np.testing.assert_allclose(np.sqrt(np.diag(answer.covariance)), answer.stddev, rtol=1e-9)
+        np.testing.assert_array_equal(answer.covariance, answer.covariance.T)
+        np.testing.assert_allclose(answer.interval.mean(axis=1), answer.mean)
+        np.testing.assert_allclose(np.ptp(answer.interval, axis=1), 3.919928 * answer.stddev, rtol=1e-6)
+        self.assertEqual(list(answer.to_frame().columns), ["unit", "mean", "stddev", "lower", "upper"])
+        with self.assertRaisesRegex(KeyError, "d_y, d_theta"):
+            answer["k_x"]
+
+    def test_shows_itself(self):
+        answer = self.map.infer(self.measurement.to_frame())
+        self.assertRegex(repr(answer), r"^measurement: ok \(p = ")
+        self.assertIn("<table", answer._repr_html_())
+        self.assertIn("k_theta", repr(self.map))
+
+    def test_is_the_commands_answer(self):
+        path = self.folder / "m.csv"
+        self.measurement.to_frame().to_csv(path, index=False)
+        for refine, options in [(None, []), (False, ["--no-refine"]), (True, ["--refine"])]:
+            expected = json.loads(call("infer", self.results.folder, path, "--json", *options).stdout)
+            answer = self.map.infer(path, refine=refine)
+            self.assertEqual(answer.details, expected)
+            self.assertEqual(answer.method, expected["method"])
+            self.assertEqual(answer.trust["p_value"], expected["trust"]["p_value"])
+
+    def test_measurements_may_come_in_many_forms(self):
+        frame = self.measurement.to_frame()
+        expected = self.map.infer(frame, refine=False)
+        path = self.folder / "m.csv"
+        frame.to_csv(path, index=False)
+        millimetres = frame.assign(**{"y [mm]": 1e3 * frame.y, "comment": "x"}).drop(columns="y")
+        for form in [path, str(path), frame.set_index("t"), frame.to_dict("list"), millimetres,
+                     {name: frame[name].to_numpy() for name in frame}, self.experiment.extract(self.measurement)[0]]:
+            answer = self.map.infer(form, refine=False)
+            np.testing.assert_allclose(answer.mean, expected.mean, rtol=1e-9)
+        later = frame.assign(t=frame.t + 10)
+        np.testing.assert_allclose(self.map.infer(later, start=10, refine=False).mean, expected.mean, rtol=1e-6)
+
+    def test_says_what_is_wrong_with_a_measurement(self):
+        frame = self.measurement.to_frame()
+        for wrong, text in [(frame.drop(columns="theta"), "no column 'theta'"),
+                            (frame.assign(y=np.nan), "finite"),
+                            (frame[:50], "end"),
+                            ({"t": [[0.0]], "y": [1.0], "theta": [1.0]}, "one dimension"),
+                            (np.zeros(3), "200 finite numbers"),
+                            ("missing.csv", "missing.csv")]:
+            with self.assertRaisesRegex(twinmap.MeasurementError, text):
+                self.map.infer(wrong)
+        with self.assertRaisesRegex(twinmap.ExperimentError, "no input"):
+            self.map.infer(frame, known={"payload": 1})
+        with self.assertRaisesRegex(RuntimeError, "does not exist"):
+            twinmap.Map.load("missing")
+
+    def test_a_wrong_model_is_noticed(self):
+        heavier = self.experiment.override("constants.m1.value=4").simulate(TRUE, noise=True)
+        self.assertEqual(self.map.infer(heavier.to_frame()).status, "model_mismatch")
+
+    def test_four_threads_get_the_same(self):
+        frame = self.measurement.to_frame()
+        expected, found = self.map.infer(frame), []
+
+        def work():
+            for _ in range(20):
+                found.append(self.map.infer(frame).mean)
+                found.append(self.map.predict(self.features[:1])[0])
+                twinmap.Map.load(self.results.folder)
+
+        threads = [threading.Thread(target=work) for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(len(found), 160)
+        first = self.map.predict(self.features[:1])[0]
+        for mean in found:
+            self.assertTrue((mean == expected.mean).all() or (mean == first).all())
+
+
+class KnownInputs(FolderTestCase):
+    def test_known_inputs_come_with_the_measurement(self):
+        experiment = twinmap.Experiment.from_yaml(PAYLOAD)
+        map_ = experiment.run(self.folder / "run").map
+        responses = experiment.simulate({"k": [90, 110], "payload": [0.25, 0.75]}, noise=True)
+        answer = map_.infer(responses.to_frame(1), known={"payload": 0.75}, refine=False)
+        self.assertLess(abs(answer.mean[0] - 110), 4 * answer.stddev[0])
+        features = experiment.extract(responses)
+        mean, stddev = map_.predict(features, return_std=True, inputs={"payload": [0.25, 0.75]})
+        np.testing.assert_allclose(mean[1], answer.mean, rtol=1e-9)
+        self.assertLess(abs(mean[0, 0] - 90), 4 * stddev[0, 0])
+        same = map_.predict(np.tile(features[1], (3, 1)), inputs=[[0.75]])
+        np.testing.assert_allclose(same, np.tile(mean[1], (3, 1)), rtol=1e-12)
+        for known, text in [(None, "'payload' is not given"), ({"payload": 3}, "within the bounds"),
+                            ({"load": 0.5}, "no input")]:
+            with self.assertRaisesRegex(twinmap.ExperimentError, text):
+                map_.infer(responses.to_frame(1), known=known)
+
+
+if __name__ == "__main__":
+    unittest.main()
