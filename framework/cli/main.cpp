@@ -332,6 +332,7 @@ int runCommand(int count, char** arguments) {
       "twinmap keeps digital twins true: it simulates a model for many parameter sets, trains maps "
       "from features of the response to the parameters, and infers parameters with their standard "
       "deviation.");
+  app.name("twinmap");  // in the help, wherever the program lies
   app.set_version_flag("--version", std::string("twinmap ") + twinmap::kVersion);
   app.require_subcommand(1);
   app.footer(
