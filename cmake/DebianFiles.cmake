@@ -1,13 +1,16 @@
-# What Debian's policy asks of a package beyond what is installed: copyright, compressed changelog and man pages.
+# What Debian's policy asks of a package beyond what is installed: copyright, changelog and compressed man pages.
 # Run by cpack in the folder that it packs.
-set(root "${CMAKE_INSTALL_PREFIX}")
-if(DEFINED ENV{DESTDIR})
-  set(root "$ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}")
-endif()
+set(root "${CPACK_TEMPORARY_INSTALL_DIRECTORY}${CPACK_PACKAGING_INSTALL_PREFIX}")
 set(documents "${root}/share/doc/twinmap")
 file(COPY_FILE "${CMAKE_CURRENT_LIST_DIR}/../LICENSE" "${documents}/copyright")
+string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC) # of SOURCE_DATE_EPOCH, if that is set
+file(WRITE "${documents}/changelog" "twinmap (${CPACK_PACKAGE_VERSION}) stable; urgency=medium
+
+  * CHANGELOG.md beside this file tells what there is.
+
+ -- ${CPACK_PACKAGE_CONTACT}  ${date}
+")
 file(GLOB pages "${root}/share/man/man1/*.1")
-foreach(file "${documents}/CHANGELOG.md" ${pages})
+foreach(file "${documents}/changelog" ${pages})
   execute_process(COMMAND gzip -9 -n -f "${file}" COMMAND_ERROR_IS_FATAL ANY)
 endforeach()
-file(RENAME "${documents}/CHANGELOG.md.gz" "${documents}/changelog.gz")

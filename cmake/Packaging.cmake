@@ -28,15 +28,16 @@ endif()
 install(DIRECTORY experiments/ DESTINATION "${CMAKE_INSTALL_DOCDIR}/examples/experiments"
   PATTERN "*.fmu" EXCLUDE PATTERN "__pycache__" EXCLUDE)
 install(FILES README.md CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
-install(DIRECTORY docs/ DESTINATION "${CMAKE_INSTALL_DOCDIR}/docs" FILES_MATCHING PATTERN "*.md")
+install(DIRECTORY docs/ DESTINATION "${CMAKE_INSTALL_DOCDIR}/docs" FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg")
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME twinmap)
 set(CPACK_PACKAGE_CONTACT "The twinmap authors <twinmap@users.noreply.github.com>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "keep the physical parameters of digital twins true")
-set(CPACK_PACKAGE_DESCRIPTION "twinmap simulates a first-principles model of a machine for many parameter sets, trains maps from
-features of the response to the parameters, and infers parameters with
-an honest standard deviation from measured responses, online.
+set(CPACK_PACKAGE_DESCRIPTION "twinmap simulates a first-principles model of a machine for many
+parameter sets, trains maps from features of the response to the
+parameters, and infers parameters with an honest standard deviation from
+measured responses, online.
 .
 This package has the command, the library libtwinmap with its header, the
 Python package, man pages, completion for shells, documents and examples.
@@ -48,7 +49,10 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+file(WRITE "${PROJECT_BINARY_DIR}/triggers" "activate-noawait ldconfig\n")
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA "${PROJECT_BINARY_DIR}/triggers")
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "python3 (>= ${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR}), python3-numpy, python3-pandas")
 set(CPACK_DEBIAN_PACKAGE_PROVIDES "libtwinmap0, libtwinmap-dev, python3-twinmap")
-set(CPACK_INSTALL_SCRIPTS "${PROJECT_SOURCE_DIR}/cmake/DebianFiles.cmake")
+set(CPACK_PRE_BUILD_SCRIPTS "${PROJECT_SOURCE_DIR}/cmake/DebianFiles.cmake")
 include(CPack)
