@@ -26,10 +26,13 @@ add_library(twinmap_hdf5_library INTERFACE)
 target_include_directories(twinmap_hdf5_library SYSTEM INTERFACE ${HDF5_C_INCLUDE_DIRS})
 target_link_libraries(twinmap_hdf5_library INTERFACE
   "$<IF:${TWINMAP_IN_PROGRAM},HDF5::HDF5,${HDF5_SHARED_LIBRARY}>")
+add_library(matio_static STATIC IMPORTED)
+set_target_properties(matio_static PROPERTIES
+  IMPORTED_LOCATION "${MATIO_LIBRARY}" INTERFACE_LINK_LIBRARIES HDF5::HDF5)
 add_library(matio INTERFACE)
 target_include_directories(matio SYSTEM INTERFACE "${MATIO_INCLUDE_DIR}")
 target_link_libraries(matio INTERFACE
-  "$<IF:${TWINMAP_IN_PROGRAM},${MATIO_LIBRARY},${MATIO_SHARED_LIBRARY}>" twinmap_hdf5_library)
+  "$<IF:${TWINMAP_IN_PROGRAM},matio_static,${MATIO_SHARED_LIBRARY}>" twinmap_hdf5_library)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(libzip REQUIRED IMPORTED_TARGET libzip)

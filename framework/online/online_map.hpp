@@ -46,9 +46,8 @@ class OnlineMap {
                              const Eigen::Ref<const Eigen::VectorXd>& known, Workspace& workspace) const;
 
   /// Mean and standard deviation (p x n) for features (d x n, finite) and known inputs (q x n): those of
-  /// infer(), to rounding where the map is one of processes, and the same for any number of threads. Throws
-  /// std::invalid_argument for sizes that do not fit. Cost: for processes less than that of n inferences, as
-  /// whole blocks of columns are predicted at once.
+  /// infer(), bit for bit, for any number of threads. Throws std::invalid_argument for sizes that do not fit.
+  /// Cost: that of n inferences.
   Predictions predict(const Eigen::Ref<const Eigen::MatrixXd>& features,
                       const Eigen::Ref<const Eigen::MatrixXd>& known, int threads) const;
 

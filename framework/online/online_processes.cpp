@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <stdexcept>
 #include <vector>
 
-#include "framework/surrogate/run_tasks.hpp"
 #include "kernels/sparse/compression.hpp"
 
 namespace twinmap {
@@ -74,25 +72,6 @@ const Inference& OnlineProcesses::inferMean(const Eigen::Ref<const VectorXd>& fe
   inference.mean = map_.target_offset + map_.target_scale.cwiseProduct(workspace.predictor.values.mean);
   inference.stddev.setZero();
   return inference;
-}
-
-Predictions OnlineProcesses::predict(const Eigen::Ref<const MatrixXd>& features,
-                                     const Eigen::Ref<const MatrixXd>& known, int threads) const {
-  if (features.rows() != matrix_.cols() || known.rows() != map_.known_inputs.center.size() ||
-      (known.rows() > 0 && known.cols() != features.cols())) {
-    throw std::invalid_argument("the map's features and known inputs are of other sizes");
-  }
-  constexpr Index kBlock = 256;  // columns, whose covariances stay in a core's own cache
-  const Index count = features.cols(), blocks = (count + kBlock - 1) / kBlock;
-  Predictions all{MatrixXd(noise_variance_.size(), count), MatrixXd(noise_variance_.size(), count)};
-  runTasks(threads, static_cast<std::size_t>(blocks), [&](std::size_t block) {
-    const Index first = static_cast<Index>(block) * kBlock, columns = std::min(kBlock, count - first);
-    const Predictions part = map_.predict(features.middleCols(first, columns),
-                                          known.rows() > 0 ? known.middleCols(first, columns) : MatrixXd());
-    all.mean.middleCols(first, columns) = part.mean;
-    all.stddev.middleCols(first, columns) = part.stddev;
-  });
-  return all;
 }
 
 double OnlineProcesses::calcNoiseFactor(Index parameter, const Eigen::Ref<const VectorXd>& gradient,

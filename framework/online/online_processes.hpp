@@ -15,6 +15,7 @@ class OnlineProcesses {
   explicit OnlineProcesses(GpMap map);
 
   const GpMap& getMap() const { return map_; }
+  Eigen::Index getFeatureCount() const { return matrix_.cols(); }
 
   /// The buffers of one thread, and the result.
   class Workspace {
@@ -33,9 +34,6 @@ class OnlineProcesses {
   /// Cost: 2 k d flops, then those of OnlinePredictor; some 10 us for four parameters.
   const Inference& infer(const Eigen::Ref<const Eigen::VectorXd>& features,
                          const Eigen::Ref<const Eigen::VectorXd>& known, Workspace& workspace) const;
-  /// As OnlineMap::predict().
-  Predictions predict(const Eigen::Ref<const Eigen::MatrixXd>& features,
-                      const Eigen::Ref<const Eigen::MatrixXd>& known, int threads) const;
   /// Mean and inputs alone; the stddev is zero.
   const Inference& inferMean(const Eigen::Ref<const Eigen::VectorXd>& features,
                              const Eigen::Ref<const Eigen::VectorXd>& known, Workspace& workspace) const;

@@ -34,22 +34,9 @@ struct InferRequest {
 /// What Python makes its Inference of.
 struct Answered {
   InferredMeasurement measurement;
-  Eigen::VectorXd mean, stddev;
+  Answer answer;
   Eigen::MatrixXd covariance;
-  std::string json, text;
 };
-
-Answered makeAnswered(const Inferrer& inferrer, InferredMeasurement measurement) {
-  const Answer answer = chooseAnswer(measurement);
-  const std::vector<ParameterSpec>& parameters = inferrer.getExperiment().model.parameters;
-  const std::vector<FeatureInfo>& features = inferrer.getExtractor().getInfos();
-  return {measurement,
-          answer.mean,
-          answer.stddev,
-          calcAnswerCovariance(inferrer, measurement),
-          makeInferenceJson(measurement, parameters, features),
-          makeInferenceTable(measurement, parameters, features)};
-}
 
 /// Infers by a borrowed session, without the interpreter's lock; `infer` takes it and the known inputs.
 template <class Infer>
@@ -62,9 +49,11 @@ Answered answer(PythonMap& map, const InferRequest& request, const Infer& infer)
   }
   const Eigen::VectorXd known = collectKnown(inferrer.getExperiment().model.inputs, values);
   PythonMap::Session session = map.borrow(request.refine);
-  Answered answered = makeAnswered(inferrer, infer(*session, known));
+  InferredMeasurement measurement = infer(*session, known);
   map.giveBack(request.refine, std::move(session));
-  return answered;
+  Answer chosen = chooseAnswer(measurement);
+  Eigen::MatrixXd covariance = calcAnswerCovariance(inferrer, measurement);
+  return {std::move(measurement), std::move(chosen), std::move(covariance)};
 }
 
 Answered inferFile(PythonMap& map, const std::string& path, const InferRequest& request) {
@@ -116,15 +105,24 @@ const ModelSpec& getModel(const PythonMap& map) {
   return map.getInferrer().getExperiment().model;
 }
 
+std::string writeJson(const PythonMap& map, const Answered& answered) {
+  return makeInferenceJson(answered.measurement, getModel(map).parameters,
+                           map.getInferrer().getExtractor().getInfos());
+}
+
+std::string writeText(const PythonMap& map, const Answered& answered) {
+  return makeInferenceTable(answered.measurement, getModel(map).parameters,
+                            map.getInferrer().getExtractor().getInfos());
+}
+
 void bindAnswered(py::module_& module) {
   py::class_<Answered>(module, "Answered")
-      .def_property_readonly("mean", [](const Answered& a) { return copyVector(a.mean); })
-      .def_property_readonly("stddev", [](const Answered& a) { return copyVector(a.stddev); })
+      .def_property_readonly("mean", [](const Answered& a) { return copyVector(a.answer.mean); })
+      .def_property_readonly("stddev", [](const Answered& a) { return copyVector(a.answer.stddev); })
       .def_property_readonly("covariance",
                              [](const Answered& a) { return moveToRows(Eigen::MatrixXd(a.covariance)); })
       .def_property_readonly("statuses", [](const Answered& a) { return listStatuses(a.measurement); })
-      .def_readonly("json", &Answered::json)
-      .def_readonly("text", &Answered::text);
+      .def_property_readonly("refined", [](const Answered& a) { return a.answer.refined; });
   py::class_<InferRequest>(module, "InferRequest")
       .def(py::init<Known, std::optional<double>, std::optional<bool>>(), py::arg("known"), py::arg("start"),
            py::arg("refine"));
@@ -139,6 +137,8 @@ void bindMap(py::module_& module) {
       .def("infer_file", &inferFile)
       .def("infer_columns", &inferColumns)
       .def("infer_features", &inferFeatures)
+      .def("write_json", &writeJson)
+      .def("write_text", &writeText)
       .def("predict", &predict, py::arg("features"), py::arg("inputs"), py::arg("threads"))
       .def_property_readonly("parameters",
                              [](const PythonMap& m) { return describe(getModel(m).parameters); })

@@ -1,4 +1,5 @@
 """Trained maps: from features or measurements to parameters."""
+import functools
 import html
 import json
 import os
@@ -20,21 +21,28 @@ class Inference:
 
     `names`, `units`: of the parameters. `mean`, `stddev` (p): in those units. `covariance` (p, p). `statuses`: ["ok"],
     or what is to be said against the answer, the gravest first (docs/trust.md); empty where the run has no trust
-    model. `trust`: the numbers behind, as p_value and chi_square. `method`: "refined" where the answer was refined on
-    the simulator and accepted, else "inverse_map". `details`: all of it as `twinmap infer --json` prints it.
+    model. `method`: "refined" where the answer was refined on the simulator and accepted, else "inverse_map".
     """
 
-    def __init__(self, answered: _twinmap.Answered, parameters: List[Quantity]) -> None:
+    def __init__(self, answered: _twinmap.Answered, map_: _twinmap.Map, parameters: List[Quantity]) -> None:
+        self._answered, self._map = answered, map_
         self.names = [parameter.name for parameter in parameters]
         self.units = [parameter.unit for parameter in parameters]
         self.mean: np.ndarray = answered.mean
         self.stddev: np.ndarray = answered.stddev
         self.covariance: np.ndarray = answered.covariance
         self.statuses: List[str] = answered.statuses
-        self.details: Dict[str, Any] = json.loads(answered.json)
-        self.trust: Dict[str, Any] = self.details.get("trust", {})
-        self.method: str = self.details["method"]
-        self._text: str = answered.text
+        self.method = "refined" if answered.refined else "inverse_map"
+
+    @functools.cached_property
+    def details(self) -> Dict[str, Any]:
+        """All of it, as `twinmap infer --json` prints it."""
+        return json.loads(self._map.write_json(self._answered))
+
+    @property
+    def trust(self) -> Dict[str, Any]:
+        """The numbers behind the statuses, as p_value and chi_square; empty where the run has no trust model."""
+        return self.details.get("trust", {})
 
     @property
     def status(self) -> Optional[str]:
@@ -60,10 +68,10 @@ class Inference:
         return float(self.mean[index]), float(self.stddev[index])
 
     def __repr__(self) -> str:
-        return self._text.rstrip("\n")
+        return self._map.write_text(self._answered).rstrip("\n")
 
     def _repr_html_(self) -> str:
-        first_line = html.escape(self._text.split("\n", 1)[0])
+        first_line = html.escape(repr(self).split("\n", 1)[0])
         return f"<p>{first_line}</p>{self.to_frame().to_html()}"
 
 
@@ -150,7 +158,7 @@ class Map:
             answered = self._map.infer_file(os.fspath(measurement), request)
         else:
             answered = self._map.infer_features(np.asarray(measurement, dtype=float), request)
-        return Inference(answered, self._parameters)
+        return Inference(answered, self._map, self._parameters)
 
     def __repr__(self) -> str:
         names = ", ".join(parameter.name for parameter in self._parameters)

@@ -63,6 +63,14 @@ class Installed(RunTestCase):
         run("cmake", "--build", build)
         self.expect_answer(build / "infer")
 
+    def test_python_package(self):
+        package = next(iter(self.prefix.rglob("dist-packages")), None)
+        if package is None:
+            self.skipTest("the Python package was not built")
+        environment = {**os.environ, "PYTHONPATH": str(package)}
+        code = f"import twinmap; print(twinmap.Map.load({str(self.run_folder)!r}).infer({str(self.measurement)!r}).status)"
+        self.assertEqual(run("/usr/bin/python3", "-c", code, env=environment), "ok\n")
+
     def test_header_is_one_of_cpp_as_well(self):
         source = self.folder / "header.cpp"
         source.write_text("#include <twinmap.h>\nint main() { return twinmap_get_version()[0] == 0; }\n")

@@ -52,8 +52,8 @@ class Predicting(TwoBeams):
         np.testing.assert_array_equal(self.map.predict(self.features), mean)
         for row in range(5):
             answer = self.map.infer(self.features[row], refine=False)
-            np.testing.assert_allclose((mean[row] - answer.mean) / answer.stddev, 0, atol=1e-6)
-            np.testing.assert_allclose(stddev[row], answer.stddev, rtol=1e-6)
+            np.testing.assert_array_equal(mean[row], answer.mean)
+            np.testing.assert_array_equal(stddev[row], answer.stddev)
 
     def test_forms_and_threads_make_no_difference(self):
         rows = np.tile(self.features, (20, 1))
@@ -80,9 +80,9 @@ class Predicting(TwoBeams):
             self.assertEqual(result, 0)
 
         def measure(predict):
-            start = time.perf_counter()
+            start = time.process_time()  # whatever else the machine does
             predict()
-            return time.perf_counter() - start
+            return time.process_time() - start
 
         times = [(measure(predict_by_library), measure(lambda: self.map.predict(rows, return_std=True)))
                  for _ in range(5)]
