@@ -205,6 +205,18 @@ void addInfer(CLI::App& app, cli::InferArguments& arguments) {
   command->callback([&arguments] { cli::infer(arguments); });
 }
 
+void addExport(CLI::App& app, cli::ExportArguments& arguments) {
+  CLI::App* command = app.add_subcommand(
+      "export", "Write a trained map for other programs: C99 without heap or libraries");
+  command->add_option("RUN", arguments.run, "Folder of a finished run")->required()->option_text(" ");
+  command->add_option("--c", arguments.c_folder, "Folder for C sources with a self-test and README.md")
+      ->type_name("DIR");
+  command->add_flag("--float", arguments.single, "C in float where that keeps what it says (default: double)");
+  command->add_option("--prefix", arguments.prefix, "Of names and files in C (default: twinmap)")
+      ->type_name("NAME");
+  command->callback([&arguments] { cli::exportMap(arguments); });
+}
+
 void addReplay(CLI::App& app, cli::ReplayArguments& arguments) {
   constexpr int kFewestDraws = 2, kMostDraws = 10000;
   CLI::App* command =
@@ -303,6 +315,8 @@ int runCommand(int count, char** arguments) {
   addRun(app, run);
   addPlan(app, run);
   addInfer(app, infer);
+  cli::ExportArguments exported;
+  addExport(app, exported);
   addReplay(app, replay);
   addStatus(app, status);
   addCompare(app, compare);

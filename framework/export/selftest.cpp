@@ -1,0 +1,183 @@
+#include "framework/export/selftest.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "framework/export/runtime_sources.hpp"
+#include "framework/features/noise.hpp"
+#include "framework/inference/answer.hpp"
+#include "framework/measurement/measurement.hpp"
+#include "framework/store/samples_file.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr const char* kSource = "self-test";
+
+/// Clean responses of test samples that did not fail, with their known inputs.
+struct Samples {
+  MatrixXd responses, known;
+};
+
+Samples readSamples(const std::filesystem::path& run, Index inputs, Index rows) {
+  const std::filesystem::path file = run / "samples.h5";
+  if (!std::filesystem::exists(file)) {
+    throw ExperimentError(file.string() +
+                          ": does not exist; give the folder of a finished run, whose test "
+                          "samples the self-test is made of");
+  }
+  const Trajectories test = readSamplesFile(file).test;
+  std::vector<Index> good;
+  for (Index i = 0; i < test.responses.cols(); ++i) {
+    if (test.responses.col(i).allFinite()) {
+      good.push_back(i);
+    }
+  }
+  if (good.size() < 2 || test.responses.rows() != rows) {
+    throw ExperimentError(file.string() + ": has fewer than 2 test samples, or others than the map's");
+  }
+  return {test.responses(Eigen::all, good), MatrixXd(test.parameters.bottomRows(inputs))(Eigen::all, good)};
+}
+
+VectorXd roundTo(CNumber number, const VectorXd& values) {
+  return number == CNumber::kSingle ? VectorXd(values.cast<float>().cast<double>()) : values;
+}
+
+/// What a machine does that the model does not; most measurements stay as they are.
+class Spoiler {
+ public:
+  Spoiler(const MatrixXd& responses, const VectorXd& noise_stddev)
+      : mean_(responses.rowwise().mean()), noise_stddev_(noise_stddev) {}
+
+  VectorXd spoil(int index, VectorXd response) const {
+    constexpr double kDisturbance = 8.0, kBeyond = 2.5, kSlightlyBeyond = 1.3;
+    switch (index % 10) {
+      case 6: {
+        const Index first = response.size() / 3, count = std::max<Index>(1, response.size() / 20);
+        response.segment(first, count) += kDisturbance * noise_stddev_.segment(first, count);
+        return response;
+      }
+      case 7:
+        return mean_ + kBeyond * (response - mean_);
+      case 8:
+        return mean_ + kSlightlyBeyond * (response - mean_);
+      default:
+        return response;
+    }
+  }
+
+ private:
+  VectorXd mean_, noise_stddev_;
+};
+
+/// The grid, or for some measurements times beside it, between which the signals are interpolated.
+VectorXd makeTimes(const VectorXd& grid, int index) {
+  constexpr double kStretched = 1.004;  // its step is within what resampling allows
+  if (index % 10 != 9 || grid.size() < 4) {
+    return grid;
+  }
+  const double middle = 0.5 * (grid[0] + grid[grid.size() - 1]);
+  return (middle + kStretched * (grid.array() - middle)).matrix();
+}
+
+VectorXd makeFeatures(const Inferrer& inferrer, const TestedMeasurement& tested) {
+  const ResponseLayout& layout = inferrer.getLayout();
+  if (layout.modes > 0) {
+    return tested.values;
+  }
+  const Measurement measurement{kSource, tested.times, layout.output_names, tested.values};
+  return inferrer.extractFeatures(
+      resample(measurement, layout, findSampleInterval(inferrer.getExperiment().features)), kSource);
+}
+
+int toBits(const InferredMeasurement& answer) {
+  constexpr int kMapLimited = 16;
+  int bits = isMapLimited(answer) ? kMapLimited : 0;
+  for (const TrustStatus status : answer.trust ? answer.trust->statuses : std::vector<TrustStatus>{}) {
+    if (status != TrustStatus::kOk) {
+      bits |= 1 << static_cast<int>(status);
+    }
+  }
+  return bits;
+}
+
+}  // namespace
+
+std::vector<TestedMeasurement> makeTestedMeasurements(const std::filesystem::path& run,
+                                                      const Inferrer& inferrer, int count, CNumber number) {
+  constexpr int kMostTries = 20;
+  const ResponseLayout& layout = inferrer.getLayout();
+  const auto inputs = static_cast<Index>(inferrer.getExperiment().model.inputs.size());
+  const Samples samples = readSamples(run, inputs, layout.getRowCount());
+  const ResponseNoise noise(inferrer.getExperiment().noise, layout);
+  const Spoiler spoiler(samples.responses, noise.getStddev());
+  const RandomStream random(inferrer.getExperiment().seed, RandomPurpose::kSelftest);
+  const auto n = static_cast<int>(samples.responses.cols());
+  Inferrer::Workspace workspace(inferrer);
+  std::vector<TestedMeasurement> tested;
+  for (int i = 0; static_cast<int>(tested.size()) < count && i < kMostTries * count; ++i) {
+    VectorXd response = spoiler.spoil(i, addNoise(samples.responses, noise, random, i / n).col(i % n));
+    TestedMeasurement one;
+    one.known = samples.known.col(i % n);
+    one.times = makeTimes(layout.times, i);
+    one.values = layout.modes > 0
+                     ? roundTo(number, inferrer.extractFeatures(response, kSource))
+                     : roundTo(number, response).reshaped(layout.times.size(), layout.getOutputCount());
+    try {
+      one.answer = inferrer.infer(makeFeatures(inferrer, one), one.known, workspace);
+      tested.push_back(std::move(one));
+    } catch (const MeasurementError&) {
+      continue;  // such as a spoilt response that lacks a peak
+    }
+  }
+  return tested;
+}
+
+std::string makeSelftest(const ExportedModel& model, const COptions& options,
+                         const std::vector<TestedMeasurement>& measurements) {
+  const auto count = static_cast<Index>(measurements.size());
+  const Index p = model.countParameters(), size = measurements.front().values.size();
+  MatrixXd values(size, count), mean(p, count), stddev(p, count),
+      known(std::max<Index>(1, model.countKnown()), count);
+  std::vector<int> statuses, axis;
+  VectorXd stretched = measurements.front().times;
+  known.setZero();
+  for (Index i = 0; i < count; ++i) {
+    const TestedMeasurement& one = measurements[static_cast<std::size_t>(i)];
+    values.col(i) = flattenColumns(one.values);
+    mean.col(i) = one.answer.inference.mean;
+    stddev.col(i) = one.answer.inference.stddev;
+    known.col(i).head(one.known.size()) = one.known;
+    statuses.push_back(toBits(one.answer));
+    axis.push_back(one.times == measurements.front().times ? 0 : 1);
+    stretched = axis.back() == 1 ? one.times : stretched;
+  }
+  const bool single = options.number == CNumber::kSingle;
+  CTables tables(options.number);
+  tables.addNumber("tolerance_stddevs", single ? 1e-4 : 1e-7,
+                   "Of means and standard deviations, in the latter.");
+  tables.addNumber("tolerance_relative", single ? 0.0 : 1e-12, "And in relation to the mean.");
+  if (model.takesSignals()) {
+    tables.addWide("measured_times",
+                   (VectorXd(2 * stretched.size()) << measurements.front().times, stretched).finished(),
+                   "Times of the samples, s: on the grid, and beside it.");
+    tables.addInts("time_axis", axis, "Which of them, of each measurement.");
+  }
+  tables.addReal("measured", flattenColumns(values),
+                 "Samples: measurement by measurement, signal by signal.");
+  tables.addWide("known_inputs", flattenColumns(known), "Known inputs of each measurement.");
+  tables.addWide("expected_mean", flattenColumns(mean), "twinmap's answers: parameters of each measurement.");
+  tables.addWide("expected_sd", flattenColumns(stddev), "Their standard deviations.");
+  tables.addInts("expected_statuses", statuses, "The statuses, as bits.");
+  const std::string text = fmt::format("enum {{ MEASUREMENTS = {} }};\ntypedef {} real_t;\n\n", count,
+                                       single ? "float" : "double") +
+                           tables.getText();
+  return fillSlot(renameC(std::string(getRuntimeSource("selftest.c")), options.prefix), "@TABLES@\n", text);
+}
+
+}  // namespace twinmap
