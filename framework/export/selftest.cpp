@@ -48,6 +48,14 @@ VectorXd roundTo(CNumber number, const VectorXd& values) {
   return number == CNumber::kSingle ? VectorXd(values.cast<float>().cast<double>()) : values;
 }
 
+/// A response as its signals (times x signals), or features as they are.
+MatrixXd shape(const ResponseLayout& layout, const VectorXd& values) {
+  if (layout.modes > 0) {
+    return values;
+  }
+  return Eigen::Map<const MatrixXd>(values.data(), layout.times.size(), layout.getOutputCount());
+}
+
 /// What a machine does that the model does not; most measurements stay as they are.
 class Spoiler {
  public:
@@ -125,9 +133,8 @@ std::vector<TestedMeasurement> makeTestedMeasurements(const std::filesystem::pat
     TestedMeasurement one;
     one.known = samples.known.col(i % n);
     one.times = makeTimes(layout.times, i);
-    one.values = layout.modes > 0
-                     ? roundTo(number, inferrer.extractFeatures(response, kSource))
-                     : roundTo(number, response).reshaped(layout.times.size(), layout.getOutputCount());
+    one.values = shape(
+        layout, roundTo(number, layout.modes > 0 ? inferrer.extractFeatures(response, kSource) : response));
     try {
       one.answer = inferrer.infer(makeFeatures(inferrer, one), one.known, workspace);
       tested.push_back(std::move(one));

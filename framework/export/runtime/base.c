@@ -51,28 +51,30 @@ static double add_lanes(const double *lane)
 /* sum of a[i] b[i]. */
 static double dot(int count, const double *a, const double *b)
 {
+  const int whole = count / LANES, pairs = whole / 2;
   double first[LANES] = {0.0}, second[LANES] = {0.0}, sum;
-  int i = 0, l;
-  for (; i + 2 * LANES <= count; i += 2 * LANES) {
+  int k, l;
+  for (k = 0; k < pairs; ++k, a += 2 * LANES, b += 2 * LANES) {
     for (l = 0; l < LANES; ++l) {
-      first[l] = multiply_add(a[i + l], b[i + l], first[l]);
+      first[l] = multiply_add(a[l], b[l], first[l]);
     }
     for (l = 0; l < LANES; ++l) {
-      second[l] = multiply_add(a[i + LANES + l], b[i + LANES + l], second[l]);
+      second[l] = multiply_add(a[LANES + l], b[LANES + l], second[l]);
     }
   }
   for (l = 0; l < LANES; ++l) {
     first[l] += second[l];
   }
-  if (i + LANES <= count) {
+  if (whole > 2 * pairs) {
     for (l = 0; l < LANES; ++l) {
-      first[l] = multiply_add(a[i + l], b[i + l], first[l]);
+      first[l] = multiply_add(a[l], b[l], first[l]);
     }
-    i += LANES;
+    a += LANES;
+    b += LANES;
   }
   sum = add_lanes(first);
-  for (; i < count; ++i) {
-    sum = multiply_add(a[i], b[i], sum);
+  for (l = 0; l < count - whole * LANES; ++l) {
+    sum = multiply_add(a[l], b[l], sum);
   }
   return sum;
 }

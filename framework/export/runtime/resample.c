@@ -129,7 +129,7 @@ static twinmap_error resample_at(twinmap_state *state, int count, const double *
   for (s = 0; s < TWINMAP_SIGNALS; ++s) {
     double sum = 0.0;
     for (k = 0; k < 4; ++k) {
-      sum = multiply_add(weights[k], signals[s][first + k], sum);
+      sum += weights[k] * signals[s][first + k];
     }
     state->response[s * TWINMAP_GRID + i] = sum;
   }
