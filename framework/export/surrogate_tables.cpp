@@ -101,7 +101,7 @@ void addWindows(const ExportedModel& model, CTables& tables, CSizes& sizes) {
                  "The same of the scores that say most, else 0.");
   tables.addWide("score_correlation", packLower(forward.error_correlation),
                  "Correlation of the scores' errors: lower triangle, column by column.");
-  tables.addReal("training_points", flattenColumns(forward.points),
+  tables.addWide("training_points", flattenColumns(forward.points),
                  "Training points in half widths of the box from its middle, point by point.");
   tables.addReal("training_scores", flattenColumns(forward.scores), "Their scores, point by point.");
   sizes.push_back({"WINDOWS", static_cast<long>(entries.size()), "groups of scores"});

@@ -13,7 +13,7 @@ void addTrust(const TrustModel& trust, CTables& tables, CSizes& sizes) {
   tables.addWide("whitener", flattenColumns(space.whitener),
                  diagonal ? "1 / noise standard deviation of each feature."
                           : "Root of the inverse covariance of the features' noise, feature by feature.");
-  tables.addWide("score_directions", flattenColumns(space.directions),
+  tables.addReal("score_directions", flattenColumns(space.directions),
                  "Directions of the scores among the whitened features, score by score.");
   if (space.unlearnt.cols() > 0) {
     tables.addReal("unlearnt_directions", flattenColumns(space.unlearnt),

@@ -293,7 +293,7 @@ static int find_starts(const twinmap_state *state, int most, double *start)
     double least = HUGE_VAL;
     int best = -1;
     for (i = 0; i < TWINMAP_POINTS; ++i) {
-      const wide_t *scores = training_scores + i * R;
+      const real_t *scores = training_scores + i * R;
       double misfit = 0.0;
       int far = 1;
       for (s = 0; s < found && far; ++s) {

@@ -29,6 +29,32 @@ static void explain_scores(twinmap_state *state, const double *inferred)
   memcpy(state->innovation, best_innovation, sizeof best_innovation);
 }
 
+/* Along a direction among the residuals. */
+static double dot_real(const real_t *direction, const double *left)
+{
+  double lane[LANES] = {0.0}, sum;
+  const int whole = TWINMAP_RESIDUALS / LANES;
+  int k, l;
+  for (k = 0; k < whole; ++k, direction += LANES, left += LANES) {
+    for (l = 0; l < LANES; ++l) {
+      lane[l] = multiply_add(direction[l], left[l], lane[l]);
+    }
+  }
+  sum = add_lanes(lane);
+  for (l = 0; l < TWINMAP_RESIDUALS - whole * LANES; ++l) {
+    sum = multiply_add(direction[l], left[l], sum);
+  }
+  return sum;
+}
+
+static void add_direction(double factor, const real_t *direction, double *left)
+{
+  int i;
+  for (i = 0; i < TWINMAP_RESIDUALS; ++i) {
+    left[i] = multiply_add(factor, direction[i], left[i]);
+  }
+}
+
 /* All that the point leaves of the features, in numbers that are independent and of unit variance if the
    model is right. */
 static void calc_leftover(twinmap_state *state)
@@ -49,21 +75,20 @@ static void calc_leftover(twinmap_state *state)
 #endif
   for (j = 0; j < TWINMAP_SCORES; ++j) {
     state->residual[j] =
-        state->innovation[j] - dot_table(TWINMAP_RESIDUALS, score_directions + j * TWINMAP_RESIDUALS, left);
+        state->innovation[j] - dot_real(score_directions + j * TWINMAP_RESIDUALS, left);
   }
   for (j = 0; j < TWINMAP_SCORES; ++j) {
-    add_multiple(TWINMAP_RESIDUALS, state->residual[j], score_directions + j * TWINMAP_RESIDUALS, left);
+    add_direction(state->residual[j], score_directions + j * TWINMAP_RESIDUALS, left);
   }
 #if TWINMAP_UNLEARNT
   {
     double moved[TWINMAP_UNLEARNT];
     for (j = 0; j < TWINMAP_UNLEARNT; ++j) {
-      moved[j] = dot_table(TWINMAP_RESIDUALS, unlearnt_directions + j * TWINMAP_RESIDUALS, left);
+      moved[j] = dot_real(unlearnt_directions + j * TWINMAP_RESIDUALS, left);
     }
     for (j = 0; j < TWINMAP_UNLEARNT; ++j) {
       const double stddev = unlearnt_stddev[j], shrinkage = 1.0 / sqrt(1.0 + stddev * stddev);
-      add_multiple(TWINMAP_RESIDUALS, moved[j] * (shrinkage - 1.0), unlearnt_directions + j * TWINMAP_RESIDUALS,
-                   left);
+      add_direction(moved[j] * (shrinkage - 1.0), unlearnt_directions + j * TWINMAP_RESIDUALS, left);
     }
   }
 #endif
@@ -100,7 +125,7 @@ static void find_burst(const double *residual, twinmap_result *result)
 }
 
 /* The share of simulated measurements whose statistic is at least the value. */
-static double calc_p_value(int count, const wide_t *sorted, double value)
+static double calc_p_value(int count, const real_t *sorted, double value)
 {
   int below = 0, end = count;
   while (below < end) {
@@ -118,7 +143,7 @@ static double calc_p_value(int count, const wide_t *sorted, double value)
 static double calc_cloud_distance(twinmap_state *state)
 {
   enum { DIMENSIONS = TWINMAP_INPUTS + TWINMAP_KNOWN };
-  const wide_t *z = cloud_inputs;
+  const real_t *z = cloud_inputs;
   double least = HUGE_VAL;
   int c, f, i;
   for (f = 0; f < DIMENSIONS; ++f) {
