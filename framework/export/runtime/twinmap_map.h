@@ -97,7 +97,7 @@ typedef struct {
 #endif
 #if TWINMAP_TRUST
   double centered[TWINMAP_FEATURES], leftover[TWINMAP_RESIDUALS];
-  double cloud_point[TWINMAP_INPUTS + TWINMAP_KNOWN], cloud_distances[TWINMAP_CLOUD];
+  double cloud_point[TWINMAP_INPUTS + TWINMAP_KNOWN];
 #endif
 } twinmap_state;
 
