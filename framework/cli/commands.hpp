@@ -87,6 +87,9 @@ struct InferArguments {
 struct ExportArguments {
   std::string run;                 ///< folder of a run
   std::string c_folder;            ///< "": no C
+  std::string fmu;                 ///< file; "": none
+  int fmi = 3;                     ///< version of the FMU
+  std::string json;                ///< file; "": none
   bool single = false;             ///< float instead of double
   std::string prefix = "twinmap";  ///< of names in C
 };

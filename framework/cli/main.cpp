@@ -207,10 +207,18 @@ void addInfer(CLI::App& app, cli::InferArguments& arguments) {
 
 void addExport(CLI::App& app, cli::ExportArguments& arguments) {
   CLI::App* command = app.add_subcommand(
-      "export", "Write a trained map for other programs: C99 without heap or libraries");
+      "export",
+      "Write a trained map for other programs: C99 without heap or libraries, an FMU, or its numbers as JSON");
   command->add_option("RUN", arguments.run, "Folder of a finished run")->required()->option_text(" ");
   command->add_option("--c", arguments.c_folder, "Folder for C sources with a self-test and README.md")
       ->type_name("DIR");
+  CLI::Option* fmu = command->add_option("--fmu", arguments.fmu, "File for an FMU for Co-Simulation");
+  fmu->type_name("FILE");
+  command->add_option("--fmi", arguments.fmi, "Version of the FMU: 2 or 3 (default: 3)")
+      ->type_name("N")
+      ->check(CLI::IsMember({2, 3}))
+      ->needs(fmu);
+  command->add_option("--json", arguments.json, "File for all numbers as JSON")->type_name("FILE");
   command->add_flag("--float", arguments.single, "C in float where that keeps what it says (default: double)");
   command->add_option("--prefix", arguments.prefix, "Of names and files in C (default: twinmap)")
       ->type_name("NAME");
