@@ -92,6 +92,8 @@ struct ExportArguments {
   std::string json;                ///< file; "": none
   bool single = false;             ///< float instead of double
   std::string prefix = "twinmap";  ///< of names in C
+  bool compressed = false;         ///< fewer inducing inputs, for at most 2 % of an sd
+  bool trust = true;               ///< judge measurements
 };
 
 struct ReplayArguments {

@@ -16,9 +16,11 @@ void exportMap(const ExportArguments& arguments) {
     throw ExperimentError("export: give --c DIR, --fmu FILE or --json FILE");
   }
   if (!arguments.c_folder.empty()) {
-    COptions options;
-    options.number = arguments.single ? CNumber::kSingle : CNumber::kDouble;
-    options.prefix = arguments.prefix;
+    CFolderOptions options;
+    options.c.number = arguments.single ? CNumber::kSingle : CNumber::kDouble;
+    options.c.prefix = arguments.prefix;
+    options.c.compressed = arguments.compressed;
+    options.trust = arguments.trust;
     writeCFolder(arguments.run, arguments.c_folder, options, std::cout);
   }
   if (!arguments.fmu.empty()) {

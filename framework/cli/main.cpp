@@ -220,6 +220,10 @@ void addExport(CLI::App& app, cli::ExportArguments& arguments) {
       ->needs(fmu);
   command->add_option("--json", arguments.json, "File for all numbers as JSON")->type_name("FILE");
   command->add_flag("--float", arguments.single, "C in float where that keeps what it says (default: double)");
+  command->add_flag("--compress", arguments.compressed,
+                    "C of processes with so few inducing inputs that at most 2 % of an sd is lost");
+  command->add_flag_callback(
+      "--no-trust", [&arguments] { arguments.trust = false; }, "C without the trust status");
   command->add_option("--prefix", arguments.prefix, "Of names and files in C (default: twinmap)")
       ->type_name("NAME");
   command->callback([&arguments] { cli::exportMap(arguments); });

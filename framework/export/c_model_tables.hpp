@@ -24,9 +24,11 @@ void addGrid(const ExportedModel& model, CTables& tables, CSizes& sizes);
 /// features.c
 void addFeatures(const ExportedModel& model, CTables& tables, CSizes& sizes);
 /// transform.c
-void addTransform(const GpMap& map, CTables& tables, CSizes& sizes);
+void addTransform(const GpMap& map, bool compressed, CTables& tables, CSizes& sizes);
 /// processes.c
 void addProcesses(const GpMap& map, CTables& tables, CSizes& sizes);
+/// compressed.c, of a map by compressMap()
+void addCompressedProcesses(const GpMap& map, CTables& tables, CSizes& sizes);
 /// scores.c
 void addScores(const ExportedModel& model, CTables& tables, CSizes& sizes);
 /// surrogate.c

@@ -125,6 +125,9 @@ std::size_t calcStateBytes(const CSource& source) {
   if (size("PROCESSES") > 0) {
     doubles += 2 * inputs + size("DIRECTIONS") + 1 + 6 * size("LARGEST") + size("COEFFICIENTS") + 1;
   }
+  if (size("COMPRESSED") > 0) {
+    doubles += size("LARGEST") * (size("LARGEST") + 1) / 2;
+  }
   if (size("TRUST") > 0) {
     doubles += size("FEATURES") + size("RESIDUALS") + inputs;
   }

@@ -11,6 +11,7 @@ namespace twinmap {
 struct COptions {
   CNumber number = CNumber::kDouble;  ///< of signals, and of tables that tolerate it
   std::string prefix = "twinmap";     ///< of names and files
+  bool compressed = false;            ///< the processes are those of compressMap()
 };
 
 /// A map in C99: PREFIX_map.h and PREFIX_map.c.

@@ -103,7 +103,9 @@ bool isCalculated(const FmuVariable& variable) {
 }
 
 const char* getInitial(const FmuVariable& variable) {
-  return variable.causality == "input" ? "" : isCalculated(variable) ? " initial=\"calculated\"" : " initial=\"exact\"";
+  return variable.causality == "input" ? ""
+         : isCalculated(variable)      ? " initial=\"calculated\""
+                                       : " initial=\"exact\"";
 }
 
 std::string makeStart(const FmuVariable& variable) {
@@ -118,7 +120,7 @@ std::string makeVariable2(const FmuVariable& variable, std::size_t reference) {
       escapeHtml(variable.name), reference, escapeHtml(variable.description), variable.causality,
       variable.variability, getInitial(variable), variable.type,
       variable.type == "Enumeration" ? " declaredType=\"Status\"" : "", makeUnitAttribute(variable),
-      variable.start);
+      makeStart(variable));
 }
 
 std::string makeVariable3(const FmuVariable& variable, std::size_t reference) {

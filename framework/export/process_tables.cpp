@@ -14,6 +14,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr Index kBatch = 4;  // as BATCH of runtime/processes.c
+constexpr const char* kCovariances[] = {"SQUARED_EXPONENTIAL", "MATERN_32", "MATERN_52",
+                                        "RATIONAL_QUADRATIC"};
 constexpr Index kChunk = linalg::PackedSamples::kChunk;
 
 Index countChunks(Index inputs) {
@@ -48,8 +50,6 @@ std::string addBatch(const std::vector<gp::ProcessView>& views, Index first, Ind
 }
 
 std::string addProcess(const gp::ProcessView& view, Index parameter, double mean_slope, CTables& tables) {
-  constexpr const char* kCovariances[] = {"SQUARED_EXPONENTIAL", "MATERN_32", "MATERN_52",
-                                          "RATIONAL_QUADRATIC"};
   const gp::Hyperparameters& h = view.hyperparameters;
   const std::string name = fmt::format("process_{}", parameter);
   const Index n = view.inputs.cols(), chunks = countChunks(n), coefficients = view.mean_coefficients.size();
@@ -81,17 +81,97 @@ std::string addProcess(const gp::ProcessView& view, Index parameter, double mean
                      view.correction != nullptr ? name + "_correction" : "0", basis, name, toC(mean_slope));
 }
 
+/// Targets and the noise's profile, as both forms of processes have them.
+void addTargets(const GpMap& map, CTables& tables, CSizes& sizes) {
+  const bool constant = map.noise.isConstant();
+  tables.addWide("target_offset", map.target_offset, "Mean of the training parameters, in their units.");
+  tables.addWide("target_scale", map.target_scale, "Their standard deviation, in their units.");
+  if (!constant) {
+    tables.addWide("noise_directions", flattenColumns(map.noise.directions),
+                   "Square root of the inputs' noise covariance, column by column.");
+    tables.addNumber("smallest_noise_factor", NoiseProfile::kSmallestFactor,
+                     "Where the map is flat, its noise is at least this share of the mean.");
+  }
+  sizes.push_back({"DIRECTIONS", constant ? 0 : static_cast<long>(map.noise.directions.cols()),
+                   "of the inputs' noise; 0: the noise of a parameter is constant"});
+}
+
+std::string addCompressedProcess(const gp::Process& process, Index parameter, double mean_slope,
+                                 CTables& tables) {
+  const auto& sparse = *std::get<std::shared_ptr<const gp::SparseGaussianProcess>>(process);
+  const gp::SparseGaussianProcessParts& parts = sparse.getParts();
+  const gp::VariationalPosterior& posterior = parts.posterior;
+  const gp::ProcessView view = gp::viewProcess(process);
+  const gp::Hyperparameters& h = parts.hyperparameters;
+  const std::string name = fmt::format("process_{}", parameter);
+  const Index coefficients = posterior.mean_coefficients.size();
+  tables.addWide(name + "_center", parts.center, "Mean training input of the process.");
+  tables.addWide(name + "_inverse_square", view.mean.getInverseLengthScales().cwiseAbs2(),
+                 "1 / squared length scale of each input.");
+  tables.addReal(name + "_points", flattenColumns(parts.inducing),
+                 fmt::format("{} points that stand for the training inputs.", parts.inducing.cols()));
+  tables.addWide(name + "_weights",
+                 posterior.inducing_factor.triangularView<Eigen::Lower>().transpose() * posterior.weights,
+                 "Weights of their whitened covariances, standardised parameter.");
+  tables.addReal(name + "_correction", packLower(posterior.correction_factor),
+                 "Lower factor of what the samples say of the points, column by column.");
+  if (coefficients > 0) {
+    tables.addWide(name + "_basis", flattenColumns(view.whitened_basis),
+                   "The mean function's terms, whitened.");
+    tables.addWide(name + "_basis_factor", flattenRows(view.basis_factor),
+                   "Lower factor of their information, row by row.");
+    tables.addWide(name + "_coefficients", view.mean_coefficients, "Coefficients of the mean function.");
+  }
+  tables.addWide(name + "_gradient", view.calcConstantGradient(),
+                 "The part of the mean's gradient that is the same everywhere.");
+  return fmt::format(
+      "{}, {}, {}, {}, {}, {}, {},\n   {}_center, {}_inverse_square, {}_points, {}_weights, "
+      "{}_correction, {}, {}_gradient, {}",
+      kCovariances[static_cast<int>(parts.structure.covariance)], parts.inducing.cols(), coefficients,
+      toC(h.signal_stddev * h.signal_stddev), toC(h.shape), toC(h.noise_stddev * h.noise_stddev),
+      toC(posterior.jitter), name, name, name, name, name,
+      coefficients > 0 ? fmt::format("{0}_basis, {0}_basis_factor, {0}_coefficients", name) : "0, 0, 0", name,
+      toC(mean_slope));
+}
+
 }  // namespace
 
-void addTransform(const GpMap& map, CTables& tables, CSizes& sizes) {
+void addCompressedProcesses(const GpMap& map, CTables& tables, CSizes& sizes) {
+  std::vector<std::string> processes;
+  Index largest = 0, coefficients = 0;
+  for (const gp::Process& process : map.processes) {
+    const auto p = static_cast<Index>(processes.size());
+    const gp::ProcessView view = gp::viewProcess(process);
+    largest = std::max(largest, view.inputs.cols());
+    coefficients = std::max(coefficients, view.mean_coefficients.size());
+    processes.push_back(
+        addCompressedProcess(process, p, map.noise.isConstant() ? 0.0 : map.noise.mean_of_slope[p], tables));
+  }
+  tables.addStructs("process", "processes", processes, "The process of each parameter.");
+  addTargets(map, tables, sizes);
+  sizes.push_back({"LARGEST", static_cast<long>(largest), "most points of a process"});
+  sizes.push_back({"COEFFICIENTS", static_cast<long>(coefficients), "most coefficients of a mean function"});
+}
+
+void addTransform(const GpMap& map, bool compressed, CTables& tables, CSizes& sizes) {
   const MatrixXd matrix = map.transform.calcMatrix();
-  const VectorXd offset = map.transform.apply(VectorXd::Zero(matrix.cols()));
-  const bool diagonal = matrix.rows() == matrix.cols() && matrix.isDiagonal(0.0);
-  tables.addWide("transform_offset", offset, "Inputs of the processes where all features are 0.");
-  tables.addWide("transform_matrix", diagonal ? VectorXd(matrix.diagonal()) : flattenColumns(matrix),
-                 diagonal ? "Inputs per unit of their feature."
-                          : fmt::format("Inputs per unit of the features, {} x {}, feature by feature.",
-                                        matrix.rows(), matrix.cols()));
+  const VectorXd center =
+      compressed ? map.transform.steps.front().offset : VectorXd(VectorXd::Zero(matrix.cols()));
+  const bool diagonal = !compressed && matrix.rows() == matrix.cols() && matrix.isDiagonal(0.0);
+  tables.addWide("transform_offset", map.transform.apply(center),
+                 compressed ? "Inputs of the processes at the middle features."
+                            : "Inputs of the processes where all features are 0.");
+  const VectorXd entries = diagonal ? VectorXd(matrix.diagonal()) : flattenColumns(matrix);
+  const std::string meaning =
+      diagonal ? "Inputs per unit of their feature."
+               : fmt::format("Inputs per unit of the features, {} x {}, feature by feature.", matrix.rows(),
+                             matrix.cols());
+  if (compressed) {
+    tables.addReal("transform_center", center, "The middle features, in their units.");
+    tables.addReal("transform_matrix", entries, meaning);
+  } else {
+    tables.addWide("transform_matrix", entries, meaning);
+  }
   if (map.known_inputs.center.size() > 0) {
     tables.addWide("known_center", map.known_inputs.center,
                    "Middle of the known inputs' bounds, in their units.");
@@ -128,16 +208,7 @@ void addProcesses(const GpMap& map, CTables& tables, CSizes& sizes) {
   tables.addStructs("process_batch", "process_batches", batches,
                     "Parameters whose processes share their inputs.");
   tables.addStructs("process", "processes", processes, "The process of each parameter.");
-  tables.addWide("target_offset", map.target_offset, "Mean of the training parameters, in their units.");
-  tables.addWide("target_scale", map.target_scale, "Their standard deviation, in their units.");
-  if (!constant) {
-    tables.addWide("noise_directions", flattenColumns(map.noise.directions),
-                   "Square root of the inputs' noise covariance, column by column.");
-    tables.addNumber("smallest_noise_factor", NoiseProfile::kSmallestFactor,
-                     "Where the map is flat, its noise is at least this share of the mean.");
-  }
-  sizes.push_back({"DIRECTIONS", constant ? 0 : static_cast<long>(map.noise.directions.cols()),
-                   "of the inputs' noise; 0: the noise of a parameter is constant"});
+  addTargets(map, tables, sizes);
   sizes.push_back({"LARGEST", static_cast<long>(largest), "most inputs of a process, whole chunks"});
   sizes.push_back({"COEFFICIENTS", static_cast<long>(coefficients), "most coefficients of a mean function"});
   sizes.push_back({"BATCHES", static_cast<long>(batches.size()), "groups of processes that share inputs"});

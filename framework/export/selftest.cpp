@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "framework/experiment/prepare_data.hpp"
 #include "framework/export/runtime_sources.hpp"
 #include "framework/features/noise.hpp"
 #include "framework/inference/answer.hpp"
@@ -93,15 +94,47 @@ VectorXd makeTimes(const VectorXd& grid, int index) {
   return (middle + kStretched * (grid.array() - middle)).matrix();
 }
 
-VectorXd makeFeatures(const Inferrer& inferrer, const TestedMeasurement& tested) {
-  const ResponseLayout& layout = inferrer.getLayout();
-  if (layout.modes > 0) {
-    return tested.values;
+/// Answers as Inferrer gives them, by a model that may be compressed.
+class Answerer {
+ public:
+  explicit Answerer(const ExportedModel& model)
+      : model_(model),
+        extractor_(makeExtractor(model.experiment, model.layout)),
+        map_(model.online.map),
+        workspace_(map_) {
+    if (model.online.trust) {
+      trust_.emplace(*model.online.trust);
+    }
   }
-  const Measurement measurement{kSource, tested.times, layout.output_names, tested.values};
-  return inferrer.extractFeatures(
-      resample(measurement, layout, findSampleInterval(inferrer.getExperiment().features)), kSource);
-}
+
+  VectorXd extract(const VectorXd& response) const { return extractFeatures(extractor_, response, kSource); }
+
+  /// Of signals, or of features as they are.
+  VectorXd makeFeatures(const TestedMeasurement& tested) const {
+    if (!model_.takesSignals()) {
+      return tested.values;
+    }
+    const Measurement measurement{kSource, tested.times, model_.layout.output_names, tested.values};
+    return extract(resample(measurement, model_.layout, model_.sample_interval));
+  }
+
+  InferredMeasurement infer(const VectorXd& features, const VectorXd& known) {
+    InferredMeasurement inferred;
+    inferred.inference = map_.infer(features, known, workspace_);
+    inferred.map_is_honest = map_.isHonest();
+    if (trust_) {
+      inferred.trust = judge(*model_.online.trust, features, known, inferred.inference, *trust_);
+    }
+    return inferred;
+  }
+
+ private:
+  const ExportedModel& model_;
+  FeatureExtractor extractor_;
+  OnlineMap map_;
+  OnlineMap::Workspace workspace_;
+  std::optional<TrustWorkspace> trust_;
+};
 
 int toBits(const InferredMeasurement& answer) {
   constexpr int kMapLimited = 16;
@@ -117,30 +150,37 @@ int toBits(const InferredMeasurement& answer) {
 }  // namespace
 
 std::vector<TestedMeasurement> makeTestedMeasurements(const std::filesystem::path& run,
-                                                      const Inferrer& inferrer, int count, CNumber number) {
+                                                      const ExportedModel& model, const TestPlan& plan) {
   constexpr int kMostTries = 20;
-  const ResponseLayout& layout = inferrer.getLayout();
-  const auto inputs = static_cast<Index>(inferrer.getExperiment().model.inputs.size());
-  const Samples samples = readSamples(run, inputs, layout.getRowCount());
-  const ResponseNoise noise(inferrer.getExperiment().noise, layout);
+  const ResponseLayout& layout = model.layout;
+  const Samples samples = readSamples(run, model.countKnown(), layout.getRowCount());
+  const ResponseNoise noise(model.experiment.noise, layout);
   const Spoiler spoiler(samples.responses, noise.getStddev());
-  const RandomStream random(inferrer.getExperiment().seed, RandomPurpose::kSelftest);
+  const RandomStream random(model.experiment.seed, RandomPurpose::kSelftest);
   const auto n = static_cast<int>(samples.responses.cols());
-  Inferrer::Workspace workspace(inferrer);
+  Answerer answerer(model);
   std::vector<TestedMeasurement> tested;
-  for (int i = 0; static_cast<int>(tested.size()) < count && i < kMostTries * count; ++i) {
-    VectorXd response = spoiler.spoil(i, addNoise(samples.responses, noise, random, i / n).col(i % n));
+  MatrixXd noisy;
+  for (int i = 0; static_cast<int>(tested.size()) < plan.count && i < kMostTries * plan.count; ++i) {
+    if (i % n == 0) {
+      noisy = addNoise(samples.responses, noise, random, i / n);
+    }
+    const VectorXd response = plan.spoilt ? spoiler.spoil(i, noisy.col(i % n)) : VectorXd(noisy.col(i % n));
     TestedMeasurement one;
     one.known = samples.known.col(i % n);
-    one.times = makeTimes(layout.times, i);
-    one.values = shape(
-        layout, roundTo(number, layout.modes > 0 ? inferrer.extractFeatures(response, kSource) : response));
+    one.times = plan.spoilt ? makeTimes(layout.times, i) : layout.times;
     try {
-      one.answer = inferrer.infer(makeFeatures(inferrer, one), one.known, workspace);
+      one.values =
+          shape(layout, roundTo(plan.number, layout.modes > 0 ? answerer.extract(response) : response));
+      one.features = answerer.makeFeatures(one);
+      one.answer = answerer.infer(one.features, one.known);
       tested.push_back(std::move(one));
     } catch (const MeasurementError&) {
       continue;  // such as a spoilt response that lacks a peak
     }
+  }
+  if (tested.empty()) {
+    throw ExperimentError(run.string() + ": none of the run's test samples has all features");
   }
   return tested;
 }

@@ -13,16 +13,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-VectorXd packLower(const MatrixXd& matrix) {
-  VectorXd packed(matrix.rows() * (matrix.rows() + 1) / 2);
-  Index at = 0;
-  for (Index j = 0; j < matrix.cols(); ++j) {
-    packed.segment(at, matrix.rows() - j) = matrix.col(j).tail(matrix.rows() - j);
-    at += matrix.rows() - j;
-  }
-  return packed;
-}
-
 std::string addWindow(const gp::SharedProcess& process, int index, Index first, Index leading,
                       CTables& tables) {
   const gp::SharedProcessParts parts = process.getParts();

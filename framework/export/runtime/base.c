@@ -85,7 +85,7 @@ static double dot_table(int count, const wide_t *a, const double *b)
   return dot(count, a, b);
 }
 
-#if TWINMAP_SCORES || !TWINMAP_DIAGONAL
+#if TWINMAP_SCORES || TWINMAP_COMPRESSED
 /* y += factor x. */
 static void add_multiple(int count, double factor, const double *x, double *y)
 {
@@ -96,6 +96,7 @@ static void add_multiple(int count, double factor, const double *x, double *y)
 }
 #endif
 
+#if !TWINMAP_COMPRESSED || TWINMAP_SCORES
 /* x = L^-1 x for a lower triangular L in tiles of CHUNK x CHUNK, row of tiles by row of tiles, each column by
    column; those on the diagonal hold their inverse. x: whole tiles. */
 static void solve_tiles(int blocks, const wide_t *tile, double *x)
@@ -128,6 +129,8 @@ static void solve_tiles(int blocks, const wide_t *tile, double *x)
     }
   }
 }
+
+#endif
 
 /* x = L^-1 x for a small lower triangular L, row by row. */
 static void solve_rows(int size, const double *lower, double *x)

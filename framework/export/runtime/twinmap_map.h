@@ -67,6 +67,9 @@ typedef struct {
   double distances[4 * TWINMAP_LARGEST], covariances[TWINMAP_LARGEST], radial_slopes[TWINMAP_LARGEST];
   double basis_error[TWINMAP_COEFFICIENTS + 1];
 #endif
+#if TWINMAP_COMPRESSED
+  double lower_covariance[TWINMAP_LARGEST * (TWINMAP_LARGEST + 1) / 2];
+#endif
 #if TWINMAP_SCORES
   /* of the processes from parameters to scores, at the point evaluated last */
   double differences[TWINMAP_WINDOWS * TWINMAP_VARIABLES * TWINMAP_POINTS];
