@@ -20,7 +20,7 @@ typedef union {
 
 /* e^x after Cephes, without a branch, so that loops over it become vector instructions; 0 below -708.
    Within 2 units in the last place. */
-static double exponential(double x)
+static inline double exponential(double x)
 {
   const double round = 6755399441055744.0; /* 1.5 * 2^52: what is added to it is rounded to a whole number */
   const double inside = x < -708.0 ? -708.0 : (x > 709.0 ? 709.0 : x);
