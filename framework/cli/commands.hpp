@@ -84,6 +84,18 @@ struct InferArguments {
   std::optional<bool> refine;      ///< none: as the experiment says
 };
 
+struct ExportArguments {
+  std::string run;                 ///< folder of a run
+  std::string c_folder;            ///< "": no C
+  std::string fmu;                 ///< file; "": none
+  int fmi = 3;                     ///< version of the FMU
+  std::string json;                ///< file; "": none
+  bool single = false;             ///< float instead of double
+  std::string prefix = "twinmap";  ///< of names in C
+  bool compressed = false;         ///< fewer inducing inputs, for at most 2 % of an sd
+  bool trust = true;               ///< judge measurements
+};
+
 struct ReplayArguments {
   std::string run;                   ///< folder of a run, or its maps.h5
   std::string file;                  ///< the measurement that is simulated again
@@ -134,6 +146,9 @@ void compare(const CompareArguments& arguments);
 /// Infers the parameters of measurements and prints them with their trust status. Throws std::runtime_error
 /// after the last one if some could not be used.
 void infer(const InferArguments& arguments);
+
+/// Writes a trained map for other programs. Throws ExperimentError for a run that cannot be exported.
+void exportMap(const ExportArguments& arguments);
 
 /// Infers the parameters of a measurement, simulates the updated model next to it (the same measurement or
 /// another), writes the comparison and prints how well it fits. Throws std::runtime_error for a measurement

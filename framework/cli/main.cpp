@@ -207,6 +207,30 @@ void addInfer(CLI::App& app, cli::InferArguments& arguments) {
   command->callback([&arguments] { cli::infer(arguments); });
 }
 
+void addExport(CLI::App& app, cli::ExportArguments& arguments) {
+  CLI::App* command = app.add_subcommand(
+      "export",
+      "Write a trained map for other programs: C99 without heap or libraries, an FMU, or its numbers as JSON");
+  command->add_option("RUN", arguments.run, "Folder of a finished run")->required()->option_text(" ");
+  command->add_option("--c", arguments.c_folder, "Folder for C sources with a self-test and README.md")
+      ->type_name("DIR");
+  CLI::Option* fmu = command->add_option("--fmu", arguments.fmu, "File for an FMU for Co-Simulation");
+  fmu->type_name("FILE");
+  command->add_option("--fmi", arguments.fmi, "Version of the FMU: 2 or 3 (default: 3)")
+      ->type_name("N")
+      ->check(CLI::IsMember({2, 3}))
+      ->needs(fmu);
+  command->add_option("--json", arguments.json, "File for all numbers as JSON")->type_name("FILE");
+  command->add_flag("--float", arguments.single, "C in float where that keeps what it says (default: double)");
+  command->add_flag("--compress", arguments.compressed,
+                    "C of processes with so few inducing inputs that at most 2 % of an sd is lost");
+  command->add_flag_callback(
+      "--no-trust", [&arguments] { arguments.trust = false; }, "C without the trust status");
+  command->add_option("--prefix", arguments.prefix, "Of names and files in C (default: twinmap)")
+      ->type_name("NAME");
+  command->callback([&arguments] { cli::exportMap(arguments); });
+}
+
 void addReplay(CLI::App& app, cli::ReplayArguments& arguments) {
   constexpr int kFewestDraws = 2, kMostDraws = 10000;
   CLI::App* command =
@@ -359,6 +383,8 @@ int runCommand(int count, char** arguments) {
   addRun(app, run);
   addPlan(app, run);
   addInfer(app, infer);
+  cli::ExportArguments exported;
+  addExport(app, exported);
   addReplay(app, replay);
   addStatus(app, status);
   addCompare(app, compare);

@@ -19,6 +19,7 @@ enum class RandomPurpose : std::uint64_t {
   kEnsemble = 11,    // parameters drawn from what was inferred
   kNoiseBurst = 12,  // noise that refined answers are compared with
   kTrustPower = 13,  // measurements of a machine that differs from the model
+  kSelftest = 14,    // measurements that exported code is tested with
 };
 
 /// Counter-based random numbers (Philox 4x64-10, Salmon et al. 2011): a number depends on

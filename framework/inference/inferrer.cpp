@@ -9,7 +9,6 @@
 #include "framework/store/maps_file.hpp"
 
 namespace twinmap {
-namespace {
 
 namespace fs = std::filesystem;
 
@@ -21,8 +20,6 @@ fs::path findMaps(const fs::path& run_or_maps) {
   }
   return file;
 }
-
-}  // namespace
 
 struct Inferrer::Loaded {
   StoredOnlineModel stored;

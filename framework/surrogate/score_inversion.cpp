@@ -56,6 +56,29 @@ std::vector<Index> rankSimulations(const ForwardSurrogate& surrogate,
   return order;
 }
 
+LeadingScores findLeadingScores(const ForwardSurrogate& surrogate, Index unknown) {
+  constexpr Index kScoresPerUnknown = 10;
+  const ArrayXd weights = (1.0 + surrogate.error_variance.array()).rsqrt();
+  const ArrayXd said = surrogate.scores.rowwise().squaredNorm().array() * weights.square();
+  std::vector<double> order(said.data(), said.data() + said.size());
+  const Index kept = std::min<Index>(said.size(), kScoresPerUnknown * unknown);
+  std::nth_element(order.begin(), order.begin() + (kept - 1), order.end(), std::greater<>());
+  const double least = order[static_cast<std::size_t>(kept - 1)];
+  LeadingScores leading{ArrayXd::Zero(said.size()), {}};
+  Index first = 0;
+  for (const gp::SharedProcess& process : surrogate.windows) {
+    const Index count = process.getFunctionCount();
+    Index taken = count;
+    while (taken > 0 && said(first + taken - 1) < least) {
+      --taken;
+    }
+    leading.weights.segment(first, taken) = weights.segment(first, taken);
+    leading.counts.push_back(taken);
+    first += count;
+  }
+  return leading;
+}
+
 ScoreInversion::ScoreInversion(const ForwardSurrogate& surrogate, Index unknown)
     : surrogate_(surrogate),
       unknown_(unknown),
@@ -66,30 +89,9 @@ ScoreInversion::ScoreInversion(const ForwardSurrogate& surrogate, Index unknown)
       stddev_(surrogate.getScoreCount()),
       jacobian_(MatrixXd::Zero(surrogate.getScoreCount(), unknown)) {
   rough_.weights = (1.0 + surrogate.error_variance.array()).rsqrt();
-  takeLeading();
-}
-
-/// The metric of the scores that say most: a search with some ten for each unknown comes near enough to a
-/// minimum, at a fraction of the cost.
-void ScoreInversion::takeLeading() {
-  constexpr Index kScoresPerUnknown = 10;
-  const ArrayXd said = surrogate_.scores.rowwise().squaredNorm().array() * rough_.weights.square();
-  std::vector<double> order(said.data(), said.data() + said.size());
-  const Index kept = std::min<Index>(said.size(), kScoresPerUnknown * unknown_);
-  std::nth_element(order.begin(), order.begin() + (kept - 1), order.end(), std::greater<>());
-  const double least = order[static_cast<std::size_t>(kept - 1)];
-  leading_.weights = ArrayXd::Zero(said.size());
-  Index first = 0;
-  for (const gp::SharedProcess& process : surrogate_.windows) {
-    const Index count = process.getFunctionCount();
-    Index taken = count;
-    while (taken > 0 && said(first + taken - 1) < least) {
-      --taken;
-    }
-    leading_.weights.segment(first, taken) = rough_.weights.segment(first, taken);
-    leading_.counts.push_back(taken);
-    first += count;
-  }
+  LeadingScores leading = findLeadingScores(surrogate, unknown);
+  leading_.weights = std::move(leading.weights);
+  leading_.counts = std::move(leading.counts);
 }
 
 std::vector<VectorXd> ScoreInversion::findStarts() const {

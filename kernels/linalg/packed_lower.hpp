@@ -52,6 +52,9 @@ class PackedSamples {
 
   Index paddedSize() const { return chunks_ * kChunk; }
 
+  /// The samples as they are laid out: paddedSize() times features.
+  const Eigen::VectorXd& getValues() const { return values_; }
+
   /// Distances under several weightings at once:
   ///   squares(i, t) = sum over features f of weights(t, f) (sample_fi - point_f)^2,   t < kWeightings,
   /// with weights column-major (kWeightings x d) and squares' columns paddedSize() apart.

@@ -16,25 +16,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Both kinds of processes as predictions see them.
-struct OnlinePredictor::Source {
-  const ModelStructure& structure;
-  const Hyperparameters& hyperparameters;
-  const KernelExpansion& mean;
-  const MatrixXd& inputs;  // training samples or inducing inputs
-  const VectorXd& weights;
-  const MatrixXd& factor;
-  const MatrixXd* correction;
-  MatrixXd whitened_basis;
-  const MatrixXd& basis_factor;
-  const VectorXd& mean_coefficients;
-
-  bool sharesInputs(const Source& other) const {
-    return (&inputs == &other.inputs || (inputs.cols() == other.inputs.cols() && inputs == other.inputs)) &&
-           mean.getCenter() == other.mean.getCenter();
-  }
-};
-
 namespace {
 
 void require(bool condition, const char* message) {
@@ -53,16 +34,16 @@ MatrixXd padRows(const MatrixXd& matrix, Index rows) {
 
 OnlinePredictor::OnlinePredictor(const std::vector<Process>& processes) {
   require(!processes.empty(), "there are no processes");
-  std::vector<Source> sources;
+  std::vector<ProcessView> sources;
   for (const Process& process : processes) {
     require(std::visit([](const auto& trained) { return trained != nullptr; }, process),
             "a process is null; its training failed");
-    sources.push_back(getSource(process));
+    sources.push_back(viewProcess(process));
     require(sources.back().inputs.rows() == sources.front().inputs.rows(),
             "the processes differ in their number of features");
   }
   feature_count_ = sources.front().inputs.rows();
-  for (const Source& source : sources) {
+  for (const ProcessView& source : sources) {
     targets_.push_back(makeTarget(source));
   }
   for (Index first = 0; first < getTargetCount(); first += batches_.back().count) {
@@ -70,31 +51,9 @@ OnlinePredictor::OnlinePredictor(const std::vector<Process>& processes) {
   }
 }
 
-OnlinePredictor::Source OnlinePredictor::getSource(const Process& process) {
-  if (const auto* exact = std::get_if<std::shared_ptr<const GaussianProcess>>(&process)) {
-    const GaussianProcess& gp = **exact;
-    return {gp.getStructure(),   gp.getHyperparameters(), gp.getMean(), gp.getInputs(),
-            gp.getAlpha(),       gp.getFactor(),          nullptr,      gp.getWhitenedBasis(),
-            gp.getBasisFactor(), gp.getMeanCoefficients()};
-  }
-  const SparseGaussianProcess& gp = *std::get<std::shared_ptr<const SparseGaussianProcess>>(process);
-  const SparseGaussianProcessParts& parts = gp.getParts();
-  const VariationalPosterior& posterior = parts.posterior;
-  return {parts.structure,
-          parts.hyperparameters,
-          gp.getMean(),
-          parts.inducing,
-          posterior.weights,
-          posterior.inducing_factor,
-          &posterior.correction_factor,
-          posterior.whitened_basis / parts.hyperparameters.noise_stddev,
-          posterior.basis_factor,
-          posterior.mean_coefficients};
-}
-
-OnlinePredictor::Batch OnlinePredictor::makeBatch(const std::vector<Source>& sources, Index first) {
+OnlinePredictor::Batch OnlinePredictor::makeBatch(const std::vector<ProcessView>& sources, Index first) {
   const auto total = static_cast<Index>(sources.size());
-  const Source& source = sources[first];
+  const ProcessView& source = sources[first];
   Batch batch;
   batch.first = first;
   batch.count = 1;
@@ -111,7 +70,7 @@ OnlinePredictor::Batch OnlinePredictor::makeBatch(const std::vector<Source>& sou
   return batch;
 }
 
-OnlinePredictor::Target OnlinePredictor::makeTarget(const Source& source) {
+OnlinePredictor::Target OnlinePredictor::makeTarget(const ProcessView& source) {
   Target target;
   target.structure = source.structure;
   target.hyperparameters = source.hyperparameters;
@@ -125,15 +84,7 @@ OnlinePredictor::Target OnlinePredictor::makeTarget(const Source& source) {
   target.whitened_basis = padRows(source.whitened_basis, padding);
   target.basis_factor = source.basis_factor;
   target.mean_coefficients = source.mean_coefficients;
-  target.constant_gradient = VectorXd::Zero(source.inputs.rows());
-  if (source.structure.linear_term) {
-    const double variance = source.hyperparameters.linear_stddev * source.hyperparameters.linear_stddev;
-    target.constant_gradient =
-        variance * (source.inputs.colwise() - source.mean.getCenter()) * source.weights;
-  }
-  if (source.structure.mean == MeanFunction::kLinear) {
-    target.constant_gradient += source.mean_coefficients.tail(source.inputs.rows());
-  }
+  target.constant_gradient = source.calcConstantGradient();
   return target;
 }
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "kernels/linalg/packed_lower.hpp"
-#include "kernels/online/process.hpp"
+#include "kernels/online/process_view.hpp"
 
 namespace twinmap::gp {
 
@@ -56,7 +56,6 @@ class OnlinePredictor {
   void predictWithGradient(const Eigen::Ref<const Eigen::VectorXd>& x, Workspace& workspace) const;
 
  private:
-  struct Source;
   struct Target {
     ModelStructure structure;
     Hyperparameters hyperparameters;
@@ -79,9 +78,8 @@ class OnlinePredictor {
   };
   static constexpr Eigen::Index kBatch = 4;
 
-  static Source getSource(const Process& process);
-  static Batch makeBatch(const std::vector<Source>& sources, Eigen::Index first);
-  static Target makeTarget(const Source& source);
+  static Batch makeBatch(const std::vector<ProcessView>& sources, Eigen::Index first);
+  static Target makeTarget(const ProcessView& source);
 
   enum class Extent { kMean, kVariance, kGradient };
   void predictAll(const Eigen::Ref<const Eigen::VectorXd>& x, Extent extent, Workspace& workspace) const;

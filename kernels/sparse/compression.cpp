@@ -22,7 +22,8 @@ VectorXd restoreTarget(const GaussianProcess& process) {
 
 }  // namespace
 
-std::shared_ptr<const SparseGaussianProcess> compress(const GaussianProcess& process, double tolerance) {
+std::shared_ptr<const SparseGaussianProcess> compress(const GaussianProcess& process, double tolerance,
+                                                      InputStorage storage) {
   constexpr double kLoosest = 0.1;  // of the signal: a process that is nearly all noise keeps some points
   if (process.getStructure().linear_term) {
     return nullptr;
@@ -39,6 +40,9 @@ std::shared_ptr<const SparseGaussianProcess> compress(const GaussianProcess& pro
       {}};
   if (parts.inducing.cols() > most) {
     return nullptr;
+  }
+  if (storage == InputStorage::kSingle) {
+    parts.inducing = parts.inducing.cast<float>().cast<double>().eval();
   }
   const VectorXd target = restoreTarget(process);
   const VariationalBound bound(process.getInputs(), target, parts.inducing, parts.structure);

@@ -1,0 +1,63 @@
+#include "framework/export/exported_model.hpp"
+
+#include "framework/experiment/prepare_data.hpp"
+#include "framework/inference/inferrer.hpp"
+#include "framework/spec/experiment_file.hpp"
+#include "framework/spec/parameter_box.hpp"
+#include "framework/store/maps_file.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+const Surrogate* ExportedModel::findSurrogate() const {
+  const auto* surrogate = std::get_if<std::shared_ptr<const Surrogate>>(&online.map);
+  return surrogate == nullptr ? nullptr : surrogate->get();
+}
+
+const ForwardSurrogate* ExportedModel::findForward() const {
+  if (const Surrogate* surrogate = findSurrogate()) {
+    return surrogate->forward.get();
+  }
+  return online.trust ? online.trust->forward.get() : nullptr;
+}
+
+Index ExportedModel::countParameters() const {
+  return static_cast<Index>(experiment.model.parameters.size());
+}
+
+Index ExportedModel::countKnown() const {
+  return static_cast<Index>(experiment.model.inputs.size());
+}
+
+Index ExportedModel::countUnknown() const {
+  return static_cast<Index>(collectUnknown(experiment.model).size());
+}
+
+Eigen::MatrixXd ExportedModel::getCorrelation() const {
+  const Surrogate* surrogate = findSurrogate();
+  return surrogate != nullptr ? surrogate->validation.residual_correlation
+                              : findProcesses()->residual_correlation;
+}
+
+VectorXd ExportedModel::getBoxCenter() const {
+  return calcBoxCenter(collectSampled(experiment.model));
+}
+
+VectorXd ExportedModel::getBoxHalfWidth() const {
+  return 0.5 * calcWidths(collectSampled(experiment.model));
+}
+
+ExportedModel loadExportedModel(const std::filesystem::path& run_or_maps) {
+  StoredOnlineModel stored = readOnlineModel(findMaps(run_or_maps));
+  ExportedModel model;
+  model.experiment = readResolved(stored.experiment);
+  model.layout = makeLayout(model.experiment);
+  model.sample_interval = findSampleInterval(model.experiment.features);
+  model.features = makeExtractor(model.experiment, model.layout).getInfos();
+  model.online = std::move(stored.model);
+  return model;
+}
+
+}  // namespace twinmap

@@ -1,0 +1,124 @@
+#include "framework/export/fmu_export.hpp"
+
+#include <fmt/format.h>
+
+#include <cctype>
+
+#include "framework/export/c_source.hpp"
+#include "framework/export/fmu_description.hpp"
+#include "framework/export/runtime_sources.hpp"
+#include "framework/fmi/compile_sources.hpp"
+#include "framework/fmi/package.hpp"
+#include "framework/fmi/standard_headers.hpp"
+#include "framework/fmi/write_archive.hpp"
+#include "framework/spec/parameter_box.hpp"
+#include "framework/store/atomic_file.hpp"
+#include "framework/store/temporary_folder.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::VectorXd;
+using fmi::ArchiveFile;
+
+std::string makeIdentifier(const std::string& name) {
+  std::string identifier = std::isdigit(static_cast<unsigned char>(name.front())) != 0 ? "map_" : "";
+  for (const char c : name) {
+    identifier += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+  }
+  return identifier;
+}
+
+/// The same for equal sources (FNV-1a): another map is another FMU.
+std::string makeToken(const std::string& text) {
+  constexpr std::uint64_t kPrime = 1099511628211u, kBasis = 14695981039346656037u;
+  std::uint64_t forward = kBasis, backward = kBasis;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    forward = (forward ^ static_cast<unsigned char>(text[i])) * kPrime;
+    backward = (backward ^ static_cast<unsigned char>(text[text.size() - 1 - i])) * kPrime;
+  }
+  return fmt::format("{{{:08x}-{:04x}-{:04x}-{:04x}-{:012x}}}", forward >> 32, (forward >> 16) & 0xffff,
+                     forward & 0xffff, backward >> 48, backward & 0xffffffffffffu);
+}
+
+std::string listNumbers(const VectorXd& values, const char* none = "0.0") {
+  std::string text;
+  for (const double value : values) {
+    text += (text.empty() ? "" : ", ") + toC(value);
+  }
+  return text.empty() ? none : text;
+}
+
+/// fmu.c with what it starts from.
+std::string makeBlock(const ExportedModel& model) {
+  const VectorXd center = model.getBoxCenter(), half_width = model.getBoxHalfWidth();
+  const Eigen::Index p = model.countParameters(), q = model.countKnown();
+  VectorXd starts = VectorXd::Zero(model.layout.getOutputCount() + q);
+  starts.tail(q) = center.tail(q);
+  std::string text(getRuntimeSource("fmu.c"));
+  text = fillSlot(std::move(text), "@WINDOW_END@", toC(model.layout.times[model.layout.times.size() - 1]));
+  text = fillSlot(std::move(text), "@INPUT_STARTS@", listNumbers(starts));
+  text = fillSlot(std::move(text), "@MEAN_STARTS@", listNumbers(center.head(p)));
+  return fillSlot(std::move(text), "@SD_STARTS@", listNumbers(2.0 * kUniformStddev * half_width.head(p)));
+}
+
+std::vector<ArchiveFile> makeSources(const ExportedModel& model, int version, FmuIdentity& identity) {
+  const std::string& prefix = identity.identifier;
+  const CSource source = makeCSource(model, {CNumber::kDouble, prefix});
+  const std::string interface = fmt::format("fmi{}.c", version);
+  identity.token = makeToken(source.source);
+  identity.sources = {prefix + "_map.c", "fmu.c", interface};
+  return {{prefix + "_map.h", source.header},
+          {prefix + "_map.c", source.source},
+          {"fmu.h", renameC(std::string(getRuntimeSource("fmu.h")), prefix)},
+          {"fmu.c", renameC(makeBlock(model), prefix)},
+          {interface, fillSlot(std::string(getRuntimeSource(interface)), "@TOKEN@", identity.token)}};
+}
+
+void addHeaders(const std::filesystem::path& folder, int version, std::vector<ArchiveFile>& sources) {
+  fmi::writeStandardHeaders(folder);
+  const std::string types = version == 2 ? "fmi2TypesPlatform.h" : "fmi3PlatformTypes.h";
+  for (const std::string& name :
+       {fmt::format("fmi{}Functions.h", version), fmt::format("fmi{}FunctionTypes.h", version), types}) {
+    sources.push_back({name, readBytes(folder / name)});
+  }
+}
+
+std::string compile(const std::string& fmu, const std::filesystem::path& folder, const FmuIdentity& identity,
+                    int version) {
+  fmi::Capabilities capabilities;
+  capabilities.model_identifier = identity.identifier;
+  capabilities.source_files = identity.sources;
+  const std::filesystem::path library = folder / "library.so";
+  fmi::compileSources(
+      {fmu, folder / "sources", capabilities, version == 2 ? fmi::Version::k2 : fmi::Version::k3}, library);
+  return readBytes(library);
+}
+
+}  // namespace
+
+void writeFmu(const ExportedModel& model, const std::filesystem::path& file, int version) {
+  if (!model.takesSignals()) {
+    throw ExperimentError("export --fmu: the features are modes, which no signal gives");
+  }
+  FmuIdentity identity;
+  identity.identifier = makeIdentifier(model.experiment.name.text);
+  const TemporaryFolder folder;
+  std::vector<ArchiveFile> sources = makeSources(model, version, identity);
+  addHeaders(folder.getPath() / "headers", version, sources);
+  if (version == 3) {
+    sources.push_back({"buildDescription.xml", makeBuildDescription(identity)});
+  }
+  std::vector<ArchiveFile> files{{"modelDescription.xml", makeFmuDescription(model, identity, version)}};
+  std::filesystem::create_directories(folder.getPath() / "sources");
+  for (const ArchiveFile& source : sources) {
+    writeTextFile(folder.getPath() / "sources" / source.name, source.content);
+    files.push_back({"sources/" + source.name, source.content});
+  }
+  files.push_back(
+      {fmt::format("binaries/{}/{}.so", fmi::listOwnPlatforms()[version == 2 ? 1 : 0], identity.identifier),
+       compile(file.string(), folder.getPath(), identity, version)});
+  fmi::writeArchive(file, files);
+}
+
+}  // namespace twinmap

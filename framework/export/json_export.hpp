@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "framework/export/exported_model.hpp"
+
+namespace twinmap {
+
+/// All numbers of a map, as docs/export.md documents them: matrices as lists of rows, everything finite.
+/// Throws std::runtime_error for a number that is not.
+std::string makeMapJson(const ExportedModel& model);
+
+}  // namespace twinmap

@@ -1,0 +1,95 @@
+/* What the map and its judgement say, put together. */
+@TABLES@
+
+static void finish(twinmap_result *result)
+{
+  int a, b, limited = TWINMAP_DISHONEST;
+  for (a = 0; a < TWINMAP_PARAMETERS; ++a) {
+    result->lower[a] = result->mean[a] - 1.959963984540054 * result->sd[a];
+    result->upper[a] = result->mean[a] + 1.959963984540054 * result->sd[a];
+    limited |= result->ratio_to_limit[a] > 1.5;
+    for (b = 0; b < TWINMAP_PARAMETERS; ++b) {
+      result->covariance[a * TWINMAP_PARAMETERS + b] =
+          result->sd[a] * parameter_correlation[a * TWINMAP_PARAMETERS + b] * result->sd[b];
+    }
+  }
+  if (limited) {
+    result->statuses |= TWINMAP_STATUS_MAP_LIMITED;
+  }
+  result->status = TWINMAP_TRUST ? TWINMAP_STATUS_OK : TWINMAP_STATUS_NOT_JUDGED;
+  for (a = TWINMAP_STATUS_MAP_LIMITED; a > 0; a /= 2) {
+    if (result->statuses & (unsigned)a) {
+      result->status = (twinmap_status)a;
+    }
+  }
+}
+
+static twinmap_error infer_from_features(twinmap_state *state, const double *known, twinmap_result *result)
+{
+  int i;
+  for (i = 0; i < TWINMAP_FEATURES; ++i) {
+    if (!(fabs(state->features[i]) <= 1.7976931348623157e308)) {
+      return TWINMAP_ERROR_FEATURE;
+    }
+  }
+  for (i = 0; i < TWINMAP_KNOWN; ++i) {
+    if (!(fabs(known[i]) <= 1.7976931348623157e308)) {
+      return TWINMAP_ERROR_NUMBER;
+    }
+  }
+  memset(result, 0, sizeof *result);
+#if TWINMAP_SCORES
+  state->explanation_found = 0;
+#endif
+  infer_by_map(state, known, result);
+#if TWINMAP_TRUST
+  judge(state, known, result);
+#endif
+  finish(result);
+  return TWINMAP_OK;
+}
+
+twinmap_error twinmap_infer_features(twinmap_state *state, const twinmap_real *features, const double *known,
+                                     twinmap_result *result)
+{
+  int i;
+  for (i = 0; i < TWINMAP_FEATURES; ++i) {
+    state->features[i] = features[i];
+  }
+  return infer_from_features(state, known, result);
+}
+
+#if TWINMAP_SIGNALS
+twinmap_error twinmap_infer(twinmap_state *state, int count, const double *times,
+                            const twinmap_real *const *signals, double start, const double *known,
+                            twinmap_result *result)
+{
+  const twinmap_error error = twinmap_resample(state, count, times, signals, start);
+  if (error != TWINMAP_OK) {
+    return error;
+  }
+  extract_features(state);
+  return infer_from_features(state, known, result);
+}
+#endif
+
+const char *twinmap_status_text(twinmap_status status)
+{
+  switch (status) {
+    case TWINMAP_STATUS_MODEL_MISMATCH:
+      return "model_mismatch";
+    case TWINMAP_STATUS_OUTSIDE_TRAINING:
+      return "outside_training";
+    case TWINMAP_STATUS_AT_BOUNDS:
+      return "at_bounds";
+    case TWINMAP_STATUS_UNINFORMATIVE:
+      return "uninformative";
+    case TWINMAP_STATUS_MAP_LIMITED:
+      return "map_limited";
+    case TWINMAP_STATUS_NOT_JUDGED:
+      return "not_judged";
+    case TWINMAP_STATUS_OK:
+      break;
+  }
+  return "ok";
+}

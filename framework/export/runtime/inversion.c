@@ -1,0 +1,426 @@
+/* The unknown parameters that explain scores, under a uniform prior over the box (normalised, -1 to 1).
+   Levenberg and Marquardt's method searches the least of
+     r' C^-1 r + log det C + 3 |x|^2,   r = scores - s(x),   C = 1 + D R D,
+   D the standard deviations of the processes and R the correlation of their errors: first with mean error
+   variances and the scores that say most, then with C at the point reached, held. */
+enum { MOST_STARTS = 4, R = TWINMAP_SCORES, U = TWINMAP_UNKNOWN };
+enum { METRIC_LEADING, METRIC_ROUGH, METRIC_FULL };
+
+static double largest_difference(int count, const double *a, const double *b)
+{
+  double largest = 0.0;
+  int i;
+  for (i = 0; i < count; ++i) {
+    largest = fmax(largest, fabs(a[i] - b[i]));
+  }
+  return largest;
+}
+
+/* Column j of a lower triangle, from its diagonal on. */
+static double *column_of(double *lower, int j)
+{
+  return lower + j * R - j * (j - 1) / 2;
+}
+
+/* L of C = L L', in place; column by column. */
+static void factorise(double *lower)
+{
+  int j, k, i;
+  for (j = 0; j < R; ++j) {
+    double *column = column_of(lower, j), pivot;
+    for (k = 0; k < j; ++k) {
+      const double *before = column_of(lower, k) + (j - k);
+      add_multiple(R - j, -before[0], before, column);
+    }
+    pivot = sqrt(column[0]);
+    column[0] = pivot;
+    for (i = 1; i < R - j; ++i) {
+      column[i] /= pivot;
+    }
+  }
+}
+
+/* x = L^-1 x. */
+static void solve_scores(double *lower, double *x)
+{
+  int j;
+  for (j = 0; j < R; ++j) {
+    const double *column = column_of(lower, j);
+    x[j] /= column[0];
+    add_multiple(R - j - 1, -x[j], column + 1, x + j + 1);
+  }
+}
+
+/* L of a small matrix, row by row; whether it is positive definite. */
+static int factorise_small(const double *matrix, double *lower)
+{
+  int i, j, k;
+  for (j = 0; j < U; ++j) {
+    for (i = j; i < U; ++i) {
+      double sum = matrix[i * U + j];
+      for (k = 0; k < j; ++k) {
+        sum = multiply_add(-lower[i * U + k], lower[j * U + k], sum);
+      }
+      if (i == j) {
+        if (!(sum > 0.0)) {
+          return 0;
+        }
+        lower[j * U + j] = sqrt(sum);
+      } else {
+        lower[i * U + j] = sum / lower[j * U + j];
+      }
+    }
+  }
+  return 1;
+}
+
+static void solve_small(const double *lower, double *x)
+{
+  int i, j;
+  solve_rows(U, lower, x);
+  for (i = U - 1; i >= 0; --i) {
+    for (j = i + 1; j < U; ++j) {
+      x[i] = multiply_add(-lower[j * U + i], x[j], x[i]);
+    }
+    x[i] /= lower[i * U + i];
+  }
+}
+
+static int count_of(int metric, const window *w)
+{
+  return metric == METRIC_LEADING ? w->leading : w->functions;
+}
+
+/* state->evaluated. */
+enum { EVALUATED_NONE, EVALUATED_LEADING, EVALUATED_ALL };
+
+/* Values and derivatives, for a trial is nearly always accepted. */
+static void evaluate(twinmap_state *state, int metric, const double *unknown)
+{
+  const int wanted = metric == METRIC_LEADING ? EVALUATED_LEADING : EVALUATED_ALL;
+  int w;
+  if (state->evaluated >= wanted && memcmp(state->at, unknown, sizeof(double) * U) == 0) {
+    return;
+  }
+  state->evaluated = wanted;
+  memcpy(state->at, unknown, sizeof(double) * U);
+  for (w = 0; w < TWINMAP_WINDOWS; ++w) {
+    if (count_of(metric, &windows[w]) > 0) {
+      evaluate_window(state, w, count_of(metric, &windows[w]));
+    }
+  }
+}
+
+static const double half_width_information = 3.0; /* 1 / variance of a variable that is uniform on [-1, 1] */
+
+static double calc_objective(twinmap_state *state, int metric, const double *unknown)
+{
+  const wide_t *weights = metric == METRIC_LEADING ? leading_weights : rough_weights;
+  int i;
+  evaluate(state, metric, unknown);
+  for (i = 0; i < R; ++i) {
+    state->residual[i] = state->scores[i] - state->values[i];
+  }
+  if (metric == METRIC_FULL) {
+    solve_scores(state->lower, state->residual);
+  } else {
+    for (i = 0; i < R; ++i) {
+      state->residual[i] *= weights[i];
+    }
+  }
+  return dot(R, state->residual, state->residual) + half_width_information * dot(U, unknown, unknown);
+}
+
+/* J'J of a jacobian (variable by variable). */
+static void calc_information(const double *jacobian, double *information)
+{
+  int a, b;
+  for (a = 0; a < U; ++a) {
+    for (b = 0; b <= a; ++b) {
+      information[a * U + b] = dot(R, jacobian + a * R, jacobian + b * R);
+      information[b * U + a] = information[a * U + b];
+    }
+  }
+}
+
+/* At the point evaluated last. */
+static void make_normal_equations(twinmap_state *state, int metric)
+{
+  const wide_t *weights = metric == METRIC_LEADING ? leading_weights : rough_weights;
+  int v, i;
+  for (v = 0; v < U; ++v) {
+    double *column = state->scaled_jacobian + v * R;
+    for (i = 0; i < R; ++i) {
+      column[i] = state->jacobian[v * R + i];
+    }
+    if (metric == METRIC_FULL) {
+      solve_scores(state->lower, column);
+    } else {
+      for (i = 0; i < R; ++i) {
+        column[i] *= weights[i];
+      }
+    }
+    state->descent[v] = dot(R, column, state->residual);
+  }
+  calc_information(state->scaled_jacobian, state->normal);
+}
+
+/* Whether a step lowers the objective, with as little damping as that takes. */
+static int take_step(twinmap_state *state, int metric, double *unknown, double *objective, double *damping)
+{
+  const double factor = 10.0, most = 1e6, least = 1e-6;
+  int v;
+  for (; *damping < most; *damping *= factor) {
+    double tried;
+    memcpy(state->small, state->normal, sizeof(double) * U * U);
+    for (v = 0; v < U; ++v) {
+      double *diagonal = &state->small[v * U + v];
+      *diagonal += multiply_add(*damping, *diagonal, half_width_information);
+      state->step[v] = multiply_add(-half_width_information, unknown[v], state->descent[v]);
+    }
+    if (!factorise_small(state->small, state->small)) {
+      continue;
+    }
+    solve_small(state->small, state->step);
+    for (v = 0; v < U; ++v) {
+      state->trial[v] = fmin(fmax(unknown[v] + state->step[v], -1.0), 1.0);
+    }
+    tried = calc_objective(state, metric, state->trial);
+    if (tried < *objective) {
+      memcpy(unknown, state->trial, sizeof(double) * U);
+      *objective = tried;
+      *damping = fmax(*damping / factor, least);
+      return 1;
+    }
+  }
+  return 0;
+}
+
+/* Of an undamped step that no bound stops, as the linear model has it. */
+static double foretell_gain(twinmap_state *state, const double *unknown)
+{
+  double gain = 0.0;
+  int v;
+  memcpy(state->small, state->normal, sizeof(double) * U * U);
+  for (v = 0; v < U; ++v) {
+    state->small[v * U + v] += half_width_information;
+    state->step[v] = multiply_add(-half_width_information, unknown[v], state->descent[v]);
+    state->trial[v] = state->step[v];
+  }
+  if (!factorise_small(state->small, state->small)) {
+    return HUGE_VAL;
+  }
+  solve_small(state->small, state->step);
+  for (v = 0; v < U; ++v) {
+    gain = multiply_add(state->trial[v], state->step[v], gain);
+  }
+  return gain;
+}
+
+/* A step; 0 where the search has converged: a step would gain little, or did. */
+static int advance(twinmap_state *state, int metric, double *unknown, double *objective, double *damping)
+{
+  const double least_gain = 0.01; /* a step of a tenth of a standard deviation: the linear model tells the rest */
+  const double before = *objective;
+  make_normal_equations(state, metric);
+  if (foretell_gain(state, unknown) < least_gain) {
+    return 0;
+  }
+  if (!take_step(state, metric, unknown, objective, damping)) {
+    *objective = calc_objective(state, metric, unknown);
+    return 0;
+  }
+  return before - *objective >= least_gain;
+}
+
+static const double first_damping = 1e-3;
+
+static double improve(twinmap_state *state, int metric, int steps, double *unknown)
+{
+  double damping = first_damping, objective = calc_objective(state, metric, unknown);
+  int i;
+  for (i = 0; i < steps && advance(state, metric, unknown, &objective, &damping); ++i) {
+  }
+  return objective;
+}
+
+/* C at a point, factorised. */
+static void update_metric(twinmap_state *state, const double *unknown)
+{
+  const wide_t *correlation = score_correlation;
+  double *lower = state->lower;
+  int w, j, i;
+  evaluate(state, METRIC_FULL, unknown);
+  for (w = 0; w < TWINMAP_WINDOWS; ++w) {
+    calc_window_stddev(state, w);
+    for (j = windows[w].first; j < windows[w].first + windows[w].functions; ++j) {
+      state->stddev[j] *= state->widening[w];
+    }
+  }
+  for (j = 0; j < R; ++j) {
+    double *column = column_of(lower, j);
+    for (i = j; i < R; ++i) {
+      column[i - j] = state->stddev[i] * *correlation++ * state->stddev[j];
+    }
+    column[0] += 1.0;
+  }
+  factorise(lower);
+  state->log_determinant = 0.0;
+  for (j = 0; j < R; ++j) {
+    state->log_determinant += log(column_of(lower, j)[0]);
+  }
+  state->log_determinant *= 2.0;
+}
+
+static int is_apart(const twinmap_state *state, int count, const double *point, double distance)
+{
+  int i;
+  for (i = 0; i < count; ++i) {
+    if (!(largest_difference(U, state->minima[i].point, point) > distance)) {
+      return 0;
+    }
+  }
+  return 1;
+}
+
+/* Minima of the rough objective from starts (U numbers each), distinct, the best first. */
+static void search_roughly(twinmap_state *state, int starts, const double *start)
+{
+  const double on_the_way = 0.15, apart = 0.05; /* in half widths, after the first steps and at the end */
+  const double hopeless = 30.0;                 /* e^-15 of the evidence, and errors of the rough metric */
+  double point[U];
+  int count = 0, s, i;
+  for (s = 0; s < starts; ++s) {
+    double objective, damping = first_damping;
+    int moves = 1, alone = 1;
+    memcpy(point, start + s * U, sizeof point);
+    objective = calc_objective(state, METRIC_LEADING, point);
+    for (i = 0; i < 12 && moves && alone; ++i) {
+      moves = advance(state, METRIC_LEADING, point, &objective, &damping);
+      alone = is_apart(state, count, point, i < 3 ? on_the_way : apart);
+    }
+    if (!alone) {
+      continue;
+    }
+    objective = calc_objective(state, METRIC_ROUGH, point);
+    for (i = count++; i > 0 && objective < state->minima[i - 1].objective; --i) {
+      memcpy(state->minima[i].point, state->minima[i - 1].point, sizeof point);
+      state->minima[i].objective = state->minima[i - 1].objective;
+    }
+    memcpy(state->minima[i].point, point, sizeof point);
+    state->minima[i].objective = objective;
+  }
+  while (state->minima[count - 1].objective > state->minima[0].objective + hopeless) {
+    --count;
+  }
+  state->minimum_count = count;
+}
+
+/* The training simulations of most similar scores that are apart from each other. */
+static int find_starts(const twinmap_state *state, int most, double *start)
+{
+  const double apart = 0.5; /* in half widths: nearer starts lead to the same minimum */
+  int found, i, s;
+  for (found = 0; found < most; ++found) {
+    double least = HUGE_VAL;
+    int best = -1;
+    for (i = 0; i < TWINMAP_POINTS; ++i) {
+      const real_t *scores = training_scores + i * R;
+      double misfit = 0.0;
+      int far = 1;
+      for (s = 0; s < found && far; ++s) {
+        far = largest_difference(U, start + s * U, training_points + i * TWINMAP_VARIABLES) > apart;
+      }
+      for (s = 0; s < R && far; ++s) {
+        const double difference = (scores[s] - state->scores[s]) * rough_weights[s];
+        misfit = multiply_add(difference, difference, misfit);
+      }
+      if (far && misfit < least) {
+        least = misfit;
+        best = i;
+      }
+    }
+    if (best < 0) {
+      break;
+    }
+    memcpy(start + found * U, training_points + best * TWINMAP_VARIABLES, sizeof(double) * U);
+  }
+  return found;
+}
+
+/* Four standard deviations above the mean of chi-square: one in 10000 by chance. */
+static int is_misfit(double chi_square, int count)
+{
+  return chi_square > count + 4.0 * sqrt(2.0 * count);
+}
+
+/* Where residuals are beyond what the errors allow, those of the windows to blame are taken to be as large. */
+static int widen(twinmap_state *state, const double *unknown)
+{
+  int widened = 0, w, i;
+  (void)calc_objective(state, METRIC_FULL, unknown);
+  if (!is_misfit(dot(R, state->residual, state->residual), R)) {
+    return 0;
+  }
+  for (w = 0; w < TWINMAP_WINDOWS; ++w) {
+    const int first = windows[w].first, count = windows[w].functions;
+    double misfit = 0.0, squares = 0.0, variances = 0.0;
+    for (i = first; i < first + count; ++i) {
+      const double variance = state->stddev[i] * state->stddev[i];
+      const double difference = state->scores[i] - state->values[i], square = difference * difference;
+      misfit += square / (1.0 + variance);
+      squares += square;
+      variances += variance;
+    }
+    if (is_misfit(misfit, count)) {
+      state->widening[w] *= sqrt(fmax(1.0, (squares / count - 1.0) / (variances / count)));
+      widened = 1;
+    }
+  }
+  return widened;
+}
+
+/* Of a minimum: the point with the full metric, its whitened residual, the normal likelihood around it, the
+   objective with its evidence. */
+static void refine_minimum(twinmap_state *state, int index, int may_widen)
+{
+  const double stays = 0.01; /* in half widths: errors vary over some tenths */
+  double *point = state->minima[index].point, before[U], objective, sum = 0.0;
+  int i, v, w;
+  for (w = 0; w < TWINMAP_WINDOWS; ++w) {
+    state->widening[w] = 1.0;
+  }
+  memcpy(before, point, sizeof before);
+  update_metric(state, point);
+  objective = improve(state, METRIC_FULL, 5, point);
+  if (largest_difference(U, point, before) > stays) {
+    update_metric(state, point);
+    objective = improve(state, METRIC_FULL, 3, point);
+  }
+  memcpy(state->minima[index].innovation, state->residual, sizeof state->innovation);
+  state->minima[index].widened = 0;
+  for (i = 0; may_widen && i < 4 && widen(state, point); ++i) {
+    update_metric(state, point);
+    objective = improve(state, METRIC_FULL, 5, point);
+    state->minima[index].widened = 1;
+  }
+  make_normal_equations(state, METRIC_FULL);
+  memcpy(state->minima[index].information, state->normal, sizeof state->normal);
+  calc_information(state->jacobian, state->minima[index].noise_information);
+  for (v = 0; v < U; ++v) {
+    state->minima[index].shift[v] = state->descent[v] + dot(U, state->normal + v * U, point);
+    state->normal[v * U + v] += half_width_information;
+  }
+  (void)factorise_small(state->normal, state->small);
+  for (v = 0; v < U; ++v) {
+    sum += log(state->small[v * U + v]);
+  }
+  state->minima[index].objective = objective + (state->log_determinant + 2.0 * sum);
+}
+
+/* What a minimum says of the scores: what they leave, whitened, and its point. */
+static void keep_explanation(twinmap_state *state, int index)
+{
+  memcpy(state->explained, state->minima[index].point, sizeof state->explained);
+  memcpy(state->innovation, state->minima[index].innovation, sizeof state->innovation);
+}

@@ -1,0 +1,51 @@
+#include <fmt/format.h>
+
+#include "framework/export/c_model_tables.hpp"
+#include "kernels/linalg/packed_lower.hpp"
+
+namespace twinmap {
+
+using Eigen::MatrixXd;
+
+void addTrust(const TrustModel& trust, CTables& tables, CSizes& sizes) {
+  const ResidualSpace& space = trust.space;
+  const bool diagonal = space.whitener.cols() == 1;
+  tables.addWide("whitener", flattenColumns(space.whitener),
+                 diagonal ? "1 / noise standard deviation of each feature."
+                          : "Root of the inverse covariance of the features' noise, feature by feature.");
+  tables.addReal("score_directions", flattenColumns(space.directions),
+                 "Directions of the scores among the whitened features, score by score.");
+  if (space.unlearnt.cols() > 0) {
+    tables.addReal("unlearnt_directions", flattenColumns(space.unlearnt),
+                   "Directions of what else moves with the parameters, one after another.");
+    tables.addWide("unlearnt_stddev", space.unlearnt_stddev, "Its standard deviations over the box.");
+  }
+  std::vector<int> runs;
+  for (const ResidualRun& run : trust.runs) {
+    runs.push_back(static_cast<int>(run.first));
+    runs.push_back(static_cast<int>(run.count));
+  }
+  tables.addInts("residual_runs", runs, "Residuals that belong together: the first of a run, how many.");
+  tables.addReal("chi_square_reference", trust.chi_square.sorted,
+                 "Chi-squares of simulated measurements, sorted.");
+  tables.addReal("burst_reference", trust.burst.sorted, "Burst scores of simulated measurements, sorted.");
+  const linalg::PackedSamples cloud(trust.cloud.inputs);
+  tables.addReal(
+      "cloud_inputs", cloud.getValues(),
+      fmt::format("Training inputs of the map over cloud_scale, in chunks of {}, number by number.",
+                  linalg::PackedSamples::kChunk));
+  tables.addWide("cloud_scale", trust.cloud.scale, "Standard deviations of the map's training inputs.");
+  tables.addNumber("cloud_reach", trust.cloud.reach,
+                   "Largest distance of a simulated measurement to its nearest training input.");
+  tables.addNumber("trust_level", trust.level, "Share of false alarms of model_mismatch.");
+  sizes.push_back({"RESIDUALS", static_cast<long>(space.directions.rows()), "residuals of the features"});
+  sizes.push_back({"UNLEARNT", static_cast<long>(space.unlearnt.cols()), "directions that no score tells"});
+  sizes.push_back({"DIAGONAL_WHITENER", diagonal ? 1 : 0, "1: the features' noise is independent"});
+  sizes.push_back({"RUNS", static_cast<long>(trust.runs.size()), "stretches of residuals"});
+  sizes.push_back({"REFERENCES", static_cast<long>(trust.chi_square.sorted.size()), "reference chi-squares"});
+  sizes.push_back({"BURST_REFERENCES", static_cast<long>(trust.burst.sorted.size()), "reference bursts"});
+  sizes.push_back({"CLOUD_COUNT", static_cast<long>(trust.cloud.inputs.cols()), "training inputs"});
+  sizes.push_back({"CLOUD", static_cast<long>(cloud.paddedSize()), "the same in whole chunks"});
+}
+
+}  // namespace twinmap
