@@ -30,6 +30,23 @@ TEST_P(ExperimentErrors, AreNamed) {
   }
 }
 
+TEST(ExperimentError, HasThePartsOfItsMessage) {
+  try {
+    readExperiment(parseExperimentTree("name: cart\nseed: -1\n", "cart.yaml"));
+    FAIL() << "accepted";
+  } catch (const ExperimentError& error) {
+    const InputProblem* problem = error.getProblem();
+    ASSERT_NE(problem, nullptr);
+    EXPECT_EQ(std::string(error.what()),
+              toString(problem->where) + ": '" + problem->value + "' " + problem->rule);
+    EXPECT_EQ(problem->where.file, "cart.yaml");
+    EXPECT_EQ(problem->where.line, 2);
+    EXPECT_EQ(problem->where.key_path, "seed");
+    EXPECT_EQ(problem->value, "-1");
+  }
+  EXPECT_EQ(ExperimentError("as one").getProblem(), nullptr);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     All, ExperimentErrors,
     testing::Values(
