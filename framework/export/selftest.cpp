@@ -123,7 +123,8 @@ class Answerer {
     inferred.inference = map_.infer(features, known, workspace_);
     inferred.map_is_honest = map_.isHonest();
     if (trust_) {
-      inferred.trust = judge(*model_.online.trust, features, known, inferred.inference, *trust_);
+      inferred.trust = judge(*model_.online.trust, features, known, inferred.inference,
+                             workspace_.findExplanation(), *trust_);
     }
     return inferred;
   }

@@ -108,7 +108,7 @@ void addSurrogateMap(const Surrogate& surrogate, CTables& tables, CSizes& sizes)
   tables.addWide("limit_scale", surrogate.validation.limit_scale,
                  "By which those that the noise of the scores leaves are, for what other scores would say.");
   sizes.push_back(
-      {"INPUTS", static_cast<long>(surrogate.forward.getScoreCount()), "inputs of the map: scores"});
+      {"INPUTS", static_cast<long>(surrogate.forward->getScoreCount()), "inputs of the map: scores"});
 }
 
 }  // namespace twinmap
