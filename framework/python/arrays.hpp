@@ -29,8 +29,8 @@ inline py::array_t<double> moveToRows(Eigen::MatrixXd&& columns) {
   auto owned = std::make_unique<Eigen::MatrixXd>(std::move(columns));
   const py::array::ShapeContainer shape{owned->cols(), owned->rows()};
   double* data = owned->data();
-  const py::capsule owner(owned.get(), [](void* matrix) { delete static_cast<Eigen::MatrixXd*>(matrix); });
-  owned.release();
+  const py::capsule owner(owned.release(),
+                          [](void* matrix) { delete static_cast<Eigen::MatrixXd*>(matrix); });
   return py::array_t<double>(shape, data, owner);
 }
 
