@@ -27,9 +27,9 @@ struct TestPlan {
   bool spoilt = true;
 };
 
-/// The run's test samples with noise, and what the model makes of them; those spoilt leave out measurements whose
-/// answer hangs on rounding. Throws ExperimentError for a run
-/// without samples.h5 or with too few test samples.
+/// The run's test samples with noise, and what the model makes of them; those spoilt leave out measurements
+/// whose answer hangs on rounding. Throws ExperimentError for a run without samples.h5 or with too few test
+/// samples.
 std::vector<TestedMeasurement> makeTestedMeasurements(const std::filesystem::path& run,
                                                       const ExportedModel& model, const TestPlan& plan);
 
