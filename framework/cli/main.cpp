@@ -208,9 +208,9 @@ void addInfer(CLI::App& app, cli::InferArguments& arguments) {
 }
 
 void addExport(CLI::App& app, cli::ExportArguments& arguments) {
-  CLI::App* command = app.add_subcommand(
-      "export",
-      "Write a trained map for other programs: C99 without heap or libraries, an FMU, or its numbers as JSON");
+  CLI::App* command = app.add_subcommand("export",
+                                         "Write a trained map for other programs: C99 without heap or "
+                                         "libraries, an FMU, or its numbers as JSON");
   command->add_option("RUN", arguments.run, "Folder of a finished run")->required()->option_text(" ");
   command->add_option("--c", arguments.c_folder, "Folder for C sources with a self-test and README.md")
       ->type_name("DIR");
@@ -221,7 +221,8 @@ void addExport(CLI::App& app, cli::ExportArguments& arguments) {
       ->check(CLI::IsMember({2, 3}))
       ->needs(fmu);
   command->add_option("--json", arguments.json, "File for all numbers as JSON")->type_name("FILE");
-  command->add_flag("--float", arguments.single, "C in float where that keeps what it says (default: double)");
+  command->add_flag("--float", arguments.single,
+                    "C in float where that keeps what it says (default: double)");
   command->add_flag("--compress", arguments.compressed,
                     "C of processes with so few inducing inputs that at most 2 % of an sd is lost");
   command->add_flag_callback(

@@ -26,8 +26,8 @@ struct InferredMeasurement {
   std::optional<Refined> refined;  ///< on the simulator, where that was tried; accepted or not
 };
 
-/// The maps.h5 of a finished run, given its folder or the file itself. Throws std::runtime_error where there is
-/// none.
+/// The maps.h5 of a finished run, given its folder or the file itself. Throws std::runtime_error where there
+/// is none.
 std::filesystem::path findMaps(const std::filesystem::path& run_or_maps);
 
 /// The features of a response (rows of the layout). Throws MeasurementError, naming `source`, where the

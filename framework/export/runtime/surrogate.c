@@ -120,7 +120,17 @@ static double evaluate_score(twinmap_state *state, int index, int j)
     for (i = 0; i < m; ++i) {
       sum[i] = difference[i] * weights[i];
     }
-    for (v = 1; v < w->slope_variables; ++v) {
+    for (v = 1; v + 1 < w->slope_variables; v += 2) { /* two at a time: half the traffic */
+      const double *other = difference + 2 * TWINMAP_POINTS;
+      difference += TWINMAP_POINTS;
+      weights += m;
+      for (i = 0; i < m; ++i) {
+        sum[i] = multiply_add(other[i], weights[m + i], multiply_add(difference[i], weights[i], sum[i]));
+      }
+      difference = other;
+      weights += m;
+    }
+    for (; v < w->slope_variables; ++v) {
       difference += TWINMAP_POINTS;
       weights += m;
       for (i = 0; i < m; ++i) {
