@@ -62,7 +62,7 @@ def need(*tools):
 
 
 def snippet(language):
-    return re.search(rf"```{language}\n(.*?)```", DOCUMENT, re.DOTALL).group(1)
+    return re.search(rf"```{language}(?: program)?\n(.*?)```", DOCUMENT, re.DOTALL).group(1)
 
 
 def compile_c(folder, sources, output, *options, compiler="gcc"):
