@@ -39,6 +39,16 @@ class PackageTest(unittest.TestCase):
         output = run(self.program, "check", experiment)
         self.assertIn("two_beam_table1", output)
 
+    @unittest.skipUnless(shutil.which("qemu-x86_64"), "qemu-x86_64 is not installed")
+    def test_says_what_an_older_processor_lacks(self):
+        loads = ["/usr/bin/python3", "-c", "import ctypes, sys; ctypes.CDLL(sys.argv[1])"]
+        libraries = [*self.root.rglob("libtwinmap.so.0"), *self.root.rglob("_twinmap*.so")]
+        self.assertTrue(libraries)
+        for command in ([self.program, "--version"], *([*loads, library] for library in libraries)):
+            result = subprocess.run(["qemu-x86_64", "-cpu", "Nehalem", *map(str, command)], capture_output=True, text=True, timeout=600)
+            self.assertEqual(result.returncode, 1, command)
+            self.assertIn("twinmap: error: this processor lacks AVX2", result.stderr)
+
     def test_has_a_page_for_every_command(self):
         if not shutil.which("help2man"):
             self.skipTest("help2man is not installed")

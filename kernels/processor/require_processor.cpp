@@ -2,8 +2,9 @@
 
 #include <cstring>
 
-// A program for x86-64-v3 would die of an illegal instruction on an older processor, and say nothing. This unit is
-// compiled for every x86-64, and runs before all others of the program.
+// A program for x86-64-v3 would die of an illegal instruction on an older processor, and say nothing; so would one that
+// loads such a library, before it could ask. This unit is compiled for every x86-64, and runs before all others of the
+// program or library that it is part of.
 namespace {
 
 [[gnu::constructor(101)]] void requireProcessor() {
