@@ -28,9 +28,9 @@ std::size_t countSearch(const CSource& source) {
     return 0;
   }
   const std::size_t processes =
-      w * n * (m + 4) + r * size("SLOPE_POINTS") + 1 + w * terms + terms * m + size("PADDED_POINTS");
+      w * n * (m + 4) + size("SLOPE_POINTS") + 1 + w * terms + terms * m + size("PADDED_POINTS");
   const std::size_t metric = 4 * r + 2 * r * u + r * (r + 1) / 2 + 1 + u * u + u + m + w + 1;
-  const std::size_t minima = 4 * (3 * u + 1 + 3 * u * u) + 1;
+  const std::size_t minima = 4 * (3 * u + 1 + 3 * u * u + r + 1) + 1;
   return processes + metric + minima + u + size("PARAMETERS") + r + u + u + u * u + 2 * u + u * u + 2 * u;
 }
 
