@@ -54,7 +54,7 @@ if(TWINMAP_FUZZ)
 endif()
 
 find_program(CCACHE_PROGRAM ccache)
-if(CCACHE_PROGRAM)
+if(CCACHE_PROGRAM AND NOT TWINMAP_REPRODUCIBLE) # which may be told to write other paths
   # what ccache asks for with precompiled headers
   set(CMAKE_CXX_COMPILER_LAUNCHER
       "${CMAKE_COMMAND}" -E env CCACHE_SLOPPINESS=pch_defines,time_macros "${CCACHE_PROGRAM}")

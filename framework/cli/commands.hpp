@@ -36,6 +36,24 @@ struct RunArguments {
   bool fail_on_gates = false;
 };
 
+struct SubmitArguments {
+  RunArguments run;
+  std::string on = "slurm";  ///< or "template", "local"
+  int cpus = 1;              ///< threads of a job
+  int minutes = 60;          ///< time limit of a job
+  int shards = 0;            ///< that simulate; 0: by the cost of a sample
+  std::string partition, account;
+  std::vector<std::string> sbatch;  ///< further options of Slurm
+  std::string submit, after;        ///< of a template
+};
+
+struct ShardArguments {
+  std::string folder;
+  int shard = 0;
+  int threads = 1;
+  std::string command_line;
+};
+
 struct ReportArguments {
   std::vector<std::string> folders;
   std::string out;  ///< "": the run's folder; of several runs results/report
@@ -82,6 +100,8 @@ struct InferArguments {
   bool json = false, csv = false;  ///< at most one; neither: a table for people
   bool follow = false;             ///< measurements from the standard input, JSON lines out
   std::optional<bool> refine;      ///< none: as the experiment says
+  int posterior_draws = 0;         ///< of each measurement's posterior; 0: none
+  std::string draws;               ///< file for them; "": none
 };
 
 struct ExportArguments {
@@ -132,8 +152,29 @@ void run(const RunArguments& arguments);
 /// Prints how far a sweep or a run is.
 void status(const StatusArguments& arguments);
 
+/// Print the models in a folder of simulated samples; the same after reading every byte of them. Throw
+/// std::runtime_error if something is damaged.
+void listStore(const std::string& folder);
+void verifyStore(const std::string& folder);
+/// Copies what other folders have into one. Throws std::runtime_error after all if some of it is damaged.
+void mergeStore(const std::string& folder, const std::vector<std::string>& from);
+/// Removes from a folder of simulated samples what no run needs.
+void pruneStore(const std::string& folder);
+
 /// Prints what run() would do with the same arguments, and does nothing of it.
 void plan(const RunArguments& arguments);
+
+/// Prints the shards that submit() would make.
+void planShards(const SubmitArguments& arguments);
+
+/// Submits what run() would do to a cluster, in shards, and prints the jobs, or the commands.
+void submit(const SubmitArguments& arguments);
+
+/// Does one shard of what was submitted.
+void runShard(const ShardArguments& arguments);
+
+/// Cancels the jobs of what was submitted in a folder.
+void cancel(const std::string& folder);
 
 /// What run() takes where the arguments leave it open: results/NAME, and half of the machine's memory
 /// (bytes).

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <fstream>
 #include <iostream>
 #include <map>
 #include <sstream>
@@ -11,6 +12,7 @@
 #include "framework/inference/known_value.hpp"
 #include "framework/inference/measurement_session.hpp"
 #include "framework/inference/measurement_stream.hpp"
+#include "framework/spec/parameter_box.hpp"
 
 namespace twinmap::cli {
 namespace {
@@ -30,12 +32,18 @@ class InferCommand {
         format_(chooseFormat(arguments)),
         starts_(arguments.starts.begin(), arguments.starts.end()),
         known_(collectKnown(inferrer_.getExperiment().model.inputs, parseKnownValues(arguments.known))),
-        session_(inferrer_, arguments.refine) {
+        session_(inferrer_, arguments.refine, arguments.posterior_draws) {
     if (starts_.empty()) {
       starts_.emplace_back(std::nullopt);
     }
     if (format_ == Format::kCsv) {
-      std::cout << makeInferenceCsvHeader(session_.refines());
+      std::cout << makeInferenceCsvHeader(session_.refines(), session_.samplesPosteriors());
+    }
+    if (!arguments.draws.empty()) {
+      draws_file_ = arguments.draws;
+      draws_.emplace(draws_file_);
+      *draws_ << makeDrawsCsvHeader(collectUnknown(inferrer_.getExperiment().model));
+      requireDraws();
     }
   }
 
@@ -63,8 +71,12 @@ class InferCommand {
   }
 
   /// Throws std::runtime_error if a measurement could not be used.
-  void finish() const {
+  void finish() {
     std::cout.flush();
+    if (draws_) {
+      draws_->flush();
+      requireDraws();
+    }
     if (errors_ > 0) {
       throw std::runtime_error(fmt::format("{} of {} measurements could not be used", errors_, count_));
     }
@@ -82,7 +94,16 @@ class InferCommand {
     }
   }
 
+  void requireDraws() const {
+    if (!*draws_) {
+      throw std::runtime_error(draws_file_ + ": cannot be written");
+    }
+  }
+
   void print(const InferredMeasurement& inferred) {
+    if (draws_) {
+      *draws_ << makeDrawsCsvRows(inferred);
+    }
     const std::vector<ParameterSpec>& parameters = inferrer_.getExperiment().model.parameters;
     const std::vector<FeatureInfo>& features = inferrer_.getExtractor().getInfos();
     switch (format_) {
@@ -113,6 +134,8 @@ class InferCommand {
   std::vector<std::optional<double>> starts_;
   Eigen::VectorXd known_;
   MeasurementSession session_;
+  std::string draws_file_;
+  std::optional<std::ofstream> draws_;
   int count_ = 0, errors_ = 0;
 };
 

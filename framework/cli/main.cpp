@@ -102,12 +102,82 @@ void addRun(CLI::App& app, cli::RunArguments& arguments) {
   command->callback([&arguments] { cli::run(arguments); });
 }
 
-void addPlan(CLI::App& app, cli::RunArguments& arguments) {
+void addJobs(CLI::App& command, cli::SubmitArguments& arguments) {
+  constexpr int kLongest = 100000, kMostCpus = 1024, kMostShards = 1000;
+  command.add_option("--time", arguments.minutes, "Time limit of a job; min (default: 60)")
+      ->type_name("MINUTES")
+      ->check(CLI::Range(1, kLongest));
+  command.add_option("--cpus", arguments.cpus, "Threads of a job (default: 1)")
+      ->type_name("N")
+      ->check(CLI::Range(1, kMostCpus));
+  command
+      .add_option("--shards", arguments.shards,
+                  "Jobs that simulate (default: such that each takes half of the time limit)")
+      ->type_name("N")
+      ->check(CLI::Range(1, kMostShards));
+}
+
+CLI::Option* addOn(CLI::App& command, cli::SubmitArguments& arguments) {
+  return command.add_option("--on", arguments.on, "slurm, template or local")
+      ->type_name("SCHEDULER")
+      ->check(CLI::IsMember({"slurm", "template", "local"}));
+}
+
+void addSubmit(CLI::App& app, cli::SubmitArguments& arguments) {
+  CLI::App* command = app.add_subcommand(
+      "submit",
+      "Submit what run would do to a cluster, as jobs that each do a shard of it; or print the commands "
+      "(--on local); submitted again, what is missing");
+  addWhereAndHow(*command, arguments.run);
+  addOn(*command, arguments)->required();
+  addJobs(*command, arguments);
+  command->add_option("--partition", arguments.partition, "Of Slurm")->type_name("NAME");
+  command->add_option("--account", arguments.account, "Of Slurm")->type_name("NAME");
+  command->add_option("--sbatch", arguments.sbatch, "Further options of Slurm's sbatch: gres=gpu:1")
+      ->type_name("KEY=VALUE");
+  command
+      ->add_option(
+          "--submit", arguments.submit,
+          "Of a template: submits a shard and prints its job; {script}, {shard}, {name} and {after} are "
+          "replaced")
+      ->type_name("COMMAND");
+  command
+      ->add_option("--after", arguments.after,
+                   "Of a template: what {after} stands for where a job waits for others, {jobs}")
+      ->type_name("OPTION");
+  command->callback([&arguments] { cli::submit(arguments); });
+}
+
+void addShard(CLI::App& app, cli::ShardArguments& arguments) {
+  CLI::App* command = app.add_subcommand(
+      "shard", "Do one shard of what was submitted: simulate samples, train cases, or write tables");
+  command->add_option("DIR", arguments.folder, "Folder of the results")->required()->option_text(" ");
+  command->add_option("N", arguments.shard, "Number of the shard")->required()->option_text(" ");
+  addThreads(*command, arguments.threads);
+  command->callback([&arguments] { cli::runShard(arguments); });
+}
+
+void addCancel(CLI::App& app, std::string& folder) {
+  CLI::App* command = app.add_subcommand("cancel", "Cancel the jobs of what was submitted");
+  command->add_option("DIR", folder, "Folder of the results")->required()->option_text(" ");
+  command->callback([&folder] { cli::cancel(folder); });
+}
+
+void addPlan(CLI::App& app, cli::RunArguments& arguments, cli::SubmitArguments& submitted) {
   CLI::App* command = app.add_subcommand(
       "plan",
       "Print what run would do: cases, simulations, time, memory, disk; simulate and train only a little");
   addWhereAndHow(*command, arguments);
-  command->callback([&arguments] { cli::plan(arguments); });
+  CLI::Option* on = addOn(*command, submitted);
+  on->description("Print the shards as well that submit would make: " + on->get_description());
+  addJobs(*command, submitted);
+  command->callback([&arguments, &submitted, on] {
+    cli::plan(arguments);
+    if (on->count() > 0) {
+      submitted.run = arguments;
+      cli::planShards(submitted);
+    }
+  });
 }
 
 void addStatus(CLI::App& app, cli::StatusArguments& arguments) {
@@ -115,6 +185,39 @@ void addStatus(CLI::App& app, cli::StatusArguments& arguments) {
   command->add_option("DIR", arguments.folder, "Folder of the results")->required()->option_text(" ");
   command->add_option("--store", arguments.store, "As given to run")->type_name("DIR");
   command->callback([&arguments] { cli::status(arguments); });
+}
+
+struct StoreArguments {
+  std::string action, folder;
+  std::vector<std::string> from;
+};
+
+void runStoreAction(const StoreArguments& arguments) {
+  if ((arguments.action == "merge") == arguments.from.empty()) {
+    throw CLI::ValidationError("FROM", "merge, and no other action, takes folders to copy from");
+  }
+  if (arguments.action == "merge") {
+    cli::mergeStore(arguments.folder, arguments.from);
+  } else if (arguments.action == "prune") {
+    cli::pruneStore(arguments.folder);
+  } else {
+    arguments.action == "list" ? cli::listStore(arguments.folder) : cli::verifyStore(arguments.folder);
+  }
+}
+
+void addStore(CLI::App& app, StoreArguments& arguments) {
+  CLI::App* command = app.add_subcommand(
+      "store",
+      "Look after a folder of simulated samples (run --store). list: the models, their samples and what "
+      "computed them; verify: the same after comparing every byte with its checksum; merge: copy the samples "
+      "of other folders into it; prune: remove what is damaged, left by interrupted writes, or stored twice");
+  command->add_option("ACTION", arguments.action, "list, verify, merge or prune")
+      ->required()
+      ->check(CLI::IsMember({"list", "verify", "merge", "prune"}))
+      ->option_text(" ");
+  command->add_option("DIR", arguments.folder, "Folder of simulated samples")->required()->option_text(" ");
+  command->add_option("FROM", arguments.from, "Folders whose samples merge copies")->option_text(" ");
+  command->callback([&arguments] { runStoreAction(arguments); });
 }
 
 void addCompare(CLI::App& app, cli::CompareArguments& arguments) {
@@ -204,6 +307,13 @@ void addInfer(CLI::App& app, cli::InferArguments& arguments) {
           "and print a line of JSON for each at once")
       ->excludes(csv);
   addRefine(*command, arguments.refine);
+  CLI::Option* posterior = command->add_flag(
+      "--posterior{512}", arguments.posterior_draws,
+      "The posterior as well, without a normal approximation: quantiles, from so many draws weighted by a "
+      "surrogate's likelihood; --posterior=2000 for more than 512");
+  command->add_option("--draws", arguments.draws, "File for the posterior's joint draws (CSV)")
+      ->type_name("FILE")
+      ->needs(posterior);
   command->callback([&arguments] { cli::infer(arguments); });
 }
 
@@ -301,7 +411,7 @@ void addVariables(CLI::App& app, std::string& file) {
 
 cli::Taken findTaken(const std::string& value) {
   constexpr std::array kFiles = {"FILE", "FMU", "MEASUREMENT", "OUT", "RUN"};
-  constexpr std::array kFolders = {"DIR", "A", "B"};
+  constexpr std::array kFolders = {"DIR", "A", "B", "FROM"};
   const auto is_value = [&](const char* one) { return value == one; };
   return std::any_of(kFiles.begin(), kFiles.end(), is_value)       ? cli::Taken::kFile
          : std::any_of(kFolders.begin(), kFolders.end(), is_value) ? cli::Taken::kFolder
@@ -382,12 +492,22 @@ int runCommand(int count, char** arguments) {
   addCheck(app, check);
   addSimulate(app, simulate);
   addRun(app, run);
-  addPlan(app, run);
+  cli::SubmitArguments submitted;
+  cli::ShardArguments shard;
+  std::string cancelled;
+  submitted.run.threads = shard.threads = run.threads;
+  shard.command_line = run.command_line;
+  addPlan(app, run, submitted);
+  addSubmit(app, submitted);
+  addShard(app, shard);
+  addCancel(app, cancelled);
   addInfer(app, infer);
   cli::ExportArguments exported;
   addExport(app, exported);
   addReplay(app, replay);
   addStatus(app, status);
+  StoreArguments store;
+  addStore(app, store);
   addCompare(app, compare);
   addNoise(app, noise);
   addReport(app, report);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace twinmap {
@@ -15,11 +16,17 @@ enum class RandomPurpose : std::uint64_t {
   kPosterior = 7,
   kBootstrap = 8,
   kVerification = 9,
-  kTrust = 10,       // simulated measurements that real ones are compared with
-  kEnsemble = 11,    // parameters drawn from what was inferred
-  kNoiseBurst = 12,  // noise that refined answers are compared with
-  kTrustPower = 13,  // measurements of a machine that differs from the model
-  kSelftest = 14,    // measurements that exported code is tested with
+  kTrust = 10,                // simulated measurements that real ones are compared with
+  kEnsemble = 11,             // parameters drawn from what was inferred
+  kNoiseBurst = 12,           // noise that refined answers are compared with
+  kTrustPower = 13,           // measurements of a machine that differs from the model
+  kSelftest = 14,             // measurements that exported code is tested with
+  kSurrogatePosterior = 15,   // importance sampling under a surrogate
+  kPosteriorResampling = 16,  // which of its draws are taken
+  kNetworkWeights = 20,
+  kNetworkBatches = 21,  // which samples a training step sees
+  kNetworkNoise = 22,    // and with what noise
+  kNetworkPool = 23,     // parameter points whose features a surrogate makes up
 };
 
 /// Counter-based random numbers (Philox 4x64-10, Salmon et al. 2011): a number depends on
@@ -33,6 +40,10 @@ class RandomStream {
 
   /// Standard normal, by the inverse of its distribution function at calcUniform().
   double calcNormal(std::uint64_t sample, std::uint64_t channel, std::uint64_t replicate = 0) const;
+
+  /// `count` of them for (sample, replicate), other numbers than calcNormal()'s: four from a block of the
+  /// generator, for whoever needs many.
+  void drawNormals(std::uint64_t sample, std::uint64_t replicate, double* values, std::size_t count) const;
 
  private:
   std::uint64_t seed_;

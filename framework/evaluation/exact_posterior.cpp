@@ -8,6 +8,7 @@
 #include "framework/sensitivity/fisher_information.hpp"
 #include "framework/simulation/simulator_team.hpp"
 #include "framework/spec/parameter_box.hpp"
+#include "kernels/importance/weighted_draws.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -16,19 +17,14 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-constexpr double kSmallestSampleSize = 100.0;
+using importance::calcCovariance;
+using importance::calcMean;
+using importance::WeightedDraws;
 
 /// A normal distribution over the unit box.
 struct Proposal {
   VectorXd mean;
   MatrixXd factor;  ///< lower Cholesky factor of the covariance
-};
-
-struct WeightedDraws {
-  MatrixXd points;   ///< p x n, in the unit box's coordinates
-  VectorXd weights;  ///< n, sum 1; 0 outside the box and for failed simulations
-  double effective_sample_size = 0.0;
 };
 
 class Box {
@@ -72,26 +68,13 @@ double calcLogLikelihood(Simulator& simulator, const LeastSquaresProblem& proble
 
 WeightedDraws draw(Simulator& simulator, const LeastSquaresProblem& problem, const Box& box,
                    const Proposal& proposal, const MatrixXd& normals) {
-  WeightedDraws result;
-  result.points = (proposal.factor * normals).colwise() + proposal.mean;
-  result.weights.resize(normals.cols());
+  const MatrixXd points = (proposal.factor * normals).colwise() + proposal.mean;
+  VectorXd log_weights(normals.cols());
   for (Index i = 0; i < normals.cols(); ++i) {
-    result.weights[i] =
-        calcLogLikelihood(simulator, problem, box, result.points.col(i)) + 0.5 * normals.col(i).squaredNorm();
+    log_weights[i] =
+        calcLogLikelihood(simulator, problem, box, points.col(i)) + 0.5 * normals.col(i).squaredNorm();
   }
-  result.weights = (result.weights.array() - result.weights.maxCoeff()).exp();
-  result.weights /= result.weights.sum();
-  result.effective_sample_size = 1.0 / result.weights.squaredNorm();
-  return result;
-}
-
-VectorXd calcMean(const WeightedDraws& draws) {
-  return draws.points * draws.weights;
-}
-
-MatrixXd calcCovariance(const WeightedDraws& draws) {
-  const MatrixXd centered = draws.points.colwise() - calcMean(draws);
-  return centered * draws.weights.asDiagonal() * centered.transpose();
+  return importance::weigh(points, log_weights);
 }
 
 Proposal makeProposal(const VectorXd& mean, const MatrixXd& covariance) {
@@ -122,15 +105,17 @@ ExactPosterior calcExactPosterior(Simulator& simulator, const LeastSquaresProble
   const MatrixXd normals = sampleNormals(p, options.draws, seed);
   Proposal proposal = makeProposal(box.toUnit(fit.parameters), calcLimitCovariance(fit.information));
   WeightedDraws draws;
-  for (int round = 0; round < kRounds && draws.effective_sample_size < kEnough * options.draws; ++round) {
+  double effective_sample_size = 0.0;
+  for (int round = 0; round < kRounds && effective_sample_size < kEnough * options.draws; ++round) {
     if (round > 0) {
       proposal = makeProposal(calcMean(draws), calcCovariance(draws));
     }
     draws = draw(simulator, problem, box, proposal, normals);
+    effective_sample_size = importance::calcEffectiveSampleSize(draws);
     posterior.simulations += options.draws;
   }
-  posterior.effective_sample_size = draws.effective_sample_size;
-  if (!(draws.effective_sample_size >= kSmallestSampleSize)) {
+  posterior.effective_sample_size = effective_sample_size;
+  if (!(effective_sample_size >= importance::kSmallestSampleSize)) {
     posterior.warning = "the effective sample size stayed below 100";
     return posterior;
   }

@@ -74,9 +74,25 @@ ForwardSurrogate fitSurrogate(const TrustTraining& training, const TrainingContr
       .surrogate;
 }
 
-void noteMissingTrust(const std::invalid_argument& error, OnlineFit& fit) {
-  fit.notes.warn(Gravity::kMisleading,
-                 std::string("measurements cannot be judged (no trust model): ") + error.what());
+/// Adds a trust model to a map that measurements are inferred with. Without a forward surrogate one is
+/// fitted.
+OnlineFit fitTrust(const OnlineContext& context, AnyMap map,
+                   std::shared_ptr<const ForwardSurrogate> forward) {
+  OnlineFit fit{{std::move(map), {}}};
+  try {
+    const TrustTraining training = makeTrustTraining(context);
+    fit.model.trust = trainInterruptibly([&] {
+      if (forward == nullptr) {
+        forward = std::make_shared<const ForwardSurrogate>(fitSurrogate(training, context.control));
+      }
+      return fitTrustModel(training, forward, OnlineMap(fit.model.map), context.experiment.trust.level,
+                           context.control);
+    });
+  } catch (const std::invalid_argument& error) {
+    fit.notes.warn(Gravity::kMisleading,
+                   std::string("measurements cannot be judged (no trust model): ") + error.what());
+  }
+  return fit;
 }
 
 }  // namespace
@@ -88,31 +104,16 @@ int countReferences(int train_samples) {
 }
 
 OnlineFit fitOnline(const OnlineContext& context, const GpMap& map) {
-  OnlineFit fit{{compressMap(map), {}}};
-  try {
-    const TrustTraining training = makeTrustTraining(context);
-    fit.model.trust = trainInterruptibly([&] {
-      auto surrogate = std::make_shared<const ForwardSurrogate>(fitSurrogate(training, context.control));
-      return fitTrustModel(training, std::move(surrogate), OnlineMap(fit.model.map),
-                           context.experiment.trust.level, context.control);
-    });
-  } catch (const std::invalid_argument& error) {
-    noteMissingTrust(error, fit);
-  }
-  return fit;
+  return fitTrust(context, compressMap(map), nullptr);
 }
 
 OnlineFit fitOnline(const OnlineContext& context, std::shared_ptr<const Surrogate> surrogate) {
-  OnlineFit fit{{surrogate, {}}};
-  try {
-    fit.model.trust = trainInterruptibly([&] {
-      return fitTrustModel(makeTrustTraining(context), surrogate->forward, OnlineMap(surrogate),
-                           context.experiment.trust.level, context.control);
-    });
-  } catch (const std::invalid_argument& error) {
-    noteMissingTrust(error, fit);
-  }
-  return fit;
+  return fitTrust(context, surrogate, surrogate->forward);
+}
+
+OnlineFit fitOnline(const OnlineContext& context, std::shared_ptr<const NetworkMap> map,
+                    std::shared_ptr<const ForwardSurrogate> forward) {
+  return fitTrust(context, std::move(map), std::move(forward));
 }
 
 }  // namespace twinmap

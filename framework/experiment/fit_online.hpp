@@ -38,4 +38,9 @@ OnlineFit fitOnline(const OnlineContext& context, const GpMap& map);
 /// The same of a surrogate, which is its own trust model's.
 OnlineFit fitOnline(const OnlineContext& context, std::shared_ptr<const Surrogate> surrogate);
 
+/// The same of a network. `forward`: a surrogate that it learnt from, which is then the trust model's; null
+/// to fit one.
+OnlineFit fitOnline(const OnlineContext& context, std::shared_ptr<const NetworkMap> map,
+                    std::shared_ptr<const ForwardSurrogate> forward);
+
 }  // namespace twinmap

@@ -13,8 +13,8 @@ namespace twinmap {
 namespace {
 
 /// Makes the map ready for measurements.
-template <class Map>
-OnlineFit prepareOnline(const MapTrainingContext& context, const Map& map) {
+template <class... Map>
+OnlineFit prepareOnline(const MapTrainingContext& context, const Map&... map) {
   StageNotes notes;
   OnlineFit online = timeStage("prepare for measurements", notes, [&] {
     return fitOnline({context.experiment,
@@ -22,7 +22,7 @@ OnlineFit prepareOnline(const MapTrainingContext& context, const Map& map) {
                       context.extractor,
                       context.labelled,
                       {context.control.threads, context.control.abandon}},
-                     map);
+                     map...);
   });
   notes.append(online.notes);
   online.notes = notes;
@@ -39,6 +39,27 @@ TrainedMap trainForward(const MapTrainingContext& context) {
 /// Trains one Gaussian process per parameter.
 TrainedMap trainProcesses(const MapTrainingContext& context) {
   return makeTrainedMap(context, trainMap(context.experiment, context.labelled.train, context.control));
+}
+
+/// Trains a neural network.
+TrainedMap trainNeurally(const MapTrainingContext& context) {
+  NetworkOutcome outcome = trainNetwork({context.experiment, context.sets, context.simulator,
+                                         context.extractor, context.labelled.train, context.control});
+  const auto map = std::make_shared<const NetworkMap>(std::move(outcome.map));
+  OnlineFit online = prepareOnline(context, map, outcome.forward);
+  outcome.notes.append(online.notes);
+  const auto predict = [map, threads = context.control.threads](const Eigen::MatrixXd& features,
+                                                                const Eigen::MatrixXd& inputs) {
+    return map->predict(features, inputs, threads);
+  };
+  return {"network",
+          predict,
+          map->validation.residual_correlation,
+          std::move(outcome.transform),
+          std::move(outcome.summary),
+          std::move(outcome.notes),
+          std::move(online.model),
+          {}};
 }
 
 TrainedMap trainAutomatically(const MapTrainingContext& context) {
@@ -93,6 +114,9 @@ TrainedMap trainChosenMap(const MapTrainingContext& context) {
   const InverseMapSpec& spec = context.experiment.inverse_map;
   if (spec.isAutomatic()) {
     return trainAutomatically(context);
+  }
+  if (spec.findNetwork() != nullptr) {
+    return trainNeurally(context);
   }
   return spec.findGp() != nullptr ? trainProcesses(context) : trainForward(context);
 }

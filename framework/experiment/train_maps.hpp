@@ -2,6 +2,7 @@
 
 #include "framework/experiment/prepare_data.hpp"
 #include "framework/experiment/train_map.hpp"
+#include "framework/experiment/train_network.hpp"
 #include "framework/experiment/train_surrogate_map.hpp"
 #include "framework/experiment/trained_map.hpp"
 #include "framework/monitoring/run_control.hpp"

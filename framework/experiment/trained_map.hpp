@@ -16,14 +16,14 @@ using Predictor = std::function<Predictions(const Eigen::MatrixXd& features, con
 
 /// A trained map of any kind.
 struct TrainedMap {
-  std::string name;  ///< as methods.csv has it: "inverse_map", "surrogate"
+  std::string name;  ///< as methods.csv has it: "inverse_map", "surrogate", "network"
   Predictor predict;
   Eigen::MatrixXd residual_correlation;  ///< p x p, of the errors of a sample
   FeatureTransform transform;            ///< what a linear regression is to see of the features
   TrainingSummary summary;
   StageNotes notes;
   OnlineModel online;
-  GpMap exact;  ///< what online was compressed from; without processes where it is a surrogate
+  GpMap exact;  ///< what online was compressed from; without processes where it is of another kind
 };
 
 }  // namespace twinmap

@@ -150,8 +150,7 @@ class SurrogateJudge final : public Judge {
 
   double calcPValue(const VectorXd& moved) const override {
     const VectorXd scores = trust_.forward->projection * moved;
-    const VectorXd innovation =
-        explanation_.innovation + absorption_.remove(linalg::solveLower(explanation_.lower, scores));
+    const VectorXd innovation = explanation_.innovation + absorption_.remove(explanation_.whiten(scores));
     VectorXd residual;
     trust_.space.calcResidual(centered_ + moved, innovation, residual);
     Trust trust;

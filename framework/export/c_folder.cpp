@@ -21,7 +21,8 @@ std::string compressModel(const std::filesystem::path& run, ExportedModel& model
   constexpr int kMeasurements = 500;
   constexpr double kMostLoss = 0.02;  // of a standard deviation
   if (model.findProcesses() == nullptr) {
-    throw ExperimentError("export --compress: the map is a surrogate, which has no inducing inputs");
+    throw ExperimentError(fmt::format("export --compress: the map is a {}, which has no inducing inputs",
+                                      model.findNetwork() != nullptr ? "network" : "surrogate"));
   }
   const auto measurements = makeTestedMeasurements(run, model, {kMeasurements, CNumber::kDouble, false});
   CompressionTest test{Eigen::MatrixXd(model.features.size(), measurements.size()),

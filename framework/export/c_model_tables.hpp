@@ -35,6 +35,8 @@ void addScores(const ExportedModel& model, CTables& tables, CSizes& sizes);
 void addWindows(const ExportedModel& model, CTables& tables, CSizes& sizes);
 /// surrogate_map.c
 void addSurrogateMap(const Surrogate& surrogate, CTables& tables, CSizes& sizes);
+/// network.c
+void addNetwork(const NetworkMap& map, CTables& tables, CSizes& sizes);
 /// trust.c
 void addTrust(const TrustModel& trust, CTables& tables, CSizes& sizes);
 /// infer.c

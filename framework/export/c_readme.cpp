@@ -31,7 +31,8 @@ std::size_t countSearch(const CSource& source) {
       w * n * (m + 4) + size("SLOPE_POINTS") + 1 + w * terms + terms * m + size("PADDED_POINTS");
   const std::size_t metric = 4 * r + 2 * r * u + r * (r + 1) / 2 + 1 + u * u + u + m + w + 1;
   const std::size_t minima = 4 * (3 * u + 1 + 3 * u * u + r + 1) + 1;
-  return processes + metric + minima + u + size("PARAMETERS") + r + u + u + u * u + 2 * u + u * u + 2 * u;
+  return processes + metric + minima + u + size("PARAMETERS") + r + u + u + u * u + u * (u + 3) + u * u +
+         2 * u;
 }
 
 std::string makeParameterTable(const std::vector<ParameterSpec>& parameters) {
@@ -81,8 +82,23 @@ double countEvaluation(const ExportedModel& model) {
   return 2.0 * sum / 1000.0;
 }
 
+std::string describeOperations(const NetworkMap& map) {
+  const network::Network& network = map.network;
+  Eigen::Index sum = map.inputs.projection.size() + network.skip.size(), units = 0;
+  for (const network::Layer& layer : network.layers) {
+    sum += layer.weights.size();
+    units += layer.weights.cols();
+  }
+  return fmt::format("The map takes {:.1f} thousand multiply-adds and {} exponentials.",
+                     static_cast<double>(sum) / 1000.0,
+                     units - network.countInputs() + network.countTargets());
+}
+
 std::string describeOperations(const ExportedModel& model) {
   std::string text;
+  if (const NetworkMap* map = model.findNetwork()) {
+    text = describeOperations(*map);
+  }
   if (const GpMap* map = model.findProcesses()) {
     double sum = 0.0;
     for (const gp::Process& process : map->processes) {
@@ -126,6 +142,10 @@ std::size_t calcStateBytes(const CSource& source) {
   if (size("COMPRESSED") > 0) {
     doubles += size("LARGEST") * (size("LARGEST") + 1) / 2;
   }
+  if (size("NETWORK") > 0) {
+    doubles += size("FEATURES") + size("PRODUCTS") + 1 + 2 * size("WIDEST") +
+               size("PARAMETERS") * size("PARAMETERS");
+  }
   if (size("TRUST") > 0) {
     doubles += size("FEATURES") + size("RESIDUALS") + inputs;
   }
@@ -167,8 +187,12 @@ std::string makeCReadme(const ExportedModel& model, const COptions& options, con
       "  /* result.mean[i] +- result.sd[i]; result.status, {0}_status_text(result.status) */\n}}\n```\n\n"
       "`known`: NULL where the set-up has no known inputs. `{0}_infer_features` takes the features "
       "themselves. "
-      "The answers are those of `twinmap infer --no-refine`.\n\n## Parameters\n\n",
-      options.prefix);
+      "The answers are those of `twinmap infer --no-refine`, bit for bit on processors that multiply and add "
+      "at "
+      "once: for x86-64 the file asks GCC and clang for AVX2 and FMA itself. For those before 2013 compile "
+      "with "
+      "`-D{1}_ANY_PROCESSOR`.\n\n## Parameters\n\n",
+      options.prefix, upper);
   text += makeParameterTable(model.experiment.model.parameters);
   if (!model.experiment.model.inputs.empty()) {
     text += "\nKnown inputs, in this order:\n\n" + makeParameterTable(model.experiment.model.inputs);

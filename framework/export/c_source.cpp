@@ -26,7 +26,7 @@ void requireIdentifier(const std::string& prefix) {
   }
 }
 
-/// The files of runtime/ one after another, each with its tables.
+/// The files of kernels/exact/ and runtime/ one after another, each with its tables.
 class Composer {
  public:
   Composer(const ExportedModel& model, const COptions& options) : model_(model), options_(options) {
@@ -38,12 +38,16 @@ class Composer {
             "measured; 0: only features can be given");
     addSize("ROWS", model.takesSignals() ? model.layout.getRowCount() : 0, "signals times the grid");
     addSize("PROCESSES", processes != nullptr ? 1 : 0, "1: the map is one of Gaussian processes");
+    addSize("NETWORK", model.findNetwork() != nullptr ? 1 : 0, "1: the map is a neural network");
     addSize("COMPRESSED", options.compressed ? 1 : 0, "1: the processes are summarised by few inputs");
     addSize("TRUST", model.online.trust ? 1 : 0, "1: measurements are judged");
   }
 
   CSource compose() {
-    addPlain("base.c");
+    addPlain("arithmetic.c");
+    if (options_.compressed || model_.findForward() != nullptr) {
+      addPlain("triangles.c");
+    }
     if (model_.takesSignals()) {
       add("resample.c", [&](CTables& tables) { addGrid(model_, tables, source_.sizes); });
       add("features.c", [&](CTables& tables) { addFeatures(model_, tables, source_.sizes); });
@@ -56,6 +60,9 @@ class Composer {
       } else {
         add("processes.c", [&](CTables& tables) { addProcesses(*map, tables, source_.sizes); });
       }
+    }
+    if (const NetworkMap* map = model_.findNetwork()) {
+      add("network.c", [&](CTables& tables) { addNetwork(*map, tables, source_.sizes); });
     }
     addForward();
     if (model_.online.trust) {
@@ -82,7 +89,10 @@ class Composer {
     const Surrogate* surrogate = model_.findSurrogate();
     bytes_ = surrogate != nullptr ? &source_.map_bytes : &source_.trust_bytes;
     add("scores.c", [&](CTables& tables) { addScores(model_, tables, source_.sizes); });
+    addPlain("smooth_process.h");
+    addPlain("smooth_process.c");
     add("surrogate.c", [&](CTables& tables) { addWindows(model_, tables, source_.sizes); });
+    addPlain("least_squares.c");
     addPlain("inversion.c");
     if (surrogate != nullptr) {
       addPlain("box_moments.c");

@@ -16,6 +16,19 @@ const Surrogate* ExportedModel::findSurrogate() const {
   return surrogate == nullptr ? nullptr : surrogate->get();
 }
 
+const NetworkMap* ExportedModel::findNetwork() const {
+  const auto* network = std::get_if<std::shared_ptr<const NetworkMap>>(&online.map);
+  return network == nullptr ? nullptr : network->get();
+}
+
+const SurrogateValidation* ExportedModel::findValidation() const {
+  if (const Surrogate* surrogate = findSurrogate()) {
+    return &surrogate->validation;
+  }
+  const NetworkMap* network = findNetwork();
+  return network == nullptr ? nullptr : &network->validation;
+}
+
 const ForwardSurrogate* ExportedModel::findForward() const {
   if (const Surrogate* surrogate = findSurrogate()) {
     return surrogate->forward.get();
@@ -36,9 +49,8 @@ Index ExportedModel::countUnknown() const {
 }
 
 Eigen::MatrixXd ExportedModel::getCorrelation() const {
-  const Surrogate* surrogate = findSurrogate();
-  return surrogate != nullptr ? surrogate->validation.residual_correlation
-                              : findProcesses()->residual_correlation;
+  const SurrogateValidation* validation = findValidation();
+  return validation != nullptr ? validation->residual_correlation : findProcesses()->residual_correlation;
 }
 
 VectorXd ExportedModel::getBoxCenter() const {

@@ -19,9 +19,12 @@ struct ExportedModel {
   std::vector<FeatureInfo> features;      ///< d
   OnlineModel online;
 
-  /// Null where the map is of the other kind.
+  /// Null where the map is of another kind.
   const GpMap* findProcesses() const { return std::get_if<GpMap>(&online.map); }
   const Surrogate* findSurrogate() const;
+  const NetworkMap* findNetwork() const;
+  /// What is known of the errors of a surrogate or a network; else null.
+  const SurrogateValidation* findValidation() const;
   /// The processes from parameters to scores, of the map or else of the trust model; or null.
   const ForwardSurrogate* findForward() const;
 

@@ -156,11 +156,35 @@ Json toJson(const ForwardSurrogate& forward) {
   return json;
 }
 
-Json makeMap(const ExportedModel& model) {
-  const Surrogate* surrogate = model.findSurrogate();
-  if (surrogate == nullptr) {
-    return toJson(*model.findProcesses());
+Json toJson(const NetworkMap& map) {
+  const network::Network& network = map.network;
+  Json json{{"kind", "network"}};
+  json["inputs"] = {{"center", toJson(map.inputs.center)}, {"projection", toRows(map.inputs.projection)}};
+  json["known_inputs"] = {{"center", toJson(map.inputs.known.center)},
+                          {"half_width", toJson(map.inputs.known.half_width)}};
+  json["regression"] = {{"offset", toJson(network.offset)},
+                        {"slopes", toRows(network.skip)},
+                        {"squared", network.products.squared},
+                        {"cubed", network.products.cubed}};
+  json["scale"] = toJson(network.scale);
+  json["layers"] = Json::array();
+  for (const network::Layer& layer : network.layers) {
+    json["layers"].push_back({{"weights", toRows(layer.weights)}, {"biases", toJson(layer.biases)}});
   }
+  json["target"] = {{"offset", toJson(map.center)}, {"scale", toJson(map.half_width)}};
+  json["stddev_scale"] = toJson(map.validation.stddev_scale);
+  json["status"] = toString(map.validation.status);
+  return json;
+}
+
+Json makeMap(const ExportedModel& model) {
+  if (const GpMap* processes = model.findProcesses()) {
+    return toJson(*processes);
+  }
+  if (const NetworkMap* network = model.findNetwork()) {
+    return toJson(*network);
+  }
+  const Surrogate* surrogate = model.findSurrogate();
   return {{"kind", "surrogate"},
           {"stddev_scale", toJson(surrogate->validation.stddev_scale)},
           {"limit_scale", toJson(surrogate->validation.limit_scale)},

@@ -3,7 +3,7 @@
 namespace twinmap {
 
 void addResult(const ExportedModel& model, const std::string& prefix, CTables& tables, CSizes& sizes) {
-  const Surrogate* surrogate = model.findSurrogate();
+  const SurrogateValidation* validation = model.findValidation();
   std::vector<std::string> names, units;
   for (const ParameterSpec& parameter : model.experiment.model.parameters) {
     names.push_back(parameter.name.text);
@@ -17,7 +17,7 @@ void addResult(const ExportedModel& model, const std::string& prefix, CTables& t
   }
   tables.addWide("parameter_correlation", flattenColumns(model.getCorrelation()),
                  "Correlation of the errors of a sample's parameters.");
-  const bool honest = surrogate == nullptr || surrogate->validation.status == SurrogateStatus::kOk;
+  const bool honest = validation == nullptr || validation->status == SurrogateStatus::kOk;
   sizes.push_back({"DISHONEST", honest ? 0 : 1, "1: the map is known to misjudge its own errors"});
 }
 

@@ -229,9 +229,8 @@ std::string makeSelftest(const ExportedModel& model, const COptions& options,
   }
   const bool single = options.number == CNumber::kSingle;
   CTables tables(options.number);
-  // A surrogate is inverted by a search: rounding may end it a step earlier. Processes agree to the last bit
-  // where the machine multiplies and adds at once, else to what the cancellation of their weights leaves of
-  // it.
+  // Bits agree where the machine multiplies and adds at once; else processes keep what the cancellation of
+  // their weights leaves, and the search that inverts a surrogate may end a step earlier.
   tables.addNumber("tolerance_stddevs", single || model.findSurrogate() != nullptr ? 1e-4 : 1e-6,
                    "Of means and standard deviations, in the latter.");
   tables.addNumber("tolerance_relative", single ? 0.0 : 1e-12, "And in relation to the mean.");

@@ -40,14 +40,19 @@ std::string addWindow(const gp::SharedProcess& process, int index, Index first, 
                    "Lower factor of their information, row by row.");
   }
   const bool exponential = parts.structure.covariance == gp::SmoothCovariance::kSquaredExponential;
+  const std::string smooth =
+      fmt::format("{{{}, {}, {}, {}, {}, {}, {}_points}}",
+                  exponential ? "SMOOTH_EXPONENTIAL" : "SMOOTH_MATERN_52", n, parts.scaled_points.cols(),
+                  parts.slope_points, parts.slope_variables, toC(parts.hyperparameters.nugget), name);
+  const std::string own_variance = own ? fmt::format("{{{0}, {1}, {2}_factor, {2}_terms, {2}_term_factor}}",
+                                                     linalg::PackedLower::roundUp(n), terms, name)
+                                       : "{0, 0, 0, 0, 0}";
   return fmt::format(
-      "{}, {}, {}, {}, {}, {}, {}, {}, {},\n   {}_length_scales, {}_points, {}_weights, "
-      "{}_coefficients, {}_amplitudes, {}_ratios,\n   {}",
-      first, process.getFunctionCount(), leading, parts.slope_points, parts.slope_variables,
-      exponential ? "SMOOTH_EXPONENTIAL" : "SMOOTH_MATERN_52",
-      parts.structure.trend == gp::Trend::kQuadratic ? 1 : 0, terms, toC(parts.hyperparameters.nugget), name,
-      name, name, name, name, name,
-      own ? fmt::format("{0}_factor, {0}_terms, {0}_term_factor", name) : "0, 0, 0");
+      "{0}, {1}, {2}, {3}, {4}, {5},\n   {6}, {7}_length_scales, {7}_weights, {7}_coefficients, "
+      "{7}_amplitudes, "
+      "{7}_ratios",
+      first, process.getFunctionCount(), leading, parts.structure.trend == gp::Trend::kQuadratic ? 1 : 0,
+      terms, smooth, own_variance, name);
 }
 
 }  // namespace
@@ -97,9 +102,8 @@ void addWindows(const ExportedModel& model, CTables& tables, CSizes& sizes) {
   sizes.push_back({"WINDOWS", static_cast<long>(entries.size()), "groups of scores"});
   sizes.push_back({"SLOPE_POINTS", static_cast<long>(slope_points), "most points with slopes"});
   sizes.push_back({"TERMS", static_cast<long>(terms), "most terms of a trend"});
-  constexpr Index kTile = linalg::PackedLower::kTile;
   sizes.push_back(
-      {"PADDED_POINTS", static_cast<long>((n + kTile - 1) / kTile * kTile), "POINTS in whole tiles"});
+      {"PADDED_POINTS", static_cast<long>(linalg::PackedLower::roundUp(n)), "POINTS in whole tiles"});
 }
 
 void addSurrogateMap(const Surrogate& surrogate, CTables& tables, CSizes& sizes) {

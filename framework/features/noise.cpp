@@ -97,7 +97,7 @@ void ResponseNoise::correlate(const NoiseCorrelationSpec& spec, const ResponseLa
 }
 
 Eigen::MatrixXd ResponseNoise::add(const Eigen::MatrixXd& responses, const RandomStream& random,
-                                   int replicate) const {
+                                   std::uint64_t replicate) const {
   if (blocks_.empty()) {
     return Eigen::MatrixXd::NullaryExpr(
         responses.rows(), responses.cols(), [&](Eigen::Index row, Eigen::Index sample) {
@@ -132,7 +132,7 @@ Eigen::MatrixXd ResponseNoise::calcCovariance(const FeatureMatrix& matrix) const
 }
 
 Eigen::MatrixXd addNoise(const Eigen::MatrixXd& responses, const ResponseNoise& noise,
-                         const RandomStream& random, int replicate) {
+                         const RandomStream& random, std::uint64_t replicate) {
   return noise.add(responses, random, replicate);
 }
 

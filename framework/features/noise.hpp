@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
 #include "framework/design/random.hpp"
@@ -30,7 +31,7 @@ class ResponseNoise {
 
   /// Responses (rows x n) plus noise. That of a response depends on the stream, its column and the replicate
   /// alone.
-  Eigen::MatrixXd add(const Eigen::MatrixXd& responses, const RandomStream& random, int replicate) const;
+  Eigen::MatrixXd add(const Eigen::MatrixXd& responses, const RandomStream& random, std::uint64_t replicate) const;
 
   /// The covariance M C M' (d x d) of features = M * response.
   Eigen::MatrixXd calcCovariance(const FeatureMatrix& matrix) const;
@@ -49,6 +50,6 @@ class ResponseNoise {
 
 /// Responses (rows x n) plus noise (ResponseNoise::add).
 Eigen::MatrixXd addNoise(const Eigen::MatrixXd& responses, const ResponseNoise& noise,
-                         const RandomStream& random, int replicate = 0);
+                         const RandomStream& random, std::uint64_t replicate = 0);
 
 }  // namespace twinmap

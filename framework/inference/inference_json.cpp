@@ -68,6 +68,35 @@ Json toJson(const Refined& refined, const std::vector<ParameterSpec>& parameters
   return json;
 }
 
+Json makeQuantiles(const SurrogatePosterior& posterior, Eigen::Index parameter) {
+  Json quantiles = Json::array();
+  for (std::size_t k = 0; k < kPosteriorProbabilities.size(); ++k) {
+    quantiles.push_back(
+        {kPosteriorProbabilities[k], posterior.quantiles(parameter, static_cast<Eigen::Index>(k))});
+  }
+  return quantiles;
+}
+
+Json toJson(const SurrogatePosterior& posterior, const std::vector<ParameterSpec>& parameters) {
+  Json json{{"status", posterior.getStatus()}};
+  if (posterior.isReliable()) {
+    json["parameters"] = makeEstimates(posterior.mean, posterior.stddev, parameters);
+    for (std::size_t p = 0; p < parameters.size(); ++p) {
+      const auto i = static_cast<Eigen::Index>(p);
+      Json& estimate = json["parameters"][parameters[p].name.text];
+      estimate["lower"] = posterior.getLower95()[i];
+      estimate["upper"] = posterior.getUpper95()[i];
+      estimate["quantiles"] = makeQuantiles(posterior, i);
+    }
+  } else {
+    json["message"] = posterior.message;
+  }
+  json["effective_sample_size"] = posterior.effective_sample_size;
+  json["pareto_shape"] = posterior.pareto_shape;
+  json["evaluations"] = posterior.evaluations;
+  return json;
+}
+
 std::string dump(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -93,6 +122,9 @@ std::string makeInferenceJson(const InferredMeasurement& inferred,
   if (inferred.refined) {
     json["refined"] = toJson(*inferred.refined, parameters);
     json["inverse_map"]["parameters"] = makeMapEstimates(inferred.inference, parameters);
+  }
+  if (inferred.posterior) {
+    json["posterior"] = toJson(*inferred.posterior, parameters);
   }
   return dump(json);
 }

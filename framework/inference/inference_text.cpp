@@ -50,11 +50,21 @@ using Row = std::vector<std::string>;
 
 constexpr const char* kIndent = "  ";
 
-Row makeRow(const ParameterSpec& parameter, double mean, double stddev) {
+/// Of all parameters, the bounds those of the 95 % intervals.
+struct Estimates {
+  Eigen::VectorXd mean, stddev, lower, upper;
+};
+
+Estimates makeNormal(const Eigen::VectorXd& mean, const Eigen::VectorXd& stddev) {
+  return {mean, stddev, mean - kNormal95 * stddev, mean + kNormal95 * stddev};
+}
+
+Row makeRow(const ParameterSpec& parameter, const Estimates& estimates, Index i) {
   constexpr int kDigits = 6, kStddevDigits = 3;
-  return {parameter.name.text, parameter.unit, toShortText(mean, kDigits), toShortText(stddev, kStddevDigits),
-          fmt::format("{} .. {}", toShortText(mean - kNormal95 * stddev, kDigits),
-                      toShortText(mean + kNormal95 * stddev, kDigits))};
+  return {parameter.name.text, parameter.unit, toShortText(estimates.mean[i], kDigits),
+          toShortText(estimates.stddev[i], kStddevDigits),
+          fmt::format("{} .. {}", toShortText(estimates.lower[i], kDigits),
+                      toShortText(estimates.upper[i], kDigits))};
 }
 
 /// How the refinement went; the table of its answer follows where it was accepted.
@@ -67,14 +77,37 @@ std::string describeRefined(const Refined& refined) {
                      refined.iterations, refined.simulations, refined.distance);
 }
 
-std::string makeEstimateTable(const Eigen::VectorXd& mean, const Eigen::VectorXd& stddev,
-                              const std::vector<ParameterSpec>& parameters) {
+std::string makeEstimateTable(const Estimates& estimates, const std::vector<ParameterSpec>& parameters) {
   std::vector<Row> rows{{"parameter", "unit", "mean", "sd", "95 % interval"}};
   for (std::size_t p = 0; p < parameters.size(); ++p) {
-    const auto i = static_cast<Index>(p);
-    rows.push_back(makeRow(parameters[p], mean[i], stddev[i]));
+    rows.push_back(makeRow(parameters[p], estimates, static_cast<Index>(p)));
   }
   return alignRows(rows, rows.front().size(), kIndent);
+}
+
+std::string describePosterior(const SurrogatePosterior& posterior,
+                              const std::vector<ParameterSpec>& parameters) {
+  const std::string diagnostics =
+      fmt::format("effective sample size {:.0f} of {}, Pareto shape {:.2f}", posterior.effective_sample_size,
+                  posterior.evaluations, posterior.pareto_shape);
+  if (!posterior.isReliable()) {
+    return fmt::format("  no posterior: {} ({})\n", posterior.message, diagnostics);
+  }
+  return fmt::format("  the posterior ({}):\n", diagnostics) +
+         makeEstimateTable({posterior.mean, posterior.stddev, posterior.getLower95(), posterior.getUpper95()},
+                           parameters);
+}
+
+/// Empty but for the diagnostics where it is not reliable.
+std::string makePosteriorCells(const SurrogatePosterior& posterior, Index parameter) {
+  std::string text = ",,";
+  if (posterior.isReliable()) {
+    text = "," + toText(posterior.mean[parameter]) + "," + toText(posterior.stddev[parameter]);
+  }
+  for (Index k = 0; k < static_cast<Index>(kPosteriorProbabilities.size()); ++k) {
+    text += posterior.isReliable() ? "," + toText(posterior.quantiles(parameter, k)) : ",";
+  }
+  return text + "," + toText(posterior.effective_sample_size) + "," + toText(posterior.pareto_shape);
 }
 
 }  // namespace
@@ -136,16 +169,45 @@ std::string makeInferenceTable(const InferredMeasurement& inferred,
   if (inferred.refined) {
     text += describeRefined(*inferred.refined);
   }
-  text += makeEstimateTable(answer.mean, answer.stddev, parameters);
+  text += makeEstimateTable(makeNormal(answer.mean, answer.stddev), parameters);
   if (answer.refined) {
-    text += "  the map's:\n" + makeEstimateTable(by_map.mean, by_map.stddev, parameters);
+    text += "  the map's:\n" + makeEstimateTable(makeNormal(by_map.mean, by_map.stddev), parameters);
+  }
+  if (inferred.posterior) {
+    text += describePosterior(*inferred.posterior, parameters);
   }
   return text;
 }
 
-std::string makeInferenceCsvHeader(bool refined) {
+std::string makeInferenceCsvHeader(bool refined, bool posterior) {
   return std::string("source,start,parameter,unit,mean,sd,lower,upper,status,p_value") +
-         (refined ? ",refined_mean,refined_sd,map_mean,map_sd" : "") + "\n";
+         (refined ? ",refined_mean,refined_sd,map_mean,map_sd" : "") +
+         (posterior ? ",posterior_mean,posterior_sd,posterior_q2.5,posterior_q16,posterior_q50,posterior_q84,"
+                      "posterior_q97.5,effective_sample_size,pareto_shape"
+                    : "") +
+         "\n";
+}
+
+std::string makeDrawsCsvHeader(const std::vector<ParameterSpec>& unknown) {
+  std::string text = "source,start,draw";
+  for (const ParameterSpec& parameter : unknown) {
+    text += "," + escapeCsv(parameter.name.text);
+  }
+  return text + "\n";
+}
+
+std::string makeDrawsCsvRows(const InferredMeasurement& inferred) {
+  std::string text;
+  const Eigen::MatrixXd& draws = inferred.posterior->draws;
+  const std::string measurement = escapeCsv(inferred.source) + "," + toText(inferred.start);
+  for (Index i = 0; i < draws.cols(); ++i) {
+    text += measurement + "," + std::to_string(i);
+    for (const double value : draws.col(i)) {
+      text += "," + toText(value);
+    }
+    text += "\n";
+  }
+  return text;
 }
 
 std::string makeInferenceCsvRows(const InferredMeasurement& inferred,
@@ -163,6 +225,9 @@ std::string makeInferenceCsvRows(const InferredMeasurement& inferred,
     if (inferred.refined) {
       text += answer.refined ? fmt::format(",{},{}", toText(mean), toText(stddev)) : ",,";
       text += fmt::format(",{},{}", toText(by_map.mean[i]), toText(by_map.stddev[i]));
+    }
+    if (inferred.posterior) {
+      text += makePosteriorCells(*inferred.posterior, i);
     }
     text += "\n";
   }

@@ -20,8 +20,8 @@ std::string makeInferenceTable(const InferredMeasurement& inferred,
                                const std::vector<ParameterSpec>& parameters,
                                const std::vector<FeatureInfo>& features);
 
-/// CSV: a row per measurement and parameter; `refined`: with the columns of a refinement.
-std::string makeInferenceCsvHeader(bool refined);
+/// CSV: a row per measurement and parameter; `refined`, `posterior`: with the columns of these.
+std::string makeInferenceCsvHeader(bool refined, bool posterior = false);
 std::string makeInferenceCsvRows(const InferredMeasurement& inferred,
                                  const std::vector<ParameterSpec>& parameters);
 
@@ -31,6 +31,11 @@ std::string makeInferenceJson(const InferredMeasurement& inferred,
                               const std::vector<FeatureInfo>& features);
 /// The same for a measurement that could not be used.
 std::string makeErrorJson(const std::string& source, double start, const std::string& error);
+
+/// CSV of the draws of posteriors, a row each: source, start, draw, then all unknown parameters; the row of
+/// names, and the rows of one measurement, none where its posterior is not reliable.
+std::string makeDrawsCsvHeader(const std::vector<ParameterSpec>& unknown);
+std::string makeDrawsCsvRows(const InferredMeasurement& inferred);
 
 /// "the largest residuals: y(0.1 s) to y(0.4 s)"; "" without a trust model.
 std::string describeBurst(const Trust& trust, const std::vector<FeatureInfo>& features);

@@ -11,6 +11,7 @@
 #include "framework/online/online_model.hpp"
 #include "framework/refinement/refined.hpp"
 #include "framework/spec/experiment_spec.hpp"
+#include "framework/surrogate/posterior_sampler.hpp"
 
 namespace twinmap {
 
@@ -23,7 +24,8 @@ struct InferredMeasurement {
   std::optional<Trust> trust;    ///< none where the run could fit no trust model
   Eigen::VectorXd explanation;   ///< sampled point that explains the features best; empty without trust
   Eigen::MatrixXd covariance{};  ///< there, u x u in half-widths, with the surrogate's errors; empty likewise
-  std::optional<Refined> refined;  ///< on the simulator, where that was tried; accepted or not
+  std::optional<Refined> refined;                 ///< on the simulator, where that was tried; accepted or not
+  std::optional<SurrogatePosterior> posterior{};  ///< where it was asked for; reliable or not
 };
 
 /// The maps.h5 of a finished run, given its folder or the file itself. Throws std::runtime_error where there

@@ -1,16 +1,41 @@
 #include "framework/inference/measurement_session.hpp"
 
+#include <fmt/format.h>
+
 #include "framework/inference/answer.hpp"
+#include "framework/online/posterior_model.hpp"
+#include "framework/spec/yaml/source_location.hpp"
 
 namespace twinmap {
+namespace {
 
-MeasurementSession::MeasurementSession(const Inferrer& inferrer, std::optional<bool> refine)
+PosteriorSampler makeSampler(const Inferrer& inferrer, int draws) {
+  if (draws < kFewestPosteriorDraws) {
+    throw ExperimentError(
+        fmt::format("a posterior needs at least {} draws, not {}", kFewestPosteriorDraws, draws));
+  }
+  std::optional<PosteriorModel> model = findPosteriorModel(inferrer.getMap(), inferrer.getTrustModel());
+  if (!model) {
+    throw ExperimentError(
+        "this run has no surrogate to compute posteriors from, for a feature has no noise or the simulations "
+        "are too few: give every output noise and train with 'inverse_map: surrogate'");
+  }
+  return {std::move(*model), draws, inferrer.getExperiment().seed};
+}
+
+}  // namespace
+
+MeasurementSession::MeasurementSession(const Inferrer& inferrer, std::optional<bool> refine,
+                                       int posterior_draws)
     : inferrer_(inferrer), workspace_(inferrer) {
   if (refine.value_or(inferrer.getExperiment().refine != RefineMode::kNever)) {
     refiner_.emplace(inferrer.getExperiment(), inferrer.getLayout());
     if (!refine && !refiner_->isWanted()) {
       refiner_.reset();
     }
+  }
+  if (posterior_draws != 0) {
+    sampler_.emplace(makeSampler(inferrer, posterior_draws));
   }
 }
 
@@ -33,6 +58,9 @@ InferredMeasurement MeasurementSession::infer(const Eigen::VectorXd& features, c
   if (refiner_) {
     const std::optional<TrustModel>& trust = inferrer_.getTrustModel();
     refiner_->refineAndJudge(features, known, trust ? &*trust : nullptr, inferred);
+  }
+  if (sampler_) {
+    inferred.posterior = sampler_->sampleFeatures(features, known);
   }
   return inferred;
 }

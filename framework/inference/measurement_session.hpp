@@ -5,6 +5,7 @@
 
 #include "framework/inference/inferrer.hpp"
 #include "framework/inference/refiner.hpp"
+#include "framework/surrogate/posterior_sampler.hpp"
 
 namespace twinmap {
 
@@ -12,18 +13,20 @@ namespace twinmap {
 /// it.
 class MeasurementSession {
  public:
-  /// `refine`: whether answers are refined on the simulator; none: as the experiment's `refine` says. Throws
-  /// ExperimentError where the simulator cannot be made.
-  MeasurementSession(const Inferrer& inferrer, std::optional<bool> refine);
+  /// `refine`: whether answers are refined on the simulator; none: as the experiment's `refine` says.
+  /// `posterior_draws`: of the posterior that each measurement is given as well; 0 for none. Throws
+  /// ExperimentError where the simulator cannot be made, or the run has no surrogate for posteriors.
+  MeasurementSession(const Inferrer& inferrer, std::optional<bool> refine, int posterior_draws = 0);
 
   bool refines() const { return refiner_.has_value(); }
+  bool samplesPosteriors() const { return sampler_.has_value(); }
 
   /// The time in a file that is the model's 0: `start`, or that of the experiment's `measurement:`.
   double getStart(std::optional<double> start) const;
 
   /// known: the inputs of the set-up (q). Throws MeasurementError for a table that cannot be used
-  /// (Inferrer::requireExcitation, readResponse, extractFeatures). Cost: that of Inferrer::infer() and
-  /// SimulatorRefiner::refineAndJudge().
+  /// (Inferrer::requireExcitation, readResponse, extractFeatures). Cost: that of Inferrer::infer(),
+  /// SimulatorRefiner::refineAndJudge() and PosteriorSampler::sample().
   InferredMeasurement infer(const Table& table, std::optional<double> start, const Eigen::VectorXd& known);
 
   /// The same from features (d, finite) that were extracted elsewhere.
@@ -33,6 +36,7 @@ class MeasurementSession {
   const Inferrer& inferrer_;
   Inferrer::Workspace workspace_;
   std::optional<SimulatorRefiner> refiner_;
+  std::optional<PosteriorSampler> sampler_;
 };
 
 /// The covariance (p x p, symmetric, in the parameters' units) of what is believed of a measurement

@@ -26,9 +26,50 @@ Sizes getSizes(const OnlineSurrogate& map) {
   return {surrogate.forward->center.size(), surrogate.center.size() - surrogate.unknown};
 }
 
-std::variant<OnlineProcesses, OnlineSurrogate> prepare(AnyMap map) {
+Sizes getSizes(const OnlineNetwork& map) {
+  const NetworkInputs& inputs = map.getMap().inputs;
+  return {inputs.center.size(), inputs.known.center.size()};
+}
+
+const MatrixXd& getCorrelation(const OnlineProcesses& map) {
+  return map.getMap().residual_correlation;
+}
+
+const MatrixXd& getCorrelation(const OnlineSurrogate& map) {
+  return map.getSurrogate().validation.residual_correlation;
+}
+
+const MatrixXd& getCorrelation(const OnlineNetwork& map) {
+  return map.getMap().validation.residual_correlation;
+}
+
+MatrixXd makeInputsOf(const OnlineProcesses& map, const MatrixXd& features, const MatrixXd& known) {
+  return map.getMap().makeProcessInputs(features, known);
+}
+
+template <class Map>
+MatrixXd makeInputsOf(const Map& map, const MatrixXd& features, const MatrixXd& known) {
+  return map.makeInputs(features, known);
+}
+
+bool isKnownToBeHonest(const OnlineProcesses&) {
+  return true;
+}
+
+bool isKnownToBeHonest(const OnlineSurrogate& map) {
+  return map.getSurrogate().validation.status == SurrogateStatus::kOk;
+}
+
+bool isKnownToBeHonest(const OnlineNetwork& map) {
+  return map.getMap().validation.status == SurrogateStatus::kOk;
+}
+
+std::variant<OnlineProcesses, OnlineSurrogate, OnlineNetwork> prepare(AnyMap map) {
   if (auto* processes = std::get_if<GpMap>(&map)) {
     return OnlineProcesses(std::move(*processes));
+  }
+  if (auto* network = std::get_if<std::shared_ptr<const NetworkMap>>(&map)) {
+    return OnlineNetwork(std::move(*network));
   }
   return OnlineSurrogate(std::get<std::shared_ptr<const Surrogate>>(std::move(map)));
 }
@@ -50,24 +91,26 @@ const ScoreExplanation* OnlineMap::Workspace::findExplanation() const {
 }
 
 const MatrixXd& OnlineMap::getResidualCorrelation() const {
-  if (const auto* processes = std::get_if<OnlineProcesses>(&kind_)) {
-    return processes->getMap().residual_correlation;
-  }
-  return std::get<OnlineSurrogate>(kind_).getSurrogate().validation.residual_correlation;
+  return std::visit([](const auto& map) -> const MatrixXd& { return getCorrelation(map); }, kind_);
+}
+
+const Surrogate* OnlineMap::findSurrogate() const {
+  const auto* online = std::get_if<OnlineSurrogate>(&kind_);
+  return online != nullptr ? &online->getSurrogate() : nullptr;
 }
 
 bool OnlineMap::isHonest() const {
-  const auto* surrogate = std::get_if<OnlineSurrogate>(&kind_);
-  return surrogate == nullptr || surrogate->getSurrogate().validation.status == SurrogateStatus::kOk;
+  return std::visit([](const auto& map) { return isKnownToBeHonest(map); }, kind_);
 }
 
 const Inference& OnlineMap::infer(const Eigen::Ref<const VectorXd>& features,
                                   const Eigen::Ref<const VectorXd>& known, Workspace& workspace) const {
-  if (const auto* processes = std::get_if<OnlineProcesses>(&kind_)) {
-    return processes->infer(features, known, std::get<OnlineProcesses::Workspace>(workspace.kind));
-  }
-  return std::get<OnlineSurrogate>(kind_).infer(features, known,
-                                                std::get<OnlineSurrogate::Workspace>(workspace.kind));
+  return std::visit(
+      [&](const auto& map) -> const Inference& {
+        using Buffers = typename std::decay_t<decltype(map)>::Workspace;
+        return map.infer(features, known, std::get<Buffers>(workspace.kind));
+      },
+      kind_);
 }
 
 const Inference& OnlineMap::inferMean(const Eigen::Ref<const VectorXd>& features,
@@ -105,10 +148,7 @@ Predictions OnlineMap::predict(const Eigen::Ref<const MatrixXd>& features,
 }
 
 MatrixXd OnlineMap::makeInputs(const MatrixXd& features, const MatrixXd& known) const {
-  if (const auto* processes = std::get_if<OnlineProcesses>(&kind_)) {
-    return processes->getMap().makeProcessInputs(features, known);
-  }
-  return std::get<OnlineSurrogate>(kind_).makeInputs(features, known);
+  return std::visit([&](const auto& map) { return makeInputsOf(map, features, known); }, kind_);
 }
 
 }  // namespace twinmap

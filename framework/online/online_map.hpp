@@ -4,13 +4,14 @@
 #include <memory>
 #include <variant>
 
+#include "framework/online/online_network.hpp"
 #include "framework/online/online_processes.hpp"
 #include "framework/online/online_surrogate.hpp"
 
 namespace twinmap {
 
 /// A trained map of any kind, as values.
-using AnyMap = std::variant<GpMap, std::shared_ptr<const Surrogate>>;
+using AnyMap = std::variant<GpMap, std::shared_ptr<const Surrogate>, std::shared_ptr<const NetworkMap>>;
 
 /// A trained map made ready for one measurement after another. Immutable.
 class OnlineMap {
@@ -23,6 +24,9 @@ class OnlineMap {
   /// The correlation of the errors of a sample's parameters, p x p.
   const Eigen::MatrixXd& getResidualCorrelation() const;
 
+  /// Null where the map is of another kind.
+  const Surrogate* findSurrogate() const;
+
   /// The buffers of one thread, and the result.
   class Workspace {
    public:
@@ -34,11 +38,12 @@ class OnlineMap {
 
    private:
     friend class OnlineMap;
-    std::variant<OnlineProcesses::Workspace, OnlineSurrogate::Workspace> kind;
+    std::variant<OnlineProcesses::Workspace, OnlineSurrogate::Workspace, OnlineNetwork::Workspace> kind;
   };
 
   /// features: d, finite; known: the inputs of the set-up (q). The result lies in the workspace until its
-  /// next use. Cost: some 10 us for the processes of four parameters, a ms by a surrogate.
+  /// next use. Cost: some 10 us for the processes of four parameters, a ms by a surrogate, some us by a
+  /// network.
   const Inference& infer(const Eigen::Ref<const Eigen::VectorXd>& features,
                          const Eigen::Ref<const Eigen::VectorXd>& known, Workspace& workspace) const;
   /// Mean and inputs alone, where that is cheaper; the stddev may be zero.
@@ -55,7 +60,7 @@ class OnlineMap {
   Eigen::MatrixXd makeInputs(const Eigen::MatrixXd& features, const Eigen::MatrixXd& known) const;
 
  private:
-  std::variant<OnlineProcesses, OnlineSurrogate> kind_;
+  std::variant<OnlineProcesses, OnlineSurrogate, OnlineNetwork> kind_;
 };
 
 }  // namespace twinmap

@@ -22,8 +22,8 @@ MatrixXd OnlineSurrogate::makeInputs(const MatrixXd& features, const MatrixXd& k
   MatrixXd inputs(surrogate_->forward->getScoreCount() + q, features.cols());
   inputs.topRows(inputs.rows() - q) = surrogate_->forward->calcScores(features);
   if (q > 0) {
-    inputs.bottomRows(q) = surrogate_->half_width.tail(q).cwiseInverse().asDiagonal() *
-                           (known.colwise() - surrogate_->center.tail(q));
+    inputs.bottomRows(q) = (known.colwise() - surrogate_->center.tail(q)).array().colwise() /
+                           surrogate_->half_width.tail(q).array();
   }
   return inputs;
 }

@@ -9,6 +9,7 @@
 #include "framework/python/python_map.hpp"
 #include "framework/python/quantity.hpp"
 #include "framework/spec/experiment_file.hpp"
+#include "framework/spec/parameter_box.hpp"
 
 namespace twinmap::python {
 namespace {
@@ -29,6 +30,7 @@ struct InferRequest {
   Known known;
   std::optional<double> start;
   std::optional<bool> refine;
+  int posterior_draws;
 };
 
 /// What Python makes its Inference of.
@@ -48,9 +50,10 @@ Answered answer(PythonMap& map, const InferRequest& request, const Infer& infer)
     values.push_back({name, value});
   }
   const Eigen::VectorXd known = collectKnown(inferrer.getExperiment().model.inputs, values);
-  PythonMap::Session session = map.borrow(request.refine);
+  const PythonMap::Manner manner{request.refine, request.posterior_draws};
+  PythonMap::Session session = map.borrow(manner);
   InferredMeasurement measurement = infer(*session, known);
-  map.giveBack(request.refine, std::move(session));
+  map.giveBack(manner, std::move(session));
   Answer chosen = chooseAnswer(measurement);
   Eigen::MatrixXd covariance = calcAnswerCovariance(inferrer, measurement);
   return {std::move(measurement), std::move(chosen), std::move(covariance)};
@@ -115,6 +118,20 @@ std::string writeText(const PythonMap& map, const Answered& answered) {
                             map.getInferrer().getExtractor().getInfos());
 }
 
+void bindPosterior(py::module_& module) {
+  py::class_<SurrogatePosterior>(module, "SurrogatePosterior")
+      .def_property_readonly("mean", [](const SurrogatePosterior& s) { return copyVector(s.mean); })
+      .def_property_readonly("stddev", [](const SurrogatePosterior& s) { return copyVector(s.stddev); })
+      .def_property_readonly(
+          "quantiles", [](const SurrogatePosterior& s) { return moveToRows(Eigen::MatrixXd(s.quantiles)); })
+      .def_property_readonly("draws",
+                             [](const SurrogatePosterior& s) { return moveToRows(Eigen::MatrixXd(s.draws)); })
+      .def_readonly("effective_sample_size", &SurrogatePosterior::effective_sample_size)
+      .def_readonly("pareto_shape", &SurrogatePosterior::pareto_shape)
+      .def_readonly("evaluations", &SurrogatePosterior::evaluations)
+      .def_readonly("message", &SurrogatePosterior::message);
+}
+
 void bindAnswered(py::module_& module) {
   py::class_<Answered>(module, "Answered")
       .def_property_readonly("mean", [](const Answered& a) { return copyVector(a.answer.mean); })
@@ -122,15 +139,17 @@ void bindAnswered(py::module_& module) {
       .def_property_readonly("covariance",
                              [](const Answered& a) { return moveToRows(Eigen::MatrixXd(a.covariance)); })
       .def_property_readonly("statuses", [](const Answered& a) { return listStatuses(a.measurement); })
-      .def_property_readonly("refined", [](const Answered& a) { return a.answer.refined; });
+      .def_property_readonly("refined", [](const Answered& a) { return a.answer.refined; })
+      .def_property_readonly("posterior", [](const Answered& a) { return a.measurement.posterior; });
   py::class_<InferRequest>(module, "InferRequest")
-      .def(py::init<Known, std::optional<double>, std::optional<bool>>(), py::arg("known"), py::arg("start"),
-           py::arg("refine"));
+      .def(py::init<Known, std::optional<double>, std::optional<bool>, int>(), py::arg("known"),
+           py::arg("start"), py::arg("refine"), py::arg("posterior_draws"));
 }
 
 }  // namespace
 
 void bindMap(py::module_& module) {
+  bindPosterior(module);
   bindAnswered(module);
   py::class_<PythonMap>(module, "Map")
       .def_static("load", &load, py::call_guard<py::gil_scoped_release>())
@@ -142,6 +161,8 @@ void bindMap(py::module_& module) {
       .def("predict", &predict, py::arg("features"), py::arg("inputs"), py::arg("threads"))
       .def_property_readonly("parameters",
                              [](const PythonMap& m) { return describe(getModel(m).parameters); })
+      .def_property_readonly("unknown",
+                             [](const PythonMap& m) { return describe(collectUnknown(getModel(m))); })
       .def_property_readonly("inputs", [](const PythonMap& m) { return describe(getModel(m).inputs); })
       .def_property_readonly("outputs",
                              [](const PythonMap& m) { return describeOutputs(m.getInferrer().getLayout()); })

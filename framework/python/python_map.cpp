@@ -2,22 +2,22 @@
 
 namespace twinmap::python {
 
-PythonMap::Session PythonMap::borrow(Refine refine) {
+PythonMap::Session PythonMap::borrow(const Manner& manner) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    std::vector<Session>& idle = idle_[refine];
+    std::vector<Session>& idle = idle_[manner];
     if (!idle.empty()) {
       Session session = std::move(idle.back());
       idle.pop_back();
       return session;
     }
   }
-  return std::make_unique<MeasurementSession>(inferrer_, refine);
+  return std::make_unique<MeasurementSession>(inferrer_, manner.first, manner.second);
 }
 
-void PythonMap::giveBack(Refine refine, Session session) {
+void PythonMap::giveBack(const Manner& manner, Session session) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  idle_[refine].push_back(std::move(session));
+  idle_[manner].push_back(std::move(session));
 }
 
 }  // namespace twinmap::python

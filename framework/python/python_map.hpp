@@ -22,14 +22,17 @@ class PythonMap {
   using Refine = std::optional<bool>;
   using Session = std::unique_ptr<MeasurementSession>;
 
-  /// A session that refines so (MeasurementSession), perhaps one that was given back. From any thread.
-  Session borrow(Refine refine);
-  void giveBack(Refine refine, Session session);
+  /// How a session infers (MeasurementSession).
+  using Manner = std::pair<Refine, int>;  ///< the draws of posteriors
+
+  /// A session that infers so, perhaps one that was given back. From any thread.
+  Session borrow(const Manner& manner);
+  void giveBack(const Manner& manner, Session session);
 
  private:
   const Inferrer inferrer_;
   std::mutex mutex_;
-  std::map<Refine, std::vector<Session>> idle_;
+  std::map<Manner, std::vector<Session>> idle_;
 };
 
 }  // namespace twinmap::python

@@ -1,11 +1,13 @@
 #include "framework/sampling/model_store.hpp"
 
 #include <fmt/format.h>
+#include <gnu/libc-version.h>
 #include <spdlog/spdlog.h>
 
 #include "framework/sampling/trajectory_content.hpp"
 #include "framework/simulation/solver_revision.hpp"
 #include "framework/spec/parameter_box.hpp"
+#include "framework/store/atomic_file.hpp"
 #include "twinmap/build_info.hpp"
 
 namespace twinmap {
@@ -19,26 +21,65 @@ constexpr const char* kVectors = "AVX2";
 constexpr const char* kVectors = "SSE2";
 #endif
 
+constexpr const char* kSolverKey = "solver:\n";
+
+/// The C library chooses its sine and exponential by the processor.
+std::string describeMathematics() {
+  return fmt::format("glibc {}{}", ::gnu_get_libc_version(), __builtin_cpu_supports("fma") ? ", FMA" : "");
+}
+
+std::string takeModel(const std::string& content) {
+  return content.substr(0, content.find(kSolverKey));
+}
+
+/// Where others have computed the same model with something else.
+void tellOtherBuilds(const TrajectoryStore& store, const std::string& content) {
+  for (const auto& entry : std::filesystem::directory_iterator(store.getFolder().parent_path())) {
+    const std::filesystem::path file = entry.path() / "content.yaml";
+    std::error_code ignored;
+    if (entry.path() == store.getFolder() || !std::filesystem::exists(file, ignored)) {
+      continue;
+    }
+    const std::string other = readBytes(file);
+    if (other != content && takeModel(other) == takeModel(content) &&
+        other.find("neighbourhoods:\n") == std::string::npos) {
+      spdlog::warn(
+          "{}: has samples of the same model that another build or machine computed; they are not mixed "
+          "with this one's, so that samples are simulated again",
+          entry.path().string());
+    }
+  }
+}
+
 }  // namespace
 
+std::string describeComputation() {
+  return fmt::format("{}, {}, {} ({}), Simbody {}, Boost {}, Eigen {}, {}", kCompiler, kBuildType,
+                     kInstructionSet, kVectors, kSimbodyVersion, kBoostVersion, kEigenVersion,
+                     describeMathematics());
+}
+
 std::string writeStoreContent(const ModelSpec& model, const ResponseLayout& layout) {
-  return writeTrajectoryContent(model, layout) +
-         fmt::format("solver:\n  revision: {}\n  build: {}, {}, {} ({}), Simbody {}, Boost {}, Eigen {}\n",
-                     kSolverRevision, kCompiler, kBuildType, kInstructionSet, kVectors, kSimbodyVersion,
-                     kBoostVersion, kEigenVersion);
+  return writeTrajectoryContent(model, layout) + kSolverKey +
+         fmt::format("  revision: {}\n  build: {}\n", kSolverRevision, describeComputation());
 }
 
 std::unique_ptr<TrajectoryStore> openStore(const ModelSpec& model, const ResponseLayout& layout,
                                            const std::filesystem::path& root) {
-  auto store = std::make_unique<TrajectoryStore>(root, writeStoreContent(model, layout), countSampled(model),
-                                                 layout.getRowCount());
+  const std::string content = writeStoreContent(model, layout);
+  auto store = std::make_unique<TrajectoryStore>(root, content, countSampled(model), layout.getRowCount());
   logSetAside(*store);
+  if (store->getSampleCount() == 0) {
+    tellOtherBuilds(*store, content);
+  }
   return store;
 }
 
-void logSetAside(const TrajectoryStore& store) {
-  for (const SetAsideChunk& chunk : store.getSetAside()) {
-    spdlog::warn("{}: set aside: {}; its samples are simulated again", chunk.file.string(), chunk.reason);
+void logSetAside(const TrajectoryStore& store, std::size_t known) {
+  const std::vector<SetAsideChunk>& chunks = store.getSetAside();
+  for (std::size_t i = known; i < chunks.size(); ++i) {
+    spdlog::warn("{}: set aside: {}; its samples are simulated again", chunks[i].file.string(),
+                 chunks[i].reason);
   }
 }
 

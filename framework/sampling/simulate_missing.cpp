@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "framework/sampling/chunk_saver.hpp"
+#include "framework/sampling/model_store.hpp"
 
 namespace twinmap {
 namespace {
@@ -125,6 +126,10 @@ MissingOptions makeMissingOptions(const std::string& stage, int simulations, con
 
 SimulationProgress storeMissing(TrajectoryStore& store, const Simulator& simulator, const MatrixXd& points,
                                 const MissingOptions& options) {
+  const std::size_t set_aside = store.getSetAside().size();
+  store.refresh();
+  store.verify(points);
+  logSetAside(store, set_aside);
   const std::vector<Index> missing = store.findMissing(points);
   SimulationProgress counts;
   counts.total = static_cast<int>(missing.size());

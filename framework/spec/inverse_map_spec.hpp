@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <variant>
+#include <vector>
 
 #include "framework/spec/bounds_spec.hpp"
 #include "framework/spec/fields/fields.hpp"
@@ -132,6 +134,45 @@ struct SurrogateMapSpec {};
 template <class Fields>
 void describe(Fields&, SurrogateMapSpec&) {}
 
+/// What a network learns from.
+enum class NetworkSamples { kAutomatic, kSimulations, kSurrogate };
+
+template <>
+struct EnumNames<NetworkSamples> {
+  static constexpr EnumName<NetworkSamples> values[] = {{"automatic", NetworkSamples::kAutomatic},
+                                                        {"simulations", NetworkSamples::kSimulations},
+                                                        {"surrogate", NetworkSamples::kSurrogate}};
+};
+
+/// A neural network from features to the normal distribution of all parameters (docs/networks.md).
+struct NetworkMapSpec {
+  std::vector<int> hidden = {64, 64};
+  NetworkSamples samples_from = NetworkSamples::kAutomatic;
+  int surrogate_samples = 20000;
+  int steps = 8000;
+  int batch = 256;
+  double learning_rate = 0.002;
+};
+
+template <class Fields>
+void describe(Fields& f, NetworkMapSpec& s) {
+  constexpr int kWidest = 1024;
+  constexpr std::size_t kDeepest = 8;
+  f.optional("hidden", s.hidden, "units of each hidden layer");
+  f.optional("samples_from", s.samples_from,
+             "simulations; a surrogate that is trained on them first; or automatic");
+  f.optional("surrogate_samples", s.surrogate_samples, "parameter points that a surrogate is asked for",
+             kSampleCount);
+  f.optional("steps", s.steps, "of the optimiser", kSampleCount);
+  f.optional("batch", s.batch, "samples of a step, each with its own draw of the noise", kHundredThousand);
+  f.optional("learning_rate", s.learning_rate, "its largest value", kPositive);
+  f.rule(!s.hidden.empty() && s.hidden.size() <= kDeepest &&
+             *std::min_element(s.hidden.begin(), s.hidden.end()) >= 1 &&
+             *std::max_element(s.hidden.begin(), s.hidden.end()) <= kWidest,
+         "must give 1 to 8 hidden layers of 1 to 1024 units");
+  f.rule(s.surrogate_samples >= 1000, "must give at least 1000 surrogate_samples");
+}
+
 /// A surrogate where it can be trained: all features have noise, and the samples suffice; else gp, with its
 /// defaults.
 struct AutomaticMapSpec {
@@ -142,13 +183,14 @@ template <class Fields>
 void describe(Fields&, AutomaticMapSpec&) {}
 
 struct InverseMapSpec {
-  std::variant<AutomaticMapSpec, GpMapSpec, SurrogateMapSpec> kind;
+  std::variant<AutomaticMapSpec, GpMapSpec, SurrogateMapSpec, NetworkMapSpec> kind;
 
   bool isAutomatic() const { return std::holds_alternative<AutomaticMapSpec>(kind); }
   /// Null for another kind.
   const GpMapSpec* findGp() const { return std::get_if<GpMapSpec>(&kind); }
   GpMapSpec* findGp() { return std::get_if<GpMapSpec>(&kind); }
-  /// Of Gaussian processes from features to parameters, where there are to be any; null for a surrogate.
+  const NetworkMapSpec* findNetwork() const { return std::get_if<NetworkMapSpec>(&kind); }
+  /// Of Gaussian processes from features to parameters, where there are to be any; null for other maps.
   const GpMapSpec* findProcesses() const {
     const auto* automatic = std::get_if<AutomaticMapSpec>(&kind);
     return automatic != nullptr ? &automatic->gp : findGp();
@@ -162,7 +204,8 @@ void describe(Fields& f, InverseMapSpec& s) {
           choice<AutomaticMapSpec>("automatic", s.kind, "a surrogate where it can be trained, else gp"),
           choice<GpMapSpec>("gp", s.kind, "one Gaussian process per parameter"),
           choice<SurrogateMapSpec>("surrogate", s.kind,
-                                   "processes from parameters to features, inverted for each measurement"));
+                                   "processes from parameters to features, inverted for each measurement"),
+          choice<NetworkMapSpec>("network", s.kind, "a neural network, the fastest to infer"));
 }
 
 }  // namespace twinmap

@@ -36,7 +36,7 @@ void resolveProminence(const NoiseSpec& noise, ExtremaFeatureSpec& extrema) {
 }
 
 /// A surrogate's cross-validation tells what more samples are worth; processes from features to parameters
-/// take the paper's number. 100 samples are the fewest that five folds of 8 unknowns can be learnt from; a
+/// take the paper's number, and so does a network, which a surrogate can teach. 100 samples are the fewest that five folds of 8 unknowns can be learnt from; a
 /// longer set must begin with the shorter one.
 void resolveTrainingSamples(const InverseMapSpec& map, PointSetSpec& train) {
   constexpr int kSmallest = 100, kMost = 800, kOfProcesses = 250;
@@ -44,7 +44,7 @@ void resolveTrainingSamples(const InverseMapSpec& map, PointSetSpec& train) {
   if (!train.samples.automatic) {
     return;
   }
-  if (map.findGp() != nullptr) {
+  if (map.findGp() != nullptr || map.findNetwork() != nullptr) {
     train.samples = kOfProcesses;
     train.time.reset();
     return;

@@ -1,10 +1,14 @@
 #include "framework/store/atomic_file.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <utility>
 
@@ -19,6 +23,18 @@ namespace fs = std::filesystem;
     throw DiskFull(message);
   }
   throw std::runtime_error(message);
+}
+
+/// ".HOST-NAMESPACE-": what the temporary files of all processes that can see one another have in common.
+const std::string& getMachineTag() {
+  static const std::string tag = [] {
+    std::array<char, 256> host{};
+    ::gethostname(host.data(), host.size() - 1);
+    struct stat ids {};
+    ::stat("/proc/self/ns/pid", &ids);
+    return "." + std::string(host.data()) + "-" + std::to_string(ids.st_ino) + "-";
+  }();
+  return tag;
 }
 
 /// For what other libraries fail to write without saying why.
@@ -106,8 +122,22 @@ void writeOrSayFull(const fs::path& file, const std::function<void(const fs::pat
 
 }  // namespace
 
+fs::path getTemporaryPath(const fs::path& path) {
+  return path.string() + getMachineTag() + std::to_string(::getpid()) + kTemporarySuffix;
+}
+
+bool isAbandoned(const fs::path& temporary) {
+  const std::string name = temporary.filename().string();
+  const std::size_t tag = name.rfind(getMachineTag());
+  if (tag == std::string::npos || temporary.extension() != kTemporarySuffix) {
+    return false;
+  }
+  const pid_t pid = std::atoi(name.c_str() + tag + getMachineTag().size());
+  return pid > 0 && ::kill(pid, 0) != 0 && errno == ESRCH;
+}
+
 void writeAtomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {
-  const fs::path temporary = path.string() + kTemporarySuffix;
+  const fs::path temporary = getTemporaryPath(path);
   try {
     writeOrSayFull(temporary, write);
     OpenFile(temporary, O_RDONLY | O_CLOEXEC).sync();

@@ -15,9 +15,10 @@ class DiskFull : public std::runtime_error {
 };
 
 /// Writes a file whole or not at all: `write` fills a temporary file in the same folder, which is synced to
-/// disk and renamed to `path`; then the folder is synced. On an exception the temporary file is removed and
-/// an older file at `path` stays as it was. Throws std::runtime_error naming the file and the cause, a
-/// DiskFull where that is it.
+/// disk and renamed to `path`; then the folder is synced. Processes that write the same file, on whatever
+/// machines, do not disturb each other: the last one's is there in the end. On an exception the temporary
+/// file is removed and an older file at `path` stays as it was. Throws std::runtime_error naming the file and
+/// the cause, a DiskFull where that is it.
 void writeAtomically(const std::filesystem::path& path,
                      const std::function<void(const std::filesystem::path& temporary)>& write);
 
@@ -34,7 +35,15 @@ void renameFile(const std::filesystem::path& from, const std::filesystem::path& 
 /// Makes the folder and those above it, each synced into the one above.
 void makeFolders(const std::filesystem::path& folder);
 
-/// What a temporary file adds to the name of the file it becomes; one that is left was never complete.
+/// What the name of a temporary file ends with; one that is left was never complete.
 inline constexpr const char* kTemporarySuffix = ".tmp";
+
+/// The temporary file that becomes `path`: PATH.HOST-NAMESPACE-PID.tmp. No other process that may see the
+/// folder has the same: the host's name is with the namespace that its process numbers are of.
+std::filesystem::path getTemporaryPath(const std::filesystem::path& path);
+
+/// Whether a temporary file is one of a process of this machine that no longer lives. What other machines
+/// left cannot be judged from here, nor what bears no such name.
+bool isAbandoned(const std::filesystem::path& temporary);
 
 }  // namespace twinmap

@@ -2,6 +2,7 @@
 
 #include <cassert>
 #include <cstring>
+#include <fstream>
 #include <string_view>
 
 namespace twinmap {
@@ -83,11 +84,15 @@ std::string_view verifyChecksum(const std::string& bytes) {
   return content;
 }
 
-void checkHeader(const Header& header, const ChunkShape& shape) {
+void checkVersion(const Header& header) {
   if (header.version != kVersion) {
     throw std::runtime_error("is a chunk of format version " + std::to_string(header.version) +
                              "; this program reads version " + std::to_string(kVersion));
   }
+}
+
+void checkHeader(const Header& header, const ChunkShape& shape) {
+  checkVersion(header);
   if (header.content != shape.content) {
     throw BadChunk("it holds samples of another model, " + toHex(header.content));
   }
@@ -96,6 +101,29 @@ void checkHeader(const Header& header, const ChunkShape& shape) {
     throw BadChunk("it has another number of parameters or rows");
   }
 }
+
+/// Reads pieces of a file of which the rest is not looked at.
+class ChunkInput {
+ public:
+  explicit ChunkInput(const std::filesystem::path& file) : stream_(file, std::ios::binary) {
+    if (!stream_) {
+      throw std::runtime_error("cannot be opened");
+    }
+  }
+  void read(std::uint64_t position, void* data, std::uint64_t size) {
+    stream_.seekg(static_cast<std::streamoff>(position));
+    if (!stream_.read(static_cast<char*>(data), static_cast<std::streamsize>(size))) {
+      throw BadChunk("it ends early");
+    }
+  }
+  std::uint64_t getSize() {
+    stream_.seekg(0, std::ios::end);
+    return static_cast<std::uint64_t>(stream_.tellg());
+  }
+
+ private:
+  std::ifstream stream_;
+};
 
 std::vector<SampleStatus> readStatuses(Pieces& pieces, std::uint64_t samples) {
   std::vector<StatusEntry> entries(samples);
@@ -108,7 +136,51 @@ std::vector<SampleStatus> readStatuses(Pieces& pieces, std::uint64_t samples) {
   return statuses;
 }
 
+Header readHeader(ChunkInput& input) {
+  Header header;
+  input.read(0, &header, sizeof header);
+  if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0) {
+    throw BadChunk("it does not begin as a chunk");
+  }
+  return header;
+}
+
 }  // namespace
+
+ChunkShape readChunkShape(const std::filesystem::path& file) {
+  ChunkInput input(file);
+  const Header header = readHeader(input);
+  checkVersion(header);
+  return {header.content, static_cast<Eigen::Index>(header.parameters),
+          static_cast<Eigen::Index>(header.rows)};
+}
+
+ChunkIndex readChunkIndex(const std::filesystem::path& file, const ChunkShape& shape) {
+  ChunkInput input(file);
+  const std::uint64_t size = input.getSize();
+  const Header header = readHeader(input);
+  checkHeader(header, shape);
+  if (header.samples > size / sizeof(StatusEntry) ||
+      calcChunkSize(shape, static_cast<int>(header.samples)) > size) {
+    throw BadChunk("its sizes do not fit the file");
+  }
+  const std::uint64_t samples = header.samples;
+  ChunkIndex index;
+  index.parameters.resize(shape.parameters, static_cast<Eigen::Index>(samples));
+  input.read(sizeof header, index.parameters.data(), index.parameters.size() * sizeof(double));
+  std::vector<StatusEntry> entries(samples);
+  const std::uint64_t numbers = samples * static_cast<std::uint64_t>(shape.parameters + shape.rows);
+  input.read(sizeof header + numbers * sizeof(double), entries.data(), samples * sizeof(StatusEntry));
+  std::uint64_t expected = calcChunkSize(shape, static_cast<int>(samples));
+  for (const StatusEntry& entry : entries) {
+    index.ok.push_back(entry.ok != 0);
+    expected += entry.reason_size;
+  }
+  if (expected != size) {
+    throw BadChunk("its sizes do not fit the file");
+  }
+  return index;
+}
 
 std::uint64_t calcChunkSize(const ChunkShape& shape, int samples) {
   const std::uint64_t numbers = static_cast<std::uint64_t>(shape.parameters + shape.rows);

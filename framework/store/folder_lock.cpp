@@ -29,6 +29,12 @@ std::string describeRefusal(const fs::path& folder, int descriptor, int error) {
   return (folder / "lock").string() + ": cannot be locked: " + std::strerror(error);
 }
 
+/// Some network file systems have no locks. What they would prevent there does no harm: two runs of one
+/// experiment write the same files, each whole.
+bool isWithoutLocks(int error) {
+  return error == ENOLCK || error == EOPNOTSUPP || error == ENOSYS;
+}
+
 /// Without the number the lock holds as well; it only tells less.
 void writeOwner(int descriptor) {
   const std::string pid = std::to_string(::getpid());
@@ -44,7 +50,7 @@ FolderLock::FolderLock(const fs::path& folder)
   if (descriptor_ < 0) {
     throw std::runtime_error((folder / "lock").string() + ": cannot be opened: " + std::strerror(errno));
   }
-  if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+  if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && !isWithoutLocks(errno)) {
     const std::string refusal = describeRefusal(folder, descriptor_, errno);
     ::close(descriptor_);
     throw std::runtime_error(refusal);

@@ -9,7 +9,7 @@
 
 namespace twinmap {
 
-/// What a map makes of its features (nothing, a surrogate), without the matrices that predict: small also for
+/// What a map makes of its features (nothing, a surrogate or a network), without the matrices that predict: small also for
 /// many samples.
 struct MapSummary {
   std::vector<std::string> feature_names;

@@ -94,10 +94,15 @@ void writeProcesses(Hdf5Writer& file, const StoredMap& stored) {
   }
 }
 
+bool holdsProcesses(const Hdf5Reader& file) {
+  return !holdsSurrogate(file) && !holdsNetwork(file);
+}
+
 /// Why a file holds no processes, where it should.
 void requireProcesses(const Hdf5Reader& file, const std::filesystem::path& path) {
-  if (holdsSurrogate(file)) {
-    throw std::runtime_error(path.string() + ": holds a surrogate, not an inverse map's processes");
+  if (!holdsProcesses(file)) {
+    throw std::runtime_error(path.string() + ": holds a " + (holdsNetwork(file) ? "network" : "surrogate") +
+                             ", not an inverse map's processes");
   }
 }
 
@@ -146,7 +151,7 @@ StoredMap readMapsFile(const std::filesystem::path& path) {
 bool holdsProcesses(const std::filesystem::path& path) {
   const Hdf5Reader file(path);
   requireFormat(file, path);
-  return !holdsSurrogate(file);
+  return holdsProcesses(file);
 }
 
 StoredOnlineModel readOnlineModel(const std::filesystem::path& path) {
@@ -159,6 +164,8 @@ StoredOnlineModel readOnlineModel(const std::filesystem::path& path) {
   stored.model.trust = readTrustModel(file);
   if (holdsSurrogate(file)) {
     stored.model.map = readSurrogate(file, stored.model.trust.value());
+  } else if (holdsNetwork(file)) {
+    stored.model.map = readNetwork(file);
   } else {
     GpMap map = readSharedParts(file);
     readOnlineProcesses(file, collectNames(readParametersGroup(file, kParameters)), map);
@@ -172,7 +179,7 @@ MapSummary readMapSummary(const std::filesystem::path& path) {
   const Hdf5Reader file(path);
   requireFormat(file, path);
   MapSummary summary{file.readTexts("/features/name"), {}, {}, {}};
-  if (holdsSurrogate(file)) {
+  if (!holdsProcesses(file)) {
     return summary;
   }
   summary.transform = readTransform(file);

@@ -15,7 +15,7 @@ namespace twinmap {
 struct StoredMap {
   std::vector<ParameterSpec> parameters;
   std::vector<std::string> feature_names;
-  GpMap map;                            ///< exact; without processes where the map is a surrogate
+  GpMap map;                            ///< exact; without processes where the map is of another kind
   std::vector<ParameterSpec> inputs{};  ///< known, with a measurement; their bounds scale them
   OnlineModel online{};                 ///< written where there is an experiment; not read back
   std::string experiment{};             ///< resolved.yaml's text, for the online model
@@ -31,11 +31,11 @@ struct StoredOnlineModel {
 void writeMapsFile(const std::filesystem::path& path, const StoredMap& stored);
 
 /// Reads it back; predictions are those of the map that was written, bit for bit. Throws std::runtime_error
-/// for a file that is no maps.h5, or that of a surrogate.
+/// for a file that is no maps.h5, or that of another map.
 StoredMap readMapsFile(const std::filesystem::path& path);
 
-/// Whether the map is one of processes; a surrogate is not. Throws std::runtime_error for a file that is no
-/// maps.h5.
+/// Whether the map is one of processes; surrogates and networks are not. Throws std::runtime_error for a file
+/// that is no maps.h5.
 bool holdsProcesses(const std::filesystem::path& path);
 
 /// Reads the online model alone, a fraction of the file. Throws std::runtime_error for a file that is no

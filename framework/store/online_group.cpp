@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "framework/store/network_group.hpp"
 #include "framework/store/process_group.hpp"
 #include "framework/store/surrogate_group.hpp"
 
@@ -12,6 +13,7 @@ using Eigen::Index;
 
 constexpr const char* kTrust = "/online/trust";
 constexpr const char* kSurrogate = "/online/surrogate";
+constexpr const char* kNetwork = "/online/network";
 
 std::string getMapGroup(const std::string& parameter) {
   return "/online/maps/" + parameter;
@@ -80,18 +82,7 @@ TrustModel readTrust(const Hdf5Reader& file, const std::string& group) {
   return trust;
 }
 
-void writeCompressed(Hdf5Writer& file, const std::vector<std::string>& parameters, const GpMap& map) {
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    if (isSparse(map.processes[p])) {
-      writeProcess(file, getMapGroup(parameters[p]), map.processes[p]);
-    }
-  }
-}
-
-/// What the trust model's forward surrogate lacks to be a map.
-void writeSurrogate(Hdf5Writer& file, const Surrogate& surrogate) {
-  const std::string group = kSurrogate;
-  const SurrogateValidation& validation = surrogate.validation;
+void writeValidation(Hdf5Writer& file, const std::string& group, const SurrogateValidation& validation) {
   file.write(group + "/stddev_scale", validation.stddev_scale);
   file.write(group + "/coverage95", validation.coverage95);
   file.writeSamples(group + "/residual_correlation", validation.residual_correlation);
@@ -101,15 +92,41 @@ void writeSurrogate(Hdf5Writer& file, const Surrogate& surrogate) {
   file.write(group + "/status", static_cast<double>(validation.status));
 }
 
+SurrogateValidation readValidation(const Hdf5Reader& file, const std::string& group) {
+  return {file.readVector(group + "/stddev_scale"),
+          file.readVector(group + "/coverage95"),
+          file.readSamples(group + "/residual_correlation"),
+          file.readNumber(group + "/log_density"),
+          file.readVector(group + "/limit_scale"),
+          file.readVector(group + "/limit_ratio"),
+          static_cast<SurrogateStatus>(file.readNumber(group + "/status"))};
+}
+
+/// A surrogate's forward part is the trust model's.
+void writeMap(Hdf5Writer& file, const std::vector<std::string>&,
+              const std::shared_ptr<const Surrogate>& surrogate) {
+  writeValidation(file, kSurrogate, surrogate->validation);
+}
+
+void writeMap(Hdf5Writer& file, const std::vector<std::string>&,
+              const std::shared_ptr<const NetworkMap>& network) {
+  writeNetworkGroup(file, kNetwork, *network);
+  writeValidation(file, kNetwork, network->validation);
+}
+
+void writeMap(Hdf5Writer& file, const std::vector<std::string>& parameters, const GpMap& map) {
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    if (isSparse(map.processes[p])) {
+      writeProcess(file, getMapGroup(parameters[p]), map.processes[p]);
+    }
+  }
+}
+
 }  // namespace
 
 void writeOnlineGroup(Hdf5Writer& file, const std::vector<std::string>& parameters,
                       const OnlineModel& model) {
-  if (const auto* map = std::get_if<GpMap>(&model.map)) {
-    writeCompressed(file, parameters, *map);
-  } else {
-    writeSurrogate(file, *std::get<std::shared_ptr<const Surrogate>>(model.map));
-  }
+  std::visit([&](const auto& map) { writeMap(file, parameters, map); }, model.map);
   if (model.trust) {
     writeTrust(file, kTrust, *model.trust);
   }
@@ -138,19 +155,21 @@ std::optional<TrustModel> readTrustModel(const Hdf5Reader& file) {
                                                        : std::nullopt;
 }
 
+bool holdsNetwork(const Hdf5Reader& file) {
+  return file.contains(std::string(kNetwork) + "/stddev_scale");
+}
+
 std::shared_ptr<const Surrogate> readSurrogate(const Hdf5Reader& file, const TrustModel& trust) {
-  const std::string group = kSurrogate;
-  const Eigen::VectorXd scale = file.readVector(group + "/stddev_scale");
-  return std::make_shared<const Surrogate>(
-      Surrogate{trust.forward,
-                trust.center,
-                trust.half_width,
-                scale.size(),
-                trust.unknown,
-                {scale, file.readVector(group + "/coverage95"),
-                 file.readSamples(group + "/residual_correlation"), file.readNumber(group + "/log_density"),
-                 file.readVector(group + "/limit_scale"), file.readVector(group + "/limit_ratio"),
-                 static_cast<SurrogateStatus>(file.readNumber(group + "/status"))}});
+  SurrogateValidation validation = readValidation(file, kSurrogate);
+  const Index parameters = validation.stddev_scale.size();
+  return std::make_shared<const Surrogate>(Surrogate{trust.forward, trust.center, trust.half_width,
+                                                     parameters, trust.unknown, std::move(validation)});
+}
+
+std::shared_ptr<const NetworkMap> readNetwork(const Hdf5Reader& file) {
+  NetworkMap map = readNetworkGroup(file, kNetwork);
+  map.validation = readValidation(file, kNetwork);
+  return std::make_shared<const NetworkMap>(std::move(map));
 }
 
 }  // namespace twinmap

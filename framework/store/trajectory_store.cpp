@@ -4,6 +4,8 @@
 #include <cassert>
 #include <limits>
 #include <map>
+#include <numeric>
+#include <set>
 #include <unordered_set>
 
 #include "framework/store/atomic_file.hpp"
@@ -48,58 +50,192 @@ SampleBlock selectColumns(const SampleBlock& block, const std::vector<int>& colu
   return selected;
 }
 
+ChunkIndex makeIndex(const SampleBlock& block) {
+  ChunkIndex index{block.parameters, {}};
+  for (const SampleStatus& status : block.statuses) {
+    index.ok.push_back(status.ok);
+  }
+  return index;
+}
+
+void removeAbandoned(const fs::path& folder) {
+  for (const fs::path& file : listFiles(folder, kTemporarySuffix)) {
+    std::error_code ignored;  // another process may be doing the same
+    if (isAbandoned(file)) {
+      fs::remove(file, ignored);
+    }
+  }
+}
+
+/// False if the file is not there, any more.
+bool renameIfThere(const fs::path& from, const fs::path& to) {
+  try {
+    renameFile(from, to);
+    return true;
+  } catch (const std::runtime_error&) {
+    if (fs::exists(from)) {
+      throw;
+    }
+    return false;
+  }
+}
+
+bool isWhole(const fs::path& file, const ChunkShape& shape) {
+  try {
+    readChunk(readBytes(file), shape);
+    return true;
+  } catch (const std::runtime_error&) {
+    return false;
+  }
+}
+
 }  // namespace
 
 TrajectoryStore::TrajectoryStore(const fs::path& root, const std::string& content, Eigen::Index parameters,
                                  Eigen::Index rows, StoreAccess access)
-    : shape_{calcDigest(content.data(), content.size()), parameters, rows} {
+    : shape_{calcDigest(content.data(), content.size()), parameters, rows}, access_(access) {
   folder_ = root / toHex(shape_.content);
   if (access == StoreAccess::kReadWrite) {
     makeFolders(folder_);
-    lock_ = std::make_unique<FolderLock>(folder_);
-    for (const fs::path& file : listFiles(folder_, kTemporarySuffix)) {
-      fs::remove(file);
-    }
+    removeAbandoned(folder_);
     writeContent(folder_ / "content.yaml", content);
   }
-  readAll(access);
+  readNew();
 }
 
-void TrajectoryStore::readAll(StoreAccess access) {
-  if (access == StoreAccess::kReadOnly && !fs::exists(folder_)) {
+void TrajectoryStore::readNew() {
+  if (access_ == StoreAccess::kReadOnly && !fs::exists(folder_)) {
     return;
   }
   for (const fs::path& file : listFiles(folder_, kChunkSuffix)) {
-    readOne(file, access);
+    if (known_files_.insert(file.filename().string()).second) {
+      readOne(file);
+    }
   }
 }
 
-void TrajectoryStore::readOne(const fs::path& file, StoreAccess access) {
-  const std::string bytes = readBytes(file);
+void TrajectoryStore::refresh() {
+  const std::lock_guard<std::mutex> guard(mutex_);
+  readNew();
+}
+
+void TrajectoryStore::readOne(const fs::path& file) {
   try {
-    addToIndex(file, readChunk(bytes, shape_));
+    addToIndex({file, false}, readChunkIndex(file, shape_));
   } catch (const BadChunk& bad) {
-    setAside(file, bad.what(), access);
+    setAside(file, bad.what());
+  } catch (const std::runtime_error&) {
+    if (fs::exists(file)) {  // else another process has set it aside or removed it meanwhile
+      readWhole(file);
+    }
+  }
+}
+
+/// Whether it is of a later format, or damaged where it says which.
+void TrajectoryStore::readWhole(const fs::path& file) {
+  try {
+    addToIndex({file, true}, makeIndex(readChunk(readBytes(file), shape_)));
+  } catch (const BadChunk& bad) {
+    setAside(file, bad.what());
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(file.string() + ": " + error.what());
   }
 }
 
-void TrajectoryStore::setAside(const fs::path& file, const std::string& reason, StoreAccess access) {
+void TrajectoryStore::setAside(const fs::path& file, const std::string& reason) {
   fs::path now = file;
-  if (access == StoreAccess::kReadWrite) {
+  if (access_ == StoreAccess::kReadWrite) {
     now += kSetAsideSuffix;
-    renameFile(file, now);
+    if (!renameIfThere(file, now)) {
+      return;
+    }
+    known_files_.erase(file.filename().string());  // the same samples may be written again
+    if (isWhole(now, shape_)) {  // another process had set the damaged one aside and written them again
+      renameIfThere(now, file);
+      return;
+    }
   }
   set_aside_.push_back({now, reason});
 }
 
-void TrajectoryStore::addToIndex(const fs::path& file, const SampleBlock& block) {
-  const int chunk = static_cast<int>(chunks_.size());
-  chunks_.push_back(file);
-  for (int column = 0; column < block.getSampleCount(); ++column) {
-    places_.insert({getBits(block.parameters.col(column)), {chunk, column, block.statuses[column].ok}});
+void TrajectoryStore::addToIndex(const Chunk& chunk, const ChunkIndex& index) {
+  const int number = static_cast<int>(chunks_.size());
+  chunks_.push_back(chunk);
+  for (int column = 0; column < index.parameters.cols(); ++column) {
+    places_.insert({getBits(index.parameters.col(column)), {number, column, index.ok[column]}});
   }
+}
+
+void TrajectoryStore::verifyChunk(int chunk) {
+  const fs::path file = chunks_[chunk].file;
+  try {
+    readChunk(readBytes(file), shape_);
+    chunks_[chunk].verified = true;
+  } catch (const BadChunk& bad) {
+    setAside(file, bad.what());
+  } catch (const std::runtime_error&) {
+    if (fs::exists(file)) {
+      throw;
+    }
+  }
+}
+
+/// Samples may lie in other chunks as well, so that these are read for the next of them.
+void TrajectoryStore::forget(const std::vector<int>& chunks) {
+  const std::unordered_set<int> gone(chunks.begin(), chunks.end());
+  places_.clear();
+  std::vector<Chunk> kept;
+  for (int i = 0; i < static_cast<int>(chunks_.size()); ++i) {
+    if (gone.count(i) == 0) {
+      kept.push_back(chunks_[i]);
+    }
+  }
+  chunks_.clear();
+  for (const Chunk& chunk : kept) {
+    const std::size_t before = chunks_.size();
+    readOne(chunk.file);
+    if (chunks_.size() > before) {
+      chunks_.back().verified = chunk.verified;
+    }
+  }
+  readNew();
+}
+
+void TrajectoryStore::verify(const Eigen::MatrixXd& points) {
+  const std::lock_guard<std::mutex> guard(mutex_);
+  bool again = true;
+  while (again) {  // what was damaged may be stored elsewhere as well
+    std::set<int> needed;
+    for (const auto& point : points.colwise()) {
+      if (const auto place = places_.find(getBits(point)); place != places_.end()) {
+        needed.insert(place->second.chunk);
+      }
+    }
+    again = !verifyChunks({needed.begin(), needed.end()});
+  }
+}
+
+void TrajectoryStore::verifyAll() {
+  const std::lock_guard<std::mutex> guard(mutex_);
+  std::vector<int> all(chunks_.size());
+  std::iota(all.begin(), all.end(), 0);
+  verifyChunks(all);
+}
+
+bool TrajectoryStore::verifyChunks(const std::vector<int>& chunks) {
+  std::vector<int> bad;
+  for (const int chunk : chunks) {
+    if (!chunks_[chunk].verified) {
+      verifyChunk(chunk);
+      if (!chunks_[chunk].verified) {
+        bad.push_back(chunk);
+      }
+    }
+  }
+  if (!bad.empty()) {
+    forget(bad);
+  }
+  return bad.empty();
 }
 
 bool TrajectoryStore::isKnown(const std::string& point_bits) const {
@@ -132,7 +268,7 @@ std::vector<Eigen::Index> TrajectoryStore::findMissing(const Eigen::MatrixXd& po
 }
 
 void TrajectoryStore::append(const SampleBlock& block) {
-  assert(lock_ != nullptr && "a store opened read-only");
+  assert(access_ == StoreAccess::kReadWrite && "a store opened read-only");
   const std::lock_guard<std::mutex> guard(mutex_);
   std::vector<int> kept;
   for (int column = 0; column < block.getSampleCount(); ++column) {
@@ -145,7 +281,8 @@ void TrajectoryStore::append(const SampleBlock& block) {
     const std::string bytes = makeChunk(chunk, shape_);
     const fs::path file = folder_ / (toHex(calcDigest(bytes.data(), bytes.size())) + kChunkSuffix);
     writeBytes(file, bytes.data(), bytes.size());
-    addToIndex(file, chunk);
+    known_files_.insert(file.filename().string());
+    addToIndex({file, true}, makeIndex(chunk));
   }
   for (int column = 0; column < block.getSampleCount(); ++column) {
     if (block.statuses[column].machine_dependent) {
@@ -184,7 +321,7 @@ SampleBlock TrajectoryStore::load(const Eigen::MatrixXd& points) const {
     }
   }
   for (const auto& [chunk, of_chunk] : copies) {
-    copyColumns(chunks_[chunk], of_chunk, loaded);
+    copyColumns(chunks_[chunk].file, of_chunk, loaded);
   }
   return loaded;
 }

@@ -23,8 +23,13 @@ struct ForwardSurrogate {
   Eigen::VectorXd error_variance;          ///< r, mean of that of points left out
 
   Eigen::Index getScoreCount() const { return projection.rows(); }
-  Eigen::MatrixXd calcScores(const Eigen::MatrixXd& features) const {
-    return projection * (features.colwise() - center);
+  /// Scores (r x n) of features (d x n), with the bits of kernels/exact. Cost: 2 r d n flops.
+  Eigen::MatrixXd calcScores(const Eigen::MatrixXd& features) const;
+  /// C = 1 + D R D, r x r, for the processes' standard deviations (r). Cost: 2 r^2 flops.
+  Eigen::MatrixXd calcScoreCovariance(const Eigen::VectorXd& stddev) const {
+    Eigen::MatrixXd covariance = stddev.asDiagonal() * error_correlation * stddev.asDiagonal();
+    covariance.diagonal().array() += 1.0;
+    return covariance;
   }
 };
 

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numeric>
 
 #include "framework/spec/parameter_box.hpp"
+#include "kernels/exact/exact.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -17,9 +19,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// log det of a matrix from its Cholesky factor.
-double calcLogDeterminant(const MatrixXd& lower) {
-  return 2.0 * lower.diagonal().array().log().sum();
+int size(const VectorXd& vector) {
+  return static_cast<int>(vector.size());
 }
 
 /// Mixes normal distributions.
@@ -43,6 +44,11 @@ MatrixXd ScoreExplanation::calcCovariance() const {
   const MatrixXd identity = MatrixXd::Identity(u, u);
   const MatrixXd information = jacobian.transpose() * jacobian + kHalfWidthInformation * identity;
   return linalg::solveCholesky(linalg::calcCholesky(information).lower, identity);
+}
+
+VectorXd ScoreExplanation::whiten(VectorXd scores) const {
+  exact::solveColumns(size(scores), lower.data(), scores.data());
+  return scores;
 }
 
 std::vector<Index> rankSimulations(const ForwardSurrogate& surrogate,
@@ -87,7 +93,11 @@ ScoreInversion::ScoreInversion(const ForwardSurrogate& surrogate, Index unknown)
       point_(surrogate.points.rows()),
       values_(VectorXd::Zero(surrogate.getScoreCount())),
       stddev_(surrogate.getScoreCount()),
-      jacobian_(MatrixXd::Zero(surrogate.getScoreCount(), unknown)) {
+      gradient_(unknown),
+      step_(unknown),
+      jacobian_(MatrixXd::Zero(surrogate.getScoreCount(), unknown)),
+      normal_(unknown, unknown),
+      small_(unknown, unknown) {
   rough_.weights = (1.0 + surrogate.error_variance.array()).rsqrt();
   LeadingScores leading = findLeadingScores(surrogate, unknown);
   leading_.weights = std::move(leading.weights);
@@ -138,30 +148,42 @@ double ScoreInversion::calcObjective(const Metric& metric, const VectorXd& unkno
   if (metric.diagonal) {
     residual_.array() *= metric.weights;
   } else {
-    residual_ = linalg::solveLower(metric.lower, residual_);
+    exact::solveColumns(size(residual_), metric.lower.data(), residual_.data());
   }
-  return residual_.squaredNorm() + kHalfWidthInformation * unknown.squaredNorm();
+  return exact::dot(size(residual_), residual_.data(), residual_.data()) +
+         kHalfWidthInformation * exact::dot(size(unknown), unknown.data(), unknown.data());
 }
 
 /// At the point evaluated last.
 void ScoreInversion::makeNormalEquations(const Metric& metric) {
+  const int r = size(residual_), u = size(gradient_);
+  scaled_jacobian_ = jacobian_;
   if (metric.diagonal) {
-    scaled_jacobian_ = jacobian_.array().colwise() * metric.weights;
-  } else {
-    scaled_jacobian_ = linalg::solveLower(metric.lower, jacobian_);
+    scaled_jacobian_.array().colwise() *= metric.weights;
   }
-  normal_.noalias() = scaled_jacobian_.transpose() * scaled_jacobian_;
-  gradient_.noalias() = scaled_jacobian_.transpose() * residual_;
+  for (Index v = 0; v < unknown_; ++v) {
+    double* column = scaled_jacobian_.col(v).data();
+    if (!metric.diagonal) {
+      exact::solveColumns(r, metric.lower.data(), column);
+    }
+    gradient_(v) = exact::dot(r, column, residual_.data());
+  }
+  exact::calcInformation(r, u, scaled_jacobian_.data(), normal_.data());
+}
+
+/// Into step_.
+bool ScoreInversion::solveStep(const VectorXd& unknown, double damping) {
+  step_ = gradient_;
+  return exact::solveStep(size(step_), normal_.data(), unknown.data(), damping, small_.data(), step_.data());
 }
 
 bool ScoreInversion::step(const Metric& metric, VectorXd& unknown, Descent& descent) {
   constexpr double kFactor = 10.0, kMostDamping = 1e6, kLeastDamping = 1e-6;
-  const VectorXd downhill = gradient_ - kHalfWidthInformation * unknown;
   for (; descent.damping < kMostDamping; descent.damping *= kFactor) {
-    MatrixXd damped = normal_;
-    damped.diagonal().array() += descent.damping * damped.diagonal().array() + kHalfWidthInformation;
-    const VectorXd trial =
-        (unknown + linalg::solvePositiveDefinite(damped, downhill)).cwiseMax(-1.0).cwiseMin(1.0);
+    if (!solveStep(unknown, descent.damping)) {
+      continue;
+    }
+    const VectorXd trial = (unknown + step_).cwiseMax(-1.0).cwiseMin(1.0);
     const double tried = calcObjective(metric, trial);
     if (tried < descent.objective) {
       unknown = trial;
@@ -190,11 +212,9 @@ bool ScoreInversion::advance(const Metric& metric, VectorXd& unknown, Descent& d
 }
 
 /// Of an undamped step that no bound stops.
-double ScoreInversion::foretellGain(const VectorXd& unknown) const {
-  const VectorXd downhill = gradient_ - kHalfWidthInformation * unknown;
-  MatrixXd hessian = normal_;
-  hessian.diagonal().array() += kHalfWidthInformation;
-  return downhill.dot(linalg::solvePositiveDefinite(hessian, downhill));
+double ScoreInversion::foretellGain(const VectorXd& unknown) {
+  return solveStep(unknown, 0.0) ? (gradient_ - kHalfWidthInformation * unknown).dot(step_)
+                                 : std::numeric_limits<double>::infinity();
 }
 
 double ScoreInversion::improve(const Metric& metric, int steps, VectorXd& unknown) {
@@ -215,10 +235,15 @@ void ScoreInversion::updateMetric(const VectorXd& unknown, Metric& metric) {
     stddev *= widening_[w];
     first += process.getFunctionCount();
   }
-  MatrixXd covariance = stddev_.asDiagonal() * surrogate_.error_correlation * stddev_.asDiagonal();
-  covariance.diagonal().array() += 1.0;
-  metric.lower = linalg::calcCholesky(covariance).lower;
-  metric.log_determinant = calcLogDeterminant(metric.lower);
+  const Index r = stddev_.size();
+  metric.lower.resize(r * (r + 1) / 2);
+  for (Index j = 0, at = 0; j < r; at += r - j, ++j) {
+    metric.lower.segment(at, r - j) =
+        stddev_.tail(r - j).cwiseProduct(surrogate_.error_correlation.col(j).tail(r - j)) * stddev_(j);
+    metric.lower(at) += 1.0;
+  }
+  exact::factorise(size(stddev_), metric.lower.data());
+  metric.log_determinant = exact::calcLogDeterminant(size(stddev_), metric.lower.data());
 }
 
 std::vector<ScoreInversion::Minimum> ScoreInversion::searchRoughly(const std::vector<VectorXd>& starts) {
@@ -254,29 +279,22 @@ std::vector<ScoreInversion::Minimum> ScoreInversion::searchRoughly(const std::ve
   return minima;
 }
 
-/// Four standard deviations above the mean of chi-square: one in 10000 by chance.
-bool ScoreInversion::isMisfit(double chi_square, Index count) {
-  constexpr double kDeviations = 4.0;
-  const auto n = static_cast<double>(count);
-  return chi_square > n + kDeviations * std::sqrt(2.0 * n);
-}
-
 /// Where the residuals at a minimum are beyond what the errors allow, those of the windows that are to blame
 /// are taken to be as large as that; false where nothing is. Next to a jump, such as that of a contact made
 /// or missed, no simulation tells how wrong a process is.
 bool ScoreInversion::widen(const Metric& metric, const VectorXd& unknown) {
   (void)calcObjective(metric, unknown);
-  if (!isMisfit(residual_.squaredNorm(), residual_.size())) {
+  if (!exact::isMisfit(exact::dot(size(residual_), residual_.data(), residual_.data()), size(residual_))) {
     return false;
   }
   bool widened = false;
   Index first = 0;
   for (std::size_t w = 0; w < workspaces_.size(); ++w) {
     const Index count = surrogate_.windows[w].getFunctionCount();
-    const auto variance = stddev_.segment(first, count).array().square();
-    const auto square = (scores_ - values_).segment(first, count).array().square();
-    if (isMisfit((square / (1.0 + variance)).sum(), count)) {
-      widening_[w] *= std::sqrt(std::max(1.0, (square.mean() - 1.0) / variance.mean()));
+    const double factor = exact::calcWidening(static_cast<int>(count), stddev_.data() + first,
+                                              scores_.data() + first, values_.data() + first);
+    if (factor > 0.0) {
+      widening_[w] *= factor;
       widened = true;
     }
     first += count;
@@ -303,14 +321,21 @@ void ScoreInversion::refine(Minimum& minimum, bool may_widen) {
     minimum.objective = improve(metric, kFirstSteps, minimum.point);
     minimum.widened = true;
   }
+  minimum.widening = widening_;
   makeNormalEquations(metric);
   minimum.information = normal_;
-  minimum.noise_information.noalias() = jacobian_.transpose() * jacobian_;
-  minimum.shift = gradient_ + normal_ * minimum.point;
+  const int u = size(gradient_);
+  minimum.noise_information.resize(unknown_, unknown_);
+  exact::calcInformation(size(residual_), u, jacobian_.data(), minimum.noise_information.data());
+  minimum.shift = gradient_;
+  for (Index v = 0; v < unknown_; ++v) {
+    minimum.shift(v) += exact::dot(u, normal_.col(v).data(), minimum.point.data());
+  }
   const MatrixXd posterior = normal_ + kHalfWidthInformation * MatrixXd::Identity(unknown_, unknown_);
   minimum.jacobian = scaled_jacobian_;
   minimum.lower = std::move(metric.lower);
-  minimum.objective += metric.log_determinant + calcLogDeterminant(linalg::calcCholesky(posterior).lower);
+  minimum.objective +=
+      metric.log_determinant + exact::calcSmallLogDeterminant(u, posterior.data(), small_.data());
 }
 
 void ScoreInversion::keepExplanation(Minimum& minimum) {
@@ -319,6 +344,18 @@ void ScoreInversion::keepExplanation(Minimum& minimum) {
   explanation_.innovation = std::move(minimum.residual);
   explanation_.lower = std::move(minimum.lower);
   explanation_.jacobian = std::move(minimum.jacobian);
+}
+
+void ScoreInversion::keepModes(const std::vector<Minimum>& minima, const std::vector<gp::Moments>& parts,
+                               const VectorXd& shares) {
+  modes_.clear();
+  for (std::size_t i = 0; i < minima.size(); ++i) {
+    if (const double share = shares(static_cast<Index>(i)); share > 0.0) {
+      modes_.push_back({share, parts[i], minima[i].widening});
+    }
+  }
+  std::stable_sort(modes_.begin(), modes_.end(),
+                   [](const ScoreMode& a, const ScoreMode& b) { return a.share > b.share; });
 }
 
 /// Whether the better metric made a minimum one with an earlier one.
@@ -349,18 +386,23 @@ gp::Moments ScoreInversion::infer(const Eigen::Ref<const VectorXd>& scores,
       weights(static_cast<Index>(i)) = 0.0;
     }
   }
+  weights /= weights.sum();
+  keepModes(minima, parts, weights);
   Index best = 0;
   weights.maxCoeff(&best);
   Minimum& likeliest = minima[static_cast<std::size_t>(best)];
+  VectorXd noise_shift(unknown_);
+  for (Index v = 0; v < unknown_; ++v) {
+    noise_shift(v) =
+        exact::dot(size(noise_shift), likeliest.noise_information.col(v).data(), likeliest.point.data());
+  }
   noise_stddev_ =
-      gp::calcBoxMoments(likeliest.noise_information, likeliest.noise_information * likeliest.point)
-          .covariance.diagonal()
-          .cwiseSqrt();
+      gp::calcBoxMoments(likeliest.noise_information, noise_shift).covariance.diagonal().cwiseSqrt();
   explained_ = !likeliest.widened;
   if (explained_) {
     keepExplanation(likeliest);
   }
-  return mix(parts, weights / weights.sum());
+  return mix(parts, weights);
 }
 
 const ScoreExplanation& ScoreInversion::explain(const Eigen::Ref<const VectorXd>& scores,
@@ -371,7 +413,7 @@ const ScoreExplanation& ScoreInversion::explain(const Eigen::Ref<const VectorXd>
   point_.tail(known.size()) = known;
   const VectorXd within = start.cwiseMax(-1.0).cwiseMin(1.0);
   std::vector<Minimum> minima = searchRoughly({within});
-  if (isMisfit(minima.front().objective, scores_.size())) {
+  if (exact::isMisfit(minima.front().objective, size(scores_))) {
     std::vector<VectorXd> starts = findStarts();
     starts.insert(starts.begin(), within);
     minima = searchRoughly(starts);

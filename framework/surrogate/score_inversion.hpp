@@ -25,11 +25,20 @@ LeadingScores findLeadingScores(const ForwardSurrogate& surrogate, Eigen::Index 
 struct ScoreExplanation {
   Eigen::VectorXd point;       ///< m, normalised
   Eigen::VectorXd innovation;  ///< L^-1 r with L L' = C: independent, of unit variance, if all is right
-  Eigen::MatrixXd lower;       ///< L, r x r
+  Eigen::VectorXd lower;       ///< L, packed, as in kernels/exact
   Eigen::MatrixXd jacobian;    ///< L^-1 ds / dx, r x u
 
   /// Of the unknowns, the box as a normal distribution of its variance: (J'J + 3)^-1, u x u.
   Eigen::MatrixXd calcCovariance() const;
+  /// L^-1 of scores (r).
+  Eigen::VectorXd whiten(Eigen::VectorXd scores) const;
+};
+
+/// A minimum that a ScoreInversion found, as a normal distribution within the box.
+struct ScoreMode {
+  double share = 0.0;            ///< of the evidence, above 0
+  gp::Moments moments;           ///< u
+  std::vector<double> widening;  ///< of each window's standard deviations, 1 where they explain the residuals
 };
 
 /// Infers normalised unknowns (the first u variables of a point) from scores, under a uniform prior over the
@@ -42,6 +51,8 @@ struct ScoreExplanation {
 /// enlarged to them. 3 is the precision of the box; it keeps the search where the linearisation is worth
 /// something. The likelihood, linearised there and without that prior, is then restricted to the box
 /// (gp::calcBoxMoments). Distinct minima are mixed by their evidence, in Laplace's approximation.
+///
+/// What decides where the search looks is computed by kernels/exact, so that exported C looks there, too.
 ///
 /// One object a thread: it holds the buffers.
 class ScoreInversion {
@@ -57,6 +68,9 @@ class ScoreInversion {
   /// Standard deviations (u) that the last infer() would have found at the minimum of most evidence, were
   /// there no error but the noise: of the box moments of J'J, J = ds / dx.
   const Eigen::VectorXd& getNoiseStddev() const { return noise_stddev_; }
+
+  /// The distinct minima that the last infer() mixed, the likeliest first.
+  const std::vector<ScoreMode>& getModes() const { return modes_; }
 
   /// The minimum of most evidence that the last infer() found, as explain() would; null where that enlarged
   /// errors. Valid until the next call.
@@ -74,7 +88,7 @@ class ScoreInversion {
   /// What residuals are divided by: standard deviations, or a Cholesky factor of their covariance.
   struct Metric {
     Eigen::ArrayXd weights;
-    Eigen::MatrixXd lower;
+    Eigen::VectorXd lower;  ///< packed, as in kernels/exact
     double log_determinant = 0.0;
     bool diagonal = true;
     std::vector<Eigen::Index> counts;  ///< of each window, the first scores that take part; empty: all do
@@ -88,12 +102,13 @@ class ScoreInversion {
     Eigen::VectorXd point;  // u
     double objective = 0.0;
     Eigen::VectorXd residual;           // L^-1 r, r
-    Eigen::MatrixXd lower;              // L, r x r
+    Eigen::VectorXd lower;              // L, packed
     Eigen::MatrixXd jacobian;           // L^-1 ds / dx, r x u
     Eigen::MatrixXd information;        // u x u
     Eigen::MatrixXd noise_information;  // the same without the surrogate's errors
     Eigen::VectorXd shift;              // u
     bool widened = false;
+    std::vector<double> widening;
   };
   /// A search under way.
   struct Descent {
@@ -109,14 +124,16 @@ class ScoreInversion {
   void makeNormalEquations(const Metric& metric);
   bool step(const Metric& metric, Eigen::VectorXd& unknown, Descent& descent);
   bool advance(const Metric& metric, Eigen::VectorXd& unknown, Descent& descent);
-  double foretellGain(const Eigen::VectorXd& unknown) const;
+  double foretellGain(const Eigen::VectorXd& unknown);
+  bool solveStep(const Eigen::VectorXd& unknown, double damping);
   double improve(const Metric& metric, int steps, Eigen::VectorXd& unknown);
   void updateMetric(const Eigen::VectorXd& unknown, Metric& metric);
   std::vector<Minimum> searchRoughly(const std::vector<Eigen::VectorXd>& starts);
-  static bool isMisfit(double chi_square, Eigen::Index count);
   bool widen(const Metric& metric, const Eigen::VectorXd& unknown);
   void refine(Minimum& minimum, bool may_widen);
   void keepExplanation(Minimum& minimum);
+  void keepModes(const std::vector<Minimum>& minima, const std::vector<gp::Moments>& parts,
+                 const Eigen::VectorXd& shares);
   static bool hasEarlierTwin(const std::vector<Minimum>& minima, std::size_t index);
 
   const ForwardSurrogate& surrogate_;
@@ -126,8 +143,10 @@ class ScoreInversion {
   std::vector<gp::SharedProcess::Workspace> workspaces_;
   std::vector<double> widening_;  ///< of each window's standard deviations
   Eigen::VectorXd scores_, point_, values_, residual_, stddev_, gradient_, noise_stddev_;
-  Eigen::MatrixXd jacobian_, scaled_jacobian_, normal_;
+  Eigen::VectorXd step_;
+  Eigen::MatrixXd jacobian_, scaled_jacobian_, normal_, small_;
   ScoreExplanation explanation_;
+  std::vector<ScoreMode> modes_;
   bool explained_ = false;
 };
 

@@ -29,8 +29,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of the automatic numbers of training samples, no more than their simulations' time allows: all cases'
-/// samples are simulated before the first case says how many it takes.
+}  // namespace
+
 void limitAutomaticSamples(std::vector<SweepCase>& cases) {
   for (const ModelGroup& group : groupByModel(cases)) {
     std::unique_ptr<Simulator> simulator;
@@ -44,15 +44,19 @@ void limitAutomaticSamples(std::vector<SweepCase>& cases) {
   }
 }
 
+namespace {
+
 class Sweep {
  public:
-  Sweep(std::vector<std::string> keys, std::vector<SweepCase> cases, const SweepOptions& options,
-        const RunControl& control)
+  /// `wanted`, one a case: those that are to be run; empty: all.
+  Sweep(std::vector<std::string> keys, std::vector<SweepCase> cases, std::vector<bool> wanted,
+        const SweepOptions& options, const RunControl& control)
       : keys_(std::move(keys)),
         cases_(std::move(cases)),
         options_(options),
         control_(control),
         complete_(findComplete(options.folder, cases_)),
+        wanted_(wanted.empty() ? std::vector<bool>(cases_.size(), true) : std::move(wanted)),
         store_(getStoreRoot(options.folder, options.store)),
         samples_of_case_(cases_.size()),
         neighbourhoods_of_case_(cases_.size(), nullptr) {
@@ -64,8 +68,10 @@ class Sweep {
   /// The samples, then, of models without derivatives, the neighbourhoods of those that did not fail. False
   /// if it was stopped.
   bool simulate() {
-    std::vector<bool> wanted = complete_;
-    wanted.flip();
+    std::vector<bool> wanted = wanted_;
+    for (std::size_t i = 0; i < cases_.size(); ++i) {
+      wanted[i] = wanted[i] && !complete_[i];
+    }
     const std::vector<ModelGroup> groups = groupByModel(cases_);
     for (const ModelGroup& group : groups) {
       addSamples(group, collectPoints(cases_, group, wanted));
@@ -85,7 +91,7 @@ class Sweep {
 
   void runMissingCases() {
     for (std::size_t i = 0; i < cases_.size(); ++i) {
-      if (!complete_[i]) {
+      if (!complete_[i] && wanted_[i]) {
         todo_.push_back(static_cast<int>(i));
         costs_.push_back(calcCaseCost(cases_[i].experiment, 1));
         work_ += costs_.back().flops;
@@ -96,10 +102,23 @@ class Sweep {
     runCases(costs_, scheduling, [this](int index, int threads) { runCase(todo_[index], threads); });
   }
 
-  SweepResult finish() {
+  /// What was found, without tables.
+  SweepResult getResult() {
     result_.complete = static_cast<int>(std::count(complete_.begin(), complete_.end(), true));
-    result_.stopped = control_.stop != nullptr && *control_.stop &&
-                      result_.complete + static_cast<int>(result_.failures.size()) < result_.cases;
+    result_.stopped = control_.stop != nullptr && *control_.stop && countLeft() > 0;
+    return result_;
+  }
+
+  void addFailures(const std::vector<FailedCase>& failures) {
+    for (const FailedCase& failure : failures) {
+      if (!complete_[findCase(failure)]) {
+        result_.failures.push_back(failure);
+      }
+    }
+  }
+
+  SweepResult finish() {
+    getResult();
     std::sort(result_.failures.begin(), result_.failures.end(),
               [this](const FailedCase& a, const FailedCase& b) { return findCase(a) < findCase(b); });
     writeFailedCases(options_.folder, result_.failures);
@@ -113,6 +132,15 @@ class Sweep {
   }
 
  private:
+  /// Wanted cases that are neither complete nor failed.
+  int countLeft() const {
+    int left = -static_cast<int>(result_.failures.size());
+    for (std::size_t i = 0; i < cases_.size(); ++i) {
+      left += wanted_[i] && !complete_[i] ? 1 : 0;
+    }
+    return left;
+  }
+
   void addSamples(const ModelGroup& group, const Eigen::MatrixXd& points) {
     for (const int member : group.cases) {
       samples_of_case_[member] = samples_.size();
@@ -175,7 +203,9 @@ class Sweep {
     } else {
       const fs::path folder = getCaseFolder(options_.folder, one);
       result_.failures.push_back({one.name, outcome.reason, makeCaseCommand(folder, store_)});
-      writeFailedCases(options_.folder, result_.failures);
+      if (todo_.size() == static_cast<std::size_t>(result_.cases - result_.skipped)) {  // else it is a part
+        writeFailedCases(options_.folder, result_.failures);
+      }
       spdlog::error("case {} failed: {}", one.name, outcome.reason);
     }
     if (control_.progress) {
@@ -194,7 +224,7 @@ class Sweep {
   const std::vector<SweepCase> cases_;
   const SweepOptions& options_;
   const RunControl& control_;
-  std::vector<bool> complete_;
+  std::vector<bool> complete_, wanted_;
   fs::path store_;
   std::vector<std::size_t> samples_of_case_;  ///< indices of samples_
   std::vector<SharedSamples> samples_, neighbourhoods_;
@@ -213,21 +243,44 @@ SweepResult runSweep(const YamlNode& root, const SweepOptions& options, const Ru
   for (const SweepCase& one : cases) {
     requireMemory(one.experiment, 1, options.most_memory);
   }
-  const std::string resolved = writeIndependentDefaults(root);
   makeFolders(options.folder);
   const FolderLock lock(options.folder);
-  requireSameExperiment(options.folder, resolved);
-  writeTextFile(options.folder / "resolved.yaml", resolved);
-  noteStore(options.folder, options.store);
+  beginSweep(root, options);
   const RunLog log(options.folder);
   spdlog::info("{}", options.command);
 
   limitAutomaticSamples(cases);
-  Sweep sweep(listSweptKeys(root), std::move(cases), options, control);
+  Sweep sweep(listSweptKeys(root), std::move(cases), {}, options, control);
   if (sweep.simulate()) {
     sweep.runMissingCases();
   }
   return sweep.finish();
+}
+
+SweepResult runCasesOfSweep(const std::vector<std::string>& keys, const std::vector<SweepCase>& cases,
+                            const std::vector<bool>& wanted, const SweepOptions& options,
+                            const RunControl& control) {
+  Sweep sweep(keys, cases, wanted, options, control);
+  if (sweep.simulate()) {
+    sweep.runMissingCases();
+  }
+  return sweep.getResult();
+}
+
+SweepResult finishSweep(const std::vector<std::string>& keys, const std::vector<SweepCase>& cases,
+                        const std::vector<FailedCase>& failures, const SweepOptions& options,
+                        const RunControl& control) {
+  Sweep sweep(keys, cases, {}, options, control);
+  sweep.addFailures(failures);
+  return sweep.finish();
+}
+
+void beginSweep(const YamlNode& root, const SweepOptions& options) {
+  const std::string resolved = writeIndependentDefaults(root);
+  makeFolders(options.folder);
+  requireSameExperiment(options.folder, resolved);
+  writeTextFile(options.folder / "resolved.yaml", resolved);
+  noteStore(options.folder, options.store);
 }
 
 }  // namespace twinmap

@@ -42,4 +42,23 @@ struct SweepResult {
 /// std::runtime_error if a file cannot be written or another process has the folder or the store.
 SweepResult runSweep(const YamlNode& root, const SweepOptions& options, const RunControl& control);
 
+// The same in parts, of which several processes may do some at the same time; `keys` are listSweptKeys().
+
+/// Takes the folder for the experiment: resolved.yaml and store.txt. Throws as runSweep().
+void beginSweep(const YamlNode& root, const SweepOptions& options);
+
+/// Of the automatic numbers of training samples, no more than their simulations' time allows, as measured
+/// here: all cases' samples are simulated before the first case says how many it takes.
+void limitAutomaticSamples(std::vector<SweepCase>& cases);
+
+/// Runs those cases that are `wanted` and not complete, and simulates what they miss. Writes no tables.
+SweepResult runCasesOfSweep(const std::vector<std::string>& keys, const std::vector<SweepCase>& cases,
+                            const std::vector<bool>& wanted, const SweepOptions& options,
+                            const RunControl& control);
+
+/// Writes tables and report of the cases that are complete, and failed_cases.csv.
+SweepResult finishSweep(const std::vector<std::string>& keys, const std::vector<SweepCase>& cases,
+                        const std::vector<FailedCase>& failures, const SweepOptions& options,
+                        const RunControl& control);
+
 }  // namespace twinmap

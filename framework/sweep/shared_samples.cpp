@@ -98,6 +98,9 @@ SharedSamples openSharedSamples(const ModelGroup& group, const Eigen::MatrixXd& 
     return samples;
   }
   samples.store = openStore(group.model, samples.simulator->getLayout(), root);
+  const std::size_t known = samples.store->getSetAside().size();
+  samples.store->verify(points);
+  logSetAside(*samples.store, known);
   const double allowed = group.model.simulation.allowed_failures;
   if (isGivenUp(*samples.store, points, allowed)) {
     samples.missing.resize(points.rows(), 0);

@@ -12,6 +12,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kFailedCases = "failed_cases.csv";
 
+}  // namespace
+
 std::string quoteForShell(const std::string& text) {
   if (text.find_first_of(" '\"\\$`!*?[]{}()<>|&;~#") == std::string::npos) {
     return text;
@@ -22,8 +24,6 @@ std::string quoteForShell(const std::string& text) {
   }
   return quoted + "'";
 }
-
-}  // namespace
 
 fs::path getCaseFolder(const fs::path& sweep, const SweepCase& sweep_case) {
   return sweep / "cases" / sweep_case.name;

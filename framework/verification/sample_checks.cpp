@@ -141,7 +141,8 @@ std::string compareChunks(const std::string& name, const TrajectoryStore& store,
   return replaceSamples(name, columns, block.responses(Eigen::all, columns), statuses, set);
 }
 
-std::string describeDamage(const TrajectoryStore& store) {
+std::string describeDamage(TrajectoryStore& store) {
+  store.verifyAll();
   const std::vector<SetAsideChunk>& damaged = store.getSetAside();
   return damaged.empty() ? "" : damaged[0].file.filename().string() + ": " + damaged[0].reason;
 }

@@ -66,4 +66,8 @@ LinearFit fitLinear(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 /// fitLinear for one right side, without the rank.
 Eigen::VectorXd solveMinimumNorm(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
 
+/// Orthonormal columns (n x n) that span those of a square matrix one after another: Q of A = Q R, by
+/// Householder's reflections. Cost: about 8 n^3 / 3 flops.
+Eigen::MatrixXd calcOrthonormalBasis(const Eigen::MatrixXd& a);
+
 }  // namespace twinmap::linalg

@@ -22,4 +22,8 @@ VectorXd solveMinimumNorm(const MatrixXd& a, const VectorXd& b) {
   return Orthogonal(a).solve(b);
 }
 
+MatrixXd calcOrthonormalBasis(const MatrixXd& a) {
+  return Eigen::HouseholderQR<MatrixXd>(a).householderQ();
+}
+
 }  // namespace twinmap::linalg

@@ -22,9 +22,12 @@ class PackedLower {
   const Eigen::VectorXd& getTiles() const { return tiles_; }
   static PackedLower fromTiles(Eigen::VectorXd tiles);
 
+  /// n in whole tiles.
+  static constexpr Index roundUp(Index n) { return (n + kTile - 1) / kTile * kTile; }
+
   /// How many numbers getTiles() has for n rows.
   static constexpr Index countTiles(Index n) {
-    const Index blocks = (n + kTile - 1) / kTile;
+    const Index blocks = roundUp(n) / kTile;
     return blocks * (blocks + 1) / 2 * kTile * kTile;
   }
 

@@ -1,7 +1,6 @@
 #include "kernels/surrogate/shared_process.hpp"
 
-#include <algorithm>
-#include <limits>
+#include <cmath>
 #include <stdexcept>
 
 #include "kernels/linalg/decompositions.hpp"
@@ -63,7 +62,6 @@ SharedProcess::SharedProcess(SharedProcessParts parts)
       coefficients_(std::move(parts.coefficients)),
       solved_terms_(std::move(parts.solved_terms)),
       term_factor_(std::move(parts.term_factor)),
-      local_variance_(structure_.covariance, hyperparameters_.nugget),
       left_out_ratio_(std::move(parts.left_out_ratio)) {
   left_out_.amplitude = std::move(parts.amplitude);
   if (slope_points_ == 0) {
@@ -100,8 +98,7 @@ SharedProcess::SharedProcess(const MatrixXd& points, const MatrixXd& values, con
     : structure_(structure),
       hyperparameters_(std::move(hyperparameters)),
       slope_points_(slopes.countPoints()),
-      slope_variables_(slopes.variables),
-      local_variance_(structure.covariance, hyperparameters_.nugget) {
+      slope_variables_(slopes.variables) {
   requireSizes(points, values);
   if (slope_points_ < 1 || slope_points_ > points.cols() || slope_variables_ > points.rows() ||
       slopes.values.cols() != values.cols()) {
@@ -125,10 +122,8 @@ void SharedProcess::leaveOutLocally(const MatrixXd& points, const MatrixXd& resi
   left_out_.residual = residual;
   left_out_.variance.resize(n);
   for (Index i = 0; i < n; ++i) {
-    calcPointCovariance(structure_.covariance, scaled_points_, scaled_points_.row(i).transpose(), false,
-                        workspace.at);
-    left_out_.variance(i) =
-        local_variance_.calc(scaled_points_, workspace.at.squares, workspace.at.values, i, workspace.local);
+    calcPointCovariance(describe(), scaled_points_.row(i).transpose(), workspace.at);
+    left_out_.variance(i) = exact::calcLocalVariance(describe(), workspace.at.getView(), static_cast<int>(i));
   }
   left_out_.amplitude =
       (residual.array().square().colwise() / left_out_.variance.array()).colwise().mean().transpose();
@@ -151,8 +146,7 @@ void SharedProcess::select(const std::vector<Index>& functions) {
 
 void SharedProcess::prepare(const Eigen::Ref<const VectorXd>& point, Workspace& workspace) const {
   workspace.scaled_point = point.cwiseQuotient(hyperparameters_.length_scales);
-  calcPointCovariance(structure_.covariance, scaled_points_, workspace.scaled_point, slope_points_ > 0,
-                      workspace.at);
+  calcPointCovariance(describe(), workspace.scaled_point, workspace.at);
   workspace.terms = calcTerms(structure_.trend, point);
 }
 
@@ -168,74 +162,55 @@ void SharedProcess::linearize(const Eigen::Ref<const VectorXd>& point, Eigen::Re
                               Eigen::Ref<MatrixXd> jacobian, Workspace& workspace) const {
   prepare(point, workspace);
   calcTermDerivatives(structure_.trend, point, workspace.term_derivatives);
-  jacobian.noalias() = coefficients_.leftCols(jacobian.rows()).transpose() *
-                       workspace.term_derivatives.leftCols(jacobian.cols());
+  workspace.rising.resize(jacobian.cols());
+  workspace.derivatives.resize(jacobian.cols());
   for (Index j = 0; j < values.size(); ++j) {
     values(j) = calcValue(j, workspace);
-    addDerivatives(j, jacobian, workspace);
+    derive(j, jacobian, workspace);
   }
 }
 
-/// Leaves the sums of the slopes' weights, which the derivatives need too.
+exact::smooth_process SharedProcess::describe() const {
+  return describeProcess(structure_.covariance, hyperparameters_.nugget, scaled_points_, slope_points_,
+                         slope_variables_);
+}
+
 double SharedProcess::calcValue(Index function, Workspace& workspace) const {
-  const Index n = scaled_points_.rows(), m = slope_points_;
-  const auto weights = weights_.col(function);
-  double value =
-      coefficients_.col(function).dot(workspace.terms) + workspace.at.values.matrix().dot(weights.head(n));
-  if (m > 0) {
-    workspace.sums.calc(workspace.at, Eigen::Map<const MatrixXd>(weights.tail(weights.size() - n).data(), m,
-                                                                 slope_variables_));
-    value += (workspace.at.slopes.head(m) * workspace.sums.projected).sum();
-  }
-  return value;
+  const double trend = exact::dot(static_cast<int>(coefficients_.rows()), coefficients_.col(function).data(),
+                                  workspace.terms.data());
+  return trend + exact::calcFunction(describe(), weights_.col(function).data(), workspace.at.getView());
 }
 
-void SharedProcess::addDerivatives(Index function, Eigen::Ref<MatrixXd> jacobian,
-                                   Workspace& workspace) const {
-  const Index n = scaled_points_.rows(), m = slope_points_;
-  const PointCovariance& at = workspace.at;
-  workspace.falling = at.slopes * weights_.col(function).head(n).array();
-  if (m > 0) {
-    workspace.falling.head(m) += at.curvatures.head(m) * workspace.sums.projected;
-  }
-  workspace.falls.resize(jacobian.cols());
-  sumDifferences(at, workspace.falling, workspace.falls);
+/// Of the function evaluated last.
+void SharedProcess::derive(Index function, Eigen::Ref<MatrixXd> jacobian, Workspace& workspace) const {
+  exact::calcFunctionSlopes(describe(), weights_.col(function).data(), workspace.at.getView(),
+                            static_cast<int>(jacobian.cols()), workspace.rising.data(),
+                            workspace.derivatives.data());
   for (Index v = 0; v < jacobian.cols(); ++v) {
-    const double rises = v < slope_variables_ ? workspace.sums.weighted(v) : 0.0;
-    jacobian(function, v) += (rises - workspace.falls(v)) / hyperparameters_.length_scales(v);
+    const double trend =
+        exact::dot(static_cast<int>(coefficients_.rows()), coefficients_.col(function).data(),
+                   workspace.term_derivatives.col(v).data());
+    jacobian(function, v) = workspace.derivatives(v) / hyperparameters_.length_scales(v) + trend;
   }
-}
-
-double SharedProcess::calcLocalFactor(Workspace& workspace) const {
-  // As many neighbours as tell a variance to a third; where all are near, a fifth of the weight is the whole
-  // set's.
-  constexpr Index kNeighbours = 16;
-  constexpr double kOfAll = 4.0;
-  const Index n = workspace.at.squares.size(), reach = std::min(kNeighbours, n) - 1;
-  workspace.nearest = workspace.at.squares;
-  std::nth_element(workspace.nearest.data(), workspace.nearest.data() + reach, workspace.nearest.data() + n);
-  const double width = std::max(workspace.nearest(reach), std::numeric_limits<double>::min());
-  workspace.nearest = (-workspace.at.squares / width).exp();
-  return ((workspace.nearest * left_out_ratio_).sum() + kOfAll) / (workspace.nearest.sum() + kOfAll);
 }
 
 double SharedProcess::calcOwnVariance(Workspace& workspace) const {
-  constexpr double kLeast = 1e-14;  // rounding leaves the sum of squares that near to 1
-  const Index n = weights_.rows();
-  workspace.solved.setZero(factor_.paddedSize());
-  workspace.solved.head(n) = workspace.at.values.matrix();
-  factor_.solve(workspace.solved.data());
-  const auto solved = workspace.solved.head(n);
-  const VectorXd rest = workspace.terms - solved_terms_.transpose() * solved;
-  const double of_trend = linalg::solveLower(term_factor_, rest).squaredNorm();
-  return std::max(1.0 - solved.squaredNorm(), kLeast) + hyperparameters_.nugget + of_trend;
+  const exact::own_variance own{static_cast<int>(factor_.paddedSize()), static_cast<int>(term_factor_.rows()),
+                                factor_.getTiles().data(), solved_terms_.data(), term_factor_.data()};
+  workspace.rest.resize(term_factor_.rows());
+  return exact::calcOwnVariance(describe(), own, workspace.terms.data(), workspace.at.getView(),
+                                workspace.rest.data());
 }
 
 void SharedProcess::calcStddev(Eigen::Ref<VectorXd> stddev, Workspace& workspace) const {
-  const double variance = slope_points_ > 0 ? local_variance_.calc(scaled_points_, workspace.at.squares,
-                                                                   workspace.at.values, -1, workspace.local)
+  const exact::smooth_process process = describe();
+  const double variance = slope_points_ > 0 ? exact::calcLocalVariance(process, workspace.at.getView(), -1)
                                             : calcOwnVariance(workspace);
-  stddev = (variance * calcLocalFactor(workspace) * left_out_.amplitude).cwiseSqrt();
+  const double factor = exact::calcLocalFactor(process, left_out_ratio_.data(), workspace.at.getView());
+  for (Index j = 0; j < stddev.size(); ++j) {
+    stddev(j) =
+        std::sqrt(variance * factor * left_out_.amplitude(j));  // Eigen's own is not rounded correctly
+  }
 }
 
 }  // namespace twinmap::gp

@@ -5,9 +5,7 @@
 
 #include "kernels/linalg/packed_lower.hpp"
 #include "kernels/surrogate/left_out_density.hpp"
-#include "kernels/surrogate/local_variance.hpp"
 #include "kernels/surrogate/slope_covariance.hpp"
-#include "kernels/surrogate/slope_sums.hpp"
 
 namespace twinmap::gp {
 
@@ -32,18 +30,17 @@ struct SharedProcessParts {
 /// Gaussian process each, with one covariance function and trend for all. Each function's variance is the one
 /// with which the points that are left out agree (LeftOut::amplitude), times a local factor that all share:
 /// the ratio of the squared errors of the nearest points, left out, to their variance. The variance that both
-/// multiply is the process's own, or where slopes are known the LocalVariance, for which n p numbers suffice.
-/// Immutable.
+/// multiply is the process's own. Where slopes are known, that would take n^2 numbers, too many to keep and
+/// to read for each prediction: there it is that of a value given those at the nearest 20 points alone, which
+/// foretold the errors, in windows of nine mechanisms, as well. What is predicted has the same bits wherever
+/// it is (kernels/exact). Immutable.
 class SharedProcess {
  public:
   /// The buffers of one thread.
   struct Workspace {
     Eigen::MatrixXd term_derivatives;
     PointCovariance at;
-    LocalVariance::Workspace local;
-    SlopeSums sums;
-    Eigen::ArrayXd nearest, falling;
-    Eigen::VectorXd scaled_point, terms, solved, falls;
+    Eigen::VectorXd scaled_point, terms, rising, derivatives, rest;
   };
 
   /// points: p x n; values: n x r. Throws std::invalid_argument for sizes that do not fit,
@@ -80,7 +77,7 @@ class SharedProcess {
                  Eigen::Ref<Eigen::MatrixXd> jacobian, Workspace& workspace) const;
 
   /// Standard deviations (r) of the values at the point evaluated or linearised at last, nugget and local
-  /// factor included. Cost: n^2 flops; where slopes are known that of LocalVariance.
+  /// factor included. Cost: n^2 flops; where slopes are known that of exact::calcLocalVariance().
   void calcStddev(Eigen::Ref<Eigen::VectorXd> stddev, Workspace& workspace) const;
 
  private:
@@ -89,11 +86,10 @@ class SharedProcess {
   void updateLeftOutRatio();
   void leaveOutLocally(const Eigen::MatrixXd& points, const Eigen::MatrixXd& residual);
   void prepare(const Eigen::Ref<const Eigen::VectorXd>& point, Workspace& workspace) const;
+  exact::smooth_process describe() const;
   double calcValue(Eigen::Index function, Workspace& workspace) const;
-  void addDerivatives(Eigen::Index function, Eigen::Ref<Eigen::MatrixXd> jacobian,
-                      Workspace& workspace) const;
+  void derive(Eigen::Index function, Eigen::Ref<Eigen::MatrixXd> jacobian, Workspace& workspace) const;
   double calcOwnVariance(Workspace& workspace) const;
-  double calcLocalFactor(Workspace& workspace) const;
 
   SharedStructure structure_;
   SharedHyperparameters hyperparameters_;
@@ -103,8 +99,8 @@ class SharedProcess {
   Eigen::MatrixXd coefficients_;                         // of the trend, q x r
   linalg::PackedLower factor_;    // of K; this and the next two only where no slopes are known
   Eigen::MatrixXd solved_terms_;  // L^-1 H', n x q
-  Eigen::MatrixXd term_factor_;   // lower factor of H K^-1 H', q x q
-  LocalVariance local_variance_;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>
+      term_factor_;  // lower factor of H K^-1 H', q x q
   LeftOut left_out_;
   Eigen::ArrayXd left_out_ratio_;  // n
 };

@@ -1,5 +1,7 @@
 #include "kernels/surrogate/slope_covariance.hpp"
 
+#include "kernels/linalg/packed_lower.hpp"
+
 namespace twinmap::gp {
 
 using Eigen::ArrayXd;
@@ -7,24 +9,36 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-void calcPointCovariance(SmoothCovariance covariance, const MatrixXd& scaled_points,
-                         const Eigen::Ref<const VectorXd>& scaled_point, bool curvatures,
+static_assert(static_cast<int>(SmoothCovariance::kSquaredExponential) == exact::SMOOTH_EXPONENTIAL);
+static_assert(static_cast<int>(SmoothCovariance::kMatern52) == exact::SMOOTH_MATERN_52);
+
+exact::smooth_point PointCovariance::getView() {
+  return {differences.data(), squares.data(),   values.data(), slopes.data(),
+          curvatures.data(),  projected.data(), buffer.data()};
+}
+
+exact::smooth_process describeProcess(SmoothCovariance covariance, double nugget,
+                                      const MatrixXd& scaled_points, Index slope_points,
+                                      Index slope_variables) {
+  return {static_cast<int>(covariance),
+          static_cast<int>(scaled_points.rows()),
+          static_cast<int>(scaled_points.cols()),
+          static_cast<int>(slope_points),
+          static_cast<int>(slope_variables),
+          nugget,
+          scaled_points.data()};
+}
+
+void calcPointCovariance(const exact::smooth_process& process, const VectorXd& scaled_point,
                          PointCovariance& found) {
-  const Index n = scaled_points.rows();
-  found.differences.resize(n, scaled_points.cols());
-  found.squares.setZero(n);
-  for (Index v = 0; v < scaled_points.cols(); ++v) {
-    found.differences.col(v) = scaled_point(v) - scaled_points.col(v).array();
-    found.squares += found.differences.col(v).square();
+  const Index n = process.points;
+  found.differences.resize(n, process.variables);
+  for (ArrayXd* each : {&found.squares, &found.values, &found.slopes, &found.curvatures}) {
+    each->resize(n);
   }
-  found.values = found.squares;
-  found.slopes.resize(n);
-  if (curvatures) {
-    found.curvatures.resize(n);
-    calcSmoothCovariance(covariance, found.values, found.slopes, found.curvatures);
-  } else {
-    calcSmoothCovariance(covariance, found.values, found.slopes);
-  }
+  found.projected.resize(process.slope_points);
+  found.buffer.resize(linalg::PackedLower::roundUp(n));
+  exact::calcPointCovariance(process, scaled_point.data(), found.getView());
 }
 
 void fillValueRow(const PointCovariance& covariance, Index slope_points, Index variables,
@@ -56,9 +70,11 @@ MatrixXd calcJointCovariance(const SharedStructure& structure, const SharedHyper
   const Index n = points.cols(), size = n + variables * slope_points;
   const MatrixXd scaled = points.transpose() * hyperparameters.length_scales.cwiseInverse().asDiagonal();
   MatrixXd joint(size, size);
+  const exact::smooth_process process =
+      describeProcess(structure.covariance, hyperparameters.nugget, scaled, slope_points, variables);
   PointCovariance at;
   for (Index j = 0; j < n; ++j) {
-    calcPointCovariance(structure.covariance, scaled, scaled.row(j).transpose(), slope_points > 0, at);
+    calcPointCovariance(process, scaled.row(j).transpose(), at);
     fillValueRow(at, slope_points, variables, joint.col(j));
     joint(j, j) += hyperparameters.nugget;
     for (Index w = 0; w < variables && j < slope_points; ++w) {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "kernels/exact/exact.hpp"
 #include "kernels/surrogate/shared_covariance.hpp"
 
 namespace twinmap::gp {
@@ -22,13 +23,20 @@ struct SlopeData {
 struct PointCovariance {
   Eigen::ArrayXXd differences;        ///< D, n x p
   Eigen::ArrayXd squares, values;     ///< s and k, n
-  Eigen::ArrayXd slopes, curvatures;  ///< g and h, n; h only where slopes are known
+  Eigen::ArrayXd slopes, curvatures;  ///< g and h, n
+  Eigen::ArrayXd projected, buffer;   ///< room for what is made of them
+
+  exact::smooth_point getView();
 };
 
-/// Fills it for a point x scaled by 1 / l, and points z (n x p) scaled likewise. `curvatures`: whether h is
-/// needed.
-void calcPointCovariance(SmoothCovariance covariance, const Eigen::MatrixXd& scaled_points,
-                         const Eigen::Ref<const Eigen::VectorXd>& scaled_point, bool curvatures,
+/// What the points z (n x p, scaled by 1 / l) are, with slopes at the first m of them with respect to the
+/// first u variables. Valid as long as `scaled_points`.
+exact::smooth_process describeProcess(SmoothCovariance covariance, double nugget,
+                                      const Eigen::MatrixXd& scaled_points, Eigen::Index slope_points,
+                                      Eigen::Index slope_variables);
+
+/// Fills it for a point x, scaled likewise (p).
+void calcPointCovariance(const exact::smooth_process& process, const Eigen::VectorXd& scaled_point,
                          PointCovariance& found);
 
 /// What the weights of n values and u m slopes are multiplied by for a value at the point: n + u m.

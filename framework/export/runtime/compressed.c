@@ -72,41 +72,22 @@ static double calc_pair_distance(const process *p, const real_t *a, const real_t
   return sum;
 }
 
-/* L, column by column from the diagonal on. */
+/* L, packed. */
 static void factorise_inputs(const process *p, double *lower)
 {
-  const int n = p->inputs;
-  double *column = lower, slope;
-  int i, j, k;
-  for (j = 0; j < n; ++j) {
-    double *before = lower;
-    for (i = j; i < n; ++i) {
-      column[i - j] = p->signal_variance *
-                      evaluate_radial(p, calc_pair_distance(p, p->points + i * PROCESS_INPUTS,
-                                                            p->points + j * PROCESS_INPUTS), &slope);
+  double *element = lower, slope;
+  int i, j;
+  for (j = 0; j < p->inputs; ++j) {
+    for (i = j; i < p->inputs; ++i, ++element) {
+      *element = p->signal_variance * evaluate_radial(p, calc_pair_distance(p, p->points + i * PROCESS_INPUTS,
+                                                                            p->points + j * PROCESS_INPUTS), &slope);
+      *element += i == j ? p->jitter : 0.0;
     }
-    column[0] += p->jitter;
-    for (k = 0; k < j; before += n - k, ++k) {
-      add_multiple(n - j, -before[j - k], before + (j - k), column);
-    }
-    column[0] = sqrt(column[0]);
-    for (i = 1; i < n - j; ++i) {
-      column[i] /= column[0];
-    }
-    column += n - j;
   }
+  factorise(p->inputs, lower);
 }
 
-/* x = L^-1 x, and x = L'^-1 x. */
-static void solve_columns(int n, const double *column, double *x)
-{
-  int j;
-  for (j = 0; j < n; column += n - j, ++j) {
-    x[j] /= column[0];
-    add_multiple(n - j - 1, -x[j], column + 1, x + j + 1);
-  }
-}
-
+/* x = L'^-1 x. */
 static void solve_transposed(int n, const double *lower, double *x)
 {
   const double *column = lower + n * (n + 1) / 2;
@@ -140,7 +121,7 @@ static double calc_basis_variance(const process *p, twinmap_state *state)
   double *error = state->basis_error, sum = 0.0;
   int i;
   for (i = 0; i < p->coefficients; ++i) {
-    error[i] = basis(i, state->point) - dot_table(p->inputs, p->whitened_basis + i * p->inputs, state->covariances);
+    error[i] = basis(i, state->point) - dot(p->inputs, p->whitened_basis + i * p->inputs, state->covariances);
   }
   if (p->coefficients > 0) {
     solve_rows(p->coefficients, p->basis_factor, error);
@@ -178,7 +159,7 @@ static double calc_noise_factor(const process *p, twinmap_state *state)
     state->gradient[f] = multiply_add(state->gradient[f], p->inverse_square[f], p->constant_gradient[f]);
   }
   for (r = 0; r < TWINMAP_DIRECTIONS; ++r) {
-    const double slope = dot_table(PROCESS_INPUTS, noise_directions + r * PROCESS_INPUTS, state->gradient);
+    const double slope = dot(PROCESS_INPUTS, noise_directions + r * PROCESS_INPUTS, state->gradient);
     sum = multiply_add(slope, slope, sum);
   }
   return fmax(sum / p->mean_slope, smallest_noise_factor);
@@ -203,7 +184,7 @@ static void infer_parameter(twinmap_state *state, int parameter, twinmap_result 
   }
   factorise_inputs(p, state->lower_covariance);
   solve_columns(p->inputs, state->lower_covariance, a);
-  mean = dot_table(p->inputs, p->weights, a);
+  mean = dot(p->inputs, p->weights, a);
   for (i = 0; i < p->coefficients; ++i) {
     mean = multiply_add(p->mean_coefficients[i], basis(i, state->point), mean);
   }

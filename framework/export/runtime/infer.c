@@ -49,10 +49,25 @@ static twinmap_error infer_from_features(twinmap_state *state, const double *kno
   return TWINMAP_OK;
 }
 
+/* From here on every processor can run what is compiled. */
+#ifdef TWINMAP_FUSED
+#ifdef __clang__
+#pragma clang attribute pop
+#else
+#pragma GCC pop_options
+#endif
+#define TWINMAP_PROCESSOR_WILL_DO (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+#else
+#define TWINMAP_PROCESSOR_WILL_DO 1
+#endif
+
 twinmap_error twinmap_infer_features(twinmap_state *state, const twinmap_real *features, const double *known,
                                      twinmap_result *result)
 {
   int i;
+  if (!TWINMAP_PROCESSOR_WILL_DO) {
+    return TWINMAP_ERROR_PROCESSOR;
+  }
   for (i = 0; i < TWINMAP_FEATURES; ++i) {
     state->features[i] = features[i];
   }
@@ -60,6 +75,12 @@ twinmap_error twinmap_infer_features(twinmap_state *state, const twinmap_real *f
 }
 
 #if TWINMAP_SIGNALS
+twinmap_error twinmap_resample(twinmap_state *state, int count, const double *times,
+                               const twinmap_real *const *signals, double start)
+{
+  return TWINMAP_PROCESSOR_WILL_DO ? resample(state, count, times, signals, start) : TWINMAP_ERROR_PROCESSOR;
+}
+
 twinmap_error twinmap_infer(twinmap_state *state, int count, const double *times,
                             const twinmap_real *const *signals, double start, const double *known,
                             twinmap_result *result)

@@ -16,76 +16,6 @@ static double largest_difference(int count, const double *a, const double *b)
   return largest;
 }
 
-/* Column j of a lower triangle, from its diagonal on. */
-static double *column_of(double *lower, int j)
-{
-  return lower + j * R - j * (j - 1) / 2;
-}
-
-/* L of C = L L', in place; column by column. */
-static void factorise(double *lower)
-{
-  int j, k, i;
-  for (j = 0; j < R; ++j) {
-    double *column = column_of(lower, j), pivot;
-    for (k = 0; k < j; ++k) {
-      const double *before = column_of(lower, k) + (j - k);
-      add_multiple(R - j, -before[0], before, column);
-    }
-    pivot = sqrt(column[0]);
-    column[0] = pivot;
-    for (i = 1; i < R - j; ++i) {
-      column[i] /= pivot;
-    }
-  }
-}
-
-/* x = L^-1 x. */
-static void solve_scores(double *lower, double *x)
-{
-  int j;
-  for (j = 0; j < R; ++j) {
-    const double *column = column_of(lower, j);
-    x[j] /= column[0];
-    add_multiple(R - j - 1, -x[j], column + 1, x + j + 1);
-  }
-}
-
-/* L of a small matrix, row by row; whether it is positive definite. */
-static int factorise_small(const double *matrix, double *lower)
-{
-  int i, j, k;
-  for (j = 0; j < U; ++j) {
-    for (i = j; i < U; ++i) {
-      double sum = matrix[i * U + j];
-      for (k = 0; k < j; ++k) {
-        sum = multiply_add(-lower[i * U + k], lower[j * U + k], sum);
-      }
-      if (i == j) {
-        if (!(sum > 0.0)) {
-          return 0;
-        }
-        lower[j * U + j] = sqrt(sum);
-      } else {
-        lower[i * U + j] = sum / lower[j * U + j];
-      }
-    }
-  }
-  return 1;
-}
-
-static void solve_small(const double *lower, double *x)
-{
-  int i, j;
-  solve_rows(U, lower, x);
-  for (i = U - 1; i >= 0; --i) {
-    for (j = i + 1; j < U; ++j) {
-      x[i] = multiply_add(-lower[j * U + i], x[j], x[i]);
-    }
-    x[i] /= lower[i * U + i];
-  }
-}
-
 static int count_of(int metric, const window *w)
 {
   return metric == METRIC_LEADING ? w->leading : w->functions;
@@ -111,8 +41,6 @@ static void evaluate(twinmap_state *state, int metric, const double *unknown)
   }
 }
 
-static const double half_width_information = 3.0; /* 1 / variance of a variable that is uniform on [-1, 1] */
-
 static double calc_objective(twinmap_state *state, int metric, const double *unknown)
 {
   const wide_t *weights = metric == METRIC_LEADING ? leading_weights : rough_weights;
@@ -122,25 +50,13 @@ static double calc_objective(twinmap_state *state, int metric, const double *unk
     state->residual[i] = state->scores[i] - state->values[i];
   }
   if (metric == METRIC_FULL) {
-    solve_scores(state->lower, state->residual);
+    solve_columns(R, state->lower, state->residual);
   } else {
     for (i = 0; i < R; ++i) {
       state->residual[i] *= weights[i];
     }
   }
   return dot(R, state->residual, state->residual) + half_width_information * dot(U, unknown, unknown);
-}
-
-/* J'J of a jacobian (variable by variable). */
-static void calc_information(const double *jacobian, double *information)
-{
-  int a, b;
-  for (a = 0; a < U; ++a) {
-    for (b = 0; b <= a; ++b) {
-      information[a * U + b] = dot(R, jacobian + a * R, jacobian + b * R);
-      information[b * U + a] = information[a * U + b];
-    }
-  }
 }
 
 /* At the point evaluated last. */
@@ -154,7 +70,7 @@ static void make_normal_equations(twinmap_state *state, int metric)
       column[i] = state->jacobian[v * R + i];
     }
     if (metric == METRIC_FULL) {
-      solve_scores(state->lower, column);
+      solve_columns(R, state->lower, column);
     } else {
       for (i = 0; i < R; ++i) {
         column[i] *= weights[i];
@@ -162,7 +78,7 @@ static void make_normal_equations(twinmap_state *state, int metric)
     }
     state->descent[v] = dot(R, column, state->residual);
   }
-  calc_information(state->scaled_jacobian, state->normal);
+  calc_information(R, U, state->scaled_jacobian, state->normal);
 }
 
 /* Whether a step lowers the objective, with as little damping as that takes. */
@@ -172,16 +88,10 @@ static int take_step(twinmap_state *state, int metric, double *unknown, double *
   int v;
   for (; *damping < most; *damping *= factor) {
     double tried;
-    memcpy(state->small, state->normal, sizeof(double) * U * U);
-    for (v = 0; v < U; ++v) {
-      double *diagonal = &state->small[v * U + v];
-      *diagonal += multiply_add(*damping, *diagonal, half_width_information);
-      state->step[v] = multiply_add(-half_width_information, unknown[v], state->descent[v]);
-    }
-    if (!factorise_small(state->small, state->small)) {
+    memcpy(state->step, state->descent, sizeof state->step);
+    if (!solve_step(U, state->normal, unknown, *damping, state->small, state->step)) {
       continue;
     }
-    solve_small(state->small, state->step);
     for (v = 0; v < U; ++v) {
       state->trial[v] = fmin(fmax(unknown[v] + state->step[v], -1.0), 1.0);
     }
@@ -201,18 +111,12 @@ static double foretell_gain(twinmap_state *state, const double *unknown)
 {
   double gain = 0.0;
   int v;
-  memcpy(state->small, state->normal, sizeof(double) * U * U);
-  for (v = 0; v < U; ++v) {
-    state->small[v * U + v] += half_width_information;
-    state->step[v] = multiply_add(-half_width_information, unknown[v], state->descent[v]);
-    state->trial[v] = state->step[v];
-  }
-  if (!factorise_small(state->small, state->small)) {
+  memcpy(state->step, state->descent, sizeof state->step);
+  if (!solve_step(U, state->normal, unknown, 0.0, state->small, state->step)) {
     return HUGE_VAL;
   }
-  solve_small(state->small, state->step);
   for (v = 0; v < U; ++v) {
-    gain = multiply_add(state->trial[v], state->step[v], gain);
+    gain += (state->descent[v] - half_width_information * unknown[v]) * state->step[v];
   }
   return gain;
 }
@@ -258,18 +162,14 @@ static void update_metric(twinmap_state *state, const double *unknown)
     }
   }
   for (j = 0; j < R; ++j) {
-    double *column = column_of(lower, j);
+    double *column = lower + find_column(R, j);
     for (i = j; i < R; ++i) {
       column[i - j] = state->stddev[i] * *correlation++ * state->stddev[j];
     }
     column[0] += 1.0;
   }
-  factorise(lower);
-  state->log_determinant = 0.0;
-  for (j = 0; j < R; ++j) {
-    state->log_determinant += log(column_of(lower, j)[0]);
-  }
-  state->log_determinant *= 2.0;
+  factorise(R, lower);
+  state->log_determinant = calc_log_determinant(R, lower);
 }
 
 static int is_apart(const twinmap_state *state, int count, const double *point, double distance)
@@ -348,32 +248,20 @@ static int find_starts(const twinmap_state *state, int most, double *start)
   return found;
 }
 
-/* Four standard deviations above the mean of chi-square: one in 10000 by chance. */
-static int is_misfit(double chi_square, int count)
-{
-  return chi_square > count + 4.0 * sqrt(2.0 * count);
-}
-
 /* Where residuals are beyond what the errors allow, those of the windows to blame are taken to be as large. */
 static int widen(twinmap_state *state, const double *unknown)
 {
-  int widened = 0, w, i;
+  int widened = 0, w;
   (void)calc_objective(state, METRIC_FULL, unknown);
   if (!is_misfit(dot(R, state->residual, state->residual), R)) {
     return 0;
   }
   for (w = 0; w < TWINMAP_WINDOWS; ++w) {
-    const int first = windows[w].first, count = windows[w].functions;
-    double misfit = 0.0, squares = 0.0, variances = 0.0;
-    for (i = first; i < first + count; ++i) {
-      const double variance = state->stddev[i] * state->stddev[i];
-      const double difference = state->scores[i] - state->values[i], square = difference * difference;
-      misfit += square / (1.0 + variance);
-      squares += square;
-      variances += variance;
-    }
-    if (is_misfit(misfit, count)) {
-      state->widening[w] *= sqrt(fmax(1.0, (squares / count - 1.0) / (variances / count)));
+    const int first = windows[w].first;
+    const double factor = calc_widening(windows[w].functions, state->stddev + first, state->scores + first,
+                                        state->values + first);
+    if (factor > 0.0) {
+      state->widening[w] *= factor;
       widened = 1;
     }
   }
@@ -385,7 +273,7 @@ static int widen(twinmap_state *state, const double *unknown)
 static void refine_minimum(twinmap_state *state, int index, int may_widen)
 {
   const double stays = 0.01; /* in half widths: errors vary over some tenths */
-  double *point = state->minima[index].point, before[U], objective, sum = 0.0;
+  double *point = state->minima[index].point, before[U], objective;
   int i, v, w;
   for (w = 0; w < TWINMAP_WINDOWS; ++w) {
     state->widening[w] = 1.0;
@@ -406,16 +294,13 @@ static void refine_minimum(twinmap_state *state, int index, int may_widen)
   }
   make_normal_equations(state, METRIC_FULL);
   memcpy(state->minima[index].information, state->normal, sizeof state->normal);
-  calc_information(state->jacobian, state->minima[index].noise_information);
+  calc_information(R, U, state->jacobian, state->minima[index].noise_information);
   for (v = 0; v < U; ++v) {
     state->minima[index].shift[v] = state->descent[v] + dot(U, state->normal + v * U, point);
     state->normal[v * U + v] += half_width_information;
   }
-  (void)factorise_small(state->normal, state->small);
-  for (v = 0; v < U; ++v) {
-    sum += log(state->small[v * U + v]);
-  }
-  state->minima[index].objective = objective + (state->log_determinant + 2.0 * sum);
+  state->minima[index].objective =
+      objective + (state->log_determinant + calc_small_log_determinant(U, state->normal, state->small));
 }
 
 /* What a minimum says of the scores: what they leave, whitened, and its point. */

@@ -143,7 +143,7 @@ static double calc_mean(const process *p, const process_batch *batch, int of_bat
   for (i = p->inputs; i < count; ++i) {
     k[i] = 0.0;
   }
-  mean = dot_table(count, p->weights, k);
+  mean = dot(count, p->weights, k);
   for (i = 0; i < p->coefficients; ++i) {
     mean = multiply_add(p->mean_coefficients[i], basis(i, state->point), mean);
   }
@@ -165,7 +165,7 @@ static double calc_latent_variance(const process *p, double prior, twinmap_state
   if (p->coefficients > 0) {
     double *error = state->basis_error, sum = 0.0;
     for (i = 0; i < p->coefficients; ++i) {
-      error[i] = basis(i, state->point) - dot_table(count, p->whitened_basis + i * count, v);
+      error[i] = basis(i, state->point) - dot(count, p->whitened_basis + i * count, v);
     }
     solve_rows(p->coefficients, p->basis_factor, error);
     for (i = 0; i < p->coefficients; ++i) {
@@ -235,7 +235,7 @@ static double calc_noise_factor(const process *p, twinmap_state *state)
     return 1.0;
   }
   for (r = 0; r < TWINMAP_DIRECTIONS; ++r) {
-    const double slope = dot_table(PROCESS_INPUTS, noise_directions + r * PROCESS_INPUTS, state->gradient);
+    const double slope = dot(PROCESS_INPUTS, noise_directions + r * PROCESS_INPUTS, state->gradient);
     sum = multiply_add(slope, slope, sum);
   }
   return fmax(sum / p->mean_slope, smallest_noise_factor);

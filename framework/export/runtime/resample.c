@@ -156,8 +156,8 @@ static twinmap_error choose_samples(int count, const double *times, double start
   return *used < 2 ? TWINMAP_ERROR_COVER : TWINMAP_OK;
 }
 
-twinmap_error twinmap_resample(twinmap_state *state, int count, const double *times,
-                               const twinmap_real *const *signals, double start)
+static twinmap_error resample(twinmap_state *state, int count, const double *times,
+                              const twinmap_real *const *signals, double start)
 {
   const twinmap_real *shifted[TWINMAP_SIGNALS];
   int first, used, i, s;

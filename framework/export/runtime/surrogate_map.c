@@ -47,8 +47,8 @@ static void invert_scores(twinmap_state *state)
   search_roughly(state, find_starts(state, 3, start), start);
   for (i = 0; i < state->minimum_count; ++i) {
     refine_minimum(state, i, 1);
-    calc_box_moments(state, state->minima[i].information, state->minima[i].shift, state->minima[i].mean,
-                     state->minima[i].covariance);
+    calc_box_moments(U, state->minima[i].information, state->minima[i].shift, state->box_buffer,
+                     state->minima[i].mean, state->minima[i].covariance);
     least = fmin(least, state->minima[i].objective);
   }
   for (i = 0; i < state->minimum_count; ++i) {
@@ -68,7 +68,7 @@ static void invert_scores(twinmap_state *state)
   for (a = 0; a < U; ++a) {
     state->trial[a] = dot(U, state->minima[best].noise_information + a * U, state->minima[best].point);
   }
-  calc_box_moments(state, state->minima[best].noise_information, state->trial, state->noise_stddev,
+  calc_box_moments(U, state->minima[best].noise_information, state->trial, state->box_buffer, state->noise_stddev,
                    state->normal);
   for (a = 0; a < U; ++a) {
     state->noise_stddev[a] = sqrt(state->normal[a * U + a]);

@@ -33,7 +33,8 @@ typedef enum {
   TWINMAP_ERROR_GAP = 4,     /* a gap where samples are needed */
   TWINMAP_ERROR_DEAD = 5,    /* a signal that is the same at all needed times */
   TWINMAP_ERROR_FEATURE = 6, /* the response lacks a feature, such as a third peak */
-  TWINMAP_ERROR_NUMBER = 7   /* a value that is not finite */
+  TWINMAP_ERROR_NUMBER = 7,  /* a value that is not finite */
+  TWINMAP_ERROR_PROCESSOR = 8 /* the processor lacks AVX2 or FMA: compile with -DTWINMAP_ANY_PROCESSOR */
 } twinmap_error;
 
 typedef struct {
@@ -70,6 +71,10 @@ typedef struct {
 #if TWINMAP_COMPRESSED
   double lower_covariance[TWINMAP_LARGEST * (TWINMAP_LARGEST + 1) / 2];
 #endif
+#if TWINMAP_NETWORK
+  double deviations[TWINMAP_FEATURES], products[TWINMAP_PRODUCTS + 1];
+  double units[TWINMAP_WIDEST], other_units[TWINMAP_WIDEST], root[TWINMAP_PARAMETERS * TWINMAP_PARAMETERS];
+#endif
 #if TWINMAP_SCORES
   /* of the processes from parameters to scores, at the point evaluated last */
   double differences[TWINMAP_WINDOWS * TWINMAP_VARIABLES * TWINMAP_POINTS];
@@ -96,7 +101,7 @@ typedef struct {
   double noise_stddev[TWINMAP_UNKNOWN], limit_stddev[TWINMAP_PARAMETERS];
   double innovation[TWINMAP_SCORES], explained[TWINMAP_UNKNOWN];
   double mixed_mean[TWINMAP_UNKNOWN], mixed_covariance[TWINMAP_UNKNOWN * TWINMAP_UNKNOWN];
-  double factor_precision[TWINMAP_UNKNOWN], factor_shift[TWINMAP_UNKNOWN];
+  double box_buffer[TWINMAP_UNKNOWN * (TWINMAP_UNKNOWN + 3)];
   double small[TWINMAP_UNKNOWN * TWINMAP_UNKNOWN], trial[TWINMAP_UNKNOWN], step[TWINMAP_UNKNOWN];
 #endif
 #if TWINMAP_TRUST

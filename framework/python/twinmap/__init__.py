@@ -16,13 +16,13 @@ import sys
 from . import _twinmap
 from ._errors import ExperimentError, MeasurementError
 from ._experiment import Experiment, Responses, sweep
-from ._map import Inference, Map
+from ._map import Inference, Map, Posterior
 from ._results import Results
 from ._twinmap import Progress, Quantity
 
 __version__ = _twinmap.__version__
-__all__ = ["Experiment", "ExperimentError", "Inference", "Map", "MeasurementError", "Progress", "Quantity",
-           "Responses", "Results", "sweep"]
+__all__ = ["Experiment", "ExperimentError", "Inference", "Map", "MeasurementError", "Posterior", "Progress",
+           "Quantity", "Responses", "Results", "sweep"]
 
 # FMUs are simulated in processes of their own, so that one that crashes takes nothing with it.
 _WORKER = ("import importlib.util as util\n"

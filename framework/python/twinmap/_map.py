@@ -13,7 +13,36 @@ from ._arguments import PathLike, Points, choose_threads, list_columns, list_kno
 from ._twinmap import Quantity
 
 Measurement = Union[PathLike, pd.DataFrame, Mapping[str, Any], np.ndarray]
+_DRAWS = 512
+_PROBABILITIES = [0.025, 0.16, 0.5, 0.84, 0.975]
 _NORMAL95 = 1.959963984540054  # standard deviations on both sides of a normal distribution's mean: 95 %
+
+
+class Posterior:
+    """The posterior of p parameters given a measurement, without a normal approximation (docs/posterior.md).
+
+    `reliable`: whether its draws stand for the posterior; if not, `message` says why and there are no numbers but the
+    diagnostics. `mean`, `stddev` (p): in the parameters' units. `quantiles`: a row for each of 0.025, 0.16, 0.5, 0.84
+    and 0.975, a column for each parameter. `draws`: joint draws of equal weight, a column for each parameter, the
+    nuisance parameters too. `effective_sample_size`, `pareto_shape`: of the weights.
+    """
+
+    def __init__(self, sampled: _twinmap.SurrogatePosterior, names: List[str], unknown: List[str]) -> None:
+        self.message = sampled.message
+        self.reliable = not sampled.message
+        self.effective_sample_size = sampled.effective_sample_size
+        self.pareto_shape = sampled.pareto_shape
+        if self.reliable:
+            self.mean: np.ndarray = sampled.mean
+            self.stddev: np.ndarray = sampled.stddev
+            self.quantiles = pd.DataFrame(sampled.quantiles, columns=names,
+                                          index=pd.Index(_PROBABILITIES, name="probability"))
+            self.draws = pd.DataFrame(sampled.draws, columns=unknown)
+
+    @property
+    def interval(self) -> np.ndarray:
+        """The 95 % intervals (p, 2): lower and upper bound."""
+        return self.quantiles.iloc[[0, -1]].to_numpy().T
 
 
 class Inference:
@@ -22,6 +51,7 @@ class Inference:
     `names`, `units`: of the parameters. `mean`, `stddev` (p): in those units. `covariance` (p, p). `statuses`: ["ok"],
     or what is to be said against the answer, the gravest first (docs/trust.md); empty where the run has no trust
     model. `method`: "refined" where the answer was refined on the simulator and accepted, else "inverse_map".
+    `posterior`: where it was asked for, else None.
     """
 
     def __init__(self, answered: _twinmap.Answered, map_: _twinmap.Map, parameters: List[Quantity]) -> None:
@@ -33,6 +63,10 @@ class Inference:
         self.covariance: np.ndarray = answered.covariance
         self.statuses: List[str] = answered.statuses
         self.method = "refined" if answered.refined else "inverse_map"
+        self.posterior: Optional[Posterior] = None
+        if answered.posterior is not None:
+            unknown = [parameter.name for parameter in map_.unknown]
+            self.posterior = Posterior(answered.posterior, self.names, unknown)
 
     @functools.cached_property
     def details(self) -> Dict[str, Any]:
@@ -142,16 +176,19 @@ class Map:
         return np.broadcast_to(known, (count, known.shape[1])) if len(known) == 1 else known
 
     def infer(self, measurement: Measurement, *, known: Optional[Mapping[str, float]] = None,
-              start: Optional[float] = None, refine: Optional[bool] = None) -> Inference:
+              start: Optional[float] = None, refine: Optional[bool] = None,
+              posterior: Union[bool, int] = False) -> Inference:
         """Infers the parameters of one measurement and judges the answer.
 
         measurement: a file (CSV, MATLAB, HDF5); a DataFrame or mapping from columns to samples, named as in a file ("t",
         "enc1 [mm]"; a DataFrame's named index is a column as well); or an array (d) of features. known: values of the
         known inputs by name. start: the time in the measurement (s) that is the model's 0, instead of the
-        experiment's. refine: on the simulator, or not; None: as the experiment says. Raises MeasurementError for a
+        experiment's. refine: on the simulator, or not; None: as the experiment says. posterior: the posterior as well;
+        a number of draws instead of True's 512. Raises MeasurementError for a
         measurement that cannot be used.
         """
-        request = _twinmap.InferRequest(list_known(known), start, refine)
+        draws = _DRAWS if posterior is True else int(posterior)
+        request = _twinmap.InferRequest(list_known(known), start, refine, draws)
         if isinstance(measurement, (pd.DataFrame, Mapping)):
             answered = self._map.infer_columns(list_columns(measurement), request)
         elif isinstance(measurement, (str, os.PathLike)):

@@ -13,6 +13,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from roles_test import EXPERIMENT
 from support import EXPERIMENTS, FolderTestCase, call, run_once
 
 COUNT = int(os.environ.get("TWINMAP_EXPORT_MEASUREMENTS", "150"))
@@ -134,11 +135,16 @@ class Exported(FolderTestCase):
         self.assertEqual(result.returncode, 0)
         return np.array([[float(number) for number in line.split()] for line in result.stdout.splitlines()])
 
-    def compare(self, run, noise, relative, stddevs, *options, unsteady=0.0):
+    def compare(self, run, noise, relative, stddevs, *options, rounded=False):
+        """rounded: both get the measurements as floats."""
         measurements = Measurements(run, noise, COUNT)
+        if rounded:
+            measurements.values = measurements.values.astype(np.float32).astype(float)
         expected = measurements.infer(run)
-        found = self.run_c(self.export(run, *options), measurements, "-march=native")
+        folder = self.export(run, *options)
+        found = self.run_c(folder, measurements)
         self.assertEqual(len(found), COUNT)
+        np.testing.assert_array_equal(found, self.run_c(folder, measurements, "-march=native"))
         seen, apart = set(), []
         for row, answer in zip(found, expected):
             estimates = list(answer["parameters"].values())
@@ -155,15 +161,42 @@ class Exported(FolderTestCase):
         if verbose := os.environ.get("TWINMAP_EXPORT_MEASUREMENTS"):
             print(f"{self.id()} {options}: {verbose} measurements, largest {max(apart):.2g} sd, "
                   f"beyond {stddevs:g} sd: {np.sum(np.array(apart) > stddevs)}, statuses {sorted(seen)}")
-        # a search may end a step earlier for a rounding error
-        self.assertLessEqual(np.sum(np.array(apart) > stddevs), unsteady * COUNT)
-        self.assertLess(max(apart), stddevs if unsteady == 0.0 else 0.05)
+        self.assertLess(max(apart), stddevs)
 
     def check_selftest(self, folder, *arguments):
         subprocess.run(["make", "clean"], cwd=folder, capture_output=True, check=True)
         result = subprocess.run(["make", "test", *arguments], cwd=folder, capture_output=True, text=True)
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
         self.assertIn("50 measurements, 0 differences", result.stdout)
+
+    def check_on_aarch64(self, folder):
+        self.check_selftest(folder, "CC=aarch64-linux-gnu-gcc", "LDFLAGS=-static", "RUN=qemu-aarch64")
+
+    def check_on_cortex_m7(self, folder):
+        machine = ["-O2", "-mcpu=cortex-m7", "-mthumb", "-mfpu=fpv5-d16", "-mfloat-abi=hard"]
+        compile_c(folder, ["twinmap_map.c"], "map.o", *machine, "-c", compiler="arm-none-eabi-gcc")
+        subprocess.run(["arm-none-eabi-gcc", *machine, "--specs=rdimon.specs", "-T", CORTEX_M7 / "mps2.ld",
+                        CORTEX_M7 / "startup.c", "selftest.c", "map.o", "-o", "selftest.elf", "-lm"], cwd=folder, check=True,
+                       capture_output=True)
+        result = subprocess.run(["qemu-system-arm", "-machine", "mps2-an500", "-nographic", "-semihosting-config",
+                                 "enable=on,target=native", "-kernel", "selftest.elf"], cwd=folder, capture_output=True,
+                                text=True, timeout=600, stdin=subprocess.DEVNULL)
+        self.assertIn("50 measurements, 0 differences", result.stdout)
+        self.assertEqual(result.returncode, 0)
+
+    def check_memory(self, folder):
+        """No heap; stack and state as the README says."""
+        compile_c(folder, ["twinmap_map.c"], "map.o", "-O2", "-c", "-fstack-usage")
+        symbols = subprocess.run(["nm", "-u", "map.o"], cwd=folder, capture_output=True, text=True).stdout.split()
+        self.assertFalse({"malloc", "calloc", "realloc", "free"} & set(symbols), symbols)
+        frames = sum(int(line.split("\t")[1]) for path in folder.glob("*.su") for line in path.read_text().splitlines())
+        readme = (folder / "README.md").read_text()
+        self.assertLess(frames, int(re.search(r"stack, at most \| (\d+)", readme).group(1)))
+        (folder / "size.c").write_text('#include <stdio.h>\n#include "twinmap_map.h"\n'
+                                       'int main(void) { printf("%lu", (unsigned long)sizeof(twinmap_state)); return 0; }')
+        compile_c(folder, ["size.c"], "size")
+        size = subprocess.run([folder / "size"], capture_output=True, text=True).stdout
+        self.assertEqual(size, re.search(r"RAM\) \| (\d+)", readme).group(1))
 
 
 TWO_BEAM = {"y": 5e-5, "theta": 0.015}
@@ -191,36 +224,15 @@ class Processes(Exported):
         self.assertNotIn("twinmap_", (named / "pump_map.c").read_text())
 
     def test_it_takes_no_heap_and_the_stack_that_the_readme_says(self):
-        folder = self.export(self.trained)
-        compile_c(folder, ["twinmap_map.c"], "map.o", "-O2", "-c", "-fstack-usage")
-        symbols = subprocess.run(["nm", "-u", "map.o"], cwd=folder, capture_output=True, text=True).stdout.split()
-        self.assertFalse({"malloc", "calloc", "realloc", "free"} & set(symbols), symbols)
-        frames = sum(int(line.split("\t")[1]) for path in folder.glob("*.su") for line in path.read_text().splitlines())
-        readme = (folder / "README.md").read_text()
-        self.assertLess(frames, int(re.search(r"stack, at most \| (\d+)", readme).group(1)))
-        (folder / "size.c").write_text('#include <stdio.h>\n#include "twinmap_map.h"\n'
-                                       'int main(void) { printf("%lu", (unsigned long)sizeof(twinmap_state)); return 0; }')
-        compile_c(folder, ["size.c"], "size")
-        size = subprocess.run([folder / "size"], capture_output=True, text=True).stdout
-        self.assertEqual(size, re.search(r"RAM\) \| (\d+)", readme).group(1))
+        self.check_memory(self.export(self.trained))
 
     @need("aarch64-linux-gnu-gcc", "qemu-aarch64")
     def test_the_selftest_passes_on_an_emulated_aarch64(self):
-        self.check_selftest(self.export(self.trained), "CC=aarch64-linux-gnu-gcc", "LDFLAGS=-static", "RUN=qemu-aarch64")
+        self.check_on_aarch64(self.export(self.trained))
 
     @need("arm-none-eabi-gcc", "qemu-system-arm")
     def test_the_selftest_passes_on_an_emulated_cortex_m7(self):
-        folder = self.export(self.trained, "--float", "--compress")
-        machine = ["-O2", "-mcpu=cortex-m7", "-mthumb", "-mfpu=fpv5-d16", "-mfloat-abi=hard"]
-        compile_c(folder, ["twinmap_map.c"], "map.o", *machine, "-c", compiler="arm-none-eabi-gcc")
-        subprocess.run(["arm-none-eabi-gcc", *machine, "--specs=rdimon.specs", "-T", CORTEX_M7 / "mps2.ld",
-                        CORTEX_M7 / "startup.c", "selftest.c", "map.o", "-o", "selftest.elf", "-lm"], cwd=folder, check=True,
-                       capture_output=True)
-        result = subprocess.run(["qemu-system-arm", "-machine", "mps2-an500", "-nographic", "-semihosting-config",
-                                 "enable=on,target=native", "-kernel", "selftest.elf"], cwd=folder, capture_output=True,
-                                text=True, timeout=600, stdin=subprocess.DEVNULL)
-        self.assertIn("50 measurements, 0 differences", result.stdout)
-        self.assertEqual(result.returncode, 0)
+        self.check_on_cortex_m7(self.export(self.trained, "--float", "--compress"))
 
     def test_compressed_it_is_small_and_loses_at_most_two_percent_of_an_sd(self):
         folder = self.export(self.trained, "--float", "--compress", "--no-trust")
@@ -410,7 +422,7 @@ class ExactProcesses(Exported):
 class Surrogates(Exported):
     def test_the_crane(self):
         run, _ = run_once(EXPERIMENTS / "crane/crane.yaml", *SMALL, "design.train.samples=100")
-        self.compare(run, {"y": 5e-4, "theta": 5e-3}, 0.0, 1e-4, unsteady=0.02)
+        self.compare(run, {"y": 5e-4, "theta": 5e-3}, 1e-12, 1e-9)
         result = call("export", run, "--c", self.folder / "none", "--compress")
         self.assertEqual(result.returncode, 2)
         self.assertIn("the map is a surrogate", result.stderr)
@@ -426,6 +438,61 @@ class Surrogates(Exported):
         result = call("export", run, "--fmu", self.folder / "modes.fmu")
         self.assertEqual(result.returncode, 2)
         self.assertIn("modes, which no signal gives", result.stderr)
+
+
+class Networks(Exported):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        small = [*SMALL, "inverse_map={network: {steps: 500, surrogate_samples: 4000}}", "design.train.samples=100"]
+        cls.trained, _ = run_once(EXPERIMENTS / "two_beam/best.yaml", *small)
+
+    def test_the_c_says_what_infer_says(self):
+        self.compare(self.trained, TWO_BEAM, 1e-12, 1e-9)
+
+    def test_in_float_it_says_so_within_a_ten_thousandth_of_an_sd(self):
+        """Of the same floats: far outside training the network amplifies what rounding the signals does."""
+        self.compare(self.trained, TWO_BEAM, 0.0, 1e-4, "--float", rounded=True)
+
+    def test_it_takes_no_heap_and_the_stack_that_the_readme_says(self):
+        self.check_memory(self.export(self.trained))
+
+    @need("aarch64-linux-gnu-gcc", "qemu-aarch64", "arm-none-eabi-gcc", "qemu-system-arm")
+    def test_selftests_pass_on_emulated_machines(self):
+        self.check_on_aarch64(self.export(self.trained))
+        self.check_on_cortex_m7(self.export(self.trained, "--float"))
+
+    def test_without_trust_it_is_small_and_passes_its_selftest(self):
+        folder = self.export(self.trained, "--float", "--no-trust")
+        self.check_selftest(folder)
+        self.assertLess(int(re.search(r"constants of the map \(flash\) \| (\d+)", (folder / "README.md").read_text()).group(1)),
+                        64_000)
+
+    def test_known_inputs_count(self):
+        file = self.folder / "mass.yaml"
+        file.write_text(EXPERIMENT)
+        run, _ = run_once(file, *SMALL[:2], "evaluation.baselines=[]", "design.train.samples=60",
+                          "inverse_map={network: {samples_from: simulations, steps: 100, hidden: [16, 8, 8]}}")
+        self.check_selftest(self.export(run, "--prefix", "known"))
+
+    def test_what_cannot_be_is_refused(self):
+        result = call("export", self.trained, "--c", self.folder / "none", "--compress")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("the map is a network", result.stderr)
+
+    def test_the_numpy_reader_of_the_document_predicts(self):
+        result = call("export", self.trained, "--json", self.folder / "map.json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        reader = {}
+        for text in re.findall(r"```python\n(.*?)```", DOCUMENT, re.DOTALL):
+            exec(text, reader)
+        loaded = reader["Network"](self.folder / "map.json")
+        measurements = Measurements(self.trained, TWO_BEAM, 20)
+        for row, answer in zip(measurements.values, measurements.infer(self.trained)):
+            mean, sd = loaded.predict(loaded.features(row.reshape(2, -1)))
+            estimates = list(answer["parameters"].values())
+            np.testing.assert_allclose(mean, [e["mean"] for e in estimates], rtol=1e-12)
+            np.testing.assert_allclose(sd, [e["sd"] for e in estimates], rtol=1e-12)
 
 
 class Usage(FolderTestCase):

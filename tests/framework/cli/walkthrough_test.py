@@ -42,6 +42,13 @@ class Walkthrough(RunTestCase):
         self.succeed("report", self.run_folder)
         self.assertIn("</html>", (self.run_folder / "report.html").read_text())
 
+    def test_the_map_is_exported(self):
+        self.succeed("export", self.run_folder, "--c", self.folder / "c", "--float", "--fmu", self.folder / "map.fmu",
+                     "--json", self.folder / "map.json")
+        self.assertIn("twinmap_infer", (self.folder / "c/twinmap_map.h").read_text())
+        self.assertEqual(json.loads((self.folder / "map.json").read_text())["format"], "twinmap map")
+        self.assertIn("trigger", self.succeed("variables", self.folder / "map.fmu"))
+
     def test_a_measurement_is_inferred_refined_and_replayed(self):
         inferred = json.loads(self.succeed("infer", self.run_folder, self.measurement, "--json", "--refine"))
         self.assertEqual(set(inferred["parameters"]), {"d_y", "d_theta", "k_y", "k_theta"})

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
+#include <vector>
 
 namespace twinmap {
 namespace {
@@ -56,6 +58,31 @@ TEST(RandomStream, NormalIsTheQuantileOfTheUniform) {
     const double z = stream.calcNormal(i, 2);
     EXPECT_NEAR(0.5 * std::erfc(-z / std::sqrt(2.0)), stream.calcUniform(i, 2), 1e-14);
   }
+}
+
+// 200000 numbers: moments to five standard errors; the tails beyond the approximation's centre too.
+TEST(RandomStream, ManyNormalsAreIndependentAndNormal) {
+  constexpr std::size_t kCount = 200000;
+  const RandomStream stream(1, RandomPurpose::kNetworkNoise);
+  std::vector<double> values(kCount);
+  stream.drawNormals(3, 5, values.data(), kCount);
+  double mean = 0.0, square = 0.0, neighbours = 0.0, beyond_two = 0.0;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    mean += values[i] / kCount;
+    square += values[i] * values[i] / kCount;
+    neighbours += i > 0 ? values[i] * values[i - 1] / kCount : 0.0;
+    beyond_two += std::abs(values[i]) > 2.0 ? 1.0 / kCount : 0.0;
+  }
+  EXPECT_NEAR(mean, 0.0, 5.0 / std::sqrt(kCount));
+  EXPECT_NEAR(square, 1.0, 5.0 * std::sqrt(2.0 / kCount));
+  EXPECT_NEAR(neighbours, 0.0, 5.0 / std::sqrt(kCount));
+  EXPECT_NEAR(beyond_two, 0.0455, 5.0 * std::sqrt(0.0455 / kCount));
+
+  std::vector<double> fewer(7);
+  stream.drawNormals(3, 5, fewer.data(), fewer.size());
+  EXPECT_TRUE(std::equal(fewer.begin(), fewer.end(), values.begin()));
+  stream.drawNormals(3, 6, fewer.data(), fewer.size());
+  EXPECT_NE(fewer[0], values[0]);
 }
 
 }  // namespace

@@ -91,6 +91,25 @@ class Inferring(TwoBeams):
         with self.assertRaisesRegex(KeyError, "d_y, d_theta"):
             answer["k_x"]
 
+    def test_samples_the_posterior_where_it_is_asked_for(self):
+        frame = self.measurement.to_frame()
+        self.assertIsNone(self.map.infer(frame).posterior)
+        answer = self.map.infer(frame, refine=False, posterior=1000)
+        posterior = answer.posterior
+        self.assertTrue(posterior.reliable)
+        self.assertGreater(posterior.effective_sample_size, 100)
+        self.assertLess(posterior.pareto_shape, 0.7)
+        names = list(TRUE)
+        self.assertEqual([list(posterior.draws.columns), list(posterior.quantiles.columns)], [names, names])
+        self.assertEqual(posterior.draws.shape, (1000, 4))
+        np.testing.assert_array_equal(posterior.interval, posterior.quantiles.loc[[0.025, 0.975]].to_numpy().T)
+        told = answer.details["posterior"]["parameters"]
+        np.testing.assert_array_equal(posterior.mean, [told[name]["mean"] for name in names])
+        np.testing.assert_array_equal(posterior.stddev, [told[name]["sd"] for name in names])
+        self.assertTrue((np.abs(posterior.mean - list(TRUE.values())) < 5 * posterior.stddev).all())
+        with self.assertRaisesRegex(twinmap.ExperimentError, "at least 200 draws, not 10"):
+            self.map.infer(frame, posterior=10)
+
     def test_shows_itself(self):
         answer = self.map.infer(self.measurement.to_frame())
         self.assertRegex(repr(answer), r"^measurement: ok \(p = ")

@@ -162,6 +162,7 @@ const std::vector<Described> kKeyTables{
     {"step of `transform`", "transform.[]"},
     {"kind of map", "inverse_map"},
     {"key of `gp`", "inverse_map.gp"},
+    {"key of `network`", "inverse_map.network"},
     {"baseline", "evaluation.baselines.[]"},
 };
 

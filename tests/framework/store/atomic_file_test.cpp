@@ -14,7 +14,7 @@ TEST(AtomicFile, WritesAndReplaces) {
   writeTextFile(folder / "a.txt", "one");
   writeTextFile(folder / "a.txt", "two");
   EXPECT_EQ(readFile(folder / "a.txt"), "two");
-  EXPECT_FALSE(std::filesystem::exists(folder / "a.txt.tmp"));
+  EXPECT_FALSE(std::filesystem::exists(getTemporaryPath(folder / "a.txt")));
 }
 
 TEST(AtomicFile, AFailureLeavesTheOldFileAndNoOther) {
@@ -27,7 +27,7 @@ TEST(AtomicFile, AFailureLeavesTheOldFileAndNoOther) {
                                }),
                std::runtime_error);
   EXPECT_EQ(readFile(folder / "a.txt"), "one");
-  EXPECT_FALSE(std::filesystem::exists(folder / "a.txt.tmp"));
+  EXPECT_FALSE(std::filesystem::exists(getTemporaryPath(folder / "a.txt")));
 }
 
 TEST(AtomicFile, NamesTheFileThatCannotBeWritten) {
@@ -44,15 +44,16 @@ TEST(AtomicFile, NamesTheFileThatCannotBeWritten) {
 TEST(AtomicFile, AFullDiskIsNamedAndLeavesTheOldFile) {
   const TemporaryFolder folder;
   writeTextFile(folder / "a.txt", "one");
-  std::filesystem::create_symlink("/dev/full", folder / "a.txt.tmp");
+  std::filesystem::create_symlink("/dev/full", getTemporaryPath(folder / "a.txt"));
   try {
     writeTextFile(folder / "a.txt", "two");
     FAIL();
   } catch (const std::runtime_error& error) {
-    EXPECT_EQ(error.what(), (folder / "a.txt.tmp").string() + ": cannot be written: No space left on device");
+    EXPECT_EQ(error.what(),
+              (getTemporaryPath(folder / "a.txt")).string() + ": cannot be written: No space left on device");
   }
   EXPECT_EQ(readFile(folder / "a.txt"), "one");
-  EXPECT_FALSE(std::filesystem::is_symlink(folder / "a.txt.tmp"));
+  EXPECT_FALSE(std::filesystem::is_symlink(getTemporaryPath(folder / "a.txt")));
 }
 
 TEST(AtomicFile, MakesFoldersOnceAndReadsFilesWhole) {

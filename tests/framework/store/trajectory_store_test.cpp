@@ -1,6 +1,7 @@
 #include "framework/store/trajectory_store.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 
 #include <cmath>
 #include <cstring>
@@ -55,6 +56,14 @@ std::vector<fs::path> listChunks(const TrajectoryStore& store) {
     }
   }
   return files;
+}
+
+int countFiles(const fs::path& folder, const std::string& suffix) {
+  int count = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    count += entry.path().extension() == suffix ? 1 : 0;
+  }
+  return count;
 }
 
 void overwrite(const fs::path& file, const std::string& bytes) {
@@ -148,9 +157,12 @@ TEST(TrajectoryStore, DamagedChunksAreSetAsideAndTheirSamplesMissing) {
       bytes.resize(damage == "truncated" ? position : 0);
     }
     overwrite(damaged, bytes);
-    EXPECT_EQ(openStore(root.getPath(), StoreAccess::kReadOnly).getSetAside().size(), 1u);
+    TrajectoryStore reader = openStore(root.getPath(), StoreAccess::kReadOnly);
+    reader.verify(points);
+    EXPECT_EQ(reader.getSetAside().size(), 1u) << damage;
     EXPECT_TRUE(fs::exists(damaged));  // reading only changes nothing
     TrajectoryStore store = openStore(root.getPath());
+    store.verify(points);
     EXPECT_EQ(store.findMissing(points), (std::vector<Index>{0, 1, 2})) << damage;
     ASSERT_EQ(store.getSetAside().size(), 1u);
     EXPECT_EQ(store.getSetAside()[0].file, damaged.string() + ".set-aside");
@@ -202,11 +214,22 @@ TEST(TrajectoryStore, ALaterFormatIsAnErrorThatNamesTheFile) {
 TEST(TrajectoryStore, RemovesWhatAnInterruptedWriteLeft) {
   const TemporaryFolder root;
   const fs::path folder = openStore(root.getPath()).getFolder();
-  overwrite(folder / "abc.chunk.tmp", "half a chunk");
+  const pid_t ended = ::fork();
+  if (ended == 0) {
+    overwrite(getTemporaryPath(folder / "abc.chunk"), "half a chunk");
+    ::_exit(0);
+  }
+  ::waitpid(ended, nullptr, 0);
+  const fs::path living = getTemporaryPath(folder / "abc.chunk"),
+                 elsewhere = folder / "abc.chunk.node7-1-2.tmp";
+  overwrite(living, "under way");
+  overwrite(elsewhere, "perhaps under way");
+  EXPECT_EQ(countFiles(folder, ".tmp"), 3);
   EXPECT_EQ(openStore(root.getPath(), StoreAccess::kReadOnly).getSampleCount(), 0);
-  EXPECT_TRUE(fs::exists(folder / "abc.chunk.tmp"));
+  EXPECT_EQ(countFiles(folder, ".tmp"), 3);
   EXPECT_EQ(openStore(root.getPath()).getSampleCount(), 0);
-  EXPECT_FALSE(fs::exists(folder / "abc.chunk.tmp"));
+  EXPECT_EQ(countFiles(folder, ".tmp"), 2);
+  EXPECT_TRUE(fs::exists(living) && fs::exists(elsewhere));
 }
 
 // The temporary file is a link to /dev/full, where every write fails as on a full disk.
@@ -218,12 +241,12 @@ TEST(TrajectoryStore, AFullDiskIsAnErrorThatNamesTheFileAndKeepsWhatWasThere) {
   const SampleBlock block = makeBlock(points.rightCols(3));
   const std::string bytes = makeChunk(block, store.getShape());
   const fs::path file = store.getFolder() / (toHex(calcDigest(bytes.data(), bytes.size())) + ".chunk");
-  fs::create_symlink("/dev/full", file.string() + ".tmp");
+  fs::create_symlink("/dev/full", getTemporaryPath(file));
   try {
     store.append(block);
     FAIL();
   } catch (const std::runtime_error& error) {
-    EXPECT_EQ(error.what(), file.string() + ".tmp: cannot be written: No space left on device");
+    EXPECT_EQ(error.what(), getTemporaryPath(file).string() + ": cannot be written: No space left on device");
   }
   EXPECT_EQ(store.findMissing(points), (std::vector<Index>{2, 3, 4}));
   store.append(block);  // there is space again
@@ -231,12 +254,50 @@ TEST(TrajectoryStore, AFullDiskIsAnErrorThatNamesTheFileAndKeepsWhatWasThere) {
   EXPECT_EQ(store.load(points).responses, makeBlock(points).responses);
 }
 
-TEST(TrajectoryStore, ASecondOwnerIsRefusedAReaderIsNot) {
+TEST(TrajectoryStore, FindsWhatAnotherWriterStoresMeanwhile) {
   const TemporaryFolder root;
+  TrajectoryStore one = openStore(root.getPath()), other = openStore(root.getPath());
+  const MatrixXd points = makePoints(5);
+  one.append(makeBlock(points.leftCols(3)));
+  EXPECT_EQ(other.findMissing(points).size(), 5u);
+  other.append(makeBlock(points.middleCols(2, 3)));  // the third is stored twice
+  one.refresh();
+  other.refresh();
+  EXPECT_TRUE(one.findMissing(points).empty());
+  EXPECT_EQ(one.load(points).responses, makeBlock(points).responses);
+  EXPECT_EQ(other.load(points).responses, makeBlock(points).responses);
+  EXPECT_EQ(openStore(root.getPath(), StoreAccess::kReadOnly).getSampleCount(), 5);
+}
+
+TEST(TrajectoryStore, ASampleOfADamagedChunkIsFoundWhereItIsStoredOnceMore) {
+  const TemporaryFolder root;
+  const MatrixXd points = makePoints(3);
+  fs::path damaged;
+  {
+    TrajectoryStore store = openStore(root.getPath());
+    store.append(makeBlock(points));
+    damaged = listChunks(store)[0];
+    store.append(makeBlock(points.leftCols(2)));
+  }
+  std::string bytes = readFile(damaged);
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+  overwrite(damaged, bytes);
   TrajectoryStore store = openStore(root.getPath());
-  EXPECT_THROW(openStore(root.getPath()), std::runtime_error);
-  store.append(makeBlock(makePoints(3)));
-  EXPECT_EQ(openStore(root.getPath(), StoreAccess::kReadOnly).getSampleCount(), 3);
+  store.verify(points);
+  EXPECT_EQ(store.getSetAside().size(), 1u);
+  EXPECT_EQ(store.findMissing(points), std::vector<Index>{2});
+  EXPECT_EQ(store.load(points.leftCols(2)).responses, makeBlock(points.leftCols(2)).responses);
+}
+
+TEST(TrajectoryStore, AChunkThatVanishedIsMissingWhenItIsVerified) {
+  const TemporaryFolder root;
+  TrajectoryStore one = openStore(root.getPath());
+  one.append(makeBlock(makePoints(3)));
+  TrajectoryStore other = openStore(root.getPath());
+  fs::remove(listChunks(one)[0]);
+  other.verify(makePoints(3));
+  EXPECT_EQ(other.findMissing(makePoints(3)).size(), 3u);
+  EXPECT_TRUE(other.getSetAside().empty());
 }
 
 TEST(TrajectoryStore, ReadingAFolderThatIsNotThereFindsNothingAndMakesNothing) {

@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "kernels/gp/fit.hpp"
+#include "kernels/network/predictor.hpp"
 #include "kernels/online/online_predictor.hpp"
 #include "kernels/sparse/compression.hpp"
 #include "tests/kernels/support/random_data.hpp"
@@ -127,6 +128,16 @@ TEST_F(NoAllocation, InAnOnlinePredictionOfCompactProcesses) {
   OnlinePredictor::Workspace workspace(predictor);
   const VectorXd x = inputs.col(3);
   EXPECT_EQ(allocationsOf([&] { predictor.predictWithGradient(x, workspace); }), 0);
+}
+
+TEST_F(NoAllocation, InAnOnlinePredictionOfANetwork) {
+  const MatrixXd inputs = test::randomMatrix(20, 300, 1), targets = test::randomMatrix(4, 300, 2);
+  const network::Predictor predictor(
+      network::makeNetwork(inputs, targets, {{64, 64}, 1e-3, {5, 3}},
+                           [](Eigen::Index i) { return static_cast<double>(i % 7) - 3.0; }));
+  network::Predictor::Workspace workspace(predictor);
+  const VectorXd x = inputs.col(3);
+  EXPECT_EQ(allocationsOf([&] { predictor.predict(x, workspace); }), 0);
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 
 #include "kernels/linalg/decompositions.hpp"
 #include "kernels/surrogate/fit_slopes.hpp"
-#include "kernels/surrogate/local_variance.hpp"
 #include "kernels/surrogate/shared_process.hpp"
 #include "tests/kernels/support/random_data.hpp"
 
@@ -176,10 +175,9 @@ TEST(LocalVariance, OfFewPointsIsThatOfAll) {
     const double expected = 1.0 + numbers.nugget -
                             cross.dot(linalg::solvePositiveDefinite(of_all.bottomRightCorner(11, 11), cross));
     PointCovariance at;
-    calcPointCovariance(covariance, scaled, scaled.row(0).transpose(), false, at);
-    LocalVariance::Workspace workspace;
-    const LocalVariance variance(covariance, numbers.nugget);
-    EXPECT_NEAR(variance.calc(scaled, at.squares, at.values, 0, workspace), expected, 1e-10);
+    const exact::smooth_process process = describeProcess(covariance, numbers.nugget, scaled, 0, 0);
+    calcPointCovariance(process, scaled.row(0).transpose(), at);
+    EXPECT_NEAR(exact::calcLocalVariance(process, at.getView(), 0), expected, 1e-10);
   }
 }
 

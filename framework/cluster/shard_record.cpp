@@ -1,0 +1,109 @@
+#include "framework/cluster/shard_record.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "framework/cluster/shard_plan.hpp"
+#include "framework/store/atomic_file.hpp"
+
+namespace twinmap {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr const char* kLost = "it ended without a word: killed, or its node was lost";
+constexpr std::array kStates = {ShardState::kMissing, ShardState::kRunning, ShardState::kDone,
+                                ShardState::kInterrupted, ShardState::kFailed};
+
+std::string getHost() {
+  std::array<char, 256> host{};
+  ::gethostname(host.data(), host.size() - 1);
+  const char* node = ::getenv("SLURMD_NODENAME");
+  return node != nullptr ? node : host.data();
+}
+
+json writeAttempt(const ShardAttempt& attempt) {
+  json failures = json::array();
+  for (const FailedCase& failure : attempt.failures) {
+    failures.push_back({{"case", failure.name}, {"reason", failure.reason}, {"command", failure.command}});
+  }
+  return {{"host", attempt.host},
+          {"state", getName(attempt.state)},
+          {"reason", attempt.reason},
+          {"failed_cases", failures}};
+}
+
+ShardAttempt readAttempt(const json& entry) {
+  ShardAttempt attempt{entry.at("host"), ShardState::kRunning, entry.at("reason"), {}};
+  const std::string name = entry.at("state");
+  attempt.state =
+      *std::find_if(kStates.begin(), kStates.end(), [&](ShardState state) { return name == getName(state); });
+  for (const json& failure : entry.at("failed_cases")) {
+    attempt.failures.push_back({failure.at("case"), failure.at("reason"), failure.at("command")});
+  }
+  return attempt;
+}
+
+bool isFailure(const ShardAttempt& attempt) {
+  return attempt.state == ShardState::kFailed || attempt.state == ShardState::kRunning;
+}
+
+std::string getReason(const ShardAttempt& attempt) {
+  return attempt.state == ShardState::kRunning ? kLost : attempt.reason;
+}
+
+}  // namespace
+
+const char* getName(ShardState state) {
+  constexpr const char* kNames[] = {"missing", "running", "done", "interrupted", "failed"};
+  return kNames[static_cast<std::size_t>(state)];
+}
+
+ShardRecord::ShardRecord(const fs::path& folder, int shard)
+    : file_(getClusterFolder(folder) / "shards" / (std::to_string(shard) + ".json")) {
+  if (fs::exists(file_)) {
+    for (const json& entry : json::parse(readBytes(file_))) {
+      attempts_.push_back(readAttempt(entry));
+    }
+  }
+}
+
+ShardState ShardRecord::getState() const {
+  return attempts_.empty() ? ShardState::kMissing : attempts_.back().state;
+}
+
+std::string ShardRecord::getRefusal() const {
+  if (attempts_.size() < 2) {
+    return "";
+  }
+  const ShardAttempt &last = attempts_.back(), &before = attempts_[attempts_.size() - 2];
+  return isFailure(last) && isFailure(before) && getReason(last) == getReason(before) ? getReason(last) : "";
+}
+
+void ShardRecord::begin() {
+  attempts_.push_back({getHost(), ShardState::kRunning, "", {}});
+  write();
+}
+
+void ShardRecord::end(ShardState state, const std::string& reason, const std::vector<FailedCase>& failures) {
+  attempts_.back().state = state;
+  attempts_.back().reason = reason;
+  attempts_.back().failures = failures;
+  write();
+}
+
+void ShardRecord::write() const {
+  json entries = json::array();
+  for (const ShardAttempt& attempt : attempts_) {
+    entries.push_back(writeAttempt(attempt));
+  }
+  makeFolders(file_.parent_path());
+  writeTextFile(file_, entries.dump(1) + "\n");
+}
+
+}  // namespace twinmap

@@ -1,0 +1,109 @@
+#include "framework/cluster/submission.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <stdexcept>
+
+#include "framework/cluster/shard_record.hpp"
+#include "framework/results/run_state.hpp"
+#include "framework/spec/experiment_file.hpp"
+#include "framework/store/atomic_file.hpp"
+#include "framework/sweep/run_sweep.hpp"
+
+namespace twinmap {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// As the run itself would: a sweep leaves open what each case resolves.
+void takeFolder(const YamlNode& root, const ShardOptions& shards) {
+  if (!listSweptKeys(root).empty()) {
+    SweepOptions options;
+    options.folder = shards.folder;
+    options.store = shards.store;
+    beginSweep(root, options);
+    return;
+  }
+  const std::string resolved = writeExperiment(readExperiment(root));
+  makeFolders(shards.folder);
+  requireSameExperiment(shards.folder, resolved);
+  writeTextFile(shards.folder / "resolved.yaml", resolved);
+  noteStore(shards.folder, shards.store);
+}
+
+struct Stage {
+  ShardKind kind;
+  const char* what;
+  double seconds;
+};
+
+}  // namespace
+
+SubmittedJobs submitExperiment(const YamlNode& root, const ShardOptions& shards,
+                               const SubmitOptions& options) {
+  requireScheduler(options.kind);
+  if (isQueued(shards.folder)) {
+    throw std::runtime_error(shards.folder.string() +
+                             ": has jobs that are queued or running; 'twinmap cancel' ends them");
+  }
+  const ShardPlan plan = makeShardPlan(root, shards);
+  takeFolder(root, shards);
+  makeFolders(getClusterFolder(shards.folder));
+  fs::remove_all(getClusterFolder(shards.folder) / "shards");
+  writeShardPlan(shards.folder, plan);
+  return submitJobs(shards.folder, plan, options);
+}
+
+std::string describeShards(const ShardPlan& plan, const ShardOptions& shards) {
+  constexpr double kMinute = 60.0, kMebi = 1024.0 * 1024.0;
+  std::string text;
+  for (const Stage& stage : {Stage{ShardKind::kSimulate, "samples", plan.simulate_s},
+                             Stage{ShardKind::kCases, "cases", plan.cases_s}}) {
+    if (const int count = plan.count(stage.kind); count > 0) {
+      text += fmt::format("shards:      {} of {}, about {:.2g} min each on {} threads\n", count, stage.what,
+                          stage.seconds / count / shards.threads / kMinute, shards.threads);
+    }
+  }
+  return text + fmt::format("             1 of tables and report\nof a shard:  about {:.0f} MiB of memory\n",
+                            plan.memory / kMebi);
+}
+
+std::string listCommands(const fs::path& folder, const ShardPlan& plan, const std::string& program) {
+  std::string text;
+  int first = 0;
+  for (const ShardKind stage : {ShardKind::kSimulate, ShardKind::kCases, ShardKind::kFinish}) {
+    if (const int count = plan.count(stage); count > 0) {
+      text += fmt::format("seq {} {} | xargs -n 1 -P 1 {} shard {}\n", first, first + count - 1,
+                          quoteForShell(program), quoteForShell(folder.string()));
+      first += count;
+    }
+  }
+  return text;
+}
+
+std::string describeSubmission(const fs::path& folder) {
+  if (!fs::exists(getClusterFolder(folder) / "plan.json")) {
+    return "";
+  }
+  const ShardPlan plan = readShardPlan(folder);
+  std::map<std::string, int> count;
+  std::string failures;
+  for (int i = 0; i < static_cast<int>(plan.shards.size()); ++i) {
+    const ShardRecord record(folder, i);
+    ++count[getName(record.getState())];
+    if (record.getState() == ShardState::kFailed) {
+      failures += fmt::format("failed:  shard {} ({}), {} times: {}\n", i,
+                              getName(plan.shards[static_cast<std::size_t>(i)].kind),
+                              record.getAttempts().size(), record.getAttempts().back().reason);
+    }
+  }
+  std::string states;
+  for (const auto& [state, number] : count) {
+    states += fmt::format("{}{} {}", states.empty() ? "" : ", ", number, state);
+  }
+  const std::string queue = describeQueue(folder);
+  return "shards:  " + states + "\n" + failures + (queue.empty() ? "" : "jobs:    " + queue + "\n");
+}
+
+}  // namespace twinmap

@@ -1,0 +1,153 @@
+#include "framework/experiment/train_network.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+
+#include "framework/experiment/train_interruptibly.hpp"
+#include "framework/features/noise.hpp"
+#include "framework/monitoring/stage_timer.hpp"
+#include "framework/network_map/train_network_map.hpp"
+#include "framework/surrogate/train_surrogate.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+constexpr int kMostOfSurrogate = 2000, kEnough = 1000;
+constexpr double kWorthwhileRatio = 1.3;
+
+const NetworkMapSpec& getSpec(const NetworkContext& context) {
+  return *context.experiment.inverse_map.findNetwork();
+}
+
+int countSimulations(const NetworkContext& context) {
+  return static_cast<int>(context.samples.features.cols() / context.samples.replicates);
+}
+
+/// Why no surrogate is to be tried; empty if one is.
+std::string findReasonForSimulations(const NetworkContext& context) {
+  const int n = countSimulations(context);
+  if (getSpec(context).samples_from == NetworkSamples::kSimulations) {
+    return "asked for";
+  }
+  if (getSpec(context).samples_from == NetworkSamples::kSurrogate) {
+    return "";
+  }
+  if (n > kMostOfSurrogate) {
+    return fmt::format("a surrogate takes no more than {} of {} simulations", kMostOfSurrogate, n);
+  }
+  return findSurrogateObstacle(context.experiment.model, n, context.samples.noise_covariance);
+}
+
+/// Why the simulations are the better teacher than a surrogate trained on them; empty if they are not.
+std::string findReasonAgainst(const Surrogate& surrogate, const NetworkContext& context) {
+  const double ratio = surrogate.validation.limit_ratio.maxCoeff();
+  const bool free_to_choose = getSpec(context).samples_from == NetworkSamples::kAutomatic;
+  if (!free_to_choose || countSimulations(context) < kEnough || ratio <= kWorthwhileRatio) {
+    return "";
+  }
+  return fmt::format("the surrogate promises {:.2f} of what measurements allow", ratio);
+}
+
+/// The surrogate to learn from, if there is to be one.
+std::optional<SurrogateMapTraining> findTeacher(const NetworkContext& context, StageNotes& notes) {
+  std::string reason = findReasonForSimulations(context);
+  std::optional<SurrogateMapTraining> teacher;
+  if (reason.empty()) {
+    teacher = trainSurrogateMap(context.experiment, context.sets, context.simulator, context.extractor,
+                                context.samples, context.control);
+    notes.append(teacher->notes);
+    reason = findReasonAgainst(teacher->surrogate, context);
+  }
+  if (!reason.empty()) {
+    spdlog::info("the network learns from the simulations: {}", reason);
+    return std::nullopt;
+  }
+  spdlog::info("the network learns from a surrogate, which promises {:.2f} of what measurements allow",
+               teacher->surrogate.validation.limit_ratio.maxCoeff());
+  return teacher;
+}
+
+/// Enough columns for a transform.
+LabelledFeatures takeFirst(const LabelledFeatures& samples) {
+  constexpr Index kMost = 20000;
+  if (samples.features.cols() <= kMost) {
+    return samples;
+  }
+  LabelledFeatures first{samples.infos,
+                         samples.features.leftCols(kMost),
+                         samples.parameters.leftCols(kMost),
+                         samples.noise_covariance,
+                         1,
+                         samples.sensitivities};
+  first.nuisance = samples.nuisance.leftCols(kMost);
+  first.inputs = samples.inputs.leftCols(kMost);
+  return first;
+}
+
+NetworkMapTraining trainOnSimulations(const NetworkContext& context, const FeatureTransform& transform) {
+  const std::vector<int> successful = findSuccessful(context.sets.train);
+  const MatrixXd points = context.sets.train.parameters(Eigen::all, successful);
+  const MatrixXd responses = context.sets.train.responses(Eigen::all, successful);
+  const ResponseNoise noise(context.experiment.noise, context.sets.train.layout);
+  return trainNetworkMap({context.experiment.model, getSpec(context), context.experiment.seed},
+                         {points, responses, context.extractor, noise, transform,
+                          context.extractor.isLinear(), context.samples.noise_covariance},
+                         {context.control.threads, context.control.abandon});
+}
+
+NetworkMapTraining train(const NetworkContext& context, const FeatureTransform& transform,
+                         const std::optional<SurrogateMapTraining>& teacher) {
+  try {
+    return trainInterruptibly([&] {
+      return teacher ? trainNetworkMap({context.experiment.model, getSpec(context), context.experiment.seed},
+                                       teacher->surrogate, {context.control.threads, context.control.abandon})
+                     : trainOnSimulations(context, transform);
+    });
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(std::string("the network cannot be trained: ") + error.what());
+  }
+}
+
+TrainingSummary summarize(const ModelSpec& model, const NetworkMapTraining& trained) {
+  const SurrogateValidation& validation = trained.map.validation;
+  TrainingSummary summary;
+  summary.leave_one_out =
+      calcMetrics(model.parameters, trained.held_out_truth, trained.held_out, {}, trained.held_out_draws);
+  summary.nlml.assign(model.parameters.size(), std::numeric_limits<double>::quiet_NaN());
+  CrossValidation found;
+  found.coverage95 = validation.coverage95;
+  found.stddev_scale = validation.stddev_scale;
+  found.log_density = validation.log_density;
+  found.status = toString(validation.status);
+  found.limit_ratio = validation.limit_ratio;
+  summary.cross_validation = std::move(found);
+  return summary;
+}
+
+}  // namespace
+
+NetworkOutcome trainNetwork(const NetworkContext& context) {
+  NetworkOutcome outcome;
+  const std::optional<SurrogateMapTraining> teacher = findTeacher(context, outcome.notes);
+  outcome.transform = fitTransform(context.experiment.transform, takeFirst(context.samples));
+  NetworkMapTraining trained = timeStage("train the network", outcome.notes,
+                                         [&] { return train(context, outcome.transform, teacher); });
+  outcome.notes.warn(Gravity::kPoor, trained.warnings);
+  if (teacher) {
+    trained.map.validation.limit_ratio = teacher->surrogate.validation.limit_ratio;
+    outcome.forward = teacher->surrogate.forward;
+  }
+  outcome.summary = summarize(context.experiment.model, trained);
+  outcome.map = std::move(trained.map);
+  return outcome;
+}
+
+}  // namespace twinmap

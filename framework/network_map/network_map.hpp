@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "framework/inverse_map/known_inputs.hpp"
+#include "framework/inverse_map/predictions.hpp"
+#include "framework/surrogate/surrogate.hpp"
+#include "kernels/network/network.hpp"
+
+namespace twinmap {
+
+/// What a network sees of a measurement: projection (features - center), of unit variance over the training
+/// samples, above the scaled known inputs.
+struct NetworkInputs {
+  Eigen::VectorXd center;      ///< d
+  Eigen::MatrixXd projection;  ///< k x d
+  KnownInputs known;           ///< q
+
+  Eigen::Index countInputs() const { return projection.rows() + known.center.size(); }
+  /// Features (d x n) and known inputs (q x n) -> k + q x n.
+  Eigen::MatrixXd apply(const Eigen::MatrixXd& features, const Eigen::MatrixXd& known_values) const;
+};
+
+/// A map from features to parameters by a neural network, whose targets are the parameters on [-1, 1] of
+/// their bounds. A trained, immutable value.
+struct NetworkMap {
+  NetworkInputs inputs;
+  Eigen::VectorXd center, half_width;  ///< p, of the parameters' bounds
+  network::Network network;
+  SurrogateValidation
+      validation;  ///< of simulations that took no part; no limit_scale, limit_ratio may be NaN
+
+  /// Features (d x n, finite) and known inputs (q x n) -> mean and standard deviation of the parameters (p x
+  /// n). The result does not depend on the threads. Throws std::invalid_argument for sizes that do not fit.
+  /// Cost: some us a column.
+  Predictions predict(const Eigen::MatrixXd& features, const Eigen::MatrixXd& known_values,
+                      int threads = 1) const;
+};
+
+/// Mean and standard deviation (p x n) of a network's targets for its inputs (k x n).
+Predictions predictTargets(const network::Network& network, const Eigen::MatrixXd& inputs, int threads);
+
+}  // namespace twinmap

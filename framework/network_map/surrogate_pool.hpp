@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+
+#include "framework/inverse_map/training_control.hpp"
+#include "framework/network_map/noisy_samples.hpp"
+#include "framework/surrogate/surrogate.hpp"
+
+namespace twinmap {
+
+/// Points of the sampled box and what a surrogate says that a measurement there gives.
+struct SurrogatePool {
+  Eigen::MatrixXd points;      ///< m x n, in their units
+  Eigen::MatrixXd projection;  ///< k x r, from the surrogate's scores to inputs of unit variance
+  NormalInputs inputs;         ///< with the surrogate's own error
+};
+
+/// n points, uniform in the box. The inputs are the principal components of the noisy scores that stand above
+/// the noise, and the known inputs. The result does not depend on the threads. Throws gp::Stopped. Cost: n
+/// evaluations of the surrogate's processes and their variance.
+SurrogatePool makeSurrogatePool(const Surrogate& surrogate, Eigen::Index n, std::uint64_t seed,
+                                const TrainingControl& control);
+
+}  // namespace twinmap

@@ -1,0 +1,240 @@
+#include "framework/network_map/train_network_map.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include "framework/features/labelled_features.hpp"
+#include "framework/features/scaling_steps.hpp"
+#include "framework/network_map/surrogate_pool.hpp"
+#include "framework/spec/parameter_box.hpp"
+#include "framework/surrogate/cross_validation.hpp"
+#include "framework/surrogate/run_tasks.hpp"
+#include "kernels/linalg/decompositions.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr Index kFolds = 5;
+
+/// Indices below `count`: those for which i % period is `residue`, or the others.
+std::vector<Index> listIndices(Index count, Index period, Index residue, bool matching) {
+  std::vector<Index> listed;
+  for (Index i = 0; i < count; ++i) {
+    if ((i % period == residue) == matching) {
+      listed.push_back(i);
+    }
+  }
+  return listed;
+}
+
+/// Samples to learn from, and those that choose the checkpoint.
+struct Split {
+  std::vector<Index> training, held_out;
+};
+
+/// A tenth is held out, of few a fifth.
+Split split(const std::vector<Index>& all) {
+  constexpr std::size_t kFew = 1000;
+  const std::size_t period = all.size() < kFew ? 5 : 10;
+  Split parts;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    (i % period == period - 1 ? parts.held_out : parts.training).push_back(all[i]);
+  }
+  return parts;
+}
+
+std::vector<Index> listAll(Index count) {
+  return listIndices(count, 1, 0, true);
+}
+
+/// Parameters on [-1, 1] of their bounds.
+MatrixXd makeTargets(const NetworkMap& map, const MatrixXd& points) {
+  return map.half_width.cwiseInverse().asDiagonal() *
+         (points.topRows(map.center.size()).colwise() - map.center);
+}
+
+void setBounds(const ModelSpec& model, NetworkMap& map) {
+  map.center = calcBoxCenter(model.parameters);
+  map.half_width = 0.5 * calcWidths(model.parameters);
+  map.inputs.known = makeKnownInputs(model.inputs);
+}
+
+/// A matrix F with F F' = covariance, which may be singular.
+MatrixXd calcFactor(const MatrixXd& covariance) {
+  const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(covariance);
+  return eigen.vectors * eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
+}
+
+/// Draws of held-out samples' noise: enough columns for quantiles.
+Index countDraws(Index samples) {
+  constexpr Index kColumns = 2000, kMost = 4;
+  return std::clamp<Index>(kColumns / samples, 1, kMost);
+}
+
+/// What networks say of samples that they had not seen.
+struct HeldOutTargets {
+  Predictions predictions;
+  MatrixXd truth;
+  int draws = 1;
+};
+
+HeldOutTargets predictHeldOut(const NetworkSet& set, const network::Network& network,
+                              const std::vector<Index>& chosen, std::uint64_t seed, int threads) {
+  const Index draws = countDraws(static_cast<Index>(chosen.size()));
+  return {predictTargets(network, drawMeasured(set.samples, chosen, draws, seed), threads),
+          MatrixXd(set.targets(Eigen::all, chosen)).replicate(1, draws), static_cast<int>(draws)};
+}
+
+/// Networks that a fifth of the samples is left out of in turn, and what they say of it.
+HeldOutTargets crossValidate(const NetworkSet& set, const NetworkTask& task, const TrainingControl& control) {
+  const Index n = set.targets.cols(), p = set.targets.rows(), draws = countDraws(n);
+  const MatrixXd measured = drawMeasured(set.samples, listAll(n), draws, task.seed);
+  HeldOutTargets held_out{{MatrixXd(p, n * draws), MatrixXd(p, n * draws)},
+                          set.targets.replicate(1, draws),
+                          static_cast<int>(draws)};
+  runTasks(control.threads, kFolds, [&](std::size_t fold) {
+    const Split parts = split(listIndices(n, kFolds, static_cast<Index>(fold), false));
+    const network::NetworkTraining trained =
+        fitNetwork(set, parts.training, parts.held_out, {task.spec, task.seed, fold + 1}, {1, control.stop});
+    std::vector<Index> columns;
+    for (Index draw = 0; draw < draws; ++draw) {
+      for (const Index i : listIndices(n, kFolds, static_cast<Index>(fold), true)) {
+        columns.push_back(i + draw * n);
+      }
+    }
+    const Predictions found = predictTargets(trained.network, measured(Eigen::all, columns), 1);
+    held_out.predictions.mean(Eigen::all, columns) = found.mean;
+    held_out.predictions.stddev(Eigen::all, columns) = found.stddev;
+  });
+  return held_out;
+}
+
+/// Held-out samples in the parameters' units, and what follows from them.
+void validateMap(const HeldOutTargets& held_out, const VectorXd& more_scale, NetworkMapTraining& training) {
+  NetworkMap& map = training.map;
+  const auto toParameters = [&map](const MatrixXd& targets) -> MatrixXd {
+    return (map.half_width.asDiagonal() * targets).colwise() + map.center;
+  };
+  HeldOut found;
+  found.truth = toParameters(held_out.truth);
+  found.predictions = {toParameters(held_out.predictions.mean),
+                       map.half_width.asDiagonal() * held_out.predictions.stddev};
+  found.limit_stddev =
+      MatrixXd::Constant(found.truth.rows(), found.truth.cols(), std::numeric_limits<double>::quiet_NaN());
+  map.validation = validate(found);
+  map.validation.stddev_scale = map.validation.stddev_scale.cwiseProduct(more_scale);
+  training.held_out_truth = std::move(found.truth);
+  training.held_out = {std::move(found.predictions.mean),
+                       map.validation.stddev_scale.asDiagonal() * found.predictions.stddev};
+  training.held_out_draws = held_out.draws;
+}
+
+/// What a person should know of it.
+void warnOfTraining(const network::NetworkTraining& trained, NetworkMapTraining& training) {
+  if (trained.restarts > 0) {
+    training.warnings.push_back(
+        fmt::format("the network's training went back to its best checkpoint {} times; a lower learning_rate "
+                    "would be steadier",
+                    trained.restarts));
+  }
+}
+
+NetworkInputs fitInputs(const NetworkSimulations& simulations, const MatrixXd& features,
+                        const KnownInputs& known) {
+  const VectorXd scale = fitZScore(simulations.transform.apply(features)).scale;
+  return {features.rowwise().mean(), scale.cwiseInverse().asDiagonal() * simulations.transform.calcMatrix(),
+          known};
+}
+
+/// Clean features with one draw of their noise.
+MatrixXd drawFeatures(const NetworkSimulations& simulations, std::uint64_t seed) {
+  constexpr Index kMost = 4000;  // for means and standard deviations
+  const Index count = std::min(simulations.responses.cols(), kMost);
+  return simulations.extractor.extract(
+      simulations.noise.add(simulations.responses.leftCols(count), {seed, RandomPurpose::kNetworkNoise}, 0));
+}
+
+std::unique_ptr<NoisySamples> makeSamples(const NetworkSimulations& simulations, const MatrixXd& known,
+                                          const NetworkInputs& inputs) {
+  if (!simulations.constant_noise) {
+    return std::make_unique<ResponseSamples>(simulations.responses, known, simulations.extractor,
+                                             simulations.noise, inputs);
+  }
+  return std::make_unique<NormalSamples>(NormalInputs{
+      inputs.apply(simulations.extractor.extract(simulations.responses), known),
+      calcFactor(inputs.projection * simulations.noise_covariance * inputs.projection.transpose()),
+      {},
+      {},
+      {}});
+}
+
+/// Columns without NaN.
+MatrixXd takeComplete(const MatrixXd& features) {
+  std::vector<Index> complete;
+  for (Index i = 0; i < features.cols(); ++i) {
+    if (features.col(i).allFinite()) {
+      complete.push_back(i);
+    }
+  }
+  return features(Eigen::all, complete);
+}
+
+}  // namespace
+
+NetworkMapTraining trainNetworkMap(const NetworkTask& task, const NetworkSimulations& simulations,
+                                   const TrainingControl& control) {
+  constexpr Index kFewest = 50, kHonest = 10000;
+  const Index n = simulations.points.cols();
+  if (n < kFewest) {
+    throw std::invalid_argument("a network needs at least 50 training samples");
+  }
+  NetworkMapTraining training;
+  NetworkMap& map = training.map;
+  setBounds(task.model, map);
+  map.inputs = fitInputs(simulations, takeComplete(drawFeatures(simulations, task.seed)), map.inputs.known);
+  const MatrixXd known = simulations.points.bottomRows(map.inputs.known.center.size());
+  const std::unique_ptr<NoisySamples> samples = makeSamples(simulations, known, map.inputs);
+  const MatrixXd targets = makeTargets(map, simulations.points);
+  const NetworkSet set{*samples, targets};
+  const Split parts = split(listAll(n));
+  network::NetworkTraining trained =
+      fitNetwork(set, parts.training, parts.held_out, {task.spec, task.seed, 0}, control);
+  warnOfTraining(trained, training);
+  map.network = std::move(trained.network);
+  const HeldOutTargets held_out =
+      n < kHonest ? crossValidate(set, task, control)
+                  : predictHeldOut(set, map.network, parts.held_out, task.seed, control.threads);
+  validateMap(held_out, VectorXd::Ones(map.center.size()), training);
+  return training;
+}
+
+NetworkMapTraining trainNetworkMap(const NetworkTask& task, const Surrogate& surrogate,
+                                   const TrainingControl& control) {
+  NetworkMapTraining training;
+  NetworkMap& map = training.map;
+  setBounds(task.model, map);
+  SurrogatePool pool = makeSurrogatePool(surrogate, task.spec.surrogate_samples, task.seed, control);
+  map.inputs.center = surrogate.forward->center;
+  map.inputs.projection = pool.projection * surrogate.forward->projection;
+  const MatrixXd targets = makeTargets(map, pool.points);
+  const NormalSamples samples(std::move(pool.inputs));
+  const NetworkSet set{samples, targets};
+  const Split parts = split(listAll(targets.cols()));
+  network::NetworkTraining trained =
+      fitNetwork(set, parts.training, parts.held_out, {task.spec, task.seed, 0}, control);
+  warnOfTraining(trained, training);
+  map.network = std::move(trained.network);
+  validateMap(predictHeldOut(set, map.network, parts.held_out, task.seed, control.threads),
+              surrogate.validation.stddev_scale, training);
+  return training;
+}
+
+}  // namespace twinmap

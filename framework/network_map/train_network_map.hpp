@@ -1,0 +1,54 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "framework/features/feature_transform.hpp"
+#include "framework/network_map/fit_network.hpp"
+#include "framework/network_map/network_map.hpp"
+#include "framework/spec/model_spec.hpp"
+
+namespace twinmap {
+
+/// What a network is to map to what: parameters of a model, and how.
+struct NetworkTask {
+  const ModelSpec& model;
+  const NetworkMapSpec& spec;
+  std::uint64_t seed = 0;
+};
+
+/// A trained network and what a person should know about it.
+struct NetworkMapTraining {
+  NetworkMap map;
+  Predictions held_out;            ///< p x n draws, of samples that the network predicting them had not seen
+  Eigen::MatrixXd held_out_truth;  ///< p x n draws
+  int held_out_draws = 1;          ///< column j + i n is draw i of sample j
+  std::vector<std::string> warnings;
+};
+
+/// Simulations that a network learns from.
+struct NetworkSimulations {
+  const Eigen::MatrixXd& points;     ///< m x n: updating, nuisance, known inputs, in their units
+  const Eigen::MatrixXd& responses;  ///< rows x n, clean
+  const FeatureExtractor& extractor;
+  const ResponseNoise& noise;
+  const FeatureTransform& transform;        ///< from features to what the network sees, but for its scale
+  bool constant_noise = true;               ///< the features' noise is normal, of noise_covariance
+  const Eigen::MatrixXd& noise_covariance;  ///< d x d
+};
+
+/// Trains a network on simulations. Networks of few simulations are overconfident: below 10000 five more,
+/// each of which a fifth of the simulations is left out of, tell by how much, and the standard deviations are
+/// multiplied by it (calcStddevScale); from 10000 on, the simulations held out do. Throws
+/// std::invalid_argument for fewer than 50 simulations; gp::Stopped. Cost: six trainings, or one.
+NetworkMapTraining trainNetworkMap(const NetworkTask& task, const NetworkSimulations& simulations,
+                                   const TrainingControl& control);
+
+/// Trains a network on `surrogate_samples` points of the box, whose scores a surrogate makes up: a normal
+/// distribution of its mean, its own error and the noise. Standard deviations are multiplied by what samples
+/// held out say and by what the surrogate's own cross-validation does. Cost: that many evaluations of the
+/// surrogate, and a training.
+NetworkMapTraining trainNetworkMap(const NetworkTask& task, const Surrogate& surrogate,
+                                   const TrainingControl& control);
+
+}  // namespace twinmap

@@ -1,0 +1,31 @@
+#include "framework/online/online_network.hpp"
+
+namespace twinmap {
+
+using Eigen::VectorXd;
+
+OnlineNetwork::Workspace::Workspace(const OnlineNetwork& map)
+    : predicting(map.predictor_), centered(map.map_->inputs.center.size()) {
+  inference.mean.resize(map.map_->center.size());
+  inference.stddev.resize(map.map_->center.size());
+  inference.inputs.resize(map.map_->inputs.countInputs());
+}
+
+const Inference& OnlineNetwork::infer(const Eigen::Ref<const VectorXd>& features,
+                                      const Eigen::Ref<const VectorXd>& known, Workspace& workspace) const {
+  const NetworkInputs& inputs = map_->inputs;
+  Inference& inference = workspace.inference;
+  workspace.centered = features - inputs.center;
+  inference.inputs.head(inputs.projection.rows()).noalias() = inputs.projection * workspace.centered;
+  if (known.size() > 0) {
+    inference.inputs.tail(known.size()) =
+        (known - inputs.known.center).cwiseQuotient(inputs.known.half_width);
+  }
+  predictor_.predict(inference.inputs, workspace.predicting);
+  inference.mean = map_->center + map_->half_width.cwiseProduct(workspace.predicting.mean);
+  inference.stddev = (map_->validation.stddev_scale.array() * map_->half_width.array()) *
+                     workspace.predicting.stddev.array();
+  return inference;
+}
+
+}  // namespace twinmap

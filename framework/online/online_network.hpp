@@ -1,0 +1,47 @@
+#pragma once
+
+#include <memory>
+
+#include "framework/network_map/network_map.hpp"
+#include "framework/online/inference.hpp"
+#include "kernels/network/predictor.hpp"
+
+namespace twinmap {
+
+/// A network made ready for one measurement after another. Predictions are those of the map, up to rounding.
+/// Immutable.
+class OnlineNetwork {
+ public:
+  explicit OnlineNetwork(std::shared_ptr<const NetworkMap> map)
+      : map_(std::move(map)), predictor_(map_->network) {}
+
+  const NetworkMap& getMap() const { return *map_; }
+
+  /// The buffers of one thread, and the result.
+  class Workspace {
+   public:
+    explicit Workspace(const OnlineNetwork& map);
+    Inference inference;
+
+   private:
+    friend class OnlineNetwork;
+    network::Predictor::Workspace predicting;
+    Eigen::VectorXd centered;
+  };
+
+  /// features: d, finite; known: the inputs of the set-up (q). The result, whose inputs are the network's,
+  /// lies in the workspace until its next use. Does not allocate. Cost: 2 flops a number of the map.
+  const Inference& infer(const Eigen::Ref<const Eigen::VectorXd>& features,
+                         const Eigen::Ref<const Eigen::VectorXd>& known, Workspace& workspace) const;
+
+  /// What the inferences' inputs are for features (d x n) and known inputs (q x n).
+  Eigen::MatrixXd makeInputs(const Eigen::MatrixXd& features, const Eigen::MatrixXd& known) const {
+    return map_->inputs.apply(features, known);
+  }
+
+ private:
+  std::shared_ptr<const NetworkMap> map_;
+  network::Predictor predictor_;
+};
+
+}  // namespace twinmap

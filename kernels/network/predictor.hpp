@@ -1,0 +1,37 @@
+#pragma once
+
+#include "kernels/network/network.hpp"
+
+namespace twinmap::network {
+
+/// A trained network made ready for one measurement after another: its first layer and the linear part of its
+/// regression, which share the inputs, are one matrix. Immutable.
+class Predictor {
+ public:
+  explicit Predictor(Network network);
+
+  /// The buffers of one thread, and the result.
+  struct Workspace {
+    explicit Workspace(const Predictor& predictor);
+    VectorXd mean;        ///< p
+    VectorXd stddev;      ///< p
+    MatrixXd covariance;  ///< p x p
+
+   private:
+    friend class Predictor;
+    VectorXd sums, other, standard, products;
+    MatrixXd inverse;
+  };
+
+  const Network& getNetwork() const { return network_; }
+
+  /// Mean, standard deviation and covariance of the targets for inputs (k), left in the workspace. Does not
+  /// allocate. Cost: 2 flops a weight, an exponential a hidden unit, and p^3 / 3.
+  void predict(const Ref<const VectorXd>& inputs, Workspace& workspace) const;
+
+ private:
+  Network network_;
+  Layer first_;  // the first layer's sums, then the linear part of the regression
+};
+
+}  // namespace twinmap::network

@@ -1,0 +1,97 @@
+"""Posteriors of measurements under the surrogate."""
+import csv
+import io
+import json
+import unittest
+
+import numpy as np
+
+from support import EXPERIMENTS, FolderTestCase, call, read_csv
+
+TABLE1 = EXPERIMENTS / "two_beam/table1.yaml"
+TRUE = {"d_y": 0.95, "d_theta": 2.1e-4, "k_y": 8.5, "k_theta": 0.034}
+POINT = [f"parameters.{name}={value}" for name, value in TRUE.items()]
+
+
+class Posterior(FolderTestCase):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.run_folder = cls.run_experiment("run", "inverse_map=surrogate")
+        cls.measured = cls.folder / "measured.csv"
+        result = call("simulate", TABLE1, "--noise", "--csv", cls.measured, *POINT)
+        assert result.returncode == 0, result.stderr
+
+    @classmethod
+    def run_experiment(cls, name, *overrides):
+        result = call("run", TABLE1, "design.train.samples=60", "design.test.samples=60", "evaluation.limit=false",
+                      *overrides, "--out", cls.folder / name)
+        assert result.returncode == 0, result.stderr
+        return cls.folder / name
+
+    def infer(self, *arguments, run=None, **options):
+        result = call("infer", run or self.run_folder, *arguments, **options)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return result.stdout
+
+    def test_stands_beside_the_normal_answer(self):
+        answer = json.loads(self.infer(self.measured, "--json", "--no-refine", "--posterior=1000"))
+        posterior = answer["posterior"]
+        self.assertEqual(posterior["status"], "ok")
+        self.assertGreater(posterior["effective_sample_size"], 300)
+        self.assertLess(posterior["pareto_shape"], 0.7)
+        for name, true in TRUE.items():
+            found, normal = posterior["parameters"][name], answer["parameters"][name]
+            self.assertLess(abs(found["mean"] - true), 4 * found["sd"], name)
+            self.assertAlmostEqual(found["sd"] / normal["sd"], 1, delta=0.15)  # 4 x 1 / sqrt(2 x 300), and the limit's
+            probabilities, values = np.array(found["quantiles"]).T
+            np.testing.assert_allclose(probabilities, [0.025, 0.16, 0.5, 0.84, 0.975])
+            self.assertTrue((np.diff(values) > 0).all())
+            self.assertEqual([found["lower"], found["upper"]], [values[0], values[-1]])
+
+    def test_joint_draws_have_its_moments(self):
+        file = self.folder / "draws.csv"
+        posterior = json.loads(self.infer(self.measured, "--json", "--posterior=2000", "--draws", file))["posterior"]
+        rows = read_csv(file)
+        self.assertEqual(len(rows), 2000)
+        self.assertEqual({row["source"] for row in rows}, {str(self.measured)})
+        for name in TRUE:
+            values, found = np.array([float(row[name]) for row in rows]), posterior["parameters"][name]
+            self.assertLess(abs(values.mean() - found["mean"]), 0.1 * found["sd"])
+            self.assertAlmostEqual(values.std() / found["sd"], 1, delta=0.1)
+
+    def test_is_the_same_in_every_format_and_whatever_came_before(self):
+        alone = json.loads(self.infer(self.measured, "--json", "--posterior"))["posterior"]
+        stream = 2 * (self.measured.read_text() + "\n")
+        for line in self.infer("--follow", "--posterior", input=stream).splitlines():
+            self.assertEqual(json.loads(line)["posterior"], alone)
+        rows = list(csv.DictReader(io.StringIO(self.infer(self.measured, "--csv", "--posterior"))))
+        for row in rows:
+            found = alone["parameters"][row["parameter"]]
+            self.assertEqual([float(row["posterior_mean"]), float(row["posterior_sd"])], [found["mean"], found["sd"]])
+            self.assertEqual([float(row[f"posterior_q{q}"]) for q in ("2.5", "16", "50", "84", "97.5")],
+                             [value for _, value in found["quantiles"]])
+        self.assertIn("the posterior (effective sample size", self.infer(self.measured, "--posterior"))
+
+    def test_other_maps_use_the_surrogate_that_judges(self):
+        run = self.run_experiment("gp", "inverse_map=gp")
+        posterior = json.loads(self.infer(self.measured, "--json", "--posterior", run=run))["posterior"]
+        self.assertEqual(posterior["status"], "ok")
+        for name, true in TRUE.items():
+            found = posterior["parameters"][name]
+            self.assertLess(abs(found["mean"] - true), 4 * found["sd"], name)
+
+    def test_errors_say_what_to_do(self):
+        silent = self.run_experiment("silent", "inverse_map=gp", "noise.stddev.y=0", "transform=[z_score]")
+        for arguments, expected in (
+                ([silent, self.measured, "--posterior"], "give every output noise and train with 'inverse_map: surrogate'"),
+                ([self.run_folder, self.measured, "--posterior=10"], "at least 200 draws, not 10"),
+                ([self.run_folder, self.measured, "--draws", "d.csv"], "--draws requires --posterior"),
+                ([self.run_folder, self.measured, "--posterior", "--draws", self.folder / "no/d.csv"], "cannot be written")):
+            result = call("infer", *arguments)
+            self.assertNotEqual(result.returncode, 0)
+            self.assertIn(expected, result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,183 @@
+#include "framework/network_map/network_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "framework/features/feature_noise.hpp"
+#include "framework/network_map/train_network_map.hpp"
+#include "framework/surrogate/train_surrogate.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kNoise = 0.02;
+constexpr int kTimes = 24;
+
+ParameterSpec makeParameter(const char* name, double lower, double upper) {
+  ParameterSpec parameter;
+  parameter.name.text = name;
+  parameter.bounds.lower = lower;
+  parameter.bounds.upper = upper;
+  return parameter;
+}
+
+/// A decaying oscillation of damping d and frequency w, its amplitude known.
+struct Oscillation {
+  ModelSpec model;
+  std::vector<FeatureSpec> features{SamplesFeatureSpec{{{"y", {}}}, 0.25, 0.25, kTimes}};
+  ResponseLayout layout{{"y"}, {"m"}, collectTimes(features)};
+  FeatureExtractor extractor{features, layout};
+  ResponseNoise noise{VectorXd::Constant(kTimes, kNoise)};
+
+  Oscillation() {
+    model.parameters = {makeParameter("d", 0.1, 0.3), makeParameter("w", 2.0, 3.0)};
+    model.inputs = {makeParameter("amplitude", 0.8, 1.2)};
+  }
+
+  static MatrixXd samplePoints(Index count, std::uint64_t seed) {
+    const RandomStream random(seed, RandomPurpose::kTrainDesign);
+    MatrixXd points(3, count);
+    for (Index j = 0; j < count; ++j) {
+      points.col(j) << 0.1 + 0.2 * random.calcUniform(j, 0), 2.0 + random.calcUniform(j, 1),
+          0.8 + 0.4 * random.calcUniform(j, 2);
+    }
+    return points;
+  }
+
+  MatrixXd respond(const MatrixXd& points) const {
+    return MatrixXd::NullaryExpr(kTimes, points.cols(), [&](Index i, Index j) {
+      const double t = layout.times[i];
+      return points(2, j) * std::exp(-points(0, j) * t) * std::sin(points(1, j) * t);
+    });
+  }
+
+  MatrixXd measure(const MatrixXd& points, std::uint64_t seed) const {
+    return extractor.extract(noise.add(respond(points), {seed, RandomPurpose::kTestNoise}, 0));
+  }
+
+  /// Standard deviations that the noise allows at a point, the amplitude known.
+  static Eigen::Vector2d calcLimit(const VectorXd& point) {
+    MatrixXd slopes(kTimes, 2);
+    for (Index i = 0; i < kTimes; ++i) {
+      const double t = 0.25 * static_cast<double>(i + 1), envelope = point[2] * t * std::exp(-point[0] * t);
+      slopes.row(i) << -envelope * std::sin(point[1] * t), envelope * std::cos(point[1] * t);
+    }
+    const Eigen::Matrix2d information = slopes.transpose() * slopes / (kNoise * kNoise);
+    const double determinant = information(0, 0) * information(1, 1) - information(0, 1) * information(1, 0);
+    return {std::sqrt(information(1, 1) / determinant), std::sqrt(information(0, 0) / determinant)};
+  }
+};
+
+NetworkMapSpec makeSpec(int steps) {
+  NetworkMapSpec spec;
+  spec.hidden = {24, 24};
+  spec.steps = steps;
+  spec.batch = 128;
+  spec.learning_rate = 0.005;
+  return spec;
+}
+
+const MatrixXd& getNoiseCovariance() {
+  static const MatrixXd covariance = kNoise * kNoise * MatrixXd::Identity(kTimes, kTimes);
+  return covariance;
+}
+
+/// A transform that only divides features by their noise.
+FeatureTransform makeWhitening() {
+  return {{AffineStep{VectorXd::Zero(kTimes), VectorXd::Constant(kTimes, kNoise), {}}}};
+}
+
+NetworkMapTraining trainOnSimulations(const Oscillation& oscillation, Index count, int steps,
+                                      int threads = 2) {
+  const MatrixXd points = Oscillation::samplePoints(count, 1), responses = oscillation.respond(points);
+  const FeatureTransform transform = makeWhitening();
+  const NetworkMapSpec spec = makeSpec(steps);
+  return trainNetworkMap(
+      {oscillation.model, spec, 3},
+      {points, responses, oscillation.extractor, oscillation.noise, transform, true, getNoiseCovariance()},
+      {threads});
+}
+
+SurrogateTraining trainTeacher(const Oscillation& oscillation) {
+  const MatrixXd points = Oscillation::samplePoints(120, 1);
+  return trainSurrogate(
+      oscillation.model,
+      {oscillation.extractor.getInfos(), points, oscillation.extractor.extract(oscillation.respond(points)),
+       getNoiseCovariance(), oscillation.measure(points, 5)},
+      {2});
+}
+
+/// Of unseen measurements.
+void expectHonestAndNearTheLimit(const Oscillation& oscillation, const NetworkMap& map) {
+  constexpr Index kTests = 600;
+  constexpr double kOfShortTraining = 2.0;  // a tenth of the usual steps
+  const MatrixXd points = Oscillation::samplePoints(kTests, 2);
+  const Predictions found = map.predict(oscillation.measure(points, 3), points.bottomRows(1), 2);
+  MatrixXd limit(2, kTests);
+  for (Index i = 0; i < kTests; ++i) {
+    limit.col(i) = Oscillation::calcLimit(points.col(i));
+  }
+  const MatrixXd errors = found.mean - points.topRows(2);
+  for (Index k = 0; k < 2; ++k) {
+    const double covered =
+        (errors.row(k).array().abs() < kNormal95 * found.stddev.row(k).array()).cast<double>().mean();
+    EXPECT_GT(covered, 0.91);
+    EXPECT_LT(covered, 0.99);
+    EXPECT_LT(errors.row(k).norm(), kOfShortTraining * limit.row(k).norm());
+  }
+}
+
+TEST(NetworkMap, LearnsFromSimulationsAndTellsItsErrors) {
+  const Oscillation oscillation;
+  expectHonestAndNearTheLimit(oscillation, trainOnSimulations(oscillation, 2000, 700).map);
+}
+
+TEST(NetworkMap, LearnsFromASurrogateOfFewSimulations) {
+  const Oscillation oscillation;
+  const SurrogateTraining teacher = trainTeacher(oscillation);
+  NetworkMapSpec spec = makeSpec(600);
+  spec.surrogate_samples = 3000;
+  const NetworkMapTraining trained = trainNetworkMap({oscillation.model, spec, 3}, teacher.surrogate, {2});
+  expectHonestAndNearTheLimit(oscillation, trained.map);
+}
+
+TEST(NetworkMap, OfFewSimulationsIsToldByOthersThatItIsOverconfident) {
+  const NetworkMapTraining trained = trainOnSimulations(Oscillation(), 60, 300);
+  EXPECT_GT(trained.map.validation.stddev_scale.maxCoeff(), 1.1);
+  const MatrixXd standardised =
+      (trained.held_out.mean - trained.held_out_truth).cwiseQuotient(trained.held_out.stddev);
+  EXPECT_GT((standardised.array().abs() < kNormal95).cast<double>().mean(), 0.93);
+}
+
+TEST(NetworkMap, IsTheSameForAnyNumberOfThreads) {
+  const Oscillation oscillation;
+  const NetworkMapTraining one = trainOnSimulations(oscillation, 200, 60, 1);
+  const NetworkMapTraining three = trainOnSimulations(oscillation, 200, 60, 3);
+  for (std::size_t i = 0; i < one.map.network.layers.size(); ++i) {
+    EXPECT_EQ(one.map.network.layers[i].weights, three.map.network.layers[i].weights);
+  }
+  EXPECT_EQ(one.map.validation.stddev_scale, three.map.validation.stddev_scale);
+  const SurrogateTraining teacher = trainTeacher(oscillation);
+  NetworkMapSpec spec = makeSpec(60);
+  spec.surrogate_samples = 1000;
+  EXPECT_EQ(trainNetworkMap({oscillation.model, spec, 3}, teacher.surrogate, {1}).map.network.skip,
+            trainNetworkMap({oscillation.model, spec, 3}, teacher.surrogate, {3}).map.network.skip);
+}
+
+TEST(NetworkMap, RefusesTooFewSimulationsAndOtherSizes) {
+  const Oscillation oscillation;
+  EXPECT_THROW(trainOnSimulations(oscillation, 40, 10), std::invalid_argument);
+  const NetworkMap map = trainOnSimulations(oscillation, 60, 10).map;
+  EXPECT_THROW(map.predict(MatrixXd::Zero(kTimes - 1, 1), MatrixXd::Zero(1, 1)), std::invalid_argument);
+  EXPECT_THROW(map.predict(MatrixXd::Zero(kTimes, 2), MatrixXd::Zero(1, 1)), std::invalid_argument);
+  EXPECT_THROW(map.predict(MatrixXd::Zero(kTimes, 1), MatrixXd()), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace twinmap

@@ -1,0 +1,48 @@
+#include "framework/online/online_network.hpp"
+
+#include <gtest/gtest.h>
+
+#include "framework/online/online_map.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+std::shared_ptr<const NetworkMap> makeExample() {
+  NetworkMap map;
+  map.inputs = {
+      VectorXd::Random(5), MatrixXd::Random(2, 5), {VectorXd::Random(1), VectorXd::Constant(1, 2.0)}};
+  map.center = VectorXd::Random(2);
+  map.half_width = VectorXd::Constant(2, 0.5);
+  map.network.offset = VectorXd::Random(2);
+  map.network.skip = MatrixXd::Random(2, 3);
+  map.network.scale = VectorXd::Constant(2, 0.3);
+  map.network.layers = {{MatrixXd::Random(4, 3), VectorXd::Random(4)},
+                        {MatrixXd::Random(5, 4), VectorXd::Random(5)}};
+  map.validation.stddev_scale = Eigen::Vector2d(1.0, 1.5);
+  map.validation.residual_correlation = MatrixXd::Identity(2, 2);
+  return std::make_shared<const NetworkMap>(map);
+}
+
+TEST(OnlineNetwork, InfersWhatTheMapPredicts) {
+  const auto map = makeExample();
+  const OnlineMap online{AnyMap(map)};
+  OnlineMap::Workspace workspace(online);
+  const MatrixXd features = MatrixXd::Random(5, 3), known = MatrixXd::Random(1, 3);
+  const Predictions expected = map->predict(features, known);
+  const MatrixXd inputs = online.makeInputs(features, known);
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const Inference& inference = online.infer(features.col(i), known.col(i), workspace);
+    EXPECT_LT((inference.mean - expected.mean.col(i)).norm(), 1e-13);
+    EXPECT_LT((inference.stddev - expected.stddev.col(i)).norm(), 1e-13);
+    EXPECT_LT((inference.inputs - inputs.col(i)).norm(), 1e-13);
+  }
+  EXPECT_EQ(workspace.findExplanation(), nullptr);
+  EXPECT_TRUE(online.isHonest());
+  EXPECT_THROW(online.predict(MatrixXd::Zero(4, 1), MatrixXd::Zero(1, 1), 1), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace twinmap
