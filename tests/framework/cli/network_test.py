@@ -62,12 +62,6 @@ class Network(OwnFolderTestCase):
         run = self.run_experiment("statistics", DIRECT, features, "transform=[z_score]")
         self.assertEqual(len(read_csv(run / "metrics.csv")), 4)
 
-    def test_cannot_be_exported_yet_and_says_so(self):
-        run = self.run_experiment("run", DIRECT)
-        result = call("export", run, "--c", self.folder / "code")
-        self.assertNotEqual(result.returncode, 0)
-        self.assertIn("holds a network, which cannot be exported yet", result.stderr)
-
     def test_bad_keys_are_named(self):
         for keys, message in [("{hidden: []}", "must give 1 to 8 hidden layers"),
                               ("{hidden: [2000]}", "must give 1 to 8 hidden layers"),
