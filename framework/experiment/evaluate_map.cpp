@@ -8,6 +8,7 @@
 #include "framework/evaluation/baselines.hpp"
 #include "framework/evaluation/information_limit.hpp"
 #include "framework/experiment/answers.hpp"
+#include "framework/experiment/calibrate_posteriors.hpp"
 #include "framework/experiment/refine_test_samples.hpp"
 #include "framework/monitoring/stage_timer.hpp"
 #include "framework/sensitivity/fisher_information.hpp"
@@ -179,6 +180,11 @@ MapEvaluation evaluateMap(const EvaluationContext& context) {
   }
   if (context.experiment.evaluation.posterior) {
     result.evaluation.posteriors = comparePosteriors(context, predictions, limit_stddev, result.notes);
+  }
+  if (context.experiment.evaluation.calibration == PosteriorCalibrationMethod::kSimulationBased) {
+    CalibratedPosteriors calibrated = calibratePosteriors(context);
+    result.evaluation.calibration = std::move(calibrated.calibration);
+    result.notes.append(calibrated.notes);
   }
   result.evaluation.baselines = runBaselines(context, result.notes);
   return result;

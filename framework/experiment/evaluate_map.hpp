@@ -27,7 +27,7 @@ struct MapEvaluation {
 
 /// Infers the test samples as `twinmap infer` does, refined where the experiment asks for it, and finds out
 /// how good that is: errors and calibration, and, where the experiment asks for them, information limit,
-/// exact posteriors and baselines.
+/// exact posteriors, calibration of posteriors and baselines.
 MapEvaluation evaluateMap(const EvaluationContext& context);
 
 }  // namespace twinmap

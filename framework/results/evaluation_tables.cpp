@@ -72,6 +72,25 @@ std::string makePosteriorCsv(const RunSummary& run) {
   return makeCsv(rows);
 }
 
+std::string makeSbcCsv(const RunSummary& run) {
+  const PosteriorCalibration& found = *run.evaluation.calibration;
+  const Index bins = found.ranks.counts.rows();
+  const auto share = [&](Index bin) { return toText(static_cast<double>(bin) / static_cast<double>(bins)); };
+  std::vector<CsvRow> rows{{"quantity", "bin", "lower", "upper", "count", "expected", "measurements",
+                            "unreliable", "chi_square", "p_value"}};
+  for (Index q = 0; q < found.ranks.counts.cols(); ++q) {
+    const auto p = static_cast<std::size_t>(q);
+    for (Index bin = 0; bin < bins; ++bin) {
+      rows.push_back({p < run.parameters.size() ? run.parameters[p].name.text : "joint", std::to_string(bin),
+                      share(bin), share(bin + 1), std::to_string(found.ranks.counts(bin, q)),
+                      toText(static_cast<double>(found.measurements) / static_cast<double>(bins)),
+                      std::to_string(found.measurements), std::to_string(found.unreliable),
+                      toText(found.ranks.chi_square[q]), toText(found.ranks.p_value[q])});
+    }
+  }
+  return makeCsv(rows);
+}
+
 std::string makeBaselinesCsv(const RunSummary& run) {
   std::vector<CsvRow> rows{{"method", "samples", "parameter", "bias_pct", "sd_pct", "mare_pct", "coverage50",
                             "coverage90", "coverage95", "seconds_per_update", "unconverged"}};

@@ -21,6 +21,10 @@ std::string makeIdentifiabilityCsv(const RunSummary& run);
 /// effective_sample_size, simulations.
 std::string makePosteriorCsv(const RunSummary& run);
 
+/// sbc.csv: quantity (a parameter, or "joint"), bin, lower, upper (of the ranks' share), count, expected,
+/// measurements, unreliable, chi_square, p_value.
+std::string makeSbcCsv(const RunSummary& run);
+
 /// baselines.csv: method, samples, parameter, bias_pct, sd_pct, mare_pct, coverage50, coverage90, coverage95,
 /// seconds_per_update, unconverged.
 std::string makeBaselinesCsv(const RunSummary& run);

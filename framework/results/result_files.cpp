@@ -20,6 +20,9 @@ void writeEvaluation(const fs::path& folder, const RunSummary& run) {
   if (!run.evaluation.posteriors.empty()) {
     writeTextFile(folder / "posterior.csv", makePosteriorCsv(run));
   }
+  if (run.evaluation.calibration) {
+    writeTextFile(folder / "sbc.csv", makeSbcCsv(run));
+  }
   if (!run.evaluation.baselines.empty()) {
     writeTextFile(folder / "baselines.csv", makeBaselinesCsv(run));
   }

@@ -31,6 +31,7 @@ void readTables(const fs::path& path, RunFolder& run) {
   run.correlations = readCsvFile(path / "correlations.csv");
   run.identifiability = readCsvFile(path / "identifiability.csv");
   run.posterior = readCsvFile(path / "posterior.csv");
+  run.sbc = readCsvFile(path / "sbc.csv");
   run.baselines = readCsvFile(path / "baselines.csv");
   run.responses = readCsvFile(path / "responses.csv");
 }

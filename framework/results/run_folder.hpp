@@ -30,6 +30,7 @@ struct RunFolder {
   CsvTable correlations;
   CsvTable identifiability;
   CsvTable posterior;
+  CsvTable sbc;
   CsvTable baselines;
   CsvTable responses;
   ProvenanceRecord provenance;

@@ -9,6 +9,7 @@
 #include "framework/evaluation/identifiability.hpp"
 #include "framework/evaluation/joint_metrics.hpp"
 #include "framework/evaluation/metrics.hpp"
+#include "framework/evaluation/rank_calibration.hpp"
 #include "framework/features/feature_block.hpp"
 #include "framework/inverse_map/predictions.hpp"
 #include "framework/monitoring/stage_notes.hpp"
@@ -80,6 +81,13 @@ struct PosteriorComparison {
   Eigen::VectorXd map_mean, map_stddev, limit_stddev;  ///< p; no limit if it is switched off
 };
 
+/// How well calibrated the posteriors of the test samples are.
+struct PosteriorCalibration {
+  int measurements = 0;   ///< whose posterior is reliable
+  int unreliable = 0;     ///< left out
+  RankCalibration ranks;  ///< of each parameter, then of all together
+};
+
 /// How well another way of inferring does on the first `samples` test samples; "map" for the map itself.
 struct BaselineSummary {
   std::string method;
@@ -108,6 +116,7 @@ struct Evaluation {
   std::optional<FeatureRelevance> relevance;
   std::optional<Identifiability> identifiability;
   std::vector<PosteriorComparison> posteriors;
+  std::optional<PosteriorCalibration> calibration;
   std::vector<BaselineSummary> baselines;
   std::vector<Refined> refined;        ///< n; empty where nothing was refined
   std::vector<MethodSummary> methods;  ///< empty where nothing was refined

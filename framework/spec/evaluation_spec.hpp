@@ -67,9 +67,21 @@ void describe(Fields& f, BaselineSpec& s) {
           choice<LeastSquaresSpec>("least_squares", s, "classical updating by repeated simulation"));
 }
 
+/// How the posteriors that `infer --posterior` samples are checked on the test samples.
+enum class PosteriorCalibrationMethod { kNone, kSimulationBased };
+
+template <>
+struct EnumNames<PosteriorCalibrationMethod> {
+  static constexpr EnumName<PosteriorCalibrationMethod> values[] = {
+      {"none", PosteriorCalibrationMethod::kNone},
+      {"sbc", PosteriorCalibrationMethod::kSimulationBased},
+  };
+};
+
 struct EvaluationSpec {
   bool limit = true;  ///< the information limit of every test sample
   std::optional<PosteriorSpec> posterior;
+  PosteriorCalibrationMethod calibration = PosteriorCalibrationMethod::kNone;
   std::vector<BaselineSpec> baselines;
 };
 
@@ -77,6 +89,8 @@ template <class Fields>
 void describe(Fields& f, EvaluationSpec& s) {
   f.optional("limit", s.limit, "the information limit of every test sample, at 2 p + 1 simulations each");
   f.optional("posterior", s.posterior, "exact posterior of some test samples, by simulation");
+  f.optional("calibration", s.calibration,
+             "sbc: simulation-based calibration of the posteriors of all test samples");
   f.optional("baselines", s.baselines, "other inverse maps to compare with");
 }
 

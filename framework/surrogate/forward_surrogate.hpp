@@ -25,12 +25,11 @@ struct ForwardSurrogate {
   Eigen::Index getScoreCount() const { return projection.rows(); }
   /// Scores (r x n) of features (d x n), with the bits of kernels/exact. Cost: 2 r d n flops.
   Eigen::MatrixXd calcScores(const Eigen::MatrixXd& features) const;
-  /// C = 1 + D R D, r x r, for the processes' standard deviations (r). Cost: 2 r^2 flops.
-  Eigen::MatrixXd calcScoreCovariance(const Eigen::VectorXd& stddev) const {
-    Eigen::MatrixXd covariance = stddev.asDiagonal() * error_correlation * stddev.asDiagonal();
-    covariance.diagonal().array() += 1.0;
-    return covariance;
-  }
+  /// Values and standard deviations (r x b) of the processes at normalised points (m x b); the windows'
+  /// standard deviations are multiplied by `widening`. One workspace a window.
+  void evaluate(const Eigen::Ref<const Eigen::MatrixXd>& at, const std::vector<double>& widening,
+                std::vector<gp::SharedProcess::Workspace>& workspaces, Eigen::MatrixXd& values,
+                Eigen::MatrixXd& stddev) const;
 };
 
 }  // namespace twinmap

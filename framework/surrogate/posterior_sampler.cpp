@@ -159,11 +159,13 @@ void PosteriorSampler::addRound(const BoxMixture& proposal, std::uint64_t sample
   evaluated.points.conservativeResize(points.rows(), before + points.cols());
   evaluated.points.rightCols(points.cols()) = points;
   evaluated.log_posterior.conservativeResize(before + points.cols());
+  MatrixXd stretched = points;  // what is outside the box remains there
   for (Index i = 0; i < points.cols(); ++i) {
-    const bool inside = points.col(i).cwiseAbs().maxCoeff() <= 1.0;
-    evaluated.log_posterior[before + i] =
-        inside ? likelihood_.calcLog(stretch(points.col(i))) : -std::numeric_limits<double>::infinity();
+    if (points.col(i).cwiseAbs().maxCoeff() <= 1.0) {
+      stretched.col(i) = stretch(points.col(i));
+    }
   }
+  evaluated.log_posterior.tail(points.cols()) = likelihood_.calcLogs(stretched);
   evaluated.proposals.push_back(proposal);
 }
 

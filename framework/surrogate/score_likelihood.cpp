@@ -2,45 +2,54 @@
 
 #include <limits>
 
-#include "kernels/linalg/decompositions.hpp"
-
 namespace twinmap {
 
 using Eigen::Index;
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 ScoreLikelihood::ScoreLikelihood(const ForwardSurrogate& surrogate)
     : surrogate_(surrogate),
       workspaces_(surrogate.windows.size()),
       widening_(surrogate.windows.size(), 1.0),
-      point_(VectorXd::Zero(surrogate.points.rows())),
-      values_(surrogate.getScoreCount()),
-      stddev_(surrogate.getScoreCount()) {}
+      residual_(surrogate.getScoreCount()),
+      scratch_(surrogate.getScoreCount()) {}
 
 void ScoreLikelihood::setMeasurement(const Eigen::Ref<const VectorXd>& scores,
                                      const Eigen::Ref<const VectorXd>& known, std::vector<double> widening) {
   scores_ = scores;
-  point_.tail(known.size()) = known;
+  known_ = known;
   widening_ = std::move(widening);
 }
 
-double ScoreLikelihood::calcLog(const Eigen::Ref<const VectorXd>& unknown) {
-  if (!(unknown.cwiseAbs().maxCoeff() <= 1.0)) {
-    return -std::numeric_limits<double>::infinity();
+VectorXd ScoreLikelihood::calcLogs(const MatrixXd& unknown) {
+  std::vector<Index> inside;
+  for (Index i = 0; i < unknown.cols(); ++i) {
+    if (unknown.col(i).cwiseAbs().maxCoeff() <= 1.0) {
+      inside.push_back(i);
+    }
   }
-  point_.head(unknown.size()) = unknown;
-  Index first = 0;
-  for (std::size_t w = 0; w < workspaces_.size(); ++w) {
-    const gp::SharedProcess& process = surrogate_.windows[w];
-    const Index count = process.getFunctionCount();
-    process.evaluate(point_, values_.segment(first, count), workspaces_[w]);
-    process.calcStddev(stddev_.segment(first, count), workspaces_[w]);
-    stddev_.segment(first, count) *= widening_[w];
-    first += count;
+  points_.resize(unknown.rows() + known_.size(), static_cast<Index>(inside.size()));
+  points_ << unknown(Eigen::all, inside), known_.replicate(1, points_.cols());
+  surrogate_.evaluate(points_, widening_, workspaces_, values_, stddev_);
+  VectorXd logs = VectorXd::Constant(unknown.cols(), -std::numeric_limits<double>::infinity());
+  for (std::size_t k = 0; k < inside.size(); ++k) {
+    logs(inside[k]) = calcLog(static_cast<Index>(k));
   }
-  const Eigen::MatrixXd lower = linalg::calcCholesky(surrogate_.calcScoreCovariance(stddev_)).lower;
-  return -0.5 * linalg::solveLower(lower, scores_ - values_).squaredNorm() -
-         lower.diagonal().array().log().sum();
+  return logs;
+}
+
+/// Of one of the points evaluated.
+double ScoreLikelihood::calcLog(Index point) {
+  const auto stddev = stddev_.col(point).asDiagonal();
+  covariance_ = stddev * surrogate_.error_correlation * stddev;
+  covariance_.diagonal().array() += 1.0;
+  if (!linalg::factorizeCholesky(linalg::viewOf(covariance_), scratch_)) {
+    return -std::numeric_limits<double>::infinity();  // not even finite
+  }
+  residual_ = scores_ - values_.col(point);
+  linalg::solveLower(linalg::viewOf(covariance_), residual_.data());
+  return -0.5 * residual_.squaredNorm() - covariance_.diagonal().array().log().sum();
 }
 
 }  // namespace twinmap

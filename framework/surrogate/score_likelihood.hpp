@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "framework/surrogate/forward_surrogate.hpp"
+#include "kernels/linalg/triangular.hpp"
 
 namespace twinmap {
 
@@ -21,14 +22,19 @@ class ScoreLikelihood {
   void setMeasurement(const Eigen::Ref<const Eigen::VectorXd>& scores,
                       const Eigen::Ref<const Eigen::VectorXd>& known, std::vector<double> widening);
 
-  /// Cost: one evaluation of the processes and of their variances, and r^3 / 3 flops.
-  double calcLog(const Eigen::Ref<const Eigen::VectorXd>& unknown);
+  /// Of n points (u x n). Cost of each: one evaluation of the processes and of their variances, and r^3 / 3
+  /// flops.
+  Eigen::VectorXd calcLogs(const Eigen::MatrixXd& unknown);
 
  private:
+  double calcLog(Eigen::Index point);
+
   const ForwardSurrogate& surrogate_;
   std::vector<gp::SharedProcess::Workspace> workspaces_;
   std::vector<double> widening_;
-  Eigen::VectorXd scores_, point_, values_, stddev_;
+  Eigen::VectorXd scores_, known_, residual_;
+  Eigen::MatrixXd points_, values_, stddev_, covariance_;
+  linalg::TriangularScratch scratch_;
 };
 
 }  // namespace twinmap

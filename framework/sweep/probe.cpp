@@ -69,6 +69,7 @@ ExperimentSpec makeBare(ExperimentSpec experiment) {
   experiment.evaluation.limit = false;
   experiment.refine = RefineMode::kNever;
   experiment.evaluation.posterior.reset();
+  experiment.evaluation.calibration = PosteriorCalibrationMethod::kNone;
   experiment.evaluation.baselines.clear();
   return experiment;
 }

@@ -59,6 +59,10 @@ double calcOwnVariance(const smooth_process& process, const own_variance& own, c
                        const smooth_point& at, double* rest) {
   return c::calc_own_variance(&process, &own, trend, &at, rest);
 }
+double finishOwnVariance(const smooth_process& process, const own_variance& own, const double* trend,
+                         const double* solved, double* rest) {
+  return c::finish_own_variance(&process, &own, trend, solved, rest);
+}
 double calcLocalFactor(const smooth_process& process, const double* ratios, const smooth_point& at) {
   return c::calc_local_factor(&process, ratios, &at);
 }

@@ -41,6 +41,9 @@ double calcLocalVariance(const smooth_process& process, const smooth_point& at, 
 /// The process's own variance, for one of 1. trend: its terms at the point; rest: room for as many.
 double calcOwnVariance(const smooth_process& process, const own_variance& own, const double* trend,
                        const smooth_point& at, double* rest);
+/// The same from L^-1 k (n), however that was solved.
+double finishOwnVariance(const smooth_process& process, const own_variance& own, const double* trend,
+                         const double* solved, double* rest);
 /// By how much the errors near a point are beyond their variance; ratios: of each of the n points, left out.
 double calcLocalFactor(const smooth_process& process, const double* ratios, const smooth_point& at);
 

@@ -224,17 +224,13 @@ static double calc_local_variance(const smooth_process *process, const smooth_po
   return fmax(1.0 - explain_variance(count, covariance, cross), 1e-13) + process->nugget;
 }
 
-/* The process's own variance, for one of 1. trend: its terms at the point; rest: room for as many. */
-static double calc_own_variance(const smooth_process *process, const own_variance *own, const double *trend,
-                                const smooth_point *at, double *rest)
+/* The process's own variance, for one of 1, from L^-1 k. trend: its terms at the point; rest: room for as many. */
+static double finish_own_variance(const smooth_process *process, const own_variance *own, const double *trend,
+                                  const double *solved, double *rest)
 {
   const int n = process->points;
-  double *solved = at->buffer, of_trend = 0.0;
+  double of_trend = 0.0;
   int i;
-  for (i = 0; i < own->padded; ++i) {
-    solved[i] = i < n ? at->kernel[i] : 0.0;
-  }
-  solve_tiles(own->padded / CHUNK, own->tiles, solved);
   for (i = 0; i < own->terms; ++i) {
     rest[i] = trend[i] - dot(n, own->solved_terms + i * n, solved);
   }
@@ -243,6 +239,19 @@ static double calc_own_variance(const smooth_process *process, const own_varianc
     of_trend = multiply_add(rest[i], rest[i], of_trend);
   }
   return fmax(1.0 - dot(n, solved, solved), 1e-14) + process->nugget + of_trend;
+}
+
+static double calc_own_variance(const smooth_process *process, const own_variance *own, const double *trend,
+                                const smooth_point *at, double *rest)
+{
+  const int n = process->points;
+  double *solved = at->buffer;
+  int i;
+  for (i = 0; i < own->padded; ++i) {
+    solved[i] = i < n ? at->kernel[i] : 0.0;
+  }
+  solve_tiles(own->padded / CHUNK, own->tiles, solved);
+  return finish_own_variance(process, own, trend, solved, rest);
 }
 
 /* By how much the errors near a point are beyond their variance; ratios: of each of the points, left out. */

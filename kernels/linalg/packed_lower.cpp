@@ -1,6 +1,7 @@
 #include "kernels/linalg/packed_lower.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <stdexcept>
 #include <utility>
 
@@ -39,6 +40,18 @@ inline void subtractProduct(const double* tile, const double* x, Rows& sum) {
       sum.part[v] -= load(tile + v * kLanes) * x[j];
     }
   }
+}
+
+// x = (inverse tile) right
+inline void solveTile(const double* inverse, const Rows& right, double* x) {
+  double held[kTile];
+  storeRows(held, right);
+  Rows negative = {};
+  subtractProduct(inverse, held, negative);
+  for (Index v = 0; v < kVectors; ++v) {
+    negative.part[v] = -negative.part[v];
+  }
+  storeRows(x, negative);
 }
 
 // The tile's inverse, padded with zeros.
@@ -91,15 +104,26 @@ void PackedLower::solve(double* x) const {
     for (Index c = 0; c < r; ++c, tile += kTileElements) {
       subtractProduct(tile, x + c * kTile, sum);
     }
-    double right[kTile];
-    storeRows(right, sum);
-    Rows negative = {};
-    subtractProduct(tile, right, negative);
+    solveTile(tile, sum, x + r * kTile);
     tile += kTileElements;
-    for (Index v = 0; v < kVectors; ++v) {
-      negative.part[v] = -negative.part[v];
+  }
+}
+
+void PackedLower::solve(Eigen::MatrixXd& x) const {
+  assert(x.rows() == paddedSize());
+  const double* tile = tiles_.data();
+  for (Index r = 0; r < blocks_; ++r) {
+    for (Index c = 0; c < r; ++c, tile += kTileElements) {
+      for (Index k = 0; k < x.cols(); ++k) {
+        Rows sum = loadRows(&x(r * kTile, k));
+        subtractProduct(tile, &x(c * kTile, k), sum);
+        storeRows(&x(r * kTile, k), sum);
+      }
     }
-    storeRows(x + r * kTile, negative);
+    for (Index k = 0; k < x.cols(); ++k) {
+      solveTile(tile, loadRows(&x(r * kTile, k)), &x(r * kTile, k));
+    }
+    tile += kTileElements;
   }
 }
 

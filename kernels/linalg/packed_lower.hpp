@@ -38,6 +38,9 @@ class PackedLower {
   /// Cost: n^2 flops; reads 4 n^2 bytes.
   void solve(double* x) const;
 
+  /// The same for each column of x (paddedSize() rows), with the same bits; the factor is read once for all.
+  void solve(Eigen::MatrixXd& x) const;
+
  private:
   Index blocks_ = 0;
   Eigen::VectorXd tiles_;

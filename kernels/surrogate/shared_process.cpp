@@ -1,5 +1,6 @@
 #include "kernels/surrogate/shared_process.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -194,22 +195,69 @@ void SharedProcess::derive(Index function, Eigen::Ref<MatrixXd> jacobian, Worksp
   }
 }
 
+exact::own_variance SharedProcess::describeOwnVariance() const {
+  return {static_cast<int>(factor_.paddedSize()), static_cast<int>(term_factor_.rows()),
+          factor_.getTiles().data(), solved_terms_.data(), term_factor_.data()};
+}
+
 double SharedProcess::calcOwnVariance(Workspace& workspace) const {
-  const exact::own_variance own{static_cast<int>(factor_.paddedSize()), static_cast<int>(term_factor_.rows()),
-                                factor_.getTiles().data(), solved_terms_.data(), term_factor_.data()};
   workspace.rest.resize(term_factor_.rows());
-  return exact::calcOwnVariance(describe(), own, workspace.terms.data(), workspace.at.getView(),
-                                workspace.rest.data());
+  return exact::calcOwnVariance(describe(), describeOwnVariance(), workspace.terms.data(),
+                                workspace.at.getView(), workspace.rest.data());
+}
+
+void SharedProcess::scaleStddev(double variance, Eigen::Ref<VectorXd> stddev) const {
+  for (Index j = 0; j < stddev.size(); ++j) {
+    stddev(j) = std::sqrt(variance * left_out_.amplitude(j));  // Eigen's own is not rounded correctly
+  }
 }
 
 void SharedProcess::calcStddev(Eigen::Ref<VectorXd> stddev, Workspace& workspace) const {
   const exact::smooth_process process = describe();
   const double variance = slope_points_ > 0 ? exact::calcLocalVariance(process, workspace.at.getView(), -1)
                                             : calcOwnVariance(workspace);
-  const double factor = exact::calcLocalFactor(process, left_out_ratio_.data(), workspace.at.getView());
-  for (Index j = 0; j < stddev.size(); ++j) {
-    stddev(j) =
-        std::sqrt(variance * factor * left_out_.amplitude(j));  // Eigen's own is not rounded correctly
+  scaleStddev(variance * exact::calcLocalFactor(process, left_out_ratio_.data(), workspace.at.getView()),
+              stddev);
+}
+
+void SharedProcess::evaluateMany(const Eigen::Ref<const MatrixXd>& points, Eigen::Ref<MatrixXd> values,
+                                 Eigen::Ref<MatrixXd> stddev, Workspace& workspace) const {
+  constexpr Index kBlock = 64;  // columns of covariances that stay in the second cache with 1000 points
+  for (Index first = 0; first < points.cols(); first += kBlock) {
+    const Index count = std::min(kBlock, points.cols() - first);
+    evaluateBlock(points.middleCols(first, count), values.middleCols(first, count),
+                  stddev.middleCols(first, count), workspace);
+  }
+}
+
+void SharedProcess::evaluateBlock(const Eigen::Ref<const MatrixXd>& points, Eigen::Ref<MatrixXd> values,
+                                  Eigen::Ref<MatrixXd> stddev, Workspace& workspace) const {
+  const exact::smooth_process process = describe();
+  const bool own = slope_points_ == 0;
+  workspace.factors.resize(points.cols());
+  workspace.many_terms.resize(coefficients_.rows(), points.cols());
+  workspace.solved.setZero(factor_.paddedSize(), points.cols());
+  for (Index i = 0; i < points.cols(); ++i) {
+    evaluate(points.col(i), values.col(i), workspace);
+    const exact::smooth_point at = workspace.at.getView();
+    workspace.factors(i) = exact::calcLocalFactor(process, left_out_ratio_.data(), at);
+    if (own) {
+      workspace.many_terms.col(i) = workspace.terms;
+      workspace.solved.col(i).head(scaled_points_.rows()) = workspace.at.values;
+    } else {
+      scaleStddev(exact::calcLocalVariance(process, at, -1) * workspace.factors(i), stddev.col(i));
+    }
+  }
+  if (!own) {
+    return;
+  }
+  factor_.solve(workspace.solved);
+  workspace.rest.resize(term_factor_.rows());
+  for (Index i = 0; i < points.cols(); ++i) {
+    const double variance =
+        exact::finishOwnVariance(process, describeOwnVariance(), workspace.many_terms.col(i).data(),
+                                 workspace.solved.col(i).data(), workspace.rest.data());
+    scaleStddev(variance * workspace.factors(i), stddev.col(i));
   }
 }
 

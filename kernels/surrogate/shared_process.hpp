@@ -41,6 +41,8 @@ class SharedProcess {
     Eigen::MatrixXd term_derivatives;
     PointCovariance at;
     Eigen::VectorXd scaled_point, terms, rising, derivatives, rest;
+    Eigen::MatrixXd solved, many_terms;  // of evaluateMany()
+    Eigen::VectorXd factors;
   };
 
   /// points: p x n; values: n x r. Throws std::invalid_argument for sizes that do not fit,
@@ -80,6 +82,12 @@ class SharedProcess {
   /// factor included. Cost: n^2 flops; where slopes are known that of exact::calcLocalVariance().
   void calcStddev(Eigen::Ref<Eigen::VectorXd> stddev, Workspace& workspace) const;
 
+  /// Values and standard deviations (r x b) at many points (p x b): those of evaluate() and calcStddev() up
+  /// to the rounding of the variances. Cost: the same flops; the factor that variances take is read once for
+  /// some dozens of points, so that its n^2 / 2 numbers do not come from memory for each.
+  void evaluateMany(const Eigen::Ref<const Eigen::MatrixXd>& points, Eigen::Ref<Eigen::MatrixXd> values,
+                    Eigen::Ref<Eigen::MatrixXd> stddev, Workspace& workspace) const;
+
  private:
   bool fitTogether() const;
   void requireSizes(const Eigen::MatrixXd& points, const Eigen::MatrixXd& values) const;
@@ -90,6 +98,10 @@ class SharedProcess {
   double calcValue(Eigen::Index function, Workspace& workspace) const;
   void derive(Eigen::Index function, Eigen::Ref<Eigen::MatrixXd> jacobian, Workspace& workspace) const;
   double calcOwnVariance(Workspace& workspace) const;
+  void evaluateBlock(const Eigen::Ref<const Eigen::MatrixXd>& points, Eigen::Ref<Eigen::MatrixXd> values,
+                     Eigen::Ref<Eigen::MatrixXd> stddev, Workspace& workspace) const;
+  exact::own_variance describeOwnVariance() const;
+  void scaleStddev(double variance, Eigen::Ref<Eigen::VectorXd> stddev) const;
 
   SharedStructure structure_;
   SharedHyperparameters hyperparameters_;

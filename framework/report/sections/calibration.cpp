@@ -79,6 +79,7 @@ void addCalibration(const RunFolder& run, Page& page) {
   addFigure(makePit(names, n), section);
   addFigure(makeQuantiles(names), section);
   addPosterior(run, section, page);
+  addRanks(run, section, page);
   page.sections.push_back(std::move(section));
 }
 

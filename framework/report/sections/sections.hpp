@@ -20,6 +20,8 @@ void addStddevOverBox(const RunFolder& run, Page& page);
 void addCalibration(const RunFolder& run, Page& page);
 /// The figure that holds the map against an exact posterior, where there is one.
 void addPosterior(const RunFolder& run, Section& section, Page& page);
+/// The figure of simulation-based calibration, where there is one.
+void addRanks(const RunFolder& run, Section& section, Page& page);
 void addResponses(const RunFolder& run, Page& page);
 void addFeatures(const RunFolder& run, Page& page);
 /// Which combinations of parameters the data determine.

@@ -93,5 +93,34 @@ class Posterior(FolderTestCase):
             self.assertIn(expected, result.stderr)
 
 
+class Calibration(FolderTestCase):
+    def run_calibrated(self, name, *overrides):
+        result = call("run", TABLE1, "inverse_map=surrogate", "design.train.samples=60", "design.test.samples=60",
+                      "refine=never", "evaluation.limit=false", "evaluation.calibration=sbc", *overrides,
+                      "--out", self.folder / name)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return result, self.folder / name
+
+    def test_ranks_the_truth_of_each_test_sample_on_any_number_of_threads(self):
+        (_, one), (_, three) = (self.run_calibrated(f"threads{n}", "--threads", str(n)) for n in (1, 3))
+        self.assertEqual((one / "sbc.csv").read_bytes(), (three / "sbc.csv").read_bytes())
+        rows = read_csv(one / "sbc.csv")
+        self.assertEqual([row["quantity"] for row in rows[::10]], [*TRUE, "joint"])
+        for first in range(0, len(rows), 10):
+            bins = rows[first:first + 10]
+            self.assertEqual(sum(int(row["count"]) for row in bins), int(bins[0]["measurements"]))
+            self.assertEqual(int(bins[0]["measurements"]) + int(bins[0]["unreliable"]), 60)
+            self.assertGreater(float(bins[0]["p_value"]), 1e-4)
+        self.assertIn("Calibration of the posteriors", (one / "report.html").read_text())
+
+    def test_says_why_there_is_none(self):
+        result, run = self.run_calibrated("few", "design.test.samples=40")
+        self.assertIn("only 40 of 40 test samples have a reliable one, and it needs 50", result.stderr + result.stdout)
+        self.assertFalse((run / "sbc.csv").exists())
+        result, run = self.run_calibrated("silent", "inverse_map=gp", "noise.stddev.y=0", "transform=[z_score]")
+        self.assertIn("no calibration of posteriors: the run has no surrogate",
+                      result.stderr + result.stdout + (run / "run.log").read_text())
+
+
 if __name__ == "__main__":
     unittest.main()

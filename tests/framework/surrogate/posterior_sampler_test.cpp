@@ -214,8 +214,10 @@ TEST(ScoreLikelihood, IsTheFormulaWithTheErrorsOfTheSurrogate) {
                                   std::log(determinant));
   ScoreLikelihood likelihood(*forward);
   likelihood.setMeasurement(scores, VectorXd(), {wide});
-  EXPECT_NEAR(likelihood.calcLog(at), expected, 1e-10 * std::abs(expected));
-  EXPECT_EQ(likelihood.calcLog(VectorXd::Constant(1, 1.0001)), -INFINITY);
+  const VectorXd logs = likelihood.calcLogs((MatrixXd(1, 3) << 1.0001, 0.9, -1.5).finished());
+  EXPECT_EQ(logs[0], -INFINITY);
+  EXPECT_NEAR(logs[1], expected, 1e-10 * std::abs(expected));
+  EXPECT_EQ(logs[2], -INFINITY);
 }
 
 }  // namespace

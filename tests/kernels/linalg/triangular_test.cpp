@@ -108,6 +108,13 @@ TEST_P(Triangular, SolvesAgreeWithTheFactor) {
   packed.solve(padded_x.data());
   EXPECT_LT((padded_x.head(n) - forward).norm(), 10 * tolerance(n));
   EXPECT_EQ(padded_x.tail(packed.paddedSize() - n).norm(), 0.0);
+  MatrixXd many = MatrixXd::Zero(packed.paddedSize(), 3);
+  many.col(1).head(n) = x;
+  many.col(2).head(n) = 2.0 * x;
+  packed.solve(many);
+  EXPECT_EQ(many.col(0).norm(), 0.0);
+  EXPECT_EQ(many.col(1), padded_x);
+  EXPECT_EQ(many.col(2), 2.0 * padded_x);
 }
 
 TEST_P(Triangular, ConditionEstimateLiesWithinAFactorOfTheTruth) {

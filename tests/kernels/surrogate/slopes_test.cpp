@@ -228,5 +228,27 @@ TEST(ChooseWithSlopes, LearnsNothingFromSlopesThatHaveNothingToDoWithTheValues) 
   EXPECT_LT(with.rms, 1.2 * without.rms);
 }
 
+TEST(SharedProcess, ManyPointsHaveTheValuesAndStandardDeviationsOfEach) {
+  const MatrixXd points = randomMatrix(3, 70, 5), at = randomMatrix(3, 130, 6);
+  const SharedStructure structure{SmoothCovariance::kMatern52, Trend::kLinear};
+  const MatrixXd values = calcValues(points);
+  for (const Index with_slopes : {0, 40}) {
+    const SharedProcess process = with_slopes == 0
+                                      ? SharedProcess(points, values, structure, makeHyperparameters())
+                                      : SharedProcess(points, values, calcSlopes(points, with_slopes),
+                                                      structure, makeHyperparameters());
+    SharedProcess::Workspace one, many;
+    MatrixXd all_values(2, at.cols()), all_stddev(2, at.cols());
+    process.evaluateMany(at, all_values, all_stddev, many);
+    for (Index i = 0; i < at.cols(); ++i) {
+      VectorXd value(2), stddev(2);
+      process.evaluate(at.col(i), value, one);
+      process.calcStddev(stddev, one);
+      EXPECT_EQ(all_values.col(i), value);
+      EXPECT_LT((all_stddev.col(i) - stddev).norm(), 1e-9 * stddev.norm());
+    }
+  }
+}
+
 }  // namespace
 }  // namespace twinmap::gp

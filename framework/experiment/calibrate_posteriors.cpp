@@ -1,0 +1,108 @@
+#include "framework/experiment/calibrate_posteriors.hpp"
+
+#include <fmt/format.h>
+
+#include "framework/monitoring/interrupted.hpp"
+#include "framework/monitoring/stage_timer.hpp"
+#include "framework/online/posterior_model.hpp"
+#include "framework/surrogate/run_tasks.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+
+/// Ranks of the measurements whose posterior is reliable, in their order.
+struct RankedMeasurements {
+  Eigen::MatrixXi ranks;  // p + 1 x n
+  int unreliable = 0;
+};
+
+void requireWanted(const RunControl& control) {
+  if (control.abandon != nullptr && *control.abandon) {
+    throw Interrupted("interrupted during the calibration of posteriors; the simulated samples are kept");
+  }
+}
+
+/// Of each test sample; empty where its posterior is not reliable.
+std::vector<Eigen::VectorXi> rankAll(const EvaluationContext& context, const PosteriorModel& model) {
+  const LabelledFeatures& test = context.data.labelled.test;
+  std::vector<Eigen::VectorXi> ranks(static_cast<std::size_t>(test.features.cols()));
+  runTasks(context.control.threads, ranks.size(), [&](std::size_t i) {
+    requireWanted(context.control);
+    PosteriorSampler sampler(model, kDefaultPosteriorDraws, context.experiment.seed);
+    const auto column = static_cast<Index>(i);
+    const SurrogatePosterior posterior =
+        sampler.sampleFeatures(test.features.col(column), test.inputs.col(column),
+                               static_cast<std::uint64_t>(context.data.test_indices[i]));
+    if (posterior.isReliable()) {
+      ranks[i] = calcRanks(test.parameters.col(column), posterior.draws.topRows(model.parameters));
+    }
+  });
+  return ranks;
+}
+
+RankedMeasurements collect(const std::vector<Eigen::VectorXi>& all, Index quantities) {
+  RankedMeasurements ranked{Eigen::MatrixXi(quantities, static_cast<Index>(all.size())), 0};
+  Index kept = 0;
+  for (const Eigen::VectorXi& one : all) {
+    if (one.size() > 0) {
+      ranked.ranks.col(kept++) = one;
+    }
+  }
+  ranked.unreliable = static_cast<int>(ranked.ranks.cols() - kept);
+  ranked.ranks.conservativeResize(Eigen::NoChange, kept);
+  return ranked;
+}
+
+/// Too many that are left out, and what the ranks of the others show.
+void warn(const PosteriorCalibration& calibration, const std::vector<ParameterSpec>& parameters,
+          StageNotes& notes) {
+  constexpr double kMany = 0.05;  // of the measurements
+  if (calibration.unreliable > kMany * (calibration.measurements + calibration.unreliable)) {
+    notes.warn(Gravity::kPoor,
+               fmt::format("calibration of posteriors: {} of {} are unreliable", calibration.unreliable,
+                           calibration.measurements + calibration.unreliable));
+  }
+  std::string named;
+  for (const Index q : findMiscalibrated(calibration.ranks)) {
+    const bool joint = q == static_cast<Index>(parameters.size());
+    named += fmt::format("{}{} (p = {:.1e})", named.empty() ? "" : ", ",
+                         joint ? "all together" : parameters[static_cast<std::size_t>(q)].name.text,
+                         calibration.ranks.p_value[q]);
+  }
+  if (!named.empty()) {
+    notes.warn(Gravity::kPoor,
+               "posteriors are not calibrated: ranks of the true values are not uniform for " + named +
+                   "; see sbc.csv");
+  }
+}
+
+}  // namespace
+
+CalibratedPosteriors calibratePosteriors(const EvaluationContext& context) {
+  CalibratedPosteriors result;
+  const TrainedMap& map = context.map;
+  const std::optional<PosteriorModel> model = findPosteriorModel(OnlineMap(map.online.map), map.online.trust);
+  if (!model) {
+    result.notes.warn(Gravity::kRemark, "no calibration of posteriors: the run has no surrogate");
+    return result;
+  }
+  const Index quantities = model->parameters + 1;
+  const RankedMeasurements ranked = timeStage("calibration of posteriors", result.notes,
+                                              [&] { return collect(rankAll(context, *model), quantities); });
+  if (ranked.ranks.cols() < kFewestRanks) {
+    result.notes.warn(
+        Gravity::kPoor,
+        fmt::format("no calibration of posteriors: only {} of {} test samples have a reliable "
+                    "one, and it needs {}",
+                    ranked.ranks.cols(), ranked.ranks.cols() + ranked.unreliable, kFewestRanks));
+    return result;
+  }
+  result.calibration = PosteriorCalibration{static_cast<int>(ranked.ranks.cols()), ranked.unreliable,
+                                            calcRankCalibration(ranked.ranks)};
+  warn(*result.calibration, context.experiment.model.parameters, result.notes);
+  return result;
+}
+
+}  // namespace twinmap

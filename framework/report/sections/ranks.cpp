@@ -1,0 +1,85 @@
+#include <fmt/format.h>
+
+#include "framework/report/sections/calibration_tables.hpp"
+#include "framework/report/sections/sections.hpp"
+#include "framework/spec/check/check_experiment.hpp"
+
+namespace twinmap {
+namespace {
+
+constexpr const char* kTable = "ranks";
+
+/// A quantity of sbc.csv: a parameter, or all together.
+struct RankedQuantity {
+  std::string name;
+  double p_value = 0.0;
+};
+
+std::vector<RankedQuantity> listQuantities(const CsvTable& sbc) {
+  std::vector<RankedQuantity> quantities;
+  for (std::size_t row = 0; row < sbc.rows.size(); ++row) {
+    const std::string& name = sbc.getText(row, "quantity");
+    if (quantities.empty() || quantities.back().name != name) {
+      quantities.push_back({name, sbc.getNumber(row, "p_value")});
+    }
+  }
+  return quantities;
+}
+
+DataTable makeTable(const CsvTable& sbc) {
+  DataTable table;
+  std::vector<std::string> quantities;
+  for (std::size_t row = 0; row < sbc.rows.size(); ++row) {
+    quantities.push_back(sbc.getText(row, "quantity"));
+  }
+  table.add("quantity", std::move(quantities));
+  for (const char* column : {"lower", "upper", "count"}) {
+    std::vector<double> values;
+    for (std::size_t row = 0; row < sbc.rows.size(); ++row) {
+      values.push_back(sbc.getNumber(row, column));
+    }
+    table.add(column, std::move(values));
+  }
+  return table;
+}
+
+Panel makePanel(const RankedQuantity& quantity, bool is_joint, const std::string& color,
+                const CountBand& band) {
+  const std::string label =
+      fmt::format("{} (p = {:.2g})", is_joint ? "all together" : quantity.name, quantity.p_value);
+  return {kTable,
+          {{"name", quantity.name}, {"label", label}, {"color", color}},
+          {{"low", band.lower}, {"high", band.upper}}};
+}
+
+}  // namespace
+
+void addRanks(const RunFolder& run, Section& section, Page& page) {
+  if (run.sbc.empty()) {
+    return;
+  }
+  page.tables[kTable] = makeTable(run.sbc);
+  const auto measurements = static_cast<int>(run.sbc.getNumber(0, "measurements"));
+  const auto unreliable = static_cast<int>(run.sbc.getNumber(0, "unreliable"));
+  const std::vector<RankedQuantity> quantities = listQuantities(run.sbc);
+  const CountBand band =
+      calcCountBand(measurements, static_cast<int>(run.sbc.rows.size() / quantities.size()));
+  Figure figure{kTable,
+                "Calibration of the posteriors",
+                fmt::format("Ranks of the true values among draws of the posteriors that infer --posterior "
+                            "samples, of {} test samples ({} unreliable ones are left out): flat within the "
+                            "grey band where calibrated. p: how often right posteriors look no flatter.",
+                            measurements, unreliable),
+                kTable,
+                {},
+                {},
+                quantities.size() >= 4 ? 4 : 0};
+  for (std::size_t q = 0; q < quantities.size(); ++q) {
+    const bool is_joint = q + 1 == quantities.size();
+    figure.panels.push_back(
+        makePanel(quantities[q], is_joint, is_joint ? "var(--quiet)" : getColor(q), band));
+  }
+  addFigure(std::move(figure), section);
+}
+
+}  // namespace twinmap
