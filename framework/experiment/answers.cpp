@@ -10,11 +10,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-MatrixXd calcCorrelation(const MatrixXd& covariance) {
-  const Eigen::VectorXd inverse_stddev = covariance.diagonal().cwiseSqrt().cwiseInverse();
-  return inverse_stddev.asDiagonal() * covariance * inverse_stddev.asDiagonal();
-}
-
 int calcMedianSimulations(const std::vector<Refined>& refined) {
   std::vector<int> simulations;
   for (const Refined& one : refined) {
@@ -47,12 +42,11 @@ std::vector<Index> findAccepted(const std::vector<Refined>& refined) {
 
 Answers makeAnswers(const Predictions& map, const MatrixXd& residual_correlation,
                     const std::vector<Refined>& refined) {
-  Answers answers{map, {residual_correlation}};
-  if (refined.empty()) {
-    return answers;
+  Answers answers{map, map.correlations};
+  if (answers.correlations.empty()) {
+    answers.correlations.assign(std::max<std::size_t>(refined.size(), 1), residual_correlation);
   }
   const Index p = map.mean.rows();
-  answers.correlations.assign(refined.size(), residual_correlation);
   for (const Index i : findAccepted(refined)) {
     const Refined& one = refined[static_cast<std::size_t>(i)];
     answers.predictions.mean.col(i) = one.point.head(p);

@@ -13,7 +13,8 @@ struct Answers {
   std::vector<Eigen::MatrixXd> correlations;  ///< p x p, of the errors: one for all samples, or one for each
 };
 
-/// The map's answers with the refined ones in place of those whose refinement was accepted, as `twinmap
+/// The map's answers, their errors correlated as the map says of each, or else as its cross-validation found
+/// for all, with the refined ones in place of those whose refinement was accepted, as `twinmap
 /// infer` chooses. `refined`: one for each sample, or empty.
 Answers makeAnswers(const Predictions& map, const Eigen::MatrixXd& residual_correlation,
                     const std::vector<Refined>& refined);

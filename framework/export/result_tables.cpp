@@ -15,8 +15,10 @@ void addResult(const ExportedModel& model, const std::string& prefix, CTables& t
     tables.addStrings(prefix + "_signal_names", model.layout.output_names, "The measured signals.");
     tables.addStrings(prefix + "_signal_units", model.layout.output_units, "Their units.");
   }
-  tables.addWide("parameter_correlation", flattenColumns(model.getCorrelation()),
-                 "Correlation of the errors of a sample's parameters.");
+  if (model.findNetwork() == nullptr) {
+    tables.addWide("parameter_correlation", flattenColumns(model.getCorrelation()),
+                   "Correlation of the errors of a sample's parameters.");
+  }
   const bool honest = validation == nullptr || validation->status == SurrogateStatus::kOk;
   sizes.push_back({"DISHONEST", honest ? 0 : 1, "1: the map is known to misjudge its own errors"});
 }

@@ -72,7 +72,7 @@ Eigen::MatrixXd calcAnswerCovariance(const Inferrer& inferrer, const InferredMea
         inferred.refined->covariance.topLeftCorner(stddev.size(), stddev.size());
     return 0.5 * (covariance + covariance.transpose());  // an inverse is symmetric to rounding only
   }
-  return inferrer.getMap().getResidualCorrelation().cwiseProduct(stddev * stddev.transpose());
+  return inferrer.getMap().chooseCorrelation(inferred.inference).cwiseProduct(stddev * stddev.transpose());
 }
 
 }  // namespace twinmap

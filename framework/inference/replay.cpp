@@ -110,7 +110,7 @@ class Replayer {
   /// Of the answer's errors.
   MatrixXd calcCorrelation() const {
     if (!answer_.refined) {
-      return inferrer_.getMap().getResidualCorrelation();
+      return inferrer_.getMap().chooseCorrelation(replay_.inferred.inference);
     }
     const VectorXd scale = answer_.stddev.cwiseInverse();
     return scale.asDiagonal() * replay_.inferred.refined->covariance * scale.asDiagonal();

@@ -25,7 +25,7 @@ Predictions predictTargets(const network::Network& network, const MatrixXd& inpu
   constexpr Index kChunk = 256;  // measurements that share buffers
   const network::Predictor predictor(network);
   const Index n = inputs.cols(), p = network.countTargets();
-  Predictions predictions{MatrixXd(p, n), MatrixXd(p, n)};
+  Predictions predictions{MatrixXd(p, n), MatrixXd(p, n), std::vector<MatrixXd>(static_cast<std::size_t>(n))};
   runTasks(threads, static_cast<std::size_t>((n + kChunk - 1) / kChunk), [&](std::size_t chunk) {
     network::Predictor::Workspace workspace(predictor);
     const Index first = static_cast<Index>(chunk) * kChunk;
@@ -33,6 +33,7 @@ Predictions predictTargets(const network::Network& network, const MatrixXd& inpu
       predictor.predict(inputs.col(i), workspace);
       predictions.mean.col(i) = workspace.mean;
       predictions.stddev.col(i) = workspace.stddev;
+      predictions.correlations[static_cast<std::size_t>(i)] = calcCorrelation(workspace.covariance);
     }
   });
   return predictions;

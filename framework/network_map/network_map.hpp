@@ -31,13 +31,13 @@ struct NetworkMap {
       validation;  ///< of simulations that took no part; no limit_scale, limit_ratio may be NaN
 
   /// Features (d x n, finite) and known inputs (q x n) -> mean and standard deviation of the parameters (p x
-  /// n). The result does not depend on the threads. Throws std::invalid_argument for sizes that do not fit.
+  /// n), with the correlations of each column. The result does not depend on the threads. Throws std::invalid_argument for sizes that do not fit.
   /// Cost: some us a column.
   Predictions predict(const Eigen::MatrixXd& features, const Eigen::MatrixXd& known_values,
                       int threads = 1) const;
 };
 
-/// Mean and standard deviation (p x n) of a network's targets for its inputs (k x n).
+/// Mean, standard deviation (p x n) and correlations of a network's targets for its inputs (k x n).
 Predictions predictTargets(const network::Network& network, const Eigen::MatrixXd& inputs, int threads);
 
 }  // namespace twinmap

@@ -131,6 +131,9 @@ Predictions OnlineMap::predict(const Eigen::Ref<const MatrixXd>& features,
   constexpr Index kBlock = 64;  // columns that share buffers
   const Index count = features.cols(), parameters = getResidualCorrelation().rows();
   Predictions all{MatrixXd(parameters, count), MatrixXd(parameters, count)};
+  if (std::holds_alternative<OnlineNetwork>(kind_)) {
+    all.correlations.resize(static_cast<std::size_t>(count));
+  }
   runTasks(threads, static_cast<std::size_t>((count + kBlock - 1) / kBlock), [&](std::size_t block) {
     Workspace workspace(*this);
     VectorXd settings(known.rows());
@@ -142,6 +145,9 @@ Predictions OnlineMap::predict(const Eigen::Ref<const MatrixXd>& features,
       const Inference& inference = infer(features.col(i), settings, workspace);
       all.mean.col(i) = inference.mean;
       all.stddev.col(i) = inference.stddev;
+      if (!all.correlations.empty()) {
+        all.correlations[static_cast<std::size_t>(i)] = inference.correlation;
+      }
     }
   });
   return all;

@@ -21,8 +21,13 @@ class OnlineMap {
   /// Whether nothing is known against the map's standard deviations (SurrogateStatus).
   bool isHonest() const;
 
-  /// The correlation of the errors of a sample's parameters, p x p.
+  /// The correlation of the errors of a sample's parameters, p x p, over all samples.
   const Eigen::MatrixXd& getResidualCorrelation() const;
+
+  /// That of what was inferred from one measurement where the map tells, else that over all.
+  const Eigen::MatrixXd& chooseCorrelation(const Inference& inference) const {
+    return inference.correlation.size() > 0 ? inference.correlation : getResidualCorrelation();
+  }
 
   /// Null where the map is of another kind.
   const Surrogate* findSurrogate() const;
@@ -50,9 +55,9 @@ class OnlineMap {
   const Inference& inferMean(const Eigen::Ref<const Eigen::VectorXd>& features,
                              const Eigen::Ref<const Eigen::VectorXd>& known, Workspace& workspace) const;
 
-  /// Mean and standard deviation (p x n) for features (d x n, finite) and known inputs (q x n): those of
-  /// infer(), bit for bit, for any number of threads. Throws std::invalid_argument for sizes that do not fit.
-  /// Cost: that of n inferences.
+  /// Mean, standard deviation (p x n) and, where the map tells, correlations for features (d x n, finite) and
+  /// known inputs (q x n): those of infer(), bit for bit, for any number of threads. Throws
+  /// std::invalid_argument for sizes that do not fit. Cost: that of n inferences.
   Predictions predict(const Eigen::Ref<const Eigen::MatrixXd>& features,
                       const Eigen::Ref<const Eigen::MatrixXd>& known, int threads) const;
 

@@ -9,6 +9,7 @@ OnlineNetwork::Workspace::Workspace(const OnlineNetwork& map)
   inference.mean.resize(map.map_->center.size());
   inference.stddev.resize(map.map_->center.size());
   inference.inputs.resize(map.map_->inputs.countInputs());
+  inference.correlation.resize(map.map_->center.size(), map.map_->center.size());
 }
 
 const Inference& OnlineNetwork::infer(const Eigen::Ref<const VectorXd>& features,
@@ -25,6 +26,8 @@ const Inference& OnlineNetwork::infer(const Eigen::Ref<const VectorXd>& features
   inference.mean = map_->center + map_->half_width.cwiseProduct(workspace.predicting.mean);
   inference.stddev = (map_->validation.stddev_scale.array() * map_->half_width.array()) *
                      workspace.predicting.stddev.array();
+  const auto inverse_stddev = workspace.predicting.stddev.cwiseInverse().asDiagonal();
+  inference.correlation = inverse_stddev * workspace.predicting.covariance * inverse_stddev;
   return inference;
 }
 

@@ -36,11 +36,25 @@ Index countDraws(const SurrogateSamples& samples) {
   return std::clamp<Index>(std::min(samples.measured.cols() / n, kMostColumns / n), 1, kMostDraws);
 }
 
-double calcMeanLogDensity(const MatrixXd& standardised, const MatrixXd& stddev, const MatrixXd& correlation) {
+/// Sum over the columns of the log densities of normal errors, over their standard deviations.
+double calcLogDensity(const MatrixXd& standardised, const MatrixXd& correlation) {
   const MatrixXd lower = linalg::calcCholesky(correlation).lower;
-  const auto n = static_cast<double>(stddev.cols()), p = static_cast<double>(stddev.rows());
-  return -0.5 * (linalg::solveLower(lower, standardised).squaredNorm() / n + p * std::log(kTwoPi)) -
-         lower.diagonal().array().log().sum() - stddev.array().log().sum() / n;
+  const auto n = static_cast<double>(standardised.cols()), p = static_cast<double>(standardised.rows());
+  return -0.5 * (linalg::solveLower(lower, standardised).squaredNorm() + n * p * std::log(kTwoPi)) -
+         n * lower.diagonal().array().log().sum();
+}
+
+/// With each sample's own correlation where the predictions have them.
+double calcMeanLogDensity(const MatrixXd& standardised, const VectorXd& stddev_scale,
+                          const Predictions& predictions, const MatrixXd& correlation) {
+  double sum = -(stddev_scale.asDiagonal() * predictions.stddev).array().log().sum();
+  for (Index i = 0; i < static_cast<Index>(predictions.correlations.size()); ++i) {
+    sum += calcLogDensity(standardised.col(i), predictions.correlations[static_cast<std::size_t>(i)]);
+  }
+  if (predictions.correlations.empty()) {
+    sum += calcLogDensity(standardised, correlation);
+  }
+  return sum / static_cast<double>(standardised.cols());
 }
 
 }  // namespace
@@ -76,7 +90,7 @@ HeldOut crossValidate(const Surrogate& whole, const SurrogateSamples& samples, c
   const Index n = samples.points.cols(), draws = countDraws(samples), p = whole.parameters;
   const Index known = samples.points.rows() - whole.unknown;
   HeldOut held_out;
-  held_out.predictions = {MatrixXd(p, n * draws), MatrixXd(p, n * draws)};
+  held_out.predictions = {MatrixXd(p, n * draws), MatrixXd(p, n * draws), {}};
   held_out.limit_stddev.resize(p, n * draws);
   for (Index fold = 0; fold < kFolds; ++fold) {
     const Surrogate fitted =
@@ -120,8 +134,8 @@ SurrogateValidation validate(const HeldOut& held_out) {
           .sqrt();
   const MatrixXd scaled = validation.stddev_scale.cwiseInverse().asDiagonal() * z;
   validation.residual_correlation = calcResidualCorrelation(scaled);
-  validation.log_density = calcMeanLogDensity(scaled, validation.stddev_scale.asDiagonal() * found.stddev,
-                                              validation.residual_correlation);
+  validation.log_density =
+      calcMeanLogDensity(scaled, validation.stddev_scale, found, validation.residual_correlation);
   validation.status =
       validation.coverage95.minCoeff() < kMapLimited ? SurrogateStatus::kMapLimited : SurrogateStatus::kOk;
   return validation;

@@ -1,18 +1,30 @@
 /* What the map and its judgement say, put together. */
 @TABLES@
 
-static void finish(twinmap_result *result)
+#if !TWINMAP_NETWORK
+static void correlate(twinmap_result *result)
 {
-  int a, b, limited = TWINMAP_DISHONEST;
+  int a, b;
   for (a = 0; a < TWINMAP_PARAMETERS; ++a) {
-    result->lower[a] = result->mean[a] - 1.959963984540054 * result->sd[a];
-    result->upper[a] = result->mean[a] + 1.959963984540054 * result->sd[a];
-    limited |= result->ratio_to_limit[a] > 1.5;
     for (b = 0; b < TWINMAP_PARAMETERS; ++b) {
       result->covariance[a * TWINMAP_PARAMETERS + b] =
           result->sd[a] * parameter_correlation[a * TWINMAP_PARAMETERS + b] * result->sd[b];
     }
   }
+}
+#endif
+
+static void finish(twinmap_result *result)
+{
+  int a, limited = TWINMAP_DISHONEST;
+  for (a = 0; a < TWINMAP_PARAMETERS; ++a) {
+    result->lower[a] = result->mean[a] - 1.959963984540054 * result->sd[a];
+    result->upper[a] = result->mean[a] + 1.959963984540054 * result->sd[a];
+    limited |= result->ratio_to_limit[a] > 1.5;
+  }
+#if !TWINMAP_NETWORK
+  correlate(result);
+#endif
   if (limited) {
     result->statuses |= TWINMAP_STATUS_MAP_LIMITED;
   }

@@ -112,7 +112,8 @@ static void calc_root(const double *head, double *root)
 static void infer_by_map(twinmap_state *state, const double *known, twinmap_result *result)
 {
   const double *head;
-  int i, j;
+  double unit[P]; /* of a target, in the parameter's unit, calibrated */
+  int i, j, k;
   make_inputs(state, known);
 #if TWINMAP_PRODUCTS
   calc_products(state->inputs, state->products);
@@ -120,15 +121,22 @@ static void infer_by_map(twinmap_state *state, const double *known, twinmap_resu
   head = calc_head(state);
   calc_root(head, state->root);
   for (i = 0; i < P; ++i) {
-    double y = target_offset[i] + dot(K, regression_linear + i * K, state->inputs), variance = 0.0;
+    double y = target_offset[i] + dot(K, regression_linear + i * K, state->inputs);
 #if TWINMAP_PRODUCTS
     y += dot(TWINMAP_PRODUCTS, regression_products + i * TWINMAP_PRODUCTS, state->products);
 #endif
     y = multiply_add(target_scale[i], head[i], y);
-    for (j = i; j < P; ++j) {
-      variance = multiply_add(state->root[j * P + i], state->root[j * P + i], variance);
-    }
     result->mean[i] = multiply_add(parameter_half_width[i], y, parameter_center[i]);
-    result->sd[i] = stddev_scale[i] * parameter_half_width[i] * target_scale[i] * sqrt(variance);
+    unit[i] = stddev_scale[i] * parameter_half_width[i] * target_scale[i];
+    for (k = 0; k <= i; ++k) {
+      double covariance = 0.0;
+      for (j = i; j < P; ++j) {
+        covariance = multiply_add(state->root[j * P + i], state->root[j * P + k], covariance);
+      }
+      if (k == i) {
+        result->sd[i] = unit[i] * sqrt(covariance);
+      }
+      result->covariance[i * P + k] = result->covariance[k * P + i] = unit[i] * unit[k] * covariance;
+    }
   }
 }
