@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include "framework/experiment/choose_samples.hpp"
+#include "framework/experiment/compare_maps.hpp"
 #include "framework/experiment/evaluate_map.hpp"
 #include "framework/experiment/example_responses.hpp"
 #include "framework/experiment/online_timing.hpp"
@@ -184,10 +185,14 @@ RunSummary runStages(const RunContext& run, SampleChoice choice) {
   const LocalModelSource local_models = makeLocalModelSource(run);
   const Samples samples = simulateSamples(run);
   const PreparedData data = prepareData(experiment, run.extractor, samples.sets, local_models);
-  TrainedMap trained = trainOrTake(
-      {experiment, samples.sets, run.simulator, run.extractor, data.labelled, run.control}, choice);
+  const MapTrainingContext training{experiment,    samples.sets,  run.simulator,
+                                    run.extractor, data.labelled, run.control};
+  TrainedMap trained = trainOrTake(training, choice);
   MapEvaluation evaluated =
       evaluateMap({experiment, run.simulator, run.extractor, data, trained, local_models, run.control});
+  ComparedMaps compared = compareMaps({training, evaluated.evaluation.limit_stddev, run.folder});
+  evaluated.evaluation.maps = std::move(compared.maps);
+  evaluated.notes.append(compared.notes);
   storeMap(run.folder / "maps.h5", experiment, run.extractor, evaluated.evaluation.refined, trained);
   evaluated.notes.append(writeTrustPower(run, samples, data, trained));
 

@@ -49,6 +49,7 @@ Report makeRunReport(const fs::path& folder) {
   addVerdict(run, gates, page);
   addMetrics(run, page);
   addMethods(run, page);
+  addComparedMaps(run, page);
   addSampleChapters(run, page);
   addModelChapters(run, page);
   return finish(page, gates);

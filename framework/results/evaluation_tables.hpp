@@ -29,6 +29,11 @@ std::string makeSbcCsv(const RunSummary& run);
 /// seconds_per_update, unconverged.
 std::string makeBaselinesCsv(const RunSummary& run);
 
+/// maps.csv: map, parameter, bias_pct, sd_pct, mare_pct, limit_pct, ratio_to_limit, coverage50, coverage90,
+/// coverage95, nlpd, joint_coverage95, joint_nlpd, training_seconds, online_us (median of one measurement),
+/// bytes.
+std::string makeMapsCsv(const RunSummary& run);
+
 /// methods.csv: method, parameter, bias_pct, sd_pct, mare_pct, limit_pct, ratio_to_limit, coverage50,
 /// coverage90, coverage95, samples, accepted (share), median_simulations; figures are those of the accepted
 /// samples, the limit too.

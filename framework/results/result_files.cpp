@@ -26,6 +26,9 @@ void writeEvaluation(const fs::path& folder, const RunSummary& run) {
   if (!run.evaluation.baselines.empty()) {
     writeTextFile(folder / "baselines.csv", makeBaselinesCsv(run));
   }
+  if (!run.evaluation.maps.empty()) {
+    writeTextFile(folder / "maps.csv", makeMapsCsv(run));
+  }
   if (!run.evaluation.methods.empty()) {
     writeTextFile(folder / "methods.csv", makeMethodsCsv(run));
     writeTextFile(folder / "refined.csv", makeRefinedCsv(run));

@@ -32,6 +32,7 @@ void readTables(const fs::path& path, RunFolder& run) {
   run.identifiability = readCsvFile(path / "identifiability.csv");
   run.posterior = readCsvFile(path / "posterior.csv");
   run.sbc = readCsvFile(path / "sbc.csv");
+  run.compared_maps = readCsvFile(path / "maps.csv");
   run.baselines = readCsvFile(path / "baselines.csv");
   run.responses = readCsvFile(path / "responses.csv");
 }

@@ -32,6 +32,7 @@ struct RunFolder {
   CsvTable posterior;
   CsvTable sbc;
   CsvTable baselines;
+  CsvTable compared_maps;
   CsvTable responses;
   ProvenanceRecord provenance;
   std::shared_ptr<const StoredResponses> test_responses;  ///< nullptr if absent

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -105,6 +106,22 @@ struct MethodSummary {
   std::vector<ParameterMetrics> metrics;  ///< of the accepted
 };
 
+/// What one online update costs: the inference of all parameters from one feature vector.
+struct OnlineTimes {
+  int updates = 0;  ///< how many were timed
+  double median_us = 0.0, p99_us = 0.0;
+};
+
+/// One of several maps that learnt from the same samples, without refinement.
+struct MapComparison {
+  std::string name;
+  std::vector<ParameterMetrics> metrics;
+  JointMetrics joint;
+  double training_seconds = 0.0;
+  OnlineTimes online;
+  std::uintmax_t bytes = 0;  ///< of the file that infers
+};
+
 /// How well the inverse map infers the test samples: p parameters, n samples that could be simulated.
 struct Evaluation {
   Eigen::MatrixXd truth;         ///< p x n
@@ -120,12 +137,7 @@ struct Evaluation {
   std::vector<BaselineSummary> baselines;
   std::vector<Refined> refined;        ///< n; empty where nothing was refined
   std::vector<MethodSummary> methods;  ///< empty where nothing was refined
-};
-
-/// What one online update costs: the inference of all parameters from one feature vector.
-struct OnlineTimes {
-  int updates = 0;  ///< how many were timed
-  double median_us = 0.0, p99_us = 0.0;
+  std::vector<MapComparison> maps;
 };
 
 /// Everything that the tables of one run show.

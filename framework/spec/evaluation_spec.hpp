@@ -6,6 +6,7 @@
 
 #include "framework/spec/fields/fields.hpp"
 #include "framework/spec/fields/one_of.hpp"
+#include "framework/spec/inverse_map_spec.hpp"
 
 namespace twinmap {
 
@@ -83,6 +84,7 @@ struct EvaluationSpec {
   std::optional<PosteriorSpec> posterior;
   PosteriorCalibrationMethod calibration = PosteriorCalibrationMethod::kNone;
   std::vector<BaselineSpec> baselines;
+  std::vector<InverseMapSpec> maps;  ///< compared on the same samples, without refinement
 };
 
 template <class Fields>
@@ -91,7 +93,8 @@ void describe(Fields& f, EvaluationSpec& s) {
   f.optional("posterior", s.posterior, "exact posterior of some test samples, by simulation");
   f.optional("calibration", s.calibration,
              "sbc: simulation-based calibration of the posteriors of all test samples");
-  f.optional("baselines", s.baselines, "other inverse maps to compare with");
+  f.optional("baselines", s.baselines, "other ways of inferring to compare with");
+  f.optional("maps", s.maps, "maps to train and compare on the same samples, as inverse_map has them");
 }
 
 }  // namespace twinmap

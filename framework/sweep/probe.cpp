@@ -71,6 +71,7 @@ ExperimentSpec makeBare(ExperimentSpec experiment) {
   experiment.evaluation.posterior.reset();
   experiment.evaluation.calibration = PosteriorCalibrationMethod::kNone;
   experiment.evaluation.baselines.clear();
+  experiment.evaluation.maps.clear();
   return experiment;
 }
 

@@ -15,6 +15,8 @@ void addVerdict(const RunFolder& run, const std::vector<GateResult>& gates, Page
 void addMetrics(const RunFolder& run, Page& page);
 /// How good the map alone is, and what refinement makes of its answers.
 void addMethods(const RunFolder& run, Page& page);
+/// Several maps on the same samples, where the experiment asks for them.
+void addComparedMaps(const RunFolder& run, Page& page);
 void addInferred(const RunFolder& run, Page& page);
 void addStddevOverBox(const RunFolder& run, Page& page);
 void addCalibration(const RunFolder& run, Page& page);
