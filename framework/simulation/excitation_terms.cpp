@@ -25,7 +25,8 @@ class TermWriter {
   }
 
   void add(const SineSpec& sine) {
-    const ToneShape::Tone tone{2.0 * kPi * calcFrequency(sine.frequency), calc(sine.phase, "phase", "rad"), 1.0};
+    const ToneShape::Tone tone{2.0 * kPi * calcFrequency(sine.frequency), calc(sine.phase, "phase", "rad"),
+                               1.0};
     append(sine.start, sine.end, ToneShape{calcAmplitude(sine.amplitude), {tone}});
   }
 
