@@ -132,7 +132,8 @@ struct ReplayArguments {
 struct DesignArguments {
   std::string what;  ///< "excitation"
   ExperimentArguments experiment;
-  std::string folder;  ///< "": results/NAME_design
+  std::string folder;   ///< "": results/NAME_design
+  bool verify = false;  ///< train maps on both experiments and compare them
   int threads = 1;
   std::string command_line;
 };

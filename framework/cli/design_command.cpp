@@ -8,6 +8,7 @@
 #include "framework/cli/signals.hpp"
 #include "framework/experiment_design/excitation.hpp"
 #include "framework/experiment_design/excitation_files.hpp"
+#include "framework/experiment_design/verify_design.hpp"
 #include "framework/monitoring/interrupted.hpp"
 #include "framework/spec/experiment_file.hpp"
 
@@ -29,6 +30,10 @@ void designExcitation(const DesignArguments& arguments) {
     std::cout << experiment_design::describeDesign(design);
     for (const std::string& warning : design.warnings) {
       std::cerr << "twinmap: warning: " << warning << "\n";
+    }
+    if (arguments.verify) {
+      std::cout << "\n" << experiment_design::verifyDesign(tree, folder, control);
+      line.clear();
     }
     std::cerr << "Designed experiment: " << (folder / "designed.yaml").string() << "\n";
   } catch (const Interrupted& interrupted) {

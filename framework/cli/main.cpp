@@ -233,6 +233,10 @@ void addDesign(CLI::App& app, cli::DesignArguments& arguments) {
   addExperiment(*command, arguments.experiment);
   command->add_option("--out", arguments.folder, "Folder for the results (default: results/NAME_design)")
       ->type_name("DIR");
+  command->add_flag(
+      "--verify", arguments.verify,
+      "Train maps on the experiment before and after, with as many simulations, and compare what "
+      "they infer of held-out samples");
   addThreads(*command, arguments.threads);
   command->callback([&arguments] { cli::designExcitation(arguments); });
 }

@@ -7,6 +7,7 @@
 
 #include "framework/design/point_set.hpp"
 #include "framework/evaluation/identifiability.hpp"
+#include "framework/experiment_design/design_page.hpp"
 #include "framework/experiment_design/excitation_files.hpp"
 #include "framework/measurement/signal_experiment.hpp"
 #include "framework/monitoring/interrupted.hpp"
@@ -66,6 +67,7 @@ class ExcitationDesigner {
       return calcScore(name, points, point, budget);
     };
     tried_ = 0;
+    best_ = std::numeric_limits<double>::quiet_NaN();
     return {judge, most_, {budget, phases, evaluator_.getExperiment().seed}};
   }
 
@@ -173,6 +175,18 @@ InformationLimit makeInformationLimit(const DesignLimit& limit) {
   return information;
 }
 
+/// What a design for the centre of the box alone gives, in the whole box: what robustness costs and brings.
+JudgedExcitation designNominal(ExcitationDesigner& designer, const ExperimentSpec& experiment,
+                               const std::vector<FreeNumber>& numbers) {
+  constexpr int kMostBudget = 500;
+  const int budget = std::min(kMostBudget, experiment.design.excitation->budget);
+  DesignSearch search =
+      designer.makeSearch("nominal", calcBoxCenter(collectSampled(experiment.model)), budget);
+  search.run(calcPresentPoint(numbers));
+  return search.findBest() == nullptr ? JudgedExcitation()
+                                      : designer.judge(designer.calcValuesOf(search.findBest()->point));
+}
+
 /// Whether the search ended by itself; else its best so far counts.
 bool runUnlessStopped(ExcitationDesigner& designer, DesignSearch& search, int budget) {
   try {
@@ -185,6 +199,11 @@ bool runUnlessStopped(ExcitationDesigner& designer, DesignSearch& search, int bu
     }
     return false;
   }
+}
+
+void writeAll(const fs::path& folder, const ExcitationEvaluator& evaluator, const ExcitationDesign& design) {
+  writeDesign(folder, evaluator, design);
+  writeTextFile(folder / "design.html", makeDesignPage(evaluator, design));
 }
 
 }  // namespace
@@ -219,10 +238,13 @@ ExcitationDesign designExcitation(const YamlNode& tree, const fs::path& folder, 
   design.check_points = kCheckPoints;
   design.warnings =
       calcIdentifiability(makeInformationLimit(design.after.limit), experiment.model.parameters).warnings;
-  writeDesign(folder, evaluator, design);
+  writeAll(folder, evaluator, design);
   if (design.interrupted) {
     throw Interrupted("interrupted; the best design so far is in " + (folder / "designed.yaml").string());
   }
+  design.nominal = designNominal(designer, experiment, numbers);
+  designer.getTrials().write();
+  writeAll(folder, evaluator, design);
   return design;
 }
 
