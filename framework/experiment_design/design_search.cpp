@@ -40,7 +40,8 @@ DesignScore DesignSearch::tryDesign(const VectorXd& point) {
 }
 
 double DesignSearch::calcMerit(const TriedDesign& tried) const {
-  constexpr double kPenalty = 10.0;  // log units for breaking a limit by 100 %
+  constexpr double kPenalty =
+      100.0;  // log units for breaking a limit by 100 %: designs far outside tell little
   const double violation = calcViolation(tried.score, most_);
   return std::isfinite(tried.score.cost) ? tried.score.cost + kPenalty * std::max(0.0, violation)
                                          : std::numeric_limits<double>::infinity();
@@ -112,7 +113,9 @@ void DesignSearch::run(const VectorXd& present) {
   for (const VectorXd& start : findStarts(kStarts)) {
     searchFrom(start, kFirstStep, static_cast<int>(kStartShare * left));
   }
-  searchFrom(findStarts(1).front(), kLastStep, std::max(2, budget - static_cast<int>(path_.size())));
+  const TriedDesign* best = findBest();
+  searchFrom(best != nullptr ? VectorXd(best->point) : findStarts(1).front(), kLastStep,
+             std::max(2, budget - static_cast<int>(path_.size())));
 }
 
 void DesignSearch::refine(const VectorXd& most, int budget) {
