@@ -129,6 +129,15 @@ struct ReplayArguments {
   std::string out;  ///< "": RUN/replay/STEM
 };
 
+struct DesignArguments {
+  std::string what;  ///< "excitation"
+  ExperimentArguments experiment;
+  std::string folder;   ///< "": results/NAME_design
+  bool verify = false;  ///< train maps on both experiments and compare them
+  int threads = 1;
+  std::string command_line;
+};
+
 // One file a subcommand. Results go to stdout, progress and warnings to stderr. Each throws ExperimentError
 // for wrong input and any other std::exception for a failure.
 
@@ -180,6 +189,10 @@ void cancel(const std::string& folder);
 /// (bytes).
 std::filesystem::path chooseFolder(const RunArguments& arguments, const ExperimentSpec& experiment);
 double chooseMemory(const RunArguments& arguments);
+
+/// Designs the excitation of an experiment and prints what it brings. Throws Interrupted where a signal asked
+/// to stop, with the command that continues.
+void designExcitation(const DesignArguments& arguments);
 
 /// Prints two runs side by side.
 void compare(const CompareArguments& arguments);

@@ -220,6 +220,27 @@ void addStore(CLI::App& app, StoreArguments& arguments) {
   command->callback([&arguments] { runStoreAction(arguments); });
 }
 
+void addDesign(CLI::App& app, cli::DesignArguments& arguments) {
+  CLI::App* command = app.add_subcommand(
+      "design",
+      "Choose an experiment that tells most about the parameters, by the information limit. excitation: the "
+      "free values of its signals (design.excitation) within limits; writes designed.yaml, the signals as "
+      "CSV, and a page with the limit before and after");
+  command->add_option("WHAT", arguments.what, "excitation")
+      ->required()
+      ->check(CLI::IsMember({"excitation"}))
+      ->option_text(" ");
+  addExperiment(*command, arguments.experiment);
+  command->add_option("--out", arguments.folder, "Folder for the results (default: results/NAME_design)")
+      ->type_name("DIR");
+  command->add_flag(
+      "--verify", arguments.verify,
+      "Train maps on the experiment before and after, with as many simulations, and compare what "
+      "they infer of held-out samples");
+  addThreads(*command, arguments.threads);
+  command->callback([&arguments] { cli::designExcitation(arguments); });
+}
+
 void addCompare(CLI::App& app, cli::CompareArguments& arguments) {
   CLI::App* command = app.add_subcommand(
       "compare",
@@ -508,6 +529,10 @@ int runCommand(int count, char** arguments) {
   addStatus(app, status);
   StoreArguments store;
   addStore(app, store);
+  cli::DesignArguments design;
+  design.threads = run.threads;
+  design.command_line = run.command_line;
+  addDesign(app, design);
   addCompare(app, compare);
   addNoise(app, noise);
   addReport(app, report);

@@ -27,6 +27,9 @@ enum class RandomPurpose : std::uint64_t {
   kNetworkBatches = 21,  // which samples a training step sees
   kNetworkNoise = 22,    // and with what noise
   kNetworkPool = 23,     // parameter points whose features a surrogate makes up
+  kDesignPoints = 24,    // of the box, that an excitation is designed for
+  kDesignStarts = 25,    // excitations that a search begins from
+  kDesignCheck = 26,     // points at which the limits of a design are checked
 };
 
 /// Counter-based random numbers (Philox 4x64-10, Salmon et al. 2011): a number depends on

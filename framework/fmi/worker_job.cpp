@@ -62,6 +62,7 @@ std::set<std::string> collectUsedNames(const ModelSpec& model) {
     }
     for (const MultisineSpec& multisine : signal.multisines) {
       add(multisine.amplitude);
+      std::for_each(multisine.amplitudes.begin(), multisine.amplitudes.end(), add);
       std::for_each(multisine.frequencies.begin(), multisine.frequencies.end(), add);
       std::for_each(multisine.phases.begin(), multisine.phases.end(), add);
       add(multisine.start);

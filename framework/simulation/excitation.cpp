@@ -18,7 +18,7 @@ struct ShapeAt {
   double operator()(const ToneShape& shape) const {
     double sum = 0.0;
     for (const ToneShape::Tone& tone : shape.tones) {
-      sum += std::sin(tone.omega * elapsed + tone.phase);
+      sum += tone.weight * std::sin(tone.omega * elapsed + tone.phase);
     }
     return shape.amplitude * sum;
   }

@@ -16,10 +16,11 @@ struct LineShape {
   double value, slope;
 };
 
-/// sum of amplitude * sin(omega * (t - begin) + phase)
+/// amplitude * sum of weight * sin(omega * (t - begin) + phase)
 struct ToneShape {
   struct Tone {
     double omega, phase;  ///< rad/s, rad
+    double weight = 1.0;
   };
   double amplitude;
   std::vector<Tone> tones;

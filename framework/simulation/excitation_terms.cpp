@@ -25,7 +25,8 @@ class TermWriter {
   }
 
   void add(const SineSpec& sine) {
-    const ToneShape::Tone tone{2.0 * kPi * calcFrequency(sine.frequency), calc(sine.phase, "phase", "rad")};
+    const ToneShape::Tone tone{2.0 * kPi * calcFrequency(sine.frequency), calc(sine.phase, "phase", "rad"),
+                               1.0};
     append(sine.start, sine.end, ToneShape{calcAmplitude(sine.amplitude), {tone}});
   }
 
@@ -43,9 +44,11 @@ class TermWriter {
     const std::vector<double> phases = multisine.phases.empty()
                                            ? calcSchroederPhases(count)
                                            : numbers_.calcEach(multisine.phases, {owner_, "phase", "rad"});
-    ToneShape shape{calcAmplitude(multisine.amplitude), {}};
+    const bool same = multisine.amplitudes.empty();
+    ToneShape shape{same ? calcAmplitude(multisine.amplitude) : 1.0, {}};
     for (int k = 0; k < count; ++k) {
-      shape.tones.push_back({2.0 * kPi * calcFrequency(multisine.frequencies[k]), phases[k]});
+      const double weight = same ? 1.0 : calcAmplitude(multisine.amplitudes[k]);
+      shape.tones.push_back({2.0 * kPi * calcFrequency(multisine.frequencies[k]), phases[k], weight});
     }
     append(multisine.start, multisine.end, std::move(shape));
   }

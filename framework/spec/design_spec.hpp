@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "framework/spec/excitation_design_spec.hpp"
 #include "framework/spec/fields/fields.hpp"
 
 namespace twinmap {
@@ -59,12 +60,14 @@ void describe(Fields& f, PointSetSpec& s) {
 struct DesignSpec {
   PointSetSpec train{DesignMethod::kLatinHypercube, SampleCount::makeAutomatic(250), {}};
   PointSetSpec test{DesignMethod::kUniform, 500, {}};
+  std::optional<ExcitationDesignSpec> excitation{};  ///< for `twinmap design excitation`
 };
 
 template <class Fields>
 void describe(Fields& f, DesignSpec& s) {
   f.optional("train", s.train, "points to train on");
   f.optional("test", s.test, "points to test on");
+  f.optional("excitation", s.excitation, "which values of the excitation to design, and for what");
   f.rule(!s.test.samples.automatic, "must give the number of test samples");
 }
 

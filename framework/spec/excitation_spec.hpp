@@ -61,18 +61,19 @@ void describe(Fields& f, ChirpSpec& s) {
   f.optional("sweep", s.sweep, "how the frequency grows");
 }
 
-/// Sum over k of amplitude * sin(2 pi frequencies[k] t' + phases[k]); without phases, Schroeder's
-/// phi_k = -pi k (k - 1) / N, k = 1..N (low crest factor).
+/// Sum over k of a_k * sin(2 pi frequencies[k] t' + phases[k]), a_k one amplitude for all or each its own;
+/// without phases, Schroeder's phi_k = -pi k (k - 1) / N, k = 1..N (low crest factor).
 struct MultisineSpec {
-  Expression amplitude;
-  std::vector<Expression> frequencies, phases;
+  Expression amplitude{"", {}};
+  std::vector<Expression> amplitudes, frequencies, phases;  ///< amplitudes: empty where `amplitude` is given
   Expression start;
   Expression end{"", {}};
 };
 
 template <class Fields>
 void describe(Fields& f, MultisineSpec& s) {
-  f.required("amplitude", s.amplitude, "of each sine");
+  f.oneOf("must give exactly one of", choice("amplitude", s.amplitude, "the same of each sine"),
+          choice("amplitudes", s.amplitudes, "one for each of frequencies"));
   f.required("frequencies", s.frequencies, "Hz");
   f.optional("phases", s.phases, "rad; Schroeder's phases if absent", kNotEmpty);
   f.optional("start", s.start, "s; 0 before");
@@ -80,6 +81,8 @@ void describe(Fields& f, MultisineSpec& s) {
   f.rule(!s.frequencies.empty(), "must list at least one of frequencies");
   f.rule(s.phases.empty() || s.phases.size() == s.frequencies.size(),
          "must give as many phases as frequencies, or none");
+  f.rule(s.amplitudes.empty() || s.amplitudes.size() == s.frequencies.size(),
+         "must give as many amplitudes as frequencies");
 }
 
 /// kCubic: the spline with continuous second derivative, not-a-knot at both ends.

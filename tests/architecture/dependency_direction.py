@@ -35,6 +35,8 @@ ALLOWED = {
     "comparison": {"spec", "features", "evaluation", "inverse_map", "store", "results"},
     "experiment": {"spec", "monitoring", "design", "simulation", "multibody", "model_source", "features", "sensitivity", "refinement",
                    "evaluation", "inverse_map", "surrogate", "network_map", "online", "store", "sampling", "results", "report"},
+    "experiment_design": {"experiment", "spec", "response", "monitoring", "measurement", "design", "simulation", "model_source", "features",
+                          "sensitivity", "evaluation", "store", "results", "report", "comparison", "kernels"},
     "inference": {"experiment", "spec", "design", "simulation", "model_source", "features", "sensitivity", "refinement", "inverse_map", "surrogate", "online",
                   "measurement", "store", "results", "report"},
     "c_api": {"inference", "spec", "measurement", "process", "features", "inverse_map", "online", "response"},
@@ -47,7 +49,7 @@ ALLOWED = {
     "sweep": {"experiment", "response", "spec", "monitoring", "measurement", "design", "model_source", "simulation", "features",
               "sensitivity", "inverse_map", "store", "sampling", "results", "report"},
     "cluster": {"sweep", "experiment", "spec", "monitoring", "measurement", "simulation", "store", "sampling", "results"},
-    "cli": {"experiment", "sweep", "cluster", "comparison", "verification", "inference", "export", "spec", "monitoring", "measurement", "design",
+    "cli": {"experiment_design", "experiment", "sweep", "cluster", "comparison", "verification", "inference", "export", "spec", "monitoring", "measurement", "design",
             "fmi", "model_source", "simulation", "features", "store", "sampling", "results", "report"},
 }
 
@@ -71,7 +73,7 @@ LIBRARIES = {
     r"CLI/.*": {"cli"},
     r"nlopt.*": {"kernels"},
     r"spdlog/.*": {"monitoring", "sampling", "experiment", "sweep", "cli", "python"},
-    r"filesystem": {"fmi", "spec", "inference", "export", "hdf5", "monitoring", "measurement", "store", "sampling", "results", "report", "comparison", "experiment",
+    r"filesystem": {"fmi", "spec", "inference", "export", "hdf5", "monitoring", "measurement", "store", "sampling", "results", "report", "comparison", "experiment", "experiment_design",
                      "sweep", "cluster", "verification", "c_api", "python", "cli"},
     r"(omp\.h|fstream|chrono)": {"fmi/fstream", "process/chrono", "process/fstream", "spec", "measurement/fstream", "monitoring/chrono", "simulation", "multibody", "evaluation/chrono",
                                  "store", "sampling", "comparison", "experiment", "sweep", "verification", "python/chrono", "cli", "kernels/omp.h", "kernels/chrono",

@@ -102,12 +102,15 @@ class ExcitationRecorder {
       const std::vector<double> schroeder = calcSchroederPhases(static_cast<int>(frequencies.size()));
       phases.assign(schroeder.begin(), schroeder.end());
     }
+    const std::vector<Symbol> amplitudes = names_.calcEach(multisine.amplitudes);
     const Symbol elapsed = recorder_.time() - names_.calc(multisine.start);
     Symbol sum = 0.0;
     for (std::size_t k = 0; k < frequencies.size(); ++k) {
-      sum += sin(kTwoPi * frequencies[k] * elapsed + phases[k]);
+      const Symbol tone = sin(kTwoPi * frequencies[k] * elapsed + phases[k]);
+      sum += amplitudes.empty() ? tone : amplitudes[k] * tone;
     }
-    switchOn(multisine.start, multisine.end, names_.calc(multisine.amplitude) * sum);
+    switchOn(multisine.start, multisine.end,
+             amplitudes.empty() ? names_.calc(multisine.amplitude) * sum : sum);
   }
 
   void addTerm(const TableSpec& table) {

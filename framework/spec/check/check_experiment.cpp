@@ -40,6 +40,26 @@ void checkDesign(const DesignSpec& design, const SourceLocation& where) {
   }
 }
 
+void checkCriterion(const CriterionSpec& criterion, const ModelSpec& model) {
+  const std::vector<std::string> parameters = collectNames(model.parameters);
+  if (const Name* parameter = std::get_if<Name>(&criterion.kind)) {
+    requireKnown(*parameter, parameters, "a parameter");
+  }
+  if (const ParameterWeights* weights = std::get_if<ParameterWeights>(&criterion.kind)) {
+    for (const ParameterWeight& one : weights->values) {
+      requireKnown(one.name, parameters, "a parameter");
+    }
+  }
+}
+
+void checkExcitationDesign(const ExcitationDesignSpec& design, const ModelSpec& model) {
+  checkCriterion(design.criterion, model);
+  for (const DesignLimitSpec& limit : design.limits) {
+    limit.output ? requireKnown(*limit.output, collectNames(model.outputs), "an output")
+                 : requireKnown(*limit.signal, collectNames(model.excitation), "a signal of the excitation");
+  }
+}
+
 void checkGates(const ExperimentSpec& experiment) {
   for (const GateSpec& gate : experiment.gates) {
     requireKnown(gate.metric, {kGateMetrics.begin(), kGateMetrics.end()}, "a metric");
@@ -65,6 +85,9 @@ void checkExperiment(const ExperimentSpec& experiment) {
   checkNoise(experiment);
   checkTransform(experiment);
   checkDesign(experiment.design, experiment.name.where);
+  if (experiment.design.excitation) {
+    checkExcitationDesign(*experiment.design.excitation, experiment.model);
+  }
   checkGates(experiment);
   checkMeasurement(experiment.measurement, experiment.model);
   for (const Name& axis : experiment.report.over) {

@@ -104,6 +104,7 @@ std::vector<const Expression*> collectExpressions(const SignalSpec& signal) {
   }
   for (const MultisineSpec& multisine : signal.multisines) {
     all.insert(all.end(), {&multisine.amplitude, &multisine.start, &multisine.end});
+    append(all, multisine.amplitudes);
     append(all, multisine.frequencies);
     append(all, multisine.phases);
   }

@@ -207,7 +207,8 @@ class ModelCheck {
         constants_.check(chirp.end_frequency, "Hz");
       }
       for (const MultisineSpec& multisine : signal.multisines) {
-        checkTerm(multisine.amplitude, signal.unit, {&multisine.start, &multisine.end});
+        checkAll(listAmplitudes(multisine), signal.unit);
+        checkTimes({&multisine.start, &multisine.end});
         checkAll(multisine.frequencies, "Hz");
         checkAll(multisine.phases, "rad");
       }
@@ -217,6 +218,14 @@ class ModelCheck {
   void checkTerm(const Expression& amplitude, const std::string& unit,
                  std::initializer_list<const Expression*> times) const {
     constants_.check(amplitude, unit);
+    checkTimes(times);
+  }
+
+  static std::vector<Expression> listAmplitudes(const MultisineSpec& multisine) {
+    return multisine.amplitudes.empty() ? std::vector<Expression>{multisine.amplitude} : multisine.amplitudes;
+  }
+
+  void checkTimes(std::initializer_list<const Expression*> times) const {
     for (const Expression* time : times) {
       if (!time->text.empty()) {
         constants_.check(*time, "s");

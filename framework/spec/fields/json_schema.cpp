@@ -53,6 +53,23 @@ Json makeSchema(const SampleCount&) {
   return makeCountOrAutomatic(kSampleCount);
 }
 
+Json makeSchema(const ParameterWeights&) {
+  return {{"type", "object"},
+          {"additionalProperties", {{"type", "number"}, {"exclusiveMinimum", 0}}},
+          {"minProperties", 1}};
+}
+
+Json makeSchema(const FreeValues&) {
+  const Json bounds = makeSchema(Bounds{});
+  const Json each{{"type", "object"},
+                  {"additionalProperties", false},
+                  {"properties", {{"each", bounds}}},
+                  {"required", Json::array({"each"})}};
+  return {{"type", "object"},
+          {"additionalProperties", {{"oneOf", Json::array({bounds, each})}}},
+          {"minProperties", 1}};
+}
+
 Json makeSchema(const SweptKeys&) {
   const Json list{{"type", "array"}, {"minItems", 1}};
   const Json range{{"type", "string"}, {"pattern", "^-?[0-9]+\\.\\.-?[0-9]+$"}};

@@ -184,4 +184,20 @@ void setValue(YamlNode& root, const Name& key, const YamlNode& value) {
   setKeyPaths(root, "");
 }
 
+const YamlNode* findValue(const YamlNode& root, const Name& key) {
+  const YamlNode* node = &root;
+  for (const std::string& step : splitKeyPath(key.text, {key.text, key.where})) {
+    if (!isIndex(step)) {
+      node = node->find(step);
+    } else {
+      const std::size_t index = std::stoul(step.substr(1));
+      node = index < node->items.size() ? &node->items[index] : nullptr;
+    }
+    if (node == nullptr) {
+      return nullptr;
+    }
+  }
+  return node;
+}
+
 }  // namespace twinmap

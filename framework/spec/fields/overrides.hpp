@@ -18,4 +18,7 @@ void applyOverride(YamlNode& root, const std::string& override_text);
 /// applyOverride().
 void setValue(YamlNode& root, const Name& key, const YamlNode& value);
 
+/// The value at a key path, or null. Throws ExperimentError for a malformed path.
+const YamlNode* findValue(const YamlNode& root, const Name& key);
+
 }  // namespace twinmap

@@ -155,6 +155,37 @@ void readValue(const YamlNode& node, SampleCount& value) {
   }
 }
 
+void readValue(const YamlNode& node, ParameterWeights& value) {
+  requireKind(node, YamlNode::Kind::kMap, "a map from parameters to weights");
+  value.values.clear();
+  for (const YamlEntry& entry : node.entries) {
+    ParameterWeight one{{entry.key, entry.key_where}, 0.0};
+    readValue(entry.value, one.weight, kPositive);
+    value.values.push_back(one);
+  }
+  if (value.values.empty()) {
+    throw ExperimentError(node.where, "{}", "must name at least one parameter");
+  }
+}
+
+void readValue(const YamlNode& node, FreeValues& value) {
+  constexpr const char* kExpected = "[lower, upper], or {each: [lower, upper]}";
+  requireKind(node, YamlNode::Kind::kMap, "a map from key paths below excitation to bounds");
+  value.values.clear();
+  for (const YamlEntry& entry : node.entries) {
+    FreeValue one{{entry.key, entry.key_where}, entry.value.kind == YamlNode::Kind::kMap, {}};
+    const YamlNode* bounds = one.each ? entry.value.find("each") : &entry.value;
+    if (bounds == nullptr || (one.each && entry.value.entries.size() != 1)) {
+      throw ExperimentError(entry.value.where, "", std::string("must be ") + kExpected);
+    }
+    readValue(*bounds, one.bounds);
+    value.values.push_back(one);
+  }
+  if (value.values.empty()) {
+    throw ExperimentError(node.where, "{}", "must name at least one value of the excitation");
+  }
+}
+
 void FieldReader::setMap(const std::string& key, YamlNode value) {
   written_out_ = makeMap();
   written_out_.where = value.where = node_->where;

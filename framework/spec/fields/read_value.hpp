@@ -35,6 +35,10 @@ void readValue(const YamlNode& node, ColumnSpec& value);
 /// A whole number above 0, or automatic.
 void readValue(const YamlNode& node, ComponentCount& value);
 void readValue(const YamlNode& node, SampleCount& value);
+/// A map from parameters to weights above 0.
+void readValue(const YamlNode& node, ParameterWeights& value);
+/// A map from key paths to [lower, upper] or {each: [lower, upper]}.
+void readValue(const YamlNode& node, FreeValues& value);
 
 /// Throws unless `node` is of the kind; the message says what was expected.
 void requireKind(const YamlNode& node, YamlNode::Kind kind, const std::string& expected);

@@ -36,4 +36,26 @@ YamlNode writeValue(const ColumnSpec& value) {
   return makeScalar(toText(value));
 }
 
+YamlNode writeValue(const ParameterWeights& value) {
+  YamlNode map = makeMap();
+  for (const ParameterWeight& one : value.values) {
+    map.entries.push_back({one.name.text, {}, writeValue(one.weight)});
+  }
+  return map;
+}
+
+YamlNode writeValue(const FreeValues& value) {
+  YamlNode map = makeMap();
+  for (const FreeValue& one : value.values) {
+    YamlNode bounds = writeValue(one.bounds);
+    if (one.each) {
+      YamlNode each = makeMap();
+      each.entries.push_back({"each", {}, std::move(bounds)});
+      bounds = std::move(each);
+    }
+    map.entries.push_back({one.key.text, {}, std::move(bounds)});
+  }
+  return map;
+}
+
 }  // namespace twinmap

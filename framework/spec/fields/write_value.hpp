@@ -25,6 +25,8 @@ YamlNode writeValue(const ComponentCount& value);
 YamlNode writeValue(const SampleCount& value);
 YamlNode writeValue(const Bounds& value);
 YamlNode writeValue(const ColumnSpec& value);
+YamlNode writeValue(const ParameterWeights& value);
+YamlNode writeValue(const FreeValues& value);
 
 inline bool isGiven(const ComponentCount& value) {
   return value.number.has_value();

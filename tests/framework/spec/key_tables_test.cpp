@@ -160,6 +160,7 @@ const std::vector<Described> kKeyTables{
     {"key of `measured`", "excitation.*.tables.[].measured"},
     {"key", "simulation"},
     {"step of `transform`", "transform.[]"},
+    {"key of `excitation`", "design.excitation"},
     {"kind of map", "inverse_map"},
     {"key of `gp`", "inverse_map.gp"},
     {"key of `network`", "inverse_map.network"},

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace twinmap::experiment_design {
+
+/// What a design is judged by: the information matrix of one point of the box, in half-widths of the box,
+/// prior included.
+struct Criterion {
+  enum class Kind { d_optimal, a_optimal, e_optimal, weighted };
+  Kind kind = Kind::d_optimal;
+  Eigen::VectorXd weights;  ///< weighted: of each parameter's variance, 0 or above
+};
+
+/// The cost of one information matrix M (p x p, positive definite), to be minimised, in log units so that it
+/// can be compared between designs: -log det(M) / p, log(tr(M^-1) / p), -log of the least eigenvalue of M, or
+/// log(sum_i w_i (M^-1)_ii / sum_i w_i). NaN where M is not positive definite. Cost: p^3.
+double calcCost(const Criterion& criterion, const Eigen::MatrixXd& information);
+
+/// d cost / d M (symmetric). Where the least eigenvalue is double, that of one of its eigenvectors.
+Eigen::MatrixXd calcCostGradient(const Criterion& criterion, const Eigen::MatrixXd& information);
+
+}  // namespace twinmap::experiment_design
