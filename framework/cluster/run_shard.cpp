@@ -58,10 +58,11 @@ void requireDone(const SimulationProgress& done, const std::string& what) {
 
 SimulationProgress simulate(SharedSamples samples, const std::string& what, const RunControl& control,
                             std::vector<SharedSamples>& kept) {
+  constexpr double kShare = 0.25;  // as the plan has it
   kept.clear();
   kept.push_back(std::move(samples));
   const SimulationProgress done =
-      simulateShared(kept, {0.25 * getMachineMemory() / 4.0, "simulate " + what, 1}, control);
+      simulateShared(kept, {kShare * PlanOptions{}.memory, "simulate " + what, 1}, control);
   requireDone(done, what);
   return done;
 }
@@ -123,7 +124,7 @@ SweepOptions makeOptions(const ShardWork& work) {
   SweepOptions options;
   options.folder = work.folder;
   options.store = work.plan.store;
-  options.memory = 0.5 * getMachineMemory();
+  options.memory = work.plan.memory;  // which the job has asked for
   options.command = work.command;
   return options;
 }

@@ -20,16 +20,16 @@ namespace fs = std::filesystem;
 void takeFolder(const YamlNode& root, const ShardOptions& shards) {
   if (!listSweptKeys(root).empty()) {
     SweepOptions options;
-    options.folder = shards.folder;
-    options.store = shards.store;
+    options.folder = shards.place.folder;
+    options.store = shards.place.store;
     beginSweep(root, options);
     return;
   }
   const std::string resolved = writeExperiment(readExperiment(root));
-  makeFolders(shards.folder);
-  requireSameExperiment(shards.folder, resolved);
-  writeTextFile(shards.folder / "resolved.yaml", resolved);
-  noteStore(shards.folder, shards.store);
+  makeFolders(shards.place.folder);
+  requireSameExperiment(shards.place.folder, resolved);
+  writeTextFile(shards.place.folder / "resolved.yaml", resolved);
+  noteStore(shards.place.folder, shards.place.store);
 }
 
 struct Stage {
@@ -43,16 +43,16 @@ struct Stage {
 SubmittedJobs submitExperiment(const YamlNode& root, const ShardOptions& shards,
                                const SubmitOptions& options) {
   requireScheduler(options.kind);
-  if (isQueued(shards.folder)) {
-    throw std::runtime_error(shards.folder.string() +
+  if (isQueued(shards.place.folder)) {
+    throw std::runtime_error(shards.place.folder.string() +
                              ": has jobs that are queued or running; 'twinmap cancel' ends them");
   }
-  const ShardPlan plan = makeShardPlan(root, shards);
+  const ShardPlan plan = makeShardPlan(surveyForShards(root, shards.place), shards);
   takeFolder(root, shards);
-  makeFolders(getClusterFolder(shards.folder));
-  fs::remove_all(getClusterFolder(shards.folder) / "shards");
-  writeShardPlan(shards.folder, plan);
-  return submitJobs(shards.folder, plan, options);
+  makeFolders(getClusterFolder(shards.place.folder));
+  fs::remove_all(getClusterFolder(shards.place.folder) / "shards");
+  writeShardPlan(shards.place.folder, plan);
+  return submitJobs(shards.place.folder, plan, options);
 }
 
 std::string describeShards(const ShardPlan& plan, const ShardOptions& shards) {
