@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 
@@ -32,6 +33,7 @@ SubmitOptions makeSubmitOptions(const SubmitArguments& arguments) {
   if (arguments.on == "template" && arguments.submit.empty()) {
     throw ExperimentError("--on template: needs --submit 'COMMAND {script}'");
   }
+  constexpr int kMinute = 60;
   SubmitOptions options;
   options.kind = arguments.on == "slurm"      ? SchedulerKind::kSlurm
                  : arguments.on == "template" ? SchedulerKind::kTemplate
@@ -39,6 +41,7 @@ SubmitOptions makeSubmitOptions(const SubmitArguments& arguments) {
   options.program = fs::read_symlink("/proc/self/exe").string();
   options.threads = arguments.cpus;
   options.minutes = arguments.minutes;
+  options.grace = std::min(options.grace, kMinute * options.minutes / 4);
   options.partition = arguments.partition;
   options.account = arguments.account;
   options.sbatch = arguments.sbatch;

@@ -32,6 +32,19 @@ void takeFolder(const YamlNode& root, const ShardOptions& shards) {
   noteStore(shards.place.folder, shards.place.store);
 }
 
+/// A line for a shard that failed, was stopped, or is not tried again.
+std::string describeProblem(const ShardRecord& record, int shard, ShardKind kind) {
+  const bool refused = !record.getRefusal().empty();
+  const ShardState state = record.getState();
+  if (!refused && state != ShardState::kFailed && state != ShardState::kInterrupted) {
+    return "";
+  }
+  return fmt::format("{}  shard {} ({}), {}{}\n",
+                     state == ShardState::kInterrupted ? "stopped:" : "failed: ", shard, getName(kind),
+                     record.describeLast(),
+                     refused ? "; twice the same: not tried again before the next submit" : "");
+}
+
 struct Stage {
   ShardKind kind;
   const char* what;
@@ -88,22 +101,18 @@ std::string describeSubmission(const fs::path& folder) {
   }
   const ShardPlan plan = readShardPlan(folder);
   std::map<std::string, int> count;
-  std::string failures;
+  std::string problems;
   for (int i = 0; i < static_cast<int>(plan.shards.size()); ++i) {
     const ShardRecord record(folder, i);
     ++count[getName(record.getState())];
-    if (record.getState() == ShardState::kFailed) {
-      failures += fmt::format("failed:  shard {} ({}), {} times: {}\n", i,
-                              getName(plan.shards[static_cast<std::size_t>(i)].kind),
-                              record.getAttempts().size(), record.getAttempts().back().reason);
-    }
+    problems += describeProblem(record, i, plan.shards[static_cast<std::size_t>(i)].kind);
   }
   std::string states;
   for (const auto& [state, number] : count) {
     states += fmt::format("{}{} {}", states.empty() ? "" : ", ", number, state);
   }
   const std::string queue = describeQueue(folder);
-  return "shards:  " + states + "\n" + failures + (queue.empty() ? "" : "jobs:    " + queue + "\n");
+  return "shards:  " + states + "\n" + problems + (queue.empty() ? "" : "jobs:    " + queue + "\n");
 }
 
 }  // namespace twinmap
