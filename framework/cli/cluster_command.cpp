@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 
@@ -10,6 +11,7 @@
 #include "framework/cluster/run_shard.hpp"
 #include "framework/cluster/submission.hpp"
 #include "framework/spec/experiment_file.hpp"
+#include "framework/sweep/plan.hpp"
 
 namespace twinmap::cli {
 namespace {
@@ -19,8 +21,8 @@ namespace fs = std::filesystem;
 ShardOptions makeShardOptions(const SubmitArguments& arguments, const YamlNode& tree) {
   constexpr double kMinute = 60.0, kShare = 0.5;  // of the time limit: costs differ between machines
   ShardOptions options;
-  options.folder = fs::absolute(chooseFolder(arguments.run, readExperiment(tree))).lexically_normal();
-  options.store = arguments.run.store.empty() ? fs::path() : fs::absolute(arguments.run.store);
+  options.place.folder = fs::absolute(chooseFolder(arguments.run, readExperiment(tree))).lexically_normal();
+  options.place.store = arguments.run.store.empty() ? fs::path() : fs::absolute(arguments.run.store);
   options.threads = arguments.cpus;
   options.seconds = kShare * kMinute * arguments.minutes;
   options.simulate_shards = arguments.shards;
@@ -31,6 +33,7 @@ SubmitOptions makeSubmitOptions(const SubmitArguments& arguments) {
   if (arguments.on == "template" && arguments.submit.empty()) {
     throw ExperimentError("--on template: needs --submit 'COMMAND {script}'");
   }
+  constexpr int kMinute = 60;
   SubmitOptions options;
   options.kind = arguments.on == "slurm"      ? SchedulerKind::kSlurm
                  : arguments.on == "template" ? SchedulerKind::kTemplate
@@ -38,6 +41,7 @@ SubmitOptions makeSubmitOptions(const SubmitArguments& arguments) {
   options.program = fs::read_symlink("/proc/self/exe").string();
   options.threads = arguments.cpus;
   options.minutes = arguments.minutes;
+  options.grace = std::min(options.grace, kMinute * options.minutes / 4);
   options.partition = arguments.partition;
   options.account = arguments.account;
   options.sbatch = arguments.sbatch;
@@ -50,9 +54,12 @@ SubmitOptions makeSubmitOptions(const SubmitArguments& arguments) {
 
 void planShards(const SubmitArguments& arguments) {
   const YamlNode tree = loadExperimentTree(arguments.run.experiment.file, arguments.run.experiment.overrides);
-  const ShardOptions options = makeShardOptions(arguments, tree);
+  const ShardOptions shards = makeShardOptions(arguments, tree);
+  const PlanOptions options{arguments.run.threads, chooseMemory(arguments.run)};
   spdlog::set_level(spdlog::level::off);  // of the small runs that are timed
-  std::cout << describeShards(makeShardPlan(tree, options), options);
+  const ExperimentSurvey survey = surveyForShards(tree, shards.place);
+  std::cout << describePlan(planRun(survey, options), options)
+            << describeShards(makeShardPlan(survey, shards), shards);
 }
 
 void submit(const SubmitArguments& arguments) {
@@ -61,10 +68,10 @@ void submit(const SubmitArguments& arguments) {
   const SubmitOptions options = makeSubmitOptions(arguments);
   spdlog::set_level(spdlog::level::off);
   const SubmittedJobs jobs = submitExperiment(tree, shards, options);
-  const ShardPlan plan = readShardPlan(shards.folder);
+  const ShardPlan plan = readShardPlan(shards.place.folder);
   std::cerr << describeShards(plan, shards);
   if (options.kind == SchedulerKind::kLocal) {
-    std::cout << listCommands(shards.folder, plan, options.program);
+    std::cout << listCommands(shards.place.folder, plan, options.program);
   }
   for (const std::string& id : jobs.ids) {
     std::cout << id << "\n";

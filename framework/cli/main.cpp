@@ -172,11 +172,8 @@ void addPlan(CLI::App& app, cli::RunArguments& arguments, cli::SubmitArguments& 
   on->description("Print the shards as well that submit would make: " + on->get_description());
   addJobs(*command, submitted);
   command->callback([&arguments, &submitted, on] {
-    cli::plan(arguments);
-    if (on->count() > 0) {
-      submitted.run = arguments;
-      cli::planShards(submitted);
-    }
+    submitted.run = arguments;
+    on->count() > 0 ? cli::planShards(submitted) : cli::plan(arguments);
   });
 }
 

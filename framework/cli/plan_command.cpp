@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "framework/cli/commands.hpp"
+#include "framework/measurement/signal_experiment.hpp"
 #include "framework/spec/experiment_file.hpp"
 #include "framework/sweep/plan.hpp"
 
@@ -10,13 +11,11 @@ namespace twinmap::cli {
 
 void plan(const RunArguments& arguments) {
   const YamlNode tree = loadExperimentTree(arguments.experiment.file, arguments.experiment.overrides);
-  PlanOptions options;
-  options.folder = chooseFolder(arguments, readExperiment(tree));
-  options.store = arguments.store;
-  options.threads = arguments.threads;
-  options.memory = chooseMemory(arguments);
+  const PlanOptions options{arguments.threads, chooseMemory(arguments)};
   spdlog::set_level(spdlog::level::off);  // of the small runs that are timed
-  std::cout << describePlan(planRun(tree, options), options);
+  const ExperimentSurvey survey = surveyCases(
+      expandCasesWithSignals(tree), {chooseFolder(arguments, readExperiment(tree)), arguments.store});
+  std::cout << describePlan(planRun(survey, options), options);
 }
 
 }  // namespace twinmap::cli

@@ -1,6 +1,7 @@
 #include "framework/cluster/run_shard.hpp"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <unordered_set>
 
@@ -58,10 +59,11 @@ void requireDone(const SimulationProgress& done, const std::string& what) {
 
 SimulationProgress simulate(SharedSamples samples, const std::string& what, const RunControl& control,
                             std::vector<SharedSamples>& kept) {
+  constexpr double kShare = 0.25;  // as the plan has it
   kept.clear();
   kept.push_back(std::move(samples));
   const SimulationProgress done =
-      simulateShared(kept, {0.25 * getMachineMemory() / 4.0, "simulate " + what, 1}, control);
+      simulateShared(kept, {kShare * PlanOptions{}.memory, "simulate " + what, 1}, control);
   requireDone(done, what);
   return done;
 }
@@ -123,7 +125,7 @@ SweepOptions makeOptions(const ShardWork& work) {
   SweepOptions options;
   options.folder = work.folder;
   options.store = work.plan.store;
-  options.memory = 0.5 * getMachineMemory();
+  options.memory = work.plan.memory;  // which the job has asked for
   options.command = work.command;
   return options;
 }
@@ -144,7 +146,8 @@ std::string runCasesOf(const ShardWork& work, const Shard& shard, std::vector<Fa
       runCasesOfSweep(listSweptKeys(work.tree), work.cases, wanted, makeOptions(work), work.control);
   failures = result.failures;
   if (result.stopped) {
-    throw Interrupted("interrupted; the cases that are complete are kept");
+    throw Interrupted(fmt::format("interrupted: {} of {} cases of the sweep are complete and kept",
+                                  result.complete, result.cases));
   }
   if (!failures.empty()) {
     throw std::runtime_error(fmt::format("{} of {} cases failed; the first, {}: {}", failures.size(),
@@ -210,6 +213,9 @@ std::string runShard(const fs::path& folder, int shard, const std::string& comma
   if (const std::string refusal = record.getRefusal(); !refusal.empty()) {
     throw std::runtime_error(
         "failed twice for the same reason and is not tried again before the next submit: " + refusal);
+  }
+  if (const std::string before = record.describeLast(); !before.empty()) {
+    spdlog::warn("shard {} is tried again; {}", shard, before);
   }
   record.begin();
   std::vector<FailedCase> failures;

@@ -21,7 +21,8 @@ struct SubmitOptions {
   std::string program;              ///< twinmap, as the nodes find it
   int threads = 1;                  ///< of each job
   int minutes = 60;                 ///< time limit of a job
-  int grace = 120;                  ///< s before the time limit at which a job is told to save and end
+  int grace = 120;                  ///< s before the time limit at which a job is told to save and end; Slurm
+                                    ///< looks every 30 s
   std::string partition, account;   ///< empty: the scheduler's default
   std::vector<std::string> sbatch;  ///< further options, "KEY=VALUE" or "KEY"
   /// Submits one shard, for kTemplate: "qsub -N {name} {after} -v SHARD={shard} {script}".

@@ -9,8 +9,6 @@
 #include "framework/results/run_state.hpp"
 #include "framework/sampling/model_store.hpp"
 #include "framework/store/atomic_file.hpp"
-#include "framework/sweep/model_groups.hpp"
-#include "framework/sweep/plan.hpp"
 #include "framework/sweep/run_sweep.hpp"
 #include "framework/sweep/sweep_folder.hpp"
 
@@ -22,21 +20,6 @@ using nlohmann::json;
 
 constexpr int kMostShards = 1000;  // Slurm's MaxArraySize is 1001 where nobody has changed it
 constexpr ShardKind kKinds[] = {ShardKind::kSimulate, ShardKind::kCases, ShardKind::kFinish};
-
-/// One value a point of all cases, group after group: whether it is to be simulated.
-std::vector<bool> findMissingPoints(const std::vector<SweepCase>& cases, const fs::path& store) {
-  const std::vector<bool> all(cases.size(), true);
-  std::vector<bool> missing;
-  for (const ModelGroup& group : groupByModel(cases)) {
-    const Eigen::MatrixXd points = collectPoints(cases, group, all);
-    std::vector<bool> of_group(static_cast<std::size_t>(points.cols()), false);
-    for (const Eigen::Index column : openToRead(group, store).findMissing(points)) {
-      of_group[static_cast<std::size_t>(column)] = true;
-    }
-    missing.insert(missing.end(), of_group.begin(), of_group.end());
-  }
-  return missing;
-}
 
 /// Consecutive ranges with as many of the wanted items each, give or take one.
 void cut(const std::vector<bool>& wanted, ShardKind kind, int parts, std::vector<Shard>& shards) {
@@ -58,14 +41,6 @@ int chooseParts(double seconds, const ShardOptions& options) {
   return static_cast<int>(std::clamp(parts, 1.0, double(kMostShards)));
 }
 
-std::vector<bool> findIncomplete(const YamlNode& root, const std::vector<SweepCase>& cases,
-                                 const fs::path& folder) {
-  std::vector<bool> wanted =
-      listSweptKeys(root).empty() ? std::vector<bool>{isComplete(folder)} : findComplete(folder, cases);
-  wanted.flip();
-  return wanted;
-}
-
 }  // namespace
 
 int ShardPlan::count(ShardKind kind) const {
@@ -82,26 +57,32 @@ fs::path getClusterFolder(const fs::path& folder) {
   return folder / "cluster";
 }
 
-ShardPlan makeShardPlan(const YamlNode& root, const ShardOptions& options) {
+ExperimentSurvey surveyForShards(const YamlNode& root, const ResultPlace& place) {
   std::vector<SweepCase> cases = expandCasesWithSignals(root);
   limitAutomaticSamples(cases);
+  return surveyCases(std::move(cases), place);
+}
+
+ShardPlan makeShardPlan(const ExperimentSurvey& survey, const ShardOptions& options) {
   ShardPlan plan;
-  plan.store = fs::absolute(getStoreRoot(options.folder, options.store));
+  plan.store = fs::absolute(getStoreRoot(options.place.folder, options.place.store));
   plan.computed_with = describeComputation();
-  for (const SweepCase& one : cases) {
+  for (const SweepCase& one : survey.cases) {
     plan.train_samples.push_back(one.experiment.design.train.samples.number);
   }
-  const SweepPlan costs = planRun(root, {options.folder, options.store, 1});
+  PlanOptions one_thread;
+  const SweepPlan costs = planRun(survey, one_thread);
   plan.simulate_s = costs.simulate_s;
   plan.cases_s = costs.cases_s;
-  plan.memory = costs.memory;
-  const std::vector<bool> missing = findMissingPoints(cases, plan.store);
-  plan.missing = static_cast<int>(std::count(missing.begin(), missing.end(), true));
-  cut(missing, ShardKind::kSimulate,
+  plan.memory = planRun(survey, {options.threads, one_thread.memory}).memory;
+  const std::vector<bool>& lacking = survey.stored.lacking;
+  plan.missing = static_cast<int>(std::count(lacking.begin(), lacking.end(), true));
+  cut(lacking, ShardKind::kSimulate,
       options.simulate_shards > 0 ? options.simulate_shards : chooseParts(plan.simulate_s, options),
       plan.shards);
-  cut(findIncomplete(root, cases, options.folder), ShardKind::kCases, chooseParts(plan.cases_s, options),
-      plan.shards);
+  std::vector<bool> incomplete = survey.complete;
+  incomplete.flip();
+  cut(incomplete, ShardKind::kCases, chooseParts(plan.cases_s, options), plan.shards);
   plan.shards.push_back({ShardKind::kFinish, 0, 0});
   return plan;
 }

@@ -6,6 +6,7 @@
 
 #include "framework/spec/sweep/sweep_cases.hpp"
 #include "framework/spec/yaml/yaml_node.hpp"
+#include "framework/sweep/plan.hpp"
 
 namespace twinmap {
 
@@ -25,9 +26,8 @@ struct Shard {
 
 /// How long and wide shards may be.
 struct ShardOptions {
-  std::filesystem::path folder;  ///< of the results; its resolved.yaml becomes the experiment
-  std::filesystem::path store;   ///< of simulated samples; empty: `folder`/chunks
-  int threads = 1;               ///< of each shard
+  ResultPlace place;        ///< the folder's resolved.yaml becomes the experiment
+  int threads = 1;          ///< of each shard
   double seconds = 1800.0;  ///< wanted duration of a shard: documents of clusters ask for 10 to 60 minutes
   int simulate_shards = 0;  ///< 0: by the measured cost of a sample
 };
@@ -46,9 +46,13 @@ struct ShardPlan {
   int count(ShardKind kind) const;
 };
 
-/// Cuts what is missing of an experiment's tree into shards, by small runs that measure its costs (planRun).
-/// At most 1000 a stage, as schedulers limit arrays.
-ShardPlan makeShardPlan(const YamlNode& root, const ShardOptions& options);
+/// Looks at the cases of an experiment's tree, with automatic numbers of samples limited as its jobs take
+/// them.
+ExperimentSurvey surveyForShards(const YamlNode& root, const ResultPlace& place);
+
+/// Cuts what is missing of an experiment into shards by the costs that the survey measured; it must be of the
+/// place in the options. At most 1000 a stage, as schedulers limit arrays.
+ShardPlan makeShardPlan(const ExperimentSurvey& survey, const ShardOptions& options);
 
 /// The cases of the plan's experiment, with its numbers of training samples.
 std::vector<SweepCase> expandPlannedCases(const YamlNode& root, const ShardPlan& plan);

@@ -1,5 +1,6 @@
 #include "framework/cluster/shard_record.hpp"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -49,8 +50,9 @@ ShardAttempt readAttempt(const json& entry) {
   return attempt;
 }
 
+/// Stopped twice at the same place is a failure too: its reason counts what was done (getReason).
 bool isFailure(const ShardAttempt& attempt) {
-  return attempt.state == ShardState::kFailed || attempt.state == ShardState::kRunning;
+  return attempt.state != ShardState::kDone;
 }
 
 std::string getReason(const ShardAttempt& attempt) {
@@ -83,6 +85,15 @@ std::string ShardRecord::getRefusal() const {
   }
   const ShardAttempt &last = attempts_.back(), &before = attempts_[attempts_.size() - 2];
   return isFailure(last) && isFailure(before) && getReason(last) == getReason(before) ? getReason(last) : "";
+}
+
+std::string ShardRecord::describeLast() const {
+  if (attempts_.empty()) {
+    return "";
+  }
+  const ShardAttempt& last = attempts_.back();
+  return fmt::format("try {} on {}: {}: {}", attempts_.size(), last.host, getName(last.state),
+                     getReason(last));
 }
 
 void ShardRecord::begin() {

@@ -29,9 +29,11 @@ class ShardRecord {
 
   ShardState getState() const;
   const std::vector<ShardAttempt>& getAttempts() const { return attempts_; }
-  /// Why it is not to be tried again: the last two attempts failed, or were lost, for the same reason. Empty
-  /// if it is.
+  /// Why it is not to be tried again: the last two attempts failed, or were lost, for the same reason, or
+  /// were stopped without having done anything in between. Empty if it is.
   std::string getRefusal() const;
+  /// "try 2 on n1: failed: REASON"; empty where nobody has begun. One that counts as running may be lost.
+  std::string describeLast() const;
 
   void begin();
   void end(ShardState state, const std::string& reason = "", const std::vector<FailedCase>& failures = {});

@@ -20,16 +20,29 @@ namespace fs = std::filesystem;
 void takeFolder(const YamlNode& root, const ShardOptions& shards) {
   if (!listSweptKeys(root).empty()) {
     SweepOptions options;
-    options.folder = shards.folder;
-    options.store = shards.store;
+    options.folder = shards.place.folder;
+    options.store = shards.place.store;
     beginSweep(root, options);
     return;
   }
   const std::string resolved = writeExperiment(readExperiment(root));
-  makeFolders(shards.folder);
-  requireSameExperiment(shards.folder, resolved);
-  writeTextFile(shards.folder / "resolved.yaml", resolved);
-  noteStore(shards.folder, shards.store);
+  makeFolders(shards.place.folder);
+  requireSameExperiment(shards.place.folder, resolved);
+  writeTextFile(shards.place.folder / "resolved.yaml", resolved);
+  noteStore(shards.place.folder, shards.place.store);
+}
+
+/// A line for a shard that failed, was stopped, or is not tried again.
+std::string describeProblem(const ShardRecord& record, int shard, ShardKind kind) {
+  const bool refused = !record.getRefusal().empty();
+  const ShardState state = record.getState();
+  if (!refused && state != ShardState::kFailed && state != ShardState::kInterrupted) {
+    return "";
+  }
+  return fmt::format("{}  shard {} ({}), {}{}\n",
+                     state == ShardState::kInterrupted ? "stopped:" : "failed: ", shard, getName(kind),
+                     record.describeLast(),
+                     refused ? "; twice the same: not tried again before the next submit" : "");
 }
 
 struct Stage {
@@ -43,16 +56,16 @@ struct Stage {
 SubmittedJobs submitExperiment(const YamlNode& root, const ShardOptions& shards,
                                const SubmitOptions& options) {
   requireScheduler(options.kind);
-  if (isQueued(shards.folder)) {
-    throw std::runtime_error(shards.folder.string() +
+  if (isQueued(shards.place.folder)) {
+    throw std::runtime_error(shards.place.folder.string() +
                              ": has jobs that are queued or running; 'twinmap cancel' ends them");
   }
-  const ShardPlan plan = makeShardPlan(root, shards);
+  const ShardPlan plan = makeShardPlan(surveyForShards(root, shards.place), shards);
   takeFolder(root, shards);
-  makeFolders(getClusterFolder(shards.folder));
-  fs::remove_all(getClusterFolder(shards.folder) / "shards");
-  writeShardPlan(shards.folder, plan);
-  return submitJobs(shards.folder, plan, options);
+  makeFolders(getClusterFolder(shards.place.folder));
+  fs::remove_all(getClusterFolder(shards.place.folder) / "shards");
+  writeShardPlan(shards.place.folder, plan);
+  return submitJobs(shards.place.folder, plan, options);
 }
 
 std::string describeShards(const ShardPlan& plan, const ShardOptions& shards) {
@@ -88,22 +101,18 @@ std::string describeSubmission(const fs::path& folder) {
   }
   const ShardPlan plan = readShardPlan(folder);
   std::map<std::string, int> count;
-  std::string failures;
+  std::string problems;
   for (int i = 0; i < static_cast<int>(plan.shards.size()); ++i) {
     const ShardRecord record(folder, i);
     ++count[getName(record.getState())];
-    if (record.getState() == ShardState::kFailed) {
-      failures += fmt::format("failed:  shard {} ({}), {} times: {}\n", i,
-                              getName(plan.shards[static_cast<std::size_t>(i)].kind),
-                              record.getAttempts().size(), record.getAttempts().back().reason);
-    }
+    problems += describeProblem(record, i, plan.shards[static_cast<std::size_t>(i)].kind);
   }
   std::string states;
   for (const auto& [state, number] : count) {
     states += fmt::format("{}{} {}", states.empty() ? "" : ", ", number, state);
   }
   const std::string queue = describeQueue(folder);
-  return "shards:  " + states + "\n" + failures + (queue.empty() ? "" : "jobs:    " + queue + "\n");
+  return "shards:  " + states + "\n" + problems + (queue.empty() ? "" : "jobs:    " + queue + "\n");
 }
 
 }  // namespace twinmap

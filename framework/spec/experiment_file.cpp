@@ -25,14 +25,26 @@ YamlNode finishTree(YamlNode root, const std::string& path, const std::vector<st
   return root;
 }
 
-}  // namespace
-
-ExperimentSpec readExperiment(const YamlNode& root) {
+/// With its defaults resolved.
+ExperimentSpec readUnchecked(const YamlNode& root) {
   ExperimentSpec experiment;
   readValue(withoutSweep(root), experiment);
   requireFewSamples(experiment.features, experiment.name.where);
   resolveDefaults(experiment);
+  return experiment;
+}
+
+}  // namespace
+
+ExperimentSpec readExperiment(const YamlNode& root) {
+  const ExperimentSpec experiment = readUnchecked(root);
   checkExperiment(experiment);
+  return experiment;
+}
+
+ExperimentSpec readExperimentOfCheckedModel(const YamlNode& root) {
+  const ExperimentSpec experiment = readUnchecked(root);
+  checkBesideModel(experiment);
   return experiment;
 }
 

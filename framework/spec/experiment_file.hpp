@@ -14,6 +14,9 @@ namespace twinmap {
 /// part of it. Throws ExperimentError for the first thing wrong.
 ExperimentSpec readExperiment(const YamlNode& root);
 
+/// The same of a tree whose model has been checked in another.
+ExperimentSpec readExperimentOfCheckedModel(const YamlNode& root);
+
 /// Reads `path`, applies the overrides "key.path=value" in their order, checks the result.
 ExperimentSpec loadExperiment(const std::string& path, const std::vector<std::string>& overrides = {});
 

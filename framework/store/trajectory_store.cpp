@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <string_view>
 #include <unordered_set>
 
 #include "framework/store/atomic_file.hpp"
@@ -18,8 +19,12 @@ namespace fs = std::filesystem;
 constexpr const char* kChunkSuffix = ".chunk";
 constexpr const char* kSetAsideSuffix = ".set-aside";
 
-std::string getBits(const Eigen::Ref<const Eigen::VectorXd>& point) {
+std::string_view viewBits(const Eigen::Ref<const Eigen::VectorXd>& point) {
   return {reinterpret_cast<const char*>(point.data()), point.size() * sizeof(double)};
+}
+
+std::string getBits(const Eigen::Ref<const Eigen::VectorXd>& point) {
+  return std::string(viewBits(point));
 }
 
 std::vector<fs::path> listFiles(const fs::path& folder, const std::string& suffix) {
@@ -257,10 +262,12 @@ bool TrajectoryStore::hasFailed(const Eigen::Ref<const Eigen::VectorXd>& point) 
 std::vector<Eigen::Index> TrajectoryStore::findMissing(const Eigen::MatrixXd& points) const {
   const std::lock_guard<std::mutex> guard(mutex_);
   std::vector<Eigen::Index> missing;
-  std::unordered_set<std::string> seen;
+  std::unordered_set<std::string_view> seen;  // looks into `points`
+  seen.reserve(static_cast<std::size_t>(points.cols()));
+  const bool is_empty = places_.empty() && not_kept_failures_.empty();
   for (Eigen::Index column = 0; column < points.cols(); ++column) {
-    const std::string bits = getBits(points.col(column));
-    if (!isKnown(bits) && seen.insert(bits).second) {
+    const std::string_view bits = viewBits(points.col(column));
+    if ((is_empty || !isKnown(std::string(bits))) && seen.insert(bits).second) {
       missing.push_back(column);
     }
   }

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
+#include <string_view>
+#include <tuple>
 #include <unordered_set>
 
 #include "framework/design/experiment_points.hpp"
@@ -9,6 +12,7 @@
 #include "framework/sampling/model_store.hpp"
 #include "framework/sampling/neighbourhoods.hpp"
 #include "framework/sampling/trajectory_content.hpp"
+#include "framework/sensitivity/fisher_information.hpp"
 #include "framework/spec/check/check_experiment.hpp"
 #include "framework/spec/check/check_features.hpp"
 #include "framework/spec/parameter_box.hpp"
@@ -16,18 +20,35 @@
 namespace twinmap {
 namespace {
 
-/// Equal texts for cases that may share simulations.
-std::string makeGroupKey(const ExperimentSpec& experiment) {
-  ResponseLayout layout;
-  layout.output_names = collectNames(experiment.model.outputs);
-  layout.modes = countModes(experiment.features);
-  const Eigen::VectorXd times = collectTimes(experiment.features);
-  if (times.size() > 0 && experiment.model.simulation.integrator != Integrator::kDopri5) {
-    layout.times = times;
-  }
-  const std::string integrated = times.size() > 0 ? "integrated\n" : "";
-  return integrated + writeTrajectoryContent(experiment.model, layout);
+using Eigen::MatrixXd;
+
+std::string_view getBits(const double* values, Eigen::Index count) {
+  return {reinterpret_cast<const char*>(values), static_cast<std::size_t>(count) * sizeof(double)};
 }
+
+/// Equal texts for cases that may share simulations; that of each model is written once.
+class GroupKeys {
+ public:
+  const std::string& get(const SweepCase& one, const Eigen::VectorXd& times) {
+    const ModelSpec& model = one.experiment.model;
+    ResponseLayout layout;
+    layout.output_names = collectNames(model.outputs);
+    layout.modes = countModes(one.experiment.features);
+    if (model.simulation.integrator != Integrator::kDopri5) {
+      layout.times = times;
+    }
+    const std::string of_layout(getBits(layout.times.data(), layout.times.size()));
+    std::string& key = keys_[{one.model, layout.modes, times.size() > 0, of_layout}];
+    if (key.empty()) {
+      key = (times.size() > 0 ? "integrated\n" : "") + writeTrajectoryContent(model, layout);
+    }
+    return key;
+  }
+
+ private:
+  /// By model, modes, whether there are times, and those that decide.
+  std::map<std::tuple<int, int, bool, std::string>, std::string> keys_;
+};
 
 Eigen::VectorXd uniteTimes(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   std::vector<double> times;
@@ -38,25 +59,42 @@ Eigen::VectorXd uniteTimes(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
 /// Collects distinct columns in the order they come.
 class PointSet {
  public:
-  void add(const Eigen::MatrixXd& points) {
-    for (const auto& column : points.colwise()) {
-      const Eigen::VectorXd point = column;
-      const std::string bits(reinterpret_cast<const char*>(point.data()), point.size() * sizeof(double));
-      if (seen_.insert(bits).second) {
-        values_.insert(values_.end(), point.begin(), point.end());
+  void add(const MatrixXd& points) {
+    std::vector<Eigen::Index> fresh;
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      if (seen_.count(getBits(points.col(i).data(), points.rows())) == 0) {
+        fresh.push_back(i);
+      }
+    }
+    kept_.emplace_back(points(Eigen::all, fresh));
+    for (Eigen::Index i = 0; i < kept_.back().cols(); ++i) {
+      const double* point = kept_.back().col(i).data();
+      if (seen_.insert(getBits(point, points.rows())).second) {
+        distinct_.push_back(point);
       }
     }
   }
 
-  Eigen::MatrixXd get(Eigen::Index rows) const {
-    return Eigen::Map<const Eigen::MatrixXd>(values_.data(), rows,
-                                             static_cast<Eigen::Index>(values_.size()) / rows);
+  MatrixXd get(Eigen::Index rows) const {
+    MatrixXd points(rows, static_cast<Eigen::Index>(distinct_.size()));
+    for (std::size_t i = 0; i < distinct_.size(); ++i) {
+      std::copy_n(distinct_[i], rows, points.col(static_cast<Eigen::Index>(i)).data());
+    }
+    return points;
   }
 
  private:
-  std::unordered_set<std::string> seen_;
-  std::vector<double> values_;
+  std::vector<MatrixXd> kept_;  ///< what the others look into
+  std::unordered_set<std::string_view> seen_;
+  std::vector<const double*> distinct_;
 };
+
+/// Equal for cases with the same points of a set.
+using SetKey = std::tuple<int, std::uint64_t, DesignMethod, int, int>;
+
+SetKey makeSetKey(const SweepCase& one, const PointSetSpec& set) {
+  return {one.model, one.experiment.seed, set.method, set.samples.number, set.smallest.value_or(0)};
+}
 
 bool haveEqualBounds(const std::vector<ParameterSpec>& a, const std::vector<ParameterSpec>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
@@ -77,15 +115,17 @@ ModelGroup startGroup(const ExperimentSpec& experiment) {
 std::vector<ModelGroup> groupByModel(const std::vector<SweepCase>& cases) {
   std::vector<ModelGroup> groups;
   std::map<std::string, std::size_t> group_of_key;
+  GroupKeys keys;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const ExperimentSpec& experiment = cases[i].experiment;
-    const auto [found, is_new] = group_of_key.emplace(makeGroupKey(experiment), groups.size());
+    const Eigen::VectorXd times = collectTimes(experiment.features);
+    const auto [found, is_new] = group_of_key.emplace(keys.get(cases[i], times), groups.size());
     if (is_new) {
       groups.push_back(startGroup(experiment));
     }
     ModelGroup& group = groups[found->second];
     group.cases.push_back(static_cast<int>(i));
-    group.times = uniteTimes(group.times, collectTimes(experiment.features));
+    group.times = uniteTimes(group.times, times);
     SimulationSpec& shared = group.model.simulation;
     const SimulationSpec& own = experiment.model.simulation;
     shared.max_wall_time = std::max(shared.max_wall_time, own.max_wall_time);
@@ -97,11 +137,16 @@ std::vector<ModelGroup> groupByModel(const std::vector<SweepCase>& cases) {
 Eigen::MatrixXd collectPoints(const std::vector<SweepCase>& cases, const ModelGroup& group,
                               const std::vector<bool>& wanted) {
   PointSet points;
+  std::set<SetKey> train, test;
   for (const int member : group.cases) {
     if (wanted[member]) {
       const ExperimentSpec& e = cases[member].experiment;
-      points.add(sampleTrainPoints(e));
-      points.add(sampleTestPoints(e));
+      if (train.insert(makeSetKey(cases[member], e.design.train)).second) {
+        points.add(sampleTrainPoints(e));
+      }
+      if (test.insert(makeSetKey(cases[member], e.design.test)).second) {
+        points.add(sampleTestPoints(e));
+      }
     }
   }
   return points.get(countSampled(group.model));
@@ -128,9 +173,14 @@ std::vector<ModelGroup> splitByBounds(const std::vector<SweepCase>& cases, const
 Eigen::MatrixXd collectDerivativePoints(const std::vector<SweepCase>& cases, const ModelGroup& group,
                                         const std::vector<bool>& wanted) {
   PointSet points;
+  std::set<std::tuple<SetKey, SetKey, bool, bool>> known;
   for (const int member : group.cases) {
-    if (wanted[member]) {
-      points.add(listDerivativePoints(cases[member].experiment));
+    const ExperimentSpec& e = cases[member].experiment;
+    const auto asked =
+        std::make_tuple(makeSetKey(cases[member], e.design.train), makeSetKey(cases[member], e.design.test),
+                        asksForInformationLimit(e), selectsByFisherInformation(e));
+    if (wanted[member] && known.insert(asked).second) {
+      points.add(listDerivativePoints(e));
     }
   }
   return points.get(countSampled(group.model));

@@ -7,7 +7,6 @@
 #include <set>
 
 #include "framework/features/feature_extractor.hpp"
-#include "framework/measurement/signal_experiment.hpp"
 #include "framework/results/run_state.hpp"
 #include "framework/spec/parameter_box.hpp"
 #include "framework/sweep/case_cost.hpp"
@@ -138,12 +137,13 @@ void noteAutomaticSamples(const std::vector<SweepCase>& cases, SweepPlan& plan) 
   }
 }
 
-std::vector<bool> findTodo(const YamlNode& root, const std::vector<SweepCase>& cases,
-                           const PlanOptions& options) {
-  std::vector<bool> todo = findComplete(options.folder, cases);
-  if (root.find("sweep") == nullptr) {
-    todo = {isComplete(options.folder)};
-  }
+std::vector<bool> findCompleteCases(const std::vector<SweepCase>& cases,
+                                    const std::filesystem::path& folder) {
+  return cases.front().name.empty() ? std::vector<bool>{isComplete(folder)} : findComplete(folder, cases);
+}
+
+std::vector<bool> findTodo(const ExperimentSurvey& survey) {
+  std::vector<bool> todo = survey.complete;
   todo.flip();
   return todo;
 }
@@ -157,16 +157,14 @@ const ExperimentSpec& findLargest(const std::vector<SweepCase>& cases) {
       ->experiment;
 }
 
-void addTimes(const std::vector<SweepCase>& cases, const std::vector<bool>& todo, const PlanOptions& options,
-              SweepPlan& plan) {
-  const ExperimentSpec& largest = findLargest(cases);
-  const ProbeTimes times = measureProbe(largest, countTrainingColumns(largest));
+void addTimes(const ExperimentSurvey& survey, const PlanOptions& options, SweepPlan& plan) {
+  const ProbeTimes& times = survey.times;
   plan.no_times = times.failure;
   if (plan.no_times.empty()) {
     plan.simulate_s = (plan.stored.samples.missing * times.simulation +
                        plan.stored.neighbourhoods.missing * times.neighbourhood) /
                       options.threads;
-    plan.cases_s = calcCasesSeconds(cases, todo, times, options);
+    plan.cases_s = calcCasesSeconds(survey.cases, findTodo(survey), times, options);
   }
 }
 
@@ -187,26 +185,35 @@ std::string describeBytes(double bytes) {
 
 }  // namespace
 
-SweepPlan planRun(const YamlNode& root, const PlanOptions& options) {
-  const std::vector<SweepCase> cases = expandCasesWithSignals(root);
-  const std::vector<bool> todo = findTodo(root, cases, options);
+ExperimentSurvey surveyCases(std::vector<SweepCase> cases, const ResultPlace& place) {
+  ExperimentSurvey survey;
+  survey.cases = std::move(cases);
+  survey.complete = findCompleteCases(survey.cases, place.folder);
+  survey.stored = countStored(survey.cases, survey.complete, getStoreRoot(place.folder, place.store));
+  if (std::count(survey.complete.begin(), survey.complete.end(), false) > 0) {
+    const ExperimentSpec& largest = findLargest(survey.cases);
+    survey.times = measureProbe(largest, countTrainingColumns(largest));
+  }
+  return survey;
+}
+
+SweepPlan planRun(const ExperimentSurvey& survey, const PlanOptions& options) {
+  const std::vector<bool> todo = findTodo(survey);
   SweepPlan plan;
-  plan.cases = static_cast<int>(cases.size());
-  std::vector<bool> complete = todo;
-  complete.flip();
-  plan.complete = static_cast<int>(std::count(complete.begin(), complete.end(), true));
-  plan.stored = countStored(cases, complete, getStoreRoot(options.folder, options.store));
-  warnAboutPlainDesigns(cases, plan);
-  noteAutomaticSamples(cases, plan);
+  plan.cases = static_cast<int>(survey.cases.size());
+  plan.complete = static_cast<int>(std::count(todo.begin(), todo.end(), false));
+  plan.stored = survey.stored;
+  warnAboutPlainDesigns(survey.cases, plan);
+  noteAutomaticSamples(survey.cases, plan);
   if (plan.complete == plan.cases) {
     return plan;
   }
   plan.disk = plan.stored.samples.bytes + plan.stored.neighbourhoods.bytes;
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    plan.disk += todo[i] ? calcCaseDisk(cases[i].experiment) : 0.0;
+  for (std::size_t i = 0; i < survey.cases.size(); ++i) {
+    plan.disk += todo[i] ? calcCaseDisk(survey.cases[i].experiment) : 0.0;
   }
-  plan.memory = calcMemory(cases, todo, options, plan.stored);
-  addTimes(cases, todo, options, plan);
+  plan.memory = calcMemory(survey.cases, todo, options, plan.stored);
+  addTimes(survey, options, plan);
   return plan;
 }
 

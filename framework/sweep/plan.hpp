@@ -4,14 +4,32 @@
 #include <string>
 #include <vector>
 
-#include "framework/spec/yaml/yaml_node.hpp"
+#include "framework/spec/sweep/sweep_cases.hpp"
+#include "framework/sweep/probe.hpp"
 #include "framework/sweep/stored_counts.hpp"
 
 namespace twinmap {
 
-struct PlanOptions {
+/// Where the results and the simulated samples of an experiment lie.
+struct ResultPlace {
   std::filesystem::path folder;  ///< of the run; what is there already counts as done
   std::filesystem::path store;   ///< as given to the run
+};
+
+/// All that plans of an experiment are made of, looked at once.
+struct ExperimentSurvey {
+  std::vector<SweepCase> cases;  ///< one without a name where there is no sweep
+  std::vector<bool> complete;    ///< one value a case
+  StoredCounts stored;
+  ProbeTimes times;  ///< of the case with the most work; none where all are complete
+};
+
+/// Looks at the cases of an experiment (expandCasesWithSignals). Simulates and trains a little in a temporary
+/// folder (measureProbe) to find the times; writes nothing else. Cost (bench/scale.py): the probe, 2 s on the
+/// two beams, and some us a sample; 30 kB a case and 200 bytes a sample of memory.
+ExperimentSurvey surveyCases(std::vector<SweepCase> cases, const ResultPlace& place);
+
+struct PlanOptions {
   int threads = 1;
   double memory = 4e9;  ///< bytes
 };
@@ -29,10 +47,8 @@ struct SweepPlan {
   std::vector<std::string> warnings;
 };
 
-/// Plans a run of an experiment's tree, with or without a sweep. Simulates and trains a little in a temporary
-/// folder (measureProbe) to find the times; writes nothing else. Throws ExperimentError for a wrong
-/// experiment.
-SweepPlan planRun(const YamlNode& root, const PlanOptions& options);
+/// Plans a run of what was looked at.
+SweepPlan planRun(const ExperimentSurvey& survey, const PlanOptions& options);
 
 /// For people, a line a fact.
 std::string describePlan(const SweepPlan& plan, const PlanOptions& options);

@@ -32,6 +32,10 @@ namespace fs = std::filesystem;
 }  // namespace
 
 void limitAutomaticSamples(std::vector<SweepCase>& cases) {
+  if (std::none_of(cases.begin(), cases.end(),
+                   [](const SweepCase& one) { return one.experiment.design.train.samples.automatic; })) {
+    return;
+  }
   for (const ModelGroup& group : groupByModel(cases)) {
     std::unique_ptr<Simulator> simulator;
     for (const int member : group.cases) {

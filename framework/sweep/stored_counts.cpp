@@ -11,11 +11,17 @@ namespace {
 
 using Eigen::MatrixXd;
 
-void addCounts(const TrajectoryStore& store, const MatrixXd& all, const MatrixXd& todo, int simulations,
+/// Distinct points, and which of them a store lacks.
+struct Sought {
+  const MatrixXd& points;
+  const std::vector<Eigen::Index> lacking;
+};
+
+void addCounts(const TrajectoryStore& store, const Sought& all, const Sought& todo, int simulations,
                PointCounts& counts) {
-  const int missing = static_cast<int>(store.findMissing(todo).size());
-  counts.needed += static_cast<int>(all.cols());
-  counts.stored += static_cast<int>(all.cols()) - static_cast<int>(store.findMissing(all).size());
+  const int missing = static_cast<int>(todo.lacking.size());
+  counts.needed += static_cast<int>(all.points.cols());
+  counts.stored += static_cast<int>(all.points.cols()) - static_cast<int>(all.lacking.size());
   counts.missing += missing;
   counts.simulations += simulations * missing;
   counts.bytes += missing > 0 ? static_cast<double>(calcChunkSize(store.getShape(), missing)) : 0.0;
@@ -45,9 +51,29 @@ void addNeighbourhoods(const Asked& asked, const ModelGroup& group, const Trajec
   for (const ModelGroup& part : splitByBounds(asked.cases, group)) {
     const auto neighbourhoods =
         openNeighbourhoodStore(part.model, makeLayout(part), store, StoreAccess::kReadOnly);
-    addCounts(*neighbourhoods, dropFailed(collectDerivativePoints(asked.cases, part, asked.all), samples),
-              dropFailed(collectDerivativePoints(asked.cases, part, asked.todo), samples),
-              countNeighbours(collectUnknown(part.model).size()), counts);
+    const MatrixXd all = dropFailed(collectDerivativePoints(asked.cases, part, asked.all), samples);
+    const MatrixXd todo = dropFailed(collectDerivativePoints(asked.cases, part, asked.todo), samples);
+    addCounts(*neighbourhoods, {all, neighbourhoods->findMissing(all)},
+              {todo, neighbourhoods->findMissing(todo)}, countNeighbours(collectUnknown(part.model).size()),
+              counts);
+  }
+}
+
+/// Where all cases are to be done, as in a new experiment, the points are collected once.
+void addSamples(const Asked& asked, const ModelGroup& group, const TrajectoryStore& samples,
+                StoredCounts& counts) {
+  const MatrixXd points = collectPoints(asked.cases, group, asked.all);
+  const Sought all{points, samples.findMissing(points)};
+  if (asked.todo == asked.all) {
+    addCounts(samples, all, all, 1, counts.samples);
+  } else {
+    const MatrixXd todo = collectPoints(asked.cases, group, asked.todo);
+    addCounts(samples, all, {todo, samples.findMissing(todo)}, 1, counts.samples);
+  }
+  const std::size_t first = counts.lacking.size();
+  counts.lacking.resize(first + static_cast<std::size_t>(points.cols()));
+  for (const Eigen::Index column : all.lacking) {
+    counts.lacking[first + static_cast<std::size_t>(column)] = true;
   }
 }
 
@@ -61,8 +87,7 @@ StoredCounts countStored(const std::vector<SweepCase>& cases, const std::vector<
   StoredCounts counts;
   for (const ModelGroup& group : groupByModel(cases)) {
     const TrajectoryStore samples = openToRead(group, store);
-    addCounts(samples, collectPoints(cases, group, all), collectPoints(cases, group, todo), 1,
-              counts.samples);
+    addSamples({cases, all, todo}, group, samples, counts);
     addNeighbourhoods({cases, all, todo}, group, samples, store, counts.neighbourhoods);
   }
   return counts;

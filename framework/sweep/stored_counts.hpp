@@ -20,10 +20,13 @@ struct StoredCounts {
   PointCounts samples;
   /// For simulators without derivatives: listDerivativePoints, but for samples known to have failed.
   PointCounts neighbourhoods;
+  /// Of the points of all cases, each once, group after group (groupByModel, collectPoints): whether the
+  /// store lacks them.
+  std::vector<bool> lacking;
 };
 
 /// What the cases need and the store has; `complete` has one value a case. Reads every chunk of the models,
-/// and builds those that derivatives are needed of (some 20 ms each).
+/// and builds those that derivatives are needed of (some 20 ms each); 1 us a point beside.
 StoredCounts countStored(const std::vector<SweepCase>& cases, const std::vector<bool>& complete,
                          const std::filesystem::path& store);
 

@@ -80,6 +80,11 @@ void requireKnown(const Name& name, const std::vector<std::string>& known, const
 void checkExperiment(const ExperimentSpec& experiment) {
   checkName(experiment.name);
   checkModel(experiment.model);
+  checkBesideModel(experiment);
+}
+
+void checkBesideModel(const ExperimentSpec& experiment) {
+  checkName(experiment.name);
   checkDuration(experiment);
   checkFeatures(experiment.features, experiment.model);
   checkNoise(experiment);

@@ -9,6 +9,9 @@ namespace twinmap {
 /// simulation, every output has its noise. Throws ExperimentError for the first thing wrong.
 void checkExperiment(const ExperimentSpec& experiment);
 
+/// All but its model: of one whose model has been checked.
+void checkBesideModel(const ExperimentSpec& experiment);
+
 /// Parts of it, in this order.
 void checkModel(const ModelSpec& model);
 void checkTransform(const ExperimentSpec& experiment);

@@ -1,7 +1,9 @@
 #include "framework/spec/sweep/sweep_cases.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <map>
 #include <set>
 
 #include "framework/spec/experiment_file.hpp"
@@ -125,6 +127,23 @@ std::vector<std::string> makeNames(const SweepSpec& sweep, const std::vector<Cho
   return names;
 }
 
+/// Sections that no part of the model is read from.
+constexpr std::array kBesideModel = {"seed",   "features",    "transform",   "noise",
+                                     "design", "inverse_map", "evaluation",  "refine",
+                                     "trust",  "gates",       "measurement", "report"};
+
+/// What a choice says of the model: equal for cases that have the same.
+Choice selectModelValues(const Choice& choice, const std::vector<SweptKey>& keys) {
+  Choice selected;
+  for (std::size_t k = 0; k < choice.size(); ++k) {
+    const std::string section = keys[k].key.substr(0, keys[k].key.find_first_of(".["));
+    if (std::find(kBesideModel.begin(), kBesideModel.end(), section) == kBesideModel.end()) {
+      selected.push_back(choice[k]);
+    }
+  }
+  return selected;
+}
+
 std::string describeOnOneLine(const YamlNode& value) {
   std::string text = value.kind == YamlNode::Kind::kScalar ? value.scalar : writeYaml(value);
   text.erase(text.find_last_not_of(" \n") + 1);
@@ -141,15 +160,19 @@ std::vector<SweepCase> expandSweep(const YamlNode& root) {
   const std::vector<std::string> names = makeNames(sweep, choices);
   const YamlNode base = withoutSweep(root);
   std::vector<SweepCase> cases;
+  std::map<Choice, int> models;
   for (std::size_t i = 0; i < choices.size(); ++i) {
     YamlNode tree = base;
-    cases.push_back({names[i], {}, {}});
+    cases.push_back({names[i], {}, {}, 0});
     for (std::size_t k = 0; k < choices[i].size(); ++k) {
       const SweptKey& key = sweep.over.keys[k];
       setValue(tree, {key.key, key.where}, key.values[choices[i][k]]);
       cases.back().values.push_back(describeOnOneLine(key.values[choices[i][k]]));
     }
-    cases.back().experiment = readExperiment(tree);
+    const auto [model, is_new] =
+        models.emplace(selectModelValues(choices[i], sweep.over.keys), static_cast<int>(i));
+    cases.back().model = model->second;
+    cases.back().experiment = is_new ? readExperiment(tree) : readExperimentOfCheckedModel(tree);
   }
   return cases;
 }
@@ -158,7 +181,7 @@ std::vector<SweepCase> expandCases(const YamlNode& root) {
   if (root.find("sweep") != nullptr) {
     return expandSweep(root);
   }
-  return {{"", {}, readExperiment(root)}};
+  return {{"", {}, readExperiment(root), 0}};
 }
 
 std::vector<std::string> listSweptKeys(const YamlNode& root) {
