@@ -4,6 +4,7 @@
 
 #include "framework/spec/excitation_design_spec.hpp"
 #include "framework/spec/fields/fields.hpp"
+#include "framework/spec/sensor_design_spec.hpp"
 
 namespace twinmap {
 
@@ -61,6 +62,7 @@ struct DesignSpec {
   PointSetSpec train{DesignMethod::kLatinHypercube, SampleCount::makeAutomatic(250), {}};
   PointSetSpec test{DesignMethod::kUniform, 500, {}};
   std::optional<ExcitationDesignSpec> excitation{};  ///< for `twinmap design excitation`
+  std::optional<SensorDesignSpec> sensors{};         ///< for `twinmap design sensors`
 };
 
 template <class Fields>
@@ -68,6 +70,7 @@ void describe(Fields& f, DesignSpec& s) {
   f.optional("train", s.train, "points to train on");
   f.optional("test", s.test, "points to test on");
   f.optional("excitation", s.excitation, "which values of the excitation to design, and for what");
+  f.optional("sensors", s.sensors, "which outputs and sample times to choose from, and for what");
   f.rule(!s.test.samples.automatic, "must give the number of test samples");
 }
 

@@ -60,6 +60,20 @@ void checkExcitationDesign(const ExcitationDesignSpec& design, const ModelSpec& 
   }
 }
 
+void checkSensorDesign(const SensorDesignSpec& design, const ExperimentSpec& experiment) {
+  checkCriterion(design.criterion, experiment.model);
+  std::vector<std::string> noisy;
+  for (const OutputNoiseSpec& output : experiment.noise.stddev) {
+    if (output.stddev > 0.0) {
+      noisy.push_back(output.name.text);
+    }
+  }
+  for (const Name& output : design.candidates.outputs) {
+    requireKnown(output, collectNames(experiment.model.outputs), "an output");
+    requireKnown(output, noisy, "an output with noise.stddev above 0");
+  }
+}
+
 void checkGates(const ExperimentSpec& experiment) {
   for (const GateSpec& gate : experiment.gates) {
     requireKnown(gate.metric, {kGateMetrics.begin(), kGateMetrics.end()}, "a metric");
@@ -92,6 +106,9 @@ void checkBesideModel(const ExperimentSpec& experiment) {
   checkDesign(experiment.design, experiment.name.where);
   if (experiment.design.excitation) {
     checkExcitationDesign(*experiment.design.excitation, experiment.model);
+  }
+  if (experiment.design.sensors) {
+    checkSensorDesign(*experiment.design.sensors, experiment);
   }
   checkGates(experiment);
   checkMeasurement(experiment.measurement, experiment.model);
