@@ -130,7 +130,7 @@ struct ReplayArguments {
 };
 
 struct DesignArguments {
-  std::string what;  ///< "excitation"
+  std::string what;  ///< "excitation", "sensors"
   ExperimentArguments experiment;
   std::string folder;   ///< "": results/NAME_design
   bool verify = false;  ///< train maps on both experiments and compare them
@@ -193,6 +193,9 @@ double chooseMemory(const RunArguments& arguments);
 /// Designs the excitation of an experiment and prints what it brings. Throws Interrupted where a signal asked
 /// to stop, with the command that continues.
 void designExcitation(const DesignArguments& arguments);
+
+/// Chooses the outputs and sample times of an experiment and prints what each further one buys.
+void designSensors(const DesignArguments& arguments);
 
 /// Prints two runs side by side.
 void compare(const CompareArguments& arguments);

@@ -221,11 +221,12 @@ void addDesign(CLI::App& app, cli::DesignArguments& arguments) {
   CLI::App* command = app.add_subcommand(
       "design",
       "Choose an experiment that tells most about the parameters, by the information limit. excitation: the "
-      "free values of its signals (design.excitation) within limits; writes designed.yaml, the signals as "
-      "CSV, and a page with the limit before and after");
-  command->add_option("WHAT", arguments.what, "excitation")
+      "free values of its signals (design.excitation) within limits. sensors: which outputs to measure, and "
+      "when "
+      "(design.sensors). Writes designed.yaml, tables, the signals as CSV, and a page of what it brings");
+  command->add_option("WHAT", arguments.what, "excitation or sensors")
       ->required()
-      ->check(CLI::IsMember({"excitation"}))
+      ->check(CLI::IsMember({"excitation", "sensors"}))
       ->option_text(" ");
   addExperiment(*command, arguments.experiment);
   command->add_option("--out", arguments.folder, "Folder for the results (default: results/NAME_design)")
@@ -235,7 +236,9 @@ void addDesign(CLI::App& app, cli::DesignArguments& arguments) {
       "Train maps on the experiment before and after, with as many simulations, and compare what "
       "they infer of held-out samples");
   addThreads(*command, arguments.threads);
-  command->callback([&arguments] { cli::designExcitation(arguments); });
+  command->callback([&arguments] {
+    arguments.what == "sensors" ? cli::designSensors(arguments) : cli::designExcitation(arguments);
+  });
 }
 
 void addCompare(CLI::App& app, cli::CompareArguments& arguments) {

@@ -18,7 +18,7 @@ ComparedRun run(const YamlNode& tree, const fs::path& folder, const RunControl& 
   }
   RunOptions options;
   options.folder = folder;
-  options.command = "twinmap design excitation --verify";
+  options.command = "twinmap design --verify";
   runExperiment(experiment, options, control);
   return readComparedRun(folder);
 }

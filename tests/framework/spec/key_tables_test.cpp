@@ -161,6 +161,7 @@ const std::vector<Described> kKeyTables{
     {"key", "simulation"},
     {"step of `transform`", "transform.[]"},
     {"key of `excitation`", "design.excitation"},
+    {"key of `sensors`", "design.sensors"},
     {"kind of map", "inverse_map"},
     {"key of `gp`", "inverse_map.gp"},
     {"key of `network`", "inverse_map.network"},
