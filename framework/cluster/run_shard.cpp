@@ -189,8 +189,10 @@ std::string runKind(const ShardWork& work, const Shard& shard, std::vector<Faile
   return "";
 }
 
-void requireSameComputation(const ShardPlan& plan) {
-  if (plan.computed_with != describeComputation()) {
+/// Cases are trained by what is compiled for the processor; portable samples may be simulated by any.
+void requireSameComputation(const ShardPlan& plan, ShardKind kind) {
+  const bool any_processor = plan.portable && kind == ShardKind::kSimulate;
+  if (!any_processor && plan.computed_with != describeComputation()) {
     throw ExperimentError("this program computes with " + describeComputation() +
                           ", but the experiment was submitted by one that computes with " +
                           plan.computed_with +
@@ -220,7 +222,7 @@ std::string runShard(const fs::path& folder, int shard, const std::string& comma
   record.begin();
   std::vector<FailedCase> failures;
   try {
-    requireSameComputation(plan);
+    requireSameComputation(plan, plan.shards[static_cast<std::size_t>(shard)].kind);
     const YamlNode tree = loadYaml((folder / "resolved.yaml").string());
     const std::vector<SweepCase> cases = expandPlannedCases(tree, plan);
     const std::string done = runKind({folder, command, tree, plan, cases, control},

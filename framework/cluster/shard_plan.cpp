@@ -67,6 +67,8 @@ ShardPlan makeShardPlan(const ExperimentSurvey& survey, const ShardOptions& opti
   ShardPlan plan;
   plan.store = fs::absolute(getStoreRoot(options.place.folder, options.place.store));
   plan.computed_with = describeComputation();
+  plan.portable = std::all_of(survey.cases.begin(), survey.cases.end(),
+                              [](const SweepCase& one) { return one.experiment.model.simulation.portable; });
   for (const SweepCase& one : survey.cases) {
     plan.train_samples.push_back(one.experiment.design.train.samples.number);
   }
@@ -103,10 +105,15 @@ void writeShardPlan(const fs::path& folder, const ShardPlan& plan) {
   for (const Shard& shard : plan.shards) {
     shards.push_back({{"kind", getName(shard.kind)}, {"first", shard.first}, {"last", shard.last}});
   }
-  const json root = {{"store", plan.store.string()},        {"computed_with", plan.computed_with},
-                     {"train_samples", plan.train_samples}, {"missing_samples", plan.missing},
-                     {"simulate_s", plan.simulate_s},       {"cases_s", plan.cases_s},
-                     {"memory_bytes", plan.memory},         {"shards", shards}};
+  const json root = {{"store", plan.store.string()},
+                     {"computed_with", plan.computed_with},
+                     {"portable", plan.portable},
+                     {"train_samples", plan.train_samples},
+                     {"missing_samples", plan.missing},
+                     {"simulate_s", plan.simulate_s},
+                     {"cases_s", plan.cases_s},
+                     {"memory_bytes", plan.memory},
+                     {"shards", shards}};
   writeTextFile(getClusterFolder(folder) / "plan.json", root.dump(1) + "\n");
 }
 
@@ -119,6 +126,7 @@ ShardPlan readShardPlan(const fs::path& folder) {
   ShardPlan plan;
   plan.store = root.at("store").get<std::string>();
   plan.computed_with = root.at("computed_with");
+  plan.portable = root.at("portable");
   plan.train_samples = root.at("train_samples").get<std::vector<int>>();
   plan.missing = root.at("missing_samples");
   plan.simulate_s = root.at("simulate_s");

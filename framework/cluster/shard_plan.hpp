@@ -36,6 +36,7 @@ struct ShardOptions {
 struct ShardPlan {
   std::filesystem::path store;     ///< absolute
   std::string computed_with;       ///< describeComputation(): shards refuse to compute with anything else
+  bool portable = false;           ///< all cases are (simulation.portable): samples may be of any processor
   std::vector<Shard> shards;       ///< by their stages
   std::vector<int> train_samples;  ///< of each case: the most, where their number is automatic
   int missing = 0;                 ///< samples

@@ -7,6 +7,12 @@
 namespace twinmap {
 
 std::unique_ptr<Simulator> makeSimulator(const ModelSpec& model, const Eigen::VectorXd& times, int modes) {
+  if (model.source && model.simulation.portable) {
+    throw ExperimentError(
+        "simulation.portable: true cannot be held for a model from elsewhere: what an FMU or a program "
+        "computes "
+        "with is its own");
+  }
   if (model.source && model.source->program) {
     return std::make_unique<ProgramSimulator>(model, times, modes);
   }

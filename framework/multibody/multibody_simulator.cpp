@@ -30,6 +30,12 @@ struct SharedModel {
   std::unique_ptr<MultibodySimulator> precise{};  ///< made when first used
 };
 
+#if defined(__AVX2__) && defined(__FMA__) && !defined(__AVX512F__)
+constexpr bool kHasCommonVectors = true;  ///< those of x86-64-v3
+#else
+constexpr bool kHasCommonVectors = false;
+#endif
+
 /// Samples handed out at once: enough to keep all lanes busy but at the end, few enough to share work.
 constexpr int kLaneBatch = 128;
 
@@ -60,12 +66,30 @@ void checkShapes(const SharedModel& shared, const Eigen::Ref<const Eigen::Matrix
   }
 }
 
+/// Equations in lanes have the same bits in every build and width; what else determines a response is
+/// compiled for a processor.
+void requirePortable(const SharedModel& shared, const std::string& obstacle) {
+  const std::string what = !obstacle.empty() ? "Simbody simulates this model (" + obstacle + ")"
+                           : shared.model.initial.equilibrium ? "an equilibrium is solved for"
+                           : shared.layout.modes > 0          ? "modes are solved for"
+                                                              : "";
+  if (!what.empty()) {
+    throw ExperimentError(
+        "simulation.portable: true cannot be held by a program that was built for vectors of one "
+        "processor, since " +
+        what + "; use the portable build (x86-64-v3)");
+  }
+}
+
 /// Throws where lanes are asked for and cannot simulate the model.
 void chooseEngine(ModelContext& context, SharedModel& shared) {
   auto lanes = std::make_unique<LanePrograms>(context, shared.box_center);
   const std::string& obstacle = lanes->getObstacle();
   if (!obstacle.empty() && shared.model.simulation.engine == Engine::kLanes) {
     throw ExperimentError("simulation.engine: lanes cannot simulate this model: " + obstacle);
+  }
+  if (shared.model.simulation.portable && !kHasCommonVectors) {
+    requirePortable(shared, obstacle);
   }
   shared.engine = obstacle.empty() ? "lanes" : "simbody: " + obstacle;
   if (obstacle.empty()) {

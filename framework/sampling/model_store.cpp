@@ -53,15 +53,18 @@ void tellOtherBuilds(const TrajectoryStore& store, const std::string& content) {
 
 }  // namespace
 
-std::string describeComputation() {
-  return fmt::format("{}, {}, {} ({}), Simbody {}, Boost {}, Eigen {}, {}", kCompiler, kBuildType,
-                     kInstructionSet, kVectors, kSimbodyVersion, kBoostVersion, kEigenVersion,
-                     describeMathematics());
+std::string describeComputation(Portability portability) {
+  const std::string processor = portability == Portability::kAnyProcessor
+                                    ? "portable (x86-64-v3)"
+                                    : fmt::format("{} ({})", kInstructionSet, kVectors);
+  return fmt::format("{}, {}, {}, Simbody {}, Boost {}, Eigen {}, {}", kCompiler, kBuildType, processor,
+                     kSimbodyVersion, kBoostVersion, kEigenVersion, describeMathematics());
 }
 
 std::string writeStoreContent(const ModelSpec& model, const ResponseLayout& layout) {
+  const auto portability = model.simulation.portable ? Portability::kAnyProcessor : Portability::kThisBuild;
   return writeTrajectoryContent(model, layout) + kSolverKey +
-         fmt::format("  revision: {}\n  build: {}\n", kSolverRevision, describeComputation());
+         fmt::format("  revision: {}\n  build: {}\n", kSolverRevision, describeComputation(portability));
 }
 
 std::unique_ptr<TrajectoryStore> openStore(const ModelSpec& model, const ResponseLayout& layout,

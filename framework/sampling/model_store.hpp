@@ -10,10 +10,16 @@
 
 namespace twinmap {
 
+enum class Portability {
+  kThisBuild,
+  kAnyProcessor,  ///< of samples with simulation.portable, which have the same bits in native and portable
+                  ///< builds
+};
+
 /// The build of the program, and the C library's mathematics on this processor, as far as they can change a
 /// bit of a sample: compiler, instruction set, Simbody, Boost, Eigen, glibc. Results that agree in it are
 /// equal bit for bit.
-std::string describeComputation();
+std::string describeComputation(Portability portability = Portability::kThisBuild);
 
 /// Names the samples of a TrajectoryStore: the model and the rows of its responses
 /// (writeTrajectoryContent), the revision of the solver, and describeComputation().

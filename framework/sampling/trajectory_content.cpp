@@ -46,6 +46,7 @@ YamlNode writeSimulation(const SimulationSpec& simulation) {
   YamlNode map = writeValue(simulation);
   erase(map, "max_wall_time");
   erase(map, "allowed_failures");
+  erase(map, "portable");  // what the samples are computed with says it (writeStoreContent)
   return map;
 }
 

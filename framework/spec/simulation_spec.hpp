@@ -34,6 +34,7 @@ struct SimulationSpec {
   double relative_tolerance = 3e-7;  ///< local error per step, relative to the state
   double absolute_tolerance = 1e-9;  ///< and absolute, in the state's own units
   int max_steps = 100000;            ///< per sample; more is reported as a failure
+  bool portable = false;             ///< the same bits on all processors of the common set, x86-64-v3
   double max_wall_time = 60.0;       ///< s per sample; more is reported as a failure
   double allowed_failures = 0.05;    ///< fraction of a set's samples that may fail before the run does
 };
@@ -50,6 +51,8 @@ void describe(Fields& f, SimulationSpec& s) {
   f.optional("relative_tolerance", s.relative_tolerance, "local error per step, relative", kRelative);
   f.optional("absolute_tolerance", s.absolute_tolerance, "local error per step, absolute", kAbsolute);
   f.optional("max_steps", s.max_steps, "per sample; more is a failure", kCount);
+  f.optional("portable", s.portable,
+             "the same bits on all processors (x86-64-v3): lanes, or the portable build");
   f.optional("max_wall_time", s.max_wall_time, "per sample; more is a failure; s", kWallTime);
   f.optional("allowed_failures", s.allowed_failures,
              "fraction of the training or test samples that may fail before the run does", kFraction);

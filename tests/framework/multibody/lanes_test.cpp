@@ -357,6 +357,22 @@ TEST(Lanes, AreTheEngineUnlessSomethingForbidsIt) {
   EXPECT_THROW(getEngine(model), ExperimentError);
 }
 
+#if defined(__AVX512F__)
+TEST(Lanes, AreWhatANativeBuildHasOfPortableSamples) {
+  ModelSpec model = makeDriven();
+  model.excitation = {pulse("u", "a", "t0", "1.5")};
+  model.simulation.portable = true;
+  const Eigen::VectorXd times = Eigen::VectorXd::LinSpaced(3, 0.0, model.simulation.duration);
+  EXPECT_NO_THROW(MultibodySimulator(model, times, 0));
+  EXPECT_THROW(MultibodySimulator(model, times, 1), ExperimentError);
+  ModelSpec at_rest = model;
+  at_rest.initial.equilibrium = EquilibriumSpec{};
+  EXPECT_THROW(MultibodySimulator(at_rest, times, 0), ExperimentError);
+  model.simulation.engine = Engine::kSimbody;
+  EXPECT_THROW(MultibodySimulator(model, times, 0), ExperimentError);
+}
+#endif
+
 TEST(Lanes, LeaveToSimbodyWhatTheyDoNotCompute) {
   ModelSpec model = makeDriven();
   model.excitation = {pulse("u", "a", "t0", "1.5")};

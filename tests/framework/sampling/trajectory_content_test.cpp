@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/sampling/model_store.hpp"
 #include "framework/spec/experiment_file.hpp"
 
 namespace twinmap {
@@ -60,6 +61,14 @@ TEST(TrajectoryContent, WhatDoesNotChangeAResponseDoesNot) {
         "parameters.k_y.bounds=[6, 14]"}) {  // the same centre
     EXPECT_EQ(write({same}), reference) << same;
   }
+}
+
+TEST(TrajectoryContent, WhatIsPortableIsNamedByTheCommonInstructionSetAndElseTheSame) {
+  const ModelSpec own = loadExperiment(kTable1, {}).model;
+  const ModelSpec portable = loadExperiment(kTable1, {"simulation.portable=true"}).model;
+  EXPECT_EQ(writeTrajectoryContent(portable, makeLayout()), writeTrajectoryContent(own, makeLayout()));
+  EXPECT_NE(writeStoreContent(portable, makeLayout()), writeStoreContent(own, makeLayout()));
+  EXPECT_NE(writeStoreContent(portable, makeLayout()).find("portable (x86-64-v3)"), std::string::npos);
 }
 
 TEST(TrajectoryContent, BoundsCountOnlyWhereTheInitialStateIsTheCentresEquilibrium) {
