@@ -57,6 +57,18 @@ void DesignSearch::screen(const VectorXd& present, int count) {
   }
 }
 
+VectorXd DesignSearch::calcTargets() const {
+  VectorXd targets = most_;
+  for (Index i = 0; i < targets.size(); ++i) {
+    const double first = path_.front().score.measures[i];
+    const bool moves = std::any_of(path_.begin(), path_.end(), [&](const TriedDesign& tried) {
+      return tried.score.failure.empty() && tried.score.measures[i] != first;
+    });
+    targets[i] *= moves ? 1.0 - kMargin : 1.0;
+  }
+  return targets;
+}
+
 std::vector<VectorXd> DesignSearch::findStarts(std::size_t count) const {
   std::vector<const TriedDesign*> sorted;
   for (const TriedDesign& tried : path_) {
@@ -77,7 +89,7 @@ std::vector<VectorXd> DesignSearch::findStarts(std::size_t count) const {
 void DesignSearch::search(const VectorXd& start, ConstrainedMethod method, double first_step, int budget) {
   const double failed =
       path_.front().score.failure.empty() ? path_.front().score.cost + kFailedCost : kFailedCost;
-  const VectorXd most = (1.0 - kMargin) * most_;
+  const VectorXd most = calcTargets();
   const optimization::ConstrainedProblem problem{
       start.size(), most.size(), [&](const VectorXd& point, VectorXd& constraints) {
         const DesignScore score = tryDesign(point);

@@ -54,6 +54,9 @@ class DesignSearch {
   DesignScore tryDesign(const Eigen::VectorXd& point);
   double calcMerit(const TriedDesign& tried) const;
   void screen(const Eigen::VectorXd& present, int count);
+  /// What a search keeps the measures below: the limits with their margin, where designs differ in the
+  /// measure at all.
+  Eigen::VectorXd calcTargets() const;
   std::vector<Eigen::VectorXd> findStarts(std::size_t count) const;
   void searchFrom(const Eigen::VectorXd& start, double first_step, int budget);
   void search(const Eigen::VectorXd& start, optimization::ConstrainedMethod method, double first_step,

@@ -76,7 +76,7 @@ class ExcitationDesigner {
     constexpr int kRounds = 6;
     constexpr double kSpare = 0.998;
     search.run(calcPresentPoint(evaluator_.getNumbers()));
-    requireAllowed(search);
+    requireAllowed(search, search.findLeastViolation().score, "");
     VectorXd most = most_;
     for (int round = 0; round < kRounds && limitsOutputs(evaluator_.getLimits()); ++round) {
       const DesignScore found = check(search.findBest()->point);
@@ -90,7 +90,7 @@ class ExcitationDesigner {
                       : most[i];
       }
       search.refine(most, std::max(20, budget / 10));
-      requireAllowed(search);
+      requireAllowed(search, found, " at random points of the box");
     }
     tightened_ = most.cwiseQuotient(most_);
   }
@@ -138,24 +138,24 @@ class ExcitationDesigner {
     control_.progress(progress);
   }
 
-  /// Throws where no tried design keeps the limits, naming the worst one of the least violation.
-  void requireAllowed(const DesignSearch& search) const {
+  /// Throws where no tried design keeps the limits, naming the worst one of `least`, the one that comes
+  /// nearest.
+  void requireAllowed(const DesignSearch& search, const DesignScore& least, const std::string& at) const {
     if (search.findBest() != nullptr) {
       return;
     }
-    const DesignScore& least = search.findLeastViolation().score;
     if (!least.failure.empty()) {
       throw std::runtime_error("no excitation within the bounds could be simulated: " + least.failure);
     }
     Index worst = 0;
     (least.measures.array() / most_.array()).maxCoeff(&worst);
     const Limit& limit = evaluator_.getLimits()[static_cast<std::size_t>(worst)];
-    throw ExperimentError(limit.where, toText(limit.most),
-                          fmt::format("cannot be kept: of {} excitations within the bounds the one that "
-                                      "comes nearest to all limits has a "
-                                      "{} of {:.4g}, {:.3g} % above it",
-                                      search.getPath().size(), describe(limit), least.measures[worst],
-                                      100.0 * (least.measures[worst] / limit.most - 1.0)));
+    throw ExperimentError(
+        limit.where, toText(limit.most),
+        fmt::format("cannot be kept: of {} excitations within the bounds the one that comes nearest to all "
+                    "limits has a {} of {:.4g}{}, {:.3g} % above it",
+                    search.getPath().size(), describe(limit), least.measures[worst], at,
+                    100.0 * (least.measures[worst] / limit.most - 1.0)));
   }
 
   const ExcitationEvaluator& evaluator_;

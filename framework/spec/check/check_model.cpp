@@ -322,8 +322,9 @@ class ModelCheck {
     }
     const InitialSpec& initial = model_.initial;
     if (elsewhere && (!initial.coordinates.empty() || !initial.speeds.empty() || initial.equilibrium)) {
-      throw ExperimentError({model_.parameters.front().name.where.file, 0, 0, "initial"}, "",
-                            "is for a system; set the start values of a model from elsewhere by constants with a variable");
+      throw ExperimentError(
+          {model_.parameters.front().name.where.file, 0, 0, "initial"}, "",
+          "is for a system; set the start values of a model from elsewhere by constants with a variable");
     }
   }
 

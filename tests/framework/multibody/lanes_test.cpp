@@ -100,7 +100,7 @@ std::vector<std::pair<std::string, SignalSpec>> makeSignals() {
   sine.sines = {{ex("a"), ex("0.5 + a"), ex("0.3"), ex("t0"), ex("2.1")}};
   chirp.chirps = {{ex("a"), ex("0.5"), ex("a * 2"), ex("t0"), ex("t0 + 1.5"), SweepKind::kLinear}};
   log_chirp.chirps = {{ex("a"), ex("0.5"), ex("3"), ex("0"), ex("2.5"), SweepKind::kLogarithmic}};
-  multisine.multisines = {{ex("a"), {ex("0.4"), ex("1.1"), ex("2.3")}, {}, ex("0.2"), ex("")}};
+  multisine.multisines = {{ex("a"), {}, {ex("0.4"), ex("1.1"), ex("2.3")}, {}, ex("0.2"), ex("")}};
   const std::vector<double> times{0.1, 0.5, 0.5, 1.3, 2.0, 2.2}, values{0.0, 1.0, -1.0, 2.0, 0.5, 0.0};
   linear.tables = {{times, values, TableInterpolation::kLinear}};
   hold.tables = {{times, values, TableInterpolation::kHold}};

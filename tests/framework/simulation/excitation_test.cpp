@@ -250,7 +250,7 @@ TEST(Excitation, BadTablesAndPhasesAreWrongInput) {
   signals[0].tables = {{{0.0, 2.0}, {1.0}, TableInterpolation::kLinear}};
   EXPECT_THROW(Excitation{signals}, ExperimentError);
   signals[0].tables.clear();
-  signals[0].multisines = {{ex("1"), {ex("1"), ex("2")}, {ex("0")}, ex("0"), ex("")}};
+  signals[0].multisines = {{ex("1"), {}, {ex("1"), ex("2")}, {ex("0")}, ex("0"), ex("")}};
   EXPECT_THROW(Excitation{signals}, ExperimentError);
 }
 
