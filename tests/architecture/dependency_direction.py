@@ -72,7 +72,7 @@ LIBRARIES = {
     r"nlohmann/.*": {"spec", "measurement", "store", "results", "report", "comparison", "inference", "program", "export", "cluster"},
     r"CLI/.*": {"cli"},
     r"nlopt.*": {"kernels"},
-    r"spdlog/.*": {"monitoring", "sampling", "experiment", "sweep", "cli", "python"},
+    r"spdlog/.*": {"monitoring", "sampling", "experiment", "sweep", "cli", "cluster", "python"},
     r"filesystem": {"fmi", "spec", "inference", "export", "hdf5", "monitoring", "measurement", "store", "sampling", "results", "report", "comparison", "experiment", "experiment_design",
                      "sweep", "cluster", "verification", "c_api", "python", "cli"},
     r"(omp\.h|fstream|chrono)": {"fmi/fstream", "process/chrono", "process/fstream", "spec", "measurement/fstream", "monitoring/chrono", "simulation", "multibody", "evaluation/chrono",

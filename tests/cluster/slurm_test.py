@@ -20,7 +20,7 @@ CASES = 24 if WHOLE else 6
 SWEEP = ["design.train.samples=8,12,16", "noise.scale=0.5,1", "seed=1..4" if WHOLE else "seed=1..1", "design.test.samples=8",
          "evaluation.limit=false", "design.train.method=nested_latin_hypercube", "simulation.engine=simbody", "inverse_map.gp.starts=1"]
 if WHOLE:
-    SWEEP += ["simulation.duration=100", "simulation.relative_tolerance=1e-10", "simulation.absolute_tolerance=1e-12",
+    SWEEP += ["simulation.duration=50", "simulation.relative_tolerance=1e-10", "simulation.absolute_tolerance=1e-12",
               "simulation.max_steps=10000000", "simulation.max_wall_time=600"]
 TABLES = ["sweep.csv", "summary.csv", "table.md", "failed_cases.csv", "resolved.yaml"]
 RESULTS = ["maps.h5", "metrics.csv", "predictions.csv", "samples.h5", "training.csv", "resolved.yaml"]
