@@ -24,8 +24,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 namespace fs = std::filesystem;
 
-constexpr int kJudgePoints = 200;   // of the box, for the limits before and after
-constexpr int kCheckPoints = 1000;  // at which limits are held against outputs
+constexpr int kJudgePoints = 200;     // of the box, for the limits before and after
+constexpr int kCheckPoints = 1000;    // random ones at which limits are held against outputs
+constexpr Index kMostVariables = 10;  // whose corners are taken too: there outputs mostly go farthest
 
 /// Keeps one experiment a folder: what design.csv has must be of the same.
 void requireFolder(const fs::path& folder, const std::string& text) {
@@ -44,6 +45,25 @@ MatrixXd samplePointsOf(const ExperimentSpec& experiment, DesignMethod method, i
   return samplePoints({method, count, {}}, collectSampled(experiment.model), experiment.seed, purpose);
 }
 
+/// Random points of the box, and its corners where they are not too many.
+MatrixXd makeCheckPoints(const ExperimentSpec& experiment) {
+  const MatrixXd random =
+      samplePointsOf(experiment, DesignMethod::kUniform, kCheckPoints, RandomPurpose::kDesignCheck);
+  const Index variables = random.rows();
+  const Index corners = variables <= kMostVariables ? Index{1} << variables : 0;
+  const std::vector<ParameterSpec> sampled = collectSampled(experiment.model);
+  const VectorXd center = calcBoxCenter(sampled), half_width = 0.5 * calcWidths(sampled);
+  MatrixXd points(variables, random.cols() + corners);
+  points.leftCols(random.cols()) = random;
+  for (Index corner = 0; corner < corners; ++corner) {
+    for (Index v = 0; v < variables; ++v) {
+      const double side = ((corner >> v) & 1) != 0 ? 1.0 : -1.0;
+      points(v, random.cols() + corner) = center[v] + side * half_width[v];
+    }
+  }
+  return points;
+}
+
 /// One search and what it works with.
 class ExcitationDesigner {
  public:
@@ -51,8 +71,7 @@ class ExcitationDesigner {
       : evaluator_(evaluator),
         control_(control),
         trials_(folder / "design.csv", evaluator.getNumbers(), evaluator.getLimits()),
-        check_points_(samplePointsOf(evaluator.getExperiment(), DesignMethod::kUniform, kCheckPoints,
-                                     RandomPurpose::kDesignCheck)),
+        check_points_(makeCheckPoints(evaluator.getExperiment())),
         most_(static_cast<Index>(evaluator.getLimits().size())) {
     for (Index i = 0; i < most_.size(); ++i) {
       most_[i] = evaluator.getLimits()[static_cast<std::size_t>(i)].most;
@@ -103,6 +122,7 @@ class ExcitationDesigner {
   }
 
   VectorXd calcValuesOf(const VectorXd& point) const { return calcValues(evaluator_.getNumbers(), point); }
+  Index countCheckPoints() const { return check_points_.cols(); }
   const VectorXd& getTightened() const { return tightened_; }
   const TrialFile& getTrials() const { return trials_; }
 
@@ -235,7 +255,7 @@ ExcitationDesign designExcitation(const YamlNode& tree, const fs::path& folder, 
   design.before = designer.judge(designer.calcValuesOf(calcPresentPoint(numbers)));
   design.after = designer.judge(designer.calcValuesOf(search.findBest()->point));
   design.tightened = designer.getTightened();
-  design.check_points = kCheckPoints;
+  design.check_points = static_cast<int>(designer.countCheckPoints());
   design.warnings =
       calcIdentifiability(makeInformationLimit(design.after.limit), experiment.model.parameters).warnings;
   writeAll(folder, evaluator, design);
