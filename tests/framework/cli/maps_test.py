@@ -33,8 +33,8 @@ class Maps(FolderTestCase):
         for row, alone in zip(self.rows, read_csv(self.run_folder / "metrics.csv")):
             for column in ("bias_pct", "sd_pct", "limit_pct", "ratio_to_limit", "coverage95", "nlpd"):
                 self.assertEqual(row[column], alone[column])
-        joint = read_csv(self.run_folder / "joint.csv")
-        self.assertEqual(self.rows[0]["joint_nlpd"], joint[0]["nlpd"])
+        joint = {row["metric"]: row["value"] for row in read_csv(self.run_folder / "joint.csv")}
+        self.assertEqual(self.rows[0]["joint_nlpd"], joint["nlpd"])
         one, other = ([row[c] for row in self.rows if row["map"] == name for c in ("sd_pct", "nlpd")]
                       for name in ("network", "network_2"))
         self.assertEqual(one, other)
@@ -46,7 +46,7 @@ class Maps(FolderTestCase):
             result = call("infer", self.run_folder / f"maps/{name}.h5", measured, "--json")
             self.assertEqual(result.returncode, 0, result.stderr)
             found = json.loads(result.stdout)["parameters"]["k_y"]
-            self.assertLess(abs(found["mean"] - 8), 5 * found["sd"])
+            self.assertLess(abs(found["mean"] - 8), 0.1)  # few simulations, and the bounds are 5 and 15
 
     def test_the_report_shows_them(self):
         report = (self.run_folder / "report.html").read_text()
@@ -57,7 +57,7 @@ class Maps(FolderTestCase):
         run = self.folder / "few"
         result = call("run", TABLE1, *SMALL, "design.train.samples=30", f"evaluation.maps=[gp, {NETWORK}]", "--out", run)
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertIn("map network is not compared: a network needs at least 50 training samples",
+        self.assertIn("map network is not compared: the network cannot be trained: a network needs at least 50 training samples",
                       (run / "run.log").read_text() + result.stderr + (run / "provenance.json").read_text())
         self.assertEqual({row["map"] for row in read_csv(run / "maps.csv")}, {"gp"})
 

@@ -73,7 +73,7 @@ class Sensors(FolderTestCase):
         for arguments, message in (
                 (overrides(["y", "nothing"], 1), "nothing"),
                 (overrides(["y", "theta"], 3), "must not ask for more outputs than there are"),
-                ([*overrides(["y", "theta"], 1), "noise.stddev.theta=0"], "an output with noise.stddev above 0"),
+                ([*overrides(["y", "load_y"], 1), "noise.stddev.load_y=0"], "an output with noise.stddev above 0"),
                 (["features=[{statistics: {outputs: [y], quantities: [rms], "
                   "window: {start: 0.1, interval: 0.1, count: 30}}}]"], "must be samples at the same times")):
             result = call("design", "sensors", CRANE, *arguments, "--out", self.folder / "wrong")
