@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <stdexcept>
 
 #include "framework/sensitivity/fisher_information.hpp"
 #include "framework/spec/parameter_box.hpp"
@@ -55,35 +56,46 @@ struct Choice {
   double cost = std::numeric_limits<double>::infinity();
 };
 
-/// The best of the subsets with one candidate more.
-Choice addBest(const CandidateInformation& candidates, const Criterion& criterion, const Subset& subset) {
-  Choice best;
-  for (Index c = 0; c < candidates.countCandidates(); ++c) {
-    if (std::binary_search(subset.begin(), subset.end(), c)) {
-      continue;
-    }
-    Subset tried = with(subset, c);
-    if (const double cost = candidates.calcMeanCost(tried, criterion); cost < best.cost) {
-      best = {std::move(tried), cost};
-    }
-  }
-  return best;
-}
+/// What a search for a subset works with.
+struct SubsetSearch {
+  const CandidateInformation& candidates;
+  const Criterion& criterion;
+  const std::function<void()>& proceed;
 
-/// The best exchange, if one is better by more than rounding.
-bool exchange(const CandidateInformation& candidates, const Criterion& criterion, Choice& choice) {
-  constexpr double kRounding = 1e-9;
-  bool improved = false;
-  const Subset subset = choice.subset;
-  for (std::size_t i = 0; i < subset.size(); ++i) {
-    const Choice tried = addBest(candidates, criterion, without(subset, i));
-    if (tried.cost < choice.cost - kRounding) {
-      choice = tried;
-      improved = true;
+  /// The best of the subsets with one candidate more.
+  Choice addBest(const Subset& subset) const {
+    Choice best;
+    proceed();
+    for (Index c = 0; c < candidates.countCandidates(); ++c) {
+      if (std::binary_search(subset.begin(), subset.end(), c)) {
+        continue;
+      }
+      Subset tried = with(subset, c);
+      if (const double cost = candidates.calcMeanCost(tried, criterion); cost < best.cost) {
+        best = {std::move(tried), cost};
+      }
     }
+    if (best.subset.empty()) {
+      throw std::runtime_error("what the candidates tell about the parameters is not finite");
+    }
+    return best;
   }
-  return improved;
-}
+
+  /// The best exchange, if one is better by more than rounding.
+  bool exchange(Choice& choice) const {
+    constexpr double kRounding = 1e-9;
+    bool improved = false;
+    const Subset subset = choice.subset;
+    for (std::size_t i = 0; i < subset.size(); ++i) {
+      const Choice tried = addBest(without(subset, i));
+      if (tried.cost < choice.cost - kRounding) {
+        choice = tried;
+        improved = true;
+      }
+    }
+    return improved;
+  }
+};
 
 }  // namespace
 
@@ -135,12 +147,13 @@ double CandidateInformation::calcMeanCost(const Subset& subset, const Criterion&
 }
 
 Subset extendSubset(const CandidateInformation& candidates, const Criterion& criterion, Subset begun,
-                    Index count) {
+                    Index count, const std::function<void()>& proceed) {
+  const SubsetSearch search{candidates, criterion, proceed};
   Choice choice{std::move(begun)};
   while (static_cast<Index>(choice.subset.size()) < count) {
-    choice = addBest(candidates, criterion, choice.subset);
+    choice = search.addBest(choice.subset);
   }
-  while (exchange(candidates, criterion, choice)) {
+  while (search.exchange(choice)) {
   }
   return choice.subset;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 #include "framework/experiment_design/criterion.hpp"
@@ -45,8 +46,10 @@ class CandidateInformation {
 };
 
 /// The subset of `count` candidates with the least mean cost that greedy additions to `begun`, and then
-/// exchanges of one candidate for another until none helps, lead to; of equal ones the first.
-Subset extendSubset(const CandidateInformation& candidates, const Criterion& criterion, Subset begun,
-                    Eigen::Index count);
+/// exchanges of one candidate for another until none helps, lead to; of equal ones the first. `proceed` is
+/// called now and then, and may throw to stop. Throws std::runtime_error where no cost is finite.
+Subset extendSubset(
+    const CandidateInformation& candidates, const Criterion& criterion, Subset begun, Eigen::Index count,
+    const std::function<void()>& proceed = [] {});
 
 }  // namespace twinmap::experiment_design

@@ -68,7 +68,8 @@ std::string makeMeasureTable(const ExcitationDesign& design) {
                     makeCell(100.0 * (1.0 - after / limit.most)), makeCell(reached(design.nominal))});
   }
   return makeHtmlTable(
-      "limits-table", fmt::format("Largest values at {} points of the box, random ones and corners.", design.check_points),
+      "limits-table",
+      fmt::format("Largest values at {} points of the box, random ones and corners.", design.check_points),
       {"measure", "unit", "limit", "before", "after", "margin %", "designed for the centre"}, rows);
 }
 

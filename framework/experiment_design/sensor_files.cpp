@@ -121,8 +121,11 @@ std::string describeSensors(const SensorDesign& design) {
     const bool chosen = judged.subset.size() == design.chosen_outputs.subset.size();
     add(judged, nameOutputs(design, judged.subset) + (chosen ? "  <- chosen" : ""));
   }
+  if (!design.by_times.empty()) {
+    text += fmt::format("\n{:>7}\n", "times");
+  }
   for (const JudgedSubset& judged : design.by_times) {
-    add(judged, "times");
+    add(judged, "");
   }
   return text;
 }

@@ -46,6 +46,11 @@ SamplesFeatureSpec findGrid(const ExperimentSpec& experiment) {
 /// The experiment whose features are all that may be measured, output by output.
 ExperimentSpec measureAll(ExperimentSpec experiment) {
   SamplesFeatureSpec grid = findGrid(experiment);
+  if (const std::optional<int>& times = experiment.design.sensors->candidates.times;
+      times && *times > grid.count) {
+    throw ExperimentError(experiment.name.where, "design.sensors.candidates.times",
+                          fmt::format("must be at most {}, the sample times of the features", grid.count));
+  }
   grid.outputs = experiment.design.sensors->candidates.outputs;
   experiment.features = {grid};
   return experiment;
@@ -141,10 +146,13 @@ class SensorDesigner {
     return judged;
   }
 
-  void tell(const std::string& stage, Index done, Index total) const {
+  void throwIfStopped() const {
     if (control_.stop != nullptr && *control_.stop) {
       throw Interrupted("interrupted");
     }
+  }
+
+  void tell(const std::string& stage, Index done, Index total) const {
     if (control_.progress) {
       Progress progress;
       progress.stage = stage;
@@ -165,7 +173,8 @@ class SensorDesigner {
     std::vector<JudgedSubset> best;
     for (Index count = 1; count <= outputs; ++count) {
       const Subset begun = best.empty() ? Subset() : best.back().subset;
-      best.push_back(judge(candidates, extendSubset(candidates, criterion_, begun, count)));
+      best.push_back(judge(candidates,
+                           extendSubset(candidates, criterion_, begun, count, [this] { throwIfStopped(); })));
       tell("outputs", count, outputs);
     }
     return best;
@@ -186,7 +195,8 @@ class SensorDesigner {
       if (next > size) {
         size = next;
         const Subset begun = best.empty() ? Subset() : best.back().subset;
-        best.push_back(judge(candidates, extendSubset(candidates, criterion_, begun, size)));
+        best.push_back(judge(
+            candidates, extendSubset(candidates, criterion_, begun, size, [this] { throwIfStopped(); })));
       }
       tell("times", step, kSizes);
     }

@@ -68,9 +68,14 @@ void checkSensorDesign(const SensorDesignSpec& design, const ExperimentSpec& exp
       noisy.push_back(output.name.text);
     }
   }
-  for (const Name& output : design.candidates.outputs) {
-    requireKnown(output, collectNames(experiment.model.outputs), "an output");
-    requireKnown(output, noisy, "an output with noise.stddev above 0");
+  const std::vector<Name>& outputs = design.candidates.outputs;
+  for (auto output = outputs.begin(); output != outputs.end(); ++output) {
+    requireKnown(*output, collectNames(experiment.model.outputs), "an output");
+    requireKnown(*output, noisy, "an output with noise.stddev above 0");
+    const auto same = [&](const Name& other) { return other.text == output->text; };
+    if (std::any_of(outputs.begin(), output, same)) {
+      throw ExperimentError(output->where, output->text, "is listed twice");
+    }
   }
 }
 

@@ -72,6 +72,8 @@ class Sensors(FolderTestCase):
     def test_wrong_input_is_named(self):
         for arguments, message in (
                 (overrides(["y", "nothing"], 1), "nothing"),
+                (overrides(["y", "y"], 2), "is listed twice"),
+                (overrides(["y", "theta"], 1, 1000), "must be at most 100, the sample times of the features"),
                 (overrides(["y", "theta"], 3), "must not ask for more outputs than there are"),
                 ([*overrides(["y", "load_y"], 1), "noise.stddev.load_y=0"], "an output with noise.stddev above 0"),
                 (["features=[{statistics: {outputs: [y], quantities: [rms], "
