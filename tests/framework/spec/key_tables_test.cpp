@@ -270,7 +270,10 @@ void collectKeys(const Json& schema, Words& keys) {
 
 TEST(Keys, AreAllDocumentedInTheirSection) {
   for (const auto& [top, schema] : getRoot()["properties"].items()) {
-    const Words documented = listCodeWords(getSection(top));
+    Words documented = listCodeWords(getSection(top));
+    if (top == "evaluation") {
+      documented.merge(listCodeWords(getSection("inverse_map")));  // evaluation.maps are what it may be
+    }
     Words keys;
     collectKeys(schema, keys);
     for (const std::string& key : keys) {
