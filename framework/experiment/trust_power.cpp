@@ -23,9 +23,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kPoints = 10;           // test samples: power differs over the box
-constexpr double kConstantSpan = 0.2;   // relative; the interval of a constant that is made a parameter
-constexpr double kLargestChange = 0.5;  // of a constant
+constexpr Index kPoints = 10;              // test samples: power differs over the box
+constexpr Index kDraws = 200;              // of all points: they tell a share of 95 % to 1.5 %
+constexpr double kDifferencesShare = 0.2;  // of the run's simulations, where derivatives are differences
+constexpr double kConstantSpan = 0.2;      // relative; the interval of a constant that is made a parameter
+constexpr double kLargestChange = 0.5;     // of a constant
 constexpr double kFound = 0.95, kHardlyFound = 0.5;
 
 /// The constants whose values are numbers other than zero; of a model from elsewhere those that it knows.
@@ -60,11 +62,23 @@ ModelSpec makeConstantsUnknown(ModelSpec model, const std::vector<ParameterSpec>
   return model;
 }
 
-/// The first test samples as points of that model's box.
+/// kPoints, or as many as their simulations may cost beside the run's own, where a point takes 2 p + 1 of
+/// them.
+Index countPoints(const Simulator& simulator, std::size_t parameters, const SimulatedSets& sets) {
+  if (simulator.hasDerivatives()) {
+    return kPoints;
+  }
+  const auto own = static_cast<double>(sets.train.parameters.cols() + sets.test.parameters.cols());
+  const auto affordable =
+      static_cast<Index>(kDifferencesShare * own / (2.0 * static_cast<double>(parameters) + 1.0));
+  return std::clamp<Index>(affordable, 1, kPoints);
+}
+
+/// The first `limit` test samples as points of that model's box.
 MatrixXd makePoints(const ExperimentSpec& experiment, const SimulatedSets& sets,
-                    const std::vector<ParameterSpec>& constants) {
+                    const std::vector<ParameterSpec>& constants, Index limit) {
   std::vector<int> samples = findSuccessful(sets.test);
-  samples.resize(std::min<std::size_t>(samples.size(), kPoints));
+  samples.resize(std::min(samples.size(), static_cast<std::size_t>(limit)));
   const MatrixXd points = sets.test.parameters(Eigen::all, samples);
   const auto unknown = static_cast<Index>(collectUnknown(experiment.model).size());
   const auto count = static_cast<Index>(constants.size());
@@ -88,12 +102,14 @@ std::vector<Neighbourhood> simulateNeighbourhoods(const PowerContext& context,
   const ModelSpec model = makeConstantsUnknown(context.experiment.model, constants);
   const ResponseLayout& layout = context.sets.test.layout;
   const std::unique_ptr<Simulator> simulator = makeSimulator(model, layout.times, layout.modes);
-  const MatrixXd points = makePoints(context.experiment, context.sets, constants);
+  const std::vector<ParameterSpec> unknown_parameters = collectUnknown(model);
+  const MatrixXd points = makePoints(context.experiment, context.sets, constants,
+                                     countPoints(*simulator, unknown_parameters.size(), context.sets));
   const auto count = static_cast<Index>(constants.size());
   std::vector<Neighbourhood> found;
   Index column = 0;
   for (const LocalModel& local :
-       calcLocalModels(*simulator, context.extractor, collectUnknown(model), points, context.threads)) {
+       calcLocalModels(*simulator, context.extractor, unknown_parameters, points, context.threads)) {
     if (local.status.ok) {
       const Index unknown = local.sensitivities.cols() - count;
       found.push_back({local.features,
@@ -207,11 +223,10 @@ class RefinedJudge final : public Judge {
 /// Where the power is looked at, and how.
 struct PowerCases {
   std::vector<std::unique_ptr<Judge>> judges;  // one a neighbourhood
-  MatrixXd noise;                              // d x kDraws of each judge
+  Index draws = 0;                             // of each judge
+  MatrixXd noise;                              // d x draws of each judge
   double level = 0.0;
 };
-
-constexpr Index kDraws = 20;  // of each judge: 200 tell a share of 95 % to 1.5 %
 
 /// Noise of the covariance factor factor', d x count.
 MatrixXd drawNoise(const MatrixXd& factor, Index count, std::uint64_t seed) {
@@ -229,8 +244,9 @@ MatrixXd drawNoise(const MatrixXd& factor, Index count, std::uint64_t seed) {
 double calcShareFound(const PowerCases& cases, const std::vector<VectorXd>& directions, double size) {
   int found = 0;
   for (std::size_t i = 0; i < cases.judges.size(); ++i) {
-    for (Index draw = 0; draw < kDraws; ++draw) {
-      const VectorXd moved = size * directions[i] + cases.noise.col(static_cast<Index>(i) * kDraws + draw);
+    for (Index draw = 0; draw < cases.draws; ++draw) {
+      const VectorXd moved =
+          size * directions[i] + cases.noise.col(static_cast<Index>(i) * cases.draws + draw);
       found += cases.judges[i]->calcPValue(moved) < cases.level ? 1 : 0;
     }
   }
@@ -295,7 +311,9 @@ PowerCases makeCases(const PowerContext& context, const NoiseWhitener& noise,
     }
   }
   const MatrixXd factor = context.noise_covariance * noise.getMatrix().transpose();  // W C W' = 1
-  cases.noise = drawNoise(factor, kDraws * static_cast<Index>(around.size()), context.experiment.seed);
+  const auto points = static_cast<Index>(around.size());
+  cases.draws = kDraws / points;
+  cases.noise = drawNoise(factor, cases.draws * points, context.experiment.seed);
   return cases;
 }
 
