@@ -1,15 +1,13 @@
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
 
 #include "framework/cli/commands.hpp"
-#include "framework/cli/log.hpp"
 #include "framework/cli/signals.hpp"
 #include "framework/cluster/run_shard.hpp"
 #include "framework/cluster/submission.hpp"
+#include "framework/monitoring/log.hpp"
 #include "framework/spec/experiment_file.hpp"
 #include "framework/sweep/plan.hpp"
 
@@ -56,7 +54,7 @@ void planShards(const SubmitArguments& arguments) {
   const YamlNode tree = loadExperimentTree(arguments.run.experiment.file, arguments.run.experiment.overrides);
   const ShardOptions shards = makeShardOptions(arguments, tree);
   const PlanOptions options{arguments.run.threads, chooseMemory(arguments.run)};
-  spdlog::set_level(spdlog::level::off);  // of the small runs that are timed
+  silenceLog();  // of the small runs that are timed
   const ExperimentSurvey survey = surveyForShards(tree, shards.place);
   std::cout << describePlan(planRun(survey, options), options)
             << describeShards(makeShardPlan(survey, shards), shards);
@@ -66,7 +64,7 @@ void submit(const SubmitArguments& arguments) {
   const YamlNode tree = loadExperimentTree(arguments.run.experiment.file, arguments.run.experiment.overrides);
   const ShardOptions shards = makeShardOptions(arguments, tree);
   const SubmitOptions options = makeSubmitOptions(arguments);
-  spdlog::set_level(spdlog::level::off);
+  silenceLog();
   const SubmittedJobs jobs = submitExperiment(tree, shards, options);
   const ShardPlan plan = readShardPlan(shards.place.folder);
   std::cerr << describeShards(plan, shards);

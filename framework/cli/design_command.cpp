@@ -1,9 +1,7 @@
-#include <spdlog/spdlog.h>
 
 #include <iostream>
 
 #include "framework/cli/commands.hpp"
-#include "framework/cli/log.hpp"
 #include "framework/cli/progress_line.hpp"
 #include "framework/cli/signals.hpp"
 #include "framework/experiment_design/excitation.hpp"
@@ -11,6 +9,7 @@
 #include "framework/experiment_design/sensor_files.hpp"
 #include "framework/experiment_design/verify_design.hpp"
 #include "framework/monitoring/interrupted.hpp"
+#include "framework/monitoring/log.hpp"
 #include "framework/spec/experiment_file.hpp"
 
 namespace twinmap::cli {

@@ -1,9 +1,9 @@
-#include <spdlog/spdlog.h>
 
 #include <iostream>
 
 #include "framework/cli/commands.hpp"
 #include "framework/measurement/signal_experiment.hpp"
+#include "framework/monitoring/log.hpp"
 #include "framework/spec/experiment_file.hpp"
 #include "framework/sweep/plan.hpp"
 
@@ -12,7 +12,7 @@ namespace twinmap::cli {
 void plan(const RunArguments& arguments) {
   const YamlNode tree = loadExperimentTree(arguments.experiment.file, arguments.experiment.overrides);
   const PlanOptions options{arguments.threads, chooseMemory(arguments)};
-  spdlog::set_level(spdlog::level::off);  // of the small runs that are timed
+  silenceLog();  // of the small runs that are timed
   const ExperimentSurvey survey = surveyCases(
       expandCasesWithSignals(tree), {chooseFolder(arguments, readExperiment(tree)), arguments.store});
   std::cout << describePlan(planRun(survey, options), options);

@@ -3,13 +3,13 @@
 #include <iostream>
 
 #include "framework/cli/commands.hpp"
-#include "framework/cli/log.hpp"
 #include "framework/cli/progress_line.hpp"
 #include "framework/cli/signals.hpp"
 #include "framework/experiment/require_model.hpp"
 #include "framework/experiment/run_experiment.hpp"
 #include "framework/measurement/signal_experiment.hpp"
 #include "framework/monitoring/interrupted.hpp"
+#include "framework/monitoring/log.hpp"
 #include "framework/results/tables.hpp"
 #include "framework/results/warnings.hpp"
 #include "framework/spec/experiment_file.hpp"

@@ -1,7 +1,6 @@
 #include "framework/cluster/run_shard.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <unordered_set>
 
@@ -9,6 +8,7 @@
 #include "framework/cluster/shard_record.hpp"
 #include "framework/experiment/run_experiment.hpp"
 #include "framework/monitoring/interrupted.hpp"
+#include "framework/monitoring/log.hpp"
 #include "framework/results/run_state.hpp"
 #include "framework/sampling/model_store.hpp"
 #include "framework/spec/experiment_file.hpp"
@@ -217,7 +217,7 @@ std::string runShard(const fs::path& folder, int shard, const std::string& comma
         "failed twice for the same reason and is not tried again before the next submit: " + refusal);
   }
   if (const std::string before = record.describeLast(); !before.empty()) {
-    spdlog::warn("shard {} is tried again; {}", shard, before);
+    logWarning(fmt::format("shard {} is tried again; {}", shard, before));
   }
   record.begin();
   std::vector<FailedCase> failures;

@@ -8,10 +8,10 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
 
+#include "framework/json/json.hpp"
 #include "framework/store/atomic_file.hpp"
 #include "framework/sweep/sweep_folder.hpp"
 
@@ -19,7 +19,6 @@ namespace twinmap {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 
 constexpr ShardKind kStages[] = {ShardKind::kSimulate, ShardKind::kCases, ShardKind::kFinish};
 constexpr const char* kKindNames[] = {"slurm", "template", "local"};
@@ -139,15 +138,15 @@ std::vector<std::string> submitByTemplate(const fs::path& script, int first, int
 }
 
 void writeJobs(const fs::path& folder, const SubmittedJobs& jobs) {
-  const json root = {{"on", kKindNames[static_cast<std::size_t>(jobs.kind)]}, {"jobs", jobs.ids}};
-  writeTextFile(getClusterFolder(folder) / "jobs.json", root.dump(1) + "\n");
+  const Json root = {{"on", kKindNames[static_cast<std::size_t>(jobs.kind)]}, {"jobs", jobs.ids}};
+  writeTextFile(getClusterFolder(folder) / "jobs.json", formatJson(root, 1) + "\n");
 }
 
 SubmittedJobs readJobs(const fs::path& folder) {
   const fs::path file = getClusterFolder(folder) / "jobs.json";
   SubmittedJobs jobs;
   if (fs::exists(file)) {
-    const json root = json::parse(readBytes(file));
+    const Json root = parseJson(readBytes(file));
     jobs.ids = root.at("jobs").get<std::vector<std::string>>();
     jobs.kind = static_cast<SchedulerKind>(
         std::find(std::begin(kKindNames), std::end(kKindNames), root.at("on").get<std::string>()) -

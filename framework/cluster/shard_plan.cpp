@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <nlohmann/json.hpp>
 
+#include "framework/json/json.hpp"
 #include "framework/measurement/signal_experiment.hpp"
 #include "framework/results/run_state.hpp"
 #include "framework/sampling/model_store.hpp"
@@ -16,7 +16,6 @@ namespace twinmap {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 
 constexpr int kMostShards = 1000;  // Slurm's MaxArraySize is 1001 where nobody has changed it
 constexpr ShardKind kKinds[] = {ShardKind::kSimulate, ShardKind::kCases, ShardKind::kFinish};
@@ -101,11 +100,11 @@ std::vector<SweepCase> expandPlannedCases(const YamlNode& root, const ShardPlan&
 }
 
 void writeShardPlan(const fs::path& folder, const ShardPlan& plan) {
-  json shards = json::array();
+  Json shards = Json::array();
   for (const Shard& shard : plan.shards) {
     shards.push_back({{"kind", getName(shard.kind)}, {"first", shard.first}, {"last", shard.last}});
   }
-  const json root = {{"store", plan.store.string()},
+  const Json root = {{"store", plan.store.string()},
                      {"computed_with", plan.computed_with},
                      {"portable", plan.portable},
                      {"train_samples", plan.train_samples},
@@ -114,7 +113,7 @@ void writeShardPlan(const fs::path& folder, const ShardPlan& plan) {
                      {"cases_s", plan.cases_s},
                      {"memory_bytes", plan.memory},
                      {"shards", shards}};
-  writeTextFile(getClusterFolder(folder) / "plan.json", root.dump(1) + "\n");
+  writeTextFile(getClusterFolder(folder) / "plan.json", formatJson(root, 1) + "\n");
 }
 
 ShardPlan readShardPlan(const fs::path& folder) {
@@ -122,7 +121,7 @@ ShardPlan readShardPlan(const fs::path& folder) {
   if (!fs::exists(file)) {
     throw ExperimentError(folder.string() + ": was not submitted: it has no cluster/plan.json");
   }
-  const json root = json::parse(readBytes(file));
+  const Json root = parseJson(readBytes(file));
   ShardPlan plan;
   plan.store = root.at("store").get<std::string>();
   plan.computed_with = root.at("computed_with");
@@ -132,7 +131,7 @@ ShardPlan readShardPlan(const fs::path& folder) {
   plan.simulate_s = root.at("simulate_s");
   plan.cases_s = root.at("cases_s");
   plan.memory = root.at("memory_bytes");
-  for (const json& shard : root.at("shards")) {
+  for (const Json& shard : root.at("shards")) {
     const auto* kind = std::find_if(std::begin(kKinds), std::end(kKinds), [&](ShardKind one) {
       return shard.at("kind").get<std::string>() == getName(one);
     });

@@ -6,16 +6,15 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <nlohmann/json.hpp>
 
 #include "framework/cluster/shard_plan.hpp"
+#include "framework/json/json.hpp"
 #include "framework/store/atomic_file.hpp"
 
 namespace twinmap {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 
 constexpr const char* kLost = "it ended without a word: killed, or its node was lost";
 constexpr std::array kStates = {ShardState::kMissing, ShardState::kRunning, ShardState::kDone,
@@ -28,8 +27,8 @@ std::string getHost() {
   return node != nullptr ? node : host.data();
 }
 
-json writeAttempt(const ShardAttempt& attempt) {
-  json failures = json::array();
+Json writeAttempt(const ShardAttempt& attempt) {
+  Json failures = Json::array();
   for (const FailedCase& failure : attempt.failures) {
     failures.push_back({{"case", failure.name}, {"reason", failure.reason}, {"command", failure.command}});
   }
@@ -39,12 +38,12 @@ json writeAttempt(const ShardAttempt& attempt) {
           {"failed_cases", failures}};
 }
 
-ShardAttempt readAttempt(const json& entry) {
+ShardAttempt readAttempt(const Json& entry) {
   ShardAttempt attempt{entry.at("host"), ShardState::kRunning, entry.at("reason"), {}};
   const std::string name = entry.at("state");
   attempt.state =
       *std::find_if(kStates.begin(), kStates.end(), [&](ShardState state) { return name == getName(state); });
-  for (const json& failure : entry.at("failed_cases")) {
+  for (const Json& failure : entry.at("failed_cases")) {
     attempt.failures.push_back({failure.at("case"), failure.at("reason"), failure.at("command")});
   }
   return attempt;
@@ -69,7 +68,7 @@ const char* getName(ShardState state) {
 ShardRecord::ShardRecord(const fs::path& folder, int shard)
     : file_(getClusterFolder(folder) / "shards" / (std::to_string(shard) + ".json")) {
   if (fs::exists(file_)) {
-    for (const json& entry : json::parse(readBytes(file_))) {
+    for (const Json& entry : parseJson(readBytes(file_))) {
       attempts_.push_back(readAttempt(entry));
     }
   }
@@ -109,12 +108,12 @@ void ShardRecord::end(ShardState state, const std::string& reason, const std::ve
 }
 
 void ShardRecord::write() const {
-  json entries = json::array();
+  Json entries = Json::array();
   for (const ShardAttempt& attempt : attempts_) {
     entries.push_back(writeAttempt(attempt));
   }
   makeFolders(file_.parent_path());
-  writeTextFile(file_, entries.dump(1) + "\n");
+  writeTextFile(file_, formatJson(entries, 1) + "\n");
 }
 
 }  // namespace twinmap

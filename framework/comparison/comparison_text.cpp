@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "framework/json/json.hpp"
 #include "framework/results/aligned_rows.hpp"
 #include "framework/results/escape.hpp"
 #include "framework/spec/yaml/number_text.hpp"
@@ -72,12 +72,12 @@ std::string toCsvCell(double value) {
   return std::isnan(value) ? "" : toText(value);
 }
 
-nlohmann::ordered_json toJson(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+Json toJson(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
-nlohmann::ordered_json toJson(const ComparedParameter& parameter) {
-  nlohmann::ordered_json figures;
+Json toJson(const ComparedParameter& parameter) {
+  Json figures;
   for (const ComparedFigure& figure : parameter.figures) {
     figures[figure.name] = {{"a", toJson(figure.a)},
                             {"b", toJson(figure.b)},
@@ -114,23 +114,23 @@ std::string makeComparisonCsv(const RunComparison& comparison) {
 }
 
 std::string makeComparisonJson(const RunComparison& comparison) {
-  nlohmann::ordered_json json;
+  Json json;
   json["a"] = {
       {"folder", comparison.folder_a}, {"test_samples", comparison.samples_a}, {"only", comparison.only_a}};
   json["b"] = {
       {"folder", comparison.folder_b}, {"test_samples", comparison.samples_b}, {"only", comparison.only_b}};
   json["paired"] = comparison.paired;
   json["difference_of_sets"] = comparison.difference_of_sets;
-  json["parameters"] = nlohmann::ordered_json::array();
+  json["parameters"] = Json::array();
   for (const ComparedParameter& parameter : comparison.parameters) {
     json["parameters"].push_back(toJson(parameter));
   }
-  json["keys"] = nlohmann::ordered_json::array();
+  json["keys"] = Json::array();
   for (const KeyDifference& key : comparison.keys) {
     json["keys"].push_back({{"key", key.key}, {"a", key.before}, {"b", key.after}});
   }
   constexpr int kIndent = 2;
-  return json.dump(kIndent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return formatJson(json, kIndent) + "\n";
 }
 
 }  // namespace twinmap

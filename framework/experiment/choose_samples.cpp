@@ -1,12 +1,12 @@
 #include "framework/experiment/choose_samples.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <chrono>
 
 #include "framework/design/experiment_points.hpp"
+#include "framework/monitoring/log.hpp"
 #include "framework/spec/parameter_box.hpp"
 #include "framework/spec/resolve_defaults.hpp"
 #include "framework/surrogate/forward_samples.hpp"
@@ -118,12 +118,13 @@ SampleChoice chooseTrainingSamples(const ChoiceContext& context, int most) {
     tryOut(context, takeTrainingSamples(context.experiment, samples), choice);
     if (!choice.training) {
       choice.samples = std::min(most, kOfProcesses);
-      spdlog::info("training samples: {}, because no surrogate can tell what more are worth", choice.samples);
+      logInfo(fmt::format("training samples: {}, because no surrogate can tell what more are worth",
+                          choice.samples));
       return choice;
     }
     const std::string reason = findReason(samples, most, getSeconds(context.experiment), *choice.training);
     if (!reason.empty()) {
-      spdlog::info("training samples: {} (automatic): {}", samples, reason);
+      logInfo(fmt::format("training samples: {} (automatic): {}", samples, reason));
       return choice;
     }
   }

@@ -1,7 +1,6 @@
 #include "framework/experiment/refine_test_samples.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <map>
 #include <stdexcept>
@@ -9,6 +8,7 @@
 #include "framework/experiment/answers.hpp"
 #include "framework/experiment/refinement_starts.hpp"
 #include "framework/monitoring/interrupted.hpp"
+#include "framework/monitoring/log.hpp"
 #include "framework/monitoring/stage_timer.hpp"
 #include "framework/refinement/refine.hpp"
 #include "framework/spec/parameter_box.hpp"
@@ -94,7 +94,7 @@ RefinedTests refineTestSamples(const RefinementContext& context) {
   try {
     tests.refined = timeStage("refine the test samples", tests.notes, [&] { return refineAll(context); });
     const std::string outcome = describe(tests.refined);
-    spdlog::info("refined: {}", outcome);
+    logInfo(fmt::format("refined: {}", outcome));
     warnOfFew(tests.refined, outcome, tests.notes);
   } catch (const std::invalid_argument& error) {
     tests.notes.warn(Gravity::kPoor, std::string("test samples cannot be refined: ") + error.what());

@@ -1,6 +1,6 @@
 #include "framework/experiment/run_experiment.hpp"
 
-#include <spdlog/spdlog.h>
+#include <fmt/format.h>
 
 #include "framework/experiment/choose_samples.hpp"
 #include "framework/experiment/compare_maps.hpp"
@@ -15,7 +15,7 @@
 #include "framework/features/selections.hpp"
 #include "framework/model_source/make_simulator.hpp"
 #include "framework/monitoring/interrupted.hpp"
-#include "framework/monitoring/run_log.hpp"
+#include "framework/monitoring/log.hpp"
 #include "framework/monitoring/stage_timer.hpp"
 #include "framework/report/report.hpp"
 #include "framework/results/result_files.hpp"
@@ -68,7 +68,7 @@ void beginFolder(const ExperimentSpec& experiment, const RunOptions& options) {
 void tellDifferences(const ExperimentSpec& experiment, Simulator& simulator) {
   if (!simulator.hasDerivatives() && listDerivativePoints(experiment).cols() > 0) {
     if (const std::string text = simulator.describeDifferences(); !text.empty()) {
-      spdlog::info("{}", text);
+      logInfo(text);
     }
   }
 }
@@ -78,7 +78,7 @@ void warnOfIneffective(const ModelSpec& model, const Simulator& simulator) {
   const std::string warning =
       model.source ? describeIneffective(findIneffective(simulator, collectSampled(model))) : "";
   if (!warning.empty()) {
-    spdlog::warn("{}", warning);
+    logWarning(warning);
   }
 }
 
@@ -238,7 +238,7 @@ RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& opt
   const std::unique_ptr<Simulator> made =
       makeSimulator(experiment.model, collectTimes(experiment.features), countModes(experiment.features));
   const Simulator& simulator = *made;
-  spdlog::info("simulated by: {}", simulator.getEngine());
+  logInfo(fmt::format("simulated by: {}", simulator.getEngine()));
   if (options.samples == nullptr) {
     warnOfIneffective(experiment.model, simulator);
     tellDifferences(experiment, *made);

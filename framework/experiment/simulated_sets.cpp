@@ -1,13 +1,13 @@
 #include "framework/experiment/simulated_sets.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <stdexcept>
 
 #include "framework/design/experiment_points.hpp"
 #include "framework/monitoring/interrupted.hpp"
+#include "framework/monitoring/log.hpp"
 #include "framework/monitoring/stage_timer.hpp"
 #include "framework/sampling/simulate_missing.hpp"
 
@@ -49,16 +49,16 @@ StoredTrajectories simulateSet(const std::string& set, const Eigen::MatrixXd& po
                                   stored.counts.reused + stored.counts.simulated, points.cols(), set));
   }
   if (const int given_up = stored.counts.given_up; given_up > 0) {
-    spdlog::warn("all of the {} {} samples simulated failed; the other {} are given up",
-                 points.cols() - given_up, set, given_up);
+    logWarning(fmt::format("all of the {} {} samples simulated failed; the other {} are given up",
+                           points.cols() - given_up, set, given_up));
   }
   if (stored.counts.implicit > 0) {
-    spdlog::warn(
+    logWarning(fmt::format(
         "{} of the {} samples reached the step limit and were simulated by an implicit method instead",
-        stored.counts.implicit, set);
+        stored.counts.implicit, set));
   }
   if (stored.counts.reused > 0) {
-    spdlog::info("{} of the {} samples had been simulated before", stored.counts.reused, set);
+    logInfo(fmt::format("{} of the {} samples had been simulated before", stored.counts.reused, set));
   }
   return stored;
 }

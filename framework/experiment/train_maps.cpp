@@ -1,11 +1,12 @@
 #include "framework/experiment/train_maps.hpp"
 
-#include <spdlog/spdlog.h>
+#include <fmt/format.h>
 
 #include <memory>
 
 #include "framework/experiment/fit_online.hpp"
 #include "framework/experiment/train_surrogate_map.hpp"
+#include "framework/monitoring/log.hpp"
 #include "framework/monitoring/stage_timer.hpp"
 #include "framework/surrogate/train_surrogate.hpp"
 
@@ -69,7 +70,7 @@ TrainedMap trainAutomatically(const MapTrainingContext& context) {
   if (obstacle.empty()) {
     return trainForward(context);
   }
-  spdlog::info("inverse map: Gaussian processes, because {}", obstacle);
+  logInfo(fmt::format("inverse map: Gaussian processes, because {}", obstacle));
   return trainProcesses(context);
 }
 

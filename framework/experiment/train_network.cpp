@@ -1,7 +1,6 @@
 #include "framework/experiment/train_network.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <limits>
@@ -10,6 +9,7 @@
 
 #include "framework/experiment/train_interruptibly.hpp"
 #include "framework/features/noise.hpp"
+#include "framework/monitoring/log.hpp"
 #include "framework/monitoring/stage_timer.hpp"
 #include "framework/network_map/train_network_map.hpp"
 #include "framework/surrogate/train_surrogate.hpp"
@@ -67,11 +67,11 @@ std::optional<SurrogateMapTraining> findTeacher(const NetworkContext& context, S
     reason = findReasonAgainst(teacher->surrogate, context);
   }
   if (!reason.empty()) {
-    spdlog::info("the network learns from the simulations: {}", reason);
+    logInfo(fmt::format("the network learns from the simulations: {}", reason));
     return std::nullopt;
   }
-  spdlog::info("the network learns from a surrogate, which promises {:.2f} of what measurements allow",
-               teacher->surrogate.validation.limit_ratio.maxCoeff());
+  logInfo(fmt::format("the network learns from a surrogate, which promises {:.2f} of what measurements allow",
+                      teacher->surrogate.validation.limit_ratio.maxCoeff()));
   return teacher;
 }
 

@@ -1,10 +1,10 @@
 #include "framework/export/json_export.hpp"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "framework/experiment/prepare_data.hpp"
+#include "framework/json/json.hpp"
 #include "kernels/online/process_view.hpp"
 
 namespace twinmap {
@@ -13,7 +13,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using Json = nlohmann::ordered_json;
 
 double requireFinite(double value) {
   if (!std::isfinite(value)) {
@@ -227,7 +226,7 @@ std::string makeMapJson(const ExportedModel& model) {
   const ForwardSurrogate* forward = model.findForward();
   json["surrogate"] = forward != nullptr ? toJson(*forward) : Json();
   json["trust"] = model.online.trust ? toJson(*model.online.trust) : Json();
-  return json.dump() + "\n";
+  return formatJson(json) + "\n";
 }
 
 }  // namespace twinmap

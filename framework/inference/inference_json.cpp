@@ -1,14 +1,12 @@
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "framework/inference/answer.hpp"
 #include "framework/inference/inference_text.hpp"
 #include "framework/inverse_map/predictions.hpp"
+#include "framework/json/json.hpp"
 
 namespace twinmap {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json makeEstimate(double mean, double stddev, const std::string& unit) {
   Json estimate;
@@ -97,10 +95,6 @@ Json toJson(const SurrogatePosterior& posterior, const std::vector<ParameterSpec
   return json;
 }
 
-std::string dump(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
 }  // namespace
 
 std::string makeInferenceJson(const InferredMeasurement& inferred,
@@ -126,11 +120,11 @@ std::string makeInferenceJson(const InferredMeasurement& inferred,
   if (inferred.posterior) {
     json["posterior"] = toJson(*inferred.posterior, parameters);
   }
-  return dump(json);
+  return formatJson(json);
 }
 
 std::string makeErrorJson(const std::string& source, double start, const std::string& error) {
-  return dump({{"source", source}, {"start", start}, {"status", "error"}, {"error", error}});
+  return formatJson({{"source", source}, {"start", start}, {"status", "error"}, {"error", error}});
 }
 
 }  // namespace twinmap

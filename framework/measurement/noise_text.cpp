@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cctype>
-#include <nlohmann/json.hpp>
 
+#include "framework/json/json.hpp"
 #include "framework/measurement/signal_noise.hpp"
 #include "framework/spec/yaml/number_text.hpp"
 
@@ -26,7 +26,7 @@ std::string makeLabel(const SignalNoise& signal) {
 std::string makeKey(const std::string& name) {
   const bool plain =
       std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
-  return plain ? name : nlohmann::json(name).dump();
+  return plain ? name : formatJson(name);
 }
 
 }  // namespace
@@ -52,23 +52,22 @@ std::string makeNoiseTable(const std::vector<SignalNoise>& signals) {
 }
 
 std::string makeNoiseJson(const std::vector<SignalNoise>& signals, const std::string& source) {
-  nlohmann::ordered_json columns = nlohmann::ordered_json::array();
+  Json columns = Json::array();
   for (const SignalNoise& signal : signals) {
-    nlohmann::ordered_json column{{"name", signal.name},
-                                  {"unit", signal.unit},
-                                  {"samples", signal.samples},
-                                  {"mean", signal.noise.mean},
-                                  {"stddev", signal.noise.stddev},
-                                  {"stddev_error", signal.noise.stddev_error},
-                                  {"autoregression", signal.noise.model.coefficients},
-                                  {"innovation_stddev", signal.noise.model.innovation_stddev},
-                                  {"whiteness", signal.noise.whiteness}};
-    column["sample_time"] =
-        signal.sample_time ? nlohmann::ordered_json(*signal.sample_time) : nlohmann::ordered_json();
+    Json column{{"name", signal.name},
+                {"unit", signal.unit},
+                {"samples", signal.samples},
+                {"mean", signal.noise.mean},
+                {"stddev", signal.noise.stddev},
+                {"stddev_error", signal.noise.stddev_error},
+                {"autoregression", signal.noise.model.coefficients},
+                {"innovation_stddev", signal.noise.model.innovation_stddev},
+                {"whiteness", signal.noise.whiteness}};
+    column["sample_time"] = signal.sample_time ? Json(*signal.sample_time) : Json();
     columns.push_back(std::move(column));
   }
   constexpr int kIndent = 2;
-  return nlohmann::ordered_json{{"source", source}, {"columns", columns}}.dump(kIndent) + "\n";
+  return formatJson({{"source", source}, {"columns", columns}}, kIndent) + "\n";
 }
 
 std::string makeNoiseYaml(const std::vector<SignalNoise>& signals) {

@@ -4,14 +4,12 @@
 
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 
+#include "framework/json/json.hpp"
 #include "framework/program/requests.hpp"
 
 namespace twinmap {
 namespace {
-
-using nlohmann::json;
 
 /// The beginning of a line, for people.
 std::string shorten(const std::string& line) {
@@ -41,10 +39,10 @@ std::string replaceNonFinite(const std::string& line) {
   return result;
 }
 
-json parse(const std::string& line) {
-  json answer = json::parse(line, nullptr, false);
+Json parse(const std::string& line) {
+  Json answer = tryParseJson(line);
   if (answer.is_discarded()) {
-    answer = json::parse(replaceNonFinite(line), nullptr, false);
+    answer = tryParseJson(replaceNonFinite(line));
   }
   if (!answer.is_object()) {
     throw ProtocolError("the program's answer is no JSON object: " + shorten(line));
@@ -53,19 +51,19 @@ json parse(const std::string& line) {
 }
 
 /// Why the values of an output cannot be taken, or "".
-std::string readOutput(const json& values, const std::string& name, const ResponseLayout& layout,
+std::string readOutput(const Json& values, const std::string& name, const ResponseLayout& layout,
                        Eigen::Ref<Eigen::VectorXd> rows) {
   const bool single = values.is_number();  // as MATLAB and Octave write a list of one
   const auto count = static_cast<Eigen::Index>(values.size());
   if (!single && !values.is_array()) {
-    return fmt::format("output '{}' is no list of numbers: {}", name, shorten(values.dump()));
+    return fmt::format("output '{}' is no list of numbers: {}", name, shorten(formatJson(values)));
   }
   if (count != rows.size()) {
     return fmt::format("output '{}' has {} value{} instead of {}, one for each time", name, count,
                        count == 1 ? "" : "s", rows.size());
   }
   for (Eigen::Index i = 0; i < count; ++i) {
-    const json& value = single ? values : values[static_cast<std::size_t>(i)];
+    const Json& value = single ? values : values[static_cast<std::size_t>(i)];
     rows[i] = value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
     if (!std::isfinite(rows[i])) {
       return fmt::format("output '{}' is not finite at t = {:g} s", name, layout.times[i]);
@@ -74,7 +72,7 @@ std::string readOutput(const json& values, const std::string& name, const Respon
   return "";
 }
 
-std::string listNames(const json& outputs) {
+std::string listNames(const Json& outputs) {
   std::string text;
   for (const auto& item : outputs.items()) {
     text += (text.empty() ? "'" : ", '") + item.key() + "'";
@@ -82,14 +80,15 @@ std::string listNames(const json& outputs) {
   return text.empty() ? "nothing" : shorten(text);
 }
 
-SampleStatus readSample(const json& answer, const std::vector<std::string>& names,
+SampleStatus readSample(const Json& answer, const std::vector<std::string>& names,
                         const ResponseLayout& layout, Eigen::Ref<Eigen::VectorXd> response) {
   if (const auto failed = answer.find("failed"); failed != answer.end()) {
-    return {false, failed->is_string() ? failed->get<std::string>() : failed->dump()};
+    return {false, failed->is_string() ? failed->get<std::string>() : formatJson(*failed)};
   }
   const auto outputs = answer.find("outputs");
   if (outputs == answer.end() || !outputs->is_object()) {
-    throw ProtocolError("the program's answer has neither 'outputs' nor 'failed': " + shorten(answer.dump()));
+    throw ProtocolError("the program's answer has neither 'outputs' nor 'failed': " +
+                        shorten(formatJson(answer)));
   }
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto values = outputs->find(names[i]);
@@ -112,7 +111,7 @@ std::string writeHelloAnswer() {
 }
 
 void checkHello(const std::string& line) {
-  const json answer = parse(line);
+  const Json answer = parse(line);
   const auto version = answer.find("twinmap");
   if (version == answer.end() || *version != kProtocolVersion) {
     throw ProtocolError(
@@ -127,7 +126,7 @@ SampleStatus readAnswer(const std::string& line, const std::vector<std::string>&
 
 void readAnswers(const std::string& line, const std::vector<std::string>& names, const ResponseLayout& layout,
                  Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
-  const json answer = parse(line);
+  const Json answer = parse(line);
   const auto samples = answer.find("samples");
   if (samples == answer.end() || !samples->is_array() ||
       static_cast<Eigen::Index>(samples->size()) != responses.cols()) {

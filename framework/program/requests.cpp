@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
+#include "framework/json/json.hpp"
 #include "framework/spec/parameter_box.hpp"
 
 namespace twinmap {
@@ -15,7 +14,7 @@ std::string getVariable(const Named& item) {
 }
 
 std::string quote(const std::string& text) {
-  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return formatJson(text);
 }
 
 std::string join(const std::vector<std::string>& items) {

@@ -1,12 +1,12 @@
 #include <pybind11/functional.h>
 #include <pybind11/stl.h>
-#include <spdlog/spdlog.h>
 
 #include <mutex>
 
 #include "framework/experiment/require_model.hpp"
 #include "framework/experiment/run_experiment.hpp"
 #include "framework/monitoring/interrupted.hpp"
+#include "framework/monitoring/log.hpp"
 #include "framework/python/bindings.hpp"
 #include "framework/python/interruptible.hpp"
 #include "framework/python/python_experiment.hpp"
@@ -65,9 +65,9 @@ class Turn {
   }
 };
 
-/// The log goes to run.log alone.
-void silenceLog() {
-  static const bool done = (spdlog::set_default_logger(std::make_shared<spdlog::logger>("twinmap")), true);
+/// The log goes to run.log alone. Once, as a run of another thread may be logging.
+void setUpLog() {
+  static const bool done = (logToRunsOnly(), true);
   static_cast<void>(done);
 }
 
@@ -83,7 +83,7 @@ void runWithProgress(int threads, const std::function<void(const Progress&)>& pr
   runInterruptibly(
       [&] {
         const Turn turn(stop);
-        silenceLog();
+        setUpLog();
         work(control);
       },
       stop,

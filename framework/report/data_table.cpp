@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "framework/json/json.hpp"
 #include "framework/results/escape.hpp"
 #include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
 namespace {
 
-nlohmann::ordered_json roundNumber(double value) {
+Json roundNumber(double value) {
   constexpr int kDigits = 7;
   double rounded = 0.0;
   if (!parseLiteral(toShortText(value, kDigits), rounded)) {
@@ -24,8 +24,8 @@ nlohmann::ordered_json roundNumber(double value) {
   return rounded;
 }
 
-nlohmann::ordered_json toJsonArray(const DataTable::Column& column) {
-  auto array = nlohmann::ordered_json::array();
+Json toJsonArray(const DataTable::Column& column) {
+  auto array = Json::array();
   if (const auto* numbers = std::get_if<std::vector<double>>(&column)) {
     for (const double value : *numbers) {
       array.push_back(roundNumber(value));
@@ -66,8 +66,8 @@ bool DataTable::hasColumn(const std::string& name) const {
                      [&](const auto& column) { return column.first == name; });
 }
 
-nlohmann::ordered_json DataTable::toJson() const {
-  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+Json DataTable::toJson() const {
+  Json json = Json::object();
   for (const auto& [name, column] : columns_) {
     json[name] = toJsonArray(column);
   }

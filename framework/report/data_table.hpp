@@ -1,10 +1,11 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
+
+#include "framework/json/json_fwd.hpp"
 
 namespace twinmap {
 
@@ -20,7 +21,7 @@ class DataTable {
   std::size_t countRows() const { return row_count_; }
 
   /// {"column": [..], ..} with numbers rounded to 7 digits, more than a figure shows; NaN as null.
-  nlohmann::ordered_json toJson() const;
+  Json toJson() const;
   /// With all digits.
   std::string toCsv() const;
 

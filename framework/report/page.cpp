@@ -1,7 +1,6 @@
 #include <fmt/core.h>
 
-#include <nlohmann/json.hpp>
-
+#include "framework/json/json.hpp"
 #include "framework/report/assets.hpp"
 #include "framework/report/figure.hpp"
 #include "framework/report/html.hpp"
@@ -10,11 +9,9 @@
 namespace twinmap {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 /// JSON for a script element: "<" is written so that no text can end the element or open a comment.
 std::string dumpForScript(const Json& json) {
-  const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string text = formatJson(json);
   std::string safe;
   safe.reserve(text.size());
   for (const char c : text) {

@@ -1,14 +1,12 @@
 #include "framework/report/skeleton.hpp"
 
 #include <cassert>
-#include <nlohmann/json.hpp>
 
+#include "framework/json/json.hpp"
 #include "framework/report/assets.hpp"
 
 namespace twinmap {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// By JSON pointer, the slot there.
 using Slots = std::map<std::string, std::string>;
@@ -125,7 +123,7 @@ class Filler {
 };
 
 const Json& getSkeleton(const std::string& name) {
-  static const Json skeletons = Json::parse(getFigureSkeletons());
+  static const Json skeletons = parseJson(getFigureSkeletons());
   assert(skeletons.contains(name));
   return skeletons.at(name);
 }

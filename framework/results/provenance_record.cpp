@@ -1,16 +1,14 @@
 #include "framework/results/provenance_record.hpp"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "framework/json/json.hpp"
 #include "framework/spec/yaml/number_text.hpp"
 #include "framework/store/csv_file.hpp"
 
 namespace twinmap {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json parse(const std::filesystem::path& path) {
   const std::string text = readTextFile(path);
@@ -18,7 +16,7 @@ Json parse(const std::filesystem::path& path) {
     return nullptr;
   }
   try {
-    return Json::parse(text);
+    return parseJson(text);
   } catch (const Json::parse_error& error) {
     throw std::runtime_error(path.string() + ": " + error.what());
   }
@@ -29,7 +27,8 @@ void appendEntries(const Json& record, const std::string& prefix, ProvenanceReco
     if (value.is_object()) {
       appendEntries(value, prefix + key + ": ", entries);
     } else if (!value.is_array()) {
-      entries.entries.emplace_back(prefix + key, value.is_string() ? value.get<std::string>() : value.dump());
+      entries.entries.emplace_back(prefix + key,
+                                   value.is_string() ? value.get<std::string>() : formatJson(value));
     }
   }
 }

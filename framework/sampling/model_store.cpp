@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 #include <gnu/libc-version.h>
-#include <spdlog/spdlog.h>
 
+#include "framework/monitoring/log.hpp"
 #include "framework/sampling/trajectory_content.hpp"
 #include "framework/simulation/solver_revision.hpp"
 #include "framework/spec/parameter_box.hpp"
@@ -43,10 +43,10 @@ void tellOtherBuilds(const TrajectoryStore& store, const std::string& content) {
     const std::string other = readBytes(file);
     if (other != content && takeModel(other) == takeModel(content) &&
         other.find("neighbourhoods:\n") == std::string::npos) {
-      spdlog::warn(
+      logWarning(fmt::format(
           "{}: has samples of the same model that another build or machine computed; they are not mixed "
           "with this one's, so that samples are simulated again",
-          entry.path().string());
+          entry.path().string()));
     }
   }
 }
@@ -81,8 +81,8 @@ std::unique_ptr<TrajectoryStore> openStore(const ModelSpec& model, const Respons
 void logSetAside(const TrajectoryStore& store, std::size_t known) {
   const std::vector<SetAsideChunk>& chunks = store.getSetAside();
   for (std::size_t i = known; i < chunks.size(); ++i) {
-    spdlog::warn("{}: set aside: {}; its samples are simulated again", chunks[i].file.string(),
-                 chunks[i].reason);
+    logWarning(fmt::format("{}: set aside: {}; its samples are simulated again", chunks[i].file.string(),
+                           chunks[i].reason));
   }
 }
 

@@ -153,6 +153,14 @@ struct SignalSpec {
   std::vector<MultisineSpec> multisines;
   std::vector<TableSpec> tables;
   std::optional<Name> variable{};  ///< an input of a model from elsewhere; default: the name
+
+  // compiled once (experiment_spec.cpp)
+  SignalSpec();
+  SignalSpec(const SignalSpec&);
+  SignalSpec(SignalSpec&&) noexcept;
+  SignalSpec& operator=(const SignalSpec&);
+  SignalSpec& operator=(SignalSpec&&) noexcept;
+  ~SignalSpec();
 };
 
 template <class Fields>

@@ -56,6 +56,14 @@ struct ExperimentSpec {
   std::vector<GateSpec> gates;
   MeasurementSpec measurement;  ///< for inferring from files; no simulation depends on it
   ReportSpec report;
+
+  // compiled once (experiment_spec.cpp)
+  ExperimentSpec();
+  ExperimentSpec(const ExperimentSpec&);
+  ExperimentSpec(ExperimentSpec&&) noexcept;
+  ExperimentSpec& operator=(const ExperimentSpec&);
+  ExperimentSpec& operator=(ExperimentSpec&&) noexcept;
+  ~ExperimentSpec();
 };
 
 template <class Fields>

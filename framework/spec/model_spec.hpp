@@ -24,6 +24,14 @@ struct ModelSpec {
   InitialSpec initial;
   std::vector<OutputSpec> outputs;
   SimulationSpec simulation;
+
+  // compiled once (experiment_spec.cpp)
+  ModelSpec();
+  ModelSpec(const ModelSpec&);
+  ModelSpec(ModelSpec&&) noexcept;
+  ModelSpec& operator=(const ModelSpec&);
+  ModelSpec& operator=(ModelSpec&&) noexcept;
+  ~ModelSpec();
 };
 
 }  // namespace twinmap

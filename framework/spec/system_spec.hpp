@@ -18,6 +18,14 @@ struct SystemSpec {
   std::vector<AppliedForceSpec> applied_forces;
   std::vector<AppliedMomentSpec> applied_moments;
   std::vector<ForceLawSpec> force_laws;
+
+  // compiled once (experiment_spec.cpp)
+  SystemSpec();
+  SystemSpec(const SystemSpec&);
+  SystemSpec(SystemSpec&&) noexcept;
+  SystemSpec& operator=(const SystemSpec&);
+  SystemSpec& operator=(SystemSpec&&) noexcept;
+  ~SystemSpec();
 };
 
 inline bool isGiven(const SystemSpec& system) {

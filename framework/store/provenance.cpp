@@ -7,10 +7,10 @@
 #include <chrono>
 #include <ctime>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <thread>
 #include <twinmap/build_info.hpp>
 
+#include "framework/json/json.hpp"
 #include "framework/store/digest.hpp"
 
 namespace twinmap {
@@ -64,8 +64,7 @@ std::vector<std::pair<std::string, std::string>> calcDigests(const std::filesyst
 }
 
 std::string findChangedFile(const std::string& provenance_json, const std::filesystem::path& folder) {
-  const nlohmann::json digests =
-      nlohmann::json::parse(provenance_json).value("digests", nlohmann::json::object());
+  const Json digests = parseJson(provenance_json).value("digests", Json::object());
   for (const auto& [name, digest] : digests.items()) {
     if (!std::filesystem::exists(folder / name)) {
       return name + " is missing";
@@ -78,24 +77,24 @@ std::string findChangedFile(const std::string& provenance_json, const std::files
 }
 
 std::vector<std::string> listBuildDifferences(const std::string& provenance_json) {
-  const nlohmann::json then = nlohmann::json::parse(provenance_json).flatten();
-  const nlohmann::json now = nlohmann::json::parse(makeProvenanceJson({})).flatten();
+  const Json then = parseJson(provenance_json).flatten();
+  const Json now = parseJson(makeProvenanceJson({})).flatten();
   std::vector<std::string> differences;
   for (const auto& [pointer, value] : now.items()) {
     const bool of_build = pointer == "/version" || pointer == "/machine/cpu" ||
                           pointer.rfind("/build/", 0) == 0 || pointer.rfind("/libraries/", 0) == 0;
-    const nlohmann::json before = then.value(pointer, nlohmann::json("unknown"));
+    const Json before = then.value(pointer, Json("unknown"));
     if (of_build && before != value) {
       std::string name = pointer.substr(1);
       std::replace(name.begin(), name.end(), '/', '.');
-      differences.push_back(name + ": " + before.dump() + " then, " + value.dump() + " now");
+      differences.push_back(name + ": " + formatJson(before) + " then, " + formatJson(value) + " now");
     }
   }
   return differences;
 }
 
 std::string makeProvenanceJson(const Provenance& provenance) {
-  nlohmann::ordered_json json;
+  Json json;
   json["date"] = makeDate();
   json["command"] = provenance.command;
   json["version"] = kVersion;
@@ -123,7 +122,7 @@ std::string makeProvenanceJson(const Provenance& provenance) {
                      {"cores", std::thread::hardware_concurrency()},
                      {"system", readOperatingSystem()}};
   constexpr int kIndent = 2;
-  return json.dump(kIndent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return formatJson(json, kIndent) + "\n";
 }
 
 }  // namespace twinmap

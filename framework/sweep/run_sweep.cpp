@@ -1,6 +1,6 @@
 #include "framework/sweep/run_sweep.hpp"
 
-#include <spdlog/spdlog.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
@@ -10,8 +10,8 @@
 #include "framework/experiment/run_experiment.hpp"
 #include "framework/measurement/signal_experiment.hpp"
 #include "framework/model_source/make_simulator.hpp"
+#include "framework/monitoring/log.hpp"
 #include "framework/monitoring/log_context.hpp"
-#include "framework/monitoring/run_log.hpp"
 #include "framework/report/report.hpp"
 #include "framework/results/run_state.hpp"
 #include "framework/sampling/neighbourhoods.hpp"
@@ -66,7 +66,7 @@ class Sweep {
         neighbourhoods_of_case_(cases_.size(), nullptr) {
     result_.cases = static_cast<int>(cases_.size());
     result_.skipped = static_cast<int>(std::count(complete_.begin(), complete_.end(), true));
-    spdlog::info("{} cases, {} of them complete", result_.cases, result_.skipped);
+    logInfo(fmt::format("{} cases, {} of them complete", result_.cases, result_.skipped));
   }
 
   /// The samples, then, of models without derivatives, the neighbourhoods of those that did not fail. False
@@ -175,8 +175,8 @@ class Sweep {
     const SimulationProgress done =
         simulateShared(groups, {kShare * options_.memory, stage.name, stage.simulations}, control_);
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-    spdlog::info("{} of {} missing {} simulated in {:.2f} s, {} of them failed", done.simulated, done.total,
-                 what, elapsed.count(), done.failed);
+    logInfo(fmt::format("{} of {} missing {} simulated in {:.2f} s, {} of them failed", done.simulated,
+                        done.total, what, elapsed.count(), done.failed));
     return done.simulated + done.given_up == done.total;
   }
 
@@ -203,14 +203,14 @@ class Sweep {
     finished_work_ += costs_[index].flops;
     if (outcome.status == CaseStatus::kDone) {
       complete_[todo_[index]] = true;
-      spdlog::info("case {} is complete", one.name);
+      logInfo(fmt::format("case {} is complete", one.name));
     } else {
       const fs::path folder = getCaseFolder(options_.folder, one);
       result_.failures.push_back({one.name, outcome.reason, makeCaseCommand(folder, store_)});
       if (todo_.size() == static_cast<std::size_t>(result_.cases - result_.skipped)) {  // else it is a part
         writeFailedCases(options_.folder, result_.failures);
       }
-      spdlog::error("case {} failed: {}", one.name, outcome.reason);
+      logError(fmt::format("case {} failed: {}", one.name, outcome.reason));
     }
     if (control_.progress) {
       control_.progress({"cases", finished_, static_cast<int>(todo_.size()),
@@ -251,7 +251,7 @@ SweepResult runSweep(const YamlNode& root, const SweepOptions& options, const Ru
   const FolderLock lock(options.folder);
   beginSweep(root, options);
   const RunLog log(options.folder);
-  spdlog::info("{}", options.command);
+  logInfo(options.command);
 
   limitAutomaticSamples(cases);
   Sweep sweep(listSweptKeys(root), std::move(cases), {}, options, control);

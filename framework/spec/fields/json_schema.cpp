@@ -1,16 +1,14 @@
 #include "framework/spec/fields/json_schema.hpp"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "framework/json/json.hpp"
 #include "framework/spec/experiment_spec.hpp"
 #include "framework/spec/fields/one_of.hpp"
 #include "framework/spec/sweep/sweep_spec.hpp"
 
 namespace twinmap {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // One overload for each type of value, like readValue.
 Json makeSchema(const double&) {
@@ -250,7 +248,7 @@ std::string makeJsonSchema() {
   schema["properties"]["sweep"] = makeStructSchema<SweepSpec>();
   schema["properties"]["sweep"]["description"] = "repeats the experiment with other values";
   constexpr int kIndent = 2;
-  return schema.dump(kIndent) + "\n";
+  return formatJson(schema, kIndent) + "\n";
 }
 
 }  // namespace twinmap

@@ -4,6 +4,13 @@
 
 namespace twinmap {
 
+YamlNode::YamlNode() = default;
+YamlNode::YamlNode(const YamlNode&) = default;
+YamlNode::YamlNode(YamlNode&&) noexcept = default;
+YamlNode& YamlNode::operator=(const YamlNode&) = default;
+YamlNode& YamlNode::operator=(YamlNode&&) noexcept = default;
+YamlNode::~YamlNode() = default;
+
 const YamlNode* YamlNode::find(const std::string& key) const {
   const auto found =
       std::find_if(entries.begin(), entries.end(), [&](const YamlEntry& entry) { return entry.key == key; });

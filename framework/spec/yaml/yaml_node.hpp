@@ -20,6 +20,13 @@ struct YamlNode {
   std::vector<YamlEntry> entries;  ///< kMap, unique keys
   SourceLocation where;
 
+  YamlNode();
+  YamlNode(const YamlNode&);
+  YamlNode(YamlNode&&) noexcept;
+  YamlNode& operator=(const YamlNode&);
+  YamlNode& operator=(YamlNode&&) noexcept;
+  ~YamlNode();
+
   const YamlNode* find(const std::string& key) const;
   YamlNode* find(const std::string& key);
 };
