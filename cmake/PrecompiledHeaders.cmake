@@ -4,7 +4,7 @@
 set(TWINMAP_COMMON_HEADERS
   <kernels/linalg/eigen_products.hpp> <Eigen/Core> <Eigen/SparseCore> <algorithm> <array> <atomic> <chrono> <cmath> <cstdint> <cstring> <filesystem> <functional> <limits> <map>
   <memory> <mutex> <numeric> <optional> <set> <sstream> <stdexcept> <string> <string_view> <unordered_map> <utility>
-  <variant> <vector> <fmt/format.h>)
+  <variant> <vector> <fmt/core.h>)
 
 # twinmap_precompile(<name> [HEADERS <headers...>] [LIBRARIES <targets...>] [OPTIONS <options...>]): the common headers and
 # more of libraries, compiled with options, for targets that ask for both by twinmap_use_precompiled(<target> <name>).

@@ -48,9 +48,8 @@ twinmap_result twinmap_get_interval(const twinmap_inferrer* inferrer, double* lo
                                     size_t count) {
   return guard([&] {
     const twinmap_inferrer::Answered& answered = getAnswered(inferrer);
-    const VectorXd half = twinmap::kNormal95 * answered.stddev;
-    copy(answered.mean - half, lower, count, "lower");
-    copy(answered.mean + half, upper, count, "upper");
+    copy(answered.lower95, lower, count, "lower");
+    copy(answered.upper95, upper, count, "upper");
   });
 }
 

@@ -23,7 +23,7 @@ struct twinmap_inferrer {
   /// An inference, or what the last one left.
   struct Answered {
     twinmap::InferredMeasurement measurement;
-    Eigen::VectorXd mean, stddev;
+    Eigen::VectorXd mean, stddev, lower95, upper95;
     bool refined = false;
     std::vector<std::string> statuses;
   };

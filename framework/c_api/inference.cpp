@@ -46,6 +46,8 @@ twinmap_result answer(twinmap_inferrer* inferrer, const Infer& infer) {
     twinmap::Answer chosen = twinmap::chooseAnswer(answered.measurement);
     answered.mean = std::move(chosen.mean);
     answered.stddev = std::move(chosen.stddev);
+    answered.lower95 = std::move(chosen.lower95);
+    answered.upper95 = std::move(chosen.upper95);
     answered.refined = chosen.refined;
     answered.statuses = twinmap::listStatuses(answered.measurement);
     self.answered = std::move(answered);

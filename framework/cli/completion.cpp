@@ -1,6 +1,6 @@
 #include "framework/cli/completion.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <stdexcept>

@@ -1,6 +1,6 @@
 #include "framework/cli/progress_line.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <unistd.h>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "framework/cluster/run_shard.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <unordered_set>
 

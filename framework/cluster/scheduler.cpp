@@ -1,6 +1,6 @@
 #include "framework/cluster/scheduler.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include "framework/cluster/shard_record.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <unistd.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "framework/cluster/submission.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <map>
 #include <stdexcept>

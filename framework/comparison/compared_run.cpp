@@ -11,6 +11,8 @@ ComparedRun readComparedRun(const std::filesystem::path& folder) {
   const std::string resolved = (folder / "resolved.yaml").string();
   ComparedRun run{folder.string(), loadYaml(resolved), loadExperiment(resolved).model.parameters, {}};
   run.test = readPredictionsFile(folder / "predictions.csv", collectNames(run.parameters));
+  run.test.predictions.mixtures =
+      readComponentsFile(folder / "components.csv", collectNames(run.parameters), run.test.samples);
   return run;
 }
 

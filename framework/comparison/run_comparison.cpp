@@ -100,7 +100,8 @@ SampleTerms calcTerms(const ComparedRun& run, Index p) {
   const ArrayXd unknown = ArrayXd::Constant(test.truth.cols(), std::nan(""));
   return calcSampleTerms(run.parameters[static_cast<std::size_t>(p)],
                          {test.truth.row(p), test.predictions.mean.row(p), test.predictions.stddev.row(p),
-                          test.limit_stddev.rows() == 0 ? unknown : test.limit_stddev.row(p).array()});
+                          test.limit_stddev.rows() == 0 ? unknown : test.limit_stddev.row(p).array(),
+                          takeMarginals(test.predictions.mixtures, p)});
 }
 
 VectorXd calcFigures(const SampleTerms& of) {

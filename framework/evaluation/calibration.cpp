@@ -21,6 +21,11 @@ double calcStandardCrps(double z) {
 
 }  // namespace
 
+double calcNormalQuantile(double probability) {
+  constexpr double kSmallest = 1e-16;
+  return boost::math::quantile(boost::math::normal(), std::clamp(probability, kSmallest, 1.0 - kSmallest));
+}
+
 double calcTwoSidedQuantile(double probability) {
   return boost::math::quantile(boost::math::normal(), 0.5 * (1.0 + probability));
 }
@@ -30,6 +35,11 @@ Eigen::ArrayXd calcCrps(const Eigen::ArrayXd& z, const Eigen::ArrayXd& stddev) {
 }
 
 Eigen::MatrixXd calcPit(const Eigen::MatrixXd& truth, const Predictions& predictions) {
+  if (!predictions.mixtures.empty()) {
+    return Eigen::MatrixXd::NullaryExpr(truth.rows(), truth.cols(), [&](Eigen::Index p, Eigen::Index i) {
+      return takeMarginal(predictions.mixtures[static_cast<std::size_t>(i)], p).calcProbability(truth(p, i));
+    });
+  }
   const Eigen::ArrayXXd z = (truth - predictions.mean).array() / predictions.stddev.array();
   return z.unaryExpr(&calcNormalProbability);
 }

@@ -7,6 +7,9 @@
 
 namespace twinmap {
 
+/// The value that a standard normal number is below with this probability, at least 1e-16 from 0 and 1.
+double calcNormalQuantile(double probability);
+
 /// Two-sided normal quantile: P(|z| < quantile) = probability, in (0, 1).
 double calcTwoSidedQuantile(double probability);
 
@@ -16,8 +19,8 @@ double calcTwoSidedQuantile(double probability);
 /// Where s goes to 0 it is the absolute error.
 Eigen::ArrayXd calcCrps(const Eigen::ArrayXd& z, const Eigen::ArrayXd& stddev);
 
-/// Probability integral transform Phi((true - mean) / stddev) of each parameter and sample (p x n): uniform
-/// on [0, 1] where the predictive distributions are honest.
+/// Probability integral transform Phi((true - mean) / stddev), or that of the mixture, of each parameter and
+/// sample (p x n): uniform on [0, 1] where the predictive distributions are honest.
 Eigen::MatrixXd calcPit(const Eigen::MatrixXd& truth, const Predictions& predictions);
 
 constexpr int kPitBins = 10;

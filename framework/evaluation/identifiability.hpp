@@ -21,10 +21,10 @@ struct Identifiability {
   bool isUndetermined(Eigen::Index parameter) const { return remaining[parameter] > 0.5; }
 };
 
-/// The reason why a parameter is undetermined is that no feature follows it, or that others do the same to the features:
-/// then those are named whose errors go with its own (correlation above 0.5 in the mean of the limit's
-/// covariances; the mean information itself may look well conditioned although every sample's is singular,
-/// each in another direction).
+/// The reason why a parameter is undetermined is that no feature follows it, or that others do the same to
+/// the features: then those are named whose errors go with its own (correlation above 0.5 in the mean of the
+/// limit's covariances; the mean information itself may look well conditioned although every sample's is
+/// singular, each in another direction).
 Identifiability calcIdentifiability(const InformationLimit& limit,
                                     const std::vector<ParameterSpec>& parameters);
 

@@ -5,7 +5,9 @@
 #include <cassert>
 #include <cmath>
 
+#include "framework/design/random.hpp"
 #include "framework/evaluation/jackknife.hpp"
+#include "framework/inverse_map/draws.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -33,9 +35,38 @@ Distances calcDistances(const Eigen::MatrixXd& z, const std::vector<Eigen::Matri
   return distances;
 }
 
+/// The share of a mixture's draws whose density is above that of a point.
+double calcCredibility(const Mixture& mixture, const MixtureDensity& mixed, double log_density,
+                       const RandomStream& random) {
+  constexpr int kDraws = 400;  // to 1 % at 95 %, which many samples average
+  const Eigen::MatrixXd draws = drawFrom(mixture, kDraws, random);
+  int above = 0;
+  for (const auto& draw : draws.colwise()) {
+    above += mixed.calcLog(draw) > log_density ? 1 : 0;
+  }
+  return static_cast<double>(above) / kDraws;
+}
+
+Eigen::MatrixXd calcMixtureTerms(const Eigen::MatrixXd& truth, const std::vector<Mixture>& mixtures) {
+  Eigen::MatrixXd terms(kJointColumns.size(), truth.cols());
+  for (Eigen::Index i = 0; i < truth.cols(); ++i) {
+    const Mixture& mixture = mixtures[static_cast<std::size_t>(i)];
+    const RandomStream random(static_cast<std::uint64_t>(i), RandomPurpose::kJointCoverage);
+    const MixtureDensity mixed(mixture);
+    const double log_density = mixed.calcLog(truth.col(i));
+    const double credibility = calcCredibility(mixture, mixed, log_density, random);
+    const auto holds = [&](double probability) { return credibility < probability ? 1.0 : 0.0; };
+    terms.col(i) << holds(0.95), holds(0.90), holds(0.50), -log_density;
+  }
+  return terms;
+}
+
 /// Rows as in kJointColumns.
 Eigen::MatrixXd calcTerms(const Eigen::MatrixXd& truth, const Predictions& predictions,
                           const std::vector<Eigen::MatrixXd>& correlations) {
+  if (!predictions.mixtures.empty()) {
+    return calcMixtureTerms(truth, predictions.mixtures);
+  }
   const Distances distances =
       calcDistances((predictions.mean - truth).cwiseQuotient(predictions.stddev), correlations);
   const auto parameters = static_cast<double>(truth.rows());

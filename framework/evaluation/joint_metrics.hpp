@@ -9,7 +9,8 @@
 namespace twinmap {
 
 /// How honest the predictions are for all parameters of a sample together: the joint predictive distribution
-/// is normal with covariance D R D, D = diag(stddev) and R the correlation of the errors.
+/// is normal with covariance D R D, D = diag(stddev) and R the correlation of the errors; or a mixture, of
+/// which the smallest highest-density set is found by draws.
 struct JointFigures {
   double coverage95 = 0.0;  ///< fraction of samples whose squared Mahalanobis distance is below the 95 %
   double coverage90 = 0.0;  ///< quantile of chi-square with p degrees of freedom

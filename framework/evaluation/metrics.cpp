@@ -41,7 +41,8 @@ std::vector<ParameterMetrics> calcMetrics(const std::vector<ParameterSpec>& para
     const auto row = static_cast<Index>(p);
     metrics.push_back(calcMetrics(parameters[p],
                                   {truth.row(row), predictions.mean.row(row), predictions.stddev.row(row),
-                                   limit_stddev.size() == 0 ? unknown : limit_stddev.row(row).array()},
+                                   limit_stddev.size() == 0 ? unknown : limit_stddev.row(row).array(),
+                                   takeMarginals(predictions.mixtures, row)},
                                   draws));
   }
   return metrics;

@@ -11,7 +11,9 @@
 namespace twinmap {
 
 /// How well one parameter is inferred over a set of samples. Relative errors are e = (inferred - true) /
-/// true, or relative to upper - lower where the parameter says so; z = (inferred - true) / stddev.
+/// true, or relative to upper - lower where the parameter says so; z = (inferred - true) / stddev. Where the
+/// predictions are mixtures, coverage is of their smallest highest-density sets, and z the normal quantile of
+/// the probability above the truth.
 struct ParameterFigures {
   double bias_pct = 0.0;    ///< 100 mean(e)
   double sd_pct = 0.0;      ///< 100 sd(e), with 1/(n-1)

@@ -29,8 +29,36 @@ enum Term : Index {
   kTerms
 };
 
-ArrayXd calcWithin(const ArrayXd& z, double probability) {
-  return (z.abs() < calcTwoSidedQuantile(probability)).cast<double>();
+ArrayXd calcWithin(const ArrayXd& depth, double probability) {
+  return (depth < calcTwoSidedQuantile(probability)).cast<double>();
+}
+
+/// How the truths lie in what is said of them.
+struct Scores {
+  ArrayXd z;
+  ArrayXd depth;     ///< the two-sided normal quantile of the smallest interval that holds the truth
+  ArrayXd surprise;  ///< negative logarithmic density
+  ArrayXd crps;
+};
+
+Scores scoreNormal(const ParameterSamples& samples) {
+  const double log_root_two_pi = 0.5 * std::log(boost::math::constants::two_pi<double>());
+  const ArrayXd z = (samples.mean - samples.truth) / samples.stddev;
+  return {z, z.abs(), 0.5 * z.square() + samples.stddev.log() + log_root_two_pi, calcCrps(z, samples.stddev)};
+}
+
+Scores scoreMixtures(const ParameterSamples& samples) {
+  const Index n = samples.truth.size();
+  Scores scores{ArrayXd(n), ArrayXd(n), ArrayXd(n), ArrayXd(n)};
+  for (Index i = 0; i < n; ++i) {
+    const MarginalMixture& marginal = samples.mixtures[static_cast<std::size_t>(i)];
+    const double truth = samples.truth[i];
+    scores.z[i] = -calcNormalQuantile(marginal.calcProbability(truth));
+    scores.depth[i] = calcDepth(marginal, truth);
+    scores.surprise[i] = -std::log(marginal.calcDensity(truth));
+    scores.crps[i] = calcCrps(marginal, truth);
+  }
+  return scores;
 }
 
 ArrayXd calcScale(const ParameterSpec& parameter, const ArrayXd& truth) {
@@ -75,23 +103,22 @@ VectorXd toVector(const ParameterFigures& figures) {
 }  // namespace
 
 SampleTerms calcSampleTerms(const ParameterSpec& parameter, const ParameterSamples& samples) {
-  const double log_root_two_pi = 0.5 * std::log(boost::math::constants::two_pi<double>());
   const ArrayXd scale = calcScale(parameter, samples.truth);
   const ArrayXd error = (samples.mean - samples.truth) / scale;
-  const ArrayXd z = (samples.mean - samples.truth) / samples.stddev;
-  SampleTerms result{Eigen::MatrixXd(kTerms, error.size()), error.mean(), z.mean()};
+  const Scores scores = samples.mixtures.empty() ? scoreNormal(samples) : scoreMixtures(samples);
+  SampleTerms result{Eigen::MatrixXd(kTerms, error.size()), error.mean(), scores.z.mean()};
   auto terms = result.terms.array();
   terms.row(kError) = (error - result.error_offset).transpose();
   terms.row(kSquaredError) = terms.row(kError).square();
   terms.row(kAbsoluteError) = error.abs().transpose();
-  terms.row(kWithin95) = calcWithin(z, 0.95).transpose();
-  terms.row(kWithin90) = calcWithin(z, 0.90).transpose();
-  terms.row(kWithin50) = calcWithin(z, 0.50).transpose();
+  terms.row(kWithin95) = calcWithin(scores.depth, 0.95).transpose();
+  terms.row(kWithin90) = calcWithin(scores.depth, 0.90).transpose();
+  terms.row(kWithin50) = calcWithin(scores.depth, 0.50).transpose();
   terms.row(kClaimedVariance) = (samples.stddev / scale).square().transpose();
-  terms.row(kZ) = (z - result.z_offset).transpose();
+  terms.row(kZ) = (scores.z - result.z_offset).transpose();
   terms.row(kSquaredZ) = terms.row(kZ).square();
-  terms.row(kSurprise) = (0.5 * z.square() + samples.stddev.log() + log_root_two_pi).transpose();
-  terms.row(kCrps) = (calcCrps(z, samples.stddev) / scale.abs()).transpose();
+  terms.row(kSurprise) = scores.surprise.transpose();
+  terms.row(kCrps) = (scores.crps / scale.abs()).transpose();
   terms.row(kSquaredLimit) = (samples.limit_stddev / scale).square().transpose();
   return result;
 }

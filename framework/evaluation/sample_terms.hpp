@@ -9,7 +9,8 @@ namespace twinmap {
 /// Test samples of one parameter, in its unit.
 struct ParameterSamples {
   Eigen::ArrayXd truth, mean, stddev;
-  Eigen::ArrayXd limit_stddev;  ///< NaN where the limit is not known
+  Eigen::ArrayXd limit_stddev;              ///< NaN where the limit is not known
+  std::vector<MarginalMixture> mixtures{};  ///< where the distributions are no normal ones; else empty
 };
 
 /// What each sample adds to the figures, which depend on the samples through the means of these terms alone.
@@ -20,6 +21,8 @@ struct SampleTerms {
   double z_offset = 0.0;
 };
 
+/// Of mixtures, z is the normal quantile of the probability integral transform, and intervals are the
+/// smallest highest-density sets.
 SampleTerms calcSampleTerms(const ParameterSpec& parameter, const ParameterSamples& samples);
 
 /// The figures of kFigureColumns, in their order, of a set with the given means of the terms (k) and number

@@ -9,6 +9,7 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
 int calcMedianSimulations(const std::vector<Refined>& refined) {
   std::vector<int> simulations;
@@ -48,10 +49,15 @@ Answers makeAnswers(const Predictions& map, const MatrixXd& residual_correlation
   }
   const Index p = map.mean.rows();
   for (const Index i : findAccepted(refined)) {
-    const Refined& one = refined[static_cast<std::size_t>(i)];
+    const auto column = static_cast<std::size_t>(i);
+    const Refined& one = refined[column];
     answers.predictions.mean.col(i) = one.point.head(p);
     answers.predictions.stddev.col(i) = one.stddev.head(p);
-    answers.correlations[static_cast<std::size_t>(i)] = calcCorrelation(one.covariance.topLeftCorner(p, p));
+    answers.correlations[column] = calcCorrelation(one.covariance.topLeftCorner(p, p));
+    if (!map.mixtures.empty()) {
+      answers.predictions.mixtures[column] = {
+          VectorXd::Ones(1), one.point.head(p), one.stddev.head(p), {answers.correlations[column]}};
+    }
   }
   return answers;
 }

@@ -1,6 +1,6 @@
 #include "framework/experiment/calibrate_posteriors.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "framework/monitoring/interrupted.hpp"
 #include "framework/monitoring/stage_timer.hpp"

@@ -1,6 +1,6 @@
 #include "framework/experiment/choose_samples.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <chrono>

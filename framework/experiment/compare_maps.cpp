@@ -1,6 +1,6 @@
 #include "framework/experiment/compare_maps.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 

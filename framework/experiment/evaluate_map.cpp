@@ -1,6 +1,6 @@
 #include "framework/experiment/evaluate_map.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <chrono>

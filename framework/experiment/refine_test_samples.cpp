@@ -1,6 +1,6 @@
 #include "framework/experiment/refine_test_samples.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <map>
 #include <stdexcept>
@@ -37,7 +37,7 @@ std::vector<RefinementTask> makeTasks(const RefinementContext& context) {
     MapAnswer answer;
     answer.known = getKnown(test, i);
     const Inference& inference = map.infer(test.features.col(i), answer.known, inferring);
-    answer.mean = inference.mean;
+    answer.mean = findLikeliest(inference).mean;
     if (trust != nullptr) {
       judge(*trust, test.features.col(i), answer.known, inference, inferring.findExplanation(), *judging);
       answer.explanation = trust->makeSampledPoint(judging->explanation->point);

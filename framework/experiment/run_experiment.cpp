@@ -1,6 +1,6 @@
 #include "framework/experiment/run_experiment.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "framework/experiment/choose_samples.hpp"
 #include "framework/experiment/compare_maps.hpp"

@@ -1,6 +1,6 @@
 #include "framework/experiment/simulated_sets.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <stdexcept>

@@ -1,6 +1,6 @@
 #include "framework/experiment/train_maps.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <memory>
 

@@ -1,6 +1,6 @@
 #include "framework/experiment/train_network.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <limits>

@@ -1,6 +1,6 @@
 #include "framework/experiment_design/excitation_files.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cmath>
 #include <limits>

@@ -1,6 +1,6 @@
 #include "framework/experiment_design/sensor_files.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "framework/results/csv.hpp"
 #include "framework/spec/fields/overrides.hpp"

@@ -1,6 +1,6 @@
 #include "framework/experiment_design/sensors.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 

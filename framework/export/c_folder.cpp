@@ -1,6 +1,6 @@
 #include "framework/export/c_folder.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <ostream>
 

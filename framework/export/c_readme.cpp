@@ -1,6 +1,6 @@
 #include "framework/export/c_readme.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cctype>

@@ -1,6 +1,6 @@
 #include "framework/export/c_source.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cctype>

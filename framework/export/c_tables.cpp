@@ -1,6 +1,6 @@
 #include "framework/export/c_tables.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cmath>
 #include <stdexcept>

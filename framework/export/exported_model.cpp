@@ -69,6 +69,12 @@ ExportedModel loadExportedModel(const std::filesystem::path& run_or_maps) {
   model.sample_interval = findSampleInterval(model.experiment.features);
   model.features = makeExtractor(model.experiment, model.layout).getInfos();
   model.online = std::move(stored.model);
+  const NetworkMap* network = model.findNetwork();
+  if (network != nullptr && network->network.countComponents() > 1) {
+    throw std::runtime_error(
+        findMaps(run_or_maps).string() +
+        ": a network whose answers are mixtures cannot be exported; train one with 'head: gaussian'");
+  }
   return model;
 }
 

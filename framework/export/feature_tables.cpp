@@ -1,4 +1,4 @@
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "framework/experiment/prepare_data.hpp"
 #include "framework/export/c_model_tables.hpp"

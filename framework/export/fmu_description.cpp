@@ -1,6 +1,6 @@
 #include "framework/export/fmu_description.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <set>
 

@@ -1,6 +1,6 @@
 #include "framework/export/fmu_export.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cctype>
 

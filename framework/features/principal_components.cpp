@@ -1,6 +1,6 @@
 #include "framework/features/principal_components.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,13 +1,37 @@
 #include "framework/inference/answer.hpp"
 
+#include "framework/inverse_map/predictions.hpp"
+
 namespace twinmap {
 
-Answer chooseAnswer(const InferredMeasurement& inferred) {
-  if (inferred.refined && inferred.refined->isAccepted()) {
-    const Eigen::Index p = inferred.inference.mean.size();
-    return {inferred.refined->point.head(p), inferred.refined->stddev.head(p), true};
+namespace {
+
+void setNormalInterval(Answer& answer) {
+  answer.lower95 = answer.mean - kNormal95 * answer.stddev;
+  answer.upper95 = answer.mean + kNormal95 * answer.stddev;
+}
+
+}  // namespace
+
+Answer makeMapAnswer(const Inference& inference) {
+  Answer answer{inference.mean, inference.stddev, false, inference.mixture};
+  setNormalInterval(answer);
+  for (Eigen::Index p = 0; p < answer.mixture.means.rows(); ++p) {
+    const Intervals intervals = findHighestDensity(takeMarginal(answer.mixture, p), 0.95);
+    answer.lower95[p] = intervals.front().first;
+    answer.upper95[p] = intervals.back().second;
   }
-  return {inferred.inference.mean, inferred.inference.stddev, false};
+  return answer;
+}
+
+Answer chooseAnswer(const InferredMeasurement& inferred) {
+  if (!inferred.refined || !inferred.refined->isAccepted()) {
+    return makeMapAnswer(inferred.inference);
+  }
+  const Eigen::Index p = inferred.inference.mean.size();
+  Answer answer{inferred.refined->point.head(p), inferred.refined->stddev.head(p), true};
+  setNormalInterval(answer);
+  return answer;
 }
 
 Eigen::VectorXd calcRatioToLimit(const Inference& inference) {
@@ -33,7 +57,11 @@ std::vector<std::string> listStatuses(const InferredMeasurement& inferred) {
       }
     }
   }
-  if (inferred.refined && !inferred.refined->isAccepted()) {
+  const bool several = hasSeveralAnswers(inferred.inference.mixture);
+  if (several) {
+    statuses.emplace_back(toString(RefinementStatus::kSeveral));
+  }
+  if (inferred.refined && !inferred.refined->isAccepted() && !several) {
     statuses.emplace_back(inferred.refined->status == RefinementStatus::kNonlinear ? "nonlinear"
                                                                                    : "not_refined");
   }

@@ -9,9 +9,14 @@ namespace twinmap {
 
 /// What is believed of a measurement.
 struct Answer {
-  Eigen::VectorXd mean, stddev;  ///< p
-  bool refined = false;          ///< on the simulator; else the map's
+  Eigen::VectorXd mean, stddev;          ///< p
+  bool refined = false;                  ///< on the simulator; else the map's
+  Mixture mixture{};                     ///< where it is one, whose mean and stddev are above
+  Eigen::VectorXd lower95{}, upper95{};  ///< p: of a mixture the ends of its smallest set
 };
+
+/// The map's.
+Answer makeMapAnswer(const Inference& inference);
 
 /// The refined answer where it was accepted, else the map's.
 Answer chooseAnswer(const InferredMeasurement& inferred);
@@ -27,8 +32,8 @@ constexpr double kMapLimitedRatio = 1.5;
 bool isMapLimited(const InferredMeasurement& inferred);
 
 /// Names of all that is to be said against an answer, the gravest first: what the trust model says, then
-/// "nonlinear" or "not_refined" where a refinement was tried and not accepted, then "map_limited". {"ok"}
-/// where nothing is; empty where nobody has judged.
+/// "several_answers" where a mixture's lie apart, "nonlinear" or "not_refined" where a refinement was tried
+/// and not accepted, then "map_limited". {"ok"} where nothing is; empty where nobody has judged.
 std::vector<std::string> listStatuses(const InferredMeasurement& inferred);
 
 }  // namespace twinmap

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "framework/spec/parameter_box.hpp"
-#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 
@@ -20,17 +19,6 @@ MatrixXd clipToBounds(const MatrixXd& points, const std::vector<ParameterSpec>& 
     clipped.col(j) = points.col(j).cwiseMax(lower).cwiseMin(upper);
   }
   return clipped;
-}
-
-MatrixXd drawNormal(const VectorXd& mean, const VectorXd& stddev, const MatrixXd& correlation, int draws,
-                    const RandomStream& random) {
-  const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(correlation);
-  const VectorXd scale = eigen.values.cwiseMax(0.0).cwiseSqrt();
-  const MatrixXd factor = stddev.asDiagonal() * eigen.vectors * scale.asDiagonal();
-  const MatrixXd normal = MatrixXd::NullaryExpr(mean.size(), draws, [&](Index p, Index j) {
-    return random.calcNormal(static_cast<std::uint64_t>(j), static_cast<std::uint64_t>(p));
-  });
-  return (factor * normal).colwise() + mean;
 }
 
 VectorXd calcRowQuantiles(const MatrixXd& values, double probability) {

@@ -3,18 +3,12 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "framework/design/random.hpp"
 #include "framework/spec/model_spec.hpp"
 
 namespace twinmap {
 
 /// Columns of `points` (parameters x n), moved into the bounds of the parameters.
 Eigen::MatrixXd clipToBounds(const Eigen::MatrixXd& points, const std::vector<ParameterSpec>& parameters);
-
-/// Draws (p x n) from the normal distribution of covariance D R D, D = diag(stddev). `correlation`: R (p x
-/// p), positive semi-definite.
-Eigen::MatrixXd drawNormal(const Eigen::VectorXd& mean, const Eigen::VectorXd& stddev,
-                           const Eigen::MatrixXd& correlation, int draws, const RandomStream& random);
 
 /// A quantile of each row, linear between its sorted values (the default of R and NumPy). probability in
 /// [0, 1]; values: rows x n, n >= 1.

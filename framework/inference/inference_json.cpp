@@ -28,9 +28,41 @@ Json makeEstimates(const Eigen::VectorXd& mean, const Eigen::VectorXd& stddev,
   return estimates;
 }
 
+Json makeIntervals(const Mixture& mixture, Eigen::Index parameter, double probability) {
+  Json list = Json::array();
+  for (const auto& [lower, upper] : findHighestDensity(takeMarginal(mixture, parameter), probability)) {
+    list.push_back({lower, upper});
+  }
+  return list;
+}
+
+/// With the ends of a mixture's smallest sets, and these.
+Json makeEstimates(const Answer& answer, const std::vector<ParameterSpec>& parameters) {
+  Json estimates = makeEstimates(answer.mean, answer.stddev, parameters);
+  for (Eigen::Index p = 0; p < answer.mixture.means.rows(); ++p) {
+    Json& estimate = estimates[parameters[static_cast<std::size_t>(p)].name.text];
+    estimate["lower"] = answer.lower95[p];
+    estimate["upper"] = answer.upper95[p];
+    estimate["intervals95"] = makeIntervals(answer.mixture, p, 0.95);
+    estimate["intervals50"] = makeIntervals(answer.mixture, p, 0.5);
+  }
+  return estimates;
+}
+
+/// The components, each with its weight.
+Json makeComponents(const Mixture& mixture, const std::vector<ParameterSpec>& parameters) {
+  Json components = Json::array();
+  for (Eigen::Index c = 0; c < mixture.countComponents(); ++c) {
+    components.push_back(
+        {{"weight", mixture.weights[c]},
+         {"parameters", makeEstimates(mixture.means.col(c), mixture.stddevs.col(c), parameters)}});
+  }
+  return components;
+}
+
 /// The map's, with how far they are from what the measurement allows.
 Json makeMapEstimates(const Inference& inference, const std::vector<ParameterSpec>& parameters) {
-  Json estimates = makeEstimates(inference.mean, inference.stddev, parameters);
+  Json estimates = makeEstimates(makeMapAnswer(inference), parameters);
   const Eigen::VectorXd ratio = calcRatioToLimit(inference);
   for (Eigen::Index p = 0; p < ratio.size(); ++p) {
     estimates[parameters[static_cast<std::size_t>(p)].name.text]["ratio_to_limit"] = ratio[p];
@@ -108,8 +140,11 @@ std::string makeInferenceJson(const InferredMeasurement& inferred,
   }
   const Answer answer = chooseAnswer(inferred);
   json["method"] = answer.refined ? "refined" : "inverse_map";
-  json["parameters"] = answer.refined ? makeEstimates(answer.mean, answer.stddev, parameters)
-                                      : makeMapEstimates(inferred.inference, parameters);
+  json["parameters"] =
+      answer.refined ? makeEstimates(answer, parameters) : makeMapEstimates(inferred.inference, parameters);
+  if (answer.mixture.isGiven()) {
+    json["components"] = makeComponents(answer.mixture, parameters);
+  }
   if (inferred.trust) {
     json["trust"] = toJson(*inferred.trust, features);
   }

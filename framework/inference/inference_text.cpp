@@ -1,6 +1,6 @@
 #include "framework/inference/inference_text.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 
@@ -53,18 +53,33 @@ constexpr const char* kIndent = "  ";
 /// Of all parameters, the bounds those of the 95 % intervals.
 struct Estimates {
   Eigen::VectorXd mean, stddev, lower, upper;
+  Mixture mixture{};  ///< whose smallest sets are shown instead
 };
 
-Estimates makeNormal(const Eigen::VectorXd& mean, const Eigen::VectorXd& stddev) {
-  return {mean, stddev, mean - kNormal95 * stddev, mean + kNormal95 * stddev};
+std::string describeInterval(double lower, double upper) {
+  constexpr int kDigits = 6;
+  return fmt::format("{} .. {}", toShortText(lower, kDigits), toShortText(upper, kDigits));
+}
+
+std::string describeInterval(const Estimates& estimates, Index i) {
+  if (!estimates.mixture.isGiven()) {
+    return describeInterval(estimates.lower[i], estimates.upper[i]);
+  }
+  std::string text;
+  for (const auto& [lower, upper] : findHighestDensity(takeMarginal(estimates.mixture, i), 0.95)) {
+    text += (text.empty() ? "" : ", ") + describeInterval(lower, upper);
+  }
+  return text;
+}
+
+Estimates makeEstimates(const Answer& answer) {
+  return {answer.mean, answer.stddev, answer.lower95, answer.upper95, answer.mixture};
 }
 
 Row makeRow(const ParameterSpec& parameter, const Estimates& estimates, Index i) {
   constexpr int kDigits = 6, kStddevDigits = 3;
   return {parameter.name.text, parameter.unit, toShortText(estimates.mean[i], kDigits),
-          toShortText(estimates.stddev[i], kStddevDigits),
-          fmt::format("{} .. {}", toShortText(estimates.lower[i], kDigits),
-                      toShortText(estimates.upper[i], kDigits))};
+          toShortText(estimates.stddev[i], kStddevDigits), describeInterval(estimates, i)};
 }
 
 /// How the refinement went; the table of its answer follows where it was accepted.
@@ -83,6 +98,26 @@ std::string makeEstimateTable(const Estimates& estimates, const std::vector<Para
     rows.push_back(makeRow(parameters[p], estimates, static_cast<Index>(p)));
   }
   return alignRows(rows, rows.front().size(), kIndent);
+}
+
+/// The intervals that a mixture's smallest sets of 95 % are of, and its components.
+std::string describeMixture(const Mixture& mixture, const std::vector<ParameterSpec>& parameters) {
+  constexpr int kDigits = 5, kStddevDigits = 3;
+  constexpr double kLeast = 0.01;  // a lighter one is not worth a line
+  std::string text = "  several answers may fit:\n";
+  for (Index c = 0; c < mixture.countComponents(); ++c) {
+    std::string values;
+    for (std::size_t p = 0; p < parameters.size(); ++p) {
+      const auto i = static_cast<Index>(p);
+      values += fmt::format("{}{} = {} +- {}", p == 0 ? "" : ", ", parameters[p].name.text,
+                            toShortText(mixture.means(i, c), kDigits),
+                            toShortText(mixture.stddevs(i, c), kStddevDigits));
+    }
+    if (mixture.weights[c] > kLeast) {
+      text += fmt::format("    {:3.0f} %: {}\n", 100.0 * mixture.weights[c], values);
+    }
+  }
+  return text;
 }
 
 std::string describePosterior(const SurrogatePosterior& posterior,
@@ -163,15 +198,18 @@ std::string describeMapLimit(const InferredMeasurement& inferred,
 std::string makeInferenceTable(const InferredMeasurement& inferred,
                                const std::vector<ParameterSpec>& parameters,
                                const std::vector<FeatureInfo>& features) {
-  const Inference& by_map = inferred.inference;
   const Answer answer = chooseAnswer(inferred);
   std::string text = describeTrust(inferred, features) + describeMapLimit(inferred, parameters);
   if (inferred.refined) {
     text += describeRefined(*inferred.refined);
   }
-  text += makeEstimateTable(makeNormal(answer.mean, answer.stddev), parameters);
+  text += makeEstimateTable(makeEstimates(answer), parameters);
   if (answer.refined) {
-    text += "  the map's:\n" + makeEstimateTable(makeNormal(by_map.mean, by_map.stddev), parameters);
+    text +=
+        "  the map's:\n" + makeEstimateTable(makeEstimates(makeMapAnswer(inferred.inference)), parameters);
+  }
+  if (hasSeveralAnswers(answer.mixture)) {
+    text += describeMixture(answer.mixture, parameters);
   }
   if (inferred.posterior) {
     text += describePosterior(*inferred.posterior, parameters);
@@ -220,7 +258,7 @@ std::string makeInferenceCsvRows(const InferredMeasurement& inferred,
     const double mean = answer.mean[i], stddev = answer.stddev[i];
     text += fmt::format("{},{},{},{},{},{},{},{},{},{}", escapeCsv(inferred.source), toText(inferred.start),
                         escapeCsv(parameters[p].name.text), escapeCsv(parameters[p].unit), toText(mean),
-                        toText(stddev), toText(mean - kNormal95 * stddev), toText(mean + kNormal95 * stddev),
+                        toText(stddev), toText(answer.lower95[i]), toText(answer.upper95[i]),
                         joinStatuses(inferred, " "), inferred.trust ? toText(inferred.trust->p_value) : "");
     if (inferred.refined) {
       text += answer.refined ? fmt::format(",{},{}", toText(mean), toText(stddev)) : ",,";

@@ -1,6 +1,6 @@
 #include "framework/inference/known_value.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 #include "framework/inference/measurement_session.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "framework/inference/answer.hpp"
 #include "framework/online/posterior_model.hpp"

@@ -28,8 +28,12 @@ const RefinementModel& SimulatorRefiner::getModel() const {
 Refined SimulatorRefiner::refine(const InferredMeasurement& inferred, const VectorXd& features,
                                  const VectorXd& known, const TrustModel* trust) const {
   const RefinementTask task = makeRefinementTask(
-      model_, trust, features, {inferred.inference.mean, inferred.explanation, known, inferred.covariance});
+      model_, trust, features,
+      {findLikeliest(inferred.inference).mean, inferred.explanation, known, inferred.covariance});
   Refined refined = twinmap::refine(*own_, getModel(), task);
+  if (hasSeveralAnswers(inferred.inference.mixture)) {
+    rejectAsOneOfSeveral(refined);
+  }
   if (refined.isAccepted()) {
     const Index p = inferred.inference.mean.size();
     refined.stddev.conservativeResize(p);

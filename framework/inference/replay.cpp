@@ -8,6 +8,7 @@
 #include "framework/inference/answer.hpp"
 #include "framework/inference/ensemble.hpp"
 #include "framework/inference/refiner.hpp"
+#include "framework/inverse_map/draws.hpp"
 #include "framework/measurement/measured_signals.hpp"
 #include "framework/simulation/sample_generator.hpp"
 #include "framework/spec/parameter_box.hpp"
@@ -102,9 +103,12 @@ class Replayer {
 
   MatrixXd draw() const {
     const RandomStream random(inferrer_.getExperiment().seed, RandomPurpose::kEnsemble);
-    return clipToBounds(
-        drawNormal(answer_.mean, answer_.stddev, calcCorrelation(), replay_.options.draws, random),
-        model_.parameters);
+    const int draws = replay_.options.draws;
+    const Mixture& mixture = replay_.inferred.inference.mixture;
+    return clipToBounds(answer_.refined || !mixture.isGiven()
+                            ? drawNormal(answer_.mean, answer_.stddev, calcCorrelation(), draws, random)
+                            : drawFrom(mixture, draws, random),
+                        model_.parameters);
   }
 
   /// Of the answer's errors.

@@ -1,6 +1,6 @@
 #include "framework/inference/replay_page.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <sstream>

@@ -1,6 +1,6 @@
 #include "framework/measurement/trained_excitation.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "framework/monitoring/stage_timer.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "framework/monitoring/log.hpp"
 

@@ -76,6 +76,7 @@ network::Network makeInitial(const NetworkSet& set, const std::vector<Index>& tr
                   fitting.run * kRuns + kRegression);
   network::NetworkShape shape;
   shape.hidden = fitting.spec.hidden;
+  shape.components = fitting.spec.countComponents();
   shape.products = chooseProducts(drawn.inputs.rows(), static_cast<Index>(training.size()));
   const RandomStream weights(fitting.seed, RandomPurpose::kNetworkWeights);
   return network::makeNetwork(drawn.inputs, drawn.targets, shape, [&](Index i) {

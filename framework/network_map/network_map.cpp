@@ -21,11 +21,23 @@ MatrixXd NetworkInputs::apply(const MatrixXd& features, const MatrixXd& known_va
   return known_values.rows() == 0 ? projected : stackRows(projected, known.scale(known_values));
 }
 
+Mixture takeMixture(const network::Predictor::Workspace& predicted) {
+  Mixture mixture{predicted.weights, predicted.means, predicted.means, {}};
+  for (Index c = 0; c < mixture.countComponents(); ++c) {
+    const MatrixXd& covariance = predicted.covariances[static_cast<std::size_t>(c)];
+    mixture.stddevs.col(c) = covariance.diagonal().cwiseSqrt();
+    mixture.correlations.push_back(calcCorrelation(covariance));
+  }
+  return mixture;
+}
+
 Predictions predictTargets(const network::Network& network, const MatrixXd& inputs, int threads) {
   constexpr Index kChunk = 256;  // measurements that share buffers
   const network::Predictor predictor(network);
   const Index n = inputs.cols(), p = network.countTargets();
   Predictions predictions{MatrixXd(p, n), MatrixXd(p, n), std::vector<MatrixXd>(static_cast<std::size_t>(n))};
+  const bool mixed = network.countComponents() > 1;
+  predictions.mixtures.resize(static_cast<std::size_t>(mixed ? n : 0));
   runTasks(threads, static_cast<std::size_t>((n + kChunk - 1) / kChunk), [&](std::size_t chunk) {
     network::Predictor::Workspace workspace(predictor);
     const Index first = static_cast<Index>(chunk) * kChunk;
@@ -34,6 +46,9 @@ Predictions predictTargets(const network::Network& network, const MatrixXd& inpu
       predictions.mean.col(i) = workspace.mean;
       predictions.stddev.col(i) = workspace.stddev;
       predictions.correlations[static_cast<std::size_t>(i)] = calcCorrelation(workspace.covariance);
+      if (mixed) {
+        predictions.mixtures[static_cast<std::size_t>(i)] = takeMixture(workspace);
+      }
     }
   });
   return predictions;
@@ -41,8 +56,7 @@ Predictions predictTargets(const network::Network& network, const MatrixXd& inpu
 
 Predictions NetworkMap::predict(const MatrixXd& features, const MatrixXd& known_values, int threads) const {
   Predictions predictions = predictTargets(network, inputs.apply(features, known_values), threads);
-  predictions.mean = (half_width.asDiagonal() * predictions.mean).colwise() + center;
-  predictions.stddev = validation.stddev_scale.cwiseProduct(half_width).asDiagonal() * predictions.stddev;
+  convert(center, half_width, validation.stddev_scale, predictions);
   return predictions;
 }
 

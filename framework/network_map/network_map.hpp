@@ -5,7 +5,7 @@
 #include "framework/inverse_map/known_inputs.hpp"
 #include "framework/inverse_map/predictions.hpp"
 #include "framework/surrogate/surrogate.hpp"
-#include "kernels/network/network.hpp"
+#include "kernels/network/predictor.hpp"
 
 namespace twinmap {
 
@@ -31,13 +31,17 @@ struct NetworkMap {
       validation;  ///< of simulations that took no part; no limit_scale, limit_ratio may be NaN
 
   /// Features (d x n, finite) and known inputs (q x n) -> mean and standard deviation of the parameters (p x
-  /// n), with the correlations of each column. The result does not depend on the threads. Throws std::invalid_argument for sizes that do not fit.
-  /// Cost: some us a column.
+  /// n), with the correlations of each column. The result does not depend on the threads. Throws
+  /// std::invalid_argument for sizes that do not fit. Cost: some us a column.
   Predictions predict(const Eigen::MatrixXd& features, const Eigen::MatrixXd& known_values,
                       int threads = 1) const;
 };
 
-/// Mean, standard deviation (p x n) and correlations of a network's targets for its inputs (k x n).
+/// What a network of several components has predicted, in its targets' units.
+Mixture takeMixture(const network::Predictor::Workspace& predicted);
+
+/// Mean, standard deviation (p x n), correlations and, of several components, mixtures of a network's targets
+/// for its inputs (k x n).
 Predictions predictTargets(const network::Network& network, const Eigen::MatrixXd& inputs, int threads);
 
 }  // namespace twinmap

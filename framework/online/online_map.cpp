@@ -103,6 +103,11 @@ bool OnlineMap::isHonest() const {
   return std::visit([](const auto& map) { return isKnownToBeHonest(map); }, kind_);
 }
 
+bool OnlineMap::givesMixtures() const {
+  const auto* network = std::get_if<OnlineNetwork>(&kind_);
+  return network != nullptr && network->getMap().network.countComponents() > 1;
+}
+
 const Inference& OnlineMap::infer(const Eigen::Ref<const VectorXd>& features,
                                   const Eigen::Ref<const VectorXd>& known, Workspace& workspace) const {
   return std::visit(
@@ -134,6 +139,9 @@ Predictions OnlineMap::predict(const Eigen::Ref<const MatrixXd>& features,
   if (std::holds_alternative<OnlineNetwork>(kind_)) {
     all.correlations.resize(static_cast<std::size_t>(count));
   }
+  if (givesMixtures()) {
+    all.mixtures.resize(static_cast<std::size_t>(count));
+  }
   runTasks(threads, static_cast<std::size_t>((count + kBlock - 1) / kBlock), [&](std::size_t block) {
     Workspace workspace(*this);
     VectorXd settings(known.rows());
@@ -145,6 +153,9 @@ Predictions OnlineMap::predict(const Eigen::Ref<const MatrixXd>& features,
       const Inference& inference = infer(features.col(i), settings, workspace);
       all.mean.col(i) = inference.mean;
       all.stddev.col(i) = inference.stddev;
+      if (inference.mixture.isGiven()) {
+        all.mixtures[static_cast<std::size_t>(i)] = inference.mixture;
+      }
       if (!all.correlations.empty()) {
         all.correlations[static_cast<std::size_t>(i)] = inference.correlation;
       }

@@ -29,6 +29,9 @@ class OnlineMap {
     return inference.correlation.size() > 0 ? inference.correlation : getResidualCorrelation();
   }
 
+  /// Whether inferences are mixtures.
+  bool givesMixtures() const;
+
   /// Null where the map is of another kind.
   const Surrogate* findSurrogate() const;
 

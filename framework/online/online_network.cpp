@@ -12,6 +12,14 @@ OnlineNetwork::Workspace::Workspace(const OnlineNetwork& map)
   inference.correlation.resize(map.map_->center.size(), map.map_->center.size());
 }
 
+void OnlineNetwork::setMixture(const network::Predictor::Workspace& predicted, Inference& inference) const {
+  inference.mixture = takeMixture(predicted);
+  convert(map_->center, map_->half_width, map_->validation.stddev_scale, inference.mixture);
+  const Eigen::MatrixXd covariance = calcCovariance(inference.mixture);
+  inference.stddev = covariance.diagonal().cwiseSqrt();
+  inference.correlation = calcCorrelation(covariance);
+}
+
 const Inference& OnlineNetwork::infer(const Eigen::Ref<const VectorXd>& features,
                                       const Eigen::Ref<const VectorXd>& known, Workspace& workspace) const {
   const NetworkInputs& inputs = map_->inputs;
@@ -28,6 +36,9 @@ const Inference& OnlineNetwork::infer(const Eigen::Ref<const VectorXd>& features
                      workspace.predicting.stddev.array();
   const auto inverse_stddev = workspace.predicting.stddev.cwiseInverse().asDiagonal();
   inference.correlation = inverse_stddev * workspace.predicting.covariance * inverse_stddev;
+  if (workspace.predicting.weights.size() > 1) {
+    setMixture(workspace.predicting, inference);
+  }
   return inference;
 }
 

@@ -30,7 +30,8 @@ class OnlineNetwork {
   };
 
   /// features: d, finite; known: the inputs of the set-up (q). The result, whose inputs are the network's,
-  /// lies in the workspace until its next use. Does not allocate. Cost: 2 flops a number of the map.
+  /// lies in the workspace until its next use. Does not allocate but for mixtures. Cost: 2 flops a number of
+  /// the map.
   const Inference& infer(const Eigen::Ref<const Eigen::VectorXd>& features,
                          const Eigen::Ref<const Eigen::VectorXd>& known, Workspace& workspace) const;
 
@@ -40,6 +41,8 @@ class OnlineNetwork {
   }
 
  private:
+  void setMixture(const network::Predictor::Workspace& predicted, Inference& inference) const;
+
   std::shared_ptr<const NetworkMap> map_;
   network::Predictor predictor_;
 };

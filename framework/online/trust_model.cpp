@@ -116,11 +116,12 @@ void replaceStatuses(const TrustModel& model, const SimulatorResidual& found, Tr
   trust.statuses = kept.empty() ? std::vector<TrustStatus>{TrustStatus::kOk} : kept;
 }
 
-/// The inferred parameters, the middle of the nuisance parameters' box, the known inputs; normalised.
+/// The inferred parameters, or the likeliest of several, the middle of the nuisance parameters' box, the
+/// known inputs; normalised.
 void makeStart(const TrustModel& model, const Eigen::Ref<const VectorXd>& known, const Inference& inference,
                VectorXd& start) {
   start = model.center;
-  start.head(inference.mean.size()) = inference.mean;
+  start.head(inference.mean.size()) = findLikeliest(inference).mean;
   start.tail(known.size()) = known;
   start = (start - model.center).cwiseQuotient(model.half_width);
 }
@@ -171,7 +172,8 @@ Trust judge(const TrustModel& model, const Eigen::Ref<const VectorXd>& features,
   Trust trust;
   compareWithSimulated(model, workspace.residual, trust);
   trust.distance = model.cloud.calcDistance(inference.inputs, workspace.distance);
-  setStatuses(model, inference.mean, inference.stddev, trust);
+  const LikeliestAnswer answer = findLikeliest(inference);
+  setStatuses(model, answer.mean, answer.stddev, trust);
   return trust;
 }
 

@@ -1,6 +1,6 @@
 #include "framework/process/program_process.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/wait.h>

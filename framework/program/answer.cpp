@@ -1,6 +1,6 @@
 #include "framework/program/answer.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cmath>
 #include <limits>

@@ -1,6 +1,6 @@
 #include "framework/program/program_pool.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "framework/program/answer.hpp"
 

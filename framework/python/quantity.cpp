@@ -1,6 +1,6 @@
 #include "framework/python/quantity.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <pybind11/stl.h>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "framework/refinement/acceptance.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>

@@ -8,6 +8,15 @@ double Refined::calcReducedChiSquare() const {
   return degrees > 0.0 ? chi_square / degrees : std::numeric_limits<double>::infinity();
 }
 
+void rejectAsOneOfSeveral(Refined& refined) {
+  if (refined.isAccepted()) {
+    refined.status = RefinementStatus::kSeveral;
+    refined.message = "other values of the parameters fit the measurement as well";
+    refined.covariance.resize(0, 0);
+    refined.stddev.resize(0);
+  }
+}
+
 const char* toString(RefinementStatus status) {
   switch (status) {
     case RefinementStatus::kAccepted:
@@ -16,6 +25,8 @@ const char* toString(RefinementStatus status) {
       return "misfit";
     case RefinementStatus::kNonlinear:
       return "nonlinear";
+    case RefinementStatus::kSeveral:
+      return "several_answers";
     case RefinementStatus::kFailed:
       break;
   }

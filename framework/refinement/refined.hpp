@@ -10,11 +10,17 @@ enum class RefinementStatus {
   kAccepted,   ///< the answer explains the features, and its covariance is that of the misfit around it
   kMisfit,     ///< chi-square is too large: another basin, or a model that is wrong
   kNonlinear,  ///< the misfit around the answer is no paraboloid: no covariance describes it
+  kSeveral,    ///< the map knows of other answers, which least squares from one of them does not see
   kFailed      ///< simulations failed, or the search did not converge
 };
 
-/// "accepted", "misfit", "nonlinear", "failed".
+/// "accepted", "misfit", "nonlinear", "several_answers", "failed".
 const char* toString(RefinementStatus status);
+
+struct Refined;
+
+/// Withdraws the acceptance where other answers fit as well.
+void rejectAsOneOfSeveral(Refined& refined);
 
 /// What least squares on the simulator make of a measurement.
 struct Refined {

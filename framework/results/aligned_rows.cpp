@@ -1,6 +1,6 @@
 #include "framework/results/aligned_rows.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 

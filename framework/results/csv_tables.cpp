@@ -116,6 +116,22 @@ std::string makePredictionsCsv(const RunSummary& run) {
   return makeCsv(rows);
 }
 
+std::string makeComponentsCsv(const RunSummary& run) {
+  std::vector<Row> rows{{"sample", "component", "weight", "parameter", "mean", "stddev"}};
+  for (std::size_t i = 0; i < run.evaluation.predictions.mixtures.size(); ++i) {
+    const Mixture& mixture = run.evaluation.predictions.mixtures[i];
+    for (Eigen::Index c = 0; c < mixture.countComponents(); ++c) {
+      for (std::size_t p = 0; p < run.parameters.size(); ++p) {
+        const auto row = static_cast<Eigen::Index>(p);
+        rows.push_back({std::to_string(run.test_indices[i]), std::to_string(c), toText(mixture.weights[c]),
+                        run.parameters[p].name.text, toText(mixture.means(row, c)),
+                        toText(mixture.stddevs(row, c))});
+      }
+    }
+  }
+  return makeCsv(rows);
+}
+
 std::string makeFailuresCsv(const std::vector<ParameterSpec>& sampled,
                             const std::vector<FailedSample>& failures) {
   Row header{"set", "sample"};

@@ -43,6 +43,9 @@ void writeResults(const fs::path& folder, const RunSummary& run) {
   writeTextFile(folder / "joint.csv", makeJointCsv(run));
   writeTextFile(folder / "pit.csv", makePitCsv(run));
   writeTextFile(folder / "predictions.csv", makePredictionsCsv(run));
+  if (!run.evaluation.predictions.mixtures.empty()) {
+    writeTextFile(folder / "components.csv", makeComponentsCsv(run));
+  }
   writeTextFile(folder / "training.csv", makeTrainingCsv(run));
   writeTextFile(folder / "hyperparameters.csv", makeHyperparametersCsv(run));
   if (run.training.cross_validation) {

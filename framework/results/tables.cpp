@@ -1,6 +1,6 @@
 #include "framework/results/tables.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 

@@ -17,6 +17,9 @@ std::string makeJointCsv(const RunSummary& run);
 /// pit.csv: parameter, bin_lower, bin_upper, count.
 std::string makePitCsv(const RunSummary& run);
 
+/// components.csv: of predictions that are mixtures; docs/file-formats.md.
+std::string makeComponentsCsv(const RunSummary& run);
+
 /// predictions.csv: sample, parameter, true, inferred, stddev, and limit_stddev where the limit is known; all
 /// parameters of a sample, then the next.
 std::string makePredictionsCsv(const RunSummary& run);

@@ -1,6 +1,6 @@
 #include "framework/results/warnings.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -52,10 +52,41 @@ void appendCoverage(const RunSummary& run, std::vector<Warning>& warnings) {
   }
 }
 
+/// The share of the first answers that are several, which lie apart.
+double calcSeveralShare(const RunSummary& run, std::size_t p) {
+  constexpr std::size_t kMost = 200;
+  const std::vector<Mixture>& mixtures = run.evaluation.predictions.mixtures;
+  const std::size_t count = std::min(mixtures.size(), kMost);
+  int several = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    several += hasSeveralAnswers(takeMarginal(mixtures[i], Index(p))) ? 1 : 0;
+  }
+  return count > 0 ? double(several) / double(count) : 0.0;
+}
+
+/// Whether errors and standard deviations are those between several answers, mostly.
+bool hasSeveralAnswers(const RunSummary& run, std::size_t p) {
+  constexpr double kMostly = 0.1;
+  return calcSeveralShare(run, p) > kMostly;
+}
+
+void appendSeveral(const RunSummary& run, std::vector<Warning>& warnings) {
+  const auto share = [&](std::size_t p) { return calcSeveralShare(run, p); };
+  const std::string told =
+      listParameters(run, share, [&](std::size_t p) { return hasSeveralAnswers(run, p); });
+  if (!told.empty()) {
+    warnings.push_back(
+        {Gravity::kRemark, "several answers fit, in these shares of the test samples: " + told +
+                               ". Errors and standard deviations are those of all of them together; measure "
+                               "another output to tell them apart"});
+  }
+}
+
 void appendLimit(const RunSummary& run, std::vector<Warning>& warnings) {
   constexpr double kFar = 1.5;
   const auto ratio = [&](std::size_t p) { return run.evaluation.metrics[p].ratio_to_limit; };
-  const std::string far = listParameters(run, ratio, [&](std::size_t p) { return ratio(p) > kFar; });
+  const std::string far = listParameters(
+      run, ratio, [&](std::size_t p) { return ratio(p) > kFar && !hasSeveralAnswers(run, p); });
   if (!far.empty()) {
     warnings.push_back({Gravity::kPoor,
                         "the answers are worse than the measurement allows, in standard deviations so many "
@@ -113,8 +144,9 @@ void appendUninformed(const RunSummary& run, std::vector<Warning>& warnings) {
     return std::sqrt(stddev.squaredNorm() / double(stddev.size())) /
            (kUniformStddev * (bounds.upper - bounds.lower));
   };
-  const std::string uninformed = listParameters(
-      run, share, [&](std::size_t p) { return share(p) > kUninformed && !isUndetermined(run, p); });
+  const std::string uninformed = listParameters(run, share, [&](std::size_t p) {
+    return share(p) > kUninformed && !isUndetermined(run, p) && !hasSeveralAnswers(run, p);
+  });
   if (!uninformed.empty()) {
     warnings.push_back({Gravity::kPoor,
                         "the answers say little more than the bounds do, in shares of their standard "
@@ -198,6 +230,7 @@ std::vector<std::string> collectWarnings(const RunSummary& run) {
   warnings.insert(warnings.end(), run.notes.warnings.begin(), run.notes.warnings.end());
   appendLimit(run, warnings);
   appendUninformed(run, warnings);
+  appendSeveral(run, warnings);
   appendCorrelations(run, warnings);
   appendTraining(run, warnings);
   appendGain(run, warnings);

@@ -1,6 +1,6 @@
 #include "framework/sampling/model_store.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <gnu/libc-version.h>
 
 #include "framework/monitoring/log.hpp"

@@ -1,6 +1,6 @@
 #include "framework/sampling/simulate_missing.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -144,14 +144,29 @@ struct EnumNames<NetworkSamples> {
                                                         {"surrogate", NetworkSamples::kSurrogate}};
 };
 
-/// A neural network from features to the normal distribution of all parameters (docs/networks.md).
+inline constexpr NumberRule kMixtureComponents{2.0, 4.0, true, "must be a whole number from 2 to 4"};
+
+/// The distribution that a network's answers have.
+enum class NetworkHead { kGaussian, kMixture };
+
+template <>
+struct EnumNames<NetworkHead> {
+  static constexpr EnumName<NetworkHead> values[] = {{"gaussian", NetworkHead::kGaussian},
+                                                     {"mixture", NetworkHead::kMixture}};
+};
+
+/// A neural network from features to the distribution of all parameters (docs/networks.md).
 struct NetworkMapSpec {
   std::vector<int> hidden = {64, 64};
+  NetworkHead head = NetworkHead::kGaussian;
+  int components = 3;  ///< of a mixture
   NetworkSamples samples_from = NetworkSamples::kAutomatic;
   int surrogate_samples = 20000;
   int steps = 8000;
   int batch = 256;
   double learning_rate = 0.002;
+
+  int countComponents() const { return head == NetworkHead::kMixture ? components : 1; }
 };
 
 template <class Fields>
@@ -159,6 +174,8 @@ void describe(Fields& f, NetworkMapSpec& s) {
   constexpr int kWidest = 1024;
   constexpr std::size_t kDeepest = 8;
   f.optional("hidden", s.hidden, "units of each hidden layer");
+  f.optional("head", s.head, "one normal distribution, or a mixture: where several answers may fit");
+  f.optional("components", s.components, "normal distributions of a mixture", kMixtureComponents);
   f.optional("samples_from", s.samples_from,
              "simulations; a surrogate that is trained on them first; or automatic");
   f.optional("surrogate_samples", s.surrogate_samples, "parameter points that a surrogate is asked for",

@@ -9,8 +9,8 @@
 
 namespace twinmap {
 
-/// What a map makes of its features (nothing, a surrogate or a network), without the matrices that predict: small also for
-/// many samples.
+/// What a map makes of its features (nothing, a surrogate or a network), without the matrices that predict:
+/// small also for many samples.
 struct MapSummary {
   std::vector<std::string> feature_names;
   FeatureTransform transform;

@@ -69,4 +69,35 @@ StoredPredictions readPredictionsFile(const std::filesystem::path& path,
   return stored;
 }
 
+std::vector<Mixture> readComponentsFile(const std::filesystem::path& path,
+                                        const std::vector<std::string>& parameters,
+                                        const std::vector<int>& samples) {
+  const CsvTable table = readCsvFile(path);
+  const Rows rows(path, table);
+  std::vector<Mixture> mixtures;
+  const auto p = static_cast<Eigen::Index>(parameters.size());
+  std::size_t row = 0;
+  while (!table.empty() && mixtures.size() < samples.size()) {
+    const std::string sample = std::to_string(samples[mixtures.size()]);
+    Mixture mixture;
+    while (row < table.rows.size() && table.getText(row, "sample") == sample) {
+      const Eigen::Index c = mixture.countComponents();
+      mixture.weights.conservativeResize(c + 1);
+      mixture.means.conservativeResize(p, c + 1);
+      mixture.stddevs.conservativeResize(p, c + 1);
+      mixture.weights[c] = rows.getNumber(row, "weight");
+      for (Eigen::Index k = 0; k < p; ++k, ++row) {
+        rows.requireText(row, "parameter", parameters[static_cast<std::size_t>(k)]);
+        mixture.means(k, c) = rows.getNumber(row, "mean");
+        mixture.stddevs(k, c) = rows.getNumber(row, "stddev");
+      }
+    }
+    if (!mixture.isGiven()) {
+      throw std::runtime_error(path.string() + ": must have the components of sample " + sample);
+    }
+    mixtures.push_back(std::move(mixture));
+  }
+  return mixtures;
+}
+
 }  // namespace twinmap

@@ -57,6 +57,26 @@ double calcMeanLogDensity(const MatrixXd& standardised, const VectorXd& stddev_s
   return sum / static_cast<double>(standardised.cols());
 }
 
+/// The two-sided normal quantiles of the smallest sets of the mixtures that hold the truth of a parameter.
+VectorXd calcDepths(const std::vector<Mixture>& mixtures, const MatrixXd& truth, Index parameter) {
+  VectorXd depths(truth.cols());
+  for (Index i = 0; i < depths.size(); ++i) {
+    depths[i] =
+        calcDepth(takeMarginal(mixtures[static_cast<std::size_t>(i)], parameter), truth(parameter, i));
+  }
+  return depths;
+}
+
+double calcMeanLogDensity(std::vector<Mixture> mixtures, const VectorXd& stddev_scale,
+                          const MatrixXd& truth) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < mixtures.size(); ++i) {
+    mixtures[i].stddevs = stddev_scale.asDiagonal() * mixtures[i].stddevs;
+    sum += MixtureDensity(mixtures[i]).calcLog(truth.col(static_cast<Index>(i)));
+  }
+  return sum / static_cast<double>(truth.cols());
+}
+
 }  // namespace
 
 ForwardSamples selectSimulations(const ForwardSamples& samples, const std::vector<Index>& kept) {
@@ -123,7 +143,8 @@ SurrogateValidation validate(const HeldOut& held_out) {
   validation.stddev_scale.resize(p);
   validation.coverage95.resize(p);
   for (Index k = 0; k < p; ++k) {
-    const VectorXd absolute = z.row(k).cwiseAbs();
+    const VectorXd absolute = found.mixtures.empty() ? VectorXd(z.row(k).cwiseAbs())
+                                                     : calcDepths(found.mixtures, held_out.truth, k);
     validation.stddev_scale(k) = calcStddevScale(absolute);
     validation.coverage95(k) =
         static_cast<double>((absolute.array() < kNormal95).count()) / static_cast<double>(absolute.size());
@@ -135,7 +156,9 @@ SurrogateValidation validate(const HeldOut& held_out) {
   const MatrixXd scaled = validation.stddev_scale.cwiseInverse().asDiagonal() * z;
   validation.residual_correlation = calcResidualCorrelation(scaled);
   validation.log_density =
-      calcMeanLogDensity(scaled, validation.stddev_scale, found, validation.residual_correlation);
+      found.mixtures.empty()
+          ? calcMeanLogDensity(scaled, validation.stddev_scale, found, validation.residual_correlation)
+          : calcMeanLogDensity(found.mixtures, validation.stddev_scale, held_out.truth);
   validation.status =
       validation.coverage95.minCoeff() < kMapLimited ? SurrogateStatus::kMapLimited : SurrogateStatus::kOk;
   return validation;

@@ -1,6 +1,6 @@
 #include "framework/surrogate/posterior_sampler.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

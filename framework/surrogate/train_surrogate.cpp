@@ -1,6 +1,6 @@
 #include "framework/surrogate/train_surrogate.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <stdexcept>
 

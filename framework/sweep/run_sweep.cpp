@@ -1,6 +1,6 @@
 #include "framework/sweep/run_sweep.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <chrono>

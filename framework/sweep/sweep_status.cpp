@@ -1,6 +1,6 @@
 #include "framework/sweep/sweep_status.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 

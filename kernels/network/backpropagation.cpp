@@ -58,7 +58,7 @@ double calcLossAndGradient(const Network& network, const Ref<const MatrixXd>& in
   workspace.back.resize(workspace.head.rows(), workspace.head.cols());
   const double loss = calcLoss(workspace.head, workspace.targets, workspace.back);
   // the regression adds to the means
-  gradient.skip.noalias() = workspace.back.topRows(targets.rows()) * workspace.terms.transpose();
+  gradient.skip.noalias() = sumMeanRows(workspace.back, targets.rows()) * workspace.terms.transpose();
   for (std::size_t i = network.layers.size(); i-- > 0;) {
     gradient.layers[i].weights.noalias() = workspace.back * getLayerInputs(i, inputs, workspace).transpose();
     gradient.layers[i].biases = workspace.back.rowwise().sum();

@@ -59,27 +59,87 @@ void calcGradientOf(const double* head, const Standardised& sample, double* grad
   }
 }
 
+/// The loss of one sample, and its derivatives where `gradient` is not null.
+class SampleLoss {
+ public:
+  SampleLoss(Index targets, Index outputs)
+      : targets_(targets),
+        components_(countComponents(targets, outputs)),
+        sample_{Eigen::ArrayXd(targets), Eigen::ArrayXd(targets)},
+        weights_(components_),
+        shares_(components_) {}
+
+  double calculate(const double* head, const double* target, double* gradient) {
+    return components_ == 1 ? calcNormal(head, target, gradient) : calcMixture(head, target, gradient);
+  }
+
+ private:
+  double calcNormal(const double* head, const double* target, double* gradient) {
+    standardise(head, target, sample_);
+    if (gradient != nullptr) {
+      calcGradientOf(head, sample_, gradient);
+    }
+    return calcLossOf(head, sample_);
+  }
+
+  double calcMixture(const double* head, const double* target, double* gradient) {
+    calcWeights(Eigen::Map<const VectorXd>(head, components_), weights_);
+    for (Index c = 0; c < components_; ++c) {
+      const Index first = getComponentRow(targets_, components_, c);
+      shares_[c] =
+          std::log(weights_[c]) - calcNormal(head + first, target, gradient ? gradient + first : nullptr);
+    }
+    const double largest = shares_.maxCoeff();
+    const double sum = (shares_.array() - largest).exp().sum();
+    if (gradient != nullptr) {
+      shares_ = (shares_.array() - largest).exp() / sum;  // of the density at the target
+      for (Index c = 0; c < components_; ++c) {
+        gradient[c] = weights_[c] - shares_[c];
+        Eigen::Map<VectorXd>(gradient + getComponentRow(targets_, components_, c),
+                             countNormalOutputs(targets_)) *= shares_[c];
+      }
+    }
+    return -(largest + std::log(sum));
+  }
+
+  Index targets_, components_;
+  Standardised sample_;
+  VectorXd weights_, shares_;
+};
+
 }  // namespace
 
 double calcLoss(const Ref<const MatrixXd>& head, const Ref<const MatrixXd>& targets, Ref<MatrixXd> gradient) {
-  Standardised sample{Eigen::ArrayXd(targets.rows()), Eigen::ArrayXd(targets.rows())};
+  SampleLoss sample(targets.rows(), head.rows());
   double loss = 0.0;
   for (Index column = 0; column < targets.cols(); ++column) {
-    standardise(head.col(column).data(), targets.col(column).data(), sample);
-    loss += calcLossOf(head.col(column).data(), sample);
-    calcGradientOf(head.col(column).data(), sample, gradient.col(column).data());
+    loss +=
+        sample.calculate(head.col(column).data(), targets.col(column).data(), gradient.col(column).data());
   }
   return loss;
 }
 
 double calcLoss(const Ref<const MatrixXd>& head, const Ref<const MatrixXd>& targets) {
-  Standardised sample{Eigen::ArrayXd(targets.rows()), Eigen::ArrayXd(targets.rows())};
+  SampleLoss sample(targets.rows(), head.rows());
   double loss = 0.0;
   for (Index column = 0; column < targets.cols(); ++column) {
-    standardise(head.col(column).data(), targets.col(column).data(), sample);
-    loss += calcLossOf(head.col(column).data(), sample);
+    loss += sample.calculate(head.col(column).data(), targets.col(column).data(), nullptr);
   }
   return loss;
+}
+
+void calcWeights(const Ref<const VectorXd>& logarithms, Ref<VectorXd> weights) {
+  weights = (logarithms.array() - logarithms.maxCoeff()).exp();
+  weights /= weights.sum();
+}
+
+MatrixXd sumMeanRows(const Ref<const MatrixXd>& gradient, Index targets) {
+  const Index components = countComponents(targets, gradient.rows());
+  MatrixXd sum = gradient.middleRows(getComponentRow(targets, components, 0), targets);
+  for (Index c = 1; c < components; ++c) {
+    sum += gradient.middleRows(getComponentRow(targets, components, c), targets);
+  }
+  return sum;
 }
 
 void calcMoments(const Ref<const VectorXd>& head, Ref<VectorXd> mean, Ref<MatrixXd> covariance,

@@ -65,8 +65,13 @@ Network makeNetwork(const MatrixXd& inputs, const MatrixXd& targets, const Netwo
     network.layers.push_back({std::move(weights), VectorXd::Zero(units)});
     before = units;
   }
-  const Index outputs = countHeadOutputs(targets.rows());
+  const Index p = targets.rows(), outputs = countHeadOutputs(p, shape.components);
   network.layers.push_back({MatrixXd::Zero(outputs, before), VectorXd::Zero(outputs)});
+  for (Index c = 0; c < shape.components && shape.components > 1; ++c) {
+    for (Index i = 0; i < p; ++i) {
+      network.layers.back().biases[getComponentRow(p, shape.components, c) + i] = normal(drawn++);
+    }
+  }
   return network;
 }
 

@@ -7,6 +7,25 @@
 #include "kernels/network/density.hpp"
 
 namespace twinmap::network {
+namespace {
+
+void scaleCovariance(const VectorXd& scale, MatrixXd& covariance) {
+  for (Index j = 0; j < scale.size(); ++j) {
+    for (Index i = 0; i < scale.size(); ++i) {
+      covariance(i, j) *= scale[i] * scale[j];
+    }
+  }
+}
+
+/// From the head's units to the targets'; the workspace's mean is still that of the regression alone.
+void scaleComponents(const VectorXd& scale, Predictor::Workspace& workspace) {
+  for (Index c = 0; c < workspace.weights.size(); ++c) {
+    workspace.means.col(c) = workspace.mean + scale.cwiseProduct(workspace.means.col(c));
+    scaleCovariance(scale, workspace.covariances[static_cast<std::size_t>(c)]);
+  }
+}
+
+}  // namespace
 
 Predictor::Predictor(Network network) : network_(std::move(network)) {
   const Layer& layer = network_.layers.front();
@@ -31,6 +50,29 @@ Predictor::Workspace::Workspace(const Predictor& predictor) {
   stddev.resize(p);
   covariance.resize(p, p);
   inverse.resize(p, p);
+  const Index components = network.countComponents();
+  weights.resize(components);
+  means.resize(p, components);
+  covariances.assign(static_cast<std::size_t>(components), MatrixXd(p, p));
+}
+
+/// Moments of the components, and of their mixture, in the head's units.
+void Predictor::mix(const Ref<const VectorXd>& head, Workspace& workspace) const {
+  const Index p = network_.countTargets(), components = workspace.weights.size();
+  calcWeights(head.head(components), workspace.weights);
+  workspace.standard.setZero();
+  for (Index c = 0; c < components; ++c) {
+    calcMoments(head.segment(getComponentRow(p, components, c), countNormalOutputs(p)),
+                workspace.means.col(c), workspace.covariances[static_cast<std::size_t>(c)],
+                workspace.inverse);
+    workspace.standard += workspace.weights[c] * workspace.means.col(c);
+  }
+  workspace.covariance.setZero();
+  for (Index c = 0; c < components; ++c) {
+    const auto apart = workspace.means.col(c) - workspace.standard;
+    workspace.covariance += workspace.weights[c] * workspace.covariances[static_cast<std::size_t>(c)];
+    workspace.covariance.noalias() += (workspace.weights[c] * apart).lazyProduct(apart.transpose());
+  }
 }
 
 void Predictor::predict(const Ref<const VectorXd>& inputs, Workspace& workspace) const {
@@ -54,14 +96,15 @@ void Predictor::predict(const Ref<const VectorXd>& inputs, Workspace& workspace)
     workspace.sums.swap(workspace.other);
     units = layer.biases.size();
   }
-  calcMoments(workspace.sums.head(units), workspace.standard, workspace.covariance, workspace.inverse);
-  workspace.mean += network_.scale.cwiseProduct(workspace.standard);
-  for (Index i = 0; i < p; ++i) {
-    for (Index j = 0; j < p; ++j) {
-      workspace.covariance(i, j) *= network_.scale[i] * network_.scale[j];
-    }
-    workspace.stddev[i] = std::sqrt(workspace.covariance(i, i));
+  if (workspace.weights.size() == 1) {
+    calcMoments(workspace.sums.head(units), workspace.standard, workspace.covariance, workspace.inverse);
+  } else {
+    mix(workspace.sums.head(units), workspace);
+    scaleComponents(network_.scale, workspace);
   }
+  workspace.mean += network_.scale.cwiseProduct(workspace.standard);
+  scaleCovariance(network_.scale, workspace.covariance);
+  workspace.stddev = workspace.covariance.diagonal().cwiseSqrt();
 }
 
 }  // namespace twinmap::network

@@ -16,6 +16,10 @@ class Predictor {
     VectorXd mean;        ///< p
     VectorXd stddev;      ///< p
     MatrixXd covariance;  ///< p x p
+    // of each of c components; mean and covariance are then those of their mixture
+    VectorXd weights;                   ///< c
+    MatrixXd means;                     ///< p x c
+    std::vector<MatrixXd> covariances;  ///< p x p each
 
    private:
     friend class Predictor;
@@ -25,11 +29,14 @@ class Predictor {
 
   const Network& getNetwork() const { return network_; }
 
-  /// Mean, standard deviation and covariance of the targets for inputs (k), left in the workspace. Does not
-  /// allocate. Cost: 2 flops a weight, an exponential a hidden unit, and p^3 / 3.
+  /// Mean, standard deviation and covariance of the targets for inputs (k), and those of the components where
+  /// there are several, left in the workspace. Does not allocate. Cost: 2 flops a weight, an exponential a
+  /// hidden unit, and p^3 / 3 a component.
   void predict(const Ref<const VectorXd>& inputs, Workspace& workspace) const;
 
  private:
+  void mix(const Ref<const VectorXd>& head, Workspace& workspace) const;
+
   Network network_;
   Layer first_;  // the first layer's sums, then the linear part of the regression
 };

@@ -1,6 +1,6 @@
 #include "framework/multibody/lanes/compare_with_simbody.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <random>
 

@@ -1,4 +1,4 @@
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "framework/report/sections/calibration_tables.hpp"
 #include "framework/report/sections/sections.hpp"

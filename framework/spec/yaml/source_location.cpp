@@ -1,6 +1,6 @@
 #include "framework/spec/yaml/source_location.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "framework/inverse_map/draws.hpp"
+
 namespace twinmap {
 namespace {
 

@@ -170,6 +170,59 @@ TEST(NetworkMap, IsTheSameForAnyNumberOfThreads) {
             trainNetworkMap({oscillation.model, spec, 3}, teacher.surrogate, {3}).map.network.skip);
 }
 
+/// A parameter whose square alone is measured, and one that is measured as it is.
+NetworkMapTraining trainOnSquares(Index count, NetworkHead head) {
+  ModelSpec model;
+  model.parameters = {makeParameter("side", -1.0, 1.0), makeParameter("size", 0.0, 1.0)};
+  const std::vector<FeatureSpec> features{SamplesFeatureSpec{{{"y", {}}}, 1.0, 1.0, 2}};
+  const ResponseLayout layout{{"y"}, {"m"}, collectTimes(features)};
+  const FeatureExtractor extractor(features, layout);
+  const ResponseNoise noise(VectorXd::Constant(2, kNoise));
+  const RandomStream random(1, RandomPurpose::kTrainDesign);
+  const MatrixXd points = MatrixXd::NullaryExpr(2, count, [&](Index i, Index j) {
+    return (i == 0 ? -1.0 : 0.0) + (i == 0 ? 2.0 : 1.0) * random.calcUniform(j, i);
+  });
+  MatrixXd responses(2, count);
+  responses << points.row(0).cwiseAbs2(), points.row(1);
+  const FeatureTransform transform{{AffineStep{VectorXd::Zero(2), VectorXd::Constant(2, kNoise), {}}}};
+  const MatrixXd covariance = kNoise * kNoise * MatrixXd::Identity(2, 2);
+  NetworkMapSpec spec = makeSpec(1200);
+  spec.head = head;
+  return trainNetworkMap({model, spec, 3}, {points, responses, extractor, noise, transform, true, covariance},
+                         {2});
+}
+
+double calcShareWithin(const NetworkMapTraining& trained, double probability) {
+  int held = 0;
+  for (std::size_t i = 0; i < trained.held_out.mixtures.size(); ++i) {
+    const double truth = trained.held_out_truth(0, static_cast<Index>(i));
+    held += calcCredibility(takeMarginal(trained.held_out.mixtures[i], 0), truth) < probability ? 1 : 0;
+  }
+  return static_cast<double>(held) / static_cast<double>(trained.held_out.mixtures.size());
+}
+
+TEST(NetworkMap, OfAMixtureKnowsBothAnswers) {
+  const NetworkMapTraining mixed = trainOnSquares(10000, NetworkHead::kMixture);
+  EXPECT_TRUE(mixed.warnings.empty());
+  ASSERT_EQ(mixed.held_out.mixtures.size(), static_cast<std::size_t>(mixed.held_out.mean.cols()));
+  EXPECT_NEAR(calcShareWithin(mixed, 0.5), 0.5, 0.05);
+  EXPECT_NEAR(calcShareWithin(mixed, 0.95), 0.95, 0.025);
+  const Predictions at = mixed.map.predict(Eigen::Vector2d(0.36, 0.5), MatrixXd(0, 1));
+  const Intervals sets = findHighestDensity(takeMarginal(at.mixtures.front(), 0), 0.95);
+  ASSERT_EQ(sets.size(), 2U);
+  EXPECT_NEAR(0.5 * (sets[0].first + sets[0].second), -0.6, 0.02);
+  EXPECT_NEAR(0.5 * (sets[1].first + sets[1].second), 0.6, 0.02);
+  EXPECT_EQ(findHighestDensity(takeMarginal(at.mixtures.front(), 1), 0.95).size(), 1U);
+  EXPECT_NEAR(at.mean(1, 0), 0.5, 0.02);
+}
+
+TEST(NetworkMap, OfOneNormalDistributionSaysWhereItsAnswersAreNone) {
+  const NetworkMapTraining normal = trainOnSquares(10000, NetworkHead::kGaussian);
+  ASSERT_EQ(normal.warnings.size(), 1U);
+  EXPECT_NE(normal.warnings[0].find("side: 50 % intervals"), std::string::npos) << normal.warnings[0];
+  EXPECT_NE(normal.warnings[0].find("head: mixture"), std::string::npos);
+}
+
 TEST(NetworkMap, RefusesTooFewSimulationsAndOtherSizes) {
   const Oscillation oscillation;
   EXPECT_THROW(trainOnSimulations(oscillation, 40, 10), std::invalid_argument);

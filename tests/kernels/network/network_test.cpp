@@ -50,6 +50,24 @@ TEST(HeadDensity, GrowsLinearlyBeyondTheLargestResidual) {
   EXPECT_DOUBLE_EQ(gradient(0), kLargestResidual);
 }
 
+TEST(HeadDensity, OfSeveralComponentsIsTheLogarithmOfTheirSum) {
+  const Index p = 3, components = 2, outputs = countNormalOutputs(p);
+  const VectorXd head = makeWave(countHeadOutputs(p, components), 1, 5), target = makeWave(p, 1, 6);
+  ASSERT_EQ(head.size(), 2 + 2 * outputs);
+  const double first = std::exp(head[0]) / (std::exp(head[0]) + std::exp(head[1]));
+  const double density = first * std::exp(-calcLoss(head.segment(2, outputs), target)) +
+                         (1.0 - first) * std::exp(-calcLoss(head.segment(2 + outputs, outputs), target));
+  EXPECT_NEAR(calcLoss(head, target), -std::log(density), 1e-13);
+}
+
+TEST(HeadDensity, OfEqualComponentsIsThatOfOne) {
+  const Index p = 3, outputs = countNormalOutputs(p);
+  const VectorXd one = makeWave(outputs, 1, 5), target = 20.0 * makeWave(p, 1, 6);
+  VectorXd head(countHeadOutputs(p, 4));
+  head << 1.0, -2.0, 0.5, 3.0, one, one, one, one;
+  EXPECT_NEAR(calcLoss(head, target), calcLoss(one, target), 1e-12 * calcLoss(one, target));
+}
+
 TEST(Backpropagation, AgreesWithNumpy) {
   const Network network = makeWaveNetwork();
   Gradient gradient = makeZeros(network);
@@ -73,8 +91,12 @@ TEST(Backpropagation, AgreesWithNumpy) {
                    calcLossAndGradient(network, inputs, targets, gradient, workspace));
 }
 
-TEST(Backpropagation, AgreesWithFiniteDifferences) {
-  Network network = makeWaveNetwork();
+class BackpropagationOf : public testing::TestWithParam<Index> {};
+
+INSTANTIATE_TEST_SUITE_P(Components, BackpropagationOf, testing::Values(1, 3));
+
+TEST_P(BackpropagationOf, AgreesWithFiniteDifferences) {
+  Network network = makeWaveNetwork(GetParam());
   Gradient gradient = makeZeros(network);
   PassWorkspace workspace;
   const MatrixXd inputs = makeWave(kInputs, kSamples, 30), targets = makeWave(kTargets, kSamples, 31);
@@ -94,8 +116,8 @@ TEST(Backpropagation, AgreesWithFiniteDifferences) {
   }
 }
 
-TEST(Backpropagation, ThatOfTheRegressionAgreesWithFiniteDifferences) {
-  Network network = makeWaveNetwork();
+TEST_P(BackpropagationOf, TheRegressionAgreesWithFiniteDifferences) {
+  Network network = makeWaveNetwork(GetParam());
   network.products = {2, 0};
   network.skip = makeWave(kTargets, kInputs + 3, 21);
   Gradient gradient = makeZeros(network);
@@ -169,6 +191,32 @@ TEST(NetworkPredictor, IsTheNetworkWithItsLayersWrittenOut) {
     EXPECT_LT((workspace.covariance - covariance).norm(), 1e-12 * covariance.norm());
     EXPECT_LT((workspace.stddev.cwiseAbs2() - covariance.diagonal()).norm(), 1e-12 * covariance.norm());
   }
+}
+
+TEST(NetworkPredictor, MixesItsComponents) {
+  const Index components = 3;
+  const Network network = makeWaveNetwork(components);
+  const Predictor predictor(network);
+  Predictor::Workspace workspace(predictor);
+  predictor.predict(makeWave(kInputs, 1, 33), workspace);
+  EXPECT_NEAR(workspace.weights.sum(), 1.0, 1e-15);
+  EXPECT_LT((workspace.means * workspace.weights - workspace.mean).norm(), 1e-13);
+  MatrixXd covariance = MatrixXd::Zero(kTargets, kTargets);
+  for (Index c = 0; c < components; ++c) {
+    // a network of this component alone
+    Network one = network;
+    const Index first = getComponentRow(kTargets, components, c), outputs = countNormalOutputs(kTargets);
+    one.layers.back() = {network.layers.back().weights.middleRows(first, outputs),
+                         network.layers.back().biases.segment(first, outputs)};
+    const Predictor alone(one);
+    Predictor::Workspace of_one(alone);
+    alone.predict(makeWave(kInputs, 1, 33), of_one);
+    EXPECT_LT((workspace.means.col(c) - of_one.mean).norm(), 1e-13);
+    EXPECT_LT((workspace.covariances[static_cast<std::size_t>(c)] - of_one.covariance).norm(), 1e-12);
+    const VectorXd apart = of_one.mean - workspace.mean;
+    covariance += workspace.weights[c] * (of_one.covariance + apart * apart.transpose());
+  }
+  EXPECT_LT((workspace.covariance - covariance).norm(), 1e-12 * covariance.norm());
 }
 
 }  // namespace

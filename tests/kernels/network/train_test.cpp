@@ -34,7 +34,8 @@ Network makeInitial() {
   const Samples samples = makeSamples(500);
   std::mt19937_64 engine(3);
   std::normal_distribution<> normal;
-  return makeNetwork(samples.inputs, samples.targets, {{16, 16}, 1e-8, {}}, [&](Index) { return normal(engine); });
+  return makeNetwork(samples.inputs, samples.targets, {{16, 16}, 1e-8, {}},
+                     [&](Index) { return normal(engine); });
 }
 
 TrainingOptions makeOptions(Index steps, int threads = 1) {
