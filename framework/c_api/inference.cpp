@@ -42,7 +42,8 @@ twinmap_result answer(twinmap_inferrer* inferrer, const Infer& infer) {
   return guard([&] {
     twinmap_inferrer& self = require(inferrer, "inferrer");
     self.answered.reset();
-    twinmap_inferrer::Answered answered{infer(self, getKnown(self)), {}, {}, false, {}};
+    twinmap_inferrer::Answered answered;
+    answered.measurement = infer(self, getKnown(self));
     twinmap::Answer chosen = twinmap::chooseAnswer(answered.measurement);
     answered.mean = std::move(chosen.mean);
     answered.stddev = std::move(chosen.stddev);

@@ -22,8 +22,13 @@ Eigen::VectorXd getKnown(const LabelledFeatures& test, Index i) {
   return test.inputs.rows() > 0 ? Eigen::VectorXd(test.inputs.col(i)) : Eigen::VectorXd();
 }
 
+struct RefinementTasks {
+  std::vector<RefinementTask> tasks;
+  std::vector<bool> several;  ///< whether the map knows of several answers
+};
+
 /// From what the online map and its trust model say.
-std::vector<RefinementTask> makeTasks(const RefinementContext& context) {
+RefinementTasks makeTasks(const RefinementContext& context) {
   const LabelledFeatures& test = context.data.labelled.test;
   const OnlineMap map(context.online.map);
   OnlineMap::Workspace inferring(map);
@@ -32,7 +37,7 @@ std::vector<RefinementTask> makeTasks(const RefinementContext& context) {
   if (trust != nullptr) {
     judging.emplace(*trust);
   }
-  std::vector<RefinementTask> tasks;
+  RefinementTasks all;
   for (Index i = 0; i < test.features.cols(); ++i) {
     MapAnswer answer;
     answer.known = getKnown(test, i);
@@ -43,9 +48,10 @@ std::vector<RefinementTask> makeTasks(const RefinementContext& context) {
       answer.explanation = trust->makeSampledPoint(judging->explanation->point);
       answer.covariance = judging->explanation->calcCovariance();
     }
-    tasks.push_back(makeRefinementTask(context.experiment.model, trust, test.features.col(i), answer));
+    all.tasks.push_back(makeRefinementTask(context.experiment.model, trust, test.features.col(i), answer));
+    all.several.push_back(hasSeveralAnswers(inference.mixture));
   }
-  return tasks;
+  return all;
 }
 
 /// "121 accepted from inverse_map, 5 nonlinear"
@@ -77,11 +83,19 @@ void warnOfFew(const std::vector<Refined>& refined, const std::string& outcome, 
 std::vector<Refined> refineAll(const RefinementContext& context) {
   const RefinementModel model(collectUnknown(context.experiment.model), context.extractor,
                               context.data.noise);
-  return refineWhileHopeful(context.simulator, model, makeTasks(context), context.control.threads, [&] {
-    if (context.control.abandon != nullptr && *context.control.abandon) {
-      throw Interrupted("interrupted during refinement; the simulated samples are kept");
+  RefinementTasks all = makeTasks(context);
+  std::vector<Refined> refined =
+      refineWhileHopeful(context.simulator, model, std::move(all.tasks), context.control.threads, [&] {
+        if (context.control.abandon != nullptr && *context.control.abandon) {
+          throw Interrupted("interrupted during refinement; the simulated samples are kept");
+        }
+      });
+  for (std::size_t i = 0; i < refined.size(); ++i) {
+    if (all.several[i]) {
+      rejectAsOneOfSeveral(refined[i]);
     }
-  });
+  }
+  return refined;
 }
 
 }  // namespace

@@ -3,9 +3,11 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "framework/spec/check/check_experiment.hpp"
 #include "framework/spec/experiment_file.hpp"
 #include "framework/spec/resolve_defaults.hpp"
 #include "framework/store/map_summary.hpp"
+#include "framework/store/predictions_file.hpp"
 #include "framework/store/samples_file.hpp"
 
 namespace twinmap {
@@ -18,11 +20,22 @@ std::string makeLabel(const fs::path& folder) {
   return whole.has_filename() ? whole.filename().string() : whole.parent_path().filename().string();
 }
 
+/// Of the samples in predictions.csv.
+std::vector<Mixture> readMixtures(const fs::path& path, const RunFolder& run) {
+  const std::vector<std::string> names = collectNames(run.experiment.model.parameters);
+  std::vector<int> samples;
+  for (std::size_t row = 0; row < run.predictions.rows.size(); row += names.size()) {
+    samples.push_back(static_cast<int>(run.predictions.getNumber(row, "sample")));
+  }
+  return readComponentsFile(path / "components.csv", names, samples);
+}
+
 void readTables(const fs::path& path, RunFolder& run) {
   run.metrics = readCsvFile(path / "metrics.csv");
   run.joint = readCsvFile(path / "joint.csv");
   run.methods = readCsvFile(path / "methods.csv");
   run.predictions = readCsvFile(path / "predictions.csv");
+  run.mixtures = readMixtures(path, run);
   run.training = readCsvFile(path / "training.csv");
   run.hyperparameters = readCsvFile(path / "hyperparameters.csv");
   run.failures = readCsvFile(path / "failures.csv");

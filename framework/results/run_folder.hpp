@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/inverse_map/mixture.hpp"
 #include "framework/results/provenance_record.hpp"
 #include "framework/spec/experiment_spec.hpp"
 #include "framework/store/csv_file.hpp"
@@ -22,6 +23,7 @@ struct RunFolder {
   CsvTable joint;
   CsvTable methods;
   CsvTable predictions;
+  std::vector<Mixture> mixtures;  ///< of each test sample, where predictions are such; else empty
   CsvTable training;
   CsvTable hyperparameters;
   CsvTable failures;

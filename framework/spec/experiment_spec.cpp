@@ -4,13 +4,6 @@
 // tenth of the build.
 namespace twinmap {
 
-ParameterSpec::ParameterSpec() = default;
-ParameterSpec::ParameterSpec(const ParameterSpec&) = default;
-ParameterSpec::ParameterSpec(ParameterSpec&&) noexcept = default;
-ParameterSpec& ParameterSpec::operator=(const ParameterSpec&) = default;
-ParameterSpec& ParameterSpec::operator=(ParameterSpec&&) noexcept = default;
-ParameterSpec::~ParameterSpec() = default;
-
 SignalSpec::SignalSpec() = default;
 SignalSpec::SignalSpec(const SignalSpec&) = default;
 SignalSpec::SignalSpec(SignalSpec&&) noexcept = default;

@@ -26,14 +26,6 @@ struct ParameterSpec {
   std::string description;
   RelativeTo relative_to = RelativeTo::kValue;  ///< of an updating parameter
   std::optional<Name> variable;                 ///< of a model from elsewhere; default: the name
-
-  // compiled once (experiment_spec.cpp)
-  ParameterSpec();
-  ParameterSpec(const ParameterSpec&);
-  ParameterSpec(ParameterSpec&&) noexcept;
-  ParameterSpec& operator=(const ParameterSpec&);
-  ParameterSpec& operator=(ParameterSpec&&) noexcept;
-  ~ParameterSpec();
 };
 
 template <class Fields>

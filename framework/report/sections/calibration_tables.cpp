@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <boost/math/distributions/beta.hpp>
 #include <boost/math/distributions/binomial.hpp>
-#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 
+#include "framework/evaluation/calibration.hpp"
 #include "framework/report/sections/samples_table.hpp"
 #include "framework/spec/check/check_experiment.hpp"
 
@@ -16,10 +16,6 @@ namespace {
 double calcOrderQuantile(int k, int n, double probability) {
   using Double = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
   return boost::math::quantile(boost::math::beta_distribution<double, Double>(k, n - k + 1), probability);
-}
-
-double calcNormalQuantile(double probability) {
-  return boost::math::quantile(boost::math::normal(), probability);
 }
 
 /// Quantiles of the number of successes of n trials, which bound the central kConfidence.
@@ -43,13 +39,12 @@ struct Scores {
 };
 
 Scores collectScores(const RunFolder& run, const std::string& parameter) {
-  const ParameterPredictions found = collectPredictions(run.predictions, parameter);
+  const ParameterPredictions found = collectPredictions(run, parameter);
   Scores scores;
   for (std::size_t i = 0; i < std::min(found.samples.size(), kMostDrawnSamples); ++i) {
-    const double z = (found.inferred[i] - found.truth[i]) / found.stddev[i];
-    if (std::isfinite(z)) {
+    if (std::isfinite(found.z[i])) {
       scores.samples.push_back(found.samples[i]);
-      scores.z.push_back(z);
+      scores.z.push_back(found.z[i]);
     }
   }
   return scores;

@@ -58,6 +58,65 @@ Figure makeFigure(const RunFolder& run, bool of_error) {
   return figure;
 }
 
+constexpr const char* kComponents = "components";
+
+/// A row for each test sample that is drawn and each of its answers, but for the unlikeliest.
+DataTable makeComponentsTable(const RunFolder& run) {
+  constexpr double kLeast = 0.02;  // cannot be seen below
+  const std::vector<ParameterSpec>& parameters = run.experiment.model.parameters;
+  std::vector<double> samples, weights;
+  std::vector<std::vector<double>> truth(parameters.size()), mean(truth), stddev(truth);
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const ParameterPredictions found = collectPredictions(run, parameters[p].name.text);
+    for (std::size_t i = 0; i < std::min(run.mixtures.size(), kMostDrawnSamples); ++i) {
+      const Mixture& mixture = run.mixtures[i];
+      for (Eigen::Index c = 0; c < mixture.countComponents(); ++c) {
+        if (mixture.weights[c] < kLeast) {
+          continue;
+        }
+        if (p == 0) {
+          samples.push_back(found.samples[i]);
+          weights.push_back(mixture.weights[c]);
+        }
+        truth[p].push_back(found.truth[i]);
+        mean[p].push_back(mixture.means(static_cast<Eigen::Index>(p), c));
+        stddev[p].push_back(mixture.stddevs(static_cast<Eigen::Index>(p), c));
+      }
+    }
+  }
+  DataTable table;
+  table.add("sample", std::move(samples));
+  table.add("weight", std::move(weights));
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const std::string& name = parameters[p].name.text;
+    table.add(getTrueColumn(name), std::move(truth[p]));
+    table.add("mean_" + name, std::move(mean[p]));
+    table.add(getStddevColumn(name), std::move(stddev[p]));
+  }
+  return table;
+}
+
+/// All answers of mixtures against the truth.
+Figure makeComponentsFigure(const RunFolder& run) {
+  const std::vector<ParameterSpec>& parameters = run.experiment.model.parameters;
+  Figure figure;
+  figure.name = kComponents;
+  figure.table = kComponents;
+  figure.title = "Answers against true";
+  figure.help =
+      describeDrawnSamples(run) +
+      "Each sample has as many answers as its mixture has components, the darker the likelier; bars span "
+      "\u00b12 sd. Where several fit, one of them lies on the dashed line.";
+  figure.columns = static_cast<int>(std::min<std::size_t>(parameters.size(), 3));
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    figure.panels.push_back(
+        {kComponents,
+         {{"name", parameters[p].name.text}, {"label", makeLabel(parameters[p])}, {"color", getColor(p)}},
+         {{"lower", parameters[p].bounds.lower}, {"upper", parameters[p].bounds.upper}}});
+  }
+  return figure;
+}
+
 }  // namespace
 
 void addInferred(const RunFolder& run, Page& page) {
@@ -65,8 +124,13 @@ void addInferred(const RunFolder& run, Page& page) {
     return;
   }
   Section section{"inferred", "True against inferred", "", {}};
-  addFigure(makeFigure(run, false), section);
-  addFigure(makeFigure(run, true), section);
+  if (run.mixtures.empty()) {
+    addFigure(makeFigure(run, false), section);
+    addFigure(makeFigure(run, true), section);
+  } else {
+    page.tables[kComponents] = makeComponentsTable(run);
+    addFigure(makeComponentsFigure(run), section);
+  }
   addSelectedResponses(run, section, page);
   page.sections.push_back(std::move(section));
 }

@@ -6,6 +6,8 @@
 #include <boost/math/special_functions/erf.hpp>
 #include <cmath>
 
+#include "framework/evaluation/calibration.hpp"
+
 namespace twinmap {
 namespace {
 
@@ -22,13 +24,34 @@ std::vector<double> takeDrawn(std::vector<double> values) {
   return values;
 }
 
+Eigen::Index findParameter(const RunFolder& run, const std::string& name) {
+  const std::vector<ParameterSpec>& parameters = run.experiment.model.parameters;
+  const auto found = std::find_if(parameters.begin(), parameters.end(),
+                                  [&](const ParameterSpec& one) { return one.name.text == name; });
+  return found - parameters.begin();
+}
+
+std::vector<double> calcScores(const RunFolder& run, const std::string& parameter,
+                               const ParameterPredictions& found) {
+  const Eigen::Index row = findParameter(run, parameter);
+  std::vector<double> scores;
+  for (std::size_t i = 0; i < found.truth.size(); ++i) {
+    scores.push_back(
+        run.mixtures.empty()
+            ? (found.inferred[i] - found.truth[i]) / found.stddev[i]
+            : -calcNormalQuantile(takeMarginal(run.mixtures[i], row).calcProbability(found.truth[i])));
+  }
+  return scores;
+}
+
 }  // namespace
 
 double calcPit(double z) {
   return std::isnan(z) ? z : 0.5 * boost::math::erfc(-z / std::sqrt(2.0));
 }
 
-ParameterPredictions collectPredictions(const CsvTable& predictions, const std::string& parameter) {
+ParameterPredictions collectPredictions(const RunFolder& run, const std::string& parameter) {
+  const CsvTable& predictions = run.predictions;
   ParameterPredictions found;
   const bool has_limit = predictions.hasColumn("limit_stddev");
   for (std::size_t row = 0; row < predictions.rows.size(); ++row) {
@@ -47,6 +70,7 @@ ParameterPredictions collectPredictions(const CsvTable& predictions, const std::
   if (std::none_of(found.limit_stddev.begin(), found.limit_stddev.end(), is_known)) {
     found.limit_stddev.clear();
   }
+  found.z = calcScores(run, parameter, found);
   return found;
 }
 
@@ -54,12 +78,11 @@ DataTable makeSamplesTable(const RunFolder& run) {
   DataTable table;
   for (const ParameterSpec& parameter : run.experiment.model.parameters) {
     const std::string& name = parameter.name.text;
-    const ParameterPredictions found = collectPredictions(run.predictions, name);
-    std::vector<double> error, score, pit;
+    const ParameterPredictions found = collectPredictions(run, name);
+    std::vector<double> error, pit;
     for (std::size_t i = 0; i < found.truth.size(); ++i) {
       error.push_back(found.inferred[i] - found.truth[i]);
-      score.push_back(error.back() / found.stddev[i]);
-      pit.push_back(calcPit(score.back()));
+      pit.push_back(calcPit(found.z[i]));
     }
     if (!table.hasColumn("sample")) {
       table.add("sample", takeDrawn(found.samples));
@@ -71,7 +94,7 @@ DataTable makeSamplesTable(const RunFolder& run) {
       table.add(getLimitColumn(name), takeDrawn(found.limit_stddev));
     }
     table.add(getErrorColumn(name), takeDrawn(error));
-    table.add(getScoreColumn(name), takeDrawn(score));
+    table.add(getScoreColumn(name), takeDrawn(found.z));
     table.add(getPitColumn(name), takeDrawn(pit));
   }
   return table;

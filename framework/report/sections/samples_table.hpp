@@ -33,9 +33,11 @@ inline std::string getPitColumn(const std::string& parameter) {
 
 /// What predictions.csv says of one parameter, in the order of its samples.
 struct ParameterPredictions {
-  std::vector<double> samples, truth, inferred, stddev, limit_stddev;  ///< limit_stddev empty if not known
+  std::vector<double> samples, truth, inferred, stddev;
+  std::vector<double> z;             ///< (inferred - true) / stddev; of mixtures, a normal number likewise
+  std::vector<double> limit_stddev;  ///< empty if not known
 };
-ParameterPredictions collectPredictions(const CsvTable& predictions, const std::string& parameter);
+ParameterPredictions collectPredictions(const RunFolder& run, const std::string& parameter);
 
 /// The probability integral transform of z: the standard normal distribution function.
 double calcPit(double z);
@@ -44,7 +46,7 @@ double calcPit(double z);
 inline constexpr std::size_t kMostDrawnSamples = 1000;
 
 /// One row per test sample: its index, and per parameter the true and the inferred value, the stddev, the
-/// limit where it is known, the error (inferred - true), z = error / stddev and its PIT.
+/// limit where it is known, the error (inferred - true), z and its PIT.
 DataTable makeSamplesTable(const RunFolder& run);
 
 /// "The first 1000 of 5000 test samples are drawn.", or "".

@@ -82,8 +82,7 @@ std::vector<double> takeKeptTimes(const Eigen::VectorXd& times) {
 }
 
 std::vector<double> findDrawnSamples(const RunFolder& run) {
-  std::vector<double> samples =
-      collectPredictions(run.predictions, run.experiment.model.parameters[0].name.text).samples;
+  std::vector<double> samples = collectPredictions(run, run.experiment.model.parameters[0].name.text).samples;
   samples.resize(std::min(samples.size(), kMostDrawnSamples));
   return samples;
 }

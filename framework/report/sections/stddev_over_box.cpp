@@ -26,7 +26,7 @@ std::size_t findParameter(const std::vector<ParameterSpec>& parameters, const Re
 
 bool hasLimits(const RunFolder& run) {
   const auto is_known = [&](const ParameterSpec& parameter) {
-    return !collectPredictions(run.predictions, parameter.name.text).limit_stddev.empty();
+    return !collectPredictions(run, parameter.name.text).limit_stddev.empty();
   };
   const std::vector<ParameterSpec>& parameters = run.experiment.model.parameters;
   return std::all_of(parameters.begin(), parameters.end(), is_known);

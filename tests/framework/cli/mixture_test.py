@@ -1,0 +1,119 @@
+"""A network whose answers are mixtures, on a rotor whose unbalance may lie on either side of its axis."""
+import filecmp
+import json
+import shutil
+import unittest
+
+from support import EXPERIMENTS, OwnFolderTestCase, call, read_csv, run_once
+
+ROTOR = EXPERIMENTS / "mechanisms/unbalanced_rotor.yaml"
+SMALL = ["design.train.samples=1000", "design.test.samples=400", "evaluation.limit=false"]
+QUICK = "inverse_map={network: {head: mixture, samples_from: simulations, steps: 2500, hidden: [32, 32]}}"
+SHORT = QUICK.replace("2500", "60")
+OFFSET = 0.06
+
+
+class Mixture(OwnFolderTestCase):
+    def measure(self):
+        file = self.folder / "measured.csv"
+        self.assertEqual(call("simulate", ROTOR, f"parameters.offset={OFFSET}", "--csv", file).returncode, 0)
+        return file
+
+    def infer(self, run, *arguments):
+        result = call("infer", run, self.measure(), *arguments)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return result.stdout
+
+    def test_intervals_are_honest_and_the_run_tells_of_several_answers(self):
+        run, result = run_once(ROTOR, *SMALL, QUICK)
+        self.assertIn("several answers fit, in these shares of the test samples: offset", result.stderr)
+        self.assertNotIn("say little more than the bounds do", result.stderr)
+        for row in read_csv(run / "metrics.csv"):
+            self.assertGreater(float(row["coverage95"]), 0.91, row["parameter"])
+            self.assertTrue(0.4 < float(row["coverage50"]) < 0.66, row)
+        weights = {}
+        for row in read_csv(run / "components.csv"):
+            if row["parameter"] == "offset":
+                weights.setdefault(row["sample"], []).append(float(row["weight"]))
+        self.assertEqual(len(weights), 400)
+        for sample, of_sample in weights.items():
+            self.assertEqual(len(of_sample), 3, sample)
+            self.assertAlmostEqual(sum(of_sample), 1.0, places=12)
+
+    def test_inferring_gives_both_answers(self):
+        run, _ = run_once(ROTOR, *SMALL, QUICK)
+        answer = json.loads(self.infer(run, "--json"))
+        self.assertEqual(answer["statuses"], ["several_answers"])
+        intervals = answer["parameters"]["offset"]["intervals95"]
+        self.assertEqual(len(intervals), 2)
+        for (lower, upper), truth in zip(intervals, (-OFFSET, OFFSET)):
+            self.assertTrue(lower < truth < upper, intervals)
+        self.assertEqual(answer["parameters"]["offset"]["lower"], intervals[0][0])
+        self.assertEqual(answer["parameters"]["offset"]["upper"], intervals[1][1])
+        self.assertEqual(len(answer["parameters"]["k"]["intervals95"]), 1)
+        self.assertAlmostEqual(sum(one["weight"] for one in answer["components"]), 1.0, places=12)
+        mean = sum(one["weight"] * one["parameters"]["offset"]["mean"] for one in answer["components"])
+        self.assertAlmostEqual(answer["parameters"]["offset"]["mean"], mean, places=12)
+        text = self.infer(run)
+        self.assertIn("several answers may fit:", text)
+        self.assertRegex(text, r"-0\.0\d+ \.\. -0\.0\d+, 0\.0\d+ \.\. 0\.0\d+")
+
+    def test_refining_from_one_answer_is_not_accepted(self):
+        run, _ = run_once(ROTOR, *SMALL, QUICK)
+        answer = json.loads(self.infer(run, "--refine", "--json"))
+        self.assertEqual(answer["method"], "inverse_map")
+        self.assertEqual(answer["refined"]["status"], "several_answers")
+        self.assertIn("several_answers", answer["statuses"])
+        refined = self.folder / "refined"
+        result = call("run", ROTOR, *SMALL, QUICK, "design.test.samples=60", "refine=always", "--out", refined)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        statuses = [row["status"] for row in read_csv(refined / "refined.csv")]
+        self.assertGreater(statuses.count("several_answers"), 40)
+        # a sample whose refined answer was accepted has that one alone
+        accepted = statuses.count("accepted")
+        rows = [row for row in read_csv(refined / "components.csv") if row["parameter"] == "k"]
+        self.assertEqual(len(rows), 3 * (60 - accepted) + accepted)
+
+    def test_a_replay_draws_from_both(self):
+        run, _ = run_once(ROTOR, *SMALL, QUICK)
+        result = call("replay", run, self.measure(), "--out", self.folder / "replay")
+        self.assertEqual(result.returncode, 0, result.stderr)
+
+    def test_the_report_draws_each_answer_and_runs_are_compared_by_them(self):
+        run, _ = run_once(ROTOR, *SMALL, QUICK)
+        self.assertIn("Answers against true", (run / "report.html").read_text())
+        copy = self.folder / "copy"
+        shutil.copytree(run, copy)
+        (copy / "components.csv").unlink()
+        result = call("compare", run, copy, "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        offset = json.loads(result.stdout)["parameters"][0]
+        figures = offset.get("figures", offset)
+        metrics = read_csv(run / "metrics.csv")[0]
+        self.assertAlmostEqual(figures["coverage95"]["a"], float(metrics["coverage95"]), places=12)
+        self.assertLess(figures["nlpd"]["a"], figures["nlpd"]["b"] - 0.5)
+
+    def test_results_do_not_depend_on_the_threads_and_are_verified(self):
+        runs = [self.folder / f"threads{n}" for n in (1, 3)]
+        for run, threads in zip(runs, ("1", "3")):
+            result = call("run", ROTOR, *SMALL, SHORT, "--threads", threads, "--out", run)
+            self.assertEqual(result.returncode, 0, result.stderr)
+        names = ["components.csv", "predictions.csv", "metrics.csv", "joint.csv"]
+        self.assertEqual(filecmp.cmpfiles(*runs, names, shallow=False), (names, [], []))
+        result = call("verify", runs[0])
+        self.assertEqual(result.returncode, 0, result.stderr + result.stdout)
+
+    def test_exporting_is_refused(self):
+        run, _ = run_once(ROTOR, *SMALL, QUICK)
+        result = call("export", run, "--c", self.folder / "c")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("mixtures cannot be exported", result.stderr)
+
+    def test_the_number_of_components_is_checked(self):
+        result = call("check", ROTOR, "inverse_map={network: {head: mixture, components: 5}}")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("must be a whole number from 2 to 4", result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
