@@ -20,7 +20,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr int kMostOfSurrogate = 2000, kEnough = 1000;
+constexpr int kEnough = 1000;
 constexpr double kWorthwhileRatio = 1.3;
 
 const NetworkMapSpec& getSpec(const NetworkContext& context) {
@@ -40,8 +40,9 @@ std::string findReasonForSimulations(const NetworkContext& context) {
   if (getSpec(context).samples_from == NetworkSamples::kSurrogate) {
     return "";
   }
-  if (n > kMostOfSurrogate) {
-    return fmt::format("a surrogate takes no more than {} of {} simulations", kMostOfSurrogate, n);
+  if (!getSpec(context).mayLearnFromSurrogate(n)) {
+    return fmt::format("a surrogate takes no more than {} of {} simulations",
+                       NetworkMapSpec::kMostOfSurrogate, n);
   }
   return findSurrogateObstacle(context.experiment.model, n, context.samples.noise_covariance);
 }

@@ -167,6 +167,13 @@ struct NetworkMapSpec {
   double learning_rate = 0.002;
 
   int countComponents() const { return head == NetworkHead::kMixture ? components : 1; }
+  /// A surrogate of more simulations than kMostOfSurrogate takes longer than the network learns from it.
+  bool mayLearnFromSurrogate(int simulations) const {
+    return samples_from == NetworkSamples::kSurrogate ||
+           (samples_from == NetworkSamples::kAutomatic && simulations <= kMostOfSurrogate);
+  }
+
+  static constexpr int kMostOfSurrogate = 2000;
 };
 
 template <class Fields>

@@ -92,11 +92,36 @@ double countProcessNumbers(const ExperimentSpec& experiment, const GpMapSpec& gp
   return numbers;
 }
 
+/// Whether processes with all samples are trained for a surrogate, be it a network's teacher.
+bool mayTrainSurrogate(const ExperimentSpec& experiment) {
+  const NetworkMapSpec* network = experiment.inverse_map.findNetwork();
+  return network == nullptr || network->mayLearnFromSurrogate(experiment.design.train.samples);
+}
+
+double countMapNumbers(const ExperimentSpec& experiment, int threads) {
+  if (const GpMapSpec* gp = experiment.inverse_map.findGp()) {
+    return countProcessNumbers(experiment, *gp, threads);
+  }
+  return mayTrainSurrogate(experiment) ? countSurrogateNumbers(experiment, threads) : 0.0;
+}
+
+/// Of a network alone: its weights, forwards and backwards, for each sample of each step, and those of the
+/// five networks that tell how honest it is.
+double countNetworkFlops(const NetworkMapSpec& network) {
+  constexpr double kInputs = 32.0, kOfWeight = 6.0, kTrainings = 6.0;
+  double weights = 0.0, before = kInputs;
+  for (const int units : network.hidden) {
+    weights += before * units;
+    before = units;
+  }
+  return kOfWeight * kTrainings * weights * network.steps * network.batch;
+}
+
 }  // namespace
 
 std::vector<TrainingStep> listTrainingSteps(const ExperimentSpec& experiment) {
   if (experiment.inverse_map.findGp() == nullptr) {
-    return listSurrogateSteps(experiment);
+    return mayTrainSurrogate(experiment) ? listSurrogateSteps(experiment) : std::vector<TrainingStep>();
   }
   const GpMapSpec& gp = *experiment.inverse_map.findGp();
   const auto parameters = static_cast<double>(experiment.model.parameters.size());
@@ -118,9 +143,7 @@ std::vector<TrainingStep> listTrainingSteps(const ExperimentSpec& experiment) {
 
 CaseCost calcCaseCost(const ExperimentSpec& experiment, int threads) {
   constexpr double kBytes = 8.0, kCopies = 10.0, kLimitCopies = 1.5, kPosteriorCopies = 3.0;
-  const GpMapSpec* gp = experiment.inverse_map.findGp();
-  double numbers = gp != nullptr ? countProcessNumbers(experiment, *gp, threads)
-                                 : countSurrogateNumbers(experiment, threads);
+  double numbers = countMapNumbers(experiment, threads);
   numbers += kCopies * countRows(experiment) * (countColumns(experiment) + experiment.design.test.samples);
   if (experiment.evaluation.limit) {
     numbers += kLimitCopies * countRows(experiment) *
@@ -133,6 +156,9 @@ CaseCost calcCaseCost(const ExperimentSpec& experiment, int threads) {
   for (const TrainingStep& step : listTrainingSteps(experiment)) {
     const double evaluations = step.searches > 0.0 ? step.searches * kEvaluations : 1.0;
     cost.flops += step.processes * evaluations * step.relative_cost * cube(step.samples);
+  }
+  if (const NetworkMapSpec* network = experiment.inverse_map.findNetwork()) {
+    cost.flops += countNetworkFlops(*network);
   }
   return cost;
 }
