@@ -117,6 +117,24 @@ NetworkMapTraining train(const NetworkContext& context, const FeatureTransform& 
   }
 }
 
+/// Names of the quantities that chains were followed for.
+SampledChains describeChains(const ModelSpec& model, const WeightChains& found) {
+  SampledChains sampled;
+  for (std::size_t p = 0; p < found.means.size(); ++p) {
+    sampled.quantities.push_back(
+        {model.parameters[p].name.text, found.means[p].r_hat, found.means[p].effective_sample_size});
+  }
+  sampled.quantities.push_back(
+      {"log density", found.log_density.r_hat, found.log_density.effective_sample_size});
+  sampled.chains = found.chains;
+  sampled.draws = found.draws;
+  sampled.divergences = found.divergences;
+  sampled.cut = found.cut;
+  sampled.acceptance = found.mean_acceptance;
+  sampled.weights = static_cast<int>(found.weights);
+  return sampled;
+}
+
 TrainingSummary summarize(const ModelSpec& model, const NetworkMapTraining& trained) {
   const SurrogateValidation& validation = trained.map.validation;
   TrainingSummary summary;
@@ -130,6 +148,9 @@ TrainingSummary summarize(const ModelSpec& model, const NetworkMapTraining& trai
   found.status = toString(validation.status);
   found.limit_ratio = validation.limit_ratio;
   summary.cross_validation = std::move(found);
+  if (trained.chains) {
+    summary.chains = describeChains(model, *trained.chains);
+  }
   return summary;
 }
 

@@ -83,7 +83,7 @@ double countEvaluation(const ExportedModel& model) {
 }
 
 std::string describeOperations(const NetworkMap& map) {
-  const network::Network& network = map.network;
+  const network::Network& network = map.members.front().network;
   Eigen::Index sum = map.inputs.projection.size() + network.skip.size(), units = 0;
   for (const network::Layer& layer : network.layers) {
     sum += layer.weights.size();

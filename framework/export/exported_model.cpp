@@ -70,10 +70,15 @@ ExportedModel loadExportedModel(const std::filesystem::path& run_or_maps) {
   model.features = makeExtractor(model.experiment, model.layout).getInfos();
   model.online = std::move(stored.model);
   const NetworkMap* network = model.findNetwork();
-  if (network != nullptr && network->network.countComponents() > 1) {
+  if (network != nullptr && network->countComponents() > 1) {
     throw std::runtime_error(
         findMaps(run_or_maps).string() +
         ": a network whose answers are mixtures cannot be exported; train one with 'head: gaussian'");
+  }
+  if (network != nullptr && network->isBayesian()) {
+    throw std::runtime_error(
+        findMaps(run_or_maps).string() +
+        ": a Bayesian network cannot be exported; train one with 'bayesian: none'");
   }
   return model;
 }

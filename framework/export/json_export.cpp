@@ -156,7 +156,7 @@ Json toJson(const ForwardSurrogate& forward) {
 }
 
 Json toJson(const NetworkMap& map) {
-  const network::Network& network = map.network;
+  const network::Network& network = map.members.front().network;
   Json json{{"kind", "network"}};
   json["inputs"] = {{"center", toJson(map.inputs.center)}, {"projection", toRows(map.inputs.projection)}};
   json["known_inputs"] = {{"center", toJson(map.inputs.known.center)},

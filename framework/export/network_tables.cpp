@@ -54,10 +54,10 @@ void addLayers(const network::Network& network, CTables& tables, CSizes& sizes) 
 }  // namespace
 
 void addNetwork(const NetworkMap& map, CTables& tables, CSizes& sizes) {
-  const network::Products& products = map.network.products;
+  const network::Products& products = map.members.front().network.products;
   addInputs(map.inputs, tables);
-  addRegression(map.network, tables);
-  addLayers(map.network, tables, sizes);
+  addRegression(map.members.front().network, tables);
+  addLayers(map.members.front().network, tables, sizes);
   tables.addWide("parameter_center", map.center, "Middle of the parameters' bounds.");
   tables.addWide("parameter_half_width", map.half_width, "Half of their width.");
   tables.addWide("stddev_scale", map.validation.stddev_scale,

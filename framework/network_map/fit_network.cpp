@@ -1,6 +1,10 @@
 #include "framework/network_map/fit_network.hpp"
 
 #include <algorithm>
+#include <utility>
+
+#include "framework/surrogate/run_tasks.hpp"
+#include "kernels/network/train.hpp"
 
 namespace twinmap {
 
@@ -12,7 +16,10 @@ namespace {
 // Batches of noise: the steps of a run come first, those for other purposes far behind them.
 constexpr std::uint64_t kRuns = std::uint64_t{1} << 32;
 constexpr std::uint64_t kRegression = kRuns / 2, kHeldOut = kRuns / 2 + 1;
-constexpr std::uint64_t kMeasured = kRuns / 2 + 2;
+constexpr std::uint64_t kMeasured = kRuns / 2 + 2, kPosterior = kRuns - 1;
+
+// Of an ensemble: enough to tell apart what is known from what is guessed.
+constexpr std::uint64_t kMembers = 5;
 
 std::vector<Index> repeat(const std::vector<Index>& chosen, Index count) {
   std::vector<Index> repeated(static_cast<std::size_t>(count));
@@ -84,25 +91,78 @@ network::Network makeInitial(const NetworkSet& set, const std::vector<Index>& tr
   });
 }
 
-}  // namespace
-
-network::NetworkTraining fitNetwork(const NetworkSet& set, const std::vector<Index>& training,
-                                    const std::vector<Index>& held_out, const NetworkFitting& fitting,
-                                    const TrainingControl& control) {
+network::NetworkTraining train(const NetworkSet& set, const Split& split, const NetworkFitting& fitting,
+                               const TrainingControl& control) {
   constexpr Index kChecked = 2000, kChecks = 40;
-  const auto left = static_cast<Index>(held_out.size());
+  const auto left = static_cast<Index>(split.held_out.size());
   const network::Samples checked =
-      drawSamples(set, repeat(held_out, std::max(left, kChecked / left * left)),
+      drawSamples(set, repeat(split.held_out, std::max(left, kChecked / left * left)),
                   {fitting.seed, RandomPurpose::kNetworkNoise}, fitting.run * kRuns + kHeldOut);
   network::TrainingOptions options;
-  options.steps = fitting.spec.steps;
+  options.steps = fitting.spec.steps.value();
   options.batch = fitting.spec.batch;
   options.learning_rate = fitting.spec.learning_rate;
   options.check_interval = std::max<Index>(options.steps / kChecks, 1);
   options.threads = control.threads;
   options.stop = control.stop;
-  return network::trainNetwork(makeInitial(set, training, fitting), makeSource(set, training, fitting),
-                               checked, options);
+  return network::trainNetwork(makeInitial(set, split.training, fitting),
+                               makeSource(set, split.training, fitting), checked, options);
+}
+
+/// One draw of the noise of each training sample, but of so many at most.
+network::Samples drawOnce(const NetworkSet& set, const Split& split, const NetworkFitting& fitting) {
+  constexpr std::size_t kMost = 20000;
+  std::vector<Index> chosen = split.training;
+  chosen.resize(std::min(chosen.size(), kMost));
+  return drawSamples(set, chosen, {fitting.seed, RandomPurpose::kNetworkNoise},
+                     fitting.run * kRuns + kPosterior);
+}
+
+/// Networks that begin at other weights and see other batches, with the posteriors of their last layers.
+NetworkFit fitEnsemble(const NetworkSet& set, const Split& split, const NetworkFitting& fitting,
+                       const TrainingControl& control) {
+  std::vector<NetworkFit> fits(kMembers);
+  runTasks(control.threads, fits.size(), [&](std::size_t i) {
+    const NetworkFitting own{fitting.spec, fitting.seed, fitting.run * kMembers + i};
+    network::NetworkTraining trained = train(set, split, own, {1, control.stop});
+    const network::Samples drawn = drawOnce(set, split, own);
+    fits[i].restarts = trained.restarts;
+    fits[i].members.push_back(network::makeBayesian(std::move(trained.network), drawn.inputs, drawn.targets));
+  });
+  NetworkFit all;
+  for (NetworkFit& fit : fits) {
+    all.restarts += fit.restarts;
+    all.members.push_back(std::move(fit.members.front()));
+  }
+  return all;
+}
+
+NetworkFit fitChains(const NetworkSet& set, const Split& split, const NetworkFitting& fitting,
+                     const TrainingControl& control) {
+  const network::NetworkTraining trained = train(set, split, fitting, control);
+  const network::Samples drawn = drawOnce(set, split, fitting);
+  NetworkFit fit{{}, trained.restarts, {}};
+  SampledWeights sampled = sampleWeights(trained.network, drawn, fitting.spec, {fitting.seed, fitting.run},
+                                         control);
+  for (network::Network& network : sampled.networks) {
+    fit.members.push_back({std::move(network), {}});
+  }
+  fit.chains = std::move(sampled.chains);
+  return fit;
+}
+
+}  // namespace
+
+NetworkFit fitNetwork(const NetworkSet& set, const Split& split, const NetworkFitting& fitting,
+                      const TrainingControl& control) {
+  if (fitting.spec.bayesian == NetworkBayes::kLastLayer) {
+    return fitEnsemble(set, split, fitting, control);
+  }
+  if (fitting.spec.bayesian == NetworkBayes::kHamiltonian) {
+    return fitChains(set, split, fitting, control);
+  }
+  network::NetworkTraining trained = train(set, split, fitting, control);
+  return {{{std::move(trained.network), {}}}, trained.restarts, {}};
 }
 
 MatrixXd drawMeasured(const NoisySamples& samples, const std::vector<Index>& chosen, Index draws,

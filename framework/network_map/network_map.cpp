@@ -5,7 +5,6 @@
 
 #include "framework/features/labelled_features.hpp"
 #include "framework/surrogate/run_tasks.hpp"
-#include "kernels/network/predictor.hpp"
 
 namespace twinmap {
 
@@ -31,23 +30,24 @@ Mixture takeMixture(const network::Predictor::Workspace& predicted) {
   return mixture;
 }
 
-Predictions predictTargets(const network::Network& network, const MatrixXd& inputs, int threads) {
+Predictions predictTargets(const std::vector<network::Member>& members, const MatrixXd& inputs, int threads) {
   constexpr Index kChunk = 256;  // measurements that share buffers
-  const network::Predictor predictor(network);
+  const network::Network& network = members.front().network;
+  const network::EnsemblePredictor predictor(members);
   const Index n = inputs.cols(), p = network.countTargets();
   Predictions predictions{MatrixXd(p, n), MatrixXd(p, n), std::vector<MatrixXd>(static_cast<std::size_t>(n))};
   const bool mixed = network.countComponents() > 1;
   predictions.mixtures.resize(static_cast<std::size_t>(mixed ? n : 0));
   runTasks(threads, static_cast<std::size_t>((n + kChunk - 1) / kChunk), [&](std::size_t chunk) {
-    network::Predictor::Workspace workspace(predictor);
+    network::EnsemblePredictor::Workspace workspace(predictor);
     const Index first = static_cast<Index>(chunk) * kChunk;
     for (Index i = first; i < std::min(n, first + kChunk); ++i) {
-      predictor.predict(inputs.col(i), workspace);
-      predictions.mean.col(i) = workspace.mean;
-      predictions.stddev.col(i) = workspace.stddev;
-      predictions.correlations[static_cast<std::size_t>(i)] = calcCorrelation(workspace.covariance);
+      const network::Predictor::Workspace& answer = predictor.predict(inputs.col(i), workspace);
+      predictions.mean.col(i) = answer.mean;
+      predictions.stddev.col(i) = answer.stddev;
+      predictions.correlations[static_cast<std::size_t>(i)] = calcCorrelation(answer.covariance);
       if (mixed) {
-        predictions.mixtures[static_cast<std::size_t>(i)] = takeMixture(workspace);
+        predictions.mixtures[static_cast<std::size_t>(i)] = takeMixture(answer);
       }
     }
   });
@@ -55,7 +55,7 @@ Predictions predictTargets(const network::Network& network, const MatrixXd& inpu
 }
 
 Predictions NetworkMap::predict(const MatrixXd& features, const MatrixXd& known_values, int threads) const {
-  Predictions predictions = predictTargets(network, inputs.apply(features, known_values), threads);
+  Predictions predictions = predictTargets(members, inputs.apply(features, known_values), threads);
   convert(center, half_width, validation.stddev_scale, predictions);
   return predictions;
 }

@@ -1,11 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "framework/inverse_map/known_inputs.hpp"
 #include "framework/inverse_map/predictions.hpp"
 #include "framework/surrogate/surrogate.hpp"
-#include "kernels/network/predictor.hpp"
+#include "kernels/network/ensemble.hpp"
 
 namespace twinmap {
 
@@ -26,7 +27,7 @@ struct NetworkInputs {
 struct NetworkMap {
   NetworkInputs inputs;
   Eigen::VectorXd center, half_width;  ///< p, of the parameters' bounds
-  network::Network network;
+  std::vector<network::Member> members;  ///< one, or several whose answers are as likely as each other
   SurrogateValidation
       validation;  ///< of simulations that took no part; no limit_scale, limit_ratio may be NaN
 
@@ -35,13 +36,19 @@ struct NetworkMap {
   /// std::invalid_argument for sizes that do not fit. Cost: some us a column.
   Predictions predict(const Eigen::MatrixXd& features, const Eigen::MatrixXd& known_values,
                       int threads = 1) const;
+
+  /// Normal distributions of an answer, of which a mixture has several.
+  Eigen::Index countComponents() const { return members.front().network.countComponents(); }
+  /// Whether weights are known by a distribution.
+  bool isBayesian() const { return members.size() > 1 || members.front().last_layer.size() > 0; }
 };
 
 /// What a network of several components has predicted, in its targets' units.
 Mixture takeMixture(const network::Predictor::Workspace& predicted);
 
-/// Mean, standard deviation (p x n), correlations and, of several components, mixtures of a network's targets
-/// for its inputs (k x n).
-Predictions predictTargets(const network::Network& network, const Eigen::MatrixXd& inputs, int threads);
+/// Mean, standard deviation (p x n), correlations and, of several components, mixtures of the targets of
+/// networks for their inputs (k x n).
+Predictions predictTargets(const std::vector<network::Member>& members, const Eigen::MatrixXd& inputs,
+                           int threads);
 
 }  // namespace twinmap

@@ -35,11 +35,6 @@ std::vector<Index> listIndices(Index count, Index period, Index residue, bool ma
   return listed;
 }
 
-/// Samples to learn from, and those that choose the checkpoint.
-struct Split {
-  std::vector<Index> training, held_out;
-};
-
 /// A tenth is held out, of few a fifth.
 Split split(const std::vector<Index>& all) {
   constexpr std::size_t kFew = 1000;
@@ -86,10 +81,10 @@ struct HeldOutTargets {
   int draws = 1;
 };
 
-HeldOutTargets predictHeldOut(const NetworkSet& set, const network::Network& network,
+HeldOutTargets predictHeldOut(const NetworkSet& set, const std::vector<network::Member>& members,
                               const std::vector<Index>& chosen, std::uint64_t seed, int threads) {
   const Index draws = countDraws(static_cast<Index>(chosen.size()));
-  return {predictTargets(network, drawMeasured(set.samples, chosen, draws, seed), threads),
+  return {predictTargets(members, drawMeasured(set.samples, chosen, draws, seed), threads),
           MatrixXd(set.targets(Eigen::all, chosen)).replicate(1, draws), static_cast<int>(draws)};
 }
 
@@ -118,15 +113,14 @@ HeldOutTargets crossValidate(const NetworkSet& set, const NetworkTask& task, con
       static_cast<int>(draws)};
   runTasks(control.threads, kFolds, [&](std::size_t fold) {
     const Split parts = split(listIndices(n, kFolds, static_cast<Index>(fold), false));
-    const network::NetworkTraining trained =
-        fitNetwork(set, parts.training, parts.held_out, {task.spec, task.seed, fold + 1}, {1, control.stop});
+    const NetworkFit fit = fitNetwork(set, parts, {task.spec, task.seed, fold + 1}, {1, control.stop});
     std::vector<Index> columns;
     for (Index draw = 0; draw < draws; ++draw) {
       for (const Index i : listIndices(n, kFolds, static_cast<Index>(fold), true)) {
         columns.push_back(i + draw * n);
       }
     }
-    const Predictions found = predictTargets(trained.network, measured(Eigen::all, columns), 1);
+    const Predictions found = predictTargets(fit.members, measured(Eigen::all, columns), 1);
     place(found, columns, held_out.predictions);
   });
   return held_out;
@@ -153,13 +147,40 @@ void validateMap(const HeldOutTargets& held_out, const VectorXd& least_scale, Ne
 }
 
 /// What a person should know of it.
-void warnOfTraining(const network::NetworkTraining& trained, NetworkMapTraining& training) {
-  if (trained.restarts > 0) {
+void warnOfTraining(int restarts, NetworkMapTraining& training) {
+  if (restarts > 0) {
     training.warnings.push_back(
         fmt::format("the network's training went back to its best checkpoint {} times; a lower learning_rate "
                     "would be steadier",
-                    trained.restarts));
+                    restarts));
   }
+}
+
+/// Says where the chains of a sampler do not agree, or cannot have seen all of the posterior.
+void warnOfChains(const WeightChains& chains, NetworkMapTraining& training) {
+  constexpr double kLargestRHat = 1.05, kFewestDraws = 100.0, kMostDivergences = 0.01;
+  double r_hat = 0.0, draws = chains.log_density.effective_sample_size;
+  for (const markov::Convergence& one : chains.means) {
+    r_hat = std::max(r_hat, one.r_hat);
+    draws = std::min(draws, one.effective_sample_size);
+  }
+  const double divergent = static_cast<double>(chains.divergences) / (chains.chains * chains.draws);
+  if (r_hat > kLargestRHat || draws < kFewestDraws || divergent > kMostDivergences) {
+    training.warnings.push_back(fmt::format(
+        "the chains of the network's weights have not converged: R-hat {:.3f} of its worst mean, {:.0f} "
+        "effective draws, {:.1f} % divergent trajectories; take more draws or fewer hidden units",
+        r_hat, draws, 100.0 * divergent));
+  }
+}
+
+/// Takes what a fit gives into the map.
+void setMembers(NetworkFit fit, NetworkMapTraining& training) {
+  warnOfTraining(fit.restarts, training);
+  if (fit.chains) {
+    warnOfChains(*fit.chains, training);
+  }
+  training.chains = std::move(fit.chains);
+  training.map.members = std::move(fit.members);
 }
 
 /// Names the parameters whose 50 % intervals hold another share of the samples held out: their answers are no
@@ -241,13 +262,10 @@ NetworkMapTraining trainNetworkMap(const NetworkTask& task, const NetworkSimulat
   const MatrixXd targets = makeTargets(map, simulations.points);
   const NetworkSet set{*samples, targets};
   const Split parts = split(listAll(n));
-  network::NetworkTraining trained =
-      fitNetwork(set, parts.training, parts.held_out, {task.spec, task.seed, 0}, control);
-  warnOfTraining(trained, training);
-  map.network = std::move(trained.network);
+  setMembers(fitNetwork(set, parts, {task.spec, task.seed, 0}, control), training);
   const HeldOutTargets held_out =
       n < kHonest ? crossValidate(set, task, control)
-                  : predictHeldOut(set, map.network, parts.held_out, task.seed, control.threads);
+                  : predictHeldOut(set, map.members, parts.held_out, task.seed, control.threads);
   validateMap(held_out, VectorXd::Zero(map.center.size()), training);
   warnOfShape(task, training);
   return training;
@@ -265,11 +283,8 @@ NetworkMapTraining trainNetworkMap(const NetworkTask& task, const Surrogate& sur
   const NormalSamples samples(std::move(pool.inputs));
   const NetworkSet set{samples, targets};
   const Split parts = split(listAll(targets.cols()));
-  network::NetworkTraining trained =
-      fitNetwork(set, parts.training, parts.held_out, {task.spec, task.seed, 0}, control);
-  warnOfTraining(trained, training);
-  map.network = std::move(trained.network);
-  validateMap(predictHeldOut(set, map.network, parts.held_out, task.seed, control.threads),
+  setMembers(fitNetwork(set, parts, {task.spec, task.seed, 0}, control), training);
+  validateMap(predictHeldOut(set, map.members, parts.held_out, task.seed, control.threads),
               surrogate.validation.stddev_scale, training);
   warnOfShape(task, training);
   return training;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct NetworkMapTraining {
   Predictions held_out;            ///< p x n draws, of samples that the network predicting them had not seen
   Eigen::MatrixXd held_out_truth;  ///< p x n draws
   int held_out_draws = 1;          ///< column j + i n is draw i of sample j
+  std::optional<WeightChains> chains{};  ///< where weights were sampled
   std::vector<std::string> warnings;
 };
 

@@ -105,7 +105,7 @@ bool OnlineMap::isHonest() const {
 
 bool OnlineMap::givesMixtures() const {
   const auto* network = std::get_if<OnlineNetwork>(&kind_);
-  return network != nullptr && network->getMap().network.countComponents() > 1;
+  return network != nullptr && network->getMap().countComponents() > 1;
 }
 
 const Inference& OnlineMap::infer(const Eigen::Ref<const VectorXd>& features,

@@ -30,14 +30,14 @@ const Inference& OnlineNetwork::infer(const Eigen::Ref<const VectorXd>& features
     inference.inputs.tail(known.size()) =
         (known - inputs.known.center).cwiseQuotient(inputs.known.half_width);
   }
-  predictor_.predict(inference.inputs, workspace.predicting);
-  inference.mean = map_->center + map_->half_width.cwiseProduct(workspace.predicting.mean);
-  inference.stddev = (map_->validation.stddev_scale.array() * map_->half_width.array()) *
-                     workspace.predicting.stddev.array();
-  const auto inverse_stddev = workspace.predicting.stddev.cwiseInverse().asDiagonal();
-  inference.correlation = inverse_stddev * workspace.predicting.covariance * inverse_stddev;
-  if (workspace.predicting.weights.size() > 1) {
-    setMixture(workspace.predicting, inference);
+  const network::Predictor::Workspace& answer = predictor_.predict(inference.inputs, workspace.predicting);
+  inference.mean = map_->center + map_->half_width.cwiseProduct(answer.mean);
+  inference.stddev =
+      (map_->validation.stddev_scale.array() * map_->half_width.array()) * answer.stddev.array();
+  const auto inverse_stddev = answer.stddev.cwiseInverse().asDiagonal();
+  inference.correlation = inverse_stddev * answer.covariance * inverse_stddev;
+  if (answer.weights.size() > 1) {
+    setMixture(answer, inference);
   }
   return inference;
 }

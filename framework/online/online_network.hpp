@@ -4,7 +4,7 @@
 
 #include "framework/network_map/network_map.hpp"
 #include "framework/online/inference.hpp"
-#include "kernels/network/predictor.hpp"
+#include "kernels/network/ensemble.hpp"
 
 namespace twinmap {
 
@@ -13,7 +13,7 @@ namespace twinmap {
 class OnlineNetwork {
  public:
   explicit OnlineNetwork(std::shared_ptr<const NetworkMap> map)
-      : map_(std::move(map)), predictor_(map_->network) {}
+      : map_(std::move(map)), predictor_(map_->members) {}
 
   const NetworkMap& getMap() const { return *map_; }
 
@@ -25,13 +25,13 @@ class OnlineNetwork {
 
    private:
     friend class OnlineNetwork;
-    network::Predictor::Workspace predicting;
+    network::EnsemblePredictor::Workspace predicting;
     Eigen::VectorXd centered;
   };
 
   /// features: d, finite; known: the inputs of the set-up (q). The result, whose inputs are the network's,
-  /// lies in the workspace until its next use. Does not allocate but for mixtures. Cost: 2 flops a number of
-  /// the map.
+  /// lies in the workspace until its next use. Does not allocate but for mixtures and Bayesian networks.
+  /// Cost: 2 flops a number of the map.
   const Inference& infer(const Eigen::Ref<const Eigen::VectorXd>& features,
                          const Eigen::Ref<const Eigen::VectorXd>& known, Workspace& workspace) const;
 
@@ -44,7 +44,7 @@ class OnlineNetwork {
   void setMixture(const network::Predictor::Workspace& predicted, Inference& inference) const;
 
   std::shared_ptr<const NetworkMap> map_;
-  network::Predictor predictor_;
+  network::EnsemblePredictor predictor_;
 };
 
 }  // namespace twinmap

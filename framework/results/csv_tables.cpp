@@ -165,6 +165,18 @@ std::string makeCrossValidationCsv(const RunSummary& run) {
   return makeCsv(rows);
 }
 
+std::string makeChainsCsv(const SampledChains& sampled) {
+  std::vector<Row> rows{{"quantity", "r_hat", "effective_draws", "weights", "chains", "draws", "divergences",
+                         "cut", "acceptance"}};
+  for (const SampledQuantity& quantity : sampled.quantities) {
+    rows.push_back({quantity.name, toText(quantity.r_hat), toText(quantity.effective_draws),
+                    std::to_string(sampled.weights), std::to_string(sampled.chains),
+                    std::to_string(sampled.draws), std::to_string(sampled.divergences),
+                    std::to_string(sampled.cut), toText(sampled.acceptance)});
+  }
+  return makeCsv(rows);
+}
+
 std::string makeHyperparametersCsv(const RunSummary& run) {
   std::vector<Row> rows{{"parameter", "hyperparameter", "value", "lower", "upper"}};
   for (const TrainedHyperparameter& trained : run.training.hyperparameters) {

@@ -51,6 +51,9 @@ void writeResults(const fs::path& folder, const RunSummary& run) {
   if (run.training.cross_validation) {
     writeTextFile(folder / "cross_validation.csv", makeCrossValidationCsv(run));
   }
+  if (run.training.chains) {
+    writeTextFile(folder / "chains.csv", makeChainsCsv(*run.training.chains));
+  }
   writeTextFile(folder / "table.md", makeMarkdownTable(run));
   writeTextFile(folder / "table.tex", makeLatexTable(run));
 }

@@ -37,6 +37,7 @@ void readTables(const fs::path& path, RunFolder& run) {
   run.predictions = readCsvFile(path / "predictions.csv");
   run.mixtures = readMixtures(path, run);
   run.training = readCsvFile(path / "training.csv");
+  run.chains = readCsvFile(path / "chains.csv");
   run.hyperparameters = readCsvFile(path / "hyperparameters.csv");
   run.failures = readCsvFile(path / "failures.csv");
   run.trust_power = readCsvFile(path / "trust_power.csv");

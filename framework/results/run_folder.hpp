@@ -26,6 +26,7 @@ struct RunFolder {
   std::vector<Mixture> mixtures;  ///< of each test sample, where predictions are such; else empty
   CsvTable training;
   CsvTable hyperparameters;
+  CsvTable chains;
   CsvTable failures;
   CsvTable trust_power;
   CsvTable features;

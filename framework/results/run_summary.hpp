@@ -59,6 +59,21 @@ struct CrossValidation {
   Eigen::VectorXd error_ratio;   ///< errors with all simulations over those with half of them; empty likewise
 };
 
+/// How well chains know a quantity (markov::Convergence).
+struct SampledQuantity {
+  std::string name;
+  double r_hat = 0.0, effective_draws = 0.0;
+};
+
+/// How well the chains know a network whose weights were sampled.
+struct SampledChains {
+  std::vector<SampledQuantity> quantities;  ///< the parameters, then the density
+  int chains = 0, draws = 0;                ///< of each chain
+  int divergences = 0, cut = 0;             ///< trajectories of all draws that ran away, or did not turn back
+  double acceptance = 0.0;                  ///< mean
+  int weights = 0;                          ///< numbers that were sampled
+};
+
 /// How the inverse map was trained.
 struct TrainingSummary {
   std::vector<ParameterMetrics> leave_one_out;  ///< of the training samples; empty where not available
@@ -66,6 +81,7 @@ struct TrainingSummary {
   std::vector<TrainingStart> starts;
   std::vector<TrainedHyperparameter> hyperparameters;
   std::optional<CrossValidation> cross_validation;
+  std::optional<SampledChains> chains{};
 };
 
 /// How strongly each feature follows each parameter (InformationLimit::relevance).

@@ -36,6 +36,10 @@ std::string makeTrainingCsv(const RunSummary& run);
 /// error_ratio.
 std::string makeCrossValidationCsv(const RunSummary& run);
 
+/// chains.csv: quantity, r_hat, effective_draws; the same in each row: weights, chains, draws, divergences,
+/// cut, acceptance.
+std::string makeChainsCsv(const SampledChains& sampled);
+
 /// hyperparameters.csv: parameter, hyperparameter, value, lower, upper; of the start that was kept.
 std::string makeHyperparametersCsv(const RunSummary& run);
 

@@ -155,22 +155,36 @@ struct EnumNames<NetworkHead> {
                                                      {"mixture", NetworkHead::kMixture}};
 };
 
+/// Which weights of a network are known by a distribution, not by their best values.
+enum class NetworkBayes { kNone, kLastLayer, kHamiltonian };
+
+template <>
+struct EnumNames<NetworkBayes> {
+  static constexpr EnumName<NetworkBayes> values[] = {{"none", NetworkBayes::kNone},
+                                                      {"last_layer", NetworkBayes::kLastLayer},
+                                                      {"hamiltonian", NetworkBayes::kHamiltonian}};
+};
+
 /// A neural network from features to the distribution of all parameters (docs/networks.md).
 struct NetworkMapSpec {
-  std::vector<int> hidden = {64, 64};
+  std::vector<int> hidden;
   NetworkHead head = NetworkHead::kGaussian;
   int components = 3;  ///< of a mixture
   NetworkSamples samples_from = NetworkSamples::kAutomatic;
   int surrogate_samples = 20000;
-  int steps = 8000;
+  std::optional<int> steps;
   int batch = 256;
   double learning_rate = 0.002;
+  NetworkBayes bayesian = NetworkBayes::kNone;
+  int chains = 4;   ///< of a Hamiltonian sampler
+  int draws = 500;  ///< of each chain, after as many to warm up
 
   int countComponents() const { return head == NetworkHead::kMixture ? components : 1; }
   /// A surrogate of more simulations than kMostOfSurrogate takes longer than the network learns from it.
   bool mayLearnFromSurrogate(int simulations) const {
     return samples_from == NetworkSamples::kSurrogate ||
-           (samples_from == NetworkSamples::kAutomatic && simulations <= kMostOfSurrogate);
+           (samples_from == NetworkSamples::kAutomatic && bayesian != NetworkBayes::kHamiltonian &&
+            simulations <= kMostOfSurrogate);
   }
 
   static constexpr int kMostOfSurrogate = 2000;
@@ -180,20 +194,34 @@ template <class Fields>
 void describe(Fields& f, NetworkMapSpec& s) {
   constexpr int kWidest = 1024;
   constexpr std::size_t kDeepest = 8;
-  f.optional("hidden", s.hidden, "units of each hidden layer");
+  constexpr NumberRule kChains{2.0, 64.0, true, "must be a whole number from 2 to 64"};
+  constexpr NumberRule kDraws{20.0, 1e5, true, "must be a whole number from 20 to 100000"};
+  f.optional("hidden", s.hidden,
+             "units of each hidden layer (default: 64, 64; of 20000 simulations or more 192, 192; where they "
+             "are sampled 8)");
   f.optional("head", s.head, "one normal distribution, or a mixture: where several answers may fit");
   f.optional("components", s.components, "normal distributions of a mixture", kMixtureComponents);
   f.optional("samples_from", s.samples_from,
              "simulations; a surrogate that is trained on them first; or automatic");
   f.optional("surrogate_samples", s.surrogate_samples, "parameter points that a surrogate is asked for",
              kSampleCount);
-  f.optional("steps", s.steps, "of the optimiser", kSampleCount);
+  f.optional("steps", s.steps, "of the optimiser (default: 8000; of 20000 simulations or more 16000)",
+             kSampleCount);
   f.optional("batch", s.batch, "samples of a step, each with its own draw of the noise", kHundredThousand);
   f.optional("learning_rate", s.learning_rate, "its largest value", kPositive);
-  f.rule(!s.hidden.empty() && s.hidden.size() <= kDeepest &&
-             *std::min_element(s.hidden.begin(), s.hidden.end()) >= 1 &&
-             *std::max_element(s.hidden.begin(), s.hidden.end()) <= kWidest,
+  f.optional("bayesian", s.bayesian,
+             "last_layer: five networks, of whose last layers the exact posterior is known; hamiltonian: draws "
+             "of all weights of a small network, for studies");
+  f.optional("chains", s.chains, "of the Hamiltonian sampler", kChains);
+  f.optional("draws", s.draws, "that each chain keeps, after as many to warm up", kDraws);
+  f.rule(s.hidden.size() <= kDeepest &&
+             std::all_of(s.hidden.begin(), s.hidden.end(),
+                         [](int units) { return units >= 1 && units <= kWidest; }),
          "must give 1 to 8 hidden layers of 1 to 1024 units");
+  f.rule(s.bayesian == NetworkBayes::kNone || s.head == NetworkHead::kGaussian,
+         "must have 'head: gaussian' with bayesian");
+  f.rule(s.bayesian != NetworkBayes::kHamiltonian || s.samples_from != NetworkSamples::kSurrogate,
+         "must learn from simulations with 'bayesian: hamiltonian'");
   f.rule(s.surrogate_samples >= 1000, "must give at least 1000 surrogate_samples");
 }
 

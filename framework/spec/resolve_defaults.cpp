@@ -59,6 +59,25 @@ void resolveTrainingSamples(const InverseMapSpec& map, PointSetSpec& train) {
   }
 }
 
+/// Larger networks gain from 20000 simulations on: of a strongly nonlinear case they cannot be learnt by
+/// smaller ones. A sampler of the weights takes minutes for some hundred of them.
+void resolveNetwork(int simulations, InverseMapSpec& map) {
+  constexpr int kMany = 20000, kFewSteps = 8000, kManySteps = 16000;
+  auto* found = std::get_if<NetworkMapSpec>(&map.kind);
+  if (found == nullptr) {
+    return;
+  }
+  NetworkMapSpec& network = *found;
+  const bool many = simulations >= kMany && !network.mayLearnFromSurrogate(simulations);
+  if (network.hidden.empty()) {
+    network.hidden = many ? std::vector<int>{192, 192} : std::vector<int>{64, 64};
+    if (network.bayesian == NetworkBayes::kHamiltonian) {
+      network.hidden = {8};
+    }
+  }
+  network.steps = network.steps.value_or(many ? kManySteps : kFewSteps);
+}
+
 /// 4 draws; fewer where the training set would have more than 3000 columns.
 void resolveReplicates(int samples, NoiseSpec& noise) {
   constexpr int kMostReplicates = 4, kMostColumns = 3000;
@@ -81,6 +100,10 @@ void resolveDefaults(ExperimentSpec& experiment) {
   resolveTrainingSamples(experiment.inverse_map, experiment.design.train);
   if (!experiment.design.train.samples.automatic) {
     resolveReplicates(experiment.design.train.samples, experiment.noise);
+  }
+  resolveNetwork(experiment.design.train.samples, experiment.inverse_map);
+  for (InverseMapSpec& map : experiment.evaluation.maps) {
+    resolveNetwork(experiment.design.train.samples, map);
   }
 }
 

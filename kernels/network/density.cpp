@@ -128,6 +128,17 @@ double calcLoss(const Ref<const MatrixXd>& head, const Ref<const MatrixXd>& targ
   return loss;
 }
 
+MatrixXd calcPrecision(const Ref<const VectorXd>& head, Index targets) {
+  MatrixXd factor = MatrixXd::Identity(targets, targets);
+  for (Index j = 0; j < targets; ++j) {
+    for (Index i = 0; i < j; ++i) {
+      factor(j, i) = head[getTriangleRow(targets, j, i)];
+    }
+    factor.row(j) *= std::exp(head[targets + j]);
+  }
+  return factor * factor.transpose();
+}
+
 void calcWeights(const Ref<const VectorXd>& logarithms, Ref<VectorXd> weights) {
   weights = (logarithms.array() - logarithms.maxCoeff()).exp();
   weights /= weights.sum();

@@ -36,6 +36,9 @@ double calcLoss(const Ref<const MatrixXd>& head, const Ref<const MatrixXd>& targ
 void calcMoments(const Ref<const VectorXd>& head, Ref<VectorXd> mean, Ref<MatrixXd> covariance,
                  Ref<MatrixXd> inverse);
 
+/// The precision D (1 + A) (1 + A)' D (p x p) of t for the rows of one component.
+MatrixXd calcPrecision(const Ref<const VectorXd>& head, Index targets);
+
 /// Weights of the components, positive with the sum 1, from their logarithms but for a common summand.
 void calcWeights(const Ref<const VectorXd>& logarithms, Ref<VectorXd> weights);
 

@@ -1,8 +1,11 @@
 #include "kernels/network/last_layer.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "kernels/linalg/decompositions.hpp"
+#include "kernels/network/backpropagation.hpp"
+#include "kernels/network/density.hpp"
 
 namespace twinmap::network {
 namespace {
@@ -34,21 +37,23 @@ Information calcInformation(const LinearObservations& observations) {
 
 }  // namespace
 
-LastLayerPosterior::LastLayerPosterior(const LinearObservations& observations, double alpha) {
+LastLayerPosterior calcLastLayerPosterior(const LinearObservations& observations, double alpha) {
   const Index h = observations.inputs.rows(), p = observations.targets.rows();
   Information information = calcInformation(observations);
   information.matrix.diagonal().array() += alpha;
-  lower_ = linalg::calcCholesky(information.matrix).lower;
-  mean_ = linalg::solveCholesky(lower_, information.vector).reshaped(p, h);
+  LastLayerPosterior posterior;
+  posterior.lower = linalg::calcCholesky(information.matrix).lower;
+  posterior.mean = linalg::solveCholesky(posterior.lower, information.vector).reshaped(p, h);
+  return posterior;
 }
 
 MatrixXd LastLayerPosterior::calcCovariance(const Ref<const VectorXd>& inputs) const {
-  const Index p = mean_.rows();
-  MatrixXd directions = MatrixXd::Zero(lower_.rows(), p);
+  const Index p = mean.rows();
+  MatrixXd directions = MatrixXd::Zero(lower.rows(), p);
   for (Index k = 0; k < inputs.size(); ++k) {
     directions.middleRows(k * p, p).diagonal().setConstant(inputs[k]);
   }
-  const MatrixXd half = linalg::solveLower(lower_, directions);
+  const MatrixXd half = linalg::solveLower(lower, directions);
   return half.transpose() * half;
 }
 
@@ -82,6 +87,35 @@ double LastLayerEvidence::maximise() const {
     }
   }
   return best;
+}
+
+LinearObservations observeLastLayer(const Network& network, const Ref<const MatrixXd>& inputs,
+                                    const Ref<const MatrixXd>& targets) {
+  PassWorkspace pass;
+  calcLoss(network, inputs, targets, pass);
+  const Index n = inputs.cols();
+  LinearObservations observations{MatrixXd(pass.outputs.back().rows() + 1, n), std::move(pass.targets), {}};
+  observations.inputs << pass.outputs.back(), MatrixXd::Ones(1, n);
+  observations.precisions.resize(static_cast<std::size_t>(n));
+  for (Index i = 0; i < n; ++i) {
+    observations.precisions[static_cast<std::size_t>(i)] = calcPrecision(pass.head.col(i), targets.rows());
+  }
+  return observations;
+}
+
+MatrixXd getMeanWeights(const Network& network) {
+  const Layer& head = network.layers.back();
+  const Index p = network.countTargets();
+  MatrixXd weights(p, head.weights.cols() + 1);
+  weights << head.weights.topRows(p), head.biases.head(p);
+  return weights;
+}
+
+void setMeanWeights(const MatrixXd& weights, Network& network) {
+  Layer& head = network.layers.back();
+  const Index p = network.countTargets();
+  head.weights.topRows(p) = weights.leftCols(head.weights.cols());
+  head.biases.head(p) = weights.rightCols(1);
 }
 
 }  // namespace twinmap::network

@@ -16,20 +16,16 @@ struct LinearObservations {
 /// The exact posterior of the weights W (p x h) of linear outputs, whose prior is independent and normal with
 /// the mean 0: normal, of the precision alpha 1 + sum_i (f_i f_i') x P_i over the columns of W below each
 /// other.
-class LastLayerPosterior {
- public:
-  /// alpha > 0: the prior's precision. Cost: (p h)^2 n + (p h)^3 / 3 flops.
-  LastLayerPosterior(const LinearObservations& observations, double alpha);
-
-  const MatrixXd& getMean() const { return mean_; }  ///< p x h
+struct LastLayerPosterior {
+  MatrixXd mean;   ///< p x h
+  MatrixXd lower;  ///< p h x p h, Cholesky factor of the precision
 
   /// The covariance (p x p) of W f. Cost: (p h)^2 p flops.
   MatrixXd calcCovariance(const Ref<const VectorXd>& inputs) const;
-
- private:
-  MatrixXd mean_;
-  MatrixXd lower_;  // Cholesky factor of the precision
 };
+
+/// alpha > 0: the prior's precision. Cost: (p h)^2 n + (p h)^3 / 3 flops.
+LastLayerPosterior calcLastLayerPosterior(const LinearObservations& observations, double alpha);
 
 /// The logarithm of the density of all targets, the weights integrated out (the evidence), as a function of
 /// the prior's precision alpha.
@@ -48,5 +44,15 @@ class LastLayerEvidence {
   VectorXd eigenvalues_, projected_;  // of the observations' information; of their weighted sum, in its basis
   double constant_ = 0.0;
 };
+
+/// What samples (inputs k x n, targets p x n) tell of the weights and biases of a network's means: f is what
+/// the last hidden layer gives, and 1; the precision P is the one that the network states. Of a network of
+/// one component.
+LinearObservations observeLastLayer(const Network& network, const Ref<const MatrixXd>& inputs,
+                                    const Ref<const MatrixXd>& targets);
+
+/// The weights and biases of a network's means: p x h + 1.
+MatrixXd getMeanWeights(const Network& network);
+void setMeanWeights(const MatrixXd& weights, Network& network);
 
 }  // namespace twinmap::network

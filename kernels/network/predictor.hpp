@@ -21,6 +21,9 @@ class Predictor {
     MatrixXd means;                     ///< p x c
     std::vector<MatrixXd> covariances;  ///< p x p each
 
+    /// What the last hidden layer gave (h), of whose units there are so many.
+    auto getHidden(Index units) const { return other.head(units); }
+
    private:
     friend class Predictor;
     VectorXd sums, other, standard, products;

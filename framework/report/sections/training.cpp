@@ -1,3 +1,5 @@
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -143,6 +145,27 @@ void addHyperparameters(const RunFolder& run, Section& section, Page& page) {
   addFigure(std::move(figure), section);
 }
 
+/// How well the chains know a network whose weights were sampled.
+std::string makeChains(const CsvTable& chains) {
+  std::vector<std::vector<HtmlCell>> rows;
+  for (std::size_t row = 0; row < chains.rows.size(); ++row) {
+    rows.push_back({makeTextCell(chains.getText(row, "quantity")),
+                    makeNumberCell(chains.getText(row, "r_hat"), 4),
+                    makeNumberCell(chains.getText(row, "effective_draws"), 4)});
+  }
+  return makeElement("h3", "Draws of the network's weights") + "\n" +
+         makeHtmlTable("chains-table",
+                       fmt::format("{} chains of {} draws of {} weights; {} divergent trajectories, {} cut, mean "
+                                   "acceptance {:.2f}. Of a parameter: the worst of its means at 20 samples.",
+                                   chains.getText(0, "chains"), chains.getText(0, "draws"),
+                                   chains.getText(0, "weights"), chains.getText(0, "divergences"),
+                                   chains.getText(0, "cut"), chains.getNumber(0, "acceptance")),
+                       {"quantity", "R-hat", "effective draws"}, rows) +
+         makeParagraph("R-hat is 1 where the chains agree; above 1.05, or with fewer than 100 effective draws, "
+                       "they do not know the posterior yet.",
+                       "class=\"quiet\"");
+}
+
 /// Leave-one-out figures from training alone, beside those on the test set.
 std::string makeLeaveOneOut(const CsvTable& metrics) {
   const std::vector<std::pair<std::string, std::string>> pairs{
@@ -177,12 +200,17 @@ std::string makeLeaveOneOut(const CsvTable& metrics) {
 }  // namespace
 
 void addTraining(const RunFolder& run, Page& page) {
-  if (run.training.empty()) {
+  if (run.training.empty() && run.chains.empty()) {
     return;
   }
   Section section{"training", "Training health", "", {}};
-  addStarts(run, section, page);
-  section.html += makeTrainingTable(run.training);
+  if (!run.training.empty()) {
+    addStarts(run, section, page);
+    section.html += makeTrainingTable(run.training);
+  }
+  if (!run.chains.empty()) {
+    section.html += makeChains(run.chains);
+  }
   addHyperparameters(run, section, page);
   section.html += makeLeaveOneOut(run.metrics);
   page.sections.push_back(std::move(section));

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <random>
 #include <stdexcept>
 
@@ -17,20 +19,20 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Numbers by their index, as a counter-based generator has them.
+/// On (0, 1), by the numbers' place alone (SplitMix64).
+double calcUniform(std::uint64_t chain, std::uint64_t kind, Index i) {
+  std::uint64_t x = (chain * 1000003 + kind) * 0x9E3779B97F4A7C15 + std::uint64_t(i) * 0xD1B54A32D192ED03;
+  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9;
+  x = (x ^ (x >> 27)) * 0x94D049BB133111EB;
+  return (double((x ^ (x >> 31)) >> 11) + 0.5) * 0x1p-53;
+}
+
 ChainNumbers makeNumbers(unsigned chain) {
-  const auto start = [chain](Index i, unsigned kind) {
-    std::seed_seq seed{chain, kind, static_cast<unsigned>(i)};
-    return std::mt19937_64(seed);
-  };
-  return {[start](Index i) {
-            std::mt19937_64 engine = start(i, 1);
-            return std::normal_distribution<>()(engine);
+  return {[chain](Index i) {  // Box and Muller
+            return std::sqrt(-2.0 * std::log(calcUniform(chain, 1, i))) *
+                   std::cos(2.0 * M_PI * calcUniform(chain, 2, i));
           },
-          [start](Index i) {
-            std::mt19937_64 engine = start(i, 2);
-            return std::uniform_real_distribution<>(1e-12, 1.0)(engine);
-          }};
+          [chain](Index i) { return calcUniform(chain, 3, i); }};
 }
 
 /// The normal distribution of a mean and a precision.
@@ -126,7 +128,7 @@ TEST(Nuts, DrawsTheWeightsOfALinearNetworkFromTheirPosterior) {
     gradient = slopes.reshaped();
     return logarithm;
   };
-  const network::LastLayerPosterior posterior(observations, kAlpha);
+  const network::LastLayerPosterior posterior = network::calcLastLayerPosterior(observations, kAlpha);
   MatrixXd covariance(p * h, p * h);  // from the covariances of W f for unit vectors and their sums
   const auto calcCovariance = [&](Index a, Index b) {
     const VectorXd sum = VectorXd::Unit(h, a) + VectorXd::Unit(h, b);
@@ -142,7 +144,7 @@ TEST(Nuts, DrawsTheWeightsOfALinearNetworkFromTheirPosterior) {
     }
   }
   const std::vector<Chain> chains = sampleChains(density, p * h, 4, 1500);
-  const VectorXd mean = posterior.getMean().reshaped();
+  const VectorXd mean = posterior.mean.reshaped();
   const Index draws = chains.front().draws.cols();
   for (Index i = 0; i < p * h; ++i) {
     const Convergence convergence = judge(chains, i);

@@ -65,8 +65,8 @@ TEST(LastLayer, PosteriorIsThatOfDenseAlgebra) {
                         invert(stacked.design * prior * stacked.design.transpose() + stacked.noise);
   const VectorXd mean = gain * stacked.targets;
   const MatrixXd covariance = prior - gain * stacked.design * prior;
-  const LastLayerPosterior posterior(observations, kAlpha);
-  EXPECT_LT((posterior.getMean().reshaped() - mean).norm(), 1e-10 * mean.norm());
+  const LastLayerPosterior posterior = calcLastLayerPosterior(observations, kAlpha);
+  EXPECT_LT((posterior.mean.reshaped() - mean).norm(), 1e-10 * mean.norm());
   const VectorXd inputs = makeWave(kFeatures, 1, 40);
   const MatrixXd design = makeDesign(inputs);
   EXPECT_LT((posterior.calcCovariance(inputs) - design * covariance * design.transpose()).norm(),
@@ -93,8 +93,8 @@ TEST(LastLayer, EvidenceIsTheDensityOfTheTargets) {
 
 TEST(LastLayer, WithoutObservationsIsThePrior) {
   const LinearObservations none{MatrixXd(kFeatures, 0), MatrixXd(kOutputs, 0), {}};
-  const LastLayerPosterior posterior(none, 4.0);
-  EXPECT_EQ(posterior.getMean(), MatrixXd::Zero(kOutputs, kFeatures));
+  const LastLayerPosterior posterior = calcLastLayerPosterior(none, 4.0);
+  EXPECT_EQ(posterior.mean, MatrixXd::Zero(kOutputs, kFeatures));
   const VectorXd inputs = makeWave(kFeatures, 1, 40);
   EXPECT_LT((posterior.calcCovariance(inputs) -
              0.25 * inputs.squaredNorm() * MatrixXd::Identity(kOutputs, kOutputs))
