@@ -30,6 +30,10 @@ struct ParameterFigures {
   /// is not known.
   double limit_pct = std::numeric_limits<double>::quiet_NaN();
   double ratio_to_limit = std::numeric_limits<double>::quiet_NaN();  ///< sd_pct / limit_pct
+  /// nlpd less that of normal distributions with the limit's standard deviations, mean(log(limit_stddev)) +
+  /// log(2 pi e) / 2: what is lost by errors that are larger, and by standard deviations that do not tell
+  /// them.
+  double nats_above_limit = std::numeric_limits<double>::quiet_NaN();
 };
 
 struct FigureColumn {
@@ -38,7 +42,7 @@ struct FigureColumn {
 };
 
 /// All of them by name, in the order of metrics.csv.
-constexpr std::array<FigureColumn, 13> kFigureColumns{
+constexpr std::array<FigureColumn, 14> kFigureColumns{
     {{"bias_pct", &ParameterFigures::bias_pct},
      {"sd_pct", &ParameterFigures::sd_pct},
      {"mare_pct", &ParameterFigures::mare_pct},
@@ -51,7 +55,14 @@ constexpr std::array<FigureColumn, 13> kFigureColumns{
      {"nlpd", &ParameterFigures::nlpd},
      {"crps_pct", &ParameterFigures::crps_pct},
      {"limit_pct", &ParameterFigures::limit_pct},
-     {"ratio_to_limit", &ParameterFigures::ratio_to_limit}}};
+     {"ratio_to_limit", &ParameterFigures::ratio_to_limit},
+     {"nats_above_limit", &ParameterFigures::nats_above_limit}}};
+
+/// Whether a figure is known only where the information limit is.
+constexpr bool needsLimit(const FigureColumn& column) {
+  return column.value == &ParameterFigures::limit_pct || column.value == &ParameterFigures::ratio_to_limit ||
+         column.value == &ParameterFigures::nats_above_limit;
+}
 
 struct ParameterMetrics : ParameterFigures {
   ParameterFigures se;  ///< Monte Carlo standard error of each figure, by the jackknife over the samples

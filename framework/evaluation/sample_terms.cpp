@@ -26,8 +26,11 @@ enum Term : Index {
   kSurprise,
   kCrps,
   kSquaredLimit,
+  kLimitSurprise,
   kTerms
 };
+
+const double kLogRootTwoPi = 0.5 * std::log(boost::math::constants::two_pi<double>());
 
 ArrayXd calcWithin(const ArrayXd& depth, double probability) {
   return (depth < calcTwoSidedQuantile(probability)).cast<double>();
@@ -42,9 +45,8 @@ struct Scores {
 };
 
 Scores scoreNormal(const ParameterSamples& samples) {
-  const double log_root_two_pi = 0.5 * std::log(boost::math::constants::two_pi<double>());
   const ArrayXd z = (samples.mean - samples.truth) / samples.stddev;
-  return {z, z.abs(), 0.5 * z.square() + samples.stddev.log() + log_root_two_pi, calcCrps(z, samples.stddev)};
+  return {z, z.abs(), 0.5 * z.square() + samples.stddev.log() + kLogRootTwoPi, calcCrps(z, samples.stddev)};
 }
 
 Scores scoreMixtures(const ParameterSamples& samples) {
@@ -89,6 +91,7 @@ ParameterFigures calcFigures(const SampleTerms& offsets, const VectorXd& mean, d
   figures.crps_pct = kPercent * mean[kCrps];
   figures.limit_pct = kPercent * std::sqrt(mean[kSquaredLimit]);
   figures.ratio_to_limit = figures.sd_pct / figures.limit_pct;
+  figures.nats_above_limit = mean[kSurprise] - mean[kLimitSurprise];
   return figures;
 }
 
@@ -120,6 +123,7 @@ SampleTerms calcSampleTerms(const ParameterSpec& parameter, const ParameterSampl
   terms.row(kSurprise) = scores.surprise.transpose();
   terms.row(kCrps) = (scores.crps / scale.abs()).transpose();
   terms.row(kSquaredLimit) = (samples.limit_stddev / scale).square().transpose();
+  terms.row(kLimitSurprise) = (samples.limit_stddev.log() + (kLogRootTwoPi + 0.5)).transpose();
   return result;
 }
 

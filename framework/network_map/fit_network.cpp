@@ -100,8 +100,8 @@ network::NetworkTraining train(const NetworkSet& set, const Split& split, const 
                   {fitting.seed, RandomPurpose::kNetworkNoise}, fitting.run * kRuns + kHeldOut);
   network::TrainingOptions options;
   options.steps = fitting.spec.steps.value();
-  options.batch = fitting.spec.batch;
-  options.learning_rate = fitting.spec.learning_rate;
+  options.batch = fitting.spec.batch.value();
+  options.learning_rate = fitting.spec.learning_rate.value();
   options.check_interval = std::max<Index>(options.steps / kChecks, 1);
   options.threads = control.threads;
   options.stop = control.stop;
@@ -142,8 +142,8 @@ NetworkFit fitChains(const NetworkSet& set, const Split& split, const NetworkFit
   const network::NetworkTraining trained = train(set, split, fitting, control);
   const network::Samples drawn = drawOnce(set, split, fitting);
   NetworkFit fit{{}, trained.restarts, {}};
-  SampledWeights sampled = sampleWeights(trained.network, drawn, fitting.spec, {fitting.seed, fitting.run},
-                                         control);
+  SampledWeights sampled =
+      sampleWeights(trained.network, drawn, fitting.spec, {fitting.seed, fitting.run}, control);
   for (network::Network& network : sampled.networks) {
     fit.members.push_back({std::move(network), {}});
   }

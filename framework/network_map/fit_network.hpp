@@ -33,7 +33,7 @@ struct NetworkFitting {
 /// What a fit gives.
 struct NetworkFit {
   std::vector<network::Member> members;
-  int restarts = 0;                     ///< of the training (network::NetworkTraining)
+  int restarts = 0;                      ///< of the training (network::NetworkTraining)
   std::optional<WeightChains> chains{};  ///< of a Hamiltonian sampler
 };
 

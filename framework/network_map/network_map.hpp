@@ -10,8 +10,8 @@
 
 namespace twinmap {
 
-/// What a network sees of a measurement: projection (features - center), of unit variance over the training
-/// samples, above the scaled known inputs.
+/// What a network sees of a measurement: projection (features - center), of at most unit variance over the
+/// training samples, above the scaled known inputs.
 struct NetworkInputs {
   Eigen::VectorXd center;      ///< d
   Eigen::MatrixXd projection;  ///< k x d
@@ -26,7 +26,7 @@ struct NetworkInputs {
 /// their bounds. A trained, immutable value.
 struct NetworkMap {
   NetworkInputs inputs;
-  Eigen::VectorXd center, half_width;  ///< p, of the parameters' bounds
+  Eigen::VectorXd center, half_width;    ///< p, of the parameters' bounds
   std::vector<network::Member> members;  ///< one, or several whose answers are as likely as each other
   SurrogateValidation
       validation;  ///< of simulations that took no part; no limit_scale, limit_ratio may be NaN

@@ -18,9 +18,7 @@ struct MetricsColumn {
 std::vector<MetricsColumn> listMetricsColumns(const RunSummary& run) {
   std::vector<MetricsColumn> columns;
   for (const FigureColumn& column : kFigureColumns) {
-    const bool of_limit =
-        column.value == &ParameterFigures::limit_pct || column.value == &ParameterFigures::ratio_to_limit;
-    if (!of_limit || run.evaluation.limit_stddev.size() > 0) {
+    if (!needsLimit(column) || run.evaluation.limit_stddev.size() > 0) {
       columns.push_back({column.name, column.value, false});
     }
   }

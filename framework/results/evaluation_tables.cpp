@@ -111,15 +111,17 @@ std::string makeBaselinesCsv(const RunSummary& run) {
 
 std::string makeMapsCsv(const RunSummary& run) {
   std::vector<CsvRow> rows{{"map", "parameter", "bias_pct", "sd_pct", "mare_pct", "limit_pct",
-                            "ratio_to_limit", "coverage50", "coverage90", "coverage95", "nlpd",
-                            "joint_coverage95", "joint_nlpd", "training_seconds", "online_us", "bytes"}};
+                            "ratio_to_limit", "nats_above_limit", "coverage50", "coverage90", "coverage95",
+                            "nlpd", "joint_coverage95", "joint_nlpd", "training_seconds", "online_us",
+                            "bytes"}};
   for (const MapComparison& map : run.evaluation.maps) {
     for (std::size_t p = 0; p < run.parameters.size(); ++p) {
       const ParameterMetrics& m = map.metrics[p];
       CsvRow row{map.name, run.parameters[p].name.text};
-      for (const double value : {m.bias_pct, m.sd_pct, m.mare_pct, m.limit_pct, m.ratio_to_limit,
-                                 m.coverage50, m.coverage90, m.coverage95, m.nlpd, map.joint.coverage95,
-                                 map.joint.nlpd, map.training_seconds, map.online.median_us}) {
+      for (const double value :
+           {m.bias_pct, m.sd_pct, m.mare_pct, m.limit_pct, m.ratio_to_limit, m.nats_above_limit, m.coverage50,
+            m.coverage90, m.coverage95, m.nlpd, map.joint.coverage95, map.joint.nlpd, map.training_seconds,
+            map.online.median_us}) {
         row.push_back(std::isfinite(value) ? toText(value) : "");
       }
       row.push_back(std::to_string(map.bytes));

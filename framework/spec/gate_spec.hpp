@@ -26,9 +26,10 @@ void describe(Fields& f, GateSpec& s) {
 }
 
 /// The columns of metrics.csv that a gate may hold.
-inline constexpr std::array<const char*, 18> kGateMetrics{
-    "bias_pct",       "sd_pct",     "mare_pct",       "coverage95", "coverage90", "coverage50",
-    "stddev_pct",     "z_mean",     "z_sd",           "nlpd",       "crps_pct",   "limit_pct",
-    "ratio_to_limit", "loo_sd_pct", "loo_coverage95", "loo_nlpd",   "nlml",       "test_samples"};
+inline constexpr std::array<const char*, 19> kGateMetrics{
+    "bias_pct",       "sd_pct",           "mare_pct",   "coverage95",     "coverage90", "coverage50",
+    "stddev_pct",     "z_mean",           "z_sd",       "nlpd",           "crps_pct",   "limit_pct",
+    "ratio_to_limit", "nats_above_limit", "loo_sd_pct", "loo_coverage95", "loo_nlpd",   "nlml",
+    "test_samples"};
 
 }  // namespace twinmap

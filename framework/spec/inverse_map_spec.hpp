@@ -173,8 +173,8 @@ struct NetworkMapSpec {
   NetworkSamples samples_from = NetworkSamples::kAutomatic;
   int surrogate_samples = 20000;
   std::optional<int> steps;
-  int batch = 256;
-  double learning_rate = 0.002;
+  std::optional<int> batch;
+  std::optional<double> learning_rate;
   NetworkBayes bayesian = NetworkBayes::kNone;
   int chains = 4;   ///< of a Hamiltonian sampler
   int draws = 500;  ///< of each chain, after as many to warm up
@@ -205,10 +205,14 @@ void describe(Fields& f, NetworkMapSpec& s) {
              "simulations; a surrogate that is trained on them first; or automatic");
   f.optional("surrogate_samples", s.surrogate_samples, "parameter points that a surrogate is asked for",
              kSampleCount);
-  f.optional("steps", s.steps, "of the optimiser (default: 8000; of 20000 simulations or more 16000)",
+  f.optional("steps", s.steps, "of the optimiser (default: 8000; of 20000 simulations or more 12000)",
              kSampleCount);
-  f.optional("batch", s.batch, "samples of a step, each with its own draw of the noise", kHundredThousand);
-  f.optional("learning_rate", s.learning_rate, "its largest value", kPositive);
+  f.optional("batch", s.batch,
+             "samples of a step, each with its own draw of the noise (default: 256; of 20000 simulations or "
+             "more 1024)",
+             kHundredThousand);
+  f.optional("learning_rate", s.learning_rate,
+             "its largest value (default: 0.002; of 20000 simulations or more 0.004)", kPositive);
   f.optional("bayesian", s.bayesian,
              "last_layer: five networks, of whose last layers the exact posterior is known; hamiltonian: draws "
              "of all weights of a small network, for studies");

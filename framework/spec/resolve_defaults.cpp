@@ -36,8 +36,8 @@ void resolveProminence(const NoiseSpec& noise, ExtremaFeatureSpec& extrema) {
 }
 
 /// A surrogate's cross-validation tells what more samples are worth; processes from features to parameters
-/// take the paper's number, and so does a network, which a surrogate can teach. 100 samples are the fewest that five folds of 8 unknowns can be learnt from; a
-/// longer set must begin with the shorter one.
+/// take the paper's number, and so does a network, which a surrogate can teach. 100 samples are the fewest
+/// that five folds of 8 unknowns can be learnt from; a longer set must begin with the shorter one.
 void resolveTrainingSamples(const InverseMapSpec& map, PointSetSpec& train) {
   constexpr int kSmallest = 100, kMost = 800, kOfProcesses = 250;
   constexpr double kSeconds = 10.0;
@@ -59,10 +59,11 @@ void resolveTrainingSamples(const InverseMapSpec& map, PointSetSpec& train) {
   }
 }
 
-/// Larger networks gain from 20000 simulations on: of a strongly nonlinear case they cannot be learnt by
-/// smaller ones. A sampler of the weights takes minutes for some hundred of them.
+/// What a network needs to learn a strongly nonlinear case from very many simulations within some minutes:
+/// larger layers, and batches that tell the gradient better. Of fewer they gain nothing, and take longer. A
+/// sampler of the weights takes minutes for some hundred of them.
 void resolveNetwork(int simulations, InverseMapSpec& map) {
-  constexpr int kMany = 20000, kFewSteps = 8000, kManySteps = 16000;
+  constexpr int kMany = 20000;
   auto* found = std::get_if<NetworkMapSpec>(&map.kind);
   if (found == nullptr) {
     return;
@@ -75,7 +76,9 @@ void resolveNetwork(int simulations, InverseMapSpec& map) {
       network.hidden = {8};
     }
   }
-  network.steps = network.steps.value_or(many ? kManySteps : kFewSteps);
+  network.steps = network.steps.value_or(many ? 12000 : 8000);
+  network.batch = network.batch.value_or(many ? 1024 : 256);
+  network.learning_rate = network.learning_rate.value_or(many ? 0.004 : 0.002);
 }
 
 /// 4 draws; fewer where the training set would have more than 3000 columns.

@@ -114,7 +114,7 @@ double countNetworkFlops(const NetworkMapSpec& network) {
     weights += before * units;
     before = units;
   }
-  return kOfWeight * kTrainings * weights * network.steps.value_or(1) * network.batch;
+  return kOfWeight * kTrainings * weights * network.steps.value_or(1) * network.batch.value_or(1);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@ constexpr const char* kTable = "compared-maps";
 const std::vector<MetricColumn>& getColumns() {
   static const std::vector<MetricColumn> columns{{"sd_pct", "sd %"},
                                                  {"ratio_to_limit", "sd / limit"},
+                                                 {"nats_above_limit", "nats above limit"},
                                                  {"coverage50", "coverage 50 %"},
                                                  {"coverage95", "coverage 95 %"},
                                                  {"nlpd", "nlpd"},

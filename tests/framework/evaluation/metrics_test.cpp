@@ -61,8 +61,20 @@ TEST(Metrics, TheInformationLimitIsRelativeAsTheStandardDeviationIs) {
        {Eigen::MatrixXd(), Eigen::MatrixXd(Eigen::RowVector2d(0.1, std::nan("")))}) {
     EXPECT_TRUE(std::isnan(calc(unknown).limit_pct));
     EXPECT_TRUE(std::isnan(calc(unknown).ratio_to_limit));
+    EXPECT_TRUE(std::isnan(calc(unknown).nats_above_limit));
     EXPECT_NEAR(calc(unknown).sd_pct, 10 * std::sqrt(2.0), 1e-12);
   }
+}
+
+// Errors of one standard deviation each, as is said of them: only what exceeds the limit is lost.
+TEST(Metrics, TheDensityIsComparedWithThatOfTheLimit) {
+  const Eigen::RowVector2d truth(2, 4), stddev(0.2, 1.2), limit(0.1, 0.4);
+  const auto calc = [&](const Eigen::RowVector2d& mean) {
+    return calcMetrics({makeParameter(1, 5)}, truth, {mean, stddev}, limit).at(0).nats_above_limit;
+  };
+  EXPECT_NEAR(calc({2.2, 2.8}), (std::log(2.0) + std::log(3.0)) / 2, 1e-12);
+  EXPECT_NEAR(calc({2.2, 1.6}), (std::log(2.0) + std::log(3.0)) / 2 + 0.75,
+              1e-12);  // (4 - 1) / 2 of one of two
 }
 
 // A bias a million times the spread costs the spread no digits.

@@ -93,15 +93,19 @@ FeatureTransform makeWhitening() {
   return {{AffineStep{VectorXd::Zero(kTimes), VectorXd::Constant(kTimes, kNoise), {}}}};
 }
 
-NetworkMapTraining trainOnSimulations(const Oscillation& oscillation, Index count, int steps,
+NetworkMapTraining trainOnSimulations(const Oscillation& oscillation, Index count, const NetworkMapSpec& spec,
                                       int threads = 2) {
   const MatrixXd points = Oscillation::samplePoints(count, 1), responses = oscillation.respond(points);
   const FeatureTransform transform = makeWhitening();
-  const NetworkMapSpec spec = makeSpec(steps);
   return trainNetworkMap(
       {oscillation.model, spec, 3},
       {points, responses, oscillation.extractor, oscillation.noise, transform, true, getNoiseCovariance()},
       {threads});
+}
+
+NetworkMapTraining trainOnSimulations(const Oscillation& oscillation, Index count, int steps,
+                                      int threads = 2) {
+  return trainOnSimulations(oscillation, count, makeSpec(steps), threads);
 }
 
 SurrogateTraining trainTeacher(const Oscillation& oscillation) {
@@ -113,10 +117,10 @@ SurrogateTraining trainTeacher(const Oscillation& oscillation) {
       {2});
 }
 
-/// Of unseen measurements.
-void expectHonestAndNearTheLimit(const Oscillation& oscillation, const NetworkMap& map) {
+/// Of unseen measurements; most_of_limit: of errors over what the noise allows.
+void expectHonestAndNearTheLimit(const Oscillation& oscillation, const NetworkMap& map,
+                                 double most_of_limit = 2.0) {
   constexpr Index kTests = 600;
-  constexpr double kOfShortTraining = 2.0;  // a tenth of the usual steps
   const MatrixXd points = Oscillation::samplePoints(kTests, 2);
   const Predictions found = map.predict(oscillation.measure(points, 3), points.bottomRows(1), 2);
   MatrixXd limit(2, kTests);
@@ -129,7 +133,7 @@ void expectHonestAndNearTheLimit(const Oscillation& oscillation, const NetworkMa
         (errors.row(k).array().abs() < kNormal95 * found.stddev.row(k).array()).cast<double>().mean();
     EXPECT_GT(covered, 0.91);
     EXPECT_LT(covered, 0.99);
-    EXPECT_LT(errors.row(k).norm(), kOfShortTraining * limit.row(k).norm());
+    EXPECT_LT(errors.row(k).norm(), most_of_limit * limit.row(k).norm());
   }
 }
 
@@ -159,15 +163,17 @@ TEST(NetworkMap, IsTheSameForAnyNumberOfThreads) {
   const Oscillation oscillation;
   const NetworkMapTraining one = trainOnSimulations(oscillation, 200, 60, 1);
   const NetworkMapTraining three = trainOnSimulations(oscillation, 200, 60, 3);
-  for (std::size_t i = 0; i < one.map.network.layers.size(); ++i) {
-    EXPECT_EQ(one.map.network.layers[i].weights, three.map.network.layers[i].weights);
+  for (std::size_t i = 0; i < one.map.members.front().network.layers.size(); ++i) {
+    EXPECT_EQ(one.map.members.front().network.layers[i].weights,
+              three.map.members.front().network.layers[i].weights);
   }
   EXPECT_EQ(one.map.validation.stddev_scale, three.map.validation.stddev_scale);
   const SurrogateTraining teacher = trainTeacher(oscillation);
   NetworkMapSpec spec = makeSpec(60);
   spec.surrogate_samples = 1000;
-  EXPECT_EQ(trainNetworkMap({oscillation.model, spec, 3}, teacher.surrogate, {1}).map.network.skip,
-            trainNetworkMap({oscillation.model, spec, 3}, teacher.surrogate, {3}).map.network.skip);
+  EXPECT_EQ(
+      trainNetworkMap({oscillation.model, spec, 3}, teacher.surrogate, {1}).map.members.front().network.skip,
+      trainNetworkMap({oscillation.model, spec, 3}, teacher.surrogate, {3}).map.members.front().network.skip);
 }
 
 /// A parameter whose square alone is measured, and one that is measured as it is.
@@ -221,6 +227,46 @@ TEST(NetworkMap, OfOneNormalDistributionSaysWhereItsAnswersAreNone) {
   ASSERT_EQ(normal.warnings.size(), 1U);
   EXPECT_NE(normal.warnings[0].find("side: 50 % intervals"), std::string::npos) << normal.warnings[0];
   EXPECT_NE(normal.warnings[0].find("head: mixture"), std::string::npos);
+}
+
+TEST(NetworkMap, OfAnEnsembleIsHonestAndTheSameForAnyNumberOfThreads) {
+  const Oscillation oscillation;
+  NetworkMapSpec spec = makeSpec(300);
+  spec.bayesian = NetworkBayes::kLastLayer;
+  const NetworkMapTraining one = trainOnSimulations(oscillation, 300, spec, 1);
+  ASSERT_EQ(one.map.members.size(), 5U);
+  EXPECT_NE(one.map.members[0].network.skip, one.map.members[1].network.skip);
+  EXPECT_EQ(one.map.members[0].last_layer.rows(), 2 * (24 + 1));
+  expectHonestAndNearTheLimit(oscillation, one.map, 3.5);
+  const NetworkMapTraining three = trainOnSimulations(oscillation, 300, spec, 3);
+  for (std::size_t i = 0; i < one.map.members.size(); ++i) {
+    EXPECT_EQ(one.map.members[i].last_layer, three.map.members[i].last_layer);
+  }
+}
+
+TEST(NetworkMap, OfSampledWeightsIsHonestAndSaysHowWellItKnowsThem) {
+  const Oscillation oscillation;
+  NetworkMapSpec spec = makeSpec(300);
+  spec.hidden = {3};
+  spec.bayesian = NetworkBayes::kHamiltonian;
+  spec.chains = 2;
+  spec.draws = 30;
+  const NetworkMapTraining trained = trainOnSimulations(oscillation, 60, spec);
+  ASSERT_EQ(trained.map.members.size(), 2U * 30U);
+  ASSERT_TRUE(trained.chains);
+  EXPECT_EQ(trained.chains->chains, 2);
+  EXPECT_EQ(trained.chains->draws, 30);
+  ASSERT_EQ(trained.chains->means.size(), 2U);
+  EXPECT_GT(trained.chains->means[0].effective_sample_size, 1.0);
+  EXPECT_GE(trained.chains->means[0].r_hat, 0.99);
+  // so few draws cannot know the posterior, which is said
+  ASSERT_FALSE(trained.warnings.empty());
+  EXPECT_NE(trained.warnings.front().find("have not converged"), std::string::npos);
+  const MatrixXd points = Oscillation::samplePoints(200, 2);
+  const Predictions found =
+      trained.map.predict(oscillation.measure(points, 9), MatrixXd(points.bottomRows(1)));
+  const MatrixXd z = (found.mean - points.topRows(2)).cwiseQuotient(found.stddev);
+  EXPECT_NEAR((z.array().abs() < 1.96).cast<double>().mean(), 0.95, 0.06);
 }
 
 TEST(NetworkMap, RefusesTooFewSimulationsAndOtherSizes) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/online/online_map.hpp"
+#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 namespace {
@@ -10,24 +11,36 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-std::shared_ptr<const NetworkMap> makeExample() {
+NetworkMap makeExample() {
   NetworkMap map;
   map.inputs = {
       VectorXd::Random(5), MatrixXd::Random(2, 5), {VectorXd::Random(1), VectorXd::Constant(1, 2.0)}};
   map.center = VectorXd::Random(2);
   map.half_width = VectorXd::Constant(2, 0.5);
-  map.network.offset = VectorXd::Random(2);
-  map.network.skip = MatrixXd::Random(2, 3);
-  map.network.scale = VectorXd::Constant(2, 0.3);
-  map.network.layers = {{MatrixXd::Random(4, 3), VectorXd::Random(4)},
-                        {MatrixXd::Random(5, 4), VectorXd::Random(5)}};
+  network::Network network;
+  network.offset = VectorXd::Random(2);
+  network.skip = MatrixXd::Random(2, 3);
+  network.scale = VectorXd::Constant(2, 0.3);
+  network.layers = {{MatrixXd::Random(4, 3), VectorXd::Random(4)},
+                    {MatrixXd::Random(5, 4), VectorXd::Random(5)}};
+  map.members = {{network, {}}};
   map.validation.stddev_scale = Eigen::Vector2d(1.0, 1.5);
   map.validation.residual_correlation = MatrixXd::Identity(2, 2);
-  return std::make_shared<const NetworkMap>(map);
+  return map;
 }
 
-TEST(OnlineNetwork, InfersWhatTheMapPredicts) {
-  const auto map = makeExample();
+/// Two networks, whose last layers are known by a distribution.
+NetworkMap makeBayesianExample() {
+  NetworkMap map = makeExample();
+  network::Member& member = map.members.front();
+  const MatrixXd root = MatrixXd::Random(10, 10);
+  member.last_layer = linalg::calcCholesky(root * root.transpose() + MatrixXd::Identity(10, 10)).lower;
+  map.members.push_back(member);
+  map.members.back().network.offset.array() += 0.2;
+  return map;
+}
+
+void expectThePredictionsOf(const std::shared_ptr<const NetworkMap>& map) {
   const OnlineMap online{AnyMap(map)};
   OnlineMap::Workspace workspace(online);
   const MatrixXd features = MatrixXd::Random(5, 3), known = MatrixXd::Random(1, 3);
@@ -42,6 +55,14 @@ TEST(OnlineNetwork, InfersWhatTheMapPredicts) {
   EXPECT_EQ(workspace.findExplanation(), nullptr);
   EXPECT_TRUE(online.isHonest());
   EXPECT_THROW(online.predict(MatrixXd::Zero(4, 1), MatrixXd::Zero(1, 1), 1), std::invalid_argument);
+}
+
+TEST(OnlineNetwork, InfersWhatTheMapPredicts) {
+  expectThePredictionsOf(std::make_shared<const NetworkMap>(makeExample()));
+}
+
+TEST(OnlineNetwork, OfSeveralBayesianNetworksInfersWhatTheMapPredicts) {
+  expectThePredictionsOf(std::make_shared<const NetworkMap>(makeBayesianExample()));
 }
 
 }  // namespace

@@ -1,0 +1,253 @@
+"""How near the information limit each kind of map comes, by the number of simulations: writes docs/map-study.md.
+
+Usage: map_study.py TWINMAP [--threads N] [--tests N] [--results FOLDER] [--web FOLDER] [EXPERIMENT ...]
+Each experiment (default: those of the page) runs with each map and number of simulations, without refinement. Runs stay in
+FOLDER (default: results/map_study), so that a second call continues, or only writes the page, the table behind it
+(results/published/map_study/study.csv) and its figures (docs/images). --web: where the build's Vega-Lite is (default:
+build/release/framework/report/web).
+"""
+import argparse
+import csv
+import json
+import math
+import resource
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+EXPERIMENTS = ["two_beam/best", "crane/crane", "mechanisms/double_pendulum_mild", "mechanisms/double_pendulum",
+               "mechanisms/spatial_arm", "mechanisms/cubic_chain"]
+SIZES = [100, 250, 1000, 4000, 10000, 100000]
+
+# Each map and for which numbers of simulations; beyond them it takes tens of minutes, or is another one of the list.
+MAPS = {
+    "gp": ("gp", [100, 250, 1000]),
+    "sparse gp": ("{gp: {approximation: sgpr}}", [4000, 10000]),
+    "surrogate": ("surrogate", [100, 250, 1000]),
+    "network": ("network", SIZES),
+    "network, simulations alone": ("{network: {samples_from: simulations}}", [100, 250, 1000]),
+    "mixture": ("{network: {head: mixture}}", [250, 1000, 10000]),
+    "bayesian last layer": ("{network: {bayesian: last_layer}}", [250, 1000, 10000]),
+}
+BASELINES = {"linear_regression": ("linear regression", SIZES), "least_squares": ("least squares", [250])}
+ORDER = list(MAPS) + [name for name, _ in BASELINES.values()]
+
+
+def parse_arguments():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("twinmap")
+    parser.add_argument("experiments", nargs="*", default=EXPERIMENTS, help="as experiments/NAME.yaml")
+    parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--tests", type=int, default=1500)
+    parser.add_argument("--results", type=Path, default=ROOT / "results/map_study")
+    parser.add_argument("--web", type=Path, default=ROOT / "build/release/framework/report/web")
+    return parser.parse_intermixed_args()
+
+
+def list_runs(experiments):
+    """(experiment, simulations, map) in the order in which they run: the quick ones first."""
+    return [(experiment, size, name) for size in SIZES for experiment in experiments
+            for name, (_, sizes) in MAPS.items() if size in sizes]
+
+
+def count_processor_seconds():
+    times = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return times.ru_utime + times.ru_stime
+
+
+def list_baselines(size, name):
+    """Beside the network, which runs for all sizes."""
+    wanted = {"linear_regression": "linear_regression", "least_squares": "{least_squares: {samples: 200}}"}
+    return [wanted[key] for key, (_, sizes) in BASELINES.items() if name == "network" and size in sizes]
+
+
+def run(arguments, experiment, size, name):
+    """The folder of a finished run; none if the map could not be trained."""
+    folder = arguments.results / experiment.split("/")[1] / str(size) / name.replace(",", "").replace(" ", "_")
+    if (folder / "failed.txt").exists():
+        return None
+    if not (folder / "processor_seconds.txt").exists():
+        print(experiment, size, name, file=sys.stderr, flush=True)
+        command = [arguments.twinmap, "run", ROOT / "experiments" / f"{experiment}.yaml", "refine=never",
+                   f"inverse_map={MAPS[name][0]}", f"design.train.samples={size}", "design.train.method=latin_hypercube",
+                   f"design.test.samples={arguments.tests}", f"noise.replicates={max(1, min(4, 1000 // size))}",
+                   f"evaluation.baselines=[{', '.join(list_baselines(size, name))}]",
+                   "--threads", arguments.threads, "--store", arguments.results / "store", "--out", folder, "--quiet"]
+        before = count_processor_seconds()
+        done = subprocess.run(list(map(str, command)), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        if done.returncode != 0:
+            print(done.stderr, file=sys.stderr)
+            folder.mkdir(parents=True, exist_ok=True)
+            (folder / "failed.txt").write_text(done.stderr)
+            return None
+        (folder / "processor_seconds.txt").write_text(f"{count_processor_seconds() - before}\n")
+    return folder
+
+
+def read_csv(file):
+    if not file.exists():
+        return []
+    with open(file, newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+COLUMNS = ["experiment", "simulations", "map", "parameter", "sd_pct", "limit_pct", "ratio_to_limit", "nats_above_limit", "coverage50",
+           "coverage95", "processor_seconds", "online_us", "bytes"]
+
+
+def read_rows(folder, experiment, size, name):
+    """One for each parameter, of the map and of the baselines beside it."""
+    provenance = json.loads((folder / "provenance.json").read_text())
+    common = {"experiment": experiment, "simulations": size}
+    metrics = read_csv(folder / "metrics.csv")
+    of_run = {"map": name, "processor_seconds": float((folder / "processor_seconds.txt").read_text()),
+              "online_us": provenance["online"]["median_us"], "bytes": (folder / "maps.h5").stat().st_size}
+    rows = [{**row, **common, **of_run} for row in metrics]
+    limits = {row["parameter"]: float(row["limit_pct"]) for row in metrics}
+    for row in read_csv(folder / "baselines.csv"):
+        if row["method"] in BASELINES:
+            ratio = float(row["sd_pct"]) / limits[row["parameter"]]
+            rows.append({**row, **common, "map": BASELINES[row["method"]][0], "limit_pct": limits[row["parameter"]], "ratio_to_limit": ratio,
+                         "online_us": 1e6 * float(row["seconds_per_update"])})
+    return [{column: row.get(column, "") for column in COLUMNS} for row in rows]
+
+
+def number(row, column):
+    return float(row[column]) if row[column] not in ("", "nan") else math.nan
+
+
+def summarise(rows):
+    """A row for each experiment, size and map: means over the parameters, geometric of the ratios."""
+    groups = {}
+    for row in rows:
+        groups.setdefault((row["experiment"], row["simulations"], row["map"]), []).append(row)
+    points = []
+    for (experiment, size, name), found in groups.items():
+        ratios = [number(row, "ratio_to_limit") for row in found]
+        point = {"experiment": experiment.split("/")[1], "simulations": size, "map": name,
+                 "ratio": math.exp(sum(map(math.log, ratios)) / len(ratios)), "worst_ratio": max(ratios),
+                 "nats": sum(number(row, "nats_above_limit") for row in found) / len(found)}
+        for level in ("50", "95"):
+            coverages = [number(row, f"coverage{level}") for row in found]
+            point[f"coverage{level}"] = (min(coverages), max(coverages))
+        for column in ("processor_seconds", "online_us", "bytes"):
+            point[column] = number(found[0], column)
+        points.append(point)
+    return sorted(points, key=lambda point: (list(dict.fromkeys(p["experiment"] for p in points)).index(point["experiment"]),
+                                             ORDER.index(point["map"]), point["simulations"]))
+
+
+def make_figure(points, value, title):
+    """A Vega-Lite specification: a panel for each experiment, a line for each map."""
+    data = [{key: point[key] for key in ("experiment", "simulations", "map", value)} for point in points
+            if math.isfinite(point[value]) and (value != "nats" or point[value] > 0)]
+    return {"$schema": "https://vega.github.io/schema/vega-lite/v5.json", "data": {"values": data}, "background": "white",
+            "facet": {"field": "experiment", "title": None, "sort": list(dict.fromkeys(p["experiment"] for p in points))}, "columns": 2,
+            "spec": {"width": 330, "height": 220, "mark": {"type": "line", "point": True},
+                     "encoding": {"x": {"field": "simulations", "type": "quantitative", "scale": {"type": "log"}},
+                                  "y": {"field": value, "type": "quantitative", "title": title, "scale": {"type": "log"}},
+                                  "color": {"field": "map", "sort": ORDER, "scale": {"scheme": "tableau10"}, "legend": {"title": None}}}},
+            "resolve": {"scale": {"y": "independent"}}}
+
+
+RENDER = """
+import {readFileSync, writeFileSync} from 'node:fs';
+import {createRequire} from 'node:module';
+const [web, figure, image] = process.argv.slice(2);
+const load = createRequire(`${web}/package.json`);
+const {vega, vegaLite} = {vega: load('vega'), vegaLite: load('vega-lite')};
+const {spec} = vegaLite.compile(JSON.parse(readFileSync(figure, 'utf8')));
+writeFileSync(image, await new vega.View(vega.parse(spec), {renderer: 'none'}).toSVG());
+"""
+
+
+def draw(arguments, figure, image):
+    script, specification = (arguments.results / name for name in ("render.mjs", "figure.json"))
+    script.write_text(RENDER)
+    specification.write_text(json.dumps(figure))
+    subprocess.run(["node", script, arguments.web.resolve(), specification, image], check=True)
+
+
+def span(pair):
+    low, high = (f"{value:.2f}" for value in pair)
+    return low if low == high else f"{low} - {high}"
+
+
+def describe(value, unit):
+    return "" if math.isnan(value) else f"{value:.3g} {unit}"
+
+
+def make_table(points):
+    lines = ["| map | simulations | ratio, mean | worst | nats | coverage 50 % | 95 % | processor time | a measurement | size |",
+             "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|"]
+    for point in points:
+        cells = [point["map"], point["simulations"], f"{point['ratio']:.3g}", f"{point['worst_ratio']:.3g}",
+                 f"{point['nats']:.2g}" if math.isfinite(point["nats"]) else "", span(point["coverage50"]), span(point["coverage95"]),
+                 describe(point["processor_seconds"], "s"), describe(point["online_us"], "us"), describe(point["bytes"] / 1024, "kB")]
+        lines.append("| " + " | ".join(map(str, cells)) + " |")
+    return "\n".join(lines)
+
+
+HEAD = """# Which map for how many simulations
+
+Written by `bench/map_study.py TWINMAP`: {count} mechanisms, {tests} test samples each, every map alone (`refine=never`), one seed. Ratio: standard
+deviation of the errors over the information limit, geometric mean over the parameters and the worst of them. Nats: how much the logarithmic
+density of the true parameters is below that of normal distributions as narrow as the limit, a parameter on average. Coverage: smallest and largest
+over the parameters. Processor time: of the whole run, simulation, training, trust and evaluation. A measurement: median time from features to an
+answer with its judgement. [maps.md](maps.md) says what the maps are, [networks.md](networks.md) what the kinds of network.
+
+One of them, smaller:
+
+```sh
+common="experiments/mechanisms/double_pendulum_mild.yaml design.train.samples=500 design.test.samples=200 evaluation.limit=true refine=never"
+twinmap run $common inverse_map=surrogate "evaluation.maps=[gp, {{network: {{samples_from: simulations, steps: 1000}}}}]" --out results/which
+cat results/which/maps.csv
+```
+
+![ratio to the limit against the number of simulations](images/map-study-ratio.svg)
+
+![nats above the limit against the number of simulations](images/map-study-nats.svg)
+
+{findings}
+"""
+
+
+def write_page(arguments, rows):
+    points = summarise(rows)
+    published = ROOT / "results/published/map_study"
+    published.mkdir(parents=True, exist_ok=True)
+    with open(published / "study.csv", "w", newline="") as stream:
+        writer = csv.DictWriter(stream, COLUMNS, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+    draw(arguments, make_figure(points, "ratio", "errors over the limit"), ROOT / "docs/images/map-study-ratio.svg")
+    draw(arguments, make_figure(points, "nats", "nats above the limit"), ROOT / "docs/images/map-study-nats.svg")
+    page = ROOT / "docs/map-study.md"
+    experiments = list(dict.fromkeys(point["experiment"] for point in points))
+    text = HEAD.format(count=len(experiments), tests=arguments.tests, findings=read_findings(page))
+    for experiment in experiments:
+        text += f"\n## {experiment}\n\n" + make_table([point for point in points if point["experiment"] == experiment]) + "\n"
+    page.write_text(text)
+
+
+def read_findings(page):
+    """What a person has written between the figures and the tables stays."""
+    start = "## What it says\n"
+    text = page.read_text() if page.exists() else ""
+    if start not in text:
+        return start
+    return text[text.index(start):].split("\n## ")[0].rstrip() + "\n"
+
+
+def main():
+    arguments = parse_arguments()
+    rows = []
+    for experiment, size, name in list_runs(arguments.experiments):
+        folder = run(arguments, experiment, size, name)
+        rows += read_rows(folder, experiment, size, name) if folder else []
+    write_page(arguments, rows)
+
+
+if __name__ == "__main__":
+    main()
