@@ -22,13 +22,13 @@ SIZES = [100, 250, 1000, 4000, 10000, 100000]
 
 # Each map and for which numbers of simulations; beyond them it takes tens of minutes, or is another one of the list.
 MAPS = {
+    "network": ("network", SIZES),
+    "surrogate": ("surrogate", [100, 250, 1000]),
     "gp": ("gp", [100, 250, 1000]),
     "sparse gp": ("{gp: {approximation: sgpr}}", [4000, 10000]),
-    "surrogate": ("surrogate", [100, 250, 1000]),
-    "network": ("network", SIZES),
-    "network, simulations alone": ("{network: {samples_from: simulations}}", [100, 250, 1000]),
-    "mixture": ("{network: {head: mixture}}", [250, 1000, 10000]),
-    "bayesian last layer": ("{network: {bayesian: last_layer}}", [250, 1000, 10000]),
+    "network, simulations alone": ("{network: {samples_from: simulations}}", [250, 1000]),
+    "mixture": ("{network: {head: mixture}}", [250, 1000]),
+    "bayesian last layer": ("{network: {bayesian: last_layer}}", [250, 1000]),
 }
 BASELINES = {"linear_regression": ("linear regression", SIZES), "least_squares": ("least squares", [250])}
 ORDER = list(MAPS) + [name for name, _ in BASELINES.values()]
@@ -46,9 +46,8 @@ def parse_arguments():
 
 
 def list_runs(experiments):
-    """(experiment, simulations, map) in the order in which they run: the quick ones first."""
-    return [(experiment, size, name) for size in SIZES for experiment in experiments
-            for name, (_, sizes) in MAPS.items() if size in sizes]
+    """(experiment, simulations, map)."""
+    return [(experiment, size, name) for name, (_, sizes) in MAPS.items() for size in reversed(sizes) for experiment in experiments]
 
 
 def count_processor_seconds():

@@ -39,9 +39,9 @@ struct NetworkSimulations {
   const Eigen::MatrixXd& noise_covariance;  ///< d x d
 };
 
-/// Trains a network on simulations. Networks of few simulations are overconfident: below 10000 five more,
+/// Trains a network on simulations. Networks of few simulations are overconfident: below 20000 five more,
 /// each of which a fifth of the simulations is left out of, tell by how much, and the standard deviations are
-/// multiplied by it (calcStddevScale); from 10000 on, the simulations held out do. Throws
+/// multiplied by it (calcStddevScale); from 20000 on, the simulations held out do. Throws
 /// std::invalid_argument for fewer than 50 simulations; gp::Stopped. Cost: six trainings, or one.
 NetworkMapTraining trainNetworkMap(const NetworkTask& task, const NetworkSimulations& simulations,
                                    const TrainingControl& control);

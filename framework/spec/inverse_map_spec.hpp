@@ -205,7 +205,7 @@ void describe(Fields& f, NetworkMapSpec& s) {
              "simulations; a surrogate that is trained on them first; or automatic");
   f.optional("surrogate_samples", s.surrogate_samples, "parameter points that a surrogate is asked for",
              kSampleCount);
-  f.optional("steps", s.steps, "of the optimiser (default: 8000; of 20000 simulations or more 12000)",
+  f.optional("steps", s.steps, "of the optimiser (default: 8000; of 20000 simulations or more 18000)",
              kSampleCount);
   f.optional("batch", s.batch,
              "samples of a step, each with its own draw of the noise (default: 256; of 20000 simulations or "

@@ -76,7 +76,7 @@ void resolveNetwork(int simulations, InverseMapSpec& map) {
       network.hidden = {8};
     }
   }
-  network.steps = network.steps.value_or(many ? 12000 : 8000);
+  network.steps = network.steps.value_or(many ? 18000 : 8000);
   network.batch = network.batch.value_or(many ? 1024 : 256);
   network.learning_rate = network.learning_rate.value_or(many ? 0.004 : 0.002);
 }

@@ -208,7 +208,7 @@ double calcShareWithin(const NetworkMapTraining& trained, double probability) {
 }
 
 TEST(NetworkMap, OfAMixtureKnowsBothAnswers) {
-  const NetworkMapTraining mixed = trainOnSquares(10000, NetworkHead::kMixture);
+  const NetworkMapTraining mixed = trainOnSquares(20000, NetworkHead::kMixture);
   EXPECT_TRUE(mixed.warnings.empty());
   ASSERT_EQ(mixed.held_out.mixtures.size(), static_cast<std::size_t>(mixed.held_out.mean.cols()));
   EXPECT_NEAR(calcShareWithin(mixed, 0.5), 0.5, 0.05);
@@ -223,7 +223,7 @@ TEST(NetworkMap, OfAMixtureKnowsBothAnswers) {
 }
 
 TEST(NetworkMap, OfOneNormalDistributionSaysWhereItsAnswersAreNone) {
-  const NetworkMapTraining normal = trainOnSquares(10000, NetworkHead::kGaussian);
+  const NetworkMapTraining normal = trainOnSquares(20000, NetworkHead::kGaussian);
   ASSERT_EQ(normal.warnings.size(), 1U);
   EXPECT_NE(normal.warnings[0].find("side: 50 % intervals"), std::string::npos) << normal.warnings[0];
   EXPECT_NE(normal.warnings[0].find("head: mixture"), std::string::npos);
