@@ -1,6 +1,6 @@
 """How near the information limit each kind of map comes, by the number of simulations: writes docs/map-study.md.
 
-Usage: map_study.py TWINMAP [--threads N] [--tests N] [--results FOLDER] [--web FOLDER] [EXPERIMENT ...]
+Usage: map_study.py TWINMAP [--threads N] [--tests N] [--results FOLDER] [--page] [--web FOLDER] [EXPERIMENT ...]
 Each experiment (default: those of the page) runs with each map and number of simulations, without refinement. Runs stay in
 FOLDER (default: results/map_study), so that a second call continues, or only writes the page, the table behind it
 (results/published/map_study/study.csv) and its figures (docs/images). --web: where the build's Vega-Lite is (default:
@@ -20,15 +20,18 @@ EXPERIMENTS = ["two_beam/best", "crane/crane", "mechanisms/double_pendulum_mild"
                "mechanisms/spatial_arm", "mechanisms/cubic_chain"]
 SIZES = [100, 250, 1000, 4000, 10000, 100000]
 
-# Each map and for which numbers of simulations; beyond them it takes tens of minutes, or is another one of the list.
+FOUR = ["two_beam/best", "crane/crane", "mechanisms/double_pendulum", "mechanisms/spatial_arm"]
+
+# Each map, for which numbers of simulations and which experiments: beyond them it takes tens of minutes, or is another one of
+# the list. Of more than 2000 simulations, or where a surrogate would be poor, a network learns from the simulations alone.
 MAPS = {
-    "network": ("network", SIZES),
-    "surrogate": ("surrogate", [100, 250, 1000]),
-    "gp": ("gp", [100, 250, 1000]),
-    "sparse gp": ("{gp: {approximation: sgpr}}", [4000, 10000]),
-    "network, simulations alone": ("{network: {samples_from: simulations}}", [250, 1000]),
-    "mixture": ("{network: {head: mixture}}", [250, 1000]),
-    "bayesian last layer": ("{network: {bayesian: last_layer}}", [250, 1000]),
+    "network": ("network", SIZES, EXPERIMENTS),
+    "surrogate": ("surrogate", [100, 250, 1000], EXPERIMENTS),
+    "gp": ("gp", [100, 250, 1000], EXPERIMENTS),
+    "mixture": ("{network: {head: mixture}}", [250], FOUR),
+    "bayesian last layer": ("{network: {bayesian: last_layer}}", [250], FOUR),
+    "sparse gp": ("{gp: {approximation: sgpr}}", [4000], FOUR),
+    "network, simulations alone": ("{network: {samples_from: simulations}}", [250, 1000], FOUR),
 }
 BASELINES = {"linear_regression": ("linear regression", SIZES), "least_squares": ("least squares", [250])}
 ORDER = list(MAPS) + [name for name, _ in BASELINES.values()]
@@ -41,13 +44,20 @@ def parse_arguments():
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--tests", type=int, default=1500)
     parser.add_argument("--results", type=Path, default=ROOT / "results/map_study")
+    parser.add_argument("--page", action="store_true", help="run nothing, write the page from the runs that are there")
     parser.add_argument("--web", type=Path, default=ROOT / "build/release/framework/report/web")
     return parser.parse_intermixed_args()
 
 
+def make_title(experiment):
+    folder, file = experiment.split("/")
+    return file if folder == "mechanisms" else folder
+
+
 def list_runs(experiments):
     """(experiment, simulations, map)."""
-    return [(experiment, size, name) for name, (_, sizes) in MAPS.items() for size in reversed(sizes) for experiment in experiments]
+    return [(experiment, size, name) for name, (_, sizes, among) in MAPS.items() for size in reversed(sizes)
+            for experiment in experiments if experiment in among]
 
 
 def count_processor_seconds():
@@ -62,11 +72,12 @@ def list_baselines(size, name):
 
 
 def run(arguments, experiment, size, name):
-    """The folder of a finished run; none if the map could not be trained."""
+    """The folder of a finished run; none if there is none, as where the map could not be trained."""
     folder = arguments.results / experiment.split("/")[1] / str(size) / name.replace(",", "").replace(" ", "_")
-    if (folder / "failed.txt").exists():
+    finished = (folder / "processor_seconds.txt").exists()
+    if (folder / "failed.txt").exists() or (arguments.page and not finished):
         return None
-    if not (folder / "processor_seconds.txt").exists():
+    if not finished:
         print(experiment, size, name, file=sys.stderr, flush=True)
         command = [arguments.twinmap, "run", ROOT / "experiments" / f"{experiment}.yaml", "refine=never",
                    f"inverse_map={MAPS[name][0]}", f"design.train.samples={size}", "design.train.method=latin_hypercube",
@@ -124,7 +135,7 @@ def summarise(rows):
     points = []
     for (experiment, size, name), found in groups.items():
         ratios = [number(row, "ratio_to_limit") for row in found]
-        point = {"experiment": experiment.split("/")[1], "simulations": size, "map": name,
+        point = {"experiment": make_title(experiment), "simulations": size, "map": name,
                  "ratio": math.exp(sum(map(math.log, ratios)) / len(ratios)), "worst_ratio": max(ratios),
                  "nats": sum(number(row, "nats_above_limit") for row in found) / len(found)}
         for level in ("50", "95"):
@@ -133,8 +144,8 @@ def summarise(rows):
         for column in ("processor_seconds", "online_us", "bytes"):
             point[column] = number(found[0], column)
         points.append(point)
-    return sorted(points, key=lambda point: (list(dict.fromkeys(p["experiment"] for p in points)).index(point["experiment"]),
-                                             ORDER.index(point["map"]), point["simulations"]))
+    titles = list(map(make_title, EXPERIMENTS))
+    return sorted(points, key=lambda point: (titles.index(point["experiment"]), ORDER.index(point["map"]), point["simulations"]))
 
 
 def make_figure(points, value, title):
