@@ -141,11 +141,13 @@ SurrogateValidation validate(const HeldOut& held_out) {
   const Index p = z.rows();
   SurrogateValidation validation;
   validation.stddev_scale.resize(p);
+  validation.least_scale.resize(p);
   validation.coverage95.resize(p);
   for (Index k = 0; k < p; ++k) {
     const VectorXd absolute = found.mixtures.empty() ? VectorXd(z.row(k).cwiseAbs())
                                                      : calcDepths(found.mixtures, held_out.truth, k);
     validation.stddev_scale(k) = calcStddevScale(absolute);
+    validation.least_scale(k) = calcLeastStddevScale(absolute);
     validation.coverage95(k) =
         static_cast<double>((absolute.array() < kNormal95).count()) / static_cast<double>(absolute.size());
   }

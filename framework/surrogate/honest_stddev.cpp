@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "framework/inverse_map/predictions.hpp"
 
@@ -17,22 +18,32 @@ double calcQuantile(const Eigen::VectorXd& sorted, double level) {
   return sorted(static_cast<Eigen::Index>(std::clamp(rank, 1.0, n)) - 1);
 }
 
-/// The upper 97.5 % confidence limit of the same, by the binomial distribution of ranks.
-double calcUpperQuantile(const Eigen::VectorXd& sorted, double level) {
+/// The larger of both quantiles over those of the normal distribution; of their confidence limits so many
+/// standard errors of the ranks (binomial) above them.
+double calcScale(const Eigen::VectorXd& sorted, double errors_above) {
   const auto n = static_cast<double>(sorted.size());
-  return calcQuantile(sorted, level + kNormal95 * std::sqrt(level * (1.0 - level) / n));
+  double scale = 0.0;
+  for (const auto& [level, normal] : {std::pair{0.95, kNormal95}, std::pair{0.68, kNormal68}}) {
+    const double error = std::sqrt(level * (1.0 - level) / n);
+    scale = std::max(scale, calcQuantile(sorted, level + errors_above * error) / normal);
+  }
+  return scale;
+}
+
+Eigen::VectorXd sort(Eigen::VectorXd values) {
+  std::sort(values.data(), values.data() + values.size());
+  return values;
 }
 
 }  // namespace
 
 double calcStddevScale(const Eigen::VectorXd& absolute_z) {
-  Eigen::VectorXd sorted = absolute_z;
-  std::sort(sorted.data(), sorted.data() + sorted.size());
-  const double found =
-      std::max(calcQuantile(sorted, 0.95) / kNormal95, calcQuantile(sorted, 0.68) / kNormal68);
-  const double upper =
-      std::max(calcUpperQuantile(sorted, 0.95) / kNormal95, calcUpperQuantile(sorted, 0.68) / kNormal68);
-  return std::max(found, std::min(1.0, upper));
+  const Eigen::VectorXd sorted = sort(absolute_z);
+  return std::max(calcScale(sorted, 0.0), std::min(1.0, calcScale(sorted, kNormal95)));
+}
+
+double calcLeastStddevScale(const Eigen::VectorXd& absolute_z) {
+  return calcScale(sort(absolute_z), -1.0);
 }
 
 }  // namespace twinmap

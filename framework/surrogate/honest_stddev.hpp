@@ -11,4 +11,7 @@ namespace twinmap {
 /// less than the map does must be beyond doubt.
 double calcStddevScale(const Eigen::VectorXd& absolute_z);
 
+/// The same, of quantiles one standard error lower: what the factor is at least, rather than by chance.
+double calcLeastStddevScale(const Eigen::VectorXd& absolute_z);
+
 }  // namespace twinmap

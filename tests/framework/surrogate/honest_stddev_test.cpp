@@ -24,6 +24,13 @@ TEST(StddevScale, IsOneForHonestErrorsAndTheFactorForTooLargeOnes) {
   EXPECT_NEAR(calcStddevScale(makeErrors(1000, 2.5)), 2.5, 0.05);
 }
 
+TEST(StddevScale, IsAtLeastWhatIsBeyondChance) {
+  const Eigen::VectorXd few = makeErrors(100, 1.2), many = makeErrors(100000, 1.2);
+  EXPECT_LT(calcLeastStddevScale(few), 1.15);
+  EXPECT_GT(calcLeastStddevScale(few), 1.05);
+  EXPECT_NEAR(calcLeastStddevScale(many), 1.2, 0.005);
+}
+
 TEST(StddevScale, FollowsTheTailWhereItIsHeavy) {
   Eigen::VectorXd errors = makeErrors(1000, 1.0);
   errors.tail(100) *= 3.0;
