@@ -65,11 +65,11 @@ if(CCACHE_PROGRAM AND NOT TWINMAP_REPRODUCIBLE) # which may be told to write oth
   endif()
 endif()
 
-# twinmap_add_library(<target> SOURCES <files...> [PRECOMPILED <name>] [PUBLIC <targets...>] [PRIVATE <targets...>]):
-# a static library whose headers are included by their path from the project's root. PRECOMPILED as in
-# cmake/PrecompiledHeaders.cmake, framework by default.
+# twinmap_add_library(<target> SOURCES <files...> [PRECOMPILED <name>] [BATCH <files>] [PUBLIC <targets...>]
+# [PRIVATE <targets...>]): a static library whose headers are included by their path from the project's root. PRECOMPILED
+# as in cmake/PrecompiledHeaders.cmake, framework by default; BATCH as in cmake/Batches.cmake.
 function(twinmap_add_library target)
-  cmake_parse_arguments(ARG "" "PRECOMPILED" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "" "PRECOMPILED;BATCH" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   add_library(${target} STATIC ${ARG_SOURCES})
   target_include_directories(${target} PUBLIC "${PROJECT_SOURCE_DIR}")
   target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
@@ -77,4 +77,5 @@ function(twinmap_add_library target)
     set(ARG_PRECOMPILED framework)
   endif()
   twinmap_use_precompiled(${target} ${ARG_PRECOMPILED})
+  twinmap_compile_in_batches(${target} ${ARG_PRECOMPILED} ${ARG_BATCH})
 endfunction()

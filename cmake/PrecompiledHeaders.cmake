@@ -35,4 +35,3 @@ set(TWINMAP_SPEC <framework/spec/experiment_spec.hpp>) # what most of the framew
 twinmap_precompile(common)
 twinmap_precompile(framework HEADERS ${TWINMAP_SPEC})
 twinmap_precompile(light HEADERS ${TWINMAP_SPEC} OPTIONS ${TWINMAP_LIGHT})
-twinmap_precompile(simbody HEADERS ${TWINMAP_SPEC} <Simbody.h> LIBRARIES SimTKsimbody SimTKmath SimTKcommon)

@@ -1,5 +1,3 @@
-#include <limits>
-
 #include "framework/c_api/guard.hpp"
 #include "framework/c_api/handles.hpp"
 #include "framework/inference/inference_text.hpp"
@@ -9,11 +7,10 @@ namespace {
 
 using Eigen::VectorXd;
 using twinmap::c_api::guard;
+using twinmap::c_api::kNaN;
 using twinmap::c_api::require;
 using twinmap::c_api::requireCount;
 using twinmap::c_api::WrongArgument;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 const twinmap_inferrer::Answered& getAnswered(const twinmap_inferrer* inferrer) {
   const twinmap_inferrer& self = require(inferrer, "inferrer");

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -7,6 +8,13 @@
 #include "framework/c_api/twinmap.h"
 #include "framework/inference/inferrer.hpp"
 #include "framework/inference/measurement_session.hpp"
+
+namespace twinmap::c_api {
+
+/// Where a number is not known.
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace twinmap::c_api
 
 /// What twinmap_map stands for.
 struct twinmap_map {

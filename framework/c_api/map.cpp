@@ -1,4 +1,3 @@
-#include <limits>
 #include <memory>
 #include <twinmap/build_info.hpp>
 
@@ -9,10 +8,9 @@
 namespace {
 
 using twinmap::c_api::guard;
+using twinmap::c_api::kNaN;
 using twinmap::c_api::require;
 using twinmap::c_api::WrongArgument;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 template <class List>
 auto& getItem(List& list, std::size_t index, const char* kind) {

@@ -430,7 +430,7 @@ void addVariables(CLI::App& app, std::string& file) {
   command->callback([&file] { cli::printVariables(file); });
 }
 
-cli::Taken findTaken(const std::string& value) {
+cli::Taken findTakenBy(const std::string& value) {
   constexpr std::array kFiles = {"FILE", "FMU", "MEASUREMENT", "OUT", "RUN"};
   constexpr std::array kFolders = {"DIR", "A", "B", "FROM"};
   const auto is_value = [&](const char* one) { return value == one; };
@@ -441,7 +441,7 @@ cli::Taken findTaken(const std::string& value) {
 
 cli::OptionDescription describe(const CLI::Option& option) {
   if (option.get_positional()) {
-    return {{option.get_name()}, option.get_description(), option.get_name(), findTaken(option.get_name())};
+    return {{option.get_name()}, option.get_description(), option.get_name(), findTakenBy(option.get_name())};
   }
   cli::OptionDescription described;
   for (const std::string& name : option.get_lnames()) {
@@ -454,7 +454,7 @@ cli::OptionDescription describe(const CLI::Option& option) {
   if (option.get_expected_max() > 0) {
     const std::string type = option.get_type_name();  // "N:INT in [1 - 1024]"
     described.value = type.substr(0, type.find(':'));
-    described.taken = findTaken(described.value);
+    described.taken = findTakenBy(described.value);
   }
   return described;
 }

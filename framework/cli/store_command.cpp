@@ -13,7 +13,7 @@ namespace {
 constexpr double kMebi = 1024.0 * 1024.0;
 
 /// Prints the models and what is wrong with them. Returns how many files are.
-std::size_t print(const std::vector<StoredModel>& models) {
+std::size_t printModels(const std::vector<StoredModel>& models) {
   std::size_t problems = 0;
   for (const StoredModel& model : models) {
     std::cout << fmt::format(
@@ -38,11 +38,13 @@ void requireNone(std::size_t problems, const std::string& what) {
 }  // namespace
 
 void listStore(const std::string& folder) {
-  requireNone(print(listStoredModels(folder, StoreReading::kIndex)), "files are not as they were written");
+  requireNone(printModels(listStoredModels(folder, StoreReading::kIndex)),
+              "files are not as they were written");
 }
 
 void verifyStore(const std::string& folder) {
-  requireNone(print(listStoredModels(folder, StoreReading::kWhole)), "files are not as they were written");
+  requireNone(printModels(listStoredModels(folder, StoreReading::kWhole)),
+              "files are not as they were written");
 }
 
 void mergeStore(const std::string& folder, const std::vector<std::string>& from) {

@@ -29,7 +29,7 @@ std::vector<fs::path> chooseFolders(const VerifyArguments& arguments) {
   return chosen;
 }
 
-void print(const Verification& verification) {
+void printVerification(const Verification& verification) {
   std::cout << verification.folder.string() << "\n";
   for (const std::string& difference : verification.build_differences) {
     std::cout << "  note     another build or machine made this run, so that bits may differ: " << difference
@@ -58,7 +58,7 @@ void verify(const VerifyArguments& arguments) {
   int checks = 0, differences = 0;
   for (const fs::path& folder : chooseFolders(arguments)) {
     const Verification verification = verifyRun(folder, options);
-    print(verification);
+    printVerification(verification);
     checks += static_cast<int>(verification.checks.size());
     differences += verification.countDifferences();
   }

@@ -1,5 +1,7 @@
 #include "framework/comparison/comparison_text.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -42,14 +44,14 @@ std::string describeIntervals(const RunComparison& comparison) {
       "does "
       "not contain 0.\n";
   if (comparison.paired) {
-    return intervals + "Both inferred the same " + std::to_string(comparison.samples_a) +
-           " test samples: the intervals are of pairs.\n";
+    return intervals + fmt::format("Both inferred the same {} test samples: the intervals are of pairs.\n",
+                                   comparison.samples_a);
   }
   return intervals + "The test sets are not the same (" + comparison.difference_of_sets +
          "): the intervals are of independent sets, wider than those of pairs.\n";
 }
 
-std::string listOnly(const std::string& run, const std::vector<std::string>& names) {
+std::string nameThoseOf(const std::string& run, const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) {
     text += (text.empty() ? "" : ", ") + name;
@@ -95,7 +97,7 @@ std::string makeComparisonText(const RunComparison& comparison) {
   if (!comparison.parameters.empty()) {
     text += alignRows(makeFigureRows(comparison), 2) + "\n" + describeIntervals(comparison);
   }
-  return text + listOnly("A", comparison.only_a) + listOnly("B", comparison.only_b) + "\n" +
+  return text + nameThoseOf("A", comparison.only_a) + nameThoseOf("B", comparison.only_b) + "\n" +
          listKeys(comparison.keys);
 }
 

@@ -1,5 +1,7 @@
 #include "framework/comparison/run_comparison.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -55,7 +57,7 @@ std::vector<Match> matchParameters(const ComparedRun& a, const ComparedRun& b) {
   return matches;
 }
 
-std::vector<std::string> listOnly(const ComparedRun& run, const ComparedRun& other) {
+std::vector<std::string> findOnlyIn(const ComparedRun& run, const ComparedRun& other) {
   std::vector<std::string> names;
   for (const ParameterSpec& parameter : run.parameters) {
     if (findParameter(other, parameter.name.text) < 0) {
@@ -86,9 +88,10 @@ std::string findDifferenceOfSets(const ComparedRun& a, const ComparedRun& b,
       const double in_a = a.test.truth(match.a, static_cast<Index>(i));
       const double in_b = b.test.truth(match.b, static_cast<Index>(i));
       if (in_a != in_b) {
-        return describeDifference("the true " + a.parameters[static_cast<std::size_t>(match.a)].name.text +
-                                      " of test sample " + std::to_string(a.test.samples[i]),
-                                  toText(in_a), toText(in_b));
+        return describeDifference(
+            fmt::format("the true {} of test sample {}",
+                        a.parameters[static_cast<std::size_t>(match.a)].name.text, a.test.samples[i]),
+            toText(in_a), toText(in_b));
       }
     }
   }
@@ -149,8 +152,8 @@ RunComparison compareRuns(const ComparedRun& a, const ComparedRun& b) {
   for (const Match& match : matches) {
     comparison.parameters.push_back(compareParameter(a, b, match, comparison.paired));
   }
-  comparison.only_a = listOnly(a, b);
-  comparison.only_b = listOnly(b, a);
+  comparison.only_a = findOnlyIn(a, b);
+  comparison.only_b = findOnlyIn(b, a);
   comparison.keys = compareTrees(a.resolved, b.resolved);
   return comparison;
 }

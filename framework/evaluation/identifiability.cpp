@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "framework/inverse_map/predictions.hpp"
 #include "framework/sensitivity/fisher_information.hpp"
 #include "framework/spec/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -12,14 +13,8 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-using Eigen::VectorXd;
 
 constexpr double kUndetermined = 0.5;  // of the box's own standard deviation
-
-MatrixXd calcCorrelation(const MatrixXd& covariance) {
-  const VectorXd scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
-  return scale.asDiagonal() * covariance * scale.asDiagonal();
-}
 
 MatrixXd fixSigns(MatrixXd vectors) {
   for (Index k = 0; k < vectors.cols(); ++k) {

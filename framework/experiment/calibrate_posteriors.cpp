@@ -18,18 +18,13 @@ struct RankedMeasurements {
   int unreliable = 0;
 };
 
-void requireWanted(const RunControl& control) {
-  if (control.abandon != nullptr && *control.abandon) {
-    throw Interrupted("interrupted during the calibration of posteriors; the simulated samples are kept");
-  }
-}
-
 /// Of each test sample; empty where its posterior is not reliable.
 std::vector<Eigen::VectorXi> rankAll(const EvaluationContext& context, const PosteriorModel& model) {
   const LabelledFeatures& test = context.data.labelled.test;
   std::vector<Eigen::VectorXi> ranks(static_cast<std::size_t>(test.features.cols()));
   runTasks(context.control.threads, ranks.size(), [&](std::size_t i) {
-    requireWanted(context.control);
+    requireWanted(context.control,
+                  "interrupted during the calibration of posteriors; the simulated samples are kept");
     PosteriorSampler sampler(model, kDefaultPosteriorDraws, context.experiment.seed);
     const auto column = static_cast<Index>(i);
     const SurrogatePosterior posterior =

@@ -83,7 +83,7 @@ std::vector<PosteriorComparison> comparePosteriors(const EvaluationContext& cont
   return compared;
 }
 
-BaselineSummary summarize(const EvaluationContext& context, const BaselineResult& result) {
+BaselineSummary summarizeBaseline(const EvaluationContext& context, const BaselineResult& result) {
   const Eigen::MatrixXd truth = getTest(context).parameters.leftCols(result.samples);
   return {result.method, result.samples, calcMetrics(getParameters(context), truth, result.predictions),
           result.seconds_per_update, result.unconverged};
@@ -126,10 +126,10 @@ std::vector<BaselineSummary> runBaselines(const EvaluationContext& context, Stag
   for (const BaselineSpec& spec : context.experiment.evaluation.baselines) {
     const BaselineResult result = timeBaseline(spec, context, notes);
     if (result.samples != compared) {
-      rows.push_back(summarize(context, runMap(context, result.samples)));
+      rows.push_back(summarizeBaseline(context, runMap(context, result.samples)));
       compared = result.samples;
     }
-    rows.push_back(summarize(context, result));
+    rows.push_back(summarizeBaseline(context, result));
   }
   return rows;
 }

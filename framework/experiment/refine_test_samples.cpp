@@ -86,9 +86,7 @@ std::vector<Refined> refineAll(const RefinementContext& context) {
   RefinementTasks all = makeTasks(context);
   std::vector<Refined> refined =
       refineWhileHopeful(context.simulator, model, std::move(all.tasks), context.control.threads, [&] {
-        if (context.control.abandon != nullptr && *context.control.abandon) {
-          throw Interrupted("interrupted during refinement; the simulated samples are kept");
-        }
+        requireWanted(context.control, "interrupted during refinement; the simulated samples are kept");
       });
   for (std::size_t i = 0; i < refined.size(); ++i) {
     if (all.several[i]) {

@@ -92,13 +92,6 @@ struct RunContext {
   const RunControl& control;
 };
 
-/// For stages that take a moment each: none begins once the run is abandoned.
-void requireWanted(const RunControl& control) {
-  if (control.abandon != nullptr && *control.abandon) {
-    throw Interrupted("interrupted; what was simulated is kept");
-  }
-}
-
 LocalModelSource makeLocalModelSource(const RunContext& run) {
   return [run](const Eigen::MatrixXd& points) {
     return calcLocalModels(run.experiment, run.source, run.simulator, run.extractor, points,

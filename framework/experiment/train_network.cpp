@@ -104,8 +104,8 @@ NetworkMapTraining trainOnSimulations(const NetworkContext& context, const Featu
                          {context.control.threads, context.control.abandon});
 }
 
-NetworkMapTraining train(const NetworkContext& context, const FeatureTransform& transform,
-                         const std::optional<SurrogateMapTraining>& teacher) {
+NetworkMapTraining trainBy(const NetworkContext& context, const FeatureTransform& transform,
+                           const std::optional<SurrogateMapTraining>& teacher) {
   try {
     return trainInterruptibly([&] {
       return teacher ? trainNetworkMap({context.experiment.model, getSpec(context), context.experiment.seed},
@@ -135,7 +135,7 @@ SampledChains describeChains(const ModelSpec& model, const WeightChains& found) 
   return sampled;
 }
 
-TrainingSummary summarize(const ModelSpec& model, const NetworkMapTraining& trained) {
+TrainingSummary summarizeNetwork(const ModelSpec& model, const NetworkMapTraining& trained) {
   const SurrogateValidation& validation = trained.map.validation;
   TrainingSummary summary;
   summary.leave_one_out =
@@ -161,13 +161,13 @@ NetworkOutcome trainNetwork(const NetworkContext& context) {
   const std::optional<SurrogateMapTraining> teacher = findTeacher(context, outcome.notes);
   outcome.transform = fitTransform(context.experiment.transform, takeFirst(context.samples));
   NetworkMapTraining trained = timeStage("train the network", outcome.notes,
-                                         [&] { return train(context, outcome.transform, teacher); });
+                                         [&] { return trainBy(context, outcome.transform, teacher); });
   outcome.notes.warn(Gravity::kPoor, trained.warnings);
   if (teacher) {
     trained.map.validation.limit_ratio = teacher->surrogate.validation.limit_ratio;
     outcome.forward = teacher->surrogate.forward;
   }
-  outcome.summary = summarize(context.experiment.model, trained);
+  outcome.summary = summarizeNetwork(context.experiment.model, trained);
   outcome.map = std::move(trained.map);
   return outcome;
 }

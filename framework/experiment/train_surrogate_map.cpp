@@ -13,8 +13,8 @@
 namespace twinmap {
 namespace {
 
-SurrogateTraining train(const ModelSpec& model, const SurrogateSamples& samples,
-                        const TrainingControl& control) {
+SurrogateTraining trainOn(const ModelSpec& model, const SurrogateSamples& samples,
+                          const TrainingControl& control) {
   try {
     return trainInterruptibly([&] { return trainSurrogate(model, samples, control); });
   } catch (const std::invalid_argument& error) {
@@ -56,7 +56,7 @@ SurrogateMapTraining trainSurrogateMap(const ExperimentSpec& experiment, const S
     });
   }
   SurrogateTraining trained = timeStage("train the surrogate", training.notes, [&] {
-    return train(experiment.model, simulated, {control.threads, control.abandon});
+    return trainOn(experiment.model, simulated, {control.threads, control.abandon});
   });
   training.notes.warn(Gravity::kPoor, trained.warnings);
   const SurrogateValidation& validation = trained.surrogate.validation;

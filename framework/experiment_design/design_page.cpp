@@ -21,10 +21,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Cells = std::vector<HtmlCell>;
 
-constexpr int kDigits = 4;
-
 HtmlCell makeCell(double value) {
-  return makeNumberCell(std::isfinite(value) ? toText(value) : "", kDigits);
+  return makeNumberCell(std::isfinite(value) ? toText(value) : "");
 }
 
 /// Mean and worst limit sd over the box of two excitations, and their ratios.

@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <limits>
 
 #include "framework/results/csv.hpp"
 #include "framework/simulation/calc_input_signals.hpp"
@@ -16,8 +15,6 @@ namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 VectorXd listMost(const std::vector<Limit>& limits) {
   return VectorXd::NullaryExpr(static_cast<Index>(limits.size()),
@@ -166,7 +163,7 @@ std::string describeDesign(const ExcitationDesign& design) {
   }
   for (std::size_t i = 0; i < design.limits.size(); ++i) {
     const auto k = static_cast<Index>(i);
-    const double reached = design.after.largest.size() > k ? design.after.largest[k] : kNaN;
+    const double reached = design.after.largest.size() > k ? design.after.largest[k] : std::nan("");
     text += fmt::format("{}: {:.4g} of {:.4g} {} (margin {:.2f} %)\n", describe(design.limits[i]), reached,
                         design.limits[i].most, design.limits[i].unit,
                         100.0 * (1.0 - reached / design.limits[i].most));

@@ -15,7 +15,7 @@ Index findIndex(const std::vector<Named>& all, const std::string& name) {
   return static_cast<Index>(found - all.begin());
 }
 
-void append(const DesignLimitSpec& spec, const ExperimentSpec& experiment, std::vector<Limit>& limits) {
+void appendLimit(const DesignLimitSpec& spec, const ExperimentSpec& experiment, std::vector<Limit>& limits) {
   if (spec.output) {
     const Index index = findIndex(experiment.model.outputs, spec.output->text);
     limits.push_back({Limit::Kind::output_max_abs, spec.output->text, index, *spec.max_abs, "", spec.where});
@@ -49,7 +49,7 @@ std::string describe(const Limit& limit) {
 std::vector<Limit> listLimits(const ExperimentSpec& experiment) {
   std::vector<Limit> limits;
   for (const DesignLimitSpec& spec : experiment.design.excitation->limits) {
-    append(spec, experiment, limits);
+    appendLimit(spec, experiment, limits);
   }
   return limits;
 }

@@ -70,7 +70,7 @@ FreeNumber makeNumber(const std::string& key, const YamlNode& node, const FreeVa
   return number;
 }
 
-void append(const FreeValue& free, YamlNode& tree, std::vector<FreeNumber>& numbers) {
+void appendNumbers(const FreeValue& free, YamlNode& tree, std::vector<FreeNumber>& numbers) {
   const Name key{"excitation." + free.key.text, free.key.where};
   writeOutList(tree, key);
   const YamlNode* node = findValue(tree, key);
@@ -94,7 +94,7 @@ void append(const FreeValue& free, YamlNode& tree, std::vector<FreeNumber>& numb
 std::vector<FreeNumber> resolveFreeNumbers(const FreeValues& free, YamlNode& tree) {
   std::vector<FreeNumber> numbers;
   for (const FreeValue& value : free.values) {
-    append(value, tree, numbers);
+    appendNumbers(value, tree, numbers);
   }
   std::set<std::string> seen;
   for (const FreeNumber& number : numbers) {

@@ -17,8 +17,6 @@ namespace {
 using Eigen::Index;
 using Cells = std::vector<HtmlCell>;
 
-constexpr int kDigits = 4;
-
 std::string makeTable(const std::string& id, const std::string& caption, const SensorDesign& design,
                       const std::vector<JudgedSubset>& choices, bool of_outputs) {
   std::vector<std::string> headings{of_outputs ? "outputs" : "sample times", "criterion"};
@@ -30,13 +28,13 @@ std::string makeTable(const std::string& id, const std::string& caption, const S
   }
   std::vector<Cells> rows;
   for (const JudgedSubset& judged : choices) {
-    rows.push_back({makeNumberCell(std::to_string(judged.subset.size()), kDigits)});
+    rows.push_back({makeNumberCell(std::to_string(judged.subset.size()))});
     if (of_outputs) {
       rows.back().push_back(makeTextCell(nameOutputs(design, judged.subset)));
     }
-    rows.back().push_back(makeNumberCell(toText(judged.cost), kDigits));
+    rows.back().push_back(makeNumberCell(toText(judged.cost)));
     for (const auto& stddev : judged.stddev.rowwise()) {
-      rows.back().push_back(makeNumberCell(toText(stddev.mean()), kDigits));
+      rows.back().push_back(makeNumberCell(toText(stddev.mean())));
     }
   }
   return makeHtmlTable(id, caption, headings, rows);

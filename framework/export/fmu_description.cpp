@@ -22,7 +22,7 @@ constexpr const char* kStatusItems[][2] = {
     {"at_bounds", "4"},  {"uninformative", "8"},  {"map_limited", "16"},
     {"not_judged", "32"}};
 
-void addInputs(const ExportedModel& model, std::vector<FmuVariable>& variables) {
+void addInputVariables(const ExportedModel& model, std::vector<FmuVariable>& variables) {
   const ResponseLayout& layout = model.layout;
   for (std::size_t i = 0; i < layout.output_names.size(); ++i) {
     variables.push_back({"Real", layout.output_names[i], layout.output_units[i], "measured signal", "input",
@@ -55,7 +55,7 @@ void addEstimates(const ExportedModel& model, const char* group, const char* mea
 
 std::vector<FmuVariable> listVariables(const ExportedModel& model) {
   std::vector<FmuVariable> variables;
-  addInputs(model, variables);
+  addInputVariables(model, variables);
   addEstimates(model, "mean", "inferred parameter", variables);
   addEstimates(model, "sd", "its standard deviation", variables);
   addEstimates(model, "lower", "lower end of its 95 % interval", variables);

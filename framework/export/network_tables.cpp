@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Index;
 
-void addInputs(const NetworkInputs& inputs, CTables& tables) {
+void addInputScales(const NetworkInputs& inputs, CTables& tables) {
   tables.addWide("input_center", inputs.center, "Mean of the features, in their units.");
   tables.addWide("input_projection", flattenRows(inputs.projection),
                  fmt::format("Inputs per unit of the features, {} x {}, input by input.",
@@ -55,7 +55,7 @@ void addLayers(const network::Network& network, CTables& tables, CSizes& sizes) 
 
 void addNetwork(const NetworkMap& map, CTables& tables, CSizes& sizes) {
   const network::Products& products = map.members.front().network.products;
-  addInputs(map.inputs, tables);
+  addInputScales(map.inputs, tables);
   addRegression(map.members.front().network, tables);
   addLayers(map.members.front().network, tables, sizes);
   tables.addWide("parameter_center", map.center, "Middle of the parameters' bounds.");

@@ -31,8 +31,8 @@ FeatureMatrix makeMatrix(const std::vector<ComplexLine>& lines, Index rows) {
   return matrix;
 }
 
-FeatureInfo makeInfo(const std::string& before, const ComplexLine& line, const std::string& after,
-                     const std::string& unit) {
+FeatureInfo makeLineInfo(const std::string& before, const ComplexLine& line, const std::string& after,
+                         const std::string& unit) {
   char frequency[32];
   std::snprintf(frequency, sizeof frequency, " at %.6g Hz", line.frequency);
   return {before + line.name + after + frequency, unit, line.output, 0.0};
@@ -42,12 +42,12 @@ std::vector<FeatureInfo> makeInfos(const std::vector<ComplexLine>& lines, Comple
   std::vector<FeatureInfo> infos;
   for (const ComplexLine& line : lines) {
     if (parts == ComplexParts::kRealImaginary) {
-      infos.push_back(makeInfo("Re ", line, "", line.unit));
-      infos.push_back(makeInfo("Im ", line, "", line.unit));
+      infos.push_back(makeLineInfo("Re ", line, "", line.unit));
+      infos.push_back(makeLineInfo("Im ", line, "", line.unit));
     } else {
-      infos.push_back(makeInfo("|", line, "|", line.unit));
-      infos.push_back(makeInfo("cos phase ", line, "", ""));
-      infos.push_back(makeInfo("sin phase ", line, "", ""));
+      infos.push_back(makeLineInfo("|", line, "|", line.unit));
+      infos.push_back(makeLineInfo("cos phase ", line, "", ""));
+      infos.push_back(makeLineInfo("sin phase ", line, "", ""));
     }
   }
   return infos;

@@ -1,3 +1,5 @@
+#include <fmt/core.h>
+
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -81,8 +83,9 @@ std::vector<Index> selectByFisherInformation(const FisherInformationSpec& spec,
   for (int k = 0; k < spec.count; ++k) {
     Index best = 0;
     if (!std::isfinite(selection.calcGains().maxCoeff(&best))) {
-      throw std::invalid_argument("select by fisher_information: asked for " + std::to_string(spec.count) +
-                                  " features, but only " + std::to_string(k) + " have noise of their own");
+      throw std::invalid_argument(fmt::format(
+          "select by fisher_information: asked for {} features, but only {} have noise of their own",
+          spec.count, k));
     }
     selection.add(best);
   }

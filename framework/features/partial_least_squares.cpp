@@ -1,5 +1,7 @@
 #include "framework/features/partial_least_squares.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -57,7 +59,7 @@ VectorXd calcHeldOutErrors(const MatrixXd& features, const MatrixXd& targets, co
   return errors;
 }
 
-Index chooseRank(const LabelledFeatures& samples) {
+Index chooseRankByFolds(const LabelledFeatures& samples) {
   constexpr Index kFolds = 10, kMost = 30;
   const Index simulations = samples.features.cols() / samples.replicates;
   const Index folds = std::min(kFolds, simulations);
@@ -121,7 +123,7 @@ MatrixXd calcCrossValidationErrors(const LabelledFeatures& samples, Index most, 
 }
 
 AffineStep fitPartialLeastSquares(const PartialLeastSquaresSpec& spec, const LabelledFeatures& samples) {
-  const Index rank = spec.components.number ? *spec.components.number : chooseRank(samples);
+  const Index rank = spec.components.number ? *spec.components.number : chooseRankByFolds(samples);
   const VectorXd mean = samples.features.rowwise().mean();
   const MatrixXd targets = fitZScore(samples.parameters).apply(samples.parameters);
   const Index most = std::min(samples.features.rows(), samples.features.cols() - 1);
@@ -131,8 +133,8 @@ AffineStep fitPartialLeastSquares(const PartialLeastSquaresSpec& spec, const Lab
     throw std::invalid_argument("partial_least_squares: the features have no covariance with the parameters");
   }
   if (spec.components.number && model.rotations.cols() < rank) {
-    throw std::invalid_argument("partial_least_squares: asked for " + std::to_string(rank) + " of " +
-                                std::to_string(model.rotations.cols()) + " components");
+    throw std::invalid_argument(
+        fmt::format("partial_least_squares: asked for {} of {} components", rank, model.rotations.cols()));
   }
   fixSigns(model.rotations);
   return makeProjection(mean, model.rotations.transpose());

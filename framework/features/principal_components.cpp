@@ -16,7 +16,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-Index chooseRank(const PrincipalComponentsSpec& spec, const PrincipalComponents& components, Index samples) {
+Index countKept(const PrincipalComponentsSpec& spec, const PrincipalComponents& components, Index samples) {
   const Index most = components.variances.size();
   if (spec.components.number) {
     if (*spec.components.number > most) {
@@ -74,7 +74,7 @@ double calcMarchenkoPasturEdge(Index dimensions, Index samples) {
 AffineStep fitPrincipalComponents(const PrincipalComponentsSpec& spec, const MatrixXd& features) {
   const VectorXd mean = features.rowwise().mean();
   const PrincipalComponents components = calcPrincipalComponents(features.colwise() - mean);
-  const Index rank = chooseRank(spec, components, features.cols());
+  const Index rank = countKept(spec, components, features.cols());
   return makeProjection(mean, components.directions.leftCols(rank).transpose());
 }
 

@@ -1,5 +1,7 @@
 #include "framework/features/selections.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <stdexcept>
 
@@ -15,8 +17,7 @@ using Eigen::VectorXd;
 
 void requireEnough(Index asked, Index features) {
   if (asked > features) {
-    throw std::invalid_argument("select: asked for " + std::to_string(asked) + " of " +
-                                std::to_string(features) + " features");
+    throw std::invalid_argument(fmt::format("select: asked for {} of {} features", asked, features));
   }
 }
 

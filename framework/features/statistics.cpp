@@ -73,8 +73,8 @@ const char* getText(Statistic statistic) {
 }
 
 /// "mean y(0.1 s to 2 s)"
-FeatureInfo makeInfo(Statistic statistic, const ResponseLayout& layout, Index output,
-                     const WindowSpec& window) {
+FeatureInfo makeStatisticInfo(Statistic statistic, const ResponseLayout& layout, Index output,
+                              const WindowSpec& window) {
   char span[64];
   std::snprintf(span, sizeof span, "(%.6g s to %.6g s)", calcSampleTime(window, 0),
                 calcSampleTime(window, window.count - 1));
@@ -91,7 +91,7 @@ std::shared_ptr<const FeatureBlock> makeMeans(const StatisticsFeatureSpec& spec,
     for (const Index row : findRows(layout, output, spec.window)) {
       matrix.insert(static_cast<Index>(infos.size()), row) = 1.0 / spec.window.count;
     }
-    infos.push_back(makeInfo(Statistic::kMean, layout, output, spec.window));
+    infos.push_back(makeStatisticInfo(Statistic::kMean, layout, output, spec.window));
   }
   return std::make_shared<LinearBlock>(std::move(infos), matrix);
 }
@@ -111,7 +111,7 @@ std::vector<std::shared_ptr<const FeatureBlock>> makeStatisticsBlocks(const Stat
     const Index output = findOutput(layout, name.text);
     for (const Statistic statistic : wanted) {
       if (statistic != Statistic::kMean) {
-        infos.push_back(makeInfo(statistic, layout, output, spec.window));
+        infos.push_back(makeStatisticInfo(statistic, layout, output, spec.window));
         quantities.push_back({statistic, findRows(layout, output, spec.window)});
       }
     }

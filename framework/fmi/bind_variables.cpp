@@ -13,7 +13,7 @@ ValueSlot findSlotFor(const ModelDescription& description, const VariableUse& us
   }
 }
 
-[[noreturn]] void refuse(const VariableUse& use, const std::string& reason) {
+[[noreturn]] void refuseUse(const VariableUse& use, const std::string& reason) {
   throw ExperimentError(use.where, use.variable, reason);
 }
 
@@ -69,21 +69,21 @@ BoundVariables bindParameters(const ModelDescription& description, const std::ve
   return bindEach(description, uses,
                   [](const VariableUse& use, const Variable& variable, const VariableUnits& units) {
                     if (const std::string reason = explainFixed(variable); !reason.empty()) {
-                      refuse(use, "cannot be set: " + reason);
+                      refuseUse(use, "cannot be set: " + reason);
                     }
                     return units.to_fmu;
                   });
 }
 
 BoundVariables bindInputs(const ModelDescription& description, const std::vector<VariableUse>& uses) {
-  return bindEach(description, uses,
-                  [&](const VariableUse& use, const Variable& variable, const VariableUnits& units) {
-                    if (variable.causality != Causality::kInput) {
-                      refuse(use, "is no input of the FMU but a " + std::string(toText(variable.causality)) +
-                                      "; " + listInputs(description));
-                    }
-                    return units.to_fmu;
-                  });
+  return bindEach(
+      description, uses, [&](const VariableUse& use, const Variable& variable, const VariableUnits& units) {
+        if (variable.causality != Causality::kInput) {
+          refuseUse(use, "is no input of the FMU but a " + std::string(toText(variable.causality)) + "; " +
+                             listInputs(description));
+        }
+        return units.to_fmu;
+      });
 }
 
 BoundVariables bindOutputs(const ModelDescription& description, const std::vector<VariableUse>& uses) {

@@ -30,12 +30,7 @@ void checkLayout(const ModelSpec& model, const Eigen::VectorXd& times, int modes
     throw ExperimentError(model.source->fmu->file.where, model.source->fmu->file.text,
                           "has no natural frequencies: features of modes need a system");
   }
-  for (Eigen::Index i = 0; i < times.size(); ++i) {
-    if (!(times[i] >= 0.0 && times[i] <= model.simulation.duration) || (i > 0 && times[i] <= times[i - 1])) {
-      throw ExperimentError("sample time " + std::to_string(times[i]) +
-                            " s must lie within the simulation's duration and after the one before");
-    }
-  }
+  checkSampleTimes(times, model.simulation.duration);
 }
 
 ResponseLayout makeLayout(const ModelSpec& model, Eigen::VectorXd times) {

@@ -15,8 +15,8 @@ const char* toText(fmi2Status status) {
   return status >= fmi2OK && status <= fmi2Pending ? kNames[status] : "unknown status";
 }
 
-void logMessage(fmi2ComponentEnvironment environment, fmi2String, fmi2Status status, fmi2String,
-                fmi2String message, ...) {
+void logFmi2Message(fmi2ComponentEnvironment environment, fmi2String, fmi2Status status, fmi2String,
+                    fmi2String message, ...) {
   if (environment == nullptr || message == nullptr) {
     return;
   }
@@ -212,7 +212,7 @@ class Instance2 final : public Instance {
 
   const Functions2& f_;
   MessageLog log_;
-  fmi2CallbackFunctions callbacks_{logMessage, std::calloc, std::free, nullptr, &log_};
+  fmi2CallbackFunctions callbacks_{logFmi2Message, std::calloc, std::free, nullptr, &log_};
   fmi2Component instance_ = nullptr;
   std::size_t states_, indicators_;
   bool completes_steps_;

@@ -11,7 +11,7 @@ const char* toText(fmi3Status status) {
   return status >= fmi3OK && status <= fmi3Fatal ? kNames[status] : "unknown status";
 }
 
-void logMessage(fmi3InstanceEnvironment environment, fmi3Status status, fmi3String, fmi3String message) {
+void logFmi3Message(fmi3InstanceEnvironment environment, fmi3Status status, fmi3String, fmi3String message) {
   if (environment != nullptr && message != nullptr) {
     static_cast<MessageLog*>(environment)->add(toText(status), message);
   }
@@ -39,10 +39,10 @@ class Instance3 final : public Instance {
       const bool early = (can.might_return_early || event_mode_) && can.variable_step;
       instance_ = f_.instantiateCoSimulation("twinmap", source.description.token.c_str(), resources.c_str(),
                                              fmi3False, fmi3False, event_mode_, early, nullptr, 0, &log_,
-                                             logMessage, nullptr);
+                                             logFmi3Message, nullptr);
     } else {
       instance_ = f_.instantiateModelExchange("twinmap", source.description.token.c_str(), resources.c_str(),
-                                              fmi3False, fmi3False, &log_, logMessage);
+                                              fmi3False, fmi3False, &log_, logFmi3Message);
     }
     if (instance_ == nullptr) {
       throw FmuFailure("fmi3Instantiate made no instance" + log_.describe());

@@ -23,7 +23,7 @@ pugi::xml_node findTyped(const pugi::xml_node& node) {
 
 using DeclaredTypes = std::map<std::string, pugi::xml_node>;
 
-DeclaredTypes collectTypes(const pugi::xml_node& root) {
+DeclaredTypes collectSimpleTypes(const pugi::xml_node& root) {
   DeclaredTypes types;
   for (const pugi::xml_node& type : root.child("TypeDefinitions").children("SimpleType")) {
     types[type.attribute("name").value()] = findTyped(type);
@@ -31,7 +31,7 @@ DeclaredTypes collectTypes(const pugi::xml_node& root) {
   return types;
 }
 
-Variable readVariable(const pugi::xml_node& node, const DeclaredTypes& types, const XmlFile& file) {
+Variable readScalarVariable(const pugi::xml_node& node, const DeclaredTypes& types, const XmlFile& file) {
   Variable variable;
   const pugi::xml_node typed = findTyped(node);
   if (!typed) {
@@ -50,10 +50,10 @@ Variable readVariable(const pugi::xml_node& node, const DeclaredTypes& types, co
 }  // namespace
 
 std::vector<Variable> readVariables2(const pugi::xml_node& root, const XmlFile& file) {
-  const DeclaredTypes types = collectTypes(root);
+  const DeclaredTypes types = collectSimpleTypes(root);
   std::vector<Variable> variables;
   for (const pugi::xml_node& node : root.child("ModelVariables").children("ScalarVariable")) {
-    variables.push_back(readVariable(node, types, file));
+    variables.push_back(readScalarVariable(node, types, file));
   }
   for (const Variable& variable : variables) {
     if (variable.derivative_of >= static_cast<int>(variables.size())) {

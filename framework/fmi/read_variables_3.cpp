@@ -20,7 +20,7 @@ const std::map<std::string, Type>& getTypes() {
 using Nodes = std::map<std::string, pugi::xml_node>;
 
 /// <Float64Type name=...> and its like.
-Nodes collectTypes(const pugi::xml_node& root) {
+Nodes collectTypeNodes(const pugi::xml_node& root) {
   Nodes types;
   for (const pugi::xml_node& type : root.child("TypeDefinitions").children()) {
     types[type.attribute("name").value()] = type;
@@ -51,8 +51,8 @@ std::size_t readSize(const pugi::xml_node& dimension, const Nodes& references, c
   return size;
 }
 
-Variable readVariable(const pugi::xml_node& node, const Nodes& types, const Nodes& references,
-                      const XmlFile& file) {
+Variable readTypedVariable(const pugi::xml_node& node, const Nodes& types, const Nodes& references,
+                           const XmlFile& file) {
   Variable variable;
   variable.type = getTypes().at(node.name());
   const auto declared = types.find(node.attribute("declaredType").value());
@@ -102,11 +102,11 @@ void setDerivatives(const pugi::xml_node& variables, const XmlFile& file, std::v
 
 std::vector<Variable> readVariables3(const pugi::xml_node& root, const XmlFile& file) {
   const pugi::xml_node nodes = root.child("ModelVariables");
-  const Nodes types = collectTypes(root), references = collectReferences(nodes);
+  const Nodes types = collectTypeNodes(root), references = collectReferences(nodes);
   std::vector<Variable> variables, aliases;
   for (const pugi::xml_node& node : nodes.children()) {
     if (getTypes().count(node.name()) > 0) {  // and nothing that a later version adds
-      variables.push_back(readVariable(node, types, references, file));
+      variables.push_back(readTypedVariable(node, types, references, file));
       appendAliases(node, variables.back(), file, aliases);
     }
   }

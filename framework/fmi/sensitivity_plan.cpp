@@ -31,7 +31,7 @@ void addStates(const ModelDescription& description, SensitivityPlan& plan) {
   }
 }
 
-bool isKnown(const ModelDescription& description, const Variable& variable) {
+bool hasKnownDerivative(const ModelDescription& description, const Variable& variable) {
   if (variable.causality == Causality::kInput) {
     return variable.variability == Variability::kContinuous;
   }
@@ -48,7 +48,7 @@ void addParameter(const ModelDescription& description, const BoundVariables& set
   parameter.state = findState(plan, variable);
   require(variable.type == Type::kFloat64 && variable.dimensions.empty());
   if (parameter.state < 0) {
-    require(isKnown(description, variable));
+    require(hasKnownDerivative(description, variable));
     parameter.known = variable.reference;
   }
   plan.parameters.push_back(parameter);

@@ -50,7 +50,7 @@ std::optional<UnitConversion> findByName(const std::string& fmu_unit, const std:
   return calcUnitConversion(fmu_unit, unit, {});
 }
 
-[[noreturn]] void refuse(const Variable& variable, const std::string& unit, const SourceLocation& where) {
+[[noreturn]] void refuseUnit(const Variable& variable, const std::string& unit, const SourceLocation& where) {
   const std::string own = unit.empty() ? "no unit" : unit;
   throw ExperimentError(where, own,
                         "does not fit the FMU's variable '" + variable.name + "', which is in " +
@@ -70,7 +70,7 @@ VariableUnits calcVariableUnits(const ModelDescription& description, const Varia
   }
   if (const auto defined = findUnit(description, variable.unit)) {
     if (unit.empty() ? !isIdentity(defined->second) : defined->first != parseUnit(unit, where)) {
-      refuse(variable, unit, where);
+      refuseUnit(variable, unit, where);
     }
     return fromConversion(defined->second, variable);
   }
@@ -78,7 +78,7 @@ VariableUnits calcVariableUnits(const ModelDescription& description, const Varia
     const std::optional<UnitConversion> known = findByName(variable.unit, unit);
     return known ? fromConversion(*known, variable) : VariableUnits{};
   } catch (const ExperimentError&) {
-    refuse(variable, unit, where);
+    refuseUnit(variable, unit, where);
   }
 }
 

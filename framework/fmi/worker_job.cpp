@@ -29,7 +29,7 @@ void describe(Fields& f, WorkerJob& s) {
   f.required("times", s.times, "");
 }
 
-bool isKnown(const ModelDescription& description, const std::string& name) {
+bool hasVariable(const ModelDescription& description, const std::string& name) {
   return std::any_of(description.variables.begin(), description.variables.end(),
                      [&](const Variable& variable) { return variable.name == name; });
 }
@@ -86,7 +86,7 @@ BoundVariables bindSettable(const ModelDescription& description, const ModelSpec
   const std::vector<ParameterSpec> sampled = collectSampled(model);
   for (std::size_t i = 0; i < sampled.size(); ++i) {
     const bool elsewhere =
-        used.count(sampled[i].name.text) > 0 && !isKnown(description, sampled[i].name.text);
+        used.count(sampled[i].name.text) > 0 && !hasVariable(description, sampled[i].name.text);
     if (sampled[i].variable || !elsewhere) {
       uses.push_back(makeUse(sampled[i]));
       sources.push_back(i);

@@ -10,7 +10,7 @@
 namespace twinmap::fmi {
 namespace {
 
-std::string describe(const pugi::xml_node& node, const char* attribute) {
+std::string describeAttribute(const pugi::xml_node& node, const char* attribute) {
   const char* name = node.attribute("name").value();
   const std::string owner = *name == '\0' ? "" : " '" + std::string(name) + "'";
   return "<" + std::string(node.name()) + ">" + owner + ": " + attribute;
@@ -25,7 +25,7 @@ void XmlFile::fail(const std::string& rule) const {
 std::string requireText(const pugi::xml_node& node, const char* attribute, const XmlFile& file) {
   const pugi::xml_attribute found = node.attribute(attribute);
   if (!found) {
-    file.fail(describe(node, attribute) + " is missing");
+    file.fail(describeAttribute(node, attribute) + " is missing");
   }
   return found.value();
 }
@@ -43,7 +43,7 @@ std::optional<double> findNumber(const pugi::xml_node& node, const char* attribu
   const auto result = begin == std::string::npos ? std::from_chars_result{last, std::errc::invalid_argument}
                                                  : std::from_chars(text.data() + begin, last, value);
   if (result.ec != std::errc{} || result.ptr != last) {
-    file.fail(describe(node, attribute) + " = '" + text + "' is not a number");
+    file.fail(describeAttribute(node, attribute) + " = '" + text + "' is not a number");
   }
   return value;
 }
@@ -53,7 +53,7 @@ std::uint32_t requireIndex(const pugi::xml_node& node, const char* attribute, co
   std::uint32_t value = 0;
   const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
   if (result.ec != std::errc{} || result.ptr != text.data() + text.size()) {
-    file.fail(describe(node, attribute) + " = '" + text + "' is not a whole number");
+    file.fail(describeAttribute(node, attribute) + " = '" + text + "' is not a whole number");
   }
   return value;
 }

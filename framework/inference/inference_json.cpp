@@ -18,8 +18,8 @@ Json makeEstimate(double mean, double stddev, const std::string& unit) {
   return estimate;
 }
 
-Json makeEstimates(const Eigen::VectorXd& mean, const Eigen::VectorXd& stddev,
-                   const std::vector<ParameterSpec>& parameters) {
+Json makeEstimatesJson(const Eigen::VectorXd& mean, const Eigen::VectorXd& stddev,
+                       const std::vector<ParameterSpec>& parameters) {
   Json estimates = Json::object();
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const auto i = static_cast<Eigen::Index>(p);
@@ -37,8 +37,8 @@ Json makeIntervals(const Mixture& mixture, Eigen::Index parameter, double probab
 }
 
 /// With the ends of a mixture's smallest sets, and these.
-Json makeEstimates(const Answer& answer, const std::vector<ParameterSpec>& parameters) {
-  Json estimates = makeEstimates(answer.mean, answer.stddev, parameters);
+Json makeEstimatesJson(const Answer& answer, const std::vector<ParameterSpec>& parameters) {
+  Json estimates = makeEstimatesJson(answer.mean, answer.stddev, parameters);
   for (Eigen::Index p = 0; p < answer.mixture.means.rows(); ++p) {
     Json& estimate = estimates[parameters[static_cast<std::size_t>(p)].name.text];
     estimate["lower"] = answer.lower95[p];
@@ -55,14 +55,14 @@ Json makeComponents(const Mixture& mixture, const std::vector<ParameterSpec>& pa
   for (Eigen::Index c = 0; c < mixture.countComponents(); ++c) {
     components.push_back(
         {{"weight", mixture.weights[c]},
-         {"parameters", makeEstimates(mixture.means.col(c), mixture.stddevs.col(c), parameters)}});
+         {"parameters", makeEstimatesJson(mixture.means.col(c), mixture.stddevs.col(c), parameters)}});
   }
   return components;
 }
 
 /// The map's, with how far they are from what the measurement allows.
 Json makeMapEstimates(const Inference& inference, const std::vector<ParameterSpec>& parameters) {
-  Json estimates = makeEstimates(makeMapAnswer(inference), parameters);
+  Json estimates = makeEstimatesJson(makeMapAnswer(inference), parameters);
   const Eigen::VectorXd ratio = calcRatioToLimit(inference);
   for (Eigen::Index p = 0; p < ratio.size(); ++p) {
     estimates[parameters[static_cast<std::size_t>(p)].name.text]["ratio_to_limit"] = ratio[p];
@@ -85,7 +85,7 @@ Json toJson(const Trust& trust, const std::vector<FeatureInfo>& features) {
 Json toJson(const Refined& refined, const std::vector<ParameterSpec>& parameters) {
   Json json{{"status", toString(refined.status)}};
   if (refined.isAccepted()) {
-    json["parameters"] = makeEstimates(refined.point, refined.stddev, parameters);
+    json["parameters"] = makeEstimatesJson(refined.point, refined.stddev, parameters);
   } else {
     json[refined.hasConverged() ? "message" : "error"] = refined.message;
   }
@@ -110,7 +110,7 @@ Json makeQuantiles(const SurrogatePosterior& posterior, Eigen::Index parameter) 
 Json toJson(const SurrogatePosterior& posterior, const std::vector<ParameterSpec>& parameters) {
   Json json{{"status", posterior.getStatus()}};
   if (posterior.isReliable()) {
-    json["parameters"] = makeEstimates(posterior.mean, posterior.stddev, parameters);
+    json["parameters"] = makeEstimatesJson(posterior.mean, posterior.stddev, parameters);
     for (std::size_t p = 0; p < parameters.size(); ++p) {
       const auto i = static_cast<Eigen::Index>(p);
       Json& estimate = json["parameters"][parameters[p].name.text];
@@ -140,8 +140,8 @@ std::string makeInferenceJson(const InferredMeasurement& inferred,
   }
   const Answer answer = chooseAnswer(inferred);
   json["method"] = answer.refined ? "refined" : "inverse_map";
-  json["parameters"] =
-      answer.refined ? makeEstimates(answer, parameters) : makeMapEstimates(inferred.inference, parameters);
+  json["parameters"] = answer.refined ? makeEstimatesJson(answer, parameters)
+                                      : makeMapEstimates(inferred.inference, parameters);
   if (answer.mixture.isGiven()) {
     json["components"] = makeComponents(answer.mixture, parameters);
   }

@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Index;
 
-std::string makeCell(double value) {
+std::string makeCsvCell(double value) {
   return std::isfinite(value) ? toText(value) : "";
 }
 
@@ -31,7 +31,7 @@ std::string makeReplayCsv(const Replay& replay) {
       for (const double value :
            {replay.layout.times[time], replay.measured[row], replay.nominal.response[row],
             replay.updated.response[row], replay.lower[row], replay.upper[row], replay.noise_stddev[row]}) {
-        rows.back().push_back(makeCell(value));
+        rows.back().push_back(makeCsvCell(value));
       }
     }
   }
@@ -60,7 +60,7 @@ std::vector<std::vector<std::string>> listFits(const Replay& replay) {
     for (const ReplayedModel* model : {&replay.updated, &replay.nominal}) {
       const OutputFit& fit = model->fits[o];
       for (const double value : {fit.nrmse_pct, fit.rms_sd, fit.largest_sd}) {
-        rows.back().push_back(makeCell(value));
+        rows.back().push_back(makeCsvCell(value));
       }
     }
   }

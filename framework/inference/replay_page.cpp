@@ -25,7 +25,7 @@ using Eigen::VectorXd;
 constexpr int kShownDigits = 6;
 constexpr Index kMostTimes = 10000;  // that are drawn
 
-HtmlCell makeCell(double value, int digits = kShownDigits) {
+HtmlCell makeShownCell(double value, int digits = kShownDigits) {
   return makeNumberCell(toText(value), digits);
 }
 
@@ -98,14 +98,14 @@ std::string makeParameterTable(const Inferrer& inferrer, const Replay& replay) {
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const auto i = static_cast<Index>(p);
     const double mean = replay.inferred.inference.mean[i], stddev = replay.inferred.inference.stddev[i];
-    rows.push_back({makeTextCell(parameters[p].name.text), makeTextCell(parameters[p].unit), makeCell(mean),
-                    makeCell(stddev, kStddevDigits), makeCell(mean - kNormal95 * stddev),
-                    makeCell(mean + kNormal95 * stddev)});
+    rows.push_back({makeTextCell(parameters[p].name.text), makeTextCell(parameters[p].unit),
+                    makeShownCell(mean), makeShownCell(stddev, kStddevDigits),
+                    makeShownCell(mean - kNormal95 * stddev), makeShownCell(mean + kNormal95 * stddev)});
     if (refined) {
-      rows.back().push_back(makeCell(replay.inferred.refined->point[i]));
-      rows.back().push_back(makeCell(replay.inferred.refined->stddev[i], kStddevDigits));
+      rows.back().push_back(makeShownCell(replay.inferred.refined->point[i]));
+      rows.back().push_back(makeShownCell(replay.inferred.refined->stddev[i], kStddevDigits));
     }
-    rows.back().push_back(makeCell(replay.nominal.point[i]));
+    rows.back().push_back(makeShownCell(replay.nominal.point[i]));
   }
   return makeHtmlTable("parameters-table",
                        std::string("Updating parameters. The updated model is simulated at the ") +
@@ -119,7 +119,7 @@ std::string makeNuisanceTable(const ModelSpec& model, const Replay& replay) {
   for (std::size_t n = 0; n < model.nuisance.size(); ++n) {
     const auto i = static_cast<Index>(model.parameters.size() + n);
     rows.push_back({makeTextCell(model.nuisance[n].name.text), makeTextCell(model.nuisance[n].unit),
-                    makeCell(replay.updated.point[i]), makeCell(replay.nominal.point[i])});
+                    makeShownCell(replay.updated.point[i]), makeShownCell(replay.nominal.point[i])});
   }
   return rows.empty() ? ""
                       : makeHtmlTable("nuisance-table",

@@ -1,5 +1,7 @@
 #include "framework/inverse_map/known_inputs.hpp"
 
+#include <fmt/core.h>
+
 #include <stdexcept>
 
 #include "framework/spec/parameter_box.hpp"
@@ -8,8 +10,8 @@ namespace twinmap {
 
 Eigen::MatrixXd KnownInputs::scale(const Eigen::MatrixXd& values) const {
   if (values.rows() != center.size()) {
-    throw std::invalid_argument("a map needs the values of its " + std::to_string(center.size()) +
-                                " known inputs, not " + std::to_string(values.rows()));
+    throw std::invalid_argument(
+        fmt::format("a map needs the values of its {} known inputs, not {}", center.size(), values.rows()));
   }
   return (values.colwise() - center).array().colwise() / half_width.array();
 }

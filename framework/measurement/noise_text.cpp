@@ -10,7 +10,7 @@
 namespace twinmap {
 namespace {
 
-std::string join(const std::vector<double>& numbers, int digits) {
+std::string joinNumbers(const std::vector<double>& numbers, int digits) {
   std::string text;
   for (const double number : numbers) {
     text += (text.empty() ? "" : ", ") + toShortText(number, digits);
@@ -46,7 +46,7 @@ std::string makeNoiseTable(const std::vector<SignalNoise>& signals) {
                         toShortText(signal.noise.stddev, kDigits),
                         toShortText(signal.noise.stddev_error, kErrorDigits),
                         toShortText(signal.noise.whiteness, kErrorDigits),
-                        coefficients.empty() ? "none, white" : join(coefficients, kShownDigits));
+                        coefficients.empty() ? "none, white" : joinNumbers(coefficients, kShownDigits));
   }
   return text;
 }
@@ -80,7 +80,7 @@ std::string makeNoiseYaml(const std::vector<SignalNoise>& signals) {
     if (!signal.noise.model.coefficients.empty()) {
       correlation +=
           "    " + makeKey(signal.name) + ": {autoregression: [" +
-          join(signal.noise.model.coefficients, kCoefficientDigits) + "]" +
+          joinNumbers(signal.noise.model.coefficients, kCoefficientDigits) + "]" +
           (signal.sample_time ? ", sample_time: " + toShortText(*signal.sample_time, kTimeDigits) : "") +
           "}\n";
     }

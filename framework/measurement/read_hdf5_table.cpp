@@ -9,7 +9,7 @@ namespace twinmap {
 namespace {
 
 /// How many numbers a vector has, also one that is written as a matrix of one row or column; none otherwise.
-std::optional<std::size_t> countElements(const std::vector<std::size_t>& shape) {
+std::optional<std::size_t> countVectorElements(const std::vector<std::size_t>& shape) {
   const auto longer = std::count_if(shape.begin(), shape.end(), [](std::size_t n) { return n != 1; });
   if (shape.empty() || longer > 1) {
     return {};
@@ -28,7 +28,7 @@ std::optional<std::string> readUnit(const Hdf5Reader& file, const std::string& d
 }
 
 void addDataset(const Hdf5Reader& file, const std::string& name, TableBuilder& table) {
-  const std::optional<std::size_t> count = countElements(file.readShape(name));
+  const std::optional<std::size_t> count = countVectorElements(file.readShape(name));
   if (!file.isRealNumber(name)) {
     table.skip(name, "is no dataset of real numbers");
   } else if (!count) {

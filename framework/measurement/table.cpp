@@ -41,7 +41,7 @@ std::vector<std::string> listNames(const Table& table) {
   return names;
 }
 
-std::string join(const std::vector<std::string>& names) {
+std::string joinNames(const std::vector<std::string>& names) {
   constexpr std::size_t kMost = 20;
   std::string text;
   for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i) {
@@ -102,7 +102,7 @@ const Column& getColumn(const Table& table, const std::string& name) {
   if (column == nullptr) {
     const std::vector<std::string> names = listNames(table);
     throw MeasurementError(table.source + ": has no column '" + name + "'" + suggestName(name, names) +
-                           " (it has: " + join(names) + ")");
+                           " (it has: " + joinNames(names) + ")");
   }
   return *column;
 }

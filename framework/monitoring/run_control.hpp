@@ -2,6 +2,7 @@
 
 #include <atomic>
 
+#include "framework/monitoring/interrupted.hpp"
 #include "framework/monitoring/progress.hpp"
 
 namespace twinmap {
@@ -16,5 +17,14 @@ struct RunControl {
   const std::atomic<bool>* abandon = nullptr;
   ProgressCallback progress = nullptr;
 };
+
+/// Throws Interrupted, with `message`, once the run is abandoned: before a stage that takes a moment, or in
+/// its loop.
+inline void requireWanted(const RunControl& control,
+                          const char* message = "interrupted; what was simulated is kept") {
+  if (control.abandon != nullptr && *control.abandon) {
+    throw Interrupted(message);
+  }
+}
 
 }  // namespace twinmap

@@ -10,7 +10,6 @@ namespace {
 constexpr int kMaxIterations = 50;
 constexpr double kStepTolerance = 1e-11;      ///< m or rad, relative to 1 + |coordinate|
 constexpr double kResidualTolerance = 1e-12;  ///< of the largest acceleration met
-constexpr double kDifferenceStep = 6e-6;      ///< cube root of the rounding unit, for central differences
 
 /// By Simbody, with central differences.
 class LoadedSystemAtRest : public RestAccelerations {

@@ -18,7 +18,7 @@ std::array<double, 6> calcSix(const std::vector<Expression>& expressions, Number
   return values;
 }
 
-std::string describe(const char* kind, const StationSpec& from, const StationSpec& to) {
+std::string describeEnds(const char* kind, const StationSpec& from, const StationSpec& to) {
   return std::string(kind) + " from '" + from.body.text + "' to '" + to.body.text + "'";
 }
 
@@ -40,14 +40,14 @@ void addCoordinateForces(const SystemSpec& spec, const SystemNames& names, Numbe
 void addTwoPointForces(const SystemSpec& spec, const SystemNames& names, NumberEvaluator& numbers,
                        PassiveForces& forces) {
   for (const TwoPointSpringSpec& spring : spec.two_point_springs) {
-    const std::string owner = describe("two-point spring", spring.from, spring.to);
+    const std::string owner = describeEnds("two-point spring", spring.from, spring.to);
     forces.two_point_springs.push_back({calcStation(spring.from, names, numbers, owner),
                                         calcStation(spring.to, names, numbers, owner),
                                         numbers.calc(spring.stiffness, {owner, "stiffness", "N/m"}),
                                         numbers.calc(spring.rest_length, {owner, "rest_length", "m"})});
   }
   for (const TwoPointDamperSpec& damper : spec.two_point_dampers) {
-    const std::string owner = describe("two-point damper", damper.from, damper.to);
+    const std::string owner = describeEnds("two-point damper", damper.from, damper.to);
     forces.two_point_dampers.push_back({calcStation(damper.from, names, numbers, owner),
                                         calcStation(damper.to, names, numbers, owner),
                                         numbers.calc(damper.damping, {owner, "damping", "N s/m"})});

@@ -15,8 +15,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kDifferenceStep = 6e-6;  // cube root of the rounding unit, for central differences
-
 class Linearization {
  public:
   explicit Linearization(LoadedSystem& system)

@@ -21,6 +21,9 @@ struct ModelContext {
   Excitation excitation;
 };
 
+/// Of central differences of a system's accelerations: the cube root of the rounding unit.
+inline constexpr double kDifferenceStep = 6e-6;
+
 /// The system of one parameter set with all that acts on it.
 class LoadedSystem {
  public:

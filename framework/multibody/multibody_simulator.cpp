@@ -39,16 +39,6 @@ constexpr bool kHasCommonVectors = false;
 /// Samples handed out at once: enough to keep all lanes busy but at the end, few enough to share work.
 constexpr int kLaneBatch = 128;
 
-void checkTimes(const Eigen::VectorXd& times, double duration) {
-  for (Eigen::Index i = 0; i < times.size(); ++i) {
-    const bool inside = times[i] >= 0.0 && times[i] <= duration;
-    if (!inside || (i > 0 && times[i] <= times[i - 1])) {
-      throw ExperimentError("sample time " + std::to_string(times[i]) +
-                            " s must lie within the simulation's duration and after the one before");
-    }
-  }
-}
-
 void checkSimulation(const SimulationSpec& simulation) {
   if (!(simulation.duration > 0.0) || !std::isfinite(simulation.duration)) {
     throw ExperimentError("simulation.duration must be positive");
@@ -108,7 +98,7 @@ class MultibodySimulator::Impl {
     if (shared_->layout.times.size() > 0) {
       checkSimulation(shared_->model.simulation);
     }
-    checkTimes(shared_->layout.times, shared_->model.simulation.duration);
+    checkSampleTimes(shared_->layout.times, shared_->model.simulation.duration);
     shared_->layout.output_units = twinmap::getOutputUnits(shared_->model.outputs, context_.names);
     for (const OutputSpec& output : shared_->model.outputs) {
       shared_->layout.output_names.push_back(output.name.text);

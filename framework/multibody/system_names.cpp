@@ -1,5 +1,7 @@
 #include "framework/multibody/system_names.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 #include "framework/spec/yaml/nearest_name.hpp"
@@ -30,9 +32,9 @@ void addOnce(std::vector<std::string>& names, const Name& name) {
 void checkJoint(const BodySpec& body) {
   const int count = getCoordinateCount(body.joint.type);
   if (static_cast<int>(body.joint.coordinates.size()) != count) {
-    throw ExperimentError(body.name.where, body.name.text,
-                          "needs " + std::to_string(count) + " coordinate names for its joint, not " +
-                              std::to_string(body.joint.coordinates.size()));
+    throw ExperimentError(
+        body.name.where, body.name.text,
+        fmt::format("needs {} coordinate names for its joint, not {}", count, body.joint.coordinates.size()));
   }
   if (body.joint.axis && !hasAxis(body.joint.type)) {
     throw ExperimentError((*body.joint.axis)[0].where, "", "must not be given: this joint has no axis");

@@ -15,7 +15,7 @@ namespace {
 
 using Texts = std::vector<std::string>;
 
-std::unique_ptr<PythonExperiment> load(const std::string& path, const Texts& overrides) {
+std::unique_ptr<PythonExperiment> loadExperiment(const std::string& path, const Texts& overrides) {
   return std::make_unique<PythonExperiment>(loadExperimentTree(path, overrides));
 }
 
@@ -76,7 +76,7 @@ py::array_t<double> addMeasurementNoise(const PythonExperiment& experiment, cons
 void bindExperiment(py::module_& module) {
   const auto release = py::call_guard<py::gil_scoped_release>();
   py::class_<PythonExperiment>(module, "Experiment")
-      .def_static("load", &load, release)
+      .def_static("load", &loadExperiment, release)
       .def_static("parse", &parse, release)
       .def("write_yaml", &writeYaml, release)
       .def_property_readonly("name", [](const PythonExperiment& e) { return e.getSpec().name.text; })

@@ -100,7 +100,7 @@ py::tuple predict(const PythonMap& map, const Rows& features, const Rows& known,
   return py::make_tuple(moveToRows(std::move(predictions.mean)), moveToRows(std::move(predictions.stddev)));
 }
 
-std::unique_ptr<PythonMap> load(const std::string& run_or_maps) {
+std::unique_ptr<PythonMap> loadMap(const std::string& run_or_maps) {
   return std::make_unique<PythonMap>(run_or_maps);
 }
 
@@ -152,7 +152,7 @@ void bindMap(py::module_& module) {
   bindPosterior(module);
   bindAnswered(module);
   py::class_<PythonMap>(module, "Map")
-      .def_static("load", &load, py::call_guard<py::gil_scoped_release>())
+      .def_static("load", &loadMap, py::call_guard<py::gil_scoped_release>())
       .def("infer_file", &inferFile)
       .def("infer_columns", &inferColumns)
       .def("infer_features", &inferFeatures)

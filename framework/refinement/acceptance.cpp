@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr double kChiSquareLevel = 0.999;
-constexpr double kReach = 2.0, kLeastReach = 0.5;        // standard deviations
+constexpr double kLeastTestReach = 0.5;                  // standard deviations
 constexpr double kLeastRise = 0.25, kLargestRise = 3.0;  // of what the linear model says
 
 /// Points beside a minimum and the minimum itself, last; and how far each is along its eigenvector, in
@@ -36,7 +36,7 @@ Probes makeProbes(const SearchBox& box, const LocalMisfit& minimum) {
     const double side = i < count ? 1.0 : -1.0;
     const VectorXd way =
         side * std::sqrt(std::max(eigen.values[i % count], 0.0)) * eigen.vectors.col(i % count);
-    probes.reach[i] = calcReach(box, minimum.at, way, kReach);
+    probes.reach[i] = calcReach(box, minimum.at, way, kTestReach);
     probes.points.col(i) = box.clamp(minimum.at + probes.reach[i] * way);
   }
   return probes;
@@ -59,7 +59,7 @@ Acceptance testRises(const LocalMisfit& minimum, double bottom, const MatrixXd& 
     const VectorXd way = ways.col(i);
     const double expected = way.dot(hessian * way), reach = std::sqrt(expected);
     const double rise = misfits[i] - bottom + 2.0 * minimum.descent.dot(way);
-    if (reach > kLeastReach && !(rise > kLeastRise * expected && rise < kLargestRise * expected)) {
+    if (reach > kLeastTestReach && !(rise > kLeastRise * expected && rise < kLargestRise * expected)) {
       return {RefinementStatus::kNonlinear,
               fmt::format(
                   "{:.2g} standard deviations beside the answer chi-square rises by {:.3g} instead of {:.3g}",

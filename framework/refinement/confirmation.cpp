@@ -14,8 +14,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kReach = 2.0;                         // standard deviations, as the test has it
-constexpr double kLeastReach = 1.0, kMostReach = 3.0;  // what is taken for it
+constexpr double kLeastReach = 1.0, kMostReach = 3.0;  // what is taken for kTestReach
 
 /// Along the eigenvectors of a covariance, two standard deviations or as far as the limits allow on both
 /// sides; nothing where that is too short.
@@ -24,7 +23,7 @@ std::optional<MatrixXd> makeWays(const SearchBox& box, const VectorXd& at, const
   MatrixXd ways = eigen.vectors * eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
   for (Index i = 0; i < ways.cols(); ++i) {
     const double reach =
-        std::min(calcReach(box, at, ways.col(i), kReach), calcReach(box, at, -ways.col(i), kReach));
+        std::min(calcReach(box, at, ways.col(i), kTestReach), calcReach(box, at, -ways.col(i), kTestReach));
     if (reach < kLeastReach) {
       return std::nullopt;
     }

@@ -52,7 +52,7 @@ Misfit::Misfit(Simulator& simulator, const RefinementModel& model, const SearchB
                const VectorXd& measured)
     : simulator_(simulator), model_(model), box_(box), measured_(measured), window_(&model.getWhole()) {}
 
-void Misfit::setWindow(const FeatureWindow& window) {
+void Misfit::setWindow(const GrowingWindow& window) {
   window_ = &window;
   renewNoise();
 }

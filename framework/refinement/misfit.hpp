@@ -48,7 +48,7 @@ class Misfit {
   int getSimulations() const { return simulations_; }
 
   /// Looks at the features of a window alone from now on.
-  void setWindow(const FeatureWindow& window);
+  void setWindow(const GrowingWindow& window);
   /// Takes the noise at the next point that is linearised, where it depends on the response; it stays until
   /// it is renewed, so that misfits can be compared.
   void renewNoise() { whitener_.reset(); }
@@ -79,7 +79,7 @@ class Misfit {
   const RefinementModel& model_;
   const SearchBox& box_;
   const Eigen::VectorXd& measured_;
-  const FeatureWindow* window_;
+  const GrowingWindow* window_;
   std::optional<NoiseWhitener> whitener_;  // where the noise depends on the response
   int simulations_ = 0;
 };

@@ -56,7 +56,7 @@ void RefinementModel::addWindow(std::vector<Index> features) {
   }
 }
 
-NoiseWhitener RefinementModel::makeWhitener(const FeatureWindow& window, const VectorXd& response) const {
+NoiseWhitener RefinementModel::makeWhitener(const GrowingWindow& window, const VectorXd& response) const {
   const MatrixXd covariance = noise_.calcCovariance(response);
   return NoiseWhitener(covariance(window.features, window.features));
 }

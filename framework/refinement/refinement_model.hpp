@@ -11,7 +11,7 @@
 namespace twinmap {
 
 /// Features up to a time, and their whitening where their noise is the same for every response.
-struct FeatureWindow {
+struct GrowingWindow {
   std::vector<Eigen::Index> features;     ///< rows
   std::optional<NoiseWhitener> whitener;  ///< none where the noise depends on the response
 };
@@ -29,11 +29,11 @@ class RefinementModel {
 
   /// Windows that grow: the samples of the first eighth, quarter and half of the time that samples take,
   /// where these are more than the unknown parameters; the last is all features.
-  const std::vector<FeatureWindow>& getWindows() const { return windows_; }
-  const FeatureWindow& getWhole() const { return windows_.back(); }
+  const std::vector<GrowingWindow>& getWindows() const { return windows_; }
+  const GrowingWindow& getWhole() const { return windows_.back(); }
 
   /// The whitener of a window's features for a response.
-  NoiseWhitener makeWhitener(const FeatureWindow& window, const Eigen::VectorXd& response) const;
+  NoiseWhitener makeWhitener(const GrowingWindow& window, const Eigen::VectorXd& response) const;
 
  private:
   void addWindow(std::vector<Eigen::Index> features);
@@ -41,7 +41,7 @@ class RefinementModel {
   const std::vector<ParameterSpec> unknown_;
   const FeatureExtractor& extractor_;
   const FeatureNoise& noise_;
-  std::vector<FeatureWindow> windows_;
+  std::vector<GrowingWindow> windows_;
 };
 
 }  // namespace twinmap

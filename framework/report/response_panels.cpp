@@ -11,7 +11,7 @@ Texts makeTexts(const ResponseData& data) {
           {"of_case", data.which.empty() ? "" : ", " + data.which + " case"}};
 }
 
-std::set<std::string> findMissing(const ResponseData& data, const ResponseLook& look) {
+std::set<std::string> findMissingData(const ResponseData& data, const ResponseLook& look) {
   std::set<std::string> missing;
   if (data.which.empty()) {
     missing.insert("case");
@@ -25,7 +25,7 @@ std::set<std::string> findMissing(const ResponseData& data, const ResponseLook& 
 }  // namespace
 
 Panel makeResponsePanel(const ResponseData& data, const ResponseLook& look) {
-  Panel panel{"response", makeTexts(data), {}, findMissing(data, look)};
+  Panel panel{"response", makeTexts(data), {}, findMissingData(data, look)};
   if (!look.band) {
     panel.without.insert("band");
   }
@@ -33,7 +33,7 @@ Panel makeResponsePanel(const ResponseData& data, const ResponseLook& look) {
 }
 
 Panel makeResidualPanel(const ResponseData& data, const ResponseLook& look) {
-  return {"residual", makeTexts(data), {}, findMissing(data, look)};
+  return {"residual", makeTexts(data), {}, findMissingData(data, look)};
 }
 
 }  // namespace twinmap

@@ -1,5 +1,7 @@
 #include "framework/results/responses_csv.hpp"
 
+#include <fmt/core.h>
+
 #include <cmath>
 
 #include "framework/results/escape.hpp"
@@ -20,8 +22,9 @@ std::string makeResponsesCsv(const std::vector<ExampleResponse>& examples, const
   for (const ExampleResponse& example : examples) {
     for (Eigen::Index output = 0; output < layout.getOutputCount(); ++output) {
       const auto o = static_cast<std::size_t>(output);
-      const std::string start = example.name + "," + std::to_string(example.sample) + "," +
-                                escapeCsv(layout.output_names[o]) + "," + escapeCsv(layout.output_units[o]);
+      const std::string start =
+          fmt::format("{},{},{},{}", example.name, example.sample, escapeCsv(layout.output_names[o]),
+                      escapeCsv(layout.output_units[o]));
       for (Eigen::Index time = 0; time < layout.times.size(); ++time) {
         const Eigen::Index row = layout.getRow(output, time);
         csv += start + makeCell(layout.times[time]) + makeCell(example.measured[row]) +

@@ -1,6 +1,10 @@
 #include "framework/simulation/simulator.hpp"
 
+#include <fmt/core.h>
+
 #include <stdexcept>
+
+#include "framework/spec/yaml/source_location.hpp"
 
 namespace twinmap {
 
@@ -12,6 +16,16 @@ void Simulator::simulateWithDerivatives(const Eigen::Ref<const Eigen::MatrixXd>&
 const std::string& Simulator::getEngine() const {
   static const std::string kUnnamed;
   return kUnnamed;
+}
+
+void checkSampleTimes(const Eigen::VectorXd& times, double duration) {
+  for (Eigen::Index i = 0; i < times.size(); ++i) {
+    const bool inside = times[i] >= 0.0 && times[i] <= duration;
+    if (!inside || (i > 0 && times[i] <= times[i - 1])) {
+      throw ExperimentError(fmt::format(
+          "sample time {:f} s must lie within the simulation's duration and after the one before", times[i]));
+    }
+  }
 }
 
 }  // namespace twinmap

@@ -74,4 +74,7 @@ class Simulator {
   virtual std::unique_ptr<Simulator> clonePrecisely() const { return nullptr; }
 };
 
+/// Throws ExperimentError where the times of a response do not rise from 0 s on to the simulation's duration.
+void checkSampleTimes(const Eigen::VectorXd& times, double duration);
+
 }  // namespace twinmap

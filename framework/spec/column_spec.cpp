@@ -1,14 +1,8 @@
 #include "framework/spec/column_spec.hpp"
 
+#include "framework/spec/yaml/trim.hpp"
+
 namespace twinmap {
-namespace {
-
-std::string trim(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(" \t");
-  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
-}  // namespace
 
 ColumnSpec parseColumn(const std::string& text, const SourceLocation& where) {
   const std::string trimmed = trim(text);

@@ -3,7 +3,7 @@
 namespace twinmap {
 namespace {
 
-void append(const std::vector<ParameterSpec>& more, std::vector<ParameterSpec>& all) {
+void appendParameters(const std::vector<ParameterSpec>& more, std::vector<ParameterSpec>& all) {
   all.insert(all.end(), more.begin(), more.end());
 }
 
@@ -11,13 +11,13 @@ void append(const std::vector<ParameterSpec>& more, std::vector<ParameterSpec>& 
 
 std::vector<ParameterSpec> collectUnknown(const ModelSpec& model) {
   std::vector<ParameterSpec> unknown = model.parameters;
-  append(model.nuisance, unknown);
+  appendParameters(model.nuisance, unknown);
   return unknown;
 }
 
 std::vector<ParameterSpec> collectSampled(const ModelSpec& model) {
   std::vector<ParameterSpec> sampled = collectUnknown(model);
-  append(model.inputs, sampled);
+  appendParameters(model.inputs, sampled);
   return sampled;
 }
 

@@ -1,5 +1,7 @@
 #include "framework/store/chunk_file.hpp"
 
+#include <fmt/core.h>
+
 #include <cassert>
 #include <cstring>
 #include <fstream>
@@ -26,7 +28,7 @@ struct StatusEntry {
   std::uint32_t ok, reason_size;
 };
 
-void append(std::string& bytes, const void* data, std::size_t size) {
+void appendBytes(std::string& bytes, const void* data, std::size_t size) {
   bytes.append(static_cast<const char*>(data), size);
 }
 
@@ -86,8 +88,8 @@ std::string_view verifyChecksum(const std::string& bytes) {
 
 void checkVersion(const Header& header) {
   if (header.version != kVersion) {
-    throw std::runtime_error("is a chunk of format version " + std::to_string(header.version) +
-                             "; this program reads version " + std::to_string(kVersion));
+    throw std::runtime_error(fmt::format("is a chunk of format version {}; this program reads version {}",
+                                         header.version, kVersion));
   }
 }
 
@@ -194,18 +196,18 @@ std::string makeChunk(const SampleBlock& block, const ChunkShape& shape) {
   const Header header = makeHeader(shape, block.statuses.size());
   std::string bytes;
   bytes.reserve(calcChunkSize(shape, block.getSampleCount()));
-  append(bytes, &header, sizeof header);
-  append(bytes, block.parameters.data(), block.parameters.size() * sizeof(double));
-  append(bytes, block.responses.data(), block.responses.size() * sizeof(double));
+  appendBytes(bytes, &header, sizeof header);
+  appendBytes(bytes, block.parameters.data(), block.parameters.size() * sizeof(double));
+  appendBytes(bytes, block.responses.data(), block.responses.size() * sizeof(double));
   for (const SampleStatus& status : block.statuses) {
     const StatusEntry entry{status.ok ? 1u : 0u, static_cast<std::uint32_t>(status.reason.size())};
-    append(bytes, &entry, sizeof entry);
+    appendBytes(bytes, &entry, sizeof entry);
   }
   for (const SampleStatus& status : block.statuses) {
     bytes += status.reason;
   }
   const Digest digest = calcDigest(bytes.data(), bytes.size());
-  append(bytes, digest.data(), digest.size());
+  appendBytes(bytes, digest.data(), digest.size());
   return bytes;
 }
 

@@ -1,5 +1,7 @@
 #include "framework/store/csv_file.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <fstream>
 #include <limits>
@@ -34,7 +36,7 @@ class CellReader {
   }
 
   [[noreturn]] void fail(const std::string& problem) const {
-    throw std::runtime_error(what_ + ":" + std::to_string(line_) + ": " + problem);
+    throw std::runtime_error(fmt::format("{}:{}: {}", what_, line_, problem));
   }
 
  private:
@@ -97,8 +99,8 @@ CsvTable parseCsv(const std::string& text, const std::string& what) {
   while (!reader.atEnd()) {
     table.rows.push_back(reader.readRow());
     if (table.rows.back().size() != table.columns.size()) {
-      reader.fail("has " + std::to_string(table.rows.back().size()) + " cells, but the header has " +
-                  std::to_string(table.columns.size()));
+      reader.fail(
+          fmt::format("has {} cells, but the header has {}", table.rows.back().size(), table.columns.size()));
     }
   }
   return table;

@@ -1,5 +1,7 @@
 #include "framework/store/hdf5_difference.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
@@ -106,8 +108,8 @@ std::string findByteDifference(const fs::path& file, const fs::path& expected) {
   }
   const std::size_t common = std::min(bytes.size(), expected_bytes.size());
   const auto differs = std::mismatch(bytes.begin(), bytes.begin() + common, expected_bytes.begin());
-  return "all data are equal, but byte " + std::to_string(differs.first - bytes.begin()) +
-         " differs (an attribute or the file's structure)";
+  return fmt::format("all data are equal, but byte {} differs (an attribute or the file's structure)",
+                     differs.first - bytes.begin());
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "framework/store/predictions_file.hpp"
 
+#include <fmt/core.h>
+
 #include <cmath>
 #include <stdexcept>
 
@@ -14,7 +16,7 @@ class Rows {
   Rows(const std::filesystem::path& path, const CsvTable& table) : path_(path), table_(table) {}
 
   [[noreturn]] void fail(std::size_t row, const std::string& problem) const {
-    throw std::runtime_error(path_.string() + ":" + std::to_string(row + 2) + ": " + problem);
+    throw std::runtime_error(fmt::format("{}:{}: {}", path_.string(), row + 2, problem));
   }
 
   double getNumber(std::size_t row, const std::string& column) const {

@@ -85,7 +85,7 @@ void forEachKind(Numbers& numbers, const Action& action) {
   action("left_out_ratios", numbers.left_out_ratios);
 }
 
-void append(const gp::SharedProcessParts& parts, WindowTable& table, WindowNumbers& numbers) {
+void appendProcess(const gp::SharedProcessParts& parts, WindowTable& table, WindowNumbers& numbers) {
   const bool matern = parts.structure.covariance == gp::SmoothCovariance::kMatern52;
   table.covariances.emplace_back(matern ? kMatern52 : kSquaredExponential);
   table.trends.emplace_back(parts.structure.trend == gp::Trend::kQuadratic ? kQuadratic : kLinear);
@@ -132,7 +132,7 @@ void writeWindows(Hdf5Writer& file, const std::string& group, const std::vector<
   WindowNumbers numbers;
   for (std::size_t w = 0; w < windows.size(); ++w) {
     table.nuggets(static_cast<Index>(w)) = windows[w].getHyperparameters().nugget;
-    append(windows[w].getParts(), table, numbers);
+    appendProcess(windows[w].getParts(), table, numbers);
   }
   file.write(group + "/covariance", table.covariances);
   file.write(group + "/trend", table.trends);

@@ -33,7 +33,7 @@ double countParameters(const ExperimentSpec& e) {
   return static_cast<double>(e.model.parameters.size());
 }
 
-double countRows(const ExperimentSpec& e) {
+double countStoredRows(const ExperimentSpec& e) {
   return static_cast<double>(collectTimes(e.features).size()) * static_cast<double>(e.model.outputs.size()) +
          2.0 * countModes(e.features);
 }
@@ -43,7 +43,7 @@ double calcCaseDisk(const ExperimentSpec& e) {
   const GpMapSpec* gp = e.inverse_map.findGp();  // a surrogate is not stored
   const bool sparse = gp != nullptr && gp->approximation == GpApproximation::kSgpr;
   const double order = gp == nullptr ? 0.0 : (sparse ? 1.5 * gp->inducing : countTrainingColumns(e));
-  return kNumber * (countRows(e) + double(countSampled(e.model))) * countSamples(e) +
+  return kNumber * (countStoredRows(e) + double(countSampled(e.model))) * countSamples(e) +
          kNumber * countParameters(e) * order * order +
          kPredictionRow * countParameters(e) * e.design.test.samples + kReport;
 }

@@ -11,7 +11,8 @@
 namespace twinmap {
 namespace {
 
-std::string describe(const std::string& place, const std::string& found, const std::string& expected) {
+std::string describeDifference(const std::string& place, const std::string& found,
+                               const std::string& expected) {
   return place + ": '" + found + "' instead of '" + expected + "'";
 }
 
@@ -23,8 +24,8 @@ std::string findCellDifference(const CsvTable& table, const CsvTable& expected) 
   for (std::size_t row = 0; row < std::min(table.rows.size(), expected.rows.size()); ++row) {
     for (std::size_t column = 0; column < table.columns.size(); ++column) {
       if (table.rows[row][column] != expected.rows[row][column] && !isTime(table.columns[column])) {
-        return describe("line " + std::to_string(row + 2) + ", " + table.columns[column],
-                        table.rows[row][column], expected.rows[row][column]);
+        return describeDifference("line " + std::to_string(row + 2) + ", " + table.columns[column],
+                                  table.rows[row][column], expected.rows[row][column]);
       }
     }
   }
@@ -43,7 +44,8 @@ std::string findCsvDifference(const std::string& text, const std::string& expect
     return cells;
   }
   if (table.rows.size() != expected_table.rows.size()) {
-    return describe("rows", std::to_string(table.rows.size()), std::to_string(expected_table.rows.size()));
+    return describeDifference("rows", std::to_string(table.rows.size()),
+                              std::to_string(expected_table.rows.size()));
   }
   const bool has_times = std::any_of(table.columns.begin(), table.columns.end(), isTime);
   return text == expected || has_times ? "" : "bytes outside of the cells";
@@ -59,7 +61,8 @@ std::string findTextDifference(const std::string& text, const std::string& expec
       return text == expected ? "" : "bytes at its end";
     }
     if (more != more_expected || line != expected_line) {
-      return describe("line " + std::to_string(number), more ? line : "", more_expected ? expected_line : "");
+      return describeDifference("line " + std::to_string(number), more ? line : "",
+                                more_expected ? expected_line : "");
     }
   }
 }

@@ -1,5 +1,7 @@
 #include "framework/verification/sample_checks.hpp"
 
+#include <fmt/core.h>
+
 #include <cstring>
 #include <memory>
 
@@ -32,7 +34,7 @@ std::string describeRow(const ResponseLayout& layout, Index row) {
          std::to_string(row - (damping ? layout.getDampingRow(0) : layout.getFrequencyRow(0)) + 1);
 }
 
-std::string describe(const SampleStatus& status) {
+std::string describeStatus(const SampleStatus& status) {
   return status.ok ? "ok" : "failed (" + status.reason + ")";
 }
 
@@ -41,7 +43,7 @@ std::string findSampleDifference(const Trajectories& stored, Index column,
                                  const Eigen::VectorXd& expected_response, const SampleStatus& expected) {
   const SampleStatus& status = stored.statuses[static_cast<std::size_t>(column)];
   if (status.ok != expected.ok || status.reason != expected.reason) {
-    return describe(status) + " instead of " + describe(expected);
+    return describeStatus(status) + " instead of " + describeStatus(expected);
   }
   for (Index row = 0; row < expected_response.size(); ++row) {
     const double value = stored.responses(row, column);
@@ -63,7 +65,7 @@ std::string replaceSamples(const std::string& set_name, const std::vector<int>& 
     const Index to = columns[i];
     const std::string difference = findSampleDifference(set, to, responses.col(from), statuses[i]);
     if (first.empty() && !difference.empty()) {
-      first = set_name + " sample " + std::to_string(to) + ", " + difference;
+      first = fmt::format("{} sample {}, {}", set_name, to, difference);
     }
     set.responses.col(to) = responses.col(from);
     set.statuses[static_cast<std::size_t>(to)] = statuses[i];
@@ -112,8 +114,8 @@ std::string simulateAgain(const std::string& name, const std::vector<int>& chose
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     const SampleStatus& stored = set.statuses[static_cast<std::size_t>(chosen[i])];
     if (again.statuses[i].machine_dependent || stored.reason.find("wall-time limit") != std::string::npos) {
-      verification.notes.push_back(name + " sample " + std::to_string(chosen[i]) +
-                                   " reached simulation.max_wall_time and is not compared");
+      verification.notes.push_back(
+          fmt::format("{} sample {} reached simulation.max_wall_time and is not compared", name, chosen[i]));
     } else {
       compared.push_back(static_cast<int>(i));
       columns.push_back(chosen[i]);
@@ -179,7 +181,7 @@ void checkChunks(const ExperimentSpec& experiment, const Simulator& simulator, S
     verification.notes.emplace_back("there are no chunks of this model and build to compare with");
     return;
   }
-  verification.check("samples.h5: responses of the " + std::to_string(found) + " samples that chunks hold",
+  verification.check(fmt::format("samples.h5: responses of the {} samples that chunks hold", found),
                      [&] { return train.empty() ? test : train; });
 }
 
@@ -194,8 +196,8 @@ SimulatedSets checkSamples(const ExperimentSpec& experiment, const Simulator& si
     writeSamplesFile(temporary.getPath() / "samples.h5", experiment.model, sets.train, sets.test);
     return findHdf5Difference(file, temporary.getPath() / "samples.h5");
   });
-  verification.check("samples.h5: " + std::to_string(chosen.train.size()) + " training and " +
-                         std::to_string(chosen.test.size()) + " test samples, simulated again",
+  verification.check(fmt::format("samples.h5: {} training and {} test samples, simulated again",
+                                 chosen.train.size(), chosen.test.size()),
                      [&] {
                        const std::string train = simulateAgain("training", chosen.train, simulator, threads,
                                                                sets.train, verification);

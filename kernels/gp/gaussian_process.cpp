@@ -17,25 +17,26 @@ namespace {
 
 constexpr Index kPredictionBlock = 256;  // points predicted together: the block of V stays in cache
 
-void require(bool condition, const char* message) {
+void requirePart(bool condition, const char* message) {
   if (!condition) {
     throw std::invalid_argument(std::string("GaussianProcess: ") + message);
   }
 }
 
 void checkParts(const GaussianProcessParts& parts) {
-  require(parts.inputs != nullptr && parts.inputs->size() > 0, "there are no training inputs");
+  requirePart(parts.inputs != nullptr && parts.inputs->size() > 0, "there are no training inputs");
   const Index n = parts.inputs->cols();
   checkStructure(parts.structure, parts.inputs->rows());
   checkHyperparameters(parts.structure, parts.hyperparameters);
   checkInputs(*parts.inputs, "GaussianProcess inputs");
-  require(parts.alpha.size() == n, "alpha must have one entry per training sample");
-  require(parts.factor.rows() == n && parts.factor.cols() == n, "the factor must be n x n");
-  require(parts.mean_coefficients.size() == getMeanCoefficientCount(parts.structure, parts.inputs->rows()),
-          "the number of mean coefficients does not fit the mean function");
-  require(parts.alpha.allFinite() && parts.factor.allFinite() && parts.mean_coefficients.allFinite(),
-          "alpha, factor and mean coefficients must be finite");
-  require((parts.factor.diagonal().array() > 0.0).all(), "the factor's diagonal must be positive");
+  requirePart(parts.alpha.size() == n, "alpha must have one entry per training sample");
+  requirePart(parts.factor.rows() == n && parts.factor.cols() == n, "the factor must be n x n");
+  requirePart(
+      parts.mean_coefficients.size() == getMeanCoefficientCount(parts.structure, parts.inputs->rows()),
+      "the number of mean coefficients does not fit the mean function");
+  requirePart(parts.alpha.allFinite() && parts.factor.allFinite() && parts.mean_coefficients.allFinite(),
+              "alpha, factor and mean coefficients must be finite");
+  requirePart((parts.factor.diagonal().array() > 0.0).all(), "the factor's diagonal must be positive");
 }
 
 // R, the lower Cholesky factor of V'V.
@@ -46,7 +47,8 @@ MatrixXd calcBasisFactor(const MatrixXd& whitened_basis, linalg::TriangularScrat
   }
   const linalg::ConstView basis = linalg::viewOf(whitened_basis);
   linalg::gemm(1.0, basis.transposed(), basis, 0.0, linalg::viewOf(normal), scratch.gemm());
-  require(linalg::factorizeCholesky(linalg::viewOf(normal), scratch), "the mean's basis is rank deficient");
+  requirePart(linalg::factorizeCholesky(linalg::viewOf(normal), scratch),
+              "the mean's basis is rank deficient");
   return normal;
 }
 

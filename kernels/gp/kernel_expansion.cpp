@@ -14,7 +14,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr Index kBlock = 256;  // inputs taken together: memory for 256 n covariances instead of m n
+constexpr Index kInputBlock = 256;  // inputs taken together: memory for 256 n covariances instead of m n
 
 }  // namespace
 
@@ -58,8 +58,8 @@ VectorXd KernelExpansion::predictMean(const Eigen::Ref<const MatrixXd>& inputs) 
   checkInputs(inputs, "predictMean inputs");
   const linalg::FlushDenormals flush;
   VectorXd mean(inputs.cols());
-  for (Index first = 0; first < inputs.cols(); first += kBlock) {
-    const Index count = std::min(kBlock, inputs.cols() - first);
+  for (Index first = 0; first < inputs.cols(); first += kInputBlock) {
+    const Index count = std::min(kInputBlock, inputs.cols() - first);
     const MatrixXd centered = calcCentered(inputs.middleCols(first, count));
     mean.segment(first, count) = calcMean(centered, calcCovariance(centered));
   }
@@ -70,8 +70,8 @@ MatrixXd KernelExpansion::predictMeanGradient(const Eigen::Ref<const MatrixXd>& 
   checkInputs(inputs, "predictMeanGradient inputs");
   const linalg::FlushDenormals flush;
   MatrixXd gradient(inputs.rows(), inputs.cols());
-  for (Index first = 0; first < inputs.cols(); first += kBlock) {
-    const Index count = std::min(kBlock, inputs.cols() - first);
+  for (Index first = 0; first < inputs.cols(); first += kInputBlock) {
+    const Index count = std::min(kInputBlock, inputs.cols() - first);
     gradient.middleCols(first, count) = calcGradient(calcCentered(inputs.middleCols(first, count)));
   }
   return gradient;

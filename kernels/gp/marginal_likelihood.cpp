@@ -29,7 +29,7 @@ linalg::View weightsView(LikelihoodWorkspace& workspace) {
           workspace.weights.rows()};
 }
 
-void addLinearTerm(const TrainingSet& set, double linear_stddev, linalg::View factor, Index j) {
+void addLinearColumn(const TrainingSet& set, double linear_stddev, linalg::View factor, Index j) {
   AlignedColumn column = lowerColumn(factor, j);
   column += linear_stddev * linear_stddev * lowerColumn(set.gram(), j);
 }
@@ -54,7 +54,7 @@ void calcCovarianceColumn(const TrainingSet& set, const Hyperparameters& hyperpa
     derivative *= variance;
   }
   if (structure.linear_term) {
-    addLinearTerm(set, hyperparameters.linear_stddev, factor, j);
+    addLinearColumn(set, hyperparameters.linear_stddev, factor, j);
   }
   factor(j, j) += diagonal;
 }

@@ -17,34 +17,35 @@ using linalg::viewOf;
 
 namespace {
 
-constexpr Index kBlock = 256;  // points predicted together: their covariances stay in cache
+constexpr Index kSparseBlock = 256;  // points predicted together: their covariances stay in cache
 
-void require(bool condition, const char* message) {
+void requireSparsePart(bool condition, const char* message) {
   if (!condition) {
     throw std::invalid_argument(std::string("SparseGaussianProcess: ") + message);
   }
 }
 
-void checkParts(const SparseGaussianProcessParts& parts) {
+void checkSparseParts(const SparseGaussianProcessParts& parts) {
   const VariationalPosterior& posterior = parts.posterior;
   const Index m = parts.inducing.cols(), d = parts.inducing.rows();
   const Index p = getMeanCoefficientCount(parts.structure, d);
-  require(m > 0 && d > 0, "there are no inducing inputs");
+  requireSparsePart(m > 0 && d > 0, "there are no inducing inputs");
   checkStructure(parts.structure, d);
   checkHyperparameters(parts.structure, parts.hyperparameters);
   checkInputs(parts.inducing, "SparseGaussianProcess inducing inputs");
-  require(parts.center.size() == d && parts.center.allFinite(), "the centre needs one number per feature");
-  require(posterior.inducing_factor.rows() == m && posterior.inducing_factor.cols() == m &&
-              posterior.correction_factor.rows() == m && posterior.correction_factor.cols() == m,
-          "the factors must be m x m");
-  require(posterior.weights.size() == m && posterior.mean_coefficients.size() == p &&
-              posterior.whitened_basis.rows() == m && posterior.whitened_basis.cols() == p &&
-              posterior.basis_factor.rows() == p && posterior.basis_factor.cols() == p,
-          "weights or mean do not fit the inducing inputs");
-  require(posterior.inducing_factor.allFinite() && posterior.correction_factor.allFinite() &&
-              posterior.weights.allFinite() && posterior.whitened_basis.allFinite() &&
-              posterior.basis_factor.allFinite() && posterior.mean_coefficients.allFinite(),
-          "every number must be finite");
+  requireSparsePart(parts.center.size() == d && parts.center.allFinite(),
+                    "the centre needs one number per feature");
+  requireSparsePart(posterior.inducing_factor.rows() == m && posterior.inducing_factor.cols() == m &&
+                        posterior.correction_factor.rows() == m && posterior.correction_factor.cols() == m,
+                    "the factors must be m x m");
+  requireSparsePart(posterior.weights.size() == m && posterior.mean_coefficients.size() == p &&
+                        posterior.whitened_basis.rows() == m && posterior.whitened_basis.cols() == p &&
+                        posterior.basis_factor.rows() == p && posterior.basis_factor.cols() == p,
+                    "weights or mean do not fit the inducing inputs");
+  requireSparsePart(posterior.inducing_factor.allFinite() && posterior.correction_factor.allFinite() &&
+                        posterior.weights.allFinite() && posterior.whitened_basis.allFinite() &&
+                        posterior.basis_factor.allFinite() && posterior.mean_coefficients.allFinite(),
+                    "every number must be finite");
 }
 
 VectorXd sumVariance(const SparseProjection& projection) {
@@ -61,20 +62,21 @@ VectorXd sumVariance(const SparseProjection& projection) {
 }  // namespace
 
 SparseGaussianProcess::SparseGaussianProcess(SparseGaussianProcessParts parts) : parts_(std::move(parts)) {
-  checkParts(parts_);
+  checkSparseParts(parts_);
   expansion_ = KernelExpansion(parts_.structure, parts_.hyperparameters, parts_.center, parts_.inducing,
                                parts_.posterior.weights, parts_.posterior.mean_coefficients);
 }
 
 Prediction SparseGaussianProcess::predict(const Eigen::Ref<const MatrixXd>& inputs) const {
-  require(inputs.rows() == getFeatureCount(), "the inputs have another number of features than the process");
+  requireSparsePart(inputs.rows() == getFeatureCount(),
+                    "the inputs have another number of features than the process");
   checkInputs(inputs, "SparseGaussianProcess::predict inputs");
   const linalg::FlushDenormals flush;
   Prediction prediction;
   prediction.mean.resize(inputs.cols());
   prediction.latent_variance.resize(inputs.cols());
-  for (Index first = 0; first < inputs.cols(); first += kBlock) {
-    const Index count = std::min(kBlock, inputs.cols() - first);
+  for (Index first = 0; first < inputs.cols(); first += kSparseBlock) {
+    const Index count = std::min(kSparseBlock, inputs.cols() - first);
     const SparseProjection block = project(inputs.middleCols(first, count));
     prediction.mean.segment(first, count) = block.mean;
     prediction.latent_variance.segment(first, count) = sumVariance(block);

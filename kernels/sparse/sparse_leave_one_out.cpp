@@ -12,7 +12,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr std::size_t kBlock = 256;  // samples projected together: the factors are read once for all of them
+constexpr std::size_t kProjectionBlock =
+    256;  // samples projected together: the factors are read once for all of them
 
 MatrixXd calcPrecision(const SparseProjection& block, Index first, Index count, double noise_variance) {
   const auto corrected = block.corrected.middleRows(first, count);
@@ -28,7 +29,7 @@ MatrixXd calcPrecision(const SparseProjection& block, Index first, Index count, 
 // The samples of groups [first, last), where last is where a block is full.
 std::vector<Index> collectBlock(const SampleGroups& groups, std::size_t first, std::size_t& last) {
   std::vector<Index> samples;
-  for (last = first; last < groups.size() && (last == first || samples.size() < kBlock); ++last) {
+  for (last = first; last < groups.size() && (last == first || samples.size() < kProjectionBlock); ++last) {
     samples.insert(samples.end(), groups[last].begin(), groups[last].end());
   }
   return samples;

@@ -22,7 +22,7 @@ namespace {
 // better.
 constexpr int kRounds = 2;
 
-void checkOptions(const SparseOptions& sparse, const ModelStructure& structure) {
+void checkSparseOptions(const SparseOptions& sparse, const ModelStructure& structure) {
   const auto require = [](bool condition, const char* rule) {
     if (!condition) {
       throw std::invalid_argument(std::string("SparseOptions: ") + rule);
@@ -104,7 +104,7 @@ std::vector<SparseTrainingResult> trainSparse(const Eigen::Ref<const MatrixXd>& 
                                               const Eigen::Ref<const MatrixXd>& targets,
                                               const ModelStructure& structure, const TrainingOptions& options,
                                               const SparseOptions& sparse) {
-  checkOptions(sparse, structure);
+  checkSparseOptions(sparse, structure);
   checkInputs(inputs, "train_sparse: inputs");
   checkInputs(targets, "train_sparse: targets");
   if (targets.cols() != inputs.cols()) {

@@ -18,9 +18,9 @@ using linalg::viewOf;
 
 namespace {
 
-constexpr Index kBlock = 512;           // samples at a time: deep products, and memory 512 m instead of n m
-constexpr double kFirstJitter = 1e-10;  // relative to s_f^2; K_uu has no noise to keep it definite
-constexpr double kLastJitter = 1e-5;    // beyond it the model itself would be another one
+constexpr Index kSampleBlock = 512;  // samples at a time: deep products, and memory 512 m instead of n m
+constexpr double kFirstInducingJitter = 1e-10;  // relative to s_f^2; K_uu has no noise to keep it definite
+constexpr double kLastInducingJitter = 1e-5;    // beyond it the model itself would be another one
 
 MatrixXd lowerPart(const MatrixXd& matrix) {
   return matrix.triangularView<Eigen::Lower>();
@@ -79,7 +79,7 @@ VariationalBound::VariationalBound(const MatrixXd& inputs, const VectorXd& targe
 }
 
 MatrixXd VariationalBound::scaledBlock(const Hyperparameters& hyperparameters, Index first) const {
-  const Index count = std::min(kBlock, inputs_.cols() - first);
+  const Index count = std::min(kSampleBlock, inputs_.cols() - first);
   const VectorXd scales = lengthScaleOfFeatures(structure_, hyperparameters, inputs_.rows());
   return scales.cwiseInverse().asDiagonal() * (inputs_.middleCols(first, count).colwise() - center_);
 }
@@ -90,7 +90,7 @@ MatrixXd VariationalBound::scaledInducing(const Hyperparameters& hyperparameters
 }
 
 MatrixXd VariationalBound::rightHandSides(Index first) const {
-  const Index count = std::min(kBlock, inputs_.cols() - first);
+  const Index count = std::min(kSampleBlock, inputs_.cols() - first);
   const MatrixXd centered = inputs_.middleCols(first, count).colwise() - center_;
   const MatrixXd basis = calcMeanBasis(structure_.mean, centered);
   MatrixXd right(count, 1 + basis.cols());
@@ -103,9 +103,9 @@ VariationalBound::Sums VariationalBound::accumulate(const Hyperparameters& hyper
   const Index m = inducing_.cols();
   const Index columns = 1 + getMeanCoefficientCount(structure_, inputs_.rows());
   Sums sums{MatrixXd::Zero(m, m), MatrixXd::Zero(m, columns), MatrixXd::Zero(columns, columns), {}};
-  linalg::TriangularScratch scratch(std::max(m, kBlock));
+  linalg::TriangularScratch scratch(std::max(m, kSampleBlock));
   const MatrixXd z = scaledInducing(hyperparameters);
-  for (Index first = 0; first < inputs_.cols(); first += kBlock) {
+  for (Index first = 0; first < inputs_.cols(); first += kSampleBlock) {
     const MatrixXd x = scaledBlock(hyperparameters, first);
     MatrixXd a = calcCrossCovariance(structure_, hyperparameters, x, z);  // K_fu, then A' of the block
     linalg::solveTransposedFromRight(viewOf(inducing_factor), viewOf(a), scratch);
@@ -125,7 +125,7 @@ bool VariationalBound::factorizeInducing(const Hyperparameters& hyperparameters,
   const MatrixXd z = scaledInducing(hyperparameters);
   const MatrixXd prior = calcCrossCovariance(structure_, hyperparameters, z, z);
   linalg::TriangularScratch scratch(z.cols());
-  for (double relative = kFirstJitter; relative < 2.0 * kLastJitter; relative *= 10.0) {
+  for (double relative = kFirstInducingJitter; relative < 2.0 * kLastInducingJitter; relative *= 10.0) {
     posterior.jitter = relative * signal_variance;
     posterior.inducing_factor = prior;
     posterior.inducing_factor.diagonal().array() += posterior.jitter;
@@ -308,11 +308,11 @@ LikelihoodEvaluation VariationalBound::evaluate(const Hyperparameters& hyperpara
   }
   evaluation = {true, posterior.bound, posterior.jitter};
 
-  linalg::TriangularScratch scratch(std::max(inducing_.cols(), kBlock));
+  linalg::TriangularScratch scratch(std::max(inducing_.cols(), kSampleBlock));
   Gradients gradients(posterior, hyperparameters.noise_stddev, scratch);
   gradients.group_sums = VectorXd::Zero(getGroupCount(structure_));
   const MatrixXd z = scaledInducing(hyperparameters);
-  for (Index first = 0; first < inputs_.cols(); first += kBlock) {
+  for (Index first = 0; first < inputs_.cols(); first += kSampleBlock) {
     addSamples(hyperparameters, posterior, z, first, scratch, gradients);
   }
   addInducing(hyperparameters, sums.aa, z, scratch.gemm(), gradients);

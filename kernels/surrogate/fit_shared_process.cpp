@@ -54,7 +54,7 @@ struct SearchData {
   MatrixXd points, values;
 };
 
-SearchData takeSpread(const MatrixXd& points, const MatrixXd& values) {
+SearchData takeSpreadValues(const MatrixXd& points, const MatrixXd& values) {
   const std::vector<Index> taken = spreadIndices(points.cols(), kSearchPoints);
   return {points(Eigen::all, taken), values(taken, Eigen::all)};
 }
@@ -107,7 +107,7 @@ SharedChoice chooseOnSpread(const MatrixXd& points, const MatrixXd& values, Stop
   if (points.cols() < p + 3) {
     throw std::invalid_argument("a surrogate needs more simulations than parameters");
   }
-  const SearchData data = takeSpread(points, values);
+  const SearchData data = takeSpreadValues(points, values);
   SharedChoice best = searchFromStarts(data, {}, stop);
   const VectorXd found = toLog(best.hyperparameters);
   for (const Trend trend : {Trend::kLinear, Trend::kQuadratic}) {

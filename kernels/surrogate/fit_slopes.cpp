@@ -17,7 +17,7 @@ namespace {
 // Tells length scales as well as all do, in some 20 ms a fit.
 constexpr Index kSearchRows = 900;
 // A joint covariance is worse conditioned than that of values; above, the slopes say nothing.
-constexpr double kLeastNugget = 1e-9, kMostNugget = 10.0;
+constexpr double kLeastSlopeNugget = 1e-9, kMostSlopeNugget = 10.0;
 constexpr int kMostFits = 14;
 
 struct SlopeSamples {
@@ -26,7 +26,7 @@ struct SlopeSamples {
 };
 
 /// Points with slopes, spread over all that have them.
-SlopeSamples takeSpread(const MatrixXd& points, const MatrixXd& values, const SlopeData& slopes) {
+SlopeSamples takeSpreadSlopes(const MatrixXd& points, const MatrixXd& values, const SlopeData& slopes) {
   const Index m = slopes.countPoints(), most = std::max<Index>(1, kSearchRows / (1 + slopes.variables));
   const std::vector<Index> taken = spreadIndices(m, std::min(m, most));
   SlopeSamples samples{points(Eigen::all, taken), values(taken, Eigen::all), {{}, slopes.variables}};
@@ -66,9 +66,9 @@ constexpr std::array<Move, 7> kMoves{{{1.0, 1.0, 30.0, false},
 SharedChoice apply(const Move& move, SharedChoice choice) {
   SharedHyperparameters& numbers = choice.hyperparameters;
   numbers.length_scales *= move.length_factor;
-  numbers.nugget = std::clamp(numbers.nugget * move.nugget_factor, kLeastNugget, kMostNugget);
+  numbers.nugget = std::clamp(numbers.nugget * move.nugget_factor, kLeastSlopeNugget, kMostSlopeNugget);
   numbers.slope_nugget =
-      std::clamp(numbers.slope_nugget * move.slope_nugget_factor, kLeastNugget, kMostNugget);
+      std::clamp(numbers.slope_nugget * move.slope_nugget_factor, kLeastSlopeNugget, kMostSlopeNugget);
   if (move.other_covariance) {
     choice.structure.covariance = choice.structure.covariance == SmoothCovariance::kMatern52
                                       ? SmoothCovariance::kSquaredExponential
@@ -100,7 +100,7 @@ SharedChoice improve(const SlopeSamples& samples, SharedChoice best, StopFlag st
 
 SharedChoice chooseWithSlopes(const SharedChoice& by_values, const MatrixXd& points, const MatrixXd& values,
                               const SlopeData& slopes, StopFlag stop) {
-  const SlopeSamples samples = takeSpread(points, values, slopes);
+  const SlopeSamples samples = takeSpreadSlopes(points, values, slopes);
   if (samples.points.cols() < points.rows() + 3) {
     return by_values;
   }
@@ -109,7 +109,7 @@ SharedChoice chooseWithSlopes(const SharedChoice& by_values, const MatrixXd& poi
   if (samples.points.cols() <= countTerms(first.structure.trend, points.rows())) {
     first.structure.trend = Trend::kLinear;
   }
-  first.hyperparameters.nugget = std::max(by_values.hyperparameters.nugget, kLeastNugget);
+  first.hyperparameters.nugget = std::max(by_values.hyperparameters.nugget, kLeastSlopeNugget);
   first.hyperparameters.slope_nugget = first.hyperparameters.nugget;
   first.negative_log_density = calcDensity(samples, first);
   const SharedChoice best = improve(samples, first, stop);

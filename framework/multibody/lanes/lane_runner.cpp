@@ -30,7 +30,7 @@ lanes::Options makeOptions(const ModelSpec& spec) {
   return options;
 }
 
-std::string describe(const lanes::Result& result, const SimulationSpec& simulation) {
+std::string describeOutcome(const lanes::Result& result, const SimulationSpec& simulation) {
   switch (result.outcome) {
     case lanes::Outcome::kDone:
       return "";
@@ -90,7 +90,7 @@ class LaneRunner::Impl : public lanes::SampleStream {
     if (result.outcome == lanes::Outcome::kStepLimit) {
       step_limits_.push_back(sample.index);
     }
-    conclude(sample.index, describe(result, spec_.simulation));
+    conclude(sample.index, describeOutcome(result, spec_.simulation));
   }
 
  private:

@@ -89,7 +89,7 @@ void appendQuantiles(const std::string& parameter, const Scores& scores, LongTab
   }
 }
 
-DataTable makeTable(LongTable table, const std::string& x, const std::string& y) {
+DataTable makeLongTable(LongTable table, const std::string& x, const std::string& y) {
   DataTable made;
   made.add("parameter", std::move(table.parameter));
   made.add("sample", std::move(table.sample));
@@ -109,7 +109,7 @@ DataTable makeReliabilityTable(const RunFolder& run) {
   for (const std::string& name : collectNames(run.experiment.model.parameters)) {
     appendReliability(name, collectScores(run, name), table);
   }
-  return makeTable(std::move(table), "level", "observed");
+  return makeLongTable(std::move(table), "level", "observed");
 }
 
 DataTable makeReliabilityBand(int n) {
@@ -139,7 +139,7 @@ DataTable makeQuantileTable(const RunFolder& run) {
   for (const std::string& name : collectNames(run.experiment.model.parameters)) {
     appendQuantiles(name, collectScores(run, name), table);
   }
-  return makeTable(std::move(table), "quantile", "z");
+  return makeLongTable(std::move(table), "quantile", "z");
 }
 
 }  // namespace twinmap

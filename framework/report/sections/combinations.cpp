@@ -11,7 +11,7 @@
 namespace twinmap {
 namespace {
 
-constexpr const char* kTable = "combinations";
+constexpr const char* kCombinations = "combinations";
 constexpr double kUndetermined = 0.5;  // of the box's own standard deviation
 
 /// The sd that the mean information and the box leave along an eigenvector, over the one that the box alone
@@ -57,7 +57,7 @@ std::string describeUndetermined(const RunFolder& run) {
                       : text;
 }
 
-DataTable makeTable(const RunFolder& run) {
+DataTable makeCombinationTable(const RunFolder& run) {
   std::vector<std::string> combinations, parameters;
   std::vector<double> weights, remaining;
   for (std::size_t row = 0; row < run.identifiability.rows.size(); ++row) {
@@ -82,14 +82,14 @@ void addCombinations(const RunFolder& run, Section& section, Page& page) {
   if (run.identifiability.empty()) {
     return;
   }
-  page.tables[kTable] = makeTable(run);
+  page.tables[kCombinations] = makeCombinationTable(run);
   const std::string undetermined = describeUndetermined(run);
-  addFigure({kTable,
+  addFigure({kCombinations,
              "Which combinations the data determine",
              "Each row is a combination of parameters that the data determine on its own (an eigenvector of "
              "the mean Fisher information), the weakest first, with the part of the sd allowed by the bounds "
              "that is left at best: near 100 % the data say nothing about it.",
-             kTable,
+             kCombinations,
              {{"combinations",
                {{"undetermined", undetermined}},
                {{"height", calcHeatHeight(run.identifiability.rows.size())}}}},

@@ -5,9 +5,9 @@
 namespace twinmap {
 namespace {
 
-constexpr const char* kTable = "compared-maps";
+constexpr const char* kComparedMaps = "compared-maps";
 
-const std::vector<MetricColumn>& getColumns() {
+const std::vector<MetricColumn>& getMapColumns() {
   static const std::vector<MetricColumn> columns{{"sd_pct", "sd %"},
                                                  {"ratio_to_limit", "sd / limit"},
                                                  {"nats_above_limit", "nats above limit"},
@@ -22,15 +22,15 @@ const std::vector<MetricColumn>& getColumns() {
   return columns;
 }
 
-std::string makeTable(const CsvTable& maps) {
+std::string makeMapTable(const CsvTable& maps) {
   std::vector<std::string> headings{"map", "parameter"};
-  for (const MetricColumn& column : getColumns()) {
+  for (const MetricColumn& column : getMapColumns()) {
     headings.push_back(column.heading);
   }
   std::vector<std::vector<HtmlCell>> rows;
   for (std::size_t row = 0; row < maps.rows.size(); ++row) {
     rows.push_back({makeTextCell(maps.getText(row, "map")), makeTextCell(maps.getText(row, "parameter"))});
-    for (const MetricColumn& column : getColumns()) {
+    for (const MetricColumn& column : getMapColumns()) {
       rows.back().push_back(makeNumberCell(maps.getText(row, column.name), kMetricDigits));
     }
   }
@@ -41,7 +41,7 @@ std::string makeTable(const CsvTable& maps) {
       headings, rows);
 }
 
-DataTable makeData(const CsvTable& maps) {
+DataTable makeMapData(const CsvTable& maps) {
   std::vector<std::string> names, parameters;
   std::vector<double> ratios, coverages;
   for (std::size_t row = 0; row < maps.rows.size(); ++row) {
@@ -76,16 +76,16 @@ void addComparedMaps(const RunFolder& run, Page& page) {
     return;
   }
   constexpr int kRowHeight = 28, kFrame = 20;
-  Section section{kTable, "Which map", "", {}};
-  section.html = makeTable(maps);
+  Section section{kComparedMaps, "Which map", "", {}};
+  section.html = makeMapTable(maps);
   const std::vector<std::string> names = listMaps(maps);
   if (!maps.getText(0, "ratio_to_limit").empty()) {
-    page.tables[kTable] = makeData(maps);
+    page.tables[kComparedMaps] = makeMapData(maps);
     const double height = calcHeight(maps.rows.size() / names.size(), kRowHeight, kFrame);
-    addFigure({kTable,
+    addFigure({kComparedMaps,
                "How near the limit each map comes",
                "On the dashed line a map is as good as the noise of the data allows any.",
-               kTable,
+               kComparedMaps,
                {{"methods", {}, {{"height", height}, {"methods", names}}}},
                {},
                1},

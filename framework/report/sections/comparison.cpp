@@ -11,7 +11,7 @@
 namespace twinmap {
 namespace {
 
-constexpr const char* kTable = "comparison";
+constexpr const char* kComparison = "comparison";
 
 /// Labels that tell the runs apart: their folders' names, numbered where two are alike.
 std::vector<std::string> makeLabels(const std::vector<RunFolder>& runs) {
@@ -26,7 +26,7 @@ std::vector<std::string> makeLabels(const std::vector<RunFolder>& runs) {
   return labels;
 }
 
-DataTable makeTable(const std::vector<RunFolder>& runs, const std::vector<std::string>& labels) {
+DataTable makeMetricTable(const std::vector<RunFolder>& runs, const std::vector<std::string>& labels) {
   const std::vector<std::string> metrics{"sd_pct", "sd_pct_se", "coverage95", "coverage95_se", "limit_pct"};
   std::vector<std::string> run, parameter;
   std::vector<std::vector<double>> values(metrics.size());
@@ -48,7 +48,7 @@ DataTable makeTable(const std::vector<RunFolder>& runs, const std::vector<std::s
   return table;
 }
 
-std::vector<std::string> collectParameters(const std::vector<RunFolder>& runs) {
+std::vector<std::string> collectRunParameters(const std::vector<RunFolder>& runs) {
   std::vector<std::string> names;
   for (const RunFolder& run : runs) {
     for (std::size_t row = 0; row < run.metrics.rows.size(); ++row) {
@@ -74,8 +74,8 @@ bool hasLimit(const std::vector<RunFolder>& runs, const std::string& parameter) 
 }
 
 /// One row per run: the metric with a bar of 2 standard errors, and a tick for what it is to be held against.
-Panel makePanel(const std::string& figure, const std::string& parameter,
-                const std::vector<std::string>& labels) {
+Panel makeRunsPanel(const std::string& figure, const std::string& parameter,
+                    const std::vector<std::string>& labels) {
   constexpr int kRowHeight = 28, kFrame = 20;
   return {figure,
           {{"parameter", parameter}},
@@ -89,12 +89,12 @@ Figure makeErrorFigure(const std::vector<RunFolder>& runs, const std::vector<std
       "Errors side by side",
       "Further left is better; bars span \u00b12 standard errors where the runs state them, ticks are the "
       "information limit.",
-      kTable,
+      kComparison,
       {},
       {},
       2};
   for (const std::string& parameter : parameters) {
-    figure.panels.push_back(makePanel(figure.name, parameter, labels));
+    figure.panels.push_back(makeRunsPanel(figure.name, parameter, labels));
     if (!hasLimit(runs, parameter)) {
       figure.panels.back().without = {"limit"};
     }
@@ -107,12 +107,12 @@ Figure makeCoverageFigure(const std::vector<std::string>& parameters,
   Figure figure{"coverage-side-by-side",
                 "Coverage side by side",
                 "On the dashed line the intervals are honest; left of it they are too narrow.",
-                kTable,
+                kComparison,
                 {},
                 {},
                 2};
   for (const std::string& parameter : parameters) {
-    figure.panels.push_back(makePanel(figure.name, parameter, labels));
+    figure.panels.push_back(makeRunsPanel(figure.name, parameter, labels));
   }
   return figure;
 }
@@ -123,7 +123,7 @@ std::string makeMetricsTable(const std::vector<RunFolder>& runs, const std::vect
     headings.push_back(column.heading);
   }
   std::vector<std::vector<HtmlCell>> rows;
-  for (const std::string& parameter : collectParameters(runs)) {
+  for (const std::string& parameter : collectRunParameters(runs)) {
     for (std::size_t i = 0; i < runs.size(); ++i) {
       const CsvTable& metrics = runs[i].metrics;
       for (std::size_t row = 0; row < metrics.rows.size(); ++row) {
@@ -145,8 +145,8 @@ std::string makeMetricsTable(const std::vector<RunFolder>& runs, const std::vect
 
 void addComparison(const std::vector<RunFolder>& runs, Page& page) {
   const std::vector<std::string> labels = makeLabels(runs);
-  const std::vector<std::string> parameters = collectParameters(runs);
-  page.tables[kTable] = makeTable(runs, labels);
+  const std::vector<std::string> parameters = collectRunParameters(runs);
+  page.tables[kComparison] = makeMetricTable(runs, labels);
   Section section{"comparison", "Side by side", "", {}};
   section.html = makeMetricsTable(runs, labels);
   addFigure(makeErrorFigure(runs, parameters, labels), section);

@@ -9,7 +9,7 @@
 namespace twinmap {
 namespace {
 
-constexpr int kDigits = 3;
+constexpr int kCostDigits = 3;
 
 double calcSimulationSeconds(const ProvenanceRecord& provenance) {
   double sum = 0.0;
@@ -22,8 +22,8 @@ double calcSimulationSeconds(const ProvenanceRecord& provenance) {
 
 std::string makeDuration(double microseconds) {
   constexpr double kMillisecond = 1e3;
-  return microseconds < kMillisecond ? toShortText(microseconds, kDigits) + " \u00b5s"
-                                     : toShortText(microseconds / kMillisecond, kDigits) + " ms";
+  return microseconds < kMillisecond ? toShortText(microseconds, kCostDigits) + " \u00b5s"
+                                     : toShortText(microseconds / kMillisecond, kCostDigits) + " ms";
 }
 
 /// Empty where nothing was simulated in this run.
@@ -32,7 +32,7 @@ std::string describeSpeed(const RunFolder& run) {
   const double samples = run.experiment.design.train.samples + run.experiment.design.test.samples -
                          (std::isfinite(reused) ? reused : 0.0);
   const double simulating = calcSimulationSeconds(run.provenance);
-  return simulating > 0.0 && samples > 0.0 ? toShortText(samples / simulating, kDigits) : "";
+  return simulating > 0.0 && samples > 0.0 ? toShortText(samples / simulating, kCostDigits) : "";
 }
 
 std::string makeCostFacts(const RunFolder& run) {
@@ -46,7 +46,7 @@ std::string makeCostFacts(const RunFolder& run) {
     facts.emplace_back("one online update, 99 % below", makeDuration(provenance.getNumber("online: p99_us")));
   }
   if (const double memory = provenance.getNumber("peak_memory_mb"); std::isfinite(memory)) {
-    facts.emplace_back("peak memory", toShortText(memory, kDigits) + " MB");
+    facts.emplace_back("peak memory", toShortText(memory, kCostDigits) + " MB");
   }
   if (const std::string* threads = provenance.find("threads")) {
     facts.emplace_back("threads", *threads);

@@ -18,7 +18,7 @@ std::vector<Texts> listParameters(const std::vector<ParameterSpec>& parameters) 
 }
 
 /// True against inferred, or true against the error.
-Panel makePanel(const RunFolder& run, std::size_t p, bool of_error) {
+Panel makeInferredPanel(const RunFolder& run, std::size_t p, bool of_error) {
   const std::vector<ParameterSpec>& parameters = run.experiment.model.parameters;
   const ParameterSpec& parameter = parameters[p];
   const std::string& name = parameter.name.text;
@@ -53,7 +53,7 @@ Figure makeFigure(const RunFolder& run, bool of_error) {
   figure.columns = count > 1 ? static_cast<int>(std::min<std::size_t>(count, 4)) : 0;
   figure.columns = count == 4 ? 2 : std::min(figure.columns, 3);
   for (std::size_t p = 0; p < count; ++p) {
-    figure.panels.push_back(makePanel(run, p, of_error));
+    figure.panels.push_back(makeInferredPanel(run, p, of_error));
   }
   return figure;
 }

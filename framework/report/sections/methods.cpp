@@ -8,7 +8,7 @@
 namespace twinmap {
 namespace {
 
-constexpr const char* kTable = "methods";
+constexpr const char* kMethods = "methods";
 
 std::vector<std::string> listMethods(const CsvTable& methods) {
   std::vector<std::string> names;
@@ -21,7 +21,7 @@ std::vector<std::string> listMethods(const CsvTable& methods) {
   return names;
 }
 
-std::string makeTable(const CsvTable& methods) {
+std::string makeMethodTable(const CsvTable& methods) {
   const std::vector<MetricColumn> columns{{"sd_pct", "sd %"},
                                           {"limit_pct", "limit %"},
                                           {"ratio_to_limit", "sd / limit"},
@@ -49,7 +49,7 @@ std::string makeTable(const CsvTable& methods) {
       headings, rows);
 }
 
-DataTable makeData(const CsvTable& methods) {
+DataTable makeMethodData(const CsvTable& methods) {
   std::vector<std::string> method, parameter;
   std::vector<double> ratio, coverage;
   for (std::size_t row = 0; row < methods.rows.size(); ++row) {
@@ -84,16 +84,16 @@ void addMethods(const RunFolder& run, Page& page) {
   }
   constexpr int kRowHeight = 28, kFrame = 20;
   Section section{"methods", "From the map to the answer", "", {}};
-  section.html = makeTable(methods);
+  section.html = makeMethodTable(methods);
   if (hasRatio(methods)) {
     const std::vector<std::string> names = listMethods(methods);
     const std::size_t parameters = methods.rows.size() / names.size();
-    page.tables[kTable] = makeData(methods);
+    page.tables[kMethods] = makeMethodData(methods);
     addFigure(
         {"methods",
          "How near the limit each method comes",
          "On the dashed line a method is as good as the noise of the data allows any.",
-         kTable,
+         kMethods,
          {{"methods", {}, {{"height", calcHeight(parameters, kRowHeight, kFrame)}, {"methods", names}}}},
          {},
          1},

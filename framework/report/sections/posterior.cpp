@@ -7,23 +7,23 @@
 namespace twinmap {
 namespace {
 
-constexpr const char* kTable = "posterior";
+constexpr const char* kPosterior = "posterior";
 
-const std::vector<std::string>& getColumns() {
+const std::vector<std::string>& getShownColumns() {
   static const std::vector<std::string> columns{
       "sample",     "posterior_mean", "posterior_stddev",     "map_mean",
       "map_stddev", "limit_stddev",   "effective_sample_size"};
   return columns;
 }
 
-DataTable makeTable(const CsvTable& posterior) {
+DataTable makePosteriorTable(const CsvTable& posterior) {
   DataTable table;
   std::vector<std::string> parameters;
   for (std::size_t row = 0; row < posterior.rows.size(); ++row) {
     parameters.push_back(posterior.getText(row, "parameter"));
   }
   table.add("parameter", std::move(parameters));
-  for (const std::string& column : getColumns()) {
+  for (const std::string& column : getShownColumns()) {
     std::vector<double> values;
     for (std::size_t row = 0; row < posterior.rows.size(); ++row) {
       values.push_back(posterior.getNumber(row, column));
@@ -51,13 +51,13 @@ void addPosterior(const RunFolder& run, Section& section, Page& page) {
   if (run.posterior.empty()) {
     return;
   }
-  page.tables[kTable] = makeTable(run.posterior);
+  page.tables[kPosterior] = makePosteriorTable(run.posterior);
   Figure figure{
-      kTable,
+      kPosterior,
       "Beside the exact posterior",
       "Circles: what the map infers; crosses: the information limit. On the dashed line both agree with the "
       "posterior, which was sampled by simulation for these test samples.",
-      kTable,
+      kPosterior,
       {},
       {},
       0};
@@ -65,7 +65,7 @@ void addPosterior(const RunFolder& run, Section& section, Page& page) {
   figure.columns = parameters.size() >= 4 ? 4 : 0;
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const std::string& name = parameters[p].name.text;
-    figure.panels.push_back({kTable,
+    figure.panels.push_back({kPosterior,
                              {{"name", name}, {"label", makeLabel(parameters[p])}, {"color", getColor(p)}},
                              {{"largest", findLargestStddev(run.posterior, name)}}});
   }

@@ -7,7 +7,7 @@
 namespace twinmap {
 namespace {
 
-constexpr const char* kTable = "ranks";
+constexpr const char* kRanks = "ranks";
 
 /// A quantity of sbc.csv: a parameter, or all together.
 struct RankedQuantity {
@@ -26,7 +26,7 @@ std::vector<RankedQuantity> listQuantities(const CsvTable& sbc) {
   return quantities;
 }
 
-DataTable makeTable(const CsvTable& sbc) {
+DataTable makeRankTable(const CsvTable& sbc) {
   DataTable table;
   std::vector<std::string> quantities;
   for (std::size_t row = 0; row < sbc.rows.size(); ++row) {
@@ -43,11 +43,11 @@ DataTable makeTable(const CsvTable& sbc) {
   return table;
 }
 
-Panel makePanel(const RankedQuantity& quantity, bool is_joint, const std::string& color,
-                const CountBand& band) {
+Panel makeRankPanel(const RankedQuantity& quantity, bool is_joint, const std::string& color,
+                    const CountBand& band) {
   const std::string label =
       fmt::format("{} (p = {:.2g})", is_joint ? "all together" : quantity.name, quantity.p_value);
-  return {kTable,
+  return {kRanks,
           {{"name", quantity.name}, {"label", label}, {"color", color}},
           {{"low", band.lower}, {"high", band.upper}}};
 }
@@ -58,26 +58,26 @@ void addRanks(const RunFolder& run, Section& section, Page& page) {
   if (run.sbc.empty()) {
     return;
   }
-  page.tables[kTable] = makeTable(run.sbc);
+  page.tables[kRanks] = makeRankTable(run.sbc);
   const auto measurements = static_cast<int>(run.sbc.getNumber(0, "measurements"));
   const auto unreliable = static_cast<int>(run.sbc.getNumber(0, "unreliable"));
   const std::vector<RankedQuantity> quantities = listQuantities(run.sbc);
   const CountBand band =
       calcCountBand(measurements, static_cast<int>(run.sbc.rows.size() / quantities.size()));
-  Figure figure{kTable,
+  Figure figure{kRanks,
                 "Calibration of the posteriors",
                 fmt::format("Ranks of the true values among draws of the posteriors that infer --posterior "
                             "samples, of {} test samples ({} unreliable ones are left out): flat within the "
                             "grey band where calibrated. p: how often right posteriors look no flatter.",
                             measurements, unreliable),
-                kTable,
+                kRanks,
                 {},
                 {},
                 quantities.size() >= 4 ? 4 : 0};
   for (std::size_t q = 0; q < quantities.size(); ++q) {
     const bool is_joint = q + 1 == quantities.size();
     figure.panels.push_back(
-        makePanel(quantities[q], is_joint, is_joint ? "var(--quiet)" : getColor(q), band));
+        makeRankPanel(quantities[q], is_joint, is_joint ? "var(--quiet)" : getColor(q), band));
   }
   addFigure(std::move(figure), section);
 }

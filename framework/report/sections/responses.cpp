@@ -10,7 +10,7 @@
 namespace twinmap {
 namespace {
 
-constexpr const char* kTable = "responses";
+constexpr const char* kResponses = "responses";
 
 /// The distinct texts of a column, in their order.
 std::vector<std::string> collectDistinct(const CsvTable& table, const std::string& column) {
@@ -42,7 +42,7 @@ std::string findSample(const CsvTable& responses, const std::string& which) {
   return "";
 }
 
-DataTable makeTable(const CsvTable& responses) {
+DataTable makeResponseTable(const CsvTable& responses) {
   DataTable table;
   for (const std::string& column : responses.columns) {
     if (column == "case" || column == "output") {
@@ -63,7 +63,7 @@ DataTable makeTable(const CsvTable& responses) {
 }
 
 ResponseData describeResponse(const RunFolder& run, const std::string& which, const std::string& output) {
-  return {kTable, output, findUnit(run, output), which};
+  return {kResponses, output, findUnit(run, output), which};
 }
 
 }  // namespace
@@ -73,7 +73,7 @@ void addResponses(const RunFolder& run, Page& page) {
   if (responses.empty()) {
     return;
   }
-  page.tables[kTable] = makeTable(responses);
+  page.tables[kResponses] = makeResponseTable(responses);
   const std::vector<std::string> outputs = collectDistinct(responses, "output");
   Section section{"responses", "Responses", "", {}};
   section.html = makeParagraph(
@@ -87,7 +87,7 @@ void addResponses(const RunFolder& run, Page& page) {
         "Points: the measured response; dashed: the model at the centre of the box; solid: the model at "
         "the inferred parameters. Where the updated model is right, 95 % of the residuals lie in the grey "
         "band of \u00b12 noise sd.",
-        kTable,
+        kResponses,
         {},
         {},
         static_cast<int>(std::min<std::size_t>(outputs.size(), 3))};

@@ -24,7 +24,7 @@ std::vector<double> takeDrawn(std::vector<double> values) {
   return values;
 }
 
-Eigen::Index findParameter(const RunFolder& run, const std::string& name) {
+Eigen::Index findRow(const RunFolder& run, const std::string& name) {
   const std::vector<ParameterSpec>& parameters = run.experiment.model.parameters;
   const auto found = std::find_if(parameters.begin(), parameters.end(),
                                   [&](const ParameterSpec& one) { return one.name.text == name; });
@@ -33,7 +33,7 @@ Eigen::Index findParameter(const RunFolder& run, const std::string& name) {
 
 std::vector<double> calcScores(const RunFolder& run, const std::string& parameter,
                                const ParameterPredictions& found) {
-  const Eigen::Index row = findParameter(run, parameter);
+  const Eigen::Index row = findRow(run, parameter);
   std::vector<double> scores;
   for (std::size_t i = 0; i < found.truth.size(); ++i) {
     scores.push_back(

@@ -11,7 +11,7 @@
 namespace twinmap {
 namespace {
 
-constexpr const char* kTable = "selected-responses";
+constexpr const char* kSelectedResponses = "selected-responses";
 constexpr int kMostShown = 12;
 constexpr Eigen::Index kMostTimes = 200;
 constexpr double kSteps = 65535.0;
@@ -87,7 +87,7 @@ std::vector<double> findDrawnSamples(const RunFolder& run) {
   return samples;
 }
 
-Panel makePanel(const StoredResponses& stored, std::size_t output) {
+Panel makeOutputPanel(const StoredResponses& stored, std::size_t output) {
   const std::string& name = stored.output_names[output];
   return {"selected-responses", {{"output", name}, {"label", makeLabel(name, stored.output_units[output])}}};
 }
@@ -117,16 +117,16 @@ void addSelectedResponses(const RunFolder& run, Section& section, Page& page) {
   const StoredResponses& stored = *run.test_responses;
   std::vector<OutputRange> ranges;
   Figure figure{
-      kTable,
+      kSelectedResponses,
       "Responses of the highlighted samples",
       fmt::format("Clean simulated responses, as in samples.h5; at most {} samples are shown.", kMostShown),
-      kTable,
+      kSelectedResponses,
       {},
       {},
       2};
   for (std::size_t i = 0; i < stored.output_names.size(); ++i) {
     ranges.push_back(findRange(stored, i));
-    figure.panels.push_back(makePanel(stored, i));
+    figure.panels.push_back(makeOutputPanel(stored, i));
   }
   const std::string data = encodeBase64(packResponses(stored, samples, ranges));
   page.responses = PackedResponses{takeKeptTimes(stored.times), ranges, samples, kMostShown, data};

@@ -10,12 +10,12 @@ namespace {
 // {x}, {y} and {p} stand for the parameters that the reader chooses.
 
 /// A point per test sample at its true parameters, coloured and sized by a value; the value is listed first.
-Panel makePanel(const std::string& column, const std::string& title, const std::string& tooltip) {
+Panel makeBoxPanel(const std::string& column, const std::string& title, const std::string& tooltip) {
   return {"stddev", {{"column", column}, {"title", title}, {"what", tooltip}}, makeChosenDomains()};
 }
 
-std::size_t findParameter(const std::vector<ParameterSpec>& parameters, const ReportSpec& report,
-                          std::size_t axis, std::size_t otherwise) {
+std::size_t chooseParameter(const std::vector<ParameterSpec>& parameters, const ReportSpec& report,
+                            std::size_t axis, std::size_t otherwise) {
   for (std::size_t p = 0; p < parameters.size() && axis < report.over.size(); ++p) {
     if (parameters[p].name.text == report.over[axis].text) {
       return p;
@@ -52,13 +52,14 @@ void addStddevOverBox(const RunFolder& run, Page& page) {
                 (has_limits ? ", and the limit shows what no method can beat." : ".");
   figure.choices = {makeParameterChoice("p", "of", parameters, 0),
                     makeParameterChoice("x", "across", parameters,
-                                        findParameter(parameters, report, 0, parameters.size() - 2)),
+                                        chooseParameter(parameters, report, 0, parameters.size() - 2)),
                     makeParameterChoice("y", "up", parameters,
-                                        findParameter(parameters, report, 1, parameters.size() - 1))};
-  figure.panels = {makePanel(getStddevColumn("{p}"), "Inferred sd of {p.label}", "inferred sd"),
-                   makePanel(getErrorColumn("{p}"), "Absolute error of {p.label}", "absolute error")};
+                                        chooseParameter(parameters, report, 1, parameters.size() - 1))};
+  figure.panels = {makeBoxPanel(getStddevColumn("{p}"), "Inferred sd of {p.label}", "inferred sd"),
+                   makeBoxPanel(getErrorColumn("{p}"), "Absolute error of {p.label}", "absolute error")};
   if (has_limits) {
-    figure.panels.push_back(makePanel(getLimitColumn("{p}"), "Information limit (sd) of {p.label}", "limit"));
+    figure.panels.push_back(
+        makeBoxPanel(getLimitColumn("{p}"), "Information limit (sd) of {p.label}", "limit"));
   }
   figure.columns = static_cast<int>(figure.panels.size());
   Section section{"stddev-over-box", "Standard deviation over the box", "", {}};

@@ -14,7 +14,7 @@
 namespace twinmap {
 namespace {
 
-std::vector<std::string> collectParameters(const std::vector<SweepGroup>& groups) {
+std::vector<std::string> collectGroupParameters(const std::vector<SweepGroup>& groups) {
   std::vector<std::string> names;
   for (const SweepGroup& group : groups) {
     if (std::find(names.begin(), names.end(), group.parameter) == names.end()) {
@@ -45,7 +45,7 @@ std::vector<std::string> collectVariants(const std::vector<SweepGroup>& groups) 
   return variants;
 }
 
-DataTable makeTable(const std::vector<SweepGroup>& groups) {
+DataTable makeGroupTable(const std::vector<SweepGroup>& groups) {
   std::vector<std::string> variant, parameter;
   std::vector<double> size, noise, seeds, mean, lowest, highest, limit, coverage;
   for (const SweepGroup& group : groups) {
@@ -133,12 +133,12 @@ void addSweep(const SweepFolder& sweep, Page& page) {
   if (axes.groups.empty()) {
     return;
   }
-  axes.parameters = collectParameters(axes.groups);
+  axes.parameters = collectGroupParameters(axes.groups);
   axes.variants = collectVariants(axes.groups);
   axes.sizes = collectValues(axes.groups, &SweepGroup::size);
   axes.noises = collectValues(axes.groups, &SweepGroup::noise);
   axes.has_limits = !collectValues(axes.groups, &SweepGroup::limit).empty();
-  page.tables[kSweepTable] = makeTable(axes.groups);
+  page.tables[kSweepTable] = makeGroupTable(axes.groups);
   page.texts.emplace_back("sweep-csv", makeCsv(sweep.table));
   Section section{"sweep", "Sweep", "", {}};
   if (axes.sizes.size() > 1) {

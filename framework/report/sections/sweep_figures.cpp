@@ -36,7 +36,7 @@ CurveAxes makeCurveAxes(const SweepAxes& axes, bool over_size) {
 }
 
 /// Slots of the skeleton that curves by variant, or by the other axis, do not have.
-std::set<std::string> findMissing(const SweepAxes& axes, const CurveAxes& curves) {
+std::set<std::string> findMissingSlots(const SweepAxes& axes, const CurveAxes& curves) {
   const bool by_variant = axes.variants.size() > 1;
   std::set<std::string> missing{by_variant ? "grouped" : "chosen"};
   if (curves.others.empty()) {
@@ -60,7 +60,7 @@ Panel makeCurves(const SweepAxes& axes, const CurveAxes& curves, const std::stri
            {"series", by_variant ? "variant" : curves.other}},
           {{"series", by_variant ? axes.variants : toTexts(curves.others)},
            {"series_title", by_variant ? no_title : curves.other_title}},
-          findMissing(axes, curves)};
+          findMissingSlots(axes, curves)};
 }
 
 Figure makeSweepFigure(const std::string& name, const std::string& title, const std::string& help) {

@@ -10,7 +10,7 @@
 namespace twinmap {
 namespace {
 
-constexpr int kDigits = 2;
+constexpr int kVerdictDigits = 2;
 
 std::string joinNames(const std::vector<std::string>& names) {
   std::string text;
@@ -28,7 +28,7 @@ std::string describeErrors(const CsvTable& metrics) {
     worst = metrics.getNumber(row, "sd_pct") > metrics.getNumber(worst, "sd_pct") ? row : worst;
   }
   const auto describe = [&](std::size_t row) {
-    return toShortText(metrics.getNumber(row, "sd_pct"), kDigits) + " % (" +
+    return toShortText(metrics.getNumber(row, "sd_pct"), kVerdictDigits) + " % (" +
            metrics.getText(row, "parameter") + ")";
   };
   return best == worst ? describe(best) : describe(best) + " to " + describe(worst);

@@ -38,12 +38,12 @@ void checkTimes(const Samples& samples, const ModelSpec& model, const SourceLoca
   }
 }
 
-void check(const SamplesFeatureSpec& samples, const ModelSpec& model) {
+void checkFeature(const SamplesFeatureSpec& samples, const ModelSpec& model) {
   checkOutputs(samples.outputs, model);
   checkTimes(samples, model, findFeature(samples.outputs.front(), "outputs"));
 }
 
-void check(const StatisticsFeatureSpec& statistics, const ModelSpec& model) {
+void checkFeature(const StatisticsFeatureSpec& statistics, const ModelSpec& model) {
   checkOutputs(statistics.outputs, model);
   const SourceLocation where = findFeature(statistics.outputs.front(), "outputs");
   checkTimes(statistics.window, model, where);
@@ -54,7 +54,7 @@ void check(const StatisticsFeatureSpec& statistics, const ModelSpec& model) {
   }
 }
 
-void check(const ExtremaFeatureSpec& extrema, const ModelSpec& model) {
+void checkFeature(const ExtremaFeatureSpec& extrema, const ModelSpec& model) {
   checkOutputs({extrema.output}, model);
   checkTimes(extrema.window, model, findFeature(extrema.output, "output"));
 }
@@ -78,13 +78,13 @@ void checkLines(const std::vector<Frequency>& frequencies, const WindowSpec& win
   }
 }
 
-void check(const SpectrumFeatureSpec& spectrum, const ModelSpec& model) {
+void checkFeature(const SpectrumFeatureSpec& spectrum, const ModelSpec& model) {
   checkOutputs(spectrum.outputs, model);
   checkTimes(spectrum.window, model, findFeature(spectrum.outputs.front(), "outputs"));
   checkLines(spectrum.frequencies, spectrum.window);
 }
 
-void append(std::vector<const Expression*>& all, const std::vector<Expression>& expressions) {
+void appendPointers(std::vector<const Expression*>& all, const std::vector<Expression>& expressions) {
   for (const Expression& expression : expressions) {
     all.push_back(&expression);
   }
@@ -104,9 +104,9 @@ std::vector<const Expression*> collectExpressions(const SignalSpec& signal) {
   }
   for (const MultisineSpec& multisine : signal.multisines) {
     all.insert(all.end(), {&multisine.amplitude, &multisine.start, &multisine.end});
-    append(all, multisine.amplitudes);
-    append(all, multisine.frequencies);
-    append(all, multisine.phases);
+    appendPointers(all, multisine.amplitudes);
+    appendPointers(all, multisine.frequencies);
+    appendPointers(all, multisine.phases);
   }
   return all;
 }
@@ -142,7 +142,7 @@ void checkKnown(const SignalSpec& signal, const ModelSpec& model) {
   }
 }
 
-void check(const FrequencyResponseFeatureSpec& response, const ModelSpec& model) {
+void checkFeature(const FrequencyResponseFeatureSpec& response, const ModelSpec& model) {
   requireKnown(response.excitation, collectNames(model.excitation), "an excitation signal");
   checkOutputs(response.outputs, model);
   checkTimes(response.window, model, findFeature(response.outputs.front(), "outputs"));
@@ -154,10 +154,10 @@ void check(const FrequencyResponseFeatureSpec& response, const ModelSpec& model)
   }
 }
 
-void check(const ModesFeatureSpec&, const ModelSpec&) {}
+void checkFeature(const ModesFeatureSpec&, const ModelSpec&) {}
 
 /// A mistyped duration would cost hours of simulation that no feature needs.
-void checkDuration(const std::vector<FeatureSpec>& features, const ModelSpec& model) {
+void checkSampledDuration(const std::vector<FeatureSpec>& features, const ModelSpec& model) {
   constexpr double kMost = 100.0, kShort = 1.0;
   double last = kShort;
   for (const FeatureSpec& feature : features) {
@@ -187,9 +187,9 @@ void requireFewSamples(const std::vector<FeatureSpec>& features, const SourceLoc
 
 void checkFeatures(const std::vector<FeatureSpec>& features, const ModelSpec& model) {
   for (const FeatureSpec& feature : features) {
-    std::visit([&model](const auto& kind) { check(kind, model); }, feature);
+    std::visit([&model](const auto& kind) { checkFeature(kind, model); }, feature);
   }
-  checkDuration(features, model);
+  checkSampledDuration(features, model);
 }
 
 }  // namespace twinmap

@@ -1,3 +1,5 @@
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <filesystem>
 
@@ -31,10 +33,10 @@ std::vector<Coordinate> collectCoordinates(const SystemSpec& system) {
   for (const BodySpec& body : system.bodies) {
     const std::vector<JointCoordinate>& expected = getJointCoordinates(body.joint.type);
     if (body.joint.coordinates.size() != expected.size()) {
-      throw ExperimentError(body.name.where, body.name.text,
-                            "has " + std::to_string(body.joint.coordinates.size()) +
-                                " names in joint.coordinates, but its type of joint has " +
-                                std::to_string(expected.size()) + " coordinates");
+      throw ExperimentError(
+          body.name.where, body.name.text,
+          fmt::format("has {} names in joint.coordinates, but its type of joint has {} coordinates",
+                      body.joint.coordinates.size(), expected.size()));
     }
     for (std::size_t i = 0; i < expected.size(); ++i) {
       coordinates.push_back({body.joint.coordinates[i], getUnit(expected[i].kind), expected[i].takes_forces});

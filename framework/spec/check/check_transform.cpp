@@ -40,9 +40,9 @@ struct Context {
   const SourceLocation& where;
 };
 
-void check(const ZScoreSpec&, const Context&) {}
+void checkStep(const ZScoreSpec&, const Context&) {}
 
-void check(const WhitenSpec& whiten, const Context& context) {
+void checkStep(const WhitenSpec& whiten, const Context& context) {
   requireNoise(context.experiment, context.where, "whiten");
   requireModesNoise(context.experiment, context.where, "whiten");
   if (context.progress.mixed && whiten.by == WhitenBy::kStddev) {
@@ -52,7 +52,7 @@ void check(const WhitenSpec& whiten, const Context& context) {
   }
 }
 
-void check(const PrincipalComponentsSpec& spec, const Context& context) {
+void checkStep(const PrincipalComponentsSpec& spec, const Context& context) {
   const bool automatic = !spec.components.number && !spec.explained_variance;
   if (automatic && !context.progress.whitened) {
     throw ExperimentError(
@@ -62,9 +62,9 @@ void check(const PrincipalComponentsSpec& spec, const Context& context) {
   }
 }
 
-void check(const PartialLeastSquaresSpec&, const Context&) {}
+void checkStep(const PartialLeastSquaresSpec&, const Context&) {}
 
-void check(const SelectSpec& select, const Context& context) {
+void checkStep(const SelectSpec& select, const Context& context) {
   const auto* names = std::get_if<FeatureNames>(&select);
   if (names != nullptr && context.progress.mixed) {
     throw ExperimentError(names->front().where, names->front().text,
@@ -107,7 +107,7 @@ void checkTransform(const ExperimentSpec& experiment) {
   Progress progress;
   for (const TransformStepSpec& step : experiment.transform) {
     const Context context{experiment, progress, step.where};
-    std::visit([&context](const auto& kind) { check(kind, context); }, step.kind);
+    std::visit([&context](const auto& kind) { checkStep(kind, context); }, step.kind);
     if (const GpMapSpec* gp = experiment.inverse_map.findGp()) {
       checkLengthScales(step, gp->length_scales);
     }

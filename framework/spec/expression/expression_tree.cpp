@@ -1,5 +1,7 @@
 #include "framework/spec/expression/expression_tree.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <boost/math/constants/constants.hpp>
 #include <cctype>
@@ -57,7 +59,7 @@ class Parser {
 
  private:
   [[noreturn]] void fail() const {
-    throw UnknownSyntax("'" + text_ + "' is not understood at character " + std::to_string(at_ + 1));
+    throw UnknownSyntax(fmt::format("'{}' is not understood at character {}", text_, at_ + 1));
   }
 
   char peek() {

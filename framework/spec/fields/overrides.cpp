@@ -1,5 +1,7 @@
 #include "framework/spec/fields/overrides.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cctype>
 
@@ -66,8 +68,8 @@ YamlNode& descend(YamlNode& node, const std::string& step, const Change& change)
   if (isIndex(step)) {
     const std::size_t index = std::stoul(step.substr(1));
     if (index >= node.items.size()) {
-      reject(change, "names " + step + " of a list with " + std::to_string(node.items.size()) +
-                         " items; indices start at 0");
+      reject(change,
+             fmt::format("names {} of a list with {} items; indices start at 0", step, node.items.size()));
     }
     return node.items[index];
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "framework/spec/yaml/number_text.hpp"
+#include "framework/spec/yaml/trim.hpp"
 
 namespace twinmap {
 namespace {
@@ -18,11 +19,6 @@ bool hasLeadingZero(const std::string& text) {
 const std::string& requireScalar(const YamlNode& node, const std::string& expected) {
   requireKind(node, YamlNode::Kind::kScalar, expected);
   return node.scalar;
-}
-
-std::string trim(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(" \t\n");
-  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\n") - first + 1);
 }
 
 double readInteger(const YamlNode& node, const NumberRule& rule) {

@@ -1,5 +1,7 @@
 #include "framework/spec/sweep/sweep_cases.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -53,8 +55,8 @@ std::vector<Choice> listZip(const SweepSpec& sweep) {
   for (std::size_t k = 0; k < counts.size(); ++k) {
     if (counts[k] != counts[0]) {
       throw ExperimentError(sweep.over.keys[k].where, sweep.over.keys[k].key,
-                            "has " + std::to_string(counts[k]) + " values, '" + sweep.over.keys[0].key +
-                                "' has " + std::to_string(counts[0]) + "; 'combine: zip' needs as many");
+                            fmt::format("has {} values, '{}' has {}; 'combine: zip' needs as many", counts[k],
+                                        sweep.over.keys[0].key, counts[0]));
     }
   }
   std::vector<Choice> choices;

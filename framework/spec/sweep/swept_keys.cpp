@@ -11,7 +11,7 @@ namespace twinmap {
 namespace {
 
 constexpr const char* kDots = "..";
-constexpr long kMostValues = 10000, kLargest = 1L << 53;
+constexpr long kMostSweptValues = 10000, kLargest = 1L << 53;
 
 bool parseWhole(const std::string& text, long& value) {
   const char* last = text.data() + text.size();
@@ -24,7 +24,7 @@ void appendRange(const YamlNode& node, std::vector<YamlNode>& values) {
   const std::size_t dots = node.scalar.find(kDots);
   long first = 0, last = 0;
   if (!parseWhole(node.scalar.substr(0, dots), first) || !parseWhole(node.scalar.substr(dots + 2), last) ||
-      first < -kLargest || last > kLargest || last < first || last - first >= kMostValues) {
+      first < -kLargest || last > kLargest || last < first || last - first >= kMostSweptValues) {
     throw ExperimentError(node.where, node.scalar,
                           "is not a range; write first..last, whole numbers, last not below first, at most "
                           "10000 of them");

@@ -15,7 +15,7 @@
 namespace twinmap {
 namespace {
 
-constexpr std::size_t kMostValues = 1'000'000;
+constexpr std::size_t kMostFileValues = 1'000'000;
 constexpr std::size_t kMostLevels = 20;
 constexpr std::size_t kLongestKey = 100;
 constexpr std::size_t kLargestFile = 16 << 20;
@@ -90,7 +90,7 @@ class TreeBuilder : public YAML::EventHandler {
 
   void countValues(std::size_t count, const YAML::Mark& mark) {
     values_ += count;
-    if (values_ > kMostValues) {
+    if (values_ > kMostFileValues) {
       throw ExperimentError(locate(file_, mark), "", "the file holds more than a million values");
     }
   }

@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::MatrixXd;
 
-MatrixXd sample(int dimensions, int n, int smallest, std::uint64_t seed = 1) {
+MatrixXd sampleNested(int dimensions, int n, int smallest, std::uint64_t seed = 1) {
   return sampleNestedLatinHypercube(dimensions, n, smallest, {seed, RandomPurpose::kTrainDesign});
 }
 
@@ -29,7 +29,7 @@ std::vector<int> countInSlices(const Eigen::RowVectorXd& points, int slices) {
 
 TEST(NestedLatinHypercube, IsALatinHypercubeAtEachLevel) {
   for (const int smallest : {1, 3, 50}) {
-    const MatrixXd points = sample(4, 16 * smallest, smallest);
+    const MatrixXd points = sampleNested(4, 16 * smallest, smallest);
     for (int n = smallest; n <= 16 * smallest; n *= 2) {
       for (Eigen::Index d = 0; d < points.rows(); ++d) {
         EXPECT_EQ(countInSlices(points.row(d).leftCols(n), n), std::vector<int>(n, 1))
@@ -41,7 +41,7 @@ TEST(NestedLatinHypercube, IsALatinHypercubeAtEachLevel) {
 
 RC_GTEST_PROP(NestedLatinHypercube, AnyBeginningIsBalancedInTheSlicesOfEachLevel, ()) {
   const int smallest = *rc::gen::inRange(1, 20), n = *rc::gen::inRange(1, 400);
-  const MatrixXd points = sample(2, n, smallest, *rc::gen::arbitrary<std::uint64_t>());
+  const MatrixXd points = sampleNested(2, n, smallest, *rc::gen::arbitrary<std::uint64_t>());
   for (int level = smallest; level <= 1000; level *= 2) {
     for (const Eigen::Index d : {0, 1}) {
       const std::vector<int> count = countInSlices(points.row(d), level);
@@ -53,7 +53,7 @@ RC_GTEST_PROP(NestedLatinHypercube, AnyBeginningIsBalancedInTheSlicesOfEachLevel
 
 RC_GTEST_PROP(NestedLatinHypercube, ALongerSetBeginsWithTheShorterOneBitForBit, ()) {
   const int smallest = *rc::gen::inRange(1, 60), n = *rc::gen::inRange(1, 300);
-  const MatrixXd small = sample(3, n, smallest), large = sample(3, 700, smallest);
+  const MatrixXd small = sampleNested(3, n, smallest), large = sampleNested(3, 700, smallest);
   RC_ASSERT(isPrefix(small, large));
   RC_ASSERT(small == large.leftCols(n));
 }
@@ -62,7 +62,7 @@ RC_GTEST_PROP(NestedLatinHypercube, ALongerSetBeginsWithTheShorterOneBitForBit, 
 // dimensions' n x n slices with an older one, if the dimensions are paired at random.
 TEST(NestedLatinHypercube, NewPointsAreNotNeighboursOfOldOnes) {
   constexpr int kSize = 256;
-  const MatrixXd points = sample(2, 2 * kSize, 1);
+  const MatrixXd points = sampleNested(2, 2 * kSize, 1);
   int shared = 0;
   for (int old = 0; old < kSize; ++old) {
     for (int added = kSize; added < 2 * kSize; ++added) {
@@ -75,12 +75,12 @@ TEST(NestedLatinHypercube, NewPointsAreNotNeighboursOfOldOnes) {
 
 TEST(NestedLatinHypercube, DimensionsAreUncorrelatedAndSeedsDiffer) {
   constexpr int kSize = 1024;
-  const MatrixXd points = sample(3, kSize, 1);
+  const MatrixXd points = sampleNested(3, kSize, 1);
   const MatrixXd centred = points.colwise() - points.rowwise().mean();
   const MatrixXd correlation = centred * centred.transpose() * (12.0 / kSize);
   const double four_stddevs = 4.0 / std::sqrt(kSize);
   EXPECT_LT((correlation - MatrixXd::Identity(3, 3)).cwiseAbs().maxCoeff(), four_stddevs);
-  EXPECT_NE(points, sample(3, kSize, 1, 2));
+  EXPECT_NE(points, sampleNested(3, kSize, 1, 2));
 }
 
 TEST(PlaceInSlice, RoundingNeverLeavesTheSlice) {
@@ -114,7 +114,7 @@ TEST(IsExtendedBy, SaysWhichDesignsShareTheirPoints) {
   };
   for (const PointSetSpec& small : specs) {
     for (const PointSetSpec& large : specs) {
-      EXPECT_EQ(isExtendedBy(small, large), isPrefix(sample(small), sample(large)))
+      EXPECT_EQ(isExtendedBy(small, large), isPrefix(sampleNested(small), sampleNested(large)))
           << small.samples << " " << large.samples;
     }
   }

@@ -9,13 +9,13 @@ namespace {
 
 using Eigen::MatrixXd;
 
-MatrixXd sample(DesignMethod method, int samples, std::uint64_t seed = 1) {
+MatrixXd sampleCube(DesignMethod method, int samples, std::uint64_t seed = 1) {
   return sampleUnitCube({method, samples, {}}, 3, seed, RandomPurpose::kTrainDesign);
 }
 
 TEST(PointSet, LatinHypercubeHasOnePointInEachSlice) {
   constexpr int kSamples = 37;
-  const MatrixXd points = sample(DesignMethod::kLatinHypercube, kSamples);
+  const MatrixXd points = sampleCube(DesignMethod::kLatinHypercube, kSamples);
   for (int d = 0; d < points.rows(); ++d) {
     std::vector<int> count(kSamples, 0);
     for (int i = 0; i < kSamples; ++i) {
@@ -27,13 +27,13 @@ TEST(PointSet, LatinHypercubeHasOnePointInEachSlice) {
 
 TEST(PointSet, SobolAndUniformPrefixesAreSmallerSets) {
   for (const DesignMethod method : {DesignMethod::kSobol, DesignMethod::kUniform}) {
-    EXPECT_EQ(sample(method, 64).leftCols(20), sample(method, 20));
+    EXPECT_EQ(sampleCube(method, 64).leftCols(20), sampleCube(method, 20));
   }
 }
 
 // A (shifted) Sobol sequence's mean converges much faster than the 1/sqrt(n) of random points.
 TEST(PointSet, SobolFillsTheCubeEvenly) {
-  const MatrixXd points = sample(DesignMethod::kSobol, 1024);
+  const MatrixXd points = sampleCube(DesignMethod::kSobol, 1024);
   for (int d = 0; d < points.rows(); ++d) {
     EXPECT_NEAR(points.row(d).mean(), 0.5, 2e-3);
     for (int slice = 0; slice < 16; ++slice) {
@@ -46,10 +46,10 @@ TEST(PointSet, SobolFillsTheCubeEvenly) {
 TEST(PointSet, PointsStayInTheCubeAndChangeWithTheSeed) {
   for (const DesignMethod method : {DesignMethod::kLatinHypercube, DesignMethod::kNestedLatinHypercube,
                                     DesignMethod::kSobol, DesignMethod::kUniform}) {
-    const MatrixXd points = sample(method, 100);
+    const MatrixXd points = sampleCube(method, 100);
     EXPECT_GE(points.minCoeff(), 0.0);
     EXPECT_LT(points.maxCoeff(), 1.0);
-    EXPECT_NE(points, sample(method, 100, 2));
+    EXPECT_NE(points, sampleCube(method, 100, 2));
   }
 }
 

@@ -9,6 +9,7 @@
 #include "framework/features/feature_noise.hpp"
 #include "framework/features/peaks.hpp"
 #include "tests/framework/features/golden/peaks_golden.hpp"
+#include "tests/framework/features/layouts.hpp"
 
 namespace twinmap {
 namespace {
@@ -84,10 +85,6 @@ struct Oscillation {
 
 FeatureSpec makeExtrema(ExtremaKind kind, int peaks, double prominence) {
   return ExtremaFeatureSpec{{"y", {}}, {0.1, 0.01, 290}, kind, peaks, prominence, 5};
-}
-
-ResponseLayout makeLayout(const std::vector<FeatureSpec>& features) {
-  return {{"y"}, {"m"}, collectTimes(features)};
 }
 
 Eigen::VectorXd calcResponse(const Eigen::VectorXd& times, const Oscillation& oscillation = {}) {

@@ -7,32 +7,32 @@
 namespace twinmap {
 namespace {
 
-FeatureSpec makeSamples(std::vector<Name> outputs, double start, double interval, int count) {
+FeatureSpec makeSamplesFeature(std::vector<Name> outputs, double start, double interval, int count) {
   return SamplesFeatureSpec{std::move(outputs), start, interval, count};
 }
 
-ResponseLayout makeLayout(std::vector<std::string> outputs, const Eigen::VectorXd& times) {
+ResponseLayout makeLayoutInMetres(std::vector<std::string> outputs, const Eigen::VectorXd& times) {
   const std::vector<std::string> units(outputs.size(), "m");
   return {std::move(outputs), units, times};
 }
 
 TEST(FeatureExtractor, TimesAreSortedAndUnique) {
-  const Eigen::VectorXd times =
-      collectTimes({makeSamples({{"a", {}}}, 0.5, 0.5, 3), makeSamples({{"b", {}}}, 0.0, 0.25, 3)});
+  const Eigen::VectorXd times = collectTimes(
+      {makeSamplesFeature({{"a", {}}}, 0.5, 0.5, 3), makeSamplesFeature({{"b", {}}}, 0.0, 0.25, 3)});
   EXPECT_EQ(times, (Eigen::VectorXd(5) << 0.0, 0.25, 0.5, 1.0, 1.5).finished());
 }
 
 TEST(FeatureExtractor, TimesAreWhatPeopleWrite) {
-  const Eigen::VectorXd times = collectTimes({makeSamples({{"a", {}}}, 0.1, 0.1, 30)});
+  const Eigen::VectorXd times = collectTimes({makeSamplesFeature({{"a", {}}}, 0.1, 0.1, 30)});
   EXPECT_EQ(times[2], 0.3);
   EXPECT_EQ(times[29], 3.0);
 }
 
 TEST(FeatureExtractor, PicksOutputsAtTheirTimes) {
-  const std::vector<FeatureSpec> features{makeSamples({{"b", {}}}, 1.0, 1.0, 2),
-                                          makeSamples({{"a", {}}, {"b", {}}}, 0.0, 2.0, 2)};
+  const std::vector<FeatureSpec> features{makeSamplesFeature({{"b", {}}}, 1.0, 1.0, 2),
+                                          makeSamplesFeature({{"a", {}}, {"b", {}}}, 0.0, 2.0, 2)};
   const Eigen::VectorXd times = collectTimes(features);  // 0, 1, 2
-  const FeatureExtractor extractor(features, makeLayout({"a", "b"}, times));
+  const FeatureExtractor extractor(features, makeLayoutInMetres({"a", "b"}, times));
   Eigen::MatrixXd responses(6, 2);
   responses << 1, 10, 2, 20, 3, 30, 4, 40, 5, 50, 6, 60;  // a at 0, 1, 2, then b
   Eigen::MatrixXd expected(6, 2);
@@ -45,11 +45,11 @@ TEST(FeatureExtractor, PicksOutputsAtTheirTimes) {
 }
 
 TEST(FeatureExtractor, AFailedSampleStaysInItsColumn) {
-  const std::vector<FeatureSpec> features{makeSamples({{"a", {}}}, 0.0, 1.0, 2)};
+  const std::vector<FeatureSpec> features{makeSamplesFeature({{"a", {}}}, 0.0, 1.0, 2)};
   Eigen::MatrixXd responses(2, 3);
   responses << 1, std::nan(""), 3, 4, std::nan(""), 6;
   const Eigen::MatrixXd extracted =
-      FeatureExtractor(features, makeLayout({"a"}, collectTimes(features))).extract(responses);
+      FeatureExtractor(features, makeLayoutInMetres({"a"}, collectTimes(features))).extract(responses);
   EXPECT_TRUE(extracted.col(1).array().isNaN().all());
   EXPECT_EQ(extracted.col(2), responses.col(2));
 }
@@ -70,9 +70,10 @@ TEST(FeatureExtractor, PicksModes) {
 }
 
 TEST(FeatureExtractor, RefusesWhatTheResponsesLack) {
-  const std::vector<FeatureSpec> features{makeSamples({{"a", {}}}, 0.0, 1.0, 2)};
-  EXPECT_THROW(FeatureExtractor(features, makeLayout({"b"}, collectTimes(features))), std::invalid_argument);
-  EXPECT_THROW(FeatureExtractor(features, makeLayout({"a"}, Eigen::VectorXd::Zero(1))),
+  const std::vector<FeatureSpec> features{makeSamplesFeature({{"a", {}}}, 0.0, 1.0, 2)};
+  EXPECT_THROW(FeatureExtractor(features, makeLayoutInMetres({"b"}, collectTimes(features))),
+               std::invalid_argument);
+  EXPECT_THROW(FeatureExtractor(features, makeLayoutInMetres({"a"}, Eigen::VectorXd::Zero(1))),
                std::invalid_argument);
 }
 

@@ -28,7 +28,7 @@ TransformStepSpec makePrincipalComponents(std::optional<int> components = {},
 }
 
 /// Samples whose features have independent noise.
-LabelledFeatures makeSamples(const MatrixXd& features, const VectorXd& noise_stddev) {
+LabelledFeatures makeNoisySamples(const MatrixXd& features, const VectorXd& noise_stddev) {
   LabelledFeatures samples;
   samples.features = features;
   samples.noise_covariance = noise_stddev.cwiseAbs2().asDiagonal();
@@ -36,7 +36,7 @@ LabelledFeatures makeSamples(const MatrixXd& features, const VectorXd& noise_std
 }
 
 LabelledFeatures makeUnitNoiseSamples(const MatrixXd& features) {
-  return makeSamples(features, VectorXd::Ones(features.rows()));
+  return makeNoisySamples(features, VectorXd::Ones(features.rows()));
 }
 
 MatrixXd makeNoise(int rows, int columns, std::uint64_t seed) {
@@ -73,31 +73,31 @@ TEST(FeatureTransform, ConstantFeaturesSayNothing) {
   features.row(1) << 1e9, 1e9 + 1e-7, 1e9, 1e9;  // rounding only
   features.row(2).setZero();
   const MatrixXd inputs =
-      fitTransform({makeZScore()}, makeSamples(features, VectorXd::Zero(3))).apply(features);
+      fitTransform({makeZScore()}, makeNoisySamples(features, VectorXd::Zero(3))).apply(features);
   EXPECT_LT(inputs.cwiseAbs().maxCoeff(), 1e-6);
 }
 
 TEST(FeatureTransform, WithoutStepsItChangesNothingAndTwiceIsOnce) {
   const MatrixXd features = MatrixXd::Random(4, 20);
   const VectorXd noise = VectorXd::Ones(4);
-  EXPECT_EQ(fitTransform({}, makeSamples(features, noise)).apply(features), features);
-  const MatrixXd once = fitTransform({makeZScore()}, makeSamples(features, noise)).apply(features);
+  EXPECT_EQ(fitTransform({}, makeNoisySamples(features, noise)).apply(features), features);
+  const MatrixXd once = fitTransform({makeZScore()}, makeNoisySamples(features, noise)).apply(features);
   const MatrixXd twice =
-      fitTransform({makeZScore(), makeZScore()}, makeSamples(features, noise)).apply(features);
+      fitTransform({makeZScore(), makeZScore()}, makeNoisySamples(features, noise)).apply(features);
   EXPECT_LT((once - twice).cwiseAbs().maxCoeff(), 1e-14);
 }
 
 TEST(FeatureTransform, WhitenDividesByTheNoiseAlsoBehindAZScore) {
   const MatrixXd features = MatrixXd::Random(2, 20);
   const VectorXd noise = Eigen::Vector2d(0.1, 4.0);
-  const MatrixXd whitened = fitTransform({makeWhiten()}, makeSamples(features, noise)).apply(features);
+  const MatrixXd whitened = fitTransform({makeWhiten()}, makeNoisySamples(features, noise)).apply(features);
   EXPECT_LT((whitened.row(0) - features.row(0) / 0.1).cwiseAbs().maxCoeff(), 1e-14);
   EXPECT_LT((whitened.row(1) - features.row(1) / 4.0).cwiseAbs().maxCoeff(), 1e-14);
   const MatrixXd behind =
-      fitTransform({makeZScore(), makeWhiten()}, makeSamples(features, noise)).apply(features);
+      fitTransform({makeZScore(), makeWhiten()}, makeNoisySamples(features, noise)).apply(features);
   const VectorXd shift = whitened.col(0) - behind.col(0);
   EXPECT_LT(((whitened - behind).colwise() - shift).cwiseAbs().maxCoeff(), 1e-12);
-  EXPECT_THROW(fitTransform({makeWhiten()}, makeSamples(features, Eigen::Vector2d(0.1, 0.0))),
+  EXPECT_THROW(fitTransform({makeWhiten()}, makeNoisySamples(features, Eigen::Vector2d(0.1, 0.0))),
                std::invalid_argument);
 }
 
@@ -142,7 +142,7 @@ TEST(FeatureTransform, ItsMatrixMapsDifferences) {
 
 TEST(FeatureTransform, ByCovarianceOfIndependentNoiseIsByStddev) {
   const MatrixXd features = MatrixXd::Random(2, 20);
-  const LabelledFeatures samples = makeSamples(features, Eigen::Vector2d(0.1, 4.0));
+  const LabelledFeatures samples = makeNoisySamples(features, Eigen::Vector2d(0.1, 4.0));
   const MatrixXd by_stddev = fitTransform({makeWhiten()}, samples).apply(features);
   EXPECT_EQ(fitTransform({makeWhiten(WhitenBy::kCovariance)}, samples).apply(features), by_stddev);
 }

@@ -4,8 +4,8 @@
 
 #include <stdexcept>
 
-#include "framework/design/random.hpp"
 #include "kernels/linalg/decompositions.hpp"
+#include "tests/framework/features/normal_numbers.hpp"
 
 namespace twinmap {
 namespace {
@@ -13,15 +13,8 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-MatrixXd makeNormal(Index rows, Index columns, std::uint64_t seed) {
-  const RandomStream random(seed, RandomPurpose::kTrainNoise);
-  return MatrixXd::NullaryExpr(rows, columns, [&](Index i, Index j) {
-    return random.calcNormal(static_cast<std::uint64_t>(j), static_cast<std::uint64_t>(i));
-  });
-}
-
 /// Ten features of variance 100 that say nothing, and two parameters seen in two others of variance 1.
-LabelledFeatures makeSamples(int simulations, int replicates = 1) {
+LabelledFeatures hideParameters(int simulations, int replicates = 1) {
   LabelledFeatures samples;
   samples.replicates = replicates;
   samples.parameters = makeNormal(2, simulations, 1).replicate(1, replicates);
@@ -32,7 +25,7 @@ LabelledFeatures makeSamples(int simulations, int replicates = 1) {
   return samples;
 }
 
-PartialLeastSquaresSpec makeSpec(std::optional<int> components = {}) {
+PartialLeastSquaresSpec makePartialLeastSquares(std::optional<int> components = {}) {
   return {{components}};
 }
 
@@ -48,7 +41,7 @@ TEST(PartialLeastSquares, OneComponentOfOneTargetIsTheCovarianceByHand) {
 }
 
 TEST(PartialLeastSquares, AllComponentsAreLeastSquares) {
-  const LabelledFeatures samples = makeSamples(40);
+  const LabelledFeatures samples = hideParameters(40);
   const MatrixXd x = samples.features.colwise() - samples.features.rowwise().mean().eval();
   const MatrixXd y = samples.parameters.colwise() - samples.parameters.rowwise().mean().eval();
   const PartialLeastSquares model = calcPartialLeastSquares(x, y, 12);
@@ -57,16 +50,16 @@ TEST(PartialLeastSquares, AllComponentsAreLeastSquares) {
 }
 
 TEST(PartialLeastSquares, ScoresAreUncorrelatedOverTheSamples) {
-  const LabelledFeatures samples = makeSamples(60);
-  const MatrixXd scores = fitPartialLeastSquares(makeSpec(5), samples).apply(samples.features);
+  const LabelledFeatures samples = hideParameters(60);
+  const MatrixXd scores = fitPartialLeastSquares(makePartialLeastSquares(5), samples).apply(samples.features);
   const MatrixXd covariance = scores * scores.transpose();
   const MatrixXd diagonal = covariance.diagonal().asDiagonal();
   EXPECT_LT((covariance - diagonal).norm(), 1e-11 * diagonal.norm());
 }
 
 TEST(PartialLeastSquares, AutomaticRankFindsTheDirectionsThatPredict) {
-  const LabelledFeatures samples = makeSamples(400, 2);
-  const MatrixXd projection = fitPartialLeastSquares(makeSpec(), samples).projection;
+  const LabelledFeatures samples = hideParameters(400, 2);
+  const MatrixXd projection = fitPartialLeastSquares(makePartialLeastSquares(), samples).projection;
   const MatrixXd errors = calcCrossValidationErrors(samples, 12, 10);
   const Index rank = projection.rows();
   EXPECT_LT(rank, 12);
@@ -75,9 +68,9 @@ TEST(PartialLeastSquares, AutomaticRankFindsTheDirectionsThatPredict) {
 }
 
 TEST(PartialLeastSquares, TheAutomaticRankOfPureNoiseIsOne) {
-  LabelledFeatures samples = makeSamples(100);
+  LabelledFeatures samples = hideParameters(100);
   samples.features = makeNormal(12, 100, 9);
-  EXPECT_EQ(fitPartialLeastSquares(makeSpec(), samples).projection.rows(), 1);
+  EXPECT_EQ(fitPartialLeastSquares(makePartialLeastSquares(), samples).projection.rows(), 1);
 }
 
 /// Features that recognise the simulation predict its other draws perfectly, and no other simulation.
@@ -91,17 +84,17 @@ TEST(PartialLeastSquares, ReplicatesOfASimulationStayInOneFold) {
 }
 
 TEST(PartialLeastSquares, RefusesMoreComponentsThanThereAre) {
-  LabelledFeatures samples = makeSamples(40);
-  EXPECT_THROW(fitPartialLeastSquares(makeSpec(13), samples), std::invalid_argument);
+  LabelledFeatures samples = hideParameters(40);
+  EXPECT_THROW(fitPartialLeastSquares(makePartialLeastSquares(13), samples), std::invalid_argument);
   samples.features.bottomRows(6) = samples.features.topRows(6);
-  EXPECT_EQ(fitPartialLeastSquares(makeSpec(6), samples).projection.rows(), 6);
-  EXPECT_THROW(fitPartialLeastSquares(makeSpec(7), samples), std::invalid_argument);
+  EXPECT_EQ(fitPartialLeastSquares(makePartialLeastSquares(6), samples).projection.rows(), 6);
+  EXPECT_THROW(fitPartialLeastSquares(makePartialLeastSquares(7), samples), std::invalid_argument);
   samples.features.setConstant(3.0);
-  EXPECT_THROW(fitPartialLeastSquares(makeSpec(), samples), std::invalid_argument);
+  EXPECT_THROW(fitPartialLeastSquares(makePartialLeastSquares(), samples), std::invalid_argument);
 }
 
 TEST(PartialLeastSquares, TwoSimulationsAreEnough) {
-  EXPECT_EQ(fitPartialLeastSquares(makeSpec(), makeSamples(2)).projection.rows(), 1);
+  EXPECT_EQ(fitPartialLeastSquares(makePartialLeastSquares(), hideParameters(2)).projection.rows(), 1);
 }
 
 }  // namespace

@@ -16,11 +16,11 @@ constexpr Index kTimes = 6;
 constexpr double kA = 0.8;
 
 /// Outputs y, white, and z, a first-order autoregression of stddev 0.2; modes behind them.
-ResponseLayout makeLayout() {
+ResponseLayout makeTwoOutputs() {
   return {{"y", "z"}, {"m", "m"}, (VectorXd(kTimes) << 0.1, 0.2, 0.3, 0.4, 0.5, 0.6).finished(), 1};
 }
 
-NoiseSpec makeSpec() {
+NoiseSpec makeTwoNoises() {
   NoiseSpec spec;
   spec.stddev = {{{"y", {}}, 3.0}, {{"z", {}}, 0.2}};
   spec.modes = ModesNoiseSpec{0.01, 0.02};
@@ -29,8 +29,8 @@ NoiseSpec makeSpec() {
 }
 
 TEST(ResponseNoise, DrawsFollowTheAutoregression) {
-  const ResponseNoise noise(makeSpec(), makeLayout());
-  const VectorXd white = calcNoiseStddev(makeSpec(), makeLayout());
+  const ResponseNoise noise(makeTwoNoises(), makeTwoOutputs());
+  const VectorXd white = calcNoiseStddev(makeTwoNoises(), makeTwoOutputs());
   const MatrixXd clean = MatrixXd::Zero(white.size(), 3);
   const RandomStream stream(1, RandomPurpose::kTrainNoise);
   const MatrixXd draws = addNoise(clean, noise, stream, 2), independent = addNoise(clean, white, stream, 2);
@@ -48,9 +48,9 @@ TEST(ResponseNoise, DrawsFollowTheAutoregression) {
 
 TEST(ResponseNoise, OfFeaturesHasTheCovarianceOfTheAutoregression) {
   const FeatureSpec feature = SamplesFeatureSpec{{{"y", {}}, {"z", {}}}, 0.1, 0.2, 3};
-  const FeatureExtractor extractor({feature}, makeLayout());
+  const FeatureExtractor extractor({feature}, makeTwoOutputs());
   const MatrixXd covariance =
-      FeatureNoise(extractor, ResponseNoise(makeSpec(), makeLayout()), 1).calcCovariance({});
+      FeatureNoise(extractor, ResponseNoise(makeTwoNoises(), makeTwoOutputs()), 1).calcCovariance({});
   MatrixXd expected = MatrixXd::Zero(6, 6);
   expected.diagonal().head(3).setConstant(9.0);
   for (Index i = 0; i < 3; ++i) {
@@ -62,29 +62,29 @@ TEST(ResponseNoise, OfFeaturesHasTheCovarianceOfTheAutoregression) {
 }
 
 TEST(ResponseNoise, OfTimesOffTheGridIsIndependentOfThoseOnIt) {
-  ResponseLayout layout = makeLayout();
+  ResponseLayout layout = makeTwoOutputs();
   layout.times[3] = 0.43;
-  const VectorXd stddev = calcNoiseStddev(makeSpec(), layout);
+  const VectorXd stddev = calcNoiseStddev(makeTwoNoises(), layout);
   FeatureMatrix identity(stddev.size(), stddev.size());
   identity.setIdentity();
-  const MatrixXd covariance = ResponseNoise(makeSpec(), layout).calcCovariance(identity);
+  const MatrixXd covariance = ResponseNoise(makeTwoNoises(), layout).calcCovariance(identity);
   EXPECT_EQ(covariance.row(kTimes + 3).cwiseAbs().sum(), covariance(kTimes + 3, kTimes + 3));
   EXPECT_NEAR(covariance(kTimes + 2, kTimes + 4), 0.04 * kA * kA, 1e-15);
 }
 
 TEST(ResponseNoise, WithoutCorrelationIsWhite) {
-  NoiseSpec spec = makeSpec();
+  NoiseSpec spec = makeTwoNoises();
   spec.correlation.clear();
   const MatrixXd clean = MatrixXd::Random(2 * kTimes + 2, 3);
   const RandomStream stream(1, RandomPurpose::kTestNoise);
-  EXPECT_EQ(addNoise(clean, ResponseNoise(spec, makeLayout()), stream),
-            addNoise(clean, calcNoiseStddev(spec, makeLayout()), stream));
+  EXPECT_EQ(addNoise(clean, ResponseNoise(spec, makeTwoOutputs()), stream),
+            addNoise(clean, calcNoiseStddev(spec, makeTwoOutputs()), stream));
 }
 
 TEST(ResponseNoise, ThatIsPerfectlyCorrelatedIsRefused) {
-  NoiseSpec spec = makeSpec();
+  NoiseSpec spec = makeTwoNoises();
   spec.correlation = {{{"z", {}}, {}, {1.0, 1.0, 1.0}, 0.1}};
-  EXPECT_THROW(ResponseNoise(spec, makeLayout()), std::invalid_argument);
+  EXPECT_THROW(ResponseNoise(spec, makeTwoOutputs()), std::invalid_argument);
 }
 
 }  // namespace

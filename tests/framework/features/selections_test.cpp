@@ -5,9 +5,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "framework/design/random.hpp"
 #include "framework/features/feature_transform.hpp"
 #include "framework/features/mutual_information.hpp"
+#include "tests/framework/features/normal_numbers.hpp"
 #include "tests/lu.hpp"
 
 namespace twinmap {
@@ -16,13 +16,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-MatrixXd makeNormal(Index rows, Index columns, std::uint64_t seed) {
-  const RandomStream random(seed, RandomPurpose::kTrainNoise);
-  return MatrixXd::NullaryExpr(rows, columns, [&](Index i, Index j) {
-    return random.calcNormal(static_cast<std::uint64_t>(j), static_cast<std::uint64_t>(i));
-  });
-}
 
 /// The objective by plain inverses and determinants.
 double calcInformation(const std::vector<Index>& selected, const MatrixXd& covariance,
@@ -112,7 +105,7 @@ TEST(MutualInformation, OfAConstantIsZeroAndTiesAreNoHarm) {
   EXPECT_GE(calcMutualInformation(rankValues(tied), rankValues(tied), 3), 0.0);
 }
 
-LabelledFeatures makeSamples() {
+LabelledFeatures makeSelectable() {
   LabelledFeatures samples;
   samples.parameters = makeNormal(1, 300, 1);
   samples.features.resize(4, 300);
@@ -127,10 +120,10 @@ LabelledFeatures makeSamples() {
 }
 
 TEST(MutualInformationSelection, PrefersNewInformationToRepetition) {
-  const std::vector<Index> selected = selectByMutualInformation({2, 3}, makeSamples());
+  const std::vector<Index> selected = selectByMutualInformation({2, 3}, makeSelectable());
   EXPECT_LT(selected[0], 2);
   EXPECT_GE(selected[1], 2);
-  EXPECT_THROW(selectByMutualInformation({5, 3}, makeSamples()), std::invalid_argument);
+  EXPECT_THROW(selectByMutualInformation({5, 3}, makeSelectable()), std::invalid_argument);
 }
 
 TransformStepSpec makeSelect(const std::vector<std::string>& names) {
@@ -142,7 +135,7 @@ TransformStepSpec makeSelect(const std::vector<std::string>& names) {
 }
 
 TEST(Selection, ByNameKeepsTheFeaturesInThatOrderAlsoTwice) {
-  const LabelledFeatures samples = makeSamples();
+  const LabelledFeatures samples = makeSelectable();
   const MatrixXd inputs =
       fitTransform({makeSelect({"b(1 s)", "a(0 s)", "b(0 s)"}), makeSelect({"a(0 s)"})}, samples)
           .apply(samples.features);
@@ -150,7 +143,7 @@ TEST(Selection, ByNameKeepsTheFeaturesInThatOrderAlsoTwice) {
 }
 
 TEST(Selection, WrongNamesAndCountsAreLocatedErrors) {
-  const std::vector<FeatureInfo> infos = makeSamples().infos;
+  const std::vector<FeatureInfo> infos = makeSelectable().infos;
   const auto expectError = [&](const TransformStepSpec& step, const std::string& text) {
     try {
       checkTransformOf(infos, {step});

@@ -7,6 +7,7 @@
 
 #include "framework/features/feature_extractor.hpp"
 #include "framework/features/feature_noise.hpp"
+#include "tests/framework/features/layouts.hpp"
 
 namespace twinmap {
 namespace {
@@ -29,10 +30,6 @@ FeatureSpec makeFrequencyResponse(const std::vector<double>& frequencies, Comple
     feature.frequencies.push_back({frequency, {}});
   }
   return feature;
-}
-
-ResponseLayout makeLayout(const std::vector<FeatureSpec>& features) {
-  return {{"y"}, {"m"}, collectTimes(features)};
 }
 
 Eigen::VectorXd calcSine(const Eigen::VectorXd& times, double amplitude, double frequency, double phase) {

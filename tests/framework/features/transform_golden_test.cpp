@@ -20,7 +20,7 @@ MatrixXd toMatrix(const std::vector<double>& values, Index rows) {
   return Eigen::Map<const MatrixXd>(values.data(), rows, static_cast<Index>(values.size()) / rows);
 }
 
-LabelledFeatures makeSamples() {
+LabelledFeatures makeGoldenSamples() {
   LabelledFeatures samples;
   samples.features = toMatrix(golden::kFeatures, golden::kFeatureCount);
   samples.parameters = toMatrix(golden::kParameters, 2);
@@ -30,7 +30,7 @@ LabelledFeatures makeSamples() {
 }
 
 MatrixXd transform(const TransformStepSpec& step) {
-  const LabelledFeatures samples = makeSamples();
+  const LabelledFeatures samples = makeGoldenSamples();
   return fitTransform({step}, samples).apply(samples.features);
 }
 
@@ -70,7 +70,7 @@ TEST(TransformGolden, PartialLeastSquares) {
 }
 
 TEST(TransformGolden, LinearPredictionByPartialLeastSquares) {
-  const LabelledFeatures samples = makeSamples();
+  const LabelledFeatures samples = makeGoldenSamples();
   const MatrixXd centered = samples.features.colwise() - samples.features.rowwise().mean().eval();
   const MatrixXd targets = fitZScore(samples.parameters).apply(samples.parameters);
   const PartialLeastSquares model = calcPartialLeastSquares(centered, targets, golden::kComponents);
@@ -79,7 +79,7 @@ TEST(TransformGolden, LinearPredictionByPartialLeastSquares) {
 }
 
 TEST(TransformGolden, CrossValidationOfPartialLeastSquares) {
-  const MatrixXd errors = calcCrossValidationErrors(makeSamples(), golden::kComponents, golden::kFolds);
+  const MatrixXd errors = calcCrossValidationErrors(makeGoldenSamples(), golden::kComponents, golden::kFolds);
   const MatrixXd expected = toMatrix(golden::kHeldOutErrors, golden::kComponents).transpose();
   EXPECT_LT((errors - expected).cwiseAbs().maxCoeff(), 1e-11);
 }
@@ -87,7 +87,7 @@ TEST(TransformGolden, CrossValidationOfPartialLeastSquares) {
 /// The estimate depends on counts of samples alone, so it is equal to rounding (scikit-learn's jitter of
 /// 1e-10 changes no count).
 TEST(TransformGolden, MutualInformation) {
-  const LabelledFeatures samples = makeSamples();
+  const LabelledFeatures samples = makeGoldenSamples();
   const Index simulations = samples.features.cols() / samples.replicates;
   const auto rank = [&](const MatrixXd& rows, Index row) {
     return rankValues(rows.row(row).head(simulations).transpose());
@@ -106,7 +106,8 @@ TEST(TransformGolden, MutualInformation) {
 }
 
 TEST(TransformGolden, RelevanceWithoutRedundancy) {
-  const std::vector<Index> selected = selectByMutualInformation({golden::kComponents, 3}, makeSamples());
+  const std::vector<Index> selected =
+      selectByMutualInformation({golden::kComponents, 3}, makeGoldenSamples());
   EXPECT_EQ(std::vector<int>(selected.begin(), selected.end()), golden::kSelected);
 }
 

@@ -25,6 +25,12 @@ struct FmuCase {
   std::optional<double> step;
 };
 
+/// One of the FMUs that a test is carried out with, and how it is simulated.
+struct Way {
+  const char* fmu;
+  fmi::Kind kind;
+};
+
 struct FmuResult {
   SampleStatus status;
   Eigen::MatrixXd outputs;  ///< times x outputs

@@ -73,11 +73,6 @@ TEST_P(Ball, ComesToRestAfterInfinitelyManyBounces) {
 INSTANTIATE_TEST_SUITE_P(Versions, Ball,
                          ::testing::Values("bouncing_ball_2", "bouncing_ball_3", "bouncing_ball_events"));
 
-struct Way {
-  const char* fmu;
-  Kind kind;
-};
-
 class Stairs : public ::testing::TestWithParam<Way> {};
 
 TEST_P(Stairs, RisesAtEverySecondExactly) {

@@ -38,11 +38,6 @@ double calcError(const FmuResult& result, const Eigen::Vector4d& point) {
   return worst;
 }
 
-struct Way {
-  const char* fmu;
-  Kind kind;
-};
-
 class TwoBeamFmu : public ::testing::TestWithParam<Way> {};
 
 TEST_P(TwoBeamFmu, FollowsTheClosedForm) {

@@ -34,11 +34,6 @@ FmuCase makeFeedthrough(const std::string& name, Kind kind) {
   return fmu;
 }
 
-struct Way {
-  const char* fmu;
-  Kind kind;
-};
-
 class Feedthrough : public ::testing::TestWithParam<Way> {};
 
 TEST_P(Feedthrough, PassesParametersOfEveryTypeOn) {

@@ -30,7 +30,7 @@ LabelledFeatures makeSquares(int samples, std::uint64_t seed) {
   return labelled;
 }
 
-GpMap trainOn(const LabelledFeatures& samples, GpNoise noise, GpApproximation approximation) {
+GpMap trainWithNoise(const LabelledFeatures& samples, GpNoise noise, GpApproximation approximation) {
   GpMapSpec spec;
   spec.noise = noise;
   spec.approximation = approximation;
@@ -44,17 +44,19 @@ TEST(NoiseProfile, FollowsTheSlopeOfTheMap) {
   MatrixXd features(1, 3);
   features << 0.16, 0.49, 1.44;  // p = 0.4, 0.7, 1.2
   for (const auto approximation : {GpApproximation::kExact, GpApproximation::kSgpr}) {
-    const MatrixXd stddev = trainOn(samples, GpNoise::kFollowsSlope, approximation).predict(features).stddev;
+    const MatrixXd stddev =
+        trainWithNoise(samples, GpNoise::kFollowsSlope, approximation).predict(features).stddev;
     for (int i = 0; i < 3; ++i) {
       EXPECT_NEAR(stddev(0, i) * 2.0 * std::sqrt(features(0, i)) / kNoise, 1.0, 0.15) << i;
     }
-    const MatrixXd constant = trainOn(samples, GpNoise::kConstant, approximation).predict(features).stddev;
+    const MatrixXd constant =
+        trainWithNoise(samples, GpNoise::kConstant, approximation).predict(features).stddev;
     EXPECT_LT(constant(0, 0) / constant(0, 2), 1.2);
   }
 }
 
 TEST(NoiseProfile, MakesCoverageRightWhereTheMapIsSteepAndWhereItIsFlat) {
-  const GpMap map = trainOn(makeSquares(300, 1), GpNoise::kFollowsSlope, GpApproximation::kExact);
+  const GpMap map = trainWithNoise(makeSquares(300, 1), GpNoise::kFollowsSlope, GpApproximation::kExact);
   const LabelledFeatures test = makeSquares(4000, 2);
   const Predictions predictions = map.predict(test.features);
   for (const bool steep : {true, false}) {

@@ -23,7 +23,7 @@ VectorXd wave(const VectorXd& times) {
 }
 
 /// y = sin 3t, theta = t^3 - t, which cubics reproduce.
-Table makeTable(const VectorXd& times) {
+Table makeCubicTable(const VectorXd& times) {
   return {"a.csv",
           {{"t", {}, times}, {"y", {}, wave(times)}, {"theta", {}, times.array().cube() - times.array()}},
           {}};
@@ -34,8 +34,8 @@ VectorXd resampleTable(const Table& table, const ResponseLayout& layout, const M
   return resample(readMeasurement(table, spec, layout), layout, interval);
 }
 
-std::string getError(const Table& table, const ResponseLayout& layout, const MeasurementSpec& spec = {},
-                     std::optional<double> interval = {}) {
+std::string getResamplingError(const Table& table, const ResponseLayout& layout,
+                               const MeasurementSpec& spec = {}, std::optional<double> interval = {}) {
   try {
     resampleTable(table, layout, spec, interval);
   } catch (const MeasurementError& error) {
@@ -56,7 +56,7 @@ Table without(Table table, Index row) {
 TEST(Measurement, IsExactWhereTimesAgree) {
   const VectorXd times = makeTimes(500, 0.01);
   const ResponseLayout layout = makeLayout(makeTimes(20, 0.05, 0.05));
-  const Table table = makeTable(times);
+  const Table table = makeCubicTable(times);
   const VectorXd response = resampleTable(table, layout);
   for (Index i = 0; i < layout.times.size(); ++i) {
     EXPECT_EQ(response[layout.getRow(0, i)], table.columns[1].values[5 * (i + 1)]);
@@ -67,7 +67,7 @@ TEST(Measurement, IsExactWhereTimesAgree) {
 TEST(Measurement, InterpolatesCubicallyBetweenSamples) {
   const VectorXd times = makeTimes(300, 0.013);
   const ResponseLayout layout = makeLayout(makeTimes(60, 0.05, 0.005));
-  const VectorXd response = resampleTable(makeTable(times), layout);
+  const VectorXd response = resampleTable(makeCubicTable(times), layout);
   const VectorXd exact = wave(layout.times);
   for (Index i = 0; i < layout.times.size(); ++i) {
     const double t = layout.times[i];
@@ -93,48 +93,51 @@ TEST(Measurement, ConvertsUnitsTakesColumnsAndShiftsTime) {
 }
 
 TEST(Measurement, HasTimesByItsSampleRate) {
-  Table table = makeTable(makeTimes(200, 0.01));
+  Table table = makeCubicTable(makeTimes(200, 0.01));
   table.columns.erase(table.columns.begin());
   MeasurementSpec spec;
   spec.sample_rate = 100.0;
   spec.start = 0.5;
   const ResponseLayout layout = makeLayout(makeTimes(10, 0.1));
   EXPECT_NEAR(resampleTable(table, layout, spec)[3], std::sin(3.0 * 0.8), 1e-15);
-  EXPECT_EQ(getError(table, layout),
+  EXPECT_EQ(getResamplingError(table, layout),
             "a.csv: has no column named t or time; give measurement.time or measurement.sample_rate");
 }
 
 TEST(Measurement, ErrorsOfUnitsAndColumns) {
-  const Table table = makeTable(makeTimes(200, 0.01));
+  const Table table = makeCubicTable(makeTimes(200, 0.01));
   const ResponseLayout layout = makeLayout(makeTimes(10, 0.1));
   MeasurementSpec spec;
   spec.columns = {{{"y", {}}, {"z", {}, {}}}};
-  EXPECT_NE(getError(table, layout, spec).find("a.csv: has no column 'z'"), std::string::npos);
+  EXPECT_NE(getResamplingError(table, layout, spec).find("a.csv: has no column 'z'"), std::string::npos);
   Table volts = table;
   volts.columns[1].unit = "V";
-  EXPECT_EQ(getError(volts, layout), "a.csv: y: 'V' does not convert to m");
+  EXPECT_EQ(getResamplingError(volts, layout), "a.csv: y: 'V' does not convert to m");
   Table shorter = table;
   shorter.columns[2].values.conservativeResize(100);
-  EXPECT_EQ(getError(shorter, layout), "a.csv: column 'theta' has 100 numbers, but there are 200 times");
+  EXPECT_EQ(getResamplingError(shorter, layout),
+            "a.csv: column 'theta' has 100 numbers, but there are 200 times");
   Table still = table;
   still.columns[0].values[7] = still.columns[0].values[6];
-  EXPECT_EQ(getError(still, layout), "a.csv: column 't' has 0.06 in row 8, after 0.06; times must increase");
+  EXPECT_EQ(getResamplingError(still, layout),
+            "a.csv: column 't' has 0.06 in row 8, after 0.06; times must increase");
 }
 
 TEST(Measurement, ErrorsOfTimes) {
   const ResponseLayout layout = makeLayout(makeTimes(20, 0.05, 0.05));
-  EXPECT_EQ(getError(makeTable(makeTimes(50, 0.01)), layout),
+  EXPECT_EQ(getResamplingError(makeCubicTable(makeTimes(50, 0.01)), layout),
             "a.csv: ends at 0.49 s, but is needed until 1 s");
-  EXPECT_EQ(getError(makeTable(makeTimes(200, 0.01, 0.07)), layout),
+  EXPECT_EQ(getResamplingError(makeCubicTable(makeTimes(200, 0.01, 0.07)), layout),
             "a.csv: begins at 0.07 s, but is needed from 0.05 s on");
-  EXPECT_EQ(getError(makeTable(makeTimes(100, 0.06)), layout),
+  EXPECT_EQ(getResamplingError(makeCubicTable(makeTimes(100, 0.06)), layout),
             "a.csv: has a sample each 0.06 s (median); at least one each 0.05 s is needed");
-  EXPECT_EQ(getError(makeTable(makeTimes(1, 0.06)), layout), "a.csv: has 1 samples; must have at least 2");
-  EXPECT_EQ(getError(without(makeTable(makeTimes(200, 0.01)), 50), layout),
+  EXPECT_EQ(getResamplingError(makeCubicTable(makeTimes(1, 0.06)), layout),
+            "a.csv: has 1 samples; must have at least 2");
+  EXPECT_EQ(getResamplingError(without(makeCubicTable(makeTimes(200, 0.01)), 50), layout),
             "a.csv: has a gap from 0.49 s to 0.51 s, where samples are needed; the median step is 0.01 s");
-  EXPECT_EQ(getError(without(makeTable(makeTimes(200, 0.01)), 150), layout),
-            "no error");                                                       // where none is needed
-  EXPECT_EQ(getError(makeTable(makeTimes(200, 0.0503)), layout), "no error");  // below 1 %
+  EXPECT_EQ(getResamplingError(without(makeCubicTable(makeTimes(200, 0.01)), 150), layout),
+            "no error");  // where none is needed
+  EXPECT_EQ(getResamplingError(makeCubicTable(makeTimes(200, 0.0503)), layout), "no error");  // below 1 %
 }
 
 TEST(Measurement, TheIntervalOfFeaturesCountsWhereTheirTimesInterleave) {
@@ -142,25 +145,26 @@ TEST(Measurement, TheIntervalOfFeaturesCountsWhereTheirTimesInterleave) {
   for (Index i = 0; i < 20; ++i) {
     times.segment(2 * i, 2) << 0.05 * (i + 1), 0.05 * (i + 1) + 0.001;
   }
-  const Table table = makeTable(makeTimes(200, 0.01));
-  EXPECT_NE(getError(table, makeLayout(times)).find("at least one each 0.001 s"), std::string::npos);
-  EXPECT_EQ(getError(table, makeLayout(times), {}, 0.05), "no error");
+  const Table table = makeCubicTable(makeTimes(200, 0.01));
+  EXPECT_NE(getResamplingError(table, makeLayout(times)).find("at least one each 0.001 s"),
+            std::string::npos);
+  EXPECT_EQ(getResamplingError(table, makeLayout(times), {}, 0.05), "no error");
 }
 
 TEST(Measurement, ASimulatedResponseWithHolesIsAMeasurement) {
   const VectorXd times = (VectorXd(6) << 0.1, 0.2, 0.3, 2.0, 2.05, 3.0).finished();
-  EXPECT_EQ(getError(makeTable(times), makeLayout(times)), "no error");
+  EXPECT_EQ(getResamplingError(makeCubicTable(times), makeLayout(times)), "no error");
 }
 
 TEST(Measurement, ErrorsOfADeadSensorAndOfModes) {
-  Table table = makeTable(makeTimes(200, 0.01));
+  Table table = makeCubicTable(makeTimes(200, 0.01));
   table.columns[2].values.head(150).setConstant(0.25);
   const ResponseLayout layout = makeLayout(makeTimes(20, 0.05, 0.05));
-  EXPECT_EQ(getError(table, layout),
+  EXPECT_EQ(getResamplingError(table, layout),
             "a.csv: column 'theta' is 0.25 at all needed times, 0.05 s to 1 s; is the sensor dead?");
   ResponseLayout modes = layout;
   modes.modes = 2;
-  EXPECT_EQ(getError(table, modes), "a.csv: holds no modes, of which features are made");
+  EXPECT_EQ(getResamplingError(table, modes), "a.csv: holds no modes, of which features are made");
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ using Eigen::VectorXd;
 
 constexpr Index kCount = 1000;
 
-Table makeTable() {
+Table makeNoisyTable() {
   std::mt19937_64 generator(1);
   std::normal_distribution<double> normal;
   Table table{
@@ -26,7 +26,7 @@ Table makeTable() {
   return table;
 }
 
-std::string getError(const Table& table, const NoiseQuestion& question) {
+std::string getNoiseError(const Table& table, const NoiseQuestion& question) {
   try {
     estimateNoise(table, question);
   } catch (const MeasurementError& error) {
@@ -39,7 +39,7 @@ TEST(SignalNoise, IsThatOfTheWindowInTheUnitThatIsAskedFor) {
   NoiseQuestion question;
   question.window = {0.0, 4.99};
   question.columns = {{"out", {"y", {}, {}}, "m"}};
-  const std::vector<SignalNoise> signals = estimateNoise(makeTable(), question);
+  const std::vector<SignalNoise> signals = estimateNoise(makeNoisyTable(), question);
   ASSERT_EQ(signals.size(), 1U);
   EXPECT_EQ(signals[0].name, "out");
   EXPECT_EQ(signals[0].unit, "m");
@@ -49,25 +49,25 @@ TEST(SignalNoise, IsThatOfTheWindowInTheUnitThatIsAskedFor) {
 }
 
 TEST(SignalNoise, OfAllColumnsLeavesOutTimesAndConstants) {
-  const std::vector<SignalNoise> signals = estimateNoise(makeTable(), {});
+  const std::vector<SignalNoise> signals = estimateNoise(makeNoisyTable(), {});
   ASSERT_EQ(signals.size(), 1U);
   EXPECT_EQ(signals[0].name, "y");
   EXPECT_EQ(signals[0].unit, "mm");
 }
 
 TEST(SignalNoise, ErrorsNameFileColumnAndRule) {
-  Table table = makeTable();
+  Table table = makeNoisyTable();
   NoiseQuestion question;
   question.columns = {{"still", {"still", {}, {}}, ""}};
-  EXPECT_EQ(getError(table, question), "a.csv: column 'still' lies on a straight line: has no noise");
+  EXPECT_EQ(getNoiseError(table, question), "a.csv: column 'still' lies on a straight line: has no noise");
   question.window = {0.0, 0.1};
-  EXPECT_EQ(getError(table, question),
+  EXPECT_EQ(getNoiseError(table, question),
             "a.csv: column 'still' has 11 samples; must have at least 20 in the window");
   table.columns[0].name = "x";
-  EXPECT_NE(getError(table, question).find("has no column named t or time, which a window needs"),
+  EXPECT_NE(getNoiseError(table, question).find("has no column named t or time, which a window needs"),
             std::string::npos);
   table.columns = {table.columns[2]};
-  EXPECT_EQ(getError(table, {}), "a.csv: column 'still' lies on a straight line: has no noise");
+  EXPECT_EQ(getNoiseError(table, {}), "a.csv: column 'still' lies on a straight line: has no noise");
 }
 
 TEST(SignalNoise, IsWrittenAsYaml) {

@@ -42,8 +42,8 @@ Table measure(const Signal& force, double step = 0.01, double start = 4.0, const
   return {"m.csv", {{"t", {}, times}, {name, unit, values}}, {}};
 }
 
-std::string getError(const Table& table, double start = 4.0,
-                     const ExperimentSpec& experiment = makeExperiment()) {
+std::string getExcitationError(const Table& table, double start = 4.0,
+                               const ExperimentSpec& experiment = makeExperiment()) {
   try {
     requireTrainedExcitation(experiment, table, start);
   } catch (const MeasurementError& error) {
@@ -58,18 +58,18 @@ double calcNoise(double t) {
 }
 
 TEST(TrainedExcitation, IsRecognisedAtAnyRateAndStartUpToNoise) {
-  EXPECT_EQ(getError(measure(calcForce)), "");
-  EXPECT_EQ(getError(measure(calcForce, 0.01, 400.0), 400.0), "");
-  EXPECT_EQ(getError(measure([](double t) { return calcForce(t) + calcNoise(t); })), "");
-  EXPECT_EQ(getError(measure([](double t) { return 1.01 * calcForce(t); })), "");
+  EXPECT_EQ(getExcitationError(measure(calcForce)), "");
+  EXPECT_EQ(getExcitationError(measure(calcForce, 0.01, 400.0), 400.0), "");
+  EXPECT_EQ(getExcitationError(measure([](double t) { return calcForce(t) + calcNoise(t); })), "");
+  EXPECT_EQ(getExcitationError(measure([](double t) { return 1.01 * calcForce(t); })), "");
   for (const double step : {0.0013, 0.0097, 0.0125}) {
-    EXPECT_EQ(getError(measure(calcForce, step)), "") << step;
+    EXPECT_EQ(getExcitationError(measure(calcForce, step)), "") << step;
   }
 }
 
 // The jump lies between two samples: which side one on it belongs to would be a matter of rounding.
 TEST(TrainedExcitation, TheBeginningOfAPeriodicOneMayDiffer) {
-  EXPECT_EQ(getError(measure([](double t) { return t < 0.015 ? 0.0 : calcForce(t); })), "");
+  EXPECT_EQ(getExcitationError(measure([](double t) { return t < 0.015 ? 0.0 : calcForce(t); })), "");
 }
 
 TEST(TrainedExcitation, AnotherOneIsRefused) {
@@ -79,15 +79,15 @@ TEST(TrainedExcitation, AnotherOneIsRefused) {
   const Signal none = [](double) { return 0.0; };
   for (const Signal& other : {reversed, stronger, late, none}) {
     for (const double step : {0.01, 0.0033, 0.0125}) {
-      EXPECT_NE(getError(measure(other, step)), "");
+      EXPECT_NE(getExcitationError(measure(other, step)), "");
     }
   }
-  EXPECT_NE(getError(measure(calcForce), 4.3), "");  // another window of the same file
+  EXPECT_NE(getExcitationError(measure(calcForce), 4.3), "");  // another window of the same file
 }
 
 TEST(TrainedExcitation, TheErrorSaysWhichHowMuchWhereAndWhatToDo) {
   const auto spiked = [](double t) { return std::abs(t - 0.5) < 0.004 ? 50.0 : calcForce(t); };
-  const std::string error = getError(measure(spiked));
+  const std::string error = getExcitationError(measure(spiked));
   for (const char* part : {"m.csv: column 'force' is not the excitation 'F'",
                            "at 4.5 s it is 50 N instead of", "at most 10 %", "--start", "train a map"}) {
     EXPECT_NE(error.find(part), std::string::npos) << error;
@@ -97,14 +97,14 @@ TEST(TrainedExcitation, TheErrorSaysWhichHowMuchWhereAndWhatToDo) {
 TEST(TrainedExcitation, ColumnsAreFoundByTheirOwnNameOrTheSignals) {
   const auto negative = [](double t) { return -calcForce(t); };
   const auto kilo = [](double t) { return 1e-3 * calcForce(t); };
-  EXPECT_EQ(getError(measure(kilo, 0.01, 4.0, "F", "kN")), "");
-  EXPECT_NE(getError(measure(negative, 0.01, 4.0, "F")), "");
-  EXPECT_EQ(getError(measure(negative, 0.01, 4.0, "G")), "");
+  EXPECT_EQ(getExcitationError(measure(kilo, 0.01, 4.0, "F", "kN")), "");
+  EXPECT_NE(getExcitationError(measure(negative, 0.01, 4.0, "F")), "");
+  EXPECT_EQ(getExcitationError(measure(negative, 0.01, 4.0, "G")), "");
   // A part of a signal is not known by the signal's name.
   ExperimentSpec sum = makeExperiment();
   sum.model.excitation[0].sines.resize(1);
-  EXPECT_EQ(getError(measure(negative, 0.01, 4.0, "F"), 4.0, sum), "");
-  EXPECT_NE(getError(measure(negative), 4.0, sum), "");
+  EXPECT_EQ(getExcitationError(measure(negative, 0.01, 4.0, "F"), 4.0, sum), "");
+  EXPECT_NE(getExcitationError(measure(negative), 4.0, sum), "");
   EXPECT_EQ(listExcitationColumns(sum), (std::vector<std::string>{"force", "F"}));
 }
 
@@ -114,11 +114,11 @@ TEST(TrainedExcitation, OnlyWhatBothCoverIsCompared) {
   for (Column& column : late.columns) {
     column.values = column.values.tail(250).eval();  // from 0.5 s on
   }
-  EXPECT_EQ(getError(late), "");
-  EXPECT_EQ(getError(table, 1e4), "");
-  EXPECT_EQ(
-      getError({"m.csv", {{"t", {}, Eigen::VectorXd::Ones(1)}, {"F", {}, Eigen::VectorXd::Ones(1)}}, {}}),
-      "");
+  EXPECT_EQ(getExcitationError(late), "");
+  EXPECT_EQ(getExcitationError(table, 1e4), "");
+  EXPECT_EQ(getExcitationError(
+                {"m.csv", {{"t", {}, Eigen::VectorXd::Ones(1)}, {"F", {}, Eigen::VectorXd::Ones(1)}}, {}}),
+            "");
 }
 
 }  // namespace

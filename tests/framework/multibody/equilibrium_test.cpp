@@ -7,8 +7,6 @@
 namespace twinmap::testing {
 namespace {
 
-const Expression3 kOrigin = ex3("0", "0", "0");
-
 /// (y, theta) at t = 0 of the two-beam case.
 Eigen::Vector2d getStart(const ModelSpec& model, const Eigen::VectorXd& parameters) {
   return runModel(model, Eigen::VectorXd::Constant(1, 0.0), parameters).transpose();

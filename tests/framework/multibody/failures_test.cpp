@@ -9,8 +9,6 @@
 namespace twinmap::testing {
 namespace {
 
-const Expression3 kOrigin = ex3("0", "0", "0");
-
 /// A mass m on a spring k with damping c, all parameters; starts at x = 1.
 ModelSpec makeOscillator() {
   ModelSpec model = makeModel(2.0);

@@ -7,8 +7,6 @@
 namespace twinmap::testing {
 namespace {
 
-const Expression3 kOrigin = ex3("0", "0", "0");
-
 ModelSpec makeBlock(const std::string& mass, double duration) {
   ModelSpec model = makeModel(duration);
   model.system.bodies = {body("block", mass, kOrigin, kOrigin, joint(JointType::kSlider, {"x"}))};

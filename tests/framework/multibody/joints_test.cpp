@@ -9,7 +9,6 @@ namespace twinmap::testing {
 namespace {
 
 constexpr double kGravity = 9.81;
-const Expression3 kOrigin = ex3("0", "0", "0");
 
 TEST(Joints, SliderCarriesADampedOscillator) {
   ModelSpec model = makeModel(3.0);

@@ -11,8 +11,6 @@
 namespace twinmap::testing {
 namespace {
 
-const Expression3 kOrigin = ex3("0", "0", "0");
-
 /// Responses (rows x points) by one engine; every sample must succeed.
 Eigen::MatrixXd runBy(Engine engine, ModelSpec model, const Eigen::VectorXd& times,
                       const Eigen::MatrixXd& points, int modes = 0) {

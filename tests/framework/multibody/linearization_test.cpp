@@ -12,7 +12,6 @@ namespace {
 constexpr double kTwoPi = 6.283185307179586;
 // central differences of forces that are linear leave rounding errors alone: 1e-16 / 6e-6 of the stiffness
 constexpr double kTolerance = 1e-9;
-const Expression3 kOrigin = ex3("0", "0", "0");
 const Expression3 kAlongX = ex3("1", "0", "0");
 
 struct Modes {

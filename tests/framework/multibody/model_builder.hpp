@@ -16,6 +16,8 @@ inline Expression3 ex3(const std::string& x, const std::string& y, const std::st
   return {ex(x), ex(y), ex(z)};
 }
 
+inline const Expression3 kOrigin = ex3("0", "0", "0");
+
 inline ParameterSpec parameter(const std::string& text, double lower, double upper) {
   ParameterSpec spec;
   spec.name = name(text);

@@ -8,7 +8,7 @@ namespace {
 constexpr int kSamples = 400;
 
 /// Three parameters of bounds [0, 1], inferred as they should be.
-RunSummary makeRun() {
+RunSummary makeGoodRun() {
   RunSummary run;
   for (const char* name : {"k", "d", "m"}) {
     ParameterSpec parameter;
@@ -26,11 +26,11 @@ RunSummary makeRun() {
 }
 
 TEST(Warnings, AnHonestRunHasNone) {
-  EXPECT_TRUE(collectWarnings(makeRun()).empty());
+  EXPECT_TRUE(collectWarnings(makeGoodRun()).empty());
 }
 
 TEST(Warnings, AreToldOnceForAllParameters) {
-  RunSummary run = makeRun();
+  RunSummary run = makeGoodRun();
   run.evaluation.metrics[0].coverage95 = 0.7;
   run.evaluation.metrics[2].coverage95 = 0.81;
   const std::vector<std::string> warnings = collectWarnings(run);
@@ -41,7 +41,7 @@ TEST(Warnings, AreToldOnceForAllParameters) {
 
 // The standard error of a coverage of 0.95 from 400 samples is 0.0109.
 TEST(Warnings, CoverageWithinThreeStandardErrorsIsChance) {
-  RunSummary run = makeRun();
+  RunSummary run = makeGoodRun();
   run.evaluation.metrics[1].coverage95 = 0.92;
   EXPECT_TRUE(collectWarnings(run).empty());
   run.evaluation.metrics[1].coverage95 = 0.915;
@@ -49,7 +49,7 @@ TEST(Warnings, CoverageWithinThreeStandardErrorsIsChance) {
 }
 
 TEST(Warnings, TellWhereMoreSimulationsHardlyHelpAMapFarFromTheLimit) {
-  RunSummary run = makeRun();
+  RunSummary run = makeGoodRun();
   CrossValidation& found = run.training.cross_validation.emplace();
   found.half = 125;
   found.all = 250;
@@ -68,7 +68,7 @@ TEST(Warnings, TellWhereMoreSimulationsHardlyHelpAMapFarFromTheLimit) {
 }
 
 TEST(Warnings, TheGravestComesFirst) {
-  RunSummary run = makeRun();
+  RunSummary run = makeGoodRun();
   run.notes.warn(Gravity::kRemark, "a remark");
   run.notes.warn(Gravity::kMisleading, "misleading");
   run.evaluation.metrics[1].ratio_to_limit = 5.2;
@@ -82,7 +82,7 @@ TEST(Warnings, TheGravestComesFirst) {
 }
 
 TEST(Warnings, NameWhatTheResponseSaysLittleOf) {
-  RunSummary run = makeRun();
+  RunSummary run = makeGoodRun();
   run.evaluation.predictions.stddev.row(1).setConstant(0.25);  // that of the bounds is 0.289
   const std::vector<std::string> warnings = collectWarnings(run);
   ASSERT_EQ(warnings.size(), 1U);
@@ -90,7 +90,7 @@ TEST(Warnings, NameWhatTheResponseSaysLittleOf) {
 }
 
 TEST(Warnings, ParametersThatCannotBeToldApartAreNamedUnlessUndetermined) {
-  RunSummary run = makeRun();
+  RunSummary run = makeGoodRun();
   Identifiability found;
   found.correlation = Eigen::Matrix3d::Identity();
   found.correlation(1, 0) = found.correlation(0, 1) = -0.97;
@@ -104,7 +104,7 @@ TEST(Warnings, ParametersThatCannotBeToldApartAreNamedUnlessUndetermined) {
 }
 
 TEST(Warnings, LengthScalesAtTheirUpperBoundAreNoReasonToWarn) {
-  RunSummary run = makeRun();
+  RunSummary run = makeGoodRun();
   run.training.starts = {{"k", 0, true, 0, 0, false, "", "length_scale[1] at its upper bound 9"},
                          {"d", 0, true, 0, 0, false, "", "noise_stddev at its lower bound 1e-05"}};
   const std::vector<std::string> warnings = collectWarnings(run);

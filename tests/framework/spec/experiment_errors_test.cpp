@@ -4,11 +4,10 @@
 #include <algorithm>
 
 #include "framework/spec/experiment_file.hpp"
+#include "tests/framework/spec/experiments.hpp"
 
 namespace twinmap {
 namespace {
-
-const std::string kTable1 = std::string(TWINMAP_SOURCE_DIR) + "/experiments/two_beam/table1.yaml";
 
 struct Mistake {
   std::string name;

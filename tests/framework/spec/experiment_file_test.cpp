@@ -6,12 +6,10 @@
 #include "framework/spec/joint_type.hpp"
 #include "framework/spec/parameter_box.hpp"
 #include "framework/spec/resolve_defaults.hpp"
+#include "tests/framework/spec/experiments.hpp"
 
 namespace twinmap {
 namespace {
-
-const std::string kTable1 = std::string(TWINMAP_SOURCE_DIR) + "/experiments/two_beam/table1.yaml";
-const std::string kCart = std::string(TWINMAP_SOURCE_DIR) + "/experiments/duffing/cart.yaml";
 
 TEST(ExperimentFile, ReadsTheTwoBeamExperiment) {
   const ExperimentSpec experiment = loadExperiment(kTable1);

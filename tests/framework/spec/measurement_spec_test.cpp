@@ -3,11 +3,10 @@
 #include "framework/spec/column_spec.hpp"
 #include "framework/spec/experiment_file.hpp"
 #include "framework/spec/expression/units.hpp"
+#include "tests/framework/spec/experiments.hpp"
 
 namespace twinmap {
 namespace {
-
-const std::string kTable1 = std::string(TWINMAP_SOURCE_DIR) + "/experiments/two_beam/table1.yaml";
 
 TEST(ColumnSpec, HasANameAndPerhapsAUnit) {
   EXPECT_EQ(parseColumn("enc1").name, "enc1");

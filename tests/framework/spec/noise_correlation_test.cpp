@@ -5,11 +5,10 @@
 #include <cmath>
 
 #include "framework/spec/experiment_file.hpp"
+#include "tests/framework/spec/experiments.hpp"
 
 namespace twinmap {
 namespace {
-
-const std::string kCart = std::string(TWINMAP_SOURCE_DIR) + "/experiments/duffing/cart.yaml";
 
 TEST(NoiseCorrelation, IsGivenByCoefficientsOrValues) {
   EXPECT_EQ(calcAutocorrelation(NoiseCorrelationSpec{{}, {0.5}, {}, {}}, 2), Eigen::Vector3d(1.0, 0.5, 0.25));

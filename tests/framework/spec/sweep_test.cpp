@@ -3,11 +3,10 @@
 #include "framework/spec/experiment_file.hpp"
 #include "framework/spec/sweep/sweep_cases.hpp"
 #include "framework/spec/yaml/compare_trees.hpp"
+#include "tests/framework/spec/experiments.hpp"
 
 namespace twinmap {
 namespace {
-
-const std::string kCart = std::string(TWINMAP_SOURCE_DIR) + "/experiments/duffing/cart.yaml";
 
 std::vector<SweepCase> expand(const std::vector<std::string>& overrides) {
   return expandSweep(loadExperimentTree(kCart, overrides));
@@ -21,7 +20,7 @@ std::vector<std::string> getNames(const std::vector<SweepCase>& cases) {
   return names;
 }
 
-std::string getError(const std::vector<std::string>& overrides) {
+std::string getSweepError(const std::vector<std::string>& overrides) {
   try {
     expand(overrides);
   } catch (const ExperimentError& error) {
@@ -43,9 +42,9 @@ TEST(Sweep, GridTakesEveryValueWithEveryOtherInOrder) {
 TEST(Sweep, ZipTakesTheFirstValuesThenTheSecond) {
   const std::vector<SweepCase> cases = expand({"sweep.combine=zip", "noise.scale=0.5,1", "seed=7,9"});
   EXPECT_EQ(getNames(cases), (std::vector<std::string>{"scale-0.5_seed-7", "scale-1_seed-9"}));
-  EXPECT_NE(
-      getError({"sweep.combine=zip", "noise.scale=0.5,1", "seed=1..3"}).find("'combine: zip' needs as many"),
-      std::string::npos);
+  EXPECT_NE(getSweepError({"sweep.combine=zip", "noise.scale=0.5,1", "seed=1..3"})
+                .find("'combine: zip' needs as many"),
+            std::string::npos);
 }
 
 TEST(Sweep, ListsInBracketsAndCommasInParenthesesAndQuotesAreValues) {
@@ -90,7 +89,8 @@ TEST(Sweep, DefaultsThatDependOnSweptValuesFollowEachCase) {
 
 TEST(Sweep, WhatIsWrongIsNamedAtItsPlace) {
   const auto expect = [](const std::string& override_text, const std::string& message) {
-    EXPECT_NE(getError({override_text}).find(message), std::string::npos) << getError({override_text});
+    EXPECT_NE(getSweepError({override_text}).find(message), std::string::npos)
+        << getSweepError({override_text});
   };
   expect("seed=1,,2", "command line: 'seed=1,,2' has an empty value");
   expect("seed=1,2,", "has an empty value");

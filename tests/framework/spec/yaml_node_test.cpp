@@ -5,7 +5,7 @@
 namespace twinmap {
 namespace {
 
-std::string getError(const std::string& text) {
+std::string getYamlError(const std::string& text) {
   try {
     parseYaml(text, "f.yaml");
   } catch (const ExperimentError& error) {
@@ -33,23 +33,23 @@ TEST(YamlNode, ExpandsAliases) {
 }
 
 TEST(YamlNode, RefusesWhatWouldBeMisread) {
-  EXPECT_EQ(getError("a: 1\nb: 2\na: 3\n"), "f.yaml:3:1: 'a' is given twice in the same map");
-  EXPECT_NE(getError("a: &k {v: 1}\nb: {<<: *k}\n").find("merge key"), std::string::npos);
-  EXPECT_NE(getError("a: !!int 3\n").find("is a tag"), std::string::npos);
-  EXPECT_NE(getError("a: 1\n---\nb: 2\n").find("second document"), std::string::npos);
-  EXPECT_NE(getError("[1, 2]: 3\n").find("cannot be a key"), std::string::npos);
-  EXPECT_NE(getError(std::string("a: \0b", 5)).find("binary"), std::string::npos);
-  EXPECT_EQ(getError("a: [1, 2\n").rfind("f.yaml:2:", 0), 0u);
+  EXPECT_EQ(getYamlError("a: 1\nb: 2\na: 3\n"), "f.yaml:3:1: 'a' is given twice in the same map");
+  EXPECT_NE(getYamlError("a: &k {v: 1}\nb: {<<: *k}\n").find("merge key"), std::string::npos);
+  EXPECT_NE(getYamlError("a: !!int 3\n").find("is a tag"), std::string::npos);
+  EXPECT_NE(getYamlError("a: 1\n---\nb: 2\n").find("second document"), std::string::npos);
+  EXPECT_NE(getYamlError("[1, 2]: 3\n").find("cannot be a key"), std::string::npos);
+  EXPECT_NE(getYamlError(std::string("a: \0b", 5)).find("binary"), std::string::npos);
+  EXPECT_EQ(getYamlError("a: [1, 2\n").rfind("f.yaml:2:", 0), 0u);
 }
 
 TEST(YamlNode, AnEmptyFileHasAPlaceToo) {
   EXPECT_EQ(parseYaml("", "f.yaml").where.file, "f.yaml");
-  EXPECT_EQ(getError(std::string("a: 1\nb: \0", 9)).rfind("f.yaml:2:1: has a NUL byte", 0), 0u);
+  EXPECT_EQ(getYamlError(std::string("a: 1\nb: \0", 9)).rfind("f.yaml:2:1: has a NUL byte", 0), 0u);
 }
 
 TEST(YamlNode, RefusesDeepNestingAndAliasBombs) {
-  EXPECT_NE(getError(std::string(100000, '[')), "");
-  EXPECT_NE(getError("a: &a [*a]\n"), "");
+  EXPECT_NE(getYamlError(std::string(100000, '[')), "");
+  EXPECT_NE(getYamlError("a: &a [*a]\n"), "");
   std::string bomb = "x0: &x0 [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]\n";
   for (int i = 1; i < 10; ++i) {
     const std::string last = "*x" + std::to_string(i - 1);
@@ -59,14 +59,14 @@ TEST(YamlNode, RefusesDeepNestingAndAliasBombs) {
     }
     bomb += last + "]\n";
   }
-  EXPECT_NE(getError(bomb).find("more than a million values"), std::string::npos);
+  EXPECT_NE(getYamlError(bomb).find("more than a million values"), std::string::npos);
 }
 
 TEST(YamlNode, RefusesWhatIsNotUtf8) {
   for (const char* text : {"a: \xff", "# \xe4", "# \xc0\x80", "# \xed\xa0\x80", "# \xe2\x82"}) {
-    EXPECT_EQ(
-        getError(std::string("b: 1\n") + text).rfind("f.yaml:2:1: has a byte in this line that is not", 0),
-        0u)
+    EXPECT_EQ(getYamlError(std::string("b: 1\n") + text)
+                  .rfind("f.yaml:2:1: has a byte in this line that is not", 0),
+              0u)
         << text;
   }
   EXPECT_EQ(parseYaml("\xef\xbb\xbf"
@@ -78,10 +78,10 @@ TEST(YamlNode, RefusesWhatIsNotUtf8) {
 }
 
 TEST(YamlNode, BoundsKeysAndLevelsSoThatKeyPathsStaySmall) {
-  EXPECT_NE(getError("? " + std::string(101, 'k') + "\n: 1\n").find("a key of more than 100"),
+  EXPECT_NE(getYamlError("? " + std::string(101, 'k') + "\n: 1\n").find("a key of more than 100"),
             std::string::npos);
-  EXPECT_EQ(getError(std::string(20, '[') + std::string(20, ']')), "");
-  EXPECT_NE(getError(std::string(21, '[') + std::string(21, ']')).find("more than 20 levels"),
+  EXPECT_EQ(getYamlError(std::string(20, '[') + std::string(20, ']')), "");
+  EXPECT_NE(getYamlError(std::string(21, '[') + std::string(21, ']')).find("more than 20 levels"),
             std::string::npos);
 }
 

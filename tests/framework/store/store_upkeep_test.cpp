@@ -12,12 +12,12 @@ namespace fs = std::filesystem;
 
 constexpr const char* kContent = "model: 1\nsolver:\n  revision: 7\n  build: none\n";
 
-TrajectoryStore openStore(const fs::path& root) {
+TrajectoryStore openSmallStore(const fs::path& root) {
   return TrajectoryStore(root, kContent, 1, 2);
 }
 
 /// Samples at first, first + 1, ... whose responses are their points.
-SampleBlock makeBlock(int first, int count) {
+SampleBlock makeNumberedBlock(int first, int count) {
   SampleBlock block;
   block.parameters = Eigen::RowVectorXd::LinSpaced(count, first, first + count - 1);
   block.responses = block.parameters.replicate(2, 1);
@@ -43,9 +43,9 @@ void damage(const fs::path& file) {
 
 TEST(StoreUpkeep, CountsSamplesOnceAndSaysWhatComputedThem) {
   const TemporaryFolder root;
-  TrajectoryStore store = openStore(root.getPath());
-  store.append(makeBlock(0, 4));
-  store.append(makeBlock(3, 2));
+  TrajectoryStore store = openSmallStore(root.getPath());
+  store.append(makeNumberedBlock(0, 4));
+  store.append(makeNumberedBlock(3, 2));
   const std::vector<StoredModel> models = listStoredModels(root.getPath(), StoreReading::kIndex);
   ASSERT_EQ(models.size(), 1u);
   EXPECT_EQ(models[0].samples, 5);
@@ -58,8 +58,8 @@ TEST(StoreUpkeep, CountsSamplesOnceAndSaysWhatComputedThem) {
 
 TEST(StoreUpkeep, ReadingWholeFindsAChangedByte) {
   const TemporaryFolder root;
-  TrajectoryStore store = openStore(root.getPath());
-  store.append(makeBlock(0, 20));
+  TrajectoryStore store = openSmallStore(root.getPath());
+  store.append(makeNumberedBlock(0, 20));
   damage(findChunk(store));
   EXPECT_TRUE(listStoredModels(root.getPath(), StoreReading::kIndex)[0].problems.empty());
   const std::vector<StoredModel> models = listStoredModels(root.getPath(), StoreReading::kWhole);
@@ -69,15 +69,15 @@ TEST(StoreUpkeep, ReadingWholeFindsAChangedByte) {
 
 TEST(StoreUpkeep, MergesWholeChunksAndLeavesDamagedOnes) {
   const TemporaryFolder root;
-  TrajectoryStore one = openStore(root / "one"), other = openStore(root / "other");
-  one.append(makeBlock(0, 3));
-  other.append(makeBlock(0, 3));
-  other.append(makeBlock(3, 20));
+  TrajectoryStore one = openSmallStore(root / "one"), other = openSmallStore(root / "other");
+  one.append(makeNumberedBlock(0, 3));
+  other.append(makeNumberedBlock(0, 3));
+  other.append(makeNumberedBlock(3, 20));
   const MergeResult merged = mergeStores(root / "one", root / "other");
   EXPECT_EQ(merged.copied, 1);
   EXPECT_EQ(merged.present, 1);
   EXPECT_TRUE(merged.problems.empty());
-  EXPECT_EQ(openStore(root / "one").getSampleCount(), 23);
+  EXPECT_EQ(openSmallStore(root / "one").getSampleCount(), 23);
 
   damage(findChunk(other));
   const MergeResult fresh = mergeStores(root / "fresh", root / "other");
@@ -87,15 +87,15 @@ TEST(StoreUpkeep, MergesWholeChunksAndLeavesDamagedOnes) {
 
 TEST(StoreUpkeep, PrunesWhatIsDamagedOrStoredElsewhereAndNoSample) {
   const TemporaryFolder root;
-  TrajectoryStore store = openStore(root.getPath());
-  store.append(makeBlock(0, 4));
-  store.append(makeBlock(0, 4));  // the same bytes: the same file
-  store.append(makeBlock(0, 6));
+  TrajectoryStore store = openSmallStore(root.getPath());
+  store.append(makeNumberedBlock(0, 4));
+  store.append(makeNumberedBlock(0, 4));  // the same bytes: the same file
+  store.append(makeNumberedBlock(0, 6));
   std::ofstream(store.getFolder() / "a.chunk.set-aside") << "damaged";
   std::ofstream(store.getFolder() / "a.chunk.node7-1-2.tmp") << "perhaps under way";
   const int pruned = pruneStores(root.getPath()).files;
   EXPECT_GE(pruned, 1);
-  EXPECT_EQ(openStore(root.getPath()).getSampleCount(), 6);
+  EXPECT_EQ(openSmallStore(root.getPath()).getSampleCount(), 6);
   EXPECT_FALSE(fs::exists(store.getFolder() / "a.chunk.set-aside"));
   EXPECT_TRUE(fs::exists(store.getFolder() / "a.chunk.node7-1-2.tmp"));
 }

@@ -31,7 +31,7 @@ MatrixXd makePoints(int count, int first = 0) {
 }
 
 /// Row r of the sample at point p is r + p0.
-SampleBlock makeBlock(const MatrixXd& points) {
+SampleBlock makeBlockAt(const MatrixXd& points) {
   SampleBlock block;
   block.parameters = points;
   block.responses =
@@ -42,7 +42,7 @@ SampleBlock makeBlock(const MatrixXd& points) {
 }
 
 SampleBlock makeFailure(double p0, const std::string& reason, bool machine_dependent) {
-  SampleBlock block = makeBlock(Eigen::Vector2d(p0, 0.0));
+  SampleBlock block = makeBlockAt(Eigen::Vector2d(p0, 0.0));
   block.responses.setConstant(std::numeric_limits<double>::quiet_NaN());
   block.statuses = {{false, reason, machine_dependent}};
   return block;
@@ -76,10 +76,10 @@ TEST(TrajectoryStore, FindsWhatWasAppendedAlsoWhenOpenedAgain) {
   {
     TrajectoryStore store = openStore(root.getPath());
     EXPECT_EQ(store.findMissing(points).size(), 6u);
-    store.append(makeBlock(points.leftCols(2)));
-    store.append(makeBlock(points.middleCols(2, 3)));
+    store.append(makeBlockAt(points.leftCols(2)));
+    store.append(makeBlockAt(points.middleCols(2, 3)));
     EXPECT_EQ(store.findMissing(points), std::vector<Index>{5});
-    EXPECT_EQ(store.load(points.leftCols(5)).responses, makeBlock(points.leftCols(5)).responses);
+    EXPECT_EQ(store.load(points.leftCols(5)).responses, makeBlockAt(points.leftCols(5)).responses);
   }
   const TrajectoryStore again = openStore(root.getPath());
   EXPECT_EQ(again.getSampleCount(), 5);
@@ -89,14 +89,14 @@ TEST(TrajectoryStore, FindsWhatWasAppendedAlsoWhenOpenedAgain) {
   EXPECT_EQ(loaded.statuses[0].reason, "not simulated");
   EXPECT_TRUE(loaded.responses.col(0).array().isNaN().all());
   EXPECT_EQ(loaded.responses.rightCols(5),
-            MatrixXd(makeBlock(points.leftCols(5)).responses.rowwise().reverse()));
+            MatrixXd(makeBlockAt(points.leftCols(5)).responses.rowwise().reverse()));
   EXPECT_EQ(readFile(again.getFolder() / "content.yaml"), "model");
 }
 
 TEST(TrajectoryStore, AnotherContentHasAFolderOfItsOwn) {
   const TemporaryFolder root;
   TrajectoryStore store = openStore(root.getPath());
-  store.append(makeBlock(makePoints(3)));
+  store.append(makeBlockAt(makePoints(3)));
   const TrajectoryStore other(root.getPath(), "another model", kParameters, kRows);
   EXPECT_EQ(other.getSampleCount(), 0);
   EXPECT_NE(other.getFolder(), store.getFolder());
@@ -108,7 +108,7 @@ TEST(TrajectoryStore, PointsAreToldApartByTheirBits) {
   MatrixXd points(2, 4);
   points << 1.0, std::nextafter(1.0, 2.0), 1.0, 1.0, 0.0, 0.0, 0.0, -0.0;
   EXPECT_EQ(store.findMissing(points), (std::vector<Index>{0, 1, 3}));  // the third is the first again
-  store.append(makeBlock(points.leftCols(1)));
+  store.append(makeBlockAt(points.leftCols(1)));
   EXPECT_EQ(store.findMissing(points), (std::vector<Index>{1, 3}));
 }
 
@@ -143,16 +143,16 @@ TEST(TrajectoryStore, DamagedChunksAreSetAsideAndTheirSamplesMissing) {
     fs::path damaged;
     {
       TrajectoryStore store = openStore(root.getPath());
-      store.append(makeBlock(points.leftCols(3)));
+      store.append(makeBlockAt(points.leftCols(3)));
       damaged = listChunks(store)[0];
-      store.append(makeBlock(points.rightCols(1)));
+      store.append(makeBlockAt(points.rightCols(1)));
     }
     std::string bytes = readFile(damaged);
     const std::size_t position = random() % bytes.size();
     if (damage == "flipped") {
       bytes[position] = static_cast<char>(bytes[position] ^ 4);
     } else if (damage == "foreign") {
-      bytes = makeChunk(makeBlock(points.leftCols(3)), {Digest{}, kParameters, kRows});
+      bytes = makeChunk(makeBlockAt(points.leftCols(3)), {Digest{}, kParameters, kRows});
     } else {
       bytes.resize(damage == "truncated" ? position : 0);
     }
@@ -167,15 +167,15 @@ TEST(TrajectoryStore, DamagedChunksAreSetAsideAndTheirSamplesMissing) {
     ASSERT_EQ(store.getSetAside().size(), 1u);
     EXPECT_EQ(store.getSetAside()[0].file, damaged.string() + ".set-aside");
     EXPECT_EQ(readFile(store.getSetAside()[0].file), bytes);
-    store.append(makeBlock(points.leftCols(3)));
-    EXPECT_EQ(store.load(points).responses, makeBlock(points).responses);
+    store.append(makeBlockAt(points.leftCols(3)));
+    EXPECT_EQ(store.load(points).responses, makeBlockAt(points).responses);
   }
 }
 
 TEST(TrajectoryStore, AChunkDamagedWhileTheStoreIsOpenIsAnErrorNotAResult) {
   const TemporaryFolder root;
   TrajectoryStore store = openStore(root.getPath());
-  store.append(makeBlock(makePoints(3)));
+  store.append(makeBlockAt(makePoints(3)));
   const fs::path chunk = listChunks(store)[0];
   std::string bytes = readFile(chunk);
   bytes[100] = static_cast<char>(bytes[100] ^ 1);
@@ -194,7 +194,7 @@ TEST(TrajectoryStore, ALaterFormatIsAnErrorThatNamesTheFile) {
   fs::path chunk;
   {
     TrajectoryStore store = openStore(root.getPath());
-    store.append(makeBlock(makePoints(3)));
+    store.append(makeBlockAt(makePoints(3)));
     chunk = listChunks(store)[0];
   }
   std::string bytes = readFile(chunk);
@@ -237,8 +237,8 @@ TEST(TrajectoryStore, AFullDiskIsAnErrorThatNamesTheFileAndKeepsWhatWasThere) {
   const TemporaryFolder root;
   TrajectoryStore store = openStore(root.getPath());
   const MatrixXd points = makePoints(5);
-  store.append(makeBlock(points.leftCols(2)));
-  const SampleBlock block = makeBlock(points.rightCols(3));
+  store.append(makeBlockAt(points.leftCols(2)));
+  const SampleBlock block = makeBlockAt(points.rightCols(3));
   const std::string bytes = makeChunk(block, store.getShape());
   const fs::path file = store.getFolder() / (toHex(calcDigest(bytes.data(), bytes.size())) + ".chunk");
   fs::create_symlink("/dev/full", getTemporaryPath(file));
@@ -251,21 +251,21 @@ TEST(TrajectoryStore, AFullDiskIsAnErrorThatNamesTheFileAndKeepsWhatWasThere) {
   EXPECT_EQ(store.findMissing(points), (std::vector<Index>{2, 3, 4}));
   store.append(block);  // there is space again
   EXPECT_TRUE(store.findMissing(points).empty());
-  EXPECT_EQ(store.load(points).responses, makeBlock(points).responses);
+  EXPECT_EQ(store.load(points).responses, makeBlockAt(points).responses);
 }
 
 TEST(TrajectoryStore, FindsWhatAnotherWriterStoresMeanwhile) {
   const TemporaryFolder root;
   TrajectoryStore one = openStore(root.getPath()), other = openStore(root.getPath());
   const MatrixXd points = makePoints(5);
-  one.append(makeBlock(points.leftCols(3)));
+  one.append(makeBlockAt(points.leftCols(3)));
   EXPECT_EQ(other.findMissing(points).size(), 5u);
-  other.append(makeBlock(points.middleCols(2, 3)));  // the third is stored twice
+  other.append(makeBlockAt(points.middleCols(2, 3)));  // the third is stored twice
   one.refresh();
   other.refresh();
   EXPECT_TRUE(one.findMissing(points).empty());
-  EXPECT_EQ(one.load(points).responses, makeBlock(points).responses);
-  EXPECT_EQ(other.load(points).responses, makeBlock(points).responses);
+  EXPECT_EQ(one.load(points).responses, makeBlockAt(points).responses);
+  EXPECT_EQ(other.load(points).responses, makeBlockAt(points).responses);
   EXPECT_EQ(openStore(root.getPath(), StoreAccess::kReadOnly).getSampleCount(), 5);
 }
 
@@ -275,9 +275,9 @@ TEST(TrajectoryStore, ASampleOfADamagedChunkIsFoundWhereItIsStoredOnceMore) {
   fs::path damaged;
   {
     TrajectoryStore store = openStore(root.getPath());
-    store.append(makeBlock(points));
+    store.append(makeBlockAt(points));
     damaged = listChunks(store)[0];
-    store.append(makeBlock(points.leftCols(2)));
+    store.append(makeBlockAt(points.leftCols(2)));
   }
   std::string bytes = readFile(damaged);
   bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
@@ -286,13 +286,13 @@ TEST(TrajectoryStore, ASampleOfADamagedChunkIsFoundWhereItIsStoredOnceMore) {
   store.verify(points);
   EXPECT_EQ(store.getSetAside().size(), 1u);
   EXPECT_EQ(store.findMissing(points), std::vector<Index>{2});
-  EXPECT_EQ(store.load(points.leftCols(2)).responses, makeBlock(points.leftCols(2)).responses);
+  EXPECT_EQ(store.load(points.leftCols(2)).responses, makeBlockAt(points.leftCols(2)).responses);
 }
 
 TEST(TrajectoryStore, AChunkThatVanishedIsMissingWhenItIsVerified) {
   const TemporaryFolder root;
   TrajectoryStore one = openStore(root.getPath());
-  one.append(makeBlock(makePoints(3)));
+  one.append(makeBlockAt(makePoints(3)));
   TrajectoryStore other = openStore(root.getPath());
   fs::remove(listChunks(one)[0]);
   other.verify(makePoints(3));

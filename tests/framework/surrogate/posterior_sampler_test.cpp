@@ -103,24 +103,24 @@ void expectAgreement(const SurrogatePosterior& posterior, const Quadrature& exac
   }
 }
 
-VectorXd calcLinear(const VectorXd& x) {
+VectorXd calcThreeFeatures(const VectorXd& x) {
   return Eigen::Vector3d(4.0 * x[0] + x[1], 3.0 * x[1] - 2.0 * x[0], 0.5 * x[0]);
 }
 
 TEST(PosteriorSampler, AgreesWithQuadratureOfALinearModelWithinTheBox) {
-  PosteriorSampler sampler(makeModel(makeForward(2, calcLinear), 2), kDraws, 1);
-  const VectorXd scores = calcLinear(Vector2d(0.3, -0.2)) + Eigen::Vector3d(0.5, -0.8, 0.3);
+  PosteriorSampler sampler(makeModel(makeForward(2, calcThreeFeatures), 2), kDraws, 1);
+  const VectorXd scores = calcThreeFeatures(Vector2d(0.3, -0.2)) + Eigen::Vector3d(0.5, -0.8, 0.3);
   const SurrogatePosterior posterior = sampler.sample(scores, VectorXd());
-  expectAgreement(posterior, integrate(calcLinear, scores));
+  expectAgreement(posterior, integrate(calcThreeFeatures, scores));
   EXPECT_GT(posterior.effective_sample_size, 0.6 * kDraws);
   EXPECT_EQ(posterior.evaluations, kDraws);
 }
 
 TEST(PosteriorSampler, LeansOnTheBoundsAsThePosteriorDoes) {
-  PosteriorSampler sampler(makeModel(makeForward(2, calcLinear), 2), kDraws, 1);
-  const VectorXd scores = calcLinear(Vector2d(0.98, -0.9)) + Eigen::Vector3d(0.7, 0.2, -0.4);
+  PosteriorSampler sampler(makeModel(makeForward(2, calcThreeFeatures), 2), kDraws, 1);
+  const VectorXd scores = calcThreeFeatures(Vector2d(0.98, -0.9)) + Eigen::Vector3d(0.7, 0.2, -0.4);
   const SurrogatePosterior posterior = sampler.sample(scores, VectorXd());
-  expectAgreement(posterior, integrate(calcLinear, scores));
+  expectAgreement(posterior, integrate(calcThreeFeatures, scores));
   EXPECT_LE(posterior.draws.maxCoeff(), 1.0);
 }
 
@@ -161,8 +161,8 @@ TEST(PosteriorSampler, MarginalisesNuisanceParametersAndHoldsKnownInputs) {
 }
 
 TEST(PosteriorSampler, ACalibratedScaleWidensWithinTheBox) {
-  PosteriorModel model = makeModel(makeForward(2, calcLinear), 2);
-  const VectorXd scores = calcLinear(Vector2d(0.1, 0.0));
+  PosteriorModel model = makeModel(makeForward(2, calcThreeFeatures), 2);
+  const VectorXd scores = calcThreeFeatures(Vector2d(0.1, 0.0));
   const SurrogatePosterior narrow = PosteriorSampler(model, kDraws, 1).sample(scores, VectorXd());
   model.stddev_scale = Vector2d(1.4, 1.0);
   const SurrogatePosterior wide = PosteriorSampler(model, kDraws, 1).sample(scores, VectorXd());
@@ -172,10 +172,10 @@ TEST(PosteriorSampler, ACalibratedScaleWidensWithinTheBox) {
 }
 
 TEST(PosteriorSampler, TheSameMeasurementGivesTheSameBitsWhateverCameBefore) {
-  const PosteriorModel model = makeModel(makeForward(2, calcLinear), 2);
-  const VectorXd scores = calcLinear(Vector2d(0.3, -0.2));
+  const PosteriorModel model = makeModel(makeForward(2, calcThreeFeatures), 2);
+  const VectorXd scores = calcThreeFeatures(Vector2d(0.3, -0.2));
   PosteriorSampler fresh(model, kFewestPosteriorDraws, 1), used(model, kFewestPosteriorDraws, 1);
-  (void)used.sample(calcLinear(Vector2d(-0.9, 0.9)), VectorXd(), 5);
+  (void)used.sample(calcThreeFeatures(Vector2d(-0.9, 0.9)), VectorXd(), 5);
   const SurrogatePosterior a = fresh.sample(scores, VectorXd()), b = used.sample(scores, VectorXd());
   EXPECT_EQ(a.mean, b.mean);
   EXPECT_EQ(a.draws, b.draws);
@@ -217,7 +217,8 @@ TEST(ScoreLikelihood, IsTheFormulaWithTheErrorsOfTheSurrogate) {
   likelihood.setMeasurement(scores, VectorXd(), {wide});
   const VectorXd logs = likelihood.calcLogs((MatrixXd(1, 3) << 1.0001, 0.9, -1.5).finished());
   EXPECT_EQ(logs[0], -INFINITY);
-  // Blocks of points round differently from one point, by up to the condition of the kernel matrix, 80 / 1e-8.
+  // Blocks of points round differently from one point, by up to the condition of the kernel matrix, 80 /
+  // 1e-8.
   EXPECT_NEAR(logs[1], expected, 80 / 1e-8 * DBL_EPSILON * std::abs(expected));
   EXPECT_EQ(logs[2], -INFINITY);
 }

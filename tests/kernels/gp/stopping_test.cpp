@@ -57,7 +57,7 @@ TEST(Stopping, ASearchEvaluatesNothingMore) {
   EXPECT_EQ(searchWith(makeObjective([] {}), &stop).evaluations, 0);
 }
 
-struct Problem {
+struct SlowProblem {
   MatrixXd inputs = test::randomMatrix(3, 250, 1);
   MatrixXd targets = test::smoothTarget(inputs, 0.1, 2).transpose();
 };
@@ -71,7 +71,7 @@ TrainingOptions makeOptions(StopFlag stop, int starts = 2) {
 
 // As many starts as would take a quarter of an hour.
 TEST(Stopping, TrainingEndsWhileItIsUnderWay) {
-  const Problem problem;
+  const SlowProblem problem;
   for (const int threads : {1, 2}) {
     std::atomic<bool> stop{false};
     TrainingOptions options = makeOptions(&stop, 100000);
@@ -85,7 +85,7 @@ TEST(Stopping, TrainingEndsWhileItIsUnderWay) {
 }
 
 TEST(Stopping, SparseTrainingEndsInEachOfItsStages) {
-  const Problem problem;
+  const SlowProblem problem;
   std::atomic<bool> stop{true};
   EXPECT_THROW((void)trainSparse(problem.inputs, problem.targets, {}, makeOptions(&stop), {50, 100, 20}),
                Stopped);
@@ -103,7 +103,7 @@ TEST(Stopping, SparseTrainingEndsInEachOfItsStages) {
 }
 
 TEST(Stopping, AFlagThatIsNeverSetChangesNothing) {
-  const Problem problem;
+  const SlowProblem problem;
   std::atomic<bool> stop{false};
   const auto watched = train(problem.inputs, problem.targets, {}, makeOptions(&stop))[0];
   const auto alone = train(problem.inputs, problem.targets, {}, makeOptions(nullptr))[0];
