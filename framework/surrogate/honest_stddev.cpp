@@ -20,7 +20,7 @@ double calcQuantile(const Eigen::VectorXd& sorted, double level) {
 
 /// The larger of both quantiles over those of the normal distribution; of their confidence limits so many
 /// standard errors of the ranks (binomial) above them.
-double calcScale(const Eigen::VectorXd& sorted, double errors_above) {
+double calcQuantileScale(const Eigen::VectorXd& sorted, double errors_above) {
   const auto n = static_cast<double>(sorted.size());
   double scale = 0.0;
   for (const auto& [level, normal] : {std::pair{0.95, kNormal95}, std::pair{0.68, kNormal68}}) {
@@ -30,7 +30,7 @@ double calcScale(const Eigen::VectorXd& sorted, double errors_above) {
   return scale;
 }
 
-Eigen::VectorXd sort(Eigen::VectorXd values) {
+Eigen::VectorXd sortErrors(Eigen::VectorXd values) {
   std::sort(values.data(), values.data() + values.size());
   return values;
 }
@@ -38,12 +38,12 @@ Eigen::VectorXd sort(Eigen::VectorXd values) {
 }  // namespace
 
 double calcStddevScale(const Eigen::VectorXd& absolute_z) {
-  const Eigen::VectorXd sorted = sort(absolute_z);
-  return std::max(calcScale(sorted, 0.0), std::min(1.0, calcScale(sorted, kNormal95)));
+  const Eigen::VectorXd sorted = sortErrors(absolute_z);
+  return std::max(calcQuantileScale(sorted, 0.0), std::min(1.0, calcQuantileScale(sorted, kNormal95)));
 }
 
 double calcLeastStddevScale(const Eigen::VectorXd& absolute_z) {
-  return calcScale(sort(absolute_z), -1.0);
+  return calcQuantileScale(sortErrors(absolute_z), -1.0);
 }
 
 }  // namespace twinmap
