@@ -7,18 +7,18 @@
 namespace twinmap {
 namespace {
 
-constexpr std::size_t kLongest = 64;
+constexpr std::size_t kLongestNumber = 64;
 
 }  // namespace
 
 std::string toText(double value) {
-  std::array<char, kLongest> text{};
+  std::array<char, kLongestNumber> text{};
   const auto result = std::to_chars(text.data(), text.data() + text.size(), value);
   return std::string(text.data(), result.ptr);
 }
 
 std::string toShortText(double value, int digits) {
-  std::array<char, kLongest> text{};
+  std::array<char, kLongestNumber> text{};
   const auto result =
       std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, digits);
   return std::string(text.data(), result.ptr);
