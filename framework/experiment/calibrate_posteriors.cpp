@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "framework/monitoring/interrupted.hpp"
+#include "framework/monitoring/run_control.hpp"
 #include "framework/monitoring/stage_timer.hpp"
 #include "framework/online/posterior_model.hpp"
 #include "framework/surrogate/run_tasks.hpp"

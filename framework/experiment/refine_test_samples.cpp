@@ -7,8 +7,8 @@
 
 #include "framework/experiment/answers.hpp"
 #include "framework/experiment/refinement_starts.hpp"
-#include "framework/monitoring/interrupted.hpp"
 #include "framework/monitoring/log.hpp"
+#include "framework/monitoring/run_control.hpp"
 #include "framework/monitoring/stage_timer.hpp"
 #include "framework/refinement/refine.hpp"
 #include "framework/spec/parameter_box.hpp"
