@@ -27,11 +27,11 @@ FOUR = ["two_beam/best", "crane/crane", "mechanisms/double_pendulum", "mechanism
 MAPS = {
     "network": ("network", SIZES, EXPERIMENTS),
     "surrogate": ("surrogate", [100, 250, 1000], EXPERIMENTS),
-    "gp": ("gp", [100, 250, 1000], EXPERIMENTS),
+    "gp": ("gp", [100, 250], EXPERIMENTS),
     "mixture": ("{network: {head: mixture}}", [250], FOUR),
     "bayesian last layer": ("{network: {bayesian: last_layer}}", [250], FOUR),
-    "sparse gp": ("{gp: {approximation: sgpr}}", [4000], FOUR),
-    "network, simulations alone": ("{network: {samples_from: simulations}}", [250, 1000], FOUR),
+    "sparse gp": ("{gp: {approximation: sgpr}}", [1000, 4000], FOUR),
+    "network, simulations alone": ("{network: {samples_from: simulations}}", [1000], FOUR),
 }
 BASELINES = {"linear_regression": ("linear regression", SIZES), "least_squares": ("least squares", [250])}
 ORDER = list(MAPS) + [name for name, _ in BASELINES.values()]

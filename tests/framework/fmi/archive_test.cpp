@@ -6,7 +6,7 @@
 #include "framework/fmi/package.hpp"
 #include "framework/spec/yaml/source_location.hpp"
 #include "tests/framework/fmi/fmu_case.hpp"
-#include "tests/framework/temporary_folder.hpp"
+#include "tests/framework/test_folder.hpp"
 
 namespace twinmap::testing {
 namespace {
@@ -36,7 +36,7 @@ class Archive : public ::testing::Test {
                                                   fs::recursive_directory_iterator()));
   }
 
-  TemporaryFolder folder_;
+  TestFolder folder_;
 };
 
 TEST_F(Archive, WhatIsNoFmuIsRefusedWithTheReason) {

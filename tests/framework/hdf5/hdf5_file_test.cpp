@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/framework/temporary_folder.hpp"
+#include "tests/framework/test_folder.hpp"
 
 namespace twinmap {
 namespace {
@@ -23,7 +23,7 @@ void writeExample(const std::filesystem::path& path) {
 }
 
 TEST(Hdf5File, ReadsBackWhatWasWritten) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   writeExample(folder / "a.h5");
   const Hdf5Reader file(folder / "a.h5");
   EXPECT_EQ(file.readShape("/cube"), (std::vector<std::size_t>{2, 3, 2}));
@@ -40,7 +40,7 @@ TEST(Hdf5File, ReadsBackWhatWasWritten) {
 }
 
 TEST(Hdf5File, EqualContentGivesEqualBytes) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   writeExample(folder / "a.h5");
   sleep(1);  // a time stamp would differ
   writeExample(folder / "b.h5");
@@ -48,7 +48,7 @@ TEST(Hdf5File, EqualContentGivesEqualBytes) {
 }
 
 TEST(Hdf5File, ErrorsNameFileAndDataset) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   writeExample(folder / "a.h5");
   const Hdf5Reader file(folder / "a.h5");
   try {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/framework/temporary_folder.hpp"
+#include "tests/framework/test_folder.hpp"
 
 namespace twinmap {
 namespace {
@@ -38,7 +38,7 @@ class MeasuredSignals : public testing::Test {
     return "no error";
   }
 
-  TemporaryFolder folder_;
+  TestFolder folder_;
   ExperimentSpec experiment_;
 };
 

@@ -10,18 +10,18 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr Index kCount = 1000;
+constexpr Index kTimes = 1000;
 
 Table makeNoisyTable() {
   std::mt19937_64 generator(1);
   std::normal_distribution<double> normal;
   Table table{
       "a.csv",
-      {{"t", {}, VectorXd(kCount)}, {"y", "mm", VectorXd(kCount)}, {"still", {}, VectorXd::Ones(kCount)}},
+      {{"t", {}, VectorXd(kTimes)}, {"y", "mm", VectorXd(kTimes)}, {"still", {}, VectorXd::Ones(kTimes)}},
       {}};
-  for (Index i = 0; i < kCount; ++i) {
+  for (Index i = 0; i < kTimes; ++i) {
     table.columns[0].values[i] = 0.01 * static_cast<double>(i);
-    table.columns[1].values[i] = (i < kCount / 2 ? 1.0 : 50.0) * normal(generator);
+    table.columns[1].values[i] = (i < kTimes / 2 ? 1.0 : 50.0) * normal(generator);
   }
   return table;
 }
@@ -43,7 +43,7 @@ TEST(SignalNoise, IsThatOfTheWindowInTheUnitThatIsAskedFor) {
   ASSERT_EQ(signals.size(), 1U);
   EXPECT_EQ(signals[0].name, "out");
   EXPECT_EQ(signals[0].unit, "m");
-  EXPECT_EQ(signals[0].samples, kCount / 2);
+  EXPECT_EQ(signals[0].samples, kTimes / 2);
   EXPECT_NEAR(*signals[0].sample_time, 0.01, 1e-12);
   EXPECT_NEAR(signals[0].noise.stddev, 1e-3, 4 * signals[0].noise.stddev_error);
 }

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "framework/hdf5/hdf5_file.hpp"
-#include "tests/framework/temporary_folder.hpp"
+#include "tests/framework/test_folder.hpp"
 
 namespace twinmap {
 namespace {
@@ -124,7 +124,7 @@ TEST(Csv, ReadsBackTheBitsThatWereWrittenOverManyBlocks) {
 }
 
 TEST(ReadTable, ErrorsNameTheFile) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   const auto getFileError = [&](const std::string& name) {
     return getError([&] { readTable(folder / name); }).substr(folder.getPath().string().size() + 1);
   };
@@ -141,7 +141,7 @@ TEST(ReadTable, ErrorsNameTheFile) {
 }
 
 TEST(Hdf5Table, ColumnsAreVectorsByTheirPath) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   Hdf5Writer file(folder / "a.h5");
   file.write("/t", makeVector({0.0, 1.0}));
   file.write("/run1/enc1", makeVector({2.0, 3.0}));
@@ -197,7 +197,7 @@ void writeMat(const std::filesystem::path& path, mat_ft version) {
 }
 
 TEST_P(MatTable, ColumnsAreRealVectors) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   writeMat(folder / "a.mat", GetParam());
   const Table table = readTable(folder / "a.mat");
   EXPECT_EQ(table.columns.size(), 4U);

@@ -14,7 +14,7 @@ using testing::makeMatrix;
 using testing::makeVector;
 using testing::Problem;
 
-constexpr double kNoise = 0.3;
+constexpr double kNoiseStddev = 0.3;
 
 /// Two parameters within [-1, 1]; 30 samples, linear but for `bend` times the square of the first.
 Problem makeBent(double bend) {
@@ -22,12 +22,13 @@ Problem makeBent(double bend) {
   const auto response = [=](const VectorXd& x) -> VectorXd {
     return (matrix * x).array() + bend * x[0] * x[0];
   };
-  return {30, response, testing::makeParameters(2, -1.0, 1.0), kNoise};
+  return {30, response, testing::makeParameters(2, -1.0, 1.0), kNoiseStddev};
 }
 
 MatrixXd calcLinearCovariance() {
   const MatrixXd matrix = makeMatrix(30, 2);
-  return test::calcInverse(matrix.transpose() * matrix / (kNoise * kNoise) + 3.0 * MatrixXd::Identity(2, 2));
+  return test::calcInverse(matrix.transpose() * matrix / (kNoiseStddev * kNoiseStddev) +
+                           3.0 * MatrixXd::Identity(2, 2));
 }
 
 Refined refineKnowing(Problem& problem, const VectorXd& features, const VectorXd& start,
@@ -38,11 +39,11 @@ Refined refineKnowing(Problem& problem, const VectorXd& features, const VectorXd
 
 TEST(Confirm, OfALinearModelIsTheExactPosteriorAfterTwoPoints) {
   Problem problem = makeBent(0.0);
-  const VectorXd features = problem.measure(makeVector({0.4, -0.3}), kNoise);
+  const VectorXd features = problem.measure(makeVector({0.4, -0.3}), kNoiseStddev);
   const MatrixXd covariance = calcLinearCovariance();
   const Refined refined = refineKnowing(problem, features, makeVector({0.5, -0.2}), 2.0 * covariance);
   ASSERT_TRUE(refined.isAccepted()) << refined.message;
-  const VectorXd mean = covariance * makeMatrix(30, 2).transpose() * features / (kNoise * kNoise);
+  const VectorXd mean = covariance * makeMatrix(30, 2).transpose() * features / (kNoiseStddev * kNoiseStddev);
   EXPECT_EQ(refined.simulations, 2 * 5);
   EXPECT_LT((refined.covariance - covariance).norm(), 1e-6 * covariance.norm());
   EXPECT_LT(((refined.point - mean).array() / refined.stddev.array()).abs().maxCoeff(), 1e-6);
@@ -50,7 +51,7 @@ TEST(Confirm, OfALinearModelIsTheExactPosteriorAfterTwoPoints) {
 
 TEST(Confirm, AgreesWithTheSearchOfASmoothModel) {
   Problem problem = makeBent(1.0);
-  const VectorXd features = problem.measure(makeVector({0.4, -0.3}), kNoise);
+  const VectorXd features = problem.measure(makeVector({0.4, -0.3}), kNoiseStddev);
   const VectorXd start = makeVector({0.45, -0.25});
   const Refined searched = problem.refineFrom(features, {{"map", start}});
   const Refined confirmed = refineKnowing(problem, features, start, calcLinearCovariance());
@@ -62,7 +63,7 @@ TEST(Confirm, AgreesWithTheSearchOfASmoothModel) {
 
 TEST(Confirm, LeavesToTheSearchWhatIsFarAway) {
   Problem problem = makeBent(1.0);
-  const VectorXd features = problem.measure(makeVector({0.4, -0.3}), kNoise);
+  const VectorXd features = problem.measure(makeVector({0.4, -0.3}), kNoiseStddev);
   const VectorXd start = makeVector({-0.6, 0.5});
   const Refined refined = refineKnowing(problem, features, start, 1e-4 * MatrixXd::Identity(2, 2));
   const Refined searched = problem.refineFrom(features, {{"map", start}});
@@ -72,7 +73,7 @@ TEST(Confirm, LeavesToTheSearchWhatIsFarAway) {
 
 TEST(Confirm, DoesNotBeginWhereTheLimitsAreNear) {
   Problem problem = makeBent(0.0);
-  const VectorXd features = problem.measure(makeVector({0.4, -0.3}), kNoise);
+  const VectorXd features = problem.measure(makeVector({0.4, -0.3}), kNoiseStddev);
   const VectorXd start = makeVector({1.099, 0.0});
   const Refined refined = refineKnowing(problem, features, start, 0.01 * MatrixXd::Identity(2, 2));
   EXPECT_EQ(refined.simulations, problem.refineFrom(features, {{"map", start}}).simulations);
@@ -80,7 +81,7 @@ TEST(Confirm, DoesNotBeginWhereTheLimitsAreNear) {
 
 TEST(Confirm, AcceptsNeitherAWrongModelNorAMinimumThatIsNoParaboloid) {
   Problem bent = makeBent(0.0);
-  const VectorXd features = bent.measure(makeVector({0.4, -0.3}), kNoise);
+  const VectorXd features = bent.measure(makeVector({0.4, -0.3}), kNoiseStddev);
   const VectorXd wrong = features.array() + VectorXd::LinSpaced(30, -2.0, 2.0).array();
   EXPECT_EQ(refineKnowing(bent, wrong, makeVector({0.4, -0.3}), calcLinearCovariance()).status,
             RefinementStatus::kMisfit);

@@ -25,7 +25,7 @@ nlohmann::json readPageData(const std::string& html) {
 
 class ReportTest : public testing::Test {
  protected:
-  TemporaryFolder folder_;
+  TestFolder folder_;
 
   Report make(const std::string& more_yaml = "") {
     writeRunFolder(folder_ / "run", more_yaml);

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "framework/store/atomic_file.hpp"
-#include "tests/framework/temporary_folder.hpp"
+#include "tests/framework/test_folder.hpp"
 
 namespace twinmap {
 

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "tests/framework/sampling/counting_simulator.hpp"
-#include "tests/framework/temporary_folder.hpp"
+#include "tests/framework/test_folder.hpp"
 
 namespace twinmap {
 namespace {
@@ -42,7 +42,7 @@ TEST(SimulateMissing, GivesWhatGenerateSamplesGivesForAnyThreadsAndChunkSize) {
   EXPECT_EQ(reference.calcFailureCount(), 5);
   for (const int threads : {1, 2, 3, 5}) {
     for (const int chunk : {1, 3, 16, 1000}) {
-      const TemporaryFolder root;
+      const TestFolder root;
       TrajectoryStore store = openStore(root.getPath());
       MissingOptions options;
       options.threads = threads;
@@ -57,7 +57,7 @@ TEST(SimulateMissing, GivesWhatGenerateSamplesGivesForAnyThreadsAndChunkSize) {
 }
 
 TEST(SimulateMissing, SimulatesOnlyWhatIsNotStored) {
-  const TemporaryFolder root;
+  const TestFolder root;
   const CountingSimulator simulator;
   {
     TrajectoryStore store = openStore(root.getPath());
@@ -77,7 +77,7 @@ TEST(SimulateMissing, SimulatesOnlyWhatIsNotStored) {
 }
 
 TEST(SimulateMissing, SimulatesEqualPointsOnce) {
-  const TemporaryFolder root;
+  const TestFolder root;
   TrajectoryStore store = openStore(root.getPath());
   const CountingSimulator simulator;
   const MatrixXd points = makeCountedPoints(6).replicate(1, 3);
@@ -88,7 +88,7 @@ TEST(SimulateMissing, SimulatesEqualPointsOnce) {
 }
 
 TEST(SimulateMissing, AStopFinishesAndWritesWhatIsUnderWay) {
-  const TemporaryFolder root;
+  const TestFolder root;
   TrajectoryStore store = openStore(root.getPath());
   std::atomic<bool> stop{false};
   const CountingSimulator simulator([&](double p0) { stop = stop || p0 == 20.0; });
@@ -109,7 +109,7 @@ TEST(SimulateMissing, AStopFinishesAndWritesWhatIsUnderWay) {
 }
 
 TEST(SimulateMissing, ABugIsThrownAgainAndWhatWasFinishedIsKept) {
-  const TemporaryFolder root;
+  const TestFolder root;
   TrajectoryStore store = openStore(root.getPath());
   const CountingSimulator simulator({}, 30.0);
   MissingOptions options;
@@ -120,7 +120,7 @@ TEST(SimulateMissing, ABugIsThrownAgainAndWhatWasFinishedIsKept) {
 }
 
 TEST(SimulateMissing, WritesAChunkAfterItsTimeToo) {
-  const TemporaryFolder root;
+  const TestFolder root;
   TrajectoryStore store = openStore(root.getPath());
   MissingOptions options;
   options.threads = 1;
@@ -130,7 +130,7 @@ TEST(SimulateMissing, WritesAChunkAfterItsTimeToo) {
 }
 
 TEST(SimulateMissing, ReportsProgressSampleBySample) {
-  const TemporaryFolder root;
+  const TestFolder root;
   TrajectoryStore store = openStore(root.getPath());
   simulateMissing(store, CountingSimulator(), makeCountedPoints(4));
   int calls = 0;
@@ -146,7 +146,7 @@ TEST(SimulateMissing, ReportsProgressSampleBySample) {
 }
 
 TEST(SimulateMissing, NoPointsGiveNoColumns) {
-  const TemporaryFolder root;
+  const TestFolder root;
   TrajectoryStore store = openStore(root.getPath());
   const StoredTrajectories result = simulateMissing(store, CountingSimulator(), MatrixXd(2, 0));
   EXPECT_EQ(result.trajectories.responses.rows(), 8);
@@ -171,7 +171,7 @@ MissingOptions makeGivingUp(int threads, double allowed_failures = 0.05) {
 
 TEST(GivingUp, EndsAfterADozenForAnyThreadsAndKeepsThem) {
   for (const int threads : {1, 2, 3, 5}) {
-    const TemporaryFolder root;
+    const TestFolder root;
     TrajectoryStore store = openStore(root.getPath());
     const CountingSimulator simulator;
     const StoredTrajectories result =
@@ -191,7 +191,7 @@ TEST(GivingUp, EndsAfterADozenForAnyThreadsAndKeepsThem) {
 
 TEST(GivingUp, OneSuccessAmongTheDozenIsEnoughToGoOn) {
   for (const int place : {0, 5, 11}) {
-    const TemporaryFolder root;
+    const TestFolder root;
     TrajectoryStore store = openStore(root.getPath());
     const CountingSimulator simulator;
     MatrixXd points = makeFailingPoints(40);
@@ -204,7 +204,7 @@ TEST(GivingUp, OneSuccessAmongTheDozenIsEnoughToGoOn) {
 }
 
 TEST(GivingUp, CountsWhatIsStored) {
-  const TemporaryFolder root;
+  const TestFolder root;
   TrajectoryStore store = openStore(root.getPath());
   simulateMissing(store, CountingSimulator(), makeFailingPoints(5));
   const CountingSimulator simulator;
@@ -225,7 +225,7 @@ TEST(GivingUp, CountsWhatIsStored) {
 
 TEST(GivingUp, TakesMoreWhereMoreMayFailAndNeverWhereAllMay) {
   for (const auto& [allowed, simulated] : {std::pair(0.5, 12), {0.9, 79}, {1.0, 200}}) {
-    const TemporaryFolder root;
+    const TestFolder root;
     TrajectoryStore store = openStore(root.getPath());
     const CountingSimulator simulator;
     simulateMissing(store, simulator, makeFailingPoints(200), makeGivingUp(2, allowed));
@@ -234,7 +234,7 @@ TEST(GivingUp, TakesMoreWhereMoreMayFailAndNeverWhereAllMay) {
 }
 
 TEST(GivingUp, FewerThanADozenAreAllSimulated) {
-  const TemporaryFolder root;
+  const TestFolder root;
   TrajectoryStore store = openStore(root.getPath());
   const StoredTrajectories result =
       simulateMissing(store, CountingSimulator(), makeFailingPoints(11), makeGivingUp(3));
@@ -247,7 +247,7 @@ TEST(GivingUp, WhereSamplesSucceedTheResultIsTheSame) {
   const MatrixXd points = makeCountedPoints(40);
   const Trajectories reference = generateSamples(CountingSimulator(), points);
   for (const int threads : {1, 3}) {
-    const TemporaryFolder root;
+    const TestFolder root;
     TrajectoryStore store = openStore(root.getPath());
     EXPECT_TRUE(areSame(
         simulateMissing(store, CountingSimulator(), points, makeGivingUp(threads)).trajectories, reference));
@@ -255,7 +255,7 @@ TEST(GivingUp, WhereSamplesSucceedTheResultIsTheSame) {
 }
 
 TEST(GivingUp, AStopAmongTheDozenIsAStop) {
-  const TemporaryFolder root;
+  const TestFolder root;
   TrajectoryStore store = openStore(root.getPath());
   std::atomic<bool> stop{false};
   const CountingSimulator simulator([&](double p0) { stop = stop || p0 == 21.0; });

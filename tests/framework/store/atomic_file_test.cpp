@@ -4,13 +4,13 @@
 
 #include <stdexcept>
 
-#include "tests/framework/temporary_folder.hpp"
+#include "tests/framework/test_folder.hpp"
 
 namespace twinmap {
 namespace {
 
 TEST(AtomicFile, WritesAndReplaces) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   writeTextFile(folder / "a.txt", "one");
   writeTextFile(folder / "a.txt", "two");
   EXPECT_EQ(readFile(folder / "a.txt"), "two");
@@ -18,7 +18,7 @@ TEST(AtomicFile, WritesAndReplaces) {
 }
 
 TEST(AtomicFile, AFailureLeavesTheOldFileAndNoOther) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   writeTextFile(folder / "a.txt", "one");
   EXPECT_THROW(writeAtomically(folder / "a.txt",
                                [](const std::filesystem::path& temporary) {
@@ -31,7 +31,7 @@ TEST(AtomicFile, AFailureLeavesTheOldFileAndNoOther) {
 }
 
 TEST(AtomicFile, NamesTheFileThatCannotBeWritten) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   try {
     writeTextFile(folder / "no/such/folder.txt", "x");
     FAIL();
@@ -42,7 +42,7 @@ TEST(AtomicFile, NamesTheFileThatCannotBeWritten) {
 
 // Every write to /dev/full fails as on a full disk.
 TEST(AtomicFile, AFullDiskIsNamedAndLeavesTheOldFile) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   writeTextFile(folder / "a.txt", "one");
   std::filesystem::create_symlink("/dev/full", getTemporaryPath(folder / "a.txt"));
   try {
@@ -57,7 +57,7 @@ TEST(AtomicFile, AFullDiskIsNamedAndLeavesTheOldFile) {
 }
 
 TEST(AtomicFile, MakesFoldersOnceAndReadsFilesWhole) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   makeFolders(folder / "a/b/c/");
   makeFolders(folder / "a/b/c");
   const std::string bytes("zero \0 and more", 15);

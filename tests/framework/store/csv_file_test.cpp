@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tests/framework/temporary_folder.hpp"
+#include "tests/framework/test_folder.hpp"
 
 namespace twinmap {
 namespace {

@@ -5,14 +5,14 @@
 #include <memory>
 #include <stdexcept>
 
-#include "tests/framework/temporary_folder.hpp"
+#include "tests/framework/test_folder.hpp"
 
 namespace twinmap {
 namespace {
 
 // Two processes: tests/framework/sampling/interrupted_simulation_test.py.
 TEST(FolderLock, RefusesASecondOwnerAndNamesTheFirst) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   const FolderLock first(folder.getPath());
   try {
     const FolderLock second(folder.getPath());
@@ -25,7 +25,7 @@ TEST(FolderLock, RefusesASecondOwnerAndNamesTheFirst) {
 }
 
 TEST(FolderLock, EndsWithItsOwnerAndLeavesAnEmptyFile) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   for (int i = 0; i < 2; ++i) {
     const FolderLock lock(folder.getPath());
     EXPECT_EQ(readFile(folder / "lock"), std::to_string(::getpid()));
@@ -34,14 +34,14 @@ TEST(FolderLock, EndsWithItsOwnerAndLeavesAnEmptyFile) {
 }
 
 TEST(FolderLock, ARefusedOwnerLeavesTheFirstItsLock) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   const FolderLock first(folder.getPath());
   EXPECT_THROW(FolderLock(folder.getPath()), std::runtime_error);
   EXPECT_THROW(FolderLock(folder.getPath()), std::runtime_error);
 }
 
 TEST(FolderLock, NamesAFolderThatIsNotThere) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   try {
     const FolderLock lock(folder / "no");
     FAIL();

@@ -8,7 +8,7 @@
 #include "framework/store/maps_file.hpp"
 #include "framework/store/provenance.hpp"
 #include "framework/store/samples_file.hpp"
-#include "tests/framework/temporary_folder.hpp"
+#include "tests/framework/test_folder.hpp"
 
 namespace twinmap {
 namespace {
@@ -35,7 +35,7 @@ Trajectories makeTrajectories(int samples) {
 }
 
 TEST(SamplesFile, HoldsBothSetsWithTheirFailures) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   ModelSpec model;
   model.parameters = makeParameters();
   Trajectories train = makeTrajectories(4);
@@ -55,7 +55,7 @@ TEST(SamplesFile, HoldsBothSetsWithTheirFailures) {
 }
 
 TEST(MapsFile, ARestoredMapPredictsTheSameBits) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   const Eigen::MatrixXd features = Eigen::MatrixXd::Random(3, 30);
   Eigen::MatrixXd values(2, 30);
   values.row(0) = features.row(0).array().sin() + 1.5;
@@ -90,7 +90,7 @@ TEST(MapsFile, ARestoredMapPredictsTheSameBits) {
 }
 
 TEST(MapsFile, KeepsTheBoundsThatScaleKnownInputs) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   LabelledFeatures samples;
   samples.infos = {{"y(0 s)", "m", 0, 0.0}};
   samples.features = Eigen::MatrixXd::Random(1, 20);
@@ -112,7 +112,7 @@ TEST(MapsFile, KeepsTheBoundsThatScaleKnownInputs) {
 }
 
 TEST(MapsFile, RefusesOtherFiles) {
-  const TemporaryFolder folder;
+  const TestFolder folder;
   ModelSpec model;
   model.parameters = makeParameters();
   writeSamplesFile(folder / "samples.h5", model, makeTrajectories(2), makeTrajectories(2));

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/store/trajectory_store.hpp"
-#include "tests/framework/temporary_folder.hpp"
+#include "tests/framework/test_folder.hpp"
 
 namespace twinmap {
 namespace {
@@ -42,7 +42,7 @@ void damage(const fs::path& file) {
 }
 
 TEST(StoreUpkeep, CountsSamplesOnceAndSaysWhatComputedThem) {
-  const TemporaryFolder root;
+  const TestFolder root;
   TrajectoryStore store = openSmallStore(root.getPath());
   store.append(makeNumberedBlock(0, 4));
   store.append(makeNumberedBlock(3, 2));
@@ -57,7 +57,7 @@ TEST(StoreUpkeep, CountsSamplesOnceAndSaysWhatComputedThem) {
 }
 
 TEST(StoreUpkeep, ReadingWholeFindsAChangedByte) {
-  const TemporaryFolder root;
+  const TestFolder root;
   TrajectoryStore store = openSmallStore(root.getPath());
   store.append(makeNumberedBlock(0, 20));
   damage(findChunk(store));
@@ -68,7 +68,7 @@ TEST(StoreUpkeep, ReadingWholeFindsAChangedByte) {
 }
 
 TEST(StoreUpkeep, MergesWholeChunksAndLeavesDamagedOnes) {
-  const TemporaryFolder root;
+  const TestFolder root;
   TrajectoryStore one = openSmallStore(root / "one"), other = openSmallStore(root / "other");
   one.append(makeNumberedBlock(0, 3));
   other.append(makeNumberedBlock(0, 3));
@@ -86,7 +86,7 @@ TEST(StoreUpkeep, MergesWholeChunksAndLeavesDamagedOnes) {
 }
 
 TEST(StoreUpkeep, PrunesWhatIsDamagedOrStoredElsewhereAndNoSample) {
-  const TemporaryFolder root;
+  const TestFolder root;
   TrajectoryStore store = openSmallStore(root.getPath());
   store.append(makeNumberedBlock(0, 4));
   store.append(makeNumberedBlock(0, 4));  // the same bytes: the same file

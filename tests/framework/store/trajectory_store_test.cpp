@@ -9,7 +9,7 @@
 #include <random>
 
 #include "framework/store/atomic_file.hpp"
-#include "tests/framework/temporary_folder.hpp"
+#include "tests/framework/test_folder.hpp"
 
 namespace twinmap {
 namespace {
@@ -71,7 +71,7 @@ void overwrite(const fs::path& file, const std::string& bytes) {
 }
 
 TEST(TrajectoryStore, FindsWhatWasAppendedAlsoWhenOpenedAgain) {
-  const TemporaryFolder root;
+  const TestFolder root;
   const MatrixXd points = makePoints(6);
   {
     TrajectoryStore store = openStore(root.getPath());
@@ -94,7 +94,7 @@ TEST(TrajectoryStore, FindsWhatWasAppendedAlsoWhenOpenedAgain) {
 }
 
 TEST(TrajectoryStore, AnotherContentHasAFolderOfItsOwn) {
-  const TemporaryFolder root;
+  const TestFolder root;
   TrajectoryStore store = openStore(root.getPath());
   store.append(makeBlockAt(makePoints(3)));
   const TrajectoryStore other(root.getPath(), "another model", kParameters, kRows);
@@ -103,7 +103,7 @@ TEST(TrajectoryStore, AnotherContentHasAFolderOfItsOwn) {
 }
 
 TEST(TrajectoryStore, PointsAreToldApartByTheirBits) {
-  const TemporaryFolder root;
+  const TestFolder root;
   TrajectoryStore store = openStore(root.getPath());
   MatrixXd points(2, 4);
   points << 1.0, std::nextafter(1.0, 2.0), 1.0, 1.0, 0.0, 0.0, 0.0, -0.0;
@@ -113,7 +113,7 @@ TEST(TrajectoryStore, PointsAreToldApartByTheirBits) {
 }
 
 TEST(TrajectoryStore, AFailedSampleIsAResult) {
-  const TemporaryFolder root;
+  const TestFolder root;
   openStore(root.getPath()).append(makeFailure(1.0, "step limit reached", false));
   const SampleBlock loaded = openStore(root.getPath()).load(Eigen::Vector2d(1.0, 0.0));
   EXPECT_FALSE(loaded.statuses[0].ok);
@@ -122,7 +122,7 @@ TEST(TrajectoryStore, AFailedSampleIsAResult) {
 }
 
 TEST(TrajectoryStore, AFailureOfTheMachineIsTriedAgainNextTime) {
-  const TemporaryFolder root;
+  const TestFolder root;
   const Eigen::Vector2d slow(1.0, 0.0);
   {
     TrajectoryStore store = openStore(root.getPath());
@@ -138,7 +138,7 @@ TEST(TrajectoryStore, DamagedChunksAreSetAsideAndTheirSamplesMissing) {
   std::mt19937 random(1);
   const std::string name_of_damage[] = {"flipped", "truncated", "emptied", "foreign"};
   for (const std::string& damage : name_of_damage) {
-    const TemporaryFolder root;
+    const TestFolder root;
     const MatrixXd points = makePoints(4);
     fs::path damaged;
     {
@@ -173,7 +173,7 @@ TEST(TrajectoryStore, DamagedChunksAreSetAsideAndTheirSamplesMissing) {
 }
 
 TEST(TrajectoryStore, AChunkDamagedWhileTheStoreIsOpenIsAnErrorNotAResult) {
-  const TemporaryFolder root;
+  const TestFolder root;
   TrajectoryStore store = openStore(root.getPath());
   store.append(makeBlockAt(makePoints(3)));
   const fs::path chunk = listChunks(store)[0];
@@ -190,7 +190,7 @@ TEST(TrajectoryStore, AChunkDamagedWhileTheStoreIsOpenIsAnErrorNotAResult) {
 }
 
 TEST(TrajectoryStore, ALaterFormatIsAnErrorThatNamesTheFile) {
-  const TemporaryFolder root;
+  const TestFolder root;
   fs::path chunk;
   {
     TrajectoryStore store = openStore(root.getPath());
@@ -212,7 +212,7 @@ TEST(TrajectoryStore, ALaterFormatIsAnErrorThatNamesTheFile) {
 }
 
 TEST(TrajectoryStore, RemovesWhatAnInterruptedWriteLeft) {
-  const TemporaryFolder root;
+  const TestFolder root;
   const fs::path folder = openStore(root.getPath()).getFolder();
   const pid_t ended = ::fork();
   if (ended == 0) {
@@ -234,7 +234,7 @@ TEST(TrajectoryStore, RemovesWhatAnInterruptedWriteLeft) {
 
 // The temporary file is a link to /dev/full, where every write fails as on a full disk.
 TEST(TrajectoryStore, AFullDiskIsAnErrorThatNamesTheFileAndKeepsWhatWasThere) {
-  const TemporaryFolder root;
+  const TestFolder root;
   TrajectoryStore store = openStore(root.getPath());
   const MatrixXd points = makePoints(5);
   store.append(makeBlockAt(points.leftCols(2)));
@@ -255,7 +255,7 @@ TEST(TrajectoryStore, AFullDiskIsAnErrorThatNamesTheFileAndKeepsWhatWasThere) {
 }
 
 TEST(TrajectoryStore, FindsWhatAnotherWriterStoresMeanwhile) {
-  const TemporaryFolder root;
+  const TestFolder root;
   TrajectoryStore one = openStore(root.getPath()), other = openStore(root.getPath());
   const MatrixXd points = makePoints(5);
   one.append(makeBlockAt(points.leftCols(3)));
@@ -270,7 +270,7 @@ TEST(TrajectoryStore, FindsWhatAnotherWriterStoresMeanwhile) {
 }
 
 TEST(TrajectoryStore, ASampleOfADamagedChunkIsFoundWhereItIsStoredOnceMore) {
-  const TemporaryFolder root;
+  const TestFolder root;
   const MatrixXd points = makePoints(3);
   fs::path damaged;
   {
@@ -290,7 +290,7 @@ TEST(TrajectoryStore, ASampleOfADamagedChunkIsFoundWhereItIsStoredOnceMore) {
 }
 
 TEST(TrajectoryStore, AChunkThatVanishedIsMissingWhenItIsVerified) {
-  const TemporaryFolder root;
+  const TestFolder root;
   TrajectoryStore one = openStore(root.getPath());
   one.append(makeBlockAt(makePoints(3)));
   TrajectoryStore other = openStore(root.getPath());
@@ -301,7 +301,7 @@ TEST(TrajectoryStore, AChunkThatVanishedIsMissingWhenItIsVerified) {
 }
 
 TEST(TrajectoryStore, ReadingAFolderThatIsNotThereFindsNothingAndMakesNothing) {
-  const TemporaryFolder root;
+  const TestFolder root;
   const TrajectoryStore store = openStore(root / "none", StoreAccess::kReadOnly);
   EXPECT_EQ(store.findMissing(makePoints(3)).size(), 3u);
   EXPECT_FALSE(fs::exists(root / "none"));
