@@ -1,0 +1,67 @@
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+
+#include "framework/cli/commands.hpp"
+#include "framework/cli/parser/command_groups.hpp"
+#include "framework/cli/parser/shared_options.hpp"
+
+namespace twinmap::cli {
+namespace {
+
+void addSubmit(CLI::App& app, const Invocation& invocation) {
+  const auto arguments = std::make_shared<SubmitArguments>();
+  arguments->run.threads = invocation.threads;
+  arguments->run.command_line = invocation.line;
+  CLI::App* command = app.add_subcommand(
+      "submit",
+      "Submit what run would do to a cluster, as jobs that each do a shard of it; or print the commands "
+      "(--on local); submitted again, what is missing");
+  addWhereAndHow(*command, arguments->run);
+  addOn(*command, *arguments)->required();
+  addJobs(*command, *arguments);
+  command->add_option("--partition", arguments->partition, "Of Slurm")->type_name("NAME");
+  command->add_option("--account", arguments->account, "Of Slurm")->type_name("NAME");
+  command->add_option("--sbatch", arguments->sbatch, "Further options of Slurm's sbatch: gres=gpu:1")
+      ->type_name("KEY=VALUE");
+  command
+      ->add_option(
+          "--submit", arguments->submit,
+          "Of a template: submits a shard and prints its job; {script}, {shard}, {name} and {after} are "
+          "replaced")
+      ->type_name("COMMAND");
+  command
+      ->add_option("--after", arguments->after,
+                   "Of a template: what {after} stands for where a job waits for others, {jobs}")
+      ->type_name("OPTION");
+  command->callback([arguments] { submit(*arguments); });
+}
+
+void addShard(CLI::App& app, const Invocation& invocation) {
+  const auto arguments = std::make_shared<ShardArguments>();
+  arguments->threads = invocation.threads;
+  arguments->command_line = invocation.line;
+  CLI::App* command = app.add_subcommand(
+      "shard", "Do one shard of what was submitted: simulate samples, train cases, or write tables");
+  command->add_option("DIR", arguments->folder, "Folder of the results")->required()->option_text(" ");
+  command->add_option("N", arguments->shard, "Number of the shard")->required()->option_text(" ");
+  addThreads(*command, arguments->threads);
+  command->callback([arguments] { runShard(*arguments); });
+}
+
+void addCancel(CLI::App& app) {
+  const auto folder = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand("cancel", "Cancel the jobs of what was submitted");
+  command->add_option("DIR", *folder, "Folder of the results")->required()->option_text(" ");
+  command->callback([folder] { cancel(*folder); });
+}
+
+}  // namespace
+
+void addClusterCommands(CLI::App& app, const Invocation& invocation) {
+  addSubmit(app, invocation);
+  addShard(app, invocation);
+  addCancel(app);
+}
+
+}  // namespace twinmap::cli

@@ -1,0 +1,100 @@
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "framework/cli/commands.hpp"
+#include "framework/cli/parser/command_groups.hpp"
+#include "framework/cli/parser/shared_options.hpp"
+
+namespace twinmap::cli {
+namespace {
+
+void addCheck(CLI::App& app) {
+  const auto arguments = std::make_shared<ExperimentArguments>();
+  CLI::App* command = app.add_subcommand("check",
+                                         "Validate an experiment, build its model at the centre of the "
+                                         "bounds, and print all with defaults; simulate nothing");
+  addExperiment(*command, *arguments);
+  command->callback([arguments] { check(*arguments); });
+}
+
+void addSimulate(CLI::App& app) {
+  const auto arguments = std::make_shared<SimulateArguments>();
+  CLI::App* command = app.add_subcommand(
+      "simulate",
+      "Simulate once and write the outputs at the features' times, and modes, as CSV. The parameters are at "
+      "the centre of their bounds, unless given as parameters.NAME=VALUE (nuisance.NAME, inputs.NAME)");
+  addExperiment(*command, arguments->experiment);
+  command->add_option("--csv", arguments->csv, "Write to this file instead of the standard output")
+      ->type_name("OUT");
+  command->add_flag("--noise", arguments->noise, "Add the experiment's measurement noise");
+  command->callback([arguments] { simulate(*arguments); });
+}
+
+void addRun(CLI::App& app, const Invocation& invocation) {
+  const auto arguments = std::make_shared<RunArguments>();
+  arguments->threads = invocation.threads;
+  arguments->command_line = invocation.line;
+  CLI::App* command =
+      app.add_subcommand("run", "Simulate, train, infer, and write tables, maps and the report");
+  addWhereAndHow(*command, *arguments);
+  CLI::Option* fail_fast = command->add_flag("--fail-fast", arguments->fail_fast,
+                                             "Of a sweep: begin no case after one has failed");
+  command->add_flag("--keep-going", "Of a sweep: a case that fails stops no other (default)")
+      ->excludes(fail_fast);
+  addFailOnGates(*command, arguments->fail_on_gates);
+  command->add_flag("--quiet", arguments->quiet, "No progress, only warnings and errors");
+  command->callback([arguments] { run(*arguments); });
+}
+
+void addPlan(CLI::App& app, const Invocation& invocation) {
+  const auto arguments = std::make_shared<SubmitArguments>();
+  arguments->run.threads = invocation.threads;
+  arguments->run.command_line = invocation.line;
+  CLI::App* command = app.add_subcommand(
+      "plan",
+      "Print what run would do: cases, simulations, time, memory, disk; simulate and train only a little");
+  addWhereAndHow(*command, arguments->run);
+  CLI::Option* on = addOn(*command, *arguments);
+  on->description("Print the shards as well that submit would make: " + on->get_description());
+  addJobs(*command, *arguments);
+  command->callback([arguments, on] { on->count() > 0 ? planShards(*arguments) : plan(arguments->run); });
+}
+
+void addDesign(CLI::App& app, const Invocation& invocation) {
+  const auto arguments = std::make_shared<DesignArguments>();
+  arguments->threads = invocation.threads;
+  arguments->command_line = invocation.line;
+  CLI::App* command = app.add_subcommand(
+      "design",
+      "Choose an experiment that tells most about the parameters, by the information limit. excitation: the "
+      "free values of its signals (design.excitation) within limits. sensors: which outputs to measure, and "
+      "when "
+      "(design.sensors). Writes designed.yaml, tables, the signals as CSV, and a page of what it brings");
+  command->add_option("WHAT", arguments->what, "excitation or sensors")
+      ->required()
+      ->check(CLI::IsMember({"excitation", "sensors"}))
+      ->option_text(" ");
+  addExperiment(*command, arguments->experiment);
+  command->add_option("--out", arguments->folder, "Folder for the results (default: results/NAME_design)")
+      ->type_name("DIR");
+  command->add_flag(
+      "--verify", arguments->verify,
+      "Train maps on the experiment before and after, with as many simulations, and compare what "
+      "they infer of held-out samples");
+  addThreads(*command, arguments->threads);
+  command->callback([arguments] {
+    arguments->what == "sensors" ? designSensors(*arguments) : designExcitation(*arguments);
+  });
+}
+
+}  // namespace
+
+void addExperimentCommands(CLI::App& app, const Invocation& invocation) {
+  addCheck(app);
+  addSimulate(app);
+  addRun(app, invocation);
+  addPlan(app, invocation);
+  addDesign(app, invocation);
+}
+
+}  // namespace twinmap::cli

@@ -1,0 +1,147 @@
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "framework/cli/commands.hpp"
+#include "framework/cli/parser/command_groups.hpp"
+#include "framework/cli/parser/shared_options.hpp"
+
+namespace twinmap::cli {
+namespace {
+
+void addInfer(CLI::App& app) {
+  const auto arguments = std::make_shared<InferArguments>();
+  CLI::App* command = app.add_subcommand("infer",
+                                         "Infer the parameters of measured responses with a trained map: "
+                                         "mean, sd and 95 % interval of each, and "
+                                         "whether to trust them");
+  command->add_option("RUN", arguments->run, "Folder of a finished run, or its maps.h5")
+      ->required()
+      ->option_text(" ");
+  command
+      ->add_option("MEASUREMENT", arguments->files,
+                   "Files: CSV, MATLAB .mat or HDF5, with a column of times and one for each output")
+      ->option_text(" ");
+  command->add_option("--set", arguments->known, "Value of a known input of the set-up; for each of them")
+      ->type_name("NAME=VALUE");
+  command
+      ->add_option("--start", arguments->starts,
+                   "Time in the file (s) at which the model's time is 0; several infer several windows")
+      ->type_name("S");
+  CLI::Option* csv = command->add_flag("--csv", arguments->csv, "Print CSV instead of a table");
+  command->add_flag("--json", arguments->json, "Print a line of JSON per measurement")->excludes(csv);
+  command
+      ->add_flag(
+          "--follow", arguments->follow,
+          "Read CSV measurements one after another from the standard input, each ended by an empty line, "
+          "and print a line of JSON for each at once")
+      ->excludes(csv);
+  addRefine(*command, arguments->refine);
+  CLI::Option* posterior = command->add_flag(
+      "--posterior{512}", arguments->posterior_draws,
+      "The posterior as well, without a normal approximation: quantiles, from so many draws weighted by a "
+      "surrogate's likelihood; --posterior=2000 for more than 512");
+  command->add_option("--draws", arguments->draws, "File for the posterior's joint draws (CSV)")
+      ->type_name("FILE")
+      ->needs(posterior);
+  command->callback([arguments] { infer(*arguments); });
+}
+
+void addReplay(CLI::App& app, const Invocation& invocation) {
+  const auto arguments = std::make_shared<ReplayArguments>();
+  arguments->threads = invocation.threads;
+  constexpr int kFewestDraws = 2, kMostDraws = 10000;
+  CLI::App* command =
+      app.add_subcommand("replay",
+                         "Infer the parameters of a measured response, simulate the updated model next to "
+                         "it, and report how well "
+                         "it follows: tables and a page with the measured, nominal and updated responses");
+  command->add_option("RUN", arguments->run, "Folder of a finished run, or its maps.h5")
+      ->required()
+      ->option_text(" ");
+  command->add_option("MEASUREMENT", arguments->file, "File: CSV, MATLAB .mat or HDF5, as infer takes them")
+      ->required()
+      ->option_text(" ");
+  command->add_option("--start", arguments->start, "Time in the file (s) at which the model's time is 0")
+      ->type_name("S");
+  command
+      ->add_option("--from", arguments->from,
+                   "Infer the parameters from this measurement instead (default: the same file)")
+      ->type_name("FILE");
+  command->add_option("--from-start", arguments->from_start, "Where its window starts (default: as --start)")
+      ->type_name("S");
+  command->add_option("--set", arguments->known, "Value of a known input of the set-up; for each of them")
+      ->type_name("NAME=VALUE");
+  addRefine(*command, arguments->refine);
+  command
+      ->add_option("--draws", arguments->draws,
+                   "Simulations with parameters drawn from what was inferred, for the band (default: 50)")
+      ->type_name("N")
+      ->check(CLI::Range(kFewestDraws, kMostDraws));
+  addThreads(*command, arguments->threads);
+  command
+      ->add_option("--out", arguments->out, "Folder for the results (default: RUN/replay/NAME of the file)")
+      ->type_name("DIR");
+  command->callback([arguments] { replay(*arguments); });
+}
+
+void addExport(CLI::App& app) {
+  const auto arguments = std::make_shared<ExportArguments>();
+  CLI::App* command = app.add_subcommand("export",
+                                         "Write a trained map for other programs: C99 without heap or "
+                                         "libraries, an FMU, or its numbers as JSON");
+  command->add_option("RUN", arguments->run, "Folder of a finished run")->required()->option_text(" ");
+  command->add_option("--c", arguments->c_folder, "Folder for C sources with a self-test and README.md")
+      ->type_name("DIR");
+  CLI::Option* fmu = command->add_option("--fmu", arguments->fmu, "File for an FMU for Co-Simulation");
+  fmu->type_name("FILE");
+  command->add_option("--fmi", arguments->fmi, "Version of the FMU: 2 or 3 (default: 3)")
+      ->type_name("N")
+      ->check(CLI::IsMember({2, 3}))
+      ->needs(fmu);
+  command->add_option("--json", arguments->json, "File for all numbers as JSON")->type_name("FILE");
+  command->add_flag("--float", arguments->single,
+                    "C in float where that keeps what it says (default: double)");
+  command->add_flag("--compress", arguments->compressed,
+                    "C of processes with so few inducing inputs that at most 2 % of an sd is lost");
+  command->add_flag_callback(
+      "--no-trust", [arguments] { arguments->trust = false; }, "C without the trust status");
+  command->add_option("--prefix", arguments->prefix, "Of names and files in C (default: twinmap)")
+      ->type_name("NAME");
+  command->callback([arguments] { exportMap(*arguments); });
+}
+
+void addNoise(CLI::App& app) {
+  const auto arguments = std::make_shared<NoiseArguments>();
+  CLI::App* command = app.add_subcommand(
+      "noise",
+      "Estimate the noise of a measurement while nothing moves (or of residuals): standard deviation and "
+      "autoregressive model of each column, and the same as YAML for an experiment file");
+  command->add_option("MEASUREMENT", arguments->measurement, "CSV, MATLAB or HDF5 file")
+      ->required()
+      ->option_text(" ");
+  command->add_option("--window", arguments->window, "Times from A to B only; s (default: all)")
+      ->type_name("A,B")
+      ->delimiter(',')
+      ->expected(2);
+  command->add_option("--columns", arguments->columns, "Columns, or outputs of the experiment (default: all)")
+      ->type_name("NAME,...")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command
+      ->add_option("--experiment", arguments->experiment,
+                   "Experiment file whose 'measurement' says where its outputs stand, and in which units")
+      ->type_name("FILE");
+  command->add_flag("--json", arguments->json, "Print JSON");
+  command->callback([arguments] { noise(*arguments); });
+}
+
+}  // namespace
+
+void addMapCommands(CLI::App& app, const Invocation& invocation) {
+  addInfer(app);
+  addReplay(app, invocation);
+  addExport(app);
+  addNoise(app);
+}
+
+}  // namespace twinmap::cli

@@ -1,0 +1,113 @@
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "framework/cli/commands.hpp"
+#include "framework/cli/parser/command_groups.hpp"
+#include "framework/cli/parser/shared_options.hpp"
+
+namespace twinmap::cli {
+namespace {
+
+void addStatus(CLI::App& app) {
+  const auto arguments = std::make_shared<StatusArguments>();
+  CLI::App* command = app.add_subcommand("status", "Print how far a sweep or a run is");
+  command->add_option("DIR", arguments->folder, "Folder of the results")->required()->option_text(" ");
+  command->add_option("--store", arguments->store, "As given to run")->type_name("DIR");
+  command->callback([arguments] { status(*arguments); });
+}
+
+void addCompare(CLI::App& app) {
+  const auto arguments = std::make_shared<CompareArguments>();
+  CLI::App* command = app.add_subcommand(
+      "compare",
+      "Print the same parameters of two runs side by side, with confidence intervals of the differences, and "
+      "which keys of their experiments differ");
+  command->add_option("A", arguments->folder_a, "Folder of a run")->required()->option_text(" ");
+  command->add_option("B", arguments->folder_b, "Folder of another run")->required()->option_text(" ");
+  CLI::Option* csv = command->add_flag("--csv", arguments->csv, "Print CSV instead of a table");
+  command->add_flag("--json", arguments->json, "Print JSON instead of a table")->excludes(csv);
+  command->callback([arguments] { compare(*arguments); });
+}
+
+void addReport(CLI::App& app) {
+  const auto arguments = std::make_shared<ReportArguments>();
+  CLI::App* command = app.add_subcommand(
+      "report", "Write report.html again from a run's or a sweep's folder, or compare several runs");
+  command->add_option("DIR", arguments->folders, "Folders of runs")->required()->option_text(" ");
+  command
+      ->add_option("--out", arguments->out,
+                   "Folder for the report (default: the run's own; of several runs results/report)")
+      ->type_name("DIR");
+  addFailOnGates(*command, arguments->fail_on_gates);
+  command->callback([arguments] { report(*arguments); });
+}
+
+void addVerify(CLI::App& app, const Invocation& invocation) {
+  const auto arguments = std::make_shared<VerifyArguments>();
+  arguments->seed = std::random_device()();
+  arguments->threads = invocation.threads;
+  CLI::App* command = app.add_subcommand(
+      "verify",
+      "Recompute a random part of a run from its resolved.yaml and compare bit for bit: some samples are "
+      "simulated again, everything that follows from samples and hyperparameters is computed again. Of a "
+      "sweep, three of its cases. Exit code 1 where something differs");
+  command->add_option("DIR", arguments->folder, "Folder of a run or a sweep")->required()->option_text(" ");
+  command->add_option("--samples", arguments->samples, "Samples of each set to simulate again (default: 5)")
+      ->type_name("N")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--seed", arguments->seed, "Chooses the samples and cases (default: another each time)")
+      ->type_name("S");
+  command->add_flag("--all", arguments->all,
+                    "Run everything again, in a temporary folder, and compare all files");
+  addThreads(*command, arguments->threads);
+  command->callback([arguments] { verify(*arguments); });
+}
+
+struct StoreArguments {
+  std::string action, folder;
+  std::vector<std::string> from;
+};
+
+void runStoreAction(const StoreArguments& arguments) {
+  if ((arguments.action == "merge") == arguments.from.empty()) {
+    throw CLI::ValidationError("FROM", "merge, and no other action, takes folders to copy from");
+  }
+  if (arguments.action == "merge") {
+    mergeStore(arguments.folder, arguments.from);
+  } else if (arguments.action == "prune") {
+    pruneStore(arguments.folder);
+  } else {
+    arguments.action == "list" ? listStore(arguments.folder) : verifyStore(arguments.folder);
+  }
+}
+
+void addStore(CLI::App& app) {
+  const auto arguments = std::make_shared<StoreArguments>();
+  CLI::App* command = app.add_subcommand(
+      "store",
+      "Look after a folder of simulated samples (run --store). list: the models, their samples and what "
+      "computed them; verify: the same after comparing every byte with its checksum; merge: copy the samples "
+      "of other folders into it; prune: remove what is damaged, left by interrupted writes, or stored twice");
+  command->add_option("ACTION", arguments->action, "list, verify, merge or prune")
+      ->required()
+      ->check(CLI::IsMember({"list", "verify", "merge", "prune"}))
+      ->option_text(" ");
+  command->add_option("DIR", arguments->folder, "Folder of simulated samples")->required()->option_text(" ");
+  command->add_option("FROM", arguments->from, "Folders whose samples merge copies")->option_text(" ");
+  command->callback([arguments] { runStoreAction(*arguments); });
+}
+
+}  // namespace
+
+void addResultCommands(CLI::App& app, const Invocation& invocation) {
+  addStatus(app);
+  addCompare(app);
+  addReport(app);
+  addVerify(app, invocation);
+  addStore(app);
+}
+
+}  // namespace twinmap::cli
