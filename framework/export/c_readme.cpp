@@ -130,6 +130,54 @@ constexpr const char* kStatuses =
     "| map_limited | 16 | the errors are mostly the map's own, or not known to it |\n"
     "| not_judged | 32 | the run has no trust model |\n";
 
+/// What it is, how it is compiled and called. upper: the prefix as macros have it.
+std::string describeUse(const ExportedModel& model, const std::string& prefix, const std::string& upper) {
+  std::string text = fmt::format(
+      "# {0}: measured signals to parameters, in C99\n\nWritten by `twinmap export`. `{1}_map.c` and "
+      "`{1}_map.h` "
+      "need libm alone: no heap, no recursion, no variables of their own. `make test` runs `selftest.c`: {2} "
+      "measurements with twinmap's answers (`CC`, `CFLAGS`, `LDFLAGS` and `RUN` as for other compilers and "
+      "emulators). Compile with `-std=c99`, or `-ffp-contract=off`: which products are fused with sums is "
+      "chosen in the source. With fused multiply-adds (`-march=native`, AArch64) it is fastest.\n\n"
+      "## Call\n\n```c\n#include \"{1}_map.h\"\n\nstatic {1}_state state; /* one a thread; needs no "
+      "initialisation */\n{1}_result result;\n",
+      model.experiment.name.text, prefix, 50);
+  text += model.takesSignals()
+              ? fmt::format(
+                    "const {0}_real *signals[{1}_SIGNALS] = {{...}};\nif ({0}_infer(&state, count, times, "
+                    "signals, start, known, &result) == {1}_OK) {{\n",
+                    prefix, upper)
+              : fmt::format("if ({0}_infer_features(&state, features, known, &result) == {1}_OK) {{\n",
+                            prefix, upper);
+  text += fmt::format(
+      "  /* result.mean[i] +- result.sd[i]; result.status, {0}_status_text(result.status) */\n}}\n```\n\n"
+      "`known`: NULL where the set-up has no known inputs. `{0}_infer_features` takes the features "
+      "themselves. "
+      "The answers are those of `twinmap infer --no-refine`, bit for bit on processors that multiply and add "
+      "at "
+      "once: for x86-64 the file asks GCC and clang for AVX2 and FMA itself. For those before 2013 compile "
+      "with "
+      "`-D{1}_ANY_PROCESSOR`.\n",
+      prefix, upper);
+  return text;
+}
+
+std::string describeMemory(const ExportedModel& model, const COptions& options, const CSource& source) {
+  const bool single = options.number == CNumber::kSingle;
+  return fmt::format(
+      "## Memory and time\n\n| what | bytes |\n|---|---|\n| constants of the map (flash) | {} |\n| "
+      "constants of the "
+      "trust status (flash) | {} |\n| `{}_state` (RAM) | {} |\n| stack, at most | {} |\n\n{}\n\n{}\n",
+      source.map_bytes, source.trust_bytes, options.prefix, calcStateBytes(source), calcStackBytes(source),
+      describeOperations(model),
+      single ? "Signals, features and the tables that tolerate it are float. The weights of smooth processes "
+               "cancel to "
+               "a millionth of their size, and variances are small differences: what enters these, and the "
+               "answers "
+               "themselves, whose sd may be below what a float of the mean resolves, are double."
+             : "All numbers are double.");
+}
+
 }  // namespace
 
 std::size_t calcStateBytes(const CSource& source) {
@@ -165,56 +213,18 @@ std::string makeCReadme(const ExportedModel& model, const COptions& options, con
   std::string upper = options.prefix;
   std::transform(upper.begin(), upper.end(), upper.begin(),
                  [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  const bool single = options.number == CNumber::kSingle;
-  std::string text = fmt::format(
-      "# {0}: measured signals to parameters, in C99\n\nWritten by `twinmap export`. `{1}_map.c` and "
-      "`{1}_map.h` "
-      "need libm alone: no heap, no recursion, no variables of their own. `make test` runs `selftest.c`: {2} "
-      "measurements with twinmap's answers (`CC`, `CFLAGS`, `LDFLAGS` and `RUN` as for other compilers and "
-      "emulators). Compile with `-std=c99`, or `-ffp-contract=off`: which products are fused with sums is "
-      "chosen in the source. With fused multiply-adds (`-march=native`, AArch64) it is fastest.\n\n"
-      "## Call\n\n```c\n#include \"{1}_map.h\"\n\nstatic {1}_state state; /* one a thread; needs no "
-      "initialisation */\n{1}_result result;\n",
-      model.experiment.name.text, options.prefix, 50);
-  text += model.takesSignals()
-              ? fmt::format(
-                    "const {0}_real *signals[{1}_SIGNALS] = {{...}};\nif ({0}_infer(&state, count, times, "
-                    "signals, start, known, &result) == {1}_OK) {{\n",
-                    options.prefix, upper)
-              : fmt::format("if ({0}_infer_features(&state, features, known, &result) == {1}_OK) {{\n",
-                            options.prefix, upper);
-  text += fmt::format(
-      "  /* result.mean[i] +- result.sd[i]; result.status, {0}_status_text(result.status) */\n}}\n```\n\n"
-      "`known`: NULL where the set-up has no known inputs. `{0}_infer_features` takes the features "
-      "themselves. "
-      "The answers are those of `twinmap infer --no-refine`, bit for bit on processors that multiply and add "
-      "at "
-      "once: for x86-64 the file asks GCC and clang for AVX2 and FMA itself. For those before 2013 compile "
-      "with "
-      "`-D{1}_ANY_PROCESSOR`.\n\n## Parameters\n\n",
-      options.prefix, upper);
-  text += makeParameterTable(model.experiment.model.parameters);
+  std::string text = describeUse(model, options.prefix, upper);
+  text += "\n## Parameters\n\n" + makeParameterTable(model.experiment.model.parameters);
   if (!model.experiment.model.inputs.empty()) {
     text += "\nKnown inputs, in this order:\n\n" + makeParameterTable(model.experiment.model.inputs);
   }
   text += "\n## Signals\n\n" + describeSignals(model, options.prefix);
   text += "\nFeatures, in this order: " + describeFeatures(model) + ".\n";
-  text +=
-      std::string("\n## Status\n\n") + kStatuses +
-      "\n`result.statuses` has the bits of all that apply, `result.status` the gravest (the least bit).\n";
   text += fmt::format(
-      "\n## Memory and time\n\n| what | bytes |\n|---|---|\n| constants of the map (flash) | {} |\n| "
-      "constants of the "
-      "trust status (flash) | {} |\n| `{}_state` (RAM) | {} |\n| stack, at most | {} |\n\n{}\n\n{}\n",
-      source.map_bytes, source.trust_bytes, options.prefix, calcStateBytes(source), calcStackBytes(source),
-      describeOperations(model),
-      single ? "Signals, features and the tables that tolerate it are float. The weights of smooth processes "
-               "cancel to "
-               "a millionth of their size, and variances are small differences: what enters these, and the "
-               "answers "
-               "themselves, whose sd may be below what a float of the mean resolves, are double."
-             : "All numbers are double.");
-  return text;
+      "\n## Status\n\n{}\n`result.statuses` has the bits of all that apply, `result.status` the gravest (the "
+      "least bit).\n\n",
+      kStatuses);
+  return text + describeMemory(model, options, source);
 }
 
 }  // namespace twinmap
