@@ -82,7 +82,7 @@ network::Network makeInitial(const NetworkSet& set, const std::vector<Index>& tr
       drawSamples(set, repeat(training, count), {fitting.seed, RandomPurpose::kNetworkNoise},
                   fitting.run * kRuns + kRegression);
   network::NetworkShape shape;
-  shape.hidden = fitting.spec.hidden;
+  shape.hidden = fitting.spec.hidden.value();
   shape.components = fitting.spec.countComponents();
   shape.products = chooseProducts(drawn.inputs.rows(), static_cast<Index>(training.size()));
   const RandomStream weights(fitting.seed, RandomPurpose::kNetworkWeights);

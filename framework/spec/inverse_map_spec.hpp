@@ -167,7 +167,7 @@ struct EnumNames<NetworkBayes> {
 
 /// A neural network from features to the distribution of all parameters (docs/networks.md).
 struct NetworkMapSpec {
-  std::vector<int> hidden;
+  std::optional<std::vector<int>> hidden;
   NetworkHead head = NetworkHead::kGaussian;
   int components = 3;  ///< of a mixture
   NetworkSamples samples_from = NetworkSamples::kAutomatic;
@@ -218,9 +218,10 @@ void describe(Fields& f, NetworkMapSpec& s) {
              "of all weights of a small network, for studies");
   f.optional("chains", s.chains, "of the Hamiltonian sampler", kChains);
   f.optional("draws", s.draws, "that each chain keeps, after as many to warm up", kDraws);
-  f.rule(s.hidden.size() <= kDeepest &&
-             std::all_of(s.hidden.begin(), s.hidden.end(),
-                         [](int units) { return units >= 1 && units <= kWidest; }),
+  f.rule(!s.hidden ||
+             (!s.hidden->empty() && s.hidden->size() <= kDeepest &&
+              std::all_of(s.hidden->begin(), s.hidden->end(),
+                          [](int units) { return units >= 1 && units <= kWidest; })),
          "must give 1 to 8 hidden layers of 1 to 1024 units");
   f.rule(s.bayesian == NetworkBayes::kNone || s.head == NetworkHead::kGaussian,
          "must have 'head: gaussian' with bayesian");

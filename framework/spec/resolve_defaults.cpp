@@ -70,11 +70,10 @@ void resolveNetwork(int simulations, InverseMapSpec& map) {
   }
   NetworkMapSpec& network = *found;
   const bool many = simulations >= kMany && !network.mayLearnFromSurrogate(simulations);
-  if (network.hidden.empty()) {
-    network.hidden = many ? std::vector<int>{192, 192} : std::vector<int>{64, 64};
-    if (network.bayesian == NetworkBayes::kHamiltonian) {
-      network.hidden = {8};
-    }
+  if (!network.hidden) {
+    network.hidden = network.bayesian == NetworkBayes::kHamiltonian ? std::vector<int>{8}
+                     : many                                           ? std::vector<int>{192, 192}
+                                                                      : std::vector<int>{64, 64};
   }
   network.steps = network.steps.value_or(many ? 18000 : 8000);
   network.batch = network.batch.value_or(many ? 1024 : 256);

@@ -110,7 +110,7 @@ double countMapNumbers(const ExperimentSpec& experiment, int threads) {
 double countNetworkFlops(const NetworkMapSpec& network) {
   constexpr double kInputs = 32.0, kOfWeight = 6.0, kTrainings = 6.0;
   double weights = 0.0, before = kInputs;
-  for (const int units : network.hidden) {
+  for (const int units : network.hidden.value()) {
     weights += before * units;
     before = units;
   }

@@ -63,7 +63,8 @@ class Network(OwnFolderTestCase):
         self.assertEqual(len(read_csv(run / "metrics.csv")), 4)
 
     def test_bad_keys_are_named(self):
-        for keys, message in [("{hidden: [2000]}", "must give 1 to 8 hidden layers"),
+        for keys, message in [("{hidden: []}", "must give 1 to 8 hidden layers"),
+                              ("{hidden: [2000]}", "must give 1 to 8 hidden layers"),
                               ("{surrogate_samples: 10}", "must give at least 1000 surrogate_samples"),
                               ("{samples_from: nothing}", "samples_from")]:
             result = call("run", BEST, f"inverse_map={{network: {keys}}}", "--out", self.folder / "bad")
