@@ -37,6 +37,30 @@ TEST(StddevScale, FollowsTheTailWhereItIsHeavy) {
   EXPECT_GT(calcStddevScale(errors), 2.5);
 }
 
+double calcShare(const Eigen::VectorXd& errors, double within) {
+  return (errors.array() < within).cast<double>().mean();
+}
+
+TEST(StddevScale, BalancesWhatTheTailsOfManyErrorsTakeFromTheMiddle) {
+  Eigen::VectorXd errors = makeErrors(20000, 1.0);
+  errors *= 0.8;
+  errors.tail(2000) *= 1.5;  // 95 % intervals alone would ask for a factor at which 50 % intervals hold .58
+  const double scale = calcStddevScale(errors);
+  const double half = calcShare(errors, 0.67449 * scale) - 0.5,
+               most = calcShare(errors, 1.95996 * scale) - 0.95;
+  EXPECT_NEAR(half, -2.0 * most, 1e-3);
+  EXPECT_GT(half, 0.01);
+}
+
+TEST(StddevScale, IsNoLargerForManyErrorsThanForFew) {
+  for (const Eigen::Index count : {3000, 20000}) {
+    EXPECT_NEAR(calcStddevScale(makeErrors(count, 1.7)), 1.7, 0.01);
+    EXPECT_NEAR(calcStddevScale(makeErrors(count, 0.6)), 0.6, 0.01);
+    const Eigen::VectorXd apart = Eigen::VectorXd::Ones(count);  // two answers
+    EXPECT_NEAR(calcStddevScale(apart), 1.0056, 1e-3);
+  }
+}
+
 TEST(StddevScale, FallsBelowOneOnlyBeyondDoubt) {
   EXPECT_EQ(calcStddevScale(makeErrors(50, 0.85)), 1.0);
   const double scale = calcStddevScale(makeErrors(2000, 0.5));
