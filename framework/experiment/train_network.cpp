@@ -126,7 +126,8 @@ NetworkMapTraining trainBy(const NetworkContext& context, const FeatureTransform
   try {
     return trainInterruptibly([&] {
       return teacher ? trainNetworkMap({context.experiment.model, getSpec(context), context.experiment.seed},
-                                       teacher->surrogate, {context.control.threads, context.control.abandon})
+                                       teacher->surrogate, teacher->least_scale,
+                                       {context.control.threads, context.control.abandon})
                      : trainOnSimulations(context, transform);
     });
   } catch (const std::invalid_argument& error) {

@@ -10,6 +10,7 @@ namespace twinmap {
 /// A trained surrogate and how that went.
 struct SurrogateMapTraining {
   Surrogate surrogate;
+  Eigen::VectorXd least_scale;  ///< p: as of SurrogateTraining
   TrainingSummary summary;  ///< its left-out samples are those of the cross-validation
   StageNotes notes;
 };

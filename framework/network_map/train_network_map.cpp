@@ -295,7 +295,7 @@ NetworkMapTraining trainNetworkMap(const NetworkTask& task, const NetworkSimulat
 }
 
 NetworkMapTraining trainNetworkMap(const NetworkTask& task, const Surrogate& surrogate,
-                                   const TrainingControl& control) {
+                                   const VectorXd& least_scale, const TrainingControl& control) {
   NetworkMapTraining training;
   NetworkMap& map = training.map;
   setBounds(task.model, map);
@@ -307,8 +307,8 @@ NetworkMapTraining trainNetworkMap(const NetworkTask& task, const Surrogate& sur
   const NetworkSet set{samples, targets};
   const Split parts = split(listAll(targets.cols()));
   setMembers(fitNetwork(set, parts, {task.spec, task.seed, 0}, control), training);
-  validateMap(predictHeldOut(set, map.members, parts.held_out, task.seed, control.threads),
-              surrogate.validation.least_scale, training);
+  validateMap(predictHeldOut(set, map.members, parts.held_out, task.seed, control.threads), least_scale,
+              training);
   warnOfShape(task, training);
   return training;
 }

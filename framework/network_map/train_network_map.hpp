@@ -48,9 +48,9 @@ NetworkMapTraining trainNetworkMap(const NetworkTask& task, const NetworkSimulat
 
 /// Trains a network on `surrogate_samples` points of the box, whose scores a surrogate makes up: a normal
 /// distribution of its mean, its own error and the noise. Standard deviations are multiplied by the larger of
-/// what samples held out say and what the surrogate's own cross-validation says at least. Cost: that many
-/// evaluations of the surrogate, and a training.
+/// what samples held out say and `least_scale` (p), which the surrogate's own cross-validation found
+/// (SurrogateTraining). Cost: that many evaluations of the surrogate, and a training.
 NetworkMapTraining trainNetworkMap(const NetworkTask& task, const Surrogate& surrogate,
-                                   const TrainingControl& control);
+                                   const Eigen::VectorXd& least_scale, const TrainingControl& control);
 
 }  // namespace twinmap

@@ -67,6 +67,15 @@ VectorXd calcDepths(const std::vector<Mixture>& mixtures, const MatrixXd& truth,
   return depths;
 }
 
+/// How far a parameter's truths lie from what was inferred, in standard deviations.
+VectorXd calcAbsolute(const HeldOut& held_out, Index parameter) {
+  const Predictions& found = held_out.predictions;
+  if (!found.mixtures.empty()) {
+    return calcDepths(found.mixtures, held_out.truth, parameter);
+  }
+  return (found.mean - held_out.truth).row(parameter).cwiseQuotient(found.stddev.row(parameter)).cwiseAbs();
+}
+
 double calcMeanLogDensity(std::vector<Mixture> mixtures, const VectorXd& stddev_scale,
                           const MatrixXd& truth) {
   double sum = 0.0;
@@ -134,6 +143,14 @@ HeldOut crossValidate(const Surrogate& whole, const SurrogateSamples& samples, c
   return held_out;
 }
 
+VectorXd calcLeastScale(const HeldOut& held_out) {
+  VectorXd scale(held_out.truth.rows());
+  for (Index k = 0; k < scale.size(); ++k) {
+    scale(k) = calcLeastStddevScale(calcAbsolute(held_out, k));
+  }
+  return scale;
+}
+
 SurrogateValidation validate(const HeldOut& held_out) {
   constexpr double kMapLimited = 0.8;
   const Predictions& found = held_out.predictions;
@@ -141,13 +158,10 @@ SurrogateValidation validate(const HeldOut& held_out) {
   const Index p = z.rows();
   SurrogateValidation validation;
   validation.stddev_scale.resize(p);
-  validation.least_scale.resize(p);
   validation.coverage95.resize(p);
   for (Index k = 0; k < p; ++k) {
-    const VectorXd absolute = found.mixtures.empty() ? VectorXd(z.row(k).cwiseAbs())
-                                                     : calcDepths(found.mixtures, held_out.truth, k);
+    const VectorXd absolute = calcAbsolute(held_out, k);
     validation.stddev_scale(k) = calcStddevScale(absolute);
-    validation.least_scale(k) = calcLeastStddevScale(absolute);
     validation.coverage95(k) =
         static_cast<double>((absolute.array() < kNormal95).count()) / static_cast<double>(absolute.size());
   }

@@ -27,7 +27,6 @@ struct SurrogateValidation {
   Eigen::VectorXd limit_scale;  ///< p: calcLimitScale()
   Eigen::VectorXd limit_ratio;  ///< p, root of the mean variance over that of the limit, both as predicted
   SurrogateStatus status = SurrogateStatus::kOk;
-  Eigen::VectorXd least_scale{};  ///< p: calcLeastStddevScale(); not kept in files
 };
 
 /// What a surrogate says of n measurements.
