@@ -126,7 +126,7 @@ NetworkMapTraining trainBy(const NetworkContext& context, const FeatureTransform
   try {
     return trainInterruptibly([&] {
       return teacher ? trainNetworkMap({context.experiment.model, getSpec(context), context.experiment.seed},
-                                       teacher->surrogate, teacher->least_scale,
+                                       teacher->surrogate, teacher->lack,
                                        {context.control.threads, context.control.abandon})
                      : trainOnSimulations(context, transform);
     });

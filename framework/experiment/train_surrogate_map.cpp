@@ -72,7 +72,7 @@ SurrogateMapTraining trainSurrogateMap(const ExperimentSpec& experiment, const S
                                                       static_cast<int>(trained.gain.all),
                                                       trained.gain.error_ratio};
   training.surrogate = std::move(trained.surrogate);
-  training.least_scale = std::move(trained.least_scale);
+  training.lack = std::move(trained.lack);
   return training;
 }
 

@@ -3,6 +3,7 @@
 #include "framework/experiment/prepare_data.hpp"
 #include "framework/monitoring/run_control.hpp"
 #include "framework/results/run_summary.hpp"
+#include "framework/surrogate/honest_stddev.hpp"
 #include "framework/surrogate/surrogate.hpp"
 
 namespace twinmap {
@@ -10,7 +11,7 @@ namespace twinmap {
 /// A trained surrogate and how that went.
 struct SurrogateMapTraining {
   Surrogate surrogate;
-  Eigen::VectorXd least_scale;  ///< p: as of SurrogateTraining
+  StddevLack lack;          ///< as of SurrogateTraining
   TrainingSummary summary;  ///< its left-out samples are those of the cross-validation
   StageNotes notes;
 };

@@ -23,8 +23,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr Index kFolds = 5;
-
 /// Indices below `count`: those for which i % period is `residue`, or the others.
 std::vector<Index> listIndices(Index count, Index period, Index residue, bool matching) {
   std::vector<Index> listed;
@@ -36,10 +34,10 @@ std::vector<Index> listIndices(Index count, Index period, Index residue, bool ma
   return listed;
 }
 
-/// A tenth is held out, of few a fifth.
-Split split(const std::vector<Index>& all) {
-  constexpr std::size_t kFew = 1000;
-  const std::size_t period = all.size() < kFew ? 5 : 10;
+/// A tenth is held out; of few samples, those of a fold among them, a fifth. count: of all samples.
+Split split(const std::vector<Index>& all, Index count) {
+  constexpr Index kFew = 1000;
+  const std::size_t period = count < kFew ? 5 : 10;
   Split parts;
   for (std::size_t i = 0; i < all.size(); ++i) {
     (i % period == period - 1 ? parts.held_out : parts.training).push_back(all[i]);
@@ -102,7 +100,14 @@ void place(const Predictions& some, const std::vector<Index>& columns, Predictio
   }
 }
 
-/// Networks that a fifth of the samples is left out of in turn, and what they say of it.
+/// Parts of the samples, each left out in turn: of few samples, of which one more tells much, more parts.
+/// Kinds of network that are several already have five, for the time.
+Index countFolds(const NetworkMapSpec& spec, Index samples) {
+  constexpr Index kFew = 2500;
+  return samples < kFew && spec.bayesian == NetworkBayes::kNone ? 10 : 5;
+}
+
+/// Networks that a part of the samples is left out of in turn, and what they say of it.
 HeldOutTargets crossValidate(const NetworkSet& set, const NetworkTask& task, const TrainingControl& control) {
   const Index n = set.targets.cols(), p = set.targets.rows(), draws = countDraws(n);
   const MatrixXd measured = drawMeasured(set.samples, listAll(n), draws, task.seed);
@@ -112,12 +117,13 @@ HeldOutTargets crossValidate(const NetworkSet& set, const NetworkTask& task, con
        std::vector<Mixture>(task.spec.countComponents() > 1 ? columns_in_all : 0)},
       set.targets.replicate(1, draws),
       static_cast<int>(draws)};
-  runTasks(control.threads, kFolds, [&](std::size_t fold) {
-    const Split parts = split(listIndices(n, kFolds, static_cast<Index>(fold), false));
+  const Index folds = countFolds(task.spec, n);
+  runTasks(control.threads, static_cast<std::size_t>(folds), [&](std::size_t fold) {
+    const Split parts = split(listIndices(n, folds, static_cast<Index>(fold), false), n);
     const NetworkFit fit = fitNetwork(set, parts, {task.spec, task.seed, fold + 1}, {1, control.stop});
     std::vector<Index> columns;
     for (Index draw = 0; draw < draws; ++draw) {
-      for (const Index i : listIndices(n, kFolds, static_cast<Index>(fold), true)) {
+      for (const Index i : listIndices(n, folds, static_cast<Index>(fold), true)) {
         columns.push_back(i + draw * n);
       }
     }
@@ -127,12 +133,11 @@ HeldOutTargets crossValidate(const NetworkSet& set, const NetworkTask& task, con
   return held_out;
 }
 
-/// Held-out samples in the parameters' units, and what follows from them. least_scale: what a surrogate's
-/// standard deviations lack at least, by its cross-validation. Both scales make up for the same posteriors
-/// that are not normal, so that their product would do so twice: it was up to 4 % too wide, and 50 %
-/// intervals held 58 %. What 100 simulations find beyond the least is chance: 50 % intervals held up to 55 %
-/// with it.
-void validateMap(const HeldOutTargets& held_out, const VectorXd& least_scale, NetworkMapTraining& training) {
+/// Held-out samples in the parameters' units, and what follows from them. lack: of the surrogate that taught,
+/// if one did. Both scales make up for the same posteriors that are not normal, so that their product would
+/// do so twice: it was up to 4 % too wide, and 50 % intervals held 58 %. What 100 simulations find beyond the
+/// least is chance: 50 % intervals held up to 55 % with it.
+void validateMap(const HeldOutTargets& held_out, const StddevLack* lack, NetworkMapTraining& training) {
   NetworkMap& map = training.map;
   HeldOut found;
   found.truth = (map.half_width.asDiagonal() * held_out.truth).colwise() + map.center;
@@ -142,7 +147,10 @@ void validateMap(const HeldOutTargets& held_out, const VectorXd& least_scale, Ne
   found.limit_stddev =
       MatrixXd::Constant(found.truth.rows(), found.truth.cols(), std::numeric_limits<double>::quiet_NaN());
   map.validation = validate(found);
-  map.validation.stddev_scale = map.validation.stddev_scale.cwiseMax(least_scale);
+  if (lack != nullptr) {
+    map.validation.stddev_scale = map.validation.stddev_scale.cwiseMax(
+        calcPupilScale(*lack, calcTypicalStddev(found.predictions.stddev)));
+  }
   training.held_out_truth = std::move(found.truth);
   training.held_out = held_out.predictions;
   convert(map.center, map.half_width, map.validation.stddev_scale, training.held_out);
@@ -284,18 +292,18 @@ NetworkMapTraining trainNetworkMap(const NetworkTask& task, const NetworkSimulat
   const std::unique_ptr<NoisySamples> samples = makeSamples(simulations, known, map.inputs);
   const MatrixXd targets = makeTargets(map, simulations.points);
   const NetworkSet set{*samples, targets};
-  const Split parts = split(listAll(n));
+  const Split parts = split(listAll(n), n);
   setMembers(fitNetwork(set, parts, {task.spec, task.seed, 0}, control), training);
   const HeldOutTargets held_out =
       n < kHonest ? crossValidate(set, task, control)
                   : predictHeldOut(set, map.members, parts.held_out, task.seed, control.threads);
-  validateMap(held_out, VectorXd::Zero(map.center.size()), training);
+  validateMap(held_out, nullptr, training);
   warnOfShape(task, training);
   return training;
 }
 
 NetworkMapTraining trainNetworkMap(const NetworkTask& task, const Surrogate& surrogate,
-                                   const VectorXd& least_scale, const TrainingControl& control) {
+                                   const StddevLack& lack, const TrainingControl& control) {
   NetworkMapTraining training;
   NetworkMap& map = training.map;
   setBounds(task.model, map);
@@ -305,10 +313,9 @@ NetworkMapTraining trainNetworkMap(const NetworkTask& task, const Surrogate& sur
   const MatrixXd targets = makeTargets(map, pool.points);
   const NormalSamples samples(std::move(pool.inputs));
   const NetworkSet set{samples, targets};
-  const Split parts = split(listAll(targets.cols()));
+  const Split parts = split(listAll(targets.cols()), targets.cols());
   setMembers(fitNetwork(set, parts, {task.spec, task.seed, 0}, control), training);
-  validateMap(predictHeldOut(set, map.members, parts.held_out, task.seed, control.threads), least_scale,
-              training);
+  validateMap(predictHeldOut(set, map.members, parts.held_out, task.seed, control.threads), &lack, training);
   warnOfShape(task, training);
   return training;
 }

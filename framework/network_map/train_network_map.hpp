@@ -8,6 +8,7 @@
 #include "framework/network_map/fit_network.hpp"
 #include "framework/network_map/network_map.hpp"
 #include "framework/spec/model_spec.hpp"
+#include "framework/surrogate/honest_stddev.hpp"
 
 namespace twinmap {
 
@@ -41,16 +42,17 @@ struct NetworkSimulations {
 
 /// Trains a network on simulations. Networks of few simulations are overconfident: below 20000 five more,
 /// each of which a fifth of the simulations is left out of, tell by how much, and the standard deviations are
-/// multiplied by it (calcStddevScale); from 20000 on, the simulations held out do. Throws
-/// std::invalid_argument for fewer than 50 simulations; gp::Stopped. Cost: six trainings, or one.
+/// multiplied by it (calcStddevScale); below 2500 ten, each without a tenth, as a few more simulations tell
+/// much there; from 20000 on, the simulations held out do. Throws std::invalid_argument for fewer than 50
+/// simulations; gp::Stopped. Cost: eleven trainings, six, or one.
 NetworkMapTraining trainNetworkMap(const NetworkTask& task, const NetworkSimulations& simulations,
                                    const TrainingControl& control);
 
 /// Trains a network on `surrogate_samples` points of the box, whose scores a surrogate makes up: a normal
 /// distribution of its mean, its own error and the noise. Standard deviations are multiplied by the larger of
-/// what samples held out say and `least_scale` (p), which the surrogate's own cross-validation found
-/// (SurrogateTraining). Cost: that many evaluations of the surrogate, and a training.
+/// what samples held out say and what the surrogate's own lack (calcPupilScale). Cost: that many evaluations
+/// of the surrogate, and a training.
 NetworkMapTraining trainNetworkMap(const NetworkTask& task, const Surrogate& surrogate,
-                                   const Eigen::VectorXd& least_scale, const TrainingControl& control);
+                                   const StddevLack& lack, const TrainingControl& control);
 
 }  // namespace twinmap

@@ -143,12 +143,12 @@ HeldOut crossValidate(const Surrogate& whole, const SurrogateSamples& samples, c
   return held_out;
 }
 
-VectorXd calcLeastScale(const HeldOut& held_out) {
-  VectorXd scale(held_out.truth.rows());
-  for (Index k = 0; k < scale.size(); ++k) {
-    scale(k) = calcLeastStddevScale(calcAbsolute(held_out, k));
+StddevLack calcLack(const HeldOut& held_out) {
+  StddevLack lack{VectorXd(held_out.truth.rows()), calcTypicalStddev(held_out.predictions.stddev)};
+  for (Index k = 0; k < lack.least_scale.size(); ++k) {
+    lack.least_scale(k) = calcLeastStddevScale(calcAbsolute(held_out, k));
   }
-  return scale;
+  return lack;
 }
 
 SurrogateValidation validate(const HeldOut& held_out) {

@@ -29,7 +29,7 @@ HeldOut crossValidate(const Surrogate& whole, const SurrogateSamples& samples, c
 /// What follows for the standard deviations; limit_scale is left to others.
 SurrogateValidation validate(const HeldOut& held_out);
 
-/// calcLeastStddevScale() of each parameter (p).
-Eigen::VectorXd calcLeastScale(const HeldOut& held_out);
+/// What the standard deviations lack at least.
+StddevLack calcLack(const HeldOut& held_out);
 
 }  // namespace twinmap

@@ -37,11 +37,10 @@ double calcShareBelow(const Eigen::VectorXd& sorted, double value) {
          static_cast<double>(sorted.size());
 }
 
-/// The factor, at most `highest`, by which coverage of 50 % and 95 % intervals misses these by opposite
-/// amounts, those of 95 % counted twice. Their sum rises with the factor, so that halving finds it.
-double calcBalancedScale(const Eigen::VectorXd& sorted, double highest) {
+/// The factor between two by which coverage of 50 % and 95 % intervals misses these by opposite amounts,
+/// those of 95 % counted twice. Their sum rises with the factor, so that halving finds it.
+double calcBalancedScale(const Eigen::VectorXd& sorted, double low, double high) {
   constexpr int kHalvings = 40;
-  double low = 0.0, high = highest;
   for (int i = 0; i < kHalvings; ++i) {
     const double scale = 0.5 * (low + high);
     const double excess = calcShareBelow(sorted, kNormal50 * scale) - 0.5 +
@@ -63,11 +62,22 @@ double calcStddevScale(const Eigen::VectorXd& absolute_z) {
   const Eigen::VectorXd sorted = sortErrors(absolute_z);
   const double scale =
       std::max(calcQuantileScale(sorted, 0.0), std::min(1.0, calcQuantileScale(sorted, kNormal95)));
-  return sorted.size() > kMany ? calcBalancedScale(sorted, scale) : scale;
+  return sorted.size() > kMany
+             ? calcBalancedScale(sorted, std::min(scale, calcQuantile(sorted, 0.68) / kNormal68), scale)
+             : scale;
 }
 
 double calcLeastStddevScale(const Eigen::VectorXd& absolute_z) {
   return calcQuantileScale(sortErrors(absolute_z), -1.0);
+}
+
+Eigen::VectorXd calcTypicalStddev(const Eigen::MatrixXd& stddev) {
+  return stddev.array().log().rowwise().mean().exp();
+}
+
+Eigen::VectorXd calcPupilScale(const StddevLack& teacher, const Eigen::VectorXd& typical_stddev) {
+  const Eigen::ArrayXd share = (teacher.typical_stddev.array() / typical_stddev.array()).min(1.0).square();
+  return (1.0 + share * (teacher.least_scale.array().max(1.0).square() - 1.0)).sqrt();
 }
 
 }  // namespace twinmap

@@ -105,16 +105,25 @@ double countMapNumbers(const ExperimentSpec& experiment, int threads) {
   return mayTrainSurrogate(experiment) ? countSurrogateNumbers(experiment, threads) : 0.0;
 }
 
-/// Of a network alone: its weights, forwards and backwards, for each sample of each step, and those of the
-/// five networks that tell how honest it is.
-double countNetworkFlops(const NetworkMapSpec& network) {
-  constexpr double kInputs = 32.0, kOfWeight = 6.0, kTrainings = 6.0;
+/// A network's, and those that tell how honest it is (trainNetworkMap()), of which a surrogate's pupil has
+/// none.
+double countTrainings(const NetworkMapSpec& network, int simulations) {
+  if (network.mayLearnFromSurrogate(simulations) || simulations >= 20000) {
+    return 1.0;
+  }
+  return simulations < 2500 ? 11.0 : 6.0;
+}
+
+/// Of networks alone: their weights, forwards and backwards, for each sample of each step.
+double countNetworkFlops(const NetworkMapSpec& network, int simulations) {
+  constexpr double kInputs = 32.0, kOfWeight = 6.0;
   double weights = 0.0, before = kInputs;
   for (const int units : network.hidden.value()) {
     weights += before * units;
     before = units;
   }
-  return kOfWeight * kTrainings * weights * network.steps.value_or(1) * network.batch.value_or(1);
+  return kOfWeight * countTrainings(network, simulations) * weights * network.steps.value_or(1) *
+         network.batch.value_or(1);
 }
 
 }  // namespace
@@ -158,7 +167,7 @@ CaseCost calcCaseCost(const ExperimentSpec& experiment, int threads) {
     cost.flops += step.processes * evaluations * step.relative_cost * cube(step.samples);
   }
   if (const NetworkMapSpec* network = experiment.inverse_map.findNetwork()) {
-    cost.flops += countNetworkFlops(*network);
+    cost.flops += countNetworkFlops(*network, experiment.design.train.samples);
   }
   return cost;
 }

@@ -147,7 +147,8 @@ TEST(NetworkMap, LearnsFromASurrogateOfFewSimulations) {
   const SurrogateTraining teacher = trainTeacher(oscillation);
   NetworkMapSpec spec = makeSpec(600);
   spec.surrogate_samples = 3000;
-  const NetworkMapTraining trained = trainNetworkMap({oscillation.model, spec, 3}, teacher.surrogate, teacher.least_scale, {2});
+  const NetworkMapTraining trained =
+      trainNetworkMap({oscillation.model, spec, 3}, teacher.surrogate, teacher.lack, {2});
   expectHonestAndNearTheLimit(oscillation, trained.map);
 }
 
@@ -171,9 +172,12 @@ TEST(NetworkMap, IsTheSameForAnyNumberOfThreads) {
   const SurrogateTraining teacher = trainTeacher(oscillation);
   NetworkMapSpec spec = makeSpec(60);
   spec.surrogate_samples = 1000;
-  EXPECT_EQ(
-      trainNetworkMap({oscillation.model, spec, 3}, teacher.surrogate, teacher.least_scale, {1}).map.members.front().network.skip,
-      trainNetworkMap({oscillation.model, spec, 3}, teacher.surrogate, teacher.least_scale, {3}).map.members.front().network.skip);
+  EXPECT_EQ(trainNetworkMap({oscillation.model, spec, 3}, teacher.surrogate, teacher.lack, {1})
+                .map.members.front()
+                .network.skip,
+            trainNetworkMap({oscillation.model, spec, 3}, teacher.surrogate, teacher.lack, {3})
+                .map.members.front()
+                .network.skip);
 }
 
 /// A parameter whose square alone is measured, and one that is measured as it is.

@@ -52,6 +52,20 @@ TEST(StddevScale, BalancesWhatTheTailsOfManyErrorsTakeFromTheMiddle) {
   EXPECT_GT(half, 0.01);
 }
 
+TEST(StddevScale, OfManyErrorsWithLightTailsIsThatOfFew) {
+  const Eigen::VectorXd even = Eigen::VectorXd::LinSpaced(20000, 0.0, std::sqrt(3.0));  // of variance 1
+  EXPECT_NEAR(calcStddevScale(even), 0.68 * std::sqrt(3.0) / 0.994458, 1e-3);
+}
+
+TEST(StddevScale, OfAPupilMakesUpForItsTeachersShare) {
+  const StddevLack teacher{Eigen::Vector3d(1.5, 1.5, 0.9), Eigen::Vector3d(2.0, 2.0, 2.0)};
+  const Eigen::VectorXd scale = calcPupilScale(teacher, Eigen::Vector3d(4.0, 1.0, 2.0));
+  EXPECT_NEAR(scale[0], std::sqrt(21.0 / 16.0), 1e-12);  // variances 12 + 4 become 12 + 9
+  EXPECT_NEAR(scale[1], 1.5, 1e-12);
+  EXPECT_NEAR(scale[2], 1.0, 1e-12);
+  EXPECT_NEAR(calcTypicalStddev(Eigen::RowVector2d(2.0, 8.0))[0], 4.0, 1e-12);
+}
+
 TEST(StddevScale, IsNoLargerForManyErrorsThanForFew) {
   for (const Eigen::Index count : {3000, 20000}) {
     EXPECT_NEAR(calcStddevScale(makeErrors(count, 1.7)), 1.7, 0.01);
