@@ -31,11 +31,11 @@ MAPS = [
     ("surrogate", "surrogate", [100, 250, 1000], SIX),
     ("surrogate", "surrogate", [250], OTHERS),
     ("gp", "gp", [100, 250, 1000], FOUR),
-    ("sparse gp", "{gp: {approximation: sgpr}}", [1000, 4000, 10000], FOUR),
+    ("sparse gp", "{gp: {approximation: sgpr}}", [1000, 4000, 10000], TWO),
     ("mixture", "{network: {head: mixture}}", [250], FOUR),
     ("mixture", "{network: {head: mixture}}", [4000], TWO),
     ("bayesian last layer", "{network: {bayesian: last_layer}}", [250], FOUR),
-    ("bayesian last layer", "{network: {bayesian: last_layer}}", [4000], TWO),
+    ("bayesian last layer", "{network: {bayesian: last_layer}}", [4000], TWO[:1]),
     ("bayesian hamiltonian", "{network: {bayesian: hamiltonian}}", [100], FOUR[:1]),
     ("network, simulations alone", "{network: {samples_from: simulations}}", [250, 1000], FOUR),
 ]
@@ -73,7 +73,7 @@ def count_processor_seconds():
 
 def list_baselines(size, name):
     """Beside the network, which runs for all sizes."""
-    wanted = {"linear_regression": "linear_regression", "least_squares": "{least_squares: {samples: 200}}"}
+    wanted = {"linear_regression": "linear_regression", "least_squares": "{least_squares: {samples: 100}}"}
     return [wanted[key] for key, (_, sizes) in BASELINES.items() if name == "network" and size in sizes]
 
 

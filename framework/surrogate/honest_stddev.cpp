@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "framework/inverse_map/predictions.hpp"
 
@@ -19,16 +18,25 @@ double calcQuantile(const Eigen::VectorXd& sorted, double level) {
   return sorted(static_cast<Eigen::Index>(std::clamp(rank, 1.0, n)) - 1);
 }
 
-/// The larger of both quantiles over those of the normal distribution; of their confidence limits so many
-/// standard errors of the ranks (binomial) above them.
-double calcQuantileScale(const Eigen::VectorXd& sorted, double errors_above) {
-  const auto n = static_cast<double>(sorted.size());
-  double scale = 0.0;
-  for (const auto& [level, normal] : {std::pair{0.95, kNormal95}, std::pair{0.68, kNormal68}}) {
-    const double error = std::sqrt(level * (1.0 - level) / n);
-    scale = std::max(scale, calcQuantile(sorted, level + errors_above * error) / normal);
-  }
-  return scale;
+/// Of a binomial rank, as a share of so many.
+double calcRankError(double level, Eigen::Index count) {
+  return std::sqrt(level * (1.0 - level) / static_cast<double>(count));
+}
+
+/// A quantile over that of the normal distribution; of its confidence limit so many standard errors of the
+/// rank above it.
+double calcQuantileScale(const Eigen::VectorXd& sorted, double level, double normal, double errors_above) {
+  return calcQuantile(sorted, level + errors_above * calcRankError(level, sorted.size())) / normal;
+}
+
+double calcMiddleScale(const Eigen::VectorXd& sorted, double errors_above) {
+  return calcQuantileScale(sorted, 0.68, kNormal68, errors_above);
+}
+
+/// The larger of those of the middle and of the tail.
+double calcLargerScale(const Eigen::VectorXd& sorted, double errors_above) {
+  return std::max(calcMiddleScale(sorted, errors_above),
+                  calcQuantileScale(sorted, 0.95, kNormal95, errors_above));
 }
 
 /// The share of the errors that are below a value.
@@ -37,15 +45,19 @@ double calcShareBelow(const Eigen::VectorXd& sorted, double value) {
          static_cast<double>(sorted.size());
 }
 
-/// The factor between two by which coverage of 50 % and 95 % intervals misses these by opposite amounts,
-/// those of 95 % counted twice. Their sum rises with the factor, so that halving finds it.
-double calcBalancedScale(const Eigen::VectorXd& sorted, double low, double high) {
+/// The factor between the middle's and the larger one by which coverage of 50 % and 95 % intervals misses
+/// these by opposite amounts, those of 95 % counted twice. Their sum rises with the factor, so that halving
+/// finds it.
+double calcBalancedScale(const Eigen::VectorXd& sorted, double errors_above) {
   constexpr int kHalvings = 40;
+  const double wanted = 0.5 + errors_above * calcRankError(0.5, sorted.size()) +
+                        2.0 * (0.95 + errors_above * calcRankError(0.95, sorted.size()));
+  double low = calcMiddleScale(sorted, errors_above), high = calcLargerScale(sorted, errors_above);
   for (int i = 0; i < kHalvings; ++i) {
     const double scale = 0.5 * (low + high);
-    const double excess = calcShareBelow(sorted, kNormal50 * scale) - 0.5 +
-                          2.0 * (calcShareBelow(sorted, kNormal95 * scale) - 0.95);
-    (excess < 0.0 ? low : high) = scale;
+    const double found =
+        calcShareBelow(sorted, kNormal50 * scale) + 2.0 * calcShareBelow(sorted, kNormal95 * scale);
+    (found < wanted ? low : high) = scale;
   }
   return high;
 }
@@ -60,15 +72,13 @@ Eigen::VectorXd sortErrors(Eigen::VectorXd values) {
 double calcStddevScale(const Eigen::VectorXd& absolute_z) {
   constexpr Eigen::Index kMany = 2000;  // whose factor has a standard error of 2 %
   const Eigen::VectorXd sorted = sortErrors(absolute_z);
-  const double scale =
-      std::max(calcQuantileScale(sorted, 0.0), std::min(1.0, calcQuantileScale(sorted, kNormal95)));
   return sorted.size() > kMany
-             ? calcBalancedScale(sorted, std::min(scale, calcQuantile(sorted, 0.68) / kNormal68), scale)
-             : scale;
+             ? calcBalancedScale(sorted, 0.0)
+             : std::max(calcLargerScale(sorted, 0.0), std::min(1.0, calcLargerScale(sorted, kNormal95)));
 }
 
 double calcLeastStddevScale(const Eigen::VectorXd& absolute_z) {
-  return calcQuantileScale(sortErrors(absolute_z), -1.0);
+  return calcBalancedScale(sortErrors(absolute_z), -1.0);
 }
 
 Eigen::VectorXd calcTypicalStddev(const Eigen::MatrixXd& stddev) {

@@ -14,7 +14,8 @@ namespace twinmap {
 /// lighter tails keep the factor of the 68 % interval.
 double calcStddevScale(const Eigen::VectorXd& absolute_z);
 
-/// The same, of quantiles one standard error lower: what the factor is at least, rather than by chance.
+/// The factor that balances both, of shares one standard error lower: what it is at least, rather than by
+/// chance.
 double calcLeastStddevScale(const Eigen::VectorXd& absolute_z);
 
 /// What the standard deviations of a map's answers (p parameters) lack.
