@@ -116,12 +116,14 @@ def read_rows(folder, experiment, size, name):
     """One for each parameter, of the map and of the baselines beside it."""
     provenance = json.loads((folder / "provenance.json").read_text())
     common = {"experiment": experiment, "simulations": size}
-    metrics = read_csv(folder / "metrics.csv")
-    of_run = {"map": name, "processor_seconds": float((folder / "processor_seconds.txt").read_text()),
+    metrics, baselines = read_csv(folder / "metrics.csv"), read_csv(folder / "baselines.csv")
+    seconds = float((folder / "processor_seconds.txt").read_text())
+    of_baselines = sum({row["method"]: float(row["samples"]) * float(row["seconds_per_update"]) for row in baselines if row["method"] in BASELINES}.values())
+    of_run = {"map": name, "processor_seconds": seconds - of_baselines,
               "online_us": provenance["online"]["median_us"], "bytes": (folder / "maps.h5").stat().st_size}
     rows = [{**row, **common, **of_run} for row in metrics]
     limits = {row["parameter"]: float(row["limit_pct"]) for row in metrics}
-    for row in read_csv(folder / "baselines.csv"):
+    for row in baselines:
         if row["method"] in BASELINES:
             ratio = float(row["sd_pct"]) / limits[row["parameter"]]
             rows.append({**row, **common, "map": BASELINES[row["method"]][0], "limit_pct": limits[row["parameter"]], "ratio_to_limit": ratio,
@@ -210,7 +212,7 @@ HEAD = """# Which map for how many simulations
 Written by `bench/map_study.py TWINMAP`: {count} mechanisms, {tests} test samples each, every map alone (`refine=never`), one seed. Ratio: standard
 deviation of the errors over the information limit, geometric mean over the parameters and the worst of them. Nats: how much the logarithmic
 density of the true parameters is below that of normal distributions as narrow as the limit, a parameter on average. Coverage: smallest and largest
-over the parameters. Processor time: of the whole run, simulation, training, trust and evaluation. A measurement: median time from features to an
+over the parameters. Processor time: of the whole run, simulation, training, trust and evaluation, but for baselines. A measurement: median time from features to an
 answer with its judgement. [maps.md](maps.md) says what the maps are, [networks.md](networks.md) what the kinds of network.
 
 One of them, smaller:
