@@ -158,13 +158,14 @@ def summarise(rows):
 
 def make_figure(points, value, title):
     """A Vega-Lite specification: a panel for each experiment, a line for each map."""
+    scale = {"type": "log", "nice": False} if value == "ratio" else {}  # nats may be below 0
     data = [{key: point[key] for key in ("experiment", "simulations", "map", value)} for point in points
-            if math.isfinite(point[value]) and (value != "nats" or point[value] > 0)]
+            if math.isfinite(point[value])]
     return {"$schema": "https://vega.github.io/schema/vega-lite/v5.json", "data": {"values": data}, "background": "white",
             "facet": {"field": "experiment", "title": None, "sort": list(dict.fromkeys(p["experiment"] for p in points))}, "columns": 3,
             "spec": {"width": 250, "height": 180, "mark": {"type": "line", "point": True},
-                     "encoding": {"x": {"field": "simulations", "type": "quantitative", "scale": {"type": "log"}},
-                                  "y": {"field": value, "type": "quantitative", "title": title, "scale": {"type": "log"}},
+                     "encoding": {"x": {"field": "simulations", "type": "quantitative", "scale": {"type": "log", "nice": False}},
+                                  "y": {"field": value, "type": "quantitative", "title": title, "scale": scale},
                                   "color": {"field": "map", "sort": ORDER, "scale": {"scheme": "tableau10"}, "legend": {"title": None}}}},
             "resolve": {"scale": {"y": "independent"}}}
 
@@ -193,14 +194,18 @@ def span(pair):
 
 
 def describe(value, unit):
-    return "" if math.isnan(value) else f"{value:.3g} {unit}"
+    return "" if math.isnan(value) else f"{float(f'{value:.2g}'):g} {unit}"
+
+
+def show_ratio(value):
+    return f"{value:.2f}" if value < 10 else f"{value:.3g}"
 
 
 def make_table(points):
     lines = ["| map | simulations | ratio, mean | worst | nats | coverage 50 % | 95 % | processor time | a measurement | size |",
              "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|"]
     for point in points:
-        cells = [point["map"], point["simulations"], f"{point['ratio']:.3g}", f"{point['worst_ratio']:.3g}",
+        cells = [point["map"], point["simulations"], show_ratio(point["ratio"]), show_ratio(point["worst_ratio"]),
                  f"{point['nats']:.2g}" if math.isfinite(point["nats"]) else "", span(point["coverage50"]), span(point["coverage95"]),
                  describe(point["processor_seconds"], "s"), describe(point["online_us"], "us"), describe(point["bytes"] / 1024, "kB")]
         lines.append("| " + " | ".join(map(str, cells)) + " |")
@@ -213,7 +218,7 @@ Written by `bench/map_study.py TWINMAP`: {count} mechanisms, {tests} test sample
 deviation of the errors over the information limit, geometric mean over the parameters and the worst of them. Nats: how much the logarithmic
 density of the true parameters is below that of normal distributions as narrow as the limit, a parameter on average. Coverage: smallest and largest
 over the parameters. Processor time: of the whole run, simulation, training, trust and evaluation, but for baselines. A measurement: median time from features to an
-answer with its judgement. [maps.md](maps.md) says what the maps are, [networks.md](networks.md) what the kinds of network.
+answer with its judgement, on a busy machine (a network alone takes 1 to 2 us, docs/networks.md). [maps.md](maps.md) says what the maps are, [networks.md](networks.md) what the kinds of network.
 
 One of them, smaller:
 
