@@ -224,7 +224,7 @@ One of them, smaller:
 
 ```sh
 common="experiments/mechanisms/double_pendulum_mild.yaml design.train.samples=100 design.test.samples=200 refine=never"
-twinmap run $common inverse_map=gp "evaluation.maps=[{{network: {{samples_from: simulations, steps: 500}}}}]" --out results/which
+twinmap run $common inverse_map=surrogate "evaluation.maps=[gp, {{network: {{samples_from: simulations, steps: 500}}}}]" --out results/which
 cat results/which/maps.csv
 ```
 
