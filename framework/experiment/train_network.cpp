@@ -108,9 +108,7 @@ void remarkOnPupil(const Eigen::VectorXd& excess, const ModelSpec& model, StageN
     notes.warn(
         Gravity::kRemark,
         fmt::format("{}: the network's standard deviations are {:.1f} times those of the surrogate that "
-                    "it learnt from, which 'inverse_map: surrogate' gives in milliseconds; a larger "
-                    "network ('hidden: [192, 192], steps: 18000, batch: 1024') learns more of it, in "
-                    "some minutes",
+                    "it learnt from, which 'inverse_map: surrogate' gives in milliseconds",
                     model.parameters[static_cast<std::size_t>(worst)].name.text, excess[worst]));
   }
 }
