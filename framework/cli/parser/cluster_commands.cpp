@@ -11,13 +11,11 @@ namespace {
 
 void addSubmit(CLI::App& app, const Invocation& invocation) {
   const auto arguments = std::make_shared<SubmitArguments>();
-  arguments->run.threads = invocation.threads;
-  arguments->run.command_line = invocation.line;
   CLI::App* command = app.add_subcommand(
       "submit",
       "Submit what run would do to a cluster, as jobs that each do a shard of it; or print the commands "
       "(--on local); submitted again, what is missing");
-  addWhereAndHow(*command, arguments->run);
+  addWhereAndHow(*command, arguments->run, invocation);
   addOn(*command, *arguments)->required();
   addJobs(*command, *arguments);
   command->add_option("--partition", arguments->partition, "Of Slurm")->type_name("NAME");

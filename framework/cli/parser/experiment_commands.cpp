@@ -32,11 +32,9 @@ void addSimulate(CLI::App& app) {
 
 void addRun(CLI::App& app, const Invocation& invocation) {
   const auto arguments = std::make_shared<RunArguments>();
-  arguments->threads = invocation.threads;
-  arguments->command_line = invocation.line;
   CLI::App* command =
       app.add_subcommand("run", "Simulate, train, infer, and write tables, maps and the report");
-  addWhereAndHow(*command, *arguments);
+  addWhereAndHow(*command, *arguments, invocation);
   CLI::Option* fail_fast = command->add_flag("--fail-fast", arguments->fail_fast,
                                              "Of a sweep: begin no case after one has failed");
   command->add_flag("--keep-going", "Of a sweep: a case that fails stops no other (default)")
@@ -48,12 +46,10 @@ void addRun(CLI::App& app, const Invocation& invocation) {
 
 void addPlan(CLI::App& app, const Invocation& invocation) {
   const auto arguments = std::make_shared<SubmitArguments>();
-  arguments->run.threads = invocation.threads;
-  arguments->run.command_line = invocation.line;
   CLI::App* command = app.add_subcommand(
       "plan",
       "Print what run would do: cases, simulations, time, memory, disk; simulate and train only a little");
-  addWhereAndHow(*command, arguments->run);
+  addWhereAndHow(*command, arguments->run, invocation);
   CLI::Option* on = addOn(*command, *arguments);
   on->description("Print the shards as well that submit would make: " + on->get_description());
   addJobs(*command, *arguments);

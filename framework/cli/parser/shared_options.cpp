@@ -22,7 +22,9 @@ void addThreads(CLI::App& command, int& threads) {
       ->check(CLI::Range(1, kMostThreads));
 }
 
-void addWhereAndHow(CLI::App& command, RunArguments& arguments) {
+void addWhereAndHow(CLI::App& command, RunArguments& arguments, const Invocation& invocation) {
+  arguments.threads = invocation.threads;
+  arguments.command_line = invocation.line;
   addExperiment(command, arguments.experiment);
   command.add_option("--out", arguments.folder, "Folder for the results (default: results/NAME)")
       ->type_name("DIR");

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "framework/cli/commands.hpp"
+#include "framework/cli/parser/command_groups.hpp"
 
 namespace twinmap::cli {
 
@@ -16,8 +17,8 @@ void addFailOnGates(CLI::App& command, bool& fail);
 
 void addThreads(CLI::App& command, int& threads);
 
-/// What run, plan and submit take: FILE, --out, --store, --threads, --memory.
-void addWhereAndHow(CLI::App& command, RunArguments& arguments);
+/// What run, plan and submit take: FILE, --out, --store, --threads, --memory; and how they were called.
+void addWhereAndHow(CLI::App& command, RunArguments& arguments, const Invocation& invocation);
 
 /// Of a cluster: --time, --cpus, --shards.
 void addJobs(CLI::App& command, SubmitArguments& arguments);
