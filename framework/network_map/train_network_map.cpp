@@ -12,6 +12,7 @@
 #include "framework/network_map/surrogate_pool.hpp"
 #include "framework/spec/parameter_box.hpp"
 #include "framework/surrogate/cross_validation.hpp"
+#include "framework/surrogate/folds.hpp"
 #include "framework/surrogate/run_tasks.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
@@ -23,21 +24,22 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Indices below `count`: those for which i % period is `residue`, or the others.
-std::vector<Index> listIndices(Index count, Index period, Index residue, bool matching) {
-  std::vector<Index> listed;
-  for (Index i = 0; i < count; ++i) {
-    if ((i % period == residue) == matching) {
-      listed.push_back(i);
-    }
-  }
-  return listed;
+constexpr Index kMany = NetworkMapSpec::kMany;
+
+// Of held-out samples with draws of their noise: enough for quantiles, and where these alone tell how honest
+// a network is, for a factor within 1 %.
+constexpr Index kColumnsOfFew = 2000, kColumnsOfMany = 8000;
+
+/// One of how many is held out: of ten; of few, and where those held out are to tell how honest the network
+/// is, of five, until a tenth of them are 2000.
+Index calcPeriod(Index samples) {
+  constexpr Index kFew = 1000;
+  return samples < kFew || (samples >= kMany && samples < 2 * kMany) ? 5 : 10;
 }
 
-/// A tenth is held out; of few samples, those of a fold among them, a fifth. count: of all samples.
+/// count: of all samples, where `all` are those of a fold.
 Split split(const std::vector<Index>& all, Index count) {
-  constexpr Index kFew = 1000;
-  const std::size_t period = count < kFew ? 5 : 10;
+  const auto period = static_cast<std::size_t>(calcPeriod(count));
   Split parts;
   for (std::size_t i = 0; i < all.size(); ++i) {
     (i % period == period - 1 ? parts.held_out : parts.training).push_back(all[i]);
@@ -46,7 +48,7 @@ Split split(const std::vector<Index>& all, Index count) {
 }
 
 std::vector<Index> listAll(Index count) {
-  return listIndices(count, 1, 0, true);
+  return listLeftOut(count, 1, 0);
 }
 
 /// Parameters on [-1, 1] of their bounds.
@@ -67,10 +69,10 @@ MatrixXd calcFactor(const MatrixXd& covariance) {
   return eigen.vectors * eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
-/// Draws of held-out samples' noise: enough columns for quantiles.
-Index countDraws(Index samples) {
-  constexpr Index kColumns = 2000, kMost = 4;
-  return std::clamp<Index>(kColumns / samples, 1, kMost);
+/// Draws of held-out samples' noise: enough for so many columns.
+Index countDraws(Index samples, Index columns) {
+  constexpr Index kMost = 4;
+  return std::clamp<Index>(columns / samples, 1, kMost);
 }
 
 /// What networks say of samples that they had not seen.
@@ -81,8 +83,8 @@ struct HeldOutTargets {
 };
 
 HeldOutTargets predictHeldOut(const NetworkSet& set, const std::vector<network::Member>& members,
-                              const std::vector<Index>& chosen, std::uint64_t seed, int threads) {
-  const Index draws = countDraws(static_cast<Index>(chosen.size()));
+                              const std::vector<Index>& chosen, Index draws, std::uint64_t seed,
+                              int threads) {
   return {predictTargets(members, drawMeasured(set.samples, chosen, draws, seed), threads),
           MatrixXd(set.targets(Eigen::all, chosen)).replicate(1, draws), static_cast<int>(draws)};
 }
@@ -100,16 +102,19 @@ void place(const Predictions& some, const std::vector<Index>& columns, Predictio
   }
 }
 
-/// Parts of the samples, each left out in turn: of few samples, of which one more tells much, more parts.
-/// Kinds of network that are several already have five, for the time.
+/// Parts of the samples, each left out in turn: none of many; of few, of which one more tells much, more
+/// parts. Kinds of network that are several already have five, for the time.
 Index countFolds(const NetworkMapSpec& spec, Index samples) {
   constexpr Index kFew = 2500;
+  if (samples >= kMany) {
+    return 0;
+  }
   return samples < kFew && spec.bayesian == NetworkBayes::kNone ? 10 : 5;
 }
 
 /// Networks that a part of the samples is left out of in turn, and what they say of it.
 HeldOutTargets crossValidate(const NetworkSet& set, const NetworkTask& task, const TrainingControl& control) {
-  const Index n = set.targets.cols(), p = set.targets.rows(), draws = countDraws(n);
+  const Index n = set.targets.cols(), p = set.targets.rows(), draws = countDraws(n, kColumnsOfFew);
   const MatrixXd measured = drawMeasured(set.samples, listAll(n), draws, task.seed);
   const auto columns_in_all = static_cast<std::size_t>(n * draws);
   HeldOutTargets held_out{
@@ -119,11 +124,11 @@ HeldOutTargets crossValidate(const NetworkSet& set, const NetworkTask& task, con
       static_cast<int>(draws)};
   const Index folds = countFolds(task.spec, n);
   runTasks(control.threads, static_cast<std::size_t>(folds), [&](std::size_t fold) {
-    const Split parts = split(listIndices(n, folds, static_cast<Index>(fold), false), n);
+    const Split parts = split(listKept(n, folds, static_cast<Index>(fold)), n);
     const NetworkFit fit = fitNetwork(set, parts, {task.spec, task.seed, fold + 1}, {1, control.stop});
     std::vector<Index> columns;
     for (Index draw = 0; draw < draws; ++draw) {
-      for (const Index i : listIndices(n, folds, static_cast<Index>(fold), true)) {
+      for (const Index i : listLeftOut(n, folds, static_cast<Index>(fold))) {
         columns.push_back(i + draw * n);
       }
     }
@@ -194,6 +199,14 @@ void setMembers(NetworkFit fit, NetworkMapTraining& training) {
   training.map.members = std::move(fit.members);
 }
 
+/// What answers are that are no normal distributions: of a few large errors among small ones, 50 % intervals
+/// hold more than that, and 95 % intervals fewer.
+const char* describeShape(double probability, double share) {
+  const bool heavy_tails = (share > probability) == (probability < 0.9);
+  return heavy_tails ? "a few of its errors are much larger than the others"
+                     : "several answers fit, or they lie at the bounds; use 'head: mixture'";
+}
+
 /// Names the parameters whose intervals hold another share of the samples held out: their answers are no
 /// normal distributions. Of a uniform one, 50 % intervals hold 39 % and 95 % intervals all; of two answers
 /// apart the former next to none. A small difference is of no consequence, and twice the standard error is
@@ -216,10 +229,9 @@ void warnOfShape(const NetworkTask& task, NetworkMapTraining& training) {
       if (std::abs(share - probability) > small + 2.0 * error) {
         training.warnings.push_back(fmt::format(
             "{}: {:.0f} % intervals of the network hold {:.0f} % of the samples held out, so that its "
-            "answers are not normal distributions: several answers fit, or they lie at the bounds; "
-            "use 'head: mixture'",
-            task.model.parameters[static_cast<std::size_t>(p)].name.text, 100.0 * probability,
-            100.0 * share));
+            "answers are not normal distributions: {}",
+            task.model.parameters[static_cast<std::size_t>(p)].name.text, 100.0 * probability, 100.0 * share,
+            describeShape(probability, share)));
         break;
       }
     }
@@ -276,10 +288,13 @@ std::unique_ptr<NoisySamples> makeSamples(const NetworkSimulations& simulations,
 
 }  // namespace
 
+int countTrainings(const NetworkMapSpec& spec, int simulations) {
+  return 1 + static_cast<int>(countFolds(spec, simulations));
+}
+
 NetworkMapTraining trainNetworkMap(const NetworkTask& task, const NetworkSimulations& simulations,
                                    const TrainingControl& control) {
   constexpr Index kFewest = 50;
-  constexpr Index kHonest = 20000;  // of 10000 those held out tell 95 % coverage to .007 alone
   const Index n = simulations.points.cols();
   if (n < kFewest) {
     throw std::invalid_argument("a network needs at least 50 training samples");
@@ -294,9 +309,12 @@ NetworkMapTraining trainNetworkMap(const NetworkTask& task, const NetworkSimulat
   const NetworkSet set{*samples, targets};
   const Split parts = split(listAll(n), n);
   setMembers(fitNetwork(set, parts, {task.spec, task.seed, 0}, control), training);
+  const auto left = static_cast<Index>(parts.held_out.size());
   const HeldOutTargets held_out =
-      n < kHonest ? crossValidate(set, task, control)
-                  : predictHeldOut(set, map.members, parts.held_out, task.seed, control.threads);
+      countFolds(task.spec, n) > 0
+          ? crossValidate(set, task, control)
+          : predictHeldOut(set, map.members, parts.held_out, countDraws(left, kColumnsOfMany), task.seed,
+                           control.threads);
   validateMap(held_out, nullptr, training);
   warnOfShape(task, training);
   return training;
@@ -315,7 +333,9 @@ NetworkMapTraining trainNetworkMap(const NetworkTask& task, const Surrogate& sur
   const NetworkSet set{samples, targets};
   const Split parts = split(listAll(targets.cols()), targets.cols());
   setMembers(fitNetwork(set, parts, {task.spec, task.seed, 0}, control), training);
-  validateMap(predictHeldOut(set, map.members, parts.held_out, task.seed, control.threads), &lack, training);
+  const Index draws = countDraws(static_cast<Index>(parts.held_out.size()), kColumnsOfFew);
+  validateMap(predictHeldOut(set, map.members, parts.held_out, draws, task.seed, control.threads), &lack,
+              training);
   warnOfShape(task, training);
   return training;
 }

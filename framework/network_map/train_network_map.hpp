@@ -40,11 +40,15 @@ struct NetworkSimulations {
   const Eigen::MatrixXd& noise_covariance;  ///< d x d
 };
 
-/// Trains a network on simulations. Networks of few simulations are overconfident: below 20000 five more,
+/// How often trainNetworkMap() trains a network on so many simulations: once, and as often again to tell how
+/// honest it is.
+int countTrainings(const NetworkMapSpec& spec, int simulations);
+
+/// Trains a network on simulations. Networks of few simulations are overconfident: below 10000 five more,
 /// each of which a fifth of the simulations is left out of, tell by how much, and the standard deviations are
 /// multiplied by it (calcStddevScale); below 2500 ten, each without a tenth, as a few more simulations tell
-/// much there; from 20000 on, the simulations held out do. Throws std::invalid_argument for fewer than 50
-/// simulations; gp::Stopped. Cost: eleven trainings, six, or one.
+/// much there; from 10000 on, the simulations held out do, 2000 at least. Throws std::invalid_argument for
+/// fewer than 50 simulations; gp::Stopped. Cost: countTrainings() trainings.
 NetworkMapTraining trainNetworkMap(const NetworkTask& task, const NetworkSimulations& simulations,
                                    const TrainingControl& control);
 

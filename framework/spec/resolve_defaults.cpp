@@ -63,13 +63,12 @@ void resolveTrainingSamples(const InverseMapSpec& map, PointSetSpec& train) {
 /// larger layers, and batches that tell the gradient better. Of fewer they gain nothing, and take longer. A
 /// sampler of the weights takes minutes for some hundred of them.
 void resolveNetwork(int simulations, InverseMapSpec& map) {
-  constexpr int kMany = 20000;
   auto* found = std::get_if<NetworkMapSpec>(&map.kind);
   if (found == nullptr) {
     return;
   }
   NetworkMapSpec& network = *found;
-  const bool many = simulations >= kMany && !network.mayLearnFromSurrogate(simulations);
+  const bool many = simulations >= NetworkMapSpec::kMany && !network.mayLearnFromSurrogate(simulations);
   if (!network.hidden) {
     network.hidden = network.bayesian == NetworkBayes::kHamiltonian ? std::vector<int>{8}
                      : many                                           ? std::vector<int>{192, 192}

@@ -5,6 +5,7 @@
 
 #include "framework/inverse_map/predictions.hpp"
 #include "framework/inverse_map/residual_correlation.hpp"
+#include "framework/surrogate/folds.hpp"
 #include "framework/surrogate/honest_stddev.hpp"
 #include "framework/surrogate/predicted_limit.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -18,16 +19,6 @@ using Eigen::VectorXd;
 
 constexpr Index kFolds = 5;
 constexpr double kTwoPi = 6.283185307179586;
-
-std::vector<Index> listSimulations(Index count, Index fold, bool left_out) {
-  std::vector<Index> listed;
-  for (Index i = 0; i < count; ++i) {
-    if ((i % kFolds == fold) == left_out) {
-      listed.push_back(i);
-    }
-  }
-  return listed;
-}
 
 /// How many draws of the noise are inferred: enough for quantiles, and no more than their time is worth.
 Index countDraws(const SurrogateSamples& samples) {
@@ -123,8 +114,8 @@ HeldOut crossValidate(const Surrogate& whole, const SurrogateSamples& samples, c
   held_out.limit_stddev.resize(p, n * draws);
   for (Index fold = 0; fold < kFolds; ++fold) {
     const Surrogate fitted =
-        fitSimilar(whole, selectSimulations(forward, listSimulations(n, fold, false)), choices, control);
-    const std::vector<Index> left_out = listSimulations(n, fold, true);
+        fitSimilar(whole, selectSimulations(forward, listKept(n, kFolds, fold)), choices, control);
+    const std::vector<Index> left_out = listLeftOut(n, kFolds, fold);
     const MatrixXd inputs = samples.points(Eigen::all, left_out).bottomRows(known);
     for (Index draw = 0; draw < draws; ++draw) {
       std::vector<Index> columns;

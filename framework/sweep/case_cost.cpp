@@ -8,6 +8,7 @@
 
 #include "framework/features/feature_extractor.hpp"
 #include "framework/inverse_map/train_gp_map.hpp"
+#include "framework/network_map/train_network_map.hpp"
 #include "framework/sensitivity/neighbourhood_simulator.hpp"
 #include "framework/spec/parameter_box.hpp"
 
@@ -105,16 +106,8 @@ double countMapNumbers(const ExperimentSpec& experiment, int threads) {
   return mayTrainSurrogate(experiment) ? countSurrogateNumbers(experiment, threads) : 0.0;
 }
 
-/// A network's, and those that tell how honest it is (trainNetworkMap()), of which a surrogate's pupil has
-/// none.
-double countTrainings(const NetworkMapSpec& network, int simulations) {
-  if (network.mayLearnFromSurrogate(simulations) || simulations >= 20000) {
-    return 1.0;
-  }
-  return simulations < 2500 ? 11.0 : 6.0;
-}
-
-/// Of networks alone: their weights, forwards and backwards, for each sample of each step.
+/// Of networks alone: their weights, forwards and backwards, for each sample of each step. A surrogate's
+/// pupil is trained once.
 double countNetworkFlops(const NetworkMapSpec& network, int simulations) {
   constexpr double kInputs = 32.0, kOfWeight = 6.0;
   double weights = 0.0, before = kInputs;
@@ -122,8 +115,8 @@ double countNetworkFlops(const NetworkMapSpec& network, int simulations) {
     weights += before * units;
     before = units;
   }
-  return kOfWeight * countTrainings(network, simulations) * weights * network.steps.value_or(1) *
-         network.batch.value_or(1);
+  const int trainings = network.mayLearnFromSurrogate(simulations) ? 1 : countTrainings(network, simulations);
+  return kOfWeight * trainings * weights * network.steps.value_or(1) * network.batch.value_or(1);
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ ALLOWED = {
     "verification": {"experiment", "spec", "monitoring", "design", "simulation", "model_source", "features", "sensitivity", "evaluation",
                      "inverse_map", "store", "sampling", "results"},
     "sweep": {"experiment", "response", "spec", "monitoring", "measurement", "design", "model_source", "simulation", "features",
-              "sensitivity", "inverse_map", "store", "sampling", "results", "report"},
+              "sensitivity", "inverse_map", "network_map", "store", "sampling", "results", "report"},
     "cluster": {"sweep", "experiment", "spec", "monitoring", "measurement", "simulation", "store", "sampling", "results"},
     "cli": {"experiment_design", "experiment", "sweep", "cluster", "comparison", "verification", "inference", "export", "spec", "monitoring", "measurement", "design",
             "fmi", "model_source", "simulation", "features", "store", "sampling", "results", "report"},

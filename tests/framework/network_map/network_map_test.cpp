@@ -180,26 +180,35 @@ TEST(NetworkMap, IsTheSameForAnyNumberOfThreads) {
                 .network.skip);
 }
 
-/// A parameter whose square alone is measured, and one that is measured as it is.
-NetworkMapTraining trainOnSquares(Index count, NetworkHead head) {
+MatrixXd samplePairs(Index count) {
+  const RandomStream random(1, RandomPurpose::kTrainDesign);
+  return MatrixXd::NullaryExpr(2, count, [&](Index i, Index j) {
+    return (i == 0 ? -1.0 : 0.0) + (i == 0 ? 2.0 : 1.0) * random.calcUniform(j, i);
+  });
+}
+
+/// Of two parameters two responses (2 x count).
+NetworkMapTraining trainOnPairs(const MatrixXd& points, const MatrixXd& responses, NetworkHead head) {
   ModelSpec model;
   model.parameters = {makeParameter("side", -1.0, 1.0), makeParameter("size", 0.0, 1.0)};
   const std::vector<FeatureSpec> features{SamplesFeatureSpec{{{"y", {}}}, 1.0, 1.0, 2}};
   const ResponseLayout layout{{"y"}, {"m"}, collectTimes(features)};
   const FeatureExtractor extractor(features, layout);
   const ResponseNoise noise(VectorXd::Constant(2, kNoise));
-  const RandomStream random(1, RandomPurpose::kTrainDesign);
-  const MatrixXd points = MatrixXd::NullaryExpr(2, count, [&](Index i, Index j) {
-    return (i == 0 ? -1.0 : 0.0) + (i == 0 ? 2.0 : 1.0) * random.calcUniform(j, i);
-  });
-  MatrixXd responses(2, count);
-  responses << points.row(0).cwiseAbs2(), points.row(1);
   const FeatureTransform transform{{AffineStep{VectorXd::Zero(2), VectorXd::Constant(2, kNoise), {}}}};
   const MatrixXd covariance = kNoise * kNoise * MatrixXd::Identity(2, 2);
   NetworkMapSpec spec = makeSpec(1200);
   spec.head = head;
   return trainNetworkMap({model, spec, 3}, {points, responses, extractor, noise, transform, true, covariance},
                          {2});
+}
+
+/// A parameter whose square alone is measured, and one that is measured as it is.
+NetworkMapTraining trainOnSquares(Index count, NetworkHead head) {
+  const MatrixXd points = samplePairs(count);
+  MatrixXd responses = points;
+  responses.row(0) = points.row(0).cwiseAbs2();
+  return trainOnPairs(points, responses, head);
 }
 
 double calcShareWithin(const NetworkMapTraining& trained, double probability) {
@@ -209,6 +218,16 @@ double calcShareWithin(const NetworkMapTraining& trained, double probability) {
     held += calcCredibility(takeMarginal(trained.held_out.mixtures[i], 0), truth) < probability ? 1 : 0;
   }
   return static_cast<double>(held) / static_cast<double>(trained.held_out.mixtures.size());
+}
+
+TEST(NetworkMap, IsTrainedOftenEnoughToTellHowHonestItIs) {
+  const NetworkMapSpec plain;
+  NetworkMapSpec several;
+  several.bayesian = NetworkBayes::kLastLayer;
+  EXPECT_EQ(countTrainings(plain, 100), 11);
+  EXPECT_EQ(countTrainings(several, 100), 6);
+  EXPECT_EQ(countTrainings(plain, 2500), 6);
+  EXPECT_EQ(countTrainings(plain, 10000), 1);
 }
 
 TEST(NetworkMap, OfAMixtureKnowsBothAnswers) {
@@ -231,6 +250,18 @@ TEST(NetworkMap, OfOneNormalDistributionSaysWhereItsAnswersAreNone) {
   ASSERT_EQ(normal.warnings.size(), 1U);
   EXPECT_NE(normal.warnings[0].find("side: 50 % intervals"), std::string::npos) << normal.warnings[0];
   EXPECT_NE(normal.warnings[0].find("head: mixture"), std::string::npos);
+}
+
+TEST(NetworkMap, SaysWhereAFewOfItsErrorsAreLarge) {
+  const MatrixXd points = samplePairs(20000);
+  MatrixXd responses = points;
+  for (Index j = 0; j < points.cols(); j += 23) {
+    responses(0, j) += 0.5;
+  }
+  const NetworkMapTraining trained = trainOnPairs(points, responses, NetworkHead::kGaussian);
+  ASSERT_EQ(trained.warnings.size(), 1U);
+  EXPECT_NE(trained.warnings[0].find("side: 50 % intervals"), std::string::npos) << trained.warnings[0];
+  EXPECT_NE(trained.warnings[0].find("a few of its errors are much larger"), std::string::npos);
 }
 
 TEST(NetworkMap, OfAnEnsembleIsHonestAndTheSameForAnyNumberOfThreads) {
