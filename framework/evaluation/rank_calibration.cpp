@@ -3,6 +3,7 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cassert>
 
+#include "framework/inverse_map/predictions.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -20,30 +21,26 @@ Index chooseBins(Index measurements) {
   return measurements >= kMany ? kBins : kFewBins;
 }
 
-/// Squared distance of the truth, then of each draw, from the draws' mean in the metric of their covariance.
-VectorXd calcSquaredDistances(const Eigen::Ref<const VectorXd>& truth, const MatrixXd& draws) {
-  const VectorXd mean = draws.rowwise().mean();
-  const MatrixXd apart = draws.colwise() - mean;
-  const VectorXd scale = (apart.rowwise().squaredNorm() / static_cast<double>(draws.cols())).cwiseSqrt();
-  const MatrixXd scaled = scale.cwiseInverse().asDiagonal() * apart;
-  const MatrixXd lower =
-      linalg::calcCholesky(scaled * scaled.transpose() / static_cast<double>(draws.cols())).lower;
-  MatrixXd all(draws.rows(), draws.cols() + 1);
-  all << (truth - mean).cwiseQuotient(scale), scaled;
-  return linalg::solveLower(lower, all).colwise().squaredNorm();
+/// Of each point (p x n).
+VectorXd calcSquaredDistances(const MatrixXd& points, const RankMetric& metric) {
+  const VectorXd scale = metric.covariance.diagonal().cwiseSqrt();
+  const MatrixXd lower = linalg::calcCholesky(calcCorrelation(metric.covariance)).lower;
+  const MatrixXd apart = scale.cwiseInverse().asDiagonal() * (points.colwise() - metric.center);
+  return linalg::solveLower(lower, apart).colwise().squaredNorm();
 }
 
 }  // namespace
 
-Eigen::VectorXi calcRanks(const Eigen::Ref<const VectorXd>& truth, const MatrixXd& draws) {
+Eigen::VectorXi calcRanks(const Eigen::Ref<const VectorXd>& truth, const MatrixXd& draws,
+                          const RankMetric& metric) {
   assert(draws.cols() >= kRankDraws && draws.rows() == truth.size());
   const Index p = truth.size();
   Eigen::VectorXi ranks(p + 1);
   for (Index j = 0; j < p; ++j) {
     ranks[j] = static_cast<int>((draws.row(j).head(kRankDraws).array() < truth[j]).count());
   }
-  const VectorXd squares = calcSquaredDistances(truth, draws);
-  ranks[p] = static_cast<int>((squares.segment(1, kRankDraws).array() < squares[0]).count());
+  const VectorXd squares = calcSquaredDistances(draws.leftCols(kRankDraws), metric);
+  ranks[p] = static_cast<int>((squares.array() < calcSquaredDistances(truth, metric)[0]).count());
   return ranks;
 }
 

@@ -19,10 +19,18 @@ constexpr Eigen::Index kRankDraws = 199;
 /// Fewer measurements leave fewer than five for each of ten bins, too few for a chi-square.
 constexpr Eigen::Index kFewestRanks = 50;
 
+/// What distances of points are taken from, and in which metric: anything that the measurement alone tells,
+/// such as a normal approximation. Moments of the draws would not do: draws are nearer to their own than the
+/// truth is (in eight dimensions 9 % of the truths were farther than 95 % of them).
+struct RankMetric {
+  const Eigen::VectorXd& center;      ///< p
+  const Eigen::MatrixXd& covariance;  ///< p x p
+};
+
 /// Ranks of one measurement's truth (p) among draws (p x at least kRankDraws, the first are taken): for each
-/// quantity how many draws lie below it; and last, for all together, how many lie nearer to the draws' mean
-/// in the metric of their covariance.
-Eigen::VectorXi calcRanks(const Eigen::Ref<const Eigen::VectorXd>& truth, const Eigen::MatrixXd& draws);
+/// quantity how many draws lie below it; and last, for all together, how many lie nearer by the metric.
+Eigen::VectorXi calcRanks(const Eigen::Ref<const Eigen::VectorXd>& truth, const Eigen::MatrixXd& draws,
+                          const RankMetric& metric);
 
 /// Of ranks (q x n) in 0 to kRankDraws, n at least kFewestRanks: twenty bins, or ten for fewer than 200
 /// measurements.

@@ -31,7 +31,8 @@ std::vector<Eigen::VectorXi> rankAll(const EvaluationContext& context, const Pos
         sampler.sampleFeatures(test.features.col(column), test.inputs.col(column),
                                static_cast<std::uint64_t>(context.data.test_indices[i]));
     if (posterior.isReliable()) {
-      ranks[i] = calcRanks(test.parameters.col(column), posterior.draws.topRows(model.parameters));
+      ranks[i] = calcRanks(test.parameters.col(column), posterior.draws.topRows(model.parameters),
+                           {posterior.normal_mean, posterior.normal_covariance});
     }
   });
   return ranks;

@@ -72,7 +72,7 @@ SurrogatePosterior PosteriorSampler::sample(const Eigen::Ref<const VectorXd>& sc
                                             const Eigen::Ref<const VectorXd>& known, std::uint64_t sample) {
   constexpr double kFewest = 10.0;  // draws a dimension that a covariance needs
   constexpr int kCenters = 24, kCenterChannel = 1;
-  (void)inversion_.infer(scores, known);
+  const gp::Moments normal = inversion_.infer(scores, known);
   likelihood_.setMeasurement(scores, known, inversion_.getModes().front().widening);
   mode_factors_.clear();
   for (const ScoreMode& mode : inversion_.getModes()) {
@@ -87,7 +87,7 @@ SurrogatePosterior PosteriorSampler::sample(const Eigen::Ref<const VectorXd>& sc
              evaluated);
     draws = weigh(evaluated);
   }
-  return summarize(draws, sample);
+  return summarize(draws, normal, sample);
 }
 
 const PosteriorSampler::Numbers& PosteriorSampler::getNumbers(int round, std::uint64_t sample) {
@@ -181,7 +181,8 @@ WeightedDraws PosteriorSampler::weigh(const Evaluated& evaluated) const {
                            evaluated.log_posterior - importance::mixLogDensities(proposed, equal));
 }
 
-SurrogatePosterior PosteriorSampler::summarize(const WeightedDraws& draws, std::uint64_t sample) const {
+SurrogatePosterior PosteriorSampler::summarize(const WeightedDraws& draws, const gp::Moments& normal,
+                                               std::uint64_t sample) const {
   constexpr int kDrawChannel = 0;
   const Index p = model_.parameters, u = model_.unknown;
   SurrogatePosterior posterior;
@@ -200,6 +201,9 @@ SurrogatePosterior PosteriorSampler::summarize(const WeightedDraws& draws, std::
       half_width.cwiseProduct(importance::calcCovariance(draws).diagonal().cwiseSqrt()).head(p);
   const MatrixXd quantiles = importance::calcQuantiles(draws, probabilities).topRows(p);
   posterior.quantiles = (half_width.head(p).asDiagonal() * quantiles).colwise() + center.head(p);
+  posterior.normal_mean = (center + half_width.cwiseProduct(normal.mean)).head(p);
+  posterior.normal_covariance =
+      (half_width.asDiagonal() * normal.covariance * half_width.asDiagonal()).topLeftCorner(p, p);
   const MatrixXd chosen = importance::resample(draws, drawUniforms(draws_, kDrawChannel, sample));
   posterior.draws = (half_width.asDiagonal() * chosen).colwise() + center;
   return posterior;

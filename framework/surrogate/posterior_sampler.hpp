@@ -37,6 +37,8 @@ struct SurrogatePosterior {
   Eigen::VectorXd mean, stddev;        ///< p
   Eigen::MatrixXd quantiles;           ///< p x kPosteriorProbabilities
   Eigen::MatrixXd draws;               ///< u x n, of equal weight
+  Eigen::VectorXd normal_mean;         ///< p: what ScoreInversion answers
+  Eigen::MatrixXd normal_covariance;   ///< p x p
   double effective_sample_size = 0.0;  ///< importance::calcEffectiveSampleSize()
   double pareto_shape = 0.0;           ///< importance::calcParetoShape()
   int evaluations = 0;                 ///< draws of all rounds
@@ -91,7 +93,8 @@ class PosteriorSampler {
   Eigen::VectorXd stretch(const Eigen::VectorXd& point) const;
   void addRound(const importance::BoxMixture& proposal, std::uint64_t sample, Evaluated& evaluated);
   importance::WeightedDraws weigh(const Evaluated& evaluated) const;
-  SurrogatePosterior summarize(const importance::WeightedDraws& draws, std::uint64_t sample) const;
+  SurrogatePosterior summarize(const importance::WeightedDraws& draws, const gp::Moments& normal,
+                               std::uint64_t sample) const;
   Eigen::VectorXd drawUniforms(Eigen::Index count, int channel, std::uint64_t sample) const;
 
   const PosteriorModel model_;

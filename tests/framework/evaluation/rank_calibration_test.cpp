@@ -13,35 +13,41 @@ using Eigen::VectorXd;
 
 // Normal parameters of prior variance 1, measured with noise of variance 1: their posterior is normal, of
 // half the measurement as mean and variance 1/2. `width` and `offset` (in standard deviations) make it wrong.
-RankCalibration calibrateNormalPosteriors(Index measurements, double width, double offset) {
-  constexpr Index kParameters = 3;
+// Of the draws so many are distinct.
+RankCalibration calibrateNormalPosteriors(Index measurements, double width, double offset,
+                                          Index parameters = 3, Index distinct = 400) {
   const RandomStream random(7, RandomPurpose::kVerification);
-  Eigen::MatrixXi ranks(kParameters + 1, measurements);
+  Eigen::MatrixXi ranks(parameters + 1, measurements);
   for (Index i = 0; i < measurements; ++i) {
     const auto normal = [&](Index channel, Index replicate) {
       return random.calcNormal(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(channel),
                                static_cast<std::uint64_t>(replicate));
     };
-    const VectorXd truth = VectorXd::NullaryExpr(kParameters, [&](Index j) { return normal(j, 0); });
+    const VectorXd truth = VectorXd::NullaryExpr(parameters, [&](Index j) { return normal(j, 0); });
     const VectorXd mean =
-        VectorXd::NullaryExpr(kParameters, [&](Index j) { return 0.5 * (truth[j] + normal(j, 1)); });
-    const MatrixXd draws = MatrixXd::NullaryExpr(kParameters, 400, [&](Index j, Index k) {
-      return mean[j] + std::sqrt(0.5) * (offset + width * normal(j, 2 + k));
+        VectorXd::NullaryExpr(parameters, [&](Index j) { return 0.5 * (truth[j] + normal(j, 1)); });
+    const MatrixXd draws = MatrixXd::NullaryExpr(parameters, 400, [&](Index j, Index k) {
+      return mean[j] + std::sqrt(0.5) * (offset + width * normal(j, 2 + k % distinct));
     });
-    ranks.col(i) = calcRanks(truth, draws);
+    const MatrixXd covariance = 0.5 * MatrixXd::Identity(parameters, parameters);
+    ranks.col(i) = calcRanks(truth, draws, {mean, covariance});
   }
   return calcRankCalibration(ranks);
 }
 
-TEST(Ranks, CountDrawsBelowTheTruthAndNearerToTheirMean) {
+TEST(Ranks, CountDrawsBelowTheTruthAndNearerByTheMetric) {
   MatrixXd draws(2, kRankDraws + 20);
   for (Index k = 0; k < draws.cols(); ++k) {
     draws.col(k) << static_cast<double>(k), static_cast<double>((7 * k) % draws.cols());
   }
-  EXPECT_EQ(calcRanks(Eigen::Vector2d(10.5, -1), draws).head(2), Eigen::Vector2i(11, 0));
-  EXPECT_EQ(calcRanks(Eigen::Vector2d(1e6, 1e6), draws), Eigen::Vector3i::Constant(kRankDraws));
-  const VectorXd mean = draws.rowwise().mean();
-  EXPECT_LE(calcRanks(mean + Eigen::Vector2d::Constant(0.01), draws)[2], 1);
+  const VectorXd origin = VectorXd::Zero(2);
+  MatrixXd covariance = MatrixXd::Identity(2, 2);
+  EXPECT_EQ(calcRanks(Eigen::Vector2d(10.5, -1), draws, {origin, covariance}).head(2),
+            Eigen::Vector2i(11, 0));
+  EXPECT_EQ(calcRanks(Eigen::Vector2d(1e6, 1e6), draws, {origin, covariance}),
+            Eigen::Vector3i::Constant(kRankDraws));
+  covariance(1, 1) = 1e12;  // the second row tells nothing
+  EXPECT_EQ(calcRanks(Eigen::Vector2d(10.5, -1), draws, {origin, covariance})[2], 11);
 }
 
 TEST(RankCalibration, HasEqualCountsAndNoSmallProbabilityWhereRanksAreSpreadEvenly) {
@@ -70,6 +76,11 @@ TEST(RankCalibration, TellsChiSquareAndItsProbability) {
 TEST(RankCalibration, FindsNothingWrongWithRightPosteriors) {
   const RankCalibration found = calibrateNormalPosteriors(500, 1.0, 0.0);
   EXPECT_EQ(found.counts.rows(), 20);
+  EXPECT_TRUE(findMiscalibrated(found).empty()) << found.p_value.transpose();
+}
+
+TEST(RankCalibration, FindsNothingWrongWithFewDistinctDrawsOfManyParameters) {
+  const RankCalibration found = calibrateNormalPosteriors(2000, 1.0, 0.0, 8, 100);
   EXPECT_TRUE(findMiscalibrated(found).empty()) << found.p_value.transpose();
 }
 
