@@ -31,10 +31,10 @@ constexpr Index kMany = NetworkMapSpec::kMany;
 constexpr Index kColumnsOfFew = 2000, kColumnsOfMany = 8000;
 
 /// One of how many is held out: of ten; of few, and where those held out are to tell how honest the network
-/// is, of five, until a tenth of them are 2000.
+/// is, of five, until a tenth are 2000.
 Index calcPeriod(Index samples) {
-  constexpr Index kFew = 1000;
-  return samples < kFew || (samples >= kMany && samples < 2 * kMany) ? 5 : 10;
+  constexpr Index kFew = 1000, kTenthIsEnough = 20000;
+  return samples < kFew || (samples >= kMany && samples < kTenthIsEnough) ? 5 : 10;
 }
 
 /// count: of all samples, where `all` are those of a fold.
@@ -102,14 +102,13 @@ void place(const Predictions& some, const std::vector<Index>& columns, Predictio
   }
 }
 
-/// Parts of the samples, each left out in turn: none of many; of few, of which one more tells much, more
-/// parts. Kinds of network that are several already have five, for the time.
+/// Parts of the samples, each left out in turn: none of many; else ten, as a few more of them tell much.
+/// Kinds of network that are several already have five, for the time.
 Index countFolds(const NetworkMapSpec& spec, Index samples) {
-  constexpr Index kFew = 2500;
   if (samples >= kMany) {
     return 0;
   }
-  return samples < kFew && spec.bayesian == NetworkBayes::kNone ? 10 : 5;
+  return spec.bayesian == NetworkBayes::kNone ? 10 : 5;
 }
 
 /// Networks that a part of the samples is left out of in turn, and what they say of it.

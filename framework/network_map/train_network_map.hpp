@@ -44,11 +44,10 @@ struct NetworkSimulations {
 /// honest it is.
 int countTrainings(const NetworkMapSpec& spec, int simulations);
 
-/// Trains a network on simulations. Networks of few simulations are overconfident: below 10000 five more,
-/// each of which a fifth of the simulations is left out of, tell by how much, and the standard deviations are
-/// multiplied by it (calcStddevScale); below 2500 ten, each without a tenth, as a few more simulations tell
-/// much there; from 10000 on, the simulations held out do, 2000 at least. Throws std::invalid_argument for
-/// fewer than 50 simulations; gp::Stopped. Cost: countTrainings() trainings.
+/// Trains a network on simulations. Networks of few simulations are overconfident: of up to 2000, ten more,
+/// each of which a tenth of the simulations is left out of, tell by how much, and the standard deviations are
+/// multiplied by it (calcStddevScale); of more, those held out do: a fifth, or a tenth from 20000 on. Throws
+/// std::invalid_argument for fewer than 50 simulations; gp::Stopped. Cost: countTrainings() trainings.
 NetworkMapTraining trainNetworkMap(const NetworkTask& task, const NetworkSimulations& simulations,
                                    const TrainingControl& control);
 
