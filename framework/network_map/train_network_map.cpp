@@ -33,8 +33,8 @@ constexpr Index kColumnsOfFew = 2000, kColumnsOfMany = 8000;
 /// One of how many is held out: of ten; of few, and where those held out are to tell how honest the network
 /// is, of five, until a tenth are 2000.
 Index calcPeriod(Index samples) {
-  constexpr Index kFew = 1000, kTenthIsEnough = 20000;
-  return samples < kFew || (samples >= kMany && samples < kTenthIsEnough) ? 5 : 10;
+  constexpr Index kFew = 1000;
+  return samples < kFew || (samples >= kMany && samples < NetworkMapSpec::kVeryMany) ? 5 : 10;
 }
 
 /// count: of all samples, where `all` are those of a fold.

@@ -188,9 +188,9 @@ struct NetworkMapSpec {
   }
 
   static constexpr int kMostOfSurrogate = 2000;
-  /// So many simulations teach a larger network, and those held out tell how honest it is: of 4000 of a
-  /// smooth pendulum a small one's errors were 1.3 times the limit, the larger one's 1.01.
+  /// So many simulations teach more (NetworkSize), and those held out tell how honest it is.
   static constexpr int kMany = kMostOfSurrogate + 1;
+  static constexpr int kVeryMany = 20000;
 };
 
 template <class Fields>
@@ -200,22 +200,22 @@ void describe(Fields& f, NetworkMapSpec& s) {
   constexpr NumberRule kChains{2.0, 64.0, true, "must be a whole number from 2 to 64"};
   constexpr NumberRule kDraws{20.0, 1e5, true, "must be a whole number from 20 to 100000"};
   f.optional("hidden", s.hidden,
-             "units of each hidden layer (default: 64, 64; beyond 2000 simulations 192, 192; where they are "
-             "sampled 8)");
+             "units of each hidden layer (default: 64, 64; of 20000 simulations or more 192, 192; where they "
+             "are sampled 8)");
   f.optional("head", s.head, "one normal distribution, or a mixture: where several answers may fit");
   f.optional("components", s.components, "normal distributions of a mixture", kMixtureComponents);
   f.optional("samples_from", s.samples_from,
              "simulations; a surrogate that is trained on them first; or automatic");
   f.optional("surrogate_samples", s.surrogate_samples, "parameter points that a surrogate is asked for",
              kSampleCount);
-  f.optional("steps", s.steps, "of the optimiser (default: 8000; beyond 2000 simulations 18000)",
+  f.optional("steps", s.steps, "of the optimiser (default: 8000; of more than 2000 simulations 18000)",
              kSampleCount);
   f.optional("batch", s.batch,
-             "samples of a step, each with its own draw of the noise (default: 256; beyond 2000 "
-             "simulations 1024)",
+             "samples of a step, each with its own draw of the noise (default: 256; of more than "
+             "2000 simulations 1024)",
              kHundredThousand);
   f.optional("learning_rate", s.learning_rate,
-             "its largest value (default: 0.002; beyond 2000 simulations 0.004)", kPositive);
+             "its largest value (default: 0.002; of more than 2000 simulations 0.004)", kPositive);
   f.optional("bayesian", s.bayesian,
              "last_layer: five networks, of whose last layers the exact posterior is known; hamiltonian: draws "
              "of all weights of a small network, for studies");

@@ -1,7 +1,9 @@
 #include "framework/spec/resolve_defaults.hpp"
 
 #include <algorithm>
+#include <utility>
 
+#include "framework/spec/network_size.hpp"
 #include "framework/spec/noise_correlation.hpp"
 
 namespace twinmap {
@@ -59,24 +61,16 @@ void resolveTrainingSamples(const InverseMapSpec& map, PointSetSpec& train) {
   }
 }
 
-/// What a network needs to learn a strongly nonlinear case from very many simulations within some minutes:
-/// larger layers, and batches that tell the gradient better. Of fewer they gain nothing, and take longer. A
-/// sampler of the weights takes minutes for some hundred of them.
+/// The size of a network that learns from simulations alone. That of a surrogate's pupil is left open: its
+/// training tells whether the small one suffices.
 void resolveNetwork(int simulations, InverseMapSpec& map) {
-  auto* found = std::get_if<NetworkMapSpec>(&map.kind);
-  if (found == nullptr) {
+  auto* network = std::get_if<NetworkMapSpec>(&map.kind);
+  if (network == nullptr || (network->mayLearnFromSurrogate(simulations) && !hasSize(*network))) {
     return;
   }
-  NetworkMapSpec& network = *found;
-  const bool many = simulations >= NetworkMapSpec::kMany && !network.mayLearnFromSurrogate(simulations);
-  if (!network.hidden) {
-    network.hidden = network.bayesian == NetworkBayes::kHamiltonian ? std::vector<int>{8}
-                     : many                                           ? std::vector<int>{192, 192}
-                                                                      : std::vector<int>{64, 64};
-  }
-  network.steps = network.steps.value_or(many ? 18000 : 8000);
-  network.batch = network.batch.value_or(many ? 1024 : 256);
-  network.learning_rate = network.learning_rate.value_or(many ? 0.004 : 0.002);
+  const NetworkSize size =
+      network->mayLearnFromSurrogate(simulations) ? NetworkSize::kSmall : chooseSize(simulations);
+  *network = completeSize(std::move(*network), size);
 }
 
 /// 4 draws; fewer where the training set would have more than 3000 columns.

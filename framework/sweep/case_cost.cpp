@@ -10,6 +10,7 @@
 #include "framework/inverse_map/train_gp_map.hpp"
 #include "framework/network_map/train_network_map.hpp"
 #include "framework/sensitivity/neighbourhood_simulator.hpp"
+#include "framework/spec/network_size.hpp"
 #include "framework/spec/parameter_box.hpp"
 
 namespace twinmap {
@@ -111,12 +112,13 @@ double countMapNumbers(const ExperimentSpec& experiment, int threads) {
 double countNetworkFlops(const NetworkMapSpec& network, int simulations) {
   constexpr double kInputs = 32.0, kOfWeight = 6.0;
   double weights = 0.0, before = kInputs;
-  for (const int units : network.hidden.value()) {
+  const NetworkMapSpec sized = completeSize(network, NetworkSize::kSmall);
+  for (const int units : *sized.hidden) {
     weights += before * units;
     before = units;
   }
   const int trainings = network.mayLearnFromSurrogate(simulations) ? 1 : countTrainings(network, simulations);
-  return kOfWeight * trainings * weights * network.steps.value_or(1) * network.batch.value_or(1);
+  return kOfWeight * trainings * weights * *sized.steps * *sized.batch;
 }
 
 }  // namespace

@@ -122,6 +122,20 @@ TEST(ExperimentFile, ProcessesTakeTwoHundredAndFiftyTrainingSamplesByDefault) {
   EXPECT_EQ(train.method, DesignMethod::kLatinHypercube);
 }
 
+TEST(ExperimentFile, TheSizeOfANetworkFollowsFromTheSimulationsThatAloneTeachIt) {
+  const auto find_steps = [](const std::string& network, const std::string& samples) {
+    const ExperimentSpec experiment =
+        loadExperiment(kCart, {"inverse_map={network: " + network + "}", "design.train.samples=" + samples});
+    EXPECT_EQ(writeExperiment(readResolved(writeExperiment(experiment))), writeExperiment(experiment));
+    return experiment.inverse_map.findNetwork()->steps;
+  };
+  EXPECT_EQ(find_steps("{samples_from: simulations}", "250"), 8000);
+  EXPECT_EQ(find_steps("{}", "4000"), 18000);
+  EXPECT_EQ(find_steps("{}", "100000"), 18000);
+  EXPECT_EQ(find_steps("{}", "250"), std::nullopt);  // left to the training
+  EXPECT_EQ(find_steps("{batch: 100}", "250"), 8000);
+}
+
 TEST(ExperimentFile, WhiteningNeedsNoise) {
   EXPECT_THROW(loadExperiment(kTable1, {"transform=[whiten]", "noise.scale=0"}), ExperimentError);
   EXPECT_THROW(loadExperiment(kTable1, {"transform=[whiten]", "noise.stddev.y=0"}), ExperimentError);
