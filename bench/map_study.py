@@ -33,9 +33,7 @@ MAPS = [
     ("gp", "gp", [100, 250, 1000], FOUR),
     ("sparse gp", "{gp: {approximation: sgpr}}", [1000, 4000, 10000], TWO),
     ("mixture", "{network: {head: mixture}}", [250], FOUR),
-    ("mixture", "{network: {head: mixture}}", [4000], TWO),
     ("bayesian last layer", "{network: {bayesian: last_layer}}", [250], FOUR),
-    ("bayesian last layer", "{network: {bayesian: last_layer}}", [4000], TWO[:1]),
     ("bayesian hamiltonian", "{network: {bayesian: hamiltonian}}", [100], FOUR[:1]),
     ("network, simulations alone", "{network: {samples_from: simulations}}", [250, 1000], FOUR),
 ]
