@@ -39,8 +39,10 @@ Eigen::VectorXi calcRanks(const Eigen::Ref<const VectorXd>& truth, const MatrixX
   for (Index j = 0; j < p; ++j) {
     ranks[j] = static_cast<int>((draws.row(j).head(kRankDraws).array() < truth[j]).count());
   }
-  const VectorXd squares = calcSquaredDistances(draws.leftCols(kRankDraws), metric);
-  ranks[p] = static_cast<int>((squares.array() < calcSquaredDistances(truth, metric)[0]).count());
+  MatrixXd points(p, kRankDraws + 1);
+  points << truth, draws.leftCols(kRankDraws);
+  const VectorXd squares = calcSquaredDistances(points, metric);
+  ranks[p] = static_cast<int>((squares.tail(kRankDraws).array() < squares[0]).count());
   return ranks;
 }
 

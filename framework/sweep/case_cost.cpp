@@ -107,8 +107,8 @@ double countMapNumbers(const ExperimentSpec& experiment, int threads) {
   return mayTrainSurrogate(experiment) ? countSurrogateNumbers(experiment, threads) : 0.0;
 }
 
-/// Of networks alone: their weights, forwards and backwards, for each sample of each step. A surrogate's
-/// pupil is trained once.
+/// Of networks alone: their weights, forwards and backwards, for each sample of each step. Of a
+/// surrogate's pupil the first training: whether a second follows is not known before.
 double countNetworkFlops(const NetworkMapSpec& network, int simulations) {
   constexpr double kInputs = 32.0, kOfWeight = 6.0;
   double weights = 0.0, before = kInputs;
