@@ -144,17 +144,20 @@ NetworkMapTraining trainOnSimulations(const NetworkContext& context, const Featu
                          {context.control.threads, context.control.abandon});
 }
 
-NetworkMapTraining teach(const NetworkContext& context, const SurrogateMapTraining& teacher,
+NetworkMapTraining teach(const NetworkContext& context, const SurrogatePool& pool, const StddevLack& lack,
                          NetworkSize size) {
   const NetworkMapSpec spec = completeSize(getSpec(context), size);
-  return trainNetworkMap({context.experiment.model, spec, context.experiment.seed}, teacher.surrogate,
-                         teacher.lack, {context.control.threads, context.control.abandon});
+  return trainNetworkMap({context.experiment.model, spec, context.experiment.seed}, pool, lack,
+                         {context.control.threads, context.control.abandon});
 }
 
 /// A small network, or a medium one where that has not learnt all that the surrogate could teach it, unless a
 /// size is given or there would be five of them.
 NetworkMapTraining trainOnSurrogate(const NetworkContext& context, const SurrogateMapTraining& teacher) {
-  NetworkMapTraining small = teach(context, teacher, NetworkSize::kSmall);
+  const SurrogatePool pool =
+      makeSurrogatePool(teacher.surrogate, getSpec(context).surrogate_samples, context.experiment.seed,
+                        {context.control.threads, context.control.abandon});
+  NetworkMapTraining small = teach(context, pool, teacher.lack, NetworkSize::kSmall);
   const double excess = calcExcess(small, teacher).maxCoeff();
   if (excess <= kMuchExcess || hasSize(getSpec(context)) ||
       getSpec(context).bayesian != NetworkBayes::kNone) {
@@ -164,7 +167,7 @@ NetworkMapTraining trainOnSurrogate(const NetworkContext& context, const Surroga
       "the network learns from the surrogate for longer: its standard deviations are up to {:.1f} "
       "times the surrogate's",
       excess));
-  NetworkMapTraining longer = teach(context, teacher, NetworkSize::kMedium);
+  NetworkMapTraining longer = teach(context, pool, teacher.lack, NetworkSize::kMedium);
   return calcExcess(longer, teacher).maxCoeff() < excess ? std::move(longer) : std::move(small);
 }
 

@@ -123,6 +123,12 @@ void convert(const VectorXd& center, const VectorXd& unit, const VectorXd& stdde
   mixture.stddevs = stddev_scale.cwiseProduct(unit).asDiagonal() * mixture.stddevs;
 }
 
+void shrinkToBounds(const VectorXd& center, const VectorXd& half_width, Mixture& mixture) {
+  const VectorXd stddev = calcCovariance(mixture).diagonal().cwiseSqrt();
+  const VectorXd factor = half_width.cwiseQuotient(stddev).cwiseMin(1.0);
+  convert(center - factor.cwiseProduct(center), factor, VectorXd::Ones(center.size()), mixture);
+}
+
 Index findLikeliest(const Mixture& mixture) {
   const MixtureDensity mixed(mixture);
   Index best = 0;

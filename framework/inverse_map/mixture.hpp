@@ -26,6 +26,10 @@ Eigen::MatrixXd calcCovariance(const Mixture& mixture);
 void convert(const Eigen::VectorXd& center, const Eigen::VectorXd& unit, const Eigen::VectorXd& stddev_scale,
              Mixture& mixture);
 
+/// A mixture that knows less of a parameter than its bounds do, being wider (standard deviation) than their
+/// half width, is drawn towards their center until it is as wide.
+void shrinkToBounds(const Eigen::VectorXd& center, const Eigen::VectorXd& half_width, Mixture& mixture);
+
 /// The component at whose mean the density is highest: one answer that fits.
 Eigen::Index findLikeliest(const Mixture& mixture);
 

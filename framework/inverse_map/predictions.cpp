@@ -18,6 +18,25 @@ void convert(const VectorXd& center, const VectorXd& unit, const VectorXd& stdde
   }
 }
 
+void shrinkToBounds(const VectorXd& center, const VectorXd& half_width, Eigen::Ref<VectorXd> mean,
+                    Eigen::Ref<VectorXd> stddev) {
+  for (Index p = 0; p < center.size(); ++p) {
+    if (stddev[p] > half_width[p]) {
+      mean[p] = center[p] + half_width[p] / stddev[p] * (mean[p] - center[p]);
+      stddev[p] = half_width[p];
+    }
+  }
+}
+
+void shrinkToBounds(const VectorXd& center, const VectorXd& half_width, Predictions& predictions) {
+  for (Index i = 0; i < predictions.mean.cols(); ++i) {
+    shrinkToBounds(center, half_width, predictions.mean.col(i), predictions.stddev.col(i));
+  }
+  for (Mixture& mixture : predictions.mixtures) {
+    shrinkToBounds(center, half_width, mixture);
+  }
+}
+
 MatrixXd calcCorrelation(const MatrixXd& covariance) {
   const VectorXd inverse_stddev = covariance.diagonal().cwiseSqrt().cwiseInverse();
   return inverse_stddev.asDiagonal() * covariance * inverse_stddev.asDiagonal();

@@ -25,6 +25,17 @@ struct Predictions {
 void convert(const Eigen::VectorXd& center, const Eigen::VectorXd& unit, const Eigen::VectorXd& stddev_scale,
              Predictions& predictions);
 
+/// An answer that knows less of a parameter than its bounds do, its standard deviation being more than their
+/// half width, is drawn towards their center until it is that: what a network extrapolates to may be thousands
+/// of widths away. Bounds alone leave .58 of the half width, so that answers that tell anything are left as
+/// they are. All p numbers each; the result does not allocate.
+void shrinkToBounds(const Eigen::VectorXd& center, const Eigen::VectorXd& half_width,
+                    Eigen::Ref<Eigen::VectorXd> mean, Eigen::Ref<Eigen::VectorXd> stddev);
+
+/// The same of each sample, and of its mixture.
+void shrinkToBounds(const Eigen::VectorXd& center, const Eigen::VectorXd& half_width,
+                    Predictions& predictions);
+
 /// The correlation matrix of a covariance (p x p, positive diagonal).
 Eigen::MatrixXd calcCorrelation(const Eigen::MatrixXd& covariance);
 

@@ -57,6 +57,7 @@ Predictions predictTargets(const std::vector<network::Member>& members, const Ma
 Predictions NetworkMap::predict(const MatrixXd& features, const MatrixXd& known_values, int threads) const {
   Predictions predictions = predictTargets(members, inputs.apply(features, known_values), threads);
   convert(center, half_width, validation.stddev_scale, predictions);
+  shrinkToBounds(center, half_width, predictions);
   return predictions;
 }
 

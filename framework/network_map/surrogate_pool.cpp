@@ -78,9 +78,11 @@ SurrogatePool makeSurrogatePool(const Surrogate& surrogate, Index n, std::uint64
   const Index known = surrogate.center.size() - surrogate.unknown;
   SurrogatePool pool;
   pool.points = (surrogate.half_width.asDiagonal() * normalised).colwise() + surrogate.center;
-  pool.projection = scale.cwiseInverse().asDiagonal() * components;
-  pool.inputs = {stackRows(pool.projection * scores.mean, normalised.bottomRows(known)),
-                 linalg::calcCholesky(pool.projection * pool.projection.transpose()).lower, pool.projection,
+  const MatrixXd projection = scale.cwiseInverse().asDiagonal() * components;
+  pool.center = forward.center;
+  pool.projection = projection * forward.projection;
+  pool.inputs = {stackRows(projection * scores.mean, normalised.bottomRows(known)),
+                 linalg::calcCholesky(projection * projection.transpose()).lower, projection,
                  std::move(scores.stddev), error_factor};
   return pool;
 }

@@ -11,7 +11,8 @@ namespace twinmap {
 /// Points of the sampled box and what a surrogate says that a measurement there gives.
 struct SurrogatePool {
   Eigen::MatrixXd points;      ///< m x n, in their units
-  Eigen::MatrixXd projection;  ///< k x r, from the surrogate's scores to inputs of unit variance
+  Eigen::VectorXd center;      ///< d
+  Eigen::MatrixXd projection;  ///< k x d, from features to inputs of unit variance
   NormalInputs inputs;         ///< with the surrogate's own error
 };
 

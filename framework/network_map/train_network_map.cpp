@@ -9,7 +9,6 @@
 
 #include "framework/features/labelled_features.hpp"
 #include "framework/network_map/canonical_inputs.hpp"
-#include "framework/network_map/surrogate_pool.hpp"
 #include "framework/spec/parameter_box.hpp"
 #include "framework/surrogate/cross_validation.hpp"
 #include "framework/surrogate/folds.hpp"
@@ -148,6 +147,7 @@ void validateMap(const HeldOutTargets& held_out, const StddevLack* lack, Network
   const VectorXd ones = VectorXd::Ones(map.center.size());
   found.predictions = held_out.predictions;
   convert(map.center, map.half_width, ones, found.predictions);
+  shrinkToBounds(map.center, map.half_width, found.predictions);
   found.limit_stddev =
       MatrixXd::Constant(found.truth.rows(), found.truth.cols(), std::numeric_limits<double>::quiet_NaN());
   map.validation = validate(found);
@@ -158,6 +158,7 @@ void validateMap(const HeldOutTargets& held_out, const StddevLack* lack, Network
   training.held_out_truth = std::move(found.truth);
   training.held_out = held_out.predictions;
   convert(map.center, map.half_width, map.validation.stddev_scale, training.held_out);
+  shrinkToBounds(map.center, map.half_width, training.held_out);
   training.held_out_draws = held_out.draws;
 }
 
@@ -319,16 +320,15 @@ NetworkMapTraining trainNetworkMap(const NetworkTask& task, const NetworkSimulat
   return training;
 }
 
-NetworkMapTraining trainNetworkMap(const NetworkTask& task, const Surrogate& surrogate,
-                                   const StddevLack& lack, const TrainingControl& control) {
+NetworkMapTraining trainNetworkMap(const NetworkTask& task, const SurrogatePool& pool, const StddevLack& lack,
+                                   const TrainingControl& control) {
   NetworkMapTraining training;
   NetworkMap& map = training.map;
   setBounds(task.model, map);
-  SurrogatePool pool = makeSurrogatePool(surrogate, task.spec.surrogate_samples, task.seed, control);
-  map.inputs.center = surrogate.forward->center;
-  map.inputs.projection = pool.projection * surrogate.forward->projection;
+  map.inputs.center = pool.center;
+  map.inputs.projection = pool.projection;
   const MatrixXd targets = makeTargets(map, pool.points);
-  const NormalSamples samples(std::move(pool.inputs));
+  const NormalSamples samples(pool.inputs);
   const NetworkSet set{samples, targets};
   const Split parts = split(listAll(targets.cols()), targets.cols());
   setMembers(fitNetwork(set, parts, {task.spec, task.seed, 0}, control), training);

@@ -7,6 +7,7 @@
 #include "framework/features/feature_transform.hpp"
 #include "framework/network_map/fit_network.hpp"
 #include "framework/network_map/network_map.hpp"
+#include "framework/network_map/surrogate_pool.hpp"
 #include "framework/spec/model_spec.hpp"
 #include "framework/surrogate/honest_stddev.hpp"
 
@@ -51,11 +52,10 @@ int countTrainings(const NetworkMapSpec& spec, int simulations);
 NetworkMapTraining trainNetworkMap(const NetworkTask& task, const NetworkSimulations& simulations,
                                    const TrainingControl& control);
 
-/// Trains a network on `surrogate_samples` points of the box, whose scores a surrogate makes up: a normal
-/// distribution of its mean, its own error and the noise. Standard deviations are multiplied by the larger of
-/// what samples held out say and what the surrogate's own lack (calcPupilScale). Cost: that many evaluations
-/// of the surrogate, and a training.
-NetworkMapTraining trainNetworkMap(const NetworkTask& task, const Surrogate& surrogate,
-                                   const StddevLack& lack, const TrainingControl& control);
+/// Trains a network on points of the box, whose scores a surrogate makes up: a normal distribution of its
+/// mean, its own error and the noise. Standard deviations are multiplied by the larger of what samples held
+/// out say and what the surrogate's own lack (calcPupilScale). Cost: a training.
+NetworkMapTraining trainNetworkMap(const NetworkTask& task, const SurrogatePool& pool, const StddevLack& lack,
+                                   const TrainingControl& control);
 
 }  // namespace twinmap

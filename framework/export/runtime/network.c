@@ -109,10 +109,16 @@ static void calc_root(const double *head, double *root)
   }
 }
 
+/* The share of an answer's deviation from the bounds' middle that is kept: all, unless it is wider than they are. */
+static double calc_shrinkage(double sd, double half_width)
+{
+  return sd > half_width ? half_width / sd : 1.0;
+}
+
 static void infer_by_map(twinmap_state *state, const double *known, twinmap_result *result)
 {
   const double *head;
-  double unit[P]; /* of a target, in the parameter's unit, calibrated */
+  double unit[P]; /* of a target, in the parameter's unit, calibrated and shrunk */
   int i, j, k;
   make_inputs(state, known);
 #if TWINMAP_PRODUCTS
@@ -126,15 +132,18 @@ static void infer_by_map(twinmap_state *state, const double *known, twinmap_resu
     y += dot(TWINMAP_PRODUCTS, regression_products + i * TWINMAP_PRODUCTS, state->products);
 #endif
     y = multiply_add(target_scale[i], head[i], y);
-    result->mean[i] = multiply_add(parameter_half_width[i], y, parameter_center[i]);
     unit[i] = stddev_scale[i] * parameter_half_width[i] * target_scale[i];
-    for (k = 0; k <= i; ++k) {
+    for (k = i; k >= 0; --k) {
       double covariance = 0.0;
       for (j = i; j < P; ++j) {
         covariance = multiply_add(state->root[j * P + i], state->root[j * P + k], covariance);
       }
       if (k == i) {
-        result->sd[i] = unit[i] * sqrt(covariance);
+        const double sd = unit[i] * sqrt(covariance);
+        const double kept = calc_shrinkage(sd, parameter_half_width[i]);
+        result->mean[i] = multiply_add(kept * parameter_half_width[i], y, parameter_center[i]);
+        result->sd[i] = kept * sd;
+        unit[i] *= kept;
       }
       result->covariance[i * P + k] = result->covariance[k * P + i] = unit[i] * unit[k] * covariance;
     }

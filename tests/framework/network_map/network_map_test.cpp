@@ -117,6 +117,12 @@ SurrogateTraining trainTeacher(const Oscillation& oscillation) {
       {2});
 }
 
+NetworkMapTraining trainOnPool(const Oscillation& oscillation, const SurrogateTraining& teacher,
+                               const NetworkMapSpec& spec, int threads) {
+  const SurrogatePool pool = makeSurrogatePool(teacher.surrogate, spec.surrogate_samples, 3, {threads});
+  return trainNetworkMap({oscillation.model, spec, 3}, pool, teacher.lack, {threads});
+}
+
 /// Of unseen measurements; most_of_limit: of errors over what the noise allows.
 void expectHonestAndNearTheLimit(const Oscillation& oscillation, const NetworkMap& map,
                                  double most_of_limit = 2.0) {
@@ -147,8 +153,7 @@ TEST(NetworkMap, LearnsFromASurrogateOfFewSimulations) {
   const SurrogateTraining teacher = trainTeacher(oscillation);
   NetworkMapSpec spec = makeSpec(600);
   spec.surrogate_samples = 3000;
-  const NetworkMapTraining trained =
-      trainNetworkMap({oscillation.model, spec, 3}, teacher.surrogate, teacher.lack, {2});
+  const NetworkMapTraining trained = trainOnPool(oscillation, teacher, spec, 2);
   expectHonestAndNearTheLimit(oscillation, trained.map);
 }
 
@@ -172,12 +177,8 @@ TEST(NetworkMap, IsTheSameForAnyNumberOfThreads) {
   const SurrogateTraining teacher = trainTeacher(oscillation);
   NetworkMapSpec spec = makeSpec(60);
   spec.surrogate_samples = 1000;
-  EXPECT_EQ(trainNetworkMap({oscillation.model, spec, 3}, teacher.surrogate, teacher.lack, {1})
-                .map.members.front()
-                .network.skip,
-            trainNetworkMap({oscillation.model, spec, 3}, teacher.surrogate, teacher.lack, {3})
-                .map.members.front()
-                .network.skip);
+  EXPECT_EQ(trainOnPool(oscillation, teacher, spec, 1).map.members.front().network.skip,
+            trainOnPool(oscillation, teacher, spec, 3).map.members.front().network.skip);
 }
 
 MatrixXd samplePairs(Index count) {

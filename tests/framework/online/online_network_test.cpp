@@ -40,10 +40,11 @@ NetworkMap makeBayesianExample() {
   return map;
 }
 
-void expectThePredictionsOf(const std::shared_ptr<const NetworkMap>& map) {
+/// Of measurements so many times as far away as the map's own.
+void expectThePredictionsOf(const std::shared_ptr<const NetworkMap>& map, double far = 1.0) {
   const OnlineMap online{AnyMap(map)};
   OnlineMap::Workspace workspace(online);
-  const MatrixXd features = MatrixXd::Random(5, 3), known = MatrixXd::Random(1, 3);
+  const MatrixXd features = far * MatrixXd::Random(5, 3), known = MatrixXd::Random(1, 3);
   const Predictions expected = map->predict(features, known);
   const MatrixXd inputs = online.makeInputs(features, known);
   for (Eigen::Index i = 0; i < 3; ++i) {
@@ -59,6 +60,14 @@ void expectThePredictionsOf(const std::shared_ptr<const NetworkMap>& map) {
 
 TEST(OnlineNetwork, InfersWhatTheMapPredicts) {
   expectThePredictionsOf(std::make_shared<const NetworkMap>(makeExample()));
+}
+
+TEST(OnlineNetwork, NeverAnswersWiderThanTheBounds) {
+  NetworkMap map = makeExample();
+  map.members.front().network.layers.back().biases.segment(2, 2).setConstant(-3.0);  // logarithms of precision
+  const MatrixXd features = 30.0 * MatrixXd::Random(5, 20), known = MatrixXd::Random(1, 20);
+  EXPECT_LE(map.predict(features, known).stddev.maxCoeff(), 0.5);
+  expectThePredictionsOf(std::make_shared<const NetworkMap>(std::move(map)), 30.0);
 }
 
 TEST(OnlineNetwork, OfSeveralBayesianNetworksInfersWhatTheMapPredicts) {
