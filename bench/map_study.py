@@ -1,10 +1,11 @@
 """How near the information limit each kind of map comes, by the number of simulations: writes docs/map-study.md.
 
 Usage: map_study.py TWINMAP [--threads N] [--tests N] [--results FOLDER] [--page] [--web FOLDER] [EXPERIMENT ...]
+                    [--maps NAME ...] [--sizes N ...]
 Each experiment (default: those of the page) runs with each map and number of simulations, without refinement. Runs stay in
 FOLDER (default: results/map_study), so that a second call continues, or only writes the page, the table behind it
-(results/published/map_study/study.csv) and its figures (docs/images). --web: where the build's Vega-Lite is (default:
-build/release/framework/report/web).
+(results/published/map_study/study.csv) and its figures (docs/images). What is not run keeps its rows of that table, so that
+--maps and --sizes renew a part of the study. --web: where the build's Vega-Lite is (default: build/release/framework/report/web).
 """
 import argparse
 import csv
@@ -49,6 +50,8 @@ def parse_arguments():
     parser.add_argument("--tests", type=int, default=1500)
     parser.add_argument("--results", type=Path, default=ROOT / "results/map_study")
     parser.add_argument("--page", action="store_true", help="run nothing, write the page from the runs that are there")
+    parser.add_argument("--maps", nargs="+", default=ORDER, help="of " + ", ".join(dict.fromkeys(name for name, _, _, _ in MAPS)))
+    parser.add_argument("--sizes", nargs="+", type=int, default=SIZES, help="numbers of simulations")
     parser.add_argument("--web", type=Path, default=ROOT / "build/release/framework/report/web")
     return parser.parse_intermixed_args()
 
@@ -62,6 +65,13 @@ def list_runs(experiments):
     """(experiment, simulations, map, as the experiment file has it)."""
     return [(experiment, size, name, map_spec) for name, map_spec, sizes, among in MAPS for size in reversed(sizes)
             for experiment in experiments if experiment in among]
+
+
+def list_keys():
+    """(experiment, simulations, map) of all rows that the page has, baselines among them."""
+    runs = [(experiment, size, name) for experiment, size, name, _ in list_runs(EXPERIMENTS)]
+    return runs + [(experiment, size, baseline) for experiment, size, name in runs if name == "network"
+                   for baseline, sizes in BASELINES.values() if size in sizes]
 
 
 def count_processor_seconds():
@@ -129,6 +139,17 @@ def read_rows(folder, experiment, size, name):
     return [{column: row.get(column, "") for column in COLUMNS} for row in rows]
 
 
+def get_key(row):
+    return row["experiment"], int(row["simulations"]), row["map"]
+
+
+def merge(published, found):
+    """Rows of runs before, but for those that are found anew or have left the study; in its order."""
+    keys, renewed = list_keys(), set(map(get_key, found))
+    rows = [row for row in published if get_key(row) in keys and get_key(row) not in renewed] + found
+    return sorted(rows, key=lambda row: keys.index(get_key(row)))
+
+
 def number(row, column):
     return float(row[column]) if row[column] not in ("", "nan") else math.nan
 
@@ -137,7 +158,7 @@ def summarise(rows):
     """A row for each experiment, size and map: means over the parameters, geometric of the ratios."""
     groups = {}
     for row in rows:
-        groups.setdefault((row["experiment"], row["simulations"], row["map"]), []).append(row)
+        groups.setdefault(get_key(row), []).append(row)
     points = []
     for (experiment, size, name), found in groups.items():
         ratios = [number(row, "ratio_to_limit") for row in found]
@@ -234,14 +255,16 @@ cat results/which/maps.csv
 """
 
 
-def write_page(arguments, rows):
+def write_page(arguments, found):
+    table = ROOT / "results/published/map_study/study.csv"
+    rows = merge(read_csv(table), found)
     points = summarise(rows)
-    published = ROOT / "results/published/map_study"
-    published.mkdir(parents=True, exist_ok=True)
-    with open(published / "study.csv", "w", newline="") as stream:
+    table.parent.mkdir(parents=True, exist_ok=True)
+    with open(table, "w", newline="") as stream:
         writer = csv.DictWriter(stream, COLUMNS, lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
+    arguments.results.mkdir(parents=True, exist_ok=True)
     draw(arguments, make_figure(points, "ratio", "errors over the limit"), ROOT / "docs/images/map-study-ratio.svg")
     draw(arguments, make_figure(points, "nats", "nats above the limit"), ROOT / "docs/images/map-study-nats.svg")
     page = ROOT / "docs/map-study.md"
@@ -265,6 +288,8 @@ def main():
     arguments = parse_arguments()
     rows = []
     for experiment, size, name, map_spec in list_runs(arguments.experiments):
+        if name not in arguments.maps or size not in arguments.sizes:
+            continue
         folder = run(arguments, experiment, size, name, map_spec)
         rows += read_rows(folder, experiment, size, name) if folder else []
     write_page(arguments, rows)
