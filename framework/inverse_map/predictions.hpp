@@ -26,9 +26,9 @@ void convert(const Eigen::VectorXd& center, const Eigen::VectorXd& unit, const E
              Predictions& predictions);
 
 /// An answer that knows less of a parameter than its bounds do, its standard deviation being more than their
-/// half width, is drawn towards their center until it is that: what a network extrapolates to may be thousands
-/// of widths away. Bounds alone leave .58 of the half width, so that answers that tell anything are left as
-/// they are. All p numbers each; the result does not allocate.
+/// half width, is drawn towards their center until it is that: what a network extrapolates to may be
+/// thousands of widths away. Bounds alone leave .58 of the half width, so that answers that tell anything are
+/// left as they are. All p numbers each; the result does not allocate.
 void shrinkToBounds(const Eigen::VectorXd& center, const Eigen::VectorXd& half_width,
                     Eigen::Ref<Eigen::VectorXd> mean, Eigen::Ref<Eigen::VectorXd> stddev);
 

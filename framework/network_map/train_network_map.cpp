@@ -1,7 +1,5 @@
 #include "framework/network_map/train_network_map.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +7,7 @@
 
 #include "framework/features/labelled_features.hpp"
 #include "framework/network_map/canonical_inputs.hpp"
+#include "framework/network_map/training_warnings.hpp"
 #include "framework/spec/parameter_box.hpp"
 #include "framework/surrogate/cross_validation.hpp"
 #include "framework/surrogate/folds.hpp"
@@ -162,80 +161,14 @@ void validateMap(const HeldOutTargets& held_out, const StddevLack* lack, Network
   training.held_out_draws = held_out.draws;
 }
 
-/// What a person should know of it.
-void warnOfTraining(int restarts, NetworkMapTraining& training) {
-  if (restarts > 0) {
-    training.warnings.push_back(
-        fmt::format("the network's training went back to its best checkpoint {} times; a lower learning_rate "
-                    "would be steadier",
-                    restarts));
-  }
-}
-
-/// Says where the chains of a sampler do not agree, or cannot have seen all of the posterior.
-void warnOfChains(const WeightChains& chains, NetworkMapTraining& training) {
-  constexpr double kLargestRHat = 1.05, kFewestDraws = 100.0, kMostDivergences = 0.01;
-  double r_hat = 0.0, draws = chains.log_density.effective_sample_size;
-  for (const markov::Convergence& one : chains.means) {
-    r_hat = std::max(r_hat, one.r_hat);
-    draws = std::min(draws, one.effective_sample_size);
-  }
-  const double divergent = static_cast<double>(chains.divergences) / (chains.chains * chains.draws);
-  if (r_hat > kLargestRHat || draws < kFewestDraws || divergent > kMostDivergences) {
-    training.warnings.push_back(fmt::format(
-        "the chains of the network's weights have not converged: R-hat {:.3f} of its worst mean, {:.0f} "
-        "effective draws, {:.1f} % divergent trajectories; take more draws or fewer hidden units",
-        r_hat, draws, 100.0 * divergent));
-  }
-}
-
 /// Takes what a fit gives into the map.
 void setMembers(NetworkFit fit, NetworkMapTraining& training) {
-  warnOfTraining(fit.restarts, training);
+  warnOfRestarts(fit.restarts, training.warnings);
   if (fit.chains) {
-    warnOfChains(*fit.chains, training);
+    warnOfChains(*fit.chains, training.warnings);
   }
   training.chains = std::move(fit.chains);
   training.map.members = std::move(fit.members);
-}
-
-/// What answers are that are no normal distributions: of a few large errors among small ones, 50 % intervals
-/// hold more than that, and 95 % intervals fewer.
-const char* describeShape(double probability, double share) {
-  const bool heavy_tails = (share > probability) == (probability < 0.9);
-  return heavy_tails ? "a few of its errors are much larger than the others"
-                     : "several answers fit, or they lie at the bounds; use 'head: mixture'";
-}
-
-/// Names the parameters whose intervals hold another share of the samples held out: their answers are no
-/// normal distributions. Of a uniform one, 50 % intervals hold 39 % and 95 % intervals all; of two answers
-/// apart the former next to none. A small difference is of no consequence, and twice the standard error is
-/// what so many simulations cannot tell.
-void warnOfShape(const NetworkTask& task, NetworkMapTraining& training) {
-  struct Level {
-    double probability, quantile, small;
-  };
-  constexpr Level kLevels[] = {{0.5, 0.6744897501960817, 0.04}, {0.95, kNormal95, 0.025}};
-  if (task.spec.head == NetworkHead::kMixture) {
-    return;
-  }
-  const MatrixXd z =
-      (training.held_out.mean - training.held_out_truth).cwiseQuotient(training.held_out.stddev);
-  const double simulations = static_cast<double>(z.cols()) / training.held_out_draws;
-  for (Index p = 0; p < z.rows(); ++p) {
-    for (const auto& [probability, quantile, small] : kLevels) {
-      const double share = (z.row(p).array().abs() < quantile).cast<double>().mean();
-      const double error = std::sqrt(probability * (1.0 - probability) / simulations);
-      if (std::abs(share - probability) > small + 2.0 * error) {
-        training.warnings.push_back(fmt::format(
-            "{}: {:.0f} % intervals of the network hold {:.0f} % of the samples held out, so that its "
-            "answers are not normal distributions: {}",
-            task.model.parameters[static_cast<std::size_t>(p)].name.text, 100.0 * probability, 100.0 * share,
-            describeShape(probability, share)));
-        break;
-      }
-    }
-  }
 }
 
 /// Features with one draw of their noise, and where they were simulated; without those that lack a feature.
@@ -316,7 +249,7 @@ NetworkMapTraining trainNetworkMap(const NetworkTask& task, const NetworkSimulat
           : predictHeldOut(set, map.members, parts.held_out, countDraws(left, kColumnsOfMany), task.seed,
                            control.threads);
   validateMap(held_out, nullptr, training);
-  warnOfShape(task, training);
+  warnOfShape(task.model.parameters, training);
   return training;
 }
 
@@ -335,7 +268,7 @@ NetworkMapTraining trainNetworkMap(const NetworkTask& task, const SurrogatePool&
   const Index draws = countDraws(static_cast<Index>(parts.held_out.size()), kColumnsOfFew);
   validateMap(predictHeldOut(set, map.members, parts.held_out, draws, task.seed, control.threads), &lack,
               training);
-  warnOfShape(task, training);
+  warnOfShape(task.model.parameters, training);
   return training;
 }
 

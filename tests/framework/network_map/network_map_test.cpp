@@ -189,7 +189,8 @@ MatrixXd samplePairs(Index count) {
 }
 
 /// Of two parameters two responses (2 x count).
-NetworkMapTraining trainOnPairs(const MatrixXd& points, const MatrixXd& responses, NetworkHead head) {
+NetworkMapTraining trainOnPairs(const MatrixXd& points, const MatrixXd& responses, NetworkHead head,
+                                int components = 3) {
   ModelSpec model;
   model.parameters = {makeParameter("side", -1.0, 1.0), makeParameter("size", 0.0, 1.0)};
   const std::vector<FeatureSpec> features{SamplesFeatureSpec{{{"y", {}}}, 1.0, 1.0, 2}};
@@ -200,6 +201,7 @@ NetworkMapTraining trainOnPairs(const MatrixXd& points, const MatrixXd& response
   const MatrixXd covariance = kNoise * kNoise * MatrixXd::Identity(2, 2);
   NetworkMapSpec spec = makeSpec(1200);
   spec.head = head;
+  spec.components = components;
   return trainNetworkMap({model, spec, 3}, {points, responses, extractor, noise, transform, true, covariance},
                          {2});
 }
@@ -252,6 +254,16 @@ TEST(NetworkMap, OfOneNormalDistributionSaysWhereItsAnswersAreNone) {
   ASSERT_EQ(normal.warnings.size(), 1U);
   EXPECT_NE(normal.warnings[0].find("side: 50 % intervals"), std::string::npos) << normal.warnings[0];
   EXPECT_NE(normal.warnings[0].find("head: mixture"), std::string::npos);
+}
+
+TEST(NetworkMap, OfAMixtureSaysWhereItHasTooFewComponents) {
+  const MatrixXd points = samplePairs(20000);
+  MatrixXd squares = points.cwiseAbs2();
+  squares.row(1) = (2.0 * points.row(1).array() - 1.0).square();  // four answers
+  const std::vector<std::string> warnings = trainOnPairs(points, squares, NetworkHead::kMixture, 2).warnings;
+  ASSERT_FALSE(warnings.empty());
+  EXPECT_NE(warnings.front().find("mixtures of 2 normal distributions; 'components: 4'"), std::string::npos)
+      << warnings.front();
 }
 
 TEST(NetworkMap, SaysWhereAFewOfItsErrorsAreLarge) {
