@@ -46,47 +46,77 @@ void expectSame(const std::string& text) {
   }
 }
 
+/// Drawn from left to right, so that every compiler gets the same.
 class RandomExpression {
  public:
   explicit RandomExpression(unsigned seed) : generator_(seed) {}
 
   std::string make(int depth) {
-    if (depth == 0) {
-      return pick(
-          {"x", "k_1", "Y2", "theta_dot", "2", "0.5", "3.25e-1", "1E1", ".75", "4.", "pi", "_pi", "_e"});
-    }
-    switch (generator_() % 9) {
-      case 0:
-        return pick({"-", "+", "- "}) + makeOperand(depth);
-      case 1:
-        return pick({"sin",   "cos", "tan", "asin", "acos", "atan",  "sinh", "cosh", "tanh", "asinh", "acosh",
-                     "atanh", "exp", "log", "ln",   "log2", "log10", "sqrt", "abs",  "sign", "rint"}) +
-               "(" + make(depth - 1) + ")";
-      case 2:
-        return pick({"min", "max", "sum", "avg"}) + "(" + make(depth - 1) + ", " + make(depth - 1) + "," +
-               make(depth - 1) + ")";
-      case 3:
-        return "atan2(" + make(depth - 1) + "," + make(depth - 1) + ")";
-      case 4:
-        return "(" + make(depth - 1) + " ? " + make(depth - 1) + " : " + make(depth - 1) + ")";
-      case 5:  // with a variable on the left: of two constants muParser takes the whole parts
-        return "theta_dot*2 + " + make(depth - 1) + pick({" && ", "||"}) + makeOperand(depth);
-      default:
-        return makeOperand(depth) +
-               pick({"+", "-", "*", "/", " ^ ", "+", " - ", "*", "<", "<=", ">", ">=", "==", "!="}) +
-               makeOperand(depth);
-    }
+    text_.clear();
+    add(depth);
+    return text_;
   }
 
  private:
-  std::string pick(const std::vector<std::string>& choices) { return choices[generator_() % choices.size()]; }
+  void add(int depth) {
+    if (depth == 0) {
+      pick({"x", "k_1", "Y2", "theta_dot", "2", "0.5", "3.25e-1", "1E1", ".75", "4.", "pi", "_pi", "_e"});
+      return;
+    }
+    switch (generator_() % 9) {
+      case 0:
+        pick({"-", "+", "- "});
+        addOperand(depth);
+        break;
+      case 1:
+        pick({"sin",   "cos", "tan", "asin", "acos", "atan",  "sinh", "cosh", "tanh", "asinh", "acosh",
+              "atanh", "exp", "log", "ln",   "log2", "log10", "sqrt", "abs",  "sign", "rint"});
+        addList(depth, {"(", ")"});
+        break;
+      case 2:
+        pick({"min", "max", "sum", "avg"});
+        addList(depth, {"(", ", ", ",", ")"});
+        break;
+      case 3:
+        addList(depth, {"atan2(", ",", ")"});
+        break;
+      case 4:
+        addList(depth, {"(", " ? ", " : ", ")"});
+        break;
+      case 5:  // with a variable on the left: of two constants muParser takes the whole parts
+        text_ += "theta_dot*2 + ";
+        add(depth - 1);
+        pick({" && ", "||"});
+        addOperand(depth);
+        break;
+      default:
+        addOperand(depth);
+        pick({"+", "-", "*", "/", " ^ ", "+", " - ", "*", "<", "<=", ">", ">=", "==", "!="});
+        addOperand(depth);
+    }
+  }
+
+  void pick(const std::vector<std::string>& choices) { text_ += choices[generator_() % choices.size()]; }
+
+  /// Expressions between the separators.
+  void addList(int depth, const std::vector<std::string>& separators) {
+    text_ += separators.front();
+    for (std::size_t i = 1; i < separators.size(); ++i) {
+      add(depth - 1);
+      text_ += separators[i];
+    }
+  }
+
   /// Half of the operands stand without parentheses, so that precedence decides.
-  std::string makeOperand(int depth) {
-    const std::string inner = make(depth - 1);
-    return generator_() % 2 == 0 ? inner : "(" + inner + ")";
+  void addOperand(int depth) {
+    const bool bare = generator_() % 2 == 0;
+    text_ += bare ? "" : "(";
+    add(depth - 1);
+    text_ += bare ? "" : ")";
   }
 
   std::mt19937 generator_;
+  std::string text_;
 };
 
 TEST(ExpressionTree, AgreesWithMuparserOnRandomExpressions) {
