@@ -33,6 +33,8 @@ Predictor::Predictor(Network network) : network_(std::move(network)) {
   first_ = {MatrixXd(units + p, network_.countInputs()), VectorXd(units + p)};
   first_.weights << layer.weights, network_.skip.leftCols(network_.countInputs());
   first_.biases << layer.biases, network_.offset;
+  of_products_ = network_.skip.rightCols(network_.products.count());
+  head_ = network_.layers.back().weights;
 }
 
 Predictor::Workspace::Workspace(const Predictor& predictor) {
@@ -84,7 +86,7 @@ void Predictor::predict(const Ref<const VectorXd>& inputs, Workspace& workspace)
   workspace.mean = first.tail(p);
   if (workspace.products.size() > 0) {
     network_.products.calculate(inputs, workspace.products);
-    workspace.mean.noalias() += network_.skip.rightCols(workspace.products.size()) * workspace.products;
+    workspace.mean.noalias() += of_products_ * workspace.products;
   }
   for (std::size_t i = 1; i < network_.layers.size(); ++i) {
     auto sums = workspace.sums.head(units).array();
@@ -92,7 +94,11 @@ void Predictor::predict(const Ref<const VectorXd>& inputs, Workspace& workspace)
     const Layer& layer = network_.layers[i];
     auto next = workspace.other.head(layer.biases.size());
     next = layer.biases;
-    next.noalias() += layer.weights * workspace.sums.head(units);
+    if (i + 1 < network_.layers.size()) {
+      next.noalias() += layer.weights * workspace.sums.head(units);
+    } else {
+      next.noalias() += head_ * workspace.sums.head(units);
+    }
     workspace.sums.swap(workspace.other);
     units = layer.biases.size();
   }
