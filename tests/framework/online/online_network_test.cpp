@@ -64,7 +64,8 @@ TEST(OnlineNetwork, InfersWhatTheMapPredicts) {
 
 TEST(OnlineNetwork, NeverAnswersWiderThanTheBounds) {
   NetworkMap map = makeExample();
-  map.members.front().network.layers.back().biases.segment(2, 2).setConstant(-3.0);  // logarithms of precision
+  map.members.front().network.layers.back().biases.segment(2, 2).setConstant(
+      -3.0);  // logarithms of precision
   const MatrixXd features = 30.0 * MatrixXd::Random(5, 20), known = MatrixXd::Random(1, 20);
   EXPECT_LE(map.predict(features, known).stddev.maxCoeff(), 0.5);
   expectThePredictionsOf(std::make_shared<const NetworkMap>(std::move(map)), 30.0);
