@@ -39,6 +39,7 @@ MAPS = [
     ("network, simulations alone", "{network: {samples_from: simulations}}", [250, 1000], FOUR),
 ]
 BASELINES = {"linear_regression": ("linear regression", SIZES), "least_squares": ("least squares", [250])}
+AS_GIVEN = {"least_squares": "{least_squares: {samples: 100}}"}
 ORDER = list(dict.fromkeys(name for name, _, _, _ in MAPS)) + [name for name, _ in BASELINES.values()]
 
 
@@ -70,8 +71,7 @@ def list_runs(experiments):
 def list_keys():
     """(experiment, simulations, map) of all rows that the page has, baselines among them."""
     runs = [(experiment, size, name) for experiment, size, name, _ in list_runs(EXPERIMENTS)]
-    return runs + [(experiment, size, baseline) for experiment, size, name in runs if name == "network"
-                   for baseline, sizes in BASELINES.values() if size in sizes]
+    return runs + [(experiment, size, BASELINES[key][0]) for experiment, size, name in runs for key in list_baselines(size, name)]
 
 
 def count_processor_seconds():
@@ -80,9 +80,8 @@ def count_processor_seconds():
 
 
 def list_baselines(size, name):
-    """Beside the network, which runs for all sizes."""
-    wanted = {"linear_regression": "linear_regression", "least_squares": "{least_squares: {samples: 100}}"}
-    return [wanted[key] for key, (_, sizes) in BASELINES.items() if name == "network" and size in sizes]
+    """Keys of those beside the network, which runs for all sizes."""
+    return [key for key, (_, sizes) in BASELINES.items() if name == "network" and size in sizes]
 
 
 def run(arguments, experiment, size, name, map_spec):
@@ -96,7 +95,7 @@ def run(arguments, experiment, size, name, map_spec):
         command = [arguments.twinmap, "run", ROOT / "experiments" / f"{experiment}.yaml", "refine=never",
                    f"inverse_map={map_spec}", f"design.train.samples={size}", "design.train.method=latin_hypercube",
                    f"design.test.samples={arguments.tests}", f"noise.replicates={max(1, min(4, 1000 // size))}",
-                   f"evaluation.baselines=[{', '.join(list_baselines(size, name))}]",
+                   f"evaluation.baselines=[{', '.join(AS_GIVEN.get(key, key) for key in list_baselines(size, name))}]",
                    "--threads", arguments.threads, "--store", arguments.results / "store", "--out", folder, "--quiet"]
         before = count_processor_seconds()
         done = subprocess.run(list(map(str, command)), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)

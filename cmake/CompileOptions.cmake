@@ -27,20 +27,18 @@ add_compile_options(-Wall -Wextra -Wpedantic
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # false alarms in GCC 12's own AVX-512 headers (GCC bug 105593)
   add_compile_options(-Wshadow -Wno-maybe-uninitialized -Wno-uninitialized)
-else()
-  # clang's -Wshadow sees what earlier files of a batch have made visible; its -Wall asks for braces in braces
-  add_compile_options(-Wno-missing-braces)
-endif()
-if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # the compiler's memory is collected from half a gigabyte on, not from 128 MB, which a precompiled header fills alone:
   # a tenth of the build
   add_compile_options("SHELL:--param ggc-min-heapsize=500000")
+else()
+  # clang's -Wshadow sees what earlier files of a batch have made visible; its -Wall asks for braces in braces
+  add_compile_options(-Wno-missing-braces)
 endif()
 if(TWINMAP_REPRODUCIBLE)
   add_compile_options("-ffile-prefix-map=${PROJECT_SOURCE_DIR}=.")
 endif()
 if(TWINMAP_WARNINGS_AS_ERRORS)
-  add_compile_options($<$<COMPILE_LANGUAGE:C,CXX>:-Werror>) # not for assembly, where clang takes no use of options for one
+  add_compile_options($<$<COMPILE_LANGUAGE:C,CXX>:-Werror>) # not assembly, whose compiler has no use for most options
 endif()
 
 add_link_options(-Wl,--as-needed) # a process loads only the libraries that it uses

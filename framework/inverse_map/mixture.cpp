@@ -123,8 +123,8 @@ void convert(const VectorXd& center, const VectorXd& unit, const VectorXd& stdde
   mixture.stddevs = stddev_scale.cwiseProduct(unit).asDiagonal() * mixture.stddevs;
 }
 
-void shrinkToBounds(const VectorXd& center, const VectorXd& half_width, Mixture& mixture) {
-  const VectorXd stddev = calcCovariance(mixture).diagonal().cwiseSqrt();
+void shrinkToBounds(const VectorXd& center, const VectorXd& half_width, const VectorXd& stddev,
+                    Mixture& mixture) {
   const VectorXd factor = half_width.cwiseQuotient(stddev).cwiseMin(1.0);
   convert(center - factor.cwiseProduct(center), factor, VectorXd::Ones(center.size()), mixture);
 }

@@ -27,8 +27,9 @@ void convert(const Eigen::VectorXd& center, const Eigen::VectorXd& unit, const E
              Mixture& mixture);
 
 /// A mixture that knows less of a parameter than its bounds do, being wider (standard deviation) than their
-/// half width, is drawn towards their center until it is as wide.
-void shrinkToBounds(const Eigen::VectorXd& center, const Eigen::VectorXd& half_width, Mixture& mixture);
+/// half width, is drawn towards their center until it is as wide. stddev (p): of the mixture as a whole.
+void shrinkToBounds(const Eigen::VectorXd& center, const Eigen::VectorXd& half_width,
+                    const Eigen::VectorXd& stddev, Mixture& mixture);
 
 /// The component at whose mean the density is highest: one answer that fits.
 Eigen::Index findLikeliest(const Mixture& mixture);

@@ -29,12 +29,28 @@ void shrinkToBounds(const VectorXd& center, const VectorXd& half_width, Eigen::R
 }
 
 void shrinkToBounds(const VectorXd& center, const VectorXd& half_width, Predictions& predictions) {
+  for (std::size_t i = 0; i < predictions.mixtures.size(); ++i) {
+    shrinkToBounds(center, half_width, predictions.stddev.col(static_cast<Index>(i)),
+                   predictions.mixtures[i]);
+  }
   for (Index i = 0; i < predictions.mean.cols(); ++i) {
     shrinkToBounds(center, half_width, predictions.mean.col(i), predictions.stddev.col(i));
   }
-  for (Mixture& mixture : predictions.mixtures) {
-    shrinkToBounds(center, half_width, mixture);
+}
+
+VectorXd calcDepths(const Predictions& predictions, const MatrixXd& truth, Index parameter) {
+  if (predictions.mixtures.empty()) {
+    return (predictions.mean - truth)
+        .row(parameter)
+        .cwiseQuotient(predictions.stddev.row(parameter))
+        .cwiseAbs();
   }
+  VectorXd depths(truth.cols());
+  for (Index i = 0; i < depths.size(); ++i) {
+    const Mixture& mixture = predictions.mixtures[static_cast<std::size_t>(i)];
+    depths[i] = calcDepth(takeMarginal(mixture, parameter), truth(parameter, i));
+  }
+  return depths;
 }
 
 MatrixXd calcCorrelation(const MatrixXd& covariance) {

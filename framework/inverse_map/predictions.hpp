@@ -36,6 +36,11 @@ void shrinkToBounds(const Eigen::VectorXd& center, const Eigen::VectorXd& half_w
 void shrinkToBounds(const Eigen::VectorXd& center, const Eigen::VectorXd& half_width,
                     Predictions& predictions);
 
+/// How far a parameter's truths (p x n) lie from what was predicted, in standard deviations (n): of mixtures,
+/// calcDepth(), at some 0.1 ms a sample.
+Eigen::VectorXd calcDepths(const Predictions& predictions, const Eigen::MatrixXd& truth,
+                           Eigen::Index parameter);
+
 /// The correlation matrix of a covariance (p x p, positive diagonal).
 Eigen::MatrixXd calcCorrelation(const Eigen::MatrixXd& covariance);
 

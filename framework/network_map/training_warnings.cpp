@@ -7,25 +7,9 @@
 
 namespace twinmap {
 
-using Eigen::ArrayXd;
 using Eigen::Index;
 
 namespace {
-
-/// The absolute z of each sample held out; of mixtures, that of the normal distribution whose interval is as
-/// probable as the smallest set that holds the truth.
-ArrayXd calcDepths(const NetworkMapTraining& training, Index parameter) {
-  const Predictions& found = training.held_out;
-  const auto truth = training.held_out_truth.row(parameter);
-  if (found.mixtures.empty()) {
-    return (found.mean.row(parameter) - truth).cwiseQuotient(found.stddev.row(parameter)).cwiseAbs();
-  }
-  ArrayXd depths(truth.size());
-  for (Index i = 0; i < depths.size(); ++i) {
-    depths[i] = calcDepth(takeMarginal(found.mixtures[static_cast<std::size_t>(i)], parameter), truth[i]);
-  }
-  return depths;
-}
 
 /// Why answers are not of the kind that a network gives: of a few large errors among small ones, 50 % sets
 /// hold more than that, and 95 % sets fewer.
@@ -78,7 +62,7 @@ void warnOfShape(const std::vector<ParameterSpec>& parameters, NetworkMapTrainin
   constexpr Level kLevels[] = {{0.5, 0.6744897501960817, 0.04}, {0.95, kNormal95, 0.025}};
   const double simulations = static_cast<double>(training.held_out_truth.cols()) / training.held_out_draws;
   for (Index p = 0; p < training.held_out_truth.rows(); ++p) {
-    const ArrayXd depths = calcDepths(training, p);
+    const Eigen::ArrayXd depths = calcDepths(training.held_out, training.held_out_truth, p);
     for (const auto& [probability, quantile, small] : kLevels) {
       const double share = (depths < quantile).cast<double>().mean();
       const double error = std::sqrt(probability * (1.0 - probability) / simulations);

@@ -15,11 +15,10 @@ OnlineNetwork::Workspace::Workspace(const OnlineNetwork& map)
 void OnlineNetwork::setMixture(const network::Predictor::Workspace& predicted, Inference& inference) const {
   inference.mixture = takeMixture(predicted);
   convert(map_->center, map_->half_width, map_->validation.stddev_scale, inference.mixture);
-  shrinkToBounds(map_->center, map_->half_width, inference.mixture);
   const Eigen::MatrixXd covariance = calcCovariance(inference.mixture);
-  inference.mean = calcMean(inference.mixture);
   inference.stddev = covariance.diagonal().cwiseSqrt();
   inference.correlation = calcCorrelation(covariance);
+  shrinkToBounds(map_->center, map_->half_width, inference.stddev, inference.mixture);
 }
 
 const Inference& OnlineNetwork::infer(const Eigen::Ref<const VectorXd>& features,
@@ -40,9 +39,8 @@ const Inference& OnlineNetwork::infer(const Eigen::Ref<const VectorXd>& features
   inference.correlation = inverse_stddev * answer.covariance * inverse_stddev;
   if (answer.weights.size() > 1) {
     setMixture(answer, inference);
-  } else {
-    shrinkToBounds(map_->center, map_->half_width, inference.mean, inference.stddev);
   }
+  shrinkToBounds(map_->center, map_->half_width, inference.mean, inference.stddev);
   return inference;
 }
 

@@ -48,25 +48,6 @@ double calcMeanLogDensity(const MatrixXd& standardised, const VectorXd& stddev_s
   return sum / static_cast<double>(standardised.cols());
 }
 
-/// The two-sided normal quantiles of the smallest sets of the mixtures that hold the truth of a parameter.
-VectorXd calcDepths(const std::vector<Mixture>& mixtures, const MatrixXd& truth, Index parameter) {
-  VectorXd depths(truth.cols());
-  for (Index i = 0; i < depths.size(); ++i) {
-    depths[i] =
-        calcDepth(takeMarginal(mixtures[static_cast<std::size_t>(i)], parameter), truth(parameter, i));
-  }
-  return depths;
-}
-
-/// How far a parameter's truths lie from what was inferred, in standard deviations.
-VectorXd calcAbsolute(const HeldOut& held_out, Index parameter) {
-  const Predictions& found = held_out.predictions;
-  if (!found.mixtures.empty()) {
-    return calcDepths(found.mixtures, held_out.truth, parameter);
-  }
-  return (found.mean - held_out.truth).row(parameter).cwiseQuotient(found.stddev.row(parameter)).cwiseAbs();
-}
-
 double calcMeanLogDensity(std::vector<Mixture> mixtures, const VectorXd& stddev_scale,
                           const MatrixXd& truth) {
   double sum = 0.0;
@@ -137,7 +118,7 @@ HeldOut crossValidate(const Surrogate& whole, const SurrogateSamples& samples, c
 StddevLack calcLack(const HeldOut& held_out) {
   StddevLack lack{VectorXd(held_out.truth.rows()), calcTypicalStddev(held_out.predictions.stddev)};
   for (Index k = 0; k < lack.least_scale.size(); ++k) {
-    lack.least_scale(k) = calcLeastStddevScale(calcAbsolute(held_out, k));
+    lack.least_scale(k) = calcLeastStddevScale(calcDepths(held_out.predictions, held_out.truth, k));
   }
   return lack;
 }
@@ -151,7 +132,7 @@ SurrogateValidation validate(const HeldOut& held_out) {
   validation.stddev_scale.resize(p);
   validation.coverage95.resize(p);
   for (Index k = 0; k < p; ++k) {
-    const VectorXd absolute = calcAbsolute(held_out, k);
+    const VectorXd absolute = calcDepths(held_out.predictions, held_out.truth, k);
     validation.stddev_scale(k) = calcStddevScale(absolute);
     validation.coverage95(k) =
         static_cast<double>((absolute.array() < kNormal95).count()) / static_cast<double>(absolute.size());
