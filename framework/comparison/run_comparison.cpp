@@ -101,10 +101,11 @@ std::string findDifferenceOfSets(const ComparedRun& a, const ComparedRun& b,
 SampleTerms calcTerms(const ComparedRun& run, Index p) {
   const StoredPredictions& test = run.test;
   const ArrayXd unknown = ArrayXd::Constant(test.truth.cols(), std::nan(""));
-  return calcSampleTerms(run.parameters[static_cast<std::size_t>(p)],
-                         {test.truth.row(p), test.predictions.mean.row(p), test.predictions.stddev.row(p),
-                          test.limit_stddev.rows() == 0 ? unknown : test.limit_stddev.row(p).array(),
-                          takeMarginals(test.predictions.mixtures, p)});
+  return calcSampleTerms(
+      run.parameters[static_cast<std::size_t>(p)],
+      {test.truth.row(p), test.predictions.mean.row(p), test.predictions.stddev.row(p),
+       test.limit_stddev.rows() == 0 ? unknown : test.limit_stddev.row(p).array(),
+       takeMarginals(test.predictions.mixtures, p), takeReaches(test.predictions.reach, p)});
 }
 
 VectorXd calcFigures(const SampleTerms& of) {

@@ -39,11 +39,12 @@ std::vector<ParameterMetrics> calcMetrics(const std::vector<ParameterSpec>& para
   std::vector<ParameterMetrics> metrics;
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const auto row = static_cast<Index>(p);
-    metrics.push_back(calcMetrics(parameters[p],
-                                  {truth.row(row), predictions.mean.row(row), predictions.stddev.row(row),
-                                   limit_stddev.size() == 0 ? unknown : limit_stddev.row(row).array(),
-                                   takeMarginals(predictions.mixtures, row)},
-                                  draws));
+    metrics.push_back(
+        calcMetrics(parameters[p],
+                    {truth.row(row), predictions.mean.row(row), predictions.stddev.row(row),
+                     limit_stddev.size() == 0 ? unknown : limit_stddev.row(row).array(),
+                     takeMarginals(predictions.mixtures, row), takeReaches(predictions.reach, row)},
+                    draws));
   }
   return metrics;
 }

@@ -63,6 +63,15 @@ Scores scoreMixtures(const ParameterSamples& samples) {
   return scores;
 }
 
+/// Depths as a normal distribution's, which has intervals of the same probability.
+ArrayXd toNormal(const std::vector<Reach>& reaches, ArrayXd depths) {
+  for (std::size_t i = 0; i < reaches.size(); ++i) {
+    double& depth = depths[static_cast<Index>(i)];
+    depth = reaches[i].toNormalDepth(depth);
+  }
+  return depths;
+}
+
 ArrayXd calcScale(const ParameterSpec& parameter, const ArrayXd& truth) {
   if (parameter.relative_to == RelativeTo::kRange) {
     return ArrayXd::Constant(truth.size(), parameter.bounds.upper - parameter.bounds.lower);
@@ -109,14 +118,15 @@ SampleTerms calcSampleTerms(const ParameterSpec& parameter, const ParameterSampl
   const ArrayXd scale = calcScale(parameter, samples.truth);
   const ArrayXd error = (samples.mean - samples.truth) / scale;
   const Scores scores = samples.mixtures.empty() ? scoreNormal(samples) : scoreMixtures(samples);
+  const ArrayXd depth = toNormal(samples.reaches, scores.depth);
   SampleTerms result{Eigen::MatrixXd(kTerms, error.size()), error.mean(), scores.z.mean()};
   auto terms = result.terms.array();
   terms.row(kError) = (error - result.error_offset).transpose();
   terms.row(kSquaredError) = terms.row(kError).square();
   terms.row(kAbsoluteError) = error.abs().transpose();
-  terms.row(kWithin95) = calcWithin(scores.depth, 0.95).transpose();
-  terms.row(kWithin90) = calcWithin(scores.depth, 0.90).transpose();
-  terms.row(kWithin50) = calcWithin(scores.depth, 0.50).transpose();
+  terms.row(kWithin95) = calcWithin(depth, 0.95).transpose();
+  terms.row(kWithin90) = calcWithin(depth, 0.90).transpose();
+  terms.row(kWithin50) = calcWithin(depth, 0.50).transpose();
   terms.row(kClaimedVariance) = (samples.stddev / scale).square().transpose();
   terms.row(kZ) = (scores.z - result.z_offset).transpose();
   terms.row(kSquaredZ) = terms.row(kZ).square();

@@ -53,6 +53,13 @@ Eigen::MatrixXd ExportedModel::getCorrelation() const {
   return validation != nullptr ? validation->residual_correlation : findProcesses()->residual_correlation;
 }
 
+VectorXd ExportedModel::getIntervalReach() const {
+  const SurrogateValidation* validation = findValidation();
+  return validation != nullptr && validation->reach.isGiven()
+             ? VectorXd(validation->reach.of95)
+             : VectorXd::Constant(countParameters(), kNormal95);
+}
+
 VectorXd ExportedModel::getBoxCenter() const {
   return calcBoxCenter(collectSampled(experiment.model));
 }
@@ -76,9 +83,8 @@ ExportedModel loadExportedModel(const std::filesystem::path& run_or_maps) {
         ": a network whose answers are mixtures cannot be exported; train one with 'head: gaussian'");
   }
   if (network != nullptr && network->isBayesian()) {
-    throw std::runtime_error(
-        findMaps(run_or_maps).string() +
-        ": a Bayesian network cannot be exported; train one with 'bayesian: none'");
+    throw std::runtime_error(findMaps(run_or_maps).string() +
+                             ": a Bayesian network cannot be exported; train one with 'bayesian: none'");
   }
   return model;
 }

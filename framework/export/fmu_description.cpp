@@ -40,7 +40,6 @@ void addInputVariables(const ExportedModel& model, std::vector<FmuVariable>& var
 
 void addEstimates(const ExportedModel& model, const char* group, const char* meaning,
                   std::vector<FmuVariable>& variables) {
-  constexpr double kNormal95 = 1.959963984540054;
   const std::string kind = group;
   for (const ParameterSpec& parameter : model.experiment.model.parameters) {
     const double width = parameter.bounds.upper - parameter.bounds.lower;

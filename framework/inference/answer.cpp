@@ -6,20 +6,24 @@ namespace twinmap {
 
 namespace {
 
-void setNormalInterval(Answer& answer) {
-  answer.lower95 = answer.mean - kNormal95 * answer.stddev;
-  answer.upper95 = answer.mean + kNormal95 * answer.stddev;
+void setIntervals(const IntervalReach& reach, Answer& answer) {
+  answer.lower95 = answer.upper95 = answer.mean;
+  for (Eigen::Index p = 0; p < answer.mean.size(); ++p) {
+    answer.lower95[p] -= reach.get(p).of95 * answer.stddev[p];
+    answer.upper95[p] += reach.get(p).of95 * answer.stddev[p];
+  }
 }
 
 }  // namespace
 
 Answer makeMapAnswer(const Inference& inference) {
   Answer answer{inference.mean, inference.stddev, false, inference.mixture};
-  setNormalInterval(answer);
+  setIntervals(inference.reach, answer);
   for (Eigen::Index p = 0; p < answer.mixture.means.rows(); ++p) {
-    const Intervals intervals = findHighestDensity(takeMarginal(answer.mixture, p), 0.95);
-    answer.lower95[p] = intervals.front().first;
-    answer.upper95[p] = intervals.back().second;
+    answer.intervals50.push_back(findWithin(takeMarginal(answer.mixture, p), inference.reach.get(p).of50));
+    answer.intervals95.push_back(findWithin(takeMarginal(answer.mixture, p), inference.reach.get(p).of95));
+    answer.lower95[p] = answer.intervals95.back().front().first;
+    answer.upper95[p] = answer.intervals95.back().back().second;
   }
   return answer;
 }
@@ -30,7 +34,7 @@ Answer chooseAnswer(const InferredMeasurement& inferred) {
   }
   const Eigen::Index p = inferred.inference.mean.size();
   Answer answer{inferred.refined->point.head(p), inferred.refined->stddev.head(p), true};
-  setNormalInterval(answer);
+  setIntervals({}, answer);
   return answer;
 }
 

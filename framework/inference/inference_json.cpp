@@ -28,23 +28,25 @@ Json makeEstimatesJson(const Eigen::VectorXd& mean, const Eigen::VectorXd& stdde
   return estimates;
 }
 
-Json makeIntervals(const Mixture& mixture, Eigen::Index parameter, double probability) {
+Json makeIntervals(const Intervals& intervals) {
   Json list = Json::array();
-  for (const auto& [lower, upper] : findHighestDensity(takeMarginal(mixture, parameter), probability)) {
+  for (const auto& [lower, upper] : intervals) {
     list.push_back({lower, upper});
   }
   return list;
 }
 
-/// With the ends of a mixture's smallest sets, and these.
+/// With the answer's own intervals, and a mixture's smallest sets.
 Json makeEstimatesJson(const Answer& answer, const std::vector<ParameterSpec>& parameters) {
   Json estimates = makeEstimatesJson(answer.mean, answer.stddev, parameters);
-  for (Eigen::Index p = 0; p < answer.mixture.means.rows(); ++p) {
-    Json& estimate = estimates[parameters[static_cast<std::size_t>(p)].name.text];
-    estimate["lower"] = answer.lower95[p];
-    estimate["upper"] = answer.upper95[p];
-    estimate["intervals95"] = makeIntervals(answer.mixture, p, 0.95);
-    estimate["intervals50"] = makeIntervals(answer.mixture, p, 0.5);
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    Json& estimate = estimates[parameters[p].name.text];
+    estimate["lower"] = answer.lower95[static_cast<Eigen::Index>(p)];
+    estimate["upper"] = answer.upper95[static_cast<Eigen::Index>(p)];
+    if (answer.mixture.isGiven()) {
+      estimate["intervals95"] = makeIntervals(answer.intervals95[p]);
+      estimate["intervals50"] = makeIntervals(answer.intervals50[p]);
+    }
   }
   return estimates;
 }

@@ -53,7 +53,7 @@ constexpr const char* kIndent = "  ";
 /// Of all parameters, the bounds those of the 95 % intervals.
 struct Estimates {
   Eigen::VectorXd mean, stddev, lower, upper;
-  Mixture mixture{};  ///< whose smallest sets are shown instead
+  std::vector<Intervals> sets{};  ///< a mixture's smallest ones, which are shown instead
 };
 
 std::string describeInterval(double lower, double upper) {
@@ -62,18 +62,18 @@ std::string describeInterval(double lower, double upper) {
 }
 
 std::string describeInterval(const Estimates& estimates, Index i) {
-  if (!estimates.mixture.isGiven()) {
+  if (estimates.sets.empty()) {
     return describeInterval(estimates.lower[i], estimates.upper[i]);
   }
   std::string text;
-  for (const auto& [lower, upper] : findHighestDensity(takeMarginal(estimates.mixture, i), 0.95)) {
+  for (const auto& [lower, upper] : estimates.sets[static_cast<std::size_t>(i)]) {
     text += (text.empty() ? "" : ", ") + describeInterval(lower, upper);
   }
   return text;
 }
 
 Estimates makeEstimates(const Answer& answer) {
-  return {answer.mean, answer.stddev, answer.lower95, answer.upper95, answer.mixture};
+  return {answer.mean, answer.stddev, answer.lower95, answer.upper95, answer.intervals95};
 }
 
 Row makeRow(const ParameterSpec& parameter, const Estimates& estimates, Index i) {

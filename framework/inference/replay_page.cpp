@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <sstream>
 
+#include "framework/inference/answer.hpp"
 #include "framework/inference/inference_text.hpp"
 #include "framework/inference/replay_files.hpp"
-#include "framework/inverse_map/predictions.hpp"
 #include "framework/report/figure.hpp"
 #include "framework/report/html.hpp"
 #include "framework/report/response_panels.hpp"
@@ -89,6 +89,7 @@ std::string makeParameterTable(const Inferrer& inferrer, const Replay& replay) {
   constexpr int kStddevDigits = 3;
   const std::vector<ParameterSpec>& parameters = inferrer.getExperiment().model.parameters;
   const bool refined = replay.inferred.refined && replay.inferred.refined->isAccepted();
+  const Answer by_map = makeMapAnswer(replay.inferred.inference);
   std::vector<std::string> headings{"parameter", "unit", "inferred", "sd", "95 % from", "to"};
   if (refined) {
     headings.insert(headings.end(), {"refined", "its sd"});
@@ -97,10 +98,9 @@ std::string makeParameterTable(const Inferrer& inferrer, const Replay& replay) {
   std::vector<Cells> rows;
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const auto i = static_cast<Index>(p);
-    const double mean = replay.inferred.inference.mean[i], stddev = replay.inferred.inference.stddev[i];
     rows.push_back({makeTextCell(parameters[p].name.text), makeTextCell(parameters[p].unit),
-                    makeShownCell(mean), makeShownCell(stddev, kStddevDigits),
-                    makeShownCell(mean - kNormal95 * stddev), makeShownCell(mean + kNormal95 * stddev)});
+                    makeShownCell(by_map.mean[i]), makeShownCell(by_map.stddev[i], kStddevDigits),
+                    makeShownCell(by_map.lower95[i]), makeShownCell(by_map.upper95[i])});
     if (refined) {
       rows.back().push_back(makeShownCell(replay.inferred.refined->point[i]));
       rows.back().push_back(makeShownCell(replay.inferred.refined->stddev[i], kStddevDigits));

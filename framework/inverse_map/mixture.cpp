@@ -209,6 +209,10 @@ Intervals findHighestDensity(const MarginalMixture& marginal, double probability
   return sets.findAbove(below, kExactly);
 }
 
+Intervals findWithin(const MarginalMixture& marginal, double depth) {
+  return findHighestDensity(marginal, std::erf(depth * constants::one_div_root_two<double>()));
+}
+
 bool hasSeveralAnswers(const MarginalMixture& marginal) {
   return findHighestDensity(marginal, 0.95).size() > 1;
 }

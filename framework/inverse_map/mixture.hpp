@@ -71,6 +71,9 @@ Intervals findAbove(const MarginalMixture& marginal, double level);
 /// normal distribution its mean +- so many standard deviations. Cost: some 0.2 ms.
 Intervals findHighestDensity(const MarginalMixture& marginal, double probability);
 
+/// The same of the probability that a normal distribution has within so many standard deviations.
+Intervals findWithin(const MarginalMixture& marginal, double depth);
+
 /// Whether the smallest set of 95 %, or that of some parameter, is several intervals: answers that lie apart.
 bool hasSeveralAnswers(const MarginalMixture& marginal);
 bool hasSeveralAnswers(const Mixture& mixture);

@@ -53,6 +53,19 @@ VectorXd calcDepths(const Predictions& predictions, const MatrixXd& truth, Index
   return depths;
 }
 
+IntervalReach calcIntervalReach(const Predictions& predictions, const MatrixXd& truth, int draws) {
+  constexpr double kFewest = 400.0;
+  const double samples = static_cast<double>(truth.cols()) / draws;
+  if (samples < kFewest) {
+    return {};
+  }
+  IntervalReach reach{MatrixXd(truth.rows(), 1), MatrixXd(truth.rows(), 1)};
+  for (Index p = 0; p < truth.rows(); ++p) {
+    reach.set(p, 0, calcReach(calcDepths(predictions, truth, p), samples));
+  }
+  return (reach.of95.array() == kNormal95).all() ? IntervalReach{} : reach;
+}
+
 MatrixXd calcCorrelation(const MatrixXd& covariance) {
   const VectorXd inverse_stddev = covariance.diagonal().cwiseSqrt().cwiseInverse();
   return inverse_stddev.asDiagonal() * covariance * inverse_stddev.asDiagonal();

@@ -54,10 +54,16 @@ Predictions predictTargets(const std::vector<network::Member>& members, const Ma
   return predictions;
 }
 
-Predictions NetworkMap::predict(const MatrixXd& features, const MatrixXd& known_values, int threads) const {
-  Predictions predictions = predictTargets(members, inputs.apply(features, known_values), threads);
-  convert(center, half_width, validation.stddev_scale, predictions);
+Predictions NetworkMap::convertTargets(Predictions predictions, const Eigen::VectorXd& stddev_scale) const {
+  convert(center, half_width, stddev_scale, predictions);
   shrinkToBounds(center, half_width, predictions);
+  return predictions;
+}
+
+Predictions NetworkMap::predict(const MatrixXd& features, const MatrixXd& known_values, int threads) const {
+  Predictions predictions = convertTargets(
+      predictTargets(members, inputs.apply(features, known_values), threads), validation.stddev_scale);
+  predictions.reach = replicate(validation.reach, features.cols());
   return predictions;
 }
 

@@ -37,6 +37,9 @@ struct NetworkMap {
   Predictions predict(const Eigen::MatrixXd& features, const Eigen::MatrixXd& known_values,
                       int threads = 1) const;
 
+  /// Of the targets to the parameters, standard deviations multiplied (p), answers no wider than the bounds.
+  Predictions convertTargets(Predictions predictions, const Eigen::VectorXd& stddev_scale) const;
+
   /// Normal distributions of an answer, of which a mixture has several.
   Eigen::Index countComponents() const { return members.front().network.countComponents(); }
   /// Whether weights are known by a distribution.

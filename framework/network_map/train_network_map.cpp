@@ -138,27 +138,26 @@ HeldOutTargets crossValidate(const NetworkSet& set, const NetworkTask& task, con
 /// Held-out samples in the parameters' units, and what follows from them. lack: of the surrogate that taught,
 /// if one did. Both scales make up for the same posteriors that are not normal, so that their product would
 /// do so twice: it was up to 4 % too wide, and 50 % intervals held 58 %. What 100 simulations find beyond the
-/// least is chance: 50 % intervals held up to 55 % with it.
-void validateMap(const HeldOutTargets& held_out, const StddevLack* lack, NetworkMapTraining& training) {
+/// least is chance: 50 % intervals held up to 55 % with it. The shape of errors is that of the network's own:
+/// what a teacher lacks makes all of them larger.
+void validateMap(const HeldOutTargets& targets, const StddevLack* lack, NetworkMapTraining& training) {
   NetworkMap& map = training.map;
   HeldOut found;
-  found.truth = (map.half_width.asDiagonal() * held_out.truth).colwise() + map.center;
-  const VectorXd ones = VectorXd::Ones(map.center.size());
-  found.predictions = held_out.predictions;
-  convert(map.center, map.half_width, ones, found.predictions);
-  shrinkToBounds(map.center, map.half_width, found.predictions);
+  found.truth = (map.half_width.asDiagonal() * targets.truth).colwise() + map.center;
+  found.predictions = map.convertTargets(targets.predictions, VectorXd::Ones(map.center.size()));
   found.limit_stddev =
       MatrixXd::Constant(found.truth.rows(), found.truth.cols(), std::numeric_limits<double>::quiet_NaN());
   map.validation = validate(found);
+  VectorXd& scale = map.validation.stddev_scale;
+  map.validation.reach =
+      calcIntervalReach(map.convertTargets(targets.predictions, scale), found.truth, targets.draws);
   if (lack != nullptr) {
-    map.validation.stddev_scale = map.validation.stddev_scale.cwiseMax(
-        calcPupilScale(*lack, calcTypicalStddev(found.predictions.stddev)));
+    scale = scale.cwiseMax(calcPupilScale(*lack, calcTypicalStddev(found.predictions.stddev)));
   }
+  training.held_out = map.convertTargets(targets.predictions, scale);
+  training.held_out.reach = replicate(map.validation.reach, found.truth.cols());
   training.held_out_truth = std::move(found.truth);
-  training.held_out = held_out.predictions;
-  convert(map.center, map.half_width, map.validation.stddev_scale, training.held_out);
-  shrinkToBounds(map.center, map.half_width, training.held_out);
-  training.held_out_draws = held_out.draws;
+  training.held_out_draws = targets.draws;
 }
 
 /// Takes what a fit gives into the map.

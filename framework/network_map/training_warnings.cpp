@@ -18,8 +18,8 @@ std::string describeShape(double probability, double share, Index components) {
   const bool heavy_tails = (share > probability) == (probability < 0.9);
   if (components == 1) {
     return heavy_tails ? "normal distributions: a few of its errors are much larger than the others"
-                       : "normal distributions: several answers fit, or they lie at the bounds; use 'head: "
-                         "mixture'";
+                       : "normal distributions: several answers fit, of which 'head: mixture' tells, or they "
+                         "lie at the bounds";
   }
   return fmt::format("mixtures of {} normal distributions{}", components,
                      components < kMostComponents ? "; 'components: 4' may serve better" : "");
@@ -59,7 +59,7 @@ void warnOfShape(const std::vector<ParameterSpec>& parameters, NetworkMapTrainin
   struct Level {
     double probability, quantile, small;
   };
-  constexpr Level kLevels[] = {{0.5, 0.6744897501960817, 0.04}, {0.95, kNormal95, 0.025}};
+  constexpr Level kLevels[] = {{0.5, kNormal50, 0.04}, {0.95, kNormal95, 0.025}};
   const double simulations = static_cast<double>(training.held_out_truth.cols()) / training.held_out_draws;
   for (Index p = 0; p < training.held_out_truth.rows(); ++p) {
     const Eigen::ArrayXd depths = calcDepths(training.held_out, training.held_out_truth, p);
@@ -68,10 +68,11 @@ void warnOfShape(const std::vector<ParameterSpec>& parameters, NetworkMapTrainin
       const double error = std::sqrt(probability * (1.0 - probability) / simulations);
       if (std::abs(share - probability) > small + 2.0 * error) {
         training.warnings.push_back(fmt::format(
-            "{}: {:.0f} % intervals of the network hold {:.0f} % of the samples held out, so that its "
-            "answers are not {}",
+            "{}: {:.0f} % intervals of the network would hold {:.0f} % of the samples held out, so that its "
+            "answers are not {}{}",
             parameters[static_cast<std::size_t>(p)].name.text, 100.0 * probability, 100.0 * share,
-            describeShape(probability, share, training.map.countComponents())));
+            describeShape(probability, share, training.map.countComponents()),
+            training.held_out.reach.isGiven() ? ". Intervals reach as far as those samples' errors" : ""));
         break;
       }
     }

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "framework/inverse_map/interval_reach.hpp"
 #include "framework/inverse_map/mixture.hpp"
 
 namespace twinmap {
@@ -13,6 +14,7 @@ struct Inference {
       limit_stddev;  ///< p, what the measurement allows as the map foretells it; empty if it cannot
   Eigen::MatrixXd correlation{};  ///< p x p, of this measurement's errors, where the map tells; else empty
   Mixture mixture{};              ///< where the map gives one, whose mean and stddev are above
+  IntervalReach reach{};          ///< of intervals, where they are not those of the distribution above
   Eigen::VectorXd inputs{};       ///< what the map sees of the features and known inputs, k
 };
 

@@ -136,8 +136,9 @@ Predictions OnlineMap::predict(const Eigen::Ref<const MatrixXd>& features,
   constexpr Index kBlock = 64;  // columns that share buffers
   const Index count = features.cols(), parameters = getResidualCorrelation().rows();
   Predictions all{MatrixXd(parameters, count), MatrixXd(parameters, count)};
-  if (std::holds_alternative<OnlineNetwork>(kind_)) {
+  if (const auto* network = std::get_if<OnlineNetwork>(&kind_)) {
     all.correlations.resize(static_cast<std::size_t>(count));
+    all.reach = replicate(network->getMap().validation.reach, count);
   }
   if (givesMixtures()) {
     all.mixtures.resize(static_cast<std::size_t>(count));

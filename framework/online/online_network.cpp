@@ -10,6 +10,7 @@ OnlineNetwork::Workspace::Workspace(const OnlineNetwork& map)
   inference.stddev.resize(map.map_->center.size());
   inference.inputs.resize(map.map_->inputs.countInputs());
   inference.correlation.resize(map.map_->center.size(), map.map_->center.size());
+  inference.reach = map.map_->validation.reach;
 }
 
 void OnlineNetwork::setMixture(const network::Predictor::Workspace& predicted, Inference& inference) const {

@@ -57,6 +57,7 @@ struct CrossValidation {
   Eigen::VectorXd limit_ratio;   ///< predicted: standard deviations over what the measurements allow
   int half = 0, all = 0;         ///< simulations compared; 0 where they were too few
   Eigen::VectorXd error_ratio;   ///< errors with all simulations over those with half of them; empty likewise
+  IntervalReach reach{};         ///< of intervals after that, in standard deviations
 };
 
 /// How well chains know a quantity (markov::Convergence).

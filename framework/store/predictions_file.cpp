@@ -52,6 +52,9 @@ StoredPredictions readPredictionsFile(const std::filesystem::path& path,
   StoredPredictions stored;
   stored.truth.resize(count, samples);
   stored.predictions = {stored.truth, stored.truth};
+  if (table.hasColumn("reach95")) {
+    stored.predictions.reach = {stored.truth, stored.truth};
+  }
   stored.limit_stddev.resize(table.hasColumn("limit_stddev") ? count : 0, samples);
   for (Eigen::Index i = 0; i < samples; ++i) {
     const auto first = static_cast<std::size_t>(i * count);
@@ -63,6 +66,9 @@ StoredPredictions readPredictionsFile(const std::filesystem::path& path,
       stored.truth(p, i) = rows.getNumber(row, "true");
       stored.predictions.mean(p, i) = rows.getNumber(row, "inferred");
       stored.predictions.stddev(p, i) = rows.getNumber(row, "stddev");
+      if (stored.predictions.reach.isGiven()) {
+        stored.predictions.reach.set(p, i, {rows.getNumber(row, "reach50"), rows.getNumber(row, "reach95")});
+      }
       if (stored.limit_stddev.rows() > 0) {
         stored.limit_stddev(p, i) = table.getNumber(row, "limit_stddev");
       }

@@ -3,20 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "framework/inverse_map/predictions.hpp"
+#include "framework/inverse_map/interval_reach.hpp"
 
 namespace twinmap {
 namespace {
 
-constexpr double kNormal50 = 0.674489750196082;
 constexpr double kNormal68 = 0.994457883209753;
-
-/// The value below which a further sample lies with probability `level`; the largest if there are too few.
-double calcQuantile(const Eigen::VectorXd& sorted, double level) {
-  const auto n = static_cast<double>(sorted.size());
-  const double rank = std::ceil(level * (n + 1.0));
-  return sorted(static_cast<Eigen::Index>(std::clamp(rank, 1.0, n)) - 1);
-}
 
 /// Of a binomial rank, as a share of so many.
 double calcRankError(double level, Eigen::Index count) {
@@ -26,7 +18,7 @@ double calcRankError(double level, Eigen::Index count) {
 /// A quantile over that of the normal distribution; of its confidence limit so many standard errors of the
 /// rank above it.
 double calcQuantileScale(const Eigen::VectorXd& sorted, double level, double normal, double errors_above) {
-  return calcQuantile(sorted, level + errors_above * calcRankError(level, sorted.size())) / normal;
+  return calcConformalQuantile(sorted, level + errors_above * calcRankError(level, sorted.size())) / normal;
 }
 
 double calcMiddleScale(const Eigen::VectorXd& sorted, double errors_above) {

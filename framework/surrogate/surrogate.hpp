@@ -27,6 +27,7 @@ struct SurrogateValidation {
   Eigen::VectorXd limit_scale;  ///< p: calcLimitScale()
   Eigen::VectorXd limit_ratio;  ///< p, root of the mean variance over that of the limit, both as predicted
   SurrogateStatus status = SurrogateStatus::kOk;
+  IntervalReach reach{};  ///< of intervals, of a network whose errors are not normal
 };
 
 /// What a surrogate says of n measurements.

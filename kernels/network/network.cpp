@@ -33,10 +33,9 @@ void Products::calculate(const Ref<const VectorXd>& inputs, Ref<VectorXd> produc
     first += j + 1;
   }
   for (Index k = 0; k < cubed; ++k) {
-    for (Index j = 0; j <= k; ++j) {
-      products.segment(first, j + 1) = inputs[k] * inputs[j] * inputs.head(j + 1);
-      first += j + 1;
-    }
+    const Index pairs = (k + 1) * (k + 2) / 2;  // those of the first k + 1 inputs come first
+    products.segment(first, pairs) = inputs[k] * products.head(pairs);
+    first += pairs;
   }
 }
 

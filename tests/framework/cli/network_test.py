@@ -1,14 +1,96 @@
 """A run whose map is a network: what it leaves, and what is inferred with it."""
 import filecmp
 import json
+import re
 import unittest
 
-from support import EXPERIMENTS, OwnFolderTestCase, call, read_csv
+from support import EXPERIMENTS, FolderTestCase, OwnFolderTestCase, call, read_csv, run_once
 
 BEST = EXPERIMENTS / "two_beam/best.yaml"
 SMALL = ["design.train.samples=60", "design.test.samples=60", "refine=never", "evaluation.limit=false"]
 TAUGHT = "inverse_map={network: {steps: 1500, surrogate_samples: 4000}}"
 DIRECT = "inverse_map={network: {samples_from: simulations, steps: 200, hidden: [16]}}"
+
+# Two springs in parallel, of which the response tells the sum alone: what is inferred of each is as good as uniform.
+SPRINGS = """
+name: parallel_springs
+seed: 2
+parameters:
+  k_left: {bounds: [80, 120]}
+  k_right: {bounds: [80, 120]}
+  d: {bounds: [1, 2]}
+system:
+  bodies:
+    cart: {mass: 2, joint: {type: slider, axis: [0, 1, 0], coordinates: [y]}}
+  springs:
+    - {coordinate: y, stiffness: k_left}
+    - {coordinate: y, stiffness: k_right}
+  dampers:
+    - {coordinate: y, damping: d}
+initial: {coordinates: {y: 0.1}}
+outputs:
+  y: {coordinate: y}
+simulation: {duration: 2}
+features:
+  - samples: {outputs: [y], start: 0.05, interval: 0.05, count: 40}
+noise:
+  stddev: {y: 1e-3}
+design:
+  train: {method: latin_hypercube, samples: 4000}
+  test: {method: uniform, samples: 1500}
+inverse_map: {network: {samples_from: simulations, hidden: [8], steps: 1000, batch: 256}}
+refine: never
+"""
+
+
+class Undetermined(FolderTestCase):
+    """Errors that are not normal."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.file = cls.folder / "springs.yaml"
+        cls.file.write_text(SPRINGS)
+        cls.trained, cls.result = run_once(cls.file)
+        cls.reaches = {row["parameter"]: row for row in read_csv(cls.trained / "cross_validation.csv")}
+
+    def test_intervals_hold_what_they_say(self):
+        self.assertIn("Intervals reach as far as those samples' errors", self.result.stderr)
+        rows = read_csv(self.trained / "predictions.csv")
+        for row in read_csv(self.trained / "metrics.csv"):
+            name = row["parameter"]
+            self.assertTrue(0.93 < float(row["coverage95"]) < 0.97, row)
+            self.assertTrue(0.45 < float(row["coverage50"]) < 0.55, row)
+            reach = float(self.reaches[name]["reach95"])
+            self.assertTrue(all(float(one["reach95"]) == reach for one in rows if one["parameter"] == name))
+            within = [abs(float(one["inferred"]) - float(one["true"])) < reach * float(one["stddev"])
+                      for one in rows if one["parameter"] == name]
+            self.assertAlmostEqual(sum(within) / len(within), float(row["coverage95"]), places=12)
+        for name in ("k_left", "k_right"):
+            self.assertLess(float(self.reaches[name]["reach95"]), 1.9)
+
+    def test_they_are_those_of_infer_and_of_what_is_exported(self):
+        measured = self.folder / "measured.csv"
+        self.assertEqual(call("simulate", self.file, "--csv", measured).returncode, 0)
+        answer = json.loads(call("infer", self.trained, measured, "--json").stdout)["parameters"]
+        for name, row in self.reaches.items():
+            found, reach = answer[name], float(row["reach95"])
+            self.assertAlmostEqual(found["lower"], found["mean"] - reach * found["sd"], places=9)
+            self.assertAlmostEqual(found["upper"], found["mean"] + reach * found["sd"], places=9)
+        self.assertEqual(call("export", self.trained, "--json", self.folder / "map.json", "--c", self.folder / "c").returncode, 0)
+        expected = [float(row["reach95"]) for row in self.reaches.values()]
+        self.assertEqual(json.loads((self.folder / "map.json").read_text())["interval_reach"], expected)
+        table = re.search(r"interval_reach\[\d+\] = \{([^}]*)\}", (self.folder / "c/twinmap_map.c").read_text()).group(1)
+        self.assertEqual([float(number) for number in table.split(",") if number.strip()], expected)
+
+    def test_the_run_is_verified_and_compared_by_them(self):
+        result = call("verify", self.trained)
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        result = call("compare", self.trained, self.trained)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        coverage = float(read_csv(self.trained / "metrics.csv")[0]["coverage95"])
+        row = next(line for line in result.stdout.splitlines() if "coverage95" in line)
+        self.assertIn(f"{coverage:.5g}", row)
 
 
 class Network(OwnFolderTestCase):

@@ -36,6 +36,18 @@ TEST(Metrics, ByHand) {
   EXPECT_EQ(metrics.samples, 3);
 }
 
+// z = 1, -4, 0 of intervals that reach 0.9 and 4.5.
+TEST(Metrics, CoverageIsThatOfTheIntervalsThatAreClaimed) {
+  const Eigen::RowVector3d truth(1, 2, 4);
+  Predictions predictions{truth + Eigen::RowVector3d(0.1, -0.2, 0.0), Eigen::RowVector3d(0.1, 0.05, 1.0)};
+  predictions.reach = {Eigen::MatrixXd::Constant(1, 3, 0.9), Eigen::MatrixXd::Constant(1, 3, 4.5)};
+  const ParameterMetrics metrics = calcMetrics({makeParameter(1, 4)}, truth, predictions).at(0);
+  EXPECT_EQ(metrics.coverage95, 1.0);
+  EXPECT_NEAR(metrics.coverage90, 2.0 / 3.0, 1e-15);
+  EXPECT_NEAR(metrics.coverage50, 1.0 / 3.0, 1e-15);
+  EXPECT_NEAR(metrics.z_sd, std::sqrt((4.0 + 9.0 + 1.0) / 2), 1e-12);
+}
+
 TEST(Metrics, RelativeToTheRangeWhereTheParameterSaysSo) {
   Eigen::MatrixXd truth(1, 2);
   truth << 0, 1;

@@ -35,6 +35,32 @@ Refined makeRefined(RefinementStatus status) {
 
 using Statuses = std::vector<std::string>;
 
+TEST(Answer, HasIntervalsThatReachAsFarAsTheMapSays) {
+  InferredMeasurement inferred = makeInferred();
+  const Answer normal = makeMapAnswer(inferred.inference);
+  EXPECT_DOUBLE_EQ(normal.lower95[0], 1.0 - kNormal95 * 0.2);
+  EXPECT_DOUBLE_EQ(normal.upper95[1], 2.0 + kNormal95 * 0.1);
+  inferred.inference.reach = {Eigen::Vector2d(0.8, kNormal50), Eigen::Vector2d(1.6, kNormal95)};
+  const Answer answer = chooseAnswer(inferred);
+  EXPECT_DOUBLE_EQ(answer.lower95[0], 1.0 - 1.6 * 0.2);
+  EXPECT_DOUBLE_EQ(answer.upper95[0], 1.0 + 1.6 * 0.2);
+  EXPECT_EQ(answer.upper95[1], normal.upper95[1]);
+  inferred.refined = makeRefined(RefinementStatus::kAccepted);
+  EXPECT_DOUBLE_EQ(chooseAnswer(inferred).lower95[0], 1.0 - kNormal95 * 0.1);
+}
+
+TEST(Answer, OfAMixtureHasTheSmallestSetsOfThatReach) {
+  InferredMeasurement inferred = makeInferred();
+  inferred.inference.mixture = {Eigen::VectorXd::Ones(1),
+                                inferred.inference.mean,
+                                inferred.inference.stddev,
+                                {Eigen::MatrixXd::Identity(2, 2)}};
+  inferred.inference.reach = {Eigen::Vector2d(0.8, kNormal50), Eigen::Vector2d(1.6, kNormal95)};
+  const Answer answer = makeMapAnswer(inferred.inference);
+  EXPECT_NEAR(answer.lower95[0], 1.0 - 1.6 * 0.2, 1e-9);
+  EXPECT_NEAR(answer.intervals50[0].front().second, 1.0 + 0.8 * 0.2, 1e-9);
+}
+
 TEST(Answer, OfAMapFarAboveWhatTheMeasurementAllowsIsMapLimited) {
   const InferredMeasurement inferred = makeInferred();
   EXPECT_EQ(listStatuses(inferred), Statuses{"map_limited"});

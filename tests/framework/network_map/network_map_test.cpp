@@ -266,6 +266,27 @@ TEST(NetworkMap, OfAMixtureSaysWhereItHasTooFewComponents) {
       << warnings.front();
 }
 
+/// Of two parameters whose sum alone is measured, the posterior is uniform: its ends are those of the bounds.
+MatrixXd sumPairs(const MatrixXd& points) {
+  const Eigen::RowVectorXd sum = points.row(0) + 2.0 * points.row(1);
+  return sum.replicate(2, 1);
+}
+
+TEST(NetworkMap, HasIntervalsThatHoldWhatTheySayWhereErrorsAreNotNormal) {
+  const MatrixXd points = samplePairs(20000);
+  const NetworkMapTraining trained = trainOnPairs(points, sumPairs(points), NetworkHead::kGaussian);
+  ASSERT_TRUE(trained.map.validation.reach.isGiven());
+  const Index tests = 5000;
+  const MatrixXd truth = samplePairs(20000 + tests).rightCols(tests);
+  const Predictions found = trained.map.predict(sumPairs(truth), MatrixXd(0, tests));
+  for (Index p = 0; p < 2; ++p) {
+    const Eigen::ArrayXd depths = calcDepths(found, truth, p);
+    EXPECT_GT((depths < kNormal95).cast<double>().mean(), 0.965);  // what normal distributions say
+    EXPECT_NEAR((depths < found.reach.get(p).of50).cast<double>().mean(), 0.5, 0.03);
+    EXPECT_NEAR((depths < found.reach.get(p).of95).cast<double>().mean(), 0.95, 0.015);
+  }
+}
+
 TEST(NetworkMap, SaysWhereAFewOfItsErrorsAreLarge) {
   const MatrixXd points = samplePairs(20000);
   MatrixXd responses = points;

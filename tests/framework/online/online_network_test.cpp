@@ -62,6 +62,19 @@ TEST(OnlineNetwork, InfersWhatTheMapPredicts) {
   expectThePredictionsOf(std::make_shared<const NetworkMap>(makeExample()));
 }
 
+TEST(OnlineNetwork, SaysHowFarIntervalsReach) {
+  NetworkMap map = makeExample();
+  map.validation.reach = {Eigen::Vector2d(0.8, 0.7), Eigen::Vector2d(1.6, 2.0)};
+  const OnlineMap online{AnyMap(std::make_shared<const NetworkMap>(map))};
+  OnlineMap::Workspace workspace(online);
+  const MatrixXd features = MatrixXd::Random(5, 3), known = MatrixXd::Random(1, 3);
+  EXPECT_EQ(online.infer(features.col(0), known.col(0), workspace).reach.get(0).of95, 1.6);
+  for (const Predictions& all : {online.predict(features, known, 2), map.predict(features, known)}) {
+    ASSERT_EQ(all.reach.of50.cols(), 3);
+    EXPECT_EQ(all.reach.get(1, 2).of50, 0.7);
+  }
+}
+
 TEST(OnlineNetwork, NeverAnswersWiderThanTheBounds) {
   NetworkMap map = makeExample();
   map.members.front().network.layers.back().biases.segment(2, 2).setConstant(
