@@ -3,9 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/experiment/simulated_sets.hpp"
-#include "framework/features/feature_extractor.hpp"
-#include "framework/online/online_model.hpp"
+#include "framework/experiment/power_neighbourhoods.hpp"
 
 namespace twinmap {
 
@@ -17,16 +15,6 @@ struct DetectableChange {
   double smallest = 0.0;  ///< found in 95 % of the cases; NaN where none up to `largest` is
   double largest = 0.0;   ///< half of the constant, or the range of the output
   double found = 0.0;     ///< the share of cases in which `largest` is found
-};
-
-/// What the power of a trust model is computed from.
-struct PowerContext {
-  const ExperimentSpec& experiment;
-  const SimulatedSets& sets;
-  const FeatureExtractor& extractor;
-  const Eigen::MatrixXd& noise_covariance;  ///< d x d, of the features
-  const OnlineModel& online;                ///< with a trust model
-  int threads = 1;
 };
 
 /// The smallest relative change of each constant of the model, and the smallest constant offset of each

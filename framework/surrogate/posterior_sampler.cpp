@@ -194,8 +194,10 @@ SurrogatePosterior PosteriorSampler::summarize(const WeightedDraws& draws, const
     return posterior;
   }
   const VectorXd center = model_.center.head(u), half_width = model_.half_width.head(u);
-  const Eigen::Map<const VectorXd> probabilities(kPosteriorProbabilities.data(),
-                                                 kPosteriorProbabilities.size());
+  // not a Map: GCC 12 sees AVX-512 read beyond the five
+  const VectorXd probabilities =
+      VectorXd::NullaryExpr(static_cast<Index>(kPosteriorProbabilities.size()),
+                            [](Index i) { return kPosteriorProbabilities[static_cast<std::size_t>(i)]; });
   posterior.mean = (center + half_width.cwiseProduct(importance::calcMean(draws))).head(p);
   posterior.stddev =
       half_width.cwiseProduct(importance::calcCovariance(draws).diagonal().cwiseSqrt()).head(p);

@@ -77,10 +77,20 @@ void Predictor::mix(const Ref<const VectorXd>& head, Workspace& workspace) const
   }
 }
 
+/// The next layer's sums in place of the last one's; the latter's activations are left in `other`.
+template <class Weights>
+void Predictor::propagate(const Weights& weights, const VectorXd& biases, Workspace& workspace) {
+  auto sums = workspace.sums.head(weights.cols()).array();
+  sums /= 1.0 + (-sums).exp();
+  auto next = workspace.other.head(biases.size());
+  next = biases;
+  next.noalias() += weights * workspace.sums.head(weights.cols());
+  workspace.sums.swap(workspace.other);
+}
+
 void Predictor::predict(const Ref<const VectorXd>& inputs, Workspace& workspace) const {
   const Index p = network_.countTargets();
-  Index units = network_.layers.front().biases.size();
-  auto first = workspace.sums.head(units + p);
+  auto first = workspace.sums.head(first_.biases.size());
   first = first_.biases;
   first.noalias() += first_.weights * inputs;
   workspace.mean = first.tail(p);
@@ -88,24 +98,15 @@ void Predictor::predict(const Ref<const VectorXd>& inputs, Workspace& workspace)
     network_.products.calculate(inputs, workspace.products);
     workspace.mean.noalias() += of_products_ * workspace.products;
   }
-  for (std::size_t i = 1; i < network_.layers.size(); ++i) {
-    auto sums = workspace.sums.head(units).array();
-    sums /= 1.0 + (-sums).exp();
-    const Layer& layer = network_.layers[i];
-    auto next = workspace.other.head(layer.biases.size());
-    next = layer.biases;
-    if (i + 1 < network_.layers.size()) {
-      next.noalias() += layer.weights * workspace.sums.head(units);
-    } else {
-      next.noalias() += head_ * workspace.sums.head(units);
-    }
-    workspace.sums.swap(workspace.other);
-    units = layer.biases.size();
+  for (std::size_t i = 1; i + 1 < network_.layers.size(); ++i) {
+    propagate(network_.layers[i].weights, network_.layers[i].biases, workspace);
   }
+  propagate(head_, network_.layers.back().biases, workspace);
+  const auto head = workspace.sums.head(head_.rows());
   if (workspace.weights.size() == 1) {
-    calcMoments(workspace.sums.head(units), workspace.standard, workspace.covariance, workspace.inverse);
+    calcMoments(head, workspace.standard, workspace.covariance, workspace.inverse);
   } else {
-    mix(workspace.sums.head(units), workspace);
+    mix(head, workspace);
     scaleComponents(network_.scale, workspace);
   }
   workspace.mean += network_.scale.cwiseProduct(workspace.standard);

@@ -38,6 +38,8 @@ class Predictor {
   void predict(const Ref<const VectorXd>& inputs, Workspace& workspace) const;
 
  private:
+  template <class Weights>
+  static void propagate(const Weights& weights, const VectorXd& biases, Workspace& workspace);
   void mix(const Ref<const VectorXd>& head, Workspace& workspace) const;
 
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
