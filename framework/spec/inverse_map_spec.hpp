@@ -216,15 +216,15 @@ void describe(Fields& f, NetworkMapSpec& s) {
              kHundredThousand);
   f.optional("learning_rate", s.learning_rate,
              "its largest value (default: 0.002; of more than 2000 simulations 0.004)", kPositive);
-  f.optional("bayesian", s.bayesian,
-             "last_layer: five networks, of whose last layers the exact posterior is known; hamiltonian: draws "
-             "of all weights of a small network, for studies");
+  f.optional(
+      "bayesian", s.bayesian,
+      "last_layer: five networks, of whose last layers the exact posterior is known; hamiltonian: draws "
+      "of all weights of a small network, for studies");
   f.optional("chains", s.chains, "of the Hamiltonian sampler", kChains);
   f.optional("draws", s.draws, "that each chain keeps, after as many to warm up", kDraws);
-  f.rule(!s.hidden ||
-             (!s.hidden->empty() && s.hidden->size() <= kDeepest &&
-              std::all_of(s.hidden->begin(), s.hidden->end(),
-                          [](int units) { return units >= 1 && units <= kWidest; })),
+  f.rule(!s.hidden || (!s.hidden->empty() && s.hidden->size() <= kDeepest &&
+                       std::all_of(s.hidden->begin(), s.hidden->end(),
+                                   [](int units) { return units >= 1 && units <= kWidest; })),
          "must give 1 to 8 hidden layers of 1 to 1024 units");
   f.rule(s.bayesian == NetworkBayes::kNone || s.head == NetworkHead::kGaussian,
          "must have 'head: gaussian' with bayesian");
