@@ -40,16 +40,15 @@ double calcShareBelow(const Eigen::VectorXd& sorted, double value) {
 /// The factor between the middle's and the larger one by which coverage of 50 % and 95 % intervals misses
 /// these by opposite amounts, those of 95 % counted twice. Their sum rises with the factor, so that halving
 /// finds it.
-double calcBalancedScale(const Eigen::VectorXd& sorted, double errors_above) {
+double calcBalancedScale(const Eigen::VectorXd& sorted) {
   constexpr int kHalvings = 40;
-  const double wanted = 0.5 + errors_above * calcRankError(0.5, sorted.size()) +
-                        2.0 * (0.95 + errors_above * calcRankError(0.95, sorted.size()));
-  double low = calcMiddleScale(sorted, errors_above), high = calcLargerScale(sorted, errors_above);
+  constexpr double kWanted = 0.5 + 2.0 * 0.95;
+  double low = calcMiddleScale(sorted, 0.0), high = calcLargerScale(sorted, 0.0);
   for (int i = 0; i < kHalvings; ++i) {
     const double scale = 0.5 * (low + high);
     const double found =
         calcShareBelow(sorted, kNormal50 * scale) + 2.0 * calcShareBelow(sorted, kNormal95 * scale);
-    (found < wanted ? low : high) = scale;
+    (found < kWanted ? low : high) = scale;
   }
   return high;
 }
@@ -65,12 +64,12 @@ double calcStddevScale(const Eigen::VectorXd& absolute_z) {
   constexpr Eigen::Index kMany = 2000;  // whose factor has a standard error of 2 %
   const Eigen::VectorXd sorted = sortErrors(absolute_z);
   return sorted.size() > kMany
-             ? calcBalancedScale(sorted, 0.0)
+             ? calcBalancedScale(sorted)
              : std::max(calcLargerScale(sorted, 0.0), std::min(1.0, calcLargerScale(sorted, kNormal95)));
 }
 
 double calcLeastStddevScale(const Eigen::VectorXd& absolute_z) {
-  return calcBalancedScale(sortErrors(absolute_z), -1.0);
+  return calcMiddleScale(sortErrors(absolute_z), -1.0);
 }
 
 Eigen::VectorXd calcTypicalStddev(const Eigen::MatrixXd& stddev) {

@@ -14,8 +14,8 @@ namespace twinmap {
 /// lighter tails keep the factor of the 68 % interval.
 double calcStddevScale(const Eigen::VectorXd& absolute_z);
 
-/// The factor that balances both, of shares one standard error lower: what it is at least, rather than by
-/// chance.
+/// The factor of the 68 % interval, of a share one standard error lower: what it is at least, rather than by
+/// chance, and without the tails.
 double calcLeastStddevScale(const Eigen::VectorXd& absolute_z);
 
 /// What the standard deviations of a map's answers (p parameters) lack.

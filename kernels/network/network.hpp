@@ -18,7 +18,7 @@ struct Layer {
 };
 
 /// Which products of inputs a regression takes: x_i x_j (i <= j) of the first `squared` inputs, then x_i x_j
-/// x_k (i <= j <= k) of the first `cubed`.
+/// x_k (i <= j <= k) of the first `cubed`, which are at most as many.
 struct Products {
   Index squared = 0, cubed = 0;
 

@@ -37,6 +37,12 @@ TEST(StddevScale, FollowsTheTailWhereItIsHeavy) {
   EXPECT_GT(calcStddevScale(errors), 2.5);
 }
 
+TEST(StddevScale, IsAtLeastThatOfTheMiddle) {
+  Eigen::VectorXd errors = makeErrors(100000, 1.2);
+  errors.tail(10000) *= 3.0;
+  EXPECT_NEAR(calcLeastStddevScale(errors), 1.2, 0.01);
+}
+
 double calcShare(const Eigen::VectorXd& errors, double within) {
   return (errors.array() < within).cast<double>().mean();
 }
