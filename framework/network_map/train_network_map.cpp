@@ -135,12 +135,9 @@ HeldOutTargets crossValidate(const NetworkSet& set, const NetworkTask& task, con
   return held_out;
 }
 
-/// Held-out samples in the parameters' units, and what follows from them. lack: of the surrogate that taught,
-/// if one did. Both scales make up for the same posteriors that are not normal, so that their product would
-/// do so twice: it was up to 4 % too wide, and 50 % intervals held 58 %. What 100 simulations find beyond the
-/// least is chance: 50 % intervals held up to 55 % with it. The shape of errors is that of the network's own:
-/// what a teacher lacks makes all of them larger.
-void validateMap(const HeldOutTargets& targets, const StddevLack* lack, NetworkMapTraining& training) {
+/// Held-out samples in the parameters' units, and what follows from them: factors of standard deviations, how
+/// far intervals reach, and whether answers have the shape of the network's.
+void validateMap(const HeldOutTargets& targets, const NetworkTask& task, NetworkMapTraining& training) {
   NetworkMap& map = training.map;
   HeldOut found;
   found.truth = (map.half_width.asDiagonal() * targets.truth).colwise() + map.center;
@@ -148,16 +145,26 @@ void validateMap(const HeldOutTargets& targets, const StddevLack* lack, NetworkM
   found.limit_stddev =
       MatrixXd::Constant(found.truth.rows(), found.truth.cols(), std::numeric_limits<double>::quiet_NaN());
   map.validation = validate(found);
-  VectorXd& scale = map.validation.stddev_scale;
-  map.validation.reach =
-      calcIntervalReach(map.convertTargets(targets.predictions, scale), found.truth, targets.draws);
-  if (lack != nullptr) {
-    scale = scale.cwiseMax(calcPupilScale(*lack, calcTypicalStddev(found.predictions.stddev)));
-  }
-  training.held_out = map.convertTargets(targets.predictions, scale);
+  training.held_out = map.convertTargets(targets.predictions, map.validation.stddev_scale);
+  map.validation.reach = calcIntervalReach(training.held_out, found.truth, targets.draws);
   training.held_out.reach = replicate(map.validation.reach, found.truth.cols());
   training.held_out_truth = std::move(found.truth);
   training.held_out_draws = targets.draws;
+  warnOfShape(task.model.parameters, training);
+}
+
+/// Makes standard deviations up for what the teacher's lack. Both factors make up for the same posteriors
+/// that are not normal, so that their product would do so twice: it was up to 4 % too wide, and 50 %
+/// intervals held 58 %. What 100 simulations find beyond the least is chance: 50 % intervals held up to 55 %
+/// with it.
+void makeUpFor(const StddevLack& lack, const HeldOutTargets& targets, NetworkMapTraining& training) {
+  const NetworkMap& map = training.map;
+  VectorXd& scale = training.map.validation.stddev_scale;
+  const VectorXd typical = calcTypicalStddev(training.held_out.stddev).cwiseQuotient(scale);
+  scale = scale.cwiseMax(calcPupilScale(lack, typical));
+  IntervalReach reach = std::move(training.held_out.reach);
+  training.held_out = map.convertTargets(targets.predictions, scale);
+  training.held_out.reach = std::move(reach);
 }
 
 /// Takes what a fit gives into the map.
@@ -247,8 +254,7 @@ NetworkMapTraining trainNetworkMap(const NetworkTask& task, const NetworkSimulat
           ? crossValidate(set, task, control)
           : predictHeldOut(set, map.members, parts.held_out, countDraws(left, kColumnsOfMany), task.seed,
                            control.threads);
-  validateMap(held_out, nullptr, training);
-  warnOfShape(task.model.parameters, training);
+  validateMap(held_out, task, training);
   return training;
 }
 
@@ -265,9 +271,10 @@ NetworkMapTraining trainNetworkMap(const NetworkTask& task, const SurrogatePool&
   const Split parts = split(listAll(targets.cols()), targets.cols());
   setMembers(fitNetwork(set, parts, {task.spec, task.seed, 0}, control), training);
   const Index draws = countDraws(static_cast<Index>(parts.held_out.size()), kColumnsOfFew);
-  validateMap(predictHeldOut(set, map.members, parts.held_out, draws, task.seed, control.threads), &lack,
-              training);
-  warnOfShape(task.model.parameters, training);
+  const HeldOutTargets held_out =
+      predictHeldOut(set, map.members, parts.held_out, draws, task.seed, control.threads);
+  validateMap(held_out, task, training);
+  makeUpFor(lack, held_out, training);
   return training;
 }
 

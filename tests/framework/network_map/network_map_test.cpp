@@ -157,6 +157,19 @@ TEST(NetworkMap, LearnsFromASurrogateOfFewSimulations) {
   expectHonestAndNearTheLimit(oscillation, trained.map);
 }
 
+TEST(NetworkMap, MakesUpForWhatItsTeacherLacksWhoseShapeIsNotToBlame) {
+  const Oscillation oscillation;
+  SurrogateTraining teacher = trainTeacher(oscillation);
+  NetworkMapSpec spec = makeSpec(200);
+  spec.surrogate_samples = 5000;
+  teacher.lack.least_scale.setConstant(2.0);
+  teacher.lack.typical_stddev.setConstant(1.0);  // all of the network's variance is the teacher's
+  const NetworkMapTraining trained = trainOnPool(oscillation, teacher, spec, 2);
+  EXPECT_NEAR(trained.map.validation.stddev_scale.minCoeff(), 2.0, 1e-12);
+  EXPECT_NEAR(trained.map.validation.stddev_scale.maxCoeff(), 2.0, 1e-12);
+  EXPECT_TRUE(trained.warnings.empty()) << trained.warnings.front();
+}
+
 TEST(NetworkMap, OfFewSimulationsIsToldByOthersThatItIsOverconfident) {
   const NetworkMapTraining trained = trainOnSimulations(Oscillation(), 60, 300);
   EXPECT_GT(trained.map.validation.stddev_scale.maxCoeff(), 1.1);
