@@ -44,11 +44,13 @@ double calcConformalQuantile(const Eigen::VectorXd& sorted, double probability) 
 }
 
 Reach calcReach(const Eigen::VectorXd& depths, double samples) {
-  if (!isMissed(depths, 0.5, kNormal50, samples) && !isMissed(depths, 0.95, kNormal95, samples)) {
-    return {};
-  }
   Eigen::VectorXd sorted = depths;
   std::sort(sorted.begin(), sorted.end());
+  const double stretch = calcConformalQuantile(sorted, 0.68) / kNormal68;
+  if (!isMissed(sorted, 0.5, stretch * kNormal50, samples) &&
+      !isMissed(sorted, 0.95, stretch * kNormal95, samples)) {
+    return {};
+  }
   return {calcConformalQuantile(sorted, 0.5), calcConformalQuantile(sorted, 0.95)};
 }
 

@@ -5,8 +5,9 @@
 
 namespace twinmap {
 
-/// The 50 % and 95 % intervals of a normal distribution are mean +- so many standard deviations.
+/// The 50 %, 68 % and 95 % intervals of a normal distribution are mean +- so many standard deviations.
 constexpr double kNormal50 = 0.674489750196082;
+constexpr double kNormal68 = 0.994457883209753;
 constexpr double kNormal95 = 1.959963984540054;
 
 /// How many standard deviations from the mean a parameter's intervals reach.
@@ -46,8 +47,10 @@ double calcConformalQuantile(const Eigen::VectorXd& sorted, double probability);
 
 /// How far intervals of a parameter must reach to hold what they say, given how many standard deviations the
 /// truths of held-out answers lie from their means: conformal quantiles. Those of the normal distribution
-/// unless its intervals hold more or fewer than they say by more than two standard errors of `samples`
-/// independent answers, of which there may be fewer than depths: else quantiles only add chance.
+/// unless the errors are of another shape: unless its intervals, stretched so that those of 68 % hold what
+/// they say, still hold more or fewer by more than two standard errors of `samples` independent answers, of
+/// which there may be fewer than depths. Else quantiles only add chance; how wide errors are is told by the
+/// factor of standard deviations, with its own caution.
 Reach calcReach(const Eigen::VectorXd& depths, double samples);
 
 }  // namespace twinmap

@@ -8,8 +8,6 @@
 namespace twinmap {
 namespace {
 
-constexpr double kNormal68 = 0.994457883209753;
-
 /// Of a binomial rank, as a share of so many.
 double calcRankError(double level, Eigen::Index count) {
   return std::sqrt(level * (1.0 - level) / static_cast<double>(count));

@@ -50,6 +50,12 @@ TEST(IntervalReach, OfNormalErrorsIsThatOfNormalDistributions) {
   EXPECT_EQ(reach.of95, kNormal95);
 }
 
+TEST(IntervalReach, IsNotForErrorsThatAreSmallerOrLarger) {
+  for (const double factor : {0.8, 1.3}) {
+    EXPECT_EQ(calcReach(factor * makeNormalDepths(1000), 1000.0).of95, kNormal95);
+  }
+}
+
 TEST(IntervalReach, OfOtherErrorsHoldsWhatItSays) {
   const Reach reach = calcReach(makeUniformDepths(1001), 1001.0);
   EXPECT_NEAR(reach.of50, 0.50 * std::sqrt(3.0), 2e-3);
