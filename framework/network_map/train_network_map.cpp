@@ -270,7 +270,7 @@ NetworkMapTraining trainNetworkMap(const NetworkTask& task, const SurrogatePool&
   const NetworkSet set{samples, targets};
   const Split parts = split(listAll(targets.cols()), targets.cols());
   setMembers(fitNetwork(set, parts, {task.spec, task.seed, 0}, control), training);
-  const Index draws = countDraws(static_cast<Index>(parts.held_out.size()), kColumnsOfFew);
+  const Index draws = countDraws(static_cast<Index>(parts.held_out.size()), kColumnsOfMany);
   const HeldOutTargets held_out =
       predictHeldOut(set, map.members, parts.held_out, draws, task.seed, control.threads);
   validateMap(held_out, task, training);
