@@ -44,10 +44,10 @@ void trainStep(benchmark::State& state) {
 }
 BENCHMARK(trainStep)->Args({64, 20})->Args({192, 60})->Args({256, 100})->Unit(benchmark::kMillisecond);
 
-/// Mean, stddev and covariance of 4 parameters from features: their projection, then the network.
+/// Mean, stddev and covariance of parameters from features: their projection, then the network.
 void infer(benchmark::State& state) {
-  const Index features = 200, inputs = state.range(0);
-  const Predictor predictor(makeSized(inputs, 4, 64));
+  const Index features = 200, inputs = state.range(0), targets = state.range(1);
+  const Predictor predictor(makeSized(inputs, targets, 64));
   Predictor::Workspace workspace(predictor);
   const MatrixXd projection = makeNumbers(inputs, features);
   const VectorXd center = makeNumbers(features, 1), measured = makeNumbers(features, 1);
@@ -60,7 +60,7 @@ void infer(benchmark::State& state) {
     benchmark::ClobberMemory();
   }
 }
-BENCHMARK(infer)->Arg(8)->Arg(16)->Arg(32);
+BENCHMARK(infer)->Args({8, 4})->Args({16, 4})->Args({32, 4})->Args({30, 8});
 
 }  // namespace
 }  // namespace twinmap::network
