@@ -99,13 +99,8 @@ std::string findDifferenceOfSets(const ComparedRun& a, const ComparedRun& b,
 }
 
 SampleTerms calcTerms(const ComparedRun& run, Index p) {
-  const StoredPredictions& test = run.test;
-  const ArrayXd unknown = ArrayXd::Constant(test.truth.cols(), std::nan(""));
-  return calcSampleTerms(
-      run.parameters[static_cast<std::size_t>(p)],
-      {test.truth.row(p), test.predictions.mean.row(p), test.predictions.stddev.row(p),
-       test.limit_stddev.rows() == 0 ? unknown : test.limit_stddev.row(p).array(),
-       takeMarginals(test.predictions.mixtures, p), takeReaches(test.predictions.reach, p)});
+  return calcSampleTerms(run.parameters[static_cast<std::size_t>(p)],
+                         takeParameter(run.test.truth, run.test.predictions, run.test.limit_stddev, p));
 }
 
 VectorXd calcFigures(const SampleTerms& of) {

@@ -1,14 +1,11 @@
 #include "framework/evaluation/metrics.hpp"
 
-#include <cmath>
-
 #include "framework/evaluation/jackknife.hpp"
 #include "framework/evaluation/sample_terms.hpp"
 
 namespace twinmap {
 namespace {
 
-using Eigen::ArrayXd;
 using Eigen::Index;
 using Eigen::VectorXd;
 
@@ -35,16 +32,10 @@ ParameterMetrics calcMetrics(const ParameterSpec& parameter, const ParameterSamp
 std::vector<ParameterMetrics> calcMetrics(const std::vector<ParameterSpec>& parameters,
                                           const Eigen::MatrixXd& truth, const Predictions& predictions,
                                           const Eigen::MatrixXd& limit_stddev, int draws) {
-  const ArrayXd unknown = ArrayXd::Constant(truth.cols(), std::nan(""));
   std::vector<ParameterMetrics> metrics;
   for (std::size_t p = 0; p < parameters.size(); ++p) {
-    const auto row = static_cast<Index>(p);
-    metrics.push_back(
-        calcMetrics(parameters[p],
-                    {truth.row(row), predictions.mean.row(row), predictions.stddev.row(row),
-                     limit_stddev.size() == 0 ? unknown : limit_stddev.row(row).array(),
-                     takeMarginals(predictions.mixtures, row), takeReaches(predictions.reach, row)},
-                    draws));
+    metrics.push_back(calcMetrics(
+        parameters[p], takeParameter(truth, predictions, limit_stddev, static_cast<Index>(p)), draws));
   }
   return metrics;
 }

@@ -114,6 +114,17 @@ VectorXd toVector(const ParameterFigures& figures) {
 
 }  // namespace
 
+ParameterSamples takeParameter(const Eigen::MatrixXd& truth, const Predictions& predictions,
+                               const Eigen::MatrixXd& limit_stddev, Index row) {
+  const ArrayXd unknown = ArrayXd::Constant(truth.cols(), std::nan(""));
+  return {truth.row(row),
+          predictions.mean.row(row),
+          predictions.stddev.row(row),
+          limit_stddev.size() == 0 ? unknown : limit_stddev.row(row).array(),
+          takeMarginals(predictions.mixtures, row),
+          takeReaches(predictions.reach, row)};
+}
+
 SampleTerms calcSampleTerms(const ParameterSpec& parameter, const ParameterSamples& samples) {
   const ArrayXd scale = calcScale(parameter, samples.truth);
   const ArrayXd error = (samples.mean - samples.truth) / scale;

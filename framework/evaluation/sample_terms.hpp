@@ -14,6 +14,10 @@ struct ParameterSamples {
   std::vector<Reach> reaches{};  ///< where intervals are not those of the distributions; else empty
 };
 
+/// Those of one row of p x n each; limit_stddev may be empty.
+ParameterSamples takeParameter(const Eigen::MatrixXd& truth, const Predictions& predictions,
+                               const Eigen::MatrixXd& limit_stddev, Eigen::Index row);
+
 /// What each sample adds to the figures, which depend on the samples through the means of these terms alone.
 /// Errors and z are stored less their means, so that no digits of the standard deviations are lost.
 struct SampleTerms {

@@ -54,9 +54,7 @@ Answers makeAnswers(const Predictions& map, const MatrixXd& residual_correlation
     answers.predictions.mean.col(i) = one.point.head(p);
     answers.predictions.stddev.col(i) = one.stddev.head(p);
     answers.correlations[column] = calcCorrelation(one.covariance.topLeftCorner(p, p));
-    for (Index k = 0; k < p && map.reach.isGiven(); ++k) {
-      answers.predictions.reach.set(k, i, {});
-    }
+    answers.predictions.reach.setNormal(i);
     if (!map.mixtures.empty()) {
       answers.predictions.mixtures[column] = {
           VectorXd::Ones(1), one.point.head(p), one.stddev.head(p), {answers.correlations[column]}};

@@ -24,9 +24,7 @@ struct DetectableChange {
 /// parameters take up what they can of noise and change, linearly. Constants that are
 /// expressions or zero, and those that change no feature, are left out. Test samples whose derivatives cannot
 /// be simulated, too; empty if all are. Deterministic.
-/// Cost: 10 simulations with derivatives along the unknown parameters and the constants, and as many points
-/// fewer, at least one, as differences of simulations would cost more than a fifth of the run's samples; then
-/// some 30 ms for each change.
+/// Cost: that of simulateNeighbourhoods(), then some 30 ms for each change.
 std::vector<DetectableChange> calcTrustPower(const PowerContext& context);
 
 /// trust_power.csv (docs/file-formats.md).

@@ -90,7 +90,7 @@ void addWindows(const ExportedModel& model, CTables& tables, CSizes& sizes) {
     terms = std::max(terms, parts.coefficients.rows());
   }
   tables.addStructs("window", "windows", entries, "Windows of scores.");
-  tables.addWide("rough_weights", (1.0 + forward.error_variance.array()).rsqrt().matrix(),
+  tables.addWide("rough_weights", calcRoughWeights(forward).matrix(),
                  "1 / standard deviation of each score's noise and mean error.");
   tables.addWide("leading_weights", leading.weights.matrix(),
                  "The same of the scores that say most, else 0.");

@@ -6,11 +6,11 @@ namespace twinmap {
 
 namespace {
 
-void setIntervals(const IntervalReach& reach, Answer& answer) {
+void setIntervals(Answer& answer) {
   answer.lower95 = answer.upper95 = answer.mean;
   for (Eigen::Index p = 0; p < answer.mean.size(); ++p) {
-    answer.lower95[p] -= reach.get(p).of95 * answer.stddev[p];
-    answer.upper95[p] += reach.get(p).of95 * answer.stddev[p];
+    answer.lower95[p] -= answer.reach.get(p).of95 * answer.stddev[p];
+    answer.upper95[p] += answer.reach.get(p).of95 * answer.stddev[p];
   }
 }
 
@@ -18,10 +18,10 @@ void setIntervals(const IntervalReach& reach, Answer& answer) {
 
 Answer makeMapAnswer(const Inference& inference) {
   Answer answer{inference.mean, inference.stddev, false, inference.mixture};
-  setIntervals(inference.reach, answer);
+  answer.reach = inference.reach;
+  setIntervals(answer);
   for (Eigen::Index p = 0; p < answer.mixture.means.rows(); ++p) {
-    answer.intervals50.push_back(findWithin(takeMarginal(answer.mixture, p), inference.reach.get(p).of50));
-    answer.intervals95.push_back(findWithin(takeMarginal(answer.mixture, p), inference.reach.get(p).of95));
+    answer.intervals95.push_back(findWithin(takeMarginal(answer.mixture, p), answer.reach.get(p).of95));
     answer.lower95[p] = answer.intervals95.back().front().first;
     answer.upper95[p] = answer.intervals95.back().back().second;
   }
@@ -34,7 +34,7 @@ Answer chooseAnswer(const InferredMeasurement& inferred) {
   }
   const Eigen::Index p = inferred.inference.mean.size();
   Answer answer{inferred.refined->point.head(p), inferred.refined->stddev.head(p), true};
-  setIntervals({}, answer);
+  setIntervals(answer);
   return answer;
 }
 

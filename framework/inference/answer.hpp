@@ -9,11 +9,12 @@ namespace twinmap {
 
 /// What is believed of a measurement.
 struct Answer {
-  Eigen::VectorXd mean, stddev;                         ///< p
-  bool refined = false;                                 ///< on the simulator; else the map's
-  Mixture mixture{};                                    ///< where it is one, whose mean and stddev are above
-  Eigen::VectorXd lower95{}, upper95{};                 ///< p: of a mixture the ends of its smallest set
-  std::vector<Intervals> intervals50{}, intervals95{};  ///< p, of a mixture: its smallest sets
+  Eigen::VectorXd mean, stddev;          ///< p
+  bool refined = false;                  ///< on the simulator; else the map's
+  Mixture mixture{};                     ///< where it is one, whose mean and stddev are above
+  Eigen::VectorXd lower95{}, upper95{};  ///< p: of a mixture the ends of its smallest set
+  std::vector<Intervals> intervals95{};  ///< p, of a mixture: its smallest sets
+  IntervalReach reach{};                 ///< of other sets; of refined answers not given
 };
 
 /// The map's.

@@ -40,12 +40,14 @@ Json makeIntervals(const Intervals& intervals) {
 Json makeEstimatesJson(const Answer& answer, const std::vector<ParameterSpec>& parameters) {
   Json estimates = makeEstimatesJson(answer.mean, answer.stddev, parameters);
   for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const auto i = static_cast<Eigen::Index>(p);
     Json& estimate = estimates[parameters[p].name.text];
-    estimate["lower"] = answer.lower95[static_cast<Eigen::Index>(p)];
-    estimate["upper"] = answer.upper95[static_cast<Eigen::Index>(p)];
+    estimate["lower"] = answer.lower95[i];
+    estimate["upper"] = answer.upper95[i];
     if (answer.mixture.isGiven()) {
       estimate["intervals95"] = makeIntervals(answer.intervals95[p]);
-      estimate["intervals50"] = makeIntervals(answer.intervals50[p]);
+      estimate["intervals50"] =
+          makeIntervals(findWithin(takeMarginal(answer.mixture, i), answer.reach.get(i).of50));
     }
   }
   return estimates;

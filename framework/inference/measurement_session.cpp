@@ -66,7 +66,7 @@ InferredMeasurement MeasurementSession::infer(const Eigen::VectorXd& features, c
 }
 
 Eigen::MatrixXd calcAnswerCovariance(const Inferrer& inferrer, const InferredMeasurement& inferred) {
-  const Eigen::VectorXd stddev = chooseAnswer(inferred).stddev;
+  const Eigen::VectorXd& stddev = inferred.inference.stddev;
   if (inferred.refined && inferred.refined->isAccepted()) {
     const Eigen::MatrixXd covariance =
         inferred.refined->covariance.topLeftCorner(stddev.size(), stddev.size());

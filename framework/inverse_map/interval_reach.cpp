@@ -10,7 +10,7 @@ namespace {
 bool isMissed(const Eigen::VectorXd& depths, double probability, double reach, double samples) {
   constexpr double kErrors = 2.0;
   const double held = (depths.array() < reach).cast<double>().mean();
-  return std::abs(held - probability) > kErrors * std::sqrt(probability * (1.0 - probability) / samples);
+  return std::abs(held - probability) > kErrors * calcShareError(probability, samples);
 }
 
 }  // namespace
@@ -35,6 +35,10 @@ std::vector<Reach> takeReaches(const IntervalReach& reach, Eigen::Index paramete
     reaches.push_back(reach.get(parameter, i));
   }
   return reaches;
+}
+
+double calcShareError(double probability, double samples) {
+  return std::sqrt(probability * (1.0 - probability) / samples);
 }
 
 double calcConformalQuantile(const Eigen::VectorXd& sorted, double probability) {

@@ -32,6 +32,13 @@ struct IntervalReach {
     of50(parameter, answer) = reach.of50;
     of95(parameter, answer) = reach.of95;
   }
+  /// Of an answer that is a normal distribution among those that are not.
+  void setNormal(Eigen::Index answer) {
+    if (isGiven()) {
+      of50.col(answer).setConstant(kNormal50);
+      of95.col(answer).setConstant(kNormal95);
+    }
+  }
 };
 
 /// A map's for each of so many answers.
@@ -39,6 +46,9 @@ IntervalReach replicate(const IntervalReach& reach, Eigen::Index answers);
 
 /// A parameter's in each answer; empty where none is given.
 std::vector<Reach> takeReaches(const IntervalReach& reach, Eigen::Index parameter);
+
+/// The standard error of a share that so many independent samples tell, where it ought to be `probability`.
+double calcShareError(double probability, double samples);
 
 /// What a further value is below with this probability, given n others in ascending order: the ceil(p (n +
 /// 1))-th of them, or the last (split conformal prediction: Lei, G'Sell, Rinaldo, Tibshirani and Wasserman,

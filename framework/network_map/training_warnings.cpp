@@ -65,8 +65,7 @@ void warnOfShape(const std::vector<ParameterSpec>& parameters, NetworkMapTrainin
     const Eigen::ArrayXd depths = calcDepths(training.held_out, training.held_out_truth, p);
     for (const auto& [probability, quantile, small] : kLevels) {
       const double share = (depths < quantile).cast<double>().mean();
-      const double error = std::sqrt(probability * (1.0 - probability) / simulations);
-      if (std::abs(share - probability) > small + 2.0 * error) {
+      if (std::abs(share - probability) > small + 2.0 * calcShareError(probability, simulations)) {
         training.warnings.push_back(fmt::format(
             "{}: {:.0f} % intervals of the network would hold {:.0f} % of the samples held out, so that its "
             "answers are not {}{}",

@@ -8,15 +8,11 @@
 namespace twinmap {
 namespace {
 
-/// Of a binomial rank, as a share of so many.
-double calcRankError(double level, Eigen::Index count) {
-  return std::sqrt(level * (1.0 - level) / static_cast<double>(count));
-}
-
 /// A quantile over that of the normal distribution; of its confidence limit so many standard errors of the
 /// rank above it.
 double calcQuantileScale(const Eigen::VectorXd& sorted, double level, double normal, double errors_above) {
-  return calcConformalQuantile(sorted, level + errors_above * calcRankError(level, sorted.size())) / normal;
+  const double error = calcShareError(level, static_cast<double>(sorted.size()));
+  return calcConformalQuantile(sorted, level + errors_above * error) / normal;
 }
 
 double calcMiddleScale(const Eigen::VectorXd& sorted, double errors_above) {

@@ -10,9 +10,13 @@ using Eigen::ArrayXd;
 using Eigen::Index;
 using Eigen::VectorXd;
 
+ArrayXd calcRoughWeights(const ForwardSurrogate& surrogate) {
+  return (1.0 + surrogate.error_variance.array()).rsqrt();
+}
+
 std::vector<Index> rankSimulations(const ForwardSurrogate& surrogate,
                                    const Eigen::Ref<const VectorXd>& scores) {
-  const ArrayXd weights = (1.0 + surrogate.error_variance.array()).rsqrt();
+  const ArrayXd weights = calcRoughWeights(surrogate);
   const VectorXd misfit =
       ((surrogate.scores.colwise() - scores).array().colwise() * weights).matrix().colwise().squaredNorm();
   std::vector<Index> order(static_cast<std::size_t>(misfit.size()));
@@ -23,7 +27,7 @@ std::vector<Index> rankSimulations(const ForwardSurrogate& surrogate,
 
 LeadingScores findLeadingScores(const ForwardSurrogate& surrogate, Index unknown) {
   constexpr Index kScoresPerUnknown = 10;
-  const ArrayXd weights = (1.0 + surrogate.error_variance.array()).rsqrt();
+  const ArrayXd weights = calcRoughWeights(surrogate);
   const ArrayXd said = surrogate.scores.rowwise().squaredNorm().array() * weights.square();
   std::vector<double> order(said.data(), said.data() + said.size());
   const Index kept = std::min<Index>(said.size(), kScoresPerUnknown * unknown);

@@ -7,6 +7,9 @@
 
 namespace twinmap {
 
+/// 1 / standard deviation of each score's noise and mean error (r).
+Eigen::ArrayXd calcRoughWeights(const ForwardSurrogate& surrogate);
+
 /// The training simulations in the order of how similar their scores are to those given (r): by the squares
 /// of the differences over 1 + error variance.
 std::vector<Eigen::Index> rankSimulations(const ForwardSurrogate& surrogate,

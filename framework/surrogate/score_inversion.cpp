@@ -62,7 +62,7 @@ ScoreInversion::ScoreInversion(const ForwardSurrogate& surrogate, Index unknown)
       jacobian_(MatrixXd::Zero(surrogate.getScoreCount(), unknown)),
       normal_(unknown, unknown),
       small_(unknown, unknown) {
-  rough_.weights = (1.0 + surrogate.error_variance.array()).rsqrt();
+  rough_.weights = calcRoughWeights(surrogate);
   LeadingScores leading = findLeadingScores(surrogate, unknown);
   leading_.weights = std::move(leading.weights);
   leading_.counts = std::move(leading.counts);

@@ -58,7 +58,8 @@ TEST(Answer, OfAMixtureHasTheSmallestSetsOfThatReach) {
   inferred.inference.reach = {Eigen::Vector2d(0.8, kNormal50), Eigen::Vector2d(1.6, kNormal95)};
   const Answer answer = makeMapAnswer(inferred.inference);
   EXPECT_NEAR(answer.lower95[0], 1.0 - 1.6 * 0.2, 1e-9);
-  EXPECT_NEAR(answer.intervals50[0].front().second, 1.0 + 0.8 * 0.2, 1e-9);
+  const Intervals of50 = findWithin(takeMarginal(answer.mixture, 0), answer.reach.get(0).of50);
+  EXPECT_NEAR(of50.front().second, 1.0 + 0.8 * 0.2, 1e-9);
 }
 
 TEST(Answer, OfAMapFarAboveWhatTheMeasurementAllowsIsMapLimited) {
