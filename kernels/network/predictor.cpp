@@ -1,7 +1,7 @@
 #include "kernels/network/predictor.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "kernels/network/density.hpp"
@@ -25,28 +25,32 @@ void scaleComponents(const VectorXd& scale, Predictor::Workspace& workspace) {
   }
 }
 
+/// Rows of zeros below: a product of whole packets takes less time than one with a rest.
+Layer padRows(const Layer& layer) {
+  constexpr Index kPacket = 8;  // numbers of the widest instructions
+  const Index rows = layer.weights.rows(), padded = (rows + kPacket - 1) / kPacket * kPacket;
+  Layer result{MatrixXd::Zero(padded, layer.weights.cols()), VectorXd::Zero(padded)};
+  result.weights.topRows(rows) = layer.weights;
+  result.biases.head(rows) = layer.biases;
+  return result;
+}
+
 }  // namespace
 
-Predictor::Predictor(Network network) : network_(std::move(network)) {
-  const Layer& layer = network_.layers.front();
-  const Index units = layer.weights.rows(), p = network_.countTargets();
-  first_ = {MatrixXd(units + p, network_.countInputs()), VectorXd(units + p)};
-  first_.weights << layer.weights, network_.skip.leftCols(network_.countInputs());
-  first_.biases << layer.biases, network_.offset;
-  of_products_ = network_.skip.rightCols(network_.products.count());
-  head_ = network_.layers.back().weights;
+Predictor::Predictor(Network network) : network_(std::move(network)), skip_(network_.skip) {
+  std::transform(network_.layers.begin(), network_.layers.end(), std::back_inserter(layers_), padRows);
 }
 
 Predictor::Workspace::Workspace(const Predictor& predictor) {
   const Network& network = predictor.network_;
   const Index p = network.countTargets();
-  Index widest = predictor.first_.biases.size();
-  for (const Layer& layer : network.layers) {
+  Index widest = network.countInputs();
+  for (const Layer& layer : predictor.layers_) {
     widest = std::max(widest, layer.biases.size());
   }
+  values.resize(widest);
   sums.resize(widest);
-  other.resize(widest);
-  products.resize(network.products.count());
+  terms.resize(network.skip.cols());
   standard.resize(p);
   mean.resize(p);
   stddev.resize(p);
@@ -77,32 +81,27 @@ void Predictor::mix(const Ref<const VectorXd>& head, Workspace& workspace) const
   }
 }
 
-/// The next layer's sums in place of the last one's; the latter's activations are left in `other`.
-template <class Weights>
-void Predictor::propagate(const Weights& weights, const VectorXd& biases, Workspace& workspace) {
-  auto sums = workspace.sums.head(weights.cols()).array();
-  sums /= 1.0 + (-sums).exp();
-  auto next = workspace.other.head(biases.size());
-  next = biases;
-  next.noalias() += weights * workspace.sums.head(weights.cols());
-  workspace.sums.swap(workspace.other);
+/// Leaves the head in the workspace's sums, and what the last hidden layer gave in its values.
+void Predictor::propagate(const Ref<const VectorXd>& inputs, Workspace& workspace) const {
+  workspace.values.head(inputs.size()) = inputs;
+  for (const Layer& layer : layers_) {
+    if (&layer != &layers_.front()) {
+      const auto sums = workspace.sums.head(layer.weights.cols()).array();
+      workspace.values.head(sums.size()) = sums / (1.0 + (-sums).exp());
+    }
+    auto sums = workspace.sums.head(layer.biases.size());
+    sums = layer.biases;
+    sums.noalias() += layer.weights * workspace.values.head(layer.weights.cols());
+  }
 }
 
 void Predictor::predict(const Ref<const VectorXd>& inputs, Workspace& workspace) const {
-  const Index p = network_.countTargets();
-  auto first = workspace.sums.head(first_.biases.size());
-  first = first_.biases;
-  first.noalias() += first_.weights * inputs;
-  workspace.mean = first.tail(p);
-  if (workspace.products.size() > 0) {
-    network_.products.calculate(inputs, workspace.products);
-    workspace.mean.noalias() += of_products_ * workspace.products;
-  }
-  for (std::size_t i = 1; i + 1 < network_.layers.size(); ++i) {
-    propagate(network_.layers[i].weights, network_.layers[i].biases, workspace);
-  }
-  propagate(head_, network_.layers.back().biases, workspace);
-  const auto head = workspace.sums.head(head_.rows());
+  workspace.terms.head(inputs.size()) = inputs;
+  network_.products.calculate(inputs, workspace.terms.tail(network_.products.count()));
+  workspace.mean = network_.offset;
+  workspace.mean.noalias() += skip_ * workspace.terms;
+  propagate(inputs, workspace);
+  const auto head = workspace.sums.head(network_.layers.back().biases.size());
   if (workspace.weights.size() == 1) {
     calcMoments(head, workspace.standard, workspace.covariance, workspace.inverse);
   } else {

@@ -4,8 +4,8 @@
 
 namespace twinmap::network {
 
-/// A trained network made ready for one measurement after another: its first layer and the linear part of its
-/// regression, which share the inputs, are one matrix; matrices of few rows lie row by row. Immutable.
+/// A trained network made ready for one measurement after another: its matrices lie as a product reads them
+/// in the least time. Immutable. Most of the time goes into reading them from beyond the first cache.
 class Predictor {
  public:
   explicit Predictor(Network network);
@@ -22,11 +22,12 @@ class Predictor {
     std::vector<MatrixXd> covariances;  ///< p x p each
 
     /// What the last hidden layer gave (h), of whose units there are so many.
-    auto getHidden(Index units) const { return other.head(units); }
+    auto getHidden(Index units) const { return values.head(units); }
 
    private:
     friend class Predictor;
-    VectorXd sums, other, standard, products;
+    VectorXd values, sums;  // into a layer, and out of it
+    VectorXd terms, standard;
     MatrixXd inverse;
   };
 
@@ -38,16 +39,13 @@ class Predictor {
   void predict(const Ref<const VectorXd>& inputs, Workspace& workspace) const;
 
  private:
-  template <class Weights>
-  static void propagate(const Weights& weights, const VectorXd& biases, Workspace& workspace);
+  void propagate(const Ref<const VectorXd>& inputs, Workspace& workspace) const;
   void mix(const Ref<const VectorXd>& head, Workspace& workspace) const;
 
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
   Network network_;
-  Layer first_;  // the first layer's sums, then the linear part of the regression
-  // along rows, as these have few: an inference takes a tenth less
-  RowMajor of_products_, head_;
+  std::vector<Layer> layers_;  // with rows of zeros below
+  // along rows, as these are few
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> skip_;
 };
 
 }  // namespace twinmap::network
