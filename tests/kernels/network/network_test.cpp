@@ -32,12 +32,20 @@ TEST(HeadDensity, IsThatOfTheNormalDistributionWithItsMoments) {
   const double expected = 0.5 * error.dot(lower * (lower.transpose() * error)) -
                           lower.diagonal().array().log().sum() + 0.5 * p * std::log(2.0 * M_PI);
   EXPECT_NEAR(calcLoss(head, target), expected, 1e-13);
+}
 
-  VectorXd mean(p);
-  MatrixXd covariance(p, p), buffer(p, p);
-  calcMoments(head, mean, covariance, buffer);
-  EXPECT_EQ(mean, head.head(p));
-  EXPECT_LT((covariance * (lower * lower.transpose()) - MatrixXd::Identity(p, p)).norm(), 1e-12);
+TEST(HeadDensity, HasTheMomentsOfItsPrecisionOfAnyNumberOfTargets) {
+  for (Index p = 1; p <= 10; ++p) {
+    const VectorXd head = makeWave(countHeadOutputs(p), 1, 5);
+    const MatrixXd lower = makeLower(head, p);
+    VectorXd mean(p);
+    MatrixXd covariance(p, p), buffer(p, p);
+    calcMoments(head, mean, covariance, buffer);
+    EXPECT_EQ(mean, head.head(p));
+    EXPECT_EQ(covariance, MatrixXd(covariance.transpose()));
+    const MatrixXd expected = linalg::solveCholesky(lower, MatrixXd::Identity(p, p));
+    EXPECT_LT((covariance - expected).norm(), 1e-12 * expected.norm()) << p;
+  }
 }
 
 TEST(HeadDensity, GrowsLinearlyBeyondTheLargestResidual) {
