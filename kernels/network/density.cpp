@@ -182,6 +182,8 @@ void calcMoments(const Ref<const VectorXd>& head, Ref<VectorXd> mean, Ref<Matrix
     calcCovariance(head, small, covariance);
   } else {
     calcCovariance(head, inverse, covariance);
+    covariance.triangularView<Eigen::StrictlyLower>() =
+        covariance.transpose();  // the last rows round differently
   }
 }
 
