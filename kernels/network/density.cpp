@@ -121,6 +121,8 @@ void calcCovariance(const Ref<const VectorXd>& head, Square& inverse, Ref<Matrix
     inverse.row(i) *= std::exp(-head[p + i]);
   }
   covariance = inverse.lazyProduct(inverse.transpose()).topLeftCorner(p, p);
+  // packets of columns and what is left beside them round differently
+  covariance.triangularView<Eigen::StrictlyLower>() = covariance.transpose();
 }
 
 }  // namespace
@@ -182,8 +184,6 @@ void calcMoments(const Ref<const VectorXd>& head, Ref<VectorXd> mean, Ref<Matrix
     calcCovariance(head, small, covariance);
   } else {
     calcCovariance(head, inverse, covariance);
-    covariance.triangularView<Eigen::StrictlyLower>() =
-        covariance.transpose();  // the last rows round differently
   }
 }
 
