@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/linalg/paired_matrix.hpp"
 #include "kernels/network/predictor.hpp"
 #include "kernels/network/train.hpp"
 
@@ -47,21 +48,26 @@ BENCHMARK(trainStep)->Args({64, 20})->Args({192, 60})->Args({256, 100})->Unit(be
 /// Mean, stddev and covariance of parameters from features: their projection, then the network.
 void infer(benchmark::State& state) {
   const Index features = 200, inputs = state.range(0), targets = state.range(1);
-  const Predictor predictor(makeSized(inputs, targets, 64));
+  const Predictor predictor(makeSized(inputs, targets, static_cast<int>(state.range(2))));
   Predictor::Workspace workspace(predictor);
-  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> projection =
-      makeNumbers(inputs, features);  // as a map's online part holds it
+  const linalg::PairedMatrix projection(makeNumbers(inputs, features));
   const VectorXd center = makeNumbers(features, 1), measured = makeNumbers(features, 1);
   VectorXd centered(features), projected(inputs);
   for (auto _ : state) {
     centered = measured - center;
-    projected.noalias() = projection * centered;
+    projection.multiply(centered.data(), projected.data());
     predictor.predict(projected, workspace);
     benchmark::DoNotOptimize(workspace.covariance.data());
     benchmark::ClobberMemory();
   }
 }
-BENCHMARK(infer)->Args({8, 4})->Args({12, 4})->Args({16, 4})->Args({32, 4})->Args({30, 8});
+BENCHMARK(infer)
+    ->Args({8, 4, 64})
+    ->Args({12, 4, 64})
+    ->Args({16, 4, 64})
+    ->Args({32, 4, 64})
+    ->Args({30, 8, 64})
+    ->Args({30, 5, 192});
 
 }  // namespace
 }  // namespace twinmap::network

@@ -11,7 +11,8 @@
 namespace twinmap {
 
 /// What a network sees of a measurement: projection (features - center), of at most unit variance over the
-/// training samples, above the scaled known inputs.
+/// training samples, above the scaled known inputs. The projection's numbers are rounded as an online map's
+/// are (linalg::roundToHalves): less than the last digits of a sensor.
 struct NetworkInputs {
   Eigen::VectorXd center;      ///< d
   Eigen::MatrixXd projection;  ///< k x d

@@ -7,6 +7,7 @@
 #include "framework/features/scaling_steps.hpp"
 #include "framework/surrogate/run_tasks.hpp"
 #include "kernels/linalg/decompositions.hpp"
+#include "kernels/linalg/paired_matrix.hpp"
 
 namespace twinmap {
 
@@ -80,7 +81,7 @@ SurrogatePool makeSurrogatePool(const Surrogate& surrogate, Index n, std::uint64
   pool.points = (surrogate.half_width.asDiagonal() * normalised).colwise() + surrogate.center;
   const MatrixXd projection = scale.cwiseInverse().asDiagonal() * components;
   pool.center = forward.center;
-  pool.projection = projection * forward.projection;
+  pool.projection = linalg::roundToHalves(projection * forward.projection);
   pool.inputs = {stackRows(projection * scores.mean, normalised.bottomRows(known)),
                  linalg::calcCholesky(projection * projection.transpose()).lower, projection,
                  std::move(scores.stddev), error_factor};

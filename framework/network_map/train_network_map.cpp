@@ -13,6 +13,7 @@
 #include "framework/surrogate/folds.hpp"
 #include "framework/surrogate/run_tasks.hpp"
 #include "kernels/linalg/decompositions.hpp"
+#include "kernels/linalg/paired_matrix.hpp"
 
 namespace twinmap {
 
@@ -208,7 +209,7 @@ NetworkInputs fitInputs(const NetworkSimulations& simulations, const DrawnFeatur
   const CanonicalInputs canonical =
       calcCanonicalInputs(matrix * (drawn.features.colwise() - center), drawn.points);
   const VectorXd scale = canonical.correlations.cwiseMax(kLeastCorrelation).cwiseSqrt();
-  return {center, scale.asDiagonal() * canonical.projection * matrix, known};
+  return {center, linalg::roundToHalves(scale.asDiagonal() * canonical.projection * matrix), known};
 }
 
 std::unique_ptr<NoisySamples> makeSamples(const NetworkSimulations& simulations, const MatrixXd& known,

@@ -27,7 +27,7 @@ const Inference& OnlineNetwork::infer(const Eigen::Ref<const VectorXd>& features
   const NetworkInputs& inputs = map_->inputs;
   Inference& inference = workspace.inference;
   workspace.centered = features - inputs.center;
-  inference.inputs.head(projection_.rows()).noalias() = projection_ * workspace.centered;
+  projection_.multiply(workspace.centered.data(), inference.inputs.data());
   if (known.size() > 0) {
     inference.inputs.tail(known.size()) =
         (known - inputs.known.center).cwiseQuotient(inputs.known.half_width);

@@ -4,11 +4,13 @@
 
 #include "framework/network_map/network_map.hpp"
 #include "framework/online/inference.hpp"
+#include "kernels/linalg/paired_matrix.hpp"
 #include "kernels/network/ensemble.hpp"
 
 namespace twinmap {
 
-/// A network made ready for one measurement after another. Predictions are those of the map, up to rounding.
+/// A network made ready for one measurement after another. Predictions are those of the map, whose numbers
+/// are rounded already, up to rounding of sums.
 /// Immutable.
 class OnlineNetwork {
  public:
@@ -44,8 +46,7 @@ class OnlineNetwork {
   void setMixture(const network::Predictor::Workspace& predicted, Inference& inference) const;
 
   std::shared_ptr<const NetworkMap> map_;
-  // along rows, as these are few: in two thirds of the time
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> projection_;
+  linalg::PairedMatrix projection_;
   network::EnsemblePredictor predictor_;
 };
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "kernels/linalg/decompositions.hpp"
+#include "kernels/linalg/paired_matrix.hpp"
 
 namespace twinmap::network {
 namespace {
@@ -70,6 +71,13 @@ Network makeNetwork(const MatrixXd& inputs, const MatrixXd& targets, const Netwo
     for (Index i = 0; i < p; ++i) {
       network.layers.back().biases[getComponentRow(p, shape.components, c) + i] = normal(drawn++);
     }
+  }
+  return network;
+}
+
+Network roundWeights(Network network) {
+  for (Layer& layer : network.layers) {
+    layer.weights = linalg::roundToHalves(layer.weights);
   }
   return network;
 }

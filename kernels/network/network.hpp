@@ -69,6 +69,10 @@ struct Network {
   }
 };
 
+/// Weights of layers with 21 significant bits (linalg::roundToHalves), which a Predictor reads in half of the
+/// time: layers give the first digits of what the regression leaves, and that has all of its own.
+Network roundWeights(Network network);
+
 /// terms(x) of inputs (k x n), a column each.
 MatrixXd makeTerms(const Ref<const MatrixXd>& inputs, const Products& products);
 

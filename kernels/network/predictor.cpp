@@ -1,7 +1,6 @@
 #include "kernels/network/predictor.hpp"
 
 #include <algorithm>
-#include <iterator>
 #include <utility>
 
 #include "kernels/network/density.hpp"
@@ -25,27 +24,19 @@ void scaleComponents(const VectorXd& scale, Predictor::Workspace& workspace) {
   }
 }
 
-/// Rows of zeros below: a product of whole packets takes less time than one with a rest.
-Layer padRows(const Layer& layer) {
-  constexpr Index kPacket = 8;  // numbers of the widest instructions
-  const Index rows = layer.weights.rows(), padded = (rows + kPacket - 1) / kPacket * kPacket;
-  Layer result{MatrixXd::Zero(padded, layer.weights.cols()), VectorXd::Zero(padded)};
-  result.weights.topRows(rows) = layer.weights;
-  result.biases.head(rows) = layer.biases;
-  return result;
-}
-
 }  // namespace
 
 Predictor::Predictor(Network network) : network_(std::move(network)), skip_(network_.skip) {
-  std::transform(network_.layers.begin(), network_.layers.end(), std::back_inserter(layers_), padRows);
+  for (const Layer& layer : network_.layers) {
+    weights_.emplace_back(layer.weights);
+  }
 }
 
 Predictor::Workspace::Workspace(const Predictor& predictor) {
   const Network& network = predictor.network_;
   const Index p = network.countTargets();
   Index widest = network.countInputs();
-  for (const Layer& layer : predictor.layers_) {
+  for (const Layer& layer : network.layers) {
     widest = std::max(widest, layer.biases.size());
   }
   values.resize(widest);
@@ -84,14 +75,13 @@ void Predictor::mix(const Ref<const VectorXd>& head, Workspace& workspace) const
 /// Leaves the head in the workspace's sums, and what the last hidden layer gave in its values.
 void Predictor::propagate(const Ref<const VectorXd>& inputs, Workspace& workspace) const {
   workspace.values.head(inputs.size()) = inputs;
-  for (const Layer& layer : layers_) {
-    if (&layer != &layers_.front()) {
-      const auto sums = workspace.sums.head(layer.weights.cols()).array();
+  for (std::size_t k = 0; k < weights_.size(); ++k) {
+    if (k > 0) {
+      const auto sums = workspace.sums.head(weights_[k].cols()).array();
       workspace.values.head(sums.size()) = sums / (1.0 + (-sums).exp());
     }
-    auto sums = workspace.sums.head(layer.biases.size());
-    sums = layer.biases;
-    sums.noalias() += layer.weights * workspace.values.head(layer.weights.cols());
+    weights_[k].multiply(workspace.values.data(), workspace.sums.data());
+    workspace.sums.head(weights_[k].rows()) += network_.layers[k].biases;
   }
 }
 

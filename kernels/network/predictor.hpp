@@ -1,11 +1,13 @@
 #pragma once
 
+#include "kernels/linalg/paired_matrix.hpp"
 #include "kernels/network/network.hpp"
 
 namespace twinmap::network {
 
 /// A trained network made ready for one measurement after another: its matrices lie as a product reads them
-/// in the least time. Immutable. Most of the time goes into reading them from beyond the first cache.
+/// in the least time, as most of it goes into reading them from beyond the first cache. Immutable. Weights of
+/// layers are rounded (roundWeights).
 class Predictor {
  public:
   explicit Predictor(Network network);
@@ -43,7 +45,7 @@ class Predictor {
   void mix(const Ref<const VectorXd>& head, Workspace& workspace) const;
 
   Network network_;
-  std::vector<Layer> layers_;  // with rows of zeros below
+  std::vector<linalg::PairedMatrix> weights_;  // of the layers
   // along rows, as these are few
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> skip_;
 };

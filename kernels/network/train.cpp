@@ -183,7 +183,9 @@ double calcMeanLoss(const Network& network, const Samples& samples, int threads)
 
 NetworkTraining trainNetwork(Network initial, const BatchSource& source, const Samples& held_out,
                              const TrainingOptions& options) {
-  return Trainer(std::move(initial), source, held_out, options).run();
+  NetworkTraining training = Trainer(std::move(initial), source, held_out, options).run();
+  training.network = roundWeights(std::move(training.network));
+  return training;
 }
 
 }  // namespace twinmap::network

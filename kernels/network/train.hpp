@@ -31,7 +31,7 @@ struct TrainingOptions {
 
 /// How a training went.
 struct NetworkTraining {
-  Network network;                    ///< of the best check
+  Network network;                    ///< of the best check, weights rounded (roundWeights)
   std::vector<double> held_out_loss;  ///< mean a sample, of t's density, at each check, the first before all
   Index best_check = 0;
   int restarts = 0;  ///< times that a step was not finite: back to the best check, at half the rate

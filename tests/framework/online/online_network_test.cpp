@@ -4,6 +4,7 @@
 
 #include "framework/online/online_map.hpp"
 #include "kernels/linalg/decompositions.hpp"
+#include "kernels/linalg/paired_matrix.hpp"
 
 namespace twinmap {
 namespace {
@@ -13,8 +14,9 @@ using Eigen::VectorXd;
 
 NetworkMap makeExample() {
   NetworkMap map;
-  map.inputs = {
-      VectorXd::Random(5), MatrixXd::Random(2, 5), {VectorXd::Random(1), VectorXd::Constant(1, 2.0)}};
+  map.inputs = {VectorXd::Random(5),
+                linalg::roundToHalves(MatrixXd::Random(2, 5)),
+                {VectorXd::Random(1), VectorXd::Constant(1, 2.0)}};
   map.center = VectorXd::Random(2);
   map.half_width = VectorXd::Constant(2, 0.5);
   network::Network network;

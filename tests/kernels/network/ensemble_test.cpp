@@ -76,17 +76,17 @@ TEST(LastLayerOfANetwork, IsSeenAsItsLossSeesIt) {
 }
 
 TEST(LastLayerOfANetwork, AddsWhatItsSamplesLeaveOpen) {
+  const Network network = roundWeights(makeWaveNetwork());
   const MatrixXd inputs = makeInputs(), targets = makeTargets();
-  const LinearObservations observed = observeLastLayer(makeWaveNetwork(), inputs, targets);
-  const Member member = makeBayesian(makeWaveNetwork(), inputs, targets);
+  const LinearObservations observed = observeLastLayer(network, inputs, targets);
+  const Member member = makeBayesian(network, inputs, targets);
   const VectorXd measured = makeWave(kInputs, 1, 40);
   const EnsemblePredictor ensemble({member});
   EnsemblePredictor::Workspace workspace(ensemble);
   const Predictor::Workspace& answer = ensemble.predict(measured, workspace);
   // the precision by its definition, and the last hidden layer by observing the measurement
   const Index size = kTargets * observed.inputs.rows();
-  MatrixXd precision =
-      LastLayerEvidence(observed).maximise() * MatrixXd::Identity(size, size);
+  MatrixXd precision = LastLayerEvidence(observed).maximise() * MatrixXd::Identity(size, size);
   const auto makeDesign = [&](const VectorXd& f) {
     MatrixXd design(kTargets, size);
     for (Index k = 0; k < f.size(); ++k) {
@@ -98,13 +98,12 @@ TEST(LastLayerOfANetwork, AddsWhatItsSamplesLeaveOpen) {
     const MatrixXd design = makeDesign(observed.inputs.col(i));
     precision += design.transpose() * observed.precisions[std::size_t(i)] * design;
   }
-  const LinearObservations here =
-      observeLastLayer(makeWaveNetwork(), measured, VectorXd::Zero(kTargets));
+  const LinearObservations here = observeLastLayer(network, measured, VectorXd::Zero(kTargets));
   const MatrixXd design = makeDesign(here.inputs.col(0));
   const MatrixXd lower = linalg::calcCholesky(precision).lower;
   const VectorXd& scale = member.network.scale;
-  const MatrixXd open = scale.asDiagonal() * design * linalg::solveCholesky(lower, design.transpose()) *
-                        scale.asDiagonal();
+  const MatrixXd open =
+      scale.asDiagonal() * design * linalg::solveCholesky(lower, design.transpose()) * scale.asDiagonal();
   const Predictor::Workspace alone = predictAlone(member.network, measured);
   EXPECT_LT((answer.covariance - alone.covariance - open).norm(), 1e-8 * open.norm());
   EXPECT_EQ(answer.mean, alone.mean);

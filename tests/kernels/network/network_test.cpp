@@ -177,7 +177,7 @@ TEST(MakeNetwork, TakesProductsOfTheFirstInputs) {
 }
 
 TEST(NetworkPredictor, IsTheNetworkWithItsLayersWrittenOut) {
-  const Network network = makeWaveNetwork();
+  const Network network = roundWeights(makeWaveNetwork());
   const Predictor predictor(network);
   Predictor::Workspace workspace(predictor);
   const VectorXd input = makeWave(kInputs, 1, 33);
