@@ -42,6 +42,9 @@ std::string findReasonForSimulations(const NetworkContext& context) {
   if (getSpec(context).samples_from == NetworkSamples::kSurrogate) {
     return "";
   }
+  if (getSpec(context).bayesian == NetworkBayes::kHamiltonian) {
+    return "a Hamiltonian sampler draws weights given the simulations";
+  }
   if (!getSpec(context).mayLearnFromSurrogate(n)) {
     return fmt::format("a surrogate takes no more than {} of {} simulations",
                        NetworkMapSpec::kMostOfSurrogate, n);
