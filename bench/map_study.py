@@ -25,7 +25,7 @@ EXPERIMENTS = SIX + OTHERS
 SIZES = [100, 250, 1000, 4000, 10000, 100000]
 
 # Each map, for which numbers of simulations and which experiments: beyond them it takes tens of minutes, or is another one of
-# the list. Of more than 2000 simulations, or where a surrogate would be poor, a network learns from the simulations alone.
+# the list. Of more than 2000 simulations a network learns from the simulations alone.
 MAPS = [
     ("network", "network", SIZES, SIX),
     ("network", "network", [250, 4000, 10000], OTHERS),

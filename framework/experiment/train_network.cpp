@@ -13,6 +13,7 @@
 #include "framework/monitoring/stage_timer.hpp"
 #include "framework/network_map/train_network_map.hpp"
 #include "framework/spec/network_size.hpp"
+#include "framework/surrogate/honest_stddev.hpp"
 #include "framework/surrogate/train_surrogate.hpp"
 
 namespace twinmap {
@@ -21,8 +22,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr int kEnough = 1000;
-constexpr double kWorthwhileRatio = 1.3;
 constexpr double kMuchExcess = 1.1;  // beyond it a longer training is worth its minute
 
 const NetworkMapSpec& getSpec(const NetworkContext& context) {
@@ -52,32 +51,18 @@ std::string findReasonForSimulations(const NetworkContext& context) {
   return findSurrogateObstacle(context.experiment.model, n, context.samples.noise_covariance);
 }
 
-/// Why the simulations are the better teacher than a surrogate trained on them; empty if they are not.
-std::string findReasonAgainst(const Surrogate& surrogate, const NetworkContext& context) {
-  const double ratio = surrogate.validation.limit_ratio.maxCoeff();
-  const bool free_to_choose = getSpec(context).samples_from == NetworkSamples::kAutomatic;
-  if (!free_to_choose || countSimulations(context) < kEnough || ratio <= kWorthwhileRatio) {
-    return "";
-  }
-  return fmt::format("the surrogate promises {:.2f} of what measurements allow", ratio);
-}
-
 /// The surrogate to learn from, if there is to be one.
 std::optional<SurrogateMapTraining> findTeacher(const NetworkContext& context, StageNotes& notes) {
-  std::string reason = findReasonForSimulations(context);
-  std::optional<SurrogateMapTraining> teacher;
-  if (reason.empty()) {
-    teacher = trainSurrogateMap(context.experiment, context.sets, context.simulator, context.extractor,
-                                context.samples, context.control);
-    notes.append(teacher->notes);
-    reason = findReasonAgainst(teacher->surrogate, context);
-  }
+  const std::string reason = findReasonForSimulations(context);
   if (!reason.empty()) {
     logInfo(fmt::format("the network learns from the simulations: {}", reason));
     return std::nullopt;
   }
+  SurrogateMapTraining teacher = trainSurrogateMap(context.experiment, context.sets, context.simulator,
+                                                   context.extractor, context.samples, context.control);
+  notes.append(teacher.notes);
   logInfo(fmt::format("the network learns from a surrogate, which promises {:.2f} of what measurements allow",
-                      teacher->surrogate.validation.limit_ratio.maxCoeff()));
+                      teacher.surrogate.validation.limit_ratio.maxCoeff()));
   return teacher;
 }
 
@@ -101,9 +86,7 @@ void suggestSimulations(const Surrogate& teacher, const NetworkContext& context,
 
 /// The network's standard deviations over those of the surrogate that taught it (p), typically.
 Eigen::VectorXd calcExcess(const NetworkMapTraining& trained, const SurrogateMapTraining& teacher) {
-  return calcTypicalStddev(trained.held_out.stddev)
-      .cwiseQuotient(teacher.surrogate.validation.stddev_scale)
-      .cwiseQuotient(teacher.lack.typical_stddev);
+  return calcTypicalStddev(trained.held_out.stddev).cwiseQuotient(teacher.typical_stddev);
 }
 
 /// Tells where the network has not learnt all that the surrogate could teach it.
@@ -147,10 +130,9 @@ NetworkMapTraining trainOnSimulations(const NetworkContext& context, const Featu
                          {context.control.threads, context.control.abandon});
 }
 
-NetworkMapTraining teach(const NetworkContext& context, const SurrogatePool& pool, const StddevLack& lack,
-                         NetworkSize size) {
+NetworkMapTraining teach(const NetworkContext& context, const SurrogatePool& pool, NetworkSize size) {
   const NetworkMapSpec spec = completeSize(getSpec(context), size);
-  return trainNetworkMap({context.experiment.model, spec, context.experiment.seed}, pool, lack,
+  return trainNetworkMap({context.experiment.model, spec, context.experiment.seed}, pool,
                          {context.control.threads, context.control.abandon});
 }
 
@@ -160,7 +142,7 @@ NetworkMapTraining trainOnSurrogate(const NetworkContext& context, const Surroga
   const SurrogatePool pool =
       makeSurrogatePool(teacher.surrogate, getSpec(context).surrogate_samples, context.experiment.seed,
                         {context.control.threads, context.control.abandon});
-  NetworkMapTraining small = teach(context, pool, teacher.lack, NetworkSize::kSmall);
+  NetworkMapTraining small = teach(context, pool, NetworkSize::kSmall);
   const double excess = calcExcess(small, teacher).maxCoeff();
   if (excess <= kMuchExcess || hasSize(getSpec(context)) ||
       getSpec(context).bayesian != NetworkBayes::kNone) {
@@ -170,7 +152,7 @@ NetworkMapTraining trainOnSurrogate(const NetworkContext& context, const Surroga
       "the network learns from the surrogate for longer: its standard deviations are up to {:.1f} "
       "times the surrogate's",
       excess));
-  NetworkMapTraining longer = teach(context, pool, teacher.lack, NetworkSize::kMedium);
+  NetworkMapTraining longer = teach(context, pool, NetworkSize::kMedium);
   return calcExcess(longer, teacher).maxCoeff() < excess ? std::move(longer) : std::move(small);
 }
 

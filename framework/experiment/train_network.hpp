@@ -28,10 +28,9 @@ struct NetworkContext {
 };
 
 /// Trains the experiment's network. samples_from: automatic takes a surrogate, trained first, where it can be
-/// and the simulations are at most the 2000 that one takes, unless there are 1000 and it promises more than
-/// 1.3 of what the measurements allow; the log says which. A network whose standard deviations are more than
-/// 1.1 times those of the surrogate that taught it is trained again, for longer (NetworkSize). Throws Interrupted
-/// if it is stopped, std::runtime_error where the experiment does not fit it.
+/// and the simulations are at most the 2000 that one takes; the log says which. A network whose standard
+/// deviations are more than 1.1 times those of the surrogate that taught it is trained again, for longer
+/// (NetworkSize). Throws Interrupted if it is stopped, std::runtime_error where the experiment does not fit it.
 NetworkOutcome trainNetwork(const NetworkContext& context);
 
 }  // namespace twinmap

@@ -8,6 +8,7 @@
 #include "framework/sensitivity/feature_sensitivities.hpp"
 #include "framework/spec/parameter_box.hpp"
 #include "framework/surrogate/fit_forward.hpp"
+#include "framework/surrogate/honest_stddev.hpp"
 #include "framework/surrogate/train_surrogate.hpp"
 
 namespace twinmap {
@@ -72,7 +73,7 @@ SurrogateMapTraining trainSurrogateMap(const ExperimentSpec& experiment, const S
                                                       static_cast<int>(trained.gain.all),
                                                       trained.gain.error_ratio};
   training.surrogate = std::move(trained.surrogate);
-  training.lack = std::move(trained.lack);
+  training.typical_stddev = calcTypicalStddev(trained.held_out.stddev);
   return training;
 }
 

@@ -3,7 +3,6 @@
 #include "framework/experiment/prepare_data.hpp"
 #include "framework/monitoring/run_control.hpp"
 #include "framework/results/run_summary.hpp"
-#include "framework/surrogate/honest_stddev.hpp"
 #include "framework/surrogate/surrogate.hpp"
 
 namespace twinmap {
@@ -11,7 +10,7 @@ namespace twinmap {
 /// A trained surrogate and how that went.
 struct SurrogateMapTraining {
   Surrogate surrogate;
-  StddevLack lack;          ///< as of SurrogateTraining
+  Eigen::VectorXd typical_stddev;  ///< p: calcTypicalStddev() of what it infers, in the parameters' units
   TrainingSummary summary;  ///< its left-out samples are those of the cross-validation
   StageNotes notes;
 };

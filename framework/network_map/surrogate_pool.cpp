@@ -65,6 +65,17 @@ MatrixXd drawScores(const PooledScores& scores, const MatrixXd& error_factor, st
   return drawn;
 }
 
+/// Scores (r x n) of the simulations, changed by the error that the processes make where each is left out.
+MatrixXd calcLeftOutScores(const ForwardSurrogate& forward) {
+  MatrixXd scores = forward.scores;
+  Index first = 0;
+  for (const gp::SharedProcess& process : forward.windows) {
+    scores.middleRows(first, process.getFunctionCount()) += process.getLeftOut().residual.transpose();
+    first += process.getFunctionCount();
+  }
+  return scores;
+}
+
 }  // namespace
 
 SurrogatePool makeSurrogatePool(const Surrogate& surrogate, Index n, std::uint64_t seed,
@@ -78,13 +89,19 @@ SurrogatePool makeSurrogatePool(const Surrogate& surrogate, Index n, std::uint64
   const VectorXd scale = fitZScore(components * drawn).scale;
   const Index known = surrogate.center.size() - surrogate.unknown;
   SurrogatePool pool;
-  pool.points = (surrogate.half_width.asDiagonal() * normalised).colwise() + surrogate.center;
+  const auto convert = [&](const MatrixXd& points) -> MatrixXd {
+    return (surrogate.half_width.asDiagonal() * points).colwise() + surrogate.center;
+  };
+  pool.points = convert(normalised);
   const MatrixXd projection = scale.cwiseInverse().asDiagonal() * components;
   pool.center = forward.center;
   pool.projection = linalg::roundToHalves(projection * forward.projection);
-  pool.inputs = {stackRows(projection * scores.mean, normalised.bottomRows(known)),
-                 linalg::calcCholesky(projection * projection.transpose()).lower, projection,
+  const MatrixXd noise_factor = linalg::calcCholesky(projection * projection.transpose()).lower;
+  pool.inputs = {stackRows(projection * scores.mean, normalised.bottomRows(known)), noise_factor, projection,
                  std::move(scores.stddev), error_factor};
+  pool.left_out_points = convert(forward.points);
+  pool.left_out = {
+      stackRows(projection * calcLeftOutScores(forward), forward.points.bottomRows(known)), noise_factor, {}, {}, {}};
   return pool;
 }
 

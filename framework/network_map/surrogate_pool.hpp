@@ -14,11 +14,15 @@ struct SurrogatePool {
   Eigen::VectorXd center;      ///< d
   Eigen::MatrixXd projection;  ///< k x d, from features to inputs of unit variance
   NormalInputs inputs;         ///< with the surrogate's own error
+  Eigen::MatrixXd left_out_points;  ///< m x s, of the surrogate's simulations, in their units
+  /// What they give where the surrogate is as wrong about them as it was when they were left out.
+  NormalInputs left_out;
 };
 
 /// n points, uniform in the box. The inputs are the principal components of the noisy scores that stand above
 /// the noise, and the known inputs. The result does not depend on the threads. Throws gp::Stopped. Cost: n
-/// evaluations of the surrogate's processes and their variance.
+/// evaluations of the surrogate's processes and their variance. The surrogate's processes must know what they
+/// left out (gp::SharedProcess::getLeftOut()), as those just fitted do.
 SurrogatePool makeSurrogatePool(const Surrogate& surrogate, Eigen::Index n, std::uint64_t seed,
                                 const TrainingControl& control);
 

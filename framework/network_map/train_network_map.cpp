@@ -11,6 +11,7 @@
 #include "framework/spec/parameter_box.hpp"
 #include "framework/surrogate/cross_validation.hpp"
 #include "framework/surrogate/folds.hpp"
+#include "framework/surrogate/honest_stddev.hpp"
 #include "framework/surrogate/run_tasks.hpp"
 #include "kernels/linalg/decompositions.hpp"
 #include "kernels/linalg/paired_matrix.hpp"
@@ -154,15 +155,29 @@ void validateMap(const HeldOutTargets& targets, const NetworkTask& task, Network
   warnOfShape(task.model.parameters, training);
 }
 
+/// The factors (p) with which a pupil's intervals hold what they say of its teacher's simulations, where the
+/// teacher is as wrong as it was about those left out.
+VectorXd calcPupilScale(const SurrogatePool& pool, const NetworkTask& task, const NetworkMap& map,
+                        int threads) {
+  const Index n = pool.left_out_points.cols();
+  const Index draws = (kColumnsOfMany + n - 1) / n;  // noise is free, so that it leaves no doubt
+  const MatrixXd targets = makeTargets(map, pool.left_out_points);
+  const HeldOutTargets found = predictHeldOut({NormalSamples(pool.left_out), targets}, map.members,
+                                              listAll(n), draws, task.seed, threads);
+  VectorXd scale(targets.rows());
+  for (Index k = 0; k < scale.size(); ++k) {
+    scale[k] = calcStddevScale(calcDepths(found.predictions, found.truth, k));
+  }
+  return scale;
+}
+
 /// Makes standard deviations up for what the teacher's lack. Both factors make up for the same posteriors
 /// that are not normal, so that their product would do so twice: it was up to 4 % too wide, and 50 %
-/// intervals held 58 %. What 100 simulations find beyond the least is chance: 50 % intervals held up to 55 %
-/// with it.
-void makeUpFor(const StddevLack& lack, const HeldOutTargets& targets, NetworkMapTraining& training) {
+/// intervals held 58 %.
+void makeUpFor(const VectorXd& pupil_scale, const HeldOutTargets& targets, NetworkMapTraining& training) {
   const NetworkMap& map = training.map;
   VectorXd& scale = training.map.validation.stddev_scale;
-  const VectorXd typical = calcTypicalStddev(training.held_out.stddev).cwiseQuotient(scale);
-  scale = scale.cwiseMax(calcPupilScale(lack, typical));
+  scale = scale.cwiseMax(pupil_scale);
   IntervalReach reach = std::move(training.held_out.reach);
   training.held_out = map.convertTargets(targets.predictions, scale);
   training.held_out.reach = std::move(reach);
@@ -259,7 +274,7 @@ NetworkMapTraining trainNetworkMap(const NetworkTask& task, const NetworkSimulat
   return training;
 }
 
-NetworkMapTraining trainNetworkMap(const NetworkTask& task, const SurrogatePool& pool, const StddevLack& lack,
+NetworkMapTraining trainNetworkMap(const NetworkTask& task, const SurrogatePool& pool,
                                    const TrainingControl& control) {
   NetworkMapTraining training;
   NetworkMap& map = training.map;
@@ -275,7 +290,7 @@ NetworkMapTraining trainNetworkMap(const NetworkTask& task, const SurrogatePool&
   const HeldOutTargets held_out =
       predictHeldOut(set, map.members, parts.held_out, draws, task.seed, control.threads);
   validateMap(held_out, task, training);
-  makeUpFor(lack, held_out, training);
+  makeUpFor(calcPupilScale(pool, task, map, control.threads), held_out, training);
   return training;
 }
 

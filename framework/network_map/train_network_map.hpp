@@ -9,7 +9,6 @@
 #include "framework/network_map/network_map.hpp"
 #include "framework/network_map/surrogate_pool.hpp"
 #include "framework/spec/model_spec.hpp"
-#include "framework/surrogate/honest_stddev.hpp"
 
 namespace twinmap {
 
@@ -54,8 +53,9 @@ NetworkMapTraining trainNetworkMap(const NetworkTask& task, const NetworkSimulat
 
 /// Trains a network on points of the box, whose scores a surrogate makes up: a normal distribution of its
 /// mean, its own error and the noise. Standard deviations are multiplied by the larger of what samples held
-/// out say and what the surrogate's own lack (calcPupilScale). Cost: a training.
-NetworkMapTraining trainNetworkMap(const NetworkTask& task, const SurrogatePool& pool, const StddevLack& lack,
+/// out say and what the surrogate's simulations do, with the errors that it makes where each is left out.
+/// Cost: a training.
+NetworkMapTraining trainNetworkMap(const NetworkTask& task, const SurrogatePool& pool,
                                    const TrainingControl& control);
 
 }  // namespace twinmap

@@ -115,14 +115,6 @@ HeldOut crossValidate(const Surrogate& whole, const SurrogateSamples& samples, c
   return held_out;
 }
 
-StddevLack calcLack(const HeldOut& held_out) {
-  StddevLack lack{VectorXd(held_out.truth.rows()), calcTypicalStddev(held_out.predictions.stddev)};
-  for (Index k = 0; k < lack.least_scale.size(); ++k) {
-    lack.least_scale(k) = calcLeastStddevScale(calcDepths(held_out.predictions, held_out.truth, k));
-  }
-  return lack;
-}
-
 SurrogateValidation validate(const HeldOut& held_out) {
   constexpr double kMapLimited = 0.8;
   const Predictions& found = held_out.predictions;

@@ -29,7 +29,4 @@ HeldOut crossValidate(const Surrogate& whole, const SurrogateSamples& samples, c
 /// What follows for the standard deviations; limit_scale is left to others.
 SurrogateValidation validate(const HeldOut& held_out);
 
-/// What the standard deviations lack at least.
-StddevLack calcLack(const HeldOut& held_out);
-
 }  // namespace twinmap

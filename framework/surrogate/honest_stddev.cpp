@@ -62,17 +62,8 @@ double calcStddevScale(const Eigen::VectorXd& absolute_z) {
              : std::max(calcLargerScale(sorted, 0.0), std::min(1.0, calcLargerScale(sorted, kNormal95)));
 }
 
-double calcLeastStddevScale(const Eigen::VectorXd& absolute_z) {
-  return calcMiddleScale(sortErrors(absolute_z), -1.0);
-}
-
 Eigen::VectorXd calcTypicalStddev(const Eigen::MatrixXd& stddev) {
   return stddev.array().log().rowwise().mean().exp();
-}
-
-Eigen::VectorXd calcPupilScale(const StddevLack& teacher, const Eigen::VectorXd& typical_stddev) {
-  const Eigen::ArrayXd share = (teacher.typical_stddev.array() / typical_stddev.array()).min(1.0).square();
-  return (1.0 + share * (teacher.least_scale.array().max(1.0).square() - 1.0)).sqrt();
 }
 
 }  // namespace twinmap

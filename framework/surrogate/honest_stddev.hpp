@@ -14,22 +14,7 @@ namespace twinmap {
 /// lighter tails keep the factor of the 68 % interval.
 double calcStddevScale(const Eigen::VectorXd& absolute_z);
 
-/// The factor of the 68 % interval, of a share one standard error lower: what it is at least, rather than by
-/// chance, and without the tails.
-double calcLeastStddevScale(const Eigen::VectorXd& absolute_z);
-
-/// What the standard deviations of a map's answers (p parameters) lack.
-struct StddevLack {
-  Eigen::VectorXd least_scale;     ///< p: calcLeastStddevScale()
-  Eigen::VectorXd typical_stddev;  ///< p: their geometric mean, before any factor, in the parameters' units
-};
-
 /// Geometric mean of each row of standard deviations.
 Eigen::VectorXd calcTypicalStddev(const Eigen::MatrixXd& stddev);
-
-/// The factors (p) for a map that learnt from answers of another, which lacked something: the variance of its
-/// own answers, of such typical standard deviations (p), is that of its teacher's and of its own errors, and
-/// lacks what the former does. At most the teacher's factors, at least 1.
-Eigen::VectorXd calcPupilScale(const StddevLack& teacher, const Eigen::VectorXd& typical_stddev);
 
 }  // namespace twinmap

@@ -99,7 +99,6 @@ SurrogateTraining trainSurrogate(const ModelSpec& model, const SurrogateSamples&
   surrogate.forward = std::make_shared<const ForwardSurrogate>(std::move(fit.surrogate));
   HeldOut held_out = crossValidate(surrogate, samples, forward, fit.choices, control);
   surrogate.validation = validate(held_out);
-  training.lack = calcLack(held_out);
   surrogate.validation.limit_scale =
       calcLimitScale(*surrogate.forward, forward, surrogate.unknown).head(surrogate.parameters);
   training.gain = calcSimulationGain(surrogate, samples, forward, fit.choices, held_out, control);

@@ -7,7 +7,6 @@
 #include "framework/features/feature_block.hpp"
 #include "framework/inverse_map/training_control.hpp"
 #include "framework/spec/model_spec.hpp"
-#include "framework/surrogate/honest_stddev.hpp"
 #include "framework/surrogate/simulation_gain.hpp"
 #include "framework/surrogate/surrogate.hpp"
 
@@ -28,7 +27,6 @@ struct SurrogateSamples {
 /// A trained surrogate and what a person should know about it.
 struct SurrogateTraining {
   Surrogate surrogate;
-  StddevLack lack;  ///< of the standard deviations before validation.stddev_scale
   Predictions
       held_out;  ///< p x n draws, of measured features, by surrogates that had not seen their simulation
   Eigen::MatrixXd held_out_truth;  ///< p x n draws
