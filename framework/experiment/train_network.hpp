@@ -30,7 +30,8 @@ struct NetworkContext {
 /// Trains the experiment's network. samples_from: automatic takes a surrogate, trained first, where it can be
 /// and the simulations are at most the 2000 that one takes; the log says which. A network whose standard
 /// deviations are more than 1.1 times those of the surrogate that taught it is trained again, for longer
-/// (NetworkSize). Throws Interrupted if it is stopped, std::runtime_error where the experiment does not fit it.
+/// (NetworkSize). Throws Interrupted if it is stopped, std::runtime_error where the experiment does not fit
+/// it.
 NetworkOutcome trainNetwork(const NetworkContext& context);
 
 }  // namespace twinmap

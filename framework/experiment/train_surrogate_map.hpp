@@ -11,7 +11,7 @@ namespace twinmap {
 struct SurrogateMapTraining {
   Surrogate surrogate;
   Eigen::VectorXd typical_stddev;  ///< p: calcTypicalStddev() of what it infers, in the parameters' units
-  TrainingSummary summary;  ///< its left-out samples are those of the cross-validation
+  TrainingSummary summary;         ///< its left-out samples are those of the cross-validation
   StageNotes notes;
 };
 

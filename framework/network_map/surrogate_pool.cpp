@@ -100,8 +100,11 @@ SurrogatePool makeSurrogatePool(const Surrogate& surrogate, Index n, std::uint64
   pool.inputs = {stackRows(projection * scores.mean, normalised.bottomRows(known)), noise_factor, projection,
                  std::move(scores.stddev), error_factor};
   pool.left_out_points = convert(forward.points);
-  pool.left_out = {
-      stackRows(projection * calcLeftOutScores(forward), forward.points.bottomRows(known)), noise_factor, {}, {}, {}};
+  pool.left_out = {stackRows(projection * calcLeftOutScores(forward), forward.points.bottomRows(known)),
+                   noise_factor,
+                   {},
+                   {},
+                   {}};
   return pool;
 }
 

@@ -10,10 +10,10 @@ namespace twinmap {
 
 /// Points of the sampled box and what a surrogate says that a measurement there gives.
 struct SurrogatePool {
-  Eigen::MatrixXd points;      ///< m x n, in their units
-  Eigen::VectorXd center;      ///< d
-  Eigen::MatrixXd projection;  ///< k x d, from features to inputs of unit variance
-  NormalInputs inputs;         ///< with the surrogate's own error
+  Eigen::MatrixXd points;           ///< m x n, in their units
+  Eigen::VectorXd center;           ///< d
+  Eigen::MatrixXd projection;       ///< k x d, from features to inputs of unit variance
+  NormalInputs inputs;              ///< with the surrogate's own error
   Eigen::MatrixXd left_out_points;  ///< m x s, of the surrogate's simulations, in their units
   /// What they give where the surrogate is as wrong about them as it was when they were left out.
   NormalInputs left_out;

@@ -161,9 +161,10 @@ VectorXd calcPupilScale(const SurrogatePool& pool, const NetworkTask& task, cons
                         int threads) {
   const Index n = pool.left_out_points.cols();
   const Index draws = (kColumnsOfMany + n - 1) / n;  // noise is free, so that it leaves no doubt
+  const NormalSamples samples(pool.left_out);
   const MatrixXd targets = makeTargets(map, pool.left_out_points);
-  const HeldOutTargets found = predictHeldOut({NormalSamples(pool.left_out), targets}, map.members,
-                                              listAll(n), draws, task.seed, threads);
+  const HeldOutTargets found =
+      predictHeldOut({samples, targets}, map.members, listAll(n), draws, task.seed, threads);
   VectorXd scale(targets.rows());
   for (Index k = 0; k < scale.size(); ++k) {
     scale[k] = calcStddevScale(calcDepths(found.predictions, found.truth, k));

@@ -163,8 +163,8 @@ TEST(SurrogatePool, HasTheSimulationsAsWrongAsTheSurrogateIsWithoutThem) {
   const ForwardSurrogate& forward = *teacher.surrogate.forward;
   ASSERT_EQ(pool.left_out_points.cols(), 120);
   const MatrixXd clean = oscillation.extractor.extract(oscillation.respond(pool.left_out_points));
-  const MatrixXd error = pool.left_out.clean.topRows(pool.projection.rows()) -
-                         pool.projection * (clean.colwise() - pool.center);
+  const MatrixXd error =
+      pool.left_out.clean.topRows(pool.projection.rows()) - pool.projection * (clean.colwise() - pool.center);
   const MatrixXd errors_of_scores =
       pool.inputs.error_projection * forward.error_variance.cwiseSqrt().asDiagonal();
   const double expected = errors_of_scores.squaredNorm();  // were they independent
