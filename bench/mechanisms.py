@@ -1,4 +1,4 @@
-"""Runs mechanisms of many kinds and writes docs/mechanisms.md: how near the information limit, and how honest, they are.
+"""Runs mechanisms of many kinds and writes docs/mechanisms.md: how near the information limit, and how calibrated, they are.
 
 Usage: mechanisms.py TWINMAP [--threads N] [--tests N] [--page FILE] [--results FOLDER] [EXPERIMENT ...]
 Each experiment (default: those listed in the page) runs with the default map, 250 training samples and 400 test samples.
@@ -23,7 +23,7 @@ SHOWS = {
     "crane/crane": "Masses, a length and a cubic stiffness at once. The response tells only the sum of two springs in parallel: the "
                    "limit says so, and the answers keep the width that the bounds leave.",
     "mechanisms/double_pendulum_mild": "Smooth, so that values and slopes of 250 simulations suffice for the limit.",
-    "mechanisms/double_pendulum": "Chaotic: late samples say much in principle and nothing to a map. Its intervals stay honest; "
+    "mechanisms/double_pendulum": "Chaotic: late samples say much in principle and nothing to a map. Its intervals stay calibrated; "
                                   "the refinement finds the limit by growing windows of time, and says where it does not.",
     "mechanisms/cubic_chain": "Dry friction and a cubic spring bend the response so that 250 simulations do not teach it to "
                               "the accuracy of the noise.",
@@ -73,12 +73,12 @@ def read_csv(file):
 
 
 def read_figures(folder):
-    """Method -> its rows of methods.csv; what is foretold; processor seconds of the run; the experiment."""
+    """Method -> its rows of methods.csv; what is predicted; processor seconds of the run; the experiment."""
     rows = read_csv(folder / "methods.csv")
     methods = {method: [row for row in rows if row["method"] == method] for method in dict.fromkeys(row["method"] for row in rows)}
-    foretold = read_csv(folder / "cross_validation.csv") if (folder / "cross_validation.csv").exists() else []
+    predicted = read_csv(folder / "cross_validation.csv") if (folder / "cross_validation.csv").exists() else []
     seconds = float((folder / "processor_seconds.txt").read_text())
-    return methods, foretold, seconds, yaml.safe_load((folder / "resolved.yaml").read_text())
+    return methods, predicted, seconds, yaml.safe_load((folder / "resolved.yaml").read_text())
 
 
 def span(rows, column, decimals):
@@ -100,25 +100,25 @@ def make_title(name):
 
 
 def make_row(name, figures):
-    methods, foretold, seconds, _ = figures
+    methods, predicted, seconds, _ = figures
     of_map = next(iter(methods.values()))
     refined = methods.get("refined", [])
     share = f"{100 * float(refined[0]['accepted']):.1f} %" if refined else "not refined"
     simulations = refined[0]["median_simulations"] if refined else ""
     cells = [f"[{make_title(name)}](#{make_title(name)})",
-             span(of_map, "ratio_to_limit", 1), span(foretold, "limit_ratio", 1), span(of_map, "coverage95", 2),
+             span(of_map, "ratio_to_limit", 1), span(predicted, "limit_ratio", 1), span(of_map, "coverage95", 2),
              share, span(refined, "ratio_to_limit", 2), span(refined, "coverage95", 2), simulations,
              describe_seconds(seconds)]
     return "| " + " | ".join(cells) + " |"
 
 
 def make_section(name, figures):
-    methods, foretold, _, experiment = figures
+    methods, predicted, _, experiment = figures
     of_map = next(iter(methods.values()))
     refined = {row["parameter"]: row for row in methods.get("refined", [])}
-    told = {row["parameter"]: row for row in foretold}
+    told = {row["parameter"]: row for row in predicted}
     lines = [f"## {make_title(name)}", "", f"`experiments/{name}.yaml`: {experiment.get('description', '')}.",
-             textwrap.fill(SHOWS.get(name, ""), 140), "", "| parameter | limit % | map: sd % | ratio | foretold | coverage | refined: sd % | ratio | coverage |",
+             textwrap.fill(SHOWS.get(name, ""), 140), "", "| parameter | limit % | map: sd % | ratio | predicted | coverage | refined: sd % | ratio | coverage |",
              "|---|--:|--:|--:|--:|--:|--:|--:|--:|"]
     for row in of_map:
         parameter, answer = row["parameter"], refined.get(row["parameter"], {})
@@ -137,7 +137,7 @@ HEAD = """# Mechanisms of many kinds
 
 Written by `bench/mechanisms.py TWINMAP`: {count} mechanisms, each with its own experiment file, 250 training samples, {tests} test
 samples, the default map (a surrogate) and defaults otherwise, {threads}. Ratio: standard deviation of the errors
-over the information limit ([experiment-file.md](experiment-file.md#evaluation)), smallest and largest over the parameters. Foretold: the same as the map predicts it
+over the information limit ([experiment-file.md](experiment-file.md#evaluation)), smallest and largest over the parameters. Predicted: the same as the map predicts it
 without the simulator. Coverage: share of true values within the 95 % intervals. Accepted: share of the test samples whose
 refinement on the simulator passed its test ([refinement.md](refinement.md)); ratio and coverage are of these. Simulations: median of a
 refinement. Time: of a processor, for the whole run.
@@ -146,7 +146,7 @@ refinement. Time: of a processor, for the whole run.
 twinmap run experiments/mechanisms/released_pendulum.yaml inverse_map=automatic design.train.samples=100 --out results/pendulum
 ```
 
-| mechanism | map: ratio | foretold | coverage | refined: accepted | ratio | coverage | simulations | time |
+| mechanism | map: ratio | predicted | coverage | refined: accepted | ratio | coverage | simulations | time |
 |---|--:|--:|--:|--:|--:|--:|--:|--:|
 """
 

@@ -23,7 +23,7 @@ from pathlib import Path
 import h5py
 
 ROOT = Path(__file__).resolve().parent.parent
-FMUS = ROOT / "tests/framework/fmi/fmus"
+FMUS = ROOT / "tests/framework/models/fmu/fmus"
 PROGRAMS = ROOT / "bench/framework/program"
 sys.path.insert(0, str(FMUS))
 import build_fmus  # noqa: E402
@@ -58,8 +58,8 @@ def write_experiment(folder, kind, samples, *, work=0.0, wait=0.0, trouble=0):
     """The experiment's file; `work` and `wait` are the seconds that a sample takes of the processor's time and beside it."""
     if kind == "fmu":
         library = folder / "troubled.so"
-        subprocess.run(["cc", "-shared", "-fPIC", "-O2", "-DFMI=2", f"-I{ROOT / 'framework/fmi/headers'}", f"-I{FMUS}",
-                        str(ROOT / "bench/framework/fmi/troubled.c"), str(FMUS / "wrapper.c"), "-o", str(library), "-lm"], check=True)
+        subprocess.run(["cc", "-shared", "-fPIC", "-O2", "-DFMI=2", f"-I{ROOT / 'framework/models/fmu/headers'}", f"-I{FMUS}",
+                        str(ROOT / "bench/framework/models/fmu/troubled.c"), str(FMUS / "wrapper.c"), "-o", str(library), "-lm"], check=True)
         build_fmus.write(folder / "troubled.fmu", {
             "modelDescription.xml": build_fmus.describe_2(VARIABLES, "troubled", 0, "true"),
             "binaries/linux64/troubled.so": library.read_bytes()})

@@ -68,12 +68,16 @@ if(TWINMAP_CCACHE)
   endif()
 endif()
 
-# twinmap_add_library(<target> SOURCES <files...> [PRECOMPILED <name>] [BATCH <files>] [PUBLIC <targets...>]
-# [PRIVATE <targets...>]): a static library whose headers are included by their path from the project's root. PRECOMPILED
-# as in cmake/PrecompiledHeaders.cmake, framework by default; BATCH as in cmake/Batches.cmake.
+# twinmap_add_library(<target> [SOURCES <files...>] [MORE <files...>] [PRECOMPILED <name>] [BATCH <files>]
+# [PUBLIC <targets...>] [PRIVATE <targets...>]): a static library of all C++ files below its folder, or of SOURCES, and of
+# MORE that are made elsewhere. Headers are included by their path from the project's root. PRECOMPILED as in
+# cmake/PrecompiledHeaders.cmake, framework by default; BATCH as in cmake/Batches.cmake.
 function(twinmap_add_library target)
-  cmake_parse_arguments(ARG "" "PRECOMPILED;BATCH" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
-  add_library(${target} STATIC ${ARG_SOURCES})
+  cmake_parse_arguments(ARG "" "PRECOMPILED;BATCH" "SOURCES;MORE;PUBLIC;PRIVATE" ${ARGN})
+  if(NOT ARG_SOURCES)
+    file(GLOB_RECURSE ARG_SOURCES CONFIGURE_DEPENDS *.cpp)
+  endif()
+  add_library(${target} STATIC ${ARG_SOURCES} ${ARG_MORE})
   target_include_directories(${target} PUBLIC "${PROJECT_SOURCE_DIR}")
   target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
   if(NOT ARG_PRECOMPILED)

@@ -14,8 +14,8 @@
 
 #include "bench/kernels/problem.hpp"
 #include "kernels/gp/fit.hpp"
+#include "kernels/gp/online/online_predictor.hpp"
 #include "kernels/gp/training.hpp"
-#include "kernels/online/online_predictor.hpp"
 
 namespace twinmap::bench {
 namespace {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "kernels/program/trigonometric.hpp"
+#include "kernels/lanes/program/trigonometric.hpp"
 #include "tests/kernels/lanes/pendulum.hpp"
 #include "tests/kernels/lanes/two_beam.hpp"
 

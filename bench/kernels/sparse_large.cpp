@@ -8,8 +8,8 @@
 #include <iostream>
 
 #include "bench/kernels/problem.hpp"
+#include "kernels/gp/sparse/sparse_training.hpp"
 #include "kernels/gp/training.hpp"
-#include "kernels/sparse/sparse_training.hpp"
 
 namespace {
 

@@ -10,10 +10,10 @@
 
 #include "bench/simulation/measure.hpp"
 #include "bench/simulation/mujoco_simulation.hpp"
-#include "framework/design/experiment_points.hpp"
-#include "framework/features/feature_extractor.hpp"
-#include "framework/multibody/multibody_simulator.hpp"
-#include "framework/spec/experiment_file.hpp"
+#include "framework/data/features/feature_extractor.hpp"
+#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/points/experiment_points.hpp"
+#include "framework/models/mechanism/multibody_simulator.hpp"
 
 namespace twinmap::bench {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "bench/simulation/lane_profile.hpp"
 #include "bench/simulation/mechanism.hpp"
-#include "framework/spec/experiment_spec.hpp"
+#include "framework/experiment/experiment_spec.hpp"
 
 namespace twinmap::bench {
 

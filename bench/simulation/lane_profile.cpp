@@ -3,11 +3,11 @@
 #include <algorithm>
 
 #include "bench/simulation/measure.hpp"
-#include "framework/multibody/box_center.hpp"
-#include "framework/multibody/lanes/lane_start.hpp"
-#include "framework/multibody/lanes/recorded_model.hpp"
+#include "framework/models/mechanism/box_center.hpp"
+#include "framework/models/mechanism/lanes/lane_start.hpp"
+#include "framework/models/mechanism/lanes/recorded_model.hpp"
 #include "kernels/lanes/integrator.hpp"
-#include "kernels/program/real.hpp"
+#include "kernels/lanes/program/real.hpp"
 
 namespace twinmap::bench {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "framework/spec/model_spec.hpp"
+#include "framework/experiment/model/model_spec.hpp"
 
 namespace twinmap::bench {
 

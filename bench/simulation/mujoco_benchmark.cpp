@@ -12,9 +12,9 @@
 
 #include "bench/simulation/measure.hpp"
 #include "bench/simulation/report.hpp"
-#include "framework/design/experiment_points.hpp"
-#include "framework/features/feature_extractor.hpp"
-#include "framework/multibody/multibody_simulator.hpp"
+#include "framework/data/features/feature_extractor.hpp"
+#include "framework/experiment/points/experiment_points.hpp"
+#include "framework/models/mechanism/multibody_simulator.hpp"
 #include "framework/simulation/sample_generator.hpp"
 
 namespace twinmap::bench {
@@ -55,9 +55,9 @@ void run(int rounds) {
 }  // namespace twinmap::bench
 
 int main(int count, char** arguments) {
-  constexpr int kFewestRounds = 5;
+  constexpr int kMinRounds = 5;
   try {
-    twinmap::bench::run(std::max(kFewestRounds, count > 1 ? std::atoi(arguments[1]) : 7));
+    twinmap::bench::run(std::max(kMinRounds, count > 1 ? std::atoi(arguments[1]) : 7));
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 1;

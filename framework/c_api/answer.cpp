@@ -1,7 +1,7 @@
 #include "framework/c_api/guard.hpp"
 #include "framework/c_api/handles.hpp"
+#include "framework/estimation/predictions.hpp"
 #include "framework/inference/inference_text.hpp"
-#include "framework/inverse_map/predictions.hpp"
 
 namespace {
 
@@ -85,7 +85,7 @@ double twinmap_get_number(const twinmap_inferrer* inferrer, twinmap_number numbe
     case TWINMAP_CHI_SQUARE_P_VALUE:
       return trust->chi_square_p_value;
     case TWINMAP_BURST_P_VALUE:
-      return trust->burst_p_value;
+      return trust->anomaly_p_value;
     case TWINMAP_DISTANCE:
       return trust->distance;
   }

@@ -3,8 +3,8 @@
 #include <exception>
 #include <string>
 
+#include "framework/base/text/source_location.hpp"
 #include "framework/c_api/twinmap.h"
-#include "framework/spec/yaml/source_location.hpp"
 
 namespace twinmap::c_api {
 

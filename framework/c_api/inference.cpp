@@ -3,9 +3,9 @@
 
 #include "framework/c_api/guard.hpp"
 #include "framework/c_api/handles.hpp"
+#include "framework/data/measurement/make_table.hpp"
 #include "framework/inference/answer.hpp"
 #include "framework/inference/known_value.hpp"
-#include "framework/measurement/make_table.hpp"
 
 namespace {
 

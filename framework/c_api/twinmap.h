@@ -143,8 +143,8 @@ TWINMAP_API int twinmap_is_refined(const twinmap_inferrer* inferrer);
 
 /** How many statuses the answer has; 0 without an answer, or where the run has no trust model. */
 TWINMAP_API size_t twinmap_count_statuses(const twinmap_inferrer* inferrer);
-/** "ok", or what is to be said against the answer, the gravest first: "model_mismatch", "outside_training",
- * "at_bounds", "uninformative", "several_answers", "nonlinear", "not_refined", "map_limited" (docs/trust.md). NULL
+/** "ok", or what is to be said against the answer, the most severe first: "model_mismatch", "outside_training",
+ * "at_bounds", "uninformative", "multimodal", "nonlinear", "not_refined", "estimator_limited" (docs/trust.md). NULL
  * beyond the last. */
 TWINMAP_API const char* twinmap_get_status(const twinmap_inferrer* inferrer, size_t index);
 

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "framework/process/worker_process.hpp"
+#include "framework/base/worker/worker_process.hpp"
 
 namespace twinmap::c_api {
 namespace {

@@ -2,10 +2,10 @@
 #include <set>
 
 #include "framework/cli/commands.hpp"
-#include "framework/measurement/signal_experiment.hpp"
-#include "framework/model_source/make_simulator.hpp"
-#include "framework/spec/experiment_file.hpp"
-#include "framework/sweep/model_groups.hpp"
+#include "framework/data/measurement/signal_experiment.hpp"
+#include "framework/experiment/experiment_file.hpp"
+#include "framework/models/make_simulator.hpp"
+#include "framework/study/sweep/model_groups.hpp"
 
 namespace twinmap::cli {
 

@@ -3,13 +3,13 @@
 #include <filesystem>
 #include <iostream>
 
+#include "framework/base/log/log.hpp"
 #include "framework/cli/commands.hpp"
 #include "framework/cli/signals.hpp"
-#include "framework/cluster/run_shard.hpp"
-#include "framework/cluster/submission.hpp"
-#include "framework/monitoring/log.hpp"
-#include "framework/spec/experiment_file.hpp"
-#include "framework/sweep/plan.hpp"
+#include "framework/experiment/experiment_file.hpp"
+#include "framework/study/shards/run_shard.hpp"
+#include "framework/study/shards/submission.hpp"
+#include "framework/study/sweep/plan.hpp"
 
 namespace twinmap::cli {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "framework/experiment/experiment_spec.hpp"
 #include "framework/results/gates.hpp"
-#include "framework/spec/experiment_spec.hpp"
 
 namespace twinmap::cli {
 

@@ -1,16 +1,16 @@
 
 #include <iostream>
 
+#include "framework/base/log/interrupted.hpp"
+#include "framework/base/log/log.hpp"
 #include "framework/cli/commands.hpp"
 #include "framework/cli/progress_line.hpp"
 #include "framework/cli/signals.hpp"
-#include "framework/experiment_design/excitation.hpp"
-#include "framework/experiment_design/excitation_files.hpp"
-#include "framework/experiment_design/sensor_files.hpp"
-#include "framework/experiment_design/verify_design.hpp"
-#include "framework/monitoring/interrupted.hpp"
-#include "framework/monitoring/log.hpp"
-#include "framework/spec/experiment_file.hpp"
+#include "framework/experiment/experiment_file.hpp"
+#include "framework/optimal_design/excitation.hpp"
+#include "framework/optimal_design/excitation_files.hpp"
+#include "framework/optimal_design/sensor_files.hpp"
+#include "framework/optimal_design/verify_design.hpp"
 
 namespace twinmap::cli {
 

@@ -2,12 +2,12 @@
 
 #include <iostream>
 
+#include "framework/base/files/atomic_file.hpp"
+#include "framework/base/text/source_location.hpp"
 #include "framework/cli/commands.hpp"
 #include "framework/export/c_folder.hpp"
 #include "framework/export/fmu_export.hpp"
 #include "framework/export/json_export.hpp"
-#include "framework/spec/yaml/source_location.hpp"
-#include "framework/store/atomic_file.hpp"
 
 namespace twinmap::cli {
 

@@ -7,12 +7,12 @@
 #include <stdexcept>
 
 #include "framework/cli/commands.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/inference_text.hpp"
 #include "framework/inference/inferrer.hpp"
 #include "framework/inference/known_value.hpp"
 #include "framework/inference/measurement_session.hpp"
 #include "framework/inference/measurement_stream.hpp"
-#include "framework/spec/parameter_box.hpp"
 
 namespace twinmap::cli {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <cstdlib>
 
+#include "framework/base/log/log.hpp"
 #include "framework/cli/progress_line.hpp"
-#include "framework/monitoring/log.hpp"
 
 namespace twinmap::cli {
 

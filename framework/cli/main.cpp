@@ -5,13 +5,13 @@
 #include <thread>
 #include <twinmap/build_info.hpp>
 
+#include "framework/base/log/interrupted.hpp"
+#include "framework/base/text/source_location.hpp"
 #include "framework/cli/commands.hpp"
 #include "framework/cli/log.hpp"
 #include "framework/cli/parser/command_groups.hpp"
 #include "framework/cli/signals.hpp"
-#include "framework/fmi/worker.hpp"
-#include "framework/monitoring/interrupted.hpp"
-#include "framework/spec/yaml/source_location.hpp"
+#include "framework/models/fmu/worker.hpp"
 
 namespace cli = twinmap::cli;
 

@@ -2,11 +2,11 @@
 #include <iostream>
 
 #include "framework/cli/commands.hpp"
-#include "framework/measurement/measurement.hpp"
-#include "framework/measurement/signal_noise.hpp"
-#include "framework/spec/check/check_experiment.hpp"
-#include "framework/spec/experiment_file.hpp"
-#include "framework/spec/expression/output_units.hpp"
+#include "framework/data/measurement/measurement.hpp"
+#include "framework/data/noise/signal_noise.hpp"
+#include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/expression/output_units.hpp"
 
 namespace twinmap::cli {
 namespace {

@@ -1,11 +1,11 @@
 
 #include <iostream>
 
+#include "framework/base/log/log.hpp"
 #include "framework/cli/commands.hpp"
-#include "framework/measurement/signal_experiment.hpp"
-#include "framework/monitoring/log.hpp"
-#include "framework/spec/experiment_file.hpp"
-#include "framework/sweep/plan.hpp"
+#include "framework/data/measurement/signal_experiment.hpp"
+#include "framework/experiment/experiment_file.hpp"
+#include "framework/study/sweep/plan.hpp"
 
 namespace twinmap::cli {
 

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <string>
 
-#include "framework/monitoring/progress.hpp"
+#include "framework/base/log/progress.hpp"
 
 namespace twinmap::cli {
 

@@ -2,20 +2,20 @@
 
 #include <iostream>
 
+#include "framework/base/files/atomic_file.hpp"
+#include "framework/base/log/interrupted.hpp"
+#include "framework/base/log/log.hpp"
 #include "framework/cli/commands.hpp"
 #include "framework/cli/progress_line.hpp"
 #include "framework/cli/signals.hpp"
-#include "framework/experiment/require_model.hpp"
-#include "framework/experiment/run_experiment.hpp"
-#include "framework/measurement/signal_experiment.hpp"
-#include "framework/monitoring/interrupted.hpp"
-#include "framework/monitoring/log.hpp"
+#include "framework/data/measurement/signal_experiment.hpp"
+#include "framework/experiment/experiment_file.hpp"
 #include "framework/results/tables.hpp"
 #include "framework/results/warnings.hpp"
-#include "framework/spec/experiment_file.hpp"
-#include "framework/store/atomic_file.hpp"
-#include "framework/sweep/case_cost.hpp"
-#include "framework/sweep/run_sweep.hpp"
+#include "framework/study/pipeline/require_model.hpp"
+#include "framework/study/pipeline/run_experiment.hpp"
+#include "framework/study/sweep/case_cost.hpp"
+#include "framework/study/sweep/run_sweep.hpp"
 
 namespace twinmap::cli {
 namespace {

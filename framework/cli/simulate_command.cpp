@@ -2,17 +2,17 @@
 #include <iostream>
 #include <sstream>
 
+#include "framework/base/files/atomic_file.hpp"
+#include "framework/base/text/number_text.hpp"
 #include "framework/cli/commands.hpp"
-#include "framework/features/feature_extractor.hpp"
-#include "framework/features/noise.hpp"
-#include "framework/measurement/signal_experiment.hpp"
-#include "framework/measurement/table.hpp"
-#include "framework/model_source/make_simulator.hpp"
-#include "framework/spec/check/check_experiment.hpp"
-#include "framework/spec/experiment_file.hpp"
-#include "framework/spec/parameter_box.hpp"
-#include "framework/spec/yaml/number_text.hpp"
-#include "framework/store/atomic_file.hpp"
+#include "framework/data/features/feature_extractor.hpp"
+#include "framework/data/measurement/signal_experiment.hpp"
+#include "framework/data/measurement/table.hpp"
+#include "framework/data/noise/noise.hpp"
+#include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
+#include "framework/models/make_simulator.hpp"
 
 namespace twinmap::cli {
 namespace {

@@ -1,8 +1,8 @@
 #include <iostream>
 
 #include "framework/cli/commands.hpp"
-#include "framework/cluster/submission.hpp"
-#include "framework/sweep/sweep_status.hpp"
+#include "framework/study/shards/submission.hpp"
+#include "framework/study/sweep/sweep_status.hpp"
 
 namespace twinmap::cli {
 

@@ -3,8 +3,8 @@
 #include <iostream>
 #include <stdexcept>
 
+#include "framework/base/files/atomic_file.hpp"
 #include "framework/cli/commands.hpp"
-#include "framework/store/atomic_file.hpp"
 #include "framework/store/store_upkeep.hpp"
 
 namespace twinmap::cli {

@@ -2,10 +2,10 @@
 #include <iostream>
 #include <vector>
 
+#include "framework/base/text/aligned_rows.hpp"
 #include "framework/cli/commands.hpp"
-#include "framework/fmi/bind_variables.hpp"
-#include "framework/fmi/package.hpp"
-#include "framework/results/aligned_rows.hpp"
+#include "framework/models/fmu/package/package.hpp"
+#include "framework/models/fmu/run/bind_variables.hpp"
 
 namespace twinmap::cli {
 namespace {

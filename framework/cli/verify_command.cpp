@@ -5,7 +5,7 @@
 
 #include "framework/cli/commands.hpp"
 #include "framework/store/finished_run.hpp"
-#include "framework/verification/verification.hpp"
+#include "framework/study/verification/verification.hpp"
 
 namespace twinmap::cli {
 namespace {

@@ -4,13 +4,13 @@
 
 #include <ostream>
 
+#include "framework/base/files/atomic_file.hpp"
 #include "framework/export/c_readme.hpp"
 #include "framework/export/compress_map.hpp"
 #include "framework/export/runtime_sources.hpp"
 #include "framework/export/selftest.hpp"
 #include "framework/inference/inferrer.hpp"
-#include "framework/store/atomic_file.hpp"
-#include "framework/store/maps_file.hpp"
+#include "framework/store/estimators/maps_file.hpp"
 
 namespace twinmap {
 
@@ -19,7 +19,7 @@ namespace {
 /// Replaces the map by one that is smaller; tells what that costs.
 std::string compressModel(const std::filesystem::path& run, ExportedModel& model) {
   constexpr int kMeasurements = 500;
-  constexpr double kMostLoss = 0.02;  // of a standard deviation
+  constexpr double kMaxLoss = 0.02;  // of a standard deviation
   if (model.findProcesses() == nullptr) {
     throw ExperimentError(fmt::format("export --compress: the map is a {}, which has no inducing inputs",
                                       model.findNetwork() != nullptr ? "network" : "surrogate"));
@@ -31,7 +31,7 @@ std::string compressModel(const std::filesystem::path& run, ExportedModel& model
     test.features.col(static_cast<Eigen::Index>(i)) = measurements[i].features;
     test.known.col(static_cast<Eigen::Index>(i)) = measurements[i].known;
   }
-  CompressedMap compressed = compressMap(readMapsFile(findMaps(run)).map, test, kMostLoss);
+  CompressedMap compressed = compressMap(readMapsFile(findMaps(run)).map, test, kMaxLoss);
   model.online.map = std::move(compressed.map);
   return fmt::format(
       "Compressed: on {} simulated measurements means move by {:.2g} sd (root mean square) and standard "

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cctype>
 
-#include "framework/spec/yaml/number_text.hpp"
-#include "kernels/online/process_view.hpp"
+#include "framework/base/text/number_text.hpp"
+#include "kernels/gp/online/process_view.hpp"
 
 namespace twinmap {
 namespace {
@@ -127,7 +127,7 @@ constexpr const char* kStatuses =
     "| outside_training | 2 | the features are far from all the map was trained on |\n"
     "| at_bounds | 4 | a parameter lies beyond its bounds |\n"
     "| uninformative | 8 | a parameter's sd is close to that of its bounds |\n"
-    "| map_limited | 16 | the errors are mostly the map's own, or not known to it |\n"
+    "| estimator_limited | 16 | the errors are mostly the map's own, or not known to it |\n"
     "| not_judged | 32 | the run has no trust model |\n";
 
 /// What it is, how it is compiled and called. upper: the prefix as macros have it.
@@ -204,8 +204,8 @@ std::size_t calcStackBytes(const CSource& source) {
   constexpr std::size_t kRegisters = 6000;  // forty small frames, one in another
   constexpr std::size_t kKernels = 800;     // doubles of the widest loops
   const auto size = [&](const char* name) { return getSize(source, name); };
-  return kDouble * (kKernels + 12 * size("UNKNOWN") + 2 * size("SCORES") + size("UNLEARNT") + size("TERMS") +
-                    size("SIGNALS")) +
+  return kDouble * (kKernels + 12 * size("UNKNOWN") + 2 * size("SCORES") + size("UNMODELLED") +
+                    size("TERMS") + size("SIGNALS")) +
          kRegisters;
 }
 
@@ -221,7 +221,8 @@ std::string makeCReadme(const ExportedModel& model, const COptions& options, con
   text += "\n## Signals\n\n" + describeSignals(model, options.prefix);
   text += "\nFeatures, in this order: " + describeFeatures(model) + ".\n";
   text += fmt::format(
-      "\n## Status\n\n{}\n`result.statuses` has the bits of all that apply, `result.status` the gravest (the "
+      "\n## Status\n\n{}\n`result.statuses` has the bits of all that apply, `result.status` the most severe "
+      "(the "
       "least bit).\n\n",
       kStatuses);
   return text + describeMemory(model, options, source);

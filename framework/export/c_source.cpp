@@ -6,8 +6,8 @@
 #include <cctype>
 #include <functional>
 
+#include "framework/base/text/source_location.hpp"
 #include "framework/export/runtime_sources.hpp"
-#include "framework/spec/yaml/source_location.hpp"
 
 namespace twinmap {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "framework/spec/yaml/source_location.hpp"
-#include "kernels/sparse/compression.hpp"
+#include "framework/base/text/source_location.hpp"
+#include "kernels/gp/sparse/compression.hpp"
 
 namespace twinmap {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "framework/inverse_map/gp_map.hpp"
+#include "framework/estimation/gp/gp_map.hpp"
 
 namespace twinmap {
 

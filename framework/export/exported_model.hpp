@@ -4,10 +4,10 @@
 #include <optional>
 #include <vector>
 
-#include "framework/features/feature_block.hpp"
-#include "framework/online/online_model.hpp"
-#include "framework/response/response_layout.hpp"
-#include "framework/spec/experiment_spec.hpp"
+#include "framework/data/features/feature_block.hpp"
+#include "framework/estimation/trained/online_model.hpp"
+#include "framework/experiment/experiment_spec.hpp"
+#include "framework/simulation/response_layout.hpp"
 
 namespace twinmap {
 

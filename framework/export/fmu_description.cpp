@@ -4,9 +4,9 @@
 
 #include <set>
 
+#include "framework/base/text/escape.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
 #include "framework/export/c_tables.hpp"
-#include "framework/results/escape.hpp"
-#include "framework/spec/parameter_box.hpp"
 
 namespace twinmap {
 namespace {
@@ -19,7 +19,7 @@ struct FmuVariable {
 
 constexpr const char* kStatusItems[][2] = {
     {"ok", "0"},         {"model_mismatch", "1"}, {"outside_training", "2"},
-    {"at_bounds", "4"},  {"uninformative", "8"},  {"map_limited", "16"},
+    {"at_bounds", "4"},  {"uninformative", "8"},  {"estimator_limited", "16"},
     {"not_judged", "32"}};
 
 void addInputVariables(const ExportedModel& model, std::vector<FmuVariable>& variables) {
@@ -61,7 +61,7 @@ std::vector<FmuVariable> listVariables(const ExportedModel& model) {
   addEstimates(model, "upper", "upper end of its 95 % interval", variables);
   variables.push_back(
       {"Real", "p_value", "", "of the residual, as if the model were right", "output", "discrete", "0.0"});
-  variables.push_back({"Enumeration", "status", "", "the gravest that is to be said against the answer",
+  variables.push_back({"Enumeration", "status", "", "the most severe that is to be said against the answer",
                        "output", "discrete", "32"});
   variables.push_back(
       {"Integer", "statuses", "", "all that is, the sum of their values", "output", "discrete", "0"});

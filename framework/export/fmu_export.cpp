@@ -4,16 +4,16 @@
 
 #include <cctype>
 
+#include "framework/base/files/atomic_file.hpp"
+#include "framework/base/files/temporary_folder.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
 #include "framework/export/c_source.hpp"
 #include "framework/export/fmu_description.hpp"
 #include "framework/export/runtime_sources.hpp"
-#include "framework/fmi/compile_sources.hpp"
-#include "framework/fmi/package.hpp"
-#include "framework/fmi/standard_headers.hpp"
-#include "framework/fmi/write_archive.hpp"
-#include "framework/spec/parameter_box.hpp"
-#include "framework/store/atomic_file.hpp"
-#include "framework/store/temporary_folder.hpp"
+#include "framework/models/fmu/package/compile_sources.hpp"
+#include "framework/models/fmu/package/package.hpp"
+#include "framework/models/fmu/package/standard_headers.hpp"
+#include "framework/models/fmu/package/write_archive.hpp"
 
 namespace twinmap {
 namespace {

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "framework/experiment/prepare_data.hpp"
-#include "framework/json/json.hpp"
-#include "kernels/online/process_view.hpp"
+#include "framework/base/json/json.hpp"
+#include "framework/study/pipeline/prepare_data.hpp"
+#include "kernels/gp/online/process_view.hpp"
 
 namespace twinmap {
 namespace {
@@ -198,10 +198,10 @@ Json toJson(const TrustModel& trust) {
   Json json{{"level", trust.level}, {"runs", runs}};
   json["whitener"] = toRows(trust.space.whitener);
   json["directions"] = toRows(trust.space.directions);
-  json["unlearnt"] = toRows(trust.space.unlearnt);
-  json["unlearnt_stddev"] = toJson(trust.space.unlearnt_stddev);
+  json["unmodelled"] = toRows(trust.space.unmodelled);
+  json["unmodelled_stddev"] = toJson(trust.space.unmodelled_stddev);
   json["chi_square"] = toJson(trust.chi_square.sorted);
-  json["burst"] = toJson(trust.burst.sorted);
+  json["anomaly"] = toJson(trust.anomaly.sorted);
   json["cloud"] = {{"inputs", toRows(trust.cloud.inputs.transpose())},
                    {"scale", toJson(trust.cloud.scale)},
                    {"reach", trust.cloud.reach}};

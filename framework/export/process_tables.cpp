@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "framework/export/c_model_tables.hpp"
+#include "kernels/gp/online/process_view.hpp"
 #include "kernels/linalg/packed_lower.hpp"
-#include "kernels/online/process_view.hpp"
 
 namespace twinmap {
 namespace {

@@ -21,8 +21,8 @@ void addResult(const ExportedModel& model, const std::string& prefix, CTables& t
   }
   tables.addWide("interval_reach", model.getIntervalReach(),
                  "Standard deviations that 95 % intervals reach.");
-  const bool honest = validation == nullptr || validation->status == SurrogateStatus::kOk;
-  sizes.push_back({"DISHONEST", honest ? 0 : 1, "1: the map is known to misjudge its own errors"});
+  const bool calibrated = validation == nullptr || validation->status == SurrogateStatus::kOk;
+  sizes.push_back({"UNCALIBRATED", calibrated ? 0 : 1, "1: the map is known to misjudge its own errors"});
 }
 
 }  // namespace twinmap

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 
-#include "framework/experiment/prepare_data.hpp"
+#include "framework/data/measurement/measurement.hpp"
+#include "framework/data/noise/noise.hpp"
 #include "framework/export/runtime_sources.hpp"
-#include "framework/features/noise.hpp"
 #include "framework/inference/answer.hpp"
-#include "framework/measurement/measurement.hpp"
 #include "framework/store/samples_file.hpp"
+#include "framework/study/pipeline/prepare_data.hpp"
 
 namespace twinmap {
 namespace {
@@ -58,9 +58,9 @@ MatrixXd shape(const ResponseLayout& layout, const VectorXd& values) {
 }
 
 /// What a machine does that the model does not; most measurements stay as they are.
-class Spoiler {
+class DisturbanceGenerator {
  public:
-  Spoiler(const MatrixXd& responses, const VectorXd& noise_stddev)
+  DisturbanceGenerator(const MatrixXd& responses, const VectorXd& noise_stddev)
       : mean_(responses.rowwise().mean()), noise_stddev_(noise_stddev) {}
 
   VectorXd spoil(int index, VectorXd response) const {
@@ -121,7 +121,7 @@ class Answerer {
   InferredMeasurement infer(const VectorXd& features, const VectorXd& known) {
     InferredMeasurement inferred;
     inferred.inference = map_.infer(features, known, workspace_);
-    inferred.map_is_honest = map_.isHonest();
+    inferred.map_is_calibrated = map_.isCalibrated();
     if (trust_) {
       inferred.trust = judge(*model_.online.trust, features, known, inferred.inference,
                              workspace_.findExplanation(), *trust_);
@@ -134,15 +134,15 @@ class Answerer {
   bool isSteady(const TestedMeasurement& tested) {
     // What the cancellation of a surrogate's weights leaves of rounding; half of what the self-test allows,
     // in standard deviations.
-    constexpr double kDigits = 1e-9, kMost = 5e-5;
+    constexpr double kDigits = 1e-9, kMax = 5e-5;
     const Inference& inference = tested.answer.inference;
     for (const int period : {2, 3, 5, 7, 11, 13}) {
       const VectorXd features = VectorXd::NullaryExpr(tested.features.size(), [&](Index i) {
         return tested.features[i] * (1.0 + (i % period == 0 ? kDigits : -kDigits));
       });
       const Inference other = infer(features, tested.known).inference;
-      if (((other.mean - inference.mean).array().abs() > kMost * inference.stddev.array()).any() ||
-          ((other.stddev - inference.stddev).array().abs() > kMost * inference.stddev.array()).any()) {
+      if (((other.mean - inference.mean).array().abs() > kMax * inference.stddev.array()).any() ||
+          ((other.stddev - inference.stddev).array().abs() > kMax * inference.stddev.array()).any()) {
         return false;
       }
     }
@@ -158,8 +158,8 @@ class Answerer {
 };
 
 int toBits(const InferredMeasurement& answer) {
-  constexpr int kMapLimited = 16;
-  int bits = isMapLimited(answer) ? kMapLimited : 0;
+  constexpr int kEstimatorLimited = 16;
+  int bits = isEstimatorLimited(answer) ? kEstimatorLimited : 0;
   for (const TrustStatus status : answer.trust ? answer.trust->statuses : std::vector<TrustStatus>{}) {
     if (status != TrustStatus::kOk) {
       bits |= 1 << static_cast<int>(status);
@@ -172,17 +172,17 @@ int toBits(const InferredMeasurement& answer) {
 
 std::vector<TestedMeasurement> makeTestedMeasurements(const std::filesystem::path& run,
                                                       const ExportedModel& model, const TestPlan& plan) {
-  constexpr int kMostTries = 20;
+  constexpr int kMaxTries = 20;
   const ResponseLayout& layout = model.layout;
   const Samples samples = readSamples(run, model.countKnown(), layout.getRowCount());
   const ResponseNoise noise(model.experiment.noise, layout);
-  const Spoiler spoiler(samples.responses, noise.getStddev());
+  const DisturbanceGenerator spoiler(samples.responses, noise.getStddev());
   const RandomStream random(model.experiment.seed, RandomPurpose::kSelftest);
   const auto n = static_cast<int>(samples.responses.cols());
   Answerer answerer(model);
   std::vector<TestedMeasurement> tested;
   MatrixXd noisy;
-  for (int i = 0; static_cast<int>(tested.size()) < plan.count && i < kMostTries * plan.count; ++i) {
+  for (int i = 0; static_cast<int>(tested.size()) < plan.count && i < kMaxTries * plan.count; ++i) {
     if (i % n == 0) {
       noisy = addNoise(samples.responses, noise, random, i / n);
     }

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "framework/estimation/surrogate/score_inversion.hpp"
 #include "framework/export/c_model_tables.hpp"
-#include "framework/surrogate/score_inversion.hpp"
 #include "kernels/linalg/packed_lower.hpp"
 
 namespace twinmap {

@@ -15,10 +15,10 @@ void addTrust(const TrustModel& trust, CTables& tables, CSizes& sizes) {
                           : "Root of the inverse covariance of the features' noise, feature by feature.");
   tables.addReal("score_directions", flattenColumns(space.directions),
                  "Directions of the scores among the whitened features, score by score.");
-  if (space.unlearnt.cols() > 0) {
-    tables.addReal("unlearnt_directions", flattenColumns(space.unlearnt),
+  if (space.unmodelled.cols() > 0) {
+    tables.addReal("unmodelled_directions", flattenColumns(space.unmodelled),
                    "Directions of what else moves with the parameters, one after another.");
-    tables.addWide("unlearnt_stddev", space.unlearnt_stddev, "Its standard deviations over the box.");
+    tables.addWide("unmodelled_stddev", space.unmodelled_stddev, "Its standard deviations over the box.");
   }
   std::vector<int> runs;
   for (const ResidualRun& run : trust.runs) {
@@ -28,7 +28,8 @@ void addTrust(const TrustModel& trust, CTables& tables, CSizes& sizes) {
   tables.addInts("residual_runs", runs, "Residuals that belong together: the first of a run, how many.");
   tables.addReal("chi_square_reference", trust.chi_square.sorted,
                  "Chi-squares of simulated measurements, sorted.");
-  tables.addReal("burst_reference", trust.burst.sorted, "Burst scores of simulated measurements, sorted.");
+  tables.addReal("anomaly_reference", trust.anomaly.sorted,
+                 "Anomaly scores of simulated measurements, sorted.");
   const linalg::PackedSamples cloud(trust.cloud.inputs);
   tables.addReal(
       "cloud_inputs", cloud.getValues(),
@@ -39,11 +40,13 @@ void addTrust(const TrustModel& trust, CTables& tables, CSizes& sizes) {
                    "Largest distance of a simulated measurement to its nearest training input.");
   tables.addNumber("trust_level", trust.level, "Share of false alarms of model_mismatch.");
   sizes.push_back({"RESIDUALS", static_cast<long>(space.directions.rows()), "residuals of the features"});
-  sizes.push_back({"UNLEARNT", static_cast<long>(space.unlearnt.cols()), "directions that no score tells"});
+  sizes.push_back(
+      {"UNMODELLED", static_cast<long>(space.unmodelled.cols()), "directions that no score tells"});
   sizes.push_back({"DIAGONAL_WHITENER", diagonal ? 1 : 0, "1: the features' noise is independent"});
   sizes.push_back({"RUNS", static_cast<long>(trust.runs.size()), "stretches of residuals"});
   sizes.push_back({"REFERENCES", static_cast<long>(trust.chi_square.sorted.size()), "reference chi-squares"});
-  sizes.push_back({"BURST_REFERENCES", static_cast<long>(trust.burst.sorted.size()), "reference bursts"});
+  sizes.push_back(
+      {"ANOMALY_REFERENCES", static_cast<long>(trust.anomaly.sorted.size()), "reference anomalies"});
   sizes.push_back({"CLOUD_COUNT", static_cast<long>(trust.cloud.inputs.cols()), "training inputs"});
   sizes.push_back({"CLOUD", static_cast<long>(cloud.paddedSize()), "the same in whole chunks"});
 }

@@ -1,6 +1,6 @@
 #include "framework/inference/answer.hpp"
 
-#include "framework/inverse_map/predictions.hpp"
+#include "framework/estimation/predictions.hpp"
 
 namespace twinmap {
 
@@ -44,12 +44,12 @@ Eigen::VectorXd calcRatioToLimit(const Inference& inference) {
              : Eigen::VectorXd();
 }
 
-bool isMapLimited(const InferredMeasurement& inferred) {
+bool isEstimatorLimited(const InferredMeasurement& inferred) {
   if (inferred.refined && inferred.refined->isAccepted()) {
     return false;
   }
   const Eigen::VectorXd ratio = calcRatioToLimit(inferred.inference);
-  return !inferred.map_is_honest || (ratio.size() > 0 && ratio.maxCoeff() > kMapLimitedRatio);
+  return !inferred.map_is_calibrated || (ratio.size() > 0 && ratio.maxCoeff() > kEstimatorLimitedRatio);
 }
 
 std::vector<std::string> listStatuses(const InferredMeasurement& inferred) {
@@ -61,16 +61,16 @@ std::vector<std::string> listStatuses(const InferredMeasurement& inferred) {
       }
     }
   }
-  const bool several = hasSeveralAnswers(inferred.inference.mixture);
+  const bool several = isMultimodal(inferred.inference.mixture);
   if (several) {
-    statuses.emplace_back(toString(RefinementStatus::kSeveral));
+    statuses.emplace_back(toString(RefinementStatus::kMultimodal));
   }
   if (inferred.refined && !inferred.refined->isAccepted() && !several) {
     statuses.emplace_back(inferred.refined->status == RefinementStatus::kNonlinear ? "nonlinear"
                                                                                    : "not_refined");
   }
-  if (isMapLimited(inferred)) {
-    statuses.emplace_back("map_limited");
+  if (isEstimatorLimited(inferred)) {
+    statuses.emplace_back("estimator_limited");
   }
   if (statuses.empty() && inferred.trust) {
     statuses.emplace_back(toString(TrustStatus::kOk));

@@ -23,19 +23,19 @@ Answer makeMapAnswer(const Inference& inference);
 /// The refined answer where it was accepted, else the map's.
 Answer chooseAnswer(const InferredMeasurement& inferred);
 
-/// By how much the map's standard deviations are above what the measurement allows, as the map foretells it
+/// By how much the map's standard deviations are above what the measurement allows, as the map predicts it
 /// (p); empty where it cannot.
 Eigen::VectorXd calcRatioToLimit(const Inference& inference);
 
-/// From this ratio on an answer of the map is map_limited.
-constexpr double kMapLimitedRatio = 1.5;
+/// From this ratio on an answer of the map is estimator_limited.
+constexpr double kEstimatorLimitedRatio = 1.5;
 
 /// Whether the answer is the map's and its errors are mostly the map's own, or not known to it.
-bool isMapLimited(const InferredMeasurement& inferred);
+bool isEstimatorLimited(const InferredMeasurement& inferred);
 
-/// Names of all that is to be said against an answer, the gravest first: what the trust model says, then
-/// "several_answers" where a mixture's lie apart, "nonlinear" or "not_refined" where a refinement was tried
-/// and not accepted, then "map_limited". {"ok"} where nothing is; empty where nobody has judged.
+/// Names of all that is to be said against an answer, the most severe first: what the trust model says, then
+/// "multimodal" where a mixture's lie apart, "nonlinear" or "not_refined" where a refinement was tried
+/// and not accepted, then "estimator_limited". {"ok"} where nothing is; empty where nobody has judged.
 std::vector<std::string> listStatuses(const InferredMeasurement& inferred);
 
 }  // namespace twinmap

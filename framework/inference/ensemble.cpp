@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "framework/spec/parameter_box.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
 
 namespace twinmap {
 

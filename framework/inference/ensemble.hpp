@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "framework/spec/model_spec.hpp"
+#include "framework/experiment/model/model_spec.hpp"
 
 namespace twinmap {
 

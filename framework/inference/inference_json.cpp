@@ -1,9 +1,9 @@
 #include <cmath>
 
+#include "framework/base/json/json.hpp"
+#include "framework/estimation/predictions.hpp"
 #include "framework/inference/answer.hpp"
 #include "framework/inference/inference_text.hpp"
-#include "framework/inverse_map/predictions.hpp"
-#include "framework/json/json.hpp"
 
 namespace twinmap {
 namespace {
@@ -80,8 +80,8 @@ Json toJson(const Trust& trust, const std::vector<FeatureInfo>& features) {
   json["chi_square"] = trust.chi_square;
   json["residuals"] = trust.residuals;
   json["chi_square_p_value"] = trust.chi_square_p_value;
-  json["burst_p_value"] = trust.burst_p_value;
-  json["burst"] = describeBurst(trust, features);
+  json["anomaly_p_value"] = trust.anomaly_p_value;
+  json["anomaly"] = describeAnomaly(trust, features);
   json["distance"] = trust.distance;
   return json;
 }

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 
+#include "framework/base/text/aligned_rows.hpp"
+#include "framework/base/text/escape.hpp"
+#include "framework/base/text/nearest_name.hpp"
+#include "framework/base/text/number_text.hpp"
+#include "framework/estimation/predictions.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/answer.hpp"
-#include "framework/inverse_map/predictions.hpp"
-#include "framework/results/aligned_rows.hpp"
-#include "framework/results/escape.hpp"
-#include "framework/spec/parameter_box.hpp"
-#include "framework/spec/yaml/nearest_name.hpp"
-#include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
 namespace {
@@ -30,7 +30,7 @@ std::string explainStatus(TrustStatus status, const Trust& trust, const std::vec
   switch (status) {
     case TrustStatus::kModelMismatch:
       return fmt::format("  No point of the parameter box explains the features: {}.\n",
-                         describeBurst(trust, features));
+                         describeAnomaly(trust, features));
     case TrustStatus::kOutsideTraining:
       return fmt::format(
           "  The features are {:.2g} times as far from the training samples as simulated "
@@ -103,7 +103,7 @@ std::string makeEstimateTable(const Estimates& estimates, const std::vector<Para
 /// The intervals that a mixture's smallest sets of 95 % are of, and its components.
 std::string describeMixture(const Mixture& mixture, const std::vector<ParameterSpec>& parameters) {
   constexpr int kDigits = 5, kStddevDigits = 3;
-  constexpr double kLeast = 0.01;  // a lighter one is not worth a line
+  constexpr double kMin = 0.01;  // a lighter one is not worth a line
   std::string text = "  several answers may fit:\n";
   for (Index c = 0; c < mixture.countComponents(); ++c) {
     std::string values;
@@ -113,7 +113,7 @@ std::string describeMixture(const Mixture& mixture, const std::vector<ParameterS
                             toShortText(mixture.means(i, c), kDigits),
                             toShortText(mixture.stddevs(i, c), kStddevDigits));
     }
-    if (mixture.weights[c] > kLeast) {
+    if (mixture.weights[c] > kMin) {
       text += fmt::format("    {:3.0f} %: {}\n", 100.0 * mixture.weights[c], values);
     }
   }
@@ -163,33 +163,33 @@ std::string describeTrust(const InferredMeasurement& inferred, const std::vector
   return text;
 }
 
-std::string describeBurst(const Trust& trust, const std::vector<FeatureInfo>& features) {
-  const Burst& burst = trust.burst;
-  if (burst.first + burst.count > static_cast<Index>(features.size())) {
+std::string describeAnomaly(const Trust& trust, const std::vector<FeatureInfo>& features) {
+  const Anomaly& anomaly = trust.anomaly;
+  if (anomaly.first + anomaly.count > static_cast<Index>(features.size())) {
     return "";
   }
-  const std::string& first = features[static_cast<std::size_t>(burst.first)].name;
-  const std::string& last = features[static_cast<std::size_t>(burst.first + burst.count - 1)].name;
-  return "it is worst at " + (burst.count == 1 ? first : first + " to " + last);
+  const std::string& first = features[static_cast<std::size_t>(anomaly.first)].name;
+  const std::string& last = features[static_cast<std::size_t>(anomaly.first + anomaly.count - 1)].name;
+  return "it is worst at " + (anomaly.count == 1 ? first : first + " to " + last);
 }
 
 std::string describeMapLimit(const InferredMeasurement& inferred,
                              const std::vector<ParameterSpec>& parameters) {
-  if (!isMapLimited(inferred)) {
+  if (!isEstimatorLimited(inferred)) {
     return "";
   }
   const char* advice = inferred.refined ? "add simulations" : "refine, or add simulations";
   const Eigen::VectorXd ratio = calcRatioToLimit(inferred.inference);
   std::vector<std::string> far;
   for (Index p = 0; p < ratio.size(); ++p) {
-    if (ratio[p] > kMapLimitedRatio) {
+    if (ratio[p] > kEstimatorLimitedRatio) {
       far.push_back(
           fmt::format("{} is {:.2g} times", parameters[static_cast<std::size_t>(p)].name.text, ratio[p]));
     }
   }
   std::string text =
       far.empty() ? "" : fmt::format("  {} above what the measurement allows: {}.\n", listNames(far), advice);
-  if (!inferred.map_is_honest) {
+  if (!inferred.map_is_calibrated) {
     text += fmt::format("  The map does not know its own errors (cross-validation): {}.\n", advice);
   }
   return text;
@@ -208,7 +208,7 @@ std::string makeInferenceTable(const InferredMeasurement& inferred,
     text +=
         "  the map's:\n" + makeEstimateTable(makeEstimates(makeMapAnswer(inferred.inference)), parameters);
   }
-  if (hasSeveralAnswers(answer.mixture)) {
+  if (isMultimodal(answer.mixture)) {
     text += describeMixture(answer.mixture, parameters);
   }
   if (inferred.posterior) {

@@ -10,7 +10,8 @@ namespace twinmap {
 /// The status with its numbers, and a line for each thing that is wrong.
 std::string describeTrust(const InferredMeasurement& inferred, const std::vector<FeatureInfo>& features);
 
-/// How far the map's answer is from what the measurement allows, where it is map_limited; a line each, or "".
+/// How far the map's answer is from what the measurement allows, where it is estimator_limited; a line each,
+/// or "".
 std::string describeMapLimit(const InferredMeasurement& inferred,
                              const std::vector<ParameterSpec>& parameters);
 
@@ -38,6 +39,6 @@ std::string makeDrawsCsvHeader(const std::vector<ParameterSpec>& unknown);
 std::string makeDrawsCsvRows(const InferredMeasurement& inferred);
 
 /// "the largest residuals: y(0.1 s) to y(0.4 s)"; "" without a trust model.
-std::string describeBurst(const Trust& trust, const std::vector<FeatureInfo>& features);
+std::string describeAnomaly(const Trust& trust, const std::vector<FeatureInfo>& features);
 
 }  // namespace twinmap

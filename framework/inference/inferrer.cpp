@@ -3,10 +3,10 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "framework/experiment/prepare_data.hpp"
-#include "framework/measurement/trained_excitation.hpp"
-#include "framework/spec/experiment_file.hpp"
-#include "framework/store/maps_file.hpp"
+#include "framework/data/measurement/trained_excitation.hpp"
+#include "framework/experiment/experiment_file.hpp"
+#include "framework/store/estimators/maps_file.hpp"
+#include "framework/study/pipeline/prepare_data.hpp"
 
 namespace twinmap {
 
@@ -85,7 +85,7 @@ InferredMeasurement Inferrer::infer(const Eigen::VectorXd& features, const Eigen
                                     Workspace& workspace) const {
   InferredMeasurement inferred;
   inferred.inference = map_.infer(features, known, workspace.map);
-  inferred.map_is_honest = map_.isHonest();
+  inferred.map_is_calibrated = map_.isCalibrated();
   if (trust_) {
     inferred.trust = judge(*trust_, features, known, inferred.inference, workspace.map.findExplanation(),
                            *workspace.trust);

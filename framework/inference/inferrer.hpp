@@ -5,24 +5,24 @@
 #include <string>
 #include <vector>
 
-#include "framework/features/feature_extractor.hpp"
-#include "framework/measurement/measurement.hpp"
-#include "framework/online/online_map.hpp"
-#include "framework/online/online_model.hpp"
-#include "framework/refinement/refined.hpp"
-#include "framework/spec/experiment_spec.hpp"
-#include "framework/surrogate/posterior_sampler.hpp"
+#include "framework/data/features/feature_extractor.hpp"
+#include "framework/data/measurement/measurement.hpp"
+#include "framework/estimation/refined/refined.hpp"
+#include "framework/estimation/surrogate/posterior_sampler.hpp"
+#include "framework/estimation/trained/online_map.hpp"
+#include "framework/estimation/trained/online_model.hpp"
+#include "framework/experiment/experiment_spec.hpp"
 
 namespace twinmap {
 
 /// What a measurement says about the machine.
 struct InferredMeasurement {
-  std::string source;            ///< the file
-  double start = 0.0;            ///< time in the file that is 0 of the model, s
-  Inference inference;           ///< by the map
-  bool map_is_honest = true;     ///< OnlineMap::isHonest()
-  std::optional<Trust> trust;    ///< none where the run could fit no trust model
-  Eigen::VectorXd explanation;   ///< sampled point that explains the features best; empty without trust
+  std::string source;             ///< the file
+  double start = 0.0;             ///< time in the file that is 0 of the model, s
+  Inference inference;            ///< by the map
+  bool map_is_calibrated = true;  ///< OnlineMap::isCalibrated()
+  std::optional<Trust> trust;     ///< none where the run could fit no trust model
+  Eigen::VectorXd explanation;    ///< sampled point that explains the features best; empty without trust
   Eigen::MatrixXd covariance{};  ///< there, u x u in half-widths, with the surrogate's errors; empty likewise
   std::optional<Refined> refined;                 ///< on the simulator, where that was tried; accepted or not
   std::optional<SurrogatePosterior> posterior{};  ///< where it was asked for; reliable or not

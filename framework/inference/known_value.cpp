@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "framework/spec/check/check_experiment.hpp"
-#include "framework/spec/yaml/nearest_name.hpp"
-#include "framework/spec/yaml/number_text.hpp"
-#include "framework/spec/yaml/source_location.hpp"
+#include "framework/base/text/nearest_name.hpp"
+#include "framework/base/text/number_text.hpp"
+#include "framework/base/text/source_location.hpp"
+#include "framework/experiment/check/check_experiment.hpp"
 
 namespace twinmap {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/spec/model_spec.hpp"
+#include "framework/experiment/model/model_spec.hpp"
 
 namespace twinmap {
 

@@ -2,17 +2,17 @@
 
 #include <fmt/core.h>
 
+#include "framework/base/text/source_location.hpp"
+#include "framework/estimation/trained/posterior_model.hpp"
 #include "framework/inference/answer.hpp"
-#include "framework/online/posterior_model.hpp"
-#include "framework/spec/yaml/source_location.hpp"
 
 namespace twinmap {
 namespace {
 
 PosteriorSampler makeSampler(const Inferrer& inferrer, int draws) {
-  if (draws < kFewestPosteriorDraws) {
+  if (draws < kMinPosteriorDraws) {
     throw ExperimentError(
-        fmt::format("a posterior needs at least {} draws, not {}", kFewestPosteriorDraws, draws));
+        fmt::format("a posterior needs at least {} draws, not {}", kMinPosteriorDraws, draws));
   }
   std::optional<PosteriorModel> model = findPosteriorModel(inferrer.getMap(), inferrer.getTrustModel());
   if (!model) {

@@ -3,9 +3,9 @@
 #include <optional>
 #include <string>
 
+#include "framework/estimation/surrogate/posterior_sampler.hpp"
 #include "framework/inference/inferrer.hpp"
 #include "framework/inference/refiner.hpp"
-#include "framework/surrogate/posterior_sampler.hpp"
 
 namespace twinmap {
 

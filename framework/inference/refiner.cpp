@@ -1,9 +1,9 @@
 #include "framework/inference/refiner.hpp"
 
-#include "framework/experiment/prepare_data.hpp"
-#include "framework/experiment/refinement_starts.hpp"
-#include "framework/features/noise.hpp"
-#include "framework/spec/parameter_box.hpp"
+#include "framework/data/noise/noise.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
+#include "framework/study/pipeline/prepare_data.hpp"
+#include "framework/study/pipeline/refinement_starts.hpp"
 
 namespace twinmap {
 
@@ -31,8 +31,8 @@ Refined SimulatorRefiner::refine(const InferredMeasurement& inferred, const Vect
       model_, trust, features,
       {findLikeliest(inferred.inference).mean, inferred.explanation, known, inferred.covariance});
   Refined refined = twinmap::refine(*own_, getModel(), task);
-  if (hasSeveralAnswers(inferred.inference.mixture)) {
-    rejectAsOneOfSeveral(refined);
+  if (isMultimodal(inferred.inference.mixture)) {
+    rejectAsMultimodal(refined);
   }
   if (refined.isAccepted()) {
     const Index p = inferred.inference.mean.size();

@@ -3,10 +3,10 @@
 #include <memory>
 #include <optional>
 
-#include "framework/features/feature_noise.hpp"
+#include "framework/data/noise/feature_noise.hpp"
+#include "framework/estimation/refined/refine.hpp"
 #include "framework/inference/inferrer.hpp"
-#include "framework/model_source/make_simulator.hpp"
-#include "framework/refinement/refine.hpp"
+#include "framework/models/make_simulator.hpp"
 
 namespace twinmap {
 

@@ -3,15 +3,15 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "framework/experiment/refinement_starts.hpp"
-#include "framework/features/noise.hpp"
+#include "framework/data/measurement/measured_signals.hpp"
+#include "framework/data/noise/noise.hpp"
+#include "framework/estimation/draws.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/answer.hpp"
 #include "framework/inference/ensemble.hpp"
 #include "framework/inference/refiner.hpp"
-#include "framework/inverse_map/draws.hpp"
-#include "framework/measurement/measured_signals.hpp"
 #include "framework/simulation/sample_generator.hpp"
-#include "framework/spec/parameter_box.hpp"
+#include "framework/study/pipeline/refinement_starts.hpp"
 
 namespace twinmap {
 namespace {

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <sstream>
 
+#include "framework/base/files/atomic_file.hpp"
+#include "framework/base/text/csv.hpp"
+#include "framework/base/text/markdown_table.hpp"
+#include "framework/base/text/number_text.hpp"
 #include "framework/inference/inference_text.hpp"
 #include "framework/inference/replay_page.hpp"
-#include "framework/results/csv.hpp"
-#include "framework/results/markdown_table.hpp"
-#include "framework/spec/yaml/number_text.hpp"
-#include "framework/store/atomic_file.hpp"
 
 namespace twinmap {
 namespace {

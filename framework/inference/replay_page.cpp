@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <sstream>
 
+#include "framework/base/text/csv.hpp"
+#include "framework/base/text/number_text.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/answer.hpp"
 #include "framework/inference/inference_text.hpp"
 #include "framework/inference/replay_files.hpp"
@@ -12,9 +15,6 @@
 #include "framework/report/html.hpp"
 #include "framework/report/response_panels.hpp"
 #include "framework/report/sections/verdict.hpp"
-#include "framework/results/csv.hpp"
-#include "framework/spec/parameter_box.hpp"
-#include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
 namespace {
@@ -23,7 +23,7 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr int kShownDigits = 6;
-constexpr Index kMostTimes = 10000;  // that are drawn
+constexpr Index kMaxTimes = 10000;  // that are drawn
 
 HtmlCell makeShownCell(double value, int digits = kShownDigits) {
   return makeNumberCell(toText(value), digits);
@@ -149,7 +149,7 @@ std::string makeFitHtml(const Replay& replay) {
 
 DataTable makeTable(const Replay& replay, Index output) {
   const Index times = replay.layout.times.size();
-  const Index step = (times + kMostTimes - 1) / kMostTimes;
+  const Index step = (times + kMaxTimes - 1) / kMaxTimes;
   const auto pick = [&](const VectorXd& rows, Index first) {
     std::vector<double> values;
     for (Index i = 0; i < times; i += step) {
@@ -177,7 +177,7 @@ std::string makeHelp(const Replay& replay) {
       "updated model is right, 95 % lie in the grey band of \u00b12 noise sd. Drag and scroll to move and "
       "zoom "
       "the axis of time, double-click to take it back.";
-  if (replay.layout.times.size() > kMostTimes) {
+  if (replay.layout.times.size() > kMaxTimes) {
     help += " Not all times are drawn; replay.csv has them all.";
   }
   return help;

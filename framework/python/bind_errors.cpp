@@ -1,6 +1,6 @@
-#include "framework/measurement/table.hpp"
+#include "framework/base/text/source_location.hpp"
+#include "framework/data/measurement/table.hpp"
 #include "framework/python/bindings.hpp"
-#include "framework/spec/yaml/source_location.hpp"
 
 namespace twinmap::python {
 namespace {

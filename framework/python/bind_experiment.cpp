@@ -1,14 +1,14 @@
 #include <pybind11/stl.h>
 
-#include "framework/features/noise.hpp"
+#include "framework/data/noise/noise.hpp"
+#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
 #include "framework/python/arrays.hpp"
 #include "framework/python/bindings.hpp"
 #include "framework/python/interruptible.hpp"
 #include "framework/python/python_experiment.hpp"
 #include "framework/python/quantity.hpp"
 #include "framework/simulation/sample_generator.hpp"
-#include "framework/spec/experiment_file.hpp"
-#include "framework/spec/parameter_box.hpp"
 
 namespace twinmap::python {
 namespace {

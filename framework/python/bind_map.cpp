@@ -1,15 +1,15 @@
 #include <pybind11/stl.h>
 
+#include "framework/data/measurement/make_table.hpp"
+#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/answer.hpp"
 #include "framework/inference/inference_text.hpp"
 #include "framework/inference/known_value.hpp"
-#include "framework/measurement/make_table.hpp"
 #include "framework/python/arrays.hpp"
 #include "framework/python/bindings.hpp"
 #include "framework/python/python_map.hpp"
 #include "framework/python/quantity.hpp"
-#include "framework/spec/experiment_file.hpp"
-#include "framework/spec/parameter_box.hpp"
 
 namespace twinmap::python {
 namespace {

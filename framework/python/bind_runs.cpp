@@ -3,15 +3,15 @@
 
 #include <mutex>
 
-#include "framework/experiment/require_model.hpp"
-#include "framework/experiment/run_experiment.hpp"
-#include "framework/monitoring/interrupted.hpp"
-#include "framework/monitoring/log.hpp"
+#include "framework/base/log/interrupted.hpp"
+#include "framework/base/log/log.hpp"
 #include "framework/python/bindings.hpp"
 #include "framework/python/interruptible.hpp"
 #include "framework/python/python_experiment.hpp"
-#include "framework/sweep/case_cost.hpp"
-#include "framework/sweep/run_sweep.hpp"
+#include "framework/study/pipeline/require_model.hpp"
+#include "framework/study/pipeline/run_experiment.hpp"
+#include "framework/study/sweep/case_cost.hpp"
+#include "framework/study/sweep/run_sweep.hpp"
 
 namespace twinmap::python {
 namespace {

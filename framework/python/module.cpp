@@ -2,8 +2,8 @@
 
 #include <twinmap/build_info.hpp>
 
-#include "framework/fmi/worker.hpp"
-#include "framework/process/worker_process.hpp"
+#include "framework/base/worker/worker_process.hpp"
+#include "framework/models/fmu/worker.hpp"
 #include "framework/python/bindings.hpp"
 
 PYBIND11_MODULE(_twinmap, module) {

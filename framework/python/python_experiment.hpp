@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "framework/features/feature_extractor.hpp"
+#include "framework/data/features/feature_extractor.hpp"
+#include "framework/experiment/experiment_spec.hpp"
+#include "framework/experiment/yaml/yaml_node.hpp"
 #include "framework/simulation/simulator.hpp"
-#include "framework/spec/experiment_spec.hpp"
-#include "framework/spec/yaml/yaml_node.hpp"
 
 namespace twinmap::python {
 

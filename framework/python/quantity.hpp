@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "framework/features/feature_extractor.hpp"
-#include "framework/response/response_layout.hpp"
-#include "framework/spec/model_spec.hpp"
+#include "framework/data/features/feature_extractor.hpp"
+#include "framework/experiment/model/model_spec.hpp"
+#include "framework/simulation/response_layout.hpp"
 
 namespace twinmap::python {
 

@@ -4,9 +4,9 @@
 #include <cassert>
 #include <cmath>
 
-#include "framework/json/json.hpp"
-#include "framework/results/escape.hpp"
-#include "framework/spec/yaml/number_text.hpp"
+#include "framework/base/json/json.hpp"
+#include "framework/base/text/escape.hpp"
+#include "framework/base/text/number_text.hpp"
 
 namespace twinmap {
 namespace {

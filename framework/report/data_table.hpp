@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "framework/json/json_fwd.hpp"
+#include "framework/base/json/json_fwd.hpp"
 
 namespace twinmap {
 

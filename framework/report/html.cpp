@@ -1,7 +1,7 @@
 #include "framework/report/html.hpp"
 
-#include "framework/results/number_with_error.hpp"
-#include "framework/spec/yaml/number_text.hpp"
+#include "framework/base/text/number_text.hpp"
+#include "framework/base/text/number_with_error.hpp"
 
 namespace twinmap {
 namespace {
@@ -40,9 +40,9 @@ HtmlCell makeNumberCell(const std::string& exact, int digits, const std::string&
 std::string makeHtmlTable(const std::string& id, const std::string& caption,
                           const std::vector<std::string>& headings,
                           const std::vector<std::vector<HtmlCell>>& rows) {
-  constexpr std::size_t kMostRows = 40;  // longer tables scroll
+  constexpr std::size_t kMaxRows = 40;  // longer tables scroll
   std::string html = makeElement("p", escapeHtml(caption), "class=\"caption\"") + "\n<div class=\"" +
-                     (rows.size() > kMostRows ? "scroll tall" : "scroll") +
+                     (rows.size() > kMaxRows ? "scroll tall" : "scroll") +
                      "\" tabindex=\"0\"><table class=\"sortable\" id=\"" + escapeHtml(id) +
                      "\" aria-label=\"" + escapeHtml(caption) + "\">\n<thead><tr>";
   for (std::size_t i = 0; i < headings.size(); ++i) {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/results/escape.hpp"
+#include "framework/base/text/escape.hpp"
 
 namespace twinmap {
 

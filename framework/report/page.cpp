@@ -1,6 +1,6 @@
 #include <fmt/core.h>
 
-#include "framework/json/json.hpp"
+#include "framework/base/json/json.hpp"
 #include "framework/report/assets.hpp"
 #include "framework/report/figure.hpp"
 #include "framework/report/html.hpp"

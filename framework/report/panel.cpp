@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "framework/spec/model_spec.hpp"
+#include "framework/experiment/model/model_spec.hpp"
 
 namespace twinmap {
 

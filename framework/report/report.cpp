@@ -6,10 +6,10 @@
 #include <optional>
 #include <stdexcept>
 
+#include "framework/base/files/atomic_file.hpp"
 #include "framework/report/sections/samples_table.hpp"
 #include "framework/report/sections/sections.hpp"
 #include "framework/results/run_folder.hpp"
-#include "framework/store/atomic_file.hpp"
 
 namespace twinmap {
 namespace {

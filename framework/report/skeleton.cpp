@@ -2,7 +2,7 @@
 
 #include <cassert>
 
-#include "framework/json/json.hpp"
+#include "framework/base/json/json.hpp"
 #include "framework/report/assets.hpp"
 
 namespace twinmap {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "framework/json/json_fwd.hpp"
+#include "framework/base/json/json_fwd.hpp"
 #include "framework/report/panel.hpp"
 
 namespace twinmap {

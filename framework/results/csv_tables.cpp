@@ -1,7 +1,7 @@
-#include "framework/evaluation/calibration.hpp"
-#include "framework/results/csv.hpp"
+#include "framework/analysis/calibration.hpp"
+#include "framework/base/text/csv.hpp"
+#include "framework/base/text/number_text.hpp"
 #include "framework/results/tables.hpp"
-#include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
 namespace {

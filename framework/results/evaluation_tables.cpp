@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "framework/results/csv.hpp"
-#include "framework/spec/yaml/number_text.hpp"
+#include "framework/base/text/csv.hpp"
+#include "framework/base/text/number_text.hpp"
 
 namespace twinmap {
 namespace {

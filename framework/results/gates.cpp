@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "framework/spec/yaml/number_text.hpp"
+#include "framework/base/text/number_text.hpp"
 
 namespace twinmap {
 namespace {
@@ -29,8 +29,8 @@ std::string makeFound(const CsvTable& metrics, std::size_t row, double value) {
 
 /// "d_y 0.99; 3 of 4 values passed": what failed first, for many values that alone.
 std::string summarize(const std::string& passed, const std::string& failed, int passed_count, int count) {
-  constexpr int kMostListed = 8;
-  if (count <= kMostListed) {
+  constexpr int kMaxListed = 8;
+  if (count <= kMaxListed) {
     return failed.empty() ? passed : "failed: " + failed + (passed.empty() ? "" : "; passed: " + passed);
   }
   const std::string counts = fmt::format("{} of {} values passed", passed_count, count);

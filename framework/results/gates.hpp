@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "framework/spec/gate_spec.hpp"
-#include "framework/store/csv_file.hpp"
+#include "framework/base/text/csv_file.hpp"
+#include "framework/experiment/gate_spec.hpp"
 
 namespace twinmap {
 

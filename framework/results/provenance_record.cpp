@@ -3,9 +3,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "framework/json/json.hpp"
-#include "framework/spec/yaml/number_text.hpp"
-#include "framework/store/csv_file.hpp"
+#include "framework/base/json/json.hpp"
+#include "framework/base/text/csv_file.hpp"
+#include "framework/base/text/number_text.hpp"
 
 namespace twinmap {
 namespace {

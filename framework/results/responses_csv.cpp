@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "framework/results/escape.hpp"
-#include "framework/spec/yaml/number_text.hpp"
+#include "framework/base/text/escape.hpp"
+#include "framework/base/text/number_text.hpp"
 
 namespace twinmap {
 namespace {

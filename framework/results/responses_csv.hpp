@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/response/response_layout.hpp"
+#include "framework/simulation/response_layout.hpp"
 
 namespace twinmap {
 

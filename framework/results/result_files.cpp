@@ -1,9 +1,9 @@
 #include "framework/results/result_files.hpp"
 
+#include "framework/base/files/atomic_file.hpp"
 #include "framework/results/evaluation_tables.hpp"
 #include "framework/results/tables.hpp"
 #include "framework/results/warnings.hpp"
-#include "framework/store/atomic_file.hpp"
 
 namespace twinmap {
 

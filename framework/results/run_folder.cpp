@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "framework/spec/check/check_experiment.hpp"
-#include "framework/spec/experiment_file.hpp"
-#include "framework/spec/resolve_defaults.hpp"
-#include "framework/store/map_summary.hpp"
+#include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/resolve_defaults.hpp"
+#include "framework/store/estimators/map_summary.hpp"
 #include "framework/store/predictions_file.hpp"
 #include "framework/store/samples_file.hpp"
 

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "framework/inverse_map/mixture.hpp"
+#include "framework/base/text/csv_file.hpp"
+#include "framework/estimation/mixture.hpp"
+#include "framework/experiment/experiment_spec.hpp"
 #include "framework/results/provenance_record.hpp"
-#include "framework/spec/experiment_spec.hpp"
-#include "framework/store/csv_file.hpp"
 
 namespace twinmap {
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "framework/spec/experiment_file.hpp"
-#include "framework/spec/yaml/compare_trees.hpp"
-#include "framework/store/atomic_file.hpp"
+#include "framework/base/files/atomic_file.hpp"
+#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/yaml/compare_trees.hpp"
 
 namespace twinmap {
 namespace {

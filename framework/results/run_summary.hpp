@@ -6,17 +6,17 @@
 #include <string>
 #include <vector>
 
-#include "framework/evaluation/exact_posterior.hpp"
-#include "framework/evaluation/identifiability.hpp"
-#include "framework/evaluation/joint_metrics.hpp"
-#include "framework/evaluation/metrics.hpp"
-#include "framework/evaluation/rank_calibration.hpp"
-#include "framework/features/feature_block.hpp"
-#include "framework/inverse_map/predictions.hpp"
-#include "framework/monitoring/stage_notes.hpp"
-#include "framework/refinement/refined.hpp"
+#include "framework/analysis/exact_posterior.hpp"
+#include "framework/analysis/identifiability.hpp"
+#include "framework/analysis/joint_metrics.hpp"
+#include "framework/analysis/metrics.hpp"
+#include "framework/analysis/rank_calibration.hpp"
+#include "framework/base/log/stage_notes.hpp"
+#include "framework/data/features/feature_block.hpp"
+#include "framework/estimation/predictions.hpp"
+#include "framework/estimation/refined/refined.hpp"
+#include "framework/experiment/model/model_spec.hpp"
 #include "framework/results/gates.hpp"
-#include "framework/spec/model_spec.hpp"
 
 namespace twinmap {
 
@@ -53,7 +53,7 @@ struct CrossValidation {
   Eigen::VectorXd coverage95;    ///< of its own 95 % intervals
   Eigen::VectorXd stddev_scale;  ///< by which standard deviations were multiplied
   double log_density = 0.0;      ///< mean log joint density of the true parameters after that, in their units
-  std::string status;            ///< "ok", "map_limited"
+  std::string status;            ///< "ok", "estimator_limited"
   Eigen::VectorXd limit_ratio;   ///< predicted: standard deviations over what the measurements allow
   int half = 0, all = 0;         ///< simulations compared; 0 where they were too few
   Eigen::VectorXd error_ratio;   ///< errors with all simulations over those with half of them; empty likewise

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "framework/results/escape.hpp"
-#include "framework/results/markdown_table.hpp"
-#include "framework/results/number_with_error.hpp"
-#include "framework/spec/yaml/number_text.hpp"
+#include "framework/base/text/escape.hpp"
+#include "framework/base/text/markdown_table.hpp"
+#include "framework/base/text/number_text.hpp"
+#include "framework/base/text/number_with_error.hpp"
 
 namespace twinmap {
 namespace {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <sstream>
 
-#include "framework/spec/parameter_box.hpp"
-#include "framework/spec/yaml/nearest_name.hpp"
-#include "framework/spec/yaml/number_text.hpp"
+#include "framework/base/text/nearest_name.hpp"
+#include "framework/base/text/number_text.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
 
 namespace twinmap {
 namespace {
@@ -40,55 +40,53 @@ void appendCoverage(const RunSummary& run, std::vector<Warning>& warnings) {
   const std::string wide =
       listParameters(run, coverage, [&](std::size_t p) { return coverage(p) > kNominal + band(p); });
   if (!narrow.empty()) {
-    warnings.push_back({Gravity::kMisleading,
+    warnings.push_back({Severity::kMisleading,
                         "the 95 % intervals hold too few of the true values, the standard deviations are too "
                         "small: " +
                             narrow + ". Refine the answers on the simulator, or train on more samples"});
   }
   if (!wide.empty()) {
-    warnings.push_back(
-        {Gravity::kRemark, "the 95 % intervals hold more of the true values than they claim: " + wide +
-                               ". More training samples make them narrower"});
+    warnings.push_back({Severity::kInfo, "the 95 % intervals hold more of the true values than they claim: " +
+                                             wide + ". More training samples make them narrower"});
   }
 }
 
 /// The share of the first answers that are several, which lie apart.
 double calcSeveralShare(const RunSummary& run, std::size_t p) {
-  constexpr std::size_t kMost = 200;
+  constexpr std::size_t kMax = 200;
   const std::vector<Mixture>& mixtures = run.evaluation.predictions.mixtures;
-  const std::size_t count = std::min(mixtures.size(), kMost);
+  const std::size_t count = std::min(mixtures.size(), kMax);
   int several = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    several += hasSeveralAnswers(takeMarginal(mixtures[i], Index(p))) ? 1 : 0;
+    several += isMultimodal(takeMarginal(mixtures[i], Index(p))) ? 1 : 0;
   }
   return count > 0 ? double(several) / double(count) : 0.0;
 }
 
 /// Whether errors and standard deviations are those between several answers, mostly.
-bool hasSeveralAnswers(const RunSummary& run, std::size_t p) {
+bool isMultimodal(const RunSummary& run, std::size_t p) {
   constexpr double kMostly = 0.1;
   return calcSeveralShare(run, p) > kMostly;
 }
 
 void appendSeveral(const RunSummary& run, std::vector<Warning>& warnings) {
   const auto share = [&](std::size_t p) { return calcSeveralShare(run, p); };
-  const std::string told =
-      listParameters(run, share, [&](std::size_t p) { return hasSeveralAnswers(run, p); });
+  const std::string told = listParameters(run, share, [&](std::size_t p) { return isMultimodal(run, p); });
   if (!told.empty()) {
     warnings.push_back(
-        {Gravity::kRemark, "several answers fit, in these shares of the test samples: " + told +
-                               ". Errors and standard deviations are those of all of them together; measure "
-                               "another output to tell them apart"});
+        {Severity::kInfo, "several answers fit, in these shares of the test samples: " + told +
+                              ". Errors and standard deviations are those of all of them together; measure "
+                              "another output to tell them apart"});
   }
 }
 
 void appendLimit(const RunSummary& run, std::vector<Warning>& warnings) {
   constexpr double kFar = 1.5;
   const auto ratio = [&](std::size_t p) { return run.evaluation.metrics[p].ratio_to_limit; };
-  const std::string far = listParameters(
-      run, ratio, [&](std::size_t p) { return ratio(p) > kFar && !hasSeveralAnswers(run, p); });
+  const std::string far =
+      listParameters(run, ratio, [&](std::size_t p) { return ratio(p) > kFar && !isMultimodal(run, p); });
   if (!far.empty()) {
-    warnings.push_back({Gravity::kPoor,
+    warnings.push_back({Severity::kDegraded,
                         "the answers are worse than the measurement allows, in standard deviations so many "
                         "times: " +
                             far + ". Refine them on the simulator, or add simulations"});
@@ -123,7 +121,7 @@ void appendGain(const RunSummary& run, std::vector<Warning>& warnings) {
   }
   if (!told.empty()) {
     warnings.push_back(
-        {Gravity::kRemark,
+        {Severity::kInfo,
          fmt::format("more simulations will hardly help the map: from {} to {} its errors fell "
                      "by less than 30 % for {}",
                      found.half, found.all, listNames(told))});
@@ -145,10 +143,10 @@ void appendUninformed(const RunSummary& run, std::vector<Warning>& warnings) {
            (kUniformStddev * (bounds.upper - bounds.lower));
   };
   const std::string uninformed = listParameters(run, share, [&](std::size_t p) {
-    return share(p) > kUninformed && !isUndetermined(run, p) && !hasSeveralAnswers(run, p);
+    return share(p) > kUninformed && !isUndetermined(run, p) && !isMultimodal(run, p);
   });
   if (!uninformed.empty()) {
-    warnings.push_back({Gravity::kPoor,
+    warnings.push_back({Severity::kDegraded,
                         "the answers say little more than the bounds do, in shares of their standard "
                         "deviation: " +
                             uninformed +
@@ -174,10 +172,10 @@ void appendCorrelations(const RunSummary& run, std::vector<Warning>& warnings) {
     }
   }
   if (!pairs.empty()) {
-    warnings.push_back(
-        {Gravity::kPoor, "the response hardly tells parameters apart (correlation): " + listNames(pairs) +
-                             ". Only a combination of them is determined: measure another output or excite "
-                             "differently"});
+    warnings.push_back({Severity::kDegraded,
+                        "the response hardly tells parameters apart (correlation): " + listNames(pairs) +
+                            ". Only a combination of them is determined: measure another output or excite "
+                            "differently"});
   }
 }
 
@@ -185,7 +183,7 @@ void appendFailures(const RunSummary& run, std::vector<Warning>& warnings) {
   const std::size_t failed = run.failures.size();
   if (failed > 0) {
     warnings.push_back(
-        {Gravity::kMisleading,
+        {Severity::kMisleading,
          fmt::format("{} {} could not be simulated, and the map was neither trained nor tested there: see "
                      "failures.csv",
                      failed, failed == 1 ? "sample" : "samples")});
@@ -216,8 +214,8 @@ void appendTraining(const RunSummary& run, std::vector<Warning>& warnings) {
     }
   }
   if (!at_bound.empty()) {
-    warnings.push_back({Gravity::kRemark, "hyperparameters ended at a bound: " + listNames(at_bound) +
-                                              ". Widen inverse_map.gp.bounds"});
+    warnings.push_back({Severity::kInfo, "hyperparameters ended at a bound: " + listNames(at_bound) +
+                                             ". Widen inverse_map.gp.bounds"});
   }
 }
 

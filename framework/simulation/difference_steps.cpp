@@ -4,8 +4,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "framework/experiment/model/parameter_box.hpp"
 #include "framework/simulation/stencil.hpp"
-#include "framework/spec/parameter_box.hpp"
 
 namespace twinmap {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "framework/response/response_layout.hpp"
+#include "framework/experiment/model/model_spec.hpp"
+#include "framework/simulation/response_layout.hpp"
 #include "framework/simulation/simulator.hpp"
-#include "framework/spec/model_spec.hpp"
 
 namespace twinmap {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "framework/spec/parameter_box.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
 
 namespace twinmap {
 namespace {

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "framework/experiment/model/model_spec.hpp"
 #include "framework/simulation/number_evaluator.hpp"
-#include "framework/spec/model_spec.hpp"
 
 namespace twinmap {
 

@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "framework/spec/expression/expression.hpp"
+#include "framework/experiment/expression/expression.hpp"
 
 namespace twinmap {
 

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "framework/spec/yaml/source_location.hpp"
+#include "framework/base/text/source_location.hpp"
 
 namespace twinmap {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/response/response_layout.hpp"
+#include "framework/simulation/response_layout.hpp"
 
 namespace twinmap {
 
@@ -14,7 +14,7 @@ struct SampleStatus {
   bool ok = true;
   std::string reason;  ///< empty if ok: "body 'beam1': mass = 0 kg must be positive", "step limit ..."
   bool machine_dependent = false;  ///< a failure that another try may not repeat: the wall-time limit
-  bool second_try = false;  ///< by an implicit method, after the explicit one had reached its step limit
+  bool stiff_retry = false;  ///< by an implicit method, after the explicit one had reached its step limit
 };
 
 /// A model that maps parameter sets to responses (columns, see ResponseLayout). Not thread safe: clone() one

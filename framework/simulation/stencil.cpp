@@ -8,20 +8,20 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// Two points beside the centre, in steps, and the weights of centre, first and second in the derivative.
-struct Stencil {
+struct DifferenceWeights {
   double first, second;
   double weight_of_center, weight_of_first, weight_of_second;
 };
 
-constexpr Stencil kCentral{-1.0, 1.0, 0.0, -0.5, 0.5};
-constexpr Stencil kForward{1.0, 2.0, -1.5, 2.0, -0.5};
-constexpr Stencil kBackward{-1.0, -2.0, 1.5, -2.0, 0.5};
+constexpr DifferenceWeights kCentral{-1.0, 1.0, 0.0, -0.5, 0.5};
+constexpr DifferenceWeights kForward{1.0, 2.0, -1.5, 2.0, -0.5};
+constexpr DifferenceWeights kBackward{-1.0, -2.0, 1.5, -2.0, 0.5};
 
 double calcWidth(const Bounds& bounds) {
   return bounds.upper - bounds.lower;
 }
 
-const Stencil& chooseStencil(const Bounds& bounds, double value, double relative_step) {
+const DifferenceWeights& chooseWeights(const Bounds& bounds, double value, double relative_step) {
   const double step = relative_step * calcWidth(bounds);
   if (value - step < bounds.lower) {
     return kForward;
@@ -42,9 +42,9 @@ MatrixXd makeNeighbours(const std::vector<ParameterSpec>& parameters, const Vect
   MatrixXd points = point.replicate(1, 2 * count + 1);
   for (Index j = 0; j < count; ++j) {
     const Bounds& bounds = parameters[j].bounds;
-    const Stencil& stencil = chooseStencil(bounds, point[j], steps[j]);
-    points(j, 2 * j + 1) += stencil.first * steps[j] * calcWidth(bounds);
-    points(j, 2 * j + 2) += stencil.second * steps[j] * calcWidth(bounds);
+    const DifferenceWeights& weights = chooseWeights(bounds, point[j], steps[j]);
+    points(j, 2 * j + 1) += weights.first * steps[j] * calcWidth(bounds);
+    points(j, 2 * j + 2) += weights.second * steps[j] * calcWidth(bounds);
   }
   return points;
 }
@@ -52,9 +52,9 @@ MatrixXd makeNeighbours(const std::vector<ParameterSpec>& parameters, const Vect
 VectorXd calcDifference(const Eigen::Ref<const VectorXd>& center,
                         const Eigen::Ref<const MatrixXd>& neighbours, const Bounds& bounds, double at,
                         double step) {
-  const Stencil& stencil = chooseStencil(bounds, at, step);
-  return (stencil.weight_of_center * center + stencil.weight_of_first * neighbours.col(0) +
-          stencil.weight_of_second * neighbours.col(1)) /
+  const DifferenceWeights& weights = chooseWeights(bounds, at, step);
+  return (weights.weight_of_center * center + weights.weight_of_first * neighbours.col(0) +
+          weights.weight_of_second * neighbours.col(1)) /
          step;
 }
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "framework/base/files/digest.hpp"
 #include "framework/simulation/simulator.hpp"
-#include "framework/store/digest.hpp"
 
 namespace twinmap {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "framework/spec/yaml/source_location.hpp"
+#include "framework/base/text/source_location.hpp"
 
 namespace twinmap {
 

@@ -7,9 +7,9 @@
 #include <cstring>
 #include <vector>
 
-#include "framework/hdf5/hdf5_handle.hpp"
-#include "framework/spec/yaml/number_text.hpp"
-#include "framework/store/atomic_file.hpp"
+#include "framework/base/files/atomic_file.hpp"
+#include "framework/base/hdf5/hdf5_handle.hpp"
+#include "framework/base/text/number_text.hpp"
 
 namespace twinmap {
 namespace {

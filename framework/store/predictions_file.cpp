@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "framework/store/csv_file.hpp"
+#include "framework/base/text/csv_file.hpp"
 
 namespace twinmap {
 namespace {

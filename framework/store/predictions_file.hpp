@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/inverse_map/predictions.hpp"
+#include "framework/estimation/predictions.hpp"
 
 namespace twinmap {
 

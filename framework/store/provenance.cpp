@@ -10,8 +10,8 @@
 #include <thread>
 #include <twinmap/build_info.hpp>
 
-#include "framework/json/json.hpp"
-#include "framework/store/digest.hpp"
+#include "framework/base/files/digest.hpp"
+#include "framework/base/json/json.hpp"
 
 namespace twinmap {
 namespace {

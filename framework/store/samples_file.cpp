@@ -1,10 +1,10 @@
 #include "framework/store/samples_file.hpp"
 
-#include "framework/hdf5/hdf5_file.hpp"
-#include "framework/spec/check/check_experiment.hpp"
-#include "framework/spec/parameter_box.hpp"
-#include "framework/store/atomic_file.hpp"
-#include "framework/store/parameters_group.hpp"
+#include "framework/base/files/atomic_file.hpp"
+#include "framework/base/hdf5/hdf5_file.hpp"
+#include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
+#include "framework/store/estimators/parameters_group.hpp"
 
 namespace twinmap {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <filesystem>
 
+#include "framework/experiment/model/model_spec.hpp"
 #include "framework/simulation/sample_generator.hpp"
-#include "framework/spec/model_spec.hpp"
 
 namespace twinmap {
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <unordered_map>
 
-#include "framework/store/atomic_file.hpp"
+#include "framework/base/files/atomic_file.hpp"
 #include "framework/store/chunk_file.hpp"
 
 namespace twinmap {

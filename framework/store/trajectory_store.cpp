@@ -9,7 +9,7 @@
 #include <string_view>
 #include <unordered_set>
 
-#include "framework/store/atomic_file.hpp"
+#include "framework/base/files/atomic_file.hpp"
 
 namespace twinmap {
 namespace {

@@ -13,7 +13,8 @@ namespace twinmap::exact {
 namespace c {
 namespace {
 
-// clang-format off: each uses those before it
+// Each uses those before it.
+// clang-format off
 #include "kernels/exact/arithmetic.c"
 #include "kernels/exact/triangles.c"
 #include "kernels/exact/smooth_process.c"

@@ -149,7 +149,7 @@ static void calc_function_slopes(const smooth_process *process, const wide_t *re
   }
 }
 
-/* With more neighbours no error was foretold better; the factor takes as many as tell a variance to a third. */
+/* With more neighbours no error was predicted better; the factor takes as many as tell a variance to a third. */
 enum { NEIGHBOURS = 20, FACTOR_NEIGHBOURS = 16 };
 
 /* The nearest points in the order of their distance, without one (-1: none); of equal ones the first comes

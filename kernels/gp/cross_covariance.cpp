@@ -1,6 +1,6 @@
 #include "kernels/gp/cross_covariance.hpp"
 
-#include "kernels/covariance/radial.hpp"
+#include "kernels/gp/covariance/radial.hpp"
 #include "kernels/linalg/gemm.hpp"
 
 namespace twinmap::gp {

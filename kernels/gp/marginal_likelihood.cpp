@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "kernels/covariance/columns.hpp"
-#include "kernels/covariance/radial.hpp"
+#include "kernels/gp/covariance/columns.hpp"
+#include "kernels/gp/covariance/radial.hpp"
 #include "kernels/linalg/flush_denormals.hpp"
 #include "kernels/linalg/parallel.hpp"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "kernels/covariance/covariance.hpp"
+#include "kernels/gp/covariance/covariance.hpp"
 
 namespace twinmap::gp {
 

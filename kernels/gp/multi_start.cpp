@@ -117,8 +117,8 @@ void addWarmStarts(const TrainingSet& set, const TrainingOptions& options,
   const TrainingSet shared_set(set.getInputs(), shared);
   std::vector<TargetSearches> shared_targets = targets;
   // A single length scale has few optima, and the best only starts another search.
-  constexpr int kMostShared = 2;
-  chooseStarts(shared_set, options, std::min(options.starts, kMostShared), shared_targets);
+  constexpr int kMaxShared = 2;
+  chooseStarts(shared_set, options, std::min(options.starts, kMaxShared), shared_targets);
   searchStarts(shared_set, options, shared_targets);
   for (std::size_t t = 0; t < targets.size(); ++t) {
     if (targets[t].constant) {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "kernels/covariance/distances.hpp"
+#include "kernels/gp/covariance/distances.hpp"
 #include "kernels/gp/model.hpp"
 
 namespace twinmap::gp {

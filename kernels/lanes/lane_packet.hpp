@@ -6,7 +6,7 @@
 #include "kernels/lanes/integrator.hpp"
 #include "kernels/lanes/lane.hpp"
 #include "kernels/lanes/output_recorder.hpp"
-#include "kernels/program/aligned_buffer.hpp"
+#include "kernels/lanes/program/aligned_buffer.hpp"
 
 namespace twinmap::lanes {
 

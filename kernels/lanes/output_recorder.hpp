@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "kernels/lanes/problem.hpp"
+#include "kernels/lanes/program/interpreter.hpp"
 #include "kernels/lanes/sample.hpp"
-#include "kernels/program/interpreter.hpp"
 
 namespace twinmap::lanes {
 

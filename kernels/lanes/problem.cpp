@@ -1,7 +1,7 @@
 #include "kernels/lanes/problem.hpp"
 
-#include "kernels/program/differentiate.hpp"
-#include "kernels/program/recorder.hpp"
+#include "kernels/lanes/program/differentiate.hpp"
+#include "kernels/lanes/program/recorder.hpp"
 
 namespace twinmap::lanes {
 namespace {

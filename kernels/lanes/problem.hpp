@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "kernels/program/program.hpp"
-#include "kernels/program/symbol.hpp"
+#include "kernels/lanes/program/program.hpp"
+#include "kernels/lanes/program/symbol.hpp"
 
 namespace twinmap::lanes {
 

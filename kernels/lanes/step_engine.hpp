@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernels/program/engine.hpp"
+#include "kernels/lanes/program/engine.hpp"
 
 namespace twinmap::lanes {
 

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "kernels/lanes/program/exponential.hpp"
 #include "kernels/lanes/step_engine.hpp"
-#include "kernels/program/exponential.hpp"
 
 namespace twinmap::lanes {
 

@@ -12,7 +12,7 @@ using Bits = std::uint64_t __attribute__((vector_size(sizeof(Packet))));
 
 constexpr int kHalf = 32;            // bits
 constexpr Index kRows = 2 * kLanes;  // whose numbers of a column are read at once
-constexpr Index kMostPackets = 4;    // of a block: their sums fill half of the registers, or a quarter
+constexpr Index kMaxPackets = 4;     // of a block: their sums fill half of the registers, or a quarter
 constexpr std::uint64_t kUpper = ~0ull << kHalf;
 
 std::uint64_t roundToHalf(double number) {
@@ -64,8 +64,8 @@ PairedMatrix::PairedMatrix(const Eigen::Ref<const Eigen::MatrixXd>& matrix)
     : rows_(matrix.rows()), cols_(matrix.cols()) {
   const auto getBits = [&](Index row, Index col) { return row < rows_ ? roundToHalf(matrix(row, col)) : 0; };
   pairs_.reserve(static_cast<std::size_t>(countPackets(rows_) * kLanes * cols_));
-  for (Index first = 0; first < rows_; first += kMostPackets * kRows) {
-    const Index end = first + std::min(kMostPackets, countPackets(rows_ - first)) * kRows;
+  for (Index first = 0; first < rows_; first += kMaxPackets * kRows) {
+    const Index end = first + std::min(kMaxPackets, countPackets(rows_ - first)) * kRows;
     for (Index col = 0; col < cols_; ++col) {
       for (Index row = first; row < end; row += kRows) {
         for (Index lane = row; lane < row + kLanes; ++lane) {
@@ -80,7 +80,7 @@ PairedMatrix::PairedMatrix(const Eigen::Ref<const Eigen::MatrixXd>& matrix)
 /// sum waits for the one before it.
 template <int kPackets>
 void PairedMatrix::multiplyBlock(Index first, const double* vector, double* product) const {
-  constexpr int kColumns = kMostPackets / kPackets, kSums = 2 * kPackets;
+  constexpr int kColumns = kMaxPackets / kPackets, kSums = 2 * kPackets;
   Packet sums[kColumns][kSums] = {};
   const std::uint64_t* column = pairs_.data() + first / 2 * cols_;
   Index col = 0;
@@ -101,7 +101,7 @@ void PairedMatrix::multiplyBlock(Index first, const double* vector, double* prod
 }
 
 void PairedMatrix::multiply(const double* vector, double* product) const {
-  for (Index first = 0; first < rows_; first += kMostPackets * kRows) {
+  for (Index first = 0; first < rows_; first += kMaxPackets * kRows) {
     switch (countPackets(rows_ - first)) {
       case 1:
         multiplyBlock<1>(first, vector, product);
@@ -113,7 +113,7 @@ void PairedMatrix::multiply(const double* vector, double* product) const {
         multiplyBlock<3>(first, vector, product);
         break;
       default:
-        multiplyBlock<kMostPackets>(first, vector, product);
+        multiplyBlock<kMaxPackets>(first, vector, product);
     }
   }
 }

@@ -29,7 +29,8 @@ void EnsemblePredictor::addLastLayer(const MatrixXd& lower, const Network& netwo
   VectorXd inputs(units + 1);
   inputs << answer.getHidden(units), 1.0;
   const LastLayerPosterior posterior{getMeanWeights(network), lower};
-  answer.covariance += network.scale.asDiagonal() * posterior.calcCovariance(inputs) * network.scale.asDiagonal();
+  answer.covariance +=
+      network.scale.asDiagonal() * posterior.calcCovariance(inputs) * network.scale.asDiagonal();
   answer.stddev = answer.covariance.diagonal().cwiseSqrt();
 }
 

@@ -12,8 +12,8 @@ double calcWeightStddev(Index inputs) {
   return kPriorStddev / std::sqrt(static_cast<double>(inputs));
 }
 
-/// Calls part(values, prior's standard deviation) for each of the matrices and vectors of weights in `layers`,
-/// then of the regression: the order of z.
+/// Calls part(values, prior's standard deviation) for each of the matrices and vectors of weights in
+/// `layers`, then of the regression: the order of z.
 template <typename Layers, typename Skip, typename Part>
 void visitParts(Layers& layers, Skip& skip, const Part& part) {
   for (auto& layer : layers) {

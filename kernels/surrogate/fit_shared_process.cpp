@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "kernels/gp/optimizer.hpp"
-#include "kernels/sparse/inducing_points.hpp"
+#include "kernels/gp/sparse/inducing_points.hpp"
 #include "kernels/surrogate/left_out_density.hpp"
 
 namespace twinmap::gp {
@@ -22,7 +22,7 @@ constexpr Index kSearchPoints = 300;
 // which the trend is already, and K singular.
 constexpr double kShortest = 0.2, kLongest = 6.0;
 // Below, K has no Cholesky factor; above, there is no smooth function.
-constexpr double kLeastNugget = 1e-10, kMostNugget = 1e-1;
+constexpr double kMinNugget = 1e-10, kMaxNugget = 1e-1;
 constexpr int kAllEvaluations = 8;  // with all points, where they are more
 constexpr int kTrialEvaluations = 12, kFirstEvaluations = 30, kFurtherEvaluations = 20, kAdaptEvaluations = 8;
 constexpr double kTolerance = 0.002;  // nats a point and search: less changes no inference
@@ -43,8 +43,8 @@ SearchBox makeBox(Index variables) {
   SearchBox box;
   box.lower = VectorXd::Constant(variables + 1, std::log(kShortest));
   box.upper = VectorXd::Constant(variables + 1, std::log(kLongest));
-  box.lower(variables) = std::log(kLeastNugget);
-  box.upper(variables) = std::log(kMostNugget);
+  box.lower(variables) = std::log(kMinNugget);
+  box.upper(variables) = std::log(kMaxNugget);
   box.prior_mean = box.prior_precision = VectorXd::Zero(variables + 1);
   return box;
 }

@@ -4,7 +4,7 @@
 #include <array>
 #include <limits>
 
-#include "kernels/sparse/inducing_points.hpp"
+#include "kernels/gp/sparse/inducing_points.hpp"
 #include "kernels/surrogate/joint_fit.hpp"
 
 namespace twinmap::gp {
@@ -17,8 +17,8 @@ namespace {
 // Tells length scales as well as all do, in some 20 ms a fit.
 constexpr Index kSearchRows = 900;
 // A joint covariance is worse conditioned than that of values; above, the slopes say nothing.
-constexpr double kLeastSlopeNugget = 1e-9, kMostSlopeNugget = 10.0;
-constexpr int kMostFits = 14;
+constexpr double kMinSlopeNugget = 1e-9, kMaxSlopeNugget = 10.0;
+constexpr int kMaxFits = 14;
 
 struct SlopeSamples {
   MatrixXd points, values;
@@ -66,9 +66,9 @@ constexpr std::array<Move, 7> kMoves{{{1.0, 1.0, 30.0, false},
 SharedChoice apply(const Move& move, SharedChoice choice) {
   SharedHyperparameters& numbers = choice.hyperparameters;
   numbers.length_scales *= move.length_factor;
-  numbers.nugget = std::clamp(numbers.nugget * move.nugget_factor, kLeastSlopeNugget, kMostSlopeNugget);
+  numbers.nugget = std::clamp(numbers.nugget * move.nugget_factor, kMinSlopeNugget, kMaxSlopeNugget);
   numbers.slope_nugget =
-      std::clamp(numbers.slope_nugget * move.slope_nugget_factor, kLeastSlopeNugget, kMostSlopeNugget);
+      std::clamp(numbers.slope_nugget * move.slope_nugget_factor, kMinSlopeNugget, kMaxSlopeNugget);
   if (move.other_covariance) {
     choice.structure.covariance = choice.structure.covariance == SmoothCovariance::kMatern52
                                       ? SmoothCovariance::kSquaredExponential
@@ -82,7 +82,7 @@ SharedChoice improve(const SlopeSamples& samples, SharedChoice best, StopFlag st
   int fits = 0;
   for (const Move& move : kMoves) {
     bool better = true;
-    while (better && fits++ < kMostFits) {
+    while (better && fits++ < kMaxFits) {
       throwIfStopped(stop);
       SharedChoice tried = apply(move, best);
       tried.negative_log_density = calcDensity(samples, tried);
@@ -109,7 +109,7 @@ SharedChoice chooseWithSlopes(const SharedChoice& by_values, const MatrixXd& poi
   if (samples.points.cols() <= countTerms(first.structure.trend, points.rows())) {
     first.structure.trend = Trend::kLinear;
   }
-  first.hyperparameters.nugget = std::max(by_values.hyperparameters.nugget, kLeastSlopeNugget);
+  first.hyperparameters.nugget = std::max(by_values.hyperparameters.nugget, kMinSlopeNugget);
   first.hyperparameters.slope_nugget = first.hyperparameters.nugget;
   first.negative_log_density = calcDensity(samples, first);
   const SharedChoice best = improve(samples, first, stop);

@@ -32,7 +32,7 @@ struct SharedProcessParts {
 /// the ratio of the squared errors of the nearest points, left out, to their variance. The variance that both
 /// multiply is the process's own. Where slopes are known, that would take n^2 numbers, too many to keep and
 /// to read for each prediction: there it is that of a value given those at the nearest 20 points alone, which
-/// foretold the errors, in windows of nine mechanisms, as well. What is predicted has the same bits wherever
+/// predicted the errors, in windows of nine mechanisms, as well. What is predicted has the same bits wherever
 /// it is (kernels/exact). Immutable.
 class SharedProcess {
  public:

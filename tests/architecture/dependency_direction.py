@@ -3,80 +3,63 @@ import re
 import sys
 from pathlib import Path
 
-# What each part may include besides itself. Whoever includes a part gets what that part includes.
+# What each room may include besides itself. Whoever includes a room gets what that room includes.
 ALLOWED = {
     "linalg": set(),
     "kernels": set(),
-    "autocorrelation": set(),
-    "response": set(),
-    "spec": {"autocorrelation"},
-    "hdf5": set(),
-    "monitoring": set(),
-    "measurement": {"response", "spec", "hdf5"},
-    "design": {"spec"},
-    "simulation": {"response", "spec"},
-    "multibody": {"response", "spec", "simulation", "kernels"},
-    "process": set(),
-    "fmi": {"spec", "response", "simulation", "process"},
-    "program": {"spec", "response", "simulation", "process"},
-    "model_source": {"spec", "response", "simulation", "multibody", "fmi", "program"},
-    "features": {"autocorrelation", "response", "spec", "design"},
-    "sensitivity": {"spec", "simulation", "features", "design"},
-    "refinement": {"spec", "simulation", "features", "sensitivity", "design"},
-    "inverse_map": {"spec", "design", "simulation", "features", "sensitivity", "kernels"},
-    "surrogate": {"spec", "design", "features", "inverse_map", "kernels"},
-    "network_map": {"spec", "design", "features", "inverse_map", "surrogate", "kernels"},
-    "online": {"spec", "design", "features", "inverse_map", "surrogate", "network_map", "kernels"},
-    "evaluation": {"spec", "design", "simulation", "features", "sensitivity", "inverse_map", "kernels"},
-    "store": {"spec", "hdf5", "simulation", "inverse_map", "surrogate", "network_map", "online", "features", "kernels"},
-    "sampling": {"response", "spec", "monitoring", "design", "simulation", "features", "sensitivity", "store"},
-    "results": {"response", "spec", "monitoring", "features", "refinement", "evaluation", "inverse_map", "store"},
-    "report": {"spec", "features", "evaluation", "inverse_map", "store", "results"},
-    "comparison": {"spec", "features", "evaluation", "inverse_map", "store", "results"},
-    "experiment": {"spec", "monitoring", "design", "simulation", "multibody", "model_source", "features", "sensitivity", "refinement",
-                   "evaluation", "inverse_map", "surrogate", "network_map", "online", "store", "sampling", "results", "report"},
-    "experiment_design": {"experiment", "spec", "response", "monitoring", "measurement", "design", "simulation", "model_source", "features",
-                          "sensitivity", "evaluation", "store", "results", "report", "comparison", "kernels"},
-    "inference": {"experiment", "spec", "design", "simulation", "model_source", "features", "sensitivity", "refinement", "inverse_map", "surrogate", "online",
-                  "measurement", "store", "results", "report"},
-    "c_api": {"inference", "spec", "measurement", "process", "features", "inverse_map", "online", "response"},
-    "python": {"experiment", "sweep", "inference", "spec", "monitoring", "measurement", "design", "process", "fmi", "model_source", "simulation",
-               "response", "features", "inverse_map", "online"},
-    "export": {"experiment", "spec", "response", "design", "features", "inverse_map", "surrogate", "online", "measurement", "store", "results",
-               "inference", "fmi", "kernels"},
-    "verification": {"experiment", "spec", "monitoring", "design", "simulation", "model_source", "features", "sensitivity", "evaluation",
-                     "inverse_map", "store", "sampling", "results"},
-    "sweep": {"experiment", "response", "spec", "monitoring", "measurement", "design", "model_source", "simulation", "features",
-              "sensitivity", "inverse_map", "network_map", "store", "sampling", "results", "report"},
-    "cluster": {"sweep", "experiment", "spec", "monitoring", "measurement", "simulation", "store", "sampling", "results"},
-    "cli": {"experiment_design", "experiment", "sweep", "cluster", "comparison", "verification", "inference", "export", "spec", "monitoring", "measurement", "design",
-            "fmi", "model_source", "simulation", "features", "store", "sampling", "results", "report"},
+    "base": set(),
+    "experiment": {"base"},
+    "simulation": {"base", "experiment"},
+    "models/mechanism": {"base", "experiment", "kernels", "simulation"},
+    "models/fmu": {"base", "experiment", "simulation"},
+    "models/external": {"base", "experiment", "simulation"},
+    "models": {"experiment", "simulation", "models/mechanism", "models/fmu", "models/external"},
+    "data": {"base", "experiment", "simulation"},
+    "estimation": {"base", "experiment", "simulation", "data", "kernels"},
+    "analysis": {"base", "experiment", "simulation", "data", "estimation", "kernels"},
+    "store": {"base", "experiment", "simulation", "data", "estimation", "kernels"},
+    "results": {"base", "experiment", "simulation", "data", "estimation", "analysis", "store"},
+    "report": {"base", "experiment", "analysis", "store", "results"},
+    "study": {"base", "experiment", "simulation", "models", "data", "estimation", "analysis", "store", "results", "report"},
+    "inference": {"base", "experiment", "simulation", "models", "data", "estimation", "store", "report", "study"},
+    "optimal_design": {"base", "experiment", "simulation", "models", "data", "analysis", "results", "report", "study", "kernels"},
+    "c_api": {"base", "data", "estimation", "inference"},
+    "export": {"base", "experiment", "simulation", "models/fmu", "data", "estimation", "store", "study", "inference", "kernels"},
+    "cli": {"base", "experiment", "models", "models/fmu", "data", "store", "results", "report", "study", "inference", "optimal_design", "export"},
+    "python": {"base", "experiment", "simulation", "models", "models/fmu", "data", "study", "inference"},
 }
 
-# Dense linear algebra and JSON, which every part may include.
-COMMON = {"linalg", "json"}
+# The folders of a room, those that others of it build on first; a room that is not here has no order within.
+ORDER_WITHIN = {
+    "data": ["features", "measurement", "noise", "reduction", "sensitivity"],
+    "estimation": ["gp", "surrogate", "network", "refined", "trained"],
+    "study": ["samples", "pipeline", "verification", "sweep", "shards"],
+}
 
-# Libraries that stay behind one part. Eigen's decompositions take 3 to 15 s in each translation unit that has one.
+# Dense linear algebra, which every room may include.
+COMMON = {"linalg"}
+
+# Libraries that stay behind one room. Eigen's decompositions take 3 to 15 s in each translation unit that has one.
 LIBRARIES = {
-    r"Eigen/(Cholesky|Dense|Eigen|Eigenvalues|Geometry|Householder|Jacobi|LU|QR|SVD)|unsupported/Eigen/.*": {"linalg"},
-    r"(Simbody|SimTK\w*|simbody/.*|simmath/.*)(\.h)?": {"multibody"},
-    r"yaml-cpp/.*": {"spec"},
-    r"muParser.*": {"spec"},
-    r"udunits2.*": {"spec"},
-    r"hdf5.*": {"hdf5", "store"},
-    r"matio.*": {"measurement"},
-    r"(zip\.h|pugixml\.hpp)": {"fmi"},
-    r"dlfcn\.h": {"fmi", "c_api"},
+    r"Eigen/(Cholesky|Dense|Eigen|Eigenvalues|Geometry|Householder|Jacobi|LU|QR|SVD)|unsupported/Eigen/.*": {"linalg", "kernels/unsupported/Eigen/NonLinearOptimization"},
+    r"(Simbody|SimTK\w*|simbody/.*|simmath/.*)(\.h)?": {"models/mechanism"},
+    r"yaml-cpp/.*": {"experiment"},
+    r"muParser.*": {"experiment"},
+    r"udunits2.*": {"experiment"},
+    r"hdf5.*": {"base", "store"},
+    r"matio.*": {"data"},
+    r"(zip\.h|pugixml\.hpp)": {"models/fmu"},
+    r"dlfcn\.h": {"models/fmu", "c_api"},
     r"pybind11/.*": {"python"},
-    r"xxhash.*": {"store"},
-    r"nlohmann/.*": {"json"},
+    r"xxhash.*": {"base", "store"},
+    r"nlohmann/.*": {"base"},
     r"CLI/.*": {"cli"},
     r"nlopt.*": {"kernels"},
-    r"spdlog/.*": {"monitoring"},
-    r"filesystem": {"fmi", "spec", "inference", "export", "hdf5", "monitoring", "measurement", "store", "sampling", "results", "report", "comparison", "experiment", "experiment_design",
-                     "sweep", "cluster", "verification", "c_api", "python", "cli"},
-    r"(omp\.h|fstream|chrono)": {"fmi/fstream", "process/chrono", "process/fstream", "spec", "measurement/fstream", "monitoring/chrono", "simulation", "multibody", "evaluation/chrono",
-                                 "store", "sampling", "comparison", "experiment", "sweep", "verification", "python/chrono", "cli", "kernels/omp.h", "kernels/chrono",
+    r"spdlog/.*": {"base"},
+    r"filesystem": {"base", "models/fmu", "experiment", "data", "inference", "export", "store", "results", "report", "study",
+                    "optimal_design", "c_api", "python", "cli"},
+    r"(omp\.h|fstream|chrono)": {"models/fmu/fstream", "base", "experiment", "data/fstream", "simulation", "models/mechanism",
+                                 "analysis/chrono", "store", "results", "study", "python/chrono", "cli", "kernels/omp.h", "kernels/chrono",
                                  "linalg/omp.h"},
 }
 
@@ -84,10 +67,18 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 
 
 def part_of(path):
-    """'linalg', 'kernels' for the rest of kernels/, or a folder of framework."""
+    """'linalg', 'kernels' for the rest of kernels/, or a room of framework."""
     if path.parts[0] == "kernels":
         return "linalg" if path.parts[1] == "linalg" else "kernels"
-    return path.parts[1]
+    inner = "/".join(path.parts[1:3])
+    return inner if inner in ALLOWED else path.parts[1]
+
+
+def breaks_order(part, path, target):
+    """Whether a folder includes one of its room that comes after it, or the room's own files one of its folders."""
+    order = ORDER_WITHIN.get(part, [])
+    inner = [order.index(p.parts[2]) if len(p.parts) > 3 and p.parts[2] in order else -1 for p in (path, target)]
+    return inner[0] < inner[1]
 
 
 def check(root, file):
@@ -101,6 +92,8 @@ def check(root, file):
                 yield f"{path}: includes {included}, which does not exist"
             if other != part and other not in COMMON and other not in ALLOWED[part]:
                 yield f"{path}: {part} may not include {other} ({included})"
+            if other == part and breaks_order(part, path, target):
+                yield f"{path}: includes {included}, which builds on it"
         for pattern, parts in LIBRARIES.items():
             if re.fullmatch(pattern, included) and part not in parts and f"{part}/{included}" not in parts:
                 yield f"{path}: only {', '.join(sorted(parts))} may include <{included}>"

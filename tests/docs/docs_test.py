@@ -59,8 +59,8 @@ class Sandbox:
         self.folder = folder
         self.python = None
         shutil.copytree(SOURCE / "experiments", folder / "experiments", ignore=shutil.ignore_patterns("*.fmu"))
-        (folder / "framework/fmi").mkdir(parents=True)
-        shutil.copytree(SOURCE / "framework/fmi/headers", folder / "framework/fmi/headers")
+        (folder / "framework/models/fmu").mkdir(parents=True)
+        shutil.copytree(SOURCE / "framework/models/fmu/headers", folder / "framework/models/fmu/headers")
         (folder / "scripts").symlink_to(SOURCE / "scripts")
         self.environment = {**os.environ, "PATH": f"{TWINMAP.parent}:{os.environ['PATH']}",
                             "LD_LIBRARY_PATH": str(LIBRARY.parent), "PYTHONPATH": str(PACKAGE)}

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "framework/spec/experiment_file.hpp"
+#include "framework/experiment/experiment_file.hpp"
 
 namespace {
 

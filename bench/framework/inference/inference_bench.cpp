@@ -5,8 +5,8 @@
 
 #include <cstdio>
 
-#include "framework/design/random.hpp"
-#include "framework/features/noise.hpp"
+#include "framework/base/random/random.hpp"
+#include "framework/data/noise/noise.hpp"
 #include "framework/inference/inferrer.hpp"
 #include "framework/inference/refiner.hpp"
 #include "framework/store/samples_file.hpp"

@@ -49,7 +49,7 @@ void addInfer(CLI::App& app) {
 void addReplay(CLI::App& app, const Invocation& invocation) {
   const auto arguments = std::make_shared<ReplayArguments>();
   arguments->threads = invocation.threads;
-  constexpr int kFewestDraws = 2, kMostDraws = 10000;
+  constexpr int kMinDraws = 2, kMaxDraws = 10000;
   CLI::App* command =
       app.add_subcommand("replay",
                          "Infer the parameters of a measured response, simulate the updated model next to "
@@ -76,7 +76,7 @@ void addReplay(CLI::App& app, const Invocation& invocation) {
       ->add_option("--draws", arguments->draws,
                    "Simulations with parameters drawn from what was inferred, for the band (default: 50)")
       ->type_name("N")
-      ->check(CLI::Range(kFewestDraws, kMostDraws));
+      ->check(CLI::Range(kMinDraws, kMaxDraws));
   addThreads(*command, arguments->threads);
   command
       ->add_option("--out", arguments->out, "Folder for the results (default: RUN/replay/NAME of the file)")

@@ -16,10 +16,10 @@ void addFailOnGates(CLI::App& command, bool& fail) {
 }
 
 void addThreads(CLI::App& command, int& threads) {
-  constexpr int kMostThreads = 1024;
+  constexpr int kMaxThreads = 1024;
   command.add_option("--threads", threads, "Threads (default: all cores); results do not depend on them")
       ->type_name("N")
-      ->check(CLI::Range(1, kMostThreads));
+      ->check(CLI::Range(1, kMaxThreads));
 }
 
 void addWhereAndHow(CLI::App& command, RunArguments& arguments, const Invocation& invocation) {
@@ -41,18 +41,18 @@ void addWhereAndHow(CLI::App& command, RunArguments& arguments, const Invocation
 }
 
 void addJobs(CLI::App& command, SubmitArguments& arguments) {
-  constexpr int kLongest = 100000, kMostCpus = 1024, kMostShards = 1000;
+  constexpr int kLongest = 100000, kMaxCpus = 1024, kMaxShards = 1000;
   command.add_option("--time", arguments.minutes, "Time limit of a job; min (default: 60)")
       ->type_name("MINUTES")
       ->check(CLI::Range(1, kLongest));
   command.add_option("--cpus", arguments.cpus, "Threads of a job (default: 1)")
       ->type_name("N")
-      ->check(CLI::Range(1, kMostCpus));
+      ->check(CLI::Range(1, kMaxCpus));
   command
       .add_option("--shards", arguments.shards,
                   "Jobs that simulate (default: such that each takes half of the time limit)")
       ->type_name("N")
-      ->check(CLI::Range(1, kMostShards));
+      ->check(CLI::Range(1, kMaxShards));
 }
 
 CLI::Option* addOn(CLI::App& command, SubmitArguments& arguments) {

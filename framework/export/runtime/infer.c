@@ -26,10 +26,10 @@ static void finish(twinmap_result *result)
   correlate(result);
 #endif
   if (limited) {
-    result->statuses |= TWINMAP_STATUS_MAP_LIMITED;
+    result->statuses |= TWINMAP_STATUS_ESTIMATOR_LIMITED;
   }
   result->status = TWINMAP_TRUST ? TWINMAP_STATUS_OK : TWINMAP_STATUS_NOT_JUDGED;
-  for (a = TWINMAP_STATUS_MAP_LIMITED; a > 0; a /= 2) {
+  for (a = TWINMAP_STATUS_ESTIMATOR_LIMITED; a > 0; a /= 2) {
     if (result->statuses & (unsigned)a) {
       result->status = (twinmap_status)a;
     }
@@ -117,8 +117,8 @@ const char *twinmap_status_text(twinmap_status status)
       return "at_bounds";
     case TWINMAP_STATUS_UNINFORMATIVE:
       return "uninformative";
-    case TWINMAP_STATUS_MAP_LIMITED:
-      return "map_limited";
+    case TWINMAP_STATUS_ESTIMATOR_LIMITED:
+      return "estimator_limited";
     case TWINMAP_STATUS_NOT_JUDGED:
       return "not_judged";
     case TWINMAP_STATUS_OK:

@@ -107,7 +107,7 @@ static int take_step(twinmap_state *state, int metric, double *unknown, double *
 }
 
 /* Of an undamped step that no bound stops, as the linear model has it. */
-static double foretell_gain(twinmap_state *state, const double *unknown)
+static double predicted_gain(twinmap_state *state, const double *unknown)
 {
   double gain = 0.0;
   int v;
@@ -127,7 +127,7 @@ static int advance(twinmap_state *state, int metric, double *unknown, double *ob
   const double least_gain = 0.01; /* a step of a tenth of a standard deviation: the linear model tells the rest */
   const double before = *objective;
   make_normal_equations(state, metric);
-  if (foretell_gain(state, unknown) < least_gain) {
+  if (predicted_gain(state, unknown) < least_gain) {
     return 0;
   }
   if (!take_step(state, metric, unknown, objective, damping)) {

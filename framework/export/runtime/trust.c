@@ -81,23 +81,23 @@ static void calc_leftover(twinmap_state *state)
   {
     double moved[TWINMAP_UNLEARNT];
     for (j = 0; j < TWINMAP_UNLEARNT; ++j) {
-      moved[j] = dot_real(unlearnt_directions + j * TWINMAP_RESIDUALS, left);
+      moved[j] = dot_real(unmodelled_directions + j * TWINMAP_RESIDUALS, left);
     }
     for (j = 0; j < TWINMAP_UNLEARNT; ++j) {
-      const double stddev = unlearnt_stddev[j], shrinkage = 1.0 / sqrt(1.0 + stddev * stddev);
-      add_direction(moved[j] * (shrinkage - 1.0), unlearnt_directions + j * TWINMAP_RESIDUALS, left);
+      const double stddev = unmodelled_stddev[j], shrinkage = 1.0 / sqrt(1.0 + stddev * stddev);
+      add_direction(moved[j] * (shrinkage - 1.0), unmodelled_directions + j * TWINMAP_RESIDUALS, left);
     }
   }
 #endif
 }
 
 /* The stretch of 1, 2, 4, 8 ... neighbours whose sum of squares is least likely (Wilson and Hilferty). */
-static void find_burst(const double *residual, twinmap_result *result)
+static void find_anomaly(const double *residual, twinmap_result *result)
 {
   int run, count, i;
-  result->burst_score = -HUGE_VAL;
-  result->burst_first = 0;
-  result->burst_count = 0;
+  result->anomaly_score = -HUGE_VAL;
+  result->anomaly_first = 0;
+  result->anomaly_count = 0;
   for (run = 0; run < TWINMAP_RUNS; ++run) {
     const int begin = residual_runs[2 * run], length = residual_runs[2 * run + 1];
     for (count = 1; count <= length; count *= 2) {
@@ -112,10 +112,10 @@ static void find_burst(const double *residual, twinmap_result *result)
         }
       }
       score = (cbrt(most / count) - (1.0 - variance)) / sqrt(variance);
-      if (score > result->burst_score) {
-        result->burst_score = score;
-        result->burst_first = first;
-        result->burst_count = count;
+      if (score > result->anomaly_score) {
+        result->anomaly_score = score;
+        result->anomaly_first = first;
+        result->anomaly_count = count;
       }
     }
   }
@@ -203,10 +203,10 @@ static void judge(twinmap_state *state, const double *known, twinmap_result *res
   calc_leftover(state);
   result->chi_square = dot(TWINMAP_RESIDUALS, state->leftover, state->leftover);
   result->residuals = TWINMAP_RESIDUALS;
-  find_burst(state->leftover, result);
+  find_anomaly(state->leftover, result);
   result->chi_square_p_value = calc_p_value(TWINMAP_REFERENCES, chi_square_reference, result->chi_square);
-  result->burst_p_value = calc_p_value(TWINMAP_BURST_REFERENCES, burst_reference, result->burst_score);
-  result->p_value = fmin(1.0, 2.0 * fmin(result->chi_square_p_value, result->burst_p_value));
+  result->anomaly_p_value = calc_p_value(TWINMAP_BURST_REFERENCES, anomaly_reference, result->anomaly_score);
+  result->p_value = fmin(1.0, 2.0 * fmin(result->chi_square_p_value, result->anomaly_p_value));
   result->distance = calc_cloud_distance(state);
   result->statuses = find_statuses(result);
 }

@@ -13,14 +13,14 @@ extern "C" {
 /* Signals, features and the tables that tolerate it; sums that would drown in rounding are double always. */
 typedef @REAL@ twinmap_real;
 
-/* What is to be said against an inference, the gravest first; each is a bit of twinmap_result.statuses. */
+/* What is to be said against an inference, the most severe first; each is a bit of twinmap_result.statuses. */
 typedef enum {
   TWINMAP_STATUS_OK = 0,
   TWINMAP_STATUS_MODEL_MISMATCH = 1,   /* no point of the box explains the features within their noise */
   TWINMAP_STATUS_OUTSIDE_TRAINING = 2, /* the features are far from all the map was trained on */
   TWINMAP_STATUS_AT_BOUNDS = 4,        /* a parameter lies beyond its bounds */
   TWINMAP_STATUS_UNINFORMATIVE = 8,    /* a parameter's sd is close to that of its bounds */
-  TWINMAP_STATUS_MAP_LIMITED = 16,     /* the errors are mostly the map's own, or not known to it */
+  TWINMAP_STATUS_ESTIMATOR_LIMITED = 16,     /* the errors are mostly the map's own, or not known to it */
   TWINMAP_STATUS_NOT_JUDGED = 32       /* there is no trust model, and nothing else is known against it */
 } twinmap_status;
 
@@ -48,13 +48,13 @@ typedef struct {
   double p_value;            /* of the residual, as if the model were right */
   double chi_square;         /* sum of the squared residuals, in variances */
   double chi_square_p_value;
-  double burst_score;        /* of the most conspicuous stretch of residuals, a standard normal deviate */
-  double burst_p_value;
+  double anomaly_score;        /* of the most conspicuous stretch of residuals, a standard normal deviate */
+  double anomaly_p_value;
   double distance;           /* to the nearest training sample, 1: the farthest of simulated measurements */
   int residuals;             /* how many */
-  int burst_first, burst_count;
+  int anomaly_first, anomaly_count;
   unsigned statuses;         /* all that apply: bits of twinmap_status; 0: nothing is said against it */
-  twinmap_status status;     /* the gravest of them */
+  twinmap_status status;     /* the most severe of them */
 } twinmap_result;
 
 /* The buffers of one inference after another. They need no initialisation; one object a thread. */

@@ -49,7 +49,7 @@ class Inference:
     """What a measurement says of p parameters: a normal distribution and whether to trust it.
 
     `names`, `units`: of the parameters. `mean`, `stddev` (p): in those units. `covariance` (p, p). `statuses`: ["ok"],
-    or what is to be said against the answer, the gravest first (docs/trust.md); empty where the run has no trust
+    or what is to be said against the answer, the most severe first (docs/trust.md); empty where the run has no trust
     model. `method`: "refined" where the answer was refined on the simulator and accepted, else "inverse_map".
     `posterior`: where it was asked for, else None.
     """
@@ -80,7 +80,7 @@ class Inference:
 
     @property
     def status(self) -> Optional[str]:
-        """The gravest of the statuses; None where nobody has judged."""
+        """The most severe of the statuses; None where nobody has judged."""
         return self.statuses[0] if self.statuses else None
 
     @property

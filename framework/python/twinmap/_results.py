@@ -70,7 +70,7 @@ class Results:
 
     @property
     def warnings(self) -> List[str]:
-        """What to know before relying on the run, the gravest first."""
+        """What to know before relying on the run, the most severe first."""
         return list(self.provenance["warnings"])
 
     @property

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "framework/experiment/model/model_spec.hpp"
 #include "framework/report/figure.hpp"
-#include "framework/spec/model_spec.hpp"
 
 namespace twinmap {
 

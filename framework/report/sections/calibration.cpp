@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "framework/experiment/check/check_experiment.hpp"
 #include "framework/report/sections/calibration_tables.hpp"
 #include "framework/report/sections/samples_table.hpp"
 #include "framework/report/sections/sections.hpp"
-#include "framework/spec/check/check_experiment.hpp"
 
 namespace twinmap {
 namespace {

@@ -5,9 +5,9 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <cmath>
 
-#include "framework/evaluation/calibration.hpp"
+#include "framework/analysis/calibration.hpp"
+#include "framework/experiment/check/check_experiment.hpp"
 #include "framework/report/sections/samples_table.hpp"
-#include "framework/spec/check/check_experiment.hpp"
 
 namespace twinmap {
 namespace {
@@ -41,7 +41,7 @@ struct Scores {
 Scores collectScores(const RunFolder& run, const std::string& parameter) {
   const ParameterPredictions found = collectPredictions(run, parameter);
   Scores scores;
-  for (std::size_t i = 0; i < std::min(found.samples.size(), kMostDrawnSamples); ++i) {
+  for (std::size_t i = 0; i < std::min(found.samples.size(), kMaxDrawnSamples); ++i) {
     if (std::isfinite(found.z[i])) {
       scores.samples.push_back(found.samples[i]);
       scores.z.push_back(found.z[i]);

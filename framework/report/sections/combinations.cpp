@@ -2,11 +2,11 @@
 
 #include <cmath>
 
+#include "framework/base/text/number_text.hpp"
+#include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
 #include "framework/report/html.hpp"
 #include "framework/report/sections/sections.hpp"
-#include "framework/spec/check/check_experiment.hpp"
-#include "framework/spec/parameter_box.hpp"
-#include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
 namespace {
@@ -30,11 +30,11 @@ std::string toPercent(double fraction) {
 
 /// "0.71 k_1 \u2212 0.7 k_2": what moves by more than a tenth.
 std::string describeCombination(const RunFolder& run, std::size_t row) {
-  constexpr double kLeast = 0.1;
+  constexpr double kMin = 0.1;
   std::string text;
   for (const std::string& name : collectNames(run.experiment.model.parameters)) {
     const double weight = run.identifiability.getNumber(row, name);
-    if (std::abs(weight) >= kLeast) {
+    if (std::abs(weight) >= kMin) {
       text += text.empty() ? (weight < 0.0 ? "\u2212" : "") : (weight < 0.0 ? " \u2212 " : " + ");
       text += toShortText(std::abs(weight), 2) + " " + name;
     }

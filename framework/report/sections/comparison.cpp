@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/base/text/number_text.hpp"
 #include "framework/report/html.hpp"
 #include "framework/report/sections/metric_columns.hpp"
 #include "framework/report/sections/sections.hpp"
-#include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
 namespace {
@@ -106,7 +106,7 @@ Figure makeCoverageFigure(const std::vector<std::string>& parameters,
                           const std::vector<std::string>& labels) {
   Figure figure{"coverage-side-by-side",
                 "Coverage side by side",
-                "On the dashed line the intervals are honest; left of it they are too narrow.",
+                "On the dashed line the intervals are calibrated; left of it they are too narrow.",
                 kComparison,
                 {},
                 {},

@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/base/text/number_text.hpp"
 #include "framework/report/html.hpp"
 #include "framework/report/sections/sections.hpp"
 #include "framework/report/sections/verdict.hpp"
-#include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
 namespace {

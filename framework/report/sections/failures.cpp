@@ -11,7 +11,7 @@
 namespace twinmap {
 namespace {
 
-constexpr std::size_t kMostFailures = 1000;  // that are drawn
+constexpr std::size_t kMaxFailures = 1000;  // that are drawn
 
 /// Reasons without their numbers, so that alike ones are counted together.
 std::string makeKind(const std::string& reason) {
@@ -41,9 +41,9 @@ std::string makeReasonTable(const CsvTable& failures) {
   std::vector<std::pair<std::string, Kind>> sorted(kinds.begin(), kinds.end());
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const auto& a, const auto& b) { return a.second.count > b.second.count; });
-  constexpr std::size_t kMostKinds = 50;
+  constexpr std::size_t kMaxKinds = 50;
   std::vector<std::vector<HtmlCell>> rows;
-  for (std::size_t i = 0; i < std::min(sorted.size(), kMostKinds); ++i) {
+  for (std::size_t i = 0; i < std::min(sorted.size(), kMaxKinds); ++i) {
     rows.push_back(
         {makeNumberCell(std::to_string(sorted[i].second.count)), makeTextCell(sorted[i].second.example)});
   }
@@ -53,7 +53,7 @@ std::string makeReasonTable(const CsvTable& failures) {
 
 DataTable makeFailuresTable(const RunFolder& run) {
   const CsvTable& failures = run.failures;
-  const std::size_t count = std::min(failures.rows.size(), kMostFailures);
+  const std::size_t count = std::min(failures.rows.size(), kMaxFailures);
   std::vector<std::string> sets, samples, reasons;
   for (std::size_t row = 0; row < count; ++row) {
     sets.push_back(failures.getText(row, "set"));
@@ -101,9 +101,9 @@ void addFailures(const RunFolder& run, Section& section, Page& page) {
                     makeParameterChoice("y", "up", parameters, last)};
   addFigure(std::move(figure), section);
   section.html += makeReasonTable(run.failures);
-  if (run.failures.rows.size() > kMostFailures) {
+  if (run.failures.rows.size() > kMaxFailures) {
     section.html += makeParagraph(
-        fmt::format("The first {} of {} failures are drawn.", kMostFailures, run.failures.rows.size()));
+        fmt::format("The first {} of {} failures are drawn.", kMaxFailures, run.failures.rows.size()));
   }
 }
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/experiment/check/check_experiment.hpp"
 #include "framework/report/html.hpp"
 #include "framework/report/sections/sections.hpp"
-#include "framework/spec/check/check_experiment.hpp"
-#include "framework/store/map_summary.hpp"
+#include "framework/store/estimators/map_summary.hpp"
 
 namespace twinmap {
 namespace {
@@ -134,12 +134,12 @@ const Eigen::MatrixXd* findProjection(const RunFolder& run) {
 
 void addLoadings(const RunFolder& run, const std::vector<FeaturePlace>& places, Section& section,
                  Page& page) {
-  constexpr Eigen::Index kMostComponents = 6;
+  constexpr Eigen::Index kMaxComponents = 6;
   const Eigen::MatrixXd* projection = run.map ? findProjection(run) : nullptr;
   if (projection == nullptr || projection->cols() != static_cast<Eigen::Index>(places.size())) {
     return;
   }
-  const Eigen::Index shown = std::min(projection->rows(), kMostComponents);
+  const Eigen::Index shown = std::min(projection->rows(), kMaxComponents);
   std::vector<std::string> names;
   SeriesTable table;
   for (Eigen::Index k = 0; k < shown; ++k) {

@@ -1,8 +1,8 @@
 #include <algorithm>
 
+#include "framework/experiment/check/check_experiment.hpp"
 #include "framework/report/sections/sections.hpp"
-#include "framework/spec/check/check_experiment.hpp"
-#include "framework/store/map_summary.hpp"
+#include "framework/store/estimators/map_summary.hpp"
 
 namespace twinmap {
 
@@ -10,13 +10,13 @@ void addRelevance(const RunFolder& run, Section& section, Page& page) {
   if (!run.map) {
     return;
   }
-  constexpr Eigen::Index kMostInputs = 24;
+  constexpr Eigen::Index kMaxInputs = 24;
   std::vector<std::string> parameters, inputs;
   std::vector<double> relevance, length_scale;
   const std::vector<std::string> names = collectNames(run.experiment.model.parameters);
   for (std::size_t p = 0; p < std::min(names.size(), run.map->hyperparameters.size()); ++p) {
     const Eigen::VectorXd& scales = run.map->hyperparameters[p].length_scales;
-    for (Eigen::Index i = 0; i < std::min(scales.size(), kMostInputs); ++i) {
+    for (Eigen::Index i = 0; i < std::min(scales.size(), kMaxInputs); ++i) {
       parameters.push_back(names[p]);
       inputs.push_back(std::to_string(i + 1));
       length_scale.push_back(scales[i]);

@@ -46,7 +46,7 @@ Figure makeFigure(const RunFolder& run, bool of_error) {
   figure.title = of_error ? "Error against the true value" : "Inferred against true";
   figure.help = of_error
                     ? "Each bar spans \u00b12 sd around the error (inferred \u2212 true); where the map is "
-                      "honest, about 95 % of the bars cross the dashed line at 0."
+                      "calibrated, about 95 % of the bars cross the dashed line at 0."
                     : describeDrawnSamples(run) +
                           "Points on the dashed line are inferred exactly; bars span \u00b12 sd. Drag over "
                           "points, or press one, to highlight the same samples in every figure.";
@@ -62,16 +62,16 @@ constexpr const char* kComponents = "components";
 
 /// A row for each test sample that is drawn and each of its answers, but for the unlikeliest.
 DataTable makeComponentsTable(const RunFolder& run) {
-  constexpr double kLeast = 0.02;  // cannot be seen below
+  constexpr double kMin = 0.02;  // cannot be seen below
   const std::vector<ParameterSpec>& parameters = run.experiment.model.parameters;
   std::vector<double> samples, weights;
   std::vector<std::vector<double>> truth(parameters.size()), mean(truth), stddev(truth);
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const ParameterPredictions found = collectPredictions(run, parameters[p].name.text);
-    for (std::size_t i = 0; i < std::min(run.mixtures.size(), kMostDrawnSamples); ++i) {
+    for (std::size_t i = 0; i < std::min(run.mixtures.size(), kMaxDrawnSamples); ++i) {
       const Mixture& mixture = run.mixtures[i];
       for (Eigen::Index c = 0; c < mixture.countComponents(); ++c) {
-        if (mixture.weights[c] < kLeast) {
+        if (mixture.weights[c] < kMin) {
           continue;
         }
         if (p == 0) {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "framework/base/text/csv_file.hpp"
 #include "framework/report/html.hpp"
-#include "framework/store/csv_file.hpp"
 
 namespace twinmap {
 

@@ -1,8 +1,8 @@
+#include "framework/base/text/csv.hpp"
+#include "framework/base/text/number_text.hpp"
 #include "framework/report/html.hpp"
 #include "framework/report/sections/metric_columns.hpp"
 #include "framework/report/sections/sections.hpp"
-#include "framework/results/csv.hpp"
-#include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
 namespace {

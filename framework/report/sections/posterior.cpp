@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/experiment/check/check_experiment.hpp"
 #include "framework/report/sections/sections.hpp"
-#include "framework/spec/check/check_experiment.hpp"
 
 namespace twinmap {
 namespace {

@@ -1,8 +1,8 @@
 #include <fmt/core.h>
 
+#include "framework/experiment/check/check_experiment.hpp"
 #include "framework/report/sections/calibration_tables.hpp"
 #include "framework/report/sections/sections.hpp"
-#include "framework/spec/check/check_experiment.hpp"
 
 namespace twinmap {
 namespace {

@@ -6,7 +6,7 @@
 #include <boost/math/special_functions/erf.hpp>
 #include <cmath>
 
-#include "framework/evaluation/calibration.hpp"
+#include "framework/analysis/calibration.hpp"
 
 namespace twinmap {
 namespace {
@@ -20,7 +20,7 @@ std::size_t countSamples(const CsvTable& predictions) {
 }
 
 std::vector<double> takeDrawn(std::vector<double> values) {
-  values.resize(std::min(values.size(), kMostDrawnSamples));
+  values.resize(std::min(values.size(), kMaxDrawnSamples));
   return values;
 }
 
@@ -102,10 +102,10 @@ DataTable makeSamplesTable(const RunFolder& run) {
 
 std::string describeDrawnSamples(const RunFolder& run) {
   const std::size_t count = countSamples(run.predictions);
-  return count <= kMostDrawnSamples
+  return count <= kMaxDrawnSamples
              ? ""
              : fmt::format("The first {} of {} test samples are drawn; the table counts all. ",
-                           kMostDrawnSamples, count);
+                           kMaxDrawnSamples, count);
 }
 
 }  // namespace twinmap

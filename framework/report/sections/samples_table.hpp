@@ -43,7 +43,7 @@ ParameterPredictions collectPredictions(const RunFolder& run, const std::string&
 double calcPit(double z);
 
 /// More test samples than these are not drawn: the first ones stand for all.
-inline constexpr std::size_t kMostDrawnSamples = 1000;
+inline constexpr std::size_t kMaxDrawnSamples = 1000;
 
 /// One row per test sample: its index, and per parameter the true and the inferred value, the stddev, the
 /// limit where it is known, the error (inferred - true), z and its PIT.

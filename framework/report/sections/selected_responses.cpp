@@ -12,13 +12,13 @@ namespace twinmap {
 namespace {
 
 constexpr const char* kSelectedResponses = "selected-responses";
-constexpr int kMostShown = 12;
-constexpr Eigen::Index kMostTimes = 200;
+constexpr int kMaxShown = 12;
+constexpr Eigen::Index kMaxTimes = 200;
 constexpr double kSteps = 65535.0;
 
 /// The rows of an output's response that are kept.
 std::vector<Eigen::Index> findKeptTimes(Eigen::Index count) {
-  const Eigen::Index step = (count + kMostTimes - 1) / kMostTimes;
+  const Eigen::Index step = (count + kMaxTimes - 1) / kMaxTimes;
   std::vector<Eigen::Index> kept;
   for (Eigen::Index i = 0; i < count; i += step) {
     kept.push_back(i);
@@ -83,7 +83,7 @@ std::vector<double> takeKeptTimes(const Eigen::VectorXd& times) {
 
 std::vector<double> findDrawnSamples(const RunFolder& run) {
   std::vector<double> samples = collectPredictions(run, run.experiment.model.parameters[0].name.text).samples;
-  samples.resize(std::min(samples.size(), kMostDrawnSamples));
+  samples.resize(std::min(samples.size(), kMaxDrawnSamples));
   return samples;
 }
 
@@ -119,7 +119,7 @@ void addSelectedResponses(const RunFolder& run, Section& section, Page& page) {
   Figure figure{
       kSelectedResponses,
       "Responses of the highlighted samples",
-      fmt::format("Clean simulated responses, as in samples.h5; at most {} samples are shown.", kMostShown),
+      fmt::format("Clean simulated responses, as in samples.h5; at most {} samples are shown.", kMaxShown),
       kSelectedResponses,
       {},
       {},
@@ -129,7 +129,7 @@ void addSelectedResponses(const RunFolder& run, Section& section, Page& page) {
     figure.panels.push_back(makeOutputPanel(stored, i));
   }
   const std::string data = encodeBase64(packResponses(stored, samples, ranges));
-  page.responses = PackedResponses{takeKeptTimes(stored.times), ranges, samples, kMostShown, data};
+  page.responses = PackedResponses{takeKeptTimes(stored.times), ranges, samples, kMaxShown, data};
   addFigure(std::move(figure), section);
 }
 

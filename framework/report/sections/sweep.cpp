@@ -4,12 +4,12 @@
 #include <cmath>
 #include <set>
 
+#include "framework/base/text/csv.hpp"
+#include "framework/base/text/number_text.hpp"
 #include "framework/report/html.hpp"
 #include "framework/report/sections/sections.hpp"
 #include "framework/report/sections/sweep_figures.hpp"
 #include "framework/report/sections/verdict.hpp"
-#include "framework/results/csv.hpp"
-#include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "framework/spec/yaml/number_text.hpp"
+#include "framework/base/text/number_text.hpp"
 
 namespace twinmap {
 namespace {

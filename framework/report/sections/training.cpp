@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/experiment/check/check_experiment.hpp"
 #include "framework/report/html.hpp"
 #include "framework/report/sections/sections.hpp"
-#include "framework/spec/check/check_experiment.hpp"
 
 namespace twinmap {
 namespace {
@@ -136,11 +136,11 @@ void addHyperparameters(const RunFolder& run, Section& section, Page& page) {
   const std::size_t count = std::max<std::size_t>(1, run.hyperparameters.rows.size() / names.size());
   figure.columns = names.size() == 4 ? 2 : 0;
   constexpr int kRowHeight = 18, kFrame = 20;
-  constexpr std::size_t kMostRows = 30;  // beyond, rows share the height
+  constexpr std::size_t kMaxRows = 30;  // beyond, rows share the height
   for (std::size_t p = 0; p < names.size(); ++p) {
     figure.panels.push_back({"hyperparameters",
                              {{"name", names[p]}, {"color", getColor(p)}},
-                             {{"height", calcHeight(std::min(count, kMostRows), kRowHeight, kFrame)}}});
+                             {{"height", calcHeight(std::min(count, kMaxRows), kRowHeight, kFrame)}}});
   }
   addFigure(std::move(figure), section);
 }
@@ -154,16 +154,18 @@ std::string makeChains(const CsvTable& chains) {
                     makeNumberCell(chains.getText(row, "effective_draws"), 4)});
   }
   return makeElement("h3", "Draws of the network's weights") + "\n" +
-         makeHtmlTable("chains-table",
-                       fmt::format("{} chains of {} draws of {} weights; {} divergent trajectories, {} cut, mean "
-                                   "acceptance {:.2f}. Of a parameter: the worst of its means at 20 samples.",
-                                   chains.getText(0, "chains"), chains.getText(0, "draws"),
-                                   chains.getText(0, "weights"), chains.getText(0, "divergences"),
-                                   chains.getText(0, "cut"), chains.getNumber(0, "acceptance")),
-                       {"quantity", "R-hat", "effective draws"}, rows) +
-         makeParagraph("R-hat is 1 where the chains agree; above 1.05, or with fewer than 100 effective draws, "
-                       "they do not know the posterior yet.",
-                       "class=\"quiet\"");
+         makeHtmlTable(
+             "chains-table",
+             fmt::format("{} chains of {} draws of {} weights; {} divergent trajectories, {} cut, mean "
+                         "acceptance {:.2f}. Of a parameter: the worst of its means at 20 samples.",
+                         chains.getText(0, "chains"), chains.getText(0, "draws"),
+                         chains.getText(0, "weights"), chains.getText(0, "divergences"),
+                         chains.getText(0, "cut"), chains.getNumber(0, "acceptance")),
+             {"quantity", "R-hat", "effective draws"}, rows) +
+         makeParagraph(
+             "R-hat is 1 where the chains agree; above 1.05, or with fewer than 100 effective draws, "
+             "they do not know the posterior yet.",
+             "class=\"quiet\"");
 }
 
 /// Leave-one-out figures from training alone, beside those on the test set.

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/base/text/number_text.hpp"
+#include "framework/experiment/check/check_experiment.hpp"
 #include "framework/report/sections/sections.hpp"
-#include "framework/spec/check/check_experiment.hpp"
-#include "framework/spec/yaml/number_text.hpp"
 
 namespace twinmap {
 namespace {

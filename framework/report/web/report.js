@@ -185,8 +185,8 @@
 
   /** Until the browser has nothing better to do. */
   function waitUntilIdle() {
-    const kMost = 100;  // ms
-    return new Promise(resolve => window.requestIdleCallback ? requestIdleCallback(resolve, {timeout: kMost})
+    const kMax = 100;  // ms
+    return new Promise(resolve => window.requestIdleCallback ? requestIdleCallback(resolve, {timeout: kMax})
                                                              : setTimeout(resolve));
   }
 

@@ -20,7 +20,7 @@ TABLE1 = EXPERIMENTS / "two_beam/table1.yaml"
 CART = EXPERIMENTS / "duffing/cart.yaml"
 CHAIN = EXPERIMENTS / "three_mass_chain"
 SMALL = ["design.train.samples=40", "design.test.samples=20"]
-NO_LIMIT = "evaluation.limit=false"  # a neighbourhood of simulations less at each test point
+NO_LIMIT = "evaluation.limit=false"  # a stencil of simulations less at each test point
 RESULTS = ["correlations.csv", "failures.csv", "features.csv", "hyperparameters.csv", "identifiability.csv", "joint.csv",
            "maps.h5", "metrics.csv", "pit.csv", "predictions.csv", "resolved.yaml", "responses.csv", "samples.h5", "table.md",
            "table.tex", "training.csv", "trust_power.csv"]

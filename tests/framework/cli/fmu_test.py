@@ -1,4 +1,4 @@
-"""Models that come as FMUs, by the command: TWINMAP_TEST_FMUS holds the FMUs of tests/framework/fmi/fmus."""
+"""Models that come as FMUs, by the command: TWINMAP_TEST_FMUS holds the FMUs of tests/framework/models/fmu/fmus."""
 import os
 import signal
 import subprocess

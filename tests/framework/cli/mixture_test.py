@@ -24,7 +24,7 @@ class Mixture(OwnFolderTestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         return result.stdout
 
-    def test_intervals_are_honest_and_the_run_tells_of_several_answers(self):
+    def test_intervals_are_honest_and_the_run_tells_of_multimodal(self):
         run, result = run_once(ROTOR, *SMALL, QUICK)
         self.assertIn("several answers fit, in these shares of the test samples: offset", result.stderr)
         self.assertNotIn("say little more than the bounds do", result.stderr)
@@ -43,7 +43,7 @@ class Mixture(OwnFolderTestCase):
     def test_inferring_gives_both_answers(self):
         run, _ = run_once(ROTOR, *SMALL, QUICK)
         answer = json.loads(self.infer(run, "--json"))
-        self.assertEqual(answer["statuses"], ["several_answers"])
+        self.assertEqual(answer["statuses"], ["multimodal"])
         intervals = answer["parameters"]["offset"]["intervals95"]
         self.assertEqual(len(intervals), 2)
         for (lower, upper), truth in zip(intervals, (-OFFSET, OFFSET)):
@@ -62,13 +62,13 @@ class Mixture(OwnFolderTestCase):
         run, _ = run_once(ROTOR, *SMALL, QUICK)
         answer = json.loads(self.infer(run, "--refine", "--json"))
         self.assertEqual(answer["method"], "inverse_map")
-        self.assertEqual(answer["refined"]["status"], "several_answers")
-        self.assertIn("several_answers", answer["statuses"])
+        self.assertEqual(answer["refined"]["status"], "multimodal")
+        self.assertIn("multimodal", answer["statuses"])
         refined = self.folder / "refined"
         result = call("run", ROTOR, *SMALL, QUICK, "design.test.samples=60", "refine=always", "--out", refined)
         self.assertEqual(result.returncode, 0, result.stderr)
         statuses = [row["status"] for row in read_csv(refined / "refined.csv")]
-        self.assertGreater(statuses.count("several_answers"), 40)
+        self.assertGreater(statuses.count("multimodal"), 40)
         # a sample whose refined answer was accepted has that one alone
         accepted = statuses.count("accepted")
         rows = [row for row in read_csv(refined / "components.csv") if row["parameter"] == "k"]

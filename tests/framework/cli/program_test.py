@@ -9,7 +9,7 @@ from pathlib import Path
 from support import EXPERIMENTS, TWINMAP, OwnFolderTestCase, call, find_processes, read_columns, read_datasets
 
 PLANT = EXPERIMENTS / "python_plant" / "python_plant.yaml"
-FAULTY = Path(os.environ["TWINMAP_SOURCE_DIR"]) / "tests/framework/program/programs/faulty.py"
+FAULTY = Path(os.environ["TWINMAP_SOURCE_DIR"]) / "tests/framework/models/external/programs/faulty.py"
 QUICK = ["evaluation.limit=false", "refine=never"]
 TEXT = """
 name: faulty

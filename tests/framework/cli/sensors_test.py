@@ -57,12 +57,12 @@ class Sensors(FolderTestCase):
                       "refine=never", "inverse_map=surrogate", "--out", run)
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(len(read_csv(run / "features.csv")), 3 * 40)
-        foretold = read_csv(self.design / "times.csv")[-1]
+        predicted = read_csv(self.design / "times.csv")[-1]
         middle = {"m_cart": 2, "m_load": 0.5, "length": 0.4, "d_cart": 3}
         for row in read_csv(run / "methods.csv"):
             if row["parameter"] in middle:
                 limit = float(row["limit_pct"]) / 100 * middle[row["parameter"]]
-                self.assertAlmostEqual(float(foretold[f"sd_{row['parameter']}"]) / limit, 1, delta=0.2)
+                self.assertAlmostEqual(float(predicted[f"sd_{row['parameter']}"]) / limit, 1, delta=0.2)
 
     def test_the_page_shows_choice_curves_and_times(self):
         page = (self.design / "sensors.html").read_text()

@@ -20,7 +20,7 @@ CART = EXPERIMENTS / "duffing/cart.yaml"
 CHAIN = EXPERIMENTS / "three_mass_chain/modes.yaml"
 QUICK = ["evaluation.limit=false", "design.train.method=nested_latin_hypercube"]
 SMALL = [*QUICK, "design.test.samples=8", "inverse_map.gp.starts=1"]
-DIFFERENCES = "simulation.engine=simbody"  # no derivatives of its own: neighbourhoods are simulated and kept
+DIFFERENCES = "simulation.engine=simbody"  # no derivatives of its own: stencils are simulated and kept
 LIMITS = [*SMALL, "evaluation.limit=true", DIFFERENCES]
 KILLED = [*LIMITS, "design.train.samples=8,16", "noise.scale=0.5,1", "seed=1..2", "design.test.samples=60"]
 FULL = [*LIMITS, "design.train.samples=8,16", "noise.scale=0.5,1"]
@@ -55,17 +55,17 @@ class SweepTestCase(OwnFolderTestCase):
     def list_cases(self, name):
         return sorted(path.name for path in (self.folder / name / "cases").iterdir())
 
-    def get_stored(self, name, neighbourhoods=False):
-        """The points that were simulated, or those whose neighbourhoods were; none twice."""
+    def get_stored(self, name, stencils=False):
+        """The points that were simulated, or those whose stencils were; none twice."""
         points = []
         for content in (self.folder / name).glob("chunks/*/content.yaml"):
-            if ("\nneighbourhoods:" in content.read_text()) == neighbourhoods:
+            if ("\nstencils:" in content.read_text()) == stencils:
                 points += [point for chunk in content.parent.glob("*.chunk") for point in read_points(chunk)]
         self.assertEqual(len(points), len(set(points)), "a point was simulated twice")
         return set(points)
 
     def get_all_stored(self, name):
-        return self.get_stored(name), self.get_stored(name, neighbourhoods=True)
+        return self.get_stored(name), self.get_stored(name, stencils=True)
 
     def assert_same_files(self, a, b, files):
         _, different, missing = filecmp.cmpfiles(self.folder / a, self.folder / b, files, shallow=False)
@@ -102,35 +102,35 @@ class Simulations(SweepTestCase):
                 self.run_sweep(f"alone{interval}{i}", sweep=alone)
                 self.assert_same_files(f"run/cases/interval-{interval}_transform-{i + 1}", f"alone{interval}{i}", RESULTS)
 
-    def test_cases_share_the_neighbourhoods_of_their_test_points(self):
+    def test_cases_share_the_stencils_of_their_test_points(self):
         sweep = [*LIMITS, "noise.scale=0,0.5,1", "features[0].samples.interval=0.05,0.07", "features[0].samples.count=60",
                  "transform=[z_score]", "design.train.samples=12,16"]
         self.run_sweep("run", sweep=sweep)
         self.assertEqual(list(map(len, self.get_all_stored("run"))), [16 + 8, 8])
-        self.assertIn("neighbourhoods of test points: 8 of 8 stored", call("status", self.folder / "run").stdout)
+        self.assertIn("stencils of test points: 8 of 8 stored", call("status", self.folder / "run").stdout)
         self.run_sweep("alone", sweep=[*LIMITS, "noise.scale=0.5", "features[0].samples.interval=0.07",
                                        "features[0].samples.count=60", "transform=[z_score]", "design.train.samples=12"])
         self.assert_same_files("run/cases/scale-0.5_interval-0.07_samples-12", "alone", [*RESULTS, "identifiability.csv"])
         self.run_sweep("noiseless", sweep=[*LIMITS, "noise.scale=0", "transform=[z_score]", "design.train.samples=12"])
-        self.assertEqual(self.get_stored("noiseless", neighbourhoods=True), set())
+        self.assertEqual(self.get_stored("noiseless", stencils=True), set())
 
-    def test_a_selection_by_fisher_information_shares_neighbourhoods_of_training_points(self):
+    def test_a_selection_by_fisher_information_shares_stencils_of_training_points(self):
         select = "transform=[{select: {fisher_information: {count: 6}}}, z_score]"
         self.run_sweep("run", sweep=[*SMALL, select, "design.train.samples=20,30", "noise.scale=0.5,1", DIFFERENCES])
-        self.assertEqual(len(self.get_stored("run", neighbourhoods=True)), 16)
+        self.assertEqual(len(self.get_stored("run", stencils=True)), 16)
 
-    def test_other_bounds_have_other_neighbourhoods(self):
+    def test_other_bounds_have_other_stencils(self):
         self.run_sweep("run", sweep=[*LIMITS, "parameters.k.bounds=[80, 120],[90, 110]", "design.train.samples=12"])
-        self.assertEqual(len(self.get_stored("run", neighbourhoods=True)), 2 * 8)
+        self.assertEqual(len(self.get_stored("run", stencils=True)), 2 * 8)
 
-    def test_exact_derivatives_need_no_neighbourhoods(self):
+    def test_exact_derivatives_need_no_stencils(self):
         sweep = [*LIMITS, "simulation.engine=lanes", "noise.scale=0.5,1", "design.train.samples=12",
                  "features[0].samples.interval=0.05,0.07", "features[0].samples.count=60"]
         self.assertNotIn("limits", call("plan", CART, *sweep, "--out", self.folder / "run").stdout)
         self.run_sweep("run", sweep=sweep)
         self.assertEqual(list(map(len, self.get_all_stored("run"))), [12 + 8, 0])
         self.assertEqual(len(list(self.folder.glob("run/chunks/*"))), 1)
-        self.assertNotIn("neighbourhoods", (self.folder / "run/run.log").read_text())
+        self.assertNotIn("stencils", (self.folder / "run/run.log").read_text())
         self.assertNotIn("limits", call("status", self.folder / "run").stdout)
         self.run_sweep("alone", sweep=[*LIMITS, "simulation.engine=lanes", "noise.scale=0.5", "design.train.samples=12",
                                        "features[0].samples.interval=0.07", "features[0].samples.count=60"])
@@ -213,7 +213,7 @@ class Continuing(SweepTestCase):
             stored = self.get_all_stored("run")
             child = self.start("run", "--threads", rng.choice("123"), sweep=KILLED)
             if i % 6 == 1:
-                self.wait_for_neighbourhoods("run", child)
+                self.wait_for_stencils("run", child)
             time.sleep(rng.uniform(0.0, 0.1 if i % 2 == 1 else 0.6 * duration))
             survived = child.poll() is not None
             child.kill()
@@ -227,16 +227,16 @@ class Continuing(SweepTestCase):
         self.assertEqual(self.get_all_stored("run"), self.get_all_stored("undisturbed"))
         self.assert_same_sweeps("run", "undisturbed")
 
-    def wait_for_neighbourhoods(self, name, child):
-        while child.poll() is None and not any("\nneighbourhoods:" in content.read_text() for content in
+    def wait_for_stencils(self, name, child):
+        while child.poll() is None and not any("\nstencils:" in content.read_text() for content in
                                                (self.folder / name).glob("chunks/*/content.yaml")):
             time.sleep(0.002)
 
     def find_stage(self, name):
         """Of a sweep KILLED that was killed, by what it left."""
-        samples, neighbourhoods = self.get_all_stored(name)
+        samples, stencils = self.get_all_stored(name)
         complete = len(list(self.folder.glob(f"{name}/cases/*/report.html")))
-        return ("samples" if len(samples) < 2 * (16 + 60) else "neighbourhoods" if len(neighbourhoods) < 2 * 60 else
+        return ("samples" if len(samples) < 2 * (16 + 60) else "stencils" if len(stencils) < 2 * 60 else
                 "cases" if complete < 8 else "tables")
 
     def test_a_full_disk_is_named_and_with_more_room_the_sweep_continues(self):
@@ -245,7 +245,7 @@ class Continuing(SweepTestCase):
             self.skipTest("no file system of its own: " + probe.stderr.decode())
         self.run_sweep("undisturbed", sweep=FULL)
         size = sum(file.stat().st_size for file in (self.folder / "undisturbed").rglob("*") if file.is_file())
-        for part in (0.01, 0.04, 0.08, 0.3, 0.6, 0.95):  # samples, neighbourhoods, cases, ...
+        for part in (0.01, 0.04, 0.08, 0.3, 0.6, 0.95):  # samples, stencils, cases, ...
             with self.subTest(part=part):
                 self.fill_disk(f"disk{part}", int(part * size), f"run{part}")
                 kept = self.get_all_stored(f"run{part}")
@@ -270,7 +270,7 @@ class Continuing(SweepTestCase):
         self.run_sweep("run", "--store", self.folder / "store", sweep=[*LIMITS, "design.train.samples=8,16"])
         self.assertFalse((self.folder / "run/chunks").exists())
         status = call("status", self.folder / "run").stdout
-        self.assertIn("samples: 24 of 24 stored\nlimits:  neighbourhoods of test points: 8 of 8 stored", status)
+        self.assertIn("samples: 24 of 24 stored\nlimits:  stencils of test points: 8 of 8 stored", status)
         verified = call("verify", self.folder / "run")
         self.assertEqual(verified.returncode, 0, verified.stdout)
         self.assertIn("responses of the 24 samples that chunks hold", verified.stdout)
@@ -366,10 +366,10 @@ class ProgressShown(SweepTestCase):
         self.assertRegex(shown, r"\[#+-*\] simulate: \d+ of 48, \d+ simulations/s")
         self.assertRegex(shown, r"\[#{30}\] cases: 8 of 8")
 
-    def test_neighbourhoods_are_a_stage_that_counts_their_simulations(self):
+    def test_stencils_are_a_stage_that_counts_their_simulations(self):
         shown = self.run_on_terminal("run", "evaluation.limit=true", DIFFERENCES)
         self.assertRegex(shown, rf"\[#+-*\] simulate sensitivities: \d+ of {2 * 8 * 7}, \d+ simulations/s")
-        self.assertIn("16 of 16 missing neighbourhoods simulated", (self.folder / "run/run.log").read_text())
+        self.assertIn("16 of 16 missing stencils simulated", (self.folder / "run/run.log").read_text())
 
     def test_quiet_shows_none_and_other_outputs_get_no_control_sequences(self):
         self.assertNotIn("simulate:", self.run_on_terminal("quiet", "--quiet"))
@@ -405,10 +405,10 @@ class Plan(SweepTestCase):
         self.run_sweep("run", sweep=[*SMALL, DIFFERENCES, "design.train.samples=8"])
         plan = self.plan(*LIMITS, "design.train.samples=8,24", "--store", self.folder / "run/chunks")
         self.assertIn("simulations: 32 needed, 16 stored, 16 to do", plan)
-        self.assertIn(f"neighbourhoods of 8 points needed, 0 stored, 8 to do: {8 * (2 * 3 + 1)} simulations", plan)
+        self.assertIn(f"stencils of 8 points needed, 0 stored, 8 to do: {8 * (2 * 3 + 1)} simulations", plan)
         store = ["--store", self.folder / "run/chunks"]
         self.run_sweep("limits", *store, sweep=[*LIMITS, "design.train.samples=8,24"])
-        self.assertIn("neighbourhoods of 8 points needed, 8 stored, 0 to do: 0 simulations", self.plan(
+        self.assertIn("stencils of 8 points needed, 8 stored, 0 to do: 0 simulations", self.plan(
             *LIMITS, "design.train.samples=8,24,30", *store))
 
     def test_warns_of_plain_latin_hypercubes(self):
@@ -456,7 +456,7 @@ class Failures(SweepTestCase):
             self.assertRegex(failures[0]["reason"], "40 of 40 train samples failed, .*step limit")
             stored = {content.parent: sum(len(read_points(chunk)) for chunk in content.parent.glob("*.chunk"))
                       for content in self.folder.glob("run/chunks/*/content.yaml")}
-            # No neighbourhoods, a dozen and the few test samples; neighbourhoods and samples of the other.
+            # No stencils, a dozen and the few test samples; stencils and samples of the other.
             self.assertEqual(sorted(stored.values()), [0, 8, 12 + 8, 40 + 8], stored)
 
     def test_fail_fast_begins_no_other(self):

@@ -53,7 +53,8 @@ TEST(CTables, ALowerTriangleIsPackedColumnByColumn) {
 
 TEST(RuntimeSources, NamesTakeThePrefixAndUnknownFilesAreRefused) {
   EXPECT_EQ(renameC("twinmap_infer(TWINMAP_OK)", "pump"), "pump_infer(PUMP_OK)");
-  EXPECT_NE(getRuntimeSource("arithmetic.c").find("static inline double exponential"), std::string_view::npos);
+  EXPECT_NE(getRuntimeSource("arithmetic.c").find("static inline double exponential"),
+            std::string_view::npos);
   EXPECT_EQ(getRuntimeSource("arithmetic.c").find("@@FILE"), std::string_view::npos);
   EXPECT_THROW(getRuntimeSource("none.c"), std::logic_error);
   EXPECT_EQ(fillSlot("a @X@ b @X@", "@X@", "@X@@"), "a @X@@ b @X@@");

@@ -62,9 +62,9 @@ TEST(Answer, OfAMixtureHasTheSmallestSetsOfThatReach) {
   EXPECT_NEAR(of50.front().second, 1.0 + 0.8 * 0.2, 1e-9);
 }
 
-TEST(Answer, OfAMapFarAboveWhatTheMeasurementAllowsIsMapLimited) {
+TEST(Answer, OfAMapFarAboveWhatTheMeasurementAllowsIsEstimatorLimited) {
   const InferredMeasurement inferred = makeInferred();
-  EXPECT_EQ(listStatuses(inferred), Statuses{"map_limited"});
+  EXPECT_EQ(listStatuses(inferred), Statuses{"estimator_limited"});
   EXPECT_EQ(describeMapLimit(inferred, makeParameters()),
             "  k is 2 times above what the measurement allows: refine, or add simulations.\n");
 }
@@ -82,11 +82,11 @@ TEST(Answer, OfAMapWhoseLimitNobodyKnowsIsOk) {
   EXPECT_EQ(listStatuses(inferred), Statuses{"ok"});
 }
 
-TEST(Answer, OfAMapThatDoesNotKnowItsErrorsIsMapLimitedWhateverItsDeviation) {
+TEST(Answer, OfAMapThatDoesNotKnowItsErrorsIsEstimatorLimitedWhateverItsDeviation) {
   InferredMeasurement inferred = makeInferred();
   inferred.inference.stddev = inferred.inference.limit_stddev;
-  inferred.map_is_honest = false;
-  EXPECT_EQ(listStatuses(inferred), Statuses{"map_limited"});
+  inferred.map_is_calibrated = false;
+  EXPECT_EQ(listStatuses(inferred), Statuses{"estimator_limited"});
 }
 
 TEST(Answer, RefinedIsNotLimitedByTheMap) {
@@ -99,7 +99,7 @@ TEST(Answer, NotRefinedIsTheMapsWithAllItsLimits) {
   InferredMeasurement inferred = makeInferred();
   inferred.trust->statuses = {TrustStatus::kAtBounds};
   inferred.refined = makeRefined(RefinementStatus::kMisfit);
-  EXPECT_EQ(listStatuses(inferred), (Statuses{"at_bounds", "not_refined", "map_limited"}));
+  EXPECT_EQ(listStatuses(inferred), (Statuses{"at_bounds", "not_refined", "estimator_limited"}));
   EXPECT_EQ(describeMapLimit(inferred, makeParameters()),
             "  k is 2 times above what the measurement allows: add simulations.\n");
 }

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "framework/inverse_map/draws.hpp"
+#include "framework/estimation/draws.hpp"
 
 namespace twinmap {
 namespace {

@@ -153,7 +153,7 @@ class Simulating(unittest.TestCase):
         source = SOURCE / "experiments/fmu"
         with tempfile.TemporaryDirectory(prefix="twinmap_test_") as folder:
             library = Path(folder) / "oscillator.so"
-            subprocess.run(["cc", "-shared", "-fPIC", "-O2", f"-I{SOURCE}/framework/fmi/headers", source / "oscillator.c",
+            subprocess.run(["cc", "-shared", "-fPIC", "-O2", f"-I{SOURCE}/framework/models/fmu/headers", source / "oscillator.c",
                             "-o", library, "-lm"], check=True)
             with zipfile.ZipFile(Path(folder) / "oscillator.fmu", "w") as archive:
                 archive.write(source / "modelDescription.xml", "modelDescription.xml")

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "framework/store/atomic_file.hpp"
+#include "framework/base/files/atomic_file.hpp"
 #include "tests/framework/test_folder.hpp"
 
 namespace twinmap {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <sstream>
 
-#include "framework/results/escape.hpp"
-#include "framework/results/number_with_error.hpp"
-#include "framework/spec/gate_spec.hpp"
+#include "framework/base/text/escape.hpp"
+#include "framework/base/text/number_with_error.hpp"
+#include "framework/experiment/gate_spec.hpp"
 
 namespace twinmap {
 namespace {

@@ -69,8 +69,8 @@ TEST(Warnings, TellWhereMoreSimulationsHardlyHelpAMapFarFromTheLimit) {
 
 TEST(Warnings, TheGravestComesFirst) {
   RunSummary run = makeGoodRun();
-  run.notes.warn(Gravity::kRemark, "a remark");
-  run.notes.warn(Gravity::kMisleading, "misleading");
+  run.notes.warn(Severity::kInfo, "a remark");
+  run.notes.warn(Severity::kMisleading, "misleading");
   run.evaluation.metrics[1].ratio_to_limit = 5.2;
   run.failures = {{"test", 1, Eigen::Vector3d(0, 0, 0), "step limit"}};
   const std::vector<std::string> warnings = collectWarnings(run);

@@ -1,4 +1,4 @@
-#include "framework/simulation/cubic_spline.hpp"
+#include "framework/simulation/excitation/cubic_spline.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-#include "framework/simulation/excitation.hpp"
+#include "framework/simulation/excitation/excitation.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "framework/simulation/excitation_terms.hpp"
+#include "framework/simulation/excitation/excitation_terms.hpp"
 
 namespace twinmap {
 namespace {

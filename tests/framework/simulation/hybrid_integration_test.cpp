@@ -1,4 +1,4 @@
-#include "framework/simulation/hybrid_integration.hpp"
+#include "framework/simulation/integration/hybrid_integration.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "framework/simulation/integration.hpp"
+#include "framework/simulation/integration/integration.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "framework/store/atomic_file.hpp"
+#include "framework/base/files/atomic_file.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "framework/store/csv_file.hpp"
+#include "framework/base/text/csv_file.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "framework/store/folder_lock.hpp"
+#include "framework/base/files/folder_lock.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 namespace twinmap {
 namespace {
 
-// Two processes: tests/framework/sampling/interrupted_simulation_test.py.
+// Two processes: tests/framework/study/samples/interrupted_simulation_test.py.
 TEST(FolderLock, RefusesASecondOwnerAndNamesTheFirst) {
   const TestFolder folder;
   const FolderLock first(folder.getPath());

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <functional>
 
-#include "framework/hdf5/hdf5_file.hpp"
-#include "framework/store/temporary_folder.hpp"
+#include "framework/base/files/temporary_folder.hpp"
+#include "framework/base/hdf5/hdf5_file.hpp"
 
 namespace twinmap {
 namespace {

@@ -1,8 +1,8 @@
-#include "framework/store/network_group.hpp"
+#include "framework/store/estimators/network_group.hpp"
 
 #include <gtest/gtest.h>
 
-#include "framework/store/temporary_folder.hpp"
+#include "framework/base/files/temporary_folder.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {

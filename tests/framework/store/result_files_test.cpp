@@ -3,9 +3,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "framework/hdf5/hdf5_file.hpp"
-#include "framework/inverse_map/train_gp_map.hpp"
-#include "framework/store/maps_file.hpp"
+#include "framework/base/hdf5/hdf5_file.hpp"
+#include "framework/estimation/gp/train_gp_map.hpp"
+#include "framework/store/estimators/maps_file.hpp"
 #include "framework/store/provenance.hpp"
 #include "framework/store/samples_file.hpp"
 #include "tests/framework/test_folder.hpp"

@@ -1,12 +1,12 @@
-#include "framework/store/surrogate_group.hpp"
+#include "framework/store/estimators/surrogate_group.hpp"
 
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 
-#include "framework/store/temporary_folder.hpp"
-#include "framework/surrogate/fit_forward.hpp"
-#include "framework/surrogate/score_inversion.hpp"
+#include "framework/base/files/temporary_folder.hpp"
+#include "framework/estimation/surrogate/fit_forward.hpp"
+#include "framework/estimation/surrogate/score_inversion.hpp"
 
 namespace twinmap {
 namespace {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-#include "framework/store/atomic_file.hpp"
+#include "framework/base/files/atomic_file.hpp"
 #include "tests/framework/test_folder.hpp"
 
 namespace twinmap {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "framework/experiment/experiment_spec.hpp"
 #include "framework/simulation/simulator.hpp"
-#include "framework/spec/experiment_spec.hpp"
 
 namespace twinmap::testing {
 

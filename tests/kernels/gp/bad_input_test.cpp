@@ -4,8 +4,8 @@
 #include <stdexcept>
 
 #include "kernels/gp/fit.hpp"
+#include "kernels/gp/online/online_predictor.hpp"
 #include "kernels/gp/training.hpp"
-#include "kernels/online/online_predictor.hpp"
 #include "tests/kernels/support/random_data.hpp"
 
 namespace twinmap::gp {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "kernels/gp/fit.hpp"
-#include "kernels/online/online_predictor.hpp"
+#include "kernels/gp/online/online_predictor.hpp"
 #include "tests/kernels/golden/sklearn_golden.hpp"
 
 namespace twinmap::gp {

@@ -7,9 +7,9 @@
 #include <cstdlib>
 
 #include "kernels/gp/fit.hpp"
+#include "kernels/gp/online/online_predictor.hpp"
+#include "kernels/gp/sparse/compression.hpp"
 #include "kernels/network/predictor.hpp"
-#include "kernels/online/online_predictor.hpp"
-#include "kernels/sparse/compression.hpp"
 #include "tests/kernels/support/random_data.hpp"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)

@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "kernels/gp/fit.hpp"
-#include "kernels/online/online_predictor.hpp"
+#include "kernels/gp/online/online_predictor.hpp"
 #include "tests/kernels/support/random_data.hpp"
 
 namespace twinmap::gp {

@@ -4,8 +4,8 @@
 #include <thread>
 
 #include "kernels/gp/optimizer.hpp"
+#include "kernels/gp/sparse/sparse_training.hpp"
 #include "kernels/gp/training.hpp"
-#include "kernels/sparse/sparse_training.hpp"
 #include "tests/kernels/support/random_data.hpp"
 
 namespace twinmap::gp {

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "kernels/lanes/problem.hpp"
-#include "kernels/program/real.hpp"
-#include "kernels/program/recorder.hpp"
+#include "kernels/lanes/program/real.hpp"
+#include "kernels/lanes/program/recorder.hpp"
 
 /// A chain of equal point masses on massless rods in a plane, each angle from the vertical; parameters are
 /// mass, length and gravity. Without damping, so that its energy stays.

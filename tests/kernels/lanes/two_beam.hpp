@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "kernels/lanes/integrator.hpp"
-#include "kernels/program/real.hpp"
-#include "kernels/program/recorder.hpp"
+#include "kernels/lanes/program/real.hpp"
+#include "kernels/lanes/program/recorder.hpp"
 
 /// The reference case of Kessels et al. (2022), its equations of motion written down by hand. Parameters d_y,
 /// d_theta, k_y, k_theta; states y, theta and their speeds.

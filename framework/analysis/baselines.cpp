@@ -1,0 +1,97 @@
+#include "framework/analysis/baselines.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "framework/analysis/least_squares.hpp"
+#include "framework/data/sensitivity/fisher_information.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
+#include "framework/simulation/simulator_team.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+class Stopwatch {
+ public:
+  double getSeconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// The unknown of the training sample whose features are nearest in units of noise.
+VectorXd findNearest(const NoiseWhitener& noise, const LabelledFeatures& train, const VectorXd& measured) {
+  Index nearest = 0;
+  noise.apply(train.features.colwise() - measured).colwise().squaredNorm().minCoeff(&nearest);
+  return train.collectUnknown().col(nearest);
+}
+
+BaselineResult runPriorMean(const BaselineContext& context, const LabelledFeatures& test) {
+  const auto samples = test.features.cols();
+  return {"prior_mean", static_cast<int>(samples), predictPriorMean(context.parameters, samples)};
+}
+
+BaselineResult runLinearRegression(const BaselineContext& context, const LabelledFeatures& train,
+                                   const LabelledFeatures& test) {
+  const LinearMap map = trainLinearMap(context.transform, train);
+  const auto samples = static_cast<int>(test.features.cols());
+  const Stopwatch stopwatch;
+  BaselineResult result{"linear_regression", samples, map.predict(test.features, test.inputs)};
+  result.seconds_per_update = stopwatch.getSeconds() / samples;
+  return result;
+}
+
+BaselineResult runLeastSquares(const LeastSquaresSpec& spec, const BaselineContext& context,
+                               const LabelledFeatures& train, const LabelledFeatures& test) {
+  const NoiseWhitener noise(test.noise_covariance);
+  const VectorXd widths = calcWidths(context.parameters), center = calcBoxCenter(context.unknown);
+  const Index p = widths.size();
+  const int samples = std::min(spec.samples, static_cast<int>(test.features.cols()));
+  BaselineResult result{"least_squares", samples, {MatrixXd(p, samples), MatrixXd(p, samples)}};
+  VectorXd seconds(samples);
+  std::vector<char> converged(samples);
+  runOnTeam(context.simulator, samples, context.threads, [&](Simulator& simulator, int i) {
+    const Stopwatch stopwatch;
+    const VectorXd measured = test.features.col(i);
+    const VectorXd start =
+        spec.start == LeastSquaresStart::kBoxCenter ? center : findNearest(noise, train, measured);
+    const VectorXd inputs = test.inputs.rows() > 0 ? VectorXd(test.inputs.col(i)) : VectorXd();
+    const LeastSquaresFit fit =
+        fitLeastSquares(simulator, {context.extractor, noise, context.unknown, measured, inputs}, start,
+                        spec.max_simulations);
+    result.predictions.mean.col(i) = fit.parameters.head(p);
+    result.predictions.stddev.col(i) =
+        calcLimitCovariance(fit.information).diagonal().head(p).cwiseSqrt().cwiseProduct(widths);
+    converged[i] = fit.converged;
+    seconds[i] = stopwatch.getSeconds();
+  });
+  result.seconds_per_update = seconds.mean();
+  result.unconverged = static_cast<int>(std::count(converged.begin(), converged.end(), 0));
+  return result;
+}
+
+}  // namespace
+
+Predictions predictPriorMean(const std::vector<ParameterSpec>& parameters, Index samples) {
+  return {calcBoxCenter(parameters).replicate(1, samples),
+          (kUniformStddev * calcWidths(parameters)).replicate(1, samples)};
+}
+
+BaselineResult runBaseline(const BaselineSpec& spec, const BaselineContext& context,
+                           const LabelledFeatures& train, const LabelledFeatures& test) {
+  if (std::holds_alternative<PriorMeanSpec>(spec)) {
+    return runPriorMean(context, test);
+  }
+  if (std::holds_alternative<LinearRegressionSpec>(spec)) {
+    return runLinearRegression(context, train, test);
+  }
+  return runLeastSquares(std::get<LeastSquaresSpec>(spec), context, train, test);
+}
+
+}  // namespace twinmap

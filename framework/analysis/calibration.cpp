@@ -1,0 +1,57 @@
+#include "framework/analysis/calibration.hpp"
+
+#include <algorithm>
+#include <boost/math/constants/constants.hpp>
+#include <boost/math/distributions/normal.hpp>
+#include <cmath>
+
+namespace twinmap {
+namespace {
+
+namespace constants = boost::math::constants;
+
+double calcNormalProbability(double z) {
+  return 0.5 * std::erfc(-z * constants::one_div_root_two<double>());
+}
+
+double calcStandardCrps(double z) {
+  const double density = std::exp(-0.5 * z * z) * constants::one_div_root_two_pi<double>();
+  return z * (2.0 * calcNormalProbability(z) - 1.0) + 2.0 * density - constants::one_div_root_pi<double>();
+}
+
+}  // namespace
+
+double calcNormalQuantile(double probability) {
+  constexpr double kSmallest = 1e-16;
+  return boost::math::quantile(boost::math::normal(), std::clamp(probability, kSmallest, 1.0 - kSmallest));
+}
+
+double calcTwoSidedQuantile(double probability) {
+  return boost::math::quantile(boost::math::normal(), 0.5 * (1.0 + probability));
+}
+
+Eigen::ArrayXd calcCrps(const Eigen::ArrayXd& z, const Eigen::ArrayXd& stddev) {
+  return stddev * z.unaryExpr(&calcStandardCrps);
+}
+
+Eigen::MatrixXd calcPit(const Eigen::MatrixXd& truth, const Predictions& predictions) {
+  if (!predictions.mixtures.empty()) {
+    return Eigen::MatrixXd::NullaryExpr(truth.rows(), truth.cols(), [&](Eigen::Index p, Eigen::Index i) {
+      return takeMarginal(predictions.mixtures[static_cast<std::size_t>(i)], p).calcProbability(truth(p, i));
+    });
+  }
+  const Eigen::ArrayXXd z = (truth - predictions.mean).array() / predictions.stddev.array();
+  return z.unaryExpr(&calcNormalProbability);
+}
+
+std::vector<int> countPit(const Eigen::ArrayXd& pit) {
+  std::vector<int> counts(kPitBins, 0);
+  for (const double value : pit) {
+    if (std::isfinite(value)) {
+      ++counts[std::min(static_cast<int>(value * kPitBins), kPitBins - 1)];
+    }
+  }
+  return counts;
+}
+
+}  // namespace twinmap

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "framework/analysis/metrics.hpp"
+
+namespace twinmap {
+
+/// Test samples of one parameter, in its unit.
+struct ParameterSamples {
+  Eigen::ArrayXd truth, mean, stddev;
+  Eigen::ArrayXd limit_stddev;              ///< NaN where the limit is not known
+  std::vector<MarginalMixture> mixtures{};  ///< where the distributions are no normal ones; else empty
+  std::vector<Reach> reaches{};  ///< where intervals are not those of the distributions; else empty
+};
+
+/// Those of one row of p x n each; limit_stddev may be empty.
+ParameterSamples takeParameter(const Eigen::MatrixXd& truth, const Predictions& predictions,
+                               const Eigen::MatrixXd& limit_stddev, Eigen::Index row);
+
+/// What each sample adds to the figures, which depend on the samples through the means of these terms alone.
+/// Errors and z are stored less their means, so that no digits of the standard deviations are lost.
+struct SampleTerms {
+  Eigen::MatrixXd terms;  ///< k x n
+  double error_offset = 0.0;
+  double z_offset = 0.0;
+};
+
+/// Of mixtures, z is the normal quantile of the probability integral transform, and intervals are the
+/// smallest highest-density sets, or those that `reaches` says.
+SampleTerms calcSampleTerms(const ParameterSpec& parameter, const ParameterSamples& samples);
+
+/// The figures of kFigureColumns, in their order, of a set with the given means of the terms (k) and number
+/// of samples: a FigureFunction of `of`.
+Eigen::VectorXd calcFigureValues(const SampleTerms& of, const Eigen::VectorXd& mean, double samples);
+
+}  // namespace twinmap

@@ -1,0 +1,142 @@
+#include <functional>
+#include <numeric>
+
+#include "framework/base/hdf5/hdf5_file.hpp"
+#include "framework/base/hdf5/hdf5_handle.hpp"
+
+namespace twinmap {
+namespace {
+
+Hdf5Handle openDataset(hid_t file, const std::string& path, const std::string& dataset) {
+  return {H5Dopen2(file, dataset.c_str(), H5P_DEFAULT), H5Dclose, path + ": has no dataset " + dataset};
+}
+
+std::vector<std::size_t> getShape(const Hdf5Handle& data) {
+  const Hdf5Handle space(H5Dget_space(data.get()), H5Sclose, "HDF5 data space");
+  std::vector<hsize_t> extents(H5Sget_simple_extent_ndims(space.get()));
+  H5Sget_simple_extent_dims(space.get(), extents.data(), nullptr);
+  return {extents.begin(), extents.end()};
+}
+
+std::size_t countValues(const std::vector<std::size_t>& shape) {
+  return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
+}
+
+herr_t addDataset(hid_t, const char* name, const H5O_info_t* info, void* names) {
+  if (info->type == H5O_TYPE_DATASET) {
+    static_cast<std::vector<std::string>*>(names)->emplace_back(name);
+  }
+  return 0;
+}
+
+std::string readVariableLengthText(const Hdf5Handle& attribute, const Hdf5Handle& type,
+                                   const std::string& what) {
+  char* text = nullptr;
+  requireHdf5(H5Aread(attribute.get(), type.get(), &text), what);
+  const std::string copy = text == nullptr ? "" : text;
+  H5free_memory(text);
+  return copy;
+}
+
+std::string trimZeros(const std::string& padded) {
+  return padded.substr(0, padded.find('\0'));
+}
+
+}  // namespace
+
+Hdf5Reader::Hdf5Reader(const std::filesystem::path& path) : path_(path.string()) {
+  file_ = H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (file_ < 0) {
+    throw std::runtime_error(path_ + ": cannot be opened as an HDF5 file");
+  }
+}
+
+Hdf5Reader::~Hdf5Reader() {
+  H5Fclose(file_);
+}
+
+bool Hdf5Reader::contains(const std::string& dataset) const {
+  return H5Lexists(file_, dataset.c_str(), H5P_DEFAULT) > 0;
+}
+
+std::vector<std::string> Hdf5Reader::listDatasets() const {
+  std::vector<std::string> names;
+  requireHdf5(H5Ovisit2(file_, H5_INDEX_NAME, H5_ITER_INC, addDataset, &names, H5O_INFO_BASIC),
+              path_ + ": cannot be listed");
+  return names;
+}
+
+bool Hdf5Reader::isRealNumber(const std::string& dataset) const {
+  const Hdf5Handle data = openDataset(file_, path_, dataset);
+  const Hdf5Handle type(H5Dget_type(data.get()), H5Tclose, "HDF5 type");
+  const H5T_class_t kind = H5Tget_class(type.get());
+  return kind == H5T_INTEGER || kind == H5T_FLOAT;
+}
+
+std::vector<std::size_t> Hdf5Reader::readShape(const std::string& dataset) const {
+  return getShape(openDataset(file_, path_, dataset));
+}
+
+Eigen::MatrixXd Hdf5Reader::readSamples(const std::string& dataset) const {
+  const Hdf5Handle data = openDataset(file_, path_, dataset);
+  const std::vector<std::size_t> shape = getShape(data);
+  const std::size_t columns = shape.size() < 2 ? 1 : shape[0];
+  const std::size_t rows = columns == 0 ? 0 : countValues(shape) / columns;
+  Eigen::MatrixXd values(rows, columns);
+  requireHdf5(H5Dread(data.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+              path_ + ": " + dataset + " cannot be read");
+  return values;
+}
+
+Eigen::VectorXd Hdf5Reader::readVector(const std::string& dataset) const {
+  return readSamples(dataset);
+}
+
+double Hdf5Reader::readNumber(const std::string& dataset) const {
+  return readSamples(dataset)(0, 0);
+}
+
+std::vector<std::int64_t> Hdf5Reader::readIntegers(const std::string& dataset) const {
+  const Hdf5Handle data = openDataset(file_, path_, dataset);
+  std::vector<std::int64_t> values(countValues(getShape(data)));
+  requireHdf5(H5Dread(data.get(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+              path_ + ": " + dataset + " cannot be read");
+  return values;
+}
+
+std::vector<std::string> Hdf5Reader::readTexts(const std::string& dataset) const {
+  const Hdf5Handle data = openDataset(file_, path_, dataset);
+  const Hdf5Handle type(H5Dget_type(data.get()), H5Tclose, "HDF5 type");
+  const std::size_t length = H5Tget_size(type.get());
+  const std::size_t count = countValues(getShape(data));
+  std::string padded(count * length, '\0');
+  requireHdf5(H5Dread(data.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, padded.data()),
+              path_ + ": " + dataset + " cannot be read");
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < count; ++i) {
+    texts.push_back(trimZeros(padded.substr(i * length, length)));
+  }
+  return texts;
+}
+
+bool Hdf5Reader::hasAttribute(const std::string& object, const std::string& name) const {
+  return H5Aexists_by_name(file_, object.c_str(), name.c_str(), H5P_DEFAULT) > 0;
+}
+
+std::string Hdf5Reader::readAttribute(const std::string& object, const std::string& name) const {
+  const std::string what = path_ + ": has no attribute " + name + " of " + object;
+  const Hdf5Handle attribute(H5Aopen_by_name(file_, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+                             H5Aclose, what);
+  const Hdf5Handle type(H5Aget_type(attribute.get()), H5Tclose, what);
+  if (H5Tget_class(type.get()) != H5T_STRING) {
+    throw std::runtime_error(what + " that is a text");
+  }
+  if (H5Tis_variable_str(type.get()) > 0) {
+    return readVariableLengthText(attribute, type, what);
+  }
+  std::string padded(H5Tget_size(type.get()), '\0');
+  requireHdf5(H5Aread(attribute.get(), type.get(), padded.data()), what);
+  return trimZeros(padded);
+}
+
+}  // namespace twinmap

@@ -1,0 +1,58 @@
+#include "framework/base/text/nearest_name.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <numeric>
+
+namespace twinmap {
+namespace {
+
+std::string toLower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+/// Levenshtein distance; O(|a| |b|).
+std::size_t calcEditDistance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substituted});
+    }
+  }
+  return row[b.size()];
+}
+
+}  // namespace
+
+std::string suggestName(const std::string& name, const std::vector<std::string>& candidates) {
+  constexpr std::size_t kLongestName = 100;  // a longer one is no typing error, and would be slow
+  if (name.size() > kLongestName) {
+    return "";
+  }
+  std::string best;
+  std::size_t smallest = name.size() / 3 + 2;
+  for (const std::string& candidate : candidates) {
+    const std::size_t distance = calcEditDistance(toLower(name), toLower(candidate));
+    if (distance < smallest) {
+      smallest = distance;
+      best = candidate;
+    }
+  }
+  return best.empty() ? "" : "; did you mean '" + best + "'?";
+}
+
+std::string listNames(const std::vector<std::string>& names) {
+  std::string listed;
+  for (const std::string& name : names) {
+    listed += (listed.empty() ? "" : ", ") + name;
+  }
+  return listed;
+}
+
+}  // namespace twinmap

@@ -1,0 +1,161 @@
+#include "framework/base/worker/program_process.hpp"
+
+#include <fmt/core.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <fstream>
+
+#include "framework/base/worker/process_guard.hpp"
+#include "framework/base/worker/start_program.hpp"
+
+namespace twinmap {
+namespace {
+
+/// Writing to a program that has ended must be an error of write() rather than the end of this process.
+void ignoreBrokenPipes() {
+  struct sigaction action {};
+  sigaction(SIGPIPE, nullptr, &action);
+  if (action.sa_handler == SIG_DFL) {
+    signal(SIGPIPE, SIG_IGN);
+  }
+}
+
+}  // namespace
+
+ProgramProcess::ProgramProcess(const ProgramStart& start) {
+  ignoreBrokenPipes();
+  guard_ = ProcessGuard::getChannel();
+  const StartedProgram started = startProgram(start, guard_);
+  process_ = started.process;
+  input_ = started.input;
+  output_ = started.output;
+  words_.open(started.messages);
+}
+
+ProgramProcess::~ProgramProcess() {
+  end(nullptr);
+  for (const int file : {input_, output_}) {
+    if (file >= 0) {
+      close(file);
+    }
+  }
+}
+
+void ProgramProcess::end(int* status) {
+  if (process_ > 0) {
+    kill(-process_, SIGKILL);  // also what it has started
+    releaseGroup(guard_, process_);
+    while (waitpid(process_, status, 0) < 0 && errno == EINTR) {
+    }
+    process_ = -1;
+  }
+}
+
+std::string ProgramProcess::exchange(const std::string& request, double timeout) {
+  const Deadline deadline(timeout);
+  const std::string text = request + "\n";
+  if (answered_) {
+    words_.forget();  // those of the sample before
+  }
+  for (std::size_t sent = 0; sent < text.size();) {
+    const ssize_t count = write(input_, text.data() + sent, text.size() - sent);
+    if (count > 0) {
+      sent += static_cast<std::size_t>(count);
+    } else if (errno == EAGAIN || errno == EWOULDBLOCK) {
+      wait(true, deadline);
+    } else if (errno != EINTR) {
+      fail();
+    }
+  }
+  std::string line;
+  while (!takeLine(line)) {
+    wait(false, deadline);
+  }
+  answered_ = true;
+  return line;
+}
+
+void ProgramProcess::wait(bool sending, const Deadline& deadline) {
+  pollfd files[] = {{output_, POLLIN, 0}, {words_.getFile(), POLLIN, 0}, {sending ? input_ : -1, POLLOUT, 0}};
+  const int ready = poll(files, 3, deadline.calcPollTime());
+  if (ready > 0 && files[1].revents != 0) {
+    words_.read();
+  }
+  if (ready > 0 && files[0].revents != 0) {
+    readAnswer();
+  }
+  if (ready == 0 && deadline.isOver()) {
+    words_.read();
+    throw WorkerFailure(
+        fmt::format("the program did not answer within {:g} s{}", deadline.getSeconds(), words_.describe()),
+        true);
+  }
+}
+
+void ProgramProcess::readAnswer() {
+  constexpr std::size_t kMaxReceived = 1u << 30;  // a program that never ends its line
+  char buffer[65536];
+  const ssize_t count = read(output_, buffer, sizeof buffer);
+  if (count > 0 && received_.size() < kMaxReceived) {
+    received_.append(buffer, static_cast<std::size_t>(count));
+  } else if (count >= 0 || (errno != EAGAIN && errno != EINTR)) {
+    fail();
+  }
+}
+
+bool ProgramProcess::takeLine(std::string& line) {
+  for (std::size_t end = 0; (end = received_.find('\n')) != std::string::npos;) {
+    line = received_.substr(0, end);
+    received_.erase(0, end + 1);
+    if (!line.empty() && line.front() == '{') {
+      return true;
+    }
+    words_.keep(line + "\n");
+  }
+  return false;
+}
+
+void ProgramProcess::fail() {
+  // one that has closed its output is about to end by itself; what it says of that is the better reason
+  constexpr int kTries = 100, kMicroseconds = 2000;
+  siginfo_t info{};
+  for (int i = 0; i < kTries && info.si_pid == 0; ++i) {
+    words_.read();
+    waitid(P_PID, static_cast<id_t>(process_), &info, WEXITED | WNOHANG | WNOWAIT);
+    if (info.si_pid == 0) {
+      usleep(kMicroseconds);
+    }
+  }
+  int status = 0;
+  const bool ended = info.si_pid != 0;
+  end(&status);
+  words_.read();
+  keepRest();
+  throw WorkerFailure(
+      (ended ? describeEnd("the program", status) : std::string("the program closed its output")) +
+      words_.describe());
+}
+
+/// What the program has written as answers and nobody has read: where it is none, its last words.
+void ProgramProcess::keepRest() {
+  char buffer[65536];  // what a pipe holds; processes that outlive the program may go on writing
+  const ssize_t count = read(output_, buffer, sizeof buffer);
+  received_.append(buffer, static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+  received_ += '\n';
+  for (std::string answer; takeLine(answer);) {
+  }
+}
+
+double ProgramProcess::getResidentSize() const {
+  std::ifstream file("/proc/" + std::to_string(process_) + "/statm");
+  double total = 0.0, resident = 0.0;
+  file >> total >> resident;
+  return resident * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+}  // namespace twinmap

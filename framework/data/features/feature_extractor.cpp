@@ -1,0 +1,95 @@
+#include "framework/data/features/feature_extractor.hpp"
+
+#include <algorithm>
+
+#include "framework/data/features/extrema.hpp"
+#include "framework/data/features/frequency_response.hpp"
+#include "framework/data/features/mode_features.hpp"
+#include "framework/data/features/sampled_outputs.hpp"
+#include "framework/data/features/spectrum.hpp"
+#include "framework/data/features/statistics.hpp"
+
+namespace twinmap {
+namespace {
+
+using Blocks = std::vector<std::shared_ptr<const FeatureBlock>>;
+
+Blocks makeBlocks(const SamplesFeatureSpec& samples, const ResponseLayout& layout, const InputSignals&) {
+  return {makeSamplesBlock(samples, layout)};
+}
+Blocks makeBlocks(const StatisticsFeatureSpec& statistics, const ResponseLayout& layout,
+                  const InputSignals&) {
+  return makeStatisticsBlocks(statistics, layout);
+}
+Blocks makeBlocks(const ExtremaFeatureSpec& extrema, const ResponseLayout& layout, const InputSignals&) {
+  return {makeExtremaBlock(extrema, layout)};
+}
+Blocks makeBlocks(const SpectrumFeatureSpec& spectrum, const ResponseLayout& layout, const InputSignals&) {
+  return {makeSpectrumBlock(spectrum, layout)};
+}
+Blocks makeBlocks(const FrequencyResponseFeatureSpec& response, const ResponseLayout& layout,
+                  const InputSignals& inputs) {
+  return {makeFrequencyResponseBlock(response, layout, inputs)};
+}
+Blocks makeBlocks(const ModesFeatureSpec& modes, const ResponseLayout& layout, const InputSignals&) {
+  return {makeModesBlock(modes, layout)};
+}
+
+}  // namespace
+
+Eigen::VectorXd collectTimes(const std::vector<FeatureSpec>& features) {
+  std::vector<double> times;
+  for (const FeatureSpec& feature : features) {
+    appendSampleTimes(getWindow(feature), times);
+  }
+  sortUnique(times);
+  return Eigen::Map<Eigen::VectorXd>(times.data(), static_cast<Eigen::Index>(times.size()));
+}
+
+std::optional<double> findSampleInterval(const std::vector<FeatureSpec>& features) {
+  std::optional<double> smallest;
+  for (const FeatureSpec& feature : features) {
+    std::vector<double> times;
+    appendSampleTimes(getWindow(feature), times);
+    for (std::size_t i = 1; i < times.size(); ++i) {
+      smallest = std::min(times[i] - times[i - 1], smallest.value_or(times[i] - times[i - 1]));
+    }
+  }
+  return smallest;
+}
+
+bool needExcitation(const std::vector<FeatureSpec>& features) {
+  return std::any_of(features.begin(), features.end(), [](const FeatureSpec& feature) {
+    return std::holds_alternative<FrequencyResponseFeatureSpec>(feature);
+  });
+}
+
+FeatureExtractor::FeatureExtractor(const std::vector<FeatureSpec>& features, const ResponseLayout& layout,
+                                   const InputSignals& inputs) {
+  for (const FeatureSpec& feature : features) {
+    const Blocks blocks =
+        std::visit([&](const auto& kind) { return makeBlocks(kind, layout, inputs); }, feature);
+    blocks_.insert(blocks_.end(), blocks.begin(), blocks.end());
+  }
+  for (const auto& block : blocks_) {
+    infos_.insert(infos_.end(), block->getInfos().begin(), block->getInfos().end());
+  }
+}
+
+bool FeatureExtractor::isLinear() const {
+  return std::all_of(blocks_.begin(), blocks_.end(),
+                     [](const auto& block) { return block->findMatrix() != nullptr; });
+}
+
+Eigen::MatrixXd FeatureExtractor::extract(const Eigen::MatrixXd& responses) const {
+  Eigen::MatrixXd features(getFeatureCount(), responses.cols());
+  Eigen::Index row = 0;
+  for (const auto& block : blocks_) {
+    const auto rows = static_cast<Eigen::Index>(block->getInfos().size());
+    block->extract(responses, features.middleRows(row, rows));
+    row += rows;
+  }
+  return features;
+}
+
+}  // namespace twinmap

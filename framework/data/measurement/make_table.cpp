@@ -1,0 +1,27 @@
+#include "framework/data/measurement/make_table.hpp"
+
+#include <set>
+
+#include "framework/data/measurement/table_builder.hpp"
+#include "framework/experiment/column_spec.hpp"
+
+namespace twinmap {
+
+Table makeTable(const std::string& source, const std::vector<NamedValues>& columns,
+                const std::vector<std::string>& wanted) {
+  TableBuilder table(source, wanted);
+  std::set<std::string> names;
+  for (const NamedValues& column : columns) {
+    const ColumnSpec header = parseColumn(column.header);
+    if (!names.insert(header.name).second) {
+      throw MeasurementError(source + ": names the column '" + header.name + "' twice");
+    }
+    if (table.takes(header.name)) {
+      table.reserve(static_cast<std::size_t>(column.values.size()));
+      table.add({header.name, header.unit, column.values});
+    }
+  }
+  return table.finish();
+}
+
+}  // namespace twinmap

@@ -1,0 +1,124 @@
+#include "framework/data/measurement/measured_signals.hpp"
+
+#include <algorithm>
+
+#include "framework/base/text/number_text.hpp"
+#include "framework/data/measurement/time_series.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+TimeBase makeTimeBase(const MeasuredSignalSpec& spec, double start) {
+  return {spec.time ? std::make_optional(parseColumn(spec.time->text, spec.time->where)) : std::nullopt,
+          spec.sample_rate, start};
+}
+
+std::vector<std::string> listColumns(const MeasuredSignalSpec& spec) {
+  std::vector<std::string> names = listTimeColumns(makeTimeBase(spec, 0.0));
+  names.push_back(parseColumn(spec.column.text).name);
+  return names;
+}
+
+std::string describeTime(double t, double start) {
+  constexpr int kDigits = 6;
+  return toShortText(t + start, kDigits) + " s";
+}
+
+/// That the times cover the excerpt, from 0 to `end`, without a gap.
+void requireExcerpt(const std::string& source, const VectorXd& times, double start, double end) {
+  constexpr double kSlack = 1e-6, kLongest = 1.5;
+  if (times.size() < 2) {
+    throw MeasurementError(source + ": has " + std::to_string(times.size()) +
+                           " samples; must have at least 2");
+  }
+  const double step = calcMedianStep(times);
+  if (times[0] > kSlack * step || times[times.size() - 1] < end - kSlack * step) {
+    throw MeasurementError(source + ": covers " + describeTime(times[0], start) + " to " +
+                           describeTime(times[times.size() - 1], start) + ", but " +
+                           describeTime(0.0, start) + " to " + describeTime(end, start) + " is needed");
+  }
+  for (Index i = 0; i + 1 < times.size(); ++i) {
+    if (times[i + 1] - times[i] > kLongest * step) {
+      throw MeasurementError(source + ": has a gap from " + describeTime(times[i], start) + " to " +
+                             describeTime(times[i + 1], start) + " in a signal that is needed");
+    }
+  }
+}
+
+void fill(TableSpec& target, const Table& table, const std::string& unit, double start, double duration) {
+  constexpr Index kMaxSamples = 400'000;  // resolved experiments hold them, and at most a million values
+  constexpr Index kMargin = 4;            // samples beside, for interpolation that looks at neighbours
+  const ColumnSpec column = parseColumn(target.measured->column.text, target.measured->column.where);
+  const Column& found = getColumn(table, column.name);
+  const VectorXd times = readTimes(table, makeTimeBase(*target.measured, start), found.values.size());
+  requireLength(table, found, times.size());
+  const bool excerpt = target.measured->duration && *target.measured->duration < duration;
+  const double end = excerpt ? *target.measured->duration : duration;
+  const RowRange range = findRows(times, 0.0, end, kMargin);
+  const VectorXd kept = times.segment(range.first, range.count);
+  requireExcerpt(table.source, kept, start, end);
+  const VectorXd values = readValues(table, column, unit, range.first, range.count);
+  if (values.size() > kMaxSamples) {
+    throw MeasurementError(table.source + ": has more than 400000 samples in the time that is simulated; " +
+                           "resample the signal");
+  }
+  const auto used = excerpt ? findRows(kept, 0.0, end, 0) : RowRange{0, kept.size()};
+  target.times.assign(kept.data() + used.first, kept.data() + used.first + used.count);
+  target.values.assign(values.data() + used.first, values.data() + used.first + used.count);
+}
+
+template <class Action>
+void visitMeasured(ExperimentSpec& experiment, const Action& action) {
+  for (SignalSpec& signal : experiment.model.excitation) {
+    for (TableSpec& table : signal.tables) {
+      if (table.measured) {
+        action(signal, table);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void loadMeasuredSignals(ExperimentSpec& experiment) {
+  visitMeasured(experiment, [&](const SignalSpec& signal, TableSpec& target) {
+    if (!target.times.empty()) {
+      return;
+    }
+    const MeasuredSignalSpec& spec = *target.measured;
+    try {
+      fill(target, readTable(spec.file.text, listColumns(spec)), signal.unit, spec.start,
+           experiment.model.simulation.duration);
+    } catch (const MeasurementError& error) {
+      throw MeasurementError(toString(spec.file.where) + ": " + error.what());
+    }
+  });
+}
+
+void replaceMeasuredSignals(ExperimentSpec& experiment, const Table& table, double start) {
+  visitMeasured(experiment, [&](const SignalSpec& signal, TableSpec& target) {
+    fill(target, table, signal.unit, start, experiment.model.simulation.duration);
+  });
+}
+
+bool hasMeasuredSignals(const ExperimentSpec& experiment) {
+  return !listSignalColumns(experiment).empty();
+}
+
+std::vector<std::string> listSignalColumns(const ExperimentSpec& experiment) {
+  std::vector<std::string> names;
+  for (const SignalSpec& signal : experiment.model.excitation) {
+    for (const TableSpec& table : signal.tables) {
+      if (table.measured) {
+        const std::vector<std::string> needed = listColumns(*table.measured);
+        names.insert(names.end(), needed.begin(), needed.end());
+      }
+    }
+  }
+  return names;
+}
+
+}  // namespace twinmap

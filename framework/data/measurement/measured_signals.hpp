@@ -1,0 +1,24 @@
+#pragma once
+
+#include "framework/data/measurement/table.hpp"
+#include "framework/experiment/experiment_spec.hpp"
+
+namespace twinmap {
+
+/// Fills those tables of the excitation that are given as `measured` and have no values yet: from t = 0 to
+/// the end of the simulation (or of the excerpt, if that is earlier) and a few samples beside, converted to
+/// the signal's unit. Files are found as their names are written. Throws MeasurementError, naming the YAML
+/// key, the file and what is wrong with it.
+void loadMeasuredSignals(ExperimentSpec& experiment);
+
+/// Replaces the values of the same tables by those of another measurement, whose time `start` (s) is t = 0:
+/// the same columns at the same rate or with the same times column.
+void replaceMeasuredSignals(ExperimentSpec& experiment, const Table& table, double start);
+
+/// Whether any table of the excitation is given as `measured`.
+bool hasMeasuredSignals(const ExperimentSpec& experiment);
+
+/// The names of the columns that they need, for readTable().
+std::vector<std::string> listSignalColumns(const ExperimentSpec& experiment);
+
+}  // namespace twinmap

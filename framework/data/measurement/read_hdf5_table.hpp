@@ -1,0 +1,10 @@
+#pragma once
+
+#include "framework/data/measurement/table.hpp"
+
+namespace twinmap {
+
+/// See readTable().
+Table readHdf5Table(const std::filesystem::path& path, const std::vector<std::string>& wanted);
+
+}  // namespace twinmap

@@ -1,0 +1,60 @@
+#include "framework/data/measurement/table_builder.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "framework/base/text/number_text.hpp"
+
+namespace twinmap {
+
+TableBuilder::TableBuilder(const std::string& source, const std::vector<std::string>& wanted)
+    : table_{source, {}, {}}, wanted_(wanted) {}
+
+bool TableBuilder::takes(const std::string& name) {
+  const bool taken = wanted_.empty() || std::find(wanted_.begin(), wanted_.end(), name) != wanted_.end();
+  if (!taken) {
+    table_.skipped.push_back({name, ""});
+  }
+  return taken;
+}
+
+void TableBuilder::reserve(std::size_t count) {
+  numbers_ += count;
+  if (numbers_ > kMaxNumbers) {
+    throw MeasurementError(table_.source + ": has more than " + std::to_string(kMaxNumbers) +
+                           " numbers in the columns that are read; cut out the part that is needed");
+  }
+}
+
+void TableBuilder::add(Column column) {
+  const Eigen::Index bad =
+      std::find_if(column.values.begin(), column.values.end(), [](double x) { return !std::isfinite(x); }) -
+      column.values.begin();
+  if (column.values.size() == 0) {
+    skip(column.name, "has no samples");
+  } else if (bad < column.values.size()) {
+    skip(column.name, "has " + toText(column.values[bad]) + " at row " + std::to_string(bad + 1) +
+                          "; must be a finite number");
+  } else {
+    table_.columns.push_back(std::move(column));
+  }
+}
+
+void TableBuilder::skip(const std::string& name, const std::string& problem, std::size_t line) {
+  const std::string where = table_.source + (line == 0 ? "" : ":" + std::to_string(line));
+  const std::string message = where + ": column '" + name + "' " + problem;
+  if (!wanted_.empty()) {
+    throw MeasurementError(message);
+  }
+  table_.skipped.push_back({name, message});
+}
+
+Table TableBuilder::finish() {
+  if (wanted_.empty() && table_.columns.empty()) {
+    throw MeasurementError(table_.skipped.empty() ? table_.source + ": has no columns"
+                                                  : table_.skipped.front().reason);
+  }
+  return std::move(table_);
+}
+
+}  // namespace twinmap

@@ -1,0 +1,106 @@
+#include "framework/data/measurement/time_series.hpp"
+
+#include <algorithm>
+
+#include "framework/base/text/number_text.hpp"
+#include "framework/experiment/expression/units.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+const Column& getTimeColumn(const Table& table, const TimeBase& base) {
+  const std::vector<std::string> names = listTimeColumns(base);
+  for (const std::string& name : names) {
+    if (const Column* column = findColumn(table, name)) {
+      return *column;
+    }
+  }
+  if (!base.time) {
+    throw MeasurementError(
+        table.source + ": has no column named t or time; give measurement.time or measurement.sample_rate");
+  }
+  return getColumn(table, base.time->name);
+}
+
+UnitConversion findConversion(const Table& table, const Column& column, const ColumnSpec& wanted,
+                              const std::string& unit) {
+  if (unit.empty()) {
+    return {};
+  }
+  const bool by_table = !wanted.unit && column.unit;
+  try {
+    return calcUnitConversion(wanted.unit.value_or(column.unit.value_or(unit)), unit,
+                              by_table ? SourceLocation{table.source, 0, 0, column.name} : wanted.where);
+  } catch (const ExperimentError& error) {
+    throw MeasurementError(error.what());
+  }
+}
+
+void requireIncreasing(const Table& table, const Column& column, const VectorXd& times) {
+  const double* end = times.data() + times.size();
+  const double* bad = std::adjacent_find(times.data(), end, std::greater_equal<>());
+  if (bad != end) {
+    const Index row = bad - times.data() + 1;
+    throw MeasurementError(table.source + ": column '" + column.name + "' has " + toText(column.values[row]) +
+                           " in row " + std::to_string(row + 1) + ", after " +
+                           toText(column.values[row - 1]) + "; times must increase");
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> listTimeColumns(const TimeBase& base) {
+  if (base.sample_rate) {
+    return {};
+  }
+  return base.time ? std::vector<std::string>{base.time->name} : std::vector<std::string>{"t", "time"};
+}
+
+VectorXd readTimes(const Table& table, const TimeBase& base, Index rows) {
+  if (base.sample_rate) {
+    return VectorXd::NullaryExpr(
+        rows, [&](Index i) { return static_cast<double>(i) / *base.sample_rate - base.start; });
+  }
+  const Column& column = getTimeColumn(table, base);
+  const UnitConversion conversion =
+      findConversion(table, column, base.time.value_or(ColumnSpec{column.name, {}, {}}), "s");
+  const VectorXd times = column.values.unaryExpr([&](double t) { return conversion.apply(t) - base.start; });
+  requireIncreasing(table, column, times);
+  return times;
+}
+
+VectorXd readValues(const Table& table, const ColumnSpec& wanted, const std::string& unit, Index first,
+                    Index count) {
+  const Column& column = getColumn(table, wanted.name);
+  const UnitConversion conversion = findConversion(table, column, wanted, unit);
+  return column.values.segment(first, count).unaryExpr([&](double x) { return conversion.apply(x); });
+}
+
+void requireLength(const Table& table, const Column& column, Index times) {
+  if (column.values.size() != times) {
+    throw MeasurementError(table.source + ": column '" + column.name + "' has " +
+                           std::to_string(column.values.size()) + " numbers, but there are " +
+                           std::to_string(times) + " times");
+  }
+}
+
+RowRange findRows(const VectorXd& times, double from, double to, Index margin) {
+  const double* begin = times.data();
+  const double* end = begin + times.size();
+  const Index last = std::lower_bound(begin, end, to) - begin + 1 + margin;
+  const Index first = std::upper_bound(begin, end, from) - begin - 1 - margin;
+  const Index kept = std::clamp<Index>(first, 0, times.size());
+  return {kept, std::max<Index>(0, std::min<Index>(last, times.size()) - kept)};
+}
+
+double calcMedianStep(const VectorXd& times) {
+  VectorXd steps = times.tail(times.size() - 1) - times.head(times.size() - 1);
+  double* middle = steps.data() + steps.size() / 2;
+  std::nth_element(steps.data(), middle, steps.data() + steps.size());
+  return *middle;
+}
+
+}  // namespace twinmap

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "framework/data/features/feature_extractor.hpp"
+#include "framework/data/noise/noise.hpp"
+
+namespace twinmap {
+
+/// How the noise of responses propagates into features.
+class FeatureNoise {
+ public:
+  /// `extractor` must outlive the object.
+  FeatureNoise(const FeatureExtractor& extractor, const ResponseNoise& noise, std::uint64_t seed);
+
+  /// Whether the covariance is the same for every response: that of linear features.
+  bool isConstant() const { return draws_.cols() == 0; }
+
+  /// Covariance (d x d) of the features of a clean response. Linear features: M C M', C the
+  /// covariance of the response's noise, exact. The others by Monte Carlo, with the same noise draws for
+  /// every response: their regression on the noise of the linear ones, plus the covariance of what that
+  /// leaves, so that the whole stays positive semi-definite and its linear part exact. Features that noise
+  /// makes NaN in some draws use the others.
+  Eigen::MatrixXd calcCovariance(const Eigen::VectorXd& response) const;
+
+  /// The mean over (at most 32 of) the columns of clean responses without NaN.
+  Eigen::MatrixXd calcMeanCovariance(const Eigen::MatrixXd& responses) const;
+
+ private:
+  Eigen::MatrixXd calcSampledCovariance(const Eigen::VectorXd& response) const;
+
+  const FeatureExtractor& extractor_;
+  std::vector<Eigen::Index> linear_, nonlinear_;  // features
+  Eigen::MatrixXd linear_covariance_;
+  Eigen::MatrixXd draws_;  // noise of the response, rows x draws; empty if all features are linear
+};
+
+}  // namespace twinmap

@@ -1,0 +1,139 @@
+#include "framework/data/noise/noise.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "framework/data/features/layout_rows.hpp"
+#include "framework/experiment/noise_correlation.hpp"
+#include "kernels/linalg/autocorrelation.hpp"
+#include "kernels/linalg/decompositions.hpp"
+
+namespace twinmap {
+namespace {
+
+/// Times that are multiples of a sample time apart, and these multiples.
+struct GridRows {
+  std::vector<Eigen::Index> times;
+  std::vector<long> steps;
+};
+
+/// Groups the times (s) by what they leave of the last sample time.
+std::vector<GridRows> collectGrids(const Eigen::VectorXd& times, double sample_time) {
+  constexpr double kTolerance = 1e-5;  // of the sample time
+  std::vector<GridRows> grids;
+  std::vector<double> remainders;
+  for (Eigen::Index i = 0; i < times.size(); ++i) {
+    const double steps = times[i] / sample_time;
+    const auto found = std::find_if(remainders.begin(), remainders.end(), [&](double remainder) {
+      return std::abs(std::remainder(steps - remainder, 1.0)) < kTolerance;
+    });
+    const auto group = static_cast<std::size_t>(found - remainders.begin());
+    if (found == remainders.end()) {
+      remainders.push_back(steps);
+      grids.emplace_back();
+    }
+    grids[group].times.push_back(i);
+    grids[group].steps.push_back(std::lround(steps - remainders[group]));
+  }
+  return grids;
+}
+
+Eigen::MatrixXd makeCorrelation(const Eigen::VectorXd& rho, const std::vector<long>& steps) {
+  const auto count = static_cast<Eigen::Index>(steps.size());
+  return Eigen::MatrixXd::NullaryExpr(
+      count, count, [&](Eigen::Index i, Eigen::Index j) { return rho[std::abs(steps[i] - steps[j])]; });
+}
+
+}  // namespace
+
+Eigen::VectorXd calcNoiseStddev(const NoiseSpec& noise, const ResponseLayout& layout) {
+  Eigen::VectorXd stddev(layout.getRowCount());
+  if (layout.modes > 0) {
+    if (!noise.modes) {
+      throw std::invalid_argument("no noise is given for the modes");
+    }
+    stddev.segment(layout.getFrequencyRow(0), layout.modes).setConstant(noise.scale * noise.modes->frequency);
+    stddev.segment(layout.getDampingRow(0), layout.modes)
+        .setConstant(noise.scale * noise.modes->damping_ratio);
+  }
+  for (Eigen::Index o = 0; o < layout.getOutputCount() && layout.times.size() > 0; ++o) {
+    const std::string& output = layout.output_names[o];
+    const auto found = std::find_if(noise.stddev.begin(), noise.stddev.end(),
+                                    [&](const OutputNoiseSpec& spec) { return spec.name.text == output; });
+    if (found == noise.stddev.end()) {
+      throw std::invalid_argument("no noise is given for output '" + output + "'");
+    }
+    stddev.segment(layout.getRow(o, 0), layout.times.size()).setConstant(noise.scale * found->stddev);
+  }
+  return stddev;
+}
+
+ResponseNoise::ResponseNoise(const NoiseSpec& noise, const ResponseLayout& layout)
+    : stddev_(calcNoiseStddev(noise, layout)) {
+  for (const NoiseCorrelationSpec& spec : noise.correlation) {
+    correlate(spec, layout);
+  }
+}
+
+void ResponseNoise::correlate(const NoiseCorrelationSpec& spec, const ResponseLayout& layout) {
+  if (!spec.sample_time) {
+    return;  // no feature uses two times of the output
+  }
+  const Eigen::Index output = findOutput(layout, spec.name.text);
+  for (const GridRows& grid : collectGrids(layout.times, *spec.sample_time)) {
+    const Eigen::VectorXd rho = calcAutocorrelation(spec, grid.steps.back() - grid.steps.front());
+    linalg::Cholesky factor = linalg::calcCholesky(makeCorrelation(rho, grid.steps));
+    if (!factor.positive_definite) {
+      throw std::invalid_argument("the noise of output '" + spec.name.text +
+                                  "' is so correlated that its covariance is singular");
+    }
+    Block block{{}, std::move(factor.lower)};
+    for (const Eigen::Index time : grid.times) {
+      block.rows.push_back(layout.getRow(output, time));
+    }
+    blocks_.push_back(std::move(block));
+  }
+}
+
+Eigen::MatrixXd ResponseNoise::add(const Eigen::MatrixXd& responses, const RandomStream& random,
+                                   std::uint64_t replicate) const {
+  if (blocks_.empty()) {
+    return Eigen::MatrixXd::NullaryExpr(
+        responses.rows(), responses.cols(), [&](Eigen::Index row, Eigen::Index sample) {
+          return responses(row, sample) + stddev_[row] * random.calcNormal(sample, row, replicate);
+        });
+  }
+  Eigen::MatrixXd normal = Eigen::MatrixXd::NullaryExpr(
+      responses.rows(), responses.cols(),
+      [&](Eigen::Index row, Eigen::Index sample) { return random.calcNormal(sample, row, replicate); });
+  for (const Block& block : blocks_) {
+    // Column by column: the noise of a response does not depend on how many there are.
+    for (auto&& sample : normal.colwise()) {
+      const Eigen::VectorXd independent = sample(block.rows);
+      sample(block.rows) = block.factor.triangularView<Eigen::Lower>() * independent;
+    }
+  }
+  return responses + stddev_.asDiagonal() * normal;
+}
+
+Eigen::MatrixXd ResponseNoise::calcCovariance(const FeatureMatrix& matrix) const {
+  const FeatureMatrix scaled = matrix * stddev_.asDiagonal();
+  if (blocks_.empty()) {
+    return scaled * scaled.transpose();
+  }
+  Eigen::MatrixXd factor = scaled;
+  for (const Block& block : blocks_) {
+    const Eigen::MatrixXd correlated =
+        factor(Eigen::all, block.rows) * block.factor.triangularView<Eigen::Lower>();
+    factor(Eigen::all, block.rows) = correlated;
+  }
+  return factor * factor.transpose();
+}
+
+Eigen::MatrixXd addNoise(const Eigen::MatrixXd& responses, const ResponseNoise& noise,
+                         const RandomStream& random, std::uint64_t replicate) {
+  return noise.add(responses, random, replicate);
+}
+
+}  // namespace twinmap

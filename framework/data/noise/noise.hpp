@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "framework/base/random/random.hpp"
+#include "framework/data/features/feature_block.hpp"
+#include "framework/experiment/experiment_spec.hpp"
+#include "framework/simulation/response_layout.hpp"
+
+namespace twinmap {
+
+/// The noise's standard deviation of every row of a response, scale included.
+Eigen::VectorXd calcNoiseStddev(const NoiseSpec& noise, const ResponseLayout& layout);
+
+/// The noise of a response: normal, of a standard deviation of every row; independent, or correlated among
+/// the rows of an output.
+class ResponseNoise {
+ public:
+  /// Independent noise.
+  template <class Derived>
+  ResponseNoise(const Eigen::MatrixBase<Derived>& row_stddev) : stddev_(row_stddev) {}
+
+  /// That of an experiment. Rows of an output whose times are not multiples of its sample_time apart are
+  /// independent: no feature of the output uses both. Throws std::invalid_argument where the correlation of
+  /// the rows is not positive definite. Cost: t^3 / 3 for an output of t correlated times.
+  ResponseNoise(const NoiseSpec& noise, const ResponseLayout& layout);
+
+  const Eigen::VectorXd& getStddev() const { return stddev_; }
+
+  /// Responses (rows x n) plus noise. That of a response depends on the stream, its column and the replicate
+  /// alone.
+  Eigen::MatrixXd add(const Eigen::MatrixXd& responses, const RandomStream& random,
+                      std::uint64_t replicate) const;
+
+  /// The covariance M C M' (d x d) of features = M * response.
+  Eigen::MatrixXd calcCovariance(const FeatureMatrix& matrix) const;
+
+ private:
+  /// Correlated rows: their noise is stddev * (factor * independent standard normal numbers).
+  struct Block {
+    std::vector<Eigen::Index> rows;
+    Eigen::MatrixXd factor;  ///< lower Cholesky factor of their correlation
+  };
+  void correlate(const NoiseCorrelationSpec& spec, const ResponseLayout& layout);
+
+  Eigen::VectorXd stddev_;
+  std::vector<Block> blocks_;
+};
+
+/// Responses (rows x n) plus noise (ResponseNoise::add).
+Eigen::MatrixXd addNoise(const Eigen::MatrixXd& responses, const ResponseNoise& noise,
+                         const RandomStream& random, std::uint64_t replicate = 0);
+
+}  // namespace twinmap

@@ -1,0 +1,71 @@
+#include "framework/estimation/network/canonical_inputs.hpp"
+
+#include <cmath>
+
+#include "framework/data/reduction/principal_components.hpp"
+#include "framework/data/reduction/scaling_steps.hpp"
+#include "kernels/linalg/decompositions.hpp"
+#include "kernels/network/network.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+/// Of all variables, of the highest degree that leaves four samples a term.
+network::Products chooseDegree(Index variables, Index samples) {
+  constexpr Index kSamplesPerTerm = 4;
+  for (const network::Products products :
+       {network::Products{variables, variables}, network::Products{variables, 0}}) {
+    if (kSamplesPerTerm * (variables + products.count()) <= samples) {
+      return products;
+    }
+  }
+  return {};
+}
+
+/// Centred polynomials of the points: terms x n.
+MatrixXd makePolynomials(const MatrixXd& points) {
+  const MatrixXd scaled = fitZScore(points).apply(points);
+  MatrixXd terms = network::makeTerms(scaled, chooseDegree(points.rows(), points.cols()));
+  terms.colwise() -= VectorXd(terms.rowwise().mean());
+  return terms;
+}
+
+/// What a regression on the terms explains of the inputs' covariance.
+MatrixXd calcExplained(const MatrixXd& terms, const MatrixXd& inputs) {
+  constexpr double kRidge = 1e-8;  // of terms with a variance of order 1: parameters on a grid may repeat
+  const auto n = static_cast<double>(inputs.cols());
+  MatrixXd squares = terms * terms.transpose() / n;
+  squares.diagonal().array() += kRidge;
+  const MatrixXd cross = terms * inputs.transpose() / n;
+  const MatrixXd half = linalg::solveLower(linalg::calcCholesky(squares).lower, cross);
+  return half.transpose() * half;
+}
+
+/// W with W C W' = 1, but for directions of no variance.
+MatrixXd calcWhitening(const MatrixXd& covariance) {
+  constexpr double kSmallest = 1e-10;
+  const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(covariance);
+  const double least = kSmallest * eigen.values.maxCoeff();
+  const VectorXd scale =
+      eigen.values.unaryExpr([least](double value) { return value > least ? 1.0 / std::sqrt(value) : 0.0; });
+  return scale.asDiagonal() * eigen.vectors.transpose();
+}
+
+}  // namespace
+
+CanonicalInputs calcCanonicalInputs(const MatrixXd& inputs, const MatrixXd& points) {
+  const auto n = static_cast<double>(inputs.cols());
+  const MatrixXd whitening = calcWhitening(inputs * inputs.transpose() / n);
+  const MatrixXd explained = calcExplained(makePolynomials(points), whitening * inputs);
+  const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(explained);
+  MatrixXd directions = eigen.vectors.rowwise().reverse();
+  fixSigns(directions);
+  return {directions.transpose() * whitening, eigen.values.reverse().cwiseMax(0.0).cwiseMin(1.0).cwiseSqrt()};
+}
+
+}  // namespace twinmap

@@ -1,0 +1,70 @@
+#include "framework/estimation/network/network_map.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "framework/data/features/labelled_features.hpp"
+#include "framework/estimation/run_tasks.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+MatrixXd NetworkInputs::apply(const MatrixXd& features, const MatrixXd& known_values) const {
+  if (features.rows() != center.size() || known_values.rows() != known.center.size() ||
+      (known_values.rows() > 0 && known_values.cols() != features.cols())) {
+    throw std::invalid_argument("a network needs all features, and all known inputs");
+  }
+  const MatrixXd projected = projection * (features.colwise() - center);
+  return known_values.rows() == 0 ? projected : stackRows(projected, known.scale(known_values));
+}
+
+Mixture takeMixture(const network::Predictor::Workspace& predicted) {
+  Mixture mixture{predicted.weights, predicted.means, predicted.means, {}};
+  for (Index c = 0; c < mixture.countComponents(); ++c) {
+    const MatrixXd& covariance = predicted.covariances[static_cast<std::size_t>(c)];
+    mixture.stddevs.col(c) = covariance.diagonal().cwiseSqrt();
+    mixture.correlations.push_back(calcCorrelation(covariance));
+  }
+  return mixture;
+}
+
+Predictions predictTargets(const std::vector<network::Member>& members, const MatrixXd& inputs, int threads) {
+  constexpr Index kChunk = 256;  // measurements that share buffers
+  const network::Network& network = members.front().network;
+  const network::EnsemblePredictor predictor(members);
+  const Index n = inputs.cols(), p = network.countTargets();
+  Predictions predictions{MatrixXd(p, n), MatrixXd(p, n), std::vector<MatrixXd>(static_cast<std::size_t>(n))};
+  const bool mixed = network.countComponents() > 1;
+  predictions.mixtures.resize(static_cast<std::size_t>(mixed ? n : 0));
+  runTasks(threads, static_cast<std::size_t>((n + kChunk - 1) / kChunk), [&](std::size_t chunk) {
+    network::EnsemblePredictor::Workspace workspace(predictor);
+    const Index first = static_cast<Index>(chunk) * kChunk;
+    for (Index i = first; i < std::min(n, first + kChunk); ++i) {
+      const network::Predictor::Workspace& answer = predictor.predict(inputs.col(i), workspace);
+      predictions.mean.col(i) = answer.mean;
+      predictions.stddev.col(i) = answer.stddev;
+      predictions.correlations[static_cast<std::size_t>(i)] = calcCorrelation(answer.covariance);
+      if (mixed) {
+        predictions.mixtures[static_cast<std::size_t>(i)] = takeMixture(answer);
+      }
+    }
+  });
+  return predictions;
+}
+
+Predictions NetworkMap::convertTargets(Predictions predictions, const Eigen::VectorXd& stddev_scale) const {
+  convert(center, half_width, stddev_scale, predictions);
+  shrinkToBounds(center, half_width, predictions);
+  return predictions;
+}
+
+Predictions NetworkMap::predict(const MatrixXd& features, const MatrixXd& known_values, int threads) const {
+  Predictions predictions = convertTargets(
+      predictTargets(members, inputs.apply(features, known_values), threads), validation.stddev_scale);
+  predictions.reach = replicate(validation.reach, features.cols());
+  return predictions;
+}
+
+}  // namespace twinmap

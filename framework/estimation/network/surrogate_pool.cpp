@@ -1,0 +1,111 @@
+#include "framework/estimation/network/surrogate_pool.hpp"
+
+#include <algorithm>
+
+#include "framework/data/features/labelled_features.hpp"
+#include "framework/data/reduction/principal_components.hpp"
+#include "framework/data/reduction/scaling_steps.hpp"
+#include "framework/estimation/run_tasks.hpp"
+#include "kernels/linalg/decompositions.hpp"
+#include "kernels/linalg/paired_matrix.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+/// Scores at points, with the standard deviations of the surrogate's error.
+struct PooledScores {
+  MatrixXd mean, stddev;  // r x n
+};
+
+MatrixXd drawPoints(Index variables, Index n, std::uint64_t seed) {
+  const RandomStream random(seed, RandomPurpose::kNetworkPool);
+  return MatrixXd::NullaryExpr(variables, n, [&](Index i, Index j) {
+    return 2.0 * random.calcUniform(static_cast<std::uint64_t>(j), static_cast<std::uint64_t>(i)) - 1.0;
+  });
+}
+
+PooledScores calcScores(const ForwardSurrogate& forward, const MatrixXd& points,
+                        const TrainingControl& control) {
+  constexpr Index kChunk = 100;  // points that share buffers
+  const Index r = forward.getScoreCount(), n = points.cols();
+  PooledScores scores{MatrixXd(r, n), MatrixXd(r, n)};
+  runTasks(control.threads, static_cast<std::size_t>((n + kChunk - 1) / kChunk), [&](std::size_t chunk) {
+    gp::throwIfStopped(control.stop);
+    gp::SharedProcess::Workspace workspace;
+    const Index begin = static_cast<Index>(chunk) * kChunk;
+    for (Index i = begin; i < std::min(n, begin + kChunk); ++i) {
+      Index first = 0;
+      for (const gp::SharedProcess& process : forward.windows) {
+        const Index count = process.getFunctionCount();
+        process.evaluate(points.col(i), scores.mean.col(i).segment(first, count), workspace);
+        process.calcStddev(scores.stddev.col(i).segment(first, count), workspace);
+        first += count;
+      }
+    }
+  });
+  return scores;
+}
+
+/// One draw of error and noise, to see how much the scores of measurements vary.
+MatrixXd drawScores(const PooledScores& scores, const MatrixXd& error_factor, std::uint64_t seed) {
+  const Index r = scores.mean.rows();
+  const MatrixXd identity = MatrixXd::Identity(r, r);
+  const NormalSamples once({scores.mean, identity, identity, scores.stddev, error_factor});
+  std::vector<Index> all(static_cast<std::size_t>(scores.mean.cols()));
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    all[i] = static_cast<Index>(i);
+  }
+  MatrixXd drawn(r, scores.mean.cols());
+  once.draw(all, {seed, RandomPurpose::kNetworkPool}, {}, drawn);
+  return drawn;
+}
+
+/// Scores (r x n) of the simulations, changed by the error that the processes make where each is left out.
+MatrixXd calcLeftOutScores(const ForwardSurrogate& forward) {
+  MatrixXd scores = forward.scores;
+  Index first = 0;
+  for (const gp::SharedProcess& process : forward.windows) {
+    scores.middleRows(first, process.getFunctionCount()) += process.getLeftOut().residual.transpose();
+    first += process.getFunctionCount();
+  }
+  return scores;
+}
+
+}  // namespace
+
+SurrogatePool makeSurrogatePool(const Surrogate& surrogate, Index n, std::uint64_t seed,
+                                const TrainingControl& control) {
+  const ForwardSurrogate& forward = *surrogate.forward;
+  const MatrixXd normalised = drawPoints(surrogate.center.size(), n, seed);
+  PooledScores scores = calcScores(forward, normalised, control);
+  const MatrixXd error_factor = linalg::calcCholesky(forward.error_correlation).lower;
+  const MatrixXd drawn = drawScores(scores, error_factor, seed);
+  const MatrixXd components = fitPrincipalComponents({}, drawn).projection;
+  const VectorXd scale = fitZScore(components * drawn).scale;
+  const Index known = surrogate.center.size() - surrogate.unknown;
+  SurrogatePool pool;
+  const auto convert = [&](const MatrixXd& points) -> MatrixXd {
+    return (surrogate.half_width.asDiagonal() * points).colwise() + surrogate.center;
+  };
+  pool.points = convert(normalised);
+  const MatrixXd projection = scale.cwiseInverse().asDiagonal() * components;
+  pool.center = forward.center;
+  pool.projection = linalg::roundToHalves(projection * forward.projection);
+  const MatrixXd noise_factor = linalg::calcCholesky(projection * projection.transpose()).lower;
+  pool.inputs = {stackRows(projection * scores.mean, normalised.bottomRows(known)), noise_factor, projection,
+                 std::move(scores.stddev), error_factor};
+  pool.left_out_points = convert(forward.points);
+  pool.left_out = {stackRows(projection * calcLeftOutScores(forward), forward.points.bottomRows(known)),
+                   noise_factor,
+                   {},
+                   {},
+                   {}};
+  return pool;
+}
+
+}  // namespace twinmap

@@ -1,0 +1,81 @@
+#include "framework/estimation/network/training_warnings.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace twinmap {
+
+using Eigen::Index;
+
+namespace {
+
+/// Why answers are not of the kind that a network gives: of a few large errors among small ones, 50 % sets
+/// hold more than that, and 95 % sets fewer.
+std::string describeShape(double probability, double share, Index components) {
+  constexpr Index kMaxComponents = 4;
+  const bool heavy_tails = (share > probability) == (probability < 0.9);
+  if (components == 1) {
+    return heavy_tails ? "normal distributions: a few of its errors are much larger than the others"
+                       : "normal distributions: several answers fit, of which 'head: mixture' tells, or they "
+                         "lie at the bounds";
+  }
+  return fmt::format("mixtures of {} normal distributions{}", components,
+                     components < kMaxComponents ? "; 'components: 4' may serve better" : "");
+}
+
+}  // namespace
+
+void warnOfRestarts(int restarts, std::vector<std::string>& warnings) {
+  if (restarts > 0) {
+    warnings.push_back(
+        fmt::format("the network's training went back to its best checkpoint {} times; a lower learning_rate "
+                    "would be steadier",
+                    restarts));
+  }
+}
+
+void warnOfChains(const WeightChains& chains, std::vector<std::string>& warnings) {
+  constexpr double kLargestRHat = 1.05, kMinDraws = 100.0, kMaxDivergences = 0.01;
+  double r_hat = 0.0, draws = chains.log_density.effective_sample_size;
+  for (const markov::Convergence& one : chains.means) {
+    r_hat = std::max(r_hat, one.r_hat);
+    draws = std::min(draws, one.effective_sample_size);
+  }
+  const double divergent = static_cast<double>(chains.divergences) / (chains.chains * chains.draws);
+  if (r_hat > kLargestRHat || draws < kMinDraws || divergent > kMaxDivergences) {
+    warnings.push_back(fmt::format(
+        "the chains of the network's weights have not converged: R-hat {:.3f} of its worst mean, {:.0f} "
+        "effective draws, {:.1f} % divergent trajectories; take more draws or fewer hidden units",
+        r_hat, draws, 100.0 * divergent));
+  }
+}
+
+void warnOfShape(const std::vector<ParameterSpec>& parameters, NetworkMapTraining& training) {
+  // A small difference is of no consequence, and twice the standard error is what so many simulations cannot
+  // tell. Of a uniform distribution, a normal one's 50 % intervals hold 39 % and its 95 % intervals all; of
+  // two answers apart the former next to none.
+  struct Level {
+    double probability, quantile, small;
+  };
+  constexpr Level kLevels[] = {{0.5, kNormal50, 0.04}, {0.95, kNormal95, 0.025}};
+  const double simulations = static_cast<double>(training.held_out_truth.cols()) / training.held_out_draws;
+  for (Index p = 0; p < training.held_out_truth.rows(); ++p) {
+    const Eigen::ArrayXd depths = calcDepths(training.held_out, training.held_out_truth, p);
+    for (const auto& [probability, quantile, small] : kLevels) {
+      const double share = (depths < quantile).cast<double>().mean();
+      if (std::abs(share - probability) > small + 2.0 * calcShareError(probability, simulations)) {
+        training.warnings.push_back(fmt::format(
+            "{}: {:.0f} % intervals of the network would hold {:.0f} % of the samples held out, so that its "
+            "answers are not {}{}",
+            parameters[static_cast<std::size_t>(p)].name.text, 100.0 * probability, 100.0 * share,
+            describeShape(probability, share, training.map.countComponents()),
+            training.held_out.reach.isGiven() ? ". Intervals reach as far as those samples' errors" : ""));
+        break;
+      }
+    }
+  }
+}
+
+}  // namespace twinmap

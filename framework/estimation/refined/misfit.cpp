@@ -1,0 +1,152 @@
+#include "framework/estimation/refined/misfit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "framework/data/sensitivity/stencil_simulator.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
+#include "kernels/linalg/decompositions.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+/// residual: whitened, k; jacobian: of the features, whitened, k x s.
+LocalMisfit combine(const SampleStatus& status, const VectorXd& at, const VectorXd& residual,
+                    const MatrixXd& jacobian) {
+  const double chi_square = residual.squaredNorm();
+  return {status,
+          at,
+          chi_square,
+          chi_square + kHalfWidthInformation * at.squaredNorm(),
+          residual.size(),
+          jacobian.transpose() * jacobian,
+          jacobian.transpose() * residual - kHalfWidthInformation * at,
+          residual};
+}
+
+}  // namespace
+
+MatrixXd LocalMisfit::calcHessian() const {
+  MatrixXd hessian = information;
+  hessian.diagonal().array() += kHalfWidthInformation;
+  return hessian;
+}
+
+MatrixXd LocalMisfit::calcCovariance() const {
+  return linalg::solveCholesky(linalg::calcCholesky(calcHessian()).lower,
+                               MatrixXd::Identity(information.rows(), information.cols()));
+}
+
+double LocalMisfit::calcDegrees() const {
+  const double determined = calcCovariance().cwiseProduct(information).sum();
+  return std::max(1.0, static_cast<double>(residuals) - determined);
+}
+
+Misfit::Misfit(Simulator& simulator, const RefinementModel& model, const SearchBox& box,
+               const VectorXd& measured)
+    : simulator_(simulator), model_(model), box_(box), measured_(measured), window_(&model.getWhole()) {}
+
+void Misfit::setWindow(const GrowingWindow& window) {
+  window_ = &window;
+  renewNoise();
+}
+
+const NoiseWhitener& Misfit::getWhitener() const {
+  return window_->whitener ? *window_->whitener : *whitener_;
+}
+
+MatrixXd Misfit::makePoints(const MatrixXd& points) const {
+  MatrixXd sampled(box_.makePoint(points.col(0)).size(), points.cols());
+  for (Index i = 0; i < points.cols(); ++i) {
+    sampled.col(i) = box_.makePoint(points.col(i));
+  }
+  return sampled;
+}
+
+std::vector<LocalMisfit> Misfit::linearizeAll(const MatrixXd& points) {
+  const MatrixXd sampled = makePoints(points);
+  const int neighbours = countNeighbours(model_.getUnknown().size());
+  MatrixXd stencils(simulator_.getLayout().getRowCount() * neighbours, points.cols());
+  std::vector<SampleStatus> statuses(static_cast<std::size_t>(points.cols()));
+  simulateStencils(simulator_, model_.getUnknown(), sampled, stencils, statuses.data());
+  simulations_ += static_cast<int>(points.cols()) * (simulator_.hasDerivatives() ? 1 : neighbours);
+  std::vector<LocalMisfit> local;
+  for (Index i = 0; i < points.cols(); ++i) {
+    local.push_back(makeLocalMisfit(points.col(i),
+                                    makeLocalModel(model_.getExtractor(), model_.getUnknown(), sampled.col(i),
+                                                   stencils.col(i), statuses[static_cast<std::size_t>(i)])));
+  }
+  return local;
+}
+
+LocalMisfit Misfit::makeLocalMisfit(const VectorXd& at, const LocalModel& local) {
+  const SearchedParameters& searched = box_.getSearched();
+  if (!local.status.ok) {
+    return {local.status, {}, 0.0, 0.0, 0, {}, {}, {}};
+  }
+  if (!window_->whitener && !whitener_) {
+    whitener_ = model_.makeWhitener(*window_, local.response);
+  }
+  const VectorXd difference = (measured_ - local.features)(window_->features);
+  const MatrixXd sensitivities =
+      0.5 * local.sensitivities(window_->features, Eigen::seqN(searched.first, searched.count));
+  return combine(local.status, at, getWhitener().apply(difference), getWhitener().apply(sensitivities));
+}
+
+/// Whitened residuals (k x n) at the columns of `points`.
+MatrixXd Misfit::simulateResiduals(const MatrixXd& points, std::vector<SampleStatus>& statuses) {
+  const MatrixXd sampled = makePoints(points);
+  MatrixXd responses(simulator_.getLayout().getRowCount(), points.cols());
+  statuses.resize(static_cast<std::size_t>(points.cols()));
+  simulator_.simulate(sampled, responses, statuses.data());
+  simulations_ += static_cast<int>(points.cols());
+  const MatrixXd differences = (-model_.getExtractor().extract(responses)).colwise() + measured_;
+  return getWhitener().apply(differences(window_->features, Eigen::all));
+}
+
+ProbedMisfit Misfit::probe(const VectorXd& at, const MatrixXd& ways) {
+  const Index s = at.size();
+  MatrixXd points(s, 2 * s + 1);
+  points.leftCols(s) = ways;
+  points.middleCols(s, s) = -ways;
+  points.col(2 * s).setZero();
+  points.colwise() += at;
+  std::vector<SampleStatus> statuses;
+  const MatrixXd residuals = simulateResiduals(points, statuses);
+  ProbedMisfit probed;
+  for (const SampleStatus& status : statuses) {
+    if (!status.ok) {
+      probed.local.status = status;
+      return probed;
+    }
+  }
+  const MatrixXd along = 0.5 * (residuals.middleCols(s, s) - residuals.leftCols(s));
+  const MatrixXd jacobian =
+      along * ways.colwise().squaredNorm().cwiseInverse().asDiagonal() * ways.transpose();
+  probed.local = combine({}, at, residuals.col(2 * s), jacobian);
+  probed.ways = ways;
+  probed.misfits = (residuals.leftCols(2 * s).colwise().squaredNorm() +
+                    kHalfWidthInformation * points.leftCols(2 * s).colwise().squaredNorm())
+                       .transpose();
+  return probed;
+}
+
+VectorXd Misfit::evaluate(const MatrixXd& points) {
+  std::vector<SampleStatus> statuses;
+  VectorXd misfits = simulateResiduals(points, statuses).colwise().squaredNorm();
+  misfits += kHalfWidthInformation * points.colwise().squaredNorm().transpose();
+  for (Index i = 0; i < points.cols(); ++i) {
+    if (!statuses[static_cast<std::size_t>(i)].ok || !std::isfinite(misfits[i])) {
+      misfits[i] = std::numeric_limits<double>::infinity();
+    }
+  }
+  return misfits;
+}
+
+}  // namespace twinmap

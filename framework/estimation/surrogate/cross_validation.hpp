@@ -1,0 +1,32 @@
+#pragma once
+
+#include "framework/estimation/surrogate/fit_forward.hpp"
+#include "framework/estimation/surrogate/train_surrogate.hpp"
+
+namespace twinmap {
+
+/// Simulations left out of a training, and what was inferred of them from the measured features, draw by
+/// draw.
+struct HeldOut {
+  Eigen::MatrixXd truth;         ///< p x c
+  Predictions predictions;       ///< p x c, before any scaling
+  Eigen::MatrixXd limit_stddev;  ///< p x c, what the measurement allows
+};
+
+/// Some of the simulations, in the order given.
+ForwardSamples selectSimulations(const ForwardSamples& samples, const std::vector<Eigen::Index>& kept);
+
+/// A surrogate for the box of `whole` that some simulations are left out of, fitted from the choices made for
+/// all, without any scaling of its standard deviations.
+Surrogate fitSimilar(const Surrogate& whole, const ForwardSamples& samples, const ForwardChoices& choices,
+                     const TrainingControl& control);
+
+/// Leaves out every fifth simulation in turn, fits everything anew from the choices made for all, and infers
+/// the measured features of those left out. `whole` gives box and sizes.
+HeldOut crossValidate(const Surrogate& whole, const SurrogateSamples& samples, const ForwardSamples& forward,
+                      const ForwardChoices& choices, const TrainingControl& control);
+
+/// What follows for the standard deviations; limit_scale is left to others.
+SurrogateValidation validate(const HeldOut& held_out);
+
+}  // namespace twinmap

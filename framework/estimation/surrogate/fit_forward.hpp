@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "framework/estimation/surrogate/feature_windows.hpp"
+#include "framework/estimation/surrogate/forward_samples.hpp"
+#include "framework/estimation/surrogate/forward_surrogate.hpp"
+#include "framework/estimation/training_control.hpp"
+#include "kernels/surrogate/fit_shared_process.hpp"
+
+namespace twinmap {
+
+/// What was chosen for each window of features.
+struct ForwardChoices {
+  std::vector<FeatureWindow> windows;
+  std::vector<gp::SharedChoice> processes;
+};
+
+/// A forward surrogate, and what was chosen for it.
+struct ForwardFit {
+  ForwardSurrogate surrogate;
+  ForwardChoices choices;
+};
+
+/// Fits processes to the principal components of each window of whitened features (makeFeatureWindows, parted
+/// further where that is worth it: divideWindow). Components that move less
+/// than 0.2 of the noise are left out; of the others those are kept that say most about the parameters, by sd
+/// over sqrt(1 + error variance): at most 200, and as many as the errors of n simulations tell the
+/// correlations of, n / 4 where the errors are far above the noise, and more the further they are below. The
+/// correlation of the errors is that of the points left out, shrunk towards independence by at least 0.2
+/// (Schaefer and Strimmer 2005). Where slopes are given, each window learns from them as well if that
+/// predicts simulations left out better (gp::chooseWithSlopes). `similar`: choices for nearly the same
+/// samples, to start from; empty to search anew. Throws std::invalid_argument for a feature without noise and
+/// for too few simulations, gp::Stopped. Cost: a window some 60 evaluations of gp::LeftOutDensity on 300
+/// points, 8 from similar choices; then 2 n^3 flops, with slopes 2 / 3 (n + u m)^3.
+ForwardFit fitForward(const ForwardSamples& samples, const ForwardChoices& similar,
+                      const TrainingControl& control);
+
+}  // namespace twinmap

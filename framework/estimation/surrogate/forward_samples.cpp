@@ -1,0 +1,59 @@
+#include "framework/estimation/surrogate/forward_samples.hpp"
+
+#include <algorithm>
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+namespace {
+
+/// The first `most` simulations that have slopes, then the others.
+std::vector<Index> orderBySlopes(const ForwardSamples& samples, Index& with_slopes) {
+  std::vector<Index> order, others;
+  Index unknown = 0;
+  for (const MatrixXd& slopes : samples.slopes) {
+    unknown = std::max(unknown, slopes.cols());
+  }
+  const Index n = samples.points.cols(), most = unknown > 0 ? countSlopePoints(n, unknown) : 0;
+  for (Index i = 0; i < n; ++i) {
+    const bool has =
+        static_cast<Index>(order.size()) < most && samples.slopes[static_cast<std::size_t>(i)].size() > 0;
+    (has ? order : others).push_back(i);
+  }
+  with_slopes = static_cast<Index>(order.size());
+  order.insert(order.end(), others.begin(), others.end());
+  return order;
+}
+
+}  // namespace
+
+Index countSlopePoints(Index simulations, Index unknown) {
+  constexpr Index kMaxRows = 2000;
+  return std::clamp<Index>((kMaxRows - simulations) / std::max<Index>(unknown, 1), 0, simulations);
+}
+
+WhitenedSamples whiten(const ForwardSamples& samples, const Eigen::VectorXd& center,
+                       const NoiseWhitener& noise) {
+  Index with_slopes = 0;
+  const std::vector<Index> order = orderBySlopes(samples, with_slopes);
+  WhitenedSamples whitened{samples.points(Eigen::all, order),
+                           noise.apply(samples.clean_features(Eigen::all, order).colwise() - center),
+                           {}};
+  if (with_slopes == 0) {
+    return whitened;
+  }
+  const Index unknown = samples.slopes[static_cast<std::size_t>(order[0])].cols();
+  whitened.slopes.variables = unknown;
+  whitened.slopes.values.resize(unknown * with_slopes, whitened.features.rows());
+  for (Index i = 0; i < with_slopes; ++i) {
+    const MatrixXd slopes = noise.apply(samples.slopes[static_cast<std::size_t>(order[i])]);
+    for (Index v = 0; v < unknown; ++v) {
+      whitened.slopes.values.row(v * with_slopes + i) = slopes.col(v).transpose();
+    }
+  }
+  return whitened;
+}
+
+}  // namespace twinmap

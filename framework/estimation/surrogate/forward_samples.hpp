@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "framework/data/features/feature_block.hpp"
+#include "framework/data/noise/noise_whitener.hpp"
+#include "kernels/surrogate/slope_covariance.hpp"
+
+namespace twinmap {
+
+/// Simulations that a forward surrogate learns from.
+struct ForwardSamples {
+  std::vector<FeatureInfo> infos;    ///< d
+  Eigen::MatrixXd points;            ///< m x n, normalised
+  Eigen::MatrixXd clean_features;    ///< d x n
+  Eigen::MatrixXd noise_covariance;  ///< d x d
+  /// n, or none: derivatives of the features (d x u) with respect to the first u variables, normalised; empty
+  /// where a simulation has none.
+  std::vector<Eigen::MatrixXd> slopes{};
+};
+
+/// At how many of n simulations slopes with respect to u variables are learnt from: of all, as long as there
+/// are at most 2000 values and slopes in all, which keeps a fit of a window below a second.
+Eigen::Index countSlopePoints(Eigen::Index simulations, Eigen::Index unknown);
+
+/// They in units of the noise, in the order in which processes take them, those with slopes first.
+struct WhitenedSamples {
+  Eigen::MatrixXd points;    ///< m x n
+  Eigen::MatrixXd features;  ///< k x n
+  gp::SlopeData slopes;      ///< of the features
+};
+
+WhitenedSamples whiten(const ForwardSamples& samples, const Eigen::VectorXd& center,
+                       const NoiseWhitener& noise);
+
+}  // namespace twinmap

@@ -1,0 +1,51 @@
+#include "framework/estimation/surrogate/leading_scores.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+
+namespace twinmap {
+
+using Eigen::ArrayXd;
+using Eigen::Index;
+using Eigen::VectorXd;
+
+ArrayXd calcRoughWeights(const ForwardSurrogate& surrogate) {
+  return (1.0 + surrogate.error_variance.array()).rsqrt();
+}
+
+std::vector<Index> rankSimulations(const ForwardSurrogate& surrogate,
+                                   const Eigen::Ref<const VectorXd>& scores) {
+  const ArrayXd weights = calcRoughWeights(surrogate);
+  const VectorXd misfit =
+      ((surrogate.scores.colwise() - scores).array().colwise() * weights).matrix().colwise().squaredNorm();
+  std::vector<Index> order(static_cast<std::size_t>(misfit.size()));
+  std::iota(order.begin(), order.end(), Index{0});
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return misfit[a] < misfit[b]; });
+  return order;
+}
+
+LeadingScores findLeadingScores(const ForwardSurrogate& surrogate, Index unknown) {
+  constexpr Index kScoresPerUnknown = 10;
+  const ArrayXd weights = calcRoughWeights(surrogate);
+  const ArrayXd said = surrogate.scores.rowwise().squaredNorm().array() * weights.square();
+  std::vector<double> order(said.data(), said.data() + said.size());
+  const Index kept = std::min<Index>(said.size(), kScoresPerUnknown * unknown);
+  std::nth_element(order.begin(), order.begin() + (kept - 1), order.end(), std::greater<>());
+  const double least = order[static_cast<std::size_t>(kept - 1)];
+  LeadingScores leading{ArrayXd::Zero(said.size()), {}};
+  Index first = 0;
+  for (const gp::SharedProcess& process : surrogate.windows) {
+    const Index count = process.getFunctionCount();
+    Index taken = count;
+    while (taken > 0 && said(first + taken - 1) < least) {
+      --taken;
+    }
+    leading.weights.segment(first, taken) = weights.segment(first, taken);
+    leading.counts.push_back(taken);
+    first += count;
+  }
+  return leading;
+}
+
+}  // namespace twinmap

@@ -1,0 +1,214 @@
+#include "framework/estimation/surrogate/posterior_sampler.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "framework/base/random/random.hpp"
+#include "kernels/linalg/decompositions.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using importance::BoxMixture;
+using importance::WeightedDraws;
+
+namespace {
+
+constexpr int kMaxRounds = 4;
+constexpr double kMaxParetoShape = 0.7;  // above it, errors no longer fall with the number of draws
+
+VectorXd clampToBox(const VectorXd& point) {
+  return point.cwiseMax(-1.0).cwiseMin(1.0);
+}
+
+/// Whether another round pays: few draws bear the weight, or hardly drawn ones do.
+bool needsMore(const WeightedDraws& draws, int round_draws) {
+  constexpr double kEnough = 0.2;           // of a round's draws
+  constexpr double kGoodParetoShape = 0.5;  // above it, weights have no variance
+  return !(importance::calcEffectiveSampleSize(draws) >= kEnough * round_draws) ||
+         !(importance::calcParetoShape(draws) <= kGoodParetoShape);
+}
+
+/// Why draws do not stand for the posterior; empty if they do.
+std::string findObstacle(double effective_sample_size, double pareto_shape) {
+  if (!(effective_sample_size >= importance::kSmallestSampleSize)) {
+    return fmt::format("the effective sample size stayed below {:.0f}", importance::kSmallestSampleSize);
+  }
+  if (!(pareto_shape <= kMaxParetoShape)) {
+    return fmt::format("the weights have too heavy a tail (Pareto shape above {:.1f})", kMaxParetoShape);
+  }
+  return "";
+}
+
+}  // namespace
+
+PosteriorModel makePosteriorModel(const Surrogate& surrogate) {
+  return {surrogate.forward,    surrogate.center,  surrogate.half_width,
+          surrogate.parameters, surrogate.unknown, surrogate.validation.stddev_scale.cwiseMax(1.0)};
+}
+
+PosteriorSampler::PosteriorSampler(PosteriorModel model, int draws, std::uint64_t seed)
+    : model_(std::move(model)),
+      draws_(draws),
+      seed_(seed),
+      inversion_(*model_.forward, model_.unknown),
+      likelihood_(*model_.forward) {}
+
+SurrogatePosterior PosteriorSampler::sampleFeatures(const Eigen::Ref<const VectorXd>& features,
+                                                    const Eigen::Ref<const VectorXd>& known,
+                                                    std::uint64_t sample) {
+  const Index q = known.size();
+  const VectorXd normalised =
+      q > 0 ? VectorXd((known - model_.center.tail(q)).cwiseQuotient(model_.half_width.tail(q))) : VectorXd();
+  return this->sample(model_.forward->calcScores(features), normalised, sample);
+}
+
+SurrogatePosterior PosteriorSampler::sample(const Eigen::Ref<const VectorXd>& scores,
+                                            const Eigen::Ref<const VectorXd>& known, std::uint64_t sample) {
+  constexpr double kMin = 10.0;  // draws a dimension that a covariance needs
+  constexpr int kCenters = 24, kCenterChannel = 1;
+  const gp::Moments normal = inversion_.infer(scores, known);
+  likelihood_.setMeasurement(scores, known, inversion_.getModes().front().widening);
+  mode_factors_.clear();
+  for (const ScoreMode& mode : inversion_.getModes()) {
+    mode_factors_.push_back(linalg::calcCholesky(mode.moments.covariance).lower);
+  }
+  Evaluated evaluated;
+  addRound(proposeFirst(), sample, evaluated);
+  WeightedDraws draws = weigh(evaluated);
+  for (int round = 1; round < kMaxRounds && needsMore(draws, draws_); ++round) {
+    const WeightedDraws spread = importance::temper(draws, kMin * static_cast<double>(model_.unknown));
+    addRound(importance::coverDraws(spread, drawUniforms(kCenters, kCenterChannel + round, sample)), sample,
+             evaluated);
+    draws = weigh(evaluated);
+  }
+  return summarize(draws, normal, sample);
+}
+
+const PosteriorSampler::Numbers& PosteriorSampler::getNumbers(int round, std::uint64_t sample) {
+  if (sample != numbers_sample_) {
+    numbers_.clear();
+    numbers_sample_ = sample;
+  }
+  const RandomStream random(seed_, RandomPurpose::kSurrogatePosterior);
+  while (static_cast<int>(numbers_.size()) <= round) {
+    const auto first = static_cast<std::uint64_t>(draws_) * numbers_.size();
+    const auto draw = [&](Index i) { return first + static_cast<std::uint64_t>(i); };
+    const auto calc_pick = [&](Index i) { return random.calcUniform(draw(i), 0, sample); };
+    const auto calc_normal = [&](Index k, Index i) {
+      return random.calcNormal(draw(i), static_cast<std::uint64_t>(k) + 1, sample);
+    };
+    numbers_.push_back({VectorXd::NullaryExpr(draws_, calc_pick),
+                        MatrixXd::NullaryExpr(model_.unknown, draws_, calc_normal)});
+  }
+  return numbers_[static_cast<std::size_t>(round)];
+}
+
+VectorXd PosteriorSampler::drawUniforms(Index count, int channel, std::uint64_t sample) const {
+  const RandomStream random(seed_, RandomPurpose::kPosteriorResampling);
+  return VectorXd::NullaryExpr(count, [&](Index i) {
+    return random.calcUniform(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(channel), sample);
+  });
+}
+
+/// Most draws are as far from the modes as they are said to be, few twice as far, and few anywhere.
+BoxMixture PosteriorSampler::proposeFirst() const {
+  constexpr double kNear = 0.75, kFar = 0.2;
+  constexpr double kFarWidth = 2.0;
+  std::vector<importance::NormalPart> parts;
+  for (std::size_t k = 0; k < mode_factors_.size(); ++k) {
+    const ScoreMode& mode = inversion_.getModes()[k];
+    VectorXd scale = VectorXd::Ones(model_.unknown);
+    scale.head(model_.parameters) = model_.stddev_scale;
+    const MatrixXd lower = scale.asDiagonal() * mode_factors_[k];
+    parts.push_back({kNear * mode.share, mode.moments.mean, lower});
+    parts.push_back({kFar * mode.share, mode.moments.mean, kFarWidth * lower});
+  }
+  return BoxMixture(std::move(parts));
+}
+
+/// Where the likelihood is taken for a point: nearer to the nearest mode, by the calibrated scale. It is in
+/// the box if the point is.
+VectorXd PosteriorSampler::stretch(const VectorXd& point) const {
+  const std::vector<ScoreMode>& modes = inversion_.getModes();
+  std::size_t nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < modes.size() && modes.size() > 1; ++k) {
+    const VectorXd apart = linalg::solveLower(mode_factors_[k], point - modes[k].moments.mean);
+    if (const double distance = apart.squaredNorm(); distance < least) {
+      least = distance;
+      nearest = k;
+    }
+  }
+  const Index p = model_.parameters;
+  const VectorXd mode = clampToBox(modes[nearest].moments.mean).head(p);
+  VectorXd stretched = point;
+  stretched.head(p) = mode + (point.head(p) - mode).cwiseQuotient(model_.stddev_scale);
+  return stretched;
+}
+
+void PosteriorSampler::addRound(const BoxMixture& proposal, std::uint64_t sample, Evaluated& evaluated) {
+  const Numbers& numbers = getNumbers(static_cast<int>(evaluated.proposals.size()), sample);
+  const MatrixXd points = proposal.draw(numbers.picks, numbers.normals);
+  const Index before = evaluated.points.cols();
+  evaluated.points.conservativeResize(points.rows(), before + points.cols());
+  evaluated.points.rightCols(points.cols()) = points;
+  evaluated.log_posterior.conservativeResize(before + points.cols());
+  MatrixXd stretched = points;  // what is outside the box remains there
+  for (Index i = 0; i < points.cols(); ++i) {
+    if (points.col(i).cwiseAbs().maxCoeff() <= 1.0) {
+      stretched.col(i) = stretch(points.col(i));
+    }
+  }
+  evaluated.log_posterior.tail(points.cols()) = likelihood_.calcLogs(stretched);
+  evaluated.proposals.push_back(proposal);
+}
+
+WeightedDraws PosteriorSampler::weigh(const Evaluated& evaluated) const {
+  const auto rounds = static_cast<Index>(evaluated.proposals.size());
+  MatrixXd proposed(evaluated.points.cols(), rounds);
+  for (Index round = 0; round < rounds; ++round) {
+    proposed.col(round) =
+        evaluated.proposals[static_cast<std::size_t>(round)].calcLogDensities(evaluated.points);
+  }
+  const VectorXd equal = VectorXd::Constant(rounds, 1.0 / static_cast<double>(rounds));
+  return importance::weigh(evaluated.points,
+                           evaluated.log_posterior - importance::mixLogDensities(proposed, equal));
+}
+
+SurrogatePosterior PosteriorSampler::summarize(const WeightedDraws& draws, const gp::Moments& normal,
+                                               std::uint64_t sample) const {
+  constexpr int kDrawChannel = 0;
+  const Index p = model_.parameters, u = model_.unknown;
+  SurrogatePosterior posterior;
+  posterior.evaluations = static_cast<int>(draws.points.cols());
+  posterior.effective_sample_size = importance::calcEffectiveSampleSize(draws);
+  posterior.pareto_shape = importance::calcParetoShape(draws);
+  posterior.message = findObstacle(posterior.effective_sample_size, posterior.pareto_shape);
+  if (!posterior.isReliable()) {
+    return posterior;
+  }
+  const VectorXd center = model_.center.head(u), half_width = model_.half_width.head(u);
+  // not a Map: GCC 12 sees AVX-512 read beyond the five
+  const VectorXd probabilities =
+      VectorXd::NullaryExpr(static_cast<Index>(kPosteriorProbabilities.size()),
+                            [](Index i) { return kPosteriorProbabilities[static_cast<std::size_t>(i)]; });
+  posterior.mean = (center + half_width.cwiseProduct(importance::calcMean(draws))).head(p);
+  posterior.stddev =
+      half_width.cwiseProduct(importance::calcCovariance(draws).diagonal().cwiseSqrt()).head(p);
+  const MatrixXd quantiles = importance::calcQuantiles(draws, probabilities).topRows(p);
+  posterior.quantiles = (half_width.head(p).asDiagonal() * quantiles).colwise() + center.head(p);
+  posterior.normal_mean = (center + half_width.cwiseProduct(normal.mean)).head(p);
+  posterior.normal_covariance =
+      (half_width.asDiagonal() * normal.covariance * half_width.asDiagonal()).topLeftCorner(p, p);
+  const MatrixXd chosen = importance::resample(draws, drawUniforms(draws_, kDrawChannel, sample));
+  posterior.draws = (half_width.asDiagonal() * chosen).colwise() + center;
+  return posterior;
+}
+
+}  // namespace twinmap

@@ -1,0 +1,54 @@
+#include "framework/estimation/surrogate/predicted_limit.hpp"
+
+#include "framework/experiment/model/parameter_box.hpp"
+#include "kernels/linalg/decompositions.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+/// J'J of the scores at a point, J = ds / dx with respect to the first u variables.
+MatrixXd calcNoiseInformation(const ForwardSurrogate& surrogate, const VectorXd& point, Index unknown) {
+  MatrixXd jacobian(surrogate.getScoreCount(), unknown);
+  gp::SharedProcess::Workspace workspace;
+  Index first = 0;
+  for (const gp::SharedProcess& process : surrogate.windows) {
+    const Index count = process.getFunctionCount();
+    VectorXd values(count);
+    process.linearize(point, values, jacobian.middleRows(first, count), workspace);
+    first += count;
+  }
+  return jacobian.transpose() * jacobian;
+}
+
+}  // namespace
+
+VectorXd calcScoreLimit(const MatrixXd& information) {
+  const Index u = information.rows();
+  const MatrixXd identity = MatrixXd::Identity(u, u);
+  const MatrixXd lower = linalg::calcCholesky(information + kHalfWidthInformation * identity).lower;
+  return linalg::solveCholesky(lower, identity).diagonal().cwiseSqrt();
+}
+
+VectorXd calcLimitScale(const ForwardSurrogate& surrogate, const ForwardSamples& samples, Index unknown) {
+  constexpr int kMax = 64;  // both means vary alike over the box, so that few suffice for their ratio
+  const NoiseWhitener noise(samples.noise_covariance);
+  VectorXd of_simulator = VectorXd::Zero(unknown), of_scores = VectorXd::Zero(unknown);
+  int count = 0;
+  for (std::size_t i = 0; i < samples.slopes.size() && count < kMax; ++i) {
+    if (samples.slopes[i].size() > 0) {
+      const MatrixXd slopes = noise.apply(samples.slopes[i]);
+      const VectorXd point = samples.points.col(static_cast<Index>(i));
+      of_simulator += calcScoreLimit(slopes.transpose() * slopes).cwiseAbs2();
+      of_scores += calcScoreLimit(calcNoiseInformation(surrogate, point, unknown)).cwiseAbs2();
+      ++count;
+    }
+  }
+  return count > 0 ? VectorXd(of_simulator.cwiseQuotient(of_scores).cwiseSqrt()) : VectorXd::Ones(unknown);
+}
+
+}  // namespace twinmap

@@ -1,0 +1,55 @@
+#include "framework/estimation/surrogate/score_likelihood.hpp"
+
+#include <limits>
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+ScoreLikelihood::ScoreLikelihood(const ForwardSurrogate& surrogate)
+    : surrogate_(surrogate),
+      workspaces_(surrogate.windows.size()),
+      widening_(surrogate.windows.size(), 1.0),
+      residual_(surrogate.getScoreCount()),
+      scratch_(surrogate.getScoreCount()) {}
+
+void ScoreLikelihood::setMeasurement(const Eigen::Ref<const VectorXd>& scores,
+                                     const Eigen::Ref<const VectorXd>& known, std::vector<double> widening) {
+  scores_ = scores;
+  known_ = known;
+  widening_ = std::move(widening);
+}
+
+VectorXd ScoreLikelihood::calcLogs(const MatrixXd& unknown) {
+  std::vector<Index> inside;
+  for (Index i = 0; i < unknown.cols(); ++i) {
+    if (unknown.col(i).cwiseAbs().maxCoeff() <= 1.0) {
+      inside.push_back(i);
+    }
+  }
+  points_.resize(unknown.rows() + known_.size(), static_cast<Index>(inside.size()));
+  points_ << unknown(Eigen::all, inside), known_.replicate(1, points_.cols());
+  surrogate_.evaluate(points_, widening_, workspaces_, values_, stddev_);
+  VectorXd logs = VectorXd::Constant(unknown.cols(), -std::numeric_limits<double>::infinity());
+  for (std::size_t k = 0; k < inside.size(); ++k) {
+    logs(inside[k]) = calcLog(static_cast<Index>(k));
+  }
+  return logs;
+}
+
+/// Of one of the points evaluated.
+double ScoreLikelihood::calcLog(Index point) {
+  const auto stddev = stddev_.col(point).asDiagonal();
+  covariance_ = stddev * surrogate_.error_correlation * stddev;
+  covariance_.diagonal().array() += 1.0;
+  if (!linalg::factorizeCholesky(linalg::viewOf(covariance_), scratch_)) {
+    return -std::numeric_limits<double>::infinity();  // not even finite
+  }
+  residual_ = scores_ - values_.col(point);
+  linalg::solveLower(linalg::viewOf(covariance_), residual_.data());
+  return -0.5 * residual_.squaredNorm() - covariance_.diagonal().array().log().sum();
+}
+
+}  // namespace twinmap

@@ -1,0 +1,57 @@
+#include "framework/estimation/surrogate/surrogate.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "framework/estimation/run_tasks.hpp"
+#include "framework/estimation/surrogate/score_inversion.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+const char* toString(SurrogateStatus status) {
+  return status == SurrogateStatus::kOk ? "ok" : "estimator_limited";
+}
+
+void Surrogate::answer(const gp::Moments& normalised, VectorXd& mean, VectorXd& stddev) const {
+  const auto widths = half_width.head(parameters).array();
+  mean = center.head(parameters).array() + widths * normalised.mean.head(parameters).array();
+  stddev = validation.stddev_scale.array() * widths *
+           normalised.covariance.diagonal().head(parameters).array().sqrt();
+}
+
+VectorXd Surrogate::calcLimit(const VectorXd& noise_stddev) const {
+  return validation.limit_scale.array() * half_width.head(parameters).array() *
+         noise_stddev.head(parameters).array();
+}
+
+SurrogateAnswers Surrogate::infer(const MatrixXd& features, const MatrixXd& inputs, int threads) const {
+  constexpr Index kChunk = 16;  // measurements that share buffers
+  const Index n = features.cols(), known = center.size() - unknown;
+  if (features.rows() != forward->center.size() || inputs.rows() != known ||
+      (known > 0 && inputs.cols() != n)) {
+    throw std::invalid_argument("a surrogate needs all features, and all known inputs");
+  }
+  const MatrixXd scores = forward->calcScores(features);
+  SurrogateAnswers answers{{MatrixXd(parameters, n), MatrixXd(parameters, n)}, MatrixXd(parameters, n)};
+  runTasks(threads, static_cast<std::size_t>((n + kChunk - 1) / kChunk), [&](std::size_t chunk) {
+    ScoreInversion inversion(*forward, unknown);
+    VectorXd mean, stddev;
+    const Index first = static_cast<Index>(chunk) * kChunk;
+    for (Index i = first; i < std::min(n, first + kChunk); ++i) {
+      const VectorXd at =
+          known > 0 ? VectorXd((inputs.col(i) - center.tail(known)).cwiseQuotient(half_width.tail(known)))
+                    : VectorXd();
+      answer(inversion.infer(scores.col(i), at), mean, stddev);
+      answers.predictions.mean.col(i) = mean;
+      answers.predictions.stddev.col(i) = stddev;
+      answers.limit_stddev.col(i) = calcLimit(inversion.getNoiseStddev());
+    }
+  });
+  return answers;
+}
+
+}  // namespace twinmap

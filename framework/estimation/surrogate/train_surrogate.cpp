@@ -1,0 +1,114 @@
+#include "framework/estimation/surrogate/train_surrogate.hpp"
+
+#include <fmt/core.h>
+
+#include <stdexcept>
+
+#include "framework/base/text/nearest_name.hpp"
+#include "framework/estimation/surrogate/cross_validation.hpp"
+#include "framework/estimation/surrogate/fit_forward.hpp"
+#include "framework/estimation/surrogate/predicted_limit.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+/// No more than an exact process is worth: the time grows with their number cubed.
+SurrogateSamples takeFirst(const SurrogateSamples& samples) {
+  constexpr Index kMax = 2000;
+  const Index n = samples.points.cols();
+  if (n <= kMax) {
+    return samples;
+  }
+  SurrogateSamples first{samples.infos,
+                         samples.points.leftCols(kMax),
+                         samples.clean_features.leftCols(kMax),
+                         samples.noise_covariance,
+                         MatrixXd(samples.measured.rows(), 0),
+                         samples.slopes};
+  if (!first.slopes.empty()) {
+    first.slopes.resize(kMax);
+  }
+  const Index draws = samples.measured.cols() / n;
+  first.measured.resize(samples.measured.rows(), kMax * draws);
+  for (Index draw = 0; draw < draws; ++draw) {
+    first.measured.middleCols(draw * kMax, kMax) = samples.measured.middleCols(draw * n, kMax);
+  }
+  return first;
+}
+
+std::vector<std::string> listWarnings(const ModelSpec& model, const SurrogateValidation& validation) {
+  constexpr double kHonest = 0.9;
+  std::vector<std::string> warnings, told;
+  for (Index k = 0; k < validation.coverage95.size(); ++k) {
+    if (validation.coverage95(k) < kHonest) {
+      told.push_back(fmt::format("{} ({:.2f}, {:.2f})",
+                                 model.parameters[static_cast<std::size_t>(k)].name.text,
+                                 validation.coverage95(k), validation.stddev_scale(k)));
+    }
+  }
+  if (!told.empty()) {
+    warnings.push_back(
+        "the surrogate's own 95 % intervals held too seldom in cross-validation, so that its "
+        "standard deviations are multiplied (share, factor): " +
+        listNames(told));
+  }
+  if (validation.status == SurrogateStatus::kEstimatorLimited) {
+    warnings.emplace_back(
+        "estimator_limited: the surrogate does not know its own error; refine the answers on the simulator, "
+        "or add "
+        "simulations");
+  }
+  return warnings;
+}
+
+}  // namespace
+
+std::string findSurrogateObstacle(const ModelSpec& model, Index simulations,
+                                  const MatrixXd& noise_covariance) {
+  constexpr Index kMin = 20;  // five folds of which are a cross-validation
+  if (simulations < kMin + 2 * static_cast<Index>(collectSampled(model).size())) {
+    return "a surrogate needs at least 20 training samples, and two a parameter more";
+  }
+  return noise_covariance.diagonal().minCoeff() > 0.0 ? "" : "the noise of a feature is 0";
+}
+
+SurrogateTraining trainSurrogate(const ModelSpec& model, const SurrogateSamples& given,
+                                 const TrainingControl& control) {
+  const SurrogateSamples samples = takeFirst(given);
+  const std::string obstacle = findSurrogateObstacle(model, samples.points.cols(), samples.noise_covariance);
+  if (!obstacle.empty()) {
+    throw std::invalid_argument(obstacle);
+  }
+  const std::vector<ParameterSpec> sampled = collectSampled(model);
+  SurrogateTraining training;
+  Surrogate& surrogate = training.surrogate;
+  surrogate.center = calcBoxCenter(sampled);
+  surrogate.half_width = 0.5 * calcWidths(sampled);
+  surrogate.parameters = static_cast<Index>(model.parameters.size());
+  surrogate.unknown = surrogate.parameters + static_cast<Index>(model.nuisance.size());
+  const MatrixXd normalized =
+      surrogate.half_width.cwiseInverse().asDiagonal() * (samples.points.colwise() - surrogate.center);
+  ForwardSamples forward{samples.infos, normalized, samples.clean_features, samples.noise_covariance};
+  for (const MatrixXd& per_width : samples.slopes) {
+    forward.slopes.push_back(0.5 * per_width);  // per half width
+  }
+  ForwardFit fit = fitForward(forward, {}, control);
+  surrogate.forward = std::make_shared<const ForwardSurrogate>(std::move(fit.surrogate));
+  HeldOut held_out = crossValidate(surrogate, samples, forward, fit.choices, control);
+  surrogate.validation = validate(held_out);
+  surrogate.validation.limit_scale =
+      calcLimitScale(*surrogate.forward, forward, surrogate.unknown).head(surrogate.parameters);
+  training.gain = calcSimulationGain(surrogate, samples, forward, fit.choices, held_out, control);
+  training.held_out = std::move(held_out.predictions);
+  training.held_out_truth = std::move(held_out.truth);
+  training.held_out_draws = static_cast<int>(training.held_out.mean.cols() / samples.points.cols());
+  training.held_out.stddev = surrogate.validation.stddev_scale.asDiagonal() * training.held_out.stddev;
+  training.warnings = listWarnings(model, surrogate.validation);
+  return training;
+}
+
+}  // namespace twinmap

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "framework/data/features/feature_block.hpp"
+#include "framework/estimation/surrogate/simulation_gain.hpp"
+#include "framework/estimation/surrogate/surrogate.hpp"
+#include "framework/estimation/training_control.hpp"
+#include "framework/experiment/model/model_spec.hpp"
+
+namespace twinmap {
+
+/// Simulations to train a surrogate on.
+struct SurrogateSamples {
+  std::vector<FeatureInfo> infos;    ///< d
+  Eigen::MatrixXd points;            ///< m x n: updating, nuisance, known inputs, in their units
+  Eigen::MatrixXd clean_features;    ///< d x n
+  Eigen::MatrixXd noise_covariance;  ///< d x d
+  Eigen::MatrixXd measured;          ///< d x n draws, with noise: column j + i n is draw i of simulation j
+  /// n, or none: derivatives of the clean features (d x u) with respect to the unknowns, the first u
+  /// variables, per width of their bounds; empty where a simulation has none.
+  std::vector<Eigen::MatrixXd> slopes{};
+};
+
+/// A trained surrogate and what a person should know about it.
+struct SurrogateTraining {
+  Surrogate surrogate;
+  Predictions
+      held_out;  ///< p x n draws, of measured features, by surrogates that had not seen their simulation
+  Eigen::MatrixXd held_out_truth;  ///< p x n draws
+  SimulationGain gain;
+  int held_out_draws = 1;  ///< of each simulation: column j + i n is draw i of simulation j
+  std::vector<std::string> warnings;
+};
+
+/// Why a surrogate cannot be trained on so many simulations with such noise; empty if it can.
+std::string findSurrogateObstacle(const ModelSpec& model, Eigen::Index simulations,
+                                  const Eigen::MatrixXd& noise_covariance);
+
+/// Trains a surrogate on simulations of a model, and scales its standard deviations by what a five-fold
+/// cross-validation of everything, on the measured features, finds. At most the first 2000 simulations are
+/// used. Throws std::invalid_argument for a feature without noise and for too few simulations; gp::Stopped.
+/// Cost: fitForward() for all and, from its choices, five times for four fifths; an inference for each
+/// measured column (at most 1000).
+SurrogateTraining trainSurrogate(const ModelSpec& model, const SurrogateSamples& samples,
+                                 const TrainingControl& control);
+
+}  // namespace twinmap

@@ -1,0 +1,150 @@
+#include "framework/estimation/surrogate/window_fit.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "framework/data/reduction/principal_components.hpp"
+#include "kernels/gp/sparse/inducing_points.hpp"
+#include "kernels/surrogate/fit_slopes.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+WindowFit findScores(const FeatureWindow& rows, const WhitenedSamples& whitened) {
+  WindowFit window;
+  constexpr double kSmallestStddev = 0.2;
+  const MatrixXd features = whitened.features(rows, Eigen::all);
+  const PrincipalComponents components = calcPrincipalComponents(features);
+  const Index count =
+      std::max<Index>(1, (components.variances.array() > kSmallestStddev * kSmallestStddev).count());
+  const MatrixXd kept = components.directions.leftCols(count);
+  window.directions.setZero(whitened.features.rows(), count);
+  window.directions(rows, Eigen::all) = kept;
+  window.scores = features.transpose() * kept;
+  if (whitened.slopes.variables > 0) {
+    window.slopes = {whitened.slopes.values(Eigen::all, rows) * kept, whitened.slopes.variables};
+  }
+  return window;
+}
+
+/// From slopes as well; false where rounding leaves their joint covariance without a Cholesky factor.
+bool fitWithSlopes(const MatrixXd& points, WindowFit& window) {
+  try {
+    window.process.emplace(points, window.scores, window.slopes, window.choice.structure,
+                           window.choice.hyperparameters);
+    return true;
+  } catch (const std::runtime_error&) {
+    return false;
+  }
+}
+
+void fitByChoice(const MatrixXd& points, gp::StopFlag stop, WindowFit& window) {
+  if (window.choice.structure.slopes) {
+    if (fitWithSlopes(points, window)) {
+      return;
+    }
+    window.choice = gp::chooseSharedProcess(points, window.scores, stop);
+  }
+  window.process.emplace(points, window.scores, window.choice.structure, window.choice.hyperparameters);
+}
+
+double calcError(const MatrixXd& residual, const MatrixXd& directions) {
+  const Eigen::ArrayXXd of_features = (residual * directions.transpose()).array();
+  return 0.5 * of_features.square().log1p().mean();
+}
+
+WindowChoice chooseByValues(FeatureWindow rows, const WhitenedSamples& samples, gp::StopFlag stop) {
+  constexpr Index kMaxPoints = 300;  // as many as the search takes
+  const WindowFit window = findScores(rows, samples);
+  WindowChoice choice{std::move(rows), gp::chooseOnSpread(samples.points, window.scores, stop)};
+  const std::vector<Index> taken =
+      gp::spreadIndices(samples.points.cols(), std::min(kMaxPoints, samples.points.cols()));
+  const MatrixXd points = samples.points(Eigen::all, taken), scores = window.scores(taken, Eigen::all);
+  gp::LeftOutDensity density(points, scores, choice.by_values.structure);
+  double ignored = 0.0;
+  if (density.evaluate(choice.by_values.hyperparameters, ignored)) {
+    choice.error = calcError(density.getLeftOut().residual, window.directions(choice.rows, Eigen::all));
+  }
+  return choice;
+}
+
+/// The earlier and the later half of a window's times; empty where they would be too short to be worth
+/// processes of their own, or features have no time.
+std::vector<FeatureWindow> halve(const FeatureWindow& rows, const std::vector<FeatureInfo>& infos) {
+  constexpr std::size_t kMinTimes = 2;
+  std::vector<double> times;
+  for (const Index row : rows) {
+    if (infos.empty() || infos[static_cast<std::size_t>(row)].output < 0) {
+      return {};
+    }
+    times.push_back(infos[static_cast<std::size_t>(row)].time);
+  }
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  if (times.size() < 2 * kMinTimes) {
+    return {};
+  }
+  const double middle = times[times.size() / 2];
+  std::vector<FeatureWindow> halves(2);
+  for (const Index row : rows) {
+    halves[infos[static_cast<std::size_t>(row)].time < middle ? 0 : 1].push_back(row);
+  }
+  return halves;
+}
+
+std::vector<WindowChoice> divide(WindowChoice whole, const std::vector<FeatureInfo>& infos,
+                                 const WhitenedSamples& samples, gp::StopFlag stop) {
+  constexpr double kFew = 0.3;     // errors of about the noise: there is little to be gained
+  constexpr double kGrowth = 0.5;  // errors of the later half 1.6 times those of the earlier
+  const std::vector<FeatureWindow> halves =
+      whole.error > kFew ? halve(whole.rows, infos) : std::vector<FeatureWindow>{};
+  if (halves.empty()) {
+    return {std::move(whole)};
+  }
+  WindowChoice early = chooseByValues(halves[0], samples, stop);
+  WindowChoice late = chooseByValues(halves[1], samples, stop);
+  if (late.error < early.error + kGrowth) {
+    return {std::move(whole)};
+  }
+  std::vector<WindowChoice> parts = divide(std::move(early), infos, samples, stop);
+  for (WindowChoice& part : divide(std::move(late), infos, samples, stop)) {
+    parts.push_back(std::move(part));
+  }
+  return parts;
+}
+
+}  // namespace
+
+std::vector<WindowChoice> divideWindow(const FeatureWindow& rows, const std::vector<FeatureInfo>& infos,
+                                       const WhitenedSamples& samples, gp::StopFlag stop) {
+  return divide(chooseByValues(rows, samples, stop), infos, samples, stop);
+}
+
+WindowFit fitWindow(const WindowChoice& chosen, const WhitenedSamples& samples, gp::StopFlag stop) {
+  WindowFit window = findScores(chosen.rows, samples);
+  window.choice = chosen.by_values;
+  if (window.slopes.variables > 0) {
+    window.choice =
+        gp::chooseWithSlopes(chosen.by_values, samples.points, window.scores, window.slopes, stop);
+  }
+  if (!window.choice.structure.slopes) {
+    window.choice = gp::finishOnAll(window.choice, samples.points, window.scores, stop);
+  }
+  fitByChoice(samples.points, stop, window);
+  return window;
+}
+
+WindowFit refitWindow(const FeatureWindow& rows, const gp::SharedChoice& similar,
+                      const WhitenedSamples& samples, gp::StopFlag stop) {
+  WindowFit window = findScores(rows, samples);
+  window.choice = similar.structure.slopes && window.slopes.variables > 0
+                      ? similar
+                      : gp::adaptSharedProcess(similar, samples.points, window.scores, stop);
+  fitByChoice(samples.points, stop, window);
+  return window;
+}
+
+}  // namespace twinmap

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "framework/estimation/surrogate/feature_windows.hpp"
+#include "framework/estimation/surrogate/forward_samples.hpp"
+#include "kernels/surrogate/fit_shared_process.hpp"
+#include "kernels/surrogate/shared_process.hpp"
+
+namespace twinmap {
+
+/// The scores of one window and what was fitted to them.
+struct WindowFit {
+  Eigen::MatrixXd directions;  ///< k x c, of all whitened features
+  Eigen::MatrixXd scores;      ///< n x c
+  gp::SlopeData slopes;        ///< of the scores
+  gp::SharedChoice choice;
+  std::optional<gp::SharedProcess> process;
+};
+
+/// A window and what was chosen for its values alone, on at most 300 points.
+struct WindowChoice {
+  FeatureWindow rows;
+  gp::SharedChoice by_values;
+  double error = 0.0;  ///< nats: mean over its features and points left out of log(1 + error^2) / 2
+};
+
+/// Parts a window of samples in halves of its time, and those again, where the errors of the later half are
+/// above those of the earlier by 0.5 nats: there a response begins to be unpredictable, and the earlier part
+/// is learnt far better with length scales of its own, from slopes above all. `infos` are of the whitened
+/// features; where they are none, nothing is parted. Cost: a search (gp::chooseOnSpread) for each window
+/// tried.
+std::vector<WindowChoice> divideWindow(const FeatureWindow& rows, const std::vector<FeatureInfo>& infos,
+                                       const WhitenedSamples& samples, gp::StopFlag stop);
+
+/// Fits a window anew, from values and slopes where that predicts better.
+WindowFit fitWindow(const WindowChoice& window, const WhitenedSamples& samples, gp::StopFlag stop);
+
+/// Fits a window by a choice made on nearly the same samples.
+WindowFit refitWindow(const FeatureWindow& rows, const gp::SharedChoice& similar,
+                      const WhitenedSamples& samples, gp::StopFlag stop);
+
+}  // namespace twinmap

@@ -1,0 +1,100 @@
+#include "framework/estimation/trained/online_processes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "kernels/gp/sparse/compression.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+using ExactProcess = std::shared_ptr<const gp::GaussianProcess>;
+
+}  // namespace
+
+OnlineProcesses::OnlineProcesses(GpMap map) : map_(std::move(map)), predictor_(map_.processes) {
+  matrix_ = map_.transform.calcMatrix();
+  offset_ = map_.transform.apply(VectorXd::Zero(matrix_.cols()));
+  noise_variance_.resize(static_cast<Index>(map_.processes.size()));
+  for (Index p = 0; p < noise_variance_.size(); ++p) {
+    noise_variance_[p] = gp::getNoiseVariance(map_.processes[p]);
+  }
+}
+
+OnlineProcesses::Workspace::Workspace(const OnlineProcesses& map) : predictor(map.predictor_) {
+  const auto parameters = static_cast<Index>(map.map_.processes.size());
+  inference.mean.setZero(parameters);
+  inference.stddev.setZero(parameters);
+  inference.inputs.setZero(map.matrix_.rows() + map.map_.known_inputs.center.size());
+  slope.setZero(map.map_.noise.directions.cols());
+}
+
+void OnlineProcesses::makeInputs(const Eigen::Ref<const VectorXd>& features,
+                                 const Eigen::Ref<const VectorXd>& known, VectorXd& inputs) const {
+  auto transformed = inputs.head(offset_.size());
+  transformed = offset_;
+  transformed.noalias() += matrix_ * features;
+  inputs.tail(known.size()) = (known - map_.known_inputs.center).cwiseQuotient(map_.known_inputs.half_width);
+}
+
+const Inference& OnlineProcesses::infer(const Eigen::Ref<const VectorXd>& features,
+                                        const Eigen::Ref<const VectorXd>& known, Workspace& workspace) const {
+  Inference& inference = workspace.inference;
+  makeInputs(features, known, inference.inputs);
+  if (map_.noise.isConstant()) {
+    predictor_.predict(inference.inputs, workspace.predictor);
+  } else {
+    predictor_.predictWithGradient(inference.inputs, workspace.predictor);
+  }
+  const gp::OnlinePredictor::Values& values = workspace.predictor.values;
+  inference.mean = map_.target_offset + map_.target_scale.cwiseProduct(values.mean);
+  for (Index p = 0; p < inference.stddev.size(); ++p) {
+    const double factor = calcNoiseFactor(p, values.gradient.col(p), workspace.slope);
+    inference.stddev[p] =
+        map_.target_scale[p] * std::sqrt(values.latent_variance[p] + noise_variance_[p] * factor);
+  }
+  return inference;
+}
+
+const Inference& OnlineProcesses::inferMean(const Eigen::Ref<const VectorXd>& features,
+                                            const Eigen::Ref<const VectorXd>& known,
+                                            Workspace& workspace) const {
+  Inference& inference = workspace.inference;
+  makeInputs(features, known, inference.inputs);
+  predictor_.predictMean(inference.inputs, workspace.predictor);
+  inference.mean = map_.target_offset + map_.target_scale.cwiseProduct(workspace.predictor.values.mean);
+  inference.stddev.setZero();
+  return inference;
+}
+
+double OnlineProcesses::calcNoiseFactor(Index parameter, const Eigen::Ref<const VectorXd>& gradient,
+                                        VectorXd& slope) const {
+  const NoiseProfile& noise = map_.noise;
+  if (noise.isConstant() || !(noise.mean_of_slope[parameter] > 0.0)) {
+    return 1.0;
+  }
+  slope.noalias() = noise.directions.transpose() * gradient.head(noise.directions.rows());
+  return std::max(slope.squaredNorm() / noise.mean_of_slope[parameter], NoiseProfile::kSmallestFactor);
+}
+
+GpMap compressMap(const GpMap& map) {
+  constexpr double kTolerance = 1e-4;
+  GpMap compact = map;
+  for (gp::Process& process : compact.processes) {
+    if (const auto* exact = std::get_if<ExactProcess>(&process)) {
+      if (const auto sparse = gp::compress(**exact, kTolerance)) {
+        process = sparse;
+      }
+    }
+  }
+  return compact;
+}
+
+}  // namespace twinmap

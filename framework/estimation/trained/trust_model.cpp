@@ -1,0 +1,209 @@
+#include "framework/estimation/trained/trust_model.hpp"
+
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+#include <limits>
+
+#include "framework/experiment/model/parameter_box.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double kFarAway = 1.5;  // times the reach of simulated measurements
+constexpr double kBeyondBoundsStddevs = 1.0;
+constexpr double kShareOfPrior = 0.9;  // of the box's standard deviation
+
+bool liesBeyondBounds(const TrustModel& model, const VectorXd& mean, const VectorXd& stddev) {
+  const Index p = mean.size();
+  const Eigen::ArrayXd beyond = (mean - model.center.head(p)).array().abs() -
+                                model.half_width.head(p).array() - kBeyondBoundsStddevs * stddev.array();
+  return beyond.maxCoeff() > 0.0;
+}
+
+bool isUninformative(const TrustModel& model, const VectorXd& stddev) {
+  const Eigen::ArrayXd prior = 2.0 * kUniformStddev * model.half_width.head(stddev.size()).array();
+  return (stddev.array() > kShareOfPrior * prior).any();
+}
+
+/// All that apply to an answer, by the p-value and the distance found.
+void setStatuses(const TrustModel& model, const VectorXd& mean, const VectorXd& stddev, Trust& trust) {
+  trust.statuses.clear();
+  if (trust.p_value < model.level) {
+    trust.statuses.push_back(TrustStatus::kModelMismatch);
+  }
+  if (trust.distance > kFarAway) {
+    trust.statuses.push_back(TrustStatus::kOutsideTraining);
+  }
+  if (liesBeyondBounds(model, mean, stddev)) {
+    trust.statuses.push_back(TrustStatus::kAtBounds);
+  }
+  if (isUninformative(model, stddev)) {
+    trust.statuses.push_back(TrustStatus::kUninformative);
+  }
+  if (trust.statuses.empty()) {
+    trust.statuses.push_back(TrustStatus::kOk);
+  }
+}
+
+/// Residual, chi-square and anomaly, without their p-values.
+void setResidual(const TrustModel& model, const VectorXd& residual, Trust& trust) {
+  trust.chi_square = residual.squaredNorm();
+  trust.residuals = residual.size();
+  trust.anomaly = findAnomaly(residual, model.runs);
+}
+
+void combinePValues(Trust& trust) {
+  trust.p_value = std::min(1.0, 2.0 * std::min(trust.chi_square_p_value, trust.anomaly_p_value));
+}
+
+/// How rare it is that the simulator explains nothing of a simulated measurement, and how the level of false
+/// alarms is shared between those that are explained and those that are not: where these are rarer than half
+/// of the level, each of them is an alarm, else half of the level is theirs, the worst of them.
+class UnexplainedShare {
+ public:
+  explicit UnexplainedShare(const TrustModel& model)
+      : reference_(model.refinement),
+        all_(calcShareAbove(-std::numeric_limits<double>::infinity())),
+        rare_(all_ <= kShareOfLevel * model.level),
+        level_(model.level) {}
+
+  /// Whether enough were refined that the worst of all would be an alarm.
+  bool isKnown() const { return rare_ || calcPValue(std::numeric_limits<double>::infinity()) < level_; }
+  double getFactorOfExplained() const { return 1.0 / (1.0 - (rare_ ? all_ / level_ : kShareOfLevel)); }
+  double calcPValue(double reduced_chi_square) const {
+    const double share = calcShareAbove(reduced_chi_square);
+    return rare_ ? share : std::min(1.0, share / kShareOfLevel);
+  }
+
+ private:
+  static constexpr double kShareOfLevel = 0.5;
+
+  /// Of simulated measurements those that are unexplained and at least as bad; half a measurement more, for
+  /// none of a few says little.
+  double calcShareAbove(double reduced_chi_square) const {
+    const VectorXd& sorted = reference_.unexplained;
+    const double* end = sorted.data() + sorted.size();
+    const auto above = static_cast<double>(end - std::lower_bound(sorted.data(), end, reduced_chi_square));
+    return (above + 0.5) / (static_cast<double>(reference_.tried) + 1.0);
+  }
+
+  const RefinementReference& reference_;
+  double all_;
+  bool rare_;
+  double level_;
+};
+
+/// Of the refined answer where there is one; else the map's stay, but for the mismatch.
+void replaceStatuses(const TrustModel& model, const SimulatorResidual& found, Trust& trust) {
+  if (found.mean.size() > 0) {
+    setStatuses(model, found.mean, found.stddev, trust);
+    return;
+  }
+  std::vector<TrustStatus> kept;
+  if (trust.p_value < model.level) {
+    kept.push_back(TrustStatus::kModelMismatch);
+  }
+  for (const TrustStatus status : trust.statuses) {
+    if (status != TrustStatus::kModelMismatch && status != TrustStatus::kOk) {
+      kept.push_back(status);
+    }
+  }
+  trust.statuses = kept.empty() ? std::vector<TrustStatus>{TrustStatus::kOk} : kept;
+}
+
+/// The inferred parameters, or the likeliest of several, the middle of the nuisance parameters' box, the
+/// known inputs; normalised.
+void makeStart(const TrustModel& model, const Eigen::Ref<const VectorXd>& known, const Inference& inference,
+               VectorXd& start) {
+  start = model.center;
+  start.head(inference.mean.size()) = findLikeliest(inference).mean;
+  start.tail(known.size()) = known;
+  start = (start - model.center).cwiseQuotient(model.half_width);
+}
+
+const ScoreExplanation& explain(const TrustModel& model, const Eigen::Ref<const VectorXd>& known,
+                                const Inference& inference, TrustWorkspace& workspace) {
+  makeStart(model, known, inference, workspace.start);
+  workspace.scores.noalias() = model.forward->projection * workspace.centered;
+  return workspace.inversion.explain(workspace.scores, workspace.start.tail(known.size()),
+                                     workspace.start.head(model.unknown));
+}
+
+}  // namespace
+
+const char* toString(TrustStatus status) {
+  switch (status) {
+    case TrustStatus::kModelMismatch:
+      return "model_mismatch";
+    case TrustStatus::kOutsideTraining:
+      return "outside_training";
+    case TrustStatus::kAtBounds:
+      return "at_bounds";
+    case TrustStatus::kUninformative:
+      return "uninformative";
+    case TrustStatus::kOk:
+      break;
+  }
+  return "ok";
+}
+
+double ReferenceDistribution::calcPValue(double value) const {
+  const double* end = sorted.data() + sorted.size();
+  const auto above = static_cast<double>(end - std::lower_bound(sorted.data(), end, value));
+  return (above + 1.0) / (static_cast<double>(sorted.size()) + 1.0);
+}
+
+double TrainingCloud::calcDistance(const Eigen::Ref<const VectorXd>& at, VectorXd& buffer) const {
+  buffer = at.cwiseQuotient(scale);
+  return std::sqrt((inputs.colwise() - buffer).colwise().squaredNorm().minCoeff()) / reach;
+}
+
+Trust judge(const TrustModel& model, const Eigen::Ref<const VectorXd>& features,
+            const Eigen::Ref<const VectorXd>& known, const Inference& inference,
+            const ScoreExplanation* explained, TrustWorkspace& workspace) {
+  workspace.centered = features - model.forward->center;
+  workspace.explanation = explained != nullptr ? explained : &explain(model, known, inference, workspace);
+  model.space.calcResidual(workspace.centered, workspace.explanation->innovation, workspace.residual);
+  Trust trust;
+  compareWithSimulated(model, workspace.residual, trust);
+  trust.distance = model.cloud.calcDistance(inference.inputs, workspace.distance);
+  const LikeliestAnswer answer = findLikeliest(inference);
+  setStatuses(model, answer.mean, answer.stddev, trust);
+  return trust;
+}
+
+void compareWithSimulated(const TrustModel& model, const VectorXd& residual, Trust& trust) {
+  setResidual(model, residual, trust);
+  trust.chi_square_p_value = model.chi_square.calcPValue(trust.chi_square);
+  trust.anomaly_p_value = model.anomaly.calcPValue(trust.anomaly.score);
+  combinePValues(trust);
+}
+
+Trust judgeAnew(const TrustModel& model, const Trust& trust, const SimulatorResidual& found) {
+  const UnexplainedShare share(model);
+  if (!found.explained && !share.isKnown()) {
+    return trust;
+  }
+  Trust anew = trust;
+  if (found.residual.size() > 0) {
+    setResidual(model, found.residual, anew);
+    anew.anomaly_p_value = model.noise_anomaly.calcPValue(anew.anomaly.score);
+    anew.chi_square_p_value =
+        boost::math::cdf(boost::math::complement(boost::math::chi_squared(found.degrees), anew.chi_square));
+  }
+  if (found.explained) {
+    combinePValues(anew);
+    anew.p_value = std::min(1.0, anew.p_value * share.getFactorOfExplained());
+  } else {
+    anew.p_value = share.calcPValue(found.reduced_chi_square);
+  }
+  replaceStatuses(model, found, anew);
+  return anew;
+}
+
+}  // namespace twinmap

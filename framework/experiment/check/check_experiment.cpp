@@ -1,0 +1,125 @@
+#include "framework/experiment/check/check_experiment.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+#include "framework/base/text/nearest_name.hpp"
+#include "framework/experiment/check/check_features.hpp"
+#include "framework/experiment/check/check_measurement.hpp"
+#include "framework/experiment/check/check_noise.hpp"
+
+namespace twinmap {
+namespace {
+
+void checkName(const Name& name) {
+  constexpr std::size_t kLongestName = 100;
+  const auto is_allowed = [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.';
+  };
+  const bool valid = std::all_of(name.text.begin(), name.text.end(), is_allowed) && name.text[0] != '.' &&
+                     name.text.size() <= kLongestName;
+  if (!valid) {
+    throw ExperimentError(name.where, name.text,
+                          "names the run's folder: use at most 100 letters, digits, '_', '-' and '.', not "
+                          "beginning with '.'");
+  }
+}
+
+/// What is simulated must have a duration.
+void checkDuration(const ExperimentSpec& experiment) {
+  if (!collectOutputs(experiment.features).empty() && !(experiment.model.simulation.duration > 0.0)) {
+    throw ExperimentError({experiment.name.where.file, 0, 0, "simulation.duration"}, "0",
+                          "must be given, a number above 0, for features of outputs");
+  }
+}
+
+void checkDesign(const DesignSpec& design, const SourceLocation& where) {
+  constexpr int kMin = 2;  // standard deviations need two
+  if (design.train.samples < kMin || design.test.samples < kMin) {
+    throw ExperimentError({where.file, 0, 0, "design"}, "", "needs at least 2 training and 2 test samples");
+  }
+}
+
+void checkCriterion(const CriterionSpec& criterion, const ModelSpec& model) {
+  const std::vector<std::string> parameters = collectNames(model.parameters);
+  if (const Name* parameter = std::get_if<Name>(&criterion.kind)) {
+    requireKnown(*parameter, parameters, "a parameter");
+  }
+  if (const ParameterWeights* weights = std::get_if<ParameterWeights>(&criterion.kind)) {
+    for (const ParameterWeight& one : weights->values) {
+      requireKnown(one.name, parameters, "a parameter");
+    }
+  }
+}
+
+void checkExcitationDesign(const ExcitationDesignSpec& design, const ModelSpec& model) {
+  checkCriterion(design.criterion, model);
+  for (const DesignLimitSpec& limit : design.limits) {
+    limit.output ? requireKnown(*limit.output, collectNames(model.outputs), "an output")
+                 : requireKnown(*limit.signal, collectNames(model.excitation), "a signal of the excitation");
+  }
+}
+
+void checkSensorDesign(const SensorDesignSpec& design, const ExperimentSpec& experiment) {
+  checkCriterion(design.criterion, experiment.model);
+  std::vector<std::string> noisy;
+  for (const OutputNoiseSpec& output : experiment.noise.stddev) {
+    if (output.stddev > 0.0) {
+      noisy.push_back(output.name.text);
+    }
+  }
+  const std::vector<Name>& outputs = design.candidates.outputs;
+  for (auto output = outputs.begin(); output != outputs.end(); ++output) {
+    requireKnown(*output, collectNames(experiment.model.outputs), "an output");
+    requireKnown(*output, noisy, "an output with noise.stddev above 0");
+    const auto same = [&](const Name& other) { return other.text == output->text; };
+    if (std::any_of(outputs.begin(), output, same)) {
+      throw ExperimentError(output->where, output->text, "is listed twice");
+    }
+  }
+}
+
+void checkGates(const ExperimentSpec& experiment) {
+  for (const GateSpec& gate : experiment.gates) {
+    requireKnown(gate.metric, {kGateMetrics.begin(), kGateMetrics.end()}, "a metric");
+    if (gate.parameter) {
+      requireKnown(*gate.parameter, collectNames(experiment.model.parameters), "a parameter");
+    }
+  }
+}
+
+}  // namespace
+
+void requireKnown(const Name& name, const std::vector<std::string>& known, const std::string& what) {
+  if (std::find(known.begin(), known.end(), name.text) == known.end()) {
+    throw ExperimentError(name.where, name.text, "is not " + what + suggestName(name.text, known));
+  }
+}
+
+void checkExperiment(const ExperimentSpec& experiment) {
+  checkName(experiment.name);
+  checkModel(experiment.model);
+  checkBesideModel(experiment);
+}
+
+void checkBesideModel(const ExperimentSpec& experiment) {
+  checkName(experiment.name);
+  checkDuration(experiment);
+  checkFeatures(experiment.features, experiment.model);
+  checkNoise(experiment);
+  checkTransform(experiment);
+  checkDesign(experiment.design, experiment.name.where);
+  if (experiment.design.excitation) {
+    checkExcitationDesign(*experiment.design.excitation, experiment.model);
+  }
+  if (experiment.design.sensors) {
+    checkSensorDesign(*experiment.design.sensors, experiment);
+  }
+  checkGates(experiment);
+  checkMeasurement(experiment.measurement, experiment.model);
+  for (const Name& axis : experiment.report.over) {
+    requireKnown(axis, collectNames(experiment.model.parameters), "a parameter");
+  }
+}
+
+}  // namespace twinmap

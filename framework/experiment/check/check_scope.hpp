@@ -1,0 +1,47 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/experiment/expression/expression.hpp"
+#include "framework/experiment/expression/units.hpp"
+
+namespace twinmap {
+
+/// The names that expressions may use, with their units where stated and a value at a reference point, to
+/// check expressions before anything is simulated. A plain value: copy it to extend it.
+class CheckScope {
+ public:
+  /// Adds a name. Throws ExperimentError if it is taken, reserved, or a function of the expressions.
+  void define(const Name& name, const std::optional<Dimension>& dimension, double reference_value);
+
+  /// Adds the time t in s, which only force laws know.
+  void defineTime();
+
+  /// The dimension of the unit stated for what is declared at `where`; none for "".
+  static std::optional<Dimension> readUnit(const std::string& unit, const SourceLocation& where);
+
+  /// Compiles `expression` and checks that it comes out in `unit`: a physical expression scales with the
+  /// units of its names (dimensional homogeneity). Not checked where `unit` is "", where a name has no unit,
+  /// and where a number may carry one (all but exponents). Returns the value at the reference point. Throws
+  /// ExperimentError.
+  double check(const Expression& expression, const std::string& unit) const;
+  void check(const Expression3& expressions, const std::string& unit) const;
+
+  const std::vector<std::string>& getNames() const { return names_; }
+
+ private:
+  struct Symbol {
+    std::optional<Dimension> dimension;
+    double reference_value;
+  };
+  bool isUnitStated(const std::vector<std::string>& names) const;
+  double calcScaled(const Expression& expression, bool scaled) const;
+
+  std::vector<std::string> names_;
+  std::vector<Symbol> symbols_;
+  bool changes_ = false;  ///< some of the names change in time
+};
+
+}  // namespace twinmap

@@ -1,0 +1,122 @@
+#include "framework/experiment/expression/units.hpp"
+
+#include <udunits2.h>
+
+#include <memory>
+#include <mutex>
+
+namespace twinmap {
+namespace {
+
+struct FreeSystem {
+  void operator()(ut_system* system) const { ut_free_system(system); }
+};
+struct FreeUnit {
+  void operator()(ut_unit* unit) const { ut_free(unit); }
+};
+struct FreeConverter {
+  void operator()(cv_converter* converter) const { cv_free(converter); }
+};
+
+/// UDUNITS keeps its parser's state and its last status in globals: one thread at a time. The cases of a
+/// sweep read their experiments side by side.
+std::mutex udunits;
+
+/// A name that UDUNITS lacks, though everybody uses it.
+void addDegree(ut_system* system) {
+  const std::unique_ptr<ut_unit, FreeUnit> degree(ut_parse(system, "degree", UT_ASCII));
+  ut_map_name_to_unit("deg", UT_ASCII, degree.get());
+}
+
+/// UDUNITS' own database of SI units, read once.
+const ut_system& getUnitSystem() {
+  static const std::unique_ptr<ut_system, FreeSystem> kSystem([] {
+    ut_set_error_message_handler(ut_ignore);
+    ut_system* system = ut_read_xml(nullptr);
+    if (system != nullptr) {
+      addDegree(system);
+    }
+    return system;
+  }());
+  if (kSystem == nullptr) {
+    throw std::runtime_error(
+        "the units database of UDUNITS-2 cannot be read; is libudunits2-data installed?");
+  }
+  return *kSystem;
+}
+
+using Unit = std::unique_ptr<ut_unit, FreeUnit>;
+
+/// Call with `udunits` locked.
+Unit parse(const std::string& unit, const SourceLocation& where) {
+  const std::string text = unit.empty() || unit == "-" ? "1" : unit;
+  Unit parsed(ut_parse(&getUnitSystem(), text.c_str(), UT_UTF8));
+  if (parsed == nullptr) {
+    throw ExperimentError(where, unit, "is not a unit; write units like N s/m, kg m^2, rad/s");
+  }
+  return parsed;
+}
+
+void addPower(Dimension& dimension, const ut_unit* base, int power) {
+  const std::string symbol = ut_get_symbol(base, UT_ASCII);
+  if (symbol != "rad" && power != 0) {
+    dimension[symbol] = power;
+  }
+}
+
+ut_status visitBase(const ut_unit* base, void* dimension) {
+  addPower(*static_cast<Dimension*>(dimension), base, 1);
+  return UT_SUCCESS;
+}
+
+ut_status visitProduct(const ut_unit*, int count, const ut_unit* const* bases, const int* powers,
+                       void* dimension) {
+  for (int i = 0; i < count; ++i) {
+    addPower(*static_cast<Dimension*>(dimension), bases[i], powers[i]);
+  }
+  return UT_SUCCESS;
+}
+
+// Scaled, shifted, logarithmic and time-since units are not coherent.
+ut_status visitScaled(const ut_unit*, double, const ut_unit*, double, void*) {
+  return UT_BAD_ARG;
+}
+ut_status visitTimestamp(const ut_unit*, const ut_unit*, double, void*) {
+  return UT_BAD_ARG;
+}
+ut_status visitLogarithm(const ut_unit*, double, const ut_unit*, void*) {
+  return UT_BAD_ARG;
+}
+
+}  // namespace
+
+Dimension parseUnit(const std::string& unit, const SourceLocation& where) {
+  Dimension dimension;
+  if (unit.empty() || unit == "-") {
+    return dimension;
+  }
+  const std::lock_guard<std::mutex> guard(udunits);
+  const Unit parsed = parse(unit, where);
+  const ut_visitor visitor{visitBase, visitProduct, visitScaled, visitTimestamp, visitLogarithm};
+  if (ut_accept_visitor(parsed.get(), &visitor, &dimension) != UT_SUCCESS) {
+    throw ExperimentError(where, unit, "is not a coherent SI unit; give the value in m, kg, s, N, rad ...");
+  }
+  return dimension;
+}
+
+UnitConversion calcUnitConversion(const std::string& from, const std::string& to,
+                                  const SourceLocation& where) {
+  if (from == to) {
+    return {};
+  }
+  const std::lock_guard<std::mutex> guard(udunits);
+  const Unit source = parse(from, where), target = parse(to, where);
+  const std::unique_ptr<cv_converter, FreeConverter> converter(ut_get_converter(source.get(), target.get()));
+  if (converter == nullptr) {
+    throw ExperimentError(where, from, "does not convert to " + (to.empty() ? "a number" : to));
+  }
+  const double offset = cv_convert_double(converter.get(), 0.0);
+  return {cv_convert_double(converter.get(), 1.0) - offset, offset};
+}
+
+}  // namespace twinmap

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "framework/base/text/source_location.hpp"
+
+namespace twinmap {
+
+/// A physical dimension as powers of base units: {kg: 1, s: -2} for N/m. Radians have none.
+using Dimension = std::map<std::string, int>;
+
+/// The dimension of a unit such as "N s/m", "kg m^2" or "m/s2" (UDUNITS-2 grammar; "" and "-" are 1).
+/// Throws ExperimentError for an unknown unit and for one that is not coherent SI (mm, deg, kN): values are
+/// used as they stand, so N/mm would be a silent factor of 1000.
+Dimension parseUnit(const std::string& unit, const SourceLocation& where);
+
+/// value [to] = factor * value [from] + offset.
+struct UnitConversion {
+  double factor = 1.0, offset = 0.0;
+
+  double apply(double value) const { return factor * value + offset; }
+};
+
+/// From any unit that UDUNITS-2 knows (mm, deg, kN, degC ...; "" and "-" are 1) to another of its dimension.
+/// Throws ExperimentError for an unknown unit and for one of another dimension.
+UnitConversion calcUnitConversion(const std::string& from, const std::string& to,
+                                  const SourceLocation& where);
+
+}  // namespace twinmap

@@ -1,0 +1,254 @@
+#include "framework/experiment/fields/json_schema.hpp"
+
+#include <cmath>
+
+#include "framework/base/json/json.hpp"
+#include "framework/experiment/experiment_spec.hpp"
+#include "framework/experiment/fields/one_of.hpp"
+#include "framework/experiment/sweep/sweep_spec.hpp"
+
+namespace twinmap {
+namespace {
+
+// One overload for each type of value, like readValue.
+Json makeSchema(const double&) {
+  return {{"type", "number"}};
+}
+Json makeSchema(const int&) {
+  return {{"type", "integer"}};
+}
+Json makeSchema(const std::uint64_t&) {
+  return {{"type", "integer"}, {"minimum", 0}};
+}
+Json makeSchema(const bool&) {
+  return {{"type", "boolean"}};
+}
+Json makeSchema(const std::string&) {
+  return {{"type", "string"}};
+}
+Json makeSchema(const Name&) {
+  return {{"type", "string"}};
+}
+Json makeSchema(const Expression&) {
+  return {{"type", {"number", "string"}}};
+}
+Json makeSchema(const ColumnSpec&) {
+  return {{"type", "string"}};
+}
+Json makeSchema(const Bounds&) {
+  return {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 2}, {"maxItems", 2}};
+}
+
+Json makeCountOrAutomatic(const NumberRule& rule) {
+  const Json automatic{{"const", "automatic"}};
+  const Json number{{"type", "integer"}, {"minimum", rule.minimum}, {"maximum", rule.maximum}};
+  return {{"oneOf", Json::array({number, automatic})}};
+}
+Json makeSchema(const ComponentCount&) {
+  return makeCountOrAutomatic(kCount);
+}
+Json makeSchema(const SampleCount&) {
+  return makeCountOrAutomatic(kSampleCount);
+}
+
+Json makeSchema(const ParameterWeights&) {
+  return {{"type", "object"},
+          {"additionalProperties", {{"type", "number"}, {"exclusiveMinimum", 0}}},
+          {"minProperties", 1}};
+}
+
+Json makeSchema(const FreeValues&) {
+  const Json bounds = makeSchema(Bounds{});
+  const Json each{{"type", "object"},
+                  {"additionalProperties", false},
+                  {"properties", {{"each", bounds}}},
+                  {"required", Json::array({"each"})}};
+  return {{"type", "object"},
+          {"additionalProperties", {{"oneOf", Json::array({bounds, each})}}},
+          {"minProperties", 1}};
+}
+
+Json makeSchema(const SweptKeys&) {
+  const Json list{{"type", "array"}, {"minItems", 1}};
+  const Json range{{"type", "string"}, {"pattern", "^-?[0-9]+\\.\\.-?[0-9]+$"}};
+  return {{"type", "object"}, {"additionalProperties", {{"oneOf", Json::array({list, range})}}}};
+}
+
+template <class T>
+Json makeStructSchema();
+template <class T>
+Json makeSchema(const std::vector<T>&);
+template <class T, std::size_t N>
+Json makeSchema(const std::array<T, N>&);
+template <class T>
+Json makeSchema(const std::optional<T>&);
+template <class T, class Variant>
+Json makeSchema(const Alternative<T, Variant>&);
+template <class T>
+Json makeSchema(const T&);
+
+template <class T>
+Json makeSchema(const std::vector<T>&) {
+  return {{"type", "array"}, {"items", makeSchema(T{})}};
+}
+template <class T, std::size_t N>
+Json makeSchema(const std::array<T, N>&) {
+  return {{"type", "array"}, {"items", makeSchema(T{})}, {"minItems", N}, {"maxItems", N}};
+}
+template <class T>
+Json makeSchema(const std::optional<T>&) {
+  return makeSchema(T{});
+}
+template <class T, class Variant>
+Json makeSchema(const Alternative<T, Variant>&) {
+  return makeSchema(T{});
+}
+template <class T>
+Json makeSchema(const T&) {
+  if constexpr (std::is_enum_v<T>) {
+    Json names = Json::array();
+    for (const EnumName<T>& name : EnumNames<T>::values) {
+      names.push_back(name.text);
+    }
+    return {{"enum", names}};
+  } else {
+    return makeStructSchema<T>();
+  }
+}
+
+void addRule(Json& schema, const NumberRule& rule) {
+  if (std::isfinite(rule.minimum)) {
+    schema[rule.minimum_allowed ? "minimum" : "exclusiveMinimum"] = rule.minimum;
+  }
+  if (std::isfinite(rule.maximum)) {
+    schema["maximum"] = rule.maximum;
+  }
+}
+
+void addRule(Json& schema, const ListRule& rule) {
+  schema["minItems"] = rule.minimum;
+}
+
+/// Whether a map without keys is valid.
+bool acceptsNoKeys(const Json& schema) {
+  return !schema.contains("required") && !schema.contains("oneOf");
+}
+
+/// Collects the fields of a struct into its schema (see fields.hpp).
+class FieldSchema {
+ public:
+  template <class T, class... Rule>
+  void required(const char* key, const T& value, const char* what, const Rule&... rule) {
+    required_.push_back(key);
+    optional(key, value, what, rule...);
+  }
+  template <class T, class... Rule>
+  void optional(const char* key, const T& value, const char* what, const Rule&... rule) {
+    Json schema = makeSchema(value);
+    (addRule(schema, rule), ...);
+    add(key, std::move(schema), what);
+  }
+  template <class T>
+  void requiredMap(const char* key, const std::vector<T>& values, const char* what) {
+    required_.push_back(key);
+    optionalMap(key, values, what);
+  }
+  template <class T>
+  void optionalMap(const char* key, const std::vector<T>&, const char* what) {
+    add(key, {{"type", "object"}, {"additionalProperties", makeSchema(T{})}}, what);
+  }
+  template <class... Choices>
+  void oneOf(const char* /*text*/, const Choices&... choices) {
+    (addChoice(choices), ...);
+  }
+  template <class T, class... Rule>
+  void value(const T& value, const Rule&... rule) {
+    value_ = makeSchema(value);
+    (addRule(value_, rule), ...);
+  }
+  void rule(bool, const char*) const {}
+  void scalarIsKey() { scalar_is_key_ = true; }
+  void scalarIsValueOf(const char* key) { value_key_ = key; }
+  void location(const SourceLocation&) const {}
+
+  Json getSchema() const {
+    if (!value_.is_null()) {
+      return value_;
+    }
+    const Json scalar = makeScalar();
+    return scalar.is_null() ? makeObject() : Json{{"oneOf", Json::array({scalar, makeObject()})}};
+  }
+
+ private:
+  void add(const char* key, Json schema, const char* what) {
+    schema["description"] = what;
+    properties_[key] = std::move(schema);
+  }
+
+  template <class Choice>
+  void addChoice(const Choice& choice) {
+    std::apply([&](const auto&... rule) { optional(choice.key, choice.value, choice.what, rule...); },
+               choice.rules);
+    choices_.push_back(Json{{"required", Json::array({choice.key})}});
+  }
+
+  Json makeObject() const {
+    Json object{{"type", "object"}, {"additionalProperties", false}, {"properties", properties_}};
+    if (!required_.empty()) {
+      object["required"] = required_;
+    }
+    if (!choices_.empty()) {
+      object["oneOf"] = choices_;
+    }
+    return object;
+  }
+
+  /// What a scalar may be; null if only a map will do.
+  Json makeScalar() const {
+    if (!value_key_.empty()) {
+      Json schema = properties_[value_key_];
+      schema.erase("description");
+      return schema;
+    }
+    return scalar_is_key_ ? Json{{"enum", listDefaults()}} : Json();
+  }
+
+  /// The choices that need no keys of their own.
+  Json listDefaults() const {
+    Json keys = Json::array();
+    for (const auto& [key, schema] : properties_.items()) {
+      if (acceptsNoKeys(schema)) {
+        keys.push_back(key);
+      }
+    }
+    return keys;
+  }
+
+  Json properties_ = Json::object();
+  std::vector<std::string> required_;
+  Json choices_ = Json::array();
+  Json value_;
+  std::string value_key_;
+  bool scalar_is_key_ = false;
+};
+
+template <class T>
+Json makeStructSchema() {
+  FieldSchema fields;
+  T value{};
+  describe(fields, value);
+  return fields.getSchema();
+}
+
+}  // namespace
+
+std::string makeJsonSchema() {
+  Json schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "twinmap experiment"}};
+  schema.update(makeStructSchema<ExperimentSpec>());
+  schema["properties"]["sweep"] = makeStructSchema<SweepSpec>();
+  schema["properties"]["sweep"]["description"] = "repeats the experiment with other values";
+  constexpr int kIndent = 2;
+  return formatJson(schema, kIndent) + "\n";
+}
+
+}  // namespace twinmap

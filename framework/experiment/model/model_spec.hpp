@@ -1,0 +1,37 @@
+#pragma once
+
+#include <vector>
+
+#include "framework/experiment/model/excitation_spec.hpp"
+#include "framework/experiment/model/initial_spec.hpp"
+#include "framework/experiment/model/output_spec.hpp"
+#include "framework/experiment/model/parameter_spec.hpp"
+#include "framework/experiment/model/simulation_spec.hpp"
+#include "framework/experiment/model/source_spec.hpp"
+#include "framework/experiment/model/system_spec.hpp"
+
+namespace twinmap {
+
+/// Everything that determines a trajectory but the parameter point.
+struct ModelSpec {
+  std::vector<ParameterSpec> parameters;  ///< updating: to be inferred from a response
+  std::vector<ParameterSpec> nuisance;    ///< unknown too, but not inferred: initial state, offset, friction
+  std::vector<ParameterSpec> inputs;      ///< known settings of the set-up, given with a measurement
+  std::vector<ConstantSpec> constants;
+  SystemSpec system;                 ///< without bodies where `source` is the model
+  std::optional<SourceSpec> source;  ///< a model from elsewhere
+  std::vector<SignalSpec> excitation;
+  InitialSpec initial;
+  std::vector<OutputSpec> outputs;
+  SimulationSpec simulation;
+
+  // compiled once (experiment_spec.cpp)
+  ModelSpec();
+  ModelSpec(const ModelSpec&);
+  ModelSpec(ModelSpec&&) noexcept;
+  ModelSpec& operator=(const ModelSpec&);
+  ModelSpec& operator=(ModelSpec&&) noexcept;
+  ~ModelSpec();
+};
+
+}  // namespace twinmap

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <optional>
+
+#include "framework/experiment/fields/one_of.hpp"
+#include "framework/experiment/model/force_spec.hpp"
+
+namespace twinmap {
+
+/// A position, velocity or acceleration of a station, in the ground frame, along `direction` (normalised).
+struct StationOutputSpec {
+  StationSpec station;
+  Expression3 direction;
+};
+
+template <class Fields>
+void describe(Fields& f, StationOutputSpec& s) {
+  f.required("body", s.station.body, "a body");
+  f.optional("point", s.station.point, "in the body's frame; m");
+  f.required("direction", s.direction, "in the ground frame; normalised");
+}
+
+/// One measured quantity of the system: gain * quantity + offset; exactly one of the optional members is set.
+/// Speeds are time derivatives of coordinates.
+struct OutputSpec {
+  Name name;
+  std::optional<Name> coordinate;
+  std::optional<Name> speed;
+  std::optional<StationOutputSpec> position;
+  std::optional<StationOutputSpec> velocity;
+  std::optional<StationOutputSpec> acceleration;
+  std::optional<Name> variable;
+  std::string unit;           ///< of a variable
+  Expression gain{"", {}};    ///< of the sensor, dimensionless; 1 if not given
+  Expression offset{"", {}};  ///< of the sensor, in the quantity's unit; 0 if not given
+};
+
+template <class Fields>
+void describe(Fields& f, OutputSpec& s) {
+  f.oneOf("must give exactly one of", choice("coordinate", s.coordinate, "a joint coordinate; m or rad"),
+          choice("speed", s.speed, "time derivative of a joint coordinate; m/s or rad/s"),
+          choice("position", s.position, "of a station, along a direction; m"),
+          choice("velocity", s.velocity, "of a station, along a direction; m/s"),
+          choice("acceleration", s.acceleration, "of a station, along a direction; m/s2"),
+          choice("variable", s.variable, "of an FMU or a program"));
+  f.optional("unit", s.unit, "coherent SI unit of a variable");
+  f.optional("gain", s.gain, "of the sensor, which measures gain * quantity + offset; default 1");
+  f.optional("offset", s.offset, "of the sensor, in the quantity's unit; default 0");
+}
+
+}  // namespace twinmap

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "framework/experiment/expression/expression.hpp"
+#include "framework/experiment/fields/fields.hpp"
+#include "framework/experiment/model/bounds_spec.hpp"
+
+namespace twinmap {
+
+/// What the relative error of a parameter is relative to: its true value, or the width of its bounds.
+enum class RelativeTo { kValue, kRange };
+
+template <>
+struct EnumNames<RelativeTo> {
+  static constexpr EnumName<RelativeTo> values[] = {{"value", RelativeTo::kValue},
+                                                    {"range", RelativeTo::kRange}};
+};
+
+/// A parameter of the model, sampled within its bounds for training.
+struct ParameterSpec {
+  Name name;
+  Bounds bounds;     ///< in `unit`
+  std::string unit;  ///< coherent SI unit, "" if not stated
+  std::string description;
+  RelativeTo relative_to = RelativeTo::kValue;  ///< of an updating parameter
+  std::optional<Name> variable;                 ///< of a model from elsewhere; default: the name
+};
+
+template <class Fields>
+void describe(Fields& f, ParameterSpec& s) {
+  f.required("bounds", s.bounds, "[lower, upper]; the parameter box is sampled within");
+  f.optional("unit", s.unit, "coherent SI unit, such as N s/m; shown in tables and checked where it is used");
+  f.optional("description", s.description, "for people");
+  f.optional("relative_to", s.relative_to,
+             "what relative errors are relative to: the value, or upper - lower");
+  f.optional("variable", s.variable, "its name in the FMU or program; default: its own");
+}
+
+/// A named value of the model; may use parameters of any kind and the constants declared before it.
+struct ConstantSpec {
+  Name name;
+  Expression value;
+  std::string unit;
+  std::string description;
+  std::optional<Name> variable;  ///< of a model from elsewhere, which is set to it
+};
+
+template <class Fields>
+void describe(Fields& f, ConstantSpec& s) {
+  f.scalarIsValueOf("value");
+  f.required("value", s.value, "number, or expression of parameters and constants declared before");
+  f.optional("unit", s.unit, "coherent SI unit; checked where the constant is used");
+  f.optional("description", s.description, "for people");
+  f.optional("variable", s.variable, "a parameter or start value of the FMU or program that is set to it");
+}
+
+}  // namespace twinmap

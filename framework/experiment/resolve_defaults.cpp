@@ -1,0 +1,112 @@
+#include "framework/experiment/resolve_defaults.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "framework/experiment/network_size.hpp"
+#include "framework/experiment/noise_correlation.hpp"
+
+namespace twinmap {
+namespace {
+
+void resolveReport(const std::vector<ParameterSpec>& parameters, ReportSpec& report) {
+  if (report.over.empty() && parameters.size() >= 2) {
+    report.over = {parameters[parameters.size() - 2].name, parameters.back().name};
+  }
+}
+
+void resolveTransform(ExperimentSpec& experiment) {
+  if (experiment.transform.empty()) {
+    const bool correlated = !experiment.noise.correlation.empty();
+    const SourceLocation where{experiment.name.where.file, 0, 0, "transform"};
+    experiment.transform = {
+        {WhitenSpec{correlated ? WhitenBy::kCovariance : WhitenBy::kStddev}, where},
+        {PrincipalComponentsSpec{}, where},
+    };
+  }
+}
+
+/// 8 standard deviations of the noise: independent noise alone exceeds that between two of 1000 samples in
+/// less than 1 % of windows (1000^2 pairs, each with the probability Q(8 / sqrt 2) = 7.7e-9).
+void resolveProminence(const NoiseSpec& noise, ExtremaFeatureSpec& extrema) {
+  constexpr double kNoiseStddevs = 8.0;
+  for (const OutputNoiseSpec& output : noise.stddev) {
+    if (!extrema.prominence && output.name.text == extrema.output.text) {
+      extrema.prominence = kNoiseStddevs * noise.scale * output.stddev;
+    }
+  }
+}
+
+/// A surrogate's cross-validation tells what more samples are worth; processes from features to parameters
+/// take the paper's number, and so does a network, which a surrogate can teach. 100 samples are the fewest
+/// that five folds of 8 unknowns can be learnt from; a longer set must begin with the shorter one.
+void resolveTrainingSamples(const InverseMapSpec& map, PointSetSpec& train) {
+  constexpr int kSmallest = 100, kMax = 800, kOfProcesses = 250;
+  constexpr double kSeconds = 10.0;
+  if (!train.samples.automatic) {
+    return;
+  }
+  if (map.findGp() != nullptr || map.findNetwork() != nullptr) {
+    train.samples = kOfProcesses;
+    train.time.reset();
+    return;
+  }
+  train.samples.number = kMax;
+  train.time = train.time.value_or(kSeconds);
+  if (train.method == DesignMethod::kLatinHypercube) {
+    train.method = DesignMethod::kNestedLatinHypercube;
+  }
+  if (train.method == DesignMethod::kNestedLatinHypercube) {
+    train.smallest = train.smallest.value_or(kSmallest);
+  }
+}
+
+/// The size of a network that learns from simulations alone. That of a surrogate's student is left open: its
+/// training tells whether the small one suffices.
+void resolveNetwork(int simulations, InverseMapSpec& map) {
+  auto* network = std::get_if<NetworkMapSpec>(&map.kind);
+  if (network == nullptr || (network->mayLearnFromSurrogate(simulations) && !hasSize(*network))) {
+    return;
+  }
+  const NetworkSize size =
+      network->mayLearnFromSurrogate(simulations) ? NetworkSize::kSmall : chooseSize(simulations);
+  *network = completeSize(std::move(*network), size);
+}
+
+/// 4 draws; fewer where the training set would have more than 3000 columns.
+void resolveReplicates(int samples, NoiseSpec& noise) {
+  constexpr int kMaxReplicates = 4, kMaxColumns = 3000;
+  if (!noise.replicates) {
+    noise.replicates = std::clamp(kMaxColumns / samples, 1, kMaxReplicates);
+  }
+}
+
+}  // namespace
+
+void resolveDefaults(ExperimentSpec& experiment) {
+  resolveReport(experiment.model.parameters, experiment.report);
+  resolveTransform(experiment);
+  resolveNoiseCorrelation(experiment);
+  for (FeatureSpec& feature : experiment.features) {
+    if (auto* extrema = std::get_if<ExtremaFeatureSpec>(&feature)) {
+      resolveProminence(experiment.noise, *extrema);
+    }
+  }
+  resolveTrainingSamples(experiment.inverse_map, experiment.design.train);
+  if (!experiment.design.train.samples.automatic) {
+    resolveReplicates(experiment.design.train.samples, experiment.noise);
+  }
+  resolveNetwork(experiment.design.train.samples, experiment.inverse_map);
+  for (InverseMapSpec& map : experiment.evaluation.maps) {
+    resolveNetwork(experiment.design.train.samples, map);
+  }
+}
+
+ExperimentSpec takeTrainingSamples(ExperimentSpec experiment, int samples) {
+  experiment.design.train.samples = samples;
+  experiment.design.train.time.reset();
+  resolveReplicates(samples, experiment.noise);
+  return experiment;
+}
+
+}  // namespace twinmap

@@ -1,0 +1,239 @@
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/parser.h>
+
+#include <algorithm>
+#include <boost/locale/utf.hpp>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <unordered_set>
+
+#include "framework/experiment/yaml/yaml_node.hpp"
+
+namespace twinmap {
+namespace {
+
+constexpr std::size_t kMaxFileValues = 1'000'000;
+constexpr std::size_t kMaxLevels = 20;
+constexpr std::size_t kLongestKey = 100;
+constexpr std::size_t kLargestFile = 16 << 20;
+
+SourceLocation locate(const std::string& file, const YAML::Mark& mark) {
+  return {file, mark.line + 1, mark.column + 1, ""};
+}
+
+/// Builds the tree from yaml-cpp's events. Containers under construction are on a stack; a map also holds
+/// the key whose value comes next.
+class TreeBuilder : public YAML::EventHandler {
+ public:
+  explicit TreeBuilder(std::string file) : file_(std::move(file)) {}
+
+  YamlNode takeRoot() { return std::move(root_); }
+
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    YamlNode node;
+    node.where = locate(file_, mark);
+    add(std::move(node), anchor);
+  }
+
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    const auto found = anchors_.find(anchor);
+    if (found == anchors_.end()) {
+      throw ExperimentError(locate(file_, mark), "*", "refers to a value that contains it");
+    }
+    countValues(found->second.size, mark);
+    add(found->second.node, YAML::NullAnchor);
+  }
+
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& value) override {
+    const bool quoted = tag == "!";
+    if (!quoted && tag != "?" && !tag.empty()) {
+      throw ExperimentError(locate(file_, mark), tag, "is a tag; twinmap reads plain YAML without tags");
+    }
+    YamlNode node = makeScalar(value, quoted);
+    node.where = locate(file_, mark);
+    countValues(1, mark);
+    add(std::move(node), anchor);
+  }
+
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value) override {
+    open(makeSequence(), mark, tag, anchor);
+  }
+  void OnSequenceEnd() override { close(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value) override {
+    open(makeMap(), mark, tag, anchor);
+  }
+  void OnMapEnd() override { close(); }
+
+ private:
+  struct Open {
+    YamlNode node;
+    YAML::anchor_t anchor;
+    std::size_t values_before;
+    std::unordered_set<std::string> keys;
+    bool has_key = false;
+    std::string key;
+    SourceLocation key_where;
+  };
+  struct Anchored {
+    YamlNode node;
+    std::size_t size;
+  };
+
+  void countValues(std::size_t count, const YAML::Mark& mark) {
+    values_ += count;
+    if (values_ > kMaxFileValues) {
+      throw ExperimentError(locate(file_, mark), "", "the file holds more than a million values");
+    }
+  }
+
+  void open(YamlNode node, const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor) {
+    if (tag != "?" && !tag.empty()) {
+      throw ExperimentError(locate(file_, mark), tag, "is a tag; twinmap reads plain YAML without tags");
+    }
+    node.where = locate(file_, mark);
+    const std::size_t values_before = values_;
+    countValues(1, mark);
+    if (stack_.size() == kMaxLevels) {
+      throw ExperimentError(locate(file_, mark), "", "is nested more than 20 levels deep");
+    }
+    stack_.push_back({std::move(node), anchor, values_before, {}, false, "", {}});
+  }
+
+  void close() {
+    Open done = std::move(stack_.back());
+    stack_.pop_back();
+    add(std::move(done.node), done.anchor, values_ - done.values_before);
+  }
+
+  void add(YamlNode node, YAML::anchor_t anchor, std::size_t size = 1) {
+    if (anchor != YAML::NullAnchor) {
+      anchors_[anchor] = {node, size};
+    }
+    if (stack_.empty()) {
+      root_ = std::move(node);
+      return;
+    }
+    Open& parent = stack_.back();
+    if (parent.node.kind == YamlNode::Kind::kSequence) {
+      parent.node.items.push_back(std::move(node));
+    } else if (!parent.has_key) {
+      takeKey(parent, node);
+    } else {
+      parent.node.entries.push_back({std::move(parent.key), std::move(parent.key_where), std::move(node)});
+      parent.has_key = false;
+    }
+  }
+
+  static void takeKey(Open& parent, const YamlNode& key) {
+    if (key.kind != YamlNode::Kind::kScalar) {
+      throw ExperimentError(key.where, describeValue(key), "cannot be a key; keys are plain names");
+    }
+    if (key.scalar == "<<" && !key.quoted) {
+      throw ExperimentError(key.where, "<<", "is a merge key, which YAML 1.2 does not have; repeat the keys");
+    }
+    if (key.scalar.size() > kLongestKey) {
+      throw ExperimentError(key.where, key.scalar, "is a key of more than 100 characters");
+    }
+    if (!parent.keys.insert(key.scalar).second) {
+      throw ExperimentError(key.where, key.scalar, "is given twice in the same map");
+    }
+    parent.has_key = true;
+    parent.key = key.scalar;
+    parent.key_where = key.where;
+  }
+
+  std::string file_;
+  YamlNode root_;
+  std::vector<Open> stack_;
+  std::map<YAML::anchor_t, Anchored> anchors_;
+  std::size_t values_ = 0;
+};
+
+SourceLocation locateByte(const std::string& text, std::string::const_iterator byte,
+                          const std::string& file) {
+  return {file, static_cast<int>(std::count(text.begin(), byte, '\n')) + 1, 1, ""};
+}
+
+/// yaml-cpp would replace what is not UTF-8.
+void requireText(const std::string& text, const std::string& file) {
+  const auto nul = std::find(text.begin(), text.end(), '\0');
+  if (nul != text.end()) {
+    throw ExperimentError(locateByte(text, nul, file), "",
+                          "has a NUL byte in this line: a binary file or UTF-16, not YAML in UTF-8");
+  }
+  using Utf8 = boost::locale::utf::utf_traits<char>;
+  for (auto character = text.begin(); character != text.end();) {
+    const auto begin = character;
+    const boost::locale::utf::code_point code = Utf8::decode(character, text.end());
+    if (code == boost::locale::utf::illegal || code == boost::locale::utf::incomplete) {
+      throw ExperimentError(locateByte(text, begin, file), "",
+                            "has a byte in this line that is not UTF-8; save the file as UTF-8");
+    }
+  }
+}
+
+/// The whole stream, or at least its first `most` bytes.
+std::string readStart(std::istream& stream, std::size_t most) {
+  constexpr std::size_t kBlock = std::size_t{1} << 16;
+  std::string text;
+  while (stream && text.size() < most) {
+    const std::size_t before = text.size();
+    text.resize(before + kBlock);
+    stream.read(text.data() + before, static_cast<std::streamsize>(kBlock));
+    text.resize(before + static_cast<std::size_t>(stream.gcount()));
+  }
+  return text;
+}
+
+}  // namespace
+
+YamlNode parseYaml(const std::string& text, const std::string& file) {
+  requireText(text, file);
+  std::istringstream stream(text);
+  TreeBuilder builder(file);
+  try {
+    YAML::Parser parser(stream);
+    parser.HandleNextDocument(builder);
+    TreeBuilder rest(file);
+    if (parser.HandleNextDocument(rest)) {
+      throw ExperimentError(rest.takeRoot().where, "",
+                            "starts a second document; one file is one experiment");
+    }
+  } catch (const YAML::Exception& error) {
+    throw ExperimentError(locate(file, error.mark), "", "is not valid YAML: " + error.msg);
+  }
+  YamlNode root = builder.takeRoot();
+  if (root.kind == YamlNode::Kind::kNull) {
+    root.where = {file, 1, 1, ""};
+  }
+  setKeyPaths(root, "");
+  return root;
+}
+
+YamlNode loadYaml(const std::string& path) {
+  const SourceLocation where{path, 0, 0, ""};
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) {
+    throw ExperimentError(where, "", "is a folder; name the experiment file in it");
+  }
+  std::ifstream file(path, std::ios::binary);
+  if (!file) {
+    throw ExperimentError(where, "", "cannot be read; does the file exist?");
+  }
+  const std::string text = readStart(file, kLargestFile + 1);
+  if (text.size() > kLargestFile) {
+    throw ExperimentError(where, "", "is larger than 16 MiB, too large for an experiment file");
+  }
+  return parseYaml(text, path);
+}
+
+}  // namespace twinmap

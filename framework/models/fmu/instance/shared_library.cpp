@@ -1,0 +1,33 @@
+#include "framework/models/fmu/instance/shared_library.hpp"
+
+#include <dlfcn.h>
+
+#include "framework/base/text/source_location.hpp"
+
+namespace twinmap::fmi {
+
+SharedLibrary::SharedLibrary(const std::filesystem::path& path, std::string prefix)
+    : file_name_(path.filename().string()),
+      prefix_(std::move(prefix)),
+      handle_(dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL)) {
+  if (handle_ == nullptr) {
+    const char* reason = dlerror();
+    throw ExperimentError("the FMU's library cannot be loaded: " +
+                          std::string(reason == nullptr ? file_name_ : reason));
+  }
+}
+
+void* SharedLibrary::findSymbol(const char* name) const {
+  void* symbol = dlsym(handle_, name);
+  return symbol != nullptr ? symbol : dlsym(handle_, (prefix_ + name).c_str());
+}
+
+void* SharedLibrary::requireSymbol(const char* name) const {
+  void* symbol = findSymbol(name);
+  if (symbol == nullptr) {
+    throw ExperimentError("the FMU's library " + file_name_ + " has no function " + name);
+  }
+  return symbol;
+}
+
+}  // namespace twinmap::fmi

@@ -1,0 +1,163 @@
+#include "framework/models/fmu/worker_job.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/fields/read_value.hpp"
+#include "framework/experiment/fields/write_value.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
+#include "framework/models/fmu/run/bind_variables.hpp"
+
+namespace twinmap::fmi {
+namespace {
+
+template <class Fields>
+void describe(Fields& f, WorkerJob& s) {
+  f.required("file", s.file, "");
+  f.required("folder", s.folder, "");
+  f.required("library", s.library, "");
+  f.required("kind", s.kind, "");
+  f.optionalMap("parameters", s.model.parameters, "");
+  f.optionalMap("nuisance", s.model.nuisance, "");
+  f.optionalMap("inputs", s.model.inputs, "");
+  f.optionalMap("constants", s.model.constants, "");
+  f.optionalMap("excitation", s.model.excitation, "");
+  f.optionalMap("outputs", s.model.outputs, "");
+  f.optional("simulation", s.model.simulation, "");
+  f.optional("source", s.model.source, "");
+  f.required("times", s.times, "");
+}
+
+bool hasVariable(const ModelDescription& description, const std::string& name) {
+  return std::any_of(description.variables.begin(), description.variables.end(),
+                     [&](const Variable& variable) { return variable.name == name; });
+}
+
+/// Names in the expressions of constants, excitation and sensors.
+std::set<std::string> collectUsedNames(const ModelSpec& model) {
+  std::set<std::string> names;
+  const auto add = [&](const Expression& expression) {
+    if (!expression.text.empty()) {
+      const std::vector<std::string> used = getUsedNames(expression);
+      names.insert(used.begin(), used.end());
+    }
+  };
+  for (const ConstantSpec& constant : model.constants) {
+    add(constant.value);
+  }
+  for (const OutputSpec& output : model.outputs) {
+    add(output.gain);
+    add(output.offset);
+  }
+  for (const SignalSpec& signal : model.excitation) {
+    for (const PulseSpec& pulse : signal.pulses) {
+      std::for_each(&pulse.amplitude, &pulse.end + 1, add);
+    }
+    for (const SineSpec& sine : signal.sines) {
+      std::for_each(&sine.amplitude, &sine.end + 1, add);
+    }
+    for (const ChirpSpec& chirp : signal.chirps) {
+      std::for_each(&chirp.amplitude, &chirp.end + 1, add);
+    }
+    for (const MultisineSpec& multisine : signal.multisines) {
+      add(multisine.amplitude);
+      std::for_each(multisine.amplitudes.begin(), multisine.amplitudes.end(), add);
+      std::for_each(multisine.frequencies.begin(), multisine.frequencies.end(), add);
+      std::for_each(multisine.phases.begin(), multisine.phases.end(), add);
+      add(multisine.start);
+      add(multisine.end);
+    }
+  }
+  return names;
+}
+
+template <class Item>
+VariableUse makeUse(const Item& item) {
+  const Name& variable = item.variable ? *item.variable : item.name;
+  return {variable.text, item.unit, variable.where};
+}
+
+/// Values in the order of the parameter point, then of the constants.
+BoundVariables bindSettable(const ModelDescription& description, const ModelSpec& model) {
+  const std::set<std::string> used = collectUsedNames(model);
+  std::vector<VariableUse> uses;
+  std::vector<std::size_t> sources;
+  const std::vector<ParameterSpec> sampled = collectSampled(model);
+  for (std::size_t i = 0; i < sampled.size(); ++i) {
+    const bool elsewhere =
+        used.count(sampled[i].name.text) > 0 && !hasVariable(description, sampled[i].name.text);
+    if (sampled[i].variable || !elsewhere) {
+      uses.push_back(makeUse(sampled[i]));
+      sources.push_back(i);
+    }
+  }
+  for (std::size_t i = 0; i < model.constants.size(); ++i) {
+    if (model.constants[i].variable) {
+      uses.push_back(makeUse(model.constants[i]));
+      sources.push_back(sampled.size() + i);
+    }
+  }
+  BoundVariables bound = bindParameters(description, uses);
+  bound.sources = sources;
+  return bound;
+}
+
+template <class Item>
+std::vector<VariableUse> makeUses(const std::vector<Item>& items) {
+  std::vector<VariableUse> uses;
+  std::transform(items.begin(), items.end(), std::back_inserter(uses), makeUse<Item>);
+  return uses;
+}
+
+}  // namespace
+
+std::string writeWorkerJob(const WorkerJob& job) {
+  FieldWriter fields;
+  describe(fields, const_cast<WorkerJob&>(job));  // the writer takes every field by const reference
+  return writeYaml(fields.takeNode());
+}
+
+WorkerJob readWorkerJob(const std::string& text) {
+  const YamlNode node = parseYaml(text, "the worker's job");
+  WorkerJob job;
+  FieldReader fields(node);
+  describe(fields, job);
+  fields.finish();
+  return job;
+}
+
+RunSetting makeRunSetting(const ModelDescription& description, Kind kind, const ModelSpec& model,
+                          const std::vector<double>& times) {
+  RunSetting setting;
+  setting.kind = kind;
+  setting.parameters = bindSettable(description, model);
+  setting.inputs = bindInputs(description, makeUses(model.excitation));
+  setting.outputs = bindOutputs(description, makeUses(model.outputs));
+  setting.times = Eigen::Map<const Eigen::VectorXd>(times.data(), static_cast<Eigen::Index>(times.size()));
+  setting.duration = model.simulation.duration;
+  setting.step = model.source->fmu->step;
+  setting.integration = {model.simulation.relative_tolerance, model.simulation.absolute_tolerance,
+                         model.simulation.max_steps, model.simulation.max_wall_time};
+  return setting;
+}
+
+std::optional<SensitivityPlan> makeSensitivityPlan(const ModelDescription& description,
+                                                   const ModelSpec& model, const RunSetting& setting) {
+  const std::set<std::string> used = collectUsedNames(model);
+  const std::vector<ParameterSpec> sampled = collectSampled(model);
+  const bool elsewhere = std::any_of(sampled.begin(), sampled.end(), [&](const ParameterSpec& parameter) {
+    return used.count(parameter.name.text) > 0;
+  });
+  return elsewhere ? std::nullopt : planSensitivities(description, setting, sampled.size());
+}
+
+Kind toKind(FmuKind kind) {
+  return kind == FmuKind::kCoSimulation ? Kind::kCoSimulation : Kind::kModelExchange;
+}
+
+FmuKind toFmuKind(Kind kind) {
+  return kind == Kind::kCoSimulation ? FmuKind::kCoSimulation : FmuKind::kModelExchange;
+}
+
+}  // namespace twinmap::fmi

@@ -1,0 +1,25 @@
+#include "framework/models/make_simulator.hpp"
+
+#include "framework/models/external/program_simulator.hpp"
+#include "framework/models/fmu/fmu_simulator.hpp"
+#include "framework/models/mechanism/multibody_simulator.hpp"
+
+namespace twinmap {
+
+std::unique_ptr<Simulator> makeSimulator(const ModelSpec& model, const Eigen::VectorXd& times, int modes) {
+  if (model.source && model.simulation.portable) {
+    throw ExperimentError(
+        "simulation.portable: true cannot be held for a model from elsewhere: what an FMU or a program "
+        "computes "
+        "with is its own");
+  }
+  if (model.source && model.source->program) {
+    return std::make_unique<ProgramSimulator>(model, times, modes);
+  }
+  if (model.source) {
+    return std::make_unique<FmuSimulator>(model, times, modes);
+  }
+  return std::make_unique<MultibodySimulator>(model, times, modes);
+}
+
+}  // namespace twinmap

@@ -1,0 +1,95 @@
+#include "framework/models/mechanism/box_center.hpp"
+
+#include <algorithm>
+
+#include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
+#include "framework/models/mechanism/initial_state.hpp"
+#include "framework/models/mechanism/simbody/outputs.hpp"
+
+namespace twinmap {
+namespace {
+
+int findParameter(const ModelSpec& model, const Name& name) {
+  const std::vector<std::string> names = collectNames(collectSampled(model));
+  requireKnown(name, names, "a parameter");
+  return static_cast<int>(std::find(names.begin(), names.end(), name.text) - names.begin());
+}
+
+/// The box centre with the values that replace it; those may use the centre's parameters and constants.
+Eigen::VectorXd calcEquilibriumPoint(ModelContext& context) {
+  Eigen::VectorXd point = calcBoxCenter(collectSampled(context.model));
+  for (const NamedExpression& value : context.model.initial.equilibrium->parameters) {
+    const std::string owner = "initial.equilibrium";
+    point[findParameter(context.model, value.name)] =
+        context.numbers.updNumbers().calc(value.value, {owner, value.name.text.c_str(), ""});
+  }
+  return point;
+}
+
+/// What is wrong with the model at the centre of its box, with the number that is the cause, or `system`.
+ExperimentError makeCenterError(const ModelSpec& model, SourceLocation where, const std::string& reason) {
+  if (where.file.empty() && !model.system.bodies.empty()) {
+    where = model.system.bodies.front().name.where;
+    where.key_path = where.file.empty() ? "" : "system";
+  }
+  const std::string place = toString(where);
+  return ExperimentError((place.empty() ? "" : place + ": ") +
+                         "at the centre of the parameter box: " + reason);
+}
+
+/// With the context's numbers at the box centre. What fails in `action` is wrong input.
+template <typename Action>
+void atBoxCenter(ModelContext& context, const Action& action) {
+  try {
+    context.numbers.update(calcBoxCenter(collectSampled(context.model)));
+    action();
+  } catch (const SimulationFailure& failure) {
+    throw makeCenterError(context.model, failure.getWhere(), failure.what());
+  } catch (const SimTK::Exception::Base& error) {
+    std::string message = error.getMessage();
+    std::replace(message.begin(), message.end(), '\n', ' ');
+    throw makeCenterError(context.model, {}, "Simbody: " + message);
+  }
+}
+
+void checkInitialState(ModelContext& context, const Eigen::VectorXd& box_center) {
+  LoadedSystem system(context, false);
+  SimTK::State state = system.getTree().getDefaultState();
+  setState(system, calcInitialState(context, system, box_center), state);
+  context.excitation.beginPhase(0.0);
+  const bool finite = system.calcUDot(state, 0.0).allFinite();
+  context.excitation.mute();
+  if (!finite) {
+    throw SimulationFailure("the accelerations of the initial state are not finite");
+  }
+}
+
+}  // namespace
+
+void buildAtBoxCenter(ModelContext& context) {
+  atBoxCenter(context, [&] {
+    const LoadedSystem system(context, false);
+    const Outputs outputs(context.model.outputs, context.names, context.numbers.updNumbers());
+    calcInitialValues(context);
+  });
+}
+
+Eigen::VectorXd solveBoxCenter(ModelContext& context) {
+  const std::optional<EquilibriumSpec>& equilibrium = context.model.initial.equilibrium;
+  Eigen::VectorXd coordinates;
+  if (equilibrium && equilibrium->at == EquilibriumAt::kBoxCenter) {
+    atBoxCenter(context, [&] {
+      context.numbers.update(calcEquilibriumPoint(context));
+      LoadedSystem system(context, false);
+      coordinates = solveEquilibrium(system, calcInitialValues(context).coordinates);
+    });
+  }
+  return coordinates;
+}
+
+void checkStartAtBoxCenter(ModelContext& context, const Eigen::VectorXd& box_center) {
+  atBoxCenter(context, [&] { checkInitialState(context, box_center); });
+}
+
+}  // namespace twinmap

@@ -1,0 +1,110 @@
+#pragma once
+
+#include "framework/models/mechanism/equations/named_values.hpp"
+#include "framework/models/mechanism/equations/system_values.hpp"
+#include "framework/models/mechanism/system_names.hpp"
+
+namespace twinmap::equations {
+
+template <class S>
+Transform<S> calcFrame(const FrameSpec& frame, const NamedValues<S>& names) {
+  return {rotateXyz(names.calc3(frame.orientation)), names.calc3(frame.point)};
+}
+
+template <class S>
+Vec3<S> normalize(const Vec3<S>& a) {
+  using namespace program::real;
+  const S length = sqrt(dot(a, a));
+  return {a.x / length, a.y / length, a.z / length};
+}
+
+/// Steiner's theorem.
+template <class S>
+Mat33<S> calcInertia(const BodySpec& spec, const NamedValues<S>& names, const S& mass,
+                     const Vec3<S>& center) {
+  const Vec3<S> moments = names.calc3(spec.inertia.moments), products = names.calc3(spec.inertia.products);
+  const Mat33<S> own{{moments.x, products.x, products.y},
+                     {products.x, moments.y, products.z},
+                     {products.y, products.z, moments.z}};
+  return own + scale(mass, makeDiagonal(dot(center, center)) - outer(center, center));
+}
+
+/// By default a slider moves along x, the others about z.
+template <class S>
+Vec3<S> calcAxis(const JointSpec& joint, const NamedValues<S>& names) {
+  if (joint.axis) {
+    return normalize(names.calc3(*joint.axis));
+  }
+  return joint.type == JointType::kSlider ? Vec3<S>{1.0, 0.0, 0.0} : Vec3<S>{0.0, 0.0, 1.0};
+}
+
+template <class S>
+BodyValues<S> calcBody(const BodySpec& spec, const SystemNames& system, const NamedValues<S>& names) {
+  BodyValues<S> body;
+  body.parent = system.findBody(spec.joint.parent);
+  body.type = spec.joint.type;
+  body.axis = calcAxis(spec.joint, names);
+  body.pitch = spec.joint.type == JointType::kScrew ? names.calc(spec.joint.pitch) : S(0.0);
+  body.in_parent = calcFrame(spec.joint.in_parent, names);
+  body.in_body = calcFrame(spec.joint.in_body, names);
+  body.mass = names.calc(spec.mass);
+  body.center = names.calc3(spec.center_of_mass);
+  body.inertia = calcInertia(spec, names, body.mass, body.center);
+  body.speed_count = getCoordinateCount(spec.joint.type);
+  return body;
+}
+
+template <class S>
+StationValues<S> calcStation(const StationSpec& spec, const SystemNames& system,
+                             const NamedValues<S>& names) {
+  return {system.findBody(spec.body), names.calc3(spec.point)};
+}
+
+template <class S>
+void addElements(const SystemSpec& spec, const SystemNames& system, const NamedValues<S>& names,
+                 SystemValues<S>& values) {
+  for (const SpringSpec& spring : spec.springs) {
+    values.springs.push_back(
+        {system.findCoordinate(spring.coordinate), names.calc(spring.stiffness), names.calc(spring.rest)});
+  }
+  for (const DamperSpec& damper : spec.dampers) {
+    values.dampers.push_back({system.findCoordinate(damper.coordinate), names.calc(damper.damping)});
+  }
+  for (const TwoPointSpringSpec& spring : spec.two_point_springs) {
+    values.two_point_springs.push_back({calcStation(spring.from, system, names),
+                                        calcStation(spring.to, system, names), names.calc(spring.stiffness),
+                                        names.calc(spring.rest_length)});
+  }
+  for (const TwoPointDamperSpec& damper : spec.two_point_dampers) {
+    values.two_point_dampers.push_back({calcStation(damper.from, system, names),
+                                        calcStation(damper.to, system, names), names.calc(damper.damping)});
+  }
+  const auto calcFramed = [&](const BodyFrameSpec& framed) {
+    return FramedBodyValues<S>{system.findBody(framed.body), calcFrame(framed.frame, names)};
+  };
+  for (const BushingSpec& bushing : spec.bushings) {
+    values.bushings.push_back({calcFramed(bushing.from), calcFramed(bushing.to),
+                               names.calcEach(bushing.stiffness), names.calcEach(bushing.damping)});
+  }
+  for (const AppliedForceSpec& force : spec.applied_forces) {
+    values.loaded.push_back(calcStation(force.station, system, names));
+  }
+}
+
+/// Evaluates all numbers of a system. `names`: parameters and constants.
+template <class S>
+SystemValues<S> calcSystemValues(const SystemSpec& spec, const SystemNames& system,
+                                 const NamedValues<S>& names) {
+  SystemValues<S> values;
+  values.gravity = names.calc3(spec.gravity);
+  values.bodies.emplace_back();
+  for (const BodySpec& body : spec.bodies) {
+    values.bodies.push_back(calcBody(body, system, names));
+    values.bodies.back().first_speed = values.coordinate_count;
+    values.coordinate_count += values.bodies.back().speed_count;
+  }
+  addElements(spec, system, names, values);
+  return values;
+}
+
+}  // namespace twinmap::equations

@@ -1,0 +1,111 @@
+#include <cmath>
+#include <cstdio>
+
+#include "framework/models/mechanism/initial_state.hpp"
+#include "kernels/linalg/decompositions.hpp"
+
+namespace twinmap {
+namespace {
+
+constexpr int kMaxIterations = 50;
+constexpr double kStepTolerance = 1e-11;      ///< m or rad, relative to 1 + |coordinate|
+constexpr double kResidualTolerance = 1e-12;  ///< of the largest acceleration met
+
+/// By Simbody, with central differences.
+class LoadedSystemAtRest : public RestAccelerations {
+ public:
+  explicit LoadedSystemAtRest(LoadedSystem& system)
+      : system_(system), state_(system.getTree().getDefaultState()) {}
+
+  Eigen::VectorXd calc(const Eigen::VectorXd& q) override {
+    setState(system_, {q, Eigen::VectorXd::Zero(q.size())}, state_);
+    return system_.calcUDot(state_, 0.0);
+  }
+
+  Eigen::MatrixXd calcJacobian(const Eigen::VectorXd& q) override {
+    Eigen::MatrixXd jacobian(q.size(), q.size());
+    for (Eigen::Index i = 0; i < q.size(); ++i) {
+      const double h = kDifferenceStep * (1.0 + std::abs(q[i]));
+      Eigen::VectorXd forward = q, backward = q;
+      forward[i] += h;
+      backward[i] -= h;
+      jacobian.col(i) = (calc(forward) - calc(backward)) / (forward[i] - backward[i]);
+    }
+    return jacobian;
+  }
+
+ private:
+  LoadedSystem& system_;
+  SimTK::State state_;
+};
+
+class EquilibriumSolver {
+ public:
+  explicit EquilibriumSolver(RestAccelerations& system) : system_(system) {}
+
+  Eigen::VectorXd solve(Eigen::VectorXd q) {
+    Eigen::VectorXd residual = system_.calc(q);
+    for (int i = 0; i < kMaxIterations; ++i) {
+      largest_ = std::max(largest_, residual.lpNorm<Eigen::Infinity>());
+      if (residual.lpNorm<Eigen::Infinity>() <= kResidualTolerance * largest_) {
+        return q;
+      }
+      const Eigen::VectorXd step = -linalg::solveMinimumNorm(system_.calcJacobian(q), residual);
+      const double length = moveAlong(step, q, residual);
+      const double change = length * (step.array().abs() / (1.0 + q.array().abs())).maxCoeff();
+      if (change <= kStepTolerance && length == 1.0 && isSmall(residual)) {
+        return q;
+      }
+      if (length == 0.0) {
+        break;
+      }
+    }
+    return acceptOrThrow(q, residual);
+  }
+
+ private:
+  /// Halves the step until the residual shrinks; returns the part of the step taken, 0 if none helped.
+  double moveAlong(const Eigen::VectorXd& step, Eigen::VectorXd& q, Eigen::VectorXd& residual) {
+    for (double length = 1.0; length > 1e-6; length *= 0.5) {
+      const Eigen::VectorXd trial = system_.calc(q + length * step);
+      if (trial.norm() < residual.norm()) {
+        q += length * step;
+        residual = trial;
+        return length;
+      }
+    }
+    return 0.0;
+  }
+
+  /// Rounding leaves accelerations of this size; a true equilibrium is not worse.
+  bool isSmall(const Eigen::VectorXd& residual) const {
+    return residual.lpNorm<Eigen::Infinity>() <= 1e-9 * std::max(largest_, 1.0);
+  }
+
+  Eigen::VectorXd acceptOrThrow(const Eigen::VectorXd& q, const Eigen::VectorXd& residual) const {
+    if (isSmall(residual)) {
+      return q;
+    }
+    char text[120];
+    std::snprintf(text, sizeof text,
+                  "static equilibrium not found: largest acceleration left %.3g (m/s2 or rad/s2)",
+                  residual.lpNorm<Eigen::Infinity>());
+    throw SimulationFailure(text);
+  }
+
+  RestAccelerations& system_;
+  double largest_ = 0.0;
+};
+
+}  // namespace
+
+Eigen::VectorXd solveEquilibrium(RestAccelerations& system, const Eigen::VectorXd& start) {
+  return start.size() == 0 ? start : EquilibriumSolver(system).solve(start);
+}
+
+Eigen::VectorXd solveEquilibrium(LoadedSystem& system, const Eigen::VectorXd& start) {
+  LoadedSystemAtRest at_rest(system);
+  return solveEquilibrium(at_rest, start);
+}
+
+}  // namespace twinmap

@@ -1,0 +1,31 @@
+#include "framework/models/mechanism/lanes/lane_engine.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+void LaneEngine::simulate(const Eigen::Ref<const MatrixXd>& parameters, Eigen::Ref<MatrixXd> responses,
+                          SampleStatus* statuses) {
+  if (!runner_) {
+    runner_.emplace(programs_.getValues(), task_, context_.model);
+  }
+  for (const Index i : runner_->run(context_, parameters, responses, nullptr, statuses)) {
+    stiff_retry_.simulate(parameters.col(i), responses.col(i), statuses[i]);
+  }
+}
+
+void LaneEngine::simulateWithDerivatives(const Eigen::Ref<const MatrixXd>& parameters,
+                                         Eigen::Ref<MatrixXd> responses, MatrixXd& derivatives,
+                                         SampleStatus* statuses) {
+  if (!derivative_runner_) {
+    derivative_runner_.emplace(programs_.getDerivatives(context_.names), task_, context_.model);
+  }
+  const Index p = parameters.rows();
+  for (const Index i : derivative_runner_->run(context_, parameters, responses, &derivatives, statuses)) {
+    stiff_retry_.simulateWithDerivatives(parameters.col(i), responses.col(i),
+                                         derivatives.middleCols(i * p, p), statuses[i]);
+  }
+}
+
+}  // namespace twinmap

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "framework/models/mechanism/lanes/lane_programs.hpp"
+#include "framework/models/mechanism/lanes/lane_runner.hpp"
+#include "framework/models/mechanism/simbody/stiff_retry.hpp"
+
+namespace twinmap {
+
+/// Simulates parameter sets in lanes; what reaches the step limit there is tried a second time. Not thread
+/// safe; one for each thread.
+class LaneEngine {
+ public:
+  /// All but `task` must outlive the engine.
+  LaneEngine(LanePrograms& programs, ModelContext& context, const SampleTask& task, SimbodyEngine& simbody)
+      : programs_(programs), context_(context), task_(task), stiff_retry_(context.model, simbody) {}
+
+  /// As Simulator::simulate.
+  void simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters, Eigen::Ref<Eigen::MatrixXd> responses,
+                SampleStatus* statuses);
+
+  /// As Simulator::simulateWithDerivatives.
+  void simulateWithDerivatives(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                               Eigen::Ref<Eigen::MatrixXd> responses, Eigen::MatrixXd& derivatives,
+                               SampleStatus* statuses);
+
+ private:
+  LanePrograms& programs_;
+  ModelContext& context_;
+  const SampleTask task_;
+  StiffRetry stiff_retry_;
+  std::optional<LaneRunner> runner_, derivative_runner_;  ///< made when first used
+};
+
+}  // namespace twinmap

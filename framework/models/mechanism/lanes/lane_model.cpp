@@ -1,0 +1,70 @@
+#include "framework/models/mechanism/lanes/lane_model.hpp"
+
+#include <numeric>
+
+#include "kernels/lanes/program/differentiate.hpp"
+
+namespace twinmap {
+namespace {
+
+using program::Symbol;
+using Symbols = RecordedModel::Symbols;
+
+void append(const Symbols& more, Symbols& symbols) {
+  symbols.insert(symbols.end(), more.begin(), more.end());
+}
+
+/// Appends the derivatives of `values` with respect to each variable.
+void appendJacobian(const Symbols& values, const Symbols& variables, Symbols& symbols) {
+  for (const Symbols& column : program::calcJacobian(values, variables)) {
+    append(column, symbols);
+  }
+}
+
+Symbols getParameters(const RecordedModel& recorded, bool with_derivatives) {
+  Symbols parameters;
+  for (int i = 0; with_derivatives && i < recorded.parameter_count; ++i) {
+    parameters.push_back(recorded.recorder->parameter(i));
+  }
+  return parameters;
+}
+
+Symbols collectStart(const RecordedModel& recorded, const Symbols& parameters) {
+  Symbols values = recorded.initial;
+  append(recorded.excitation.events, values);
+  Symbols outputs = values;
+  appendJacobian(values, parameters, outputs);
+  return outputs;
+}
+
+Symbols collectRest(const RecordedModel& recorded, const Symbols& parameters) {
+  Symbols outputs = recorded.rest_accelerations, variables;
+  append(recorded.rest_pivots, outputs);
+  for (int i = 0; i < recorded.coordinate_count; ++i) {
+    variables.push_back(recorded.recorder->state(i));
+  }
+  append(parameters, variables);
+  appendJacobian(recorded.rest_accelerations, variables, outputs);
+  return outputs;
+}
+
+}  // namespace
+
+LaneModel compileModel(const RecordedModel& recorded, bool with_derivatives) {
+  program::Recorder& recorder = *recorded.recorder;
+  const Symbols parameters = getParameters(recorded, with_derivatives);
+  LaneModel model;
+  model.counts = {2 * recorded.coordinate_count, recorded.parameter_count, recorded.excitation.input_count};
+  model.excitation = recorded.excitation;
+  model.directions = static_cast<int>(parameters.size());
+  std::vector<int> directions(parameters.size());
+  std::iota(directions.begin(), directions.end(), 0);
+  model.problem = lanes::makeProblem(
+      recorder, {model.counts, recorded.derivatives, recorded.pivots, recorded.outputs}, directions);
+  model.start = program::compile(recorder, collectStart(recorded, parameters), model.counts);
+  model.rest = program::compile(recorder, collectRest(recorded, parameters), model.counts);
+  model.linearization = program::compile(recorder, recorded.stiffness_and_damping, model.counts);
+  return model;
+}
+
+}  // namespace twinmap

@@ -1,0 +1,46 @@
+#include "framework/models/mechanism/lanes/lane_programs.hpp"
+
+#include "framework/models/mechanism/simbody/compare_with_simbody.hpp"
+
+namespace twinmap {
+namespace {
+
+/// Why the model cannot be simulated in lanes whatever its equations are, or "".
+std::string findObstacle(const ModelContext& context) {
+  if (context.model.simulation.engine == Engine::kSimbody) {
+    return "simulation.engine asks for it";
+  }
+  if (context.model.simulation.integrator != Integrator::kDopri5) {
+    return "simulation.integrator is one of Simbody's";
+  }
+  return context.names.getCoordinateNames().empty() ? "nothing can move" : "";
+}
+
+}  // namespace
+
+LanePrograms::LanePrograms(ModelContext& context, const Eigen::VectorXd& box_center)
+    : model_(context.model), box_center_(box_center), obstacle_(findObstacle(context)) {
+  if (obstacle_.empty()) {
+    obstacle_ = compile(context);
+  }
+}
+
+const LaneModel& LanePrograms::getDerivatives(const SystemNames& names) {
+  const std::lock_guard<std::mutex> guard(compiling_);
+  if (!derivatives_) {
+    derivatives_ = compileModel(recordModel(model_, names, box_center_), true);
+  }
+  return *derivatives_;
+}
+
+/// Returns what prevents it, or "".
+std::string LanePrograms::compile(ModelContext& context) {
+  try {
+    values_ = compileModel(recordModel(model_, context.names, box_center_), false);
+  } catch (const UnknownSyntax& error) {
+    return error.what();
+  }
+  return compareWithSimbody(context, *values_);
+}
+
+}  // namespace twinmap

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "framework/models/mechanism/lanes/lane_model.hpp"
+#include "framework/models/mechanism/simbody/loaded_system.hpp"
+
+namespace twinmap {
+
+/// A model compiled for lanes: what all clones of a simulator share.
+class LanePrograms {
+ public:
+  /// Compiles the model, which must outlive the programs, if lanes can simulate it; `box_center` as for
+  /// recordModel(). Cost: some ten milliseconds, most of it the comparison with Simbody.
+  LanePrograms(ModelContext& context, const Eigen::VectorXd& box_center);
+
+  /// Why lanes cannot simulate the model; empty if they can. Else the rest must not be used.
+  const std::string& getObstacle() const { return obstacle_; }
+
+  const LaneModel& getValues() const { return *values_; }
+
+  /// With the derivatives with respect to all parameters; compiled when first asked for, by any thread.
+  const LaneModel& getDerivatives(const SystemNames& names);
+
+ private:
+  std::string compile(ModelContext& context);
+
+  const ModelSpec& model_;
+  const Eigen::VectorXd box_center_;
+  std::optional<LaneModel> values_, derivatives_;
+  std::string obstacle_;
+  std::mutex compiling_;
+};
+
+}  // namespace twinmap

@@ -1,0 +1,204 @@
+#include "framework/models/mechanism/lanes/lane_runner.hpp"
+
+#include <limits>
+#include <optional>
+
+#include "framework/experiment/model/parameter_box.hpp"
+#include "framework/models/mechanism/check_numbers.hpp"
+#include "framework/models/mechanism/lanes/lane_modes.hpp"
+#include "framework/models/mechanism/lanes/lane_start.hpp"
+#include "framework/models/mechanism/simbody/tree_dynamics.hpp"
+#include "framework/simulation/integration/integration.hpp"
+#include "kernels/lanes/integrator.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using Parameters = Eigen::Ref<const VectorXd>;
+
+lanes::Options makeOptions(const ModelSpec& spec) {
+  lanes::Options options;
+  options.relative_tolerance = spec.simulation.relative_tolerance;
+  options.absolute_tolerance = spec.simulation.absolute_tolerance;
+  options.max_steps = spec.simulation.max_steps;
+  options.max_wall_time = spec.simulation.max_wall_time;
+  const VectorXd widths = calcWidths(collectSampled(spec));
+  options.parameter_scales.assign(widths.begin(), widths.end());
+  return options;
+}
+
+std::string describeOutcome(const lanes::Result& result, const SimulationSpec& simulation) {
+  switch (result.outcome) {
+    case lanes::Outcome::kDone:
+      return "";
+    case lanes::Outcome::kStepLimit:
+      return describeStepLimit(simulation.max_steps, result.time);
+    case lanes::Outcome::kWallTime:
+      return describeWallTime(simulation.max_wall_time, result.time);
+    case lanes::Outcome::kNonFinite:
+      return describeAt("state became non-finite", result.time);
+    case lanes::Outcome::kStepTooSmall:
+      return describeAt("step size became too small", result.time);
+    case lanes::Outcome::kSingular:
+      return kSingularMassMatrix;
+  }
+  return "";
+}
+
+}  // namespace
+
+/// A batch on its way through the lanes: prepares one sample after the other, and notes how each ended.
+class LaneRunner::Impl : public lanes::SampleStream {
+ public:
+  Impl(const LaneModel& model, const SampleTask& task, const ModelSpec& spec)
+      : model_(model), task_(task), spec_(spec), start_(spec, model, task.box_center), modes_(model) {}
+
+  std::vector<Index> run(ModelContext& context, const Eigen::Ref<const MatrixXd>& parameters,
+                         Eigen::Ref<MatrixXd> responses, MatrixXd* derivatives, SampleStatus* statuses) {
+    context_ = &context;
+    parameters_ = &parameters;
+    responses_ = &responses;
+    statuses_ = statuses;
+    next_ = 0;
+    step_limits_.clear();
+    if (derivatives != nullptr) {
+      derivatives->resize(responses.rows(), parameters.cols() * model_.directions);
+      output_derivatives_.resize(getOutputRows() * model_.directions, parameters.cols());
+    }
+    derivatives_ = derivatives;
+    updIntegrator(static_cast<int>(parameters.cols())).run(*this);
+    return std::move(step_limits_);
+  }
+
+  bool next(lanes::Sample& sample) override {
+    while (next_ < parameters_->cols()) {
+      const Index column = next_++;
+      const std::string failure = prepare(column, sample);
+      if (failure.empty() && getOutputRows() > 0) {
+        return true;
+      }
+      conclude(column, failure);
+    }
+    return false;
+  }
+
+  void finish(const lanes::Sample& sample, const lanes::Result& result) override {
+    statuses_[sample.index].machine_dependent = result.outcome == lanes::Outcome::kWallTime;
+    if (result.outcome == lanes::Outcome::kStepLimit) {
+      step_limits_.push_back(sample.index);
+    }
+    conclude(sample.index, describeOutcome(result, spec_.simulation));
+  }
+
+ private:
+  /// With as many lanes as suit so many samples.
+  lanes::Integrator& updIntegrator(int samples) {
+    const lanes::StepEngine& suitable = lanes::chooseEngine(samples);
+    if (engine_ != &suitable) {
+      const VectorXd& times = task_.layout.times;
+      integrator_.emplace(model_.problem, std::vector<double>(times.begin(), times.end()), makeOptions(spec_),
+                          suitable);
+      engine_ = &suitable;
+    }
+    return *integrator_;
+  }
+
+  Index getOutputRows() const { return task_.layout.getOutputCount() * task_.layout.times.size(); }
+
+  /// The reason why the sample cannot be simulated, or "".
+  std::string prepare(Index column, lanes::Sample& sample) {
+    statuses_[column] = {};
+    try {
+      const VectorXd point = parameters_->col(column);
+      context_->numbers.update(point);
+      checkNumbers(*context_);
+      fillModes(column, point);
+      start_.fill(point, sample);
+    } catch (const SimulationFailure& failure) {
+      return failure.what();
+    } catch (const SimTK::Exception::Base& error) {
+      return std::string("Simbody: ") + error.getMessage();
+    }
+    sample.index = static_cast<int>(column);
+    sample.outputs = responses_->col(column).data();
+    sample.derivatives = derivatives_ == nullptr ? nullptr : output_derivatives_.col(column).data();
+    return "";
+  }
+
+  VectorXd calcModes(const VectorXd& point) {
+    return modes_.calc(point, start_.solveEquilibrium(point), task_.layout.modes);
+  }
+
+  /// With derivatives by central differences: they take no integration, and eigenvalues are exact to
+  /// rounding.
+  void fillModes(Index column, const VectorXd& point) {
+    const int rows = 2 * task_.layout.modes;
+    if (rows == 0) {
+      return;
+    }
+    responses_->col(column).tail(rows) = calcModes(point);
+    constexpr double kStep = 1e-5;  // of the bounds' width: rounding and truncation are then both about 1e-10
+    const VectorXd widths = calcWidths(collectSampled(spec_));
+    for (int k = 0; derivatives_ != nullptr && k < model_.directions; ++k) {
+      VectorXd above = point, below = point;
+      above[k] += kStep * widths[k];
+      below[k] -= kStep * widths[k];
+      derivatives_->col(column * model_.directions + k).tail(rows) =
+          (calcModes(above) - calcModes(below)) / (above[k] - below[k]);
+    }
+  }
+
+  void conclude(Index column, const std::string& failure) {
+    SampleStatus& status = statuses_[column];
+    status.reason = failure;
+    if (failure.empty() && !responses_->col(column).allFinite()) {
+      status.reason = "an output became non-finite";
+    }
+    if (status.reason.empty() && derivatives_ != nullptr) {
+      takeDerivatives(column, status);
+    }
+    status.ok = status.reason.empty();
+    if (!status.ok) {
+      responses_->col(column).setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+
+  void takeDerivatives(Index column, SampleStatus& status) {
+    const Index p = model_.directions, rows = getOutputRows();
+    derivatives_->middleCols(column * p, p).topRows(rows) = output_derivatives_.col(column).reshaped(rows, p);
+    if (!derivatives_->middleCols(column * p, p).allFinite()) {
+      status.reason = "a derivative of an output became non-finite";
+    }
+  }
+
+  const LaneModel& model_;
+  const SampleTask task_;
+  const ModelSpec& spec_;
+  LaneStart start_;
+  LaneModes modes_;
+  const lanes::StepEngine* engine_ = nullptr;
+  std::optional<lanes::Integrator> integrator_;
+  ModelContext* context_ = nullptr;
+  const Eigen::Ref<const MatrixXd>* parameters_ = nullptr;
+  Eigen::Ref<MatrixXd>* responses_ = nullptr;
+  MatrixXd* derivatives_ = nullptr;
+  MatrixXd output_derivatives_;  ///< of a sample all directions, one after the other
+  SampleStatus* statuses_ = nullptr;
+  Index next_ = 0;
+  std::vector<Index> step_limits_;
+};
+
+LaneRunner::LaneRunner(const LaneModel& model, const SampleTask& task, const ModelSpec& spec)
+    : impl_(std::make_unique<Impl>(model, task, spec)) {}
+LaneRunner::~LaneRunner() = default;
+
+std::vector<Index> LaneRunner::run(ModelContext& context, const Eigen::Ref<const MatrixXd>& parameters,
+                                   Eigen::Ref<MatrixXd> responses, MatrixXd* derivatives,
+                                   SampleStatus* statuses) {
+  return impl_->run(context, parameters, responses, derivatives, statuses);
+}
+
+}  // namespace twinmap

@@ -1,0 +1,61 @@
+#include "framework/models/mechanism/lanes/lane_start.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using Parameters = Eigen::Ref<const VectorXd>;
+
+LaneStart::LaneStart(const ModelSpec& spec, const LaneModel& model, const VectorXd& box_center)
+    : spec_(spec), model_(model), box_center_(box_center), start_(model.start), rest_(model) {}
+
+void LaneStart::fill(const Parameters& parameters, lanes::Sample& sample) {
+  // the values, then their derivatives with respect to each parameter
+  const MatrixXd all =
+      start_.calc({parameters})
+          .reshaped(model_.start.outputs.size() / (1 + model_.directions), 1 + model_.directions);
+  sample.parameters.assign(parameters.begin(), parameters.end());
+  sample.end = spec_.simulation.duration;
+  fillInitial(parameters, all.topRows(model_.counts.states), sample);
+  fillPhases(all.bottomRows(all.rows() - model_.counts.states), sample);
+}
+
+void LaneStart::fillInitial(const Parameters& parameters, MatrixXd states, lanes::Sample& sample) {
+  const Index n = model_.counts.states / 2;
+  if (spec_.initial.equilibrium && box_center_.size() == 0 && n > 0) {
+    rest_.setParameters(parameters);
+    const VectorXd coordinates = twinmap::solveEquilibrium(rest_, states.col(0).head(n));
+    if (model_.directions > 0) {
+      states.rightCols(model_.directions).topRows(n) =
+          rest_.calcSlopes(coordinates, states.rightCols(model_.directions).topRows(n));
+    }
+    states.col(0).head(n) = coordinates;
+  }
+  sample.initial.assign(states.data(), states.data() + states.size());
+}
+
+void LaneStart::fillPhases(const MatrixXd& events, lanes::Sample& sample) const {
+  const RecordedExcitation& excitation = model_.excitation;
+  const std::vector<double> times(events.col(0).begin(), events.col(0).end());
+  const std::vector<Boundary> boundaries = calcBoundaries(excitation, times, spec_.simulation.duration);
+  sample.phases.clear();
+  for (std::size_t i = 0; i + 1 < boundaries.size(); ++i) {
+    sample.phases.push_back({boundaries[i].time, std::vector<double>(excitation.input_count), {}});
+    lanes::Phase& phase = sample.phases.back();
+    fillPhaseInputs(excitation, times, phase.begin, phase.inputs.data());
+    if (boundaries[i].event >= 0 && model_.directions > 0) {
+      const VectorXd slopes = events.row(boundaries[i].event).tail(model_.directions);
+      phase.begin_slopes.assign(slopes.begin(), slopes.end());
+    }
+  }
+}
+
+VectorXd LaneStart::solveEquilibrium(const Parameters& parameters) {
+  const Index n = model_.counts.states / 2;
+  rest_.setParameters(parameters);
+  return twinmap::solveEquilibrium(
+      rest_, box_center_.size() > 0 ? box_center_ : VectorXd(start_.calc({parameters}).head(n)));
+}
+
+}  // namespace twinmap

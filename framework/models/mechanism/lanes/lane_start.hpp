@@ -1,0 +1,33 @@
+#pragma once
+
+#include "framework/models/mechanism/lanes/rest_program.hpp"
+#include "kernels/lanes/sample.hpp"
+
+namespace twinmap {
+
+/// Where the samples of a model start, and when their phases begin.
+class LaneStart {
+ public:
+  /// `spec`, `model` and `box_center` (see recordModel) must outlive the object.
+  LaneStart(const ModelSpec& spec, const LaneModel& model, const Eigen::VectorXd& box_center);
+
+  /// Fills in parameters, initial states, phases and end of a sample. Throws SimulationFailure for an
+  /// equilibrium that is not found.
+  void fill(const Eigen::Ref<const Eigen::VectorXd>& parameters, lanes::Sample& sample);
+
+  /// Coordinates of the sample's own equilibrium.
+  Eigen::VectorXd solveEquilibrium(const Eigen::Ref<const Eigen::VectorXd>& parameters);
+
+ private:
+  void fillInitial(const Eigen::Ref<const Eigen::VectorXd>& parameters, Eigen::MatrixXd states,
+                   lanes::Sample& sample);
+  void fillPhases(const Eigen::MatrixXd& events, lanes::Sample& sample) const;
+
+  const ModelSpec& spec_;
+  const LaneModel& model_;
+  const Eigen::VectorXd& box_center_;
+  SingleProgram start_;
+  RestProgram rest_;
+};
+
+}  // namespace twinmap

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "framework/experiment/model/excitation_spec.hpp"
+#include "framework/models/mechanism/equations/named_values.hpp"
+#include "kernels/lanes/program/recorder.hpp"
+
+namespace twinmap {
+
+/// Excitation signals written down. What switches between phases is a phase input: the flag of a term, 1
+/// while it is on; of a table the polynomial of the interval. Everything else follows from parameters and the
+/// time, so that its derivatives do, too.
+struct RecordedExcitation {
+  /// On for events[begin] <= t < events[end]; -1: to the end.
+  struct Term {
+    int flag, begin, end;
+  };
+  /// values[0] + s (values[1] + s (values[2] + s values[3])) with s = t - begin, for begin <= t < end.
+  struct Piece {
+    double begin, end;
+    std::array<double, 4> values;
+  };
+  /// The piece's begin and its first `degree` + 1 values are the inputs from `first_input` on.
+  struct Table {
+    int first_input, degree;
+    std::vector<Piece> pieces;  ///< by increasing begin
+  };
+
+  std::vector<program::Symbol> signals;
+  std::vector<program::Symbol> events;  ///< s; of parameters alone
+  std::vector<Term> terms;
+  std::vector<Table> tables;
+  int input_count = 0;
+};
+
+/// `names`: parameters and constants. Throws UnknownSyntax.
+RecordedExcitation recordExcitation(const std::vector<SignalSpec>& signals, program::Recorder& recorder,
+                                    const equations::NamedValues<program::Symbol>& names);
+
+/// A time at which a phase begins, s; `event`: the one of parameters that it is, or -1.
+struct Boundary {
+  double time;
+  int event;
+};
+
+/// 0, the times in (0, duration) at which a signal may jump or bend, and the duration; increasing, each once.
+/// `events`: values of RecordedExcitation::events.
+std::vector<Boundary> calcBoundaries(const RecordedExcitation& excitation, const std::vector<double>& events,
+                                     double duration);
+
+/// The phase inputs of the phase that begins at `begin` (input_count of them).
+void fillPhaseInputs(const RecordedExcitation& excitation, const std::vector<double>& events, double begin,
+                     double* inputs);
+
+}  // namespace twinmap

@@ -1,0 +1,157 @@
+#include "framework/models/mechanism/lanes/recorded_model.hpp"
+
+#include "framework/experiment/model/parameter_box.hpp"
+#include "framework/models/mechanism/equations/outputs.hpp"
+#include "kernels/lanes/program/differentiate.hpp"
+
+namespace twinmap {
+namespace {
+
+using equations::ModelMotion;
+using equations::ModelState;
+using equations::NamedValues;
+using equations::SystemValues;
+using program::Symbol;
+using Symbols = RecordedModel::Symbols;
+
+NamedValues<Symbol> nameParameters(const ModelSpec& model, program::Recorder& recorder) {
+  NamedValues<Symbol> names;
+  const std::vector<ParameterSpec> sampled = collectSampled(model);
+  for (std::size_t i = 0; i < sampled.size(); ++i) {
+    names.set(sampled[i].name.text, recorder.parameter(static_cast<int>(i)));
+  }
+  for (const ConstantSpec& constant : model.constants) {
+    names.set(constant.name.text, names.calc(constant.value));
+  }
+  return names;
+}
+
+class ModelRecorder {
+ public:
+  ModelRecorder(const ModelSpec& model, const SystemNames& names)
+      : model_(model), names_(names), recorder_(std::make_unique<program::Recorder>()) {
+    values_ = nameParameters(model, *recorder_);
+    system_ = equations::calcSystemValues(model.system, names, values_);
+  }
+
+  RecordedModel record(const Eigen::VectorXd& box_center) {
+    RecordedModel recorded;
+    recorded.parameter_count = static_cast<int>(countSampled(model_));
+    recorded.coordinate_count = system_.coordinate_count;
+    recorded.excitation = recordExcitation(model_.excitation, *recorder_, values_);
+    recordMotion(recorded);
+    recordRest(recorded);
+    recorded.initial = recordInitial(box_center);
+    recorded.recorder = std::move(recorder_);
+    return recorded;
+  }
+
+ private:
+  Symbols getStates(int first) {
+    Symbols states;
+    for (int i = 0; i < system_.coordinate_count; ++i) {
+      states.push_back(recorder_->state(first + i));
+    }
+    return states;
+  }
+
+  ModelMotion<Symbol> calcMotion(const ModelState<Symbol>& state) {
+    return equations::calcModelMotion(model_, names_, values_, system_, state);
+  }
+
+  void recordMotion(RecordedModel& recorded) {
+    const ModelState<Symbol> state{recorder_->time(), getStates(0), getStates(system_.coordinate_count),
+                                   recorded.excitation.signals};
+    const ModelMotion<Symbol> motion = calcMotion(state);
+    recorded.derivatives = motion.rates;
+    recorded.derivatives.insert(recorded.derivatives.end(), motion.accelerations.begin(),
+                                motion.accelerations.end());
+    recorded.pivots = motion.pivots;
+    for (const OutputSpec& output : model_.outputs) {
+      recorded.outputs.push_back(equations::calcOutput(output, names_, values_, system_, state, motion));
+    }
+  }
+
+  ModelState<Symbol> makeQuietState(Symbols speeds) {
+    return {0.0, getStates(0), std::move(speeds), Symbols(model_.excitation.size(), Symbol(0.0))};
+  }
+
+  void recordRest(RecordedModel& recorded) {
+    const int n = system_.coordinate_count;
+    const ModelMotion<Symbol> rest = calcMotion(makeQuietState(Symbols(n, Symbol(0.0))));
+    recorded.rest_accelerations = rest.accelerations;
+    recorded.rest_pivots = rest.pivots;
+    const ModelState<Symbol> moving = makeQuietState(getStates(n));
+    const ModelMotion<Symbol> motion = calcMotion(moving);
+    const Symbols second = calcSecondDerivatives(moving, motion);
+    for (int i = 0; i < n; ++i) {
+      append(program::calcTangents(second, {{moving.coordinates[i], 1.0}}), recorded);
+    }
+    for (int i = 0; i < n; ++i) {
+      append(program::calcTangents(second, makeRateSeeds(moving, i)), recorded);
+    }
+  }
+
+  static void append(const Symbols& column, RecordedModel& recorded) {
+    recorded.stiffness_and_damping.insert(recorded.stiffness_and_damping.end(), column.begin(), column.end());
+  }
+
+  /// Second time derivatives of the coordinates.
+  static Symbols calcSecondDerivatives(const ModelState<Symbol>& state, const ModelMotion<Symbol>& motion) {
+    std::vector<program::Seed> seeds;
+    for (std::size_t i = 0; i < state.coordinates.size(); ++i) {
+      seeds.push_back({state.coordinates[i], motion.rates[i]});
+      seeds.push_back({state.speeds[i], motion.accelerations[i]});
+    }
+    return program::calcTangents(motion.rates, seeds);
+  }
+
+  /// How the speeds change with one coordinate's rate.
+  std::vector<program::Seed> makeRateSeeds(const ModelState<Symbol>& state, int coordinate) {
+    Symbols rates(state.speeds.size(), Symbol(0.0));
+    rates[coordinate] = 1.0;
+    const Symbols speeds = equations::calcSpeeds(system_, state.coordinates, rates);
+    std::vector<program::Seed> seeds;
+    for (std::size_t i = 0; i < speeds.size(); ++i) {
+      seeds.push_back({state.speeds[i], speeds[i]});
+    }
+    return seeds;
+  }
+
+  Symbols calcNamed(const std::vector<NamedExpression>& given) {
+    Symbols values(system_.coordinate_count, Symbol(0.0));
+    for (const NamedExpression& value : given) {
+      values[names_.findCoordinate(value.name)] = values_.calc(value.value);
+    }
+    return values;
+  }
+
+  Symbols recordInitial(const Eigen::VectorXd& box_center) {
+    Symbols coordinates = calcNamed(model_.initial.coordinates);
+    Symbols rates = calcNamed(model_.initial.speeds);
+    if (model_.initial.equilibrium) {
+      rates.assign(rates.size(), Symbol(0.0));
+    }
+    if (box_center.size() > 0) {
+      coordinates.assign(box_center.begin(), box_center.end());
+    }
+    const Symbols speeds = equations::calcSpeeds(system_, coordinates, rates);
+    coordinates.insert(coordinates.end(), speeds.begin(), speeds.end());
+    return coordinates;
+  }
+
+  const ModelSpec& model_;
+  const SystemNames& names_;
+  std::unique_ptr<program::Recorder> recorder_;
+  NamedValues<Symbol> values_;
+  SystemValues<Symbol> system_;
+};
+
+}  // namespace
+
+RecordedModel recordModel(const ModelSpec& model, const SystemNames& names,
+                          const Eigen::VectorXd& box_center) {
+  return ModelRecorder(model, names).record(box_center);
+}
+
+}  // namespace twinmap

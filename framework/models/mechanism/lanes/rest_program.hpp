@@ -1,0 +1,30 @@
+#pragma once
+
+#include "framework/models/mechanism/initial_state.hpp"
+#include "framework/models/mechanism/lanes/lane_model.hpp"
+#include "framework/models/mechanism/lanes/single_program.hpp"
+
+namespace twinmap {
+
+/// The accelerations at rest by the recorded program, with exact derivatives.
+class RestProgram : public RestAccelerations {
+ public:
+  explicit RestProgram(const LaneModel& model);
+
+  void setParameters(const Eigen::Ref<const Eigen::VectorXd>& parameters) { parameters_ = parameters; }
+  Eigen::VectorXd calc(const Eigen::VectorXd& coordinates) override;
+  Eigen::MatrixXd calcJacobian(const Eigen::VectorXd& coordinates) override;
+
+  /// How the equilibrium at `coordinates`, found from `start`, changes with each parameter (coordinates x
+  /// parameters): -J^+ da/dp, and the start's own change along directions that no force depends on.
+  Eigen::MatrixXd calcSlopes(const Eigen::VectorXd& coordinates, const Eigen::MatrixXd& start_slopes);
+
+ private:
+  Eigen::VectorXd calcAll(const Eigen::VectorXd& coordinates);
+
+  Eigen::Index count_, directions_;
+  Eigen::VectorXd parameters_;
+  SingleProgram program_;
+};
+
+}  // namespace twinmap

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "framework/models/mechanism/simbody/loaded_system.hpp"
+
+namespace twinmap {
+
+/// An oscillating mode: the eigenvalues lambda and conj(lambda) of the linearised system.
+struct Mode {
+  double frequency;      ///< |lambda| / (2 pi), the undamped natural frequency, Hz
+  double damping_ratio;  ///< -Re(lambda) / |lambda|, below 1; negative where the equilibrium is unstable
+};
+
+/// The matrix A of x' = A x for x = [coordinates; their time derivatives] (in the order of SystemNames)
+/// around rest at `coordinates`, t = 0 and without excitation: by central differences of the accelerations,
+/// exact to some 1e-10 relative for forces that are linear. Cost: 4 n accelerations.
+Eigen::MatrixXd calcStateMatrix(LoadedSystem& system, const Eigen::VectorXd& coordinates);
+
+/// The oscillating modes of x' = A x, by increasing frequency. Eigenvalues whose imaginary part is below 1e-5
+/// of the largest magnitude do not oscillate: those of overdamped modes, and rounding errors of those of
+/// rigid body motion. Throws SimulationFailure for a matrix that is not finite.
+std::vector<Mode> calcModes(const Eigen::MatrixXd& state_matrix);
+
+/// The `count` lowest frequencies (Hz), then their damping ratios. Throws SimulationFailure as calcModes
+/// does, and if fewer oscillate.
+Eigen::VectorXd collectLowestModes(const Eigen::MatrixXd& state_matrix, int count);
+
+}  // namespace twinmap

@@ -1,0 +1,230 @@
+#include "framework/models/mechanism/multibody_simulator.hpp"
+
+#include <cmath>
+#include <mutex>
+#include <stdexcept>
+
+#include "framework/experiment/model/parameter_box.hpp"
+#include "framework/models/mechanism/box_center.hpp"
+#include "framework/models/mechanism/lanes/lane_engine.hpp"
+#include "framework/models/mechanism/simbody/outputs.hpp"
+#include "framework/models/mechanism/simbody/simbody_engine.hpp"
+
+namespace twinmap {
+namespace {
+
+/// Systems and expressions are built one at a time: Simbody and muParser do not say that they may be
+/// otherwise.
+std::mutex building;
+
+/// What all clones share.
+struct SharedModel {
+  SharedModel(ModelSpec of, ResponseLayout rows) : model(std::move(of)), layout(std::move(rows)) {}
+
+  ModelSpec model;
+  ResponseLayout layout;
+  Eigen::VectorXd box_center;           ///< solveBoxCenter()
+  std::unique_ptr<LanePrograms> lanes;  ///< null where Simbody simulates
+  std::string engine;
+  std::mutex making_precise{};
+  std::unique_ptr<MultibodySimulator> precise{};  ///< made when first used
+};
+
+#if defined(__AVX2__) && defined(__FMA__) && !defined(__AVX512F__)
+constexpr bool kHasCommonVectors = true;  ///< those of x86-64-v3
+#else
+constexpr bool kHasCommonVectors = false;
+#endif
+
+/// Samples handed out at once: enough to keep all lanes busy but at the end, few enough to share work.
+constexpr int kLaneBatch = 128;
+
+void checkSimulation(const SimulationSpec& simulation) {
+  if (!(simulation.duration > 0.0) || !std::isfinite(simulation.duration)) {
+    throw ExperimentError("simulation.duration must be positive");
+  }
+  if (!(simulation.relative_tolerance > 0.0) || !(simulation.absolute_tolerance > 0.0)) {
+    throw ExperimentError("simulation.relative_tolerance and absolute_tolerance must be positive");
+  }
+}
+
+void checkShapes(const SharedModel& shared, const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                 const Eigen::Ref<Eigen::MatrixXd>& responses) {
+  if (parameters.rows() != countSampled(shared.model) || responses.rows() != shared.layout.getRowCount() ||
+      responses.cols() != parameters.cols()) {
+    throw std::invalid_argument("MultibodySimulator::simulate: a matrix has the wrong shape");
+  }
+}
+
+/// Equations in lanes have the same bits in every build and width; what else determines a response is
+/// compiled for a processor.
+void requirePortable(const SharedModel& shared, const std::string& obstacle) {
+  const std::string what = !obstacle.empty() ? "Simbody simulates this model (" + obstacle + ")"
+                           : shared.model.initial.equilibrium ? "an equilibrium is solved for"
+                           : shared.layout.modes > 0          ? "modes are solved for"
+                                                              : "";
+  if (!what.empty()) {
+    throw ExperimentError(
+        "simulation.portable: true cannot be held by a program that was built for vectors of one "
+        "processor, since " +
+        what + "; use the portable build (x86-64-v3)");
+  }
+}
+
+/// Throws where lanes are asked for and cannot simulate the model.
+void chooseEngine(ModelContext& context, SharedModel& shared) {
+  auto lanes = std::make_unique<LanePrograms>(context, shared.box_center);
+  const std::string& obstacle = lanes->getObstacle();
+  if (!obstacle.empty() && shared.model.simulation.engine == Engine::kLanes) {
+    throw ExperimentError("simulation.engine: lanes cannot simulate this model: " + obstacle);
+  }
+  if (shared.model.simulation.portable && !kHasCommonVectors) {
+    requirePortable(shared, obstacle);
+  }
+  shared.engine = obstacle.empty() ? "lanes" : "simbody: " + obstacle;
+  if (obstacle.empty()) {
+    shared.lanes = std::move(lanes);
+  }
+}
+
+}  // namespace
+
+class MultibodySimulator::Impl {
+ public:
+  /// The first of the clones: completes what they share.
+  Impl(const ModelSpec& model, Eigen::VectorXd times, int modes)
+      : shared_(std::make_shared<SharedModel>(model, ResponseLayout{{}, {}, std::move(times), modes})),
+        context_(shared_->model) {
+    if (shared_->layout.times.size() > 0) {
+      checkSimulation(shared_->model.simulation);
+    }
+    checkSampleTimes(shared_->layout.times, shared_->model.simulation.duration);
+    shared_->layout.output_units = twinmap::getOutputUnits(shared_->model.outputs, context_.names);
+    for (const OutputSpec& output : shared_->model.outputs) {
+      shared_->layout.output_names.push_back(output.name.text);
+    }
+    buildAtBoxCenter(context_);
+    shared_->box_center = solveBoxCenter(context_);
+    chooseEngine(context_, *shared_);
+    makeEngines();
+  }
+
+  /// Compiles all expressions now, while clones are made one after the other.
+  explicit Impl(std::shared_ptr<SharedModel> shared) : shared_(std::move(shared)), context_(shared_->model) {
+    buildAtBoxCenter(context_);
+    makeEngines();
+  }
+
+  void checkStart() { checkStartAtBoxCenter(context_, shared_->box_center); }
+
+  void simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters, Eigen::Ref<Eigen::MatrixXd> responses,
+                SampleStatus* statuses) {
+    if (lanes_) {
+      lanes_->simulate(parameters, responses, statuses);
+      return;
+    }
+    for (Eigen::Index i = 0; i < parameters.cols(); ++i) {
+      StepSequence own_steps;
+      statuses[i] = simulateBySimbody(parameters.col(i), responses.col(i), own_steps);
+    }
+  }
+
+  void simulateAround(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                      Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
+    StepSequence steps_of_center;
+    for (Eigen::Index i = 0; i < parameters.cols(); ++i) {
+      statuses[i] = simulateBySimbody(parameters.col(i), responses.col(i), steps_of_center);
+    }
+  }
+
+  LaneEngine& updLanes() { return lanes_.value(); }
+  const std::shared_ptr<SharedModel>& getShared() const { return shared_; }
+
+ private:
+  void makeEngines() {
+    const SampleTask task{shared_->layout, shared_->box_center};
+    simbody_.emplace(context_, task);
+    if (shared_->lanes) {
+      lanes_.emplace(*shared_->lanes, context_, task, *simbody_);
+    }
+  }
+
+  SampleStatus simulateBySimbody(const Eigen::Ref<const Eigen::VectorXd>& parameters,
+                                 Eigen::Ref<Eigen::VectorXd> response, StepSequence& sequence) {
+    return simbody_->simulate(shared_->model.simulation, parameters, response, sequence);
+  }
+
+  std::shared_ptr<SharedModel> shared_;
+  ModelContext context_;
+  std::optional<SimbodyEngine> simbody_;
+  std::optional<LaneEngine> lanes_;
+};
+
+MultibodySimulator::MultibodySimulator(const ModelSpec& model, Eigen::VectorXd times, int modes) {
+  const std::lock_guard<std::mutex> guard(building);
+  impl_ = std::make_unique<Impl>(model, std::move(times), modes);
+}
+
+MultibodySimulator::MultibodySimulator(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+MultibodySimulator::~MultibodySimulator() = default;
+
+const ResponseLayout& MultibodySimulator::getLayout() const {
+  return impl_->getShared()->layout;
+}
+
+void MultibodySimulator::checkStart() {
+  const std::lock_guard<std::mutex> guard(building);
+  impl_->checkStart();
+}
+
+const std::string& MultibodySimulator::getEngine() const {
+  return impl_->getShared()->engine;
+}
+
+int MultibodySimulator::getBatchSize() const {
+  return impl_->getShared()->lanes ? kLaneBatch : 1;
+}
+
+void MultibodySimulator::simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                                  Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
+  checkShapes(*impl_->getShared(), parameters, responses);
+  impl_->simulate(parameters, responses, statuses);
+}
+
+void MultibodySimulator::simulateAround(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                                        Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
+  checkShapes(*impl_->getShared(), parameters, responses);
+  impl_->simulateAround(parameters, responses, statuses);
+}
+
+bool MultibodySimulator::hasDerivatives() const {
+  return impl_->getShared()->lanes != nullptr;
+}
+
+void MultibodySimulator::simulateWithDerivatives(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                                                 Eigen::Ref<Eigen::MatrixXd> responses,
+                                                 Eigen::MatrixXd& derivatives, SampleStatus* statuses) {
+  checkShapes(*impl_->getShared(), parameters, responses);
+  impl_->updLanes().simulateWithDerivatives(parameters, responses, derivatives, statuses);
+}
+
+std::unique_ptr<Simulator> MultibodySimulator::clonePrecisely() const {
+  constexpr double kShare = 0.01, kMinRelative = 1e-13, kMinAbsolute = 1e-18;
+  SharedModel& shared = *impl_->getShared();
+  const std::lock_guard<std::mutex> guard(shared.making_precise);
+  if (!shared.precise) {
+    ModelSpec model = shared.model;
+    SimulationSpec& simulation = model.simulation;
+    simulation.relative_tolerance = std::max(kShare * simulation.relative_tolerance, kMinRelative);
+    simulation.absolute_tolerance = std::max(kShare * simulation.absolute_tolerance, kMinAbsolute);
+    shared.precise = std::make_unique<MultibodySimulator>(model, shared.layout.times, shared.layout.modes);
+  }
+  return shared.precise->clone();
+}
+
+std::unique_ptr<Simulator> MultibodySimulator::clone() const {
+  const std::lock_guard<std::mutex> guard(building);
+  return std::unique_ptr<Simulator>(new MultibodySimulator(std::make_unique<Impl>(impl_->getShared())));
+}
+
+}  // namespace twinmap

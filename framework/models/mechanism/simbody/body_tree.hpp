@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Simbody.h>
+
+#include <vector>
+
+#include "framework/models/mechanism/system_names.hpp"
+#include "framework/simulation/number_evaluator.hpp"
+
+namespace twinmap {
+
+/// Simbody's system of one parameter set: its bodies and joints, with Euler angles for all orientations.
+/// Built anew for every sample, which costs 1 % of its simulation.
+class BodyTree {
+ public:
+  /// Where Simbody keeps a coordinate and its speed.
+  struct Slot {
+    int q, u;
+  };
+
+  /// Throws SimulationFailure for numbers that no real system has.
+  BodyTree(const SystemSpec& spec, const SystemNames& names, NumberEvaluator& numbers);
+
+  /// Adds a force element that Simbody's own integrators are to see. Takes ownership; call before realize().
+  void addForce(SimTK::Force::Custom::Implementation* force);
+
+  /// Completes the system; the state is then ready to take coordinates.
+  void realize();
+
+  /// Computes positions and velocities of the bodies. Goes to the only subsystem concerned: Simbody's walk
+  /// over all of them costs another fifth of an evaluation of the accelerations.
+  void realizeVelocity(const SimTK::State& state) const;
+
+  const SimTK::MultibodySystem& getSystem() const { return system_; }
+  const SimTK::SimbodyMatterSubsystem& getMatter() const { return matter_; }
+  const SimTK::MobilizedBody& getBody(int index) const {
+    return matter_.getMobilizedBody(SimTK::MobilizedBodyIndex(index));
+  }
+  const std::vector<Slot>& getSlots() const { return slots_; }  ///< one per coordinate
+  const SimTK::State& getDefaultState() const { return state_; }
+
+ private:
+  const SystemNames& names_;
+  SimTK::MultibodySystem system_;
+  SimTK::SimbodyMatterSubsystem matter_{system_};
+  SimTK::State state_;
+  std::vector<Slot> slots_;
+};
+
+}  // namespace twinmap

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "framework/models/mechanism/simbody/expression_loads.hpp"
+#include "framework/simulation/excitation/excitation.hpp"
+
+namespace twinmap {
+
+/// What a simulator keeps from sample to sample: names, compiled expressions, excitation.
+struct ModelContext {
+  /// Throws ExperimentError as its members do. `model` must outlive the context unchanged.
+  explicit ModelContext(const ModelSpec& model);
+
+  const ModelSpec& model;
+  SystemNames names;
+  ModelNumbers numbers;
+  ExpressionLoads loads;
+  Excitation excitation;
+};
+
+/// Of central differences of a system's accelerations: the cube root of the rounding unit.
+inline constexpr double kDifferenceStep = 6e-6;
+
+/// The system of one parameter set with all that acts on it.
+class LoadedSystem {
+ public:
+  /// Builds the system for the current values of the context's numbers, with muted excitation.
+  /// `for_simbody`: make the forces visible to Simbody's own integrators. Throws SimulationFailure.
+  LoadedSystem(ModelContext& context, bool for_simbody);
+  LoadedSystem(const LoadedSystem&) = delete;
+  LoadedSystem& operator=(const LoadedSystem&) = delete;
+
+  const BodyTree& getTree() const { return tree_; }
+
+  /// Sums all forces at time t and a state that is realized to Velocity. Valid until the next call.
+  const SystemForces& calcForces(const SimTK::State& state, double t);
+
+  /// u' at time t and a state that is realized to Velocity. Valid until the next call. Throws
+  /// SimulationFailure if the mass matrix is singular.
+  const Eigen::VectorXd& calcUDot(const SimTK::State& state, double t);
+
+ private:
+  ModelContext& context_;
+  BodyTree tree_;
+  PassiveForces passive_;
+  std::vector<double> signals_;
+  SystemForces forces_;
+  std::optional<TreeDynamics> dynamics_;
+};
+
+}  // namespace twinmap

@@ -1,0 +1,61 @@
+#include "framework/models/mechanism/simbody/simbody_engine.hpp"
+
+#include <limits>
+
+#include "framework/models/mechanism/linearization.hpp"
+#include "framework/models/mechanism/simbody/run_sample.hpp"
+
+namespace twinmap {
+
+SampleStatus SimbodyEngine::simulate(const SimulationSpec& simulation,
+                                     const Eigen::Ref<const Eigen::VectorXd>& parameters,
+                                     Eigen::Ref<Eigen::VectorXd> response, StepSequence& sequence) {
+  SampleStatus status;
+  try {
+    status.reason = run(simulation, parameters, response, sequence);
+    if (status.reason.empty() && !response.allFinite()) {
+      status.reason = "an output became non-finite";
+    }
+  } catch (const WallTimeReached& failure) {
+    status.reason = failure.what();
+    status.machine_dependent = true;
+  } catch (const SimulationFailure& failure) {
+    status.reason = failure.what();
+  } catch (const SimTK::Exception::Base& error) {
+    status.reason = std::string("Simbody: ") + error.getMessage();
+  }
+  status.ok = status.reason.empty();
+  if (!status.ok) {
+    response.setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  return status;
+}
+
+std::string SimbodyEngine::run(const SimulationSpec& simulation,
+                               const Eigen::Ref<const Eigen::VectorXd>& parameters,
+                               Eigen::Ref<Eigen::VectorXd> response, StepSequence& sequence) {
+  const bool own = simulation.integrator == Integrator::kDopri5;
+  context_.numbers.update(parameters);
+  LoadedSystem system(context_, !own);
+  fillModes(system, response);  // before the integration, which switches the excitation on
+  if (task_.layout.times.size() == 0) {
+    return "";
+  }
+  const Outputs outputs(context_.model.outputs, context_.names, context_.numbers.updNumbers());
+  const InitialState initial = calcInitialState(context_, system, task_.box_center);
+  const SampleRun sample{system,     context_.excitation, outputs,        initial,
+                         simulation, task_.layout.times,  response.data()};
+  return own ? runDopri5(sample, sequence) : runSimbody(sample);
+}
+
+void SimbodyEngine::fillModes(LoadedSystem& system, Eigen::Ref<Eigen::VectorXd> response) {
+  if (task_.layout.modes == 0) {
+    return;
+  }
+  const Eigen::VectorXd start =
+      task_.box_center.size() > 0 ? task_.box_center : calcInitialValues(context_).coordinates;
+  response.tail(2 * task_.layout.modes) =
+      collectLowestModes(calcStateMatrix(system, solveEquilibrium(system, start)), task_.layout.modes);
+}
+
+}  // namespace twinmap

@@ -1,0 +1,85 @@
+#include "framework/models/mechanism/system_names.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "framework/base/text/nearest_name.hpp"
+
+namespace twinmap {
+namespace {
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+int find(const std::vector<std::string>& names, const Name& name, const char* what) {
+  const auto found = std::find(names.begin(), names.end(), name.text);
+  if (found == names.end()) {
+    throw ExperimentError(name.where, name.text,
+                          std::string("is not ") + what + suggestName(name.text, names));
+  }
+  return static_cast<int>(found - names.begin());
+}
+
+void addOnce(std::vector<std::string>& names, const Name& name) {
+  if (contains(names, name.text)) {
+    throw ExperimentError(name.where, name.text, "is declared twice");
+  }
+  names.push_back(name.text);
+}
+
+void checkJoint(const BodySpec& body) {
+  const int count = getCoordinateCount(body.joint.type);
+  if (static_cast<int>(body.joint.coordinates.size()) != count) {
+    throw ExperimentError(
+        body.name.where, body.name.text,
+        fmt::format("needs {} coordinate names for its joint, not {}", count, body.joint.coordinates.size()));
+  }
+  if (body.joint.axis && !hasAxis(body.joint.type)) {
+    throw ExperimentError((*body.joint.axis)[0].where, "", "must not be given: this joint has no axis");
+  }
+}
+
+}  // namespace
+
+SystemNames::SystemNames(const SystemSpec& system) {
+  for (const BodySpec& body : system.bodies) {
+    addBody(body);
+  }
+}
+
+void SystemNames::addBody(const BodySpec& body) {
+  checkJoint(body);
+  find(body_names_, body.joint.parent, "\"ground\" or a body declared before");
+  addOnce(body_names_, body.name);
+  addCoordinates(body.joint, static_cast<int>(body_names_.size()) - 1);
+}
+
+void SystemNames::addCoordinates(const JointSpec& joint, int body) {
+  const std::vector<JointCoordinate>& traits = getJointCoordinates(joint.type);
+  for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
+    addOnce(coordinate_names_, joint.coordinates[i]);
+    coordinates_.push_back({body, static_cast<int>(i), traits[i]});
+  }
+}
+
+int SystemNames::findBody(const Name& name) const {
+  return find(body_names_, name, "a body");
+}
+
+int SystemNames::findCoordinate(const Name& name) const {
+  return find(coordinate_names_, name, "a coordinate");
+}
+
+int SystemNames::findForcedCoordinate(const Name& name) const {
+  const int index = findCoordinate(name);
+  if (!coordinates_[index].traits.takes_forces) {
+    throw ExperimentError(name.where, name.text,
+                          "is an angle of a ball or free joint, whose speed is not its derivative: use a "
+                          "bushing or an applied moment, or a gimbal or bushing joint");
+  }
+  return index;
+}
+
+}  // namespace twinmap

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "framework/experiment/model/joint_type.hpp"
+#include "framework/experiment/model/system_spec.hpp"
+
+namespace twinmap {
+
+/// Where a coordinate lives: `local` counts within its joint.
+struct CoordinatePlace {
+  int body;  ///< 1-based; 0 is the ground
+  int local;
+  JointCoordinate traits;
+};
+
+/// The bodies and coordinates of a system by name. All lookups throw ExperimentError, with the nearest name,
+/// for a name that does not exist.
+class SystemNames {
+ public:
+  /// Throws ExperimentError for a name that is declared twice, a parent that is not declared before, and a
+  /// joint with a wrong number of coordinates or an axis it does not have.
+  explicit SystemNames(const SystemSpec& system);
+
+  /// 0 for "ground", else the body's place in the file, counted from 1 (Simbody's mobilized body index).
+  int findBody(const Name& name) const;
+  /// The coordinate's place in getCoordinateNames().
+  int findCoordinate(const Name& name) const;
+  /// The same, for one that takes forces; else ExperimentError.
+  int findForcedCoordinate(const Name& name) const;
+
+  const std::vector<std::string>& getCoordinateNames() const { return coordinate_names_; }
+  const std::vector<CoordinatePlace>& getCoordinates() const { return coordinates_; }
+
+ private:
+  void addBody(const BodySpec& body);
+  void addCoordinates(const JointSpec& joint, int body);
+
+  std::vector<std::string> body_names_{"ground"};
+  std::vector<std::string> coordinate_names_;
+  std::vector<CoordinatePlace> coordinates_;
+};
+
+}  // namespace twinmap

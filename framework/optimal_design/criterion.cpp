@@ -1,0 +1,55 @@
+#include "framework/optimal_design/criterion.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "kernels/linalg/decompositions.hpp"
+
+namespace twinmap::experiment_design {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+MatrixXd calcInverse(const MatrixXd& information) {
+  return linalg::solveCholesky(linalg::calcCholesky(information).lower,
+                               MatrixXd::Identity(information.rows(), information.cols()));
+}
+
+/// Of the variances in the mean that A-optimal and weighted designs minimise; they sum to 1.
+VectorXd calcShares(const Criterion& criterion, Eigen::Index parameters) {
+  return criterion.kind == Criterion::Kind::weighted
+             ? VectorXd(criterion.weights / criterion.weights.sum())
+             : VectorXd::Constant(parameters, 1.0 / static_cast<double>(parameters));
+}
+
+}  // namespace
+
+double calcCost(const Criterion& criterion, const MatrixXd& information) {
+  const linalg::Cholesky factor = linalg::calcCholesky(information);
+  if (!factor.positive_definite) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  if (criterion.kind == Criterion::Kind::d_optimal) {
+    return -2.0 * factor.lower.diagonal().array().log().mean();
+  }
+  if (criterion.kind == Criterion::Kind::e_optimal) {
+    return -std::log(linalg::calcSymmetricEigenvalues(information)[0]);
+  }
+  return std::log(calcInverse(information).diagonal().dot(calcShares(criterion, information.rows())));
+}
+
+MatrixXd calcCostGradient(const Criterion& criterion, const MatrixXd& information) {
+  if (criterion.kind == Criterion::Kind::e_optimal) {
+    const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(information);
+    return -eigen.vectors.col(0) * eigen.vectors.col(0).transpose() / eigen.values[0];
+  }
+  const MatrixXd inverse = calcInverse(information);
+  if (criterion.kind == Criterion::Kind::d_optimal) {
+    return -inverse / static_cast<double>(information.rows());
+  }
+  const VectorXd shares = calcShares(criterion, information.rows());
+  return -inverse * shares.asDiagonal() * inverse / inverse.diagonal().dot(shares);
+}
+
+}  // namespace twinmap::experiment_design

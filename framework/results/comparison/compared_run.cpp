@@ -1,0 +1,19 @@
+#include "framework/results/comparison/compared_run.hpp"
+
+#include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/experiment_file.hpp"
+#include "framework/store/finished_run.hpp"
+
+namespace twinmap {
+
+ComparedRun readComparedRun(const std::filesystem::path& folder) {
+  requireFinishedRun(folder, {"predictions.csv"});
+  const std::string resolved = (folder / "resolved.yaml").string();
+  ComparedRun run{folder.string(), loadYaml(resolved), loadExperiment(resolved).model.parameters, {}};
+  run.test = readPredictionsFile(folder / "predictions.csv", collectNames(run.parameters));
+  run.test.predictions.mixtures =
+      readComponentsFile(folder / "components.csv", collectNames(run.parameters), run.test.samples);
+  return run;
+}
+
+}  // namespace twinmap

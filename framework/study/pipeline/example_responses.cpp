@@ -1,0 +1,64 @@
+#include "framework/study/pipeline/example_responses.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "framework/data/noise/noise.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
+
+namespace twinmap {
+namespace {
+
+/// Columns of the predictions in the order of their error.
+std::vector<Eigen::Index> sortByError(const Evaluation& evaluation) {
+  const Eigen::ArrayXXd error = (evaluation.predictions.mean - evaluation.truth).array();
+  const Eigen::ArrayXd mean_square = error.square().rowwise().mean();
+  const Eigen::ArrayXd normalised = (error.square().colwise() / mean_square).colwise().sum().transpose();
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(normalised.size()));
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Eigen::Index a, Eigen::Index b) { return normalised[a] < normalised[b]; });
+  return order;
+}
+
+/// Of each sample the nominal, then the updated parameters; nuisance and inputs are the sample's own.
+Eigen::MatrixXd makeExamplePoints(const ExperimentSpec& experiment, const Trajectories& test,
+                                  const std::vector<int>& test_indices,
+                                  const std::vector<Eigen::Index>& shown, const Evaluation& evaluation) {
+  const Eigen::Index p = evaluation.truth.rows();
+  Eigen::MatrixXd points(test.parameters.rows(), 2 * shown.size());
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    auto both = points.middleCols(static_cast<Eigen::Index>(2 * i), 2);
+    both.colwise() = test.parameters.col(test_indices[static_cast<std::size_t>(shown[i])]);
+    both.topRows(p) << calcBoxCenter(experiment.model.parameters), evaluation.predictions.mean.col(shown[i]);
+  }
+  return points;
+}
+
+}  // namespace
+
+std::vector<ExampleResponse> simulateExamples(const ExperimentSpec& experiment, const Simulator& simulator,
+                                              const Trajectories& test, const std::vector<int>& test_indices,
+                                              const Evaluation& evaluation, int threads) {
+  const std::vector<Eigen::Index> order = sortByError(evaluation);
+  const std::vector<Eigen::Index> shown{order.front(), order[order.size() / 2], order.back()};
+  const Eigen::MatrixXd points = makeExamplePoints(experiment, test, test_indices, shown, evaluation);
+  GeneratorOptions generator;
+  generator.threads = threads;
+  const Trajectories models = generateSamples(simulator, points, generator);
+
+  const Eigen::MatrixXd measured = addNoise(test.responses, ResponseNoise(experiment.noise, test.layout),
+                                            {experiment.seed, RandomPurpose::kTestNoise});
+  const std::vector<std::string> names{"best", "median", "worst"};
+  std::vector<ExampleResponse> examples;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const int sample = test_indices[static_cast<std::size_t>(shown[i])];
+    examples.push_back({names[i], sample, measured.col(sample),
+                        models.responses.col(static_cast<Eigen::Index>(2 * i)),
+                        models.responses.col(static_cast<Eigen::Index>(2 * i + 1))});
+  }
+  return examples;
+}
+
+}  // namespace twinmap

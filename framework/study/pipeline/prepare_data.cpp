@@ -1,0 +1,148 @@
+#include "framework/study/pipeline/prepare_data.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "framework/data/noise/noise.hpp"
+#include "framework/experiment/expression/output_units.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
+#include "framework/simulation/excitation/calc_input_signals.hpp"
+#include "framework/study/samples/stencils.hpp"
+
+namespace twinmap {
+namespace {
+
+/// The features of one draw of the noise; all samples take part, so that none changes another's noise.
+Eigen::MatrixXd drawFeatures(const Trajectories& trajectories, const FeatureExtractor& extractor,
+                             const ResponseNoise& noise, const RandomStream& random, int replicate) {
+  return extractor.extract(addNoise(trajectories.responses, noise, random, replicate));
+}
+
+/// Fails the samples that are ok and lack a feature; `where` completes the reason.
+void failWhereMissing(const Eigen::MatrixXd& features, const std::vector<FeatureInfo>& infos,
+                      const std::string& where, std::vector<SampleStatus>& statuses) {
+  for (Eigen::Index i = 0; i < features.cols(); ++i) {
+    for (Eigen::Index row = 0; row < features.rows() && statuses[i].ok; ++row) {
+      if (!std::isfinite(features(row, i))) {
+        statuses[i] = {false, "feature '" + infos[row].name + "' is missing in the " + where};
+      }
+    }
+  }
+}
+
+void failIncomplete(const FeatureExtractor& extractor, const ResponseNoise& noise, const RandomStream& random,
+                    int replicates, Trajectories& trajectories) {
+  failWhereMissing(extractor.extract(trajectories.responses), extractor.getInfos(), "response",
+                   trajectories.statuses);
+  for (int r = 0; r < replicates; ++r) {
+    failWhereMissing(drawFeatures(trajectories, extractor, noise, random, r), extractor.getInfos(),
+                     "response with noise (draw " + std::to_string(r + 1) + ")", trajectories.statuses);
+  }
+}
+
+/// Splits points of the sampled box by the role of each parameter.
+void setPoints(const ModelSpec& model, const Eigen::MatrixXd& points, LabelledFeatures& labelled) {
+  const auto p = static_cast<Eigen::Index>(model.parameters.size());
+  labelled.parameters = points.topRows(p);
+  labelled.nuisance = points.middleRows(p, static_cast<Eigen::Index>(model.nuisance.size()));
+  labelled.inputs = points.bottomRows(static_cast<Eigen::Index>(model.inputs.size()));
+}
+
+LabelledFeatures makeLabelledFeatures(const ModelSpec& model, const Trajectories& trajectories,
+                                      const FeatureExtractor& extractor, const ResponseNoise& noise,
+                                      const RandomStream& random, int replicates) {
+  const std::vector<int> samples = findSuccessful(trajectories);
+  const auto count = static_cast<Eigen::Index>(samples.size());
+  LabelledFeatures labelled;
+  labelled.infos = extractor.getInfos();
+  labelled.features.resize(extractor.getFeatureCount(), count * replicates);
+  for (int r = 0; r < replicates; ++r) {
+    labelled.features.middleCols(r * count, count) =
+        drawFeatures(trajectories, extractor, noise, random, r)(Eigen::all, samples);
+  }
+  setPoints(model, Eigen::MatrixXd(trajectories.parameters(Eigen::all, samples)).replicate(1, replicates),
+            labelled);
+  labelled.replicates = replicates;
+  return labelled;
+}
+
+std::vector<Eigen::MatrixXd> calcTrainingSensitivities(const ExperimentSpec& experiment,
+                                                       const Trajectories& train,
+                                                       const LocalModelSource& local_models) {
+  if (!selectsByFisherInformation(experiment)) {
+    return {};
+  }
+  std::vector<int> samples = findSuccessful(train);
+  samples.resize(std::min<std::size_t>(samples.size(), kSensitivitySamples));
+  std::vector<Eigen::MatrixXd> sensitivities;
+  for (const LocalModel& local : local_models(train.parameters(Eigen::all, samples))) {
+    if (local.status.ok) {
+      sensitivities.push_back(local.sensitivities);
+    }
+  }
+  if (sensitivities.empty()) {
+    throw std::runtime_error("select by fisher_information: the features' sensitivities cannot be simulated");
+  }
+  return sensitivities;
+}
+
+}  // namespace
+
+ResponseLayout makeLayout(const ExperimentSpec& experiment) {
+  ResponseLayout layout;
+  layout.times = collectTimes(experiment.features);
+  layout.modes = countModes(experiment.features);
+  if (layout.times.size() > 0) {
+    for (const OutputSpec& output : experiment.model.outputs) {
+      layout.output_names.push_back(output.name.text);
+      layout.output_units.push_back(findOutputUnit(output, experiment.model.system));
+    }
+  }
+  return layout;
+}
+
+FeatureExtractor makeExtractor(const ExperimentSpec& experiment, const ResponseLayout& layout) {
+  const bool needed = needExcitation(experiment.features);
+  return {experiment.features, layout,
+          needed ? calcInputSignals(experiment.model, layout.times) : InputSignals{}};
+}
+
+SimulatedSets failIncompleteSamples(const ExperimentSpec& experiment, const FeatureExtractor& extractor,
+                                    SimulatedSets sets) {
+  if (extractor.isLinear()) {
+    return sets;
+  }
+  const ResponseNoise response_noise(experiment.noise, sets.train.layout);
+  failIncomplete(extractor, response_noise, {experiment.seed, RandomPurpose::kTrainNoise},
+                 experiment.noise.replicates.value_or(1), sets.train);
+  failIncomplete(extractor, response_noise, {experiment.seed, RandomPurpose::kTestNoise}, 1, sets.test);
+  return sets;
+}
+
+LabelledSets makeLabelledSets(const ExperimentSpec& experiment, const SimulatedSets& sets,
+                              const FeatureExtractor& extractor, const FeatureNoise& noise) {
+  const ResponseNoise response_noise(experiment.noise, sets.train.layout);
+  LabelledSets labelled{makeLabelledFeatures(experiment.model, sets.train, extractor, response_noise,
+                                             {experiment.seed, RandomPurpose::kTrainNoise},
+                                             experiment.noise.replicates.value_or(1)),
+                        makeLabelledFeatures(experiment.model, sets.test, extractor, response_noise,
+                                             {experiment.seed, RandomPurpose::kTestNoise}, 1)};
+  labelled.train.noise_covariance =
+      noise.calcMeanCovariance(sets.train.responses(Eigen::all, findSuccessful(sets.train)));
+  labelled.test.noise_covariance = labelled.train.noise_covariance;
+  return labelled;
+}
+
+PreparedData prepareData(const ExperimentSpec& experiment, const FeatureExtractor& extractor,
+                         const SimulatedSets& sets, const LocalModelSource& local_models) {
+  PreparedData data{
+      FeatureNoise(extractor, ResponseNoise(experiment.noise, sets.train.layout), experiment.seed),
+      {},
+      findSuccessful(sets.test)};
+  data.labelled = makeLabelledSets(experiment, sets, extractor, data.noise);
+  data.labelled.train.sensitivities = calcTrainingSensitivities(experiment, sets.train, local_models);
+  return data;
+}
+
+}  // namespace twinmap

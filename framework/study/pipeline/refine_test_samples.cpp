@@ -1,0 +1,117 @@
+#include "framework/study/pipeline/refine_test_samples.hpp"
+
+#include <fmt/core.h>
+
+#include <map>
+#include <stdexcept>
+
+#include "framework/base/log/log.hpp"
+#include "framework/base/log/run_control.hpp"
+#include "framework/base/log/stage_timer.hpp"
+#include "framework/estimation/refined/refine.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
+#include "framework/study/pipeline/answers.hpp"
+#include "framework/study/pipeline/refinement_starts.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+
+Eigen::VectorXd getKnown(const LabelledFeatures& test, Index i) {
+  return test.inputs.rows() > 0 ? Eigen::VectorXd(test.inputs.col(i)) : Eigen::VectorXd();
+}
+
+struct RefinementTasks {
+  std::vector<RefinementTask> tasks;
+  std::vector<bool> several;  ///< whether the map knows of several answers
+};
+
+/// From what the online map and its trust model say.
+RefinementTasks makeTasks(const RefinementContext& context) {
+  const LabelledFeatures& test = context.data.labelled.test;
+  const OnlineMap map(context.online.map);
+  OnlineMap::Workspace inferring(map);
+  const TrustModel* trust = context.online.trust ? &*context.online.trust : nullptr;
+  std::optional<TrustWorkspace> judging;
+  if (trust != nullptr) {
+    judging.emplace(*trust);
+  }
+  RefinementTasks all;
+  for (Index i = 0; i < test.features.cols(); ++i) {
+    MapAnswer answer;
+    answer.known = getKnown(test, i);
+    const Inference& inference = map.infer(test.features.col(i), answer.known, inferring);
+    answer.mean = findLikeliest(inference).mean;
+    if (trust != nullptr) {
+      judge(*trust, test.features.col(i), answer.known, inference, inferring.findExplanation(), *judging);
+      answer.explanation = trust->makeSampledPoint(judging->explanation->point);
+      answer.covariance = judging->explanation->calcCovariance();
+    }
+    all.tasks.push_back(makeRefinementTask(context.experiment.model, trust, test.features.col(i), answer));
+    all.several.push_back(isMultimodal(inference.mixture));
+  }
+  return all;
+}
+
+/// "121 accepted from inverse_map, 5 nonlinear"
+std::string describe(const std::vector<Refined>& refined) {
+  std::map<std::string, int> counts;
+  for (const Refined& one : refined) {
+    ++counts[one.isAccepted() ? "accepted from " + one.start : toString(one.status)];
+  }
+  std::string text;
+  for (const auto& [name, count] : counts) {
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, name);
+  }
+  return text;
+}
+
+/// A warning where a user would not get a refined answer to one measurement in ten or more.
+void warnOfFew(const std::vector<Refined>& refined, const std::string& outcome, StageNotes& notes) {
+  constexpr double kMin = 0.9;
+  const std::size_t accepted = findAccepted(refined).size();
+  if (static_cast<double>(accepted) < kMin * static_cast<double>(refined.size())) {
+    notes.warn(
+        Severity::kDegraded,
+        fmt::format(
+            "refinement: {} of {} test samples were accepted ({}); answers to the others are the map's alone",
+            accepted, refined.size(), outcome));
+  }
+}
+
+std::vector<Refined> refineAll(const RefinementContext& context) {
+  const RefinementModel model(collectUnknown(context.experiment.model), context.extractor,
+                              context.data.noise);
+  RefinementTasks all = makeTasks(context);
+  std::vector<Refined> refined =
+      refineOrAbortEarly(context.simulator, model, std::move(all.tasks), context.control.threads, [&] {
+        throwIfCancelled(context.control, "interrupted during refinement; the simulated samples are kept");
+      });
+  for (std::size_t i = 0; i < refined.size(); ++i) {
+    if (all.several[i]) {
+      rejectAsMultimodal(refined[i]);
+    }
+  }
+  return refined;
+}
+
+}  // namespace
+
+RefinedTests refineTestSamples(const RefinementContext& context) {
+  RefinedTests tests;
+  if (!shouldRefine(context.experiment.refine, context.simulator, context.extractor, context.data.noise)) {
+    return tests;
+  }
+  try {
+    tests.refined = timeStage("refine the test samples", tests.notes, [&] { return refineAll(context); });
+    const std::string outcome = describe(tests.refined);
+    logInfo(fmt::format("refined: {}", outcome));
+    warnOfFew(tests.refined, outcome, tests.notes);
+  } catch (const std::invalid_argument& error) {
+    tests.notes.warn(Severity::kDegraded, std::string("test samples cannot be refined: ") + error.what());
+  }
+  return tests;
+}
+
+}  // namespace twinmap

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "framework/experiment/experiment_spec.hpp"
+
+namespace twinmap {
+
+/// Builds the model at the centre of the parameter box (Simulator::checkStart). Throws ExperimentError if it
+/// cannot exist there.
+void requireModel(const ExperimentSpec& experiment);
+
+}  // namespace twinmap

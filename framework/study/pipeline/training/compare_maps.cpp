@@ -1,0 +1,96 @@
+#include "framework/study/pipeline/training/compare_maps.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "framework/base/log/interrupted.hpp"
+#include "framework/base/log/stage_timer.hpp"
+#include "framework/study/pipeline/answers.hpp"
+#include "framework/study/pipeline/online_timing.hpp"
+#include "framework/study/pipeline/training/store_map.hpp"
+
+namespace twinmap {
+namespace {
+
+namespace fs = std::filesystem;
+
+const char* getKindName(const InverseMapSpec& map) {
+  if (map.isAutomatic()) {
+    return "automatic";
+  }
+  return map.findGp() != nullptr ? "gp" : map.findNetwork() != nullptr ? "network" : "surrogate";
+}
+
+/// The kind of each, with a number behind those that are not the first of their kind: "network", "network_2".
+std::vector<std::string> nameMaps(const std::vector<InverseMapSpec>& maps) {
+  std::vector<std::string> kinds, names;
+  for (const InverseMapSpec& map : maps) {
+    kinds.emplace_back(getKindName(map));
+    const auto same = std::count(kinds.begin(), kinds.end(), kinds.back());
+    names.push_back(same > 1 ? fmt::format("{}_{}", kinds.back(), same) : kinds.back());
+  }
+  return names;
+}
+
+/// Writes the map; returns how many bytes that took.
+std::uintmax_t store(const fs::path& file, const MapTrainingContext& context, TrainedMap& map) {
+  storeMap(file, context.experiment, context.extractor, {}, map);
+  return fs::file_size(file);
+}
+
+MapComparison compare(const std::string& name, const MapComparisonContext& context,
+                      const MapTrainingContext& training) {
+  const LabelledFeatures& test = training.labelled.test;
+  StageNotes notes;
+  TrainedMap map = timeStage("train " + name, notes, [&] { return trainChosenMap(training); });
+  const Predictions predictions = map.predict(test.features, test.inputs);
+  const Evaluation evaluation =
+      evaluateAnswers(training.experiment.model.parameters, test.parameters,
+                      makeAnswers(predictions, map.residual_correlation, {}), context.limit_stddev);
+  return {name,
+          evaluation.metrics,
+          evaluation.joint,
+          notes.times.back().seconds,
+          timeOnlineUpdates(map.online, test),
+          store(context.folder / "maps" / (name + ".h5"), training, map)};
+}
+
+/// Compares a map, or tells why it cannot be had.
+void tryMap(const std::string& name, const InverseMapSpec& spec, const MapComparisonContext& context,
+            ComparedMaps& compared) {
+  ExperimentSpec experiment = context.training.experiment;
+  experiment.inverse_map = spec;
+  const MapTrainingContext& all = context.training;
+  try {
+    compared.maps.push_back(compare(
+        name, context, {experiment, all.sets, all.simulator, all.extractor, all.labelled, all.control}));
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const std::exception& error) {
+    compared.notes.warn(Severity::kInfo, fmt::format("map {} is not compared: {}", name, error.what()));
+  }
+}
+
+}  // namespace
+
+ComparedMaps compareMaps(const MapComparisonContext& context) {
+  ComparedMaps compared;
+  const std::vector<InverseMapSpec>& maps = context.training.experiment.evaluation.maps;
+  if (maps.empty()) {
+    return compared;
+  }
+  const std::vector<std::string> names = nameMaps(maps);
+  fs::create_directories(context.folder / "maps");
+  compared.notes = timeStage(fmt::format("compare {} maps", maps.size()), compared.notes, [&] {
+    ComparedMaps tried;
+    for (std::size_t i = 0; i < maps.size(); ++i) {
+      tryMap(names[i], maps[i], context, tried);
+    }
+    compared.maps = std::move(tried.maps);
+    return tried.notes;
+  });
+  return compared;
+}
+
+}  // namespace twinmap

@@ -1,0 +1,119 @@
+#include "framework/study/pipeline/training/fit_online.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "framework/data/noise/noise.hpp"
+#include "framework/estimation/surrogate/fit_forward.hpp"
+#include "framework/estimation/trained/fit_trust.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
+#include "framework/study/pipeline/training/train_interruptibly.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+/// Columns whose features are all there; a noise draw may have lost one.
+std::vector<Index> findComplete(const MatrixXd& features) {
+  std::vector<Index> complete;
+  for (Index i = 0; i < features.cols(); ++i) {
+    if (features.col(i).allFinite()) {
+      complete.push_back(i);
+    }
+  }
+  return complete;
+}
+
+/// Test responses, each with several draws of the noise.
+void simulateMeasurements(const ExperimentSpec& experiment, const SimulatedSets& sets,
+                          const FeatureExtractor& extractor, TrustTraining& training) {
+  const std::vector<int> samples = findSuccessful(sets.test);
+  const MatrixXd responses = sets.test.responses(Eigen::all, samples);
+  const auto count = std::max(1, static_cast<int>(samples.size()));
+  const int draws = std::max(1, countReferences(experiment.design.train.samples) / count);
+  const ResponseNoise noise(experiment.noise, sets.test.layout);
+  const RandomStream random(experiment.seed, RandomPurpose::kTrust);
+  MatrixXd measured(extractor.getFeatureCount(), responses.cols() * draws);
+  for (int r = 0; r < draws; ++r) {
+    measured.middleCols(r * responses.cols(), responses.cols()) =
+        extractor.extract(addNoise(responses, noise, random, r));
+  }
+  const std::vector<Index> complete = findComplete(measured);
+  const auto known = static_cast<Index>(experiment.model.inputs.size());
+  const MatrixXd inputs =
+      MatrixXd(sets.test.parameters(Eigen::all, samples).bottomRows(known)).replicate(1, draws);
+  training.measured = measured(Eigen::all, complete);
+  training.known = inputs(Eigen::all, complete);
+}
+
+TrustTraining makeTrustTraining(const OnlineContext& context) {
+  constexpr std::size_t kMaxSimulations = 500;
+  const auto& [experiment, sets, extractor, labelled, control] = context;
+  std::vector<int> samples = findSuccessful(sets.train);
+  samples.resize(std::min(samples.size(), kMaxSimulations));
+  TrustTraining training;
+  training.seed = experiment.seed;
+  training.sampled = collectSampled(experiment.model);
+  training.unknown = static_cast<Index>(collectUnknown(experiment.model).size());
+  training.infos = extractor.getInfos();
+  training.points = sets.train.parameters(Eigen::all, samples);
+  training.clean_features = extractor.extract(sets.train.responses(Eigen::all, samples));
+  training.noise_covariance = labelled.train.noise_covariance;
+  simulateMeasurements(experiment, sets, extractor, training);
+  return training;
+}
+
+ForwardSurrogate fitSurrogate(const TrustTraining& training, const TrainingControl& control) {
+  const Eigen::VectorXd center = calcBoxCenter(training.sampled);
+  const Eigen::VectorXd half_width = 0.5 * calcWidths(training.sampled);
+  const MatrixXd normalized = half_width.cwiseInverse().asDiagonal() * (training.points.colwise() - center);
+  return fitForward({training.infos, normalized, training.clean_features, training.noise_covariance}, {},
+                    control)
+      .surrogate;
+}
+
+/// Adds a trust model to a map that measurements are inferred with. Without a forward surrogate one is
+/// fitted.
+OnlineFit fitTrust(const OnlineContext& context, AnyMap map,
+                   std::shared_ptr<const ForwardSurrogate> forward) {
+  OnlineFit fit{{std::move(map), {}}};
+  try {
+    const TrustTraining training = makeTrustTraining(context);
+    fit.model.trust = trainInterruptibly([&] {
+      if (forward == nullptr) {
+        forward = std::make_shared<const ForwardSurrogate>(fitSurrogate(training, context.control));
+      }
+      return fitTrustModel(training, forward, OnlineMap(fit.model.map), context.experiment.trust.level,
+                           context.control);
+    });
+  } catch (const std::invalid_argument& error) {
+    fit.notes.warn(Severity::kMisleading,
+                   std::string("measurements cannot be judged (no trust model): ") + error.what());
+  }
+  return fit;
+}
+
+}  // namespace
+
+int countReferences(int train_samples) {
+  // a thousand place the 1 % quantile to a third of it
+  constexpr int kMin = 200, kMax = 1000, kPerSimulation = 10;
+  return std::clamp(train_samples, kMin / kPerSimulation, kMax / kPerSimulation) * kPerSimulation;
+}
+
+OnlineFit fitOnline(const OnlineContext& context, const GpMap& map) {
+  return fitTrust(context, compressMap(map), nullptr);
+}
+
+OnlineFit fitOnline(const OnlineContext& context, std::shared_ptr<const Surrogate> surrogate) {
+  return fitTrust(context, surrogate, surrogate->forward);
+}
+
+OnlineFit fitOnline(const OnlineContext& context, std::shared_ptr<const NetworkMap> map,
+                    std::shared_ptr<const ForwardSurrogate> forward) {
+  return fitTrust(context, std::move(map), std::move(forward));
+}
+
+}  // namespace twinmap

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "framework/base/log/interrupted.hpp"
+#include "framework/estimation/training_control.hpp"
+
+namespace twinmap {
+
+/// What train() returns; throws Interrupted where it was stopped.
+template <typename Train>
+auto trainInterruptibly(const Train& train) {
+  try {
+    return train();
+  } catch (const gp::Stopped&) {
+    throw Interrupted("interrupted during training; the simulated samples are kept");
+  }
+}
+
+}  // namespace twinmap

@@ -1,0 +1,229 @@
+#include "framework/study/pipeline/training/train_network.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+
+#include "framework/base/log/log.hpp"
+#include "framework/base/log/stage_timer.hpp"
+#include "framework/data/noise/noise.hpp"
+#include "framework/estimation/calibration_factor.hpp"
+#include "framework/estimation/network/train_network_map.hpp"
+#include "framework/estimation/surrogate/train_surrogate.hpp"
+#include "framework/experiment/network_size.hpp"
+#include "framework/study/pipeline/training/train_interruptibly.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+constexpr double kMuchExcess = 1.1;  // beyond it a longer training is worth its minute
+
+const NetworkMapSpec& getSpec(const NetworkContext& context) {
+  return *context.experiment.inverse_map.findNetwork();
+}
+
+int countSimulations(const NetworkContext& context) {
+  return static_cast<int>(context.samples.features.cols() / context.samples.replicates);
+}
+
+/// Why no surrogate is to be tried; empty if one is.
+std::string findReasonForSimulations(const NetworkContext& context) {
+  const int n = countSimulations(context);
+  if (getSpec(context).samples_from == NetworkSamples::kSimulations) {
+    return "asked for";
+  }
+  if (getSpec(context).samples_from == NetworkSamples::kSurrogate) {
+    return "";
+  }
+  if (getSpec(context).bayesian == NetworkBayes::kHamiltonian) {
+    return "a Hamiltonian sampler draws weights given the simulations";
+  }
+  if (!getSpec(context).mayLearnFromSurrogate(n)) {
+    return fmt::format("a surrogate takes no more than {} of {} simulations", NetworkMapSpec::kMaxOfSurrogate,
+                       n);
+  }
+  return findSurrogateObstacle(context.experiment.model, n, context.samples.noise_covariance);
+}
+
+/// The surrogate to learn from, if there is to be one.
+std::optional<SurrogateMapTraining> findTeacher(const NetworkContext& context, StageNotes& notes) {
+  const std::string reason = findReasonForSimulations(context);
+  if (!reason.empty()) {
+    logInfo(fmt::format("the network learns from the simulations: {}", reason));
+    return std::nullopt;
+  }
+  SurrogateMapTraining teacher = trainSurrogateMap(context.experiment, context.sets, context.simulator,
+                                                   context.extractor, context.samples, context.control);
+  notes.append(teacher.notes);
+  logInfo(fmt::format("the network learns from a surrogate, which promises {:.2f} of what measurements allow",
+                      teacher.surrogate.validation.limit_ratio.maxCoeff()));
+  return teacher;
+}
+
+/// Tells where many simulations, which take next to nothing in lanes, may teach the network more than the
+/// surrogate does. Where surrogates of 250 promised 2.4 to 7.7 times the limit, networks of 10000 simulations
+/// were nearer to it (four storeys, top, chain, chaotic pendulum), and where they promised 1.8 one of two
+/// (end stops, not the arm).
+void suggestSimulations(const Surrogate& teacher, const NetworkContext& context, StageNotes& notes) {
+  constexpr double kFar = 2.0;
+  constexpr int kMany = 10000;
+  const double ratio = teacher.validation.limit_ratio.maxCoeff();
+  if (ratio > kFar && context.simulator.getEngine() == "lanes") {
+    notes.warn(
+        Severity::kInfo,
+        fmt::format("the surrogate that the network learns from promises {:.1f} times what measurements "
+                    "allow; in lanes simulations take little: from design.train.samples={} a network may "
+                    "learn more, in some minutes",
+                    ratio, kMany));
+  }
+}
+
+/// The network's standard deviations over those of the surrogate that taught it (p), typically.
+Eigen::VectorXd calcExcess(const NetworkMapTraining& trained, const SurrogateMapTraining& teacher) {
+  return calcTypicalStddev(trained.held_out.stddev).cwiseQuotient(teacher.typical_stddev);
+}
+
+/// Tells where the network has not learnt all that the surrogate could teach it.
+void remarkOnPupil(const Eigen::VectorXd& excess, const ModelSpec& model, StageNotes& notes) {
+  Index worst = 0;
+  if (excess.maxCoeff(&worst) > kMuchExcess) {
+    notes.warn(
+        Severity::kInfo,
+        fmt::format("{}: the network's standard deviations are {:.1f} times those of the surrogate that "
+                    "it learnt from, which 'inverse_map: surrogate' gives in milliseconds",
+                    model.parameters[static_cast<std::size_t>(worst)].name.text, excess[worst]));
+  }
+}
+
+/// Enough columns for a transform.
+LabelledFeatures takeFirst(const LabelledFeatures& samples) {
+  constexpr Index kMax = 20000;
+  if (samples.features.cols() <= kMax) {
+    return samples;
+  }
+  LabelledFeatures first{samples.infos,
+                         samples.features.leftCols(kMax),
+                         samples.parameters.leftCols(kMax),
+                         samples.noise_covariance,
+                         1,
+                         samples.sensitivities};
+  first.nuisance = samples.nuisance.leftCols(kMax);
+  first.inputs = samples.inputs.leftCols(kMax);
+  return first;
+}
+
+NetworkMapTraining trainOnSimulations(const NetworkContext& context, const FeatureTransform& transform) {
+  const NetworkMapSpec spec = completeSize(getSpec(context), NetworkSize::kSmall);
+  const std::vector<int> successful = findSuccessful(context.sets.train);
+  const MatrixXd points = context.sets.train.parameters(Eigen::all, successful);
+  const MatrixXd responses = context.sets.train.responses(Eigen::all, successful);
+  const ResponseNoise noise(context.experiment.noise, context.sets.train.layout);
+  return trainNetworkMap({context.experiment.model, spec, context.experiment.seed},
+                         {points, responses, context.extractor, noise, transform,
+                          context.extractor.isLinear(), context.samples.noise_covariance},
+                         {context.control.threads, context.control.abandon});
+}
+
+NetworkMapTraining teach(const NetworkContext& context, const SurrogatePool& pool, NetworkSize size) {
+  const NetworkMapSpec spec = completeSize(getSpec(context), size);
+  return trainNetworkMap({context.experiment.model, spec, context.experiment.seed}, pool,
+                         {context.control.threads, context.control.abandon});
+}
+
+/// A small network, or a medium one where that has not learnt all that the surrogate could teach it, unless a
+/// size is given or there would be five of them.
+NetworkMapTraining trainOnSurrogate(const NetworkContext& context, const SurrogateMapTraining& teacher) {
+  const SurrogatePool pool =
+      makeSurrogatePool(teacher.surrogate, getSpec(context).surrogate_samples, context.experiment.seed,
+                        {context.control.threads, context.control.abandon});
+  NetworkMapTraining small = teach(context, pool, NetworkSize::kSmall);
+  const double excess = calcExcess(small, teacher).maxCoeff();
+  if (excess <= kMuchExcess || hasSize(getSpec(context)) ||
+      getSpec(context).bayesian != NetworkBayes::kNone) {
+    return small;
+  }
+  logInfo(fmt::format(
+      "the network learns from the surrogate for longer: its standard deviations are up to {:.1f} "
+      "times the surrogate's",
+      excess));
+  NetworkMapTraining longer = teach(context, pool, NetworkSize::kMedium);
+  return calcExcess(longer, teacher).maxCoeff() < excess ? std::move(longer) : std::move(small);
+}
+
+NetworkMapTraining trainBy(const NetworkContext& context, const FeatureTransform& transform,
+                           const std::optional<SurrogateMapTraining>& teacher) {
+  try {
+    return trainInterruptibly([&] {
+      return teacher ? trainOnSurrogate(context, *teacher) : trainOnSimulations(context, transform);
+    });
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(std::string("the network cannot be trained: ") + error.what());
+  }
+}
+
+/// Names of the quantities that chains were followed for.
+SampledChains describeChains(const ModelSpec& model, const WeightChains& found) {
+  SampledChains sampled;
+  for (std::size_t p = 0; p < found.means.size(); ++p) {
+    sampled.quantities.push_back(
+        {model.parameters[p].name.text, found.means[p].r_hat, found.means[p].effective_sample_size});
+  }
+  sampled.quantities.push_back(
+      {"log density", found.log_density.r_hat, found.log_density.effective_sample_size});
+  sampled.chains = found.chains;
+  sampled.draws = found.draws;
+  sampled.divergences = found.divergences;
+  sampled.cut = found.cut;
+  sampled.acceptance = found.mean_acceptance;
+  sampled.weights = static_cast<int>(found.weights);
+  return sampled;
+}
+
+TrainingSummary summarizeNetwork(const ModelSpec& model, const NetworkMapTraining& trained) {
+  const SurrogateValidation& validation = trained.map.validation;
+  TrainingSummary summary;
+  summary.leave_one_out =
+      calcMetrics(model.parameters, trained.held_out_truth, trained.held_out, {}, trained.held_out_draws);
+  summary.nlml.assign(model.parameters.size(), std::numeric_limits<double>::quiet_NaN());
+  CrossValidation found;
+  found.coverage95 = validation.coverage95;
+  found.stddev_scale = validation.stddev_scale;
+  found.log_density = validation.log_density;
+  found.status = toString(validation.status);
+  found.limit_ratio = validation.limit_ratio;
+  found.reach = validation.reach;
+  summary.cross_validation = std::move(found);
+  if (trained.chains) {
+    summary.chains = describeChains(model, *trained.chains);
+  }
+  return summary;
+}
+
+}  // namespace
+
+NetworkOutcome trainNetwork(const NetworkContext& context) {
+  NetworkOutcome outcome;
+  const std::optional<SurrogateMapTraining> teacher = findTeacher(context, outcome.notes);
+  outcome.transform = fitTransform(context.experiment.transform, takeFirst(context.samples));
+  NetworkMapTraining trained = timeStage("train the network", outcome.notes,
+                                         [&] { return trainBy(context, outcome.transform, teacher); });
+  outcome.notes.warn(Severity::kDegraded, trained.warnings);
+  if (teacher) {
+    const Eigen::VectorXd excess = calcExcess(trained, *teacher);
+    trained.map.validation.limit_ratio = excess.cwiseProduct(teacher->surrogate.validation.limit_ratio);
+    remarkOnPupil(excess, context.experiment.model, outcome.notes);
+    outcome.forward = teacher->surrogate.forward;
+    suggestSimulations(teacher->surrogate, context, outcome.notes);
+  }
+  outcome.summary = summarizeNetwork(context.experiment.model, trained);
+  outcome.map = std::move(trained.map);
+  return outcome;
+}
+
+}  // namespace twinmap

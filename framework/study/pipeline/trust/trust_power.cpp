@@ -1,0 +1,179 @@
+#include "framework/study/pipeline/trust/trust_power.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "framework/base/random/random.hpp"
+#include "framework/base/text/escape.hpp"
+#include "framework/base/text/number_text.hpp"
+#include "framework/study/pipeline/trust/power_judges.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr Index kDraws = 200;           // of all points: they tell a share of 95 % to 1.5 %
+constexpr double kLargestChange = 0.5;  // of a constant
+constexpr double kFound = 0.95, kHardlyFound = 0.5;
+
+/// Where the power is looked at, and how.
+struct PowerCases {
+  std::vector<std::unique_ptr<PowerJudge>> judges;  // one a stencil
+  Index draws = 0;                                  // of each judge
+  MatrixXd noise;                                   // d x draws of each judge
+  double level = 0.0;
+};
+
+/// Noise of the covariance factor factor', d x count.
+MatrixXd drawNoise(const MatrixXd& factor, Index count, std::uint64_t seed) {
+  const RandomStream random(seed, RandomPurpose::kTrustPower);
+  MatrixXd white(factor.cols(), count);
+  for (Index draw = 0; draw < count; ++draw) {
+    for (Index i = 0; i < white.rows(); ++i) {
+      white(i, draw) = random.calcNormal(static_cast<std::uint64_t>(draw), static_cast<std::uint64_t>(i));
+    }
+  }
+  return factor * white;
+}
+
+/// The share of cases found where stencil i is moved by size * directions[i].
+double calcShareFound(const PowerCases& cases, const std::vector<VectorXd>& directions, double size) {
+  int found = 0;
+  for (std::size_t i = 0; i < cases.judges.size(); ++i) {
+    for (Index draw = 0; draw < cases.draws; ++draw) {
+      const VectorXd moved =
+          size * directions[i] + cases.noise.col(static_cast<Index>(i) * cases.draws + draw);
+      found += cases.judges[i]->calcPValue(moved) < cases.level ? 1 : 0;
+    }
+  }
+  return static_cast<double>(found) / static_cast<double>(cases.noise.cols());
+}
+
+/// Bisects the logarithm of the size, to 5 %.
+void findSmallest(const PowerCases& cases, const std::vector<VectorXd>& directions,
+                  DetectableChange& change) {
+  constexpr double kSpan = 1e-8, kStep = 1.05;  // of `largest`; the ratio at which the search ends
+  change.found = calcShareFound(cases, directions, change.largest);
+  change.smallest = std::numeric_limits<double>::quiet_NaN();
+  if (change.found < kFound) {
+    return;
+  }
+  double below = kSpan * change.largest, above = change.largest;
+  while (above > kStep * below) {
+    const double middle = std::sqrt(below * above);
+    (calcShareFound(cases, directions, middle) < kFound ? below : above) = middle;
+  }
+  change.smallest = above;
+}
+
+/// The outputs' offsets: what they do to the features of each stencil, and how far they may go.
+std::vector<VectorXd> calcOffsetDirections(const PowerContext& context, Index output, double size,
+                                           const std::vector<Stencil>& around) {
+  const ResponseLayout& layout = context.sets.test.layout;
+  std::vector<VectorXd> directions;
+  for (const Stencil& at : around) {
+    MatrixXd moved = at.response;
+    moved.col(0).segment(layout.getRow(output, 0), layout.times.size()).array() += size;
+    directions.emplace_back((context.extractor.extract(moved).col(0) - at.features) / size);
+  }
+  return directions;
+}
+
+double calcRange(const SimulatedSets& sets, Index output) {
+  const auto rows =
+      sets.test.responses.middleRows(sets.test.layout.getRow(output, 0), sets.test.layout.times.size());
+  const MatrixXd values = rows(Eigen::all, findSuccessful(sets.test));
+  return values.maxCoeff() - values.minCoeff();
+}
+
+bool areUsable(const std::vector<VectorXd>& directions) {
+  return std::all_of(directions.begin(), directions.end(),
+                     [](const VectorXd& one) { return one.allFinite(); }) &&
+         std::any_of(directions.begin(), directions.end(),
+                     [](const VectorXd& one) { return one.cwiseAbs().maxCoeff() > 0.0; });
+}
+
+PowerCases makeCases(const PowerContext& context, const NoiseWhitener& noise,
+                     const std::vector<Stencil>& around) {
+  const TrustModel& trust = *context.online.trust;
+  const OnlineMap map(context.online.map);
+  PowerCases cases;
+  cases.level = trust.level;
+  for (const Stencil& at : around) {
+    cases.judges.push_back(makePowerJudge(map, trust, noise, at));
+  }
+  const MatrixXd factor = context.noise_covariance * noise.getMatrix().transpose();  // W C W' = 1
+  const auto points = static_cast<Index>(around.size());
+  cases.draws = kDraws / points;
+  cases.noise = drawNoise(factor, cases.draws * points, context.experiment.seed);
+  return cases;
+}
+
+}  // namespace
+
+std::vector<DetectableChange> calcTrustPower(const PowerContext& context) {
+  const std::vector<ParameterSpec> constants = listConstants(context.experiment.model);
+  const std::vector<Stencil> around = simulateStencils(context, constants);
+  std::vector<DetectableChange> changes;
+  if (around.empty()) {
+    return changes;
+  }
+  const NoiseWhitener noise(context.noise_covariance);
+  const PowerCases cases = makeCases(context, noise, around);
+  const auto add = [&](DetectableChange change, const std::vector<VectorXd>& directions) {
+    if (areUsable(directions)) {
+      findSmallest(cases, directions, change);
+      changes.push_back(change);
+    }
+  };
+  for (std::size_t i = 0; i < constants.size(); ++i) {
+    std::vector<VectorXd> directions;
+    for (const Stencil& at : around) {
+      directions.emplace_back(at.slopes.col(static_cast<Index>(i)));
+    }
+    add({"constant", constants[i].name.text, "", 0.0, kLargestChange, 0.0}, directions);
+  }
+  const ResponseLayout& layout = context.sets.test.layout;
+  for (Index output = 0; output < layout.getOutputCount() && layout.times.size() > 0; ++output) {
+    const double range = calcRange(context.sets, output);
+    if (range > 0.0) {
+      const auto name = static_cast<std::size_t>(output);
+      add({"output", layout.output_names[name], layout.output_units[name], 0.0, range, 0.0},
+          calcOffsetDirections(context, output, range, around));
+    }
+  }
+  return changes;
+}
+
+std::string makeTrustPowerCsv(const std::vector<DetectableChange>& changes) {
+  std::string text = "kind,name,unit,smallest_change,largest_change,largest_found\n";
+  for (const DetectableChange& change : changes) {
+    text += change.kind + "," + escapeCsv(change.name) + "," + escapeCsv(change.unit) + "," +
+            (std::isfinite(change.smallest) ? toText(change.smallest) : "") + "," + toText(change.largest) +
+            "," + toText(change.found) + "\n";
+  }
+  return text;
+}
+
+std::vector<std::string> listPowerWarnings(const std::vector<DetectableChange>& changes) {
+  std::string names;
+  for (const DetectableChange& change : changes) {
+    if (change.found < kHardlyFound) {
+      names += (names.empty() ? "" : ", ") + change.kind + " '" + change.name + "'";
+    }
+  }
+  if (names.empty()) {
+    return {};
+  }
+  return {
+      "no power: measurements of a machine that differs by half in a constant, or by its range in the offset "
+      "of an output, would mostly not be called a model_mismatch: " +
+      names};
+}
+
+}  // namespace twinmap

@@ -1,0 +1,187 @@
+#include "framework/study/sweep/case_cost.hpp"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "framework/data/features/feature_extractor.hpp"
+#include "framework/data/sensitivity/stencil_simulator.hpp"
+#include "framework/estimation/gp/train_gp_map.hpp"
+#include "framework/estimation/network/train_network_map.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
+#include "framework/experiment/network_size.hpp"
+
+namespace twinmap {
+namespace {
+
+constexpr double kFitCost = 1.0 / 3.0;  // of an evaluation with its gradient
+
+bool isSparse(const ExperimentSpec& experiment) {
+  const GpMapSpec* gp = experiment.inverse_map.findGp();
+  return gp != nullptr && gp->approximation == GpApproximation::kSgpr;
+}
+
+double countColumns(const ExperimentSpec& experiment) {
+  return double(experiment.design.train.samples) * experiment.noise.replicates.value_or(1);
+}
+
+/// Samples of the largest exact process.
+double countExact(const ExperimentSpec& experiment) {
+  const double columns = countColumns(experiment);
+  return isSparse(experiment) ? std::min<double>(columns, experiment.inverse_map.findGp()->subset) : columns;
+}
+
+/// Of them, those that the hyperparameters are searched with.
+double countSearched(const ExperimentSpec& experiment) {
+  const int samples = experiment.design.train.samples, replicates = experiment.noise.replicates.value_or(1);
+  const double columns = countExact(experiment);
+  return isSparse(experiment)
+             ? columns
+             : double(samples) * countSearchedReplicates(Eigen::Index(samples) * replicates, replicates);
+}
+
+double countRows(const ExperimentSpec& experiment) {
+  return static_cast<double>(collectTimes(experiment.features).size()) *
+             static_cast<double>(experiment.model.outputs.size()) +
+         2.0 * countModes(experiment.features) + 1.0;
+}
+
+double countSearches(const GpMapSpec& gp) {
+  return gp.starts + (gp.length_scales == LengthScales::kShared ? 0.0 : std::min(gp.starts, 2));
+}
+
+/// Windows of a surrogate's features, at least.
+double countWindows(const ExperimentSpec& experiment) {
+  constexpr double kRowsPerWindow = 16.0;
+  return std::ceil(countRows(experiment) / kRowsPerWindow);
+}
+
+double square(double x) {
+  return x * x;
+}
+
+double cube(double x) {
+  return x * x * x;
+}
+
+/// The search of each window on at most 300 samples, then some evaluations with all: the search's end, and
+/// that of each fold.
+std::vector<TrainingStep> listSurrogateSteps(const ExperimentSpec& experiment) {
+  constexpr double kSearched = 300.0, kSearches = 3.0, kEvaluationsOfAll = 40.0;
+  const double samples = experiment.design.train.samples, windows = countWindows(experiment);
+  return {{std::min(samples, kSearched), windows, kSearches}, {samples, windows, 0.0, kEvaluationsOfAll}};
+}
+
+/// Numbers of the matrices of a surrogate: its windows', and those of the search of each thread.
+double countSurrogateNumbers(const ExperimentSpec& experiment, int threads) {
+  constexpr double kCopies = 6.0;
+  return square(experiment.design.train.samples) * (2.0 * countWindows(experiment) + kCopies * threads);
+}
+
+/// The same of an inverse map's processes.
+double countProcessNumbers(const ExperimentSpec& experiment, const GpMapSpec& gp, int threads) {
+  constexpr double kSparseCopies = 6.0;
+  const auto parameters = static_cast<double>(experiment.model.parameters.size());
+  const double searches = std::min(double(threads), parameters * gp.starts);
+  const double exact = countExact(experiment);
+  double numbers = std::max(square(countSearched(experiment)) * (2.5 * searches + 1.0), 3.5 * square(exact)) +
+                   1.5 * parameters * square(exact);
+  if (isSparse(experiment)) {
+    numbers += kSparseCopies * countColumns(experiment) * gp.inducing * searches;
+  }
+  return numbers;
+}
+
+/// Whether processes with all samples are trained for a surrogate, be it a network's teacher.
+bool mayTrainSurrogate(const ExperimentSpec& experiment) {
+  const NetworkMapSpec* network = experiment.inverse_map.findNetwork();
+  return network == nullptr || network->mayLearnFromSurrogate(experiment.design.train.samples);
+}
+
+double countMapNumbers(const ExperimentSpec& experiment, int threads) {
+  if (const GpMapSpec* gp = experiment.inverse_map.findGp()) {
+    return countProcessNumbers(experiment, *gp, threads);
+  }
+  return mayTrainSurrogate(experiment) ? countSurrogateNumbers(experiment, threads) : 0.0;
+}
+
+/// Of networks alone: their weights, forwards and backwards, for each sample of each step. Of a
+/// surrogate's student the first training: whether a second follows is not known before.
+double countNetworkFlops(const NetworkMapSpec& network, int simulations) {
+  constexpr double kInputs = 32.0, kOfWeight = 6.0;
+  double weights = 0.0, before = kInputs;
+  const NetworkMapSpec sized = completeSize(network, NetworkSize::kSmall);
+  for (const int units : *sized.hidden) {
+    weights += before * units;
+    before = units;
+  }
+  const int trainings = network.mayLearnFromSurrogate(simulations) ? 1 : countTrainings(network, simulations);
+  return kOfWeight * trainings * weights * *sized.steps * *sized.batch;
+}
+
+}  // namespace
+
+std::vector<TrainingStep> listTrainingSteps(const ExperimentSpec& experiment) {
+  if (experiment.inverse_map.findGp() == nullptr) {
+    return mayTrainSurrogate(experiment) ? listSurrogateSteps(experiment) : std::vector<TrainingStep>();
+  }
+  const GpMapSpec& gp = *experiment.inverse_map.findGp();
+  const auto parameters = static_cast<double>(experiment.model.parameters.size());
+  const double exact = countExact(experiment), searched = countSearched(experiment);
+  const double first = std::min<double>(exact, experiment.design.train.samples);
+  std::vector<TrainingStep> steps{{first, parameters, countSearches(gp)}};
+  if (isSparse(experiment) ? countColumns(experiment) > first : searched > first) {
+    steps.push_back({searched, parameters, 1.0});
+  }
+  if (searched < exact) {
+    steps.push_back({exact, parameters, 0.0, kFitCost});
+  }
+  if (isSparse(experiment)) {
+    const double passes = (gp.refine_evaluations + 2.0) * 4.0 * countColumns(experiment) / gp.inducing;
+    steps.push_back({double(gp.inducing), parameters, 0.0, passes});
+  }
+  return steps;
+}
+
+CaseCost calcCaseCost(const ExperimentSpec& experiment, int threads) {
+  constexpr double kBytes = 8.0, kCopies = 10.0, kLimitCopies = 1.5, kPosteriorCopies = 3.0;
+  double numbers = countMapNumbers(experiment, threads);
+  numbers += kCopies * countRows(experiment) * (countColumns(experiment) + experiment.design.test.samples);
+  if (experiment.evaluation.limit) {
+    numbers += kLimitCopies * countRows(experiment) *
+               countNeighbours(collectUnknown(experiment.model).size()) * experiment.design.test.samples;
+  }
+  if (experiment.evaluation.posterior) {
+    numbers += kPosteriorCopies * countRows(experiment) * experiment.evaluation.posterior->draws;
+  }
+  CaseCost cost{kBytes * numbers, 0.0};
+  for (const TrainingStep& step : listTrainingSteps(experiment)) {
+    const double evaluations = step.searches > 0.0 ? step.searches * kEvaluations : 1.0;
+    cost.flops += step.processes * evaluations * step.relative_cost * cube(step.samples);
+  }
+  if (const NetworkMapSpec* network = experiment.inverse_map.findNetwork()) {
+    cost.flops += countNetworkFlops(*network, experiment.design.train.samples);
+  }
+  return cost;
+}
+
+double getMachineMemory() {
+  return static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
+}
+
+void requireMemory(const ExperimentSpec& experiment, int threads, double bytes) {
+  const double needed = calcCaseCost(experiment, threads).bytes;
+  if (needed > bytes) {
+    throw ExperimentError(
+        {experiment.name.where.file, 0, 0, "design"}, "",
+        fmt::format("needs about {:.3g} GiB of memory for {} training samples x {} draws of noise, {} test "
+                    "samples and {:.3g} numbers in a response; {:.3g} GiB are allowed (--memory)",
+                    needed / kGibibyte, experiment.design.train.samples.number,
+                    experiment.noise.replicates.value_or(1), experiment.design.test.samples.number,
+                    countRows(experiment), bytes / kGibibyte));
+  }
+}
+
+}  // namespace twinmap

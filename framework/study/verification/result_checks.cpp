@@ -1,0 +1,169 @@
+#include "framework/study/verification/result_checks.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "framework/analysis/information_limit.hpp"
+#include "framework/base/files/atomic_file.hpp"
+#include "framework/base/files/temporary_folder.hpp"
+#include "framework/data/sensitivity/fisher_information.hpp"
+#include "framework/estimation/gp/train_gp_map.hpp"
+#include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
+#include "framework/results/tables.hpp"
+#include "framework/store/estimators/maps_file.hpp"
+#include "framework/store/hdf5_difference.hpp"
+#include "framework/store/predictions_file.hpp"
+#include "framework/study/pipeline/answers.hpp"
+#include "framework/study/pipeline/prepare_data.hpp"
+#include "framework/study/pipeline/refine_test_samples.hpp"
+#include "framework/study/pipeline/training/store_map.hpp"
+#include "framework/study/pipeline/training/train_maps.hpp"
+#include "framework/study/verification/file_difference.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+/// What the results of a run follow from.
+struct Inputs {
+  const ExperimentSpec& experiment;
+  const Simulator& simulator;
+  const FeatureExtractor& extractor;
+  const SimulatedSets& sets;
+  const PreparedData& data;
+  int threads;
+};
+
+/// The limit of all test samples as the file has it, and of `chosen` ones computed again.
+MatrixXd calcLimit(const Inputs& inputs, const std::vector<int>& chosen,
+                   const std::filesystem::path& predictions) {
+  if (!hasInformationLimit(inputs.experiment, inputs.data.labelled.test)) {
+    return {};
+  }
+  const std::vector<ParameterSpec>& parameters = inputs.experiment.model.parameters;
+  const MatrixXd& truth = inputs.data.labelled.test.parameters;
+  MatrixXd limit = readPredictionsFile(predictions, collectNames(parameters)).limit_stddev;
+  if (limit.rows() != truth.rows() || limit.cols() != truth.cols()) {
+    limit.setConstant(truth.rows(), truth.cols(), std::numeric_limits<double>::quiet_NaN());
+  }
+  std::vector<Index> columns;
+  for (const int sample : chosen) {
+    const auto found = std::find(inputs.data.test_indices.begin(), inputs.data.test_indices.end(), sample);
+    if (found != inputs.data.test_indices.end()) {
+      columns.push_back(found - inputs.data.test_indices.begin());
+    }
+  }
+  if (!columns.empty()) {
+    const MatrixXd points = inputs.data.labelled.test.collectPoints()(Eigen::all, columns);
+    const auto models = calcLocalModels(inputs.simulator, inputs.extractor,
+                                        collectUnknown(inputs.experiment.model), points, inputs.threads);
+    limit(Eigen::all, columns) = calcInformationLimit(models, inputs.data.noise, parameters).stddev;
+  }
+  return limit;
+}
+
+RunControl makeControl(const Inputs& inputs) {
+  RunControl control;
+  control.threads = inputs.threads;
+  return control;
+}
+
+/// Processes are fitted at the hyperparameters of the file, without a search; a surrogate is trained again.
+TrainedMap trainAgain(const Inputs& inputs, const std::filesystem::path& file) {
+  const RunControl control = makeControl(inputs);
+  const MapTrainingContext context{inputs.experiment, inputs.sets,          inputs.simulator,
+                                   inputs.extractor,  inputs.data.labelled, control};
+  const LabelledFeatures& train = inputs.data.labelled.train;
+  if (!holdsProcesses(file)) {
+    return trainChosenMap(context);
+  }
+  GpMapTraining fitted =
+      refitGpMap(readMapsFile(file).map, *inputs.experiment.inverse_map.findProcesses(),
+                 inputs.experiment.transform, train, inputs.threads, inputs.experiment.model.inputs);
+  return makeTrainedMap(context, makeTraining(inputs.experiment, train, std::move(fitted)));
+}
+
+std::vector<Refined> refineAgain(const Inputs& inputs, const TrainedMap& map) {
+  const RunControl control = makeControl(inputs);
+  return refineTestSamples(
+             {inputs.experiment, inputs.simulator, inputs.extractor, inputs.data, map.online, control})
+      .refined;
+}
+
+RunSummary summarize(const Inputs& inputs, const TrainedMap& map, const std::vector<Refined>& refined,
+                     const MatrixXd& limit) {
+  const LabelledFeatures& test = inputs.data.labelled.test;
+  RunSummary run;
+  run.parameters = inputs.experiment.model.parameters;
+  run.test_indices = inputs.data.test_indices;
+  run.evaluation = evaluateAnswers(
+      run.parameters, test.parameters,
+      makeAnswers(map.predict(test.features, test.inputs), map.residual_correlation, refined), limit);
+  run.evaluation.refined = refined;
+  run.training = map.summary;
+  return run;
+}
+
+struct TextFile {
+  const char* name;
+  std::string (*make)(const RunSummary& run);
+};
+
+constexpr TextFile kTables[] = {{"metrics.csv", makeMetricsCsv},
+                                {"joint.csv", makeJointCsv},
+                                {"pit.csv", makePitCsv},
+                                {"table.md", makeMarkdownTable},
+                                {"table.tex", makeLatexTable}};
+
+std::string findDifference(const std::filesystem::path& file, const std::string& expected) {
+  const std::string text = readBytes(file);
+  return file.extension() == ".csv" ? findCsvDifference(text, expected) : findTextDifference(text, expected);
+}
+
+void checkMapAndTables(const Inputs& inputs, const std::vector<int>& limits, Verification& verification) {
+  const std::filesystem::path& folder = verification.folder;
+  std::optional<TrainedMap> map;
+  std::vector<Refined> refined;
+  verification.check("maps.h5: fitted again", [&] {
+    map = trainAgain(inputs, folder / "maps.h5");
+    refined = refineAgain(inputs, *map);
+    const TemporaryFolder temporary;
+    storeMap(temporary.getPath() / "maps.h5", inputs.experiment, inputs.extractor, refined, *map);
+    return findHdf5Difference(folder / "maps.h5", temporary.getPath() / "maps.h5");
+  });
+  if (!map) {
+    verification.notes.emplace_back("predictions and tables are not compared, for they follow from maps.h5");
+    return;
+  }
+  RunSummary run;
+  verification.check("predictions.csv: all test samples inferred again", [&] {
+    run = summarize(inputs, *map, refined, calcLimit(inputs, limits, folder / "predictions.csv"));
+    return findDifference(folder / "predictions.csv", makePredictionsCsv(run));
+  });
+  if (run.evaluation.metrics.empty()) {
+    verification.notes.emplace_back("tables are not compared, for they follow from predictions.csv");
+    return;
+  }
+  for (const TextFile& table : kTables) {
+    verification.check(std::string(table.name) + ": made again",
+                       [&] { return findDifference(folder / table.name, table.make(run)); });
+  }
+}
+
+}  // namespace
+
+void checkResults(const ExperimentSpec& experiment, const Simulator& simulator, SimulatedSets sets,
+                  const std::vector<int>& limits, int threads, Verification& verification) {
+  const FeatureExtractor extractor = makeExtractor(experiment, simulator.getLayout());
+  sets = failIncompleteSamples(experiment, extractor, std::move(sets));
+  const LocalModelSource local_models = [&](const MatrixXd& points) {
+    return calcLocalModels(simulator, extractor, collectUnknown(experiment.model), points, threads);
+  };
+  const PreparedData data = prepareData(experiment, extractor, sets, local_models);
+  checkMapAndTables({experiment, simulator, extractor, sets, data, threads}, limits, verification);
+}
+
+}  // namespace twinmap

@@ -1,0 +1,92 @@
+#include "framework/data/measurement/measured_signals.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/framework/test_folder.hpp"
+
+namespace twinmap {
+namespace {
+
+class MeasuredSignals : public testing::Test {
+ protected:
+  MeasuredSignals() {
+    std::ofstream file(folder_ / "a.csv");
+    file << "t,F [kN],y\n";
+    for (int i = 0; i < 100; ++i) {
+      file << 0.1 * i << "," << i << ",0\n";
+    }
+    file.close();
+    SignalSpec signal;
+    signal.name.text = "F";
+    signal.unit = "N";
+    signal.tables.resize(1);
+    signal.tables[0].measured = {
+        {(folder_ / "a.csv").string(), {"e.yaml", 7, 3, "excitation.F"}}, {"F", {}}, {}, {}, 2.0, {}};
+    signal.tables[0].measured->time = Name{"t", {}};
+    experiment_.model.excitation.push_back(signal);
+    experiment_.model.simulation.duration = 1.0;
+  }
+
+  TableSpec& updTable() { return experiment_.model.excitation[0].tables[0]; }
+
+  std::string getError() {
+    try {
+      loadMeasuredSignals(experiment_);
+    } catch (const MeasurementError& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+
+  TestFolder folder_;
+  ExperimentSpec experiment_;
+};
+
+TEST_F(MeasuredSignals, AreFilledWithAFewSamplesBeside) {
+  loadMeasuredSignals(experiment_);
+  const TableSpec& table = updTable();
+  ASSERT_EQ(table.times.size(), table.values.size());
+  EXPECT_LT(table.times.front(), -0.25);
+  EXPECT_GT(table.times.back(), 1.25);
+  EXPECT_LT(table.times.size(), 25U);
+  for (std::size_t i = 0; i < table.times.size(); ++i) {
+    EXPECT_NEAR(table.values[i], 1e4 * (table.times[i] + 2.0), 1e-9);
+  }
+}
+
+TEST_F(MeasuredSignals, AreReadOnce) {
+  updTable().times = {0.0, 1.0};
+  updTable().values = {3.0, 4.0};
+  updTable().measured->file.text = "nothing.csv";
+  EXPECT_EQ(getError(), "no error");
+  EXPECT_EQ(updTable().values[0], 3.0);
+}
+
+TEST_F(MeasuredSignals, AreReplacedByAnotherWindow) {
+  loadMeasuredSignals(experiment_);
+  ASSERT_TRUE(hasMeasuredSignals(experiment_));
+  replaceMeasuredSignals(experiment_, readTable(folder_ / "a.csv", listSignalColumns(experiment_)), 5.0);
+  EXPECT_NEAR(updTable().values[4], 1e4 * (updTable().times[4] + 5.0), 1e-9);
+}
+
+TEST_F(MeasuredSignals, AnExcerptEndsBeforeTheSimulation) {
+  updTable().measured->duration = 0.5;
+  loadMeasuredSignals(experiment_);
+  EXPECT_NEAR(updTable().times.back(), 0.5, 1e-9);
+}
+
+TEST_F(MeasuredSignals, ErrorsNameKeyFileAndRule) {
+  const std::string start = "e.yaml:7:3: excitation.F: " + (folder_ / "a.csv").string() + ": ";
+  updTable().measured->start = 9.5;
+  EXPECT_EQ(getError(), start + "covers 9.1 s to 9.9 s, but 9.5 s to 10.5 s is needed");
+  updTable().measured->start = 2.0;
+  updTable().measured->column.text = "Fo";
+  EXPECT_EQ(getError(), start + "has no column 'Fo'; did you mean 'F'? (it has: t, F, y)");
+  updTable().measured->column.text = "y [mm]";
+  EXPECT_NE(getError().find("'mm' does not convert to N"), std::string::npos);
+  updTable().measured->file.text = "nothing.csv";
+  EXPECT_EQ(getError(), "e.yaml:7:3: excitation.F: nothing.csv: does not exist");
+}
+
+}  // namespace
+}  // namespace twinmap

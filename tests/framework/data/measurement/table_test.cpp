@@ -1,0 +1,221 @@
+#include "framework/data/measurement/table.hpp"
+
+#include <gtest/gtest.h>
+#include <matio.h>
+
+#include <random>
+#include <sstream>
+
+#include "framework/base/hdf5/hdf5_file.hpp"
+#include "tests/framework/test_folder.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::VectorXd;
+
+Table read(const std::string& text, const std::vector<std::string>& wanted = {}) {
+  std::istringstream stream(text);
+  return readCsv(stream, "a.csv", wanted);
+}
+
+VectorXd makeVector(std::initializer_list<double> values) {
+  return Eigen::Map<const VectorXd>(values.begin(), static_cast<Eigen::Index>(values.size()));
+}
+
+template <class Action>
+std::string getError(const Action& action) {
+  try {
+    action();
+  } catch (const MeasurementError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+std::string getCsvError(const std::string& text, const std::vector<std::string>& wanted = {}) {
+  return getError([&] { read(text, wanted); });
+}
+
+TEST(Csv, HasNamesAndUnitsInItsHeader) {
+  const Table table = read("t [ms],\"enc, 1 [mm]\", theta \n0,1.5,-2e-3\n1,+2, 3 \n");
+  ASSERT_EQ(table.columns.size(), 3U);
+  EXPECT_EQ(table.columns[0].name, "t");
+  EXPECT_EQ(*table.columns[0].unit, "ms");
+  EXPECT_EQ(table.columns[1].name, "enc, 1");
+  EXPECT_EQ(*table.columns[1].unit, "mm");
+  EXPECT_EQ(table.columns[2].name, "theta");
+  EXPECT_FALSE(table.columns[2].unit);
+  EXPECT_EQ(table.columns[1].values, makeVector({1.5, 2.0}));
+  EXPECT_EQ(table.columns[2].values, makeVector({-2e-3, 3.0}));
+}
+
+TEST(Csv, SeparatorsLineEndsCommentsAndByteOrderMarks) {
+  for (const char* text :
+       {"t,y\n1,2\n3,4\n", "t;y\r\n1;2\r\n3;4\r\n", "t\ty\n1\t2\n3\t4", "\xef\xbb\xbft,y\n1,2\n3,4\n",
+        "# made by x\n\nt,y\n# ,\n1,2\n\n\"3\",\"4\"\n\n", "t,y,\n1,2,\n3,4,\n", "t,y\n1,2,\n3,4,\n",
+        "t,y,\n1,2\n3,4\n", ",t,y,,\n9,1,2,a,b\n9,3,4,,\n", " t , y \n 1 , 2 \n 3 , 4 \n"}) {
+    const Table table = read(text);
+    ASSERT_EQ(table.columns.size(), 2U) << text;
+    EXPECT_EQ(table.columns[0].values, makeVector({1.0, 3.0})) << text;
+    EXPECT_EQ(getColumn(table, "y").values, makeVector({2.0, 4.0})) << text;
+  }
+}
+
+TEST(Csv, KeepsWhatIsWantedAndSkipsWhatIsNoNumber) {
+  const std::string text = "Ovld,t,note,y,\n0,0,a,1,\n,1,b,2,\n";
+  const Table wanted = read(text, {"t", "time", "y"});
+  ASSERT_EQ(wanted.columns.size(), 2U);
+  EXPECT_EQ(findColumn(wanted, "time"), nullptr);
+  EXPECT_EQ(getError([&] { getColumn(wanted, "tt"); }),
+            "a.csv: has no column 'tt'; did you mean 't'? (it has: t, y, Ovld, note)");
+  const Table all = read(text);
+  ASSERT_EQ(all.columns.size(), 2U);
+  EXPECT_EQ(getError([&] { getColumn(all, "Ovld"); }),
+            "a.csv:3: column 'Ovld' has an empty cell; must be a number");
+  EXPECT_EQ(getError([&] { getColumn(all, "note"); }),
+            "a.csv:2: column 'note' has 'a' which must be a number");
+}
+
+TEST(Csv, ErrorsNameLineColumnAndRule) {
+  EXPECT_EQ(getCsvError(""), "a.csv: has no line; must have one that names the columns");
+  EXPECT_EQ(getCsvError("0,1\n1,2\n"), "a.csv:1: must name the columns, in the first line");
+  EXPECT_EQ(getCsvError("t,y,t\n"), "a.csv:1: names the column 't' twice");
+  EXPECT_EQ(getCsvError("t,y\n", {"t"}), "a.csv: column 't' has no samples");
+  EXPECT_EQ(getCsvError("t,y\n", {}), "a.csv: column 't' has no samples");
+  EXPECT_EQ(getCsvError("t,y\n0,1\n1\n"), "a.csv:3: has 1 cell, not as many as the header, which has 2");
+  EXPECT_EQ(getCsvError("t,y\n0,1,2\n"), "a.csv:2: has more cells than the header, which has 2");
+  EXPECT_EQ(getCsvError("t,y\n0,\n", {"y"}), "a.csv:2: column 'y' has an empty cell; must be a number");
+  EXPECT_EQ(getCsvError("t,y\n0,1x\n", {"y"}), "a.csv:2: column 'y' has '1x' which must be a number");
+  EXPECT_EQ(getCsvError("t,y\n0,NaN\n", {"y"}),
+            "a.csv:2: column 'y' has 'NaN' which must be a finite number");
+  EXPECT_EQ(getCsvError("t,y\n0,-inf\n", {"y"}),
+            "a.csv:2: column 'y' has '-inf' which must be a finite number");
+  EXPECT_EQ(getCsvError("t,y\n0,1e999\n", {"y"}),
+            "a.csv:2: column 'y' has '1e999' which must be a number from 1e-308 to 1e308");
+  EXPECT_EQ(getCsvError("t;y\n0;1,5\n", {"y"}),
+            "a.csv:2: column 'y' has '1,5' which must be a number with a decimal point, not a comma");
+}
+
+TEST(Csv, RefusesWhatIsNoText) {
+  using namespace std::string_literals;
+  EXPECT_EQ(getCsvError("\xff\xfet\0,\0y\0"s), "a.csv:1: is in UTF-16; save it in UTF-8");
+  EXPECT_EQ(getCsvError("t,y\n0,1\n\0\1"s), "a.csv:3: has a NUL byte: is no text, or not in UTF-8");
+  EXPECT_EQ(getCsvError(std::string(20 << 20, 'x')),
+            "a.csv:1: has a line of more than 16 MiB: is no table of text");
+}
+
+TEST(Csv, ReadsBackTheBitsThatWereWrittenOverManyBlocks) {
+  std::mt19937_64 generator(1);
+  const Eigen::Index count = 50000;
+  std::vector<Column> columns{{"t", "s", VectorXd(count)}, {"a, \"b\"", {}, VectorXd(count)}};
+  for (Column& column : columns) {
+    for (double& value : column.values) {
+      value = std::ldexp(static_cast<double>(generator()) - 9e18, static_cast<int>(generator() % 600) - 300);
+    }
+  }
+  std::stringstream stream;
+  writeTable(stream, columns);
+  const Table table = readCsv(stream, "a.csv", {});
+  ASSERT_EQ(table.columns.size(), 2U);
+  EXPECT_EQ(*table.columns[0].unit, "s");
+  EXPECT_EQ(table.columns[0].values, columns[0].values);
+  EXPECT_EQ(table.columns[1].values, columns[1].values);
+}
+
+TEST(ReadTable, ErrorsNameTheFile) {
+  const TestFolder folder;
+  const auto getFileError = [&](const std::string& name) {
+    return getError([&] { readTable(folder / name); }).substr(folder.getPath().string().size() + 1);
+  };
+  EXPECT_EQ(getFileError("nothing.csv"), "nothing.csv: does not exist");
+  std::ofstream(folder / "a.xlsx") << "t";
+  EXPECT_EQ(getFileError("a.xlsx"),
+            "a.xlsx: must be a .csv, .txt, .tsv, .dat, .mat, .h5 or .hdf5 file, by its name");
+  std::ofstream(folder / "a.mat") << "t,y\n1,2\n";
+  EXPECT_EQ(getFileError("a.mat"), "a.mat: cannot be read as a MATLAB file");
+  std::ofstream(folder / "a.h5") << "t,y\n1,2\n";
+  EXPECT_EQ(getFileError("a.h5"), "a.h5: cannot be opened as an HDF5 file");
+  std::filesystem::create_directory(folder / "b.csv");
+  EXPECT_EQ(getFileError("b.csv"), "b.csv: is no file");
+}
+
+TEST(Hdf5Table, ColumnsAreVectorsByTheirPath) {
+  const TestFolder folder;
+  Hdf5Writer file(folder / "a.h5");
+  file.write("/t", makeVector({0.0, 1.0}));
+  file.write("/run1/enc1", makeVector({2.0, 3.0}));
+  file.writeAttribute("/run1/enc1", "units", "mm");
+  file.writeSamples("/run1/row", makeVector({4.0, 5.0}));
+  file.writeSamples("/run1/matrix", Eigen::MatrixXd::Ones(2, 2));
+  file.write("/empty", VectorXd());
+  file.write("/text", std::vector<std::string>{"a"});
+  file.write("/integers", std::vector<std::int64_t>{6, 7});
+  file.write("/bad", makeVector({0.0, std::nan("")}));
+  file.close();
+  const Table table = readTable(folder / "a.h5");
+  ASSERT_EQ(table.columns.size(), 4U);
+  EXPECT_EQ(getColumn(table, "run1/enc1").values, makeVector({2.0, 3.0}));
+  EXPECT_EQ(*getColumn(table, "run1/enc1").unit, "mm");
+  EXPECT_EQ(getColumn(table, "run1/row").values, makeVector({4.0, 5.0}));
+  EXPECT_EQ(getColumn(table, "integers").values, makeVector({6.0, 7.0}));
+  const auto getSkipped = [&](const std::string& name) {
+    return getError([&] { readTable(folder / "a.h5", {name}); }).substr(folder.getPath().string().size() + 7);
+  };
+  EXPECT_EQ(getSkipped("run1/matrix"), "column 'run1/matrix' must have one dimension");
+  EXPECT_EQ(getSkipped("text"), "column 'text' is no dataset of real numbers");
+  EXPECT_EQ(getSkipped("empty"), "column 'empty' has no samples");
+  EXPECT_EQ(getSkipped("bad"), "column 'bad' has nan at row 2; must be a finite number");
+}
+
+class MatTable : public testing::TestWithParam<mat_ft> {};
+
+void write(mat_t* file, const char* name, matio_classes kind, matio_types type, std::size_t rows,
+           std::size_t columns, const void* data, int flags = 0) {
+  std::size_t size[] = {rows, columns};
+  matvar_t* variable = Mat_VarCreate(name, kind, type, 2, size, const_cast<void*>(data), flags);
+  Mat_VarWrite(file, variable, MAT_COMPRESSION_NONE);
+  Mat_VarFree(variable);
+}
+
+void writeMat(const std::filesystem::path& path, mat_ft version) {
+  mat_t* file = Mat_CreateVer(path.c_str(), nullptr, version);
+  const double numbers[] = {1.5, 2.5, 3.5, 4.5}, bad[] = {1.0, HUGE_VAL};
+  double imaginary[] = {0.0, 1.0};
+  const float singles[] = {0.5F, 1.5F};
+  const std::int16_t shorts[] = {-3, 7};
+  mat_complex_split_t parts{const_cast<double*>(numbers), imaginary};
+  write(file, "column", MAT_C_DOUBLE, MAT_T_DOUBLE, 4, 1, numbers);
+  write(file, "row", MAT_C_DOUBLE, MAT_T_DOUBLE, 1, 4, numbers);
+  write(file, "single", MAT_C_SINGLE, MAT_T_SINGLE, 2, 1, singles);
+  write(file, "shorts", MAT_C_INT16, MAT_T_INT16, 2, 1, shorts);
+  write(file, "matrix", MAT_C_DOUBLE, MAT_T_DOUBLE, 2, 2, numbers);
+  write(file, "complex", MAT_C_DOUBLE, MAT_T_DOUBLE, 2, 1, &parts, MAT_F_COMPLEX);
+  write(file, "bad", MAT_C_DOUBLE, MAT_T_DOUBLE, 2, 1, bad);
+  write(file, "text", MAT_C_CHAR, MAT_T_UTF8, 1, 3, "abc");
+  Mat_Close(file);
+}
+
+TEST_P(MatTable, ColumnsAreRealVectors) {
+  const TestFolder folder;
+  writeMat(folder / "a.mat", GetParam());
+  const Table table = readTable(folder / "a.mat");
+  EXPECT_EQ(table.columns.size(), 4U);
+  EXPECT_EQ(getColumn(table, "column").values, makeVector({1.5, 2.5, 3.5, 4.5}));
+  EXPECT_EQ(getColumn(table, "row").values, makeVector({1.5, 2.5, 3.5, 4.5}));
+  EXPECT_EQ(getColumn(table, "single").values, makeVector({0.5, 1.5}));
+  EXPECT_EQ(getColumn(table, "shorts").values, makeVector({-3.0, 7.0}));
+  const auto getSkipped = [&](const std::string& name) {
+    return getError([&] { readTable(folder / "a.mat", {name}); })
+        .substr(folder.getPath().string().size() + 8);
+  };
+  EXPECT_EQ(getSkipped("matrix"), "column 'matrix' must be a vector, with one row or one column");
+  EXPECT_EQ(getSkipped("complex"), "column 'complex' is complex; must be real");
+  EXPECT_EQ(getSkipped("bad"), "column 'bad' has inf at row 2; must be a finite number");
+  EXPECT_EQ(getSkipped("text"), "column 'text' is no array of numbers");
+}
+
+INSTANTIATE_TEST_SUITE_P(Versions, MatTable, testing::Values(MAT_FT_MAT5, MAT_FT_MAT73));
+
+}  // namespace
+}  // namespace twinmap

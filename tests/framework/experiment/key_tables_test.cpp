@@ -1,0 +1,286 @@
+// The documentation of the experiment file names the keys that there are: docs/experiment-file.md against the
+// schema.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "framework/experiment/fields/json_schema.hpp"
+
+namespace twinmap {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Words = std::set<std::string>;
+
+std::string readDocs(const std::string& name) {
+  std::ifstream file(std::string(TWINMAP_SOURCE_DIR) + "/docs/" + name);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+/// What `pattern` captures first, each time it occurs.
+std::vector<std::string> findAll(const std::string& text, const std::string& pattern) {
+  const std::regex regex(pattern);
+  std::vector<std::string> found;
+  for (std::sregex_iterator match(text.begin(), text.end(), regex), end; match != end; ++match) {
+    found.push_back((*match)[1].str());
+  }
+  return found;
+}
+
+/// The words within the code of a text: `...` and blocks.
+Words listCodeWords(const std::string& text) {
+  Words words;
+  for (const std::string& code : findAll(text, "`+([^`]+)`+")) {
+    for (const std::string& word : findAll(code, "([A-Za-z_][A-Za-z_0-9]*)")) {
+      words.insert(word);
+    }
+  }
+  return words;
+}
+
+/// The `...` of a table's cell, each up to its colon: `select: {features: [y]}` gives select.
+Words listKeys(const std::string& cell) {
+  const std::vector<std::string> keys = findAll(cell, "`([A-Za-z_0-9.]+)[^`]*`");
+  return {keys.begin(), keys.end()};
+}
+
+struct Table {
+  std::string header;                          ///< first cell
+  std::vector<std::vector<std::string>> rows;  ///< cells
+};
+
+std::vector<Table> readTables(const std::string& text) {
+  std::vector<Table> tables;
+  std::istringstream lines(text);
+  bool in_table = false;
+  for (std::string line; std::getline(lines, line);) {
+    const std::vector<std::string> cells =
+        line.rfind('|', 0) == 0 ? findAll(line, "\\| *([^|]*[^| ]|) *(?=\\|)") : std::vector<std::string>{};
+    const bool begins = !in_table && !cells.empty();
+    in_table = !cells.empty();
+    if (begins) {
+      tables.push_back({cells[0], {}});
+    } else if (in_table && cells[0].rfind("--", 0) != 0) {
+      tables.back().rows.push_back(cells);
+    }
+  }
+  return tables;
+}
+
+/// The map's schema, where a scalar may stand for it.
+const Json& getMap(const Json& schema) {
+  if (schema.contains("type") || !schema.contains("oneOf")) {
+    return schema;
+  }
+  const auto is_map = [](const Json& option) { return option.value("type", Json()) == "object"; };
+  const auto found = std::find_if(schema["oneOf"].begin(), schema["oneOf"].end(), is_map);
+  return found == schema["oneOf"].end() ? schema : *found;
+}
+
+/// Descends "a.*.b.[]": keys, the values of a map with free names, the items of a list.
+const Json& getSchema(const Json& root, const std::string& path) {
+  const Json* schema = &root;
+  for (const std::string& step : findAll(path, "([^.]+)")) {
+    const Json& map = getMap(*schema);
+    schema = step == "*"    ? &map.at("additionalProperties")
+             : step == "[]" ? &map.at("items")
+                            : &map.at("properties").at(step);
+  }
+  return getMap(*schema);
+}
+
+Words listProperties(const Json& schema) {
+  Words keys;
+  const Json properties = schema.value("properties", Json::object());
+  for (const auto& [key, value] : properties.items()) {
+    keys.insert(key);
+  }
+  return keys;
+}
+
+/// Every key and every name of a choice below the schema.
+void collectWords(const Json& schema, Words& words) {
+  for (const auto& [key, value] : schema.items()) {
+    if (key == "properties") {
+      words.merge(listProperties(schema));
+    }
+    if (key == "enum") {
+      words.insert(value.begin(), value.end());
+    }
+    if (value.is_structured()) {
+      collectWords(value, words);
+    }
+  }
+}
+
+Words listFirstCells(const Table& table) {
+  Words keys;
+  for (const std::vector<std::string>& row : table.rows) {
+    keys.merge(listKeys(row[0]));
+  }
+  return keys;
+}
+
+/// Dotted keys as far as a table goes into them: with "joint.type", the keys of joint too.
+Words listDottedProperties(const Json& schema, const std::string& prefix, const Words& documented) {
+  Words keys;
+  for (const std::string& key : listProperties(schema)) {
+    const std::string path = prefix + key;
+    const bool goes_on = std::any_of(documented.begin(), documented.end(), [&](const std::string& other) {
+      return other.rfind(path + ".", 0) == 0;
+    });
+    keys.merge(goes_on ? listDottedProperties(getSchema(schema, key), path + ".", documented) : Words{path});
+  }
+  return keys;
+}
+
+const Json& getRoot() {
+  static const Json root = Json::parse(makeJsonSchema());
+  return root;
+}
+
+/// What a table with this header describes: the keys (or names) of a part of the file.
+struct Described {
+  std::string header;
+  std::string path;
+};
+
+const std::vector<Described> kKeyTables{
+    {"key", ""},
+    {"key of `fmu`", "model.fmu"},
+    {"key of `program`", "model.program"},
+    {"key", "system.bodies.*"},
+    {"key of `measured`", "excitation.*.tables.[].measured"},
+    {"key", "simulation"},
+    {"step of `transform`", "transform.[]"},
+    {"key of `excitation`", "design.excitation"},
+    {"key of `sensors`", "design.sensors"},
+    {"kind of map", "inverse_map"},
+    {"key of `gp`", "inverse_map.gp"},
+    {"key of `network`", "inverse_map.network"},
+    {"baseline", "evaluation.baselines.[]"},
+};
+
+/// Tables of lists of maps: the keys of each map stand in the second column.
+const std::vector<Described> kElementTables{
+    {"element", "system"},
+    {"terms", "excitation.*"},
+    {"kind of feature", "features.[]"},
+};
+
+const std::vector<Described> kNameTables{
+    {"joint", "system.bodies.*.joint.type"},
+    {"method", "design.train.method"},
+};
+
+std::vector<Table> takeTables(const std::string& header) {
+  std::vector<Table> tables = readTables(readDocs("experiment-file.md"));
+  tables.erase(std::remove_if(tables.begin(), tables.end(),
+                              [&](const Table& table) { return table.header != header; }),
+               tables.end());
+  return tables;
+}
+
+/// The n-th table with the header where it is the n-th described.
+Table takeTable(const std::vector<Described>& all, std::size_t index) {
+  const auto same = [&](const Described& other) { return other.header == all[index].header; };
+  const auto before = std::count_if(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(index), same);
+  return takeTables(all[index].header).at(static_cast<std::size_t>(before));
+}
+
+TEST(KeyTables, AreAllKnownHere) {
+  std::multiset<std::string> described, found;
+  for (const auto* tables : {&kKeyTables, &kElementTables, &kNameTables}) {
+    for (const Described& table : *tables) {
+      described.insert(table.header);
+    }
+  }
+  for (const Table& table : readTables(readDocs("experiment-file.md"))) {
+    found.insert(table.header);
+  }
+  EXPECT_EQ(found, described);
+}
+
+TEST(KeyTables, ListTheKeysThatThereAre) {
+  for (std::size_t i = 0; i < kKeyTables.size(); ++i) {
+    const Words documented = listFirstCells(takeTable(kKeyTables, i));
+    const Json& schema = getSchema(getRoot(), kKeyTables[i].path);
+    EXPECT_EQ(documented, listDottedProperties(schema, "", documented))
+        << "at '" << kKeyTables[i].path << "'";
+  }
+}
+
+TEST(KeyTables, ListTheNamesThatThereAre) {
+  for (std::size_t i = 0; i < kNameTables.size(); ++i) {
+    const Json names = getSchema(getRoot(), kNameTables[i].path)["enum"];
+    EXPECT_EQ(listFirstCells(takeTable(kNameTables, i)), Words(names.begin(), names.end()));
+  }
+}
+
+TEST(KeyTables, ListTheKeysOfElementsAndNoOthers) {
+  for (std::size_t i = 0; i < kElementTables.size(); ++i) {
+    const Json& parent = getSchema(getRoot(), kElementTables[i].path);
+    for (const std::vector<std::string>& row : takeTable(kElementTables, i).rows) {
+      const std::string element = *listKeys(row[0]).begin();
+      ASSERT_EQ(listProperties(parent).count(element), 1u) << element;
+      const Json& in_parent = getSchema(parent, element);
+      const Json& schema = in_parent.contains("items") ? getSchema(in_parent, "[]") : in_parent;
+      Words known;
+      collectWords(schema, known);
+      const Words documented = listCodeWords(row[1]), keys = listProperties(schema);
+      EXPECT_TRUE(std::includes(documented.begin(), documented.end(), keys.begin(), keys.end())) << element;
+      EXPECT_TRUE(std::includes(known.begin(), known.end(), documented.begin(), documented.end())) << element;
+    }
+  }
+}
+
+/// The text that documents a key of the top level: its section, or the file that the table at the top names.
+std::string getSection(const std::string& key) {
+  const std::string docs = readDocs("experiment-file.md");
+  std::size_t begin = docs.find("\n## ");
+  while (begin != std::string::npos) {
+    const std::size_t title_end = docs.find('\n', begin + 1), end = docs.find("\n## ", title_end);
+    const std::vector<std::string> titles =
+        findAll(docs.substr(begin + 4, title_end - begin - 4), "([a-z_]+)");
+    if (std::find(titles.begin(), titles.end(), key) != titles.end()) {
+      return docs.substr(begin, end - begin);
+    }
+    begin = end;
+  }
+  return key == "measurement" ? readDocs("measurements.md") : docs;
+}
+
+void collectKeys(const Json& schema, Words& keys) {
+  for (const auto& [key, value] : schema.items()) {
+    if (key == "properties") {
+      keys.merge(listProperties(schema));
+    }
+    if (value.is_structured()) {
+      collectKeys(value, keys);
+    }
+  }
+}
+
+TEST(Keys, AreAllDocumentedInTheirSection) {
+  for (const auto& [top, schema] : getRoot()["properties"].items()) {
+    Words documented = listCodeWords(getSection(top));
+    if (top == "evaluation") {
+      documented.merge(listCodeWords(getSection("inverse_map")));  // evaluation.maps are what it may be
+    }
+    Words keys;
+    collectKeys(schema, keys);
+    for (const std::string& key : keys) {
+      EXPECT_EQ(documented.count(key), 1u) << key << " of " << top;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace twinmap

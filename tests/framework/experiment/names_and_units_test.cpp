@@ -1,0 +1,92 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+
+#include "framework/base/text/nearest_name.hpp"
+#include "framework/experiment/check/check_scope.hpp"
+#include "framework/experiment/expression/units.hpp"
+
+namespace twinmap {
+namespace {
+
+TEST(SuggestName, FindsTypingErrorsOnly) {
+  const std::vector<std::string> names{"stiffness", "damping", "mass"};
+  EXPECT_EQ(suggestName("stifness", names), "; did you mean 'stiffness'?");
+  EXPECT_EQ(suggestName("MASS", names), "; did you mean 'mass'?");
+  EXPECT_EQ(suggestName("temperature", names), "");
+  EXPECT_EQ(suggestName(std::string(1000000, 'x'), names), "");
+}
+
+TEST(Units, DimensionsFollowFromTheUnit) {
+  EXPECT_EQ(parseUnit("N s/m", {}), (Dimension{{"kg", 1}, {"s", -1}}));
+  EXPECT_EQ(parseUnit("N m s/rad", {}), (Dimension{{"kg", 1}, {"m", 2}, {"s", -1}}));
+  EXPECT_EQ(parseUnit("kg m^2", {}), parseUnit("kg m2", {}));
+  EXPECT_EQ(parseUnit("N m/rad", {}), parseUnit("J", {}));
+  EXPECT_EQ(parseUnit("Hz", {}), (Dimension{{"s", -1}}));
+  EXPECT_TRUE(parseUnit("rad", {}).empty());
+  EXPECT_TRUE(parseUnit("-", {}).empty());
+  EXPECT_TRUE(parseUnit("1", {}).empty());
+}
+
+TEST(Units, RefusesWhatIsNoCoherentUnit) {
+  for (const char* unit : {"N/mm", "mm", "deg", "kN", "g", "furlongish", "N//m", "degC", "%"}) {
+    EXPECT_THROW(parseUnit(unit, {}), ExperimentError) << unit;
+  }
+}
+
+class CheckScopeTest : public testing::Test {
+ protected:
+  CheckScopeTest() {
+    scope_.define({"k", {}}, parseUnit("N/m", {}), 10.0);
+    scope_.define({"L", {}}, parseUnit("m", {}), 0.5);
+    scope_.define({"m", {}}, parseUnit("kg", {}), 2.0);
+    scope_.define({"x", {}}, std::nullopt, 3.0);
+  }
+  CheckScope scope_;
+};
+
+TEST_F(CheckScopeTest, AcceptsExpressionsThatComeOutInTheUnit) {
+  EXPECT_DOUBLE_EQ(scope_.check(Expression{"k", {}}, "N/m"), 10.0);
+  EXPECT_NO_THROW(scope_.check(Expression{"k*L", {}}, "N"));
+  EXPECT_NO_THROW(scope_.check(Expression{"m*L^2/12", {}}, "kg m2"));
+  EXPECT_NO_THROW(scope_.check(Expression{"sqrt(k/m)", {}}, "1/s"));
+}
+
+TEST_F(CheckScopeTest, RefusesExpressionsThatContradictTheUnit) {
+  EXPECT_THROW(scope_.check(Expression{"k", {}}, "kg"), ExperimentError);
+  EXPECT_THROW(scope_.check(Expression{"k + m", {}}, "N/m"), ExperimentError);
+  EXPECT_THROW(scope_.check(Expression{"m*L^3", {}}, "kg m2"), ExperimentError);
+}
+
+TEST_F(CheckScopeTest, NumbersAndNamesWithoutUnitMayCarryAny) {
+  EXPECT_NO_THROW(scope_.check(Expression{"7850*L", {}}, "kg"));
+  EXPECT_NO_THROW(scope_.check(Expression{"x", {}}, "kg"));
+  EXPECT_NO_THROW(scope_.check(Expression{"3.3", {}}, "kg"));
+}
+
+TEST_F(CheckScopeTest, RefusesTakenReservedAndMalformedNames) {
+  for (const char* name : {"k", "t", "pi", "sin", "2k", "a b", "a.b", "", "größe"}) {
+    EXPECT_THROW(scope_.define({name, {}}, std::nullopt, 0.0), ExperimentError) << name;
+  }
+}
+
+TEST(Units, AreParsedByAnyThread) {
+  const Dimension expected = parseUnit("N m s/rad", {});
+  std::atomic<int> wrong{0};
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 4; ++t) {
+    threads.emplace_back([&] {
+      for (int i = 0; i < 3000; ++i) {
+        wrong += parseUnit("N m s/rad", {}) == expected ? 0 : 1;
+      }
+    });
+  }
+  for (std::thread& thread : threads) {
+    thread.join();
+  }
+  EXPECT_EQ(wrong, 0);
+}
+
+}  // namespace
+}  // namespace twinmap

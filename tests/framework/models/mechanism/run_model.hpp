@@ -1,0 +1,67 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "framework/models/mechanism/multibody_simulator.hpp"
+#include "tests/framework/models/mechanism/model_builder.hpp"
+
+namespace twinmap::testing {
+
+/// A model without parameters that starts from given values, integrated tightly.
+inline ModelSpec makeModel(double duration) {
+  ModelSpec model;
+  model.system.gravity = ex3("0", "0", "0");
+  model.simulation.duration = duration;
+  model.simulation.relative_tolerance = 1e-10;
+  model.simulation.absolute_tolerance = 1e-12;
+  return model;
+}
+
+inline void start(ModelSpec& model, const std::string& coordinate, const std::string& at,
+                  const std::string& speed = "0") {
+  model.initial.coordinates.push_back(value(coordinate, at));
+  model.initial.speeds.push_back(value(coordinate, speed));
+}
+
+inline StationOutputSpec along(const std::string& body, const Expression3& point,
+                               const Expression3& direction) {
+  return {station(body, point), direction};
+}
+
+/// One column an output, one row a time.
+inline Eigen::MatrixXd runModel(const ModelSpec& model, const Eigen::VectorXd& times,
+                                const Eigen::VectorXd& parameters = Eigen::VectorXd()) {
+  MultibodySimulator simulator(model, times);
+  Eigen::MatrixXd response(times.size() * model.outputs.size(), 1);
+  SampleStatus status;
+  simulator.simulate(parameters, response, &status);
+  EXPECT_TRUE(status.ok) << status.reason;
+  return response.reshaped(times.size(), model.outputs.size());
+}
+
+inline SampleStatus getStatus(const ModelSpec& model, const Eigen::VectorXd& parameters = Eigen::VectorXd()) {
+  const Eigen::VectorXd times = Eigen::VectorXd::Constant(1, model.simulation.duration);
+  MultibodySimulator simulator(model, times);
+  Eigen::MatrixXd response(times.size() * model.outputs.size(), 1);
+  SampleStatus status;
+  simulator.simulate(parameters, response, &status);
+  EXPECT_EQ(status.ok, status.reason.empty());
+  return status;
+}
+
+/// The reason why a sample failed, or "".
+inline std::string getReason(const ModelSpec& model, const Eigen::VectorXd& parameters = Eigen::VectorXd()) {
+  return getStatus(model, parameters).reason;
+}
+
+/// What the constructor says against a model, or "".
+inline std::string getError(const ModelSpec& model) {
+  try {
+    MultibodySimulator simulator(model, Eigen::VectorXd::Constant(1, model.simulation.duration));
+  } catch (const ExperimentError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace twinmap::testing
