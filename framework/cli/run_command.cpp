@@ -22,9 +22,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What one case must not exceed: the machine's, or more where the user says so.
+/// What one case must not exceed: what is available, or more where the user says so.
 double getMostMemory(const RunArguments& arguments) {
-  return std::max(getMachineMemory(), arguments.memory * kGibibyte);
+  return std::max(getAvailableMemory(), arguments.memory * kGibibyte);
 }
 
 /// `line` must outlive it.

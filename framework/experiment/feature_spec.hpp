@@ -46,11 +46,13 @@ void describe(Fields& f, WindowSpec& s) {
 }
 
 /// Time of sample i = 0 .. count - 1: start + i * interval in whole picoseconds (s), so that 3 * 0.05 is 0.15
-/// and a last sample at the end of the simulation is not beyond it.
+/// and a last sample at the end of the simulation is not beyond it. The product is added unrounded,
+/// explicitly: times are looked up by their bits, and a compiler that may contract the two operations does so
+/// in one unit and not in another.
 template <class Samples>
 double calcSampleTime(const Samples& samples, int i) {
   constexpr double kPicosecond = 1e12;
-  return std::round((samples.start + i * samples.interval) * kPicosecond) / kPicosecond;
+  return std::round(std::fma(i, samples.interval, samples.start) * kPicosecond) / kPicosecond;
 }
 
 enum class Statistic { kMean, kStddev, kRms, kMin, kMax, kPeakToPeak };

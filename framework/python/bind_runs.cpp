@@ -97,7 +97,7 @@ void runWithProgress(int threads, const std::function<void(const Progress&)>& pr
 void run(const PythonExperiment& experiment, const Request& request,
          const std::function<void(const Progress&)>& progress) {
   runWithProgress(request.threads, progress, [&](const RunControl& control) {
-    requireMemory(experiment.getSpec(), request.threads, getMachineMemory());
+    requireMemory(experiment.getSpec(), request.threads, getAvailableMemory());
     requireModel(experiment.getSpec());
     RunOptions options;
     options.folder = request.folder;
@@ -116,7 +116,7 @@ py::tuple sweep(const PythonExperiment& experiment, const Request& request,
     SweepOptions options;
     options.folder = request.folder;
     options.store = request.store;
-    options.most_memory = std::max(getMachineMemory(), request.memory * kGibibyte);
+    options.most_memory = std::max(getAvailableMemory(), request.memory * kGibibyte);
     options.memory = request.memory > 0.0 ? request.memory * kGibibyte : kShare * getMachineMemory();
     options.command = request.command;
     result = runSweep(experiment.getTree(), options, control);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <type_traits>
 
 #include "framework/experiment/check/check_experiment.hpp"
 #include "framework/experiment/fields/read_value.hpp"
@@ -34,42 +35,62 @@ bool hasVariable(const ModelDescription& description, const std::string& name) {
                      [&](const Variable& variable) { return variable.name == name; });
 }
 
-/// Names in the expressions of constants, excitation and sensors.
-std::set<std::string> collectUsedNames(const ModelSpec& model) {
+class NameCollector;
+
+template <class T, class = void>
+struct IsDescribed : std::false_type {};
+template <class T>
+struct IsDescribed<T, std::void_t<decltype(describe(std::declval<NameCollector&>(), std::declval<T&>()))>>
+    : std::true_type {};
+
+/// Keeps the names used by the expressions of described structs (fields.hpp), whatever key they stand under.
+class NameCollector {
+ public:
   std::set<std::string> names;
-  const auto add = [&](const Expression& expression) {
+
+  template <class T>
+  void visit(T& value) {
+    if constexpr (IsDescribed<T>::value) {
+      describe(*this, value);
+    }
+  }
+  void visit(Expression& expression) {
     if (!expression.text.empty()) {
       const std::vector<std::string> used = getUsedNames(expression);
       names.insert(used.begin(), used.end());
     }
-  };
-  for (const ConstantSpec& constant : model.constants) {
-    add(constant.value);
   }
-  for (const OutputSpec& output : model.outputs) {
-    add(output.gain);
-    add(output.offset);
-  }
-  for (const SignalSpec& signal : model.excitation) {
-    for (const PulseSpec& pulse : signal.pulses) {
-      std::for_each(&pulse.amplitude, &pulse.end + 1, add);
-    }
-    for (const SineSpec& sine : signal.sines) {
-      std::for_each(&sine.amplitude, &sine.end + 1, add);
-    }
-    for (const ChirpSpec& chirp : signal.chirps) {
-      std::for_each(&chirp.amplitude, &chirp.end + 1, add);
-    }
-    for (const MultisineSpec& multisine : signal.multisines) {
-      add(multisine.amplitude);
-      std::for_each(multisine.amplitudes.begin(), multisine.amplitudes.end(), add);
-      std::for_each(multisine.frequencies.begin(), multisine.frequencies.end(), add);
-      std::for_each(multisine.phases.begin(), multisine.phases.end(), add);
-      add(multisine.start);
-      add(multisine.end);
+  template <class T>
+  void visit(std::vector<T>& values) {
+    for (T& value : values) {
+      visit(value);
     }
   }
-  return names;
+
+  template <class T, class... Rule>
+  void required(const char*, T& value, const char*, const Rule&...) {
+    visit(value);
+  }
+  template <class T, class... Rule>
+  void optional(const char*, T& value, const char*, const Rule&...) {
+    visit(value);
+  }
+  template <class... Choice>
+  void oneOf(const char*, const Choice&... choices) {
+    (visit(choices.value), ...);
+  }
+  void rule(bool, const char*) {}
+  void scalarIsValueOf(const char*) {}
+};
+
+/// Names in the expressions of constants, excitation and sensors.
+std::set<std::string> collectUsedNames(const ModelSpec& model) {
+  auto& described = const_cast<ModelSpec&>(model);  // nothing is written to it
+  NameCollector collector;
+  collector.visit(described.constants);
+  collector.visit(described.excitation);
+  collector.visit(described.outputs);
+  return std::move(collector.names);
 }
 
 template <class Item>

@@ -29,8 +29,9 @@ struct CaseCost {
 
 /// bytes: for exact processes with n samples, replicates included, m of them searched with, and P parameters,
 /// 8 m^2 (2.5 a search that runs at the same time + 1), at least 8 n^2 3.5 to fit one, and 8 n^2 1.5 P; and
-/// 10 numbers for every one of a response; and where there is an information limit, the stencils of the
-/// test samples, which exact derivatives stay below; and the draws of exact posteriors.
+/// 10 numbers for every one of a response; 8 d^2 numbers for d features; and where there is an information
+/// limit, the stencils of the test samples, which exact derivatives stay below; and the draws of exact
+/// posteriors.
 CaseCost calcCaseCost(const ExperimentSpec& experiment, int threads);
 
 /// Throws ExperimentError, before any work begins, where a case needs more than `bytes`.
@@ -38,6 +39,10 @@ void requireMemory(const ExperimentSpec& experiment, int threads, double bytes);
 
 /// Of the machine, bytes.
 double getMachineMemory();
+
+/// What a run may still take: of the machine what is free or can be freed, within the limits of its container
+/// (cgroup v2) and of the process (ulimit -v); bytes.
+double getAvailableMemory();
 
 /// Evaluations of the marginal likelihood in one search.
 inline constexpr double kEvaluations = 30.0;

@@ -28,6 +28,15 @@ TEST(FeatureExtractor, TimesAreWhatPeopleWrite) {
   EXPECT_EQ(times[29], 3.0);
 }
 
+TEST(FeatureExtractor, FindsTimesThatLieBetweenTwoPicoseconds) {
+  // i * interval rounded before the sum, or after it alone, ends in other picoseconds for some of these
+  const std::vector<FeatureSpec> features{
+      makeSamplesFeature({{"a", {}}}, 0.0213079823, 0.00163907556138, 3000)};
+  const Eigen::VectorXd times = collectTimes(features);
+  const FeatureExtractor extractor(features, makeLayoutInMetres({"a"}, times));
+  EXPECT_EQ(extractor.extract(times), times);
+}
+
 TEST(FeatureExtractor, PicksOutputsAtTheirTimes) {
   const std::vector<FeatureSpec> features{makeSamplesFeature({{"b", {}}}, 1.0, 1.0, 2),
                                           makeSamplesFeature({{"a", {}}, {"b", {}}}, 0.0, 2.0, 2)};

@@ -1,6 +1,7 @@
 #include "framework/study/sweep/training_time.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/study/sweep/case_cost.hpp"
@@ -50,6 +51,51 @@ TEST(CaseCost, GrowsWithSquareAndCube) {
   EXPECT_GT(cost(4000, 2).bytes, cost(4000, 1).bytes);
   EXPECT_LT(calcCaseCost(load({"design.train.samples=20000", "inverse_map.gp.approximation=sgpr"}), 1).bytes,
             0.1 * cost(20000, 1).bytes);
+}
+
+/// Two outputs of the two beams, each sampled so often.
+ExperimentSpec loadSampled(int count) {
+  return loadExperiment(
+      std::string(TWINMAP_SOURCE_DIR) + "/experiments/two_beam/table1.yaml",
+      {"design.train.samples=60", "design.test.samples=20",
+       "features=[{samples: {outputs: [y, theta], start: 0.0001, interval: 0.0001, count: " +
+           std::to_string(count) + "}}]"});
+}
+
+// As measured: 96 MB for 1000 features and 287 MB for 2000, of which the program takes 36; 23 GiB for 20000.
+TEST(CaseCost, CountsTheCovarianceOfTheFeaturesNoise) {
+  const auto cost = [](int count) { return calcCaseCost(loadSampled(count), 2).bytes; };
+  EXPECT_NEAR(cost(500), 62e6, 12e6);
+  EXPECT_NEAR(cost(1000), 250e6, 30e6);
+  EXPECT_NEAR(cost(10000) / kGibibyte, 23.5, 1.5);
+}
+
+TEST(RequireMemory, RefusesWithWhatIsNeededAvailableAndToBeReduced) {
+  EXPECT_NO_THROW(requireMemory(loadSampled(10000), 2, 32 * kGibibyte));
+  EXPECT_NO_THROW(requireMemory(loadSampled(100), 2, 0.1 * kGibibyte));
+  try {
+    requireMemory(loadSampled(10000), 2, 16 * kGibibyte);
+    FAIL() << "20000 features in 16 GiB";
+  } catch (const ExperimentError& error) {
+    const std::string text = error.what();
+    for (const char* part :
+         {"needs about 2", "20000 features", "16 GiB are available", "fewer samples of the outputs"}) {
+      EXPECT_NE(text.find(part), std::string::npos) << part << " in " << text;
+    }
+  }
+  EXPECT_THROW(requireMemory(load({"design.train.samples=20000"}), 1, kGibibyte), ExperimentError);
+}
+
+TEST(AvailableMemory, KeepsToTheLimitOfTheProcess) {
+  EXPECT_GT(getAvailableMemory(), 0.0);
+  EXPECT_LE(getAvailableMemory(), getMachineMemory());
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_AS, &before), 0);
+  constexpr rlim_t kLimit = 1U << 30U;
+  const rlimit lowered{kLimit, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_AS, &lowered), 0);
+  EXPECT_LE(getAvailableMemory(), static_cast<double>(kLimit));
+  ASSERT_EQ(setrlimit(RLIMIT_AS, &before), 0);
 }
 
 }  // namespace
