@@ -34,19 +34,19 @@ const twinmap::Trust* findTrust(const twinmap_inferrer* inferrer) {
 }  // namespace
 
 twinmap_result twinmap_get_mean(const twinmap_inferrer* inferrer, double* values, size_t count) {
-  return guard([&] { copy(getAnswered(inferrer).mean, values, count, "values"); });
+  return guard([&] { copy(getAnswered(inferrer).answer.mean, values, count, "values"); });
 }
 
 twinmap_result twinmap_get_stddev(const twinmap_inferrer* inferrer, double* values, size_t count) {
-  return guard([&] { copy(getAnswered(inferrer).stddev, values, count, "values"); });
+  return guard([&] { copy(getAnswered(inferrer).answer.stddev, values, count, "values"); });
 }
 
 twinmap_result twinmap_get_interval(const twinmap_inferrer* inferrer, double* lower, double* upper,
                                     size_t count) {
   return guard([&] {
-    const twinmap_inferrer::Answered& answered = getAnswered(inferrer);
-    copy(answered.lower95, lower, count, "lower");
-    copy(answered.upper95, upper, count, "upper");
+    const twinmap::Answer& answer = getAnswered(inferrer).answer;
+    copy(answer.lower95, lower, count, "lower");
+    copy(answer.upper95, upper, count, "upper");
   });
 }
 
@@ -59,7 +59,11 @@ twinmap_result twinmap_get_covariance(const twinmap_inferrer* inferrer, double* 
 }
 
 int twinmap_is_refined(const twinmap_inferrer* inferrer) {
-  return inferrer != nullptr && inferrer->answered && inferrer->answered->refined ? 1 : 0;
+  return inferrer != nullptr && inferrer->answered && inferrer->answered->answer.isRefined() ? 1 : 0;
+}
+
+const char* twinmap_get_method(const twinmap_inferrer* inferrer) {
+  return inferrer != nullptr && inferrer->answered ? toString(inferrer->answered->answer.method) : nullptr;
 }
 
 size_t twinmap_count_statuses(const twinmap_inferrer* inferrer) {
@@ -84,7 +88,7 @@ double twinmap_get_number(const twinmap_inferrer* inferrer, twinmap_number numbe
       return static_cast<double>(trust->residuals);
     case TWINMAP_CHI_SQUARE_P_VALUE:
       return trust->chi_square_p_value;
-    case TWINMAP_BURST_P_VALUE:
+    case TWINMAP_ANOMALY_P_VALUE:
       return trust->anomaly_p_value;
     case TWINMAP_DISTANCE:
       return trust->distance;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "framework/c_api/twinmap.h"
+#include "framework/inference/answer.hpp"
 #include "framework/inference/inferrer.hpp"
 #include "framework/inference/measurement_session.hpp"
 
@@ -31,8 +32,7 @@ struct twinmap_inferrer {
   /// An inference, or what the last one left.
   struct Answered {
     twinmap::InferredMeasurement measurement;
-    Eigen::VectorXd mean, stddev, lower95, upper95;
-    bool refined = false;
+    twinmap::Answer answer;
     std::vector<std::string> statuses;
   };
 

@@ -42,16 +42,10 @@ twinmap_result answer(twinmap_inferrer* inferrer, const Infer& infer) {
   return guard([&] {
     twinmap_inferrer& self = require(inferrer, "inferrer");
     self.answered.reset();
-    twinmap_inferrer::Answered answered;
-    answered.measurement = infer(self, getKnown(self));
-    twinmap::Answer chosen = twinmap::chooseAnswer(answered.measurement);
-    answered.mean = std::move(chosen.mean);
-    answered.stddev = std::move(chosen.stddev);
-    answered.lower95 = std::move(chosen.lower95);
-    answered.upper95 = std::move(chosen.upper95);
-    answered.refined = chosen.refined;
-    answered.statuses = twinmap::listStatuses(answered.measurement);
-    self.answered = std::move(answered);
+    twinmap::InferredMeasurement measurement = infer(self, getKnown(self));
+    twinmap::Answer chosen = twinmap::chooseAnswer(measurement);
+    std::vector<std::string> statuses = twinmap::listStatuses(measurement);
+    self.answered = {std::move(measurement), std::move(chosen), std::move(statuses)};
   });
 }
 

@@ -141,6 +141,9 @@ TWINMAP_API twinmap_result twinmap_get_covariance(const twinmap_inferrer* inferr
 /** Whether the answer is that of a refinement on the simulator that was accepted: 1 or 0. */
 TWINMAP_API int twinmap_is_refined(const twinmap_inferrer* inferrer);
 
+/** What made the answer: "gp", "surrogate" or "network", the kind of the map, or "refined"; NULL without an answer. */
+TWINMAP_API const char* twinmap_get_method(const twinmap_inferrer* inferrer);
+
 /** How many statuses the answer has; 0 without an answer, or where the run has no trust model. */
 TWINMAP_API size_t twinmap_count_statuses(const twinmap_inferrer* inferrer);
 /** "ok", or what is to be said against the answer, the most severe first: "model_mismatch", "outside_training",
@@ -154,7 +157,7 @@ typedef enum twinmap_number {
   TWINMAP_CHI_SQUARE = 1,         /**< sum of the squared residuals, in variances */
   TWINMAP_RESIDUALS = 2,          /**< how many */
   TWINMAP_CHI_SQUARE_P_VALUE = 3, /**< of that test alone */
-  TWINMAP_BURST_P_VALUE = 4,      /**< of the test for a disturbance that lasts a while */
+  TWINMAP_ANOMALY_P_VALUE = 4,    /**< of the test for a disturbance that lasts a while */
   TWINMAP_DISTANCE = 5            /**< to the nearest training sample; 1: the farthest of simulated measurements */
 } twinmap_number;
 

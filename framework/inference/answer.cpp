@@ -17,7 +17,7 @@ void setIntervals(Answer& answer) {
 }  // namespace
 
 Answer makeMapAnswer(const Inference& inference) {
-  Answer answer{inference.mean, inference.stddev, false, inference.mixture};
+  Answer answer{inference.mean, inference.stddev, inference.method, inference.mixture};
   answer.reach = inference.reach;
   setIntervals(answer);
   for (Eigen::Index p = 0; p < answer.mixture.means.rows(); ++p) {
@@ -33,7 +33,8 @@ Answer chooseAnswer(const InferredMeasurement& inferred) {
     return makeMapAnswer(inferred.inference);
   }
   const Eigen::Index p = inferred.inference.mean.size();
-  Answer answer{inferred.refined->point.head(p), inferred.refined->stddev.head(p), true};
+  Answer answer{inferred.refined->point.head(p), inferred.refined->stddev.head(p),
+                EstimationMethod::kRefined};
   setIntervals(answer);
   return answer;
 }

@@ -10,11 +10,13 @@ namespace twinmap {
 /// What is believed of a measurement.
 struct Answer {
   Eigen::VectorXd mean, stddev;          ///< p
-  bool refined = false;                  ///< on the simulator; else the map's
+  EstimationMethod method;               ///< the map's kind, or refined on the simulator
   Mixture mixture{};                     ///< where it is one, whose mean and stddev are above
   Eigen::VectorXd lower95{}, upper95{};  ///< p: of a mixture the ends of its smallest set
   std::vector<Intervals> intervals95{};  ///< p, of a mixture: its smallest sets
   IntervalReach reach{};                 ///< of other sets; of refined answers not given
+
+  bool isRefined() const { return method == EstimationMethod::kRefined; }
 };
 
 /// The map's.

@@ -143,9 +143,9 @@ std::string makeInferenceJson(const InferredMeasurement& inferred,
     json["statuses"] = statuses;
   }
   const Answer answer = chooseAnswer(inferred);
-  json["method"] = answer.refined ? "refined" : "inverse_map";
-  json["parameters"] = answer.refined ? makeEstimatesJson(answer, parameters)
-                                      : makeMapEstimates(inferred.inference, parameters);
+  json["method"] = toString(answer.method);
+  json["parameters"] = answer.isRefined() ? makeEstimatesJson(answer, parameters)
+                                          : makeMapEstimates(inferred.inference, parameters);
   if (answer.mixture.isGiven()) {
     json["components"] = makeComponents(answer.mixture, parameters);
   }

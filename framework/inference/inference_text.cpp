@@ -204,7 +204,7 @@ std::string makeInferenceTable(const InferredMeasurement& inferred,
     text += describeRefined(*inferred.refined);
   }
   text += makeEstimateTable(makeEstimates(answer), parameters);
-  if (answer.refined) {
+  if (answer.isRefined()) {
     text +=
         "  the map's:\n" + makeEstimateTable(makeEstimates(makeMapAnswer(inferred.inference)), parameters);
   }
@@ -218,7 +218,7 @@ std::string makeInferenceTable(const InferredMeasurement& inferred,
 }
 
 std::string makeInferenceCsvHeader(bool refined, bool posterior) {
-  return std::string("source,start,parameter,unit,mean,sd,lower,upper,status,p_value") +
+  return std::string("source,start,parameter,unit,mean,sd,lower,upper,status,p_value,method") +
          (refined ? ",refined_mean,refined_sd,map_mean,map_sd" : "") +
          (posterior ? ",posterior_mean,posterior_sd,posterior_q2.5,posterior_q16,posterior_q50,posterior_q84,"
                       "posterior_q97.5,effective_sample_size,pareto_shape"
@@ -256,12 +256,13 @@ std::string makeInferenceCsvRows(const InferredMeasurement& inferred,
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const auto i = static_cast<Index>(p);
     const double mean = answer.mean[i], stddev = answer.stddev[i];
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{}", escapeCsv(inferred.source), toText(inferred.start),
-                        escapeCsv(parameters[p].name.text), escapeCsv(parameters[p].unit), toText(mean),
-                        toText(stddev), toText(answer.lower95[i]), toText(answer.upper95[i]),
-                        joinStatuses(inferred, " "), inferred.trust ? toText(inferred.trust->p_value) : "");
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}", escapeCsv(inferred.source),
+                        toText(inferred.start), escapeCsv(parameters[p].name.text),
+                        escapeCsv(parameters[p].unit), toText(mean), toText(stddev),
+                        toText(answer.lower95[i]), toText(answer.upper95[i]), joinStatuses(inferred, " "),
+                        inferred.trust ? toText(inferred.trust->p_value) : "", toString(answer.method));
     if (inferred.refined) {
-      text += answer.refined ? fmt::format(",{},{}", toText(mean), toText(stddev)) : ",,";
+      text += answer.isRefined() ? fmt::format(",{},{}", toText(mean), toText(stddev)) : ",,";
       text += fmt::format(",{},{}", toText(by_map.mean[i]), toText(by_map.stddev[i]));
     }
     if (inferred.posterior) {

@@ -72,7 +72,7 @@ class Replayer {
         replay_(replay),
         answer_(chooseAnswer(replay.inferred)) {
     if (replay.options.measurement == replay.options.from) {
-      explanation_ = answer_.refined ? replay.inferred.refined->point : replay.inferred.explanation;
+      explanation_ = answer_.isRefined() ? replay.inferred.refined->point : replay.inferred.explanation;
     }
   }
 
@@ -105,7 +105,7 @@ class Replayer {
     const RandomStream random(inferrer_.getExperiment().seed, RandomPurpose::kEnsemble);
     const int draws = replay_.options.draws;
     const Mixture& mixture = replay_.inferred.inference.mixture;
-    return clipToBounds(answer_.refined || !mixture.isGiven()
+    return clipToBounds(answer_.isRefined() || !mixture.isGiven()
                             ? drawNormal(answer_.mean, answer_.stddev, calcCorrelation(), draws, random)
                             : drawFrom(mixture, draws, random),
                         model_.parameters);
@@ -113,7 +113,7 @@ class Replayer {
 
   /// Of the answer's errors.
   MatrixXd calcCorrelation() const {
-    if (!answer_.refined) {
+    if (!answer_.isRefined()) {
       return inferrer_.getMap().chooseCorrelation(replay_.inferred.inference);
     }
     const VectorXd scale = answer_.stddev.cwiseInverse();

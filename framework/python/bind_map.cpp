@@ -139,7 +139,9 @@ void bindAnswered(py::module_& module) {
       .def_property_readonly("covariance",
                              [](const Answered& a) { return moveToRows(Eigen::MatrixXd(a.covariance)); })
       .def_property_readonly("statuses", [](const Answered& a) { return listStatuses(a.measurement); })
-      .def_property_readonly("refined", [](const Answered& a) { return a.answer.refined; })
+      .def_property_readonly("method", [](const Answered& a) { return toString(a.answer.method); })
+      .def_property_readonly("lower95", [](const Answered& a) { return copyVector(a.answer.lower95); })
+      .def_property_readonly("upper95", [](const Answered& a) { return copyVector(a.answer.upper95); })
       .def_property_readonly("posterior", [](const Answered& a) { return a.measurement.posterior; });
   py::class_<InferRequest>(module, "InferRequest")
       .def(py::init<Known, std::optional<double>, std::optional<bool>, int>(), py::arg("known"),

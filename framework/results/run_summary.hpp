@@ -117,7 +117,7 @@ struct BaselineSummary {
 
 /// How well a method infers the test samples.
 struct MethodSummary {
-  std::string method;  ///< "inverse_map", "refined"
+  std::string method;  ///< "gp", "surrogate", "network", "refined"
   Eigen::Index samples = 0, accepted = 0;
   int median_simulations = 0;             ///< of a measurement
   std::vector<ParameterMetrics> metrics;  ///< of the accepted

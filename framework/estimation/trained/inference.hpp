@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "framework/estimation/estimation_method.hpp"
 #include "framework/estimation/interval_reach.hpp"
 #include "framework/estimation/mixture.hpp"
 
@@ -15,6 +16,7 @@ struct Inference {
   Eigen::MatrixXd correlation{};  ///< p x p, of this measurement's errors, where the map tells; else empty
   Mixture mixture{};              ///< where the map gives one, whose mean and stddev are above
   IntervalReach reach{};          ///< of intervals, where they are not those of the distribution above
+  EstimationMethod method{};      ///< the kind of the map
   Eigen::VectorXd inputs{};       ///< what the map sees of the features and known inputs, k
 };
 

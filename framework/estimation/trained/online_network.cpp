@@ -6,6 +6,7 @@ using Eigen::VectorXd;
 
 OnlineNetwork::Workspace::Workspace(const OnlineNetwork& map)
     : predicting(map.predictor_), centered(map.map_->inputs.center.size()) {
+  inference.method = EstimationMethod::kNetwork;
   inference.mean.resize(map.map_->center.size());
   inference.stddev.resize(map.map_->center.size());
   inference.inputs.resize(map.map_->inputs.countInputs());

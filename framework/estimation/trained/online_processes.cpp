@@ -30,6 +30,7 @@ OnlineProcesses::OnlineProcesses(GpMap map) : map_(std::move(map)), predictor_(m
 
 OnlineProcesses::Workspace::Workspace(const OnlineProcesses& map) : predictor(map.predictor_) {
   const auto parameters = static_cast<Index>(map.map_.processes.size());
+  inference.method = EstimationMethod::kGp;
   inference.mean.setZero(parameters);
   inference.stddev.setZero(parameters);
   inference.inputs.setZero(map.matrix_.rows() + map.map_.known_inputs.center.size());

@@ -20,7 +20,9 @@ class OnlineSurrogate {
   class Workspace {
    public:
     explicit Workspace(const OnlineSurrogate& map)
-        : inversion(*map.surrogate_->forward, map.surrogate_->unknown) {}
+        : inversion(*map.surrogate_->forward, map.surrogate_->unknown) {
+      inference.method = EstimationMethod::kSurrogate;
+    }
     Inference inference;
     const ScoreExplanation* findExplanation() const { return inversion.findExplanation(); }
 

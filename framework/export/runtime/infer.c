@@ -16,7 +16,7 @@ static void correlate(twinmap_result *result)
 
 static void finish(twinmap_result *result)
 {
-  int a, limited = TWINMAP_DISHONEST;
+  int a, limited = TWINMAP_UNCALIBRATED;
   for (a = 0; a < TWINMAP_PARAMETERS; ++a) {
     result->lower[a] = result->mean[a] - interval_reach[a] * result->sd[a];
     result->upper[a] = result->mean[a] + interval_reach[a] * result->sd[a];

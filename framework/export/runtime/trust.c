@@ -77,13 +77,13 @@ static void calc_leftover(twinmap_state *state)
   for (j = 0; j < TWINMAP_SCORES; ++j) {
     add_direction(state->residual[j], score_directions + j * TWINMAP_RESIDUALS, left);
   }
-#if TWINMAP_UNLEARNT
+#if TWINMAP_UNMODELLED
   {
-    double moved[TWINMAP_UNLEARNT];
-    for (j = 0; j < TWINMAP_UNLEARNT; ++j) {
+    double moved[TWINMAP_UNMODELLED];
+    for (j = 0; j < TWINMAP_UNMODELLED; ++j) {
       moved[j] = dot_real(unmodelled_directions + j * TWINMAP_RESIDUALS, left);
     }
-    for (j = 0; j < TWINMAP_UNLEARNT; ++j) {
+    for (j = 0; j < TWINMAP_UNMODELLED; ++j) {
       const double stddev = unmodelled_stddev[j], shrinkage = 1.0 / sqrt(1.0 + stddev * stddev);
       add_direction(moved[j] * (shrinkage - 1.0), unmodelled_directions + j * TWINMAP_RESIDUALS, left);
     }
@@ -205,7 +205,7 @@ static void judge(twinmap_state *state, const double *known, twinmap_result *res
   result->residuals = TWINMAP_RESIDUALS;
   find_anomaly(state->leftover, result);
   result->chi_square_p_value = calc_p_value(TWINMAP_REFERENCES, chi_square_reference, result->chi_square);
-  result->anomaly_p_value = calc_p_value(TWINMAP_BURST_REFERENCES, anomaly_reference, result->anomaly_score);
+  result->anomaly_p_value = calc_p_value(TWINMAP_ANOMALY_REFERENCES, anomaly_reference, result->anomaly_score);
   result->p_value = fmin(1.0, 2.0 * fmin(result->chi_square_p_value, result->anomaly_p_value));
   result->distance = calc_cloud_distance(state);
   result->statuses = find_statuses(result);

@@ -15,7 +15,6 @@ from ._twinmap import Quantity
 Measurement = Union[PathLike, pd.DataFrame, Mapping[str, Any], np.ndarray]
 _DRAWS = 512
 _PROBABILITIES = [0.025, 0.16, 0.5, 0.84, 0.975]
-_NORMAL95 = 1.959963984540054  # standard deviations on both sides of a normal distribution's mean: 95 %
 
 
 class Posterior:
@@ -50,7 +49,8 @@ class Inference:
 
     `names`, `units`: of the parameters. `mean`, `stddev` (p): in those units. `covariance` (p, p). `statuses`: ["ok"],
     or what is to be said against the answer, the most severe first (docs/trust.md); empty where the run has no trust
-    model. `method`: "refined" where the answer was refined on the simulator and accepted, else "inverse_map".
+    model. `method`: "refined" where the answer was refined on the simulator and accepted, else the kind of the map:
+    "gp", "surrogate" or "network".
     `posterior`: where it was asked for, else None.
     """
 
@@ -62,7 +62,7 @@ class Inference:
         self.stddev: np.ndarray = answered.stddev
         self.covariance: np.ndarray = answered.covariance
         self.statuses: List[str] = answered.statuses
-        self.method = "refined" if answered.refined else "inverse_map"
+        self.method = answered.method
         self.posterior: Optional[Posterior] = None
         if answered.posterior is not None:
             unknown = [parameter.name for parameter in map_.unknown]
@@ -85,8 +85,9 @@ class Inference:
 
     @property
     def interval(self) -> np.ndarray:
-        """The 95 % intervals (p, 2): lower and upper bound."""
-        return np.column_stack([self.mean - _NORMAL95 * self.stddev, self.mean + _NORMAL95 * self.stddev])
+        """The 95 % intervals (p, 2): lower and upper bound; of a mixture, whose smallest sets may be several
+        intervals (details["parameters"][NAME]["intervals95"]), the outermost bounds."""
+        return np.column_stack([self._answered.lower95, self._answered.upper95])
 
     def to_frame(self) -> pd.DataFrame:
         """A row for each parameter: unit, mean, stddev, lower, upper."""

@@ -111,7 +111,7 @@ class Infer(InferCase):
         self.assertEqual(inferred["refined"]["status"], "accepted")
         self.assertEqual(inferred["parameters"], inferred["refined"]["parameters"])
         by_map = self.infer_json(self.measurement, "--no-refine")
-        self.assertEqual(by_map["method"], "inverse_map")
+        self.assertEqual(by_map["method"], "surrogate")
         self.assertNotIn("refined", by_map)
         self.assertEqual(by_map["parameters"], inferred["inverse_map"]["parameters"])
 
@@ -122,7 +122,7 @@ class Infer(InferCase):
         write_csv(path, ["t", "y", "theta"], [wrong[name] for name in ("t", "y", "theta")])
         inferred = self.infer_json(path)
         self.assertIn("not_refined", inferred["statuses"])
-        self.assertEqual(inferred["method"], "inverse_map")
+        self.assertEqual(inferred["method"], "surrogate")
         self.assertEqual(inferred["parameters"], inferred["inverse_map"]["parameters"])
         self.assertNotIn("parameters", inferred["refined"])
         self.assertIn("not refined", self.infer(path))

@@ -61,7 +61,7 @@ class Mixture(OwnFolderTestCase):
     def test_refining_from_one_answer_is_not_accepted(self):
         run, _ = run_once(ROTOR, *SMALL, QUICK)
         answer = json.loads(self.infer(run, "--refine", "--json"))
-        self.assertEqual(answer["method"], "inverse_map")
+        self.assertEqual(answer["method"], "network")
         self.assertEqual(answer["refined"]["status"], "multimodal")
         self.assertIn("multimodal", answer["statuses"])
         refined = self.folder / "refined"

@@ -61,8 +61,8 @@ class Surrogate(OwnFolderTestCase):
     def test_the_automatic_map_is_a_surrogate_where_one_can_be_trained(self):
         few = ["inverse_map=automatic", "design.test.samples=20"]
         for name, overrides, method in [("enough", ["design.train.samples=40"], "surrogate"),
-                                        ("too_few", ["design.train.samples=20"], "inverse_map"),
-                                        ("silent", ["design.train.samples=40", "noise.stddev.y=0"], "inverse_map")]:
+                                        ("too_few", ["design.train.samples=20"], "gp"),
+                                        ("silent", ["design.train.samples=40", "noise.stddev.y=0"], "gp")]:
             run = self.folder / name
             result = call("run", TABLE1, *few, *overrides, "transform=[z_score]", "--out", run)
             self.assertEqual(result.returncode, 0, result.stderr)

@@ -60,7 +60,7 @@ TEST(Warnings, TellWhereMoreSimulationsHardlyHelpAMapFarFromTheLimit) {
   EXPECT_EQ(warnings[0],
             "more simulations will hardly help the map: from 125 to 250 its errors fell by less than 30 % "
             "for k (8 %)");
-  run.evaluation.methods = {{"inverse_map", 400, 400, 0, {}}, {"refined", 400, 398, 16, {}}};
+  run.evaluation.methods = {{"gp", 400, 400, 0, {}}, {"refined", 400, 398, 16, {}}};
   EXPECT_TRUE(collectWarnings(run).empty());  // what is answered is not the map's
   run.evaluation.methods.clear();
   found.half = 0;

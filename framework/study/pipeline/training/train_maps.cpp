@@ -83,7 +83,7 @@ TrainedMap makeTrainedMap(const MapTrainingContext& context, Training training) 
   const auto predict = [map](const Eigen::MatrixXd& features, const Eigen::MatrixXd& inputs) {
     return map->predict(features, inputs);
   };
-  return {"inverse_map",
+  return {"gp",
           predict,
           map->residual_correlation,
           map->transform,

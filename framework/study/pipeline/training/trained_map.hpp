@@ -16,7 +16,7 @@ using Predictor = std::function<Predictions(const Eigen::MatrixXd& features, con
 
 /// A trained map of any kind.
 struct TrainedMap {
-  std::string name;  ///< as methods.csv has it: "inverse_map", "surrogate", "network"
+  std::string name;  ///< as methods.csv has it: "gp", "surrogate", "network"
   Predictor predict;
   Eigen::MatrixXd residual_correlation;  ///< p x p, of the errors of a sample
   FeatureTransform transform;            ///< what a linear regression is to see of the features
