@@ -4,7 +4,7 @@
 #include "framework/cli/commands.hpp"
 #include "framework/inference/inference_text.hpp"
 #include "framework/inference/known_value.hpp"
-#include "framework/inference/replay_files.hpp"
+#include "framework/study/replay/replay_files.hpp"
 
 namespace twinmap::cli {
 namespace {

@@ -1,10 +1,10 @@
 #include "framework/export/exported_model.hpp"
 
+#include "framework/data/features/experiment_features.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/inferrer.hpp"
 #include "framework/store/estimators/maps_file.hpp"
-#include "framework/study/pipeline/prepare_data.hpp"
 
 namespace twinmap {
 

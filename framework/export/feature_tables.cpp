@@ -1,8 +1,8 @@
 #include <fmt/core.h>
 
+#include "framework/data/features/experiment_features.hpp"
 #include "framework/data/features/layout_rows.hpp"
 #include "framework/export/c_model_tables.hpp"
-#include "framework/study/pipeline/prepare_data.hpp"
 
 namespace twinmap {
 namespace {

@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "framework/base/json/json.hpp"
-#include "framework/study/pipeline/prepare_data.hpp"
+#include "framework/data/features/experiment_features.hpp"
 #include "kernels/gp/online/process_view.hpp"
 
 namespace twinmap {

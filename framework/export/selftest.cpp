@@ -4,12 +4,12 @@
 
 #include <algorithm>
 
+#include "framework/data/features/experiment_features.hpp"
 #include "framework/data/measurement/measurement.hpp"
 #include "framework/data/noise/noise.hpp"
 #include "framework/export/runtime_sources.hpp"
 #include "framework/inference/answer.hpp"
 #include "framework/store/samples_file.hpp"
-#include "framework/study/pipeline/prepare_data.hpp"
 
 namespace twinmap {
 namespace {

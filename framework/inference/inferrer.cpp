@@ -3,10 +3,10 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "framework/data/features/experiment_features.hpp"
 #include "framework/data/measurement/trained_excitation.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/store/estimators/maps_file.hpp"
-#include "framework/study/pipeline/prepare_data.hpp"
 
 namespace twinmap {
 

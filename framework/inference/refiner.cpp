@@ -1,9 +1,9 @@
 #include "framework/inference/refiner.hpp"
 
+#include "framework/data/features/experiment_features.hpp"
 #include "framework/data/noise/noise.hpp"
+#include "framework/estimation/trained/refinement_starts.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/study/pipeline/prepare_data.hpp"
-#include "framework/study/pipeline/refinement_starts.hpp"
 
 namespace twinmap {
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <set>
 
+#include "framework/data/features/experiment_features.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"
 #include "framework/data/noise/feature_noise.hpp"
 #include "framework/data/sensitivity/feature_sensitivities.hpp"
@@ -14,7 +15,6 @@
 #include "framework/optimal_design/make_criterion.hpp"
 #include "framework/simulation/number_evaluator.hpp"
 #include "framework/simulation/sample_generator.hpp"
-#include "framework/study/pipeline/prepare_data.hpp"
 
 namespace twinmap::experiment_design {
 namespace {

@@ -7,6 +7,7 @@
 #include "framework/analysis/identifiability.hpp"
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/base/log/interrupted.hpp"
+#include "framework/data/features/experiment_features.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"
 #include "framework/data/noise/feature_noise.hpp"
 #include "framework/data/sensitivity/feature_sensitivities.hpp"
@@ -17,7 +18,6 @@
 #include "framework/optimal_design/make_criterion.hpp"
 #include "framework/optimal_design/sensor_files.hpp"
 #include "framework/optimal_design/sensor_page.hpp"
-#include "framework/study/pipeline/prepare_data.hpp"
 
 namespace twinmap::experiment_design {
 namespace {

@@ -1,8 +1,8 @@
 #include "framework/python/python_experiment.hpp"
 
+#include "framework/data/features/experiment_features.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"
 #include "framework/models/make_simulator.hpp"
-#include "framework/study/pipeline/prepare_data.hpp"
 
 namespace twinmap::python {
 

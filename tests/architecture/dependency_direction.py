@@ -18,13 +18,13 @@ ALLOWED = {
     "estimation": {"base", "experiment", "simulation", "data", "kernels"},
     "analysis": {"base", "experiment", "simulation", "data", "estimation", "kernels"},
     "store": {"base", "experiment", "simulation", "data", "estimation", "kernels"},
+    "inference": {"base", "experiment", "simulation", "models", "data", "estimation", "store"},
     "results": {"base", "experiment", "simulation", "data", "estimation", "analysis", "store"},
     "report": {"base", "experiment", "analysis", "store", "results"},
-    "study": {"base", "experiment", "simulation", "models", "data", "estimation", "analysis", "store", "results", "report"},
-    "inference": {"base", "experiment", "simulation", "models", "data", "estimation", "store", "report", "study"},
+    "study": {"base", "experiment", "simulation", "models", "data", "estimation", "analysis", "store", "inference", "results", "report"},
     "optimal_design": {"base", "experiment", "simulation", "models", "data", "analysis", "results", "report", "study", "kernels"},
     "c_api": {"base", "data", "estimation", "inference"},
-    "export": {"base", "experiment", "simulation", "models/fmu", "data", "estimation", "store", "study", "inference", "kernels"},
+    "export": {"base", "experiment", "simulation", "models/fmu", "data", "estimation", "store", "inference", "kernels"},
     "cli": {"base", "experiment", "models", "models/fmu", "data", "store", "results", "report", "study", "inference", "optimal_design", "export"},
     "python": {"base", "experiment", "simulation", "models", "models/fmu", "data", "study", "inference"},
 }
@@ -33,7 +33,7 @@ ALLOWED = {
 ORDER_WITHIN = {
     "data": ["features", "measurement", "noise", "reduction", "sensitivity"],
     "estimation": ["gp", "surrogate", "network", "refined", "trained"],
-    "study": ["samples", "pipeline", "verification", "sweep", "shards"],
+    "study": ["samples", "pipeline", "verification", "replay", "sweep", "shards"],
 }
 
 # Dense linear algebra, which every room may include.

@@ -19,9 +19,6 @@ struct LocalModel {
   SampleStatus status;  ///< if not ok, the rest is NaN
 };
 
-/// Gives the local models at the columns of `points`: simulates them, or has them from a store.
-using LocalModelSource = std::function<std::vector<LocalModel>(const Eigen::MatrixXd& points)>;
-
 /// At a point of the sampled box, to `parameters`, the first p of it (such as collectUnknown; the known
 /// inputs behind them stay). With the exact derivatives of the responses where the simulator has them, along
 /// which features are differenced; else by differences of simulations that all take the integration steps of

@@ -4,7 +4,7 @@
 #include "framework/base/text/number_text.hpp"
 #include "framework/report/html.hpp"
 #include "framework/report/sections/sections.hpp"
-#include "framework/report/sections/verdict.hpp"
+#include "framework/report/verdict.hpp"
 
 namespace twinmap {
 namespace {

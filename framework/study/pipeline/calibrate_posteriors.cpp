@@ -19,17 +19,17 @@ struct RankedMeasurements {
 };
 
 /// Of each test sample; empty where its posterior is not reliable.
-std::vector<Eigen::VectorXi> rankAll(const EvaluationContext& context, const PosteriorModel& model) {
-  const LabelledFeatures& test = context.data.labelled.test;
+std::vector<Eigen::VectorXi> rankAll(const Study& study, const PreparedData& data,
+                                     const PosteriorModel& model) {
+  const LabelledFeatures& test = data.labelled.test;
   std::vector<Eigen::VectorXi> ranks(static_cast<std::size_t>(test.features.cols()));
-  runTasks(context.control.threads, ranks.size(), [&](std::size_t i) {
-    throwIfCancelled(context.control,
+  runTasks(study.control.threads, ranks.size(), [&](std::size_t i) {
+    throwIfCancelled(study.control,
                      "interrupted during the calibration of posteriors; the simulated samples are kept");
-    PosteriorSampler sampler(model, kDefaultPosteriorDraws, context.experiment.seed);
+    PosteriorSampler sampler(model, kDefaultPosteriorDraws, study.experiment.seed);
     const auto column = static_cast<Index>(i);
-    const SurrogatePosterior posterior =
-        sampler.sampleFeatures(test.features.col(column), test.inputs.col(column),
-                               static_cast<std::uint64_t>(context.data.test_indices[i]));
+    const SurrogatePosterior posterior = sampler.sampleFeatures(
+        test.features.col(column), test.inputs.col(column), static_cast<std::uint64_t>(data.test_indices[i]));
     if (posterior.isReliable()) {
       ranks[i] = calcRanks(test.parameters.col(column), posterior.draws.topRows(model.parameters),
                            {posterior.normal_mean, posterior.normal_covariance});
@@ -76,17 +76,18 @@ void warn(const PosteriorCalibration& calibration, const std::vector<ParameterSp
 
 }  // namespace
 
-CalibratedPosteriors calibratePosteriors(const EvaluationContext& context) {
+CalibratedPosteriors calibratePosteriors(const Study& study, const PreparedData& data,
+                                         const TrainedMap& map) {
   CalibratedPosteriors result;
-  const TrainedMap& map = context.map;
   const std::optional<PosteriorModel> model = findPosteriorModel(OnlineMap(map.online.map), map.online.trust);
   if (!model) {
     result.notes.warn(Severity::kInfo, "no calibration of posteriors: the run has no surrogate");
     return result;
   }
   const Index quantities = model->parameters + 1;
-  const RankedMeasurements ranked = timeStage("calibration of posteriors", result.notes,
-                                              [&] { return collect(rankAll(context, *model), quantities); });
+  const RankedMeasurements ranked = timeStage("calibration of posteriors", result.notes, [&] {
+    return collect(rankAll(study, data, *model), quantities);
+  });
   if (ranked.ranks.cols() < kMinRanks) {
     result.notes.warn(Severity::kDegraded,
                       fmt::format("no calibration of posteriors: only {} of {} test samples have a reliable "
@@ -96,7 +97,7 @@ CalibratedPosteriors calibratePosteriors(const EvaluationContext& context) {
   }
   result.calibration = PosteriorCalibration{static_cast<int>(ranked.ranks.cols()), ranked.unreliable,
                                             calcRankCalibration(ranked.ranks)};
-  warn(*result.calibration, context.experiment.model.parameters, result.notes);
+  warn(*result.calibration, study.experiment.model.parameters, result.notes);
   return result;
 }
 

@@ -14,6 +14,6 @@ struct CalibratedPosteriors {
 /// Ranks the true parameters of every test sample among draws of its posterior under the surrogate, as
 /// `infer --posterior` samples it. The result does not depend on the number of threads. Cost: one posterior a
 /// test sample. Throws Interrupted.
-CalibratedPosteriors calibratePosteriors(const EvaluationContext& context);
+CalibratedPosteriors calibratePosteriors(const Study& study, const PreparedData& data, const TrainedMap& map);
 
 }  // namespace twinmap

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <chrono>
 
-#include "framework/analysis/baselines.hpp"
 #include "framework/analysis/information_limit.hpp"
 #include "framework/base/log/stage_timer.hpp"
 #include "framework/data/sensitivity/fisher_information.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/study/pipeline/answers.hpp"
+#include "framework/study/pipeline/baselines.hpp"
 #include "framework/study/pipeline/calibrate_posteriors.hpp"
 #include "framework/study/pipeline/refine_test_samples.hpp"
 
@@ -20,24 +20,20 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-const std::vector<ParameterSpec>& getParameters(const EvaluationContext& context) {
-  return context.experiment.model.parameters;
-}
-
-const LabelledFeatures& getTest(const EvaluationContext& context) {
-  return context.data.labelled.test;
+const std::vector<ParameterSpec>& getParameters(const Study& study) {
+  return study.experiment.model.parameters;
 }
 
 /// The limit, if the experiment has one.
-std::optional<InformationLimit> findLimit(const EvaluationContext& context, StageNotes& notes) {
-  const LabelledFeatures& test = getTest(context);
-  if (hasInformationLimit(context.experiment, test)) {
+std::optional<InformationLimit> findLimit(const Study& study, const PreparedData& data, StageNotes& notes) {
+  const LabelledFeatures& test = data.labelled.test;
+  if (hasInformationLimit(study.experiment, test)) {
     return timeStage(fmt::format("information limit of {} test samples", test.parameters.cols()), notes, [&] {
-      return calcInformationLimit(context.local_models(test.collectPoints()), context.data.noise,
-                                  getParameters(context));
+      return calcInformationLimit(calcLocalModels(study, test.collectPoints()), study.noise,
+                                  getParameters(study));
     });
   }
-  if (context.experiment.evaluation.limit) {
+  if (study.experiment.evaluation.limit) {
     notes.warn(Severity::kInfo, "no information limit: the noise of a feature is 0");
   }
   return std::nullopt;
@@ -50,28 +46,29 @@ ExactPosterior takeUpdating(ExactPosterior posterior, Index count) {
   return posterior;
 }
 
-std::vector<ExactPosterior> calcPosteriors(const EvaluationContext& context, Index count, StageNotes& notes) {
-  const PosteriorSpec& spec = *context.experiment.evaluation.posterior;
-  const LabelledFeatures& test = getTest(context);
+std::vector<ExactPosterior> calcPosteriors(const Study& study, const PreparedData& data, Index count,
+                                           StageNotes& notes) {
+  const PosteriorSpec& spec = *study.experiment.evaluation.posterior;
+  const LabelledFeatures& test = data.labelled.test;
   return timeStage(fmt::format("exact posterior of {} test samples", count), notes, [&] {
     return calcExactPosteriors(
-        context.simulator, context.extractor, NoiseWhitener(test.noise_covariance),
-        collectUnknown(context.experiment.model),
+        study.simulator, study.extractor, NoiseWhitener(test.noise_covariance),
+        collectUnknown(study.experiment.model),
         {test.features.leftCols(count), test.collectUnknown().leftCols(count), test.inputs},
-        {spec.draws, context.experiment.seed, context.control.threads});
+        {spec.draws, study.experiment.seed, study.control.threads});
   });
 }
 
 /// The exact posteriors of the first test samples beside what the map infers of them.
-std::vector<PosteriorComparison> comparePosteriors(const EvaluationContext& context,
+std::vector<PosteriorComparison> comparePosteriors(const Study& study, const PreparedData& data,
                                                    const Predictions& predictions,
                                                    const Eigen::MatrixXd& limit_stddev, StageNotes& notes) {
   const Index count =
-      std::min<Index>(context.experiment.evaluation.posterior->samples, getTest(context).features.cols());
-  const std::vector<ExactPosterior> exact = calcPosteriors(context, count, notes);
+      std::min<Index>(study.experiment.evaluation.posterior->samples, data.labelled.test.features.cols());
+  const std::vector<ExactPosterior> exact = calcPosteriors(study, data, count, notes);
   std::vector<PosteriorComparison> compared;
   for (Index i = 0; i < count; ++i) {
-    const int sample = context.data.test_indices[i];
+    const int sample = data.test_indices[i];
     compared.push_back({sample, takeUpdating(exact[i], predictions.mean.rows()), predictions.mean.col(i),
                         predictions.stddev.col(i),
                         limit_stddev.cols() > 0 ? VectorXd(limit_stddev.col(i)) : VectorXd()});
@@ -83,34 +80,31 @@ std::vector<PosteriorComparison> comparePosteriors(const EvaluationContext& cont
   return compared;
 }
 
-BaselineSummary summarizeBaseline(const EvaluationContext& context, const BaselineResult& result) {
-  const Eigen::MatrixXd truth = getTest(context).parameters.leftCols(result.samples);
-  return {result.method, result.samples, calcMetrics(getParameters(context), truth, result.predictions),
+BaselineSummary summarizeBaseline(const Study& study, const LabelledFeatures& test,
+                                  const BaselineResult& result) {
+  const Eigen::MatrixXd truth = test.parameters.leftCols(result.samples);
+  return {result.method, result.samples, calcMetrics(getParameters(study), truth, result.predictions),
           result.seconds_per_update, result.unconverged};
 }
 
 /// The map on the same first samples.
-BaselineResult runMap(const EvaluationContext& context, int samples) {
+BaselineResult runMap(const TrainedMap& map, const LabelledFeatures& test, int samples) {
   BaselineResult result{"map", samples, {}};
-  const LabelledFeatures& test = getTest(context);
   const Eigen::MatrixXd features = test.features.leftCols(samples), inputs = test.inputs.leftCols(samples);
   const auto start = std::chrono::steady_clock::now();
   for (Index i = 0; i < samples; ++i) {
-    context.map.predict(features.col(i), inputs.col(i));
+    map.predict(features.col(i), inputs.col(i));
   }
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  result.predictions = context.map.predict(features, inputs);
+  result.predictions = map.predict(features, inputs);
   result.seconds_per_update = elapsed.count() / samples;
   return result;
 }
 
-BaselineResult timeBaseline(const BaselineSpec& spec, const EvaluationContext& context, StageNotes& notes) {
-  const std::vector<ParameterSpec> unknown = collectUnknown(context.experiment.model);
-  const BaselineContext baseline{context.simulator,      context.extractor, context.map.transform,
-                                 getParameters(context), unknown,           context.control.threads};
-  BaselineResult result = timeStage("baseline", notes, [&] {
-    return runBaseline(spec, baseline, context.data.labelled.train, getTest(context));
-  });
+BaselineResult timeBaseline(const BaselineSpec& spec, const Study& study, const LabelledSets& samples,
+                            const FeatureTransform& transform, StageNotes& notes) {
+  BaselineResult result =
+      timeStage("baseline", notes, [&] { return runBaseline(spec, study, samples, transform); });
   notes.times.back().stage = "baseline " + result.method;
   if (result.unconverged > 0) {
     notes.warn(Severity::kInfo, fmt::format("baseline {}: {} of {} searches did not converge", result.method,
@@ -120,33 +114,26 @@ BaselineResult timeBaseline(const BaselineSpec& spec, const EvaluationContext& c
 }
 
 /// The baselines, each after the map's own row on the same samples.
-std::vector<BaselineSummary> runBaselines(const EvaluationContext& context, StageNotes& notes) {
+std::vector<BaselineSummary> runBaselines(const Study& study, const LabelledSets& samples,
+                                          const TrainedMap& map, StageNotes& notes) {
   std::vector<BaselineSummary> rows;
   int compared = 0;  // samples of the map's own row before
-  for (const BaselineSpec& spec : context.experiment.evaluation.baselines) {
-    const BaselineResult result = timeBaseline(spec, context, notes);
+  for (const BaselineSpec& spec : study.experiment.evaluation.baselines) {
+    const BaselineResult result = timeBaseline(spec, study, samples, map.transform, notes);
     if (result.samples != compared) {
-      rows.push_back(summarizeBaseline(context, runMap(context, result.samples)));
+      rows.push_back(summarizeBaseline(study, samples.test, runMap(map, samples.test, result.samples)));
       compared = result.samples;
     }
-    rows.push_back(summarizeBaseline(context, result));
+    rows.push_back(summarizeBaseline(study, samples.test, result));
   }
   return rows;
 }
 
-/// The test samples refined, where the experiment asks for it.
-std::vector<Refined> refine(const EvaluationContext& context, StageNotes& notes) {
-  RefinedTests refined = refineTestSamples({context.experiment, context.simulator, context.extractor,
-                                            context.data, context.map.online, context.control});
-  notes.append(refined.notes);
-  return std::move(refined.refined);
-}
-
-void addLimit(const EvaluationContext& context, const InformationLimit& limit, MapEvaluation& result) {
-  const LabelledFeatures& test = getTest(context);
+void addLimit(const Study& study, const LabelledFeatures& test, const InformationLimit& limit,
+              MapEvaluation& result) {
   result.evaluation.relevance =
       FeatureRelevance{test.infos, test.noise_covariance.diagonal().cwiseSqrt(), limit.relevance};
-  result.evaluation.identifiability = calcIdentifiability(limit, getParameters(context));
+  result.evaluation.identifiability = calcIdentifiability(limit, getParameters(study));
   result.notes.warn(Severity::kDegraded, result.evaluation.identifiability->warnings);
   if (limit.failures > 0) {
     result.notes.warn(
@@ -157,36 +144,37 @@ void addLimit(const EvaluationContext& context, const InformationLimit& limit, M
 
 }  // namespace
 
-MapEvaluation evaluateMap(const EvaluationContext& context) {
-  const LabelledFeatures& test = getTest(context);
-  const std::vector<ParameterSpec>& parameters = getParameters(context);
+MapEvaluation evaluateMap(const Study& study, const PreparedData& data, const TrainedMap& map) {
+  const LabelledFeatures& test = data.labelled.test;
+  const std::vector<ParameterSpec>& parameters = getParameters(study);
   MapEvaluation result;
   const Predictions predictions = timeStage("infer the test samples", result.notes,
-                                            [&] { return context.map.predict(test.features, test.inputs); });
-  const std::optional<InformationLimit> limit = findLimit(context, result.notes);
+                                            [&] { return map.predict(test.features, test.inputs); });
+  const std::optional<InformationLimit> limit = findLimit(study, data, result.notes);
   const Eigen::MatrixXd limit_stddev = limit ? limit->stddev : Eigen::MatrixXd();
-  const std::vector<Refined> refined = refine(context, result.notes);
-  result.evaluation =
-      evaluateAnswers(parameters, test.parameters,
-                      makeAnswers(predictions, context.map.residual_correlation, refined), limit_stddev);
+  RefinedTests tests = refineTestSamples(study, data, map.online);
+  const std::vector<Refined> refined = std::move(tests.refined);
+  result.notes.append(tests.notes);
+  result.evaluation = evaluateAnswers(
+      parameters, test.parameters, makeAnswers(predictions, map.residual_correlation, refined), limit_stddev);
   result.evaluation.methods = {
-      summarizeMap(context.map.name, parameters, test.parameters, predictions, limit_stddev)};
+      summarizeMap(map.name, parameters, test.parameters, predictions, limit_stddev)};
   if (!refined.empty()) {
     result.evaluation.methods.push_back(summarizeRefined(parameters, test.parameters, refined, limit_stddev));
     result.evaluation.refined = refined;
   }
   if (limit) {
-    addLimit(context, *limit, result);
+    addLimit(study, test, *limit, result);
   }
-  if (context.experiment.evaluation.posterior) {
-    result.evaluation.posteriors = comparePosteriors(context, predictions, limit_stddev, result.notes);
+  if (study.experiment.evaluation.posterior) {
+    result.evaluation.posteriors = comparePosteriors(study, data, predictions, limit_stddev, result.notes);
   }
-  if (context.experiment.evaluation.calibration == PosteriorCalibrationMethod::kSimulationBased) {
-    CalibratedPosteriors calibrated = calibratePosteriors(context);
+  if (study.experiment.evaluation.calibration == PosteriorCalibrationMethod::kSimulationBased) {
+    CalibratedPosteriors calibrated = calibratePosteriors(study, data, map);
     result.evaluation.calibration = std::move(calibrated.calibration);
     result.notes.append(calibrated.notes);
   }
-  result.evaluation.baselines = runBaselines(context, result.notes);
+  result.evaluation.baselines = runBaselines(study, data.labelled, map, result.notes);
   return result;
 }
 

@@ -5,9 +5,7 @@
 #include <stdexcept>
 
 #include "framework/data/noise/noise.hpp"
-#include "framework/experiment/expression/output_units.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/simulation/excitation/calc_input_signals.hpp"
 #include "framework/study/samples/stencils.hpp"
 
 namespace twinmap {
@@ -67,16 +65,14 @@ LabelledFeatures makeLabelledFeatures(const ModelSpec& model, const Trajectories
   return labelled;
 }
 
-std::vector<Eigen::MatrixXd> calcTrainingSensitivities(const ExperimentSpec& experiment,
-                                                       const Trajectories& train,
-                                                       const LocalModelSource& local_models) {
-  if (!selectsByFisherInformation(experiment)) {
+std::vector<Eigen::MatrixXd> calcTrainingSensitivities(const Study& study, const Trajectories& train) {
+  if (!selectsByFisherInformation(study.experiment)) {
     return {};
   }
   std::vector<int> samples = findSuccessful(train);
   samples.resize(std::min<std::size_t>(samples.size(), kSensitivitySamples));
   std::vector<Eigen::MatrixXd> sensitivities;
-  for (const LocalModel& local : local_models(train.parameters(Eigen::all, samples))) {
+  for (const LocalModel& local : calcLocalModels(study, train.parameters(Eigen::all, samples))) {
     if (local.status.ok) {
       sensitivities.push_back(local.sensitivities);
     }
@@ -88,25 +84,6 @@ std::vector<Eigen::MatrixXd> calcTrainingSensitivities(const ExperimentSpec& exp
 }
 
 }  // namespace
-
-ResponseLayout makeLayout(const ExperimentSpec& experiment) {
-  ResponseLayout layout;
-  layout.times = collectTimes(experiment.features);
-  layout.modes = countModes(experiment.features);
-  if (layout.times.size() > 0) {
-    for (const OutputSpec& output : experiment.model.outputs) {
-      layout.output_names.push_back(output.name.text);
-      layout.output_units.push_back(findOutputUnit(output, experiment.model.system));
-    }
-  }
-  return layout;
-}
-
-FeatureExtractor makeExtractor(const ExperimentSpec& experiment, const ResponseLayout& layout) {
-  const bool needed = needExcitation(experiment.features);
-  return {experiment.features, layout,
-          needed ? calcInputSignals(experiment.model, layout.times) : InputSignals{}};
-}
 
 SimulatedSets failIncompleteSamples(const ExperimentSpec& experiment, const FeatureExtractor& extractor,
                                     SimulatedSets sets) {
@@ -134,14 +111,11 @@ LabelledSets makeLabelledSets(const ExperimentSpec& experiment, const SimulatedS
   return labelled;
 }
 
-PreparedData prepareData(const ExperimentSpec& experiment, const FeatureExtractor& extractor,
-                         const SimulatedSets& sets, const LocalModelSource& local_models) {
-  PreparedData data{
-      FeatureNoise(extractor, ResponseNoise(experiment.noise, sets.train.layout), experiment.seed),
-      {},
-      findSuccessful(sets.test)};
-  data.labelled = makeLabelledSets(experiment, sets, extractor, data.noise);
-  data.labelled.train.sensitivities = calcTrainingSensitivities(experiment, sets.train, local_models);
+PreparedData prepareData(const Study& study, SimulatedSets sets) {
+  PreparedData data{std::move(sets), {}, {}};
+  data.test_indices = findSuccessful(data.sets.test);
+  data.labelled = makeLabelledSets(study.experiment, data.sets, study.extractor, study.noise);
+  data.labelled.train.sensitivities = calcTrainingSensitivities(study, data.sets.train);
   return data;
 }
 

@@ -1,19 +1,10 @@
 #pragma once
 
-#include "framework/data/features/feature_extractor.hpp"
 #include "framework/data/features/labelled_features.hpp"
-#include "framework/data/noise/feature_noise.hpp"
-#include "framework/data/sensitivity/feature_sensitivities.hpp"
 #include "framework/study/pipeline/simulated_sets.hpp"
+#include "framework/study/pipeline/study.hpp"
 
 namespace twinmap {
-
-/// What the rows of a response are, for the features of an experiment.
-ResponseLayout makeLayout(const ExperimentSpec& experiment);
-
-/// The features of an experiment for responses of a layout; the excitation is computed where they need it.
-/// Throws ExperimentError for a frequency response where the excitation has no energy.
-FeatureExtractor makeExtractor(const ExperimentSpec& experiment, const ResponseLayout& layout);
 
 /// The samples as the inverse map sees them: features of noisy responses, with their parameters.
 struct LabelledSets {
@@ -22,7 +13,7 @@ struct LabelledSets {
 
 /// What the training and the evaluation of a map look at.
 struct PreparedData {
-  FeatureNoise noise;
+  SimulatedSets sets;
   LabelledSets labelled;
   std::vector<int> test_indices;  ///< test samples that did not fail: columns of labelled.test
 };
@@ -40,9 +31,8 @@ LabelledSets makeLabelledSets(const ExperimentSpec& experiment, const SimulatedS
 
 /// From simulated sets (failIncompleteSamples) to what a map is trained on. For a transform that selects by
 /// Fisher information, the training features carry the sensitivities at the first kSensitivitySamples
-/// training samples that could be simulated. `extractor` must outlive the result. Throws std::runtime_error
-/// if the sensitivities fail at every one of them.
-PreparedData prepareData(const ExperimentSpec& experiment, const FeatureExtractor& extractor,
-                         const SimulatedSets& sets, const LocalModelSource& local_models);
+/// training samples that could be simulated. Throws std::runtime_error if the sensitivities fail at every one
+/// of them.
+PreparedData prepareData(const Study& study, SimulatedSets sets);
 
 }  // namespace twinmap

@@ -9,9 +9,9 @@
 #include "framework/base/log/run_control.hpp"
 #include "framework/base/log/stage_timer.hpp"
 #include "framework/estimation/refined/refine.hpp"
+#include "framework/estimation/trained/refinement_starts.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/study/pipeline/answers.hpp"
-#include "framework/study/pipeline/refinement_starts.hpp"
 
 namespace twinmap {
 namespace {
@@ -28,11 +28,11 @@ struct RefinementTasks {
 };
 
 /// From what the online map and its trust model say.
-RefinementTasks makeTasks(const RefinementContext& context) {
-  const LabelledFeatures& test = context.data.labelled.test;
-  const OnlineMap map(context.online.map);
+RefinementTasks makeTasks(const Study& study, const PreparedData& data, const OnlineModel& online) {
+  const LabelledFeatures& test = data.labelled.test;
+  const OnlineMap map(online.map);
   OnlineMap::Workspace inferring(map);
-  const TrustModel* trust = context.online.trust ? &*context.online.trust : nullptr;
+  const TrustModel* trust = online.trust ? &*online.trust : nullptr;
   std::optional<TrustWorkspace> judging;
   if (trust != nullptr) {
     judging.emplace(*trust);
@@ -48,7 +48,7 @@ RefinementTasks makeTasks(const RefinementContext& context) {
       answer.explanation = trust->makeSampledPoint(judging->explanation->point);
       answer.covariance = judging->explanation->calcCovariance();
     }
-    all.tasks.push_back(makeRefinementTask(context.experiment.model, trust, test.features.col(i), answer));
+    all.tasks.push_back(makeRefinementTask(study.experiment.model, trust, test.features.col(i), answer));
     all.several.push_back(isMultimodal(inference.mixture));
   }
   return all;
@@ -80,13 +80,12 @@ void warnOfFew(const std::vector<Refined>& refined, const std::string& outcome, 
   }
 }
 
-std::vector<Refined> refineAll(const RefinementContext& context) {
-  const RefinementModel model(collectUnknown(context.experiment.model), context.extractor,
-                              context.data.noise);
-  RefinementTasks all = makeTasks(context);
+std::vector<Refined> refineAll(const Study& study, const PreparedData& data, const OnlineModel& online) {
+  const RefinementModel model(collectUnknown(study.experiment.model), study.extractor, study.noise);
+  RefinementTasks all = makeTasks(study, data, online);
   std::vector<Refined> refined =
-      refineOrAbortEarly(context.simulator, model, std::move(all.tasks), context.control.threads, [&] {
-        throwIfCancelled(context.control, "interrupted during refinement; the simulated samples are kept");
+      refineOrAbortEarly(study.simulator, model, std::move(all.tasks), study.control.threads, [&] {
+        throwIfCancelled(study.control, "interrupted during refinement; the simulated samples are kept");
       });
   for (std::size_t i = 0; i < refined.size(); ++i) {
     if (all.several[i]) {
@@ -98,13 +97,14 @@ std::vector<Refined> refineAll(const RefinementContext& context) {
 
 }  // namespace
 
-RefinedTests refineTestSamples(const RefinementContext& context) {
+RefinedTests refineTestSamples(const Study& study, const PreparedData& data, const OnlineModel& online) {
   RefinedTests tests;
-  if (!shouldRefine(context.experiment.refine, context.simulator, context.extractor, context.data.noise)) {
+  if (!shouldRefine(study.experiment.refine, study.simulator, study.extractor, study.noise)) {
     return tests;
   }
   try {
-    tests.refined = timeStage("refine the test samples", tests.notes, [&] { return refineAll(context); });
+    tests.refined =
+        timeStage("refine the test samples", tests.notes, [&] { return refineAll(study, data, online); });
     const std::string outcome = describe(tests.refined);
     logInfo(fmt::format("refined: {}", outcome));
     warnOfFew(tests.refined, outcome, tests.notes);

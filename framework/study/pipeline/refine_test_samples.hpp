@@ -2,24 +2,12 @@
 
 #include <vector>
 
-#include "framework/base/log/run_control.hpp"
 #include "framework/estimation/refined/refined.hpp"
 #include "framework/estimation/trained/online_model.hpp"
 #include "framework/results/run_summary.hpp"
-#include "framework/simulation/simulator.hpp"
 #include "framework/study/pipeline/prepare_data.hpp"
 
 namespace twinmap {
-
-/// What the refinement of test samples works with.
-struct RefinementContext {
-  const ExperimentSpec& experiment;
-  const Simulator& simulator;
-  const FeatureExtractor& extractor;
-  const PreparedData& data;
-  const OnlineModel& online;
-  const RunControl& control;
-};
 
 /// The test samples, refined, and how that went.
 struct RefinedTests {
@@ -30,6 +18,6 @@ struct RefinedTests {
 /// Where the experiment asks for it, refines every test sample as `twinmap infer` does a measurement; a stage
 /// of its own. Throws Interrupted where `control` abandons the run. Cost: some 10 to 60 simulations each,
 /// more where the first start is not accepted.
-RefinedTests refineTestSamples(const RefinementContext& context);
+RefinedTests refineTestSamples(const Study& study, const PreparedData& data, const OnlineModel& online);
 
 }  // namespace twinmap

@@ -7,6 +7,7 @@
 #include "framework/base/log/log.hpp"
 #include "framework/base/log/run_control.hpp"
 #include "framework/base/log/stage_timer.hpp"
+#include "framework/data/features/experiment_features.hpp"
 #include "framework/data/reduction/selections.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
@@ -82,124 +83,106 @@ void warnOfIneffective(const ModelSpec& model, const Simulator& simulator) {
   }
 }
 
-/// What the stages of a run work with.
-struct RunContext {
-  const ExperimentSpec& experiment;
-  const Simulator& simulator;
-  const FeatureExtractor& extractor;
-  const SampleSource& source;
-  const fs::path& folder;
-  const RunControl& control;
-};
-
-LocalModelSource makeLocalModelSource(const RunContext& run) {
-  return [run](const Eigen::MatrixXd& points) {
-    return calcLocalModels(run.experiment, run.source, run.simulator, run.extractor, points,
-                           run.control.threads);
-  };
-}
-
-/// The samples of a run, and those of them that failed.
+/// The simulated samples of a run, and those of them that failed.
 struct Samples {
   SimulatedSets sets;
   std::vector<FailedSample> failures;
 };
 
 /// Simulates what is missing, writes samples.h5 and failures.csv, and throws where too many samples failed.
-Samples simulateSamples(const RunContext& run) {
-  const ExperimentSpec& experiment = run.experiment;
-  SimulatedSets sets = simulateSets(experiment, run.source, run.simulator.getLayout(), run.control);
-  writeSamplesFile(run.folder / "samples.h5", experiment.model, sets.train, sets.test);
-  sets = failIncompleteSamples(experiment, run.extractor, std::move(sets));
+Samples simulateSamples(const Study& study) {
+  const ExperimentSpec& experiment = study.experiment;
+  SimulatedSets sets = simulateSets(study);
+  writeSamplesFile(study.folder / "samples.h5", experiment.model, sets.train, sets.test);
+  sets = failIncompleteSamples(experiment, study.extractor, std::move(sets));
   std::vector<FailedSample> failures = listFailures(sets);
-  const fs::path file = run.folder / "failures.csv";
+  const fs::path file = study.folder / "failures.csv";
   writeTextFile(file, makeFailuresCsv(collectSampled(experiment.model), failures));
   requireFewFailures(experiment, failures, file);
-  sets.notes.append(simulateStencils(experiment, run.source, run.control));
+  sets.notes.append(simulateStencils(experiment, *study.source, study.control));
   return {std::move(sets), std::move(failures)};
 }
 
 /// Writes trust_power.csv: what the trust model finds.
-StageNotes writeTrustPower(const RunContext& run, const Samples& samples, const PreparedData& data,
-                           const TrainedMap& trained) {
+StageNotes writeTrustPower(const Study& study, const PreparedData& data, const OnlineModel& online) {
   StageNotes notes;
-  throwIfCancelled(run.control);
-  if (!trained.online.trust) {
+  throwIfCancelled(study.control);
+  if (!online.trust) {
     return notes;
   }
-  const auto changes = timeStage("power of the trust status", notes, [&] {
-    return calcTrustPower({run.experiment, samples.sets, run.extractor, data.labelled.train.noise_covariance,
-                           trained.online, run.control.threads});
-  });
+  const auto changes =
+      timeStage("power of the trust status", notes, [&] { return calcTrustPower(study, data, online); });
   notes.warn(Severity::kDegraded, listPowerWarnings(changes));
-  writeTextFile(run.folder / "trust_power.csv", makeTrustPowerCsv(changes));
+  writeTextFile(study.folder / "trust_power.csv", makeTrustPowerCsv(changes));
   return notes;
 }
 
 /// Writes responses.csv: the models of a few test samples beside what was measured.
-StageNotes writeExamples(const RunContext& run, const Trajectories& test,
-                         const std::vector<int>& test_indices, const Evaluation& evaluation) {
+StageNotes writeExamples(const Study& study, const PreparedData& data, const Evaluation& evaluation) {
   StageNotes notes;
-  throwIfCancelled(run.control);
+  throwIfCancelled(study.control);
+  const Trajectories& test = data.sets.test;
   const std::vector<ExampleResponse> examples = timeStage("simulate updated models", notes, [&] {
-    return simulateExamples(run.experiment, run.simulator, test, test_indices, evaluation,
-                            run.control.threads);
+    return simulateExamples(study.experiment, study.simulator, test, data.test_indices, evaluation,
+                            study.control.threads);
   });
-  writeTextFile(run.folder / "responses.csv",
-                makeResponsesCsv(examples, test.layout, calcNoiseStddev(run.experiment.noise, test.layout)));
+  writeTextFile(
+      study.folder / "responses.csv",
+      makeResponsesCsv(examples, test.layout, calcNoiseStddev(study.experiment.noise, test.layout)));
   return notes;
 }
 
 /// How many training samples are taken, and what was found out about it.
-SampleChoice chooseSamples(const RunContext& run, const RunOptions& options) {
-  const SampleCount& asked = run.experiment.design.train.samples;
-  const fs::path recorded = run.folder / "samples.h5";
+SampleChoice chooseSamples(const Study& study, const RunOptions& options) {
+  const SampleCount& asked = study.experiment.design.train.samples;
+  const fs::path recorded = study.folder / "samples.h5";
+  SampleChoice choice;
   if (!asked.automatic || options.train_samples > 0) {
-    return {asked.automatic ? options.train_samples : asked.number, 0, {}, {}};
+    choice.samples = asked.automatic ? options.train_samples : asked.number;
+    return choice;
   }
   if (fs::exists(recorded)) {
-    return {countTrainingSamples(recorded), 0, {}, {}};
+    choice.samples = countTrainingSamples(recorded);
+    return choice;
   }
   const int most = options.samples != nullptr ? asked.number  // a sweep has limited it
-                                              : limitByTime(run.experiment, *run.simulator.clone());
-  const LocalModelSource local_models = makeLocalModelSource(run);
-  return chooseTrainingSamples(
-      {run.experiment, run.simulator, run.extractor, run.source, local_models, run.control}, most);
+                                              : limitByTime(study.experiment, *study.simulator.clone());
+  return chooseTrainingSamples(study, most);
 }
 
 /// The map of the choice where that was trained, else a new one.
-TrainedMap trainOrTake(const MapTrainingContext& context, SampleChoice& choice) {
-  return choice.training ? makeTrainedMap(context, std::move(*choice.training)) : trainChosenMap(context);
+TrainedMap trainOrTake(const Study& study, const PreparedData& data, SampleChoice& choice) {
+  return choice.training ? makeTrainedMap(study, data, std::move(*choice.training))
+                         : trainChosenMap(study, data);
 }
 
 /// The stages of a run, one after the other.
-RunSummary runStages(const RunContext& run, SampleChoice choice) {
-  const ExperimentSpec& experiment = run.experiment;
-  const LocalModelSource local_models = makeLocalModelSource(run);
-  const Samples samples = simulateSamples(run);
-  const PreparedData data = prepareData(experiment, run.extractor, samples.sets, local_models);
-  const MapTrainingContext training{experiment,    samples.sets,  run.simulator,
-                                    run.extractor, data.labelled, run.control};
-  TrainedMap trained = trainOrTake(training, choice);
-  MapEvaluation evaluated =
-      evaluateMap({experiment, run.simulator, run.extractor, data, trained, local_models, run.control});
-  ComparedMaps compared = compareMaps({training, evaluated.evaluation.limit_stddev, run.folder});
+RunSummary runStages(const Study& study, SampleChoice choice) {
+  Samples samples = simulateSamples(study);
+  RunSummary summary;
+  summary.parameters = study.experiment.model.parameters;
+  summary.failures = std::move(samples.failures);
+  summary.reused_samples = samples.sets.reused - choice.simulated;
+  summary.notes.append(choice.notes);
+  summary.notes.append(samples.sets.notes);
+
+  const PreparedData data =
+      choice.data ? std::move(*choice.data) : prepareData(study, std::move(samples.sets));
+  TrainedMap trained = trainOrTake(study, data, choice);
+  MapEvaluation evaluated = evaluateMap(study, data, trained);
+  ComparedMaps compared = compareMaps(study, data, evaluated.evaluation.limit_stddev);
   evaluated.evaluation.maps = std::move(compared.maps);
   evaluated.notes.append(compared.notes);
-  storeMap(run.folder / "maps.h5", experiment, run.extractor, evaluated.evaluation.refined, trained);
-  evaluated.notes.append(writeTrustPower(run, samples, data, trained));
+  storeMap(study.folder / "maps.h5", study.experiment, study.extractor, evaluated.evaluation.refined,
+           trained);
+  evaluated.notes.append(writeTrustPower(study, data, trained.online));
 
-  RunSummary summary;
-  summary.parameters = experiment.model.parameters;
   summary.test_indices = data.test_indices;
   summary.training = trained.summary;
-  summary.evaluation = evaluated.evaluation;
-  summary.failures = samples.failures;
-  summary.reused_samples = samples.sets.reused - choice.simulated;
-  for (const StageNotes& notes : {choice.notes, samples.sets.notes, trained.notes, evaluated.notes}) {
-    summary.notes.append(notes);
-  }
-  summary.notes.append(writeExamples(run, samples.sets.test, data.test_indices, evaluated.evaluation));
+  summary.notes.append(trained.notes);
+  summary.notes.append(evaluated.notes);
+  summary.notes.append(writeExamples(study, data, evaluated.evaluation));
+  summary.evaluation = std::move(evaluated.evaluation);
   summary.online = timeStage("time the inference of one measurement", summary.notes,
                              [&] { return timeOnlineUpdates(trained.online, data.labelled.test); });
   return summary;
@@ -242,13 +225,14 @@ RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& opt
   const SampleSource source =
       options.samples ? *options.samples : SampleSource{simulator, *stores.samples, stores.stencils.get()};
 
-  const RunContext asked{experiment, simulator, extractor, source, options.folder, control};
+  const FeatureNoise noise(extractor, ResponseNoise(experiment.noise, simulator.getLayout()),
+                           experiment.seed);
+  const Study asked{experiment, simulator, extractor, noise, &source, options.folder, control};
   SampleChoice choice = chooseSamples(asked, options);
   const ExperimentSpec chosen = experiment.design.train.samples.automatic
                                     ? takeTrainingSamples(experiment, choice.samples)
                                     : experiment;
-  RunSummary run =
-      runStages({chosen, simulator, extractor, source, options.folder, control}, std::move(choice));
+  RunSummary run = runStages(asked.with(chosen), std::move(choice));
   throwIfCancelled(control);
   run.gates = writeFolder(experiment, options, control.threads, run);
   return run;

@@ -37,13 +37,13 @@ void requireFewFailuresOf(const std::string& set, int samples, const std::vector
   }
 }
 
-StoredTrajectories simulateSet(const std::string& set, const Eigen::MatrixXd& points, double allowed_failures,
-                               const SampleSource& source, const RunControl& control, StageNotes& notes) {
-  MissingOptions options = makeMissingOptions("simulate " + set, 1, control);
-  options.allowed_failures = allowed_failures;
-  StoredTrajectories stored =
-      timeStage(fmt::format("simulate {} {} samples", points.cols(), set), notes,
-                [&] { return simulateMissing(source.store, source.simulator, points, options); });
+StoredTrajectories simulateSet(const std::string& set, const Eigen::MatrixXd& points, const Study& study,
+                               StageNotes& notes) {
+  MissingOptions options = makeMissingOptions("simulate " + set, 1, study.control);
+  options.allowed_failures = study.experiment.model.simulation.allowed_failures;
+  StoredTrajectories stored = timeStage(
+      fmt::format("simulate {} {} samples", points.cols(), set), notes,
+      [&] { return simulateMissing(study.source->store, study.source->simulator, points, options); });
   if (stored.stopped) {
     throw Interrupted(fmt::format("interrupted: {} of {} {} samples are simulated and kept",
                                   stored.counts.reused + stored.counts.simulated, points.cols(), set));
@@ -65,14 +65,11 @@ StoredTrajectories simulateSet(const std::string& set, const Eigen::MatrixXd& po
 
 }  // namespace
 
-SimulatedSets simulateSets(const ExperimentSpec& experiment, const SampleSource& source,
-                           const ResponseLayout& layout, const RunControl& control) {
-  const double allowed = experiment.model.simulation.allowed_failures;
+SimulatedSets simulateSets(const Study& study) {
+  const ResponseLayout& layout = study.simulator.getLayout();
   StageNotes notes;
-  StoredTrajectories train =
-      simulateSet("train", sampleTrainPoints(experiment), allowed, source, control, notes);
-  StoredTrajectories test =
-      simulateSet("test", sampleTestPoints(experiment), allowed, source, control, notes);
+  StoredTrajectories train = simulateSet("train", sampleTrainPoints(study.experiment), study, notes);
+  StoredTrajectories test = simulateSet("test", sampleTestPoints(study.experiment), study, notes);
   return {selectRows(std::move(train.trajectories), layout), selectRows(std::move(test.trajectories), layout),
           train.counts.reused + test.counts.reused, notes};
 }

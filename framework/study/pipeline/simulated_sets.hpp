@@ -3,11 +3,9 @@
 #include <filesystem>
 #include <vector>
 
-#include "framework/base/log/run_control.hpp"
 #include "framework/base/log/stage_notes.hpp"
-#include "framework/experiment/experiment_spec.hpp"
 #include "framework/results/run_summary.hpp"
-#include "framework/study/samples/sample_source.hpp"
+#include "framework/study/pipeline/study.hpp"
 
 namespace twinmap {
 
@@ -18,10 +16,9 @@ struct SimulatedSets {
   StageNotes notes{};
 };
 
-/// Simulates what the source does not have of both sets of an experiment. `layout` is that of the
-/// experiment's own features. Throws Interrupted if it is stopped while samples are missing.
-SimulatedSets simulateSets(const ExperimentSpec& experiment, const SampleSource& source,
-                           const ResponseLayout& layout, const RunControl& control);
+/// Simulates what the source does not have of both sets of a study, which has one. Throws Interrupted if it
+/// is stopped while samples are missing.
+SimulatedSets simulateSets(const Study& study);
 
 /// The failed samples of both sets.
 std::vector<FailedSample> listFailures(const SimulatedSets& sets);

@@ -6,6 +6,7 @@
 #include "framework/analysis/information_limit.hpp"
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/base/files/temporary_folder.hpp"
+#include "framework/data/features/experiment_features.hpp"
 #include "framework/data/sensitivity/fisher_information.hpp"
 #include "framework/estimation/gp/train_gp_map.hpp"
 #include "framework/experiment/check/check_experiment.hpp"
@@ -27,78 +28,52 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// What the results of a run follow from.
-struct Inputs {
-  const ExperimentSpec& experiment;
-  const Simulator& simulator;
-  const FeatureExtractor& extractor;
-  const SimulatedSets& sets;
-  const PreparedData& data;
-  int threads;
-};
-
 /// The limit of all test samples as the file has it, and of `chosen` ones computed again.
-MatrixXd calcLimit(const Inputs& inputs, const std::vector<int>& chosen,
+MatrixXd calcLimit(const Study& study, const PreparedData& data, const std::vector<int>& chosen,
                    const std::filesystem::path& predictions) {
-  if (!hasInformationLimit(inputs.experiment, inputs.data.labelled.test)) {
+  if (!hasInformationLimit(study.experiment, data.labelled.test)) {
     return {};
   }
-  const std::vector<ParameterSpec>& parameters = inputs.experiment.model.parameters;
-  const MatrixXd& truth = inputs.data.labelled.test.parameters;
+  const std::vector<ParameterSpec>& parameters = study.experiment.model.parameters;
+  const MatrixXd& truth = data.labelled.test.parameters;
   MatrixXd limit = readPredictionsFile(predictions, collectNames(parameters)).limit_stddev;
   if (limit.rows() != truth.rows() || limit.cols() != truth.cols()) {
     limit.setConstant(truth.rows(), truth.cols(), std::numeric_limits<double>::quiet_NaN());
   }
   std::vector<Index> columns;
   for (const int sample : chosen) {
-    const auto found = std::find(inputs.data.test_indices.begin(), inputs.data.test_indices.end(), sample);
-    if (found != inputs.data.test_indices.end()) {
-      columns.push_back(found - inputs.data.test_indices.begin());
+    const auto found = std::find(data.test_indices.begin(), data.test_indices.end(), sample);
+    if (found != data.test_indices.end()) {
+      columns.push_back(found - data.test_indices.begin());
     }
   }
   if (!columns.empty()) {
-    const MatrixXd points = inputs.data.labelled.test.collectPoints()(Eigen::all, columns);
-    const auto models = calcLocalModels(inputs.simulator, inputs.extractor,
-                                        collectUnknown(inputs.experiment.model), points, inputs.threads);
-    limit(Eigen::all, columns) = calcInformationLimit(models, inputs.data.noise, parameters).stddev;
+    const MatrixXd points = data.labelled.test.collectPoints()(Eigen::all, columns);
+    limit(Eigen::all, columns) =
+        calcInformationLimit(calcLocalModels(study, points), study.noise, parameters).stddev;
   }
   return limit;
 }
 
-RunControl makeControl(const Inputs& inputs) {
-  RunControl control;
-  control.threads = inputs.threads;
-  return control;
-}
-
 /// Processes are fitted at the hyperparameters of the file, without a search; a surrogate is trained again.
-TrainedMap trainAgain(const Inputs& inputs, const std::filesystem::path& file) {
-  const RunControl control = makeControl(inputs);
-  const MapTrainingContext context{inputs.experiment, inputs.sets,          inputs.simulator,
-                                   inputs.extractor,  inputs.data.labelled, control};
-  const LabelledFeatures& train = inputs.data.labelled.train;
+TrainedMap trainAgain(const Study& study, const PreparedData& data, const std::filesystem::path& file) {
   if (!holdsProcesses(file)) {
-    return trainChosenMap(context);
+    return trainChosenMap(study, data);
   }
+  const ExperimentSpec& experiment = study.experiment;
+  const LabelledFeatures& train = data.labelled.train;
   GpMapTraining fitted =
-      refitGpMap(readMapsFile(file).map, *inputs.experiment.inverse_map.findProcesses(),
-                 inputs.experiment.transform, train, inputs.threads, inputs.experiment.model.inputs);
-  return makeTrainedMap(context, makeTraining(inputs.experiment, train, std::move(fitted)));
+      refitGpMap(readMapsFile(file).map, *experiment.inverse_map.findProcesses(), experiment.transform, train,
+                 study.control.threads, experiment.model.inputs);
+  return makeTrainedMap(study, data, makeTraining(experiment, train, std::move(fitted)));
 }
 
-std::vector<Refined> refineAgain(const Inputs& inputs, const TrainedMap& map) {
-  const RunControl control = makeControl(inputs);
-  return refineTestSamples(
-             {inputs.experiment, inputs.simulator, inputs.extractor, inputs.data, map.online, control})
-      .refined;
-}
-
-RunSummary summarize(const Inputs& inputs, const TrainedMap& map, const std::vector<Refined>& refined,
-                     const MatrixXd& limit) {
-  const LabelledFeatures& test = inputs.data.labelled.test;
+RunSummary summarize(const Study& study, const PreparedData& data, const TrainedMap& map,
+                     const std::vector<Refined>& refined, const MatrixXd& limit) {
+  const LabelledFeatures& test = data.labelled.test;
   RunSummary run;
-  run.parameters = inputs.experiment.model.parameters;
-  run.test_indices = inputs.data.test_indices;
+  run.parameters = study.experiment.model.parameters;
+  run.test_indices = data.test_indices;
   run.evaluation = evaluateAnswers(
       run.parameters, test.parameters,
       makeAnswers(map.predict(test.features, test.inputs), map.residual_correlation, refined), limit);
@@ -123,15 +98,16 @@ std::string findDifference(const std::filesystem::path& file, const std::string&
   return file.extension() == ".csv" ? findCsvDifference(text, expected) : findTextDifference(text, expected);
 }
 
-void checkMapAndTables(const Inputs& inputs, const std::vector<int>& limits, Verification& verification) {
+void checkMapAndTables(const Study& study, const PreparedData& data, const std::vector<int>& limits,
+                       Verification& verification) {
   const std::filesystem::path& folder = verification.folder;
   std::optional<TrainedMap> map;
   std::vector<Refined> refined;
   verification.check("maps.h5: fitted again", [&] {
-    map = trainAgain(inputs, folder / "maps.h5");
-    refined = refineAgain(inputs, *map);
+    map = trainAgain(study, data, folder / "maps.h5");
+    refined = refineTestSamples(study, data, map->online).refined;
     const TemporaryFolder temporary;
-    storeMap(temporary.getPath() / "maps.h5", inputs.experiment, inputs.extractor, refined, *map);
+    storeMap(temporary.getPath() / "maps.h5", study.experiment, study.extractor, refined, *map);
     return findHdf5Difference(folder / "maps.h5", temporary.getPath() / "maps.h5");
   });
   if (!map) {
@@ -140,7 +116,7 @@ void checkMapAndTables(const Inputs& inputs, const std::vector<int>& limits, Ver
   }
   RunSummary run;
   verification.check("predictions.csv: all test samples inferred again", [&] {
-    run = summarize(inputs, *map, refined, calcLimit(inputs, limits, folder / "predictions.csv"));
+    run = summarize(study, data, *map, refined, calcLimit(study, data, limits, folder / "predictions.csv"));
     return findDifference(folder / "predictions.csv", makePredictionsCsv(run));
   });
   if (run.evaluation.metrics.empty()) {
@@ -159,11 +135,11 @@ void checkResults(const ExperimentSpec& experiment, const Simulator& simulator, 
                   const std::vector<int>& limits, int threads, Verification& verification) {
   const FeatureExtractor extractor = makeExtractor(experiment, simulator.getLayout());
   sets = failIncompleteSamples(experiment, extractor, std::move(sets));
-  const LocalModelSource local_models = [&](const MatrixXd& points) {
-    return calcLocalModels(simulator, extractor, collectUnknown(experiment.model), points, threads);
-  };
-  const PreparedData data = prepareData(experiment, extractor, sets, local_models);
-  checkMapAndTables({experiment, simulator, extractor, sets, data, threads}, limits, verification);
+  const FeatureNoise noise(extractor, ResponseNoise(experiment.noise, sets.train.layout), experiment.seed);
+  RunControl control;
+  control.threads = threads;
+  const Study study{experiment, simulator, extractor, noise, nullptr, verification.folder, control};
+  checkMapAndTables(study, prepareData(study, std::move(sets)), limits, verification);
 }
 
 }  // namespace twinmap

@@ -68,29 +68,28 @@ bool hasFewFailures(const ExperimentSpec& experiment, const SimulatedSets& sets)
   return failed <= experiment.model.simulation.allowed_failures * total;
 }
 
-/// Simulates and trains with as many samples as `experiment` says. No training where the samples do not
-/// permit it; what is wrong with them the run itself says.
-void tryOut(const ChoiceContext& context, const ExperimentSpec& experiment, SampleChoice& choice) {
-  SimulatedSets sets =
-      simulateSets(experiment, context.source, context.simulator.getLayout(), context.control);
-  choice.samples = experiment.design.train.samples;
+/// Simulates and trains with as many samples as the study says. No training where the samples do not permit
+/// it; what is wrong with them the run itself says.
+void tryOut(const Study& study, SampleChoice& choice) {
+  SimulatedSets sets = simulateSets(study);
+  choice.samples = study.experiment.design.train.samples;
   choice.simulated += static_cast<int>(sets.train.statuses.size() + sets.test.statuses.size()) - sets.reused;
   choice.notes.append(sets.notes);
   if (choice.training) {
     choice.notes.append({{}, choice.training->notes.times});
     choice.training.reset();
   }
-  sets = failIncompleteSamples(experiment, context.extractor, std::move(sets));
-  if (!hasFewFailures(experiment, sets)) {
+  choice.data.reset();
+  sets = failIncompleteSamples(study.experiment, study.extractor, std::move(sets));
+  if (!hasFewFailures(study.experiment, sets)) {
     return;
   }
-  const PreparedData data = prepareData(experiment, context.extractor, sets, context.local_models);
-  const LabelledFeatures& train = data.labelled.train;
-  if (findSurrogateObstacle(experiment.model, train.features.cols() / train.replicates,
+  choice.data = prepareData(study, std::move(sets));
+  const LabelledFeatures& train = choice.data->labelled.train;
+  if (findSurrogateObstacle(study.experiment.model, train.features.cols() / train.replicates,
                             train.noise_covariance)
           .empty()) {
-    choice.training =
-        trainSurrogateMap(experiment, sets, context.simulator, context.extractor, train, context.control);
+    choice.training = trainSurrogateMap(study, *choice.data);
   }
 }
 
@@ -112,17 +111,19 @@ int limitByTime(const ExperimentSpec& experiment, Simulator& simulator) {
   return static_cast<int>(std::clamp<double>(fitting, kFirst, most));
 }
 
-SampleChoice chooseTrainingSamples(const ChoiceContext& context, int most) {
+SampleChoice chooseTrainingSamples(const Study& study, int most) {
   SampleChoice choice;
   for (int samples = kFirst;; samples *= 2) {
-    tryOut(context, takeTrainingSamples(context.experiment, samples), choice);
+    const ExperimentSpec tried = takeTrainingSamples(study.experiment, samples);
+    tryOut(study.with(tried), choice);
     if (!choice.training) {
+      choice.data.reset();
       choice.samples = std::min(most, kOfProcesses);
       logInfo(fmt::format("training samples: {}, because no surrogate can tell what more are worth",
                           choice.samples));
       return choice;
     }
-    const std::string reason = findReason(samples, most, getSeconds(context.experiment), *choice.training);
+    const std::string reason = findReason(samples, most, getSeconds(study.experiment), *choice.training);
     if (!reason.empty()) {
       logInfo(fmt::format("training samples: {} (automatic): {}", samples, reason));
       return choice;

@@ -2,10 +2,8 @@
 
 #include <optional>
 
-#include "framework/base/log/run_control.hpp"
 #include "framework/study/pipeline/prepare_data.hpp"
 #include "framework/study/pipeline/training/train_surrogate_map.hpp"
-#include "framework/study/samples/sample_source.hpp"
 
 namespace twinmap {
 
@@ -14,17 +12,8 @@ struct SampleChoice {
   int samples = 0;
   int simulated = 0;  ///< samples of both sets that the source did not have
   StageNotes notes;
-  std::optional<SurrogateMapTraining> training;  ///< on so many samples; none where there is no surrogate
-};
-
-/// What a choice looks at. The source's simulator may know more times than `extractor` reads.
-struct ChoiceContext {
-  const ExperimentSpec& experiment;  ///< with an automatic number of training samples
-  const Simulator& simulator;
-  const FeatureExtractor& extractor;
-  const SampleSource& source;
-  const LocalModelSource& local_models;
-  const RunControl& control;
+  std::optional<PreparedData> data;              ///< of so many samples, where they were simulated
+  std::optional<SurrogateMapTraining> training;  ///< on those; none where there is no surrogate
 };
 
 /// The most training samples that an experiment's design.train.time allows, at least 100. In lanes they take
@@ -32,8 +21,8 @@ struct ChoiceContext {
 /// the first two points are timed.
 int limitByTime(const ExperimentSpec& experiment, Simulator& simulator);
 
-/// Trains surrogates on 100, 200, 400 ... samples, the shorter set being the beginning of the longer one,
-/// until
+/// For a study with an automatic number of training samples: trains surrogates on 100, 200, 400 ... samples,
+/// the shorter set being the beginning of the longer one, until
 /// - all parameters are near the limit, or from 100 on a doubling took their errors to no less than 0.7
 ///   (SimulationGain), by cross-validation;
 /// - a surrogate of twice as many would take longer than design.train.time, at a nominal
@@ -41,6 +30,6 @@ int limitByTime(const ExperimentSpec& experiment, Simulator& simulator);
 /// - `most` are reached.
 /// Where no surrogate can be trained, 250, which is what processes from features to parameters take. Tells
 /// the log. Throws Interrupted, std::runtime_error as simulateSets() and trainSurrogateMap().
-SampleChoice chooseTrainingSamples(const ChoiceContext& context, int most);
+SampleChoice chooseTrainingSamples(const Study& study, int most);
 
 }  // namespace twinmap

@@ -34,37 +34,33 @@ std::vector<std::string> nameMaps(const std::vector<InverseMapSpec>& maps) {
 }
 
 /// Writes the map; returns how many bytes that took.
-std::uintmax_t store(const fs::path& file, const MapTrainingContext& context, TrainedMap& map) {
-  storeMap(file, context.experiment, context.extractor, {}, map);
+std::uintmax_t store(const fs::path& file, const Study& study, TrainedMap& map) {
+  storeMap(file, study.experiment, study.extractor, {}, map);
   return fs::file_size(file);
 }
 
-MapComparison compare(const std::string& name, const MapComparisonContext& context,
-                      const MapTrainingContext& training) {
-  const LabelledFeatures& test = training.labelled.test;
+MapComparison compare(const std::string& name, const Study& study, const PreparedData& data,
+                      const Eigen::MatrixXd& limit_stddev) {
+  const LabelledFeatures& test = data.labelled.test;
   StageNotes notes;
-  TrainedMap map = timeStage("train " + name, notes, [&] { return trainChosenMap(training); });
+  TrainedMap map = timeStage("train " + name, notes, [&] { return trainChosenMap(study, data); });
   const Predictions predictions = map.predict(test.features, test.inputs);
   const Evaluation evaluation =
-      evaluateAnswers(training.experiment.model.parameters, test.parameters,
-                      makeAnswers(predictions, map.residual_correlation, {}), context.limit_stddev);
+      evaluateAnswers(study.experiment.model.parameters, test.parameters,
+                      makeAnswers(predictions, map.residual_correlation, {}), limit_stddev);
   return {name,
           evaluation.metrics,
           evaluation.joint,
           notes.times.back().seconds,
           timeOnlineUpdates(map.online, test),
-          store(context.folder / "maps" / (name + ".h5"), training, map)};
+          store(study.folder / "maps" / (name + ".h5"), study, map)};
 }
 
 /// Compares a map, or tells why it cannot be had.
-void tryMap(const std::string& name, const InverseMapSpec& spec, const MapComparisonContext& context,
-            ComparedMaps& compared) {
-  ExperimentSpec experiment = context.training.experiment;
-  experiment.inverse_map = spec;
-  const MapTrainingContext& all = context.training;
+void tryMap(const std::string& name, const Study& study, const PreparedData& data,
+            const Eigen::MatrixXd& limit_stddev, ComparedMaps& compared) {
   try {
-    compared.maps.push_back(compare(
-        name, context, {experiment, all.sets, all.simulator, all.extractor, all.labelled, all.control}));
+    compared.maps.push_back(compare(name, study, data, limit_stddev));
   } catch (const Interrupted&) {
     throw;
   } catch (const std::exception& error) {
@@ -74,18 +70,20 @@ void tryMap(const std::string& name, const InverseMapSpec& spec, const MapCompar
 
 }  // namespace
 
-ComparedMaps compareMaps(const MapComparisonContext& context) {
+ComparedMaps compareMaps(const Study& study, const PreparedData& data, const Eigen::MatrixXd& limit_stddev) {
   ComparedMaps compared;
-  const std::vector<InverseMapSpec>& maps = context.training.experiment.evaluation.maps;
+  const std::vector<InverseMapSpec>& maps = study.experiment.evaluation.maps;
   if (maps.empty()) {
     return compared;
   }
   const std::vector<std::string> names = nameMaps(maps);
-  fs::create_directories(context.folder / "maps");
+  fs::create_directories(study.folder / "maps");
   compared.notes = timeStage(fmt::format("compare {} maps", maps.size()), compared.notes, [&] {
     ComparedMaps tried;
     for (std::size_t i = 0; i < maps.size(); ++i) {
-      tryMap(names[i], maps[i], context, tried);
+      ExperimentSpec experiment = study.experiment;
+      experiment.inverse_map = maps[i];
+      tryMap(names[i], study.with(experiment), data, limit_stddev, tried);
     }
     compared.maps = std::move(tried.maps);
     return tried.notes;

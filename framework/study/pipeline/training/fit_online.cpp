@@ -27,41 +27,42 @@ std::vector<Index> findComplete(const MatrixXd& features) {
 }
 
 /// Test responses, each with several draws of the noise.
-void simulateMeasurements(const ExperimentSpec& experiment, const SimulatedSets& sets,
-                          const FeatureExtractor& extractor, TrustTraining& training) {
-  const std::vector<int> samples = findSuccessful(sets.test);
-  const MatrixXd responses = sets.test.responses(Eigen::all, samples);
+void simulateMeasurements(const Study& study, const Trajectories& test, TrustTraining& training) {
+  const ExperimentSpec& experiment = study.experiment;
+  const std::vector<int> samples = findSuccessful(test);
+  const MatrixXd responses = test.responses(Eigen::all, samples);
   const auto count = std::max(1, static_cast<int>(samples.size()));
   const int draws = std::max(1, countReferences(experiment.design.train.samples) / count);
-  const ResponseNoise noise(experiment.noise, sets.test.layout);
+  const ResponseNoise noise(experiment.noise, test.layout);
   const RandomStream random(experiment.seed, RandomPurpose::kTrust);
-  MatrixXd measured(extractor.getFeatureCount(), responses.cols() * draws);
+  MatrixXd measured(study.extractor.getFeatureCount(), responses.cols() * draws);
   for (int r = 0; r < draws; ++r) {
     measured.middleCols(r * responses.cols(), responses.cols()) =
-        extractor.extract(addNoise(responses, noise, random, r));
+        study.extractor.extract(addNoise(responses, noise, random, r));
   }
   const std::vector<Index> complete = findComplete(measured);
   const auto known = static_cast<Index>(experiment.model.inputs.size());
   const MatrixXd inputs =
-      MatrixXd(sets.test.parameters(Eigen::all, samples).bottomRows(known)).replicate(1, draws);
+      MatrixXd(test.parameters(Eigen::all, samples).bottomRows(known)).replicate(1, draws);
   training.measured = measured(Eigen::all, complete);
   training.known = inputs(Eigen::all, complete);
 }
 
-TrustTraining makeTrustTraining(const OnlineContext& context) {
+TrustTraining makeTrustTraining(const Study& study, const PreparedData& data) {
   constexpr std::size_t kMaxSimulations = 500;
-  const auto& [experiment, sets, extractor, labelled, control] = context;
-  std::vector<int> samples = findSuccessful(sets.train);
+  const ExperimentSpec& experiment = study.experiment;
+  const Trajectories& train = data.sets.train;
+  std::vector<int> samples = findSuccessful(train);
   samples.resize(std::min(samples.size(), kMaxSimulations));
   TrustTraining training;
   training.seed = experiment.seed;
   training.sampled = collectSampled(experiment.model);
   training.unknown = static_cast<Index>(collectUnknown(experiment.model).size());
-  training.infos = extractor.getInfos();
-  training.points = sets.train.parameters(Eigen::all, samples);
-  training.clean_features = extractor.extract(sets.train.responses(Eigen::all, samples));
-  training.noise_covariance = labelled.train.noise_covariance;
-  simulateMeasurements(experiment, sets, extractor, training);
+  training.infos = study.extractor.getInfos();
+  training.points = train.parameters(Eigen::all, samples);
+  training.clean_features = study.extractor.extract(train.responses(Eigen::all, samples));
+  training.noise_covariance = data.labelled.train.noise_covariance;
+  simulateMeasurements(study, data.sets.test, training);
   return training;
 }
 
@@ -76,17 +77,18 @@ ForwardSurrogate fitSurrogate(const TrustTraining& training, const TrainingContr
 
 /// Adds a trust model to a map that measurements are inferred with. Without a forward surrogate one is
 /// fitted.
-OnlineFit fitTrust(const OnlineContext& context, AnyMap map,
+OnlineFit fitTrust(const Study& study, const PreparedData& data, AnyMap map,
                    std::shared_ptr<const ForwardSurrogate> forward) {
   OnlineFit fit{{std::move(map), {}}};
   try {
-    const TrustTraining training = makeTrustTraining(context);
+    const TrustTraining training = makeTrustTraining(study, data);
     fit.model.trust = trainInterruptibly([&] {
       if (forward == nullptr) {
-        forward = std::make_shared<const ForwardSurrogate>(fitSurrogate(training, context.control));
+        forward =
+            std::make_shared<const ForwardSurrogate>(fitSurrogate(training, study.getTrainingControl()));
       }
-      return fitTrustModel(training, forward, OnlineMap(fit.model.map), context.experiment.trust.level,
-                           context.control);
+      return fitTrustModel(training, forward, OnlineMap(fit.model.map), study.experiment.trust.level,
+                           study.getTrainingControl());
     });
   } catch (const std::invalid_argument& error) {
     fit.notes.warn(Severity::kMisleading,
@@ -103,17 +105,18 @@ int countReferences(int train_samples) {
   return std::clamp(train_samples, kMin / kPerSimulation, kMax / kPerSimulation) * kPerSimulation;
 }
 
-OnlineFit fitOnline(const OnlineContext& context, const GpMap& map) {
-  return fitTrust(context, compressMap(map), nullptr);
+OnlineFit fitOnline(const Study& study, const PreparedData& data, const GpMap& map) {
+  return fitTrust(study, data, compressMap(map), nullptr);
 }
 
-OnlineFit fitOnline(const OnlineContext& context, std::shared_ptr<const Surrogate> surrogate) {
-  return fitTrust(context, surrogate, surrogate->forward);
+OnlineFit fitOnline(const Study& study, const PreparedData& data,
+                    std::shared_ptr<const Surrogate> surrogate) {
+  return fitTrust(study, data, surrogate, surrogate->forward);
 }
 
-OnlineFit fitOnline(const OnlineContext& context, std::shared_ptr<const NetworkMap> map,
+OnlineFit fitOnline(const Study& study, const PreparedData& data, std::shared_ptr<const NetworkMap> map,
                     std::shared_ptr<const ForwardSurrogate> forward) {
-  return fitTrust(context, std::move(map), std::move(forward));
+  return fitTrust(study, data, std::move(map), std::move(forward));
 }
 
 }  // namespace twinmap

@@ -2,11 +2,8 @@
 
 #include <memory>
 
-#include "framework/data/features/feature_extractor.hpp"
 #include "framework/estimation/trained/online_model.hpp"
-#include "framework/estimation/training_control.hpp"
 #include "framework/study/pipeline/prepare_data.hpp"
-#include "framework/study/pipeline/simulated_sets.hpp"
 
 namespace twinmap {
 
@@ -19,28 +16,19 @@ struct OnlineFit {
 /// Of how many simulated measurements a trust model's references are made: as fine as the map deserves.
 int countReferences(int train_samples);
 
-/// What an online model is fitted to.
-struct OnlineContext {
-  const ExperimentSpec& experiment;
-  const SimulatedSets& sets;
-  const FeatureExtractor& extractor;
-  const LabelledSets& labelled;
-  TrainingControl control;
-};
-
 /// Compresses a map of processes and fits its trust model: a forward surrogate to the clean responses of at
 /// most the first 500 training samples (its size and the time of a judgement grow with their number squared),
 /// the reference distributions to some 2000 simulated measurements (fewer below 200 training samples), the
 /// test responses with noise drawn for that alone. Does not depend on the threads. Cost: that of fitForward()
 /// and some 2000 inferences of some ms. Throws Interrupted.
-OnlineFit fitOnline(const OnlineContext& context, const GpMap& map);
+OnlineFit fitOnline(const Study& study, const PreparedData& data, const GpMap& map);
 
 /// The same of a surrogate, which is its own trust model's.
-OnlineFit fitOnline(const OnlineContext& context, std::shared_ptr<const Surrogate> surrogate);
+OnlineFit fitOnline(const Study& study, const PreparedData& data, std::shared_ptr<const Surrogate> surrogate);
 
 /// The same of a network. `forward`: a surrogate that it learnt from, which is then the trust model's; null
 /// to fit one.
-OnlineFit fitOnline(const OnlineContext& context, std::shared_ptr<const NetworkMap> map,
+OnlineFit fitOnline(const Study& study, const PreparedData& data, std::shared_ptr<const NetworkMap> map,
                     std::shared_ptr<const ForwardSurrogate> forward);
 
 }  // namespace twinmap

@@ -59,14 +59,14 @@ Training makeTraining(const ExperimentSpec& experiment, const LabelledFeatures& 
   return training;
 }
 
-Training trainMap(const ExperimentSpec& experiment, const LabelledFeatures& samples,
-                  const RunControl& control) {
+Training trainMap(const Study& study, const LabelledFeatures& samples) {
+  const ExperimentSpec& experiment = study.experiment;
   StageNotes notes;
   GpMapTraining trained = timeStage("train the inverse map", notes, [&] {
     return trainInterruptibly([&] {
       return trainGpMap(*experiment.inverse_map.findProcesses(), experiment.transform,
-                        collectNames(experiment.model.parameters), samples,
-                        {control.threads, control.abandon}, experiment.model.inputs);
+                        collectNames(experiment.model.parameters), samples, study.getTrainingControl(),
+                        experiment.model.inputs);
     });
   });
   Training training = makeTraining(experiment, samples, std::move(trained));

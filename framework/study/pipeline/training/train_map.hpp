@@ -1,11 +1,10 @@
 #pragma once
 
-#include "framework/base/log/run_control.hpp"
 #include "framework/base/log/stage_notes.hpp"
 #include "framework/data/features/labelled_features.hpp"
 #include "framework/estimation/gp/train_gp_map.hpp"
-#include "framework/experiment/experiment_spec.hpp"
 #include "framework/results/run_summary.hpp"
+#include "framework/study/pipeline/study.hpp"
 
 namespace twinmap {
 
@@ -22,7 +21,6 @@ Training makeTraining(const ExperimentSpec& experiment, const LabelledFeatures& 
 
 /// Trains the inverse map of an experiment on its training samples (trainGpMap). Throws Interrupted if it is
 /// stopped, after one evaluation of the likelihood at most.
-Training trainMap(const ExperimentSpec& experiment, const LabelledFeatures& samples,
-                  const RunControl& control);
+Training trainMap(const Study& study, const LabelledFeatures& samples);
 
 }  // namespace twinmap

@@ -15,42 +15,33 @@ namespace {
 
 /// Makes the map ready for measurements.
 template <class... Map>
-OnlineFit prepareOnline(const MapTrainingContext& context, const Map&... map) {
+OnlineFit prepareOnline(const Study& study, const PreparedData& data, const Map&... map) {
   StageNotes notes;
-  OnlineFit online = timeStage("prepare for measurements", notes, [&] {
-    return fitOnline({context.experiment,
-                      context.sets,
-                      context.extractor,
-                      context.labelled,
-                      {context.control.threads, context.control.abandon}},
-                     map...);
-  });
+  OnlineFit online =
+      timeStage("prepare for measurements", notes, [&] { return fitOnline(study, data, map...); });
   notes.append(online.notes);
   online.notes = notes;
   return online;
 }
 
 /// Trains a surrogate. What is inferred with it does not depend on the threads.
-TrainedMap trainForward(const MapTrainingContext& context) {
-  return makeTrainedMap(
-      context, trainSurrogateMap(context.experiment, context.sets, context.simulator, context.extractor,
-                                 context.labelled.train, context.control));
+TrainedMap trainForward(const Study& study, const PreparedData& data) {
+  return makeTrainedMap(study, data, trainSurrogateMap(study, data));
 }
 
 /// Trains one Gaussian process per parameter.
-TrainedMap trainProcesses(const MapTrainingContext& context) {
-  return makeTrainedMap(context, trainMap(context.experiment, context.labelled.train, context.control));
+TrainedMap trainProcesses(const Study& study, const PreparedData& data) {
+  return makeTrainedMap(study, data, trainMap(study, data.labelled.train));
 }
 
 /// Trains a neural network.
-TrainedMap trainNeurally(const MapTrainingContext& context) {
-  NetworkOutcome outcome = trainNetwork({context.experiment, context.sets, context.simulator,
-                                         context.extractor, context.labelled.train, context.control});
+TrainedMap trainNeurally(const Study& study, const PreparedData& data) {
+  NetworkOutcome outcome = trainNetwork(study, data);
   const auto map = std::make_shared<const NetworkMap>(std::move(outcome.map));
-  OnlineFit online = prepareOnline(context, map, outcome.forward);
+  OnlineFit online = prepareOnline(study, data, map, outcome.forward);
   outcome.notes.append(online.notes);
-  const auto predict = [map, threads = context.control.threads](const Eigen::MatrixXd& features,
-                                                                const Eigen::MatrixXd& inputs) {
+  const auto predict = [map, threads = study.control.threads](const Eigen::MatrixXd& features,
+                                                              const Eigen::MatrixXd& inputs) {
     return map->predict(features, inputs, threads);
   };
   return {"network",
@@ -63,21 +54,21 @@ TrainedMap trainNeurally(const MapTrainingContext& context) {
           {}};
 }
 
-TrainedMap trainAutomatically(const MapTrainingContext& context) {
-  const LabelledFeatures& train = context.labelled.train;
+TrainedMap trainAutomatically(const Study& study, const PreparedData& data) {
+  const LabelledFeatures& train = data.labelled.train;
   const std::string obstacle = findSurrogateObstacle(
-      context.experiment.model, train.features.cols() / train.replicates, train.noise_covariance);
+      study.experiment.model, train.features.cols() / train.replicates, train.noise_covariance);
   if (obstacle.empty()) {
-    return trainForward(context);
+    return trainForward(study, data);
   }
   logInfo(fmt::format("inverse map: Gaussian processes, because {}", obstacle));
-  return trainProcesses(context);
+  return trainProcesses(study, data);
 }
 
 }  // namespace
 
-TrainedMap makeTrainedMap(const MapTrainingContext& context, Training training) {
-  OnlineFit online = prepareOnline(context, training.map);
+TrainedMap makeTrainedMap(const Study& study, const PreparedData& data, Training training) {
+  OnlineFit online = prepareOnline(study, data, training.map);
   training.notes.append(online.notes);
   const auto map = std::make_shared<const GpMap>(std::move(training.map));
   const auto predict = [map](const Eigen::MatrixXd& features, const Eigen::MatrixXd& inputs) {
@@ -93,33 +84,33 @@ TrainedMap makeTrainedMap(const MapTrainingContext& context, Training training) 
           *map};
 }
 
-TrainedMap makeTrainedMap(const MapTrainingContext& context, SurrogateMapTraining training) {
+TrainedMap makeTrainedMap(const Study& study, const PreparedData& data, SurrogateMapTraining training) {
   const auto surrogate = std::make_shared<const Surrogate>(std::move(training.surrogate));
-  OnlineFit online = prepareOnline(context, surrogate);
+  OnlineFit online = prepareOnline(study, data, surrogate);
   training.notes.append(online.notes);
-  const auto predict = [surrogate, threads = context.control.threads](const Eigen::MatrixXd& features,
-                                                                      const Eigen::MatrixXd& inputs) {
+  const auto predict = [surrogate, threads = study.control.threads](const Eigen::MatrixXd& features,
+                                                                    const Eigen::MatrixXd& inputs) {
     return surrogate->predict(features, inputs, threads);
   };
   return {"surrogate",
           predict,
           surrogate->validation.residual_correlation,
-          fitTransform(context.experiment.transform, context.labelled.train),
+          fitTransform(study.experiment.transform, data.labelled.train),
           std::move(training.summary),
           std::move(training.notes),
           std::move(online.model),
           {}};
 }
 
-TrainedMap trainChosenMap(const MapTrainingContext& context) {
-  const InverseMapSpec& spec = context.experiment.inverse_map;
+TrainedMap trainChosenMap(const Study& study, const PreparedData& data) {
+  const InverseMapSpec& spec = study.experiment.inverse_map;
   if (spec.isAutomatic()) {
-    return trainAutomatically(context);
+    return trainAutomatically(study, data);
   }
   if (spec.findNetwork() != nullptr) {
-    return trainNeurally(context);
+    return trainNeurally(study, data);
   }
-  return spec.findGp() != nullptr ? trainProcesses(context) : trainForward(context);
+  return spec.findGp() != nullptr ? trainProcesses(study, data) : trainForward(study, data);
 }
 
 }  // namespace twinmap

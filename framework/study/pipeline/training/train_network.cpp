@@ -24,42 +24,42 @@ using Eigen::MatrixXd;
 
 constexpr double kMuchExcess = 1.1;  // beyond it a longer training is worth its minute
 
-const NetworkMapSpec& getSpec(const NetworkContext& context) {
-  return *context.experiment.inverse_map.findNetwork();
+const NetworkMapSpec& getSpec(const Study& study) {
+  return *study.experiment.inverse_map.findNetwork();
 }
 
-int countSimulations(const NetworkContext& context) {
-  return static_cast<int>(context.samples.features.cols() / context.samples.replicates);
+int countSimulations(const LabelledFeatures& samples) {
+  return static_cast<int>(samples.features.cols() / samples.replicates);
 }
 
 /// Why no surrogate is to be tried; empty if one is.
-std::string findReasonForSimulations(const NetworkContext& context) {
-  const int n = countSimulations(context);
-  if (getSpec(context).samples_from == NetworkSamples::kSimulations) {
+std::string findReasonForSimulations(const Study& study, const PreparedData& data) {
+  const int n = countSimulations(data.labelled.train);
+  if (getSpec(study).samples_from == NetworkSamples::kSimulations) {
     return "asked for";
   }
-  if (getSpec(context).samples_from == NetworkSamples::kSurrogate) {
+  if (getSpec(study).samples_from == NetworkSamples::kSurrogate) {
     return "";
   }
-  if (getSpec(context).bayesian == NetworkBayes::kHamiltonian) {
+  if (getSpec(study).bayesian == NetworkBayes::kHamiltonian) {
     return "a Hamiltonian sampler draws weights given the simulations";
   }
-  if (!getSpec(context).mayLearnFromSurrogate(n)) {
+  if (!getSpec(study).mayLearnFromSurrogate(n)) {
     return fmt::format("a surrogate takes no more than {} of {} simulations", NetworkMapSpec::kMaxOfSurrogate,
                        n);
   }
-  return findSurrogateObstacle(context.experiment.model, n, context.samples.noise_covariance);
+  return findSurrogateObstacle(study.experiment.model, n, data.labelled.train.noise_covariance);
 }
 
 /// The surrogate to learn from, if there is to be one.
-std::optional<SurrogateMapTraining> findTeacher(const NetworkContext& context, StageNotes& notes) {
-  const std::string reason = findReasonForSimulations(context);
+std::optional<SurrogateMapTraining> findTeacher(const Study& study, const PreparedData& data,
+                                                StageNotes& notes) {
+  const std::string reason = findReasonForSimulations(study, data);
   if (!reason.empty()) {
     logInfo(fmt::format("the network learns from the simulations: {}", reason));
     return std::nullopt;
   }
-  SurrogateMapTraining teacher = trainSurrogateMap(context.experiment, context.sets, context.simulator,
-                                                   context.extractor, context.samples, context.control);
+  SurrogateMapTraining teacher = trainSurrogateMap(study, data);
   notes.append(teacher.notes);
   logInfo(fmt::format("the network learns from a surrogate, which promises {:.2f} of what measurements allow",
                       teacher.surrogate.validation.limit_ratio.maxCoeff()));
@@ -70,11 +70,11 @@ std::optional<SurrogateMapTraining> findTeacher(const NetworkContext& context, S
 /// surrogate does. Where surrogates of 250 promised 2.4 to 7.7 times the limit, networks of 10000 simulations
 /// were nearer to it (four storeys, top, chain, chaotic pendulum), and where they promised 1.8 one of two
 /// (end stops, not the arm).
-void suggestSimulations(const Surrogate& teacher, const NetworkContext& context, StageNotes& notes) {
+void suggestSimulations(const Surrogate& teacher, const Study& study, StageNotes& notes) {
   constexpr double kFar = 2.0;
   constexpr int kMany = 10000;
   const double ratio = teacher.validation.limit_ratio.maxCoeff();
-  if (ratio > kFar && context.simulator.getEngine() == "lanes") {
+  if (ratio > kFar && study.simulator.getEngine() == "lanes") {
     notes.warn(
         Severity::kInfo,
         fmt::format("the surrogate that the network learns from promises {:.1f} times what measurements "
@@ -118,49 +118,48 @@ LabelledFeatures takeFirst(const LabelledFeatures& samples) {
   return first;
 }
 
-NetworkMapTraining trainOnSimulations(const NetworkContext& context, const FeatureTransform& transform) {
-  const NetworkMapSpec spec = completeSize(getSpec(context), NetworkSize::kSmall);
-  const std::vector<int> successful = findSuccessful(context.sets.train);
-  const MatrixXd points = context.sets.train.parameters(Eigen::all, successful);
-  const MatrixXd responses = context.sets.train.responses(Eigen::all, successful);
-  const ResponseNoise noise(context.experiment.noise, context.sets.train.layout);
-  return trainNetworkMap({context.experiment.model, spec, context.experiment.seed},
-                         {points, responses, context.extractor, noise, transform,
-                          context.extractor.isLinear(), context.samples.noise_covariance},
-                         {context.control.threads, context.control.abandon});
+NetworkMapTraining trainOnSimulations(const Study& study, const PreparedData& data,
+                                      const FeatureTransform& transform) {
+  const NetworkMapSpec spec = completeSize(getSpec(study), NetworkSize::kSmall);
+  const std::vector<int> successful = findSuccessful(data.sets.train);
+  const MatrixXd points = data.sets.train.parameters(Eigen::all, successful);
+  const MatrixXd responses = data.sets.train.responses(Eigen::all, successful);
+  const ResponseNoise noise(study.experiment.noise, data.sets.train.layout);
+  return trainNetworkMap({study.experiment.model, spec, study.experiment.seed},
+                         {points, responses, study.extractor, noise, transform, study.extractor.isLinear(),
+                          data.labelled.train.noise_covariance},
+                         study.getTrainingControl());
 }
 
-NetworkMapTraining teach(const NetworkContext& context, const SurrogatePool& pool, NetworkSize size) {
-  const NetworkMapSpec spec = completeSize(getSpec(context), size);
-  return trainNetworkMap({context.experiment.model, spec, context.experiment.seed}, pool,
-                         {context.control.threads, context.control.abandon});
+NetworkMapTraining teach(const Study& study, const SurrogatePool& pool, NetworkSize size) {
+  const NetworkMapSpec spec = completeSize(getSpec(study), size);
+  return trainNetworkMap({study.experiment.model, spec, study.experiment.seed}, pool,
+                         study.getTrainingControl());
 }
 
 /// A small network, or a medium one where that has not learnt all that the surrogate could teach it, unless a
 /// size is given or there would be five of them.
-NetworkMapTraining trainOnSurrogate(const NetworkContext& context, const SurrogateMapTraining& teacher) {
-  const SurrogatePool pool =
-      makeSurrogatePool(teacher.surrogate, getSpec(context).surrogate_samples, context.experiment.seed,
-                        {context.control.threads, context.control.abandon});
-  NetworkMapTraining small = teach(context, pool, NetworkSize::kSmall);
+NetworkMapTraining trainOnSurrogate(const Study& study, const SurrogateMapTraining& teacher) {
+  const SurrogatePool pool = makeSurrogatePool(teacher.surrogate, getSpec(study).surrogate_samples,
+                                               study.experiment.seed, study.getTrainingControl());
+  NetworkMapTraining small = teach(study, pool, NetworkSize::kSmall);
   const double excess = calcExcess(small, teacher).maxCoeff();
-  if (excess <= kMuchExcess || hasSize(getSpec(context)) ||
-      getSpec(context).bayesian != NetworkBayes::kNone) {
+  if (excess <= kMuchExcess || hasSize(getSpec(study)) || getSpec(study).bayesian != NetworkBayes::kNone) {
     return small;
   }
   logInfo(fmt::format(
       "the network learns from the surrogate for longer: its standard deviations are up to {:.1f} "
       "times the surrogate's",
       excess));
-  NetworkMapTraining longer = teach(context, pool, NetworkSize::kMedium);
+  NetworkMapTraining longer = teach(study, pool, NetworkSize::kMedium);
   return calcExcess(longer, teacher).maxCoeff() < excess ? std::move(longer) : std::move(small);
 }
 
-NetworkMapTraining trainBy(const NetworkContext& context, const FeatureTransform& transform,
+NetworkMapTraining trainBy(const Study& study, const PreparedData& data, const FeatureTransform& transform,
                            const std::optional<SurrogateMapTraining>& teacher) {
   try {
     return trainInterruptibly([&] {
-      return teacher ? trainOnSurrogate(context, *teacher) : trainOnSimulations(context, transform);
+      return teacher ? trainOnSurrogate(study, *teacher) : trainOnSimulations(study, data, transform);
     });
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(std::string("the network cannot be trained: ") + error.what());
@@ -207,21 +206,21 @@ TrainingSummary summarizeNetwork(const ModelSpec& model, const NetworkMapTrainin
 
 }  // namespace
 
-NetworkOutcome trainNetwork(const NetworkContext& context) {
+NetworkOutcome trainNetwork(const Study& study, const PreparedData& data) {
   NetworkOutcome outcome;
-  const std::optional<SurrogateMapTraining> teacher = findTeacher(context, outcome.notes);
-  outcome.transform = fitTransform(context.experiment.transform, takeFirst(context.samples));
+  const std::optional<SurrogateMapTraining> teacher = findTeacher(study, data, outcome.notes);
+  outcome.transform = fitTransform(study.experiment.transform, takeFirst(data.labelled.train));
   NetworkMapTraining trained = timeStage("train the network", outcome.notes,
-                                         [&] { return trainBy(context, outcome.transform, teacher); });
+                                         [&] { return trainBy(study, data, outcome.transform, teacher); });
   outcome.notes.warn(Severity::kDegraded, trained.warnings);
   if (teacher) {
     const Eigen::VectorXd excess = calcExcess(trained, *teacher);
     trained.map.validation.limit_ratio = excess.cwiseProduct(teacher->surrogate.validation.limit_ratio);
-    remarkOnPupil(excess, context.experiment.model, outcome.notes);
+    remarkOnPupil(excess, study.experiment.model, outcome.notes);
     outcome.forward = teacher->surrogate.forward;
-    suggestSimulations(teacher->surrogate, context, outcome.notes);
+    suggestSimulations(teacher->surrogate, study, outcome.notes);
   }
-  outcome.summary = summarizeNetwork(context.experiment.model, trained);
+  outcome.summary = summarizeNetwork(study.experiment.model, trained);
   outcome.map = std::move(trained.map);
   return outcome;
 }

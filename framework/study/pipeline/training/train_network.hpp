@@ -17,21 +17,11 @@ struct NetworkOutcome {
   std::shared_ptr<const ForwardSurrogate> forward;  ///< where it learnt from a surrogate; else null
 };
 
-/// What the training of a network looks at.
-struct NetworkContext {
-  const ExperimentSpec& experiment;
-  const SimulatedSets& sets;
-  const Simulator& simulator;
-  const FeatureExtractor& extractor;
-  const LabelledFeatures& samples;
-  const RunControl& control;
-};
-
 /// Trains the experiment's network. samples_from: automatic takes a surrogate, trained first, where it can be
 /// and the simulations are at most the 2000 that one takes; the log says which. A network whose standard
 /// deviations are more than 1.1 times those of the surrogate that taught it is trained again, for longer
 /// (NetworkSize). Throws Interrupted if it is stopped, std::runtime_error where the experiment does not fit
 /// it.
-NetworkOutcome trainNetwork(const NetworkContext& context);
+NetworkOutcome trainNetwork(const Study& study, const PreparedData& data);
 
 }  // namespace twinmap

@@ -25,14 +25,12 @@ SurrogateTraining trainOn(const ModelSpec& model, const SurrogateSamples& sample
 
 /// Slopes at the first training points, of which the surrogate takes no more; none where a simulation with
 /// derivatives fails.
-std::vector<Eigen::MatrixXd> simulateSlopes(const ExperimentSpec& experiment, const Simulator& simulator,
-                                            const FeatureExtractor& extractor, const Eigen::MatrixXd& points,
-                                            const RunControl& control) {
-  const std::vector<ParameterSpec> unknown = collectUnknown(experiment.model);
+std::vector<Eigen::MatrixXd> simulateSlopes(const Study& study, const Eigen::MatrixXd& points) {
+  const std::vector<ParameterSpec> unknown = collectUnknown(study.experiment.model);
   const Eigen::Index count = countSlopePoints(points.cols(), static_cast<Eigen::Index>(unknown.size()));
   std::vector<Eigen::MatrixXd> slopes(static_cast<std::size_t>(points.cols()));
-  const std::vector<LocalModel> local =
-      calcLocalModels(simulator, extractor, unknown, points.leftCols(count), control.threads);
+  const std::vector<LocalModel> local = calcLocalModels(study.simulator, study.extractor, unknown,
+                                                        points.leftCols(count), study.control.threads);
   for (std::size_t i = 0; i < local.size(); ++i) {
     if (local[i].status.ok) {
       slopes[i] = local[i].sensitivities;
@@ -43,27 +41,27 @@ std::vector<Eigen::MatrixXd> simulateSlopes(const ExperimentSpec& experiment, co
 
 }  // namespace
 
-SurrogateMapTraining trainSurrogateMap(const ExperimentSpec& experiment, const SimulatedSets& sets,
-                                       const Simulator& simulator, const FeatureExtractor& extractor,
-                                       const LabelledFeatures& samples, const RunControl& control) {
-  const std::vector<int> successful = findSuccessful(sets.train);
-  SurrogateSamples simulated{samples.infos, sets.train.parameters(Eigen::all, successful),
-                             extractor.extract(sets.train.responses(Eigen::all, successful)),
+SurrogateMapTraining trainSurrogateMap(const Study& study, const PreparedData& data) {
+  const Trajectories& train = data.sets.train;
+  const LabelledFeatures& samples = data.labelled.train;
+  const std::vector<int> successful = findSuccessful(train);
+  SurrogateSamples simulated{samples.infos, train.parameters(Eigen::all, successful),
+                             study.extractor.extract(train.responses(Eigen::all, successful)),
                              samples.noise_covariance, samples.features};
   SurrogateMapTraining training;
-  if (simulator.hasDerivatives()) {
-    simulated.slopes = timeStage("simulate slopes of the training samples", training.notes, [&] {
-      return simulateSlopes(experiment, simulator, extractor, simulated.points, control);
-    });
+  if (study.simulator.hasDerivatives()) {
+    simulated.slopes = timeStage("simulate slopes of the training samples", training.notes,
+                                 [&] { return simulateSlopes(study, simulated.points); });
   }
   SurrogateTraining trained = timeStage("train the surrogate", training.notes, [&] {
-    return trainOn(experiment.model, simulated, {control.threads, control.abandon});
+    return trainOn(study.experiment.model, simulated, study.getTrainingControl());
   });
   training.notes.warn(Severity::kDegraded, trained.warnings);
   const SurrogateValidation& validation = trained.surrogate.validation;
-  training.summary.leave_one_out = calcMetrics(experiment.model.parameters, trained.held_out_truth,
+  training.summary.leave_one_out = calcMetrics(study.experiment.model.parameters, trained.held_out_truth,
                                                trained.held_out, {}, trained.held_out_draws);
-  training.summary.nlml.assign(experiment.model.parameters.size(), std::numeric_limits<double>::quiet_NaN());
+  training.summary.nlml.assign(study.experiment.model.parameters.size(),
+                               std::numeric_limits<double>::quiet_NaN());
   training.summary.cross_validation = CrossValidation{validation.coverage95,
                                                       validation.stddev_scale,
                                                       validation.log_density,

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "framework/base/log/run_control.hpp"
 #include "framework/estimation/surrogate/surrogate.hpp"
 #include "framework/results/run_summary.hpp"
 #include "framework/study/pipeline/prepare_data.hpp"
@@ -20,8 +19,6 @@ struct SurrogateMapTraining {
 /// derivatives, those at the training points are simulated and learnt from. Throws Interrupted if it is
 /// stopped, std::runtime_error where the experiment does not fit it: a feature without noise, too few
 /// samples.
-SurrogateMapTraining trainSurrogateMap(const ExperimentSpec& experiment, const SimulatedSets& sets,
-                                       const Simulator& simulator, const FeatureExtractor& extractor,
-                                       const LabelledFeatures& samples, const RunControl& control);
+SurrogateMapTraining trainSurrogateMap(const Study& study, const PreparedData& data);
 
 }  // namespace twinmap

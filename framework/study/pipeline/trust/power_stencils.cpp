@@ -79,23 +79,23 @@ std::vector<ParameterSpec> listConstants(const ModelSpec& model) {
   return constants;
 }
 
-std::vector<Stencil> simulateStencils(const PowerContext& context,
+std::vector<Stencil> simulateStencils(const Study& study, const SimulatedSets& sets,
                                       const std::vector<ParameterSpec>& constants) {
-  const ModelSpec model = makeConstantsUnknown(context.experiment.model, constants);
-  const ResponseLayout& layout = context.sets.test.layout;
+  const ModelSpec model = makeConstantsUnknown(study.experiment.model, constants);
+  const ResponseLayout& layout = sets.test.layout;
   const std::unique_ptr<Simulator> simulator = makeSimulator(model, layout.times, layout.modes);
   const std::vector<ParameterSpec> unknown_parameters = collectUnknown(model);
-  const MatrixXd points = makePoints(context.experiment, context.sets, constants,
-                                     countPoints(*simulator, unknown_parameters.size(), context.sets));
+  const MatrixXd points =
+      makePoints(study.experiment, sets, constants, countPoints(*simulator, unknown_parameters.size(), sets));
   const auto count = static_cast<Index>(constants.size());
   std::vector<Stencil> found;
   Index column = 0;
   for (const LocalModel& local :
-       calcLocalModels(*simulator, context.extractor, unknown_parameters, points, context.threads)) {
+       calcLocalModels(*simulator, study.extractor, unknown_parameters, points, study.control.threads)) {
     if (local.status.ok) {
       const Index unknown = local.sensitivities.cols() - count;
       found.push_back({local.features,
-                       points.col(column).tail(static_cast<Index>(context.experiment.model.inputs.size())),
+                       points.col(column).tail(static_cast<Index>(study.experiment.model.inputs.size())),
                        0.5 * local.sensitivities.leftCols(unknown),
                        local.sensitivities.rightCols(count) / (2.0 * kConstantSpan), local.response});
     }

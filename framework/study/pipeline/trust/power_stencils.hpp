@@ -8,16 +8,6 @@
 
 namespace twinmap {
 
-/// What the power of a trust model is computed from.
-struct PowerContext {
-  const ExperimentSpec& experiment;
-  const SimulatedSets& sets;
-  const FeatureExtractor& extractor;
-  const Eigen::MatrixXd& noise_covariance;  ///< d x d, of the features
-  const OnlineModel& online;                ///< with a trust model
-  int threads = 1;
-};
-
 /// The constants whose values are numbers other than zero, as parameters 20 % around them; of a model from
 /// elsewhere those that it knows.
 std::vector<ParameterSpec> listConstants(const ModelSpec& model);
@@ -33,7 +23,7 @@ struct Stencil {
 /// The first test samples, 10 or as many as may be simulated; without those whose derivatives cannot be.
 /// Cost: 10 simulations with derivatives along the unknown parameters and the constants, and as many points
 /// fewer, at least one, as differences of simulations would cost more than a fifth of the run's samples.
-std::vector<Stencil> simulateStencils(const PowerContext& context,
+std::vector<Stencil> simulateStencils(const Study& study, const SimulatedSets& sets,
                                       const std::vector<ParameterSpec>& constants);
 
 }  // namespace twinmap

@@ -72,14 +72,14 @@ void findSmallest(const PowerCases& cases, const std::vector<VectorXd>& directio
 }
 
 /// The outputs' offsets: what they do to the features of each stencil, and how far they may go.
-std::vector<VectorXd> calcOffsetDirections(const PowerContext& context, Index output, double size,
+std::vector<VectorXd> calcOffsetDirections(const Study& study, Index output, double size,
                                            const std::vector<Stencil>& around) {
-  const ResponseLayout& layout = context.sets.test.layout;
+  const ResponseLayout& layout = study.simulator.getLayout();
   std::vector<VectorXd> directions;
   for (const Stencil& at : around) {
     MatrixXd moved = at.response;
     moved.col(0).segment(layout.getRow(output, 0), layout.times.size()).array() += size;
-    directions.emplace_back((context.extractor.extract(moved).col(0) - at.features) / size);
+    directions.emplace_back((study.extractor.extract(moved).col(0) - at.features) / size);
   }
   return directions;
 }
@@ -98,33 +98,35 @@ bool areUsable(const std::vector<VectorXd>& directions) {
                      [](const VectorXd& one) { return one.cwiseAbs().maxCoeff() > 0.0; });
 }
 
-PowerCases makeCases(const PowerContext& context, const NoiseWhitener& noise,
-                     const std::vector<Stencil>& around) {
-  const TrustModel& trust = *context.online.trust;
-  const OnlineMap map(context.online.map);
+PowerCases makeCases(const Study& study, const OnlineModel& online, const NoiseWhitener& noise,
+                     const MatrixXd& noise_covariance, const std::vector<Stencil>& around) {
+  const TrustModel& trust = *online.trust;
+  const OnlineMap map(online.map);
   PowerCases cases;
   cases.level = trust.level;
   for (const Stencil& at : around) {
     cases.judges.push_back(makePowerJudge(map, trust, noise, at));
   }
-  const MatrixXd factor = context.noise_covariance * noise.getMatrix().transpose();  // W C W' = 1
+  const MatrixXd factor = noise_covariance * noise.getMatrix().transpose();  // W C W' = 1
   const auto points = static_cast<Index>(around.size());
   cases.draws = kDraws / points;
-  cases.noise = drawNoise(factor, cases.draws * points, context.experiment.seed);
+  cases.noise = drawNoise(factor, cases.draws * points, study.experiment.seed);
   return cases;
 }
 
 }  // namespace
 
-std::vector<DetectableChange> calcTrustPower(const PowerContext& context) {
-  const std::vector<ParameterSpec> constants = listConstants(context.experiment.model);
-  const std::vector<Stencil> around = simulateStencils(context, constants);
+std::vector<DetectableChange> calcTrustPower(const Study& study, const PreparedData& data,
+                                             const OnlineModel& online) {
+  const std::vector<ParameterSpec> constants = listConstants(study.experiment.model);
+  const std::vector<Stencil> around = simulateStencils(study, data.sets, constants);
   std::vector<DetectableChange> changes;
   if (around.empty()) {
     return changes;
   }
-  const NoiseWhitener noise(context.noise_covariance);
-  const PowerCases cases = makeCases(context, noise, around);
+  const MatrixXd& covariance = data.labelled.train.noise_covariance;
+  const NoiseWhitener noise(covariance);
+  const PowerCases cases = makeCases(study, online, noise, covariance, around);
   const auto add = [&](DetectableChange change, const std::vector<VectorXd>& directions) {
     if (areUsable(directions)) {
       findSmallest(cases, directions, change);
@@ -138,13 +140,13 @@ std::vector<DetectableChange> calcTrustPower(const PowerContext& context) {
     }
     add({"constant", constants[i].name.text, "", 0.0, kLargestChange, 0.0}, directions);
   }
-  const ResponseLayout& layout = context.sets.test.layout;
+  const ResponseLayout& layout = data.sets.test.layout;
   for (Index output = 0; output < layout.getOutputCount() && layout.times.size() > 0; ++output) {
-    const double range = calcRange(context.sets, output);
+    const double range = calcRange(data.sets, output);
     if (range > 0.0) {
       const auto name = static_cast<std::size_t>(output);
       add({"output", layout.output_names[name], layout.output_units[name], 0.0, range, 0.0},
-          calcOffsetDirections(context, output, range, around));
+          calcOffsetDirections(study, output, range, around));
     }
   }
   return changes;

@@ -17,15 +17,16 @@ struct DetectableChange {
   double found = 0.0;     ///< the share of cases in which `largest` is found
 };
 
-/// The smallest relative change of each constant of the model, and the smallest constant offset of each
-/// output, that is called a model mismatch in 95 % of the cases, by bisection at the first test samples. The
-/// features move in proportion to the change, which is where a small change leads. Where the run's test
-/// samples were refined, it is the answer of the simulator that is judged, else that of the surrogate: the
-/// parameters take up what they can of noise and change, linearly. Constants that are
-/// expressions or zero, and those that change no feature, are left out. Test samples whose derivatives cannot
-/// be simulated, too; empty if all are. Deterministic.
-/// Cost: that of simulateStencils(), then some 30 ms for each change.
-std::vector<DetectableChange> calcTrustPower(const PowerContext& context);
+/// With an online model that has a trust model: the smallest relative change of each constant of the model,
+/// and the smallest constant offset of each output, that is called a model mismatch in 95 % of the cases, by
+/// bisection at the first test samples. The features move in proportion to the change, which is where a small
+/// change leads. Where the run's test samples were refined, it is the answer of the simulator that is judged,
+/// else that of the surrogate: the parameters take up what they can of noise and change, linearly. Constants
+/// that are expressions or zero, and those that change no feature, are left out. Test samples whose
+/// derivatives cannot be simulated, too; empty if all are. Deterministic. Cost: that of simulateStencils(),
+/// then some 30 ms for each change.
+std::vector<DetectableChange> calcTrustPower(const Study& study, const PreparedData& data,
+                                             const OnlineModel& online);
 
 /// trust_power.csv (docs/file-formats.md).
 std::string makeTrustPowerCsv(const std::vector<DetectableChange>& changes);

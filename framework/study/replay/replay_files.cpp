@@ -1,4 +1,4 @@
-#include "framework/inference/replay_files.hpp"
+#include "framework/study/replay/replay_files.hpp"
 
 #include <cmath>
 #include <sstream>
@@ -8,7 +8,7 @@
 #include "framework/base/text/markdown_table.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/inference/inference_text.hpp"
-#include "framework/inference/replay_page.hpp"
+#include "framework/study/replay/replay_page.hpp"
 
 namespace twinmap {
 namespace {

@@ -1,4 +1,4 @@
-#include "framework/inference/replay_page.hpp"
+#include "framework/study/replay/replay_page.hpp"
 
 #include <fmt/core.h>
 
@@ -10,11 +10,11 @@
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/answer.hpp"
 #include "framework/inference/inference_text.hpp"
-#include "framework/inference/replay_files.hpp"
 #include "framework/report/figure.hpp"
 #include "framework/report/html.hpp"
 #include "framework/report/response_panels.hpp"
-#include "framework/report/sections/verdict.hpp"
+#include "framework/report/verdict.hpp"
+#include "framework/study/replay/replay_files.hpp"
 
 namespace twinmap {
 namespace {

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "framework/inference/replay.hpp"
+#include "framework/study/replay/replay.hpp"
 
 namespace twinmap {
 

@@ -1,4 +1,4 @@
-#include "framework/study/pipeline/refinement_starts.hpp"
+#include "framework/estimation/trained/refinement_starts.hpp"
 
 #include <algorithm>
 

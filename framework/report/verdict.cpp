@@ -1,4 +1,4 @@
-#include "framework/report/sections/verdict.hpp"
+#include "framework/report/verdict.hpp"
 
 #include <algorithm>
 #include <cmath>

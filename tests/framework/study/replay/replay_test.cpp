@@ -1,4 +1,4 @@
-#include "framework/inference/replay.hpp"
+#include "framework/study/replay/replay.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,10 @@
-#include "framework/analysis/baselines.hpp"
+#include "framework/study/pipeline/baselines.hpp"
 
 #include <algorithm>
 #include <chrono>
 
 #include "framework/analysis/least_squares.hpp"
+#include "framework/analysis/linear_map.hpp"
 #include "framework/data/sensitivity/fisher_information.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/simulation/simulator_team.hpp"
@@ -32,39 +33,38 @@ VectorXd findNearest(const NoiseWhitener& noise, const LabelledFeatures& train, 
   return train.collectUnknown().col(nearest);
 }
 
-BaselineResult runPriorMean(const BaselineContext& context, const LabelledFeatures& test) {
+BaselineResult runPriorMean(const std::vector<ParameterSpec>& parameters, const LabelledFeatures& test) {
   const auto samples = test.features.cols();
-  return {"prior_mean", static_cast<int>(samples), predictPriorMean(context.parameters, samples)};
+  return {"prior_mean", static_cast<int>(samples), predictPriorMean(parameters, samples)};
 }
 
-BaselineResult runLinearRegression(const BaselineContext& context, const LabelledFeatures& train,
-                                   const LabelledFeatures& test) {
-  const LinearMap map = trainLinearMap(context.transform, train);
-  const auto samples = static_cast<int>(test.features.cols());
+BaselineResult runLinearRegression(const FeatureTransform& transform, const LabelledSets& sets) {
+  const LinearMap map = trainLinearMap(transform, sets.train);
+  const auto samples = static_cast<int>(sets.test.features.cols());
   const Stopwatch stopwatch;
-  BaselineResult result{"linear_regression", samples, map.predict(test.features, test.inputs)};
+  BaselineResult result{"linear_regression", samples, map.predict(sets.test.features, sets.test.inputs)};
   result.seconds_per_update = stopwatch.getSeconds() / samples;
   return result;
 }
 
-BaselineResult runLeastSquares(const LeastSquaresSpec& spec, const BaselineContext& context,
-                               const LabelledFeatures& train, const LabelledFeatures& test) {
+BaselineResult runLeastSquares(const LeastSquaresSpec& spec, const Study& study, const LabelledSets& sets) {
+  const LabelledFeatures& test = sets.test;
+  const std::vector<ParameterSpec> unknown = collectUnknown(study.experiment.model);
   const NoiseWhitener noise(test.noise_covariance);
-  const VectorXd widths = calcWidths(context.parameters), center = calcBoxCenter(context.unknown);
+  const VectorXd widths = calcWidths(study.experiment.model.parameters), center = calcBoxCenter(unknown);
   const Index p = widths.size();
   const int samples = std::min(spec.samples, static_cast<int>(test.features.cols()));
   BaselineResult result{"least_squares", samples, {MatrixXd(p, samples), MatrixXd(p, samples)}};
   VectorXd seconds(samples);
   std::vector<char> converged(samples);
-  runOnTeam(context.simulator, samples, context.threads, [&](Simulator& simulator, int i) {
+  runOnTeam(study.simulator, samples, study.control.threads, [&](Simulator& simulator, int i) {
     const Stopwatch stopwatch;
     const VectorXd measured = test.features.col(i);
     const VectorXd start =
-        spec.start == LeastSquaresStart::kBoxCenter ? center : findNearest(noise, train, measured);
+        spec.start == LeastSquaresStart::kBoxCenter ? center : findNearest(noise, sets.train, measured);
     const VectorXd inputs = test.inputs.rows() > 0 ? VectorXd(test.inputs.col(i)) : VectorXd();
-    const LeastSquaresFit fit =
-        fitLeastSquares(simulator, {context.extractor, noise, context.unknown, measured, inputs}, start,
-                        spec.max_simulations);
+    const LeastSquaresFit fit = fitLeastSquares(
+        simulator, {study.extractor, noise, unknown, measured, inputs}, start, spec.max_simulations);
     result.predictions.mean.col(i) = fit.parameters.head(p);
     result.predictions.stddev.col(i) =
         calcLimitCovariance(fit.information).diagonal().head(p).cwiseSqrt().cwiseProduct(widths);
@@ -83,15 +83,15 @@ Predictions predictPriorMean(const std::vector<ParameterSpec>& parameters, Index
           (kUniformStddev * calcWidths(parameters)).replicate(1, samples)};
 }
 
-BaselineResult runBaseline(const BaselineSpec& spec, const BaselineContext& context,
-                           const LabelledFeatures& train, const LabelledFeatures& test) {
+BaselineResult runBaseline(const BaselineSpec& spec, const Study& study, const LabelledSets& samples,
+                           const FeatureTransform& transform) {
   if (std::holds_alternative<PriorMeanSpec>(spec)) {
-    return runPriorMean(context, test);
+    return runPriorMean(study.experiment.model.parameters, samples.test);
   }
   if (std::holds_alternative<LinearRegressionSpec>(spec)) {
-    return runLinearRegression(context, train, test);
+    return runLinearRegression(transform, samples);
   }
-  return runLeastSquares(std::get<LeastSquaresSpec>(spec), context, train, test);
+  return runLeastSquares(std::get<LeastSquaresSpec>(spec), study, samples);
 }
 
 }  // namespace twinmap

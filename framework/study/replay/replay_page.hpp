@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "framework/inference/replay.hpp"
+#include "framework/study/replay/replay.hpp"
 
 namespace twinmap {
 

@@ -1,4 +1,4 @@
-#include "framework/inference/replay.hpp"
+#include "framework/study/replay/replay.hpp"
 
 #include <cmath>
 #include <stdexcept>
@@ -6,12 +6,12 @@
 #include "framework/data/measurement/measured_signals.hpp"
 #include "framework/data/noise/noise.hpp"
 #include "framework/estimation/draws.hpp"
+#include "framework/estimation/trained/refinement_starts.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/answer.hpp"
 #include "framework/inference/ensemble.hpp"
 #include "framework/inference/refiner.hpp"
 #include "framework/simulation/sample_generator.hpp"
-#include "framework/study/pipeline/refinement_starts.hpp"
 
 namespace twinmap {
 namespace {

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "framework/data/reduction/feature_transform.hpp"
+#include "framework/estimation/predictions.hpp"
+#include "framework/study/pipeline/prepare_data.hpp"
+
+namespace twinmap {
+
+/// Another way to infer the parameters of the first test samples.
+struct BaselineResult {
+  std::string method;  ///< "prior_mean", "linear_regression", "least_squares"
+  int samples = 0;     ///< the first test samples
+  Predictions predictions;
+  double seconds_per_update = 0.0;  ///< wall time of one sample on one thread
+  int unconverged = 0;              ///< samples whose search did not end at a minimum
+};
+
+/// The middle of the box and a uniform distribution's standard deviation, whatever was measured.
+Predictions predictPriorMean(const std::vector<ParameterSpec>& parameters, Eigen::Index samples);
+
+/// Runs one baseline on the test samples. `transform`: what a linear regression sees of the features. Least
+/// squares searches all that is unknown, with the inputs of each sample; it compares features in units of
+/// their mean noise (labelled sets' covariance); its standard deviations are those of the Fisher information
+/// at its solution, with the box as in calcLimitCovariance. All but the time is independent of the threads.
+BaselineResult runBaseline(const BaselineSpec& spec, const Study& study, const LabelledSets& samples,
+                           const FeatureTransform& transform);
+
+}  // namespace twinmap
