@@ -11,6 +11,7 @@ from setuptools.command.build_ext import build_ext
 
 ROOT = Path(__file__).resolve().parent
 TARGET = "twinmap_python"
+SIMBODY = "twinmap_simbody.so"
 
 
 def find_version():
@@ -43,6 +44,7 @@ class CMakeBuild(build_ext):
         target = Path(self.get_ext_fullpath(extension.name))
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(build / "framework" / "python" / "twinmap" / target.name, target)
+        shutil.copy2(next(build.glob(f"lib*/**/twinmap/{SIMBODY}")), target.parent)  # which the module loads from there
 
 
 setup(version=find_version(), ext_modules=[Extension("twinmap._twinmap", sources=[])],

@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "bench/simulation/measure.hpp"
-#include "framework/models/mechanism/box_center.hpp"
 #include "framework/models/mechanism/lanes/lane_start.hpp"
 #include "framework/models/mechanism/lanes/recorded_model.hpp"
+#include "framework/models/mechanism/simbody_model.hpp"
 #include "kernels/lanes/integrator.hpp"
 #include "kernels/lanes/program/real.hpp"
 
@@ -113,10 +113,8 @@ LaneProfile makeProfile(const lanes::Statistics& statistics, int lanes, double s
 
 LaneProfile measureLanes(const ModelSpec& model, const Eigen::VectorXd& times,
                          const Eigen::MatrixXd& points) {
-  ModelContext context(model);
-  buildAtBoxCenter(context);
-  const Eigen::VectorXd box_center = solveBoxCenter(context);
-  const LaneModel lane_model = compileModel(recordModel(model, context.names, box_center), false);
+  const Eigen::VectorXd box_center = makeSimbodyModel(model)->solveBoxCenter();
+  const LaneModel lane_model = compileModel(recordModel(model, SystemNames(model.system), box_center), false);
   LaneStart start(model, lane_model, box_center);
   const int count = static_cast<int>(points.cols());
   Eigen::MatrixXd outputs(static_cast<Eigen::Index>(model.outputs.size()) * times.size(), count);

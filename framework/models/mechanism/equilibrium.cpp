@@ -1,7 +1,9 @@
+#include "framework/models/mechanism/equilibrium.hpp"
+
 #include <cmath>
 #include <cstdio>
 
-#include "framework/models/mechanism/initial_state.hpp"
+#include "framework/simulation/number_evaluator.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -10,34 +12,6 @@ namespace {
 constexpr int kMaxIterations = 50;
 constexpr double kStepTolerance = 1e-11;      ///< m or rad, relative to 1 + |coordinate|
 constexpr double kResidualTolerance = 1e-12;  ///< of the largest acceleration met
-
-/// By Simbody, with central differences.
-class LoadedSystemAtRest : public RestAccelerations {
- public:
-  explicit LoadedSystemAtRest(LoadedSystem& system)
-      : system_(system), state_(system.getTree().getDefaultState()) {}
-
-  Eigen::VectorXd calc(const Eigen::VectorXd& q) override {
-    setState(system_, {q, Eigen::VectorXd::Zero(q.size())}, state_);
-    return system_.calcUDot(state_, 0.0);
-  }
-
-  Eigen::MatrixXd calcJacobian(const Eigen::VectorXd& q) override {
-    Eigen::MatrixXd jacobian(q.size(), q.size());
-    for (Eigen::Index i = 0; i < q.size(); ++i) {
-      const double h = kDifferenceStep * (1.0 + std::abs(q[i]));
-      Eigen::VectorXd forward = q, backward = q;
-      forward[i] += h;
-      backward[i] -= h;
-      jacobian.col(i) = (calc(forward) - calc(backward)) / (forward[i] - backward[i]);
-    }
-    return jacobian;
-  }
-
- private:
-  LoadedSystem& system_;
-  SimTK::State state_;
-};
 
 class EquilibriumSolver {
  public:
@@ -101,11 +75,6 @@ class EquilibriumSolver {
 
 Eigen::VectorXd solveEquilibrium(RestAccelerations& system, const Eigen::VectorXd& start) {
   return start.size() == 0 ? start : EquilibriumSolver(system).solve(start);
-}
-
-Eigen::VectorXd solveEquilibrium(LoadedSystem& system, const Eigen::VectorXd& start) {
-  LoadedSystemAtRest at_rest(system);
-  return solveEquilibrium(at_rest, start);
 }
 
 }  // namespace twinmap

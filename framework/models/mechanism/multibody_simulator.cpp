@@ -5,17 +5,16 @@
 #include <stdexcept>
 
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/models/mechanism/box_center.hpp"
 #include "framework/models/mechanism/lanes/lane_engine.hpp"
-#include "framework/models/mechanism/simbody/outputs.hpp"
-#include "framework/models/mechanism/simbody/simbody_engine.hpp"
+#include "framework/models/mechanism/simbody_model.hpp"
+#include "framework/models/mechanism/system_numbers.hpp"
 
 namespace twinmap {
 namespace {
 
 /// Systems and expressions are built one at a time: Simbody and muParser do not say that they may be
 /// otherwise.
-std::mutex building;
+std::recursive_mutex building;
 
 /// What all clones share.
 struct SharedModel {
@@ -23,7 +22,7 @@ struct SharedModel {
 
   ModelSpec model;
   ResponseLayout layout;
-  Eigen::VectorXd box_center;           ///< solveBoxCenter()
+  Eigen::VectorXd box_center;           ///< SimbodyModel::solveBoxCenter()
   std::unique_ptr<LanePrograms> lanes;  ///< null where Simbody simulates
   std::string engine;
   std::mutex making_precise{};
@@ -72,8 +71,8 @@ void requirePortable(const SharedModel& shared, const std::string& obstacle) {
 }
 
 /// Throws where lanes are asked for and cannot simulate the model.
-void chooseEngine(ModelContext& context, SharedModel& shared) {
-  auto lanes = std::make_unique<LanePrograms>(context, shared.box_center);
+void chooseEngine(ModelContext& context, SimbodyModel& simbody, SharedModel& shared) {
+  auto lanes = std::make_unique<LanePrograms>(context, simbody, shared.box_center);
   const std::string& obstacle = lanes->getObstacle();
   if (!obstacle.empty() && shared.model.simulation.engine == Engine::kLanes) {
     throw ExperimentError("simulation.engine: lanes cannot simulate this model: " + obstacle);
@@ -103,19 +102,20 @@ class MultibodySimulator::Impl {
     for (const OutputSpec& output : shared_->model.outputs) {
       shared_->layout.output_names.push_back(output.name.text);
     }
-    buildAtBoxCenter(context_);
-    shared_->box_center = solveBoxCenter(context_);
-    chooseEngine(context_, *shared_);
-    makeEngines();
+    shared_->box_center = updSimbody().solveBoxCenter();
+    chooseEngine(context_, updSimbody(), *shared_);
+    makeLanes();
   }
 
   /// Compiles all expressions now, while clones are made one after the other.
   explicit Impl(std::shared_ptr<SharedModel> shared) : shared_(std::move(shared)), context_(shared_->model) {
-    buildAtBoxCenter(context_);
-    makeEngines();
+    makeLanes();
+    if (!lanes_) {
+      updSimbody();
+    }
   }
 
-  void checkStart() { checkStartAtBoxCenter(context_, shared_->box_center); }
+  void checkStart() { updSimbody().checkStart(shared_->box_center); }
 
   void simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters, Eigen::Ref<Eigen::MatrixXd> responses,
                 SampleStatus* statuses) {
@@ -141,27 +141,35 @@ class MultibodySimulator::Impl {
   const std::shared_ptr<SharedModel>& getShared() const { return shared_; }
 
  private:
-  void makeEngines() {
-    const SampleTask task{shared_->layout, shared_->box_center};
-    simbody_.emplace(context_, task);
+  void makeLanes() {
     if (shared_->lanes) {
-      lanes_.emplace(*shared_->lanes, context_, task, *simbody_);
+      context_.numbers.update(calcBoxCenter(collectSampled(shared_->model)));
+      checkNumbers(context_);
+      lanes_.emplace(*shared_->lanes, context_, SampleTask{shared_->layout, shared_->box_center});
     }
+  }
+
+  SimbodyModel& updSimbody() {
+    if (!simbody_) {
+      const std::lock_guard<std::recursive_mutex> guard(building);
+      simbody_ = makeSimbodyModel(shared_->model);
+    }
+    return *simbody_;
   }
 
   SampleStatus simulateBySimbody(const Eigen::Ref<const Eigen::VectorXd>& parameters,
                                  Eigen::Ref<Eigen::VectorXd> response, StepSequence& sequence) {
-    return simbody_->simulate(shared_->model.simulation, parameters, response, sequence);
+    return updSimbody().simulate({shared_->layout, shared_->box_center}, parameters, response, sequence);
   }
 
   std::shared_ptr<SharedModel> shared_;
   ModelContext context_;
-  std::optional<SimbodyEngine> simbody_;
+  std::unique_ptr<SimbodyModel> simbody_;  ///< made when first used: lanes need none
   std::optional<LaneEngine> lanes_;
 };
 
 MultibodySimulator::MultibodySimulator(const ModelSpec& model, Eigen::VectorXd times, int modes) {
-  const std::lock_guard<std::mutex> guard(building);
+  const std::lock_guard<std::recursive_mutex> guard(building);
   impl_ = std::make_unique<Impl>(model, std::move(times), modes);
 }
 
@@ -173,7 +181,7 @@ const ResponseLayout& MultibodySimulator::getLayout() const {
 }
 
 void MultibodySimulator::checkStart() {
-  const std::lock_guard<std::mutex> guard(building);
+  const std::lock_guard<std::recursive_mutex> guard(building);
   impl_->checkStart();
 }
 
@@ -223,7 +231,7 @@ std::unique_ptr<Simulator> MultibodySimulator::clonePrecisely() const {
 }
 
 std::unique_ptr<Simulator> MultibodySimulator::clone() const {
-  const std::lock_guard<std::mutex> guard(building);
+  const std::lock_guard<std::recursive_mutex> guard(building);
   return std::unique_ptr<Simulator>(new MultibodySimulator(std::make_unique<Impl>(impl_->getShared())));
 }
 

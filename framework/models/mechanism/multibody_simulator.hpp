@@ -41,7 +41,7 @@ class MultibodySimulator final : public Simulator {
   /// column with other phases fails. Simbody's own integrators choose their steps for each column.
   void simulateAround(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
                       Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) override;
-  /// In lanes; what reaches the step limit there by differences of solutions by CPodes (StiffRetry).
+  /// In lanes; what reaches the step limit there by differences of solutions by Radau IIA (StiffRetry).
   bool hasDerivatives() const override;
   void simulateWithDerivatives(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
                                Eigen::Ref<Eigen::MatrixXd> responses, Eigen::MatrixXd& derivatives,

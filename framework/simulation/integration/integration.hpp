@@ -33,6 +33,9 @@ class OdeProblem {
   /// Switches f to the phase that begins at `begin` (s). Called before any evaluation within it.
   virtual void beginPhase(double begin) = 0;
   virtual void calcDerivative(double t, const State& x, State& dxdt) = 0;
+  /// df/dx (n x n, already of that size); false where the problem does not know it. What needs it then takes
+  /// differences.
+  virtual bool calcJacobian(double, const State&, Eigen::MatrixXd&) { return false; }
   /// The solution at output time `index`. At an event it belongs to the phase that begins there.
   virtual void recordOutput(int index, double t, const State& x) = 0;
 };

@@ -103,9 +103,12 @@ class RadauStepper final : public HybridStepper {
   }
 
   void calcJacobian(OdeProblem& problem, const Point& from) {
+    jacobian_.resize(stages_.rows(), stages_.rows());
+    if (problem.calcJacobian(from.t, from.x, jacobian_)) {
+      return;
+    }
     const double relative = std::sqrt(std::numeric_limits<double>::epsilon());
     const double smallest = options_.absolute_tolerance / options_.relative_tolerance;  // that counts
-    jacobian_.resize(stages_.rows(), stages_.rows());
     for (std::size_t j = 0; j < from.x.size(); ++j) {
       moved_[j] += relative * std::max(std::abs(from.x[j]), smallest);
       problem.calcDerivative(from.t, moved_, slope_);

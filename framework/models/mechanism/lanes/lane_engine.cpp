@@ -11,7 +11,7 @@ void LaneEngine::simulate(const Eigen::Ref<const MatrixXd>& parameters, Eigen::R
     runner_.emplace(programs_.getValues(), task_, context_.model);
   }
   for (const Index i : runner_->run(context_, parameters, responses, nullptr, statuses)) {
-    stiff_retry_.simulate(parameters.col(i), responses.col(i), statuses[i]);
+    updStiffRetry().simulate(parameters.col(i), responses.col(i), statuses[i]);
   }
 }
 
@@ -23,9 +23,16 @@ void LaneEngine::simulateWithDerivatives(const Eigen::Ref<const MatrixXd>& param
   }
   const Index p = parameters.rows();
   for (const Index i : derivative_runner_->run(context_, parameters, responses, &derivatives, statuses)) {
-    stiff_retry_.simulateWithDerivatives(parameters.col(i), responses.col(i),
-                                         derivatives.middleCols(i * p, p), statuses[i]);
+    updStiffRetry().simulateWithDerivatives(parameters.col(i), responses.col(i),
+                                            derivatives.middleCols(i * p, p), statuses[i]);
   }
+}
+
+StiffRetry& LaneEngine::updStiffRetry() {
+  if (!stiff_retry_) {
+    stiff_retry_.emplace(context_.model, programs_.getValues(), programs_.getJacobian(context_.names), task_);
+  }
+  return *stiff_retry_;
 }
 
 }  // namespace twinmap

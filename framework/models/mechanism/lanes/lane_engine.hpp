@@ -5,7 +5,7 @@
 
 #include "framework/models/mechanism/lanes/lane_programs.hpp"
 #include "framework/models/mechanism/lanes/lane_runner.hpp"
-#include "framework/models/mechanism/simbody/stiff_retry.hpp"
+#include "framework/models/mechanism/lanes/stiff_retry.hpp"
 
 namespace twinmap {
 
@@ -14,8 +14,8 @@ namespace twinmap {
 class LaneEngine {
  public:
   /// All but `task` must outlive the engine.
-  LaneEngine(LanePrograms& programs, ModelContext& context, const SampleTask& task, SimbodyEngine& simbody)
-      : programs_(programs), context_(context), task_(task), stiff_retry_(context.model, simbody) {}
+  LaneEngine(LanePrograms& programs, ModelContext& context, const SampleTask& task)
+      : programs_(programs), context_(context), task_(task) {}
 
   /// As Simulator::simulate.
   void simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters, Eigen::Ref<Eigen::MatrixXd> responses,
@@ -27,11 +27,13 @@ class LaneEngine {
                                SampleStatus* statuses);
 
  private:
+  StiffRetry& updStiffRetry();
+
   LanePrograms& programs_;
   ModelContext& context_;
   const SampleTask task_;
-  StiffRetry stiff_retry_;
   std::optional<LaneRunner> runner_, derivative_runner_;  ///< made when first used
+  std::optional<StiffRetry> stiff_retry_;                 ///< likewise
 };
 
 }  // namespace twinmap

@@ -67,4 +67,15 @@ LaneModel compileModel(const RecordedModel& recorded, bool with_derivatives) {
   return model;
 }
 
+program::Program compileJacobian(const RecordedModel& recorded) {
+  const program::InputCounts counts{2 * recorded.coordinate_count, recorded.parameter_count,
+                                    recorded.excitation.input_count};
+  Symbols states, jacobian;
+  for (int i = 0; i < counts.states; ++i) {
+    states.push_back(recorded.recorder->state(i));
+  }
+  appendJacobian(recorded.derivatives, states, jacobian);
+  return program::compile(*recorded.recorder, jacobian, counts);
+}
+
 }  // namespace twinmap

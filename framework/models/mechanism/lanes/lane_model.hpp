@@ -24,4 +24,8 @@ struct LaneModel {
 /// parameters.
 LaneModel compileModel(const RecordedModel& recorded, bool with_derivatives);
 
+/// The derivatives of the states' derivatives with respect to the states, column by column. Appends to the
+/// recorder.
+program::Program compileJacobian(const RecordedModel& recorded);
+
 }  // namespace twinmap

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "framework/models/mechanism/lanes/lane_start.hpp"
-#include "framework/models/mechanism/linearization.hpp"
+#include "framework/models/mechanism/modes.hpp"
 
 namespace twinmap {
 

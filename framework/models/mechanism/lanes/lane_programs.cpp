@@ -1,6 +1,6 @@
 #include "framework/models/mechanism/lanes/lane_programs.hpp"
 
-#include "framework/models/mechanism/simbody/compare_with_simbody.hpp"
+#include "framework/models/mechanism/compare_with_simbody.hpp"
 
 namespace twinmap {
 namespace {
@@ -18,10 +18,10 @@ std::string findObstacle(const ModelContext& context) {
 
 }  // namespace
 
-LanePrograms::LanePrograms(ModelContext& context, const Eigen::VectorXd& box_center)
+LanePrograms::LanePrograms(ModelContext& context, SimbodyModel& simbody, const Eigen::VectorXd& box_center)
     : model_(context.model), box_center_(box_center), obstacle_(findObstacle(context)) {
   if (obstacle_.empty()) {
-    obstacle_ = compile(context);
+    obstacle_ = compile(context, simbody);
   }
 }
 
@@ -33,14 +33,22 @@ const LaneModel& LanePrograms::getDerivatives(const SystemNames& names) {
   return *derivatives_;
 }
 
+const program::Program& LanePrograms::getJacobian(const SystemNames& names) {
+  const std::lock_guard<std::mutex> guard(compiling_);
+  if (!jacobian_) {
+    jacobian_ = compileJacobian(recordModel(model_, names, box_center_));
+  }
+  return *jacobian_;
+}
+
 /// Returns what prevents it, or "".
-std::string LanePrograms::compile(ModelContext& context) {
+std::string LanePrograms::compile(ModelContext& context, SimbodyModel& simbody) {
   try {
     values_ = compileModel(recordModel(model_, context.names, box_center_), false);
   } catch (const UnknownSyntax& error) {
     return error.what();
   }
-  return compareWithSimbody(context, *values_);
+  return compareWithSimbody(context, simbody, *values_);
 }
 
 }  // namespace twinmap

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "framework/models/mechanism/lanes/lane_model.hpp"
-#include "framework/models/mechanism/simbody/loaded_system.hpp"
+#include "framework/models/mechanism/simbody_model.hpp"
 
 namespace twinmap {
 
@@ -14,7 +14,7 @@ class LanePrograms {
  public:
   /// Compiles the model, which must outlive the programs, if lanes can simulate it; `box_center` as for
   /// recordModel(). Cost: some ten milliseconds, most of it the comparison with Simbody.
-  LanePrograms(ModelContext& context, const Eigen::VectorXd& box_center);
+  LanePrograms(ModelContext& context, SimbodyModel& simbody, const Eigen::VectorXd& box_center);
 
   /// Why lanes cannot simulate the model; empty if they can. Else the rest must not be used.
   const std::string& getObstacle() const { return obstacle_; }
@@ -24,12 +24,16 @@ class LanePrograms {
   /// With the derivatives with respect to all parameters; compiled when first asked for, by any thread.
   const LaneModel& getDerivatives(const SystemNames& names);
 
+  /// Of compileJacobian(); likewise.
+  const program::Program& getJacobian(const SystemNames& names);
+
  private:
-  std::string compile(ModelContext& context);
+  std::string compile(ModelContext& context, SimbodyModel& simbody);
 
   const ModelSpec& model_;
   const Eigen::VectorXd box_center_;
   std::optional<LaneModel> values_, derivatives_;
+  std::optional<program::Program> jacobian_;
   std::string obstacle_;
   std::mutex compiling_;
 };

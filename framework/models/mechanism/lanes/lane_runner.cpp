@@ -4,10 +4,9 @@
 #include <optional>
 
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/models/mechanism/check_numbers.hpp"
+#include "framework/models/mechanism/equilibrium.hpp"
 #include "framework/models/mechanism/lanes/lane_modes.hpp"
 #include "framework/models/mechanism/lanes/lane_start.hpp"
-#include "framework/models/mechanism/simbody/tree_dynamics.hpp"
 #include "framework/simulation/integration/integration.hpp"
 #include "kernels/lanes/integrator.hpp"
 
@@ -119,8 +118,6 @@ class LaneRunner::Impl : public lanes::SampleStream {
       start_.fill(point, sample);
     } catch (const SimulationFailure& failure) {
       return failure.what();
-    } catch (const SimTK::Exception::Base& error) {
-      return std::string("Simbody: ") + error.getMessage();
     }
     sample.index = static_cast<int>(column);
     sample.outputs = responses_->col(column).data();

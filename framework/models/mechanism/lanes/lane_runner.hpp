@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "framework/models/mechanism/lanes/lane_model.hpp"
-#include "framework/models/mechanism/simbody/loaded_system.hpp"
-#include "framework/models/mechanism/simbody/sample_task.hpp"
+#include "framework/models/mechanism/model_context.hpp"
+#include "framework/models/mechanism/sample_task.hpp"
 #include "framework/simulation/simulator.hpp"
 
 namespace twinmap {

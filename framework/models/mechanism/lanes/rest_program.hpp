@@ -1,6 +1,6 @@
 #pragma once
 
-#include "framework/models/mechanism/initial_state.hpp"
+#include "framework/models/mechanism/equilibrium.hpp"
 #include "framework/models/mechanism/lanes/lane_model.hpp"
 #include "framework/models/mechanism/lanes/single_program.hpp"
 

@@ -10,9 +10,10 @@ using program::Interpreter;
 namespace {
 
 /// Gives all lanes the same values.
-void setRows(Interpreter& interpreter, double* (Interpreter::*row)(int), const VectorXd& values) {
-  for (Eigen::Index i = 0; i < values.size(); ++i) {
-    std::fill_n((interpreter.*row)(static_cast<int>(i)), interpreter.getLanes(), values[i]);
+template <typename Values>
+void setRows(Interpreter& interpreter, double* (Interpreter::*row)(int), const Values& values) {
+  for (int i = 0; i < static_cast<int>(values.size()); ++i) {
+    std::fill_n((interpreter.*row)(i), interpreter.getLanes(), values[i]);
   }
 }
 
@@ -38,6 +39,20 @@ VectorXd SingleProgram::calc(const ProgramInputs& inputs) {
     outputs[i] = *interpreter_.getOutput(i);
   }
   return outputs;
+}
+
+void SingleProgram::enterPhase(const std::vector<double>& parameters,
+                               const std::vector<double>& phase_inputs) {
+  setRows(interpreter_, &Interpreter::updParameter, parameters);
+  setRows(interpreter_, &Interpreter::updPhaseInput, phase_inputs);
+  interpreter_.calcParameters();
+  interpreter_.calcPhase();
+}
+
+void SingleProgram::calcAt(double time, const std::vector<double>& states) {
+  setRows(interpreter_, &Interpreter::updState, states);
+  std::fill_n(interpreter_.updTime(), interpreter_.getLanes(), time);
+  interpreter_.calcOutputs();
 }
 
 }  // namespace twinmap

@@ -21,6 +21,13 @@ class SingleProgram {
   /// The outputs. What is missing of the inputs is as it was before, 0 at first.
   Eigen::VectorXd calc(const ProgramInputs& inputs);
 
+  /// Parameters and phase inputs for the calls of calcAt() that follow.
+  void enterPhase(const std::vector<double>& parameters, const std::vector<double>& phase_inputs);
+  /// Evaluates the outputs at a time and states, as many as the program counts.
+  void calcAt(double time, const std::vector<double>& states);
+  double getOutput(int index) const { return *interpreter_.getOutput(index); }
+  int getOutputCount() const { return output_count_; }
+
  private:
   program::Interpreter interpreter_;
   int output_count_;

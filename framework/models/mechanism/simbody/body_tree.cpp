@@ -9,7 +9,7 @@ BodyTree::BodyTree(const SystemSpec& spec, const SystemNames& names, NumberEvalu
     : names_(names) {
   matter_.setShowDefaultGeometry(false);
   for (const BodySpec& body : spec.bodies) {
-    const SimTK::Body::Rigid rigid(calcMassProperties(body, numbers));
+    const SimTK::Body::Rigid rigid(toMassProperties(calcMassNumbers(body, numbers)));
     const SimTK::MobilizedBodyIndex parent(names.findBody(body.joint.parent));
     addMobilizer(matter_.updMobilizedBody(parent), rigid, body, numbers);
   }

@@ -1,4 +1,5 @@
 #include "framework/models/mechanism/simbody/forces.hpp"
+#include "framework/models/mechanism/simbody/mass_properties.hpp"
 
 namespace twinmap {
 namespace {
@@ -21,13 +22,13 @@ RelativeMotion calcRelativeMotion(const Bushing& bushing, const ForceSum& sum) {
   const SimTK::MobilizedBody& from = sum.getBody(bushing.from.body);
   const SimTK::MobilizedBody& to = sum.getBody(bushing.to.body);
   RelativeMotion motion;
-  motion.from_in_ground = from.getBodyTransform(state) * bushing.from.frame;
-  const Transform to_in_ground = to.getBodyTransform(state) * bushing.to.frame;
+  motion.from_in_ground = from.getBodyTransform(state) * toTransform(bushing.from.frame);
+  const Transform to_in_ground = to.getBodyTransform(state) * toTransform(bushing.to.frame);
   motion.point_in_ground = to_in_ground.p();
   const Transform relative = ~motion.from_in_ground * to_in_ground;
   motion.angles = relative.R().convertRotationToBodyFixedXYZ();
   motion.translation = relative.p();
-  const Vec3 at_point = to.findStationVelocityInGround(state, bushing.to.frame.p());
+  const Vec3 at_point = to.findStationVelocityInGround(state, toVec3(bushing.to.frame.point));
   const Vec3 carried =
       from.findStationVelocityInGround(state, ~from.getBodyTransform(state) * motion.point_in_ground);
   const Vec3 spin = to.getBodyAngularVelocity(state) - from.getBodyAngularVelocity(state);
@@ -65,8 +66,8 @@ void addBushing(const Bushing& bushing, ForceSum& sum) {
   const Vec3 torque = axes * (~rates * angle_forces);
   const Vec3 force = axes * calcResistance(bushing, 3, motion.translation, motion.velocity);
   const SimTK::Transform& from = sum.getBody(bushing.from.body).getBodyTransform(sum.getState());
-  sum.addForce({bushing.to.body, bushing.to.frame.p()}, force);
-  sum.addForce({bushing.from.body, ~from * motion.point_in_ground}, -force);
+  sum.addForce(bushing.to.body, toVec3(bushing.to.frame.point), force);
+  sum.addForce(bushing.from.body, ~from * motion.point_in_ground, -force);
   sum.addMoment(bushing.to.body, torque);
   sum.addMoment(bushing.from.body, -torque);
 }

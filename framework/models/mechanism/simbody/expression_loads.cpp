@@ -1,5 +1,7 @@
 #include "framework/models/mechanism/simbody/expression_loads.hpp"
 
+#include "framework/models/mechanism/simbody/mass_properties.hpp"
+
 namespace twinmap {
 namespace {
 
@@ -45,8 +47,8 @@ void ExpressionLoads::defineNames(const ExpressionScope& numbers) {
 
 void ExpressionLoads::compileLoads() {
   for (const AppliedForceSpec& force : model_.system.applied_forces) {
-    const Station station{names_.findBody(force.station.body), Vec3(0.0)};
-    forces_.push_back({force.station, station, compile3(force.force), force.frame});
+    const Station station{names_.findBody(force.station.body), Eigen::Vector3d::Zero()};
+    forces_.push_back({force, station, compile3(force.force), force.frame});
   }
   for (const AppliedMomentSpec& moment : model_.system.applied_moments) {
     moments_.push_back({names_.findBody(moment.body), compile3(moment.moment), moment.frame});
@@ -65,7 +67,7 @@ void ExpressionLoads::update(const ExpressionScope& values, NumberEvaluator& num
     scope_.upd(i) = values.get(i);
   }
   for (AppliedForce& force : forces_) {
-    force.station = calcStation(force.spec, names_, numbers, "force on '" + force.spec.body.text + "'");
+    force.station = calcAppliedStation(force.spec, names_, numbers);
   }
 }
 
@@ -90,7 +92,8 @@ void ExpressionLoads::add(double t, const std::vector<double>& signals, ForceSum
   setValues(t, signals, sum);
   for (const AppliedForce& force : forces_) {
     const SimTK::MobilizedBody& body = sum.getBody(force.station.body);
-    sum.addForce(force.station, calcInGround(force.components, force.frame, body, sum.getState()));
+    sum.addForce(force.station.body, toVec3(force.station.point),
+                 calcInGround(force.components, force.frame, body, sum.getState()));
   }
   for (const AppliedMoment& moment : moments_) {
     const SimTK::MobilizedBody& body = sum.getBody(moment.body);

@@ -25,7 +25,7 @@ class ExpressionLoads {
  private:
   using Components = std::array<CompiledExpression, 3>;
   struct AppliedForce {
-    const StationSpec& spec;
+    const AppliedForceSpec& spec;
     Station station;
     Components components;
     ForceFrame frame;

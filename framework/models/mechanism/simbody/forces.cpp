@@ -1,5 +1,7 @@
 #include "framework/models/mechanism/simbody/forces.hpp"
 
+#include "framework/models/mechanism/simbody/mass_properties.hpp"
+
 namespace twinmap {
 namespace {
 
@@ -10,7 +12,7 @@ using SimTK::Vec3;
 /// Below this distance (m) two points have no direction between them, and exert no force on each other.
 constexpr double kCoincident = 1e-12;
 
-void addSeverity(const Vec3& gravity, ForceSum& sum) {
+void addGravity(const Vec3& gravity, ForceSum& sum) {
   const int bodies = sum.getTree().getMatter().getNumBodies();
   for (int i = 1; i < bodies && gravity.normSqr() > 0.0; ++i) {
     const SimTK::SpatialInertia& inertia = sum.getBody(i).getBodySpatialInertiaInGround(sum.getState());
@@ -26,9 +28,9 @@ struct Pair {
 
 Pair calcPair(const Station& from, const Station& to, const ForceSum& sum) {
   Vec3 from_point, from_velocity, to_point, to_velocity;
-  sum.getBody(from.body).findStationLocationAndVelocityInGround(sum.getState(), from.point, from_point,
-                                                                from_velocity);
-  sum.getBody(to.body).findStationLocationAndVelocityInGround(sum.getState(), to.point, to_point,
+  sum.getBody(from.body).findStationLocationAndVelocityInGround(sum.getState(), toVec3(from.point),
+                                                                from_point, from_velocity);
+  sum.getBody(to.body).findStationLocationAndVelocityInGround(sum.getState(), toVec3(to.point), to_point,
                                                               to_velocity);
   const Vec3 between = to_point - from_point;
   const double distance = between.norm();
@@ -40,14 +42,14 @@ Pair calcPair(const Station& from, const Station& to, const ForceSum& sum) {
 }
 
 void addPull(const Station& from, const Station& to, const Vec3& pull, ForceSum& sum) {
-  sum.addForce(from, pull);
-  sum.addForce(to, -pull);
+  sum.addForce(from.body, toVec3(from.point), pull);
+  sum.addForce(to.body, toVec3(to.point), -pull);
 }
 
 }  // namespace
 
-void ForceSum::addForce(const Station& station, const Vec3& force) {
-  addAt(station.body, getBody(station.body).expressVectorInGroundFrame(state_, station.point), force);
+void ForceSum::addForce(int body, const Vec3& point, const Vec3& force) {
+  addAt(body, getBody(body).expressVectorInGroundFrame(state_, point), force);
 }
 
 void ForceSum::addAt(int body, const Vec3& arm, const Vec3& force) {
@@ -57,7 +59,7 @@ void ForceSum::addAt(int body, const Vec3& arm, const Vec3& force) {
 void addPassiveForces(const PassiveForces& forces, ForceSum& sum) {
   const State& state = sum.getState();
   const std::vector<BodyTree::Slot>& slots = sum.getTree().getSlots();
-  addSeverity(forces.gravity, sum);
+  addGravity(toVec3(forces.gravity), sum);
   for (const CoordinateSpring& spring : forces.springs) {
     const double stretch = state.getQ()[slots[spring.coordinate].q] - spring.rest;
     sum.addOnCoordinate(spring.coordinate, -spring.stiffness * stretch);

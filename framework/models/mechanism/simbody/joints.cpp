@@ -11,55 +11,35 @@ using SimTK::Transform;
 using SimTK::Vec3;
 
 /// The rotation that carries the axis Simbody's mobilizer uses onto the joint's axis.
-Rotation calcAxisAlignment(const JointSpec& joint, NumberEvaluator& numbers, const std::string& owner) {
-  if (!joint.axis) {
+Rotation calcAxisAlignment(JointType type, const std::optional<Eigen::Vector3d>& axis) {
+  if (!axis) {
     return Rotation();
   }
-  const Vec3 axis = calcVec3(numbers, *joint.axis, {owner, "joint.axis", ""});
-  if (axis.norm() == 0.0) {
-    throw SimulationFailure(owner + ": joint.axis must not be zero", (*joint.axis)[0].where);
-  }
-  const SimTK::CoordinateAxis own = joint.type == JointType::kSlider
+  const SimTK::CoordinateAxis own = type == JointType::kSlider
                                         ? static_cast<SimTK::CoordinateAxis>(SimTK::XAxis)
                                         : static_cast<SimTK::CoordinateAxis>(SimTK::ZAxis);
-  return Rotation(SimTK::UnitVec3(axis), own);
+  return Rotation(SimTK::UnitVec3(toVec3(*axis)), own);
 }
 
 struct Joint {
   MobilizedBody parent;
-  const JointNumbers& numbers;
   const SimTK::Body& body;
+  Transform in_parent, in_body;
 
   template <typename Mobilizer, typename... Numbers>
   void add(Numbers... more) {
-    Mobilizer(parent, numbers.in_parent, body, numbers.in_body, more...);
+    Mobilizer(parent, in_parent, body, in_body, more...);
   }
 };
 
 }  // namespace
 
-Transform calcFrame(const FrameSpec& frame, NumberEvaluator& numbers, const std::string& owner) {
-  const Vec3 angles = calcVec3(numbers, frame.orientation, {owner, "orientation", "rad"});
-  Rotation rotation;
-  rotation.setRotationToBodyFixedXYZ(angles);
-  return Transform(rotation, calcVec3(numbers, frame.point, {owner, "point", "m"}));
-}
-
-JointNumbers calcJointNumbers(const BodySpec& spec, NumberEvaluator& numbers) {
-  const std::string owner = "body '" + spec.name.text + "'";
-  const Transform alignment(calcAxisAlignment(spec.joint, numbers, owner));
-  JointNumbers joint{calcFrame(spec.joint.in_parent, numbers, owner) * alignment,
-                     calcFrame(spec.joint.in_body, numbers, owner) * alignment, 0.0};
-  if (spec.joint.type == JointType::kScrew) {
-    joint.pitch = numbers.calc(spec.joint.pitch, {owner, "joint.pitch", "m/rad"});
-  }
-  return joint;
-}
-
 void addMobilizer(MobilizedBody parent, const SimTK::Body& body, const BodySpec& spec,
                   NumberEvaluator& numbers) {
   const JointNumbers values = calcJointNumbers(spec, numbers);
-  Joint joint{parent, values, body};
+  const Transform alignment(calcAxisAlignment(spec.joint.type, values.axis));
+  Joint joint{parent, body, toTransform(values.in_parent) * alignment,
+              toTransform(values.in_body) * alignment};
   switch (spec.joint.type) {
     case JointType::kWeld:
       return joint.add<MobilizedBody::Weld>();

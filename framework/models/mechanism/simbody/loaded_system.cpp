@@ -26,14 +26,7 @@ class ForceAdapter : public SimTK::Force::Custom::Implementation {
 
 }  // namespace
 
-ModelContext::ModelContext(const ModelSpec& spec)
-    : model(spec),
-      names(spec.system),
-      numbers(spec),
-      loads(spec, names, numbers.getScope()),
-      excitation(spec.excitation) {}
-
-LoadedSystem::LoadedSystem(ModelContext& context, bool for_simbody)
+LoadedSystem::LoadedSystem(SimbodyContext& context, bool for_simbody)
     : context_(context),
       tree_(context.model.system, context.names, context.numbers.updNumbers()),
       passive_(calcPassiveForces(context.model.system, context.names, context.numbers.updNumbers())),

@@ -4,21 +4,17 @@
 #include <optional>
 #include <vector>
 
+#include "framework/models/mechanism/model_context.hpp"
 #include "framework/models/mechanism/simbody/expression_loads.hpp"
-#include "framework/simulation/excitation/excitation.hpp"
 
 namespace twinmap {
 
-/// What a simulator keeps from sample to sample: names, compiled expressions, excitation.
-struct ModelContext {
+/// What a simulator keeps from sample to sample, with the forces that are expressions, compiled.
+struct SimbodyContext : ModelContext {
   /// Throws ExperimentError as its members do. `model` must outlive the context unchanged.
-  explicit ModelContext(const ModelSpec& model);
+  explicit SimbodyContext(const ModelSpec& of) : ModelContext(of), loads(of, names, numbers.getScope()) {}
 
-  const ModelSpec& model;
-  SystemNames names;
-  ModelNumbers numbers;
   ExpressionLoads loads;
-  Excitation excitation;
 };
 
 /// Of central differences of a system's accelerations: the cube root of the rounding unit.
@@ -29,7 +25,7 @@ class LoadedSystem {
  public:
   /// Builds the system for the current values of the context's numbers, with muted excitation.
   /// `for_simbody`: make the forces visible to Simbody's own integrators. Throws SimulationFailure.
-  LoadedSystem(ModelContext& context, bool for_simbody);
+  LoadedSystem(SimbodyContext& context, bool for_simbody);
   LoadedSystem(const LoadedSystem&) = delete;
   LoadedSystem& operator=(const LoadedSystem&) = delete;
 
@@ -43,7 +39,7 @@ class LoadedSystem {
   const Eigen::VectorXd& calcUDot(const SimTK::State& state, double t);
 
  private:
-  ModelContext& context_;
+  SimbodyContext& context_;
   BodyTree tree_;
   PassiveForces passive_;
   std::vector<double> signals_;

@@ -2,16 +2,17 @@
 
 #include <Simbody.h>
 
-#include "framework/experiment/model/system_spec.hpp"
-#include "framework/simulation/number_evaluator.hpp"
+#include "framework/models/mechanism/system_numbers.hpp"
 
 namespace twinmap {
 
-SimTK::Vec3 calcVec3(NumberEvaluator& numbers, const Expression3& expressions, const Quantity& quantity);
+inline SimTK::Vec3 toVec3(const Eigen::Vector3d& values) {
+  return SimTK::Vec3(values[0], values[1], values[2]);
+}
 
-/// Mass, centre of mass and inertia about the body's origin (Steiner's theorem). Throws SimulationFailure
-/// unless the mass is positive and the inertia is that of a real body: its principal moments not negative and
-/// none above the sum of the other two.
-SimTK::MassProperties calcMassProperties(const BodySpec& body, NumberEvaluator& numbers);
+SimTK::Transform toTransform(const FrameNumbers& frame);
+
+/// With the inertia about the body's origin.
+SimTK::MassProperties toMassProperties(const MassNumbers& numbers);
 
 }  // namespace twinmap

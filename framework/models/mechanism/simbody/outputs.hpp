@@ -1,16 +1,10 @@
 #pragma once
 
-#include <optional>
-#include <string>
 #include <vector>
 
 #include "framework/models/mechanism/simbody/loaded_system.hpp"
 
 namespace twinmap {
-
-/// Units of all outputs: m, rad, m/s, rad/s or m/s2. Throws ExperimentError for unknown coordinates or bodies
-/// and for an output that measures nothing or several things.
-std::vector<std::string> getOutputUnits(const std::vector<OutputSpec>& outputs, const SystemNames& names);
 
 /// The outputs of one parameter set.
 class Outputs {
@@ -26,25 +20,12 @@ class Outputs {
             std::ptrdiff_t stride) const;
 
  private:
-  enum class Kind { kCoordinate, kSpeed, kPosition, kVelocity, kAcceleration };
-  struct Sensor {
-    double gain, offset;  ///< the offset in the output's unit
-  };
-  struct Output {
-    Kind kind;
-    int coordinate;
-    Station station;
-    SimTK::Vec3 direction;
-    std::optional<Sensor> sensor;
-  };
-
-  static Output makeQuantity(const OutputSpec& spec, const SystemNames& names, NumberEvaluator& numbers);
-  static Output makeOutput(const OutputSpec& spec, const SystemNames& names, NumberEvaluator& numbers);
-  double calcQuantity(const Output& output, const LoadedSystem& system, const SimTK::State& state) const;
-  double calcAcceleration(const Output& output, const LoadedSystem& system, const SimTK::State& state,
+  double calcQuantity(const OutputNumbers& output, const LoadedSystem& system,
+                      const SimTK::State& state) const;
+  double calcAcceleration(const OutputNumbers& output, const LoadedSystem& system, const SimTK::State& state,
                           const SimTK::Vector_<SimTK::SpatialVec>& accelerations) const;
 
-  std::vector<Output> outputs_;
+  std::vector<OutputNumbers> outputs_;
   SimTK::Stage stage_ = SimTK::Stage::Time;
   bool needs_accelerations_ = false;
 };

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "framework/models/mechanism/initial_state.hpp"
+#include "framework/models/mechanism/simbody/initial_state.hpp"
 #include "framework/models/mechanism/simbody/outputs.hpp"
 #include "framework/simulation/integration/integration.hpp"
 

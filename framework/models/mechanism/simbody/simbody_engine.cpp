@@ -2,17 +2,17 @@
 
 #include <limits>
 
-#include "framework/models/mechanism/linearization.hpp"
+#include "framework/models/mechanism/modes.hpp"
+#include "framework/models/mechanism/simbody/linearization.hpp"
 #include "framework/models/mechanism/simbody/run_sample.hpp"
 
 namespace twinmap {
 
-SampleStatus SimbodyEngine::simulate(const SimulationSpec& simulation,
-                                     const Eigen::Ref<const Eigen::VectorXd>& parameters,
+SampleStatus SimbodyEngine::simulate(const Eigen::Ref<const Eigen::VectorXd>& parameters,
                                      Eigen::Ref<Eigen::VectorXd> response, StepSequence& sequence) {
   SampleStatus status;
   try {
-    status.reason = run(simulation, parameters, response, sequence);
+    status.reason = run(parameters, response, sequence);
     if (status.reason.empty() && !response.allFinite()) {
       status.reason = "an output became non-finite";
     }
@@ -31,9 +31,9 @@ SampleStatus SimbodyEngine::simulate(const SimulationSpec& simulation,
   return status;
 }
 
-std::string SimbodyEngine::run(const SimulationSpec& simulation,
-                               const Eigen::Ref<const Eigen::VectorXd>& parameters,
+std::string SimbodyEngine::run(const Eigen::Ref<const Eigen::VectorXd>& parameters,
                                Eigen::Ref<Eigen::VectorXd> response, StepSequence& sequence) {
+  const SimulationSpec& simulation = context_.model.simulation;
   const bool own = simulation.integrator == Integrator::kDopri5;
   context_.numbers.update(parameters);
   LoadedSystem system(context_, !own);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/models/mechanism/equilibrium.hpp"
+
 namespace twinmap {
 namespace {
 

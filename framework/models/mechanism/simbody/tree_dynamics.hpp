@@ -7,9 +7,6 @@
 
 namespace twinmap {
 
-inline constexpr const char* kSingularMassMatrix =
-    "the mass matrix is singular: a body without inertia can move freely";
-
 /// Forces on all bodies (moment and force at the body's origin, in ground axes) and on all speeds.
 struct SystemForces {
   std::vector<SimTK::SpatialVec> on_bodies;  ///< ground first

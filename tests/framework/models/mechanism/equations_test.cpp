@@ -3,7 +3,7 @@
 #include <random>
 
 #include "framework/models/mechanism/equations/outputs.hpp"
-#include "framework/models/mechanism/initial_state.hpp"
+#include "framework/models/mechanism/simbody/initial_state.hpp"
 #include "framework/models/mechanism/simbody/outputs.hpp"
 #include "tests/framework/models/mechanism/random_state.hpp"
 #include "tests/framework/models/mechanism/random_trees.hpp"
@@ -77,7 +77,7 @@ class BothViews {
 
  private:
   const ModelSpec& model_;
-  ModelContext context_;
+  SimbodyContext context_;
   std::optional<LoadedSystem> system_;
   SimTK::State simbody_;
   NamedValues<double> values_;
@@ -142,7 +142,7 @@ TEST(Equations, GiveCoincidentPointsNoForce) {
                               joint(JointType::kTranslation, {"x", "y", "z"}))};
   model.system.two_point_springs = {
       {station("ground", ex3("0.5", "0", "0")), station("block", ex3("0.5", "0", "0")), ex("5"), ex("0.1")}};
-  ModelContext context(model);
+  SimbodyContext context(model);
   const NamedValues<double> none;
   const SystemValues<double> values = equations::calcSystemValues(model.system, context.names, none);
   const ModelState<double> rest{0.0, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {}};
@@ -154,7 +154,7 @@ TEST(Equations, SeeASingularMassMatrix) {
   ModelSpec model = makeModel(1.0);
   model.system.bodies = {
       body("pointer", "1", ex3("0", "0", "0"), ex3("0", "0", "0"), joint(JointType::kPin, {"turn"}))};
-  ModelContext context(model);
+  SimbodyContext context(model);
   const NamedValues<double> none;
   const SystemValues<double> values = equations::calcSystemValues(model.system, context.names, none);
   const ModelState<double> rest{0.0, {0.3}, {0.0}, {}};

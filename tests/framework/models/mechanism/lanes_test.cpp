@@ -256,7 +256,7 @@ TEST(LanesDerivatives, FailWithBothReasonsWhereTheStiffRetryFails) {
   simulator.simulateWithDerivatives(Eigen::Vector2d(1e6, 1e6), response, derivatives, &status);
   EXPECT_FALSE(status.ok);
   EXPECT_TRUE(status.stiff_retry);
-  EXPECT_NE(status.reason.find("by CPodes: step limit"), std::string::npos) << status.reason;
+  EXPECT_NE(status.reason.find("by Radau IIA: step limit"), std::string::npos) << status.reason;
   EXPECT_TRUE(std::isnan(response(0, 0)));
 }
 

@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "framework/models/mechanism/initial_state.hpp"
+#include "framework/models/mechanism/model_context.hpp"
 
 namespace twinmap::testing {
 

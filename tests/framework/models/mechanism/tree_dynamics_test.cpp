@@ -1,6 +1,6 @@
 // Accelerations and bushings against Simbody's own, at arbitrary states of arbitrary trees.
 
-#include "framework/models/mechanism/initial_state.hpp"
+#include "framework/models/mechanism/simbody/initial_state.hpp"
 #include "tests/framework/models/mechanism/random_state.hpp"
 #include "tests/framework/models/mechanism/random_trees.hpp"
 
@@ -11,7 +11,7 @@ class EveryJoint : public ::testing::TestWithParam<JointType> {};
 
 TEST_P(EveryJoint, AcceleratesAsSimbodySays) {
   const ModelSpec model = makeTree(GetParam());
-  ModelContext context(model);
+  SimbodyContext context(model);
   context.numbers.update(Eigen::VectorXd());
   LoadedSystem system(context, true);
   SimTK::State state = system.getTree().getDefaultState();
@@ -29,7 +29,7 @@ TEST_P(EveryJoint, AcceleratesAsSimbodySays) {
 
 TEST_P(EveryJoint, SpeedIsTheDerivativeOfTheCoordinateWhereForcesAreAllowed) {
   const ModelSpec model = makeTree(GetParam());
-  ModelContext context(model);
+  SimbodyContext context(model);
   context.numbers.update(Eigen::VectorXd());
   LoadedSystem system(context, false);
   SimTK::State state = system.getTree().getDefaultState();
@@ -75,7 +75,7 @@ SimTK::Vector_<SimTK::SpatialVec> calcLinearBushing(const SimTK::State& at) {
 
 TEST(Bushing, AgreesWithSimbodysLinearBushing) {
   const ModelSpec model = makeBushedBodies();
-  ModelContext context(model);
+  SimbodyContext context(model);
   context.numbers.update(Eigen::VectorXd());
   LoadedSystem system(context, false);
   SimTK::State state = system.getTree().getDefaultState();

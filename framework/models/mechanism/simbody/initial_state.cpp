@@ -1,24 +1,41 @@
-#include "framework/models/mechanism/initial_state.hpp"
+#include "framework/models/mechanism/simbody/initial_state.hpp"
 
 namespace twinmap {
 namespace {
 
-Eigen::VectorXd calcNamed(const std::vector<NamedExpression>& values, const char* what,
-                          ModelContext& context) {
-  Eigen::VectorXd result = Eigen::VectorXd::Zero(context.names.getCoordinateNames().size());
-  for (const NamedExpression& value : values) {
-    const std::string owner = "initial condition of '" + value.name.text + "'";
-    result[context.names.findCoordinate(value.name)] =
-        context.numbers.updNumbers().calc(value.value, {owner, what, ""});
+/// By Simbody, with central differences.
+class LoadedSystemAtRest : public RestAccelerations {
+ public:
+  explicit LoadedSystemAtRest(LoadedSystem& system)
+      : system_(system), state_(system.getTree().getDefaultState()) {}
+
+  Eigen::VectorXd calc(const Eigen::VectorXd& q) override {
+    setState(system_, {q, Eigen::VectorXd::Zero(q.size())}, state_);
+    return system_.calcUDot(state_, 0.0);
   }
-  return result;
-}
+
+  Eigen::MatrixXd calcJacobian(const Eigen::VectorXd& q) override {
+    Eigen::MatrixXd jacobian(q.size(), q.size());
+    for (Eigen::Index i = 0; i < q.size(); ++i) {
+      const double h = kDifferenceStep * (1.0 + std::abs(q[i]));
+      Eigen::VectorXd forward = q, backward = q;
+      forward[i] += h;
+      backward[i] -= h;
+      jacobian.col(i) = (calc(forward) - calc(backward)) / (forward[i] - backward[i]);
+    }
+    return jacobian;
+  }
+
+ private:
+  LoadedSystem& system_;
+  SimTK::State state_;
+};
 
 }  // namespace
 
-InitialState calcInitialValues(ModelContext& context) {
-  const InitialSpec& initial = context.model.initial;
-  return {calcNamed(initial.coordinates, "coordinate", context), calcNamed(initial.speeds, "speed", context)};
+Eigen::VectorXd solveEquilibrium(LoadedSystem& system, const Eigen::VectorXd& start) {
+  LoadedSystemAtRest at_rest(system);
+  return solveEquilibrium(at_rest, start);
 }
 
 InitialState calcInitialState(ModelContext& context, LoadedSystem& system,

@@ -1,12 +1,9 @@
-#include "framework/models/mechanism/linearization.hpp"
-
-#include <fmt/core.h>
+#include "framework/models/mechanism/simbody/linearization.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "framework/models/mechanism/initial_state.hpp"
-#include "kernels/linalg/decompositions.hpp"
+#include "framework/models/mechanism/simbody/initial_state.hpp"
 
 namespace twinmap {
 namespace {
@@ -65,42 +62,6 @@ class Linearization {
 
 MatrixXd calcStateMatrix(LoadedSystem& system, const VectorXd& coordinates) {
   return Linearization(system).calc(coordinates);
-}
-
-std::vector<Mode> calcModes(const MatrixXd& state_matrix) {
-  constexpr double kTwoPi = 6.283185307179586, kSmallest = 1e-5;
-  if (state_matrix.size() == 0) {
-    return {};
-  }
-  if (!state_matrix.allFinite()) {
-    throw SimulationFailure("the linearisation at the equilibrium is not finite");
-  }
-  const Eigen::VectorXcd eigenvalues = linalg::calcEigenvalues(state_matrix);
-  const double least = kSmallest * eigenvalues.cwiseAbs().maxCoeff();
-  std::vector<Mode> modes;
-  for (const std::complex<double>& eigenvalue : eigenvalues) {
-    if (eigenvalue.imag() > least) {
-      const double magnitude = std::abs(eigenvalue);
-      modes.push_back({magnitude / kTwoPi, -eigenvalue.real() / magnitude});
-    }
-  }
-  std::sort(modes.begin(), modes.end(),
-            [](const Mode& a, const Mode& b) { return a.frequency < b.frequency; });
-  return modes;
-}
-
-VectorXd collectLowestModes(const MatrixXd& state_matrix, int count) {
-  const std::vector<Mode> modes = calcModes(state_matrix);
-  if (static_cast<int>(modes.size()) < count) {
-    throw SimulationFailure(
-        fmt::format("only {} of {} modes oscillate at the equilibrium", modes.size(), count));
-  }
-  VectorXd values(2 * count);
-  for (int i = 0; i < count; ++i) {
-    values[i] = modes[i].frequency;
-    values[count + i] = modes[i].damping_ratio;
-  }
-  return values;
 }
 
 }  // namespace twinmap

@@ -1,6 +1,4 @@
-#include "framework/models/mechanism/simbody/forces.hpp"
-#include "framework/models/mechanism/simbody/joints.hpp"
-#include "framework/models/mechanism/simbody/mass_properties.hpp"
+#include "framework/models/mechanism/force_numbers.hpp"
 
 namespace twinmap {
 namespace {
@@ -72,14 +70,14 @@ void addBushings(const SystemSpec& spec, const SystemNames& names, NumberEvaluat
 
 }  // namespace
 
-Station calcStation(const StationSpec& spec, const SystemNames& names, NumberEvaluator& numbers,
-                    const std::string& owner) {
-  return {names.findBody(spec.body), calcVec3(numbers, spec.point, {owner, "point", "m"})};
+Station calcAppliedStation(const AppliedForceSpec& force, const SystemNames& names,
+                           NumberEvaluator& numbers) {
+  return calcStation(force.station, names, numbers, "force on '" + force.station.body.text + "'");
 }
 
 PassiveForces calcPassiveForces(const SystemSpec& spec, const SystemNames& names, NumberEvaluator& numbers) {
   PassiveForces forces;
-  forces.gravity = calcVec3(numbers, spec.gravity, {"system", "gravity", "m/s2"});
+  forces.gravity = calcVector(numbers, spec.gravity, {"system", "gravity", "m/s2"});
   addCoordinateForces(spec, names, numbers, forces);
   addTwoPointForces(spec, names, numbers, forces);
   addBushings(spec, names, numbers, forces);

@@ -10,12 +10,12 @@ namespace twinmap {
 // ExperimentError, with the place of the number that is the cause where one is.
 
 /// Builds everything, so that all expressions are compiled and all names are known.
-void buildAtBoxCenter(ModelContext& context);
+void buildAtBoxCenter(SimbodyContext& context);
 
 /// Coordinates of the equilibrium that all samples start from; empty if the spec does not ask for it.
-Eigen::VectorXd solveBoxCenter(ModelContext& context);
+Eigen::VectorXd solveBoxCenter(SimbodyContext& context);
 
 /// The initial state exists and its accelerations are finite. `box_center`: of solveBoxCenter().
-void checkStartAtBoxCenter(ModelContext& context, const Eigen::VectorXd& box_center);
+void checkStartAtBoxCenter(SimbodyContext& context, const Eigen::VectorXd& box_center);
 
 }  // namespace twinmap

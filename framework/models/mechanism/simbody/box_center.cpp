@@ -1,10 +1,10 @@
-#include "framework/models/mechanism/box_center.hpp"
+#include "framework/models/mechanism/simbody/box_center.hpp"
 
 #include <algorithm>
 
 #include "framework/experiment/check/check_experiment.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/models/mechanism/initial_state.hpp"
+#include "framework/models/mechanism/simbody/initial_state.hpp"
 #include "framework/models/mechanism/simbody/outputs.hpp"
 
 namespace twinmap {
@@ -17,7 +17,7 @@ int findParameter(const ModelSpec& model, const Name& name) {
 }
 
 /// The box centre with the values that replace it; those may use the centre's parameters and constants.
-Eigen::VectorXd calcEquilibriumPoint(ModelContext& context) {
+Eigen::VectorXd calcEquilibriumPoint(SimbodyContext& context) {
   Eigen::VectorXd point = calcBoxCenter(collectSampled(context.model));
   for (const NamedExpression& value : context.model.initial.equilibrium->parameters) {
     const std::string owner = "initial.equilibrium";
@@ -40,7 +40,7 @@ ExperimentError makeCenterError(const ModelSpec& model, SourceLocation where, co
 
 /// With the context's numbers at the box centre. What fails in `action` is wrong input.
 template <typename Action>
-void atBoxCenter(ModelContext& context, const Action& action) {
+void atBoxCenter(SimbodyContext& context, const Action& action) {
   try {
     context.numbers.update(calcBoxCenter(collectSampled(context.model)));
     action();
@@ -53,7 +53,7 @@ void atBoxCenter(ModelContext& context, const Action& action) {
   }
 }
 
-void checkInitialState(ModelContext& context, const Eigen::VectorXd& box_center) {
+void checkInitialState(SimbodyContext& context, const Eigen::VectorXd& box_center) {
   LoadedSystem system(context, false);
   SimTK::State state = system.getTree().getDefaultState();
   setState(system, calcInitialState(context, system, box_center), state);
@@ -67,7 +67,7 @@ void checkInitialState(ModelContext& context, const Eigen::VectorXd& box_center)
 
 }  // namespace
 
-void buildAtBoxCenter(ModelContext& context) {
+void buildAtBoxCenter(SimbodyContext& context) {
   atBoxCenter(context, [&] {
     const LoadedSystem system(context, false);
     const Outputs outputs(context.model.outputs, context.names, context.numbers.updNumbers());
@@ -75,7 +75,7 @@ void buildAtBoxCenter(ModelContext& context) {
   });
 }
 
-Eigen::VectorXd solveBoxCenter(ModelContext& context) {
+Eigen::VectorXd solveBoxCenter(SimbodyContext& context) {
   const std::optional<EquilibriumSpec>& equilibrium = context.model.initial.equilibrium;
   Eigen::VectorXd coordinates;
   if (equilibrium && equilibrium->at == EquilibriumAt::kBoxCenter) {
@@ -88,7 +88,7 @@ Eigen::VectorXd solveBoxCenter(ModelContext& context) {
   return coordinates;
 }
 
-void checkStartAtBoxCenter(ModelContext& context, const Eigen::VectorXd& box_center) {
+void checkStartAtBoxCenter(SimbodyContext& context, const Eigen::VectorXd& box_center) {
   atBoxCenter(context, [&] { checkInitialState(context, box_center); });
 }
 

@@ -1,0 +1,168 @@
+#include "framework/models/mechanism/lanes/stiff_retry.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "framework/experiment/model/parameter_box.hpp"
+#include "framework/models/mechanism/equilibrium.hpp"
+#include "framework/simulation/stencil.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// The recorded equations of one sample as a problem of the integrators; nothing happens between its phases.
+class RecordedProblem final : public HybridProblem {
+ public:
+  RecordedProblem(const lanes::Sample& sample, Index times, SingleProgram& derivative, SingleProgram& output,
+                  SingleProgram& jacobian)
+      : sample_(sample), times_(times), derivative_(derivative), output_(output), jacobian_(jacobian) {}
+
+  std::vector<double> getBoundaries() const {
+    std::vector<double> boundaries;
+    for (const lanes::Phase& phase : sample_.phases) {
+      boundaries.push_back(phase.begin);
+    }
+    boundaries.push_back(sample_.end);
+    return boundaries;
+  }
+
+  void enterPhase(double begin, State&) override {
+    const lanes::Phase& phase =
+        *std::find_if(sample_.phases.begin(), sample_.phases.end(),
+                      [begin](const lanes::Phase& one) { return one.begin == begin; });
+    for (SingleProgram* program : {&derivative_, &output_, &jacobian_}) {
+      program->enterPhase(sample_.parameters, phase.inputs);
+    }
+  }
+
+  void calcDerivative(double t, const State& x, State& dxdt) override {
+    derivative_.calcAt(t, x);
+    const int n = static_cast<int>(x.size());
+    for (int i = 0; i < n; ++i) {
+      dxdt[i] = derivative_.getOutput(i);
+    }
+    for (int i = n; i < derivative_.getOutputCount(); ++i) {
+      if (!(derivative_.getOutput(i) > 0.0)) {  // a pivot
+        throw SimulationFailure(kSingularMassMatrix);
+      }
+    }
+  }
+
+  bool calcJacobian(double t, const State& x, MatrixXd& jacobian) override {
+    jacobian_.calcAt(t, x);
+    for (Index i = 0; i < jacobian.size(); ++i) {
+      jacobian.data()[i] = jacobian_.getOutput(static_cast<int>(i));
+    }
+    return true;
+  }
+
+  void recordOutput(int index, double t, const State& x) override {
+    output_.calcAt(t, x);
+    for (int i = 0; i < output_.getOutputCount(); ++i) {
+      sample_.outputs[i * times_ + index] = output_.getOutput(i);
+    }
+  }
+
+  std::size_t getIndicatorCount() const override { return 0; }
+  void calcIndicators(double, const State&, double*) override {}
+  bool completeStep(double, const State&) override { return false; }
+  void handleEvent(double, State&) override {}
+  double getNextEventTime() const override { return std::numeric_limits<double>::infinity(); }
+  bool isOver() const override { return false; }
+
+ private:
+  const lanes::Sample& sample_;
+  Index times_;
+  SingleProgram &derivative_, &output_, &jacobian_;
+};
+
+SampleStatus makeSecondStatus(const SampleStatus& first, SampleStatus second) {
+  second.stiff_retry = true;
+  if (!second.ok) {
+    second.reason = first.reason + "; by Radau IIA: " + second.reason;
+  }
+  return second;
+}
+
+}  // namespace
+
+StiffRetry::StiffRetry(const ModelSpec& spec, const LaneModel& model, const program::Program& jacobian,
+                       const SampleTask& task)
+    : spec_(spec),
+      task_(task),
+      start_(spec, model, task.box_center),
+      modes_(model),
+      derivative_(model.problem.derivative),
+      output_(model.problem.output),
+      jacobian_(jacobian) {}
+
+void StiffRetry::simulate(const Eigen::Ref<const VectorXd>& parameters, Eigen::Ref<VectorXd> response,
+                          SampleStatus& status) {
+  StepSequence own_steps;
+  status = makeSecondStatus(status, run(parameters, response, own_steps));
+}
+
+void StiffRetry::simulateWithDerivatives(const Eigen::Ref<const VectorXd>& parameters,
+                                         Eigen::Ref<VectorXd> response, Eigen::Ref<MatrixXd> derivatives,
+                                         SampleStatus& status) {
+  const std::vector<ParameterSpec> sampled = collectSampled(spec_);
+  const MatrixXd points = makeNeighbours(sampled, parameters);
+  MatrixXd responses(response.size(), points.cols());
+  StepSequence steps_of_center;
+  SampleStatus second;
+  for (Index i = 0; i < points.cols() && second.ok; ++i) {
+    second = run(points.col(i), responses.col(i), steps_of_center);
+  }
+  if (second.ok) {
+    response = responses.col(0);
+    derivatives =
+        calcDifferences(responses, sampled, parameters) * calcWidths(sampled).asDiagonal().inverse();
+  } else {
+    response.setConstant(kNaN);
+  }
+  status = makeSecondStatus(status, std::move(second));
+}
+
+SampleStatus StiffRetry::run(const Eigen::Ref<const VectorXd>& parameters, Eigen::Ref<VectorXd> response,
+                             StepSequence& sequence) {
+  const SimulationSpec& simulation = spec_.simulation;
+  const IntegrationOptions options{simulation.relative_tolerance, simulation.absolute_tolerance,
+                                   simulation.max_steps, simulation.max_wall_time};
+  SampleStatus status;
+  try {
+    if (task_.layout.modes > 0) {
+      response.tail(2 * task_.layout.modes) =
+          modes_.calc(parameters, start_.solveEquilibrium(parameters), task_.layout.modes);
+    }
+    lanes::Sample sample;
+    start_.fill(parameters, sample);
+    sample.outputs = response.data();
+    RecordedProblem problem(sample, task_.layout.times.size(), derivative_, output_, jacobian_);
+    HybridReport report =
+        integrateHybrid(problem, sample.initial, problem.getBoundaries(), task_.layout.times, options,
+                        sequence.empty() ? nullptr : &sequence, HybridMethod::kImplicit);
+    status.reason =
+        report.failure.empty() && !response.allFinite() ? "an output became non-finite" : report.failure;
+    if (status.reason.empty() && sequence.empty()) {
+      sequence = std::move(report.sequence);
+    }
+  } catch (const WallTimeReached& failure) {
+    status.reason = failure.what();
+    status.machine_dependent = true;
+  } catch (const SimulationFailure& failure) {
+    status.reason = failure.what();
+  }
+  status.ok = status.reason.empty();
+  if (!status.ok) {
+    response.setConstant(kNaN);
+  }
+  return status;
+}
+
+}  // namespace twinmap

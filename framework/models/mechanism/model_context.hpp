@@ -1,0 +1,34 @@
+#pragma once
+
+#include "framework/models/mechanism/system_names.hpp"
+#include "framework/simulation/excitation/excitation.hpp"
+#include "framework/simulation/model_numbers.hpp"
+
+namespace twinmap {
+
+/// What a simulator keeps from sample to sample: names, values of parameters and constants, excitation.
+struct ModelContext {
+  /// Throws ExperimentError as its members do. `model` must outlive the context unchanged.
+  explicit ModelContext(const ModelSpec& of)
+      : model(of), names(of.system), numbers(of), excitation(of.excitation) {}
+
+  const ModelSpec& model;
+  SystemNames names;
+  ModelNumbers numbers;
+  Excitation excitation;
+};
+
+/// Coordinates and their time derivatives in the order of SystemNames.
+struct InitialState {
+  Eigen::VectorXd coordinates, speeds;
+};
+
+/// Values of the initial condition at the current parameter set, without any equilibrium. Throws
+/// ExperimentError for a name that is not a coordinate, SimulationFailure for values that are not finite.
+InitialState calcInitialValues(ModelContext& context);
+
+/// Throws SimulationFailure for numbers of the current parameter set that no real system has: as building it
+/// would, and in the same order. Cost: some microseconds.
+void checkNumbers(ModelContext& context);
+
+}  // namespace twinmap

@@ -1,0 +1,191 @@
+#include "framework/models/mechanism/system_numbers.hpp"
+
+#include <cmath>
+
+#include "framework/experiment/expression/output_units.hpp"
+#include "framework/models/mechanism/force_numbers.hpp"
+#include "framework/models/mechanism/model_context.hpp"
+#include "kernels/linalg/decompositions.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A moment may break a rule by this much of the largest one: rounding of thin plates and rods.
+constexpr double kInertiaSlack = 1e-9;
+
+Vector3d calcPrincipalMoments(const Vector3d& moments, const Vector3d& products) {
+  Eigen::Matrix3d tensor;
+  tensor << moments[0], products[0], products[1],  //
+      products[0], moments[1], products[2],        //
+      products[1], products[2], moments[2];
+  return linalg::calcSymmetricEigenvalues(tensor);
+}
+
+void checkInertia(const std::string& owner, const Vector3d& principal, const SourceLocation& where) {
+  const double slack = kInertiaSlack * principal.cwiseAbs().maxCoeff();
+  if (principal[0] < -slack) {
+    throwUnusable({owner, "inertia: smallest principal moment", "kg m2"}, principal[0],
+                  "must not be negative", where);
+  }
+  if (principal[2] > principal[0] + principal[1] + slack) {
+    throwUnusable({owner, "inertia: largest principal moment", "kg m2"}, principal[2],
+                  "must not exceed the sum of the other two", where);
+  }
+}
+
+/// Accelerations need m c^2 and 1 / m, which must be numbers.
+void checkRange(const BodySpec& body, const std::string& owner, double mass, const Vector3d& center) {
+  if (!std::isfinite(1.0 / mass)) {
+    throwUnusable({owner, "mass", "kg"}, mass, "is too small: its inverse must be finite", body.mass.where);
+  }
+  if (!std::isfinite(mass * center.squaredNorm())) {
+    throwUnusable({owner, "center_of_mass", "m"}, center.stableNorm(),
+                  "is too far away: the inertia about the body's origin must be finite",
+                  body.center_of_mass[0].where);
+  }
+}
+
+const char* findUnit(const OutputSpec& output, const SystemNames& names) {
+  const std::optional<Name>& coordinate = output.coordinate ? output.coordinate : output.speed;
+  return getOutputUnit(output, coordinate
+                                   ? names.getCoordinates()[names.findCoordinate(*coordinate)].traits.kind
+                                   : CoordinateKind{});
+}
+
+void checkOne(const OutputSpec& output) {
+  const int count = output.coordinate.has_value() + output.speed.has_value() + output.position.has_value() +
+                    output.velocity.has_value() + output.acceleration.has_value();
+  if (count != 1) {
+    throw ExperimentError(output.name.where, output.name.text,
+                          "must measure one of coordinate, speed, position, velocity, acceleration");
+  }
+}
+
+Vector3d calcDirection(const StationOutputSpec& spec, NumberEvaluator& numbers, const std::string& owner) {
+  const Vector3d direction = calcVector(numbers, spec.direction, {owner, "direction", ""});
+  const double length = std::sqrt(direction.squaredNorm());
+  if (length == 0.0) {
+    throw SimulationFailure(owner + ": direction must not be zero", spec.direction[0].where);
+  }
+  return direction / length;
+}
+
+OutputNumbers calcQuantity(const OutputSpec& spec, const SystemNames& names, NumberEvaluator& numbers,
+                           const std::string& owner) {
+  if (spec.coordinate || spec.speed) {
+    const Name& name = spec.coordinate ? *spec.coordinate : *spec.speed;
+    const OutputKind kind = spec.coordinate ? OutputKind::kCoordinate : OutputKind::kSpeed;
+    return {kind, names.findCoordinate(name), {0, Vector3d::Zero()}, Vector3d::Zero(), {}};
+  }
+  const StationOutputSpec& at = spec.position   ? *spec.position
+                                : spec.velocity ? *spec.velocity
+                                                : *spec.acceleration;
+  const OutputKind kind = spec.position   ? OutputKind::kPosition
+                          : spec.velocity ? OutputKind::kVelocity
+                                          : OutputKind::kAcceleration;
+  return {kind, -1, calcStation(at.station, names, numbers, owner), calcDirection(at, numbers, owner), {}};
+}
+
+Eigen::VectorXd calcNamed(const std::vector<NamedExpression>& values, const char* what,
+                          ModelContext& context) {
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(context.names.getCoordinateNames().size());
+  for (const NamedExpression& value : values) {
+    const std::string owner = "initial condition of '" + value.name.text + "'";
+    result[context.names.findCoordinate(value.name)] =
+        context.numbers.updNumbers().calc(value.value, {owner, what, ""});
+  }
+  return result;
+}
+
+}  // namespace
+
+Vector3d calcVector(NumberEvaluator& numbers, const Expression3& expressions, const Quantity& quantity) {
+  const std::array<double, 3> values = numbers.calc3(expressions, quantity);
+  return {values[0], values[1], values[2]};
+}
+
+FrameNumbers calcFrame(const FrameSpec& frame, NumberEvaluator& numbers, const std::string& owner) {
+  const Vector3d angles = calcVector(numbers, frame.orientation, {owner, "orientation", "rad"});
+  return {calcVector(numbers, frame.point, {owner, "point", "m"}), angles};
+}
+
+MassNumbers calcMassNumbers(const BodySpec& body, NumberEvaluator& numbers) {
+  const std::string owner = "body '" + body.name.text + "'";
+  MassNumbers mass{};
+  mass.mass = numbers.calcPositive(body.mass, {owner, "mass", "kg"});
+  mass.center = calcVector(numbers, body.center_of_mass, {owner, "center_of_mass", "m"});
+  mass.moments = calcVector(numbers, body.inertia.moments, {owner, "inertia.moments", "kg m2"});
+  mass.products = calcVector(numbers, body.inertia.products, {owner, "inertia.products", "kg m2"});
+  checkRange(body, owner, mass.mass, mass.center);
+  checkInertia(owner, calcPrincipalMoments(mass.moments, mass.products), body.inertia.moments[0].where);
+  return mass;
+}
+
+JointNumbers calcJointNumbers(const BodySpec& body, NumberEvaluator& numbers) {
+  const std::string owner = "body '" + body.name.text + "'";
+  JointNumbers joint;
+  if (body.joint.axis) {
+    joint.axis = calcVector(numbers, *body.joint.axis, {owner, "joint.axis", ""});
+    if (joint.axis->squaredNorm() == 0.0) {
+      throw SimulationFailure(owner + ": joint.axis must not be zero", (*body.joint.axis)[0].where);
+    }
+  }
+  joint.in_parent = calcFrame(body.joint.in_parent, numbers, owner);
+  joint.in_body = calcFrame(body.joint.in_body, numbers, owner);
+  if (body.joint.type == JointType::kScrew) {
+    joint.pitch = numbers.calc(body.joint.pitch, {owner, "joint.pitch", "m/rad"});
+  }
+  return joint;
+}
+
+Station calcStation(const StationSpec& spec, const SystemNames& names, NumberEvaluator& numbers,
+                    const std::string& owner) {
+  return {names.findBody(spec.body), calcVector(numbers, spec.point, {owner, "point", "m"})};
+}
+
+std::vector<std::string> getOutputUnits(const std::vector<OutputSpec>& outputs, const SystemNames& names) {
+  std::vector<std::string> units;
+  for (const OutputSpec& output : outputs) {
+    checkOne(output);
+    units.emplace_back(findUnit(output, names));
+  }
+  return units;
+}
+
+OutputNumbers calcOutputNumbers(const OutputSpec& spec, const SystemNames& names, NumberEvaluator& numbers) {
+  const std::string owner = "output '" + spec.name.text + "'";
+  OutputNumbers output = calcQuantity(spec, names, numbers, owner);
+  const bool has_gain = !spec.gain.text.empty(), has_offset = !spec.offset.text.empty();
+  if (has_gain || has_offset) {
+    output.sensor = {has_gain ? numbers.calc(spec.gain, {owner, "gain", ""}) : 1.0,
+                     has_offset ? numbers.calc(spec.offset, {owner, "offset", findUnit(spec, names)}) : 0.0};
+  }
+  return output;
+}
+
+InitialState calcInitialValues(ModelContext& context) {
+  const InitialSpec& initial = context.model.initial;
+  return {calcNamed(initial.coordinates, "coordinate", context), calcNamed(initial.speeds, "speed", context)};
+}
+
+void checkNumbers(ModelContext& context) {
+  NumberEvaluator& numbers = context.numbers.updNumbers();
+  const SystemSpec& system = context.model.system;
+  for (const BodySpec& body : system.bodies) {
+    calcMassNumbers(body, numbers);
+    calcJointNumbers(body, numbers);
+  }
+  calcPassiveForces(system, context.names, numbers);
+  for (const AppliedForceSpec& force : system.applied_forces) {
+    calcAppliedStation(force, context.names, numbers);
+  }
+  context.excitation.update(numbers);
+  for (const OutputSpec& output : context.model.outputs) {
+    calcOutputNumbers(output, context.names, numbers);
+  }
+  calcInitialValues(context);
+}
+
+}  // namespace twinmap
