@@ -24,7 +24,7 @@ import h5py
 
 ROOT = Path(__file__).resolve().parent.parent
 FMUS = ROOT / "tests/framework/models/fmu/fmus"
-PROGRAMS = ROOT / "bench/framework/program"
+PROGRAMS = ROOT / "bench/framework/models/external"
 sys.path.insert(0, str(FMUS))
 import build_fmus  # noqa: E402
 

@@ -24,7 +24,7 @@ ModelSpec makeModel(const std::string& program) {
   model.source = SourceSpec{};
   model.source->program.emplace();
   model.source->program->command = {"/usr/bin/python3", program};
-  model.source->program->working_folder = TWINMAP_SOURCE_DIR "/bench/framework/program";
+  model.source->program->working_folder = TWINMAP_SOURCE_DIR "/bench/framework/models/external";
   model.source->program->timeout = 0.5;
   return model;
 }

@@ -29,7 +29,7 @@ ModelSpec makeFaulty(int batch = 1) {
   model.simulation.duration = 1.0;
   ProgramSpec program;
   program.command = {"python3", "faulty.py"};
-  program.working_folder = TWINMAP_SOURCE_DIR "/tests/framework/program/programs";
+  program.working_folder = TWINMAP_SOURCE_DIR "/tests/framework/models/external/programs";
   program.timeout = 1.0;
   program.batch = batch;
   model.source = SourceSpec{};
