@@ -19,7 +19,7 @@ from support import EXPERIMENTS, FolderTestCase, call, run_once
 COUNT = int(os.environ.get("TWINMAP_EXPORT_MEASUREMENTS", "150"))
 DOCUMENT = (Path(os.environ["TWINMAP_SOURCE_DIR"]) / "docs/export.md").read_text()
 CORTEX_M7 = Path(__file__).parent / "cortex_m7"
-STRICT = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wconversion"]
+STRICT = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wconversion", "-Wundef"]
 STATUSES = ["model_mismatch", "outside_training", "at_bounds", "uninformative", "estimator_limited"]
 SMALL = ["evaluation.limit=false", "refine=never", "design.test.samples=100"]
 # Reads measurements (rows of signals on the grid), writes mean, sd, p-value and statuses of each.
