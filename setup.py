@@ -37,9 +37,21 @@ class CMakeBuild(build_ext):
     def build_extension(self, extension):
         build = choose_build()
         if not (build / "build.ninja").is_file():
-            subprocess.run(["cmake", "--preset", "release", "-B", str(build), "-DTWINMAP_BUILD_TESTS=OFF",
-                            "-DTWINMAP_BUILD_BENCHMARKS=OFF", "-DTWINMAP_BUILD_PYTHON=ON",
-                            f"-DPython3_EXECUTABLE={sys.executable}"], cwd=ROOT, check=True)
+            subprocess.run(
+                [
+                    "cmake",
+                    "--preset",
+                    "release",
+                    "-B",
+                    str(build),
+                    "-DTWINMAP_BUILD_TESTS=OFF",
+                    "-DTWINMAP_BUILD_BENCHMARKS=OFF",
+                    "-DTWINMAP_BUILD_PYTHON=ON",
+                    f"-DPython3_EXECUTABLE={sys.executable}",
+                ],
+                cwd=ROOT,
+                check=True,
+            )
         subprocess.run(["cmake", "--build", str(build), "--target", TARGET], check=True)
         target = Path(self.get_ext_fullpath(extension.name))
         target.parent.mkdir(parents=True, exist_ok=True)
@@ -47,5 +59,6 @@ class CMakeBuild(build_ext):
         shutil.copy2(next(build.glob(f"lib*/**/twinmap/{SIMBODY}")), target.parent)  # which the module loads from there
 
 
-setup(version=find_version(), ext_modules=[Extension("twinmap._twinmap", sources=[])],
-      cmdclass={"build_ext": CMakeBuild})
+setup(
+    version=find_version(), ext_modules=[Extension("twinmap._twinmap", sources=[])], cmdclass={"build_ext": CMakeBuild}
+)

@@ -36,11 +36,11 @@ class Kernels:
         with tempfile.NamedTemporaryFile() as file:
             self.ask("data", file.name, n, features)
             values = np.fromfile(file.name)
-        return values[: n * features].reshape(n, features), values[n * features:].reshape(n, 4)
+        return values[: n * features].reshape(n, features), values[n * features :].reshape(n, 4)
 
 
 def make_kernel(scale):
-    return (ConstantKernel(1.0, (1e-4, 1e6)) * RBF(scale, (1e-2, 1e5)) + WhiteKernel(0.3**2, (1e-10, 1e1)))
+    return ConstantKernel(1.0, (1e-4, 1e6)) * RBF(scale, (1e-2, 1e5)) + WhiteKernel(0.3**2, (1e-10, 1e1))
 
 
 def time_evaluation(x, y, ard, repeats):
@@ -72,8 +72,10 @@ def main():
     options = parser.parse_args()
     warnings.simplefilter("ignore", ConvergenceWarning)
     kernels = Kernels(options.program)
-    print(f"scikit-learn {sklearn.__version__}, NumPy {np.__version__}, "
-          f"OMP_NUM_THREADS={os.environ.get('OMP_NUM_THREADS', 'unset')}, {os.cpu_count()} CPUs")
+    print(
+        f"scikit-learn {sklearn.__version__}, NumPy {np.__version__}, "
+        f"OMP_NUM_THREADS={os.environ.get('OMP_NUM_THREADS', 'unset')}, {os.cpu_count()} CPUs"
+    )
 
     print("\nNLML + gradient, one thread [ms]      twinmap   scikit-learn   ratio")
     for n, ard, repeats in ((250, 0, 20), (250, 1, 3), (1000, 0, 3), (1000, 1, 1)):
@@ -84,7 +86,9 @@ def main():
             theirs.append(time_evaluation(x, y, ard, repeats))
         assert abs(ours[0][1] - theirs[0][1]) < 1e-7 * abs(theirs[0][1]), "the NLMLs differ"
         a, b = (statistics.median(value[0] for value in side) for side in (ours, theirs))
-        print(f"n = {n:4}, {'200 length scales' if ard else 'isotropic        '}         {a:9.3f}   {b:12.2f}   {b / a:5.1f}")
+        print(
+            f"n = {n:4}, {'200 length scales' if ard else 'isotropic        '}         {a:9.3f}   {b:12.2f}   {b / a:5.1f}"
+        )
 
     x, y = kernels.data(250, 200)
     ours, theirs = [], []
@@ -100,21 +104,25 @@ def main():
     default = statistics.median(value[0] for value in many)
     print(f"(with the default two starts {default:.4f}: ratio {b / default:.1f})")
     for t in range(4):
-        print(f"  NLML of target {t}: one start {ours[0][1 + t]:.4f}, two starts {many[0][1 + t]:.4f}, "
-              f"scikit-learn {theirs[0][1][t]:.4f}")
+        print(
+            f"  NLML of target {t}: one start {ours[0][1 + t]:.4f}, two starts {many[0][1 + t]:.4f}, "
+            f"scikit-learn {theirs[0][1][t]:.4f}"
+        )
 
     models = theirs[0][2]
     times = []
     for i in range(200):
         start = time.perf_counter()
         for model in models:
-            model.predict(x[i:i + 1], return_std=True)
+            model.predict(x[i : i + 1], return_std=True)
         times.append(1e6 * (time.perf_counter() - start))
     theirs_online = statistics.median(times)
     print("\nFour means and stddevs from one feature vector, n = 250 [us]   median     p99")
     for features, ard in ((15, 0), (15, 1), (200, 0), (200, 1)):
         median, p99 = kernels.ask("online", 250, features, ard, 20000)
-        print(f"twinmap, {features:3} features, {'per feature' if ard else 'shared     '}                        {median:9.1f} {p99:9.1f}")
+        print(
+            f"twinmap, {features:3} features, {'per feature' if ard else 'shared     '}                        {median:9.1f} {p99:9.1f}"
+        )
     print(f"scikit-learn, 200 features, shared                     {theirs_online:14.1f}")
 
 

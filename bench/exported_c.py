@@ -53,19 +53,28 @@ def main():
     twinmap, experiment, *overrides = sys.argv[1:]
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
-        subprocess.run([twinmap, "run", experiment, *overrides, "--out", folder / "run", "--quiet"], check=True,
-                       stdout=subprocess.DEVNULL)
+        subprocess.run(
+            [twinmap, "run", experiment, *overrides, "--out", folder / "run", "--quiet"],
+            check=True,
+            stdout=subprocess.DEVNULL,
+        )
         subprocess.run([twinmap, "export", folder / "run", "--c", folder / "c"], check=True, stdout=subprocess.DEVNULL)
         (folder / "c/loop.c").write_text(LOOP)
         library = json.loads((folder / "run/provenance.json").read_text())
         online = next(value for value in library.values() if isinstance(value, dict) and "median_us" in value)
         print(f"{Path(experiment).stem}: twinmap {online['median_us']:.0f} us (median)")
         for compiler, flags in [("gcc", "-O3 -march=native"), ("gcc", "-O2"), ("clang", "-O3 -march=native")]:
-            subprocess.run([compiler, "-std=c99", *flags.split(), "loop.c", "twinmap_map.c", "-o", "loop", "-lm"],
-                           cwd=folder / "c", check=True)
-            median, late = map(float, subprocess.run([folder / "c/loop"], capture_output=True, text=True,
-                                                     check=True).stdout.split())
-            print(f"  {compiler} {flags}: {median:.0f} us, {median / online['median_us']:.2f} times; 99 % {late:.0f} us")
+            subprocess.run(
+                [compiler, "-std=c99", *flags.split(), "loop.c", "twinmap_map.c", "-o", "loop", "-lm"],
+                cwd=folder / "c",
+                check=True,
+            )
+            median, late = map(
+                float, subprocess.run([folder / "c/loop"], capture_output=True, text=True, check=True).stdout.split()
+            )
+            print(
+                f"  {compiler} {flags}: {median:.0f} us, {median / online['median_us']:.2f} times; 99 % {late:.0f} us"
+            )
 
 
 if __name__ == "__main__":

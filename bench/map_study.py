@@ -20,7 +20,9 @@ ROOT = Path(__file__).parents[1]
 FOUR = ["two_beam/best", "crane/crane", "mechanisms/double_pendulum", "mechanisms/spatial_arm"]
 SIX = FOUR[:2] + ["mechanisms/double_pendulum_mild"] + FOUR[2:] + ["mechanisms/cubic_chain"]
 TWO = ["two_beam/best", "mechanisms/double_pendulum"]
-OTHERS = [f"mechanisms/{name}" for name in ("end_stops", "released_pendulum", "stiff_drive", "four_storeys", "spinning_top")]
+OTHERS = [
+    f"mechanisms/{name}" for name in ("end_stops", "released_pendulum", "stiff_drive", "four_storeys", "spinning_top")
+]
 EXPERIMENTS = SIX + OTHERS
 SIZES = [100, 250, 1000, 4000, 10000, 100000]
 
@@ -51,7 +53,9 @@ def parse_arguments():
     parser.add_argument("--tests", type=int, default=1500)
     parser.add_argument("--results", type=Path, default=ROOT / "results/map_study")
     parser.add_argument("--page", action="store_true", help="run nothing, write the page from the runs that are there")
-    parser.add_argument("--maps", nargs="+", default=ORDER, help="of " + ", ".join(dict.fromkeys(name for name, _, _, _ in MAPS)))
+    parser.add_argument(
+        "--maps", nargs="+", default=ORDER, help="of " + ", ".join(dict.fromkeys(name for name, _, _, _ in MAPS))
+    )
     parser.add_argument("--sizes", nargs="+", type=int, default=SIZES, help="numbers of simulations")
     parser.add_argument("--web", type=Path, default=ROOT / "build/release/framework/report/web")
     return parser.parse_intermixed_args()
@@ -64,14 +68,21 @@ def make_title(experiment):
 
 def list_runs(experiments):
     """(experiment, simulations, map, as the experiment file has it)."""
-    return [(experiment, size, name, map_spec) for name, map_spec, sizes, among in MAPS for size in reversed(sizes)
-            for experiment in experiments if experiment in among]
+    return [
+        (experiment, size, name, map_spec)
+        for name, map_spec, sizes, among in MAPS
+        for size in reversed(sizes)
+        for experiment in experiments
+        if experiment in among
+    ]
 
 
 def list_keys():
     """(experiment, simulations, map) of all rows that the page has, baselines among them."""
     runs = [(experiment, size, name) for experiment, size, name, _ in list_runs(EXPERIMENTS)]
-    return runs + [(experiment, size, BASELINES[key][0]) for experiment, size, name in runs for key in list_baselines(size, name)]
+    return runs + [
+        (experiment, size, BASELINES[key][0]) for experiment, size, name in runs for key in list_baselines(size, name)
+    ]
 
 
 def count_processor_seconds():
@@ -92,11 +103,25 @@ def run(arguments, experiment, size, name, map_spec):
         return None
     if not finished:
         print(experiment, size, name, file=sys.stderr, flush=True)
-        command = [arguments.twinmap, "run", ROOT / "experiments" / f"{experiment}.yaml", "refine=never",
-                   f"inverse_map={map_spec}", f"design.train.samples={size}", "design.train.method=latin_hypercube",
-                   f"design.test.samples={arguments.tests}", f"noise.replicates={max(1, min(4, 1000 // size))}",
-                   f"evaluation.baselines=[{', '.join(AS_GIVEN.get(key, key) for key in list_baselines(size, name))}]",
-                   "--threads", arguments.threads, "--store", arguments.results / "store", "--out", folder, "--quiet"]
+        command = [
+            arguments.twinmap,
+            "run",
+            ROOT / "experiments" / f"{experiment}.yaml",
+            "refine=never",
+            f"inverse_map={map_spec}",
+            f"design.train.samples={size}",
+            "design.train.method=latin_hypercube",
+            f"design.test.samples={arguments.tests}",
+            f"noise.replicates={max(1, min(4, 1000 // size))}",
+            f"evaluation.baselines=[{', '.join(AS_GIVEN.get(key, key) for key in list_baselines(size, name))}]",
+            "--threads",
+            arguments.threads,
+            "--store",
+            arguments.results / "store",
+            "--out",
+            folder,
+            "--quiet",
+        ]
         before = count_processor_seconds()
         done = subprocess.run(list(map(str, command)), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         if done.returncode != 0:
@@ -115,8 +140,21 @@ def read_csv(file):
         return list(csv.DictReader(stream))
 
 
-COLUMNS = ["experiment", "simulations", "map", "parameter", "sd_pct", "limit_pct", "ratio_to_limit", "nats_above_limit", "coverage50",
-           "coverage95", "processor_seconds", "online_us", "bytes"]
+COLUMNS = [
+    "experiment",
+    "simulations",
+    "map",
+    "parameter",
+    "sd_pct",
+    "limit_pct",
+    "ratio_to_limit",
+    "nats_above_limit",
+    "coverage50",
+    "coverage95",
+    "processor_seconds",
+    "online_us",
+    "bytes",
+]
 
 
 def read_rows(folder, experiment, size, name):
@@ -125,16 +163,34 @@ def read_rows(folder, experiment, size, name):
     common = {"experiment": experiment, "simulations": size}
     metrics, baselines = read_csv(folder / "metrics.csv"), read_csv(folder / "baselines.csv")
     seconds = float((folder / "processor_seconds.txt").read_text())
-    of_baselines = sum({row["method"]: float(row["samples"]) * float(row["seconds_per_update"]) for row in baselines if row["method"] in BASELINES}.values())
-    of_run = {"map": name, "processor_seconds": seconds - of_baselines,
-              "online_us": provenance["online"]["median_us"], "bytes": (folder / "maps.h5").stat().st_size}
+    of_baselines = sum(
+        {
+            row["method"]: float(row["samples"]) * float(row["seconds_per_update"])
+            for row in baselines
+            if row["method"] in BASELINES
+        }.values()
+    )
+    of_run = {
+        "map": name,
+        "processor_seconds": seconds - of_baselines,
+        "online_us": provenance["online"]["median_us"],
+        "bytes": (folder / "maps.h5").stat().st_size,
+    }
     rows = [{**row, **common, **of_run} for row in metrics]
     limits = {row["parameter"]: float(row["limit_pct"]) for row in metrics}
     for row in baselines:
         if row["method"] in BASELINES:
             ratio = float(row["sd_pct"]) / limits[row["parameter"]]
-            rows.append({**row, **common, "map": BASELINES[row["method"]][0], "limit_pct": limits[row["parameter"]], "ratio_to_limit": ratio,
-                         "online_us": 1e6 * float(row["seconds_per_update"])})
+            rows.append(
+                {
+                    **row,
+                    **common,
+                    "map": BASELINES[row["method"]][0],
+                    "limit_pct": limits[row["parameter"]],
+                    "ratio_to_limit": ratio,
+                    "online_us": 1e6 * float(row["seconds_per_update"]),
+                }
+            )
     return [{column: row.get(column, "") for column in COLUMNS} for row in rows]
 
 
@@ -161,9 +217,14 @@ def summarise(rows):
     points = []
     for (experiment, size, name), found in groups.items():
         ratios = [number(row, "ratio_to_limit") for row in found]
-        point = {"experiment": make_title(experiment), "simulations": size, "map": name,
-                 "ratio": math.exp(sum(map(math.log, ratios)) / len(ratios)), "worst_ratio": max(ratios),
-                 "nats": sum(number(row, "nats_above_limit") for row in found) / len(found)}
+        point = {
+            "experiment": make_title(experiment),
+            "simulations": size,
+            "map": name,
+            "ratio": math.exp(sum(map(math.log, ratios)) / len(ratios)),
+            "worst_ratio": max(ratios),
+            "nats": sum(number(row, "nats_above_limit") for row in found) / len(found),
+        }
         for level in ("50", "95"):
             coverages = [number(row, f"coverage{level}") for row in found]
             point[f"coverage{level}"] = (min(coverages), max(coverages))
@@ -171,21 +232,37 @@ def summarise(rows):
             point[column] = number(found[0], column)
         points.append(point)
     titles = list(map(make_title, EXPERIMENTS))
-    return sorted(points, key=lambda point: (titles.index(point["experiment"]), ORDER.index(point["map"]), point["simulations"]))
+    return sorted(
+        points, key=lambda point: (titles.index(point["experiment"]), ORDER.index(point["map"]), point["simulations"])
+    )
 
 
 def make_figure(points, value, title):
     """A Vega-Lite specification: a panel for each experiment, a line for each map."""
     scale = {"type": "log", "nice": False} if value == "ratio" else {}  # nats may be below 0
-    data = [{key: point[key] for key in ("experiment", "simulations", "map", value)} for point in points
-            if math.isfinite(point[value])]
-    return {"$schema": "https://vega.github.io/schema/vega-lite/v5.json", "data": {"values": data}, "background": "white",
-            "facet": {"field": "experiment", "title": None, "sort": list(dict.fromkeys(p["experiment"] for p in points))}, "columns": 3,
-            "spec": {"width": 250, "height": 180, "mark": {"type": "line", "point": True},
-                     "encoding": {"x": {"field": "simulations", "type": "quantitative", "scale": {"type": "log", "nice": False}},
-                                  "y": {"field": value, "type": "quantitative", "title": title, "scale": scale},
-                                  "color": {"field": "map", "sort": ORDER, "scale": {"scheme": "tableau10"}, "legend": {"title": None}}}},
-            "resolve": {"scale": {"y": "independent"}}}
+    data = [
+        {key: point[key] for key in ("experiment", "simulations", "map", value)}
+        for point in points
+        if math.isfinite(point[value])
+    ]
+    return {
+        "$schema": "https://vega.github.io/schema/vega-lite/v5.json",
+        "data": {"values": data},
+        "background": "white",
+        "facet": {"field": "experiment", "title": None, "sort": list(dict.fromkeys(p["experiment"] for p in points))},
+        "columns": 3,
+        "spec": {
+            "width": 250,
+            "height": 180,
+            "mark": {"type": "line", "point": True},
+            "encoding": {
+                "x": {"field": "simulations", "type": "quantitative", "scale": {"type": "log", "nice": False}},
+                "y": {"field": value, "type": "quantitative", "title": title, "scale": scale},
+                "color": {"field": "map", "sort": ORDER, "scale": {"scheme": "tableau10"}, "legend": {"title": None}},
+            },
+        },
+        "resolve": {"scale": {"y": "independent"}},
+    }
 
 
 RENDER = """
@@ -220,12 +297,23 @@ def show_ratio(value):
 
 
 def make_table(points):
-    lines = ["| map | simulations | ratio, mean | worst | nats | coverage 50 % | 95 % | processor time | a measurement | size |",
-             "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|"]
+    lines = [
+        "| map | simulations | ratio, mean | worst | nats | coverage 50 % | 95 % | processor time | a measurement | size |",
+        "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|",
+    ]
     for point in points:
-        cells = [point["map"], point["simulations"], show_ratio(point["ratio"]), show_ratio(point["worst_ratio"]),
-                 f"{point['nats']:.2g}" if math.isfinite(point["nats"]) else "", span(point["coverage50"]), span(point["coverage95"]),
-                 describe(point["processor_seconds"], "s"), describe(point["online_us"], "us"), describe(point["bytes"] / 1024, "kB")]
+        cells = [
+            point["map"],
+            point["simulations"],
+            show_ratio(point["ratio"]),
+            show_ratio(point["worst_ratio"]),
+            f"{point['nats']:.2g}" if math.isfinite(point["nats"]) else "",
+            span(point["coverage50"]),
+            span(point["coverage95"]),
+            describe(point["processor_seconds"], "s"),
+            describe(point["online_us"], "us"),
+            describe(point["bytes"] / 1024, "kB"),
+        ]
         lines.append("| " + " | ".join(map(str, cells)) + " |")
     return "\n".join(lines)
 
@@ -270,7 +358,11 @@ def write_page(arguments, found):
     experiments = list(dict.fromkeys(point["experiment"] for point in points))
     text = HEAD.format(count=len(experiments), tests=arguments.tests, findings=read_findings(page))
     for experiment in experiments:
-        text += f"\n## {experiment}\n\n" + make_table([point for point in points if point["experiment"] == experiment]) + "\n"
+        text += (
+            f"\n## {experiment}\n\n"
+            + make_table([point for point in points if point["experiment"] == experiment])
+            + "\n"
+        )
     page.write_text(text)
 
 
@@ -280,7 +372,7 @@ def read_findings(page):
     text = page.read_text() if page.exists() else ""
     if start not in text:
         return start
-    return text[text.index(start):].split("\n## ")[0].rstrip() + "\n"
+    return text[text.index(start) :].split("\n## ")[0].rstrip() + "\n"
 
 
 def main():

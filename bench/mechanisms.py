@@ -21,15 +21,15 @@ SHOWS = {
     "two_beam/best": "Nearly linear: the map alone is at the limit, and a refinement confirms it.",
     "three_mass_chain/frequency_response": "Linear, seen through frequency response functions instead of samples in time.",
     "crane/crane": "Masses, a length and a cubic stiffness at once. The response tells only the sum of two springs in parallel: the "
-                   "limit says so, and the answers keep the width that the bounds leave.",
+    "limit says so, and the answers keep the width that the bounds leave.",
     "mechanisms/double_pendulum_mild": "Smooth, so that values and slopes of 250 simulations suffice for the limit.",
     "mechanisms/double_pendulum": "Chaotic: late samples say much in principle and nothing to a map. Its intervals stay calibrated; "
-                                  "the refinement finds the limit by growing windows of time, and says where it does not.",
+    "the refinement finds the limit by growing windows of time, and says where it does not.",
     "mechanisms/cubic_chain": "Dry friction and a cubic spring bend the response so that 250 simulations do not teach it to "
-                              "the accuracy of the noise.",
+    "the accuracy of the noise.",
     "mechanisms/spatial_arm": "Large rotations in space; parameters that act on each other.",
     "mechanisms/end_stops": "The moment of a contact is decided by the solution: no smooth function describes the response near "
-                            "a contact that is just missed.",
+    "a contact that is just missed.",
     "mechanisms/released_pendulum": "The initial state is unknown and not asked for: nuisance parameters, marginalised.",
     "mechanisms/stiff_drive": "Two time scales, four decades apart: the stiff gear costs steps, not accuracy.",
     "mechanisms/four_storeys": "Eight parameters that all act on all outputs.",
@@ -59,8 +59,19 @@ def run(arguments, name):
     folder = arguments.results / name.replace("/", "_")
     if not (folder / "report.html").exists():
         print(name, file=sys.stderr, flush=True)
-        command = [arguments.twinmap, "run", ROOT / "experiments" / f"{name}.yaml", "inverse_map=automatic",
-                   "design.train.samples=250", f"design.test.samples={arguments.tests}", "--threads", arguments.threads, "--out", folder, "--quiet"]
+        command = [
+            arguments.twinmap,
+            "run",
+            ROOT / "experiments" / f"{name}.yaml",
+            "inverse_map=automatic",
+            "design.train.samples=250",
+            f"design.test.samples={arguments.tests}",
+            "--threads",
+            arguments.threads,
+            "--out",
+            folder,
+            "--quiet",
+        ]
         before = count_processor_seconds()
         subprocess.run(list(map(str, command)), check=True, stdout=subprocess.DEVNULL)
         (folder / "processor_seconds.txt").write_text(f"{count_processor_seconds() - before}\n")
@@ -75,7 +86,10 @@ def read_csv(file):
 def read_figures(folder):
     """Method -> its rows of methods.csv; what is predicted; processor seconds of the run; the experiment."""
     rows = read_csv(folder / "methods.csv")
-    methods = {method: [row for row in rows if row["method"] == method] for method in dict.fromkeys(row["method"] for row in rows)}
+    methods = {
+        method: [row for row in rows if row["method"] == method]
+        for method in dict.fromkeys(row["method"] for row in rows)
+    }
     predicted = read_csv(folder / "cross_validation.csv") if (folder / "cross_validation.csv").exists() else []
     seconds = float((folder / "processor_seconds.txt").read_text())
     return methods, predicted, seconds, yaml.safe_load((folder / "resolved.yaml").read_text())
@@ -105,10 +119,17 @@ def make_row(name, figures):
     refined = methods.get("refined", [])
     share = f"{100 * float(refined[0]['accepted']):.1f} %" if refined else "not refined"
     simulations = refined[0]["median_simulations"] if refined else ""
-    cells = [f"[{make_title(name)}](#{make_title(name)})",
-             span(of_map, "ratio_to_limit", 1), span(predicted, "limit_ratio", 1), span(of_map, "coverage95", 2),
-             share, span(refined, "ratio_to_limit", 2), span(refined, "coverage95", 2), simulations,
-             describe_seconds(seconds)]
+    cells = [
+        f"[{make_title(name)}](#{make_title(name)})",
+        span(of_map, "ratio_to_limit", 1),
+        span(predicted, "limit_ratio", 1),
+        span(of_map, "coverage95", 2),
+        share,
+        span(refined, "ratio_to_limit", 2),
+        span(refined, "coverage95", 2),
+        simulations,
+        describe_seconds(seconds),
+    ]
     return "| " + " | ".join(cells) + " |"
 
 
@@ -117,14 +138,28 @@ def make_section(name, figures):
     of_map = next(iter(methods.values()))
     refined = {row["parameter"]: row for row in methods.get("refined", [])}
     told = {row["parameter"]: row for row in predicted}
-    lines = [f"## {make_title(name)}", "", f"`experiments/{name}.yaml`: {experiment.get('description', '')}.",
-             textwrap.fill(SHOWS.get(name, ""), 140), "", "| parameter | limit % | map: sd % | ratio | predicted | coverage | refined: sd % | ratio | coverage |",
-             "|---|--:|--:|--:|--:|--:|--:|--:|--:|"]
+    lines = [
+        f"## {make_title(name)}",
+        "",
+        f"`experiments/{name}.yaml`: {experiment.get('description', '')}.",
+        textwrap.fill(SHOWS.get(name, ""), 140),
+        "",
+        "| parameter | limit % | map: sd % | ratio | predicted | coverage | refined: sd % | ratio | coverage |",
+        "|---|--:|--:|--:|--:|--:|--:|--:|--:|",
+    ]
     for row in of_map:
         parameter, answer = row["parameter"], refined.get(row["parameter"], {})
-        cells = [parameter, number(row["limit_pct"], 3), number(row["sd_pct"], 3), number(row["ratio_to_limit"], 3),
-                 number(told.get(parameter, {}).get("limit_ratio", ""), 3), number(row["coverage95"], 3),
-                 number(answer.get("sd_pct", ""), 3), number(answer.get("ratio_to_limit", ""), 3), number(answer.get("coverage95", ""), 3)]
+        cells = [
+            parameter,
+            number(row["limit_pct"], 3),
+            number(row["sd_pct"], 3),
+            number(row["ratio_to_limit"], 3),
+            number(told.get(parameter, {}).get("limit_ratio", ""), 3),
+            number(row["coverage95"], 3),
+            number(answer.get("sd_pct", ""), 3),
+            number(answer.get("ratio_to_limit", ""), 3),
+            number(answer.get("coverage95", ""), 3),
+        ]
         lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
 

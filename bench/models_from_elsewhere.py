@@ -31,8 +31,10 @@ import build_fmus  # noqa: E402
 VARIABLES = [
     ("x", 0, "Real", "output", "continuous", {"start": "1", "initial": "exact"}),
     ("der(x)", 1, "Real", "local", "continuous", {"derivative": "x"}),
-    ("a", 2, "Real", "parameter", "fixed", {"start": "1"}), ("work", 3, "Real", "parameter", "fixed", {"start": "0"}),
-    ("trouble", 4, "Real", "parameter", "fixed", {"start": "0"}), ("wait", 5, "Real", "parameter", "fixed", {"start": "0"}),
+    ("a", 2, "Real", "parameter", "fixed", {"start": "1"}),
+    ("work", 3, "Real", "parameter", "fixed", {"start": "0"}),
+    ("trouble", 4, "Real", "parameter", "fixed", {"start": "0"}),
+    ("wait", 5, "Real", "parameter", "fixed", {"start": "0"}),
 ]
 EXPERIMENT = """
 name: elsewhere
@@ -58,11 +60,30 @@ def write_experiment(folder, kind, samples, *, work=0.0, wait=0.0, trouble=0):
     """The experiment's file; `work` and `wait` are the seconds that a sample takes of the processor's time and beside it."""
     if kind == "fmu":
         library = folder / "troubled.so"
-        subprocess.run(["cc", "-shared", "-fPIC", "-O2", "-DFMI=2", f"-I{ROOT / 'framework/models/fmu/headers'}", f"-I{FMUS}",
-                        str(ROOT / "bench/framework/models/fmu/troubled.c"), str(FMUS / "wrapper.c"), "-o", str(library), "-lm"], check=True)
-        build_fmus.write(folder / "troubled.fmu", {
-            "modelDescription.xml": build_fmus.describe_2(VARIABLES, "troubled", 0, "true"),
-            "binaries/linux64/troubled.so": library.read_bytes()})
+        subprocess.run(
+            [
+                "cc",
+                "-shared",
+                "-fPIC",
+                "-O2",
+                "-DFMI=2",
+                f"-I{ROOT / 'framework/models/fmu/headers'}",
+                f"-I{FMUS}",
+                str(ROOT / "bench/framework/models/fmu/troubled.c"),
+                str(FMUS / "wrapper.c"),
+                "-o",
+                str(library),
+                "-lm",
+            ],
+            check=True,
+        )
+        build_fmus.write(
+            folder / "troubled.fmu",
+            {
+                "modelDescription.xml": build_fmus.describe_2(VARIABLES, "troubled", 0, "true"),
+                "binaries/linux64/troubled.so": library.read_bytes(),
+            },
+        )
         model, limit = "fmu: {file: troubled.fmu, kind: co_simulation}", f", max_wall_time: {TIMEOUT}"
     else:
         name = "troubled.py" if trouble else "working.py"
@@ -121,8 +142,12 @@ class Bench:
         self.shared = set(os.listdir("/dev/shm"))
 
     def start(self, file, out, *more):
-        return subprocess.Popen([self.twinmap, "run", file, "--out", out, "--quiet", *more], env=dict(os.environ, TMPDIR=str(self.tmp)),
-                                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+        return subprocess.Popen(
+            [self.twinmap, "run", file, "--out", out, "--quiet", *more],
+            env=dict(os.environ, TMPDIR=str(self.tmp)),
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+        )
 
     def finish(self, process):
         errors = process.communicate()[1].decode()
@@ -141,8 +166,13 @@ class Bench:
 def read_samples(path):
     found = {}
     with h5py.File(path) as file:
-        file.visititems(lambda name, item: found.update({name: item[()].tobytes() if item.dtype.kind == "f" else repr(item[()].tolist())})
-                        if hasattr(item, "dtype") else None)
+        file.visititems(
+            lambda name, item: found.update(
+                {name: item[()].tobytes() if item.dtype.kind == "f" else repr(item[()].tolist())}
+            )
+            if hasattr(item, "dtype")
+            else None
+        )
     return found
 
 
@@ -189,9 +219,21 @@ def measure_troubled(bench, kind, samples):
     bench.finish(bench.start(file, bench.folder / "broken", "--threads", "1"))
     bench.check_nothing_is_left()
     same = read_samples(bench.folder / "whole/samples.h5") == read_samples(bench.folder / "broken/samples.h5")
-    print(json.dumps({"samples": samples, "wall_s": round(wall, 1), "failures": counts, "twinmap_peak_MB": round(watch.own),
-                      "worker_peak_MB": round(watch.workers), "processes_at_once": watch.most_workers, "killed_in_the_middle": killed,
-                      "same_bits": same}, indent=1))
+    print(
+        json.dumps(
+            {
+                "samples": samples,
+                "wall_s": round(wall, 1),
+                "failures": counts,
+                "twinmap_peak_MB": round(watch.own),
+                "worker_peak_MB": round(watch.workers),
+                "processes_at_once": watch.most_workers,
+                "killed_in_the_middle": killed,
+                "same_bits": same,
+            },
+            indent=1,
+        )
+    )
     if not (same and killed):
         sys.exit("killed and continued, the run differs, or it had ended before")
 
@@ -205,7 +247,11 @@ def measure_leaking(bench, kind, samples):
     bench.finish(process)
     watch.join()
     bench.check_nothing_is_left()
-    print(json.dumps({"samples": samples, "twinmap_peak_MB": round(watch.own), "worker_peak_MB": round(watch.workers)}, indent=1))
+    print(
+        json.dumps(
+            {"samples": samples, "twinmap_peak_MB": round(watch.own), "worker_peak_MB": round(watch.workers)}, indent=1
+        )
+    )
 
 
 def find_stage(provenance):
@@ -229,8 +275,19 @@ def measure_scaling(bench, kind, rounds, **load):
             times[workers].append(find_stage(json.loads((out / "provenance.json").read_text())))
             print(workers, times[workers][-1], os.getloadavg()[0], flush=True)
     one, two = statistics.median(times[1]), statistics.median(times[2])
-    print(json.dumps({"rounds": rounds, "one_worker_s": one, "two_workers_s": two, "ratio": one / two,
-                      "ratio_of_the_best": min(times[1]) / min(times[2]), "load": os.getloadavg()}, indent=1))
+    print(
+        json.dumps(
+            {
+                "rounds": rounds,
+                "one_worker_s": one,
+                "two_workers_s": two,
+                "ratio": one / two,
+                "ratio_of_the_best": min(times[1]) / min(times[2]),
+                "load": os.getloadavg(),
+            },
+            indent=1,
+        )
+    )
 
 
 def main():

@@ -29,10 +29,12 @@ def parse_arguments():
 
 def measure(*functions):
     """Processor seconds of each; in turns, so that a busy machine disturbs all alike."""
+
     def once(function):
         start = time.process_time()
         function()
         return time.process_time() - start
+
     return np.min([[once(function) for function in functions] for _ in range(REPEATS)], axis=0)
 
 
@@ -53,7 +55,10 @@ class Library:
     def predict(self, rows, mean, stddev):
         def point(array):
             return array.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
-        self.functions.twinmap_predict(self.map, point(rows), None, ctypes.c_size_t(len(rows)), 1, point(mean), point(stddev))
+
+        self.functions.twinmap_predict(
+            self.map, point(rows), None, ctypes.c_size_t(len(rows)), 1, point(mean), point(stddev)
+        )
 
 
 def read_features(run, map_):
@@ -65,7 +70,9 @@ def read_features(run, map_):
 
 def main():
     arguments = parse_arguments()
-    print("| run | rows | library [s] | Python [s] | ratio | one row [us] | infer [us] |\n|---|--:|--:|--:|--:|--:|--:|")
+    print(
+        "| run | rows | library [s] | Python [s] | ratio | one row [us] | infer [us] |\n|---|--:|--:|--:|--:|--:|--:|"
+    )
     for run in arguments.runs:
         map_ = twinmap.Map.load(run)
         features = read_features(run, map_)
@@ -73,10 +80,15 @@ def main():
         mean, stddev = np.empty((2, len(rows), len(map_.parameters)))
         library = Library(arguments.library, run)
         by_library, by_python, one, infer = measure(
-            lambda: library.predict(rows, mean, stddev), lambda: map_.predict(rows, return_std=True),
-            lambda: repeat(map_.predict, features[:1], return_std=True), lambda: repeat(map_.infer, features[0], refine=False))
-        print(f"| {run.name} | {len(rows)} | {by_library:.3f} | {by_python:.3f} | {by_python / by_library:.2f} "
-              f"| {1e6 * one / CALLS:.0f} | {1e6 * infer / CALLS:.0f} |")
+            lambda: library.predict(rows, mean, stddev),
+            lambda: map_.predict(rows, return_std=True),
+            lambda: repeat(map_.predict, features[:1], return_std=True),
+            lambda: repeat(map_.infer, features[0], refine=False),
+        )
+        print(
+            f"| {run.name} | {len(rows)} | {by_library:.3f} | {by_python:.3f} | {by_python / by_library:.2f} "
+            f"| {1e6 * one / CALLS:.0f} | {1e6 * infer / CALLS:.0f} |"
+        )
 
 
 if __name__ == "__main__":

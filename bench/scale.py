@@ -26,8 +26,11 @@ SCALES = ",".join(f"{1 + i / 100:g}" for i in range(100))
 PLANS = {
     "each its own": ["seed=1..10000", "design.train.samples=90", "design.test.samples=10"],
     "a hundred sets": ["seed=1..100", f"noise.scale={SCALES}", "design.train.samples=9900", "design.test.samples=100"],
-    "one set": ["trust.level=" + ",".join(f"{i / 1e6:g}" for i in range(1, 10001)), "design.train.samples=990000",
-                "design.test.samples=10000"],
+    "one set": [
+        "trust.level=" + ",".join(f"{i / 1e6:g}" for i in range(1, 10001)),
+        "design.train.samples=990000",
+        "design.test.samples=10000",
+    ],
 }
 SPARSE = ["refine=never", "inverse_map.gp.approximation=sgpr"]
 STAGES = {"simulate": "simulate", "train": "train", "prepare": "prepare for"}
@@ -48,8 +51,19 @@ def measure(command):
 def plan(twinmap):
     with tempfile.TemporaryDirectory(prefix="twinmap_scale_") as folder:
         for name, sweep in PLANS.items():
-            wall, cpu, memory, output = measure([twinmap, "plan", EXPERIMENTS / "table1.yaml", *NESTED, *sweep, "--on", "local",
-                                                 "--out", folder + "/run"])
+            wall, cpu, memory, output = measure(
+                [
+                    twinmap,
+                    "plan",
+                    EXPERIMENTS / "table1.yaml",
+                    *NESTED,
+                    *sweep,
+                    "--on",
+                    "local",
+                    "--out",
+                    folder + "/run",
+                ]
+            )
             cases = re.search(r"cases: +(\d+)", output)[1]
             samples = re.search(r"(\d+) to do", output)[1]
             print(f"{name}: {cases} cases, {samples} samples: {wall:.1f} s, processor {cpu:.1f} s, {memory:.0f} MiB")
@@ -65,7 +79,10 @@ def store(bench):
 
 def read_errors(folder):
     lines = [line.split(",") for line in (folder / "metrics.csv").read_text().splitlines()]
-    return [[row[lines[0].index(key)] for key in ("parameter", "sd_pct", "ratio_to_limit", "coverage95")] for row in lines[1:]]
+    return [
+        [row[lines[0].index(key)] for key in ("parameter", "sd_pct", "ratio_to_limit", "coverage95")]
+        for row in lines[1:]
+    ]
 
 
 def fit_power(sizes, seconds):
@@ -82,8 +99,20 @@ def train(twinmap, *sizes):
     for size in sizes:
         with tempfile.TemporaryDirectory(prefix="twinmap_scale_") as name:
             folder = Path(name) / "run"
-            wall, cpu, memory, _ = measure([twinmap, "run", EXPERIMENTS / "best.yaml", *SPARSE, f"design.train.samples={size}",
-                                            "--threads", 2, "--quiet", "--out", folder])
+            wall, cpu, memory, _ = measure(
+                [
+                    twinmap,
+                    "run",
+                    EXPERIMENTS / "best.yaml",
+                    *SPARSE,
+                    f"design.train.samples={size}",
+                    "--threads",
+                    2,
+                    "--quiet",
+                    "--out",
+                    folder,
+                ]
+            )
             seconds = json.loads((folder / "provenance.json").read_text())["seconds"]
             for stage, begin in STAGES.items():
                 table[stage].append(sum(s for name, s in seconds.items() if name.startswith(begin)))

@@ -31,8 +31,12 @@ def main():
     with tempfile.TemporaryDirectory(prefix="twinmap_bench_") as name:
         folder = Path(name) / "sweep"
         print("load before:", *os.getloadavg())
-        print(subprocess.run([twinmap, "plan", *experiment, "--out", folder], text=True, check=True,
-                             stdout=subprocess.PIPE).stdout, end="")
+        print(
+            subprocess.run(
+                [twinmap, "plan", *experiment, "--out", folder], text=True, check=True, stdout=subprocess.PIPE
+            ).stdout,
+            end="",
+        )
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         start = time.perf_counter()
         subprocess.run([twinmap, "run", *experiment, "--out", folder, "--quiet"], check=True, stdout=subprocess.DEVNULL)
@@ -42,8 +46,10 @@ def main():
         simulating = float(re.search(r"simulated in ([\d.]+) s", (folder / "run.log").read_text())[1])
         stages = read_stages(folder)
         size = sum(file.stat().st_size for file in folder.rglob("*") if file.is_file())
-    print(f"wall {wall:.1f} s, user {user:.1f} s, system {system:.1f} s, largest memory {after.ru_maxrss / 2**20:.2f} GiB, "
-          f"disk {size / 2**30:.2f} GiB, load after {os.getloadavg()[0]:.1f}")
+    print(
+        f"wall {wall:.1f} s, user {user:.1f} s, system {system:.1f} s, largest memory {after.ru_maxrss / 2**20:.2f} GiB, "
+        f"disk {size / 2**30:.2f} GiB, load after {os.getloadavg()[0]:.1f}"
+    )
     print(f"utilisation {100 * user / (wall * cores):.0f} % of {cores} cores")
     print(f"simulating {simulating:.1f} s on all cores, stages of the cases {stages:.1f} s on one")
     busy = simulating * cores + stages

@@ -20,8 +20,11 @@ OUTPUTS = ["y", "theta"]
 
 
 def run(twinmap, experiment, folder, *overrides):
-    subprocess.run([twinmap, "run", experiment, "evaluation.limit=false", *overrides, "--out", folder, "--quiet"],
-                   check=True, capture_output=True)
+    subprocess.run(
+        [twinmap, "run", experiment, "evaluation.limit=false", *overrides, "--out", folder, "--quiet"],
+        check=True,
+        capture_output=True,
+    )
 
 
 def simulate(twinmap, experiment, folder, count, *overrides):
@@ -34,9 +37,13 @@ def simulate(twinmap, experiment, folder, count, *overrides):
 def infer(twinmap, folder, times, responses):
     """The statuses of each response."""
     header = ",".join(["t", *OUTPUTS]) + "\n"
-    text = header + "\n".join("".join(f"{t!r},{y!r},{theta!r}\n" for t, y, theta in zip(times.tolist(), *response.tolist()))
-                              for response in responses)
-    result = subprocess.run([twinmap, "infer", folder, "--follow"], input=text, capture_output=True, text=True, check=True)
+    text = header + "\n".join(
+        "".join(f"{t!r},{y!r},{theta!r}\n" for t, y, theta in zip(times.tolist(), *response.tolist()))
+        for response in responses
+    )
+    result = subprocess.run(
+        [twinmap, "infer", folder, "--follow"], input=text, capture_output=True, text=True, check=True
+    )
     return [json.loads(line)["statuses"] for line in result.stdout.splitlines()]
 
 
@@ -49,7 +56,9 @@ def stick(responses, output, rng):
 
 def spike(responses, rng):
     spiked = responses.copy()
-    for response, output, at in zip(spiked, rng.integers(0, 2, len(spiked)), rng.integers(0, responses.shape[2], len(spiked))):
+    for response, output, at in zip(
+        spiked, rng.integers(0, 2, len(spiked)), rng.integers(0, responses.shape[2], len(spiked))
+    ):
         response[output, at] += 10 * NOISE[output, 0]
     return spiked
 
@@ -59,9 +68,14 @@ def disturb(measured, clean, rng):
     noise = measured - clean
     late = np.concatenate([np.zeros_like(clean[:, :, :1]), clean[:, :, :-1]], axis=2) + noise
     early = np.concatenate([clean[:, :, 1:], clean[:, :, -1:]], axis=2) + noise
-    return {"one sample late": late, "one sample early": early,
-            "y stuck": stick(measured, 0, rng), "theta stuck": stick(measured, 1, rng),
-            "spike of 10 sd": spike(measured, rng), "drift of 10 sd": measured + 10 * NOISE * np.linspace(0, 1, clean.shape[2])}
+    return {
+        "one sample late": late,
+        "one sample early": early,
+        "y stuck": stick(measured, 0, rng),
+        "theta stuck": stick(measured, 1, rng),
+        "spike of 10 sd": spike(measured, rng),
+        "drift of 10 sd": measured + 10 * NOISE * np.linspace(0, 1, clean.shape[2]),
+    }
 
 
 def main():

@@ -21,14 +21,25 @@ FAR = 5.0
 
 
 def run(twinmap, experiment, folder, *overrides):
-    subprocess.run([twinmap, "run", experiment, "evaluation.limit=false", *overrides, "--out", folder, "--quiet"],
-                   check=True, capture_output=True)
+    subprocess.run(
+        [twinmap, "run", experiment, "evaluation.limit=false", *overrides, "--out", folder, "--quiet"],
+        check=True,
+        capture_output=True,
+    )
 
 
 def simulate(twinmap, experiment, folder, count, *overrides):
     """Clean responses (count x outputs x times) of points that no training has seen, and the times."""
-    run(twinmap, experiment, folder, "seed=4711", "design.train.samples=40", "refine=never",
-        f"design.test.samples={count}", *overrides)
+    run(
+        twinmap,
+        experiment,
+        folder,
+        "seed=4711",
+        "design.train.samples=40",
+        "refine=never",
+        f"design.test.samples={count}",
+        *overrides,
+    )
     with h5py.File(folder / "samples.h5") as file:
         return file["test/responses"][:], file["times"][:]
 
@@ -40,8 +51,9 @@ def infer(twinmap, folder, outputs, times, responses):
         lines += ["t," + ",".join(outputs)]
         lines += [",".join(repr(float(v)) for v in (t, *row)) for t, row in zip(times, response.T)]
         lines += [""]
-    result = subprocess.run([twinmap, "infer", folder, "--follow"], input="\n".join(lines), capture_output=True, text=True,
-                            check=True)
+    result = subprocess.run(
+        [twinmap, "infer", folder, "--follow"], input="\n".join(lines), capture_output=True, text=True, check=True
+    )
     return [json.loads(line) for line in result.stdout.splitlines()]
 
 
@@ -68,11 +80,16 @@ class Case:
 
     def list_masses(self):
         """Name -> key path and value."""
-        constants = {name: (f"constants.{name}.value", float(constant["value"]))
-                     for name, constant in self.spec.get("constants", {}).items()
-                     if isinstance(constant, dict) and constant.get("unit") == "kg"}
-        bodies = {name: (f"system.bodies.{name}.mass", float(body["mass"]))
-                  for name, body in self.spec["system"]["bodies"].items() if isinstance(body["mass"], (int, float))}
+        constants = {
+            name: (f"constants.{name}.value", float(constant["value"]))
+            for name, constant in self.spec.get("constants", {}).items()
+            if isinstance(constant, dict) and constant.get("unit") == "kg"
+        }
+        bodies = {
+            name: (f"system.bodies.{name}.mass", float(body["mass"]))
+            for name, body in self.spec["system"]["bodies"].items()
+            if isinstance(body["mass"], (int, float))
+        }
         return {**constants, **bodies}
 
     def measure(self, clean):

@@ -78,8 +78,9 @@ def main():
         samples = request.get("samples", [request])  # several where batch: is given
         p = {name: np.array([s["parameters"][name] for s in samples]) for name in hello["parameters"]}
         outputs = simulate(p, hello["times"], hello["excitation"]["signals"])
-        answers = [{"outputs": {name: values[:, j].tolist() for name, values in outputs.items()}}
-                   for j in range(len(samples))]
+        answers = [
+            {"outputs": {name: values[:, j].tolist() for name, values in outputs.items()}} for j in range(len(samples))
+        ]
         print(json.dumps({"samples": answers} if "samples" in request else answers[0]), flush=True)
 
 

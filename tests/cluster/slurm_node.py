@@ -69,30 +69,50 @@ class Slurm:
         (folder / "state").mkdir()
         host = socket.gethostname().split(".")[0]
         (folder / "slurm.conf").write_text(
-            CONFIGURATION.format(folder=folder, host=host, controller=controller, first=first, second=second))
-        self.environment = {**os.environ, "SLURM_CONF": str(folder / "slurm.conf"),
-                            "PATH": os.environ["PATH"] + ":/usr/sbin:/sbin"}
+            CONFIGURATION.format(folder=folder, host=host, controller=controller, first=first, second=second)
+        )
+        self.environment = {
+            **os.environ,
+            "SLURM_CONF": str(folder / "slurm.conf"),
+            "PATH": os.environ["PATH"] + ":/usr/sbin:/sbin",
+        }
         self.processes = {}
 
     def spawn(self, name, *command):
         with open(self.folder / f"{name}.out", "ab") as log:
-            self.processes[name] = subprocess.Popen([str(word) for word in command], env=self.environment, stdout=log,
-                                                    stderr=log, start_new_session=True)
+            self.processes[name] = subprocess.Popen(
+                [str(word) for word in command], env=self.environment, stdout=log, stderr=log, start_new_session=True
+            )
 
     def start(self):
         key = self.folder / "munge.key"
         key.write_bytes(os.urandom(128))
         key.chmod(0o600)
-        self.spawn("munged", "munged", "--foreground", "--force", "--key-file", key, "--socket",
-                   self.folder / "munge.socket", "--pid-file", self.folder / "munged.pid", "--log-file",
-                   self.folder / "munged.log", "--seed-file", self.folder / "munged.seed")
+        self.spawn(
+            "munged",
+            "munged",
+            "--foreground",
+            "--force",
+            "--key-file",
+            key,
+            "--socket",
+            self.folder / "munge.socket",
+            "--pid-file",
+            self.folder / "munged.pid",
+            "--log-file",
+            self.folder / "munged.log",
+            "--seed-file",
+            self.folder / "munged.seed",
+        )
         self.wait(lambda: (self.folder / "munge.socket").exists(), "munged does not answer")
         self.spawn("slurmctld", "slurmctld", "-D", "-c", "-f", self.folder / "slurm.conf")
         for node in ("n1", "n2"):
             (self.folder / f"spool-{node}").mkdir()
             self.start_node(node)
-        self.wait(lambda: self.call("sinfo", "--noheader", "--format=%D %t").stdout.split() == ["2", "idle"],
-                  "the nodes do not come up")
+        self.wait(
+            lambda: self.call("sinfo", "--noheader", "--format=%D %t").stdout.split() == ["2", "idle"],
+            "the nodes do not come up",
+        )
 
     def start_node(self, node):
         self.spawn(node, "slurmd", "-D", "-N", node, "-f", self.folder / "slurm.conf")
@@ -117,13 +137,23 @@ class Slurm:
 
     def find_tasks(self):
         """Processes that this Slurm started for jobs."""
-        return [int(pid) for pid in os.listdir("/proc") if pid.isdigit()
-                and self.read_environment(pid).get("SLURM_CONF") == str(self.folder / "slurm.conf")
-                and "SLURM_JOB_ID" in self.read_environment(pid)]
+        return [
+            int(pid)
+            for pid in os.listdir("/proc")
+            if pid.isdigit()
+            and self.read_environment(pid).get("SLURM_CONF") == str(self.folder / "slurm.conf")
+            and "SLURM_JOB_ID" in self.read_environment(pid)
+        ]
 
     def call(self, *command, **options):
-        return subprocess.run([str(word) for word in command], env=self.environment, capture_output=True, text=True,
-                              timeout=120, **options)
+        return subprocess.run(
+            [str(word) for word in command],
+            env=self.environment,
+            capture_output=True,
+            text=True,
+            timeout=120,
+            **options,
+        )
 
     def wait(self, condition, message, seconds=60.0):
         deadline = time.monotonic() + seconds

@@ -17,11 +17,24 @@ TABLE1 = Path(os.environ["TWINMAP_SOURCE_DIR"]) / "experiments/two_beam/table1.y
 # second, so that one job alone reaches a time limit of a minute.
 WHOLE = bool(os.environ.get("TWINMAP_WHOLE_BARS"))
 CASES = 24 if WHOLE else 6
-SWEEP = ["design.train.samples=8,12,16", "noise.scale=0.5,1", "seed=1..4" if WHOLE else "seed=1..1", "design.test.samples=8",
-         "evaluation.limit=false", "design.train.method=nested_latin_hypercube", "simulation.engine=simbody", "inverse_map.gp.starts=1"]
+SWEEP = [
+    "design.train.samples=8,12,16",
+    "noise.scale=0.5,1",
+    "seed=1..4" if WHOLE else "seed=1..1",
+    "design.test.samples=8",
+    "evaluation.limit=false",
+    "design.train.method=nested_latin_hypercube",
+    "simulation.engine=simbody",
+    "inverse_map.gp.starts=1",
+]
 if WHOLE:
-    SWEEP += ["simulation.duration=50", "simulation.relative_tolerance=1e-10", "simulation.absolute_tolerance=1e-12",
-              "simulation.max_steps=10000000", "simulation.max_wall_time=600"]
+    SWEEP += [
+        "simulation.duration=50",
+        "simulation.relative_tolerance=1e-10",
+        "simulation.absolute_tolerance=1e-12",
+        "simulation.max_steps=10000000",
+        "simulation.max_wall_time=600",
+    ]
 TABLES = ["sweep.csv", "summary.csv", "table.md", "failed_cases.csv", "resolved.yaml"]
 RESULTS = ["maps.h5", "metrics.csv", "predictions.csv", "samples.h5", "training.csv", "resolved.yaml"]
 
@@ -29,7 +42,7 @@ RESULTS = ["maps.h5", "metrics.csv", "predictions.csv", "samples.h5", "training.
 def read_points(chunk):
     data = chunk.read_bytes()
     parameters, _, samples = struct.unpack("<3Q", data[32:56])
-    return [data[56 + i * 8 * parameters:56 + (i + 1) * 8 * parameters] for i in range(samples)]
+    return [data[56 + i * 8 * parameters : 56 + (i + 1) * 8 * parameters] for i in range(samples)]
 
 
 @unittest.skipIf(find_missing(), find_missing())
@@ -44,8 +57,11 @@ class OnSlurm(unittest.TestCase):
         cls.slurm = Slurm(cls.folder / "slurm")
         cls.addClassCleanup(cls.slurm.stop)
         cls.slurm.start()
-        result = subprocess.run([TWINMAP, "run", TABLE1, *SWEEP, "--quiet", "--threads", "1", "--out", cls.folder / "alone"],
-                                capture_output=True, text=True)
+        result = subprocess.run(
+            [TWINMAP, "run", TABLE1, *SWEEP, "--quiet", "--threads", "1", "--out", cls.folder / "alone"],
+            capture_output=True,
+            text=True,
+        )
         assert result.returncode == 0, result.stderr
 
     def call(self, *arguments, code=0):
@@ -55,11 +71,16 @@ class OnSlurm(unittest.TestCase):
 
     def submit(self, name, *options, code=0):
         shards = () if "--shards" in options else ("--shards", "6")
-        return self.call("submit", TABLE1, *SWEEP, "--on", "slurm", *shards, "--out", self.folder / name, *options, code=code)
+        return self.call(
+            "submit", TABLE1, *SWEEP, "--on", "slurm", *shards, "--out", self.folder / name, *options, code=code
+        )
 
     def list_shards(self, name, state):
-        return [path.stem for path in (self.folder / name / "cluster/shards").glob("*.json")
-                if json.loads(path.read_text())[-1]["state"] == state]
+        return [
+            path.stem
+            for path in (self.folder / name / "cluster/shards").glob("*.json")
+            if json.loads(path.read_text())[-1]["state"] == state
+        ]
 
     def wait_for_running(self, name):
         self.slurm.wait(lambda: self.list_shards(name, "running"), "no shard begins")
@@ -75,8 +96,10 @@ class OnSlurm(unittest.TestCase):
         alone = self.folder / "alone"
         cases = sorted(path.name for path in (alone / "cases").iterdir())
         self.assertEqual(len(cases), CASES)
-        for files, one, other in [(TABLES, alone, self.folder / name),
-                                  *((RESULTS, alone / "cases" / case, self.folder / name / "cases" / case) for case in cases)]:
+        for files, one, other in [
+            (TABLES, alone, self.folder / name),
+            *((RESULTS, alone / "cases" / case, self.folder / name / "cases" / case) for case in cases),
+        ]:
             _, different, missing = filecmp.cmpfiles(one, other, files, shallow=False)
             self.assertEqual((different, missing), ([], []), other)
         for folder in (self.folder / name / "chunks").iterdir():
@@ -108,8 +131,7 @@ class OnSlurm(unittest.TestCase):
         self.wait_and_compare("rough", seconds=1200)
 
     def test_a_refusal_shows_the_words_of_the_scheduler(self):
-        self.assertIn("invalid partition specified: nowhere",
-                      self.submit("refused", "--partition", "nowhere", code=1))
+        self.assertIn("invalid partition specified: nowhere", self.submit("refused", "--partition", "nowhere", code=1))
 
 
 class Elsewhere(unittest.TestCase):
@@ -120,8 +142,14 @@ class Elsewhere(unittest.TestCase):
         folder = tempfile.TemporaryDirectory(prefix="twinmap_cluster_")
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
-        self.arguments = [TABLE1, "design.train.samples=20,30", "design.test.samples=10",
-                          "inverse_map.gp.starts=1", "--out", self.folder / "run"]
+        self.arguments = [
+            TABLE1,
+            "design.train.samples=20,30",
+            "design.test.samples=10",
+            "inverse_map.gp.starts=1",
+            "--out",
+            self.folder / "run",
+        ]
 
     def test_without_slurm_one_line_says_what_is_missing(self):
         result = self.call("submit", *self.arguments, "--on", "slurm", env={"PATH": "/nowhere"})
@@ -137,8 +165,9 @@ class Elsewhere(unittest.TestCase):
         alone = self.call("run", *self.arguments[:-1], self.folder / "alone", "--quiet")
         self.assertEqual(alone.returncode, 0, alone.stderr)
         for case in ("samples-20", "samples-30"):
-            _, different, missing = filecmp.cmpfiles(self.folder / "run/cases" / case, self.folder / "alone/cases" / case,
-                                                     RESULTS, shallow=False)
+            _, different, missing = filecmp.cmpfiles(
+                self.folder / "run/cases" / case, self.folder / "alone/cases" / case, RESULTS, shallow=False
+            )
             self.assertEqual((different, missing), ([], []))
         self.assertEqual((self.folder / "run/sweep.csv").read_bytes(), (self.folder / "alone/sweep.csv").read_bytes())
         self.assertIn("done before", self.call("shard", self.folder / "run", "0").stdout)
@@ -146,12 +175,23 @@ class Elsewhere(unittest.TestCase):
     def test_a_template_submits_each_shard_after_the_stage_before(self):
         queue = self.folder / "queue"
         command = f"echo '{{shard}} {{after}}' >>{queue}; echo job{{shard}}"
-        result = self.call("submit", *self.arguments, "--on", "template", "--shards", "2", "--submit", command,
-                           "--after", "-W depend=afterany:{jobs}")
+        result = self.call(
+            "submit",
+            *self.arguments,
+            "--on",
+            "template",
+            "--shards",
+            "2",
+            "--submit",
+            command,
+            "--after",
+            "-W depend=afterany:{jobs}",
+        )
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(result.stdout.split(), ["job0", "job1", "job2", "job3"])
-        self.assertEqual(queue.read_text().splitlines(),
-                         ["0 ", "1 ", "2 -W depend=afterany:job0:job1", "3 -W depend=afterany:job2"])
+        self.assertEqual(
+            queue.read_text().splitlines(), ["0 ", "1 ", "2 -W depend=afterany:job0:job1", "3 -W depend=afterany:job2"]
+        )
         refused = self.call("submit", *self.arguments, "--on", "template", "--submit", "echo no room; exit 1")
         self.assertEqual(refused.returncode, 1)
         self.assertIn("no room", refused.stderr)

@@ -33,8 +33,9 @@ def is_experiment(text):
 def find_snippets(document):
     """(language, text) of what is to be run."""
     blocks = BLOCK.findall(document.read_text())
-    return [(language, text) for language, text in blocks
-            if language in RUN and (language != "yaml" or is_experiment(text))]
+    return [
+        (language, text) for language, text in blocks if language in RUN and (language != "yaml" or is_experiment(text))
+    ]
 
 
 # Executes snippets that come as lines of JSON, with the names of those before.
@@ -62,12 +63,24 @@ class Sandbox:
         (folder / "framework/models/fmu").mkdir(parents=True)
         shutil.copytree(SOURCE / "framework/models/fmu/headers", folder / "framework/models/fmu/headers")
         (folder / "scripts").symlink_to(SOURCE / "scripts")
-        self.environment = {**os.environ, "PATH": f"{TWINMAP.parent}:{os.environ['PATH']}",
-                            "LD_LIBRARY_PATH": str(LIBRARY.parent), "PYTHONPATH": str(PACKAGE)}
+        self.environment = {
+            **os.environ,
+            "PATH": f"{TWINMAP.parent}:{os.environ['PATH']}",
+            "LD_LIBRARY_PATH": str(LIBRARY.parent),
+            "PYTHONPATH": str(PACKAGE),
+        }
 
     def call(self, *command, **options):
-        result = subprocess.run([str(word) for word in command], cwd=self.folder, env=self.environment, timeout=900,
-                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, **options)
+        result = subprocess.run(
+            [str(word) for word in command],
+            cwd=self.folder,
+            env=self.environment,
+            timeout=900,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            **options,
+        )
         if result.returncode != 0:
             raise AssertionError(f"{result.stdout[-3000:]}")
 
@@ -76,8 +89,15 @@ class Sandbox:
 
     def run_python(self, text):
         if self.python is None:
-            self.python = subprocess.Popen([PYTHON, "-c", SESSION], cwd=self.folder, env=self.environment, text=True,
-                                           stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+            self.python = subprocess.Popen(
+                [PYTHON, "-c", SESSION],
+                cwd=self.folder,
+                env=self.environment,
+                text=True,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.DEVNULL,
+            )
         self.python.stdin.write(json.dumps(text) + "\n")
         self.python.stdin.flush()
         answer = json.loads(self.python.stdout.readline())
@@ -90,8 +110,20 @@ class Sandbox:
 
     def run_c(self, text):
         (self.folder / "snippet.c").write_text(text)
-        self.call("cc", "-std=c99", "-Wall", "-Wextra", "-Werror", f"-I{SOURCE}/framework/c_api", "snippet.c",
-                  f"-L{LIBRARY.parent}", "-ltwinmap", "-lm", "-o", "snippet")
+        self.call(
+            "cc",
+            "-std=c99",
+            "-Wall",
+            "-Wextra",
+            "-Werror",
+            f"-I{SOURCE}/framework/c_api",
+            "snippet.c",
+            f"-L{LIBRARY.parent}",
+            "-ltwinmap",
+            "-lm",
+            "-o",
+            "snippet",
+        )
         self.call("./snippet")
 
     def run_yaml(self, text):

@@ -45,7 +45,9 @@ class PackageTest(unittest.TestCase):
         libraries = [*self.root.rglob("libtwinmap.so.0"), *self.root.rglob("_twinmap*.so")]
         self.assertTrue(libraries)
         for command in ([self.program, "--version"], *([*loads, library] for library in libraries)):
-            result = subprocess.run(["qemu-x86_64", "-cpu", "Nehalem", *map(str, command)], capture_output=True, text=True, timeout=600)
+            result = subprocess.run(
+                ["qemu-x86_64", "-cpu", "Nehalem", *map(str, command)], capture_output=True, text=True, timeout=600
+            )
             self.assertEqual(result.returncode, 1, command)
             self.assertIn("twinmap: error: this processor lacks AVX2", result.stderr)
 
@@ -56,15 +58,18 @@ class PackageTest(unittest.TestCase):
         commands = re.findall(r"^  ([a-z]+)  ", call("--help").stdout.split("Subcommands:")[1], re.MULTILINE)
         self.assertEqual(pages, {"twinmap.1.gz", *(f"twinmap-{command}.1.gz" for command in commands)})
         for page in (self.root / "usr/share/man/man1").iterdir():
-            name = page.name[:-len(".1.gz")]
+            name = page.name[: -len(".1.gz")]
             text = run("gzip", "-dc", page)
-            self.assertRegex(text, rf'(?m)^\.TH {name.upper()} ')
+            self.assertRegex(text, rf"(?m)^\.TH {name.upper()} ")
             self.assertRegex(text, rf"(?m)^{name} \\- [a-z]")
 
     def test_completes_and_explains(self):
         share = self.root / "usr/share"
-        for path, shell in (("bash-completion/completions/twinmap", "bash"), ("zsh/vendor-completions/_twinmap", "zsh"),
-                            ("fish/vendor_completions.d/twinmap.fish", "fish")):
+        for path, shell in (
+            ("bash-completion/completions/twinmap", "bash"),
+            ("zsh/vendor-completions/_twinmap", "zsh"),
+            ("fish/vendor_completions.d/twinmap.fish", "fish"),
+        ):
             self.assertEqual((share / path).read_text(), call("completion", shell).stdout)
         self.assertIn("properties", json.loads((share / "twinmap/experiment.schema.json").read_text()))
 
@@ -84,7 +89,9 @@ class PackageTest(unittest.TestCase):
 
     @unittest.skipUnless(shutil.which("lintian"), "lintian is not installed")
     def test_is_one_without_errors_to_lintian(self):
-        result = subprocess.run(["lintian", "--allow-root", "--fail-on", "error", str(self.package)], capture_output=True, text=True)
+        result = subprocess.run(
+            ["lintian", "--allow-root", "--fail-on", "error", str(self.package)], capture_output=True, text=True
+        )
         self.assertEqual(result.returncode, 0, result.stdout)
 
 

@@ -21,16 +21,28 @@ from ._results import Results
 from ._twinmap import Progress, Quantity
 
 __version__ = _twinmap.__version__
-__all__ = ["Experiment", "ExperimentError", "Inference", "Map", "MeasurementError", "Posterior", "Progress",
-           "Quantity", "Responses", "Results", "sweep"]
+__all__ = [
+    "Experiment",
+    "ExperimentError",
+    "Inference",
+    "Map",
+    "MeasurementError",
+    "Posterior",
+    "Progress",
+    "Quantity",
+    "Responses",
+    "Results",
+    "sweep",
+]
 
 # FMUs are simulated in processes of their own, so that one that crashes takes nothing with it.
-_WORKER = ("import importlib.util as util\n"
-           "spec = util.spec_from_file_location('twinmap._twinmap', {path!r})\n"
-           "module = util.module_from_spec(spec)\n"
-           "spec.loader.exec_module(module)\n"
-           "module.run_worker()\n")
+_WORKER = (
+    "import importlib.util as util\n"
+    "spec = util.spec_from_file_location('twinmap._twinmap', {path!r})\n"
+    "module = util.module_from_spec(spec)\n"
+    "spec.loader.exec_module(module)\n"
+    "module.run_worker()\n"
+)
 
 if sys.executable:
-    _twinmap.set_worker_program(sys.executable,
-                                ["-I", "-c", _WORKER.format(path=os.path.abspath(_twinmap.__file__))])
+    _twinmap.set_worker_program(sys.executable, ["-I", "-c", _WORKER.format(path=os.path.abspath(_twinmap.__file__))])

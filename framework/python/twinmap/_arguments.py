@@ -34,7 +34,7 @@ def _write_value(value: Any) -> str:
 
 
 def list_overrides(texts: Sequence[Union[str, Mapping[str, Any]]], keys: Mapping[str, Any]) -> List[str]:
-    """ "key.path=value" for texts, mappings and keywords; in keywords "__" stands for ".". """
+    """ "key.path=value" for texts, mappings and keywords; in keywords "__" stands for "."."""
     overrides: List[str] = []
     for text in texts:
         if isinstance(text, str):
@@ -50,8 +50,12 @@ def _fill_columns(values: Mapping[str, Any], quantities: Sequence[Quantity], wha
     unknown = [name for name in values if name not in names]
     if unknown:
         raise ExperimentError(f"{what}: '{unknown[0]}' is none of {', '.join(names)}")
-    columns = [np.atleast_1d(np.asarray(values[q.name], dtype=float)) if q.name in values
-               else np.array([0.5 * (q.lower + q.upper)]) for q in quantities]
+    columns = [
+        np.atleast_1d(np.asarray(values[q.name], dtype=float))
+        if q.name in values
+        else np.array([0.5 * (q.lower + q.upper)])
+        for q in quantities
+    ]
     return np.column_stack(np.broadcast_arrays(*columns)) if columns else np.empty((1, 0))
 
 
@@ -82,5 +86,6 @@ def list_known(known: Optional[Mapping[str, float]]) -> List[Tuple[str, float]]:
 def describe_quantities(quantities: Sequence[Quantity]) -> "pd.DataFrame":
     """A row for each."""
     rows: Dict[str, Dict[str, Any]] = {
-        q.name: {"unit": q.unit, "lower": q.lower, "upper": q.upper, "description": q.description} for q in quantities}
+        q.name: {"unit": q.unit, "lower": q.lower, "upper": q.upper, "description": q.description} for q in quantities
+    }
     return pd.DataFrame.from_dict(rows, orient="index", columns=["unit", "lower", "upper", "description"])

@@ -10,9 +10,16 @@ class ExperimentError(ValueError):
     Overrides stand in the file "command line".
     """
 
-    def __init__(self, message: str, file: Optional[str] = None, line: Optional[int] = None,
-                 column: Optional[int] = None, key: Optional[str] = None, value: Optional[str] = None,
-                 rule: Optional[str] = None) -> None:
+    def __init__(
+        self,
+        message: str,
+        file: Optional[str] = None,
+        line: Optional[int] = None,
+        column: Optional[int] = None,
+        key: Optional[str] = None,
+        value: Optional[str] = None,
+        rule: Optional[str] = None,
+    ) -> None:
         super().__init__(message)
         self.file = file
         self.line = line

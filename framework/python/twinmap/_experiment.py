@@ -22,8 +22,9 @@ class Responses:
     `times` (T): s. `responses["y"]` (n, T): an output, in its unit.
     """
 
-    def __init__(self, rows: np.ndarray, reasons: Sequence[str], times: np.ndarray, outputs: Sequence[Quantity],
-                 modes: int) -> None:
+    def __init__(
+        self, rows: np.ndarray, reasons: Sequence[str], times: np.ndarray, outputs: Sequence[Quantity], modes: int
+    ) -> None:
         self.rows = rows
         self.reasons = list(reasons)
         self.ok = np.array([not reason for reason in reasons], dtype=bool)
@@ -38,19 +39,19 @@ class Responses:
         if output not in self.outputs:
             raise KeyError(f"{output}: the outputs are {', '.join(self.outputs)}")
         first = self.outputs.index(output) * len(self.times)
-        return self.rows[:, first:first + len(self.times)]
+        return self.rows[:, first : first + len(self.times)]
 
     @property
     def frequencies(self) -> np.ndarray:
         """Natural frequencies (n, modes), Hz."""
         first = len(self.outputs) * len(self.times)
-        return self.rows[:, first:first + self._modes]
+        return self.rows[:, first : first + self._modes]
 
     @property
     def damping_ratios(self) -> np.ndarray:
         """(n, modes)"""
         first = len(self.outputs) * len(self.times) + self._modes
-        return self.rows[:, first:first + self._modes]
+        return self.rows[:, first : first + self._modes]
 
     def to_frame(self, sample: int = 0) -> pd.DataFrame:
         """One sample as a measurement that Map.infer() takes: a column t (s), then one for each output."""
@@ -58,14 +59,17 @@ class Responses:
 
     def __repr__(self) -> str:
         failed = len(self) - int(self.ok.sum())
-        return f"<twinmap.Responses: {len(self)} of {', '.join(self.outputs)} at {len(self.times)} times, {failed} failed>"
+        return (
+            f"<twinmap.Responses: {len(self)} of {', '.join(self.outputs)} at {len(self.times)} times, {failed} failed>"
+        )
 
 
 class Experiment:
     """An experiment file, with overrides. Immutable: override() gives another one."""
 
-    def __init__(self, experiment: _twinmap.Experiment, source: Tuple[str, Optional[str]],
-                 overrides: List[str]) -> None:
+    def __init__(
+        self, experiment: _twinmap.Experiment, source: Tuple[str, Optional[str]], overrides: List[str]
+    ) -> None:
         self._experiment = experiment
         self._source = source  # the file's name, and the text where it is no file
         self._overrides = overrides
@@ -83,8 +87,11 @@ class Experiment:
     @staticmethod
     def _make(source: Tuple[str, Optional[str]], overrides: List[str]) -> "Experiment":
         name, text = source
-        made = (_twinmap.Experiment.load(name, overrides) if text is None
-                else _twinmap.Experiment.parse(text, name, overrides))
+        made = (
+            _twinmap.Experiment.load(name, overrides)
+            if text is None
+            else _twinmap.Experiment.parse(text, name, overrides)
+        )
         return Experiment(made, source, overrides)
 
     def override(self, *overrides: Union[str, Mapping[str, Any]], **keys: Any) -> "Experiment":
@@ -144,8 +151,9 @@ class Experiment:
         """The experiment with all defaults written out, as `twinmap check` prints it."""
         return self._experiment.write_yaml()
 
-    def simulate(self, points: Points, noise: bool = False, seed: Optional[int] = None,
-                 threads: Optional[int] = None) -> Responses:
+    def simulate(
+        self, points: Points, noise: bool = False, seed: Optional[int] = None, threads: Optional[int] = None
+    ) -> Responses:
         """Simulates parameter points: an array (n, len(sampled)), or a mapping or DataFrame from names to values,
         where what is not named is at the centre of its bounds.
 
@@ -162,8 +170,14 @@ class Experiment:
         """The features (n, d) of responses, which Map.predict() takes. NaN where a response has no such feature."""
         return self._experiment.extract(responses.rows if isinstance(responses, Responses) else responses)
 
-    def run(self, out: Optional[PathLike] = None, *, threads: Optional[int] = None, progress: ProgressChoice = False,
-            store: Optional[PathLike] = None) -> Results:
+    def run(
+        self,
+        out: Optional[PathLike] = None,
+        *,
+        threads: Optional[int] = None,
+        progress: ProgressChoice = False,
+        store: Optional[PathLike] = None,
+    ) -> Results:
         """Simulates, trains, evaluates and writes the folder `out` (results/NAME if None), as `twinmap run` does.
 
         A run that was interrupted continues, one that is complete is trained again from its stored simulations.
@@ -179,8 +193,9 @@ class Experiment:
             _twinmap.run(self._experiment, request, callback)
         return Results.load(request.folder)
 
-    def _make_request(self, out: Optional[PathLike], threads: Optional[int],
-                      store: Optional[PathLike]) -> _twinmap.RunRequest:
+    def _make_request(
+        self, out: Optional[PathLike], threads: Optional[int], store: Optional[PathLike]
+    ) -> _twinmap.RunRequest:
         request = _twinmap.RunRequest()
         request.folder = os.path.join("results", self.name) if out is None else os.fspath(out)
         request.store = "" if store is None else os.fspath(store)
@@ -190,18 +205,29 @@ class Experiment:
         return request
 
     def _repr_html_(self) -> str:
-        rows = "".join(f"<tr><td>{q.name}</td><td>{q.lower:g} .. {q.upper:g}</td><td>{q.unit}</td>"
-                       f"<td>{q.description}</td></tr>" for q in self.sampled)
-        return (f"<b>{self.name}</b> {self.description}<table><tr><th>parameter</th><th>bounds</th><th>unit</th>"
-                f"<th></th></tr>{rows}</table>")
+        rows = "".join(
+            f"<tr><td>{q.name}</td><td>{q.lower:g} .. {q.upper:g}</td><td>{q.unit}</td>"
+            f"<td>{q.description}</td></tr>"
+            for q in self.sampled
+        )
+        return (
+            f"<b>{self.name}</b> {self.description}<table><tr><th>parameter</th><th>bounds</th><th>unit</th>"
+            f"<th></th></tr>{rows}</table>"
+        )
 
     def __repr__(self) -> str:
         return f"<twinmap.Experiment '{self.name}': {', '.join(q.name for q in self.parameters)}>"
 
 
-def sweep(file: Union[PathLike, Experiment], *overrides: Union[str, Mapping[str, Any]],
-          out: Optional[PathLike] = None, threads: Optional[int] = None, progress: ProgressChoice = False,
-          store: Optional[PathLike] = None, memory: float = 0.0) -> pd.DataFrame:
+def sweep(
+    file: Union[PathLike, Experiment],
+    *overrides: Union[str, Mapping[str, Any]],
+    out: Optional[PathLike] = None,
+    threads: Optional[int] = None,
+    progress: ProgressChoice = False,
+    store: Optional[PathLike] = None,
+    memory: float = 0.0,
+) -> pd.DataFrame:
     """Runs a sweep, as `twinmap run` does, and gives its sweep.csv: a row for each case and parameter, with a column for
     each swept key, then those of Results.metrics.
 

@@ -34,8 +34,9 @@ class Posterior:
         if self.reliable:
             self.mean: np.ndarray = sampled.mean
             self.stddev: np.ndarray = sampled.stddev
-            self.quantiles = pd.DataFrame(sampled.quantiles, columns=names,
-                                          index=pd.Index(_PROBABILITIES, name="probability"))
+            self.quantiles = pd.DataFrame(
+                sampled.quantiles, columns=names, index=pd.Index(_PROBABILITIES, name="probability")
+            )
             self.draws = pd.DataFrame(sampled.draws, columns=unknown)
 
     @property
@@ -92,8 +93,10 @@ class Inference:
     def to_frame(self) -> pd.DataFrame:
         """A row for each parameter: unit, mean, stddev, lower, upper."""
         lower, upper = self.interval.T
-        return pd.DataFrame({"unit": self.units, "mean": self.mean, "stddev": self.stddev, "lower": lower,
-                             "upper": upper}, index=pd.Index(self.names, name="parameter"))
+        return pd.DataFrame(
+            {"unit": self.units, "mean": self.mean, "stddev": self.stddev, "lower": lower, "upper": upper},
+            index=pd.Index(self.names, name="parameter"),
+        )
 
     def __getitem__(self, parameter: str) -> Tuple[float, float]:
         """Mean and standard deviation of one parameter."""
@@ -156,8 +159,9 @@ class Map:
         """The experiment that the map was trained by."""
         return self._map.write_experiment()
 
-    def predict(self, X: np.ndarray, return_std: bool = False, *, inputs: Optional[Points] = None,
-                threads: int = 1) -> Union[np.ndarray, Tuple[np.ndarray, np.ndarray]]:
+    def predict(
+        self, X: np.ndarray, return_std: bool = False, *, inputs: Optional[Points] = None, threads: int = 1
+    ) -> Union[np.ndarray, Tuple[np.ndarray, np.ndarray]]:
         """The mean (n, p), and with return_std the standard deviation (n, p), for features X (n, d), like
         scikit-learn's regressors; in the parameters' units. The map alone: no status, no refinement.
 
@@ -176,9 +180,15 @@ class Map:
         """One row of known inputs stands for all measurements."""
         return np.broadcast_to(known, (count, known.shape[1])) if len(known) == 1 else known
 
-    def infer(self, measurement: Measurement, *, known: Optional[Mapping[str, float]] = None,
-              start: Optional[float] = None, refine: Optional[bool] = None,
-              posterior: Union[bool, int] = False) -> Inference:
+    def infer(
+        self,
+        measurement: Measurement,
+        *,
+        known: Optional[Mapping[str, float]] = None,
+        start: Optional[float] = None,
+        refine: Optional[bool] = None,
+        posterior: Union[bool, int] = False,
+    ) -> Inference:
         """Infers the parameters of one measurement and judges the answer.
 
         measurement: a file (CSV, MATLAB, HDF5); a DataFrame or mapping from columns to samples, named as in a file ("t",

@@ -86,8 +86,10 @@ class Results:
         if not self.report.is_file():
             return None
         page = html.escape(self.report.read_text(encoding="utf-8"), quote=True)
-        return (f'<iframe srcdoc="{page}" title="{html.escape(os.fspath(self.folder))}" '
-                'style="width: 100%; height: 80vh; border: 1px solid #ccc"></iframe>')
+        return (
+            f'<iframe srcdoc="{page}" title="{html.escape(os.fspath(self.folder))}" '
+            'style="width: 100%; height: 80vh; border: 1px solid #ccc"></iframe>'
+        )
 
     def __repr__(self) -> str:
         return f"<twinmap.Results '{self.folder}': {', '.join(self.list_tables())}>"

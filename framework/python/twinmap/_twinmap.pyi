@@ -72,10 +72,10 @@ class RunRequest:
     threads: int
     memory: float
 
-def run(experiment: Experiment, request: RunRequest,
-        progress: Optional[Callable[[Progress], None]] = ...) -> None: ...
-def sweep(experiment: Experiment, request: RunRequest,
-          progress: Optional[Callable[[Progress], None]] = ...) -> Tuple[int, int, List[Tuple[str, str]]]: ...
+def run(experiment: Experiment, request: RunRequest, progress: Optional[Callable[[Progress], None]] = ...) -> None: ...
+def sweep(
+    experiment: Experiment, request: RunRequest, progress: Optional[Callable[[Progress], None]] = ...
+) -> Tuple[int, int, List[Tuple[str, str]]]: ...
 
 class SurrogatePosterior:
     @property
@@ -114,8 +114,9 @@ class Answered:
     def posterior(self) -> Optional[SurrogatePosterior]: ...
 
 class InferRequest:
-    def __init__(self, known: Sequence[Tuple[str, float]], start: Optional[float],
-                 refine: Optional[bool], posterior_draws: int) -> None: ...
+    def __init__(
+        self, known: Sequence[Tuple[str, float]], start: Optional[float], refine: Optional[bool], posterior_draws: int
+    ) -> None: ...
 
 class Map:
     @staticmethod

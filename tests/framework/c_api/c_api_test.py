@@ -14,8 +14,13 @@ NEVER, AS_EXPERIMENT, ALWAYS = "0", "1", "2"  # twinmap_refine
 
 
 def use(*arguments):
-    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, timeout=600,
-                          env={**os.environ, "TWINMAP_WORKER": TWINMAP})
+    return subprocess.run(
+        [PROGRAM, *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        timeout=600,
+        env={**os.environ, "TWINMAP_WORKER": TWINMAP},
+    )
 
 
 class Library(RunTestCase):

@@ -45,7 +45,9 @@ class Installed(RunTestCase):
         cls.measurement = cls.simulate("m.csv", "parameters.k_y=8")
 
     def expect_answer(self, program):
-        output = run(program, self.run_folder, self.measurement, env={**os.environ, "LD_LIBRARY_PATH": str(self.libraries)})
+        output = run(
+            program, self.run_folder, self.measurement, env={**os.environ, "LD_LIBRARY_PATH": str(self.libraries)}
+        )
         self.assertRegex(output, r"m\.csv: ok \(p = 0\.\d+\)\n")
         self.assertRegex(output, r"k_y +(7\.9|8\.)\d* \+- 0\.0\d+ +N/m")
 
@@ -68,14 +70,27 @@ class Installed(RunTestCase):
         if package is None:
             self.skipTest("the Python package was not built")
         environment = {**os.environ, "PYTHONPATH": str(package)}
-        code = f"import twinmap; print(twinmap.Map.load({str(self.run_folder)!r}).infer({str(self.measurement)!r}).status)"
+        code = (
+            f"import twinmap; print(twinmap.Map.load({str(self.run_folder)!r}).infer({str(self.measurement)!r}).status)"
+        )
         self.assertEqual(run("/usr/bin/python3", "-c", code, env=environment), "ok\n")
 
     def test_header_is_one_of_cpp_as_well(self):
         source = self.folder / "header.cpp"
         source.write_text("#include <twinmap.h>\nint main() { return twinmap_get_version()[0] == 0; }\n")
-        run("c++", "-std=c++17", "-Wall", "-Wextra", "-Werror", f"-I{self.prefix}/include", source,
-            f"-L{self.libraries}", "-ltwinmap", "-o", self.folder / "header")
+        run(
+            "c++",
+            "-std=c++17",
+            "-Wall",
+            "-Wextra",
+            "-Werror",
+            f"-I{self.prefix}/include",
+            source,
+            f"-L{self.libraries}",
+            "-ltwinmap",
+            "-o",
+            self.folder / "header",
+        )
 
 
 if __name__ == "__main__":

@@ -21,9 +21,25 @@ CART = EXPERIMENTS / "duffing/cart.yaml"
 CHAIN = EXPERIMENTS / "three_mass_chain"
 SMALL = ["design.train.samples=40", "design.test.samples=20"]
 NO_LIMIT = "evaluation.limit=false"  # a stencil of simulations less at each test point
-RESULTS = ["correlations.csv", "failures.csv", "features.csv", "hyperparameters.csv", "identifiability.csv", "joint.csv",
-           "maps.h5", "metrics.csv", "pit.csv", "predictions.csv", "resolved.yaml", "responses.csv", "samples.h5", "table.md",
-           "table.tex", "training.csv", "trust_power.csv"]
+RESULTS = [
+    "correlations.csv",
+    "failures.csv",
+    "features.csv",
+    "hyperparameters.csv",
+    "identifiability.csv",
+    "joint.csv",
+    "maps.h5",
+    "metrics.csv",
+    "pit.csv",
+    "predictions.csv",
+    "resolved.yaml",
+    "responses.csv",
+    "samples.h5",
+    "table.md",
+    "table.tex",
+    "training.csv",
+    "trust_power.csv",
+]
 
 
 def read_table(lines):
@@ -95,20 +111,36 @@ class ExitCodes(TestCase):
         path = self.folder / "heavy.yaml"
         path.write_text(TABLE1.read_text().replace("value: 0.13,", "value: -0.13,"))
         line = next(i for i, text in enumerate(path.read_text().splitlines(), 1) if "mass: m2" in text)
-        for command in (["check", path], ["run", path, *SMALL, "--out", self.folder / "run"],
-                        ["check", path, "noise.scale=1,2"]):
-            self.assert_wrong_input(*command, message="at the centre of the parameter box: body 'beam2': mass = -0.13 kg "
-                                                      "must be positive")
+        for command in (
+            ["check", path],
+            ["run", path, *SMALL, "--out", self.folder / "run"],
+            ["check", path, "noise.scale=1,2"],
+        ):
+            self.assert_wrong_input(
+                *command,
+                message="at the centre of the parameter box: body 'beam2': mass = -0.13 kg " "must be positive",
+            )
             self.assert_wrong_input(*command, message=f"{path}:{line}:")
         self.assertFalse((self.folder / "run").exists())
-        self.assert_wrong_input("check", TABLE1, "system.bodies.beam1.mass=-1", message="command line: system.bodies.beam1.mass:")
+        self.assert_wrong_input(
+            "check", TABLE1, "system.bodies.beam1.mass=-1", message="command line: system.bodies.beam1.mass:"
+        )
 
     def test_an_initial_state_that_cannot_be_is_found_by_check(self):
-        self.assert_wrong_input("check", CART, "system.force_laws[0].force=F + sqrt(x - 1)",
-                                message="the accelerations of the initial state are not finite")
+        self.assert_wrong_input(
+            "check",
+            CART,
+            "system.force_laws[0].force=F + sqrt(x - 1)",
+            message="the accelerations of the initial state are not finite",
+        )
         for at in ("box_center", "sample"):
-            self.assert_wrong_input("check", CART, "system.force_laws[0].force=F + 1e3 + 1e9 * x^4",
-                                    f"initial={{equilibrium: {{at: {at}}}}}", message="static equilibrium not found")
+            self.assert_wrong_input(
+                "check",
+                CART,
+                "system.force_laws[0].force=F + 1e3 + 1e9 * x^4",
+                f"initial={{equilibrium: {{at: {at}}}}}",
+                message="static equilibrium not found",
+            )
 
     def test_a_model_that_always_fails_is_given_up_after_a_dozen_of_each_set(self):
         many = ["design.train.samples=3000", "design.test.samples=2000", "simulation.max_steps=3"]
@@ -118,10 +150,14 @@ class ExitCodes(TestCase):
         self.assertIn("all of the 12 train samples simulated failed; the other 2988 are given up", result.stderr)
         failures = read_csv(self.folder / "run/failures.csv")
         simulated = [row for row in failures if row["reason"].startswith("step limit of 3 reached")]
-        self.assertEqual([(row["set"], int(row["sample"])) for row in simulated],
-                         [(group, i) for group in ("train", "test") for i in range(12)])
-        self.assertEqual({row["reason"][:50] for row in failures if row not in simulated},
-                         {"not simulated, since every sample before failed: s"})
+        self.assertEqual(
+            [(row["set"], int(row["sample"])) for row in simulated],
+            [(group, i) for group in ("train", "test") for i in range(12)],
+        )
+        self.assertEqual(
+            {row["reason"][:50] for row in failures if row not in simulated},
+            {"not simulated, since every sample before failed: s"},
+        )
 
     def test_failures_are_1(self):
         result = call("simulate", TABLE1, "simulation.max_steps=3")
@@ -138,8 +174,15 @@ class ExitCodes(TestCase):
 class Terminated(TestCase):
     def test_sigterm_abandons_a_training_under_way(self):
         """With 3000 samples the training takes minutes, one evaluation of its likelihood about a second."""
-        command = [TWINMAP, "run", EXPERIMENTS / "two_beam/table1.yaml", "design.train.samples=3000",
-                   "evaluation.limit=false", "--out", self.folder / "run"]
+        command = [
+            TWINMAP,
+            "run",
+            EXPERIMENTS / "two_beam/table1.yaml",
+            "design.train.samples=3000",
+            "evaluation.limit=false",
+            "--out",
+            self.folder / "run",
+        ]
         child = subprocess.Popen(list(map(str, command)), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         deadline = time.monotonic() + 300
         while not (self.folder / "run/failures.csv").exists():  # written last before the training
@@ -165,8 +208,10 @@ class Simulate(TestCase):
 
     def test_parameters_default_to_the_box_centre(self):
         centre = ["parameters.k_y=10", "parameters.d_y=1", "parameters.d_theta=2e-4", "parameters.k_theta=0.036"]
-        default, at_centre, elsewhere = (read_table(call("simulate", TABLE1, *point).stdout.splitlines())
-                                         for point in ([], centre, ["parameters.d_y=1.1"]))
+        default, at_centre, elsewhere = (
+            read_table(call("simulate", TABLE1, *point).stdout.splitlines())
+            for point in ([], centre, ["parameters.d_y=1.1"])
+        )
         np.testing.assert_allclose(default, at_centre, atol=1e-12)
         self.assertGreater(np.abs(default - elsewhere)[:, 1].max(), 1e-4)
 
@@ -193,8 +238,9 @@ class Run(TestCase):
         for threads in (1, 3, 5):
             self.run_experiment(f"t{threads}", "--threads", threads)
         for threads in (2, 3, 5):
-            _, different, missing = filecmp.cmpfiles(self.folder / "t1", self.folder / f"t{threads}", RESULTS,
-                                                     shallow=False)
+            _, different, missing = filecmp.cmpfiles(
+                self.folder / "t1", self.folder / f"t{threads}", RESULTS, shallow=False
+            )
             self.assertEqual((different, missing), ([], []), threads)
 
     def test_the_resolved_experiment_gives_the_same_results(self):
@@ -220,11 +266,13 @@ class Run(TestCase):
             self.assertAlmostEqual(float(row["mare_pct"]), statistics.mean(map(abs, errors)), 9)
             self.assertAlmostEqual(float(row["coverage95"]), statistics.mean(covered), 9)
             self.assertAlmostEqual(float(row["z_sd_se"]), jackknife(statistics.stdev, z), 9)
-            crps = [100 * normal_crps(float(p["inferred"]), float(p["stddev"]), float(p["true"])) / float(p["true"])
-                    for p in mine]
+            crps = [
+                100 * normal_crps(float(p["inferred"]), float(p["stddev"]), float(p["true"])) / float(p["true"])
+                for p in mine
+            ]
             self.assertAlmostEqual(float(row["crps_pct"]), statistics.mean(crps), 9)
             limit = [100 * float(p["limit_stddev"]) / float(p["true"]) for p in mine]
-            self.assertAlmostEqual(float(row["limit_pct"]), statistics.mean(x**2 for x in limit)**0.5, 9)
+            self.assertAlmostEqual(float(row["limit_pct"]), statistics.mean(x**2 for x in limit) ** 0.5, 9)
             self.assertAlmostEqual(float(row["ratio_to_limit"]), float(row["sd_pct"]) / float(row["limit_pct"]), 9)
 
     def test_the_information_limit_can_be_switched_off(self):
@@ -233,8 +281,10 @@ class Run(TestCase):
         self.assertFalse((self.folder / "run/features.csv").exists())
 
     def test_evaluation_writes_what_it_is_asked_for(self):
-        asked = ("evaluation={posterior: {samples: 2, draws: 250}, "
-                 "baselines: [prior_mean, linear_regression, {least_squares: {samples: 3}}]}")
+        asked = (
+            "evaluation={posterior: {samples: 2, draws: 250}, "
+            "baselines: [prior_mean, linear_regression, {least_squares: {samples: 3}}]}"
+        )
         result = self.run_experiment("run", asked)
         self.assertIn("information limit of 20 test samples: ", result.stderr)  # its cost
         run = self.folder / "run"
@@ -245,15 +295,18 @@ class Run(TestCase):
             self.assertAlmostEqual(float(row["limit_stddev"]) / float(row["posterior_stddev"]), 1, delta=0.15)
         baselines = read_csv(run / "baselines.csv")
         methods = [(row["method"], row["samples"]) for row in baselines if row["parameter"] == "k_y"]
-        self.assertEqual(methods, [("map", "20"), ("prior_mean", "20"), ("linear_regression", "20"), ("map", "3"),
-                                   ("least_squares", "3")])
+        self.assertEqual(
+            methods,
+            [("map", "20"), ("prior_mean", "20"), ("linear_regression", "20"), ("map", "3"), ("least_squares", "3")],
+        )
         error = {row["method"]: float(row["mare_pct"]) for row in baselines if row["parameter"] == "k_y"}
         self.assertLess(error["least_squares"], 0.1)
         self.assertLess(error["linear_regression"], error["prior_mean"])
         features = read_csv(run / "features.csv")
         self.assertEqual([len(features), features[0]["feature"], features[0]["unit"]], [200, "y(0.05 s)", "m"])
-        self.assertEqual([row["parameter"] for row in read_csv(run / "correlations.csv")],
-                         ["d_y", "d_theta", "k_y", "k_theta"])
+        self.assertEqual(
+            [row["parameter"] for row in read_csv(run / "correlations.csv")], ["d_y", "d_theta", "k_y", "k_theta"]
+        )
         self.assertEqual(len(read_csv(run / "identifiability.csv")), 4)
 
     def test_parameters_that_nothing_determines_are_named(self):
@@ -285,7 +338,9 @@ class Run(TestCase):
 
     def test_leave_one_out_foretells_the_test_errors(self):
         """With replicates: were the siblings of a draw kept, it would look far better than the test samples."""
-        self.run_experiment("run", "noise.replicates=3", NO_LIMIT, small=["design.train.samples=60", "design.test.samples=60"])
+        self.run_experiment(
+            "run", "noise.replicates=3", NO_LIMIT, small=["design.train.samples=60", "design.test.samples=60"]
+        )
         for row in read_csv(self.folder / "run/metrics.csv"):
             difference = abs(float(row["loo_sd_pct"]) - float(row["sd_pct"]))
             self.assertLess(difference, 4 * np.hypot(float(row["loo_sd_pct_se"]), float(row["sd_pct_se"])), row)
@@ -296,10 +351,15 @@ class Run(TestCase):
         for length_scales, noise, tolerance in (("shared", "constant", 1e-8), ("per_output", "follows_slope", 1e-4)):
             shutil.rmtree(self.folder / "run", ignore_errors=True)
             scale = 0 if noise == "constant" else 1e-6
-            self.run_experiment("run", NO_LIMIT, f"noise.scale={scale}", f"inverse_map.gp.length_scales={length_scales}",
-                                f"inverse_map.gp.noise={noise}",
-                                # Close bounds keep the variance from being a small difference of large numbers.
-                                "inverse_map.gp.bounds={signal_stddev: [0.01, 10], noise_stddev: [0.1, 1]}")
+            self.run_experiment(
+                "run",
+                NO_LIMIT,
+                f"noise.scale={scale}",
+                f"inverse_map.gp.length_scales={length_scales}",
+                f"inverse_map.gp.noise={noise}",
+                # Close bounds keep the variance from being a small difference of large numbers.
+                "inverse_map.gp.bounds={signal_stddev: [0.01, 10], noise_stddev: [0.1, 1]}",
+            )
             with h5py.File(self.folder / "run/samples.h5") as samples:
                 features = samples["test/responses"][:].reshape(20, -1)
             rows = read_csv(self.folder / "run/predictions.csv")
@@ -310,17 +370,20 @@ class Run(TestCase):
                     mean, stddev = predict(maps, p, name, x)
                     offset, scale = maps["target/offset"][p], maps["target/scale"][p]
                     mine = [row for row in rows if row["parameter"] == name]
-                    np.testing.assert_allclose(offset + scale * mean, [float(r["inferred"]) for r in mine], rtol=tolerance)
-                    np.testing.assert_allclose(scale * stddev, [float(r["stddev"]) for r in mine],
-                                               rtol=100 * tolerance)
+                    np.testing.assert_allclose(
+                        offset + scale * mean, [float(r["inferred"]) for r in mine], rtol=tolerance
+                    )
+                    np.testing.assert_allclose(scale * stddev, [float(r["stddev"]) for r in mine], rtol=100 * tolerance)
                 self.assertEqual(maps["noise/mean_of_slope"].size, 4 if noise == "follows_slope" else 0)
 
     def test_every_transform_is_stored_so_that_the_file_is_enough(self):
         """Features z_scored, selected or projected by numpy from maps.h5 are the stored training inputs."""
-        for steps, inputs in (("[whiten: {by: covariance}, partial_least_squares]", None),
-                              ("[whiten, select: {fisher_information: {count: 6}}]", 6),
-                              ("[select: {mutual_information: {count: 5}}, z_score]", 5),
-                              ("[select: {features: [theta(1 s), y(0.5 s)]}, z_score]", 2)):
+        for steps, inputs in (
+            ("[whiten: {by: covariance}, partial_least_squares]", None),
+            ("[whiten, select: {fisher_information: {count: 6}}]", 6),
+            ("[select: {mutual_information: {count: 5}}, z_score]", 5),
+            ("[select: {features: [theta(1 s), y(0.5 s)]}, z_score]", 2),
+        ):
             shutil.rmtree(self.folder / "run", ignore_errors=True)
             self.run_experiment("run", NO_LIMIT, f"transform={steps}", "inverse_map.gp.starts=1", "noise.scale=0.01")
             with h5py.File(self.folder / "run/samples.h5") as samples:
@@ -333,8 +396,9 @@ class Run(TestCase):
                 self.assertGreater(min(correlation[:2]), 0.99, steps)
 
     def test_wrong_selections_are_found_before_anything_is_simulated(self):
-        result = call("run", TABLE1, "transform=[select: {features: [theta(1 s), theta(1.05s)]}]", "--out",
-                      self.folder / "run")
+        result = call(
+            "run", TABLE1, "transform=[select: {features: [theta(1 s), theta(1.05s)]}]", "--out", self.folder / "run"
+        )
         self.assertEqual(result.returncode, 2)
         self.assertIn("'theta(1.05s)' is not a feature; did you mean 'theta(1.05 s)'?", result.stderr)
 
@@ -352,8 +416,12 @@ class Run(TestCase):
             self.assertTrue((slices == np.arange(40)[:, None]).all())  # a Latin hypercube
 
     def test_failed_samples_are_reported_and_shift_no_other(self):
-        heavy = [NO_LIMIT, "parameters.m={bounds: [-0.5, 6], unit: kg, relative_to: range}", "constants.m1=m",
-                 "simulation.allowed_failures=0.5"]
+        heavy = [
+            NO_LIMIT,
+            "parameters.m={bounds: [-0.5, 6], unit: kg, relative_to: range}",
+            "constants.m1=m",
+            "simulation.allowed_failures=0.5",
+        ]
         result = self.run_experiment("run", *heavy)
         self.assertIn("samples could not be simulated", result.stderr)
         failures = read_csv(self.folder / "run/failures.csv")
@@ -377,9 +445,12 @@ class Run(TestCase):
 
     def test_samples_that_lack_a_feature_fail_with_a_reason(self):
         """The second maximum of y lies within the window for stiff springs alone."""
-        peaks = [NO_LIMIT, "features=[{samples: {outputs: [y, theta], start: 0.05, interval: 0.05, count: 100}}, "
-                 "{extrema: {output: y, window: {start: 0.05, interval: 0.01, count: 496}, kind: maxima, peaks: 2}}]",
-                 "simulation.allowed_failures=0.9"]
+        peaks = [
+            NO_LIMIT,
+            "features=[{samples: {outputs: [y, theta], start: 0.05, interval: 0.05, count: 100}}, "
+            "{extrema: {output: y, window: {start: 0.05, interval: 0.01, count: 496}, kind: maxima, peaks: 2}}]",
+            "simulation.allowed_failures=0.9",
+        ]
         result = self.run_experiment("run", *peaks)
         self.assertIn("samples could not be simulated", result.stderr)
         failures = read_csv(self.folder / "run/failures.csv")
@@ -398,10 +469,14 @@ class Run(TestCase):
             self.assertEqual(float(row["true"]), true_stiffness[int(row["sample"])])
 
     def test_training_is_reported_start_by_start(self):
-        self.run_experiment("run", NO_LIMIT, "inverse_map.gp.starts=3", "inverse_map.gp.length_scale_prior={log_stddev: 1}")
+        self.run_experiment(
+            "run", NO_LIMIT, "inverse_map.gp.starts=3", "inverse_map.gp.length_scale_prior={log_stddev: 1}"
+        )
         rows = read_csv(self.folder / "run/training.csv")
-        self.assertEqual([(r["parameter"], r["start"]) for r in rows if r["parameter"] == "k_y"],
-                         [("k_y", "0"), ("k_y", "1"), ("k_y", "2")])
+        self.assertEqual(
+            [(r["parameter"], r["start"]) for r in rows if r["parameter"] == "k_y"],
+            [("k_y", "0"), ("k_y", "1"), ("k_y", "2")],
+        )
         nlml = {r["parameter"]: float(r["nlml"]) for r in read_csv(self.folder / "run/metrics.csv")}
         for row in rows:
             if row["best"] == "1":
@@ -417,8 +492,11 @@ class Run(TestCase):
 
     def test_killed_and_continued_gives_the_same_files(self):
         self.copy_run("undisturbed")
-        child = subprocess.Popen([TWINMAP, "run", TABLE1, *SMALL, "--out", self.folder / "run"],
-                                 stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+        child = subprocess.Popen(
+            [TWINMAP, "run", TABLE1, *SMALL, "--out", self.folder / "run"],
+            stderr=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+        )
         while child.poll() is None and not list(self.folder.glob("run/chunks/*/*.chunk")):
             time.sleep(0.002)
         child.kill()
@@ -498,8 +576,10 @@ class Run(TestCase):
             clean = file["test/responses"][:]
         for name in ("best", "median", "worst"):
             mine = [row for row in rows if row["case"] == name]
-            noise, measured, nominal, updated = (np.array([float(row[column]) for row in mine]) for column in
-                                                 ("noise_stddev", "measured", "nominal", "updated"))
+            noise, measured, nominal, updated = (
+                np.array([float(row[column]) for row in mine])
+                for column in ("noise_stddev", "measured", "nominal", "updated")
+            )
             truth = clean[int(mine[0]["sample"])].ravel()  # output by output, as the rows
             self.assertAlmostEqual(np.std((measured - truth) / noise), 1, delta=0.25)
             self.assertLess(np.std((measured - updated) / noise), np.std((measured - nominal) / noise))
@@ -518,7 +598,7 @@ class Run(TestCase):
 
 
 def jackknife(figure, values):
-    without = [figure(values[:i] + values[i + 1:]) for i in range(len(values))]
+    without = [figure(values[:i] + values[i + 1 :]) for i in range(len(values))]
     return ((len(values) - 1) * statistics.pvariance(without)) ** 0.5
 
 
@@ -537,7 +617,9 @@ class ThreeMassChain(TestCase):
             self.assertGreater(float(row["coverage95"]), 0.75, row["parameter"])
 
     def test_is_updated_from_its_modes_without_a_simulation_in_time(self):
-        self.run_experiment("run", file=CHAIN / "modes.yaml", small=["design.train.samples=100", "design.test.samples=60"])
+        self.run_experiment(
+            "run", file=CHAIN / "modes.yaml", small=["design.train.samples=100", "design.test.samples=60"]
+        )
         self.assert_updates_well("run", 6)
         with h5py.File(self.folder / "run/samples.h5") as file:
             self.assertEqual(file["test/responses"].shape, (60, 0, 0))
@@ -549,8 +631,11 @@ class ThreeMassChain(TestCase):
             np.testing.assert_allclose(damping, -values.real / np.abs(values), rtol=1e-7)
 
     def test_is_updated_from_frequency_response_functions(self):
-        self.run_experiment("run", file=CHAIN / "frequency_response.yaml",
-                            small=["design.train.samples=100", "design.test.samples=40", NO_LIMIT])
+        self.run_experiment(
+            "run",
+            file=CHAIN / "frequency_response.yaml",
+            small=["design.train.samples=100", "design.test.samples=40", NO_LIMIT],
+        )
         self.assert_updates_well("run", 6)
 
     def test_modes_are_simulated_as_a_table(self):
@@ -559,15 +644,24 @@ class ThreeMassChain(TestCase):
         self.assertEqual(rows[0], ["mode", "natural_frequency", "damping_ratio"])
         values = chain_eigenvalues(900, 1000, 1000, 10)
         np.testing.assert_allclose([float(row[1]) for row in rows[1:]], np.abs(values) / (2 * np.pi), rtol=1e-8)
-        both = call("simulate", CHAIN / "frequency_response.yaml", "noise.modes={frequency: 0.1, damping_ratio: 0.1}",
-                    "features=[{modes: {count: 1}}, {samples: {outputs: [mass1], start: 0, interval: 0.1, count: 100}}]")
+        both = call(
+            "simulate",
+            CHAIN / "frequency_response.yaml",
+            "noise.modes={frequency: 0.1, damping_ratio: 0.1}",
+            "features=[{modes: {count: 1}}, {samples: {outputs: [mass1], start: 0, interval: 0.1, count: 100}}]",
+        )
         outputs, modes = both.stdout.split("\n\n")
         self.assertEqual(len(outputs.splitlines()), 101)
         self.assertEqual(len(modes.splitlines()), 2)
 
     def test_an_excitation_without_energy_is_a_located_error(self):
-        result = call("run", CHAIN / "frequency_response.yaml", "features[0].frequency_response.frequencies=[0.5, 6.5]",
-                      "--out", self.folder / "run")
+        result = call(
+            "run",
+            CHAIN / "frequency_response.yaml",
+            "features[0].frequency_response.frequencies=[0.5, 6.5]",
+            "--out",
+            self.folder / "run",
+        )
         self.assertEqual(result.returncode, 2, result.stderr)
         self.assertIn("frequencies[1]: '6.5' is a frequency at which excitation 'F' has no energy", result.stderr)
 
@@ -609,8 +703,10 @@ def predict(maps, parameter, name, x):
     variance = signal**2 - (v**2).sum(axis=0) + gap**2 / (basis @ basis)
     slope = np.ones(len(x))
     if maps["noise/mean_of_slope"].size:
-        changes = [predict_mean(group, inputs, scales, x + l) - predict_mean(group, inputs, scales, x - l)
-                   for l in maps["noise/directions"][:]]
+        changes = [
+            predict_mean(group, inputs, scales, x + l) - predict_mean(group, inputs, scales, x - l)
+            for l in maps["noise/directions"][:]
+        ]
         slope = np.maximum((np.array(changes) ** 2).sum(axis=0) / 4 / maps["noise/mean_of_slope"][parameter], 0.1)
     return mean, np.sqrt(variance + noise**2 * slope)
 

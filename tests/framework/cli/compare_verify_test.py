@@ -65,8 +65,10 @@ class Compare(TestCase):
         rows = read_csv(self.compare("a", "b", "--csv"))
         figures = ["bias_pct", "sd_pct", "mare_pct", "coverage95", "nlpd", "crps_pct"]
         figures += [name for name in ("limit_pct", "ratio_to_limit") if name in metrics_a["d_y"]]
-        self.assertEqual([(row["parameter"], row["figure"]) for row in rows],
-                         [(parameter, figure) for parameter in metrics_a for figure in figures])
+        self.assertEqual(
+            [(row["parameter"], row["figure"]) for row in rows],
+            [(parameter, figure) for parameter in metrics_a for figure in figures],
+        )
         for row in rows:
             a, b = (float(metrics[row["parameter"]][row["figure"]]) for metrics in (metrics_a, metrics_b))
             self.assertEqual((float(row["a"]), float(row["b"])), (a, b), row)
@@ -83,19 +85,25 @@ class Compare(TestCase):
     def test_pairs_tell_more_than_independent_sets(self):
         paired, independent = (
             {(row["parameter"], row["figure"]): row for row in read_csv(self.compare("a", other, "--csv"))}
-            for other in ("b", "other_seed"))
+            for other in ("b", "other_seed")
+        )
         self.assertEqual({row["paired"] for row in independent.values()}, {"0"})
         for figure in ("nlpd", "crps_pct"):
-            widths = [float(rows["k_theta", figure]["upper"]) - float(rows["k_theta", figure]["lower"])
-                      for rows in (paired, independent)]
+            widths = [
+                float(rows["k_theta", figure]["upper"]) - float(rows["k_theta", figure]["lower"])
+                for rows in (paired, independent)
+            ]
             self.assertLess(2 * widths[0], widths[1])
-        self.assertIn("The test sets are not the same (the true d_y of test sample 0 is ", self.compare("a", "other_seed"))
+        self.assertIn(
+            "The test sets are not the same (the true d_y of test sample 0 is ", self.compare("a", "other_seed")
+        )
         self.assertIn("Both inferred the same 30 test samples", self.compare("a", "b"))
 
     def test_names_the_keys_that_differ(self):
         self.assertRegex(self.compare("a", "b"), r"\nnoise\.scale +1 +0\.5\n$")
-        self.assertEqual(json.loads(self.compare("a", "other_seed", "--json"))["keys"],
-                         [{"key": "seed", "a": "1", "b": "2"}])
+        self.assertEqual(
+            json.loads(self.compare("a", "other_seed", "--json"))["keys"], [{"key": "seed", "a": "1", "b": "2"}]
+        )
         self.assertIn("The experiments are the same.", self.compare("a", "a"))
 
     def test_a_run_does_not_differ_from_itself(self):
@@ -173,8 +181,19 @@ class Verify(TestCase):
         before = {path: path.stat().st_mtime_ns for path in (self.folder / "run").rglob("*")}
         differing, output = self.verify(self.folder / "run")
         self.assertEqual((differing, self.changed), ({}, ""), output)
-        for part in ("digests", "parameters, names and times", "5 training and 5 test samples", "70 samples that chunks hold", "maps.h5",
-                     "predictions.csv", "metrics.csv", "joint.csv", "pit.csv", "table.md", "table.tex"):
+        for part in (
+            "digests",
+            "parameters, names and times",
+            "5 training and 5 test samples",
+            "70 samples that chunks hold",
+            "maps.h5",
+            "predictions.csv",
+            "metrics.csv",
+            "joint.csv",
+            "pit.csv",
+            "table.md",
+            "table.tex",
+        ):
             self.assertIn(part, output)
         self.assertEqual({path: path.stat().st_mtime_ns for path in (self.folder / "run").rglob("*")}, before)
 
@@ -202,7 +221,9 @@ class Verify(TestCase):
             run = self.copy("run")
             self.flip_number(run / "samples.h5", dataset, index)
             differing, output = self.verify(run, "--samples", 0)
-            self.assertIn(f"/{dataset}", differing.get("samples.h5: parameters, names and times of all samples", output))
+            self.assertIn(
+                f"/{dataset}", differing.get("samples.h5: parameters, names and times of all samples", output)
+            )
             shutil.rmtree(run)
 
     def test_a_file_that_is_no_longer_hdf5_is_a_difference(self):
@@ -211,13 +232,19 @@ class Verify(TestCase):
             self.flip_bit(run / file, 1)
             differing, output = self.verify(run)
             self.assertIn("cannot be opened as an HDF5 file", output)
-            self.assertEqual([name[:len(file)] for name in differing], [file])
+            self.assertEqual([name[: len(file)] for name in differing], [file])
             shutil.rmtree(run)
 
     def test_a_flipped_bit_in_the_map_is_found_and_named(self):
-        for dataset, index in (("maps/k_y/alpha", (7,)), ("maps/d_y/factor", (9, 4)), ("training_inputs", (3, 5)),
-                               ("target/scale", (0,)), ("transform/0/offset", (2,)), ("residual_correlation", (1, 0)),
-                               ("maps/k_theta/nlml", ())):
+        for dataset, index in (
+            ("maps/k_y/alpha", (7,)),
+            ("maps/d_y/factor", (9, 4)),
+            ("training_inputs", (3, 5)),
+            ("target/scale", (0,)),
+            ("transform/0/offset", (2,)),
+            ("residual_correlation", (1, 0)),
+            ("maps/k_theta/nlml", ()),
+        ):
             run = self.copy("run")
             self.flip_number(run / "maps.h5", dataset, index)
             differing, output = self.verify(run)
@@ -257,8 +284,12 @@ class Verify(TestCase):
 
     def test_an_edited_experiment_differs(self):
         run = self.copy("run")
-        self.change_text(run / "resolved.yaml", 1 + (run / "resolved.yaml").read_text().splitlines().index("seed: 1"),
-                         "seed: 1", "seed: 2")
+        self.change_text(
+            run / "resolved.yaml",
+            1 + (run / "resolved.yaml").read_text().splitlines().index("seed: 1"),
+            "seed: 1",
+            "seed: 2",
+        )
         self.assertIn("samples.h5: parameters, names and times of all samples", self.verify(run)[0])
 
     def test_a_missing_file_is_a_difference(self):

@@ -72,15 +72,23 @@ class CompletionTest(unittest.TestCase):
 
     @unittest.skipUnless(shutil.which("zsh"), "zsh is not installed")
     def test_zsh(self):
-        self.check_shell(["zsh", "-f", "-i"], "autoload -Uz compinit && compinit -u -D && source <(twinmap completion zsh)")
+        self.check_shell(
+            ["zsh", "-f", "-i"], "autoload -Uz compinit && compinit -u -D && source <(twinmap completion zsh)"
+        )
 
     @unittest.skipUnless(shutil.which("fish"), "fish is not installed")
     def test_fish(self):
         environment = {**os.environ, "HOME": str(self.folder), "PATH": f"{Path(TWINMAP).parent}:{os.environ['PATH']}"}
 
         def complete(line):
-            result = subprocess.run(["fish", "--no-config", "-c", f"twinmap completion fish | source; complete -C '{line}'"],
-                                    cwd=self.folder, env=environment, capture_output=True, text=True, timeout=60)
+            result = subprocess.run(
+                ["fish", "--no-config", "-c", f"twinmap completion fish | source; complete -C '{line}'"],
+                cwd=self.folder,
+                env=environment,
+                capture_output=True,
+                text=True,
+                timeout=60,
+            )
             self.assertEqual(result.stderr, "")
             return [line.split("\t")[0] for line in result.stdout.splitlines()]
 

@@ -11,8 +11,11 @@ import unittest
 from support import EXPERIMENTS, TWINMAP, FolderTestCase, call, read_csv
 
 FILE = EXPERIMENTS / "two_beam/design.yaml"
-SMALL = ["design.excitation.budget=120", "design.excitation.average_over=8",
-         "design.excitation.free={'M.pulses[0].amplitude': [0, 0.075], 'M.multisines[0].amplitudes': {each: [0, 0.01]}}"]
+SMALL = [
+    "design.excitation.budget=120",
+    "design.excitation.average_over=8",
+    "design.excitation.free={'M.pulses[0].amplitude': [0, 0.075], 'M.multisines[0].amplitudes': {each: [0, 0.01]}}",
+]
 
 
 def read_signal(path):
@@ -77,18 +80,27 @@ class Design(FolderTestCase):
         self.assertEqual((folder / "designed.yaml").read_bytes(), (self.design / "designed.yaml").read_bytes())
 
     def test_a_limit_that_cannot_be_kept_is_named_with_the_least_violation(self):
-        result = call("design", "excitation", FILE, *SMALL, "design.excitation.limits=[{output: y, max_abs: 0.001}]",
-                      "--out", self.folder / "infeasible")
+        result = call(
+            "design",
+            "excitation",
+            FILE,
+            *SMALL,
+            "design.excitation.limits=[{output: y, max_abs: 0.001}]",
+            "--out",
+            self.folder / "infeasible",
+        )
         self.assertEqual(result.returncode, 2)
         self.assertIn("design.excitation.limits[0]", result.stderr)
         self.assertIn("largest |y|", result.stderr)
         self.assertIn("% above", result.stderr)
 
     def test_what_is_wrong_is_named(self):
-        for override, words in (("design.excitation.free={'M.pulses[7].start': [0, 1]}", "is not a value of the excitation"),
-                                ("design.excitation.criterion={parameter: k_z}", "is not a parameter"),
-                                ("design.excitation.limits=[{signal: N, rms: 1}]", "is not a signal"),
-                                ("design.excitation.limits=[{output: y, rms: 1}]", "of a signal only")):
+        for override, words in (
+            ("design.excitation.free={'M.pulses[7].start': [0, 1]}", "is not a value of the excitation"),
+            ("design.excitation.criterion={parameter: k_z}", "is not a parameter"),
+            ("design.excitation.limits=[{signal: N, rms: 1}]", "is not a signal"),
+            ("design.excitation.limits=[{output: y, rms: 1}]", "of a signal only"),
+        ):
             result = call("design", "excitation", FILE, override, "--out", self.folder / "wrong")
             self.assertEqual(result.returncode, 2, override)
             self.assertIn(words, result.stderr)

@@ -67,8 +67,12 @@ def snippet(language):
 
 
 def compile_c(folder, sources, output, *options, compiler="gcc"):
-    result = subprocess.run([compiler, *STRICT, *options, *map(str, sources), "-o", output, "-lm"], cwd=folder,
-                            capture_output=True, text=True)
+    result = subprocess.run(
+        [compiler, *STRICT, *options, *map(str, sources), "-o", output, "-lm"],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+    )
     if result.returncode != 0:
         raise AssertionError(result.stderr[:3000])
 
@@ -87,7 +91,7 @@ class Measurements:
         n = len(stddev)
         for i in range(count):
             if i % 10 == 3:
-                spoilt[n // 4:n // 4 + n // 20, i] += 6 * stddev[n // 4:n // 4 + n // 20, 0]
+                spoilt[n // 4 : n // 4 + n // 20, i] += 6 * stddev[n // 4 : n // 4 + n // 20, 0]
             elif i % 10 == 5:
                 spoilt[:, i] = middle[:, 0] + rng.uniform(1.1, 3) * (spoilt[:, i] - middle[:, 0])
             elif i % 10 == 8:
@@ -150,17 +154,25 @@ class Exported(FolderTestCase):
             estimates = list(answer["parameters"].values())
             mean, sd = (np.array([estimate[key] for estimate in estimates]) for key in ("mean", "sd"))
             p = len(estimates)
-            apart.append(max(np.max((np.abs(row[0:2 * p:2] - mean) - relative * np.abs(mean)) / sd),
-                             np.max(np.abs(row[1:2 * p:2] / sd - 1) - relative)))
+            apart.append(
+                max(
+                    np.max((np.abs(row[0 : 2 * p : 2] - mean) - relative * np.abs(mean)) / sd),
+                    np.max(np.abs(row[1 : 2 * p : 2] / sd - 1) - relative),
+                )
+            )
             bits = sum(1 << i for i, status in enumerate(STATUSES) if status in answer["statuses"])
             self.assertEqual(int(row[-1]), bits, answer)
             self.assertAlmostEqual(row[2 * p], answer["trust"]["p_value"], delta=0.005)
-            self.assertAlmostEqual(row[2 * p + 2], answer["trust"]["distance"], delta=1e-4 * answer["trust"]["distance"])
+            self.assertAlmostEqual(
+                row[2 * p + 2], answer["trust"]["distance"], delta=1e-4 * answer["trust"]["distance"]
+            )
             seen |= set(answer["statuses"])
         self.assertLessEqual({"model_mismatch", "outside_training"}, seen)
         if verbose := os.environ.get("TWINMAP_EXPORT_MEASUREMENTS"):
-            print(f"{self.id()} {options}: {verbose} measurements, largest {max(apart):.2g} sd, "
-                  f"beyond {stddevs:g} sd: {np.sum(np.array(apart) > stddevs)}, statuses {sorted(seen)}")
+            print(
+                f"{self.id()} {options}: {verbose} measurements, largest {max(apart):.2g} sd, "
+                f"beyond {stddevs:g} sd: {np.sum(np.array(apart) > stddevs)}, statuses {sorted(seen)}"
+            )
         self.assertLess(max(apart), stddevs)
 
     def check_selftest(self, folder, *arguments):
@@ -175,12 +187,41 @@ class Exported(FolderTestCase):
     def check_on_cortex_m7(self, folder):
         machine = ["-O2", "-mcpu=cortex-m7", "-mthumb", "-mfpu=fpv5-d16", "-mfloat-abi=hard"]
         compile_c(folder, ["twinmap_map.c"], "map.o", *machine, "-c", compiler="arm-none-eabi-gcc")
-        subprocess.run(["arm-none-eabi-gcc", *machine, "--specs=rdimon.specs", "-T", CORTEX_M7 / "mps2.ld",
-                        CORTEX_M7 / "startup.c", "selftest.c", "map.o", "-o", "selftest.elf", "-lm"], cwd=folder, check=True,
-                       capture_output=True)
-        result = subprocess.run(["qemu-system-arm", "-machine", "mps2-an500", "-nographic", "-semihosting-config",
-                                 "enable=on,target=native", "-kernel", "selftest.elf"], cwd=folder, capture_output=True,
-                                text=True, timeout=600, stdin=subprocess.DEVNULL)
+        subprocess.run(
+            [
+                "arm-none-eabi-gcc",
+                *machine,
+                "--specs=rdimon.specs",
+                "-T",
+                CORTEX_M7 / "mps2.ld",
+                CORTEX_M7 / "startup.c",
+                "selftest.c",
+                "map.o",
+                "-o",
+                "selftest.elf",
+                "-lm",
+            ],
+            cwd=folder,
+            check=True,
+            capture_output=True,
+        )
+        result = subprocess.run(
+            [
+                "qemu-system-arm",
+                "-machine",
+                "mps2-an500",
+                "-nographic",
+                "-semihosting-config",
+                "enable=on,target=native",
+                "-kernel",
+                "selftest.elf",
+            ],
+            cwd=folder,
+            capture_output=True,
+            text=True,
+            timeout=600,
+            stdin=subprocess.DEVNULL,
+        )
         self.assertIn("50 measurements, 0 differences", result.stdout)
         self.assertEqual(result.returncode, 0)
 
@@ -192,8 +233,10 @@ class Exported(FolderTestCase):
         frames = sum(int(line.split("\t")[1]) for path in folder.glob("*.su") for line in path.read_text().splitlines())
         readme = (folder / "README.md").read_text()
         self.assertLess(frames, int(re.search(r"stack, at most \| (\d+)", readme).group(1)))
-        (folder / "size.c").write_text('#include <stdio.h>\n#include "twinmap_map.h"\n'
-                                       'int main(void) { printf("%lu", (unsigned long)sizeof(twinmap_state)); return 0; }')
+        (folder / "size.c").write_text(
+            '#include <stdio.h>\n#include "twinmap_map.h"\n'
+            'int main(void) { printf("%lu", (unsigned long)sizeof(twinmap_state)); return 0; }'
+        )
         compile_c(folder, ["size.c"], "size")
         size = subprocess.run([folder / "size"], capture_output=True, text=True).stdout
         self.assertEqual(size, re.search(r"RAM\) \| (\d+)", readme).group(1))
@@ -258,7 +301,7 @@ class Processes(Exported):
         rows = np.vstack([[0.0, 0.0, 0.0], rows])  # the example takes 101 samples
         text = "\n".join(" ".join(map(repr, map(float, row))) for row in rows)
         result = subprocess.run([folder / "example"], input=text, capture_output=True, text=True)
-        expected, = measurements.infer(self.trained)
+        (expected,) = measurements.infer(self.trained)
         lines = result.stdout.splitlines()
         for line, (name, estimate) in zip(lines, expected["parameters"].items()):
             self.assertEqual(line.split()[0], name)
@@ -296,13 +339,13 @@ class Processes(Exported):
         root = ElementTree.parse(folder / "modelDescription.xml").getroot()
         references = check_description(self, root, version)
         measurements = Measurements(self.trained, TWO_BEAM, 1)
-        library, = folder.glob("binaries/*/*.so")
+        (library,) = folder.glob("binaries/*/*.so")
         block = (Block2 if version == 2 else Block3)(library, root)
         for i, t in enumerate(np.append(measurements.times, measurements.times[-1] + 0.05)):
             sample = min(i, len(measurements.times) - 1)
             block.set([references["y"], references["theta"]], measurements.values[0].reshape(2, -1)[:, sample])
             block.step(float(t), 0.05)
-        expected, = measurements.infer(self.trained)
+        (expected,) = measurements.infer(self.trained)
         for name, estimate in expected["parameters"].items():
             mean, sd, lower = block.get([references[f"{key}.{name}"] for key in ("mean", "sd", "lower")])
             self.assertAlmostEqual(mean, estimate["mean"], delta=1e-5 * estimate["sd"])
@@ -331,10 +374,15 @@ def check_description(case, root, version):
     structure = root.find("ModelStructure")
     key = "index" if version == 2 else "valueReference"
     order = [child.tag for child in root]
-    case.assertEqual(order, ["CoSimulation", "UnitDefinitions", "TypeDefinitions", "DefaultExperiment", "ModelVariables",
-                             "ModelStructure"])
-    for group in (structure.findall("Outputs/Unknown"), structure.findall("InitialUnknowns/Unknown")) if version == 2 else (
-            structure.findall("Output"), structure.findall("InitialUnknown")):
+    case.assertEqual(
+        order,
+        ["CoSimulation", "UnitDefinitions", "TypeDefinitions", "DefaultExperiment", "ModelVariables", "ModelStructure"],
+    )
+    for group in (
+        (structure.findall("Outputs/Unknown"), structure.findall("InitialUnknowns/Unknown"))
+        if version == 2
+        else (structure.findall("Output"), structure.findall("InitialUnknown"))
+    ):
         case.assertEqual({int(unknown.get(key)) for unknown in group}, outputs)
     return references
 
@@ -356,14 +404,22 @@ class Block2(Block):
     def __init__(self, library, root):
         super().__init__(library)
         text, flag = ctypes.c_char_p, ctypes.c_int
-        create = self.function("fmi2Instantiate", text, flag, text, text, ctypes.c_void_p, flag, flag,
-                               result=ctypes.c_void_p)
+        create = self.function(
+            "fmi2Instantiate", text, flag, text, text, ctypes.c_void_p, flag, flag, result=ctypes.c_void_p
+        )
         self.instance = create(b"block", 1, root.get("guid").encode(), b"", None, 0, 0)
 
     def set(self, references, values):
         call_ = self.function("fmi2SetReal", ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p)
-        assert call_(self.instance, self.array(ctypes.c_uint, references), len(references),
-                     self.array(ctypes.c_double, list(values))) == 0
+        assert (
+            call_(
+                self.instance,
+                self.array(ctypes.c_uint, references),
+                len(references),
+                self.array(ctypes.c_double, list(values)),
+            )
+            == 0
+        )
 
     def step(self, time, step):
         call_ = self.function("fmi2DoStep", ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_int)
@@ -386,10 +442,36 @@ class Block3(Block):
     def __init__(self, library, root):
         super().__init__(library)
         text, flag, pointer = ctypes.c_char_p, ctypes.c_bool, ctypes.c_void_p
-        create = self.function("fmi3InstantiateCoSimulation", text, text, text, flag, flag, flag, flag, pointer,
-                               ctypes.c_size_t, pointer, pointer, pointer, result=pointer)
-        self.instance = create(b"block", root.get("instantiationToken").encode(), b"", False, False, False, False, None, 0,
-                               None, None, None)
+        create = self.function(
+            "fmi3InstantiateCoSimulation",
+            text,
+            text,
+            text,
+            flag,
+            flag,
+            flag,
+            flag,
+            pointer,
+            ctypes.c_size_t,
+            pointer,
+            pointer,
+            pointer,
+            result=pointer,
+        )
+        self.instance = create(
+            b"block",
+            root.get("instantiationToken").encode(),
+            b"",
+            False,
+            False,
+            False,
+            False,
+            None,
+            0,
+            None,
+            None,
+            None,
+        )
 
     def access(self, name, kind, references, values):
         numbers = self.array(kind, list(values))
@@ -402,8 +484,9 @@ class Block3(Block):
 
     def step(self, time, step):
         flags, last = [ctypes.c_bool() for _ in range(3)], ctypes.c_double()
-        call_ = self.function("fmi3DoStep", ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_bool,
-                              *[ctypes.c_void_p] * 4)
+        call_ = self.function(
+            "fmi3DoStep", ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_bool, *[ctypes.c_void_p] * 4
+        )
         assert call_(self.instance, time, step, True, *map(ctypes.byref, flags), ctypes.byref(last)) == 0
 
     def get(self, references):
@@ -432,8 +515,12 @@ class Surrogates(Exported):
 
     def test_other_features_and_modes(self):
         for name in ("frequency_response", "modes"):
-            run, _ = run_once(EXPERIMENTS / f"three_mass_chain/{name}.yaml", *SMALL[:2], "design.train.samples=60",
-                              "design.test.samples=60")
+            run, _ = run_once(
+                EXPERIMENTS / f"three_mass_chain/{name}.yaml",
+                *SMALL[:2],
+                "design.train.samples=60",
+                "design.test.samples=60",
+            )
             self.check_selftest(self.export(run, "--prefix", name))
         result = call("export", run, "--fmu", self.folder / "modes.fmu")
         self.assertEqual(result.returncode, 2)
@@ -465,14 +552,21 @@ class Networks(Exported):
     def test_without_trust_it_is_small_and_passes_its_selftest(self):
         folder = self.export(self.trained, "--float", "--no-trust")
         self.check_selftest(folder)
-        self.assertLess(int(re.search(r"constants of the map \(flash\) \| (\d+)", (folder / "README.md").read_text()).group(1)),
-                        64_000)
+        self.assertLess(
+            int(re.search(r"constants of the map \(flash\) \| (\d+)", (folder / "README.md").read_text()).group(1)),
+            64_000,
+        )
 
     def test_known_inputs_count(self):
         file = self.folder / "mass.yaml"
         file.write_text(EXPERIMENT)
-        run, _ = run_once(file, *SMALL[:2], "evaluation.baselines=[]", "design.train.samples=60",
-                          "inverse_map={network: {samples_from: simulations, steps: 100, hidden: [16, 8, 8]}}")
+        run, _ = run_once(
+            file,
+            *SMALL[:2],
+            "evaluation.baselines=[]",
+            "design.train.samples=60",
+            "inverse_map={network: {samples_from: simulations, steps: 100, hidden: [16, 8, 8]}}",
+        )
         self.check_selftest(self.export(run, "--prefix", "known"))
 
     def test_what_cannot_be_is_refused(self):
@@ -498,8 +592,11 @@ class Networks(Exported):
 class Usage(FolderTestCase):
     def test_wrong_requests_are_refused(self):
         run, _ = run_once(EXPERIMENTS / "two_beam/table1.yaml", *SMALL, "design.train.samples=100")
-        for arguments, message in [([], "give --c DIR"), (["--c", self.folder / "x", "--prefix", "1a"], "C identifier"),
-                                   (["--fmu", self.folder / "x.fmu", "--fmi", "1"], "--fmi")]:
+        for arguments, message in [
+            ([], "give --c DIR"),
+            (["--c", self.folder / "x", "--prefix", "1a"], "C identifier"),
+            (["--fmu", self.folder / "x.fmu", "--fmi", "1"], "--fmi"),
+        ]:
             result = call("export", run, *arguments)
             self.assertNotEqual(result.returncode, 0)
             self.assertIn(message, result.stderr + result.stdout)

@@ -61,11 +61,18 @@ class FmuTest(OwnFolderTestCase):
                 skipping = line.split(":")[0] in ("constants", "system", "initial", "outputs")
             if not skipping:
                 kept.append(line)
-        start = read_columns(call("simulate", EXPERIMENTS / "two_beam" / "table1.yaml",
-                                "features=[{samples: {outputs: [y, theta], start: 0, interval: 0.1, count: 2}}]").stdout)
+        start = read_columns(
+            call(
+                "simulate",
+                EXPERIMENTS / "two_beam" / "table1.yaml",
+                "features=[{samples: {outputs: [y, theta], start: 0, interval: 0.1, count: 2}}]",
+            ).stdout
+        )
         # values that need no more digits than the table has: the error is 1e-6 of the range
-        return self.write("\n".join(kept) + TWO_BEAM.format(file=FMUS / f"{name}.fmu", kind=kind, y=start["y"][0],
-                                                            theta=start["theta"][0]))
+        return self.write(
+            "\n".join(kept)
+            + TWO_BEAM.format(file=FMUS / f"{name}.fmu", kind=kind, y=start["y"][0], theta=start["theta"][0])
+        )
 
     def check_nothing_is_left(self):
         deadline = time.time() + 10
@@ -78,8 +85,10 @@ class FmuTest(OwnFolderTestCase):
         result = self.call("variables", FMUS / "two_beam_2.fmu")
         self.assertEqual(result.returncode, 0, result.stderr)
         row = next(line for line in result.stdout.splitlines() if line.startswith("d_y"))
-        self.assertEqual(row.split(None, 7),
-                         ["d_y", "parameter", "fixed", "Float64", "N.s/m", "1", "parameter", "damper of the slide"])
+        self.assertEqual(
+            row.split(None, 7),
+            ["d_y", "parameter", "fixed", "Float64", "N.s/m", "1", "parameter", "damper of the slide"],
+        )
         self.check_nothing_is_left()
 
     def test_all_ways_follow_the_built_in_model(self):
@@ -97,8 +106,14 @@ class FmuTest(OwnFolderTestCase):
         self.check_nothing_is_left()
 
     def test_each_fault_is_a_failed_sample_with_its_reason(self):
-        reasons = {1: "crashed: Aborted", 2: "does not answer within its time", 3: "not finite", 4: "the spring is torn (Error)",
-                   5: "nothing works any more (Fatal)", 6: "ended with exit code 3"}
+        reasons = {
+            1: "crashed: Aborted",
+            2: "does not answer within its time",
+            3: "not finite",
+            4: "the spring is torn (Error)",
+            5: "nothing works any more (Fatal)",
+            6: "ended with exit code 3",
+        }
         for version in (2, 3):
             for fault, reason in reasons.items():
                 result = self.call("simulate", self.write_faulty(fault - 0.1, fault + 0.1, version))
@@ -116,7 +131,9 @@ class FmuTest(OwnFolderTestCase):
         samples = {}
         for threads in (1, 2):
             out = self.folder / f"run{threads}"
-            result = self.call("run", file, "--threads", threads, "--out", out, "--quiet", "evaluation.limit=false", "refine=never")
+            result = self.call(
+                "run", file, "--threads", threads, "--out", out, "--quiet", "evaluation.limit=false", "refine=never"
+            )
             self.assertEqual(result.returncode, 0, result.stderr)
             samples[threads] = read_datasets(out / "samples.h5")
         self.assertEqual(samples[1], samples[2])
@@ -125,8 +142,12 @@ class FmuTest(OwnFolderTestCase):
 
     def test_nothing_is_left_when_twinmap_is_killed_while_the_fmu_hangs(self):
         file = self.write_faulty(1.9, 2.1)
-        child = subprocess.Popen([TWINMAP, "simulate", str(file), "simulation.max_wall_time=1000"], env=self.environment,
-                                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        child = subprocess.Popen(
+            [TWINMAP, "simulate", str(file), "simulation.max_wall_time=1000"],
+            env=self.environment,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
         deadline = time.time() + 20
         while time.time() < deadline and len(find_processes(self.mark)) < 3:  # twinmap, the guard, the worker
             time.sleep(0.05)
@@ -137,11 +158,13 @@ class FmuTest(OwnFolderTestCase):
 
     def test_wrong_names_kinds_and_units_are_errors_with_their_place(self):
         text = self.write_faulty(0, 1).read_text()
-        cases = [("variable: x}", "variable: z}", "has no variable 'z'"),
-                 ("  x: {bounds", "  y: {bounds", "has no variable 'y'"),
-                 ("variable: x}", "variable: x, unit: parsec2}", "parsec2"),
-                 ("faulty_2.fmu", "two_beam.fmu", "is no file"),
-                 ("faulty_2.fmu", "not_a_zip.fmu", "not a ZIP archive")]
+        cases = [
+            ("variable: x}", "variable: z}", "has no variable 'z'"),
+            ("  x: {bounds", "  y: {bounds", "has no variable 'y'"),
+            ("variable: x}", "variable: x, unit: parsec2}", "parsec2"),
+            ("faulty_2.fmu", "two_beam.fmu", "is no file"),
+            ("faulty_2.fmu", "not_a_zip.fmu", "not a ZIP archive"),
+        ]
         for old, new, message in cases:
             result = self.call("check", self.write(text.replace(old, new)))
             self.assertEqual(result.returncode, 2, result.stdout)

@@ -51,8 +51,9 @@ class Infer(InferCase):
         for name, true in TRUE.items():
             estimate = inferred["parameters"][name]
             self.assertLess(abs(estimate["mean"] - true), 4 * estimate["sd"], name)
-            self.assertAlmostEqual(estimate["upper"] - estimate["lower"], 3.92 * estimate["sd"],
-                                   delta=1e-3 * estimate["sd"])
+            self.assertAlmostEqual(
+                estimate["upper"] - estimate["lower"], 3.92 * estimate["sd"], delta=1e-3 * estimate["sd"]
+            )
 
     def test_finds_what_its_power_says_it_finds(self):
         rows = read_csv(self.run_folder / "trust_power.csv")
@@ -138,8 +139,12 @@ class Infer(InferCase):
             self.assertEqual(json.loads(line)["parameters"], expected)
 
     def test_a_stream_answers_each_measurement_at_once(self):
-        with subprocess.Popen([TWINMAP, "infer", str(self.run_folder), "--follow"], stdin=subprocess.PIPE,
-                              stdout=subprocess.PIPE, text=True) as process:
+        with subprocess.Popen(
+            [TWINMAP, "infer", str(self.run_folder), "--follow"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        ) as process:
             for _ in range(3):
                 process.stdin.write(self.measurement.read_text() + "\n")
                 process.stdin.flush()
@@ -177,6 +182,7 @@ class Formats(InferCase):
 
 class Columns(RunTestCase):
     """A machine whose file has other names and units."""
+
     @classmethod
     def write_files(cls):
         experiment = yaml.safe_load(RunTestCase.FILE.read_text())
@@ -187,8 +193,11 @@ class Columns(RunTestCase):
     def test_are_mapped_and_converted(self):
         columns = read_columns(self.simulate("m.csv", *POINT))
         path = self.folder / "machine.csv"
-        write_csv(path, ["clock", "enc1", "enc2", "remark"],
-                  [1e3 * columns["t"], 1e3 * columns["y"], np.degrees(columns["theta"]), ["fine"] * len(columns["t"])])
+        write_csv(
+            path,
+            ["clock", "enc1", "enc2", "remark"],
+            [1e3 * columns["t"], 1e3 * columns["y"], np.degrees(columns["theta"]), ["fine"] * len(columns["t"])],
+        )
         inferred = json.loads(call("infer", self.run_folder, path, "--json").stdout)
         self.assertEqual(inferred["status"], "ok")
         for name, true in TRUE.items():
@@ -198,6 +207,7 @@ class Columns(RunTestCase):
 
 class BadMeasurements(InferCase):
     """Each gives a clear error, the others are still inferred, and the exit code says so."""
+
     def expect_error(self, path, *texts):
         result = call("infer", self.run_folder, path, self.measurement, "--json")
         self.assertEqual(result.returncode, 1, result.stderr)
@@ -234,7 +244,7 @@ class BadMeasurements(InferCase):
         self.expect_error(self.write("constant.csv", y=np.full_like(self.columns["y"], 0.1)), "constant.csv", "y")
 
     def test_a_gap(self):
-        keep = np.r_[0:40, 43:len(self.columns["t"])]
+        keep = np.r_[0:40, 43 : len(self.columns["t"])]
         path = self.folder / "gap.csv"
         write_csv(path, self.columns.keys(), [values[keep] for values in self.columns.values()])
         self.expect_error(path, "gap.csv")
@@ -313,6 +323,7 @@ class WrongUsage(InferCase):
 
 class Roles(RunTestCase):
     """A cart with an unknown offset and a payload that is known."""
+
     EXPERIMENT = """
 name: roles
 parameters:

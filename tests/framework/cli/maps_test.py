@@ -15,15 +15,25 @@ class Maps(FolderTestCase):
     def setUpClass(cls):
         super().setUpClass()
         cls.run_folder = cls.folder / "run"
-        result = call("run", TABLE1, *SMALL, "inverse_map=surrogate", "evaluation.limit=true",
-                      f"evaluation.maps=[surrogate, gp, {NETWORK}, {NETWORK}]", "--out", cls.run_folder)
+        result = call(
+            "run",
+            TABLE1,
+            *SMALL,
+            "inverse_map=surrogate",
+            "evaluation.limit=true",
+            f"evaluation.maps=[surrogate, gp, {NETWORK}, {NETWORK}]",
+            "--out",
+            cls.run_folder,
+        )
         assert result.returncode == 0, result.stderr
         cls.rows = read_csv(cls.run_folder / "maps.csv")
 
     def test_each_has_a_row_for_each_parameter(self):
         names = ["surrogate", "gp", "network", "network_2"]
-        self.assertEqual([(row["map"], row["parameter"]) for row in self.rows],
-                         [(name, parameter) for name in names for parameter in PARAMETERS])
+        self.assertEqual(
+            [(row["map"], row["parameter"]) for row in self.rows],
+            [(name, parameter) for name in names for parameter in PARAMETERS],
+        )
         for row in self.rows:
             for column in ("training_seconds", "online_us", "ratio_to_limit"):
                 self.assertGreater(float(row[column]), 0, column)
@@ -35,8 +45,10 @@ class Maps(FolderTestCase):
                 self.assertEqual(row[column], alone[column])
         joint = {row["metric"]: row["value"] for row in read_csv(self.run_folder / "joint.csv")}
         self.assertEqual(self.rows[0]["joint_nlpd"], joint["nlpd"])
-        one, other = ([row[c] for row in self.rows if row["map"] == name for c in ("sd_pct", "nlpd")]
-                      for name in ("network", "network_2"))
+        one, other = (
+            [row[c] for row in self.rows if row["map"] == name for c in ("sd_pct", "nlpd")]
+            for name in ("network", "network_2")
+        )
         self.assertEqual(one, other)
 
     def test_each_can_infer(self):
@@ -55,10 +67,14 @@ class Maps(FolderTestCase):
 
     def test_what_cannot_be_trained_is_named_and_left_out(self):
         run = self.folder / "few"
-        result = call("run", TABLE1, *SMALL, "design.train.samples=30", f"evaluation.maps=[gp, {NETWORK}]", "--out", run)
+        result = call(
+            "run", TABLE1, *SMALL, "design.train.samples=30", f"evaluation.maps=[gp, {NETWORK}]", "--out", run
+        )
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertIn("map network is not compared: the network cannot be trained: a network needs at least 50 training samples",
-                      (run / "run.log").read_text() + result.stderr + (run / "provenance.json").read_text())
+        self.assertIn(
+            "map network is not compared: the network cannot be trained: a network needs at least 50 training samples",
+            (run / "run.log").read_text() + result.stderr + (run / "provenance.json").read_text(),
+        )
         self.assertEqual({row["map"] for row in read_csv(run / "maps.csv")}, {"gp"})
 
 

@@ -43,7 +43,7 @@ class Noise(TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn("enc1 [mm]", result.stdout)
         self.assertIn("none, white", result.stdout)
-        noise = yaml.safe_load(result.stdout[result.stdout.index("noise:"):])["noise"]
+        noise = yaml.safe_load(result.stdout[result.stdout.index("noise:") :])["noise"]
         self.assertAlmostEqual(noise["stddev"]["enc1"], np.std(self.y), delta=1e-2 * 2)
         coefficients = noise["correlation"]["theta"]["autoregression"]
         self.assertEqual(len(coefficients), 1)
@@ -56,7 +56,7 @@ class Noise(TestCase):
         path = self.write("e.yaml", yaml.safe_dump(experiment))
         result = call("noise", self.write_csv(), "--window", "0,9.995", "--experiment", path)
         self.assertEqual(result.returncode, 0, result.stderr)
-        noise = yaml.safe_load(result.stdout[result.stdout.index("noise:"):])["noise"]
+        noise = yaml.safe_load(result.stdout[result.stdout.index("noise:") :])["noise"]
         self.assertAlmostEqual(noise["stddev"]["y"], np.std(self.y[:1000]) * 1e-3, delta=1e-5)
         experiment["noise"].update(noise)
         path = self.write("f.yaml", yaml.safe_dump(experiment))
@@ -89,9 +89,10 @@ class Noise(TestCase):
 
     def test_wrong_input_exits_with_2_and_names_the_rule(self):
         for text, arguments, expected in (
-                ("t,y\n0,1\n", ["--columns", "z"], "has no column 'z'"),
-                ("t,y\n0,x\n", ["--columns", "y"], "a.csv:2: column 'y' has 'x' which must be a number"),
-                ("t,y\n0,1\n", [], "column 'y' has 1 samples; must have at least 20")):
+            ("t,y\n0,1\n", ["--columns", "z"], "has no column 'z'"),
+            ("t,y\n0,x\n", ["--columns", "y"], "a.csv:2: column 'y' has 'x' which must be a number"),
+            ("t,y\n0,1\n", [], "column 'y' has 1 samples; must have at least 20"),
+        ):
             result = call("noise", self.write("a.csv", text), *arguments)
             self.assertEqual(result.returncode, 2, result.stdout)
             self.assertIn(expected, result.stderr)
@@ -107,8 +108,14 @@ class MeasuredExcitation(TestCase):
         self.write("force.csv", "time,F [kN]\n" + "".join(f"{a + 0.5:.3f},{5e-3 * np.sin(3 * a):.17g}\n" for a in t))
         self.experiment = yaml.safe_load(TABLE1.read_text())
         self.experiment["excitation"]["F"] = {
-            "unit": "N", "tables": [{"measured": {"file": "force.csv", "column": "F", "time": "time", "start": 0.5},
-                                     "interpolation": "cubic"}]}
+            "unit": "N",
+            "tables": [
+                {
+                    "measured": {"file": "force.csv", "column": "F", "time": "time", "start": 0.5},
+                    "interpolation": "cubic",
+                }
+            ],
+        }
 
     def simulate(self, *arguments):
         path = self.write("e.yaml", yaml.safe_dump(self.experiment))
@@ -118,8 +125,7 @@ class MeasuredExcitation(TestCase):
 
     def test_simulates_the_input_that_was_measured(self):
         measured = self.simulate()
-        self.experiment["excitation"]["F"] = {"unit": "N", "sines": [
-            {"amplitude": 5, "frequency": 3 / (2 * np.pi)}]}
+        self.experiment["excitation"]["F"] = {"unit": "N", "sines": [{"amplitude": 5, "frequency": 3 / (2 * np.pi)}]}
         exact = self.simulate()
         self.assertLess(np.max(np.abs(measured["y"] - exact["y"])), 1e-6 * np.max(np.abs(exact["y"])))
 
@@ -136,8 +142,17 @@ class MeasuredExcitation(TestCase):
 
     def test_windows_can_be_swept(self):
         path = self.write("e.yaml", yaml.safe_dump(self.experiment))
-        result = call("run", path, "design.train.samples=20", "design.test.samples=5", "evaluation.limit=false",
-                      "excitation.F.tables[0].measured.start=0.5,0.6", "--out", self.folder / "sweep", "--quiet")
+        result = call(
+            "run",
+            path,
+            "design.train.samples=20",
+            "design.test.samples=5",
+            "evaluation.limit=false",
+            "excitation.F.tables[0].measured.start=0.5,0.6",
+            "--out",
+            self.folder / "sweep",
+            "--quiet",
+        )
         self.assertEqual(result.returncode, 0, result.stderr)
         values = []
         for case in sorted((self.folder / "sweep/cases").iterdir()):

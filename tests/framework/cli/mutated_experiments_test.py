@@ -15,8 +15,13 @@ from support import EXPERIMENTS, TWINMAP, FolderTestCase
 
 TABLE1 = EXPERIMENTS / "two_beam/table1.yaml"
 # Small where the mutation does not say otherwise.
-SMALL = {"design.train.samples": 20, "design.test.samples": 4, "evaluation.limit": "false", "simulation.max_steps": 3000,
-         "inverse_map.gp.starts": 1}
+SMALL = {
+    "design.train.samples": 20,
+    "design.test.samples": 4,
+    "evaluation.limit": "false",
+    "simulation.max_steps": 3000,
+    "inverse_map.gp.starts": 1,
+}
 CHECK_TIMEOUT, RUN_TIMEOUT, MEMORY = 60, 300, 12 << 30
 
 
@@ -67,8 +72,11 @@ def is_same(given, resolved):
     try:
         return float(given) == float(resolved)
     except ValueError:
-        return given.strip() == resolved.strip() or resolved == str(EXPERIMENTS / given) or (
-            os.path.isabs(resolved) and resolved.endswith(os.path.basename(given)))
+        return (
+            given.strip() == resolved.strip()
+            or resolved == str(EXPERIMENTS / given)
+            or (os.path.isabs(resolved) and resolved.endswith(os.path.basename(given)))
+        )
 
 
 class MutatedExperiments(FolderTestCase):
@@ -90,8 +98,11 @@ class MutatedExperiments(FolderTestCase):
 
     def for_each(self, test, code=None):
         """Calls test(file, path, result) for each file, or for each with that exit code; returns their number."""
-        chosen = [(file, *checked) for file, checked in zip(self.files, self.checked)
-                  if code is None or (checked[1] is not None and checked[1].returncode == code)]
+        chosen = [
+            (file, *checked)
+            for file, checked in zip(self.files, self.checked)
+            if code is None or (checked[1] is not None and checked[1].returncode == code)
+        ]
         for file, path, result in chosen:
             with self.subTest(file[1]):
                 test(file, path, result)

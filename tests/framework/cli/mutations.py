@@ -87,8 +87,9 @@ def choose(places, count, key):
 def mutate_trees(name, text):
     """(name of the mutation, path that it touches, text) of every structured edit of one file."""
     edits = {"remove": remove, "rename": rename, "duplicate": duplicate}
-    edits.update({kind: lambda parent, index, make=make: replace(parent, index, make())
-                  for kind, make in REPLACEMENTS.items()})
+    edits.update(
+        {kind: lambda parent, index, make=make: replace(parent, index, make()) for kind, make in REPLACEMENTS.items()}
+    )
     count = len(list(list_values(yaml.compose(text))))
     for kind, edit in edits.items():
         for place in choose(range(count), PLACES, f"{name} {kind}"):
@@ -106,8 +107,11 @@ def set_value(text, path, value):
     *above, last = path.split(".")
     node = tree
     for step in above:
-        found = [item for key, item in node.value if key.value == step] if isinstance(node, yaml.MappingNode) else [
-            node.value[int(step)]]
+        found = (
+            [item for key, item in node.value if key.value == step]
+            if isinstance(node, yaml.MappingNode)
+            else [node.value[int(step)]]
+        )
         if not found:
             found = [yaml.MappingNode("tag:yaml.org,2002:map", [])]
             node.value.append((plain(step), found[0]))
@@ -132,35 +136,75 @@ HUGE = {
     "design.train": ["{method: nested_latin_hypercube, samples: 40, smallest: 10000000}"],
     "features.0.samples.count": ["1000000000", "10000000", "100000"],
     "features.0.samples.interval": ["1e-12", "1e-300"],
-    "features.0": ["{samples: {outputs: [y, theta], start: 0, interval: 1e-7, count: 10000000}}",
-                   "{spectrum: {outputs: [y], window: {start: 0, interval: 1e-7, count: 10000000}, frequencies: [1]}}",
-                   "{extrema: {output: y, peaks: 10000000, window: {start: 0, interval: 0.05, count: 101}}}",
-                   "{modes: {count: 10000000, frequencies: true}}"],
+    "features.0": [
+        "{samples: {outputs: [y, theta], start: 0, interval: 1e-7, count: 10000000}}",
+        "{spectrum: {outputs: [y], window: {start: 0, interval: 1e-7, count: 10000000}, frequencies: [1]}}",
+        "{extrema: {output: y, peaks: 10000000, window: {start: 0, interval: 0.05, count: 101}}}",
+        "{modes: {count: 10000000, frequencies: true}}",
+    ],
     "noise.replicates": ["1000000", "10000000", "1e18"],
     "noise.scale": ["1e308", "1e-308", "0", "1.50", "15e-1"],
-    "noise.correlation": ["{y: {autoregression: [0.99999999999]}}", "{y: {values: [1, 0.5], sample_time: 1e-300}}",
-                          "{y: {values: [1, 0.5], sample_time: 1e-9}}"],
+    "noise.correlation": [
+        "{y: {autoregression: [0.99999999999]}}",
+        "{y: {values: [1, 0.5], sample_time: 1e-300}}",
+        "{y: {values: [1, 0.5], sample_time: 1e-9}}",
+    ],
     "evaluation.posterior": ["{samples: 10000000}", "{draws: 10000000}", "{samples: 2, draws: 200}"],
     "evaluation.baselines": ["[{least_squares: {samples: 10000000, max_simulations: 10000000}}]"],
     "inverse_map.gp.starts": ["10000000"],
     "inverse_map.gp.max_evaluations": ["10000000"],
-    "inverse_map.gp": ["{approximation: sgpr, inducing: 10000000}", "{approximation: sgpr, subset: 10000000}",
-                       "{approximation: sgpr, refine_evaluations: 10000000}"],
+    "inverse_map.gp": [
+        "{approximation: sgpr, inducing: 10000000}",
+        "{approximation: sgpr, subset: 10000000}",
+        "{approximation: sgpr, refine_evaluations: 10000000}",
+    ],
     "inverse_map.gp.bounds": ["{length_scale: [1e-300, 1e300]}", "{noise_stddev: [1e-300, 1e300]}"],
-    "transform": ["[{principal_components: {components: 10000000}}]", "[whiten, {select: {fisher_information: {count: 10000000}}}]",
-                  "[{select: {mutual_information: {count: 10000000, neighbours: 10000000}}}]", "[]",
-                  "[{partial_least_squares: {components: 10000000}}]"],
-    "sweep": ["{over: {seed: 1..100000}}", "{over: {seed: -9000000000000000000..9000000000000000000}}",
-              "{over: {seed: 1..1000, noise.scale: 1..1000}}", "{over: {seed: []}}", "{over: {name: [a, b]}}",
-              "{over: {description: [a, b]}}", "{over: {'system.springs[99999999999999999999].stiffness': [1, 2]}}"],
+    "transform": [
+        "[{principal_components: {components: 10000000}}]",
+        "[whiten, {select: {fisher_information: {count: 10000000}}}]",
+        "[{select: {mutual_information: {count: 10000000, neighbours: 10000000}}}]",
+        "[]",
+        "[{partial_least_squares: {components: 10000000}}]",
+    ],
+    "sweep": [
+        "{over: {seed: 1..100000}}",
+        "{over: {seed: -9000000000000000000..9000000000000000000}}",
+        "{over: {seed: 1..1000, noise.scale: 1..1000}}",
+        "{over: {seed: []}}",
+        "{over: {name: [a, b]}}",
+        "{over: {description: [a, b]}}",
+        "{over: {'system.springs[99999999999999999999].stiffness': [1, 2]}}",
+    ],
     "seed": ["9007199254740993", "-1", "0", "9007199254740991"],
     "excitation.F.pulses": ["[{amplitude: 1e300, start: 0, end: 1}]", "[{amplitude: 1, start: -1e300, end: 1e300}]"],
-    "excitation.F": ["{sines: [{amplitude: 5, frequency: 1e12}]}",
-                     "{tables: [{measured: {file: /dev/zero, column: F, time: t}}]}",
-                     "{tables: [{measured: {file: /no/such, column: F, time: t}}]}"],
-    "parameters.k_y.bounds": ["[-1e308, 1e308]", "[1e-320, 1e308]", "[5, 5.000000000000001]", "[15, 5]", "[5, 15, 20]", "[5., 1.5e1]", "[14, 15]"],
-    "constants.m1.value": ["-1", "0", "1/0", "1e-300", "m2 / 0", "sqrt(-1)", "1e308 * 10", ".33e1", "3.3 * 1", "max(m2, 3.3)", "1e3",
-                           "m2 > 1 ? -1 : 3.3"],
+    "excitation.F": [
+        "{sines: [{amplitude: 5, frequency: 1e12}]}",
+        "{tables: [{measured: {file: /dev/zero, column: F, time: t}}]}",
+        "{tables: [{measured: {file: /no/such, column: F, time: t}}]}",
+    ],
+    "parameters.k_y.bounds": [
+        "[-1e308, 1e308]",
+        "[1e-320, 1e308]",
+        "[5, 5.000000000000001]",
+        "[15, 5]",
+        "[5, 15, 20]",
+        "[5., 1.5e1]",
+        "[14, 15]",
+    ],
+    "constants.m1.value": [
+        "-1",
+        "0",
+        "1/0",
+        "1e-300",
+        "m2 / 0",
+        "sqrt(-1)",
+        "1e308 * 10",
+        ".33e1",
+        "3.3 * 1",
+        "max(m2, 3.3)",
+        "1e3",
+        "m2 > 1 ? -1 : 3.3",
+    ],
     "system.gravity": ["[0, 0, 1e300]", "[0, 0]", "[0, 0, 0]", "[0, g / 2, -g]"],
 }
 
@@ -176,28 +220,48 @@ def mutate_text(name, text):
     data = text.encode()
     deep = 10_000
     laughs = b"a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n" + b"".join(
-        f"a{i}: &a{i} [{', '.join([f'*a{i - 1}'] * 10)}]\n".encode() for i in range(1, 12))
+        f"a{i}: &a{i} [{', '.join([f'*a{i - 1}'] * 10)}]\n".encode() for i in range(1, 12)
+    )
     path_bomb = b'? "' + b"k" * 1_000_000 + b'"\n: [' + b"1, " * 100_000 + b"1]\n"
     edits = {
-        "empty": b"", "only a comment": b"# nothing\n", "only a newline": b"\n", "only dashes": b"---\n",
-        "only spaces": b"   \n  ", "a scalar": b"42\n", "a list": b"- 1\n- 2\n", "null document": b"~\n",
-        "two documents": data + b"---\n" + data, "ended document": data + b"...\n", "started document": b"---\n" + data,
-        "directive": b"%YAML 1.2\n---\n" + data, "unknown directive": b"%FOO bar\n---\n" + data,
+        "empty": b"",
+        "only a comment": b"# nothing\n",
+        "only a newline": b"\n",
+        "only dashes": b"---\n",
+        "only spaces": b"   \n  ",
+        "a scalar": b"42\n",
+        "a list": b"- 1\n- 2\n",
+        "null document": b"~\n",
+        "two documents": data + b"---\n" + data,
+        "ended document": data + b"...\n",
+        "started document": b"---\n" + data,
+        "directive": b"%YAML 1.2\n---\n" + data,
+        "unknown directive": b"%FOO bar\n---\n" + data,
         "garbage after the end": data + b"...\ngarbage: [\n",
-        "CRLF": data.replace(b"\n", b"\r\n"), "CR": data.replace(b"\n", b"\r"),
+        "CRLF": data.replace(b"\n", b"\r\n"),
+        "CR": data.replace(b"\n", b"\r"),
         "no newline at the end": data.rstrip(b"\n"),
-        "byte order mark": b"\xef\xbb\xbf" + data, "UTF-16": text.encode("utf-16"), "UTF-16-BE": text.encode("utf-16-be"),
-        "UTF-32": text.encode("utf-32"), "Latin-1": data + "description: Stäbe\n".encode("latin-1"),
+        "byte order mark": b"\xef\xbb\xbf" + data,
+        "UTF-16": text.encode("utf-16"),
+        "UTF-16-BE": text.encode("utf-16-be"),
+        "UTF-32": text.encode("utf-32"),
+        "Latin-1": data + "description: Stäbe\n".encode("latin-1"),
         "Latin-1 comment": data + "# Stäbe\n".encode("latin-1"),
-        "NUL": data.replace(b"seed", b"se\0ed"), "NUL at the end": data + b"\0", "binary": bytes(range(256)) * 16,
+        "NUL": data.replace(b"seed", b"se\0ed"),
+        "NUL at the end": data + b"\0",
+        "binary": bytes(range(256)) * 16,
         "random bytes": random.Random(name).randbytes(4096),
-        "invalid UTF-8": data.replace(b"name: ", b"name: \xff\xfe"), "overlong UTF-8": data + b"# \xc0\x80\n",
-        "surrogates": data + b"# \xed\xa0\x80\n", "truncated UTF-8": data + b"# \xe2\x82",
+        "invalid UTF-8": data.replace(b"name: ", b"name: \xff\xfe"),
+        "overlong UTF-8": data + b"# \xc0\x80\n",
+        "surrogates": data + b"# \xed\xa0\x80\n",
+        "truncated UTF-8": data + b"# \xe2\x82",
         "control character": data.replace(b"seed: ", b"seed: \x01"),
-        "tab": data.replace(b"\n  ", b"\n\t", 1), "tab before a value": data.replace(b"seed: ", b"seed:\t"),
+        "tab": data.replace(b"\n  ", b"\n\t", 1),
+        "tab before a value": data.replace(b"seed: ", b"seed:\t"),
         "tab in a list": data + b"gates:\n\t- {metric: mare, max: 1}\n",
         "wrong indentation": data.replace(b"\n  ", b"\n ", 1),
-        "unclosed bracket": data + b"gates: [1, 2\n", "unclosed quote": data + b'description: "abc\n',
+        "unclosed bracket": data + b"gates: [1, 2\n",
+        "unclosed quote": data + b'description: "abc\n',
         "unmatched bracket": data + b"gates: 1]\n",
         "deep flow lists": data + b"gates: " + b"[" * deep + b"]" * deep + b"\n",
         "deep open lists": data + b"gates: " + b"[" * deep + b"\n",
@@ -207,32 +271,49 @@ def mutate_text(name, text):
         "deep explicit keys": data + b"? " * deep + b"a\n",
         "40 levels": data + b"gates: " + b"[" * 40 + b"]" * 40 + b"\n",
         "anchor and alias": data + b"noise_of_springs: &n 1\nx: *n\n",
-        "anchored text": data.replace(b"name: ", b"name: &n ", 1) + b"description: *n\n" if b"description" not in data
+        "anchored text": data.replace(b"name: ", b"name: &n ", 1) + b"description: *n\n"
+        if b"description" not in data
         else data.replace(b"name: ", b"name: &n ", 1),
-        "unknown alias": data + b"gates: *nothing\n", "recursive alias": data + b"gates: &a [*a]\n",
-        "recursive map": data + b"gates: &a {b: *a}\n", "anchor as a key": data + b"&a gates: []\n",
-        "billion laughs": laughs + data, "billion laughs below": data + laughs,
+        "unknown alias": data + b"gates: *nothing\n",
+        "recursive alias": data + b"gates: &a [*a]\n",
+        "recursive map": data + b"gates: &a {b: *a}\n",
+        "anchor as a key": data + b"&a gates: []\n",
+        "billion laughs": laughs + data,
+        "billion laughs below": data + laughs,
         "merge key": data + b"x: &x {a: 1}\ngates: {<<: *x}\n",
         "merge list": data + b"gates: [{<<: [{metric: mare}], max: 1}]\n",
         "quoted merge key": data + b"gates: [{'<<': 1}]\n",
-        "tag": data + b"gates: !!binary aGVsbG8=\n", "own tag": data + b"gates: !mine [1]\n",
-        "tagged number": data.replace(b"seed: ", b"seed: !!int "), "non-specific tag": data.replace(b"seed: ", b"seed: ! "),
-        "list as a key": data + b"? [1, 2]\n: 3\n", "map as a key": data + b"{a: 1}: 3\n", "null as a key": data + b"~: 3\n",
-        "empty key": data + b"'': 3\n", "number as a key": data + b"3: 3\n", "key without a value": data + b"gates\n",
-        "long key": data + b"k" * 100_000 + b": 1\n", "many keys": data + b"".join(b"k%d: 1\n" % i for i in range(100_000)),
+        "tag": data + b"gates: !!binary aGVsbG8=\n",
+        "own tag": data + b"gates: !mine [1]\n",
+        "tagged number": data.replace(b"seed: ", b"seed: !!int "),
+        "non-specific tag": data.replace(b"seed: ", b"seed: ! "),
+        "list as a key": data + b"? [1, 2]\n: 3\n",
+        "map as a key": data + b"{a: 1}: 3\n",
+        "null as a key": data + b"~: 3\n",
+        "empty key": data + b"'': 3\n",
+        "number as a key": data + b"3: 3\n",
+        "key without a value": data + b"gates\n",
+        "long key": data + b"k" * 100_000 + b": 1\n",
+        "many keys": data + b"".join(b"k%d: 1\n" % i for i in range(100_000)),
         "long key with many values": data + path_bomb,
         "many values": data + b"gates: [" + b"1, " * 1_200_000 + b"1]\n",
-        "many constants": data.replace(b"constants:\n", b"constants:\n" + b"".join(b"  c%d: 1\n" % i for i in range(50_000)), 1),
+        "many constants": data.replace(
+            b"constants:\n", b"constants:\n" + b"".join(b"  c%d: 1\n" % i for i in range(50_000)), 1
+        ),
         "many expressions": data.replace(
-            b"constants:\n", b"constants:\n  c0: 1\n" + b"".join(b"  c%d: c%d + 1\n" % (i, i - 1) for i in range(1, 3000)), 1),
+            b"constants:\n",
+            b"constants:\n  c0: 1\n" + b"".join(b"  c%d: c%d + 1\n" % (i, i - 1) for i in range(1, 3000)),
+            1,
+        ),
         "many outputs": data.replace(b"outputs: [", b"outputs: [" + b"y, " * 50_000, 1),
         "block text": data + b"description: |\n  several\n  lines\n" if b"description" not in data else data,
-        "too large": data + b"# " + b"x" * (17 << 20) + b"\n", "many comments": b"# x\n" * 200_000 + data,
+        "too large": data + b"# " + b"x" * (17 << 20) + b"\n",
+        "many comments": b"# x\n" * 200_000 + data,
     }
     for kind, mutated in edits.items():
         yield f"{name}: {kind}", "", mutated
     for share in range(1, 10):
-        yield f"{name}: the first {share} tenths", "", data[:len(data) * share // 10]
+        yield f"{name}: the first {share} tenths", "", data[: len(data) * share // 10]
     for i, place in enumerate(choose(range(len(data)), 20, name)):
         byte = random.Random(i).randrange(256)
-        yield f"{name}: byte {place} is {byte}", "*", data[:place] + bytes([byte]) + data[place + 1:]
+        yield f"{name}: byte {place} is {byte}", "*", data[:place] + bytes([byte]) + data[place + 1 :]

@@ -63,8 +63,11 @@ class Undetermined(FolderTestCase):
             self.assertTrue(0.45 < float(row["coverage50"]) < 0.55, row)
             reach = float(self.reaches[name]["reach95"])
             self.assertTrue(all(float(one["reach95"]) == reach for one in rows if one["parameter"] == name))
-            within = [abs(float(one["inferred"]) - float(one["true"])) < reach * float(one["stddev"])
-                      for one in rows if one["parameter"] == name]
+            within = [
+                abs(float(one["inferred"]) - float(one["true"])) < reach * float(one["stddev"])
+                for one in rows
+                if one["parameter"] == name
+            ]
             self.assertAlmostEqual(sum(within) / len(within), float(row["coverage95"]), places=12)
         for name in ("k_left", "k_right"):
             self.assertLess(float(self.reaches[name]["reach95"]), 1.9)
@@ -77,10 +80,14 @@ class Undetermined(FolderTestCase):
             found, reach = answer[name], float(row["reach95"])
             self.assertAlmostEqual(found["lower"], found["mean"] - reach * found["sd"], places=9)
             self.assertAlmostEqual(found["upper"], found["mean"] + reach * found["sd"], places=9)
-        self.assertEqual(call("export", self.trained, "--json", self.folder / "map.json", "--c", self.folder / "c").returncode, 0)
+        self.assertEqual(
+            call("export", self.trained, "--json", self.folder / "map.json", "--c", self.folder / "c").returncode, 0
+        )
         expected = [float(row["reach95"]) for row in self.reaches.values()]
         self.assertEqual(json.loads((self.folder / "map.json").read_text())["interval_reach"], expected)
-        table = re.search(r"interval_reach\[\d+\] = \{([^}]*)\}", (self.folder / "c/twinmap_map.c").read_text()).group(1)
+        table = re.search(r"interval_reach\[\d+\] = \{([^}]*)\}", (self.folder / "c/twinmap_map.c").read_text()).group(
+            1
+        )
         self.assertEqual([float(number) for number in table.split(",") if number.strip()], expected)
 
     def test_the_run_is_verified_and_compared_by_them(self):
@@ -139,16 +146,20 @@ class Network(OwnFolderTestCase):
         self.assertIn("ok       maps.h5: fitted again", result.stdout)
 
     def test_features_that_are_not_linear_have_their_noise_drawn_in_the_response(self):
-        features = "features=[{statistics: {outputs: [y, theta], quantities: [rms, mean], " \
-                   "window: {start: 0.05, interval: 0.05, count: 100}}}]"
+        features = (
+            "features=[{statistics: {outputs: [y, theta], quantities: [rms, mean], "
+            "window: {start: 0.05, interval: 0.05, count: 100}}}]"
+        )
         run = self.run_experiment("statistics", DIRECT, features, "transform=[z_score]")
         self.assertEqual(len(read_csv(run / "metrics.csv")), 4)
 
     def test_bad_keys_are_named(self):
-        for keys, message in [("{hidden: []}", "must give 1 to 8 hidden layers"),
-                              ("{hidden: [2000]}", "must give 1 to 8 hidden layers"),
-                              ("{surrogate_samples: 10}", "must give at least 1000 surrogate_samples"),
-                              ("{samples_from: nothing}", "samples_from")]:
+        for keys, message in [
+            ("{hidden: []}", "must give 1 to 8 hidden layers"),
+            ("{hidden: [2000]}", "must give 1 to 8 hidden layers"),
+            ("{surrogate_samples: 10}", "must give at least 1000 surrogate_samples"),
+            ("{samples_from: nothing}", "samples_from"),
+        ]:
             result = call("run", BEST, f"inverse_map={{network: {keys}}}", "--out", self.folder / "bad")
             self.assertNotEqual(result.returncode, 0)
             self.assertIn(message, result.stderr)

@@ -24,8 +24,16 @@ class Posterior(FolderTestCase):
 
     @classmethod
     def run_experiment(cls, name, *overrides):
-        result = call("run", TABLE1, "design.train.samples=60", "design.test.samples=60", "evaluation.limit=false",
-                      *overrides, "--out", cls.folder / name)
+        result = call(
+            "run",
+            TABLE1,
+            "design.train.samples=60",
+            "design.test.samples=60",
+            "evaluation.limit=false",
+            *overrides,
+            "--out",
+            cls.folder / name,
+        )
         assert result.returncode == 0, result.stderr
         return cls.folder / name
 
@@ -69,8 +77,10 @@ class Posterior(FolderTestCase):
         for row in rows:
             found = alone["parameters"][row["parameter"]]
             self.assertEqual([float(row["posterior_mean"]), float(row["posterior_sd"])], [found["mean"], found["sd"]])
-            self.assertEqual([float(row[f"posterior_q{q}"]) for q in ("2.5", "16", "50", "84", "97.5")],
-                             [value for _, value in found["quantiles"]])
+            self.assertEqual(
+                [float(row[f"posterior_q{q}"]) for q in ("2.5", "16", "50", "84", "97.5")],
+                [value for _, value in found["quantiles"]],
+            )
         self.assertIn("the posterior (effective sample size", self.infer(self.measured, "--posterior"))
 
     def test_other_maps_use_the_surrogate_that_judges(self):
@@ -84,10 +94,11 @@ class Posterior(FolderTestCase):
     def test_errors_say_what_to_do(self):
         silent = self.run_experiment("silent", "inverse_map=gp", "noise.stddev.y=0", "transform=[z_score]")
         for arguments, expected in (
-                ([silent, self.measured, "--posterior"], "give every output noise and train with 'inverse_map: surrogate'"),
-                ([self.run_folder, self.measured, "--posterior=10"], "at least 200 draws, not 10"),
-                ([self.run_folder, self.measured, "--draws", "d.csv"], "--draws requires --posterior"),
-                ([self.run_folder, self.measured, "--posterior", "--draws", self.folder / "no/d.csv"], "cannot be written")):
+            ([silent, self.measured, "--posterior"], "give every output noise and train with 'inverse_map: surrogate'"),
+            ([self.run_folder, self.measured, "--posterior=10"], "at least 200 draws, not 10"),
+            ([self.run_folder, self.measured, "--draws", "d.csv"], "--draws requires --posterior"),
+            ([self.run_folder, self.measured, "--posterior", "--draws", self.folder / "no/d.csv"], "cannot be written"),
+        ):
             result = call("infer", *arguments)
             self.assertNotEqual(result.returncode, 0)
             self.assertIn(expected, result.stderr)
@@ -95,9 +106,19 @@ class Posterior(FolderTestCase):
 
 class Calibration(FolderTestCase):
     def run_calibrated(self, name, *overrides):
-        result = call("run", TABLE1, "inverse_map=surrogate", "design.train.samples=60", "design.test.samples=60",
-                      "refine=never", "evaluation.limit=false", "evaluation.calibration=sbc", *overrides,
-                      "--out", self.folder / name)
+        result = call(
+            "run",
+            TABLE1,
+            "inverse_map=surrogate",
+            "design.train.samples=60",
+            "design.test.samples=60",
+            "refine=never",
+            "evaluation.limit=false",
+            "evaluation.calibration=sbc",
+            *overrides,
+            "--out",
+            self.folder / name,
+        )
         self.assertEqual(result.returncode, 0, result.stderr)
         return result, self.folder / name
 
@@ -107,7 +128,7 @@ class Calibration(FolderTestCase):
         rows = read_csv(one / "sbc.csv")
         self.assertEqual([row["quantity"] for row in rows[::10]], [*TRUE, "joint"])
         for first in range(0, len(rows), 10):
-            bins = rows[first:first + 10]
+            bins = rows[first : first + 10]
             self.assertEqual(sum(int(row["count"]) for row in bins), int(bins[0]["measurements"]))
             self.assertEqual(int(bins[0]["measurements"]) + int(bins[0]["unreliable"]), 60)
             self.assertGreater(float(bins[0]["p_value"]), 1e-4)
@@ -118,8 +139,10 @@ class Calibration(FolderTestCase):
         self.assertIn("only 40 of 40 test samples have a reliable one, and it needs 50", result.stderr + result.stdout)
         self.assertFalse((run / "sbc.csv").exists())
         result, run = self.run_calibrated("silent", "inverse_map=gp", "noise.stddev.y=0", "transform=[z_score]")
-        self.assertIn("no calibration of posteriors: the run has no surrogate",
-                      result.stderr + result.stdout + (run / "run.log").read_text())
+        self.assertIn(
+            "no calibration of posteriors: the run has no surrogate",
+            result.stderr + result.stdout + (run / "run.log").read_text(),
+        )
 
 
 if __name__ == "__main__":

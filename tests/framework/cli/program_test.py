@@ -62,19 +62,29 @@ class ProgramTest(OwnFolderTestCase):
     def test_check_plan_run_and_verify_know_programs(self):
         small = ["design.train.samples=30", "design.test.samples=20", *QUICK]
         out = self.folder / "run"
-        for arguments in (["check", PLANT], ["plan", PLANT, *small, "--out", out],
-                          ["run", PLANT, *small, "--out", out, "--quiet"], ["report", out], ["verify", out]):
+        for arguments in (
+            ["check", PLANT],
+            ["plan", PLANT, *small, "--out", out],
+            ["run", PLANT, *small, "--out", out, "--quiet"],
+            ["report", out],
+            ["verify", out],
+        ):
             result = call(*arguments)
             self.assertEqual(result.returncode, 0, f"{arguments}: {result.stdout}{result.stderr}")
         self.assertIn("# simulated by: program /usr/bin/python3 plant.py", call("check", PLANT).stdout)
 
     def test_a_run_killed_in_the_middle_and_again_gives_the_same_bits_and_names_failures(self):
-        file = self.write_faulty("[-2.4, 1.9]")  # int(mode) is 1, a crash, for a fifth of the samples, not at the centre
+        file = self.write_faulty(
+            "[-2.4, 1.9]"
+        )  # int(mode) is 1, a crash, for a fifth of the samples, not at the centre
         whole, broken = self.folder / "whole", self.folder / "broken"
         result = call("run", file, *QUICK, "--threads", 1, "--out", whole, "--quiet")
         self.assertEqual(result.returncode, 0, result.stderr)
-        child = subprocess.Popen([TWINMAP, "run", str(file), *QUICK, "--threads", "2", "--out", str(broken), "--quiet"],
-                                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        child = subprocess.Popen(
+            [TWINMAP, "run", str(file), *QUICK, "--threads", "2", "--out", str(broken), "--quiet"],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
         while child.poll() is None and not self.find_workers():
             time.sleep(0.01)
         time.sleep(0.3)
@@ -88,8 +98,11 @@ class ProgramTest(OwnFolderTestCase):
         self.check_nothing_is_left()
 
     def test_a_hanging_program_ends_with_twinmap(self):
-        child = subprocess.Popen([TWINMAP, "simulate", str(self.write_faulty("[2.9, 3.3]", 1000))],
-                                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        child = subprocess.Popen(
+            [TWINMAP, "simulate", str(self.write_faulty("[2.9, 3.3]", 1000))],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
         deadline = time.time() + 20
         while time.time() < deadline and not self.find_workers():
             time.sleep(0.02)
@@ -100,11 +113,13 @@ class ProgramTest(OwnFolderTestCase):
 
     def test_wrong_input_is_an_error_with_its_reason(self):
         text = self.write_faulty("[0, 0.5]").read_text()
-        cases = [("[python3, faulty.py]", "[no-such-program]", "cannot be started: No such file"),
-                 ("[python3, faulty.py]", "[]", "must name a program in 'command'"),
-                 ("[python3, faulty.py]", "['true']", "ended with exit code 0"),
-                 ("timeout: 1", "depends_on: [none.csv]", "is no file that it could depend on"),
-                 ("timeout: 1", "working_folder: nowhere", "is no folder")]
+        cases = [
+            ("[python3, faulty.py]", "[no-such-program]", "cannot be started: No such file"),
+            ("[python3, faulty.py]", "[]", "must name a program in 'command'"),
+            ("[python3, faulty.py]", "['true']", "ended with exit code 0"),
+            ("timeout: 1", "depends_on: [none.csv]", "is no file that it could depend on"),
+            ("timeout: 1", "working_folder: nowhere", "is no folder"),
+        ]
         for old, new, message in cases:
             file = self.folder / "wrong.yaml"
             file.write_text(text.replace(old, new))

@@ -22,8 +22,10 @@ def read_numbers(path):
         header, *rows = list(csv.reader(file))
     names = [name.split(" [")[0] for name in header]
     columns = dict(zip(names, zip(*rows)))
-    return {name: np.array(cells if name == "output" else [float(cell) for cell in cells])
-            for name, cells in columns.items()}
+    return {
+        name: np.array(cells if name == "output" else [float(cell) for cell in cells])
+        for name, cells in columns.items()
+    }
 
 
 class ReplayCase(RunTestCase):
@@ -36,14 +38,18 @@ class ReplayCase(RunTestCase):
         return folder
 
     def read_fit(self, folder):
-        return {row["output"]: {name: float(cell) for name, cell in row.items() if name != "output"}
-                for row in read_csv(folder / "fit.csv")}
+        return {
+            row["output"]: {name: float(cell) for name, cell in row.items() if name != "output"}
+            for row in read_csv(folder / "fit.csv")
+        }
 
     def read_replay(self, folder):
         """Columns of each output."""
         table = read_numbers(folder / "replay.csv")
-        return {output: {name: column[table["output"] == output] for name, column in table.items()}
-                for output in dict.fromkeys(table["output"])}
+        return {
+            output: {name: column[table["output"] == output] for name, column in table.items()}
+            for output in dict.fromkeys(table["output"])
+        }
 
 
 class Replay(ReplayCase):
@@ -111,8 +117,10 @@ class Replay(ReplayCase):
         stddev = np.array([estimate["sd"] for estimate in inferred.values()])
         with h5py.File(self.run_folder / "maps.h5") as file:
             covariance = file["residual_correlation"][:] * np.outer(stddev, stddev)
-        moved = [[self.simulate_clean({**mean, name: mean[name] + sign * inferred[name]["sd"]}) for sign in (1, -1)]
-                 for name in mean]
+        moved = [
+            [self.simulate_clean({**mean, name: mean[name] + sign * inferred[name]["sd"]}) for sign in (1, -1)]
+            for name in mean
+        ]
         for output, columns in self.read_replay(folder).items():
             slopes = np.array([(up[output] - down[output]) / (2 * sd) for (up, down), sd in zip(moved, stddev)])
             expected = np.sqrt(np.einsum("pt,pq,qt->t", slopes, covariance, slopes))
@@ -151,7 +159,9 @@ class Replay(ReplayCase):
         self.expect_model(folder, "updated", {name: p["mean"] for name, p in refined["parameters"].items()})
 
     def test_results_do_not_depend_on_threads(self):
-        folders = [self.replay(f"t{threads}", self.measurement, "--threads", threads, "--refine") for threads in (1, 2, 5)]
+        folders = [
+            self.replay(f"t{threads}", self.measurement, "--threads", threads, "--refine") for threads in (1, 2, 5)
+        ]
         for folder in folders[1:]:
             self.assertEqual(filecmp.cmpfiles(folders[0], folder, FILES, shallow=False)[1:], ([], []))
 
@@ -181,8 +191,12 @@ class Replay(ReplayCase):
         short, lame = self.folder / "short.csv", self.folder / "lame.csv"
         write_csv(short, columns.keys(), [column[:50] for column in columns.values()])
         write_csv(lame, ["t", "y"], [columns["t"], columns["y"]])
-        for arguments, message in (([short], "short.csv"), ([lame], "has no column 'theta'"), (["/no/such.csv"], "does not exist"),
-                                   ([self.measurement, "--from", lame], "has no column 'theta'")):
+        for arguments, message in (
+            ([short], "short.csv"),
+            ([lame], "has no column 'theta'"),
+            (["/no/such.csv"], "does not exist"),
+            ([self.measurement, "--from", lame], "has no column 'theta'"),
+        ):
             out = self.folder / "none"
             result = call("replay", self.run_folder, *arguments, "--out", out)
             self.assertEqual(result.returncode, 1, result)
@@ -219,6 +233,7 @@ CART = {
 
 class MeasuredExcitation(ReplayCase):
     """A cart with an unknown initial state and offset, a known load, and a measured force."""
+
     ARGUMENTS = []
 
     @classmethod
@@ -244,8 +259,14 @@ class MeasuredExcitation(ReplayCase):
 
     @classmethod
     def measure(cls, name, force, *arguments):
-        path = cls.simulate(name, "parameters.k=92", "parameters.d=1.6", "inputs.load=0.4",
-                            f"excitation.F.tables[0].measured.file={cls.folder / force}", *arguments)
+        path = cls.simulate(
+            name,
+            "parameters.k=92",
+            "parameters.d=1.6",
+            "inputs.load=0.4",
+            f"excitation.F.tables[0].measured.file={cls.folder / force}",
+            *arguments,
+        )
         measured, inputs = read_numbers(path), read_numbers(cls.folder / force)
         write_csv(path, ["t", "x", "F"], [measured["t"], measured["x"], inputs["F"]])
         return path
@@ -265,11 +286,15 @@ class MeasuredExcitation(ReplayCase):
 
     def test_a_map_infers_from_the_excitation_that_it_knows(self):
         self.assertEqual(call("infer", self.run_folder, self.usual, "--set", "load=0.4").returncode, 0)
-        for arguments in [("infer", self.run_folder, self.unusual),
-                          ("replay", self.run_folder, self.unusual, "--out", self.folder / "none")]:
+        for arguments in [
+            ("infer", self.run_folder, self.unusual),
+            ("replay", self.run_folder, self.unusual, "--out", self.folder / "none"),
+        ]:
             result = call(*arguments, "--set", "load=0.4")
             self.assertEqual(result.returncode, 1, result)
-            self.assertIn("unusual.csv: column 'F' is not the excitation 'F' that the map was trained on", result.stderr)
+            self.assertIn(
+                "unusual.csv: column 'F' is not the excitation 'F' that the map was trained on", result.stderr
+            )
             self.assertIn("--start", result.stderr)
 
     def test_without_its_excitation_a_measurement_is_inferred_from(self):

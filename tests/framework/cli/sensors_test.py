@@ -53,8 +53,16 @@ class Sensors(FolderTestCase):
 
     def test_the_designed_experiment_has_the_limit_that_was_foretold(self):
         run = self.folder / "run"
-        result = call("run", self.design / "designed.yaml", "design.train.samples=60", "design.test.samples=60",
-                      "refine=never", "inverse_map=surrogate", "--out", run)
+        result = call(
+            "run",
+            self.design / "designed.yaml",
+            "design.train.samples=60",
+            "design.test.samples=60",
+            "refine=never",
+            "inverse_map=surrogate",
+            "--out",
+            run,
+        )
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(len(read_csv(run / "features.csv")), 3 * 40)
         predicted = read_csv(self.design / "times.csv")[-1]
@@ -71,13 +79,19 @@ class Sensors(FolderTestCase):
 
     def test_wrong_input_is_named(self):
         for arguments, message in (
-                (overrides(["y", "nothing"], 1), "nothing"),
-                (overrides(["y", "y"], 2), "is listed twice"),
-                (overrides(["y", "theta"], 1, 1000), "must be at most 100, the sample times of the features"),
-                (overrides(["y", "theta"], 3), "must not ask for more outputs than there are"),
-                ([*overrides(["y", "load_y"], 1), "noise.stddev.load_y=0"], "an output with noise.stddev above 0"),
-                (["features=[{statistics: {outputs: [y], quantities: [rms], "
-                  "window: {start: 0.1, interval: 0.1, count: 30}}}]"], "must be samples at the same times")):
+            (overrides(["y", "nothing"], 1), "nothing"),
+            (overrides(["y", "y"], 2), "is listed twice"),
+            (overrides(["y", "theta"], 1, 1000), "must be at most 100, the sample times of the features"),
+            (overrides(["y", "theta"], 3), "must not ask for more outputs than there are"),
+            ([*overrides(["y", "load_y"], 1), "noise.stddev.load_y=0"], "an output with noise.stddev above 0"),
+            (
+                [
+                    "features=[{statistics: {outputs: [y], quantities: [rms], "
+                    "window: {start: 0.1, interval: 0.1, count: 30}}}]"
+                ],
+                "must be samples at the same times",
+            ),
+        ):
             result = call("design", "sensors", CRANE, *arguments, "--out", self.folder / "wrong")
             self.assertNotEqual(result.returncode, 0)
             self.assertIn(message, result.stderr)

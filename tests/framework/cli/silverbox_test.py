@@ -12,8 +12,11 @@ import yaml
 from support import EXPERIMENTS, FolderTestCase, call, read_csv, write_csv
 
 NAME = "Schroeder80mV.csv"
-PLACES = [os.environ.get("TWINMAP_SILVERBOX", ""), EXPERIMENTS / "silverbox" / NAME,
-          EXPERIMENTS.parents[1] / "shared/data/silverbox" / NAME]
+PLACES = [
+    os.environ.get("TWINMAP_SILVERBOX", ""),
+    EXPERIMENTS / "silverbox" / NAME,
+    EXPERIMENTS.parents[1] / "shared/data/silverbox" / NAME,
+]
 DATA = next((Path(place) for place in PLACES if place and Path(place).is_file()), None)
 RATE = 610.3515625
 FIRST, PERIOD = 10584, 1024  # the first whole period of the multisine
@@ -27,8 +30,11 @@ def read_signals():
     return np.array([[float(row[2]), float(row[3])] for row in rows[1:] if len(row) > 3]).T
 
 
-@unittest.skipIf(DATA is None, f"{NAME} of the Silverbox benchmark is not here: docs/inference.md says how to get it; "
-                               "TWINMAP_SILVERBOX may say where it is")
+@unittest.skipIf(
+    DATA is None,
+    f"{NAME} of the Silverbox benchmark is not here: docs/inference.md says how to get it; "
+    "TWINMAP_SILVERBOX may say where it is",
+)
 class Silverbox(FolderTestCase):
     @classmethod
     def setUpClass(cls):
@@ -54,8 +60,12 @@ class Silverbox(FolderTestCase):
     def test_the_windows_agree_and_are_trusted(self):
         inferred = self.infer(self.run_folder, DATA, STARTS)
         self.assertEqual([window["status"] for window in inferred], ["ok"] * 10)
-        for name, spread, value, about in [("m", 0.005, 5.3e-6, 0.04), ("d", 0.04, 2.2e-4, 0.1), ("a", 0.02, 0.97, 0.05),
-                                           ("b", 0.15, 3.8, 0.2)]:
+        for name, spread, value, about in [
+            ("m", 0.005, 5.3e-6, 0.04),
+            ("d", 0.04, 2.2e-4, 0.1),
+            ("a", 0.02, 0.97, 0.05),
+            ("b", 0.15, 3.8, 0.2),
+        ]:
             means = np.array([window["parameters"][name]["mean"] for window in inferred])
             self.assertLess(np.ptp(means) / means.mean(), spread, name)
             self.assertLess(abs(means.mean() / value - 1), about, name)
@@ -68,8 +78,17 @@ class Silverbox(FolderTestCase):
     def test_the_model_of_one_window_simulates_others(self):
         for start in (STARTS[3], STARTS[8]):
             out = self.folder / f"replay_{start:.0f}"
-            result = call("replay", self.run_folder, DATA, "--start", f"{start:.7f}", "--from-start", f"{STARTS[1]:.7f}",
-                          "--out", out)
+            result = call(
+                "replay",
+                self.run_folder,
+                DATA,
+                "--start",
+                f"{start:.7f}",
+                "--from-start",
+                f"{STARTS[1]:.7f}",
+                "--out",
+                out,
+            )
             self.assertEqual(result.returncode, 0, result.stderr)
             self.assertLess(float(read_csv(out / "fit.csv")[0]["nrmse_pct"]), 2.5)
 

@@ -48,7 +48,9 @@ def read_datasets(path):
     """Name -> all digits of its values, of an HDF5 file; NaNs are equal."""
     found = {}
     with h5py.File(path) as file:
-        file.visititems(lambda name, item: found.update({name: repr(item[()].tolist())}) if hasattr(item, "dtype") else None)
+        file.visititems(
+            lambda name, item: found.update({name: repr(item[()].tolist())}) if hasattr(item, "dtype") else None
+        )
     return found
 
 
@@ -92,6 +94,7 @@ class OwnFolderTestCase(unittest.TestCase):
 
 class RunTestCase(FolderTestCase):
     """One run for all tests, of FILE with ARGUMENTS."""
+
     FILE = EXPERIMENTS / "two_beam/best.yaml"
     ARGUMENTS = QUICK
 

@@ -60,9 +60,11 @@ class Surrogate(OwnFolderTestCase):
 
     def test_the_automatic_map_is_a_surrogate_where_one_can_be_trained(self):
         few = ["inverse_map=automatic", "design.test.samples=20"]
-        for name, overrides, method in [("enough", ["design.train.samples=40"], "surrogate"),
-                                        ("too_few", ["design.train.samples=20"], "gp"),
-                                        ("silent", ["design.train.samples=40", "noise.stddev.y=0"], "gp")]:
+        for name, overrides, method in [
+            ("enough", ["design.train.samples=40"], "surrogate"),
+            ("too_few", ["design.train.samples=20"], "gp"),
+            ("silent", ["design.train.samples=40", "noise.stddev.y=0"], "gp"),
+        ]:
             run = self.folder / name
             result = call("run", TABLE1, *few, *overrides, "transform=[z_score]", "--out", run)
             self.assertEqual(result.returncode, 0, result.stderr)
@@ -81,8 +83,11 @@ class Surrogate(OwnFolderTestCase):
         self.assertEqual(call("verify", run, "--all").returncode, 0)
         self.run_experiment("automatic", *automatic)
         self.assertEqual((run / "predictions.csv").read_bytes(), before)
-        fixed = self.run_experiment("fixed", f"design.train={{method: nested_latin_hypercube, samples: {samples}, smallest: 100}}",
-                                    "evaluation.limit=false")
+        fixed = self.run_experiment(
+            "fixed",
+            f"design.train={{method: nested_latin_hypercube, samples: {samples}, smallest: 100}}",
+            "evaluation.limit=false",
+        )
         self.assertEqual((fixed / "predictions.csv").read_bytes(), before)
 
     def test_a_sweep_chooses_the_samples_of_each_case(self):

@@ -26,8 +26,19 @@ KILLED = [*LIMITS, "design.train.samples=8,16", "noise.scale=0.5,1", "seed=1..2"
 FULL = [*LIMITS, "design.train.samples=8,16", "noise.scale=0.5,1"]
 SWEEP = [*SMALL, "design.train.samples=8,16", "noise.scale=0.5,1", "seed=1..2"]
 TABLES = ["sweep.csv", "summary.csv", "table.md", "failed_cases.csv", "resolved.yaml"]
-RESULTS = ["failures.csv", "joint.csv", "maps.h5", "metrics.csv", "pit.csv", "predictions.csv", "resolved.yaml",
-           "samples.h5", "table.md", "table.tex", "training.csv"]
+RESULTS = [
+    "failures.csv",
+    "joint.csv",
+    "maps.h5",
+    "metrics.csv",
+    "pit.csv",
+    "predictions.csv",
+    "resolved.yaml",
+    "samples.h5",
+    "table.md",
+    "table.tex",
+    "training.csv",
+]
 
 
 def read_points(chunk):
@@ -35,7 +46,7 @@ def read_points(chunk):
     data = chunk.read_bytes()
     parameters, _, samples = struct.unpack("<3Q", data[32:56])
     size = 8 * parameters
-    return [data[56 + i * size:56 + (i + 1) * size] for i in range(samples)]
+    return [data[56 + i * size : 56 + (i + 1) * size] for i in range(samples)]
 
 
 class SweepTestCase(OwnFolderTestCase):
@@ -49,8 +60,12 @@ class SweepTestCase(OwnFolderTestCase):
         shutil.copytree(run_once(CART, *SWEEP)[0], self.folder / name)
 
     def start(self, name, *arguments, sweep=SWEEP):
-        return subprocess.Popen([TWINMAP, "run", CART, *sweep, *arguments, "--out", str(self.folder / name)],
-                                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        return subprocess.Popen(
+            [TWINMAP, "run", CART, *sweep, *arguments, "--out", str(self.folder / name)],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
 
     def list_cases(self, name):
         return sorted(path.name for path in (self.folder / name / "cases").iterdir())
@@ -80,37 +95,77 @@ class SweepTestCase(OwnFolderTestCase):
 
 class Simulations(SweepTestCase):
     def test_sizes_noise_levels_and_seeds_need_the_largest_design_and_the_test_set_of_each_seed(self):
-        tiny_maps = ["inverse_map.gp={approximation: sgpr, inducing: 5, subset: 10, refine_evaluations: 0, starts: 1}",
-                     "noise.replicates=1"]
-        self.run_sweep("run", file=CHAIN, sweep=[*QUICK, *tiny_maps, "design.test.samples=50",
-                                                 "design.train.samples=50,100,250,500,1000", "noise.scale=0.25,0.5,1,2",
-                                                 "seed=1..5"])
+        tiny_maps = [
+            "inverse_map.gp={approximation: sgpr, inducing: 5, subset: 10, refine_evaluations: 0, starts: 1}",
+            "noise.replicates=1",
+        ]
+        self.run_sweep(
+            "run",
+            file=CHAIN,
+            sweep=[
+                *QUICK,
+                *tiny_maps,
+                "design.test.samples=50",
+                "design.train.samples=50,100,250,500,1000",
+                "noise.scale=0.25,0.5,1,2",
+                "seed=1..5",
+            ],
+        )
         self.assertEqual(len(self.list_cases("run")), 5 * 4 * 5)
         self.assertEqual(len(self.get_stored("run")), (1000 + 50) * 5)
         self.assertIn("5250 of 5250 stored", call("status", self.folder / "run").stdout)
 
     def test_a_case_is_bit_for_bit_the_run_of_it_alone(self):
         """Also where cases differ in what they see of the response: they share the simulations."""
-        features = ["features[0].samples.interval=0.05,0.07", "features[0].samples.count=60", *SMALL,
-                    "transform=[z_score],[whiten, principal_components]", "design.train.samples=12"]
+        features = [
+            "features[0].samples.interval=0.05,0.07",
+            "features[0].samples.count=60",
+            *SMALL,
+            "transform=[z_score],[whiten, principal_components]",
+            "design.train.samples=12",
+        ]
         self.run_sweep("run", sweep=features)
         self.assertEqual(len(self.get_stored("run")), 12 + 8)
         for interval in ("0.05", "0.07"):
             for i, transform in enumerate(("[z_score]", "[whiten, principal_components]")):
-                alone = [*SMALL, "features[0].samples.count=60", f"features[0].samples.interval={interval}",
-                         f"transform={transform}", "design.train.samples=12"]
+                alone = [
+                    *SMALL,
+                    "features[0].samples.count=60",
+                    f"features[0].samples.interval={interval}",
+                    f"transform={transform}",
+                    "design.train.samples=12",
+                ]
                 self.run_sweep(f"alone{interval}{i}", sweep=alone)
-                self.assert_same_files(f"run/cases/interval-{interval}_transform-{i + 1}", f"alone{interval}{i}", RESULTS)
+                self.assert_same_files(
+                    f"run/cases/interval-{interval}_transform-{i + 1}", f"alone{interval}{i}", RESULTS
+                )
 
     def test_cases_share_the_stencils_of_their_test_points(self):
-        sweep = [*LIMITS, "noise.scale=0,0.5,1", "features[0].samples.interval=0.05,0.07", "features[0].samples.count=60",
-                 "transform=[z_score]", "design.train.samples=12,16"]
+        sweep = [
+            *LIMITS,
+            "noise.scale=0,0.5,1",
+            "features[0].samples.interval=0.05,0.07",
+            "features[0].samples.count=60",
+            "transform=[z_score]",
+            "design.train.samples=12,16",
+        ]
         self.run_sweep("run", sweep=sweep)
         self.assertEqual(list(map(len, self.get_all_stored("run"))), [16 + 8, 8])
         self.assertIn("stencils of test points: 8 of 8 stored", call("status", self.folder / "run").stdout)
-        self.run_sweep("alone", sweep=[*LIMITS, "noise.scale=0.5", "features[0].samples.interval=0.07",
-                                       "features[0].samples.count=60", "transform=[z_score]", "design.train.samples=12"])
-        self.assert_same_files("run/cases/scale-0.5_interval-0.07_samples-12", "alone", [*RESULTS, "identifiability.csv"])
+        self.run_sweep(
+            "alone",
+            sweep=[
+                *LIMITS,
+                "noise.scale=0.5",
+                "features[0].samples.interval=0.07",
+                "features[0].samples.count=60",
+                "transform=[z_score]",
+                "design.train.samples=12",
+            ],
+        )
+        self.assert_same_files(
+            "run/cases/scale-0.5_interval-0.07_samples-12", "alone", [*RESULTS, "identifiability.csv"]
+        )
         self.run_sweep("noiseless", sweep=[*LIMITS, "noise.scale=0", "transform=[z_score]", "design.train.samples=12"])
         self.assertEqual(self.get_stored("noiseless", stencils=True), set())
 
@@ -124,16 +179,31 @@ class Simulations(SweepTestCase):
         self.assertEqual(len(self.get_stored("run", stencils=True)), 2 * 8)
 
     def test_exact_derivatives_need_no_stencils(self):
-        sweep = [*LIMITS, "simulation.engine=lanes", "noise.scale=0.5,1", "design.train.samples=12",
-                 "features[0].samples.interval=0.05,0.07", "features[0].samples.count=60"]
+        sweep = [
+            *LIMITS,
+            "simulation.engine=lanes",
+            "noise.scale=0.5,1",
+            "design.train.samples=12",
+            "features[0].samples.interval=0.05,0.07",
+            "features[0].samples.count=60",
+        ]
         self.assertNotIn("limits", call("plan", CART, *sweep, "--out", self.folder / "run").stdout)
         self.run_sweep("run", sweep=sweep)
         self.assertEqual(list(map(len, self.get_all_stored("run"))), [12 + 8, 0])
         self.assertEqual(len(list(self.folder.glob("run/chunks/*"))), 1)
         self.assertNotIn("stencils", (self.folder / "run/run.log").read_text())
         self.assertNotIn("limits", call("status", self.folder / "run").stdout)
-        self.run_sweep("alone", sweep=[*LIMITS, "simulation.engine=lanes", "noise.scale=0.5", "design.train.samples=12",
-                                       "features[0].samples.interval=0.07", "features[0].samples.count=60"])
+        self.run_sweep(
+            "alone",
+            sweep=[
+                *LIMITS,
+                "simulation.engine=lanes",
+                "noise.scale=0.5",
+                "design.train.samples=12",
+                "features[0].samples.interval=0.07",
+                "features[0].samples.count=60",
+            ],
+        )
         self.assert_same_files("run/cases/scale-0.5_interval-0.07", "alone", [*RESULTS, "identifiability.csv"])
 
     def test_results_are_bitwise_the_same_for_any_number_of_threads_and_any_memory(self):
@@ -151,16 +221,24 @@ class Tables(SweepTestCase):
         self.assertEqual(result.stdout, (self.folder / "run/table.md").read_text())
         rows = read_csv(self.folder / "run/sweep.csv")
         self.assertEqual(len(rows), 2 * 2 * 3 * 3)
-        self.assertEqual(list(rows[0])[:6], ["case", "design.train.samples", "noise.scale", "seed", "parameter", "unit"])
+        self.assertEqual(
+            list(rows[0])[:6], ["case", "design.train.samples", "noise.scale", "seed", "parameter", "unit"]
+        )
         for row in rows:
-            metrics = [m for m in read_csv(self.folder / "run/cases" / row["case"] / "metrics.csv")
-                       if m["parameter"] == row["parameter"]]
+            metrics = [
+                m
+                for m in read_csv(self.folder / "run/cases" / row["case"] / "metrics.csv")
+                if m["parameter"] == row["parameter"]
+            ]
             self.assertEqual({key: row[key] for key in metrics[0]}, metrics[0])
         summary = read_csv(self.folder / "run/summary.csv")
         self.assertEqual(len(summary), 2 * 2 * 3)
         for row in summary:
-            values = [float(r["sd_pct"]) for r in rows
-                      if all(r[key] == row[key] for key in ("design.train.samples", "noise.scale", "parameter"))]
+            values = [
+                float(r["sd_pct"])
+                for r in rows
+                if all(r[key] == row[key] for key in ("design.train.samples", "noise.scale", "parameter"))
+            ]
             self.assertEqual(row["cases"], "3")
             self.assertAlmostEqual(float(row["sd_pct"]), statistics.mean(values), 9)
             self.assertAlmostEqual(float(row["sd_pct_se"]), statistics.stdev(values) / 3**0.5, 9)
@@ -228,16 +306,24 @@ class Continuing(SweepTestCase):
         self.assert_same_sweeps("run", "undisturbed")
 
     def wait_for_stencils(self, name, child):
-        while child.poll() is None and not any("\nstencils:" in content.read_text() for content in
-                                               (self.folder / name).glob("chunks/*/content.yaml")):
+        while child.poll() is None and not any(
+            "\nstencils:" in content.read_text() for content in (self.folder / name).glob("chunks/*/content.yaml")
+        ):
             time.sleep(0.002)
 
     def find_stage(self, name):
         """Of a sweep KILLED that was killed, by what it left."""
         samples, stencils = self.get_all_stored(name)
         complete = len(list(self.folder.glob(f"{name}/cases/*/report.html")))
-        return ("samples" if len(samples) < 2 * (16 + 60) else "stencils" if len(stencils) < 2 * 60 else
-                "cases" if complete < 8 else "tables")
+        return (
+            "samples"
+            if len(samples) < 2 * (16 + 60)
+            else "stencils"
+            if len(stencils) < 2 * 60
+            else "cases"
+            if complete < 8
+            else "tables"
+        )
 
     def test_a_full_disk_is_named_and_with_more_room_the_sweep_continues(self):
         probe = subprocess.run(["unshare", "-rm", "mount", "-t", "tmpfs", "none", self.folder], capture_output=True)
@@ -250,7 +336,9 @@ class Continuing(SweepTestCase):
                 self.fill_disk(f"disk{part}", int(part * size), f"run{part}")
                 kept = self.get_all_stored(f"run{part}")
                 self.run_sweep(f"run{part}", sweep=FULL)
-                for before, now, whole in zip(kept, self.get_all_stored(f"run{part}"), self.get_all_stored("undisturbed")):
+                for before, now, whole in zip(
+                    kept, self.get_all_stored(f"run{part}"), self.get_all_stored("undisturbed")
+                ):
                     self.assertLessEqual(before, now)
                     self.assertEqual(now, whole)
                 self.assert_same_sweeps(f"run{part}", "undisturbed")
@@ -264,7 +352,9 @@ class Continuing(SweepTestCase):
         done = subprocess.run(["unshare", "-rm", "sh", "-c", script], capture_output=True, text=True, timeout=600)
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertRegex(done.stderr, r"twinmap: error: \S+: cannot be \w+[\w ]*: No space left on device")
-        self.assertIn("with more room the same command continues:\n  twinmap run", done.stderr.replace(TWINMAP, "twinmap"))
+        self.assertIn(
+            "with more room the same command continues:\n  twinmap run", done.stderr.replace(TWINMAP, "twinmap")
+        )
 
     def test_a_store_elsewhere_is_found_by_status_and_verify(self):
         self.run_sweep("run", "--store", self.folder / "store", sweep=[*LIMITS, "design.train.samples=8,16"])
@@ -348,8 +438,12 @@ class ProgressShown(SweepTestCase):
     def run_on_terminal(self, name, *arguments):
         """What a run writes to a terminal as its stderr."""
         terminal, stderr = pty.openpty()
-        child = subprocess.Popen([TWINMAP, "run", CART, *SWEEP, *arguments, "--out", str(self.folder / name)],
-                                 stdout=subprocess.DEVNULL, stderr=stderr, env={**os.environ, "TERM": "xterm"})
+        child = subprocess.Popen(
+            [TWINMAP, "run", CART, *SWEEP, *arguments, "--out", str(self.folder / name)],
+            stdout=subprocess.DEVNULL,
+            stderr=stderr,
+            env={**os.environ, "TERM": "xterm"},
+        )
         os.close(stderr)
         shown = b""
         try:
@@ -408,8 +502,10 @@ class Plan(SweepTestCase):
         self.assertIn(f"stencils of 8 points needed, 0 stored, 8 to do: {8 * (2 * 3 + 1)} simulations", plan)
         store = ["--store", self.folder / "run/chunks"]
         self.run_sweep("limits", *store, sweep=[*LIMITS, "design.train.samples=8,24"])
-        self.assertIn("stencils of 8 points needed, 8 stored, 0 to do: 0 simulations", self.plan(
-            *LIMITS, "design.train.samples=8,24,30", *store))
+        self.assertIn(
+            "stencils of 8 points needed, 8 stored, 0 to do: 0 simulations",
+            self.plan(*LIMITS, "design.train.samples=8,24,30", *store),
+        )
 
     def test_warns_of_plain_latin_hypercubes(self):
         plan = self.plan(*SWEEP, "design.train.method=latin_hypercube")
@@ -418,8 +514,15 @@ class Plan(SweepTestCase):
         self.assertNotIn("warning", self.plan(*SWEEP))
 
     def test_disk_is_about_what_is_written(self):
-        sizes = [*SMALL, "design.train.samples=100,200", "noise.replicates=2", "inverse_map.gp.max_evaluations=2",
-                 "evaluation.limit=true", "design.test.samples=60", DIFFERENCES]
+        sizes = [
+            *SMALL,
+            "design.train.samples=100,200",
+            "noise.replicates=2",
+            "inverse_map.gp.max_evaluations=2",
+            "evaluation.limit=true",
+            "design.test.samples=60",
+            DIFFERENCES,
+        ]
         number, unit = re.search(r"disk:        about ([\d.e+]+) (\w+)", self.plan(*sizes)).groups()
         planned = float(number) * {"MiB": 2**20, "GiB": 2**30}[unit]
         self.run_sweep("run", sweep=sizes)
@@ -440,8 +543,9 @@ class Failures(SweepTestCase):
         failures = read_csv(self.folder / "run/failed_cases.csv")
         self.assertEqual([f["case"] for f in failures], ["max_steps-3"])
         self.assertIn("step limit", failures[0]["reason"])
-        self.assertEqual({row["case"] for row in read_csv(self.folder / "run/sweep.csv")},
-                         {"max_steps-100000", "max_steps-90000"})
+        self.assertEqual(
+            {row["case"] for row in read_csv(self.folder / "run/sweep.csv")}, {"max_steps-100000", "max_steps-90000"}
+        )
         self.assertIn("2 of 3 complete, 1 failed, 0 missing", call("status", self.folder / "run").stdout)
         again = call(*shlex.split(failures[0]["command"])[1:])
         self.assertEqual(again.returncode, 1)
@@ -454,14 +558,24 @@ class Failures(SweepTestCase):
             failures = read_csv(self.folder / "run/failed_cases.csv")
             self.assertEqual([f["case"] for f in failures], ["max_steps-3"])
             self.assertRegex(failures[0]["reason"], "40 of 40 train samples failed, .*step limit")
-            stored = {content.parent: sum(len(read_points(chunk)) for chunk in content.parent.glob("*.chunk"))
-                      for content in self.folder.glob("run/chunks/*/content.yaml")}
+            stored = {
+                content.parent: sum(len(read_points(chunk)) for chunk in content.parent.glob("*.chunk"))
+                for content in self.folder.glob("run/chunks/*/content.yaml")
+            }
             # No stencils, a dozen and the few test samples; stencils and samples of the other.
             self.assertEqual(sorted(stored.values()), [0, 8, 12 + 8, 40 + 8], stored)
 
     def test_fail_fast_begins_no_other(self):
-        result = self.run_sweep("run", "--fail-fast", "--threads", 1, "design.train.samples=8,16",
-                                "simulation.max_steps=3,100000", sweep=SMALL, code=1)
+        result = self.run_sweep(
+            "run",
+            "--fail-fast",
+            "--threads",
+            1,
+            "design.train.samples=8,16",
+            "simulation.max_steps=3,100000",
+            sweep=SMALL,
+            code=1,
+        )
         self.assertEqual(len(read_csv(self.folder / "run/failed_cases.csv")), 1)
         self.assertLess(len(self.list_cases("run")), 4)
         self.assertNotEqual(result.returncode, 0)

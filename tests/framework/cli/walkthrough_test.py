@@ -43,8 +43,17 @@ class Walkthrough(RunTestCase):
         self.assertIn("</html>", (self.run_folder / "report.html").read_text())
 
     def test_the_map_is_exported(self):
-        self.succeed("export", self.run_folder, "--c", self.folder / "c", "--float", "--fmu", self.folder / "map.fmu",
-                     "--json", self.folder / "map.json")
+        self.succeed(
+            "export",
+            self.run_folder,
+            "--c",
+            self.folder / "c",
+            "--float",
+            "--fmu",
+            self.folder / "map.fmu",
+            "--json",
+            self.folder / "map.json",
+        )
         self.assertIn("twinmap_infer", (self.folder / "c/twinmap_map.h").read_text())
         self.assertEqual(json.loads((self.folder / "map.json").read_text())["format"], "twinmap map")
         self.assertIn("trigger", self.succeed("variables", self.folder / "map.fmu"))
@@ -71,8 +80,16 @@ class Walkthrough(RunTestCase):
 
     def test_other_kinds_of_features_and_maps_are_run(self):
         self.succeed("run", CHAIN, *TINY, "--out", self.folder / "modes")
-        self.succeed("run", self.FILE, *TINY, "evaluation.limit=false", "inverse_map.gp.approximation=sgpr",
-                     "inverse_map.gp.inducing=10", "--out", self.folder / "sparse")
+        self.succeed(
+            "run",
+            self.FILE,
+            *TINY,
+            "evaluation.limit=false",
+            "inverse_map.gp.approximation=sgpr",
+            "inverse_map.gp.inducing=10",
+            "--out",
+            self.folder / "sparse",
+        )
 
 
 if __name__ == "__main__":

@@ -45,14 +45,19 @@ class Reading(unittest.TestCase):
         self.assertEqual([q.name for q in experiment.outputs], ["y", "theta"])
         self.assertEqual(len(experiment.features), 200)
         np.testing.assert_allclose(experiment.times, 0.05 * np.arange(1, 101), atol=1e-12)
-        self.assertEqual(experiment.to_yaml(), "".join(
-            line for line in call("check", TABLE_1).stdout.splitlines(True) if not line.startswith("# simulated")))
+        self.assertEqual(
+            experiment.to_yaml(),
+            "".join(
+                line for line in call("check", TABLE_1).stdout.splitlines(True) if not line.startswith("# simulated")
+            ),
+        )
         self.assertIn("k_theta", experiment._repr_html_())
 
     def test_override_takes_texts_mappings_and_keywords(self):
         experiment = twinmap.Experiment.from_file(TABLE_1)
-        other = experiment.override("noise.scale=2", {"design.train.samples": 100,
-                                                      "parameters.k_y.bounds": np.array([6.0, 9.0])}, seed=7)
+        other = experiment.override(
+            "noise.scale=2", {"design.train.samples": 100, "parameters.k_y.bounds": np.array([6.0, 9.0])}, seed=7
+        )
         self.assertEqual(other.seed, 7)
         self.assertEqual(other.parameters[2].upper, 9)
         self.assertIn("samples: 100", other.to_yaml())
@@ -63,14 +68,16 @@ class Reading(unittest.TestCase):
         with self.assertRaises(twinmap.ExperimentError) as caught:
             twinmap.Experiment.from_yaml(LINEAR.replace("stiffness: k", "stiffness: kk"), "cart.yaml")
         error = caught.exception
-        self.assertEqual((error.file, error.line, error.key, error.value),
-                         ("cart.yaml", 6, "system.springs[0].stiffness", "kk"))
+        self.assertEqual(
+            (error.file, error.line, error.key, error.value), ("cart.yaml", 6, "system.springs[0].stiffness", "kk")
+        )
         self.assertIn("unknown name", error.rule)
         self.assertTrue(str(error).startswith(f"cart.yaml:6:{error.column}: system.springs[0].stiffness: 'kk' "))
         with self.assertRaises(twinmap.ExperimentError) as caught:
             twinmap.Experiment.from_file(TABLE_1).override("seed=-1")
-        self.assertEqual((caught.exception.file, caught.exception.line, caught.exception.key),
-                         ("command line", None, "seed"))
+        self.assertEqual(
+            (caught.exception.file, caught.exception.line, caught.exception.key), ("command line", None, "seed")
+        )
         with self.assertRaises(ValueError):  # an ExperimentError is one
             twinmap.Experiment.from_file("missing.yaml")
 
@@ -98,8 +105,13 @@ class Simulating(unittest.TestCase):
         points = np.array([[1.0, 2e-4, 6.0, 0.03], [1.0, 2e-4, 7.0, 0.03]])
         expected = experiment.simulate(points).rows
         frame = pd.DataFrame(points, columns=["d_y", "d_theta", "k_y", "k_theta"])
-        for form in [points.tolist(), np.asfortranarray(points), frame, frame[["k_y", "k_theta", "d_theta", "d_y"]],
-                     {"k_y": [6, 7], "k_theta": 0.03, "d_theta": 2e-4}]:
+        for form in [
+            points.tolist(),
+            np.asfortranarray(points),
+            frame,
+            frame[["k_y", "k_theta", "d_theta", "d_y"]],
+            {"k_y": [6, 7], "k_theta": 0.03, "d_theta": 2e-4},
+        ]:
             np.testing.assert_array_equal(experiment.simulate(form).rows, expected)
         with self.assertRaisesRegex(twinmap.ExperimentError, "'k_x' is none of"):
             experiment.simulate({"k_x": 1})
@@ -124,8 +136,9 @@ class Simulating(unittest.TestCase):
 
     def test_results_do_not_depend_on_the_threads(self):
         points = np.linspace(80, 120, 50)[:, np.newaxis]
-        np.testing.assert_array_equal(self.experiment.simulate(points, threads=1).rows,
-                                      self.experiment.simulate(points, threads=3).rows)
+        np.testing.assert_array_equal(
+            self.experiment.simulate(points, threads=1).rows, self.experiment.simulate(points, threads=3).rows
+        )
         with self.assertRaisesRegex(ValueError, "threads"):
             self.experiment.simulate(points, threads=0)
 
@@ -153,8 +166,20 @@ class Simulating(unittest.TestCase):
         source = SOURCE / "experiments/fmu"
         with tempfile.TemporaryDirectory(prefix="twinmap_test_") as folder:
             library = Path(folder) / "oscillator.so"
-            subprocess.run(["cc", "-shared", "-fPIC", "-O2", f"-I{SOURCE}/framework/models/fmu/headers", source / "oscillator.c",
-                            "-o", library, "-lm"], check=True)
+            subprocess.run(
+                [
+                    "cc",
+                    "-shared",
+                    "-fPIC",
+                    "-O2",
+                    f"-I{SOURCE}/framework/models/fmu/headers",
+                    source / "oscillator.c",
+                    "-o",
+                    library,
+                    "-lm",
+                ],
+                check=True,
+            )
             with zipfile.ZipFile(Path(folder) / "oscillator.fmu", "w") as archive:
                 archive.write(source / "modelDescription.xml", "modelDescription.xml")
                 archive.write(library, "binaries/linux64/oscillator.so")
@@ -162,7 +187,9 @@ class Simulating(unittest.TestCase):
             responses = twinmap.Experiment.from_file(file).simulate({}, threads=2)
             expected = read_columns(call("simulate", file).stdout)
         name = responses.outputs[0]
-        np.testing.assert_array_equal(responses[name][0], next(v for k, v in expected.items() if k.split(" ")[0] == name))
+        np.testing.assert_array_equal(
+            responses[name][0], next(v for k, v in expected.items() if k.split(" ")[0] == name)
+        )
 
     def test_models_that_are_programs(self):
         plant = twinmap.Experiment.from_file(SOURCE / "experiments/python_plant/python_plant.yaml")
@@ -175,8 +202,13 @@ class Running(FolderTestCase):
     def test_leaves_what_the_command_leaves(self):
         experiment = twinmap.Experiment.from_file(BEST).override(QUICK)
         results = experiment.run(self.folder / "python")
-        call("run", BEST, *(f"{key}={json.dumps(value)}" for key, value in QUICK.items()),
-             "--out", self.folder / "command")
+        call(
+            "run",
+            BEST,
+            *(f"{key}={json.dumps(value)}" for key, value in QUICK.items()),
+            "--out",
+            self.folder / "command",
+        )
         names = {file.name for file in (self.folder / "command").glob("*")}
         self.assertEqual(names, {file.name for file in results.folder.glob("*")})
         for name in names - {"provenance.json", "run.log", "report.html", "lock", "figures", "chunks"}:
@@ -186,8 +218,12 @@ class Running(FolderTestCase):
     def test_tells_its_progress(self):
         calls = []
         experiment = twinmap.Experiment.from_file(TABLE_1).override(QUICK, SLOW)
-        experiment.run(self.folder / "run", progress=lambda progress: calls.append(
-            (progress.stage, progress.done, progress.total, threading.current_thread() is threading.main_thread())))
+        experiment.run(
+            self.folder / "run",
+            progress=lambda progress: calls.append(
+                (progress.stage, progress.done, progress.total, threading.current_thread() is threading.main_thread())
+            ),
+        )
         self.assertTrue(calls)
         self.assertTrue(all(0 <= done <= total and main for _, done, total, main in calls), calls)
 
@@ -215,8 +251,9 @@ class Running(FolderTestCase):
         results, threads = [], []
         for seed in range(1, 5):
             experiment = twinmap.Experiment.from_file(TABLE_1).override(QUICK, seed=seed)
-            threads.append(threading.Thread(
-                target=lambda e=experiment, s=seed: results.append(e.run(self.folder / f"run{s}"))))
+            threads.append(
+                threading.Thread(target=lambda e=experiment, s=seed: results.append(e.run(self.folder / f"run{s}")))
+            )
         for thread in threads:
             thread.start()
         for thread in threads:
@@ -250,8 +287,11 @@ except KeyboardInterrupt:
 
     def interrupt_after(self, delay, file):
         """Seconds until KeyboardInterrupt."""
-        process = subprocess.Popen([sys.executable, "-c", self.CODE, file, self.folder / f"{file.stem}{delay}"],
-                                   stdout=subprocess.PIPE, text=True)
+        process = subprocess.Popen(
+            [sys.executable, "-c", self.CODE, file, self.folder / f"{file.stem}{delay}"],
+            stdout=subprocess.PIPE,
+            text=True,
+        )
         self.addCleanup(process.stdout.close)
         self.assertEqual(process.stdout.readline(), "begins\n")
         time.sleep(delay)

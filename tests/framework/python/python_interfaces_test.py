@@ -36,10 +36,20 @@ design: {train: {samples: 60}, test: {samples: 60}}
 evaluation: {limit: false}
 """
 # The same response for e and -e: two values fit.
-SIGN = CART.replace("name: cart", "name: sign").replace("k: {bounds: [80, 120]}", "e: {bounds: [-1, 1], relative_to: range}").replace("stiffness: k", "stiffness: 80 + 40 * e^2")
+SIGN = (
+    CART.replace("name: cart", "name: sign")
+    .replace("k: {bounds: [80, 120]}", "e: {bounds: [-1, 1], relative_to: range}")
+    .replace("stiffness: k", "stiffness: 80 + 40 * e^2")
+)
 # Of two springs in parallel the response determines the sum alone: what is known of each is nearly uniform.
-SPRINGS = CART.replace("name: cart", "name: springs").replace("k: {bounds: [80, 120]}", "k: {bounds: [40, 60]}, other: {bounds: [40, 60]}").replace(
-    "springs: [{coordinate: y, stiffness: k}]", "springs: [{coordinate: y, stiffness: k}, {coordinate: y, stiffness: other}]")
+SPRINGS = (
+    CART.replace("name: cart", "name: springs")
+    .replace("k: {bounds: [80, 120]}", "k: {bounds: [40, 60]}, other: {bounds: [40, 60]}")
+    .replace(
+        "springs: [{coordinate: y, stiffness: k}]",
+        "springs: [{coordinate: y, stiffness: k}, {coordinate: y, stiffness: other}]",
+    )
+)
 NETWORK = "inverse_map={network: {samples_from: simulations, hidden: [8], steps: %d, batch: 256%s}}"
 # name -> (experiment, overrides of its run, refine, method)
 KINDS = {
@@ -109,8 +119,10 @@ class Library:
         get("twinmap_get_interval", self.lower, self.upper)
         get("twinmap_get_covariance", self.covariance)
         self.method = library.twinmap_get_method(inferrer).decode()
-        self.statuses = [library.twinmap_get_status(inferrer, ctypes.c_size_t(i)).decode()
-                         for i in range(library.twinmap_count_statuses(inferrer))]
+        self.statuses = [
+            library.twinmap_get_status(inferrer, ctypes.c_size_t(i)).decode()
+            for i in range(library.twinmap_count_statuses(inferrer))
+        ]
         self.json = json.loads(library.twinmap_get_json(inferrer))
         library.twinmap_close_inferrer(inferrer)
         library.twinmap_close(map_)
@@ -142,7 +154,9 @@ class Interfaces(FolderTestCase):
                 run, measured, expected = self.train(kind)
                 self.assertEqual(expected["method"], method)
                 self.check_intervals(kind, expected["parameters"])
-                self.check_csv_and_text(self.infer(run, measured, refine, "--csv"), self.infer(run, measured, refine), expected)
+                self.check_csv_and_text(
+                    self.infer(run, measured, refine, "--csv"), self.infer(run, measured, refine), expected
+                )
                 library = Library(run, refine, measured, len(expected["parameters"]))
                 self.assertEqual(library.json, expected)
                 self.check_values(library, expected, np.column_stack([library.lower, library.upper]))
@@ -159,8 +173,10 @@ class Interfaces(FolderTestCase):
     def check_intervals(self, kind, parameters):
         """That the kinds are what their names say."""
         for estimate in parameters.values():
-            factors = [(estimate["mean"] - estimate["lower"]) / estimate["sd"],
-                       (estimate["upper"] - estimate["mean"]) / estimate["sd"]]
+            factors = [
+                (estimate["mean"] - estimate["lower"]) / estimate["sd"],
+                (estimate["upper"] - estimate["mean"]) / estimate["sd"],
+            ]
             if kind not in ("mixture", "not normal"):
                 np.testing.assert_allclose(factors, 1.959963984540054, rtol=1e-9)
         if kind == "not normal":
@@ -172,14 +188,19 @@ class Interfaces(FolderTestCase):
         rows = list(csv.DictReader(io.StringIO(table)))
         self.assertEqual([row["parameter"] for row in rows], list(expected["parameters"]))
         for row, estimate in zip(rows, expected["parameters"].values()):
-            self.assertEqual([float(row[key]) for key in ("mean", "sd", "lower", "upper")],
-                             [estimate[key] for key in ("mean", "sd", "lower", "upper")])
+            self.assertEqual(
+                [float(row[key]) for key in ("mean", "sd", "lower", "upper")],
+                [estimate[key] for key in ("mean", "sd", "lower", "upper")],
+            )
             self.assertEqual(row["method"], expected["method"])
             self.assertEqual(row["status"].split(), expected.get("statuses", []))
         for name, estimate in expected["parameters"].items():
             line = next(line for line in text.splitlines() if line.split()[:1] == [name])
             shown = np.array([float(number) for number in re.findall(r"(?<= )-?\d[\d.]*(?:e[+-]?\d+)?", line)])
-            for value in [estimate["mean"], *np.ravel(estimate.get("intervals95", [estimate["lower"], estimate["upper"]]))]:
+            for value in [
+                estimate["mean"],
+                *np.ravel(estimate.get("intervals95", [estimate["lower"], estimate["upper"]])),
+            ]:
                 self.assertLess(np.min(np.abs(shown - value)), 1e-4 * estimate["sd"] + 6e-6 * abs(value), line)
 
     def check_values(self, found, expected, interval):
@@ -194,8 +215,10 @@ class Interfaces(FolderTestCase):
     def check_frame(self, inference, expected):
         frame = inference.to_frame()
         for name, estimate in expected["parameters"].items():
-            self.assertEqual(list(frame.loc[name, ["mean", "stddev", "lower", "upper"]]),
-                             [estimate[key] for key in ("mean", "sd", "lower", "upper")])
+            self.assertEqual(
+                list(frame.loc[name, ["mean", "stddev", "lower", "upper"]]),
+                [estimate[key] for key in ("mean", "sd", "lower", "upper")],
+            )
 
     def check_exported(self, found, estimate):
         for value, key in zip(found, ("mean", "sd", "lower", "upper")):
@@ -227,8 +250,10 @@ class Interfaces(FolderTestCase):
         with zipfile.ZipFile(file) as archive:
             archive.extractall(folder)
         root = ElementTree.parse(folder / "modelDescription.xml").getroot()
-        references = {variable.get("name"): int(variable.get("valueReference")) for variable in root.find("ModelVariables")}
-        library, = folder.glob("binaries/*/*.so")
+        references = {
+            variable.get("name"): int(variable.get("valueReference")) for variable in root.find("ModelVariables")
+        }
+        (library,) = folder.glob("binaries/*/*.so")
         block = Block2(library, root)
         samples = pd.read_csv(measured)
         values = samples[samples.t > 0.04].y.to_numpy()

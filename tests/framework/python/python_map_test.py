@@ -70,7 +70,9 @@ class Predicting(TwoBeams):
         self.assertEqual(library.twinmap_open(os.fsencode(self.results.folder), ctypes.byref(handle)), 0)
         mean, stddev = np.empty((2, len(self.features), 4))
         pointers = [array.ctypes.data_as(ctypes.POINTER(ctypes.c_double)) for array in (self.features, mean, stddev)]
-        self.assertEqual(library.twinmap_predict(handle, pointers[0], None, ctypes.c_size_t(len(mean)), 1, *pointers[1:]), 0)
+        self.assertEqual(
+            library.twinmap_predict(handle, pointers[0], None, ctypes.c_size_t(len(mean)), 1, *pointers[1:]), 0
+        )
         library.twinmap_close(handle)
         for by_python, by_library in zip(self.map.predict(self.features, return_std=True), (mean, stddev)):
             np.testing.assert_array_equal(by_python, by_library)
@@ -132,8 +134,15 @@ class Inferring(TwoBeams):
         path = self.folder / "m.csv"
         frame.to_csv(path, index=False)
         millimetres = frame.assign(**{"y [mm]": 1e3 * frame.y, "comment": "x"}).drop(columns="y")
-        for form in [path, str(path), frame.set_index("t"), frame.to_dict("list"), millimetres,
-                     {name: frame[name].to_numpy() for name in frame}, self.experiment.extract(self.measurement)[0]]:
+        for form in [
+            path,
+            str(path),
+            frame.set_index("t"),
+            frame.to_dict("list"),
+            millimetres,
+            {name: frame[name].to_numpy() for name in frame},
+            self.experiment.extract(self.measurement)[0],
+        ]:
             answer = self.map.infer(form, refine=False)
             np.testing.assert_allclose(answer.mean, expected.mean, rtol=1e-9)
         later = frame.assign(t=frame.t + 10)
@@ -141,12 +150,14 @@ class Inferring(TwoBeams):
 
     def test_says_what_is_wrong_with_a_measurement(self):
         frame = self.measurement.to_frame()
-        for wrong, text in [(frame.drop(columns="theta"), "no column 'theta'"),
-                            (frame.assign(y=np.nan), "finite"),
-                            (frame[:50], "end"),
-                            ({"t": [[0.0]], "y": [1.0], "theta": [1.0]}, "one dimension"),
-                            (np.zeros(3), "200 finite numbers"),
-                            ("missing.csv", "missing.csv")]:
+        for wrong, text in [
+            (frame.drop(columns="theta"), "no column 'theta'"),
+            (frame.assign(y=np.nan), "finite"),
+            (frame[:50], "end"),
+            ({"t": [[0.0]], "y": [1.0], "theta": [1.0]}, "one dimension"),
+            (np.zeros(3), "200 finite numbers"),
+            ("missing.csv", "missing.csv"),
+        ]:
             with self.assertRaisesRegex(twinmap.MeasurementError, text):
                 self.map.infer(wrong)
         with self.assertRaisesRegex(twinmap.ExperimentError, "no input"):
@@ -192,8 +203,11 @@ class KnownInputs(FolderTestCase):
         self.assertLess(abs(mean[0, 0] - 90), 4 * stddev[0, 0])
         same = map_.predict(np.tile(features[1], (3, 1)), inputs=[[0.75]])
         np.testing.assert_allclose(same, np.tile(mean[1], (3, 1)), rtol=1e-12)
-        for known, text in [(None, "'payload' is not given"), ({"payload": 3}, "within the bounds"),
-                            ({"load": 0.5}, "no input")]:
+        for known, text in [
+            (None, "'payload' is not given"),
+            ({"payload": 3}, "within the bounds"),
+            ({"load": 0.5}, "no input"),
+        ]:
             with self.assertRaisesRegex(twinmap.ExperimentError, text):
                 map_.infer(responses.to_frame(1), known=known)
 

@@ -26,8 +26,9 @@ class Notebook(unittest.TestCase):
         shutil.copytree(SOURCE / "experiments/two_beam", work)
         notebook = nbformat.read(SOURCE / NOTEBOOK, as_version=4)
         os.environ["PYDEVD_DISABLE_FILE_VALIDATION"] = "1"  # no words of the debugger
-        nbclient.NotebookClient(notebook, timeout=600, kernel_name="python3",
-                                resources={"metadata": {"path": str(work)}}).execute()
+        nbclient.NotebookClient(
+            notebook, timeout=600, kernel_name="python3", resources={"metadata": {"path": str(work)}}
+        ).execute()
         cls.code = [cell for cell in notebook.cells if cell.cell_type == "code"]
 
     def find_output(self, kind, text):

@@ -25,7 +25,11 @@ def list_public():
     for name in twinmap.__all__:
         value = getattr(twinmap, name)
         yield name, value
-        if inspect.isclass(value) and value.__module__.startswith("twinmap._") and value.__module__ != "twinmap._twinmap":
+        if (
+            inspect.isclass(value)
+            and value.__module__.startswith("twinmap._")
+            and value.__module__ != "twinmap._twinmap"
+        ):
             for key, member in vars(value).items():
                 if not key.startswith("_"):
                     yield f"{name}.{key}", member.fget if isinstance(member, property) else member
@@ -57,9 +61,23 @@ class Typing(unittest.TestCase):
             user = Path(folder) / "user.py"
             user.write_text(USER)
             result = subprocess.run(
-                [sys.executable, "-m", "mypy", "--strict-optional", "--check-untyped-defs", "--ignore-missing-imports",
-                 "--cache-dir", folder, user, *PACKAGE.glob("*.py")],
-                capture_output=True, text=True, cwd=folder, env={"MYPYPATH": str(PACKAGE.parent), "PATH": "/usr/bin"})
+                [
+                    sys.executable,
+                    "-m",
+                    "mypy",
+                    "--strict-optional",
+                    "--check-untyped-defs",
+                    "--ignore-missing-imports",
+                    "--cache-dir",
+                    folder,
+                    user,
+                    *PACKAGE.glob("*.py"),
+                ],
+                capture_output=True,
+                text=True,
+                cwd=folder,
+                env={"MYPYPATH": str(PACKAGE.parent), "PATH": "/usr/bin"},
+            )
         if "No module named mypy" in result.stderr:
             self.skipTest("mypy is not here")
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)

@@ -13,16 +13,15 @@ def wave(rows, cols, seed):
 
 def make_layers():
     sizes = [INPUTS] + HIDDEN + [2 * TARGETS + TARGETS * (TARGETS - 1) // 2]
-    return [(wave(out, before, k), wave(out, 1, 10 + k)[:, 0])
-            for k, (before, out) in enumerate(zip(sizes, sizes[1:]))]
+    return [(wave(out, before, k), wave(out, 1, 10 + k)[:, 0]) for k, (before, out) in enumerate(zip(sizes, sizes[1:]))]
 
 
 def negative_log_density(head, t):
     """By the precision matrix, where nothing is clamped; works with complex numbers."""
     p = TARGETS
     A = np.eye(p, dtype=complex)
-    A[np.tril_indices(p, -1)] = head[2 * p:]
-    L = np.diag(np.exp(head[p:2 * p])) @ A
+    A[np.tril_indices(p, -1)] = head[2 * p :]
+    L = np.diag(np.exp(head[p : 2 * p])) @ A
     r = L.T @ (t - head[:p])
     size = np.where(r.real < 0, -r, r)
     rho = np.where(size.real <= CLAMP, r * r / 2, CLAMP * (size - CLAMP / 2))
@@ -71,9 +70,9 @@ def soap(rows, cols, largest_side, steps, interval):
             continue
         turned = QL.T @ G @ QR
         M = beta1 * M + (1 - beta1) * G
-        V = beta2 * V + (1 - beta2) * turned ** 2
-        mean = (QL.T @ M @ QR) / (1 - beta1 ** step)
-        N = np.clip(mean / (np.sqrt(V / (1 - beta2 ** step)) + eps), -clamp, clamp)
+        V = beta2 * V + (1 - beta2) * turned**2
+        mean = (QL.T @ M @ QR) / (1 - beta1**step)
+        N = np.clip(mean / (np.sqrt(V / (1 - beta2**step)) + eps), -clamp, clamp)
         W = W - lr * QL @ N @ QR.T
         L, R = beta2 * L + (1 - beta2) * G @ G.T, beta2 * R + (1 - beta2) * G.T @ G
         if step % interval == 0:

@@ -9,8 +9,7 @@ Rasmussen and Williams section 2.7 in plain numpy, with explicit inverses (the p
 import numpy as np
 import sklearn
 from sklearn.gaussian_process import GaussianProcessRegressor
-from sklearn.gaussian_process.kernels import (RBF, ConstantKernel, DotProduct, Matern, RationalQuadratic,
-                                              WhiteKernel)
+from sklearn.gaussian_process.kernels import RBF, ConstantKernel, DotProduct, Matern, RationalQuadratic, WhiteKernel
 
 D, N, M = 3, 12, 5
 SIGNAL, NOISE, LINEAR, SHAPE = 1.3, 0.25, 0.4, 0.8
@@ -18,9 +17,12 @@ SIGNAL, NOISE, LINEAR, SHAPE = 1.3, 0.25, 0.4, 0.8
 
 def stationary(name, scales):
     scale = scales if len(scales) > 1 else scales[0]
-    return {"kSquaredExponential": lambda: RBF(scale), "kMatern32": lambda: Matern(scale, nu=1.5),
-            "kMatern52": lambda: Matern(scale, nu=2.5),
-            "kRationalQuadratic": lambda: RationalQuadratic(scales[0], SHAPE)}[name]()
+    return {
+        "kSquaredExponential": lambda: RBF(scale),
+        "kMatern32": lambda: Matern(scale, nu=1.5),
+        "kMatern52": lambda: Matern(scale, nu=2.5),
+        "kRationalQuadratic": lambda: RationalQuadratic(scales[0], SHAPE),
+    }[name]()
 
 
 def kernel_of(name, scales, linear):
@@ -52,15 +54,18 @@ def explicit(kernel, mean, x, y, z, linear):
     correction = inverse @ h.T @ np.linalg.inv(a) @ h @ inverse
     projector = inverse - correction
     alpha = projector @ y
-    nlml = 0.5 * (y @ alpha + np.linalg.slogdet(covariance)[1] + np.linalg.slogdet(a)[1]
-                  + (len(y) - p) * np.log(2 * np.pi))
-    gradient = [0.5 * np.sum((projector - np.outer(alpha, alpha)) * derivative[:, :, i])
-                for i in range(derivative.shape[2])]
+    nlml = 0.5 * (
+        y @ alpha + np.linalg.slogdet(covariance)[1] + np.linalg.slogdet(a)[1] + (len(y) - p) * np.log(2 * np.pi)
+    )
+    gradient = [
+        0.5 * np.sum((projector - np.outer(alpha, alpha)) * derivative[:, :, i]) for i in range(derivative.shape[2])
+    ]
     cross = kernel(z, x)
     b = np.linalg.solve(a, h @ inverse @ y)
     error = hz - h @ inverse @ cross.T
-    variance = (kernel.diag(z) - np.sum(cross @ inverse * cross, axis=1)
-                + np.sum(error * np.linalg.solve(a, error), axis=0))
+    variance = (
+        kernel.diag(z) - np.sum(cross @ inverse * cross, axis=1) + np.sum(error * np.linalg.solve(a, error), axis=0)
+    )
     return nlml, reorder(kernel, gradient, linear), cross @ alpha + hz.T @ b, np.sqrt(variance)
 
 
@@ -81,17 +86,25 @@ def main():
     z = rng.normal(size=(M, D)) - x.mean(axis=0)
     x = x - x.mean(axis=0)
     y = np.sin(x[:, 0]) + 0.5 * x[:, 1] ** 2 - 0.3 * x[:, 2] + 0.1 * rng.normal(size=N)
-    print("// Written by make_sklearn_golden.py with scikit-learn", sklearn.__version__, "and numpy",
-          np.__version__ + "; do not edit.")
-    print("#pragma once\n\n#include <vector>\n\n#include \"kernels/gp/model.hpp\"\n")
+    print(
+        "// Written by make_sklearn_golden.py with scikit-learn",
+        sklearn.__version__,
+        "and numpy",
+        np.__version__ + "; do not edit.",
+    )
+    print('#pragma once\n\n#include <vector>\n\n#include "kernels/gp/model.hpp"\n')
     print("namespace twinmap::gp::golden {\n")
-    print("struct Case {\n  const char* name;\n  CovarianceFunction covariance;\n  MeanFunction mean;\n"
-          "  bool linear_term;\n  std::vector<int> groups;\n  std::vector<double> length_scales;\n"
-          "  double nlml;\n  std::vector<double> gradient;\n  std::vector<double> predicted_mean;\n"
-          "  std::vector<double> predicted_stddev;\n};\n")
+    print(
+        "struct Case {\n  const char* name;\n  CovarianceFunction covariance;\n  MeanFunction mean;\n"
+        "  bool linear_term;\n  std::vector<int> groups;\n  std::vector<double> length_scales;\n"
+        "  double nlml;\n  std::vector<double> gradient;\n  std::vector<double> predicted_mean;\n"
+        "  std::vector<double> predicted_stddev;\n};\n"
+    )
     print(f"constexpr int kFeatures = {D};\nconstexpr int kSamples = {N};\nconstexpr int kTests = {M};")
-    print(f"constexpr double kSignalStddev = {SIGNAL};\nconstexpr double kNoiseStddev = {NOISE};\n"
-          f"constexpr double kShape = {SHAPE};\nconstexpr double kLinearStddev = {LINEAR};\n")
+    print(
+        f"constexpr double kSignalStddev = {SIGNAL};\nconstexpr double kNoiseStddev = {NOISE};\n"
+        f"constexpr double kShape = {SHAPE};\nconstexpr double kLinearStddev = {LINEAR};\n"
+    )
     for name, values in (("kInputs", x), ("kTestInputs", z), ("kTarget", y)):
         print(f"inline const std::vector<double> {name} = {braces(values)};")
     print("\n// clang-format off\ninline const std::vector<Case> kCases = {")
@@ -102,13 +115,18 @@ def main():
             for linear in (False, True):
                 kernel = kernel_of(covariance, scales, linear)
                 for mean in ("kZero", "kConstant", "kLinear"):
-                    result = (from_sklearn(kernel, x, y, z, linear) if mean == "kZero"
-                              else explicit(kernel, mean, x, y, z, linear))
+                    result = (
+                        from_sklearn(kernel, x, y, z, linear)
+                        if mean == "kZero"
+                        else explicit(kernel, mean, x, y, z, linear)
+                    )
                     groups = "{0, 1, 2}" if len(scales) > 1 else "{}"
                     label = f"{covariance}_{len(scales)}_{'linear' if linear else 'plain'}_{mean}"
-                    print(f'  {{"{label}", CovarianceFunction::{covariance}, MeanFunction::{mean}, '
-                          f'{str(linear).lower()}, {groups}, {braces(scales)},\n   {float(result[0])!r}, '
-                          f'{braces(result[1])},\n   {braces(result[2])},\n   {braces(result[3])}}},')
+                    print(
+                        f'  {{"{label}", CovarianceFunction::{covariance}, MeanFunction::{mean}, '
+                        f"{str(linear).lower()}, {groups}, {braces(scales)},\n   {float(result[0])!r}, "
+                        f"{braces(result[1])},\n   {braces(result[2])},\n   {braces(result[3])}}},"
+                    )
     print("};\n// clang-format on\n\n}  // namespace twinmap::gp::golden")
 
 

@@ -43,13 +43,13 @@ def leave_out(kind, trend, points, values):
 
 def make(kind, trend, points, values, at):
     residual, variance = leave_out(kind, trend, points, values)
-    amplitude = (residual ** 2 / variance[:, None]).mean(axis=0)
+    amplitude = (residual**2 / variance[:, None]).mean(axis=0)
     total = 1 + np.outer(variance, amplitude)
-    density = 0.5 * (np.log(total) + residual ** 2 / total).sum()
+    density = 0.5 * (np.log(total) + residual**2 / total).sum()
     mean, latent = predict(kind, trend, points, values, at)
     s = (((points - at) / LENGTH_SCALES[:, None]) ** 2).sum(axis=0)
     near = np.exp(-s / np.sort(s)[min(16, len(s)) - 1])
-    ratio = (residual ** 2 / amplitude).mean(axis=1) / variance
+    ratio = (residual**2 / amplitude).mean(axis=1) / variance
     factor = ((near * ratio).sum() + 4) / (near.sum() + 4)
     return residual, variance, density, mean, np.sqrt(latent * factor * amplitude)
 
@@ -64,9 +64,13 @@ def main():
     at = np.array([[0.3], [-0.4]])
     values = np.array([3 * np.sin(2 * points[0] + points[1]), points[0] * points[1] ** 2, np.exp(points[1])]).T
     print("#pragma once\n\n// Written by make_surrogate_golden.py (numpy " + np.__version__ + "); matrices by rows.\n")
-    print('#include <vector>\n\n#include "kernels/surrogate/shared_covariance.hpp"\n\nnamespace twinmap::gp::golden {\n')
-    print("struct SharedCase {\n  SharedStructure structure;\n  std::vector<double> residual, variance;\n"
-          "  double density;\n  std::vector<double> mean, stddev;\n};\n")
+    print(
+        '#include <vector>\n\n#include "kernels/surrogate/shared_covariance.hpp"\n\nnamespace twinmap::gp::golden {\n'
+    )
+    print(
+        "struct SharedCase {\n  SharedStructure structure;\n  std::vector<double> residual, variance;\n"
+        "  double density;\n  std::vector<double> mean, stddev;\n};\n"
+    )
     print(f"inline const std::vector<double> kPoints{show(points)};\ninline const std::vector<double> kAt{show(at)};")
     print(f"inline const std::vector<double> kLengthScales{show(LENGTH_SCALES)};")
     print(f"constexpr double kNugget = {NUGGET!r};\ninline const std::vector<double> kValues{show(values)};")
@@ -74,8 +78,10 @@ def main():
     for kind in ("kSquaredExponential", "kMatern52"):
         for trend in ("kLinear", "kQuadratic"):
             residual, variance, density, mean, stddev = make(kind, trend, points, values, at)
-            print(f"{{{{SmoothCovariance::{kind}, Trend::{trend}}}, {show(residual)}, {show(variance)},\n"
-                  f" {float(density)!r}, {show(mean)}, {show(stddev)}}},")
+            print(
+                f"{{{{SmoothCovariance::{kind}, Trend::{trend}}}, {show(residual)}, {show(variance)},\n"
+                f" {float(density)!r}, {show(mean)}, {show(stddev)}}},"
+            )
     print("};\n\n}  // namespace twinmap::gp::golden")
 
 

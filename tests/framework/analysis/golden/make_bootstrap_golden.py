@@ -13,8 +13,16 @@ def difference(a, b, axis=-1):
 
 
 def interval(paired):
-    result = scipy.stats.bootstrap((a, b), difference, n_resamples=400000, paired=paired, vectorized=True, method="BCa",
-                                   random_state=1, batch=20000)
+    result = scipy.stats.bootstrap(
+        (a, b),
+        difference,
+        n_resamples=400000,
+        paired=paired,
+        vectorized=True,
+        method="BCa",
+        random_state=1,
+        batch=20000,
+    )
     return "{%.3f, %.3f}" % (result.confidence_interval.low, result.confidence_interval.high)
 
 
@@ -22,7 +30,8 @@ def braces(numbers):
     return "{" + ", ".join(f"{x:g}" for x in numbers) + "}"
 
 
-Path(__file__).with_name("bootstrap_golden.hpp").write_text(f"""#pragma once
+Path(__file__).with_name("bootstrap_golden.hpp").write_text(
+    f"""#pragma once
 
 #include <array>
 
@@ -37,4 +46,5 @@ inline constexpr std::array<double, 2> kUnpaired{interval(False)};
 // clang-format on
 
 }}  // namespace twinmap::bootstrap_golden
-""")
+"""
+)

@@ -25,7 +25,7 @@ def read_points(chunk):
     assert data[:8] == b"twmchunk"
     version, parameters, rows, samples = struct.unpack("<Q16x3Q", data[8:56])
     assert (version, parameters, rows) == (1, 2, 8)
-    return [int(point[0]) for point in struct.iter_unpack("<2d", data[56:56 + 16 * samples])]
+    return [int(point[0]) for point in struct.iter_unpack("<2d", data[56 : 56 + 16 * samples])]
 
 
 class InterruptedSimulation(unittest.TestCase):
@@ -40,8 +40,9 @@ class InterruptedSimulation(unittest.TestCase):
 
     def start(self, folder=None, samples=SAMPLES, threads=2, chunk=8, microseconds=0, **options):
         arguments = [CHILD, folder or self.folder, samples, threads, chunk, microseconds]
-        return subprocess.Popen(list(map(str, arguments)), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                                **options)
+        return subprocess.Popen(
+            list(map(str, arguments)), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options
+        )
 
     def finish(self, *arguments, code=0, **options):
         child = self.start(*arguments, **options)
@@ -87,8 +88,12 @@ class InterruptedSimulation(unittest.TestCase):
         many = {"samples": 3000, "chunk": 100}
         for i in range(30):
             stored = self.get_stored()
-            child = self.start(samples=3000, threads=self.random.choice([1, 2, 3]), chunk=self.random.choice([1, 2, 5]),
-                               microseconds=3000)
+            child = self.start(
+                samples=3000,
+                threads=self.random.choice([1, 2, 3]),
+                chunk=self.random.choice([1, 2, 5]),
+                microseconds=3000,
+            )
             if i % 3 > 0:
                 self.wait_for_simulations(self.random.randrange(1, 40))
             time.sleep(self.random.uniform(0.0, 0.01))
@@ -127,8 +132,10 @@ class InterruptedSimulation(unittest.TestCase):
     def test_too_large_a_file_is_an_error_that_names_it_and_loses_nothing(self):
         self.finish(samples=50, chunk=5)
         kept = self.get_stored()
-        limits = {"preexec_fn": lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096)),
-                  "restore_signals": False}  # SIGXFSZ stays ignored
+        limits = {
+            "preexec_fn": lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096)),
+            "restore_signals": False,
+        }  # SIGXFSZ stays ignored
         message = self.finish(chunk=100, code=1, **limits)
         self.assertRegex(message, r"/store/\w+/\w+\.chunk\.\S+\.tmp: cannot be written: File too large")
         self.assertLessEqual(kept, self.get_stored())

@@ -44,7 +44,9 @@ class ManyWriters(unittest.TestCase):
         log = [int(line) for line in (folder / "log").read_text().split()]
         saved = [int(line) for line in (folder / "saved").read_text().split()]
         self.assertEqual(set(saved), set(range(1, self.samples + 1)))
-        self.assertLessEqual(len(log) - len(set(log)), KILLS * CHUNK, "more than the chunks under way was simulated again")
+        self.assertLessEqual(
+            len(log) - len(set(log)), KILLS * CHUNK, "more than the chunks under way was simulated again"
+        )
         for one in (folder, other):
             result = subprocess.run([CHILD, one, str(self.samples), "2", "100", "0"], capture_output=True, text=True)
             self.assertEqual(result.returncode, 0, result.stderr)

@@ -13,7 +13,8 @@ def braces(numbers):
     return "{" + ", ".join(f"{x:g}" for x in numbers) + "}"
 
 
-Path(__file__).with_name("peaks_golden.hpp").write_text(f"""#pragma once
+Path(__file__).with_name("peaks_golden.hpp").write_text(
+    f"""#pragma once
 
 #include <vector>
 
@@ -27,4 +28,5 @@ inline const std::vector<double> kProminences{braces(prominences)};
 // clang-format on
 
 }}  // namespace twinmap::peaks_golden
-""")
+"""
+)

@@ -77,8 +77,10 @@ def write_mutual_information(x, y):
     relevance = sum(mutual_info_regression(x, target, n_neighbors=3, random_state=0) for target in y.T)
     selected = [int(np.argmax(relevance))]
     while len(selected) < COMPONENTS:
-        redundancy = [np.mean([mutual_info_regression(x[:, [i]], x[:, s], n_neighbors=3, random_state=0)[0]
-                               for s in selected]) for i in range(FEATURES)]
+        redundancy = [
+            np.mean([mutual_info_regression(x[:, [i]], x[:, s], n_neighbors=3, random_state=0)[0] for s in selected])
+            for i in range(FEATURES)
+        ]
         score = relevance - np.array(redundancy)
         score[selected] = -np.inf
         selected.append(int(np.argmax(score)))
@@ -87,11 +89,17 @@ def write_mutual_information(x, y):
 
 def main():
     x, y, noise_covariance = make_data()
-    print("// Written by make_transform_golden.py with scikit-learn", sklearn.__version__, "and numpy",
-          np.__version__ + "; do not edit.")
+    print(
+        "// Written by make_transform_golden.py with scikit-learn",
+        sklearn.__version__,
+        "and numpy",
+        np.__version__ + "; do not edit.",
+    )
     print("#pragma once\n\n#include <vector>\n\nnamespace twinmap::golden {\n\n// clang-format off")
-    print(f"constexpr int kFeatureCount = {FEATURES};\nconstexpr int kReplicates = {REPLICATES};\n"
-          f"constexpr int kComponents = {COMPONENTS};\nconstexpr int kFolds = {FOLDS};\n")
+    print(
+        f"constexpr int kFeatureCount = {FEATURES};\nconstexpr int kReplicates = {REPLICATES};\n"
+        f"constexpr int kComponents = {COMPONENTS};\nconstexpr int kFolds = {FOLDS};\n"
+    )
     write("kFeatures", x)
     write("kParameters", y)
     write("kNoiseCovariance", noise_covariance)

@@ -16,8 +16,10 @@ def burg(x, order):
         k = top / bottom
         a = [a[i] - k * a[m - 2 - i] for i in range(m - 1)] + [k]
         error *= 1 - k * k
-        forward, backward = ([forward[t] - k * backward[t - 1] if t >= m else Fraction(0) for t in range(len(x))],
-                             [backward[t - 1] - k * forward[t] if t >= m else Fraction(0) for t in range(len(x))])
+        forward, backward = (
+            [forward[t] - k * backward[t - 1] if t >= m else Fraction(0) for t in range(len(x))],
+            [backward[t - 1] - k * forward[t] if t >= m else Fraction(0) for t in range(len(x))],
+        )
     return [float(v) for v in a], float(error)
 
 

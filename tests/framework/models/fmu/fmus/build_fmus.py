@@ -11,8 +11,10 @@ TOKEN = {2: "{two-2}", 3: "{two-3}"}
 
 # (name, value reference, type, causality, variability, {attributes})
 TWO_BEAM = [
-    ("y", 0, "Real", "output", "continuous", {"unit": "m"}), ("theta", 1, "Real", "output", "continuous", {"unit": "rad"}),
-    ("v", 2, "Real", "local", "continuous", {"unit": "m/s"}), ("w", 3, "Real", "local", "continuous", {"unit": "rad/s"}),
+    ("y", 0, "Real", "output", "continuous", {"unit": "m"}),
+    ("theta", 1, "Real", "output", "continuous", {"unit": "rad"}),
+    ("v", 2, "Real", "local", "continuous", {"unit": "m/s"}),
+    ("w", 3, "Real", "local", "continuous", {"unit": "rad/s"}),
     ("der(y)", 4, "Real", "local", "continuous", {"derivative": "y"}),
     ("der(theta)", 5, "Real", "local", "continuous", {"derivative": "theta"}),
     ("der(v)", 6, "Real", "local", "continuous", {"derivative": "v"}),
@@ -48,19 +50,26 @@ OSCILLATOR = [
 ]
 STAIRS = [("counter", 0, "Real", "output", "discrete", {"start": "1", "initial": "exact"})]
 FEEDTHROUGH = [
-    ("u", 0, "Real", "input", "continuous", {"start": "0"}), ("y", 1, "Real", "output", "continuous", {}),
-    ("p", 2, "Real", "parameter", "fixed", {"start": "2", "unit": "mm"}), ("p_out", 3, "Real", "output", "continuous", {"unit": "mm"}),
-    ("du", 4, "Real", "input", "discrete", {"start": "0"}), ("dy", 5, "Real", "output", "discrete", {}),
-    ("i", 100, "Integer", "parameter", "fixed", {"start": "0"}), ("i_out", 101, "Integer", "output", "discrete", {}),
+    ("u", 0, "Real", "input", "continuous", {"start": "0"}),
+    ("y", 1, "Real", "output", "continuous", {}),
+    ("p", 2, "Real", "parameter", "fixed", {"start": "2", "unit": "mm"}),
+    ("p_out", 3, "Real", "output", "continuous", {"unit": "mm"}),
+    ("du", 4, "Real", "input", "discrete", {"start": "0"}),
+    ("dy", 5, "Real", "output", "discrete", {}),
+    ("i", 100, "Integer", "parameter", "fixed", {"start": "0"}),
+    ("i_out", 101, "Integer", "output", "discrete", {}),
     ("kind", 104, "Enumeration", "parameter", "fixed", {"start": "1", "declaredType": "Kind"}),
     ("kind_out", 105, "Enumeration", "output", "discrete", {"declaredType": "Kind"}),
-    ("flag", 200, "Boolean", "parameter", "fixed", {"start": "false"}), ("flag_out", 201, "Boolean", "output", "discrete", {}),
+    ("flag", 200, "Boolean", "parameter", "fixed", {"start": "false"}),
+    ("flag_out", 201, "Boolean", "output", "discrete", {}),
     ("text", 900, "String", "parameter", "fixed", {"start": "hello"}),
 ]
 FEEDTHROUGH_3 = [
     ("size", 901, "UInt64", "structuralParameter", "fixed", {"start": "4"}),
-    ("single", 300, "Float32", "parameter", "fixed", {"start": "0"}), ("single_out", 301, "Float32", "output", "continuous", {}),
-    ("small", 102, "Int8", "parameter", "fixed", {"start": "0"}), ("small_out", 103, "Int8", "output", "discrete", {}),
+    ("single", 300, "Float32", "parameter", "fixed", {"start": "0"}),
+    ("single_out", 301, "Float32", "output", "continuous", {}),
+    ("small", 102, "Int8", "parameter", "fixed", {"start": "0"}),
+    ("small_out", 103, "Int8", "output", "discrete", {}),
     ("a", 400, "Float64", "parameter", "fixed", {"start": "1 2 3 4", "dimensions": ["901"]}),
     ("b", 401, "Float64", "output", "continuous", {"dimensions": ["901"]}),
     ("tick", 902, "Clock", "input", "discrete", {"intervalVariability": "triggered"}),
@@ -68,7 +77,8 @@ FEEDTHROUGH_3 = [
 RESOURCE = [("y", 0, "Real", "output", "continuous", {})]
 FAULTY = [
     ("x", 0, "Real", "output", "continuous", {"start": "1", "initial": "exact"}),
-    ("der(x)", 1, "Real", "local", "continuous", {"derivative": "x"}), ("fault", 2, "Real", "parameter", "fixed", {"start": "0"}),
+    ("der(x)", 1, "Real", "local", "continuous", {"derivative": "x"}),
+    ("fault", 2, "Real", "parameter", "fixed", {"start": "0"}),
 ]
 
 UNITS = """<UnitDefinitions>
@@ -102,8 +112,11 @@ def describe_2(variables, identifier, indicators, variable_step):
     unknowns = "".join(f'<Unknown index="{i}"/>' for i in derivatives)
     kinds = "".join(
         f'<{kind} modelIdentifier="{identifier}"{more}/>'
-        for kind, more in (("ModelExchange", ""),
-                           ("CoSimulation", f' canHandleVariableCommunicationStepSize="{variable_step}"')))
+        for kind, more in (
+            ("ModelExchange", ""),
+            ("CoSimulation", f' canHandleVariableCommunicationStepSize="{variable_step}"'),
+        )
+    )
     return f"""<?xml version="1.0" encoding="UTF-8"?>
 <fmiModelDescription fmiVersion="2.0" modelName="{identifier}" guid="{TOKEN[2]}" numberOfEventIndicators="{indicators}">
 {kinds}{UNITS}<TypeDefinitions><SimpleType name="Kind"><Enumeration><Item name="one" value="1"/><Item name="two" value="2"/>
@@ -116,8 +129,14 @@ def describe_3(variables, identifier, indicators, variable_step, early="false", 
     references = {variable[0]: variable[1] for variable in variables}
     lines, structure = [], ""
     for name, reference, kind, causality, variability, extra in variables:
-        own = head_attributes(name, reference, causality, variability, extra,
-                              [key for key in extra if key not in ("derivative", "dimensions")])
+        own = head_attributes(
+            name,
+            reference,
+            causality,
+            variability,
+            extra,
+            [key for key in extra if key not in ("derivative", "dimensions")],
+        )
         if "derivative" in extra:
             own["derivative"] = references[extra["derivative"]]
             structure += f'<ContinuousStateDerivative valueReference="{reference}"/>'
@@ -142,15 +161,36 @@ def describe_3(variables, identifier, indicators, variable_step, early="false", 
 
 def offer_derivatives(xml):
     """Of OSCILLATOR; FMI 3.0 lists the tunable parameters that a state derivative depends on."""
-    return (xml.replace('<ModelExchange ', '<ModelExchange providesDirectionalDerivatives="true" providesDirectionalDerivative="true" ')
-            .replace('<ContinuousStateDerivative valueReference="3"/>', '<ContinuousStateDerivative valueReference="3" '
-                     'dependencies="0 1 4 5 6"/><Output valueReference="7" dependencies="1 5"/>'))
+    return xml.replace(
+        "<ModelExchange ", '<ModelExchange providesDirectionalDerivatives="true" providesDirectionalDerivative="true" '
+    ).replace(
+        '<ContinuousStateDerivative valueReference="3"/>',
+        '<ContinuousStateDerivative valueReference="3" '
+        'dependencies="0 1 4 5 6"/><Output valueReference="7" dependencies="1 5"/>',
+    )
 
 
 def compile_model(out, compiler, headers, model, version, defines):
     library = out / f"{model}_{version}{''.join(defines)}.so"
-    subprocess.run([compiler, "-shared", "-fPIC", "-O2", "-Wall", f"-DFMI={version}", *defines, f"-I{headers}", f"-I{HERE}",
-                    str(HERE / f"{model}.c"), str(HERE / "wrapper.c"), "-o", str(library), "-lm"], check=True)
+    subprocess.run(
+        [
+            compiler,
+            "-shared",
+            "-fPIC",
+            "-O2",
+            "-Wall",
+            f"-DFMI={version}",
+            *defines,
+            f"-I{headers}",
+            f"-I{HERE}",
+            str(HERE / f"{model}.c"),
+            str(HERE / "wrapper.c"),
+            "-o",
+            str(library),
+            "-lm",
+        ],
+        check=True,
+    )
     return library
 
 
@@ -164,12 +204,33 @@ def main():
     out, compiler, headers = Path(sys.argv[1]), sys.argv[2], sys.argv[3]
     out.mkdir(parents=True, exist_ok=True)
 
-    def make(name, model, version, variables, indicators=0, defines=(), step="true", extra=None, xml=None, early="false", events="false"):
-        description = xml or (describe_2(variables, model, indicators, step) if version == 2 else
-                              describe_3(variables, model, indicators, step, early, events))
+    def make(
+        name,
+        model,
+        version,
+        variables,
+        indicators=0,
+        defines=(),
+        step="true",
+        extra=None,
+        xml=None,
+        early="false",
+        events="false",
+    ):
+        description = xml or (
+            describe_2(variables, model, indicators, step)
+            if version == 2
+            else describe_3(variables, model, indicators, step, early, events)
+        )
         library = compile_model(out, compiler, headers, model, version, list(defines))
-        write(out / f"{name}.fmu", {"modelDescription.xml": description,
-                                    f"binaries/{PLATFORM[version]}/{model}.so": library.read_bytes(), **(extra or {})})
+        write(
+            out / f"{name}.fmu",
+            {
+                "modelDescription.xml": description,
+                f"binaries/{PLATFORM[version]}/{model}.so": library.read_bytes(),
+                **(extra or {}),
+            },
+        )
 
     for version in (2, 3):
         make(f"two_beam_{version}", "two_beam", version, TWO_BEAM)
@@ -178,8 +239,15 @@ def main():
         make(f"feedthrough_{version}", "feedthrough", version, FEEDTHROUGH + (FEEDTHROUGH_3 if version == 3 else []))
         make(f"resource_{version}", "resource", version, RESOURCE, extra={"resources/value.txt": "97.5"})
         make(f"faulty_{version}", "faulty", version, FAULTY)
-        make(f"wrong_token_{version}", "faulty", version, FAULTY, xml=(describe_2 if version == 2 else describe_3)(
-            FAULTY, "faulty", 0, "true").replace(TOKEN[version], "{other}"))
+        make(
+            f"wrong_token_{version}",
+            "faulty",
+            version,
+            FAULTY,
+            xml=(describe_2 if version == 2 else describe_3)(FAULTY, "faulty", 0, "true").replace(
+                TOKEN[version], "{other}"
+            ),
+        )
     make("fixed_step", "two_beam", 2, TWO_BEAM, step="false")
     make("discards", "two_beam", 2, TWO_BEAM, defines=["-DLONGEST_STEP=0.004"])
     make("no_reset", "two_beam", 2, TWO_BEAM, defines=["-DNO_RESET"])
@@ -188,14 +256,27 @@ def main():
     make("stairs_events", "stairs", 3, STAIRS, events="true")
     make("feedthrough_events", "feedthrough", 3, FEEDTHROUGH, events="true")
     clocked = describe_3(STAIRS, "stairs", 0, "true", events="true").replace(
-        "</ModelVariables>", '<Clock name="clock" valueReference="950" causality="input" intervalVariability="constant"'
-        ' intervalDecimal="1"/></ModelVariables>')
+        "</ModelVariables>",
+        '<Clock name="clock" valueReference="950" causality="input" intervalVariability="constant"'
+        ' intervalDecimal="1"/></ModelVariables>',
+    )
     make("clocked", "stairs", 3, STAIRS, xml=clocked)
     for version in (2, 3):
-        make(f"oscillator_{version}", "oscillator", version, OSCILLATOR, xml=offer_derivatives(
-            (describe_2 if version == 2 else describe_3)(OSCILLATOR, "oscillator", 0, "true")))
-    make("oscillator_wrong", "oscillator", 3, OSCILLATOR, defines=["-DWRONG_DERIVATIVE"],
-         xml=offer_derivatives(describe_3(OSCILLATOR, "oscillator", 0, "true")))
+        make(
+            f"oscillator_{version}",
+            "oscillator",
+            version,
+            OSCILLATOR,
+            xml=offer_derivatives((describe_2 if version == 2 else describe_3)(OSCILLATOR, "oscillator", 0, "true")),
+        )
+    make(
+        "oscillator_wrong",
+        "oscillator",
+        3,
+        OSCILLATOR,
+        defines=["-DWRONG_DERIVATIVE"],
+        xml=offer_derivatives(describe_3(OSCILLATOR, "oscillator", 0, "true")),
+    )
     make("oscillator_noisy", "oscillator", 3, OSCILLATOR, defines=["-DNOISY"])
     make("missing_function", "faulty", 2, FAULTY, defines=["-DNO_SET_REAL"])
 
@@ -206,15 +287,18 @@ def main():
         sources["sources/all.c"] = f"#define FMI {version}\n" + (HERE / "wrapper.c").read_text()
         sources[f"sources/wrapper_{version}.inc"] = (HERE / f"wrapper_{version}.inc").read_text()
         if version == 2:
-            xml = description.replace('<CoSimulation modelIdentifier="faulty" canHandleVariableCommunicationStepSize="true"/>',
-                                      '<CoSimulation modelIdentifier="faulty" canHandleVariableCommunicationStepSize="true">'
-                                      '<SourceFiles><File name="all.c"/><File name="faulty.c"/></SourceFiles></CoSimulation>')
+            xml = description.replace(
+                '<CoSimulation modelIdentifier="faulty" canHandleVariableCommunicationStepSize="true"/>',
+                '<CoSimulation modelIdentifier="faulty" canHandleVariableCommunicationStepSize="true">'
+                '<SourceFiles><File name="all.c"/><File name="faulty.c"/></SourceFiles></CoSimulation>',
+            )
         else:
             xml = describe_3(FAULTY, "faulty", 0, "true")
             sources["sources/buildDescription.xml"] = (
                 '<fmiBuildDescription fmiVersion="3.0"><BuildConfiguration modelIdentifier="faulty"><SourceFileSet language="C99">'
                 '<SourceFile name="all.c"/><SourceFile name="faulty.c"/><PreprocessorDefinition name="UNUSED" value="1"/>'
-                '</SourceFileSet></BuildConfiguration></fmiBuildDescription>')
+                "</SourceFileSet></BuildConfiguration></fmiBuildDescription>"
+            )
         write(out / f"source_{version}.fmu", {"modelDescription.xml": xml, **sources})
     write(out / "broken_source.fmu", {"modelDescription.xml": xml, **sources, "sources/faulty.c": "this is no C"})
     write(out / "other_platform.fmu", {"modelDescription.xml": description, "binaries/win64/faulty.dll": b"MZ"})
