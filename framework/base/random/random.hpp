@@ -32,6 +32,7 @@ enum class RandomPurpose : std::uint64_t {
   kDesignCheck = 26,     // points at which the limits of a design are checked
   kJointCoverage = 27,   // of mixtures, whose highest-density sets are counted
   kNetworkChains = 28,   // along which a network's weights are sampled
+  kBasinStarts = 29,     // where searches of a measurement's basins begin
 };
 
 /// Counter-based random numbers (Philox 4x64-10, Salmon et al. 2011): a number depends on

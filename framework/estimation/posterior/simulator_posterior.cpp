@@ -1,0 +1,198 @@
+#include "framework/estimation/posterior/simulator_posterior.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "framework/estimation/refined/acceptance.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
+#include "kernels/linalg/decompositions.hpp"
+#include "kernels/sampling/adaptive_importance.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using importance::AdaptiveDraws;
+using importance::BoxMixture;
+using importance::RoundNumbers;
+
+namespace {
+
+constexpr int kMaxRounds = 8;  // bent ridges take several until the mixture follows them
+constexpr int kCenters = 24;   // parts about single draws, of a proposal
+
+/// The numbers of the rounds, made when first asked for.
+class Numbers {
+ public:
+  Numbers(Index dimensions, const SimulatorPosteriorOptions& options)
+      : dimensions_(dimensions), draws_(options.draws), random_(options.seed, RandomPurpose::kPosterior) {}
+
+  const RoundNumbers& get(int round) {
+    while (static_cast<int>(rounds_.size()) <= round) {
+      rounds_.push_back(make(static_cast<std::uint64_t>(rounds_.size())));
+    }
+    return rounds_[static_cast<std::size_t>(round)];
+  }
+
+ private:
+  RoundNumbers make(std::uint64_t round) const {
+    const auto uniform = [&](std::uint64_t channel) {
+      return [this, channel, round](Index i) {
+        return random_.calcUniform(static_cast<std::uint64_t>(i), channel, round);
+      };
+    };
+    RoundNumbers numbers{VectorXd::NullaryExpr(draws_, uniform(0)), MatrixXd(dimensions_, draws_),
+                         VectorXd::NullaryExpr(kCenters, uniform(1))};
+    for (Index i = 0; i < draws_; ++i) {
+      random_.drawNormals(static_cast<std::uint64_t>(i), round, numbers.normals.col(i).data(),
+                          static_cast<std::size_t>(dimensions_));
+    }
+    return numbers;
+  }
+
+  const Index dimensions_, draws_;
+  const RandomStream random_;
+  std::vector<RoundNumbers> rounds_;
+};
+
+/// The shares of the basins by Laplace's approximation, half of all spread evenly: it is wrong where a basin
+/// is no paraboloid.
+VectorXd calcShares(const std::vector<Basin>& basins, const LogCoordinates& coordinates) {
+  const auto count = static_cast<Index>(basins.size());
+  VectorXd logs(count);
+  for (Index k = 0; k < count; ++k) {
+    const Basin& basin = basins[static_cast<std::size_t>(k)];
+    const MatrixXd lower = linalg::calcCholesky(basin.covariance).lower;
+    logs[k] = -0.5 * basin.local.chi_square + lower.diagonal().array().log().sum() +
+              coordinates.calcLogUniform(basin.local.at);
+  }
+  const VectorXd weights = (logs.array() - logs.maxCoeff()).exp();
+  return (0.5 * weights / weights.sum()).array() + 0.5 / static_cast<double>(count);
+}
+
+/// Most draws as far from a basin's minimum as its linear model says, some twice and few four times as far,
+/// and few anywhere.
+BoxMixture proposeFirst(const std::vector<Basin>& basins, const LogCoordinates& coordinates) {
+  constexpr double kNear = 0.7, kFar = 0.2, kFarthest = 0.05;
+  const VectorXd shares = calcShares(basins, coordinates);
+  std::vector<importance::NormalPart> parts;
+  for (std::size_t k = 0; k < basins.size(); ++k) {
+    const double share = shares[static_cast<Index>(k)];
+    const MatrixXd lower = linalg::calcCholesky(basins[k].covariance).lower;
+    parts.push_back({kNear * share, basins[k].local.at, 1.1 * lower});
+    parts.push_back({kFar * share, basins[k].local.at, 2.0 * lower});
+    parts.push_back({kFarthest * share, basins[k].local.at, 4.0 * lower});
+  }
+  return BoxMixture(std::move(parts));
+}
+
+/// Basin of each draw: the nearest in its own metric.
+std::vector<std::size_t> assign(const MatrixXd& points, const std::vector<Basin>& basins) {
+  std::vector<std::size_t> nearest(static_cast<std::size_t>(points.cols()), 0);
+  VectorXd least = VectorXd::Constant(points.cols(), std::numeric_limits<double>::infinity());
+  for (std::size_t k = 0; basins.size() > 1 && k < basins.size(); ++k) {
+    const MatrixXd lower = linalg::calcCholesky(basins[k].covariance).lower;
+    const MatrixXd apart = linalg::solveLower(lower, points.colwise() - basins[k].local.at);
+    for (Index i = 0; i < points.cols(); ++i) {
+      if (const double distance = apart.col(i).squaredNorm(); distance < least[i]) {
+        least[i] = distance;
+        nearest[static_cast<std::size_t>(i)] = k;
+      }
+    }
+  }
+  return nearest;
+}
+
+/// The basins' parts of the draws (in the parameters' units); those of no weight are left out.
+std::vector<PosteriorMode> collectModes(const std::vector<Basin>& basins,
+                                        const std::vector<std::size_t>& nearest, const MatrixXd& draws,
+                                        const VectorXd& weights) {
+  constexpr double kMinWeight = 1e-3;  // 1000 to 1 is certain
+  std::vector<PosteriorMode> modes;
+  for (std::size_t k = 0; k < basins.size(); ++k) {
+    VectorXd own = weights;
+    for (Index i = 0; i < own.size(); ++i) {
+      own[i] *= nearest[static_cast<std::size_t>(i)] == k ? 1.0 : 0.0;
+    }
+    const double weight = own.sum();
+    if (weight >= kMinWeight) {
+      const importance::WeightedDraws part{draws, own / weight};
+      modes.push_back({weight, importance::calcMean(part),
+                       importance::calcCovariance(part).diagonal().cwiseSqrt(), basins[k].local.chi_square});
+    }
+  }
+  std::stable_sort(modes.begin(), modes.end(),
+                   [](const PosteriorMode& a, const PosteriorMode& b) { return a.weight > b.weight; });
+  return modes;
+}
+
+}  // namespace
+
+bool SimulatorPosterior::isExplained() const {
+  return degrees > 0.0 && chi_square < calcChiSquareLimit(degrees);
+}
+
+MatrixXd SimulatorPosterior::calcQuantiles(const VectorXd& probabilities) const {
+  return importance::calcQuantiles({draws, weights}, probabilities);
+}
+
+SimulatorPosterior samplePosterior(Simulator& simulator, const RefinementModel& model,
+                                   const VectorXd& features, const VectorXd& held, const MatrixXd& given,
+                                   const SimulatorPosteriorOptions& options) {
+  const std::vector<ParameterSpec>& unknown = model.getUnknown();
+  const auto u = static_cast<Index>(unknown.size());
+  const SearchBox box(unknown, {0, u}, held);
+  const LogCoordinates coordinates(unknown);
+  Misfit misfit(simulator, model, box, features);
+  MisfitSurface surface(misfit, model, coordinates);
+  MatrixXd given_at(u, given.cols());
+  for (Index i = 0; i < given.cols(); ++i) {
+    given_at.col(i) = coordinates.fromBox(box.normalize(given.col(i)).cwiseMax(-1.0).cwiseMin(1.0));
+  }
+  SimulatorPosterior posterior;
+  const auto to_parameters = [&](const VectorXd& at) -> VectorXd {
+    return box.makePoint(coordinates.toBox(at)).head(u);
+  };
+  const BasinSearch found = findBasins(surface, given_at, options.seed, options.search);
+  posterior.starts = found.starts;
+  posterior.simulations = surface.getSimulations();
+  if (found.basins.empty()) {
+    posterior.message = "no simulation within the bounds succeeded";
+    return posterior;
+  }
+  const Basin& best = found.basins.front();
+  posterior.best = to_parameters(best.local.at);
+  posterior.chi_square = best.local.chi_square;
+  posterior.degrees = best.local.degrees;
+  posterior.found_best = best.searches;
+
+  Numbers numbers(u, options);
+  importance::AdaptiveOptions adaptive;
+  adaptive.max_rounds = kMaxRounds;
+  const AdaptiveDraws drawn = importance::sampleAdaptively(
+      [&](const MatrixXd& points) { return surface.calcLogPosteriors(points); },
+      proposeFirst(found.basins, coordinates),
+      [&](int round) -> const RoundNumbers& { return numbers.get(round); }, adaptive);
+  posterior.simulations = surface.getSimulations();
+  posterior.effective_sample_size = drawn.effective_sample_size;
+  posterior.pareto_shape = drawn.pareto_shape;
+  posterior.message = drawn.findObstacle();
+  if (!posterior.isReliable()) {
+    return posterior;
+  }
+  posterior.weights = drawn.draws.weights;
+  posterior.draws.resize(u, drawn.draws.points.cols());
+  for (Index i = 0; i < posterior.draws.cols(); ++i) {
+    posterior.draws.col(i) = to_parameters(drawn.draws.points.col(i));
+  }
+  const importance::WeightedDraws draws{posterior.draws, posterior.weights};
+  posterior.mean = importance::calcMean(draws);
+  posterior.covariance = importance::calcCovariance(draws);
+  posterior.stddev = posterior.covariance.diagonal().cwiseSqrt();
+  posterior.modes = collectModes(found.basins, assign(drawn.draws.points, found.basins), posterior.draws,
+                                 posterior.weights);
+  return posterior;
+}
+
+}  // namespace twinmap
