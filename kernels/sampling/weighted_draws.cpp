@@ -89,7 +89,8 @@ double averageProfile(const ArrayXd& excesses) {
 }  // namespace
 
 WeightedDraws weigh(MatrixXd points, const VectorXd& log_weights) {
-  VectorXd weights = (log_weights.array() - log_weights.maxCoeff()).exp();
+  const ArrayXd relative = log_weights.array() - log_weights.maxCoeff();
+  VectorXd weights = (relative < -700.0).select(0.0, relative.exp());  // Eigen's exponential does not reach 0
   weights /= weights.sum();
   return {std::move(points), std::move(weights)};
 }

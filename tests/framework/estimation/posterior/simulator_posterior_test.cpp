@@ -1,0 +1,192 @@
+#include "framework/estimation/posterior/simulator_posterior.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/framework/estimation/refined/problem.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using testing::makeMatrix;
+using testing::makeVector;
+using testing::Problem;
+using testing::Response;
+
+SimulatorPosterior sample(Problem& problem, const VectorXd& features, int draws = 2000,
+                          const VectorXd& held = {}) {
+  const auto u = static_cast<Index>(problem.model.getUnknown().size());
+  SimulatorPosteriorOptions options;
+  options.draws = draws;
+  return samplePosterior(problem.simulator, problem.model, features,
+                         held.size() > 0 ? held : VectorXd(VectorXd::Zero(u)), MatrixXd(u, 0), options);
+}
+
+struct Moments {
+  VectorXd mean, stddev;
+};
+
+/// Those of a posterior of two parameters within the bounds by the midpoint rule: the oracle.
+Moments integrate(const Response& response, const std::vector<ParameterSpec>& unknown,
+                  const VectorXd& measured, double noise_stddev) {
+  constexpr int kCells = 1200;
+  VectorXd sum = VectorXd::Zero(2), squares = VectorXd::Zero(2);
+  double mass = 0.0, reference = -1.0;
+  for (int pass = 0; pass < 2; ++pass) {  // the least chi-square first, so that exponentials do not vanish
+    for (int i = 0; i < kCells; ++i) {
+      for (int j = 0; j < kCells; ++j) {
+        VectorXd x(2);
+        for (int k = 0; k < 2; ++k) {
+          const Bounds& bounds = unknown[static_cast<std::size_t>(k)].bounds;
+          x[k] = bounds.lower + (bounds.upper - bounds.lower) * ((k == 0 ? i : j) + 0.5) / kCells;
+        }
+        const double chi_square = (measured - response(x)).squaredNorm() / (noise_stddev * noise_stddev);
+        if (pass == 0) {
+          reference = reference < 0.0 ? chi_square : std::min(reference, chi_square);
+        } else {
+          const double weight = std::exp(-0.5 * (chi_square - reference));
+          mass += weight;
+          sum += weight * x;
+          squares += weight * x.cwiseProduct(x);
+        }
+      }
+    }
+  }
+  const VectorXd mean = sum / mass;
+  return {mean, (squares / mass - mean.cwiseProduct(mean)).cwiseSqrt()};
+}
+
+/// Means within .05 standard deviations, standard deviations within 5 %.
+void expectMoments(const SimulatorPosterior& posterior, const Moments& expected) {
+  ASSERT_TRUE(posterior.isReliable()) << posterior.message;
+  for (Index j = 0; j < expected.mean.size(); ++j) {
+    EXPECT_NEAR(posterior.mean[j], expected.mean[j], 0.05 * expected.stddev[j]);
+    EXPECT_NEAR(posterior.stddev[j] / expected.stddev[j], 1.0, 0.05);
+  }
+}
+
+void expectQuadrature(const Response& response, const std::vector<ParameterSpec>& unknown,
+                      double noise_stddev, int times, const VectorXd& truth) {
+  Problem problem(times, response, unknown, noise_stddev);
+  const VectorXd features = problem.measure(truth, noise_stddev);
+  expectMoments(sample(problem, features, 8000), integrate(response, unknown, features, noise_stddev));
+}
+
+TEST(SimulatorPosterior, IsThatOfQuadratureOnABanana) {
+  expectQuadrature(
+      [](const VectorXd& x) {
+        return makeVector({0.3 * x[0], 2.0 * (x[1] - x[0] * x[0])});
+      },
+      testing::makeParameters(2, -1.0, 1.0), 0.2, 2, makeVector({0.2, 0.1}));
+}
+
+TEST(SimulatorPosterior, IsThatOfQuadratureWhereOnlyAProductIsSeen) {
+  expectQuadrature([](const VectorXd& x) { return VectorXd::Constant(20, x[0] * x[1]); },
+                   testing::makeParameters(2, 0.5, 5.0), 0.3, 20, makeVector({1.5, 2.0}));
+}
+
+TEST(SimulatorPosterior, IsThatOfQuadratureAtABound) {
+  const MatrixXd matrix = makeMatrix(10, 2);
+  expectQuadrature([=](const VectorXd& x) -> VectorXd { return matrix * x; },
+                   testing::makeParameters(2, 0.0, 1.0), 0.4, 10, makeVector({0.0, 1.0}));
+}
+
+TEST(SimulatorPosterior, IsThatOfQuadratureWithHeavyTails) {
+  expectQuadrature(
+      [](const VectorXd& x) {
+        return makeVector({std::atan(4.0 * x[0]), std::atan(4.0 * x[1])});
+      },
+      testing::makeParameters(2, -1.0, 1.0), 0.3, 2, makeVector({0.3, -0.5}));
+}
+
+TEST(SimulatorPosterior, HasBothModesWhereASignIsNotSeen) {
+  const auto response = [](const VectorXd& x) {
+    return VectorXd(VectorXd::Constant(10, x[0] * x[0]) + VectorXd::LinSpaced(10, -1.0, 1.0) * x[1]);
+  };
+  const std::vector<ParameterSpec> unknown = testing::makeParameters(2, -1.0, 1.0);
+  Problem problem(10, response, unknown, 0.02);
+  const VectorXd features = problem.measure(makeVector({0.6, 0.2}), 0.02);
+  const SimulatorPosterior posterior = sample(problem, features, 4000);
+  expectMoments(posterior, integrate(response, unknown, features, 0.02));
+  ASSERT_EQ(posterior.modes.size(), 2u);
+  for (const PosteriorMode& mode : posterior.modes) {
+    EXPECT_NEAR(mode.weight, 0.5, 0.05);
+    EXPECT_NEAR(std::abs(mode.mean[0]), 0.6, 0.05);
+  }
+}
+
+TEST(SimulatorPosterior, FindsTheDeepestOfManyBasins) {
+  // a fast oscillation of one unknown frequency: chi-square has a minimum at every other period
+  const auto response = [](const VectorXd& x) -> VectorXd {
+    return (VectorXd::LinSpaced(40, 0.0, 6.0) * (10.0 + 4.0 * x[0])).array().sin() * (1.0 + 0.3 * x[1]);
+  };
+  Problem problem(40, response, testing::makeParameters(2, -1.0, 1.0), 0.05);
+  for (const double truth : {-0.8, -0.2, 0.4, 0.9}) {
+    const VectorXd features = problem.measure(makeVector({truth, 0.5}), 0.05);
+    const SimulatorPosterior posterior = sample(problem, features, 500);
+    ASSERT_TRUE(posterior.isReliable()) << posterior.message;
+    EXPECT_TRUE(posterior.isExplained());
+    EXPECT_NEAR(posterior.mean[0], truth, 4.0 * posterior.stddev[0]);
+  }
+}
+
+TEST(SimulatorPosterior, HoldsKnownInputs) {
+  Problem problem(
+      5, [](const VectorXd& x) { return VectorXd::Constant(5, x[0] + x[1]); },
+      testing::makeParameters(1, -20.0, 20.0), 0.2);
+  const VectorXd features = VectorXd::Constant(5, 5.0);
+  const SimulatorPosterior posterior = sample(problem, features, 2000, makeVector({0.0, 3.5}));
+  ASSERT_TRUE(posterior.isReliable()) << posterior.message;
+  EXPECT_NEAR(posterior.mean[0], 1.5, 0.1 * 0.2 / std::sqrt(5.0));
+  EXPECT_NEAR(posterior.stddev[0], 0.2 / std::sqrt(5.0), 0.05 * 0.2 / std::sqrt(5.0));
+}
+
+TEST(SimulatorPosterior, SaysWhereNoiseDoesNotExplainTheMeasurement) {
+  Problem problem(
+      30, [](const VectorXd& x) { return VectorXd::Constant(30, x[0]); },
+      testing::makeParameters(1, -1.0, 1.0), 0.1);
+  const SimulatorPosterior posterior = sample(problem, VectorXd::LinSpaced(30, -1.0, 1.0));
+  EXPECT_FALSE(posterior.isExplained());
+  EXPECT_GT(posterior.chi_square, 900.0);
+}
+
+TEST(SimulatorPosterior, SaysWhereNothingCanBeSimulated) {
+  Problem problem(
+      3, [](const VectorXd&) { return VectorXd::Constant(3, std::nan("")); },
+      testing::makeParameters(1, -1.0, 1.0), 0.1);
+  const SimulatorPosterior posterior = sample(problem, VectorXd::Zero(3));
+  EXPECT_EQ(posterior.message, "no simulation within the bounds succeeded");
+  EXPECT_FALSE(posterior.isExplained());
+}
+
+TEST(SimulatorPosterior, LeavesOutWhatFailsToSimulate) {
+  Problem problem(
+      5, [](const VectorXd& x) { return VectorXd::Constant(5, x[0] > 0.2 ? std::nan("") : x[0]); },
+      testing::makeParameters(1, -1.0, 1.0), 0.5);
+  const SimulatorPosterior posterior = sample(problem, VectorXd::Zero(5));
+  ASSERT_TRUE(posterior.isReliable()) << posterior.message;
+  for (Index i = 0; i < posterior.draws.cols(); ++i) {
+    EXPECT_TRUE(posterior.weights[i] == 0.0 || posterior.draws(0, i) <= 0.2);
+  }
+  EXPECT_LT(posterior.mean[0], 0.0);
+}
+
+TEST(SimulatorPosterior, IsTheSameWhateverCameBefore) {
+  Problem problem(
+      10, [](const VectorXd& x) { return VectorXd::Constant(10, x[0] * x[1]); },
+      testing::makeParameters(2, 0.5, 5.0), 0.3);
+  const VectorXd features = problem.measure(makeVector({1.0, 2.0}), 0.3);
+  const SimulatorPosterior first = sample(problem, features, 500);
+  sample(problem, VectorXd::Constant(10, 9.0), 500);
+  const SimulatorPosterior again = sample(problem, features, 500);
+  EXPECT_EQ(first.draws, again.draws);
+  EXPECT_EQ(first.weights, again.weights);
+  EXPECT_EQ(first.simulations, again.simulations);
+}
+
+}  // namespace
+}  // namespace twinmap
