@@ -19,7 +19,7 @@ MatrixXd MisfitSurface::toBox(const MatrixXd& points) const {
 }
 
 std::vector<LocalSurface> MisfitSurface::linearize(const MatrixXd& points) {
-  const std::vector<LocalMisfit> local = misfit_.linearizeAll(toBox(points));
+  std::vector<LocalMisfit> local = misfit_.linearizeAll(toBox(points));
   std::vector<LocalSurface> surfaces(local.size());
   for (std::size_t i = 0; i < local.size(); ++i) {
     LocalSurface& surface = surfaces[i];
@@ -33,6 +33,7 @@ std::vector<LocalSurface> MisfitSurface::linearize(const MatrixXd& points) {
     surface.degrees = local[i].calcDegrees();
     surface.information = slopes.asDiagonal() * local[i].information * slopes.asDiagonal();
     // the misfit's descent holds the box as a normal distribution, too
+    surface.residual = std::move(local[i].residual);
     surface.descent = slopes.cwiseProduct(local[i].descent + kHalfWidthInformation * local[i].at);
   }
   return surfaces;

@@ -17,6 +17,7 @@ struct LocalSurface {
   double degrees = 0.0;  ///< of freedom: residuals less the parameters that they determine
   Eigen::MatrixXd information;
   Eigen::VectorXd descent;
+  Eigen::VectorXd residual;  ///< whitened
 };
 
 /// How well the simulator explains one measurement, over the box in LogCoordinates. One thread.

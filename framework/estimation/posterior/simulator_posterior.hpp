@@ -9,7 +9,7 @@
 
 namespace twinmap {
 
-/// A place where the posterior has some of its mass.
+/// A place where the posterior has some of its mass, apart from the others.
 struct PosteriorMode {
   double weight = 0.0;      ///< share of the posterior
   Eigen::VectorXd mean;     ///< u, in the parameters' units
@@ -27,6 +27,7 @@ struct SimulatorPosterior {
   Eigen::VectorXd weights;                 ///< n, sum 1
   Eigen::VectorXd best;                    ///< u, the least chi-square; there where anything was simulated
   std::vector<PosteriorMode> modes;        ///< the heaviest first
+  Eigen::VectorXd residual;                ///< there, whitened
   double chi_square = 0.0, degrees = 0.0;  ///< of the best point; 0 degrees where nothing could be simulated
   double effective_sample_size = 0.0;
   double pareto_shape = 0.0;

@@ -1,7 +1,5 @@
 #include "framework/estimation/surrogate/posterior_sampler.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,30 +17,8 @@ using importance::WeightedDraws;
 
 namespace {
 
-constexpr int kMaxRounds = 4;
-constexpr double kMaxParetoShape = 0.7;  // above it, errors no longer fall with the number of draws
-
 VectorXd clampToBox(const VectorXd& point) {
   return point.cwiseMax(-1.0).cwiseMin(1.0);
-}
-
-/// Whether another round pays: few draws bear the weight, or hardly drawn ones do.
-bool needsMore(const WeightedDraws& draws, int round_draws) {
-  constexpr double kEnough = 0.2;           // of a round's draws
-  constexpr double kGoodParetoShape = 0.5;  // above it, weights have no variance
-  return !(importance::calcEffectiveSampleSize(draws) >= kEnough * round_draws) ||
-         !(importance::calcParetoShape(draws) <= kGoodParetoShape);
-}
-
-/// Why draws do not stand for the posterior; empty if they do.
-std::string findObstacle(double effective_sample_size, double pareto_shape) {
-  if (!(effective_sample_size >= importance::kSmallestSampleSize)) {
-    return fmt::format("the effective sample size stayed below {:.0f}", importance::kSmallestSampleSize);
-  }
-  if (!(pareto_shape <= kMaxParetoShape)) {
-    return fmt::format("the weights have too heavy a tail (Pareto shape above {:.1f})", kMaxParetoShape);
-  }
-  return "";
 }
 
 }  // namespace
@@ -70,27 +46,20 @@ SurrogatePosterior PosteriorSampler::sampleFeatures(const Eigen::Ref<const Vecto
 
 SurrogatePosterior PosteriorSampler::sample(const Eigen::Ref<const VectorXd>& scores,
                                             const Eigen::Ref<const VectorXd>& known, std::uint64_t sample) {
-  constexpr double kMin = 10.0;  // draws a dimension that a covariance needs
-  constexpr int kCenters = 24, kCenterChannel = 1;
   const gp::Moments normal = inversion_.infer(scores, known);
   likelihood_.setMeasurement(scores, known, inversion_.getModes().front().widening);
   mode_factors_.clear();
   for (const ScoreMode& mode : inversion_.getModes()) {
     mode_factors_.push_back(linalg::calcCholesky(mode.moments.covariance).lower);
   }
-  Evaluated evaluated;
-  addRound(proposeFirst(), sample, evaluated);
-  WeightedDraws draws = weigh(evaluated);
-  for (int round = 1; round < kMaxRounds && needsMore(draws, draws_); ++round) {
-    const WeightedDraws spread = importance::temper(draws, kMin * static_cast<double>(model_.unknown));
-    addRound(importance::coverDraws(spread, drawUniforms(kCenters, kCenterChannel + round, sample)), sample,
-             evaluated);
-    draws = weigh(evaluated);
-  }
-  return summarize(draws, normal, sample);
+  const importance::AdaptiveDraws drawn = importance::sampleAdaptively(
+      [&](const MatrixXd& points) { return likelihood_.calcLogs(stretchAll(points)); }, proposeFirst(),
+      [&](int round) -> const importance::RoundNumbers& { return getNumbers(round, sample); });
+  return summarize(drawn, normal, sample);
 }
 
-const PosteriorSampler::Numbers& PosteriorSampler::getNumbers(int round, std::uint64_t sample) {
+const importance::RoundNumbers& PosteriorSampler::getNumbers(int round, std::uint64_t sample) {
+  constexpr int kCenters = 24, kCenterChannel = 1;
   if (sample != numbers_sample_) {
     numbers_.clear();
     numbers_sample_ = sample;
@@ -104,7 +73,8 @@ const PosteriorSampler::Numbers& PosteriorSampler::getNumbers(int round, std::ui
       return random.calcNormal(draw(i), static_cast<std::uint64_t>(k) + 1, sample);
     };
     numbers_.push_back({VectorXd::NullaryExpr(draws_, calc_pick),
-                        MatrixXd::NullaryExpr(model_.unknown, draws_, calc_normal)});
+                        MatrixXd::NullaryExpr(model_.unknown, draws_, calc_normal),
+                        drawUniforms(kCenters, kCenterChannel + static_cast<int>(numbers_.size()), sample)});
   }
   return numbers_[static_cast<std::size_t>(round)];
 }
@@ -152,44 +122,26 @@ VectorXd PosteriorSampler::stretch(const VectorXd& point) const {
   return stretched;
 }
 
-void PosteriorSampler::addRound(const BoxMixture& proposal, std::uint64_t sample, Evaluated& evaluated) {
-  const Numbers& numbers = getNumbers(static_cast<int>(evaluated.proposals.size()), sample);
-  const MatrixXd points = proposal.draw(numbers.picks, numbers.normals);
-  const Index before = evaluated.points.cols();
-  evaluated.points.conservativeResize(points.rows(), before + points.cols());
-  evaluated.points.rightCols(points.cols()) = points;
-  evaluated.log_posterior.conservativeResize(before + points.cols());
+MatrixXd PosteriorSampler::stretchAll(const MatrixXd& points) const {
   MatrixXd stretched = points;  // what is outside the box remains there
   for (Index i = 0; i < points.cols(); ++i) {
     if (points.col(i).cwiseAbs().maxCoeff() <= 1.0) {
       stretched.col(i) = stretch(points.col(i));
     }
   }
-  evaluated.log_posterior.tail(points.cols()) = likelihood_.calcLogs(stretched);
-  evaluated.proposals.push_back(proposal);
+  return stretched;
 }
 
-WeightedDraws PosteriorSampler::weigh(const Evaluated& evaluated) const {
-  const auto rounds = static_cast<Index>(evaluated.proposals.size());
-  MatrixXd proposed(evaluated.points.cols(), rounds);
-  for (Index round = 0; round < rounds; ++round) {
-    proposed.col(round) =
-        evaluated.proposals[static_cast<std::size_t>(round)].calcLogDensities(evaluated.points);
-  }
-  const VectorXd equal = VectorXd::Constant(rounds, 1.0 / static_cast<double>(rounds));
-  return importance::weigh(evaluated.points,
-                           evaluated.log_posterior - importance::mixLogDensities(proposed, equal));
-}
-
-SurrogatePosterior PosteriorSampler::summarize(const WeightedDraws& draws, const gp::Moments& normal,
-                                               std::uint64_t sample) const {
+SurrogatePosterior PosteriorSampler::summarize(const importance::AdaptiveDraws& drawn,
+                                               const gp::Moments& normal, std::uint64_t sample) const {
   constexpr int kDrawChannel = 0;
   const Index p = model_.parameters, u = model_.unknown;
+  const WeightedDraws& draws = drawn.draws;
   SurrogatePosterior posterior;
   posterior.evaluations = static_cast<int>(draws.points.cols());
-  posterior.effective_sample_size = importance::calcEffectiveSampleSize(draws);
-  posterior.pareto_shape = importance::calcParetoShape(draws);
-  posterior.message = findObstacle(posterior.effective_sample_size, posterior.pareto_shape);
+  posterior.effective_sample_size = drawn.effective_sample_size;
+  posterior.pareto_shape = drawn.pareto_shape;
+  posterior.message = drawn.findObstacle();
   if (!posterior.isReliable()) {
     return posterior;
   }

@@ -10,7 +10,7 @@
 #include "framework/estimation/surrogate/score_inversion.hpp"
 #include "framework/estimation/surrogate/score_likelihood.hpp"
 #include "framework/estimation/surrogate/surrogate.hpp"
-#include "kernels/sampling/box_mixture.hpp"
+#include "kernels/sampling/adaptive_importance.hpp"
 
 namespace twinmap {
 
@@ -77,23 +77,11 @@ class PosteriorSampler {
                                     const Eigen::Ref<const Eigen::VectorXd>& known, std::uint64_t sample = 0);
 
  private:
-  struct Numbers {
-    Eigen::VectorXd picks;    // n
-    Eigen::MatrixXd normals;  // u x n
-  };
-  /// What the rounds have found so far.
-  struct Evaluated {
-    Eigen::MatrixXd points;         // u x n
-    Eigen::VectorXd log_posterior;  // n, not normalised
-    std::vector<importance::BoxMixture> proposals;
-  };
-
-  const Numbers& getNumbers(int round, std::uint64_t sample);
+  const importance::RoundNumbers& getNumbers(int round, std::uint64_t sample);
   importance::BoxMixture proposeFirst() const;
   Eigen::VectorXd stretch(const Eigen::VectorXd& point) const;
-  void addRound(const importance::BoxMixture& proposal, std::uint64_t sample, Evaluated& evaluated);
-  importance::WeightedDraws weigh(const Evaluated& evaluated) const;
-  SurrogatePosterior summarize(const importance::WeightedDraws& draws, const gp::Moments& normal,
+  Eigen::MatrixXd stretchAll(const Eigen::MatrixXd& points) const;
+  SurrogatePosterior summarize(const importance::AdaptiveDraws& drawn, const gp::Moments& normal,
                                std::uint64_t sample) const;
   Eigen::VectorXd drawUniforms(Eigen::Index count, int channel, std::uint64_t sample) const;
 
@@ -102,8 +90,8 @@ class PosteriorSampler {
   const std::uint64_t seed_;
   ScoreInversion inversion_;
   ScoreLikelihood likelihood_;
-  std::vector<Eigen::MatrixXd> mode_factors_;  // of the modes' covariances
-  std::vector<Numbers> numbers_;               // of each round, of numbers_sample_
+  std::vector<Eigen::MatrixXd> mode_factors_;      // of the modes' covariances
+  std::vector<importance::RoundNumbers> numbers_;  // of each round, of numbers_sample_
   std::uint64_t numbers_sample_ = 0;
 };
 

@@ -119,6 +119,21 @@ TEST(SimulatorPosterior, HasBothModesWhereASignIsNotSeen) {
   }
 }
 
+TEST(SimulatorPosterior, TakesARidgeForOneMode) {
+  Problem problem(
+      20, [](const VectorXd& x) { return VectorXd::Constant(20, x[0] * x[1]); },
+      testing::makeParameters(2, 0.5, 5.0), 0.3);
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const SimulatorPosterior posterior =
+        sample(problem, problem.measure(makeVector({1.5, 2.0}), 0.3, seed), 500);
+    EXPECT_EQ(posterior.modes.size(), 1u);
+    for (const auto& m : posterior.modes) {
+      std::cerr << m.weight << " | " << m.mean.transpose() << " | " << m.stddev.transpose() << " | "
+                << m.chi_square << "\n";
+    }
+  }
+}
+
 TEST(SimulatorPosterior, FindsTheDeepestOfManyBasins) {
   // a fast oscillation of one unknown frequency: chi-square has a minimum at every other period
   const auto response = [](const VectorXd& x) -> VectorXd {

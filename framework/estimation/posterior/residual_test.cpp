@@ -1,0 +1,80 @@
+#include "framework/estimation/posterior/residual_test.hpp"
+
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/complement.hpp>
+#include <boost/math/distributions/normal.hpp>
+#include <cmath>
+#include <map>
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr Index kMaxLags = 10, kSamplesPerLag = 5, kMinSamples = 20;
+
+/// The residuals of each output's samples, in the order of time.
+std::map<int, std::vector<double>> collectSamples(const VectorXd& residual,
+                                                  const std::vector<FeatureInfo>& infos) {
+  std::map<int, std::vector<double>> samples;
+  for (std::size_t i = 0; i < infos.size(); ++i) {
+    if (infos[i].output >= 0 && infos[i].time > 0.0) {
+      samples[infos[i].output].push_back(residual[static_cast<Index>(i)]);
+    }
+  }
+  return samples;
+}
+
+/// n (n + 2) sum_k rho_k^2 / (n - k) over the lags: chi-square of as many degrees for white noise.
+double calcLjungBox(const std::vector<double>& values, Index lags) {
+  const Eigen::Map<const VectorXd> r(values.data(), static_cast<Index>(values.size()));
+  const auto n = static_cast<double>(r.size());
+  double sum = 0.0;
+  for (Index k = 1; k <= lags; ++k) {
+    const double correlation = r.head(r.size() - k).dot(r.tail(r.size() - k)) / r.squaredNorm();
+    sum += correlation * correlation / (n - static_cast<double>(k));
+  }
+  return n * (n + 2.0) * sum;
+}
+
+double calcUpperTail(double chi_square, double degrees) {
+  return cdf(complement(boost::math::chi_squared(degrees), chi_square));
+}
+
+double testWhiteness(const VectorXd& residual, const std::vector<FeatureInfo>& infos) {
+  double statistic = 0.0, degrees = 0.0;
+  for (const auto& [output, values] : collectSamples(residual, infos)) {
+    const auto count = static_cast<Index>(values.size());
+    if (count >= kMinSamples) {
+      const Index lags = std::min(kMaxLags, count / kSamplesPerLag);
+      statistic += calcLjungBox(values, lags);
+      degrees += static_cast<double>(lags);
+    }
+  }
+  return degrees > 0.0 && std::isfinite(statistic) ? calcUpperTail(statistic, degrees) : 1.0;
+}
+
+}  // namespace
+
+double ResidualTest::calcPValue() const {
+  constexpr double kTests = 3.0;
+  return std::min(1.0, kTests * std::min({chi_square_p, whiteness_p, largest_p}));
+}
+
+ResidualTest testResidual(const VectorXd& residual, double degrees, const std::vector<FeatureInfo>& infos) {
+  ResidualTest test;
+  test.chi_square_p = calcUpperTail(residual.squaredNorm(), degrees);
+  test.whiteness_p = testWhiteness(residual, infos);
+  Index largest = 0;
+  const double size = residual.cwiseAbs().maxCoeff(&largest);
+  test.largest = static_cast<int>(largest);
+  const double outside = 2.0 * cdf(complement(boost::math::normal(), size));
+  // 1 - (1 - outside)^n without cancellation
+  test.largest_p = -std::expm1(static_cast<double>(residual.size()) * std::log1p(-outside));
+  return test;
+}
+
+}  // namespace twinmap

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "framework/data/features/feature_block.hpp"
+
+namespace twinmap {
+
+/// Whether a residual could be noise: three tests, each with its p-value.
+struct ResidualTest {
+  double chi_square_p = 1.0;  ///< of a sum of squares as large
+  double whiteness_p = 1.0;   ///< of neighbours in time that agree as much (Ljung and Box 1978)
+  double largest_p = 1.0;     ///< of a single residual as large
+  int largest = -1;           ///< its feature
+
+  /// That of the smallest of three, by Bonferroni's bound: below it in at most as many of the good
+  /// measurements.
+  double calcPValue() const;
+};
+
+/// Below this p-value a measurement is a model_mismatch: of good ones 1 % are called so.
+constexpr double kMismatchLevel = 0.01;
+
+/// residual: whitened, one for each of `infos`; degrees: of freedom of its sum of squares. Whiteness is
+/// tested within each output whose samples have times, over up to ten lags, where there are at least 20
+/// samples; the parameters that were fitted make neighbours a little less alike, so that the test is on the
+/// safe side.
+ResidualTest testResidual(const Eigen::VectorXd& residual, double degrees,
+                          const std::vector<FeatureInfo>& infos);
+
+}  // namespace twinmap
