@@ -127,10 +127,6 @@ TEST(SimulatorPosterior, TakesARidgeForOneMode) {
     const SimulatorPosterior posterior =
         sample(problem, problem.measure(makeVector({1.5, 2.0}), 0.3, seed), 500);
     EXPECT_EQ(posterior.modes.size(), 1u);
-    for (const auto& m : posterior.modes) {
-      std::cerr << m.weight << " | " << m.mean.transpose() << " | " << m.stddev.transpose() << " | "
-                << m.chi_square << "\n";
-    }
   }
 }
 
