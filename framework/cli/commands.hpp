@@ -93,7 +93,7 @@ struct VerifyArguments {
 };
 
 struct InferArguments {
-  std::string run;                 ///< folder of a run, or its maps.h5
+  std::string run;                 ///< folder of a run, its maps.h5, or an experiment file
   std::vector<std::string> files;  ///< measurements
   std::vector<std::string> known;  ///< "NAME=VALUE" of the inputs
   std::vector<double> starts;      ///< times in each file that are 0 of the model; empty: the experiment's

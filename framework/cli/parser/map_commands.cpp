@@ -11,10 +11,13 @@ namespace {
 void addInfer(CLI::App& app) {
   const auto arguments = std::make_shared<InferArguments>();
   CLI::App* command = app.add_subcommand("infer",
-                                         "Infer the parameters of measured responses with a trained map: "
-                                         "mean, sd and 95 % interval of each, and "
-                                         "whether to trust them");
-  command->add_option("RUN", arguments->run, "Folder of a finished run, or its maps.h5")
+                                         "Infer the parameters of measured responses, with a trained run or "
+                                         "from an experiment file alone: mean, sd and 95 % interval of each, "
+                                         "and whether to trust them");
+  command
+      ->add_option("RUN", arguments->run,
+                   "Folder of a finished run, its maps.h5, or an experiment file (YAML): without a run the "
+                   "posterior is sampled on the simulator")
       ->required()
       ->option_text(" ");
   command

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/data/features/feature_extractor.hpp"
+#include "framework/data/measurement/table.hpp"
+#include "framework/experiment/experiment_spec.hpp"
+#include "framework/simulation/response_layout.hpp"
+
+namespace twinmap {
+
+/// From tables of measurements to the features of an experiment. Immutable.
+class MeasurementReader {
+ public:
+  explicit MeasurementReader(ExperimentSpec experiment);
+
+  const ExperimentSpec& getExperiment() const { return experiment_; }
+  const ResponseLayout& getLayout() const { return layout_; }
+  const FeatureExtractor& getExtractor() const { return extractor_; }
+
+  /// The columns that a table of a measurement must have, and those that it may have, for readTable().
+  std::vector<std::string> listColumns() const;
+  /// The time in a table that is the model's 0: `start`, or that of the experiment's `measurement:`.
+  double getStart(std::optional<double> start) const;
+
+  /// d. Throws MeasurementError for a table that has another excitation than the experiment
+  /// (requireTrainedExcitation), lacks what is needed, or whose response lacks a feature.
+  Eigen::VectorXd readFeatures(const Table& table, std::optional<double> start) const;
+
+ private:
+  ExperimentSpec experiment_;
+  ResponseLayout layout_;
+  std::optional<double> sample_interval_;
+  FeatureExtractor extractor_;
+};
+
+}  // namespace twinmap
