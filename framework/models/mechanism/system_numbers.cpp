@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "framework/experiment/expression/output_units.hpp"
-#include "framework/models/mechanism/force_numbers.hpp"
+#include "framework/models/mechanism/load_numbers.hpp"
 #include "framework/models/mechanism/model_context.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
@@ -85,7 +85,7 @@ OutputNumbers calcQuantity(const OutputSpec& spec, const SystemNames& names, Num
   const OutputKind kind = spec.position   ? OutputKind::kPosition
                           : spec.velocity ? OutputKind::kVelocity
                                           : OutputKind::kAcceleration;
-  return {kind, -1, calcStation(at.station, names, numbers, owner), calcDirection(at, numbers, owner), {}};
+  return {kind, -1, calcBodyPoint(at.station, names, numbers, owner), calcDirection(at, numbers, owner), {}};
 }
 
 Eigen::VectorXd calcNamed(const std::vector<NamedExpression>& values, const char* what,
@@ -134,14 +134,14 @@ JointNumbers calcJointNumbers(const BodySpec& body, NumberEvaluator& numbers) {
   }
   joint.in_parent = calcFrame(body.joint.in_parent, numbers, owner);
   joint.in_body = calcFrame(body.joint.in_body, numbers, owner);
-  if (body.joint.type == JointType::kScrew) {
+  if (getTraits(body.joint.type).has_pitch) {
     joint.pitch = numbers.calc(body.joint.pitch, {owner, "joint.pitch", "m/rad"});
   }
   return joint;
 }
 
-Station calcStation(const StationSpec& spec, const SystemNames& names, NumberEvaluator& numbers,
-                    const std::string& owner) {
+BodyPoint calcBodyPoint(const StationSpec& spec, const SystemNames& names, NumberEvaluator& numbers,
+                        const std::string& owner) {
   return {names.findBody(spec.body), calcVector(numbers, spec.point, {owner, "point", "m"})};
 }
 
@@ -177,10 +177,7 @@ void checkNumbers(ModelContext& context) {
     calcMassNumbers(body, numbers);
     calcJointNumbers(body, numbers);
   }
-  calcPassiveForces(system, context.names, numbers);
-  for (const AppliedForceSpec& force : system.applied_forces) {
-    calcAppliedStation(force, context.names, numbers);
-  }
+  calcLoadNumbers(system, context.names, numbers);
   context.excitation.update(numbers);
   for (const OutputSpec& output : context.model.outputs) {
     calcOutputNumbers(output, context.names, numbers);

@@ -30,7 +30,7 @@ struct JointNumbers {
 };
 
 /// A point fixed to a body, in its frame.
-struct Station {
+struct BodyPoint {
   int body;
   Eigen::Vector3d point;
 };
@@ -43,7 +43,7 @@ struct OutputNumbers {
   };
   OutputKind kind;
   int coordinate;             ///< of kCoordinate and kSpeed, else -1
-  Station station;            ///< of the others
+  BodyPoint station;          ///< of the others
   Eigen::Vector3d direction;  ///< a unit vector in ground axes
   std::optional<Sensor> sensor;
 };
@@ -58,8 +58,8 @@ MassNumbers calcMassNumbers(const BodySpec& body, NumberEvaluator& numbers);
 /// Throws SimulationFailure also for an axis of no length.
 JointNumbers calcJointNumbers(const BodySpec& body, NumberEvaluator& numbers);
 
-Station calcStation(const StationSpec& spec, const SystemNames& names, NumberEvaluator& numbers,
-                    const std::string& owner);
+BodyPoint calcBodyPoint(const StationSpec& spec, const SystemNames& names, NumberEvaluator& numbers,
+                        const std::string& owner);
 
 /// Throws SimulationFailure also for a direction of no length.
 OutputNumbers calcOutputNumbers(const OutputSpec& spec, const SystemNames& names, NumberEvaluator& numbers);

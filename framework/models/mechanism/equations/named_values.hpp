@@ -6,7 +6,7 @@
 
 #include "framework/base/text/number_text.hpp"
 #include "framework/experiment/expression/expression.hpp"
-#include "framework/models/mechanism/equations/algebra.hpp"
+#include "framework/experiment/model/algebra.hpp"
 #include "framework/models/mechanism/equations/calc_expression.hpp"
 
 namespace twinmap::equations {
@@ -37,7 +37,7 @@ class NamedValues {
     return expression.text.empty() ? S(missing) : calc(expression);
   }
 
-  Vec3<S> calc3(const Expression3& expressions) const {
+  algebra::Vec3<S> calc3(const Expression3& expressions) const {
     return {calc(expressions[0]), calc(expressions[1]), calc(expressions[2])};
   }
 

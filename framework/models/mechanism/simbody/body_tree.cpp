@@ -15,11 +15,6 @@ BodyTree::BodyTree(const SystemSpec& spec, const SystemNames& names, NumberEvalu
   }
 }
 
-void BodyTree::addForce(SimTK::Force::Custom::Implementation* force) {
-  SimTK::GeneralForceSubsystem subsystem(system_);
-  SimTK::Force::Custom(subsystem, force);
-}
-
 void BodyTree::realize() {
   state_ = system_.realizeTopology();
   matter_.setUseEulerAngles(state_, true);

@@ -15,7 +15,7 @@ Rotation calcAxisAlignment(JointType type, const std::optional<Eigen::Vector3d>&
   if (!axis) {
     return Rotation();
   }
-  const SimTK::CoordinateAxis own = type == JointType::kSlider
+  const SimTK::CoordinateAxis own = getTraits(type).axis == JointAxis::kX
                                         ? static_cast<SimTK::CoordinateAxis>(SimTK::XAxis)
                                         : static_cast<SimTK::CoordinateAxis>(SimTK::ZAxis);
   return Rotation(SimTK::UnitVec3(toVec3(*axis)), own);

@@ -123,7 +123,7 @@ TEST_P(EquationsOfEveryJoint, HoldInBranchesOfTheSameJoint) {
   expectAgreement(makeBranches(GetParam()));
 }
 
-INSTANTIATE_TEST_SUITE_P(AllTypes, EquationsOfEveryJoint, ::testing::ValuesIn(kEveryJoint));
+INSTANTIATE_TEST_SUITE_P(AllTypes, EquationsOfEveryJoint, ::testing::ValuesIn(listJoints()));
 
 TEST(Equations, HoldForBushings) {
   expectAgreement(makeBushedBodies());
@@ -140,7 +140,7 @@ TEST(Equations, GiveCoincidentPointsNoForce) {
   ModelSpec model = makeModel(1.0);
   model.system.bodies = {body("block", "2", ex3("0", "0", "0"), ex3("0", "0", "0"),
                               joint(JointType::kTranslation, {"x", "y", "z"}))};
-  model.system.two_point_springs = {
+  model.system.elements.get<TwoPointSpring>() = {
       {station("ground", ex3("0.5", "0", "0")), station("block", ex3("0.5", "0", "0")), ex("5"), ex("0.1")}};
   SimbodyContext context(model);
   const NamedValues<double> none;
