@@ -6,7 +6,7 @@ namespace twinmap {
 namespace {
 
 struct FiniteNumbers {
-  NumberEvaluator& numbers;
+  ModelNumbers& numbers;
   double calc(const Expression& expression, const std::string& owner, const char* key, const char* unit) {
     return numbers.calc(expression, {owner, key, unit});
   }
@@ -14,7 +14,7 @@ struct FiniteNumbers {
 
 }  // namespace
 
-LoadNumbers calcLoadNumbers(const SystemSpec& spec, const SystemNames& names, NumberEvaluator& numbers) {
+LoadNumbers calcLoadNumbers(const SystemSpec& spec, const SystemNames& names, ModelNumbers& numbers) {
   const auto [x, y, z] = numbers.calc3(spec.gravity, {"system", "gravity", "m/s2"});
   return {{x, y, z}, equations::calcElements<double>(spec.elements, names, FiniteNumbers{numbers})};
 }

@@ -2,7 +2,7 @@
 
 #include "framework/experiment/model/system_spec.hpp"
 #include "framework/models/mechanism/system_names.hpp"
-#include "framework/simulation/number_evaluator.hpp"
+#include "framework/simulation/model_numbers.hpp"
 
 namespace twinmap {
 
@@ -14,6 +14,6 @@ struct LoadNumbers {
 
 /// Throws SimulationFailure for numbers that are not finite, ExperimentError for unknown names and for a
 /// force on a coordinate that takes none. `spec` must outlive the result.
-LoadNumbers calcLoadNumbers(const SystemSpec& spec, const SystemNames& names, NumberEvaluator& numbers);
+LoadNumbers calcLoadNumbers(const SystemSpec& spec, const SystemNames& names, ModelNumbers& numbers);
 
 }  // namespace twinmap

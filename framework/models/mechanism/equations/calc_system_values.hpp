@@ -1,7 +1,7 @@
 #pragma once
 
+#include "framework/experiment/expression/named_values.hpp"
 #include "framework/models/mechanism/equations/element_values.hpp"
-#include "framework/models/mechanism/equations/named_values.hpp"
 #include "framework/models/mechanism/equations/system_values.hpp"
 #include "framework/models/mechanism/system_names.hpp"
 

@@ -5,8 +5,7 @@
 
 namespace twinmap {
 
-BodyTree::BodyTree(const SystemSpec& spec, const SystemNames& names, NumberEvaluator& numbers)
-    : names_(names) {
+BodyTree::BodyTree(const SystemSpec& spec, const SystemNames& names, ModelNumbers& numbers) : names_(names) {
   matter_.setShowDefaultGeometry(false);
   for (const BodySpec& body : spec.bodies) {
     const SimTK::Body::Rigid rigid(toMassProperties(calcMassNumbers(body, numbers)));

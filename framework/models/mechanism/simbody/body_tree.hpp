@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "framework/models/mechanism/system_names.hpp"
-#include "framework/simulation/number_evaluator.hpp"
+#include "framework/simulation/model_numbers.hpp"
 
 namespace twinmap {
 
@@ -19,7 +19,7 @@ class BodyTree {
   };
 
   /// Throws SimulationFailure for numbers that no real system has.
-  BodyTree(const SystemSpec& spec, const SystemNames& names, NumberEvaluator& numbers);
+  BodyTree(const SystemSpec& spec, const SystemNames& names, ModelNumbers& numbers);
 
   /// Where forces are put that Simbody's own integrators are to see; call once, before realize().
   SimTK::GeneralForceSubsystem addForceSubsystem() { return SimTK::GeneralForceSubsystem(system_); }

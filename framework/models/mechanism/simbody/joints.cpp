@@ -35,7 +35,7 @@ struct Joint {
 }  // namespace
 
 void addMobilizer(MobilizedBody parent, const SimTK::Body& body, const BodySpec& spec,
-                  NumberEvaluator& numbers) {
+                  ModelNumbers& numbers) {
   const JointNumbers values = calcJointNumbers(spec, numbers);
   const Transform alignment(calcAxisAlignment(spec.joint.type, values.axis));
   Joint joint{parent, body, toTransform(values.in_parent) * alignment,

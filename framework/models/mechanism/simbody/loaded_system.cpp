@@ -37,13 +37,13 @@ class ForceAdapter : public SimTK::Force::Custom::Implementation {
 
 LoadedSystem::LoadedSystem(SimbodyContext& context, bool for_simbody)
     : context_(context),
-      tree_(context.model.system, context.names, context.numbers.updNumbers()),
-      numbers_(calcLoadNumbers(context.model.system, context.names, context.numbers.updNumbers())),
+      tree_(context.model.system, context.names, context.numbers),
+      numbers_(calcLoadNumbers(context.model.system, context.names, context.numbers)),
       coordinates_(context.names.getCoordinateNames().size()),
       rates_(coordinates_.size()),
       signals_(context.excitation.getSignalCount(), 0.0) {
-  context.expressions.setNumbers(context.numbers.getScope());
-  context.excitation.update(context.numbers.updNumbers());
+  context.expressions.setNumbers(context.numbers.getValues());
+  context.excitation.update(context.numbers);
   if (for_simbody) {
     SimTK::GeneralForceSubsystem subsystem = tree_.addForceSubsystem();
     SimTK::Force::Custom(subsystem, new ForceAdapter(*this));

@@ -16,7 +16,7 @@ namespace twinmap {
 /// What a simulator keeps from sample to sample, with the forces that are expressions, compiled.
 struct SimbodyContext : ModelContext {
   /// Throws ExperimentError as its members do. `model` must outlive the context unchanged.
-  explicit SimbodyContext(const ModelSpec& of) : ModelContext(of), expressions(of, numbers.getScope()) {}
+  explicit SimbodyContext(const ModelSpec& of) : ModelContext(of), expressions(of, numbers.getValues()) {}
 
   StateExpressions expressions;
 };

@@ -3,23 +3,23 @@
 namespace twinmap {
 namespace {
 
-/// Compiles the fields of a description that vary (fields/fields.hpp).
+/// Binds the fields of a description that vary (fields/fields.hpp).
 class VaryingFields {
  public:
-  VaryingFields(ExpressionScope& scope, std::unordered_map<const Expression*, CompiledExpression>& compiled)
-      : scope_(scope), compiled_(compiled) {}
+  VaryingFields(NamedValues<double>& values, std::unordered_map<const Expression*, BoundExpression>& bound)
+      : values_(values), bound_(bound) {}
 
   template <class T, class... Rule>
   void required(const char*, T&, const char*, const Rule&...) {}
   void required(const char*, Expression& field, const char*, const Unit& unit) {
     if (unit.varies) {
-      compile(field);
+      bind(field);
     }
   }
   void required(const char*, Expression3& field, const char*, const Unit& unit) {
     for (const Expression& component : field) {
       if (unit.varies) {
-        compile(component);
+        bind(component);
       }
     }
   }
@@ -30,17 +30,17 @@ class VaryingFields {
   void rule(bool, const char*) const {}
 
  private:
-  void compile(const Expression& expression) { compiled_.emplace(&expression, scope_.compile(expression)); }
+  void bind(const Expression& expression) { bound_.emplace(&expression, values_.bind(expression)); }
 
-  ExpressionScope& scope_;
-  std::unordered_map<const Expression*, CompiledExpression>& compiled_;
+  NamedValues<double>& values_;
+  std::unordered_map<const Expression*, BoundExpression>& bound_;
 };
 
 }  // namespace
 
-StateExpressions::StateExpressions(const ModelSpec& model, const ExpressionScope& numbers) {
+StateExpressions::StateExpressions(const ModelSpec& model, const NamedValues<double>& numbers) {
   defineNames(model, numbers);
-  VaryingFields fields(scope_, compiled_);
+  VaryingFields fields(values_, bound_);
   const_cast<ForceElements<Expression>&>(model.system.elements).forEachList([&fields](auto& list) {
     for (auto& element : list) {
       describe(fields, element);  // which reads them only
@@ -48,51 +48,51 @@ StateExpressions::StateExpressions(const ModelSpec& model, const ExpressionScope
   });
 }
 
-void StateExpressions::defineNames(const ModelSpec& model, const ExpressionScope& numbers) {
-  const auto getCount = [this] { return static_cast<int>(scope_.getNames().size()); };
+void StateExpressions::defineNames(const ModelSpec& model, const NamedValues<double>& numbers) {
+  const auto getCount = [this] { return static_cast<int>(values_.getNames().size()); };
   for (const std::string& name : numbers.getNames()) {
-    scope_.define(name);
+    values_.define(name);
   }
   first_coordinate_ = getCount();
   for (const BodySpec& body : model.system.bodies) {
     for (const Name& coordinate : body.joint.coordinates) {
-      defineName(scope_, coordinate);
+      defineName(values_, coordinate);
     }
   }
   first_speed_ = getCount();
   for (const BodySpec& body : model.system.bodies) {
     for (const Name& coordinate : body.joint.coordinates) {
-      defineName(scope_, {coordinate.text + "_dot", coordinate.where});
+      defineName(values_, {coordinate.text + "_dot", coordinate.where});
     }
   }
   first_signal_ = getCount();
   for (const SignalSpec& signal : model.excitation) {
-    defineName(scope_, signal.name);
+    defineName(values_, signal.name);
   }
-  time_ = scope_.define("t");
+  time_ = values_.define("t");
 }
 
-void StateExpressions::setNumbers(const ExpressionScope& values) {
+void StateExpressions::setNumbers(const NamedValues<double>& values) {
   for (int i = 0; i < first_coordinate_; ++i) {
-    scope_.upd(i) = values.get(i);
+    values_.upd(i) = values.get(i);
   }
 }
 
 void StateExpressions::setFrom(int first, const std::vector<double>& values) {
   for (std::size_t i = 0; i < values.size(); ++i) {
-    scope_.upd(first + static_cast<int>(i)) = values[i];
+    values_.upd(first + static_cast<int>(i)) = values[i];
   }
 }
 
 void StateExpressions::setState(double t, const std::vector<double>& coordinates,
                                 const std::vector<double>& rates, const std::vector<double>& signals) {
-  if (compiled_.empty()) {
+  if (bound_.empty()) {
     return;
   }
   setFrom(first_coordinate_, coordinates);
   setFrom(first_speed_, rates);
   setFrom(first_signal_, signals);
-  scope_.upd(time_) = t;
+  values_.upd(time_) = t;
 }
 
 }  // namespace twinmap

@@ -14,7 +14,6 @@ namespace {
 
 using equations::ModelMotion;
 using equations::ModelState;
-using equations::NamedValues;
 using equations::SystemValues;
 
 /// Simbody's and our own view of a model at one parameter point and one state.
@@ -23,10 +22,7 @@ class BothViews {
   BothViews(const ModelSpec& model, const Eigen::VectorXd& point) : model_(model), context_(model) {
     context_.numbers.update(point);
     system_.emplace(context_, true);
-    const ExpressionScope& scope = context_.numbers.getScope();
-    for (std::size_t i = 0; i < scope.getNames().size(); ++i) {
-      values_.set(scope.getNames()[i], scope.get(static_cast<int>(i)));
-    }
+    values_ = context_.numbers.getValues();
     system_values_ = equations::calcSystemValues(model.system, context_.names, values_);
     simbody_ = system_->getTree().getDefaultState();
   }
@@ -58,7 +54,7 @@ class BothViews {
   }
 
   std::vector<double> calcOutputsBySimbody() {
-    const Outputs outputs(model_.outputs, context_.names, context_.numbers.updNumbers());
+    const Outputs outputs(model_.outputs, context_.names, context_.numbers);
     std::vector<double> values(model_.outputs.size());
     outputs.calc(*system_, simbody_, own_.time, values.data(), 1);
     return values;

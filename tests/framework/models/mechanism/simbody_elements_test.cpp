@@ -50,7 +50,7 @@ class ThreeWays {
   ThreeWays(const ModelSpec& model, Add add) : model_(model), context_(model) {
     context_.numbers.update(Eigen::VectorXd());
     engine_.emplace(context_, false);
-    own_.emplace(model.system, context_.names, context_.numbers.updNumbers());
+    own_.emplace(model.system, context_.names, context_.numbers);
     SimTK::GeneralForceSubsystem forces = own_->addForceSubsystem();
     add(OwnForces{forces, *own_});
     own_->realize();
@@ -91,7 +91,7 @@ class ThreeWays {
 
   const ModelSpec& model_;
   SimbodyContext context_;
-  equations::NamedValues<double> names_;
+  NamedValues<double> names_;
   equations::SystemValues<double> values_;
   std::optional<LoadedSystem> engine_;
   std::optional<BodyTree> own_;
