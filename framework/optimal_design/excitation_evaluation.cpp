@@ -13,7 +13,7 @@
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/models/make_simulator.hpp"
 #include "framework/optimal_design/make_criterion.hpp"
-#include "framework/simulation/number_evaluator.hpp"
+#include "framework/simulation/model_numbers.hpp"
 #include "framework/simulation/sample_generator.hpp"
 
 namespace twinmap::experiment_design {

@@ -83,7 +83,7 @@ std::vector<SignalMeasure> calcSignalMeasures(const ModelSpec& model) {
   ModelNumbers numbers(model);
   numbers.update(calcBoxCenter(collectSampled(model)));
   Excitation excitation(model.excitation);
-  excitation.update(numbers.updNumbers());
+  excitation.update(numbers);
   const double duration = model.simulation.duration;
   std::vector<double> times = excitation.calcEventTimes(duration);
   times.insert(times.begin(), 0.0);

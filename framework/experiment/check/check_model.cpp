@@ -1,4 +1,4 @@
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -31,7 +31,7 @@ void checkRelativeTo(const ParameterSpec& parameter) {
 std::vector<Coordinate> collectCoordinates(const SystemSpec& system) {
   std::vector<Coordinate> coordinates;
   for (const BodySpec& body : system.bodies) {
-    const std::vector<JointCoordinate>& expected = getJointCoordinates(body.joint.type);
+    const JointCoordinates& expected = getJointCoordinates(body.joint.type);
     if (body.joint.coordinates.size() != expected.size()) {
       throw ExperimentError(
           body.name.where, body.name.text,
@@ -45,19 +45,154 @@ std::vector<Coordinate> collectCoordinates(const SystemSpec& system) {
   return coordinates;
 }
 
+/// "slider, pin, screw and cylinder"
+std::string listJointsWithAxis() {
+  std::vector<std::string> names;
+  for (const JointTraits& joint : kJoints) {
+    if (joint.axis != JointAxis::kNone) {
+      names.emplace_back(joint.text);
+    }
+  }
+  const std::string last = names.back();
+  names.pop_back();
+  return fmt::format("{} and {}", fmt::join(names, ", "), last);
+}
+
+/// Checks the fields of descriptions (fields/fields.hpp) against the names declared before: expressions know
+/// their names and come out in their units, names refer to something.
+class FieldCheck {
+ public:
+  std::vector<std::string> bodies{"ground"};
+  std::vector<Coordinate> coordinates;
+  CheckScope constants;  ///< parameters and constants
+  CheckScope dynamics;   ///< with coordinates, speeds, signals and time
+  std::string own_unit;  ///< what kOwnUnit stands for
+
+  template <class T, class... Rule>
+  void required(const char*, const T& field, const char*, const Rule&... rule) {
+    check(field, rule...);
+  }
+  template <class T, class... Rule>
+  void optional(const char*, const T& field, const char*, const Rule&... rule) {
+    check(field, rule...);
+  }
+  template <class T>
+  void requiredMap(const char*, const std::vector<T>& fields, const char*) {
+    for (const T& field : fields) {
+      check(field);
+      declare(field);
+    }
+  }
+  template <class... Choices>
+  void oneOf(const char*, Choices... choices) {
+    (std::apply([&](const auto&... rule) { check(std::as_const(choices.value), rule...); }, choices.rules),
+     ...);
+  }
+  void rule(bool, const char*) const {}
+
+  /// All fields of a struct, which are read only.
+  template <class T>
+  void checkAll(const T& described) {
+    describe(*this, const_cast<T&>(described));
+  }
+
+  const Coordinate& find(const Name& name) const {
+    std::vector<std::string> names;
+    for (const Coordinate& coordinate : coordinates) {
+      if (coordinate.name.text == name.text) {
+        return coordinate;
+      }
+      names.push_back(coordinate.name.text);
+    }
+    requireKnown(name, names, "a coordinate");
+    throw std::logic_error("a coordinate is known by name, but not listed");
+  }
+
+ private:
+  void check(const Expression& expression, const Unit& unit) { check(expression, unit, on_angle_); }
+  void check(const Expression& expression, const Unit& unit, bool on_angle) {
+    if (!expression.text.empty()) {
+      const CheckScope& scope = unit.varies ? dynamics : constants;
+      scope.check(expression, unit.own                               ? own_unit
+                              : on_angle && unit.rotation != nullptr ? unit.rotation
+                                                                     : unit.text);
+    }
+  }
+  void check(const SixOf<Expression>& expressions, const Unit& unit) {
+    constexpr std::size_t kRotations = 3;
+    for (std::size_t i = 0; i < expressions.size(); ++i) {
+      check(expressions[i], unit, i < kRotations);
+    }
+  }
+  void check(const Name& name, Reference reference) {
+    switch (reference) {
+      case Reference::kBody:
+        return requireKnown(name, bodies, "a body or ground");
+      case Reference::kEarlierBody:
+        return requireKnown(name, bodies, "ground or a body declared before");
+      case Reference::kForcedCoordinate:
+        requireForced(find(name), name);
+        [[fallthrough]];
+      case Reference::kCoordinate:
+        on_angle_ = find(name).unit != "m";
+    }
+  }
+  template <class T, std::size_t N>
+  void check(const std::array<T, N>& fields, const Unit& unit) {
+    for (const T& field : fields) {
+      check(field, unit);
+    }
+  }
+  template <class T, class... Rule>
+  void check(const std::vector<T>& fields, const Rule&... rule) {
+    for (const T& field : fields) {
+      check(field, rule...);
+    }
+  }
+  void check(const std::vector<Expression>& fields, const ListRule&, const Unit& unit) {
+    check(fields, unit);
+  }
+  template <class T, class... Rule>
+  void check(const std::optional<T>& field, const Rule&... rule) {
+    if (field) {
+      check(*field, rule...);
+    }
+  }
+  /// What has no unit and refers to nothing, or a struct.
+  template <class T, class... Rule>
+  void check(const T& field, const Rule&...) {
+    if constexpr (std::is_class_v<T> && !std::is_same_v<T, std::string> && !std::is_same_v<T, Name>) {
+      checkAll(field);
+    }
+  }
+
+  void declare(const BodySpec& body) { bodies.push_back(body.name.text); }
+
+  static void requireForced(const Coordinate& coordinate, const Name& name) {
+    if (!coordinate.takes_forces) {
+      throw ExperimentError(
+          name.where, name.text,
+          "is an angle of a ball or free joint, whose speeds are an angular velocity; use a "
+          "bushing or an applied moment instead");
+    }
+  }
+
+  bool on_angle_ = false;  ///< whether the coordinate that was referred to last is an angle
+};
+
 /// Checks every part of the model against the names declared before it.
 class ModelCheck {
  public:
-  explicit ModelCheck(const ModelSpec& model)
-      : model_(model), bodies_{"ground"}, coordinates_(collectCoordinates(model.system)) {}
+  explicit ModelCheck(const ModelSpec& model) : model_(model) {
+    fields_.coordinates = collectCoordinates(model.system);
+  }
 
   void run() {
     declareParameters();
     declareConstants();
     declareDynamics();
-    checkBodies();
-    checkCoordinateElements();
-    checkStationElements();
+    checkJoints();
+    fields_.checkAll(model_.system);
     checkExcitation();
     checkInitial();
     checkOutputs();
@@ -67,8 +202,8 @@ class ModelCheck {
  private:
   void declareParameters() {
     for (const ParameterSpec& parameter : collectSampled(model_)) {
-      constants_.define(parameter.name, CheckScope::readUnit(parameter.unit, parameter.name.where),
-                        0.5 * (parameter.bounds.lower + parameter.bounds.upper));
+      fields_.constants.define(parameter.name, CheckScope::readUnit(parameter.unit, parameter.name.where),
+                               0.5 * (parameter.bounds.lower + parameter.bounds.upper));
     }
     for (const ParameterSpec& parameter : model_.parameters) {
       checkRelativeTo(parameter);
@@ -77,199 +212,73 @@ class ModelCheck {
 
   void declareConstants() {
     for (const ConstantSpec& constant : model_.constants) {
-      const double value = constants_.check(constant.value, constant.unit);
-      constants_.define(constant.name, CheckScope::readUnit(constant.unit, constant.name.where), value);
+      const double value = fields_.constants.check(constant.value, constant.unit);
+      fields_.constants.define(constant.name, CheckScope::readUnit(constant.unit, constant.name.where),
+                               value);
     }
   }
 
   /// Force laws also know coordinates, speeds, signals and time. The reference values are arbitrary.
   void declareDynamics() {
     constexpr double kSomeCoordinate = 0.37, kSomeSpeed = 0.53, kSomeSignal = 0.71;
-    dynamics_ = constants_;
-    for (const Coordinate& coordinate : coordinates_) {
-      dynamics_.define(coordinate.name, parseUnit(coordinate.unit, {}), kSomeCoordinate);
-      dynamics_.define({coordinate.name.text + "_dot", coordinate.name.where},
-                       parseUnit(coordinate.unit + "/s", {}), kSomeSpeed);
+    fields_.dynamics = fields_.constants;
+    for (const Coordinate& coordinate : fields_.coordinates) {
+      fields_.dynamics.define(coordinate.name, parseUnit(coordinate.unit, {}), kSomeCoordinate);
+      fields_.dynamics.define({coordinate.name.text + "_dot", coordinate.name.where},
+                              parseUnit(coordinate.unit + "/s", {}), kSomeSpeed);
     }
     for (const SignalSpec& signal : model_.excitation) {
-      dynamics_.define(signal.name, CheckScope::readUnit(signal.unit, signal.name.where), kSomeSignal);
+      fields_.dynamics.define(signal.name, CheckScope::readUnit(signal.unit, signal.name.where), kSomeSignal);
     }
-    dynamics_.defineTime();
+    fields_.dynamics.defineTime();
   }
 
-  void checkBodies() {
-    constants_.check(model_.system.gravity, "m/s2");
+  void checkJoints() const {
     for (const BodySpec& body : model_.system.bodies) {
       if (body.name.text == "ground") {
         throw ExperimentError(body.name.where, "ground", "is the inertial frame; choose another name");
       }
-      constants_.check(body.mass, "kg");
-      constants_.check(body.center_of_mass, "m");
-      constants_.check(body.inertia.moments, "kg m2");
-      constants_.check(body.inertia.products, "kg m2");
       checkJoint(body.joint, body.name);
-      bodies_.push_back(body.name.text);
     }
   }
 
-  void checkJoint(const JointSpec& joint, const Name& body) const {
-    requireKnown(joint.parent, bodies_, "ground or a body declared before");
+  static void checkJoint(const JointSpec& joint, const Name& body) {
     if (joint.axis && !hasAxis(joint.type)) {
-      throw ExperimentError((*joint.axis)[0].where, "", "only slider, pin, screw and cylinder have an axis");
-    }
-    if (joint.axis) {
-      constants_.check(*joint.axis, "");
+      throw ExperimentError((*joint.axis)[0].where, "", "only " + listJointsWithAxis() + " have an axis");
     }
     const bool has_pitch = !joint.pitch.text.empty();
-    if (has_pitch != (joint.type == JointType::kScrew)) {
+    if (has_pitch != getTraits(joint.type).has_pitch) {
       throw ExperimentError(has_pitch ? joint.pitch.where : body.where, joint.pitch.text,
                             "a screw needs joint.pitch, other joints have none");
     }
-    if (has_pitch) {
-      constants_.check(joint.pitch, "m/rad");
-    }
-    checkFrame(joint.in_parent);
-    checkFrame(joint.in_body);
   }
 
-  void checkFrame(const FrameSpec& frame) const {
-    constants_.check(frame.point, "m");
-    constants_.check(frame.orientation, "rad");
-  }
-
-  void checkCoordinateElements() const {
-    for (const SpringSpec& spring : model_.system.springs) {
-      const std::string unit = findForcedUnit(spring.coordinate);
-      constants_.check(spring.stiffness, unit == "m" ? "N/m" : "N m/rad");
-      constants_.check(spring.rest, unit);
-    }
-    for (const DamperSpec& damper : model_.system.dampers) {
-      constants_.check(damper.damping, findForcedUnit(damper.coordinate) == "m" ? "N s/m" : "N m s/rad");
-    }
-    for (const ForceLawSpec& law : model_.system.force_laws) {
-      dynamics_.check(law.force, findForcedUnit(law.coordinate) == "m" ? "N" : "N m");
-    }
-  }
-
-  void checkStationElements() const {
-    for (const TwoPointSpringSpec& spring : model_.system.two_point_springs) {
-      checkStation(spring.from);
-      checkStation(spring.to);
-      constants_.check(spring.stiffness, "N/m");
-      constants_.check(spring.rest_length, "m");
-    }
-    for (const TwoPointDamperSpec& damper : model_.system.two_point_dampers) {
-      checkStation(damper.from);
-      checkStation(damper.to);
-      constants_.check(damper.damping, "N s/m");
-    }
-    for (const BushingSpec& bushing : model_.system.bushings) {
-      checkBushing(bushing);
-    }
-    for (const AppliedForceSpec& force : model_.system.applied_forces) {
-      checkStation(force.station);
-      dynamics_.check(force.force, "N");
-    }
-    for (const AppliedMomentSpec& moment : model_.system.applied_moments) {
-      requireKnown(moment.body, bodies_, "a body or ground");
-      dynamics_.check(moment.moment, "N m");
-    }
-  }
-
-  void checkBushing(const BushingSpec& bushing) const {
-    for (const BodyFrameSpec* end : {&bushing.from, &bushing.to}) {
-      requireKnown(end->body, bodies_, "a body or ground");
-      checkFrame(end->frame);
-    }
-    constexpr std::size_t kRotations = 3;
-    for (std::size_t i = 0; i < bushing.stiffness.size(); ++i) {
-      constants_.check(bushing.stiffness[i], i < kRotations ? "N m/rad" : "N/m");
-      constants_.check(bushing.damping[i], i < kRotations ? "N m s/rad" : "N s/m");
-    }
-  }
-
-  void checkStation(const StationSpec& station) const {
-    requireKnown(station.body, bodies_, "a body or ground");
-    constants_.check(station.point, "m");
-  }
-
-  void checkExcitation() const {
+  void checkExcitation() {
     for (const SignalSpec& signal : model_.excitation) {
-      for (const PulseSpec& pulse : signal.pulses) {
-        checkTerm(pulse.amplitude, signal.unit, {&pulse.start, &pulse.end});
-      }
-      for (const SineSpec& sine : signal.sines) {
-        checkTerm(sine.amplitude, signal.unit, {&sine.start, &sine.end});
-        constants_.check(sine.frequency, "Hz");
-        constants_.check(sine.phase, "rad");
-      }
-      for (const ChirpSpec& chirp : signal.chirps) {
-        checkTerm(chirp.amplitude, signal.unit, {&chirp.start, &chirp.end});
-        constants_.check(chirp.start_frequency, "Hz");
-        constants_.check(chirp.end_frequency, "Hz");
-      }
-      for (const MultisineSpec& multisine : signal.multisines) {
-        checkAll(listAmplitudes(multisine), signal.unit);
-        checkTimes({&multisine.start, &multisine.end});
-        checkAll(multisine.frequencies, "Hz");
-        checkAll(multisine.phases, "rad");
-      }
-    }
-  }
-
-  void checkTerm(const Expression& amplitude, const std::string& unit,
-                 std::initializer_list<const Expression*> times) const {
-    constants_.check(amplitude, unit);
-    checkTimes(times);
-  }
-
-  static std::vector<Expression> listAmplitudes(const MultisineSpec& multisine) {
-    return multisine.amplitudes.empty() ? std::vector<Expression>{multisine.amplitude} : multisine.amplitudes;
-  }
-
-  void checkTimes(std::initializer_list<const Expression*> times) const {
-    for (const Expression* time : times) {
-      if (!time->text.empty()) {
-        constants_.check(*time, "s");
-      }
-    }
-  }
-
-  void checkAll(const std::vector<Expression>& expressions, const std::string& unit) const {
-    for (const Expression& expression : expressions) {
-      constants_.check(expression, unit);
+      fields_.own_unit = signal.unit;
+      fields_.checkAll(signal);
     }
   }
 
   void checkInitial() const {
     for (const NamedExpression& initial : model_.initial.coordinates) {
-      constants_.check(initial.value, findUnit(initial.name));
+      fields_.constants.check(initial.value, findUnit(initial.name));
     }
     for (const NamedExpression& initial : model_.initial.speeds) {
-      constants_.check(initial.value, findUnit(initial.name) + "/s");
+      fields_.constants.check(initial.value, findUnit(initial.name) + "/s");
     }
     if (model_.initial.equilibrium) {
       for (const NamedExpression& parameter : model_.initial.equilibrium->parameters) {
         requireKnown(parameter.name, collectNames(collectSampled(model_)), "a parameter");
-        constants_.check(parameter.value, "");
+        fields_.constants.check(parameter.value, "");
       }
     }
   }
 
-  void checkOutputs() const {
+  void checkOutputs() {
     for (const OutputSpec& output : model_.outputs) {
-      for (const std::optional<Name>& coordinate : {output.coordinate, output.speed}) {
-        if (coordinate) {
-          findUnit(*coordinate);
-        }
-      }
-      for (const auto& station_output : {output.position, output.velocity, output.acceleration}) {
-        if (station_output) {
-          checkStation(station_output->station);
-          constants_.check(station_output->direction, "");
-        }
-      }
-      checkSensor(output);
+      fields_.own_unit = findOutputUnit(output, model_.system);
+      fields_.checkAll(output);
     }
   }
 
@@ -330,46 +339,10 @@ class ModelCheck {
     }
   }
 
-  void checkSensor(const OutputSpec& output) const {
-    if (!output.gain.text.empty()) {
-      constants_.check(output.gain, "1");
-    }
-    if (!output.offset.text.empty()) {
-      constants_.check(output.offset, findOutputUnit(output, model_.system));
-    }
-  }
-
-  const Coordinate& find(const Name& name) const {
-    std::vector<std::string> names;
-    for (const Coordinate& coordinate : coordinates_) {
-      if (coordinate.name.text == name.text) {
-        return coordinate;
-      }
-      names.push_back(coordinate.name.text);
-    }
-    requireKnown(name, names, "a coordinate");
-    throw std::logic_error("a coordinate is known by name, but not listed");
-  }
-
-  std::string findUnit(const Name& name) const { return find(name).unit; }
-
-  /// The unit of a coordinate on which a force acts.
-  std::string findForcedUnit(const Name& name) const {
-    const Coordinate& coordinate = find(name);
-    if (!coordinate.takes_forces) {
-      throw ExperimentError(
-          name.where, name.text,
-          "is an angle of a ball or free joint, whose speeds are an angular velocity; use a "
-          "bushing or an applied moment instead");
-    }
-    return coordinate.unit;
-  }
+  std::string findUnit(const Name& name) const { return fields_.find(name).unit; }
 
   const ModelSpec& model_;
-  std::vector<std::string> bodies_;
-  std::vector<Coordinate> coordinates_;
-  CheckScope constants_;
-  CheckScope dynamics_;
+  FieldCheck fields_;
 };
 
 }  // namespace

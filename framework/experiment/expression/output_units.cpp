@@ -20,7 +20,7 @@ std::string findOutputUnit(const OutputSpec& output, const SystemSpec& system) {
   }
   const std::string& wanted = (output.coordinate ? output.coordinate : output.speed)->text;
   for (const BodySpec& body : system.bodies) {
-    const std::vector<JointCoordinate>& kinds = getJointCoordinates(body.joint.type);
+    const JointCoordinates& kinds = getJointCoordinates(body.joint.type);
     for (std::size_t i = 0; i < std::min(kinds.size(), body.joint.coordinates.size()); ++i) {
       if (body.joint.coordinates[i].text == wanted) {
         return getOutputUnit(output, kinds[i].kind);

@@ -45,12 +45,12 @@ const ut_system& getUnitSystem() {
   return *kSystem;
 }
 
-using Unit = std::unique_ptr<ut_unit, FreeUnit>;
+using UnitHandle = std::unique_ptr<ut_unit, FreeUnit>;
 
 /// Call with `udunits` locked.
-Unit parse(const std::string& unit, const SourceLocation& where) {
+UnitHandle parse(const std::string& unit, const SourceLocation& where) {
   const std::string text = unit.empty() || unit == "-" ? "1" : unit;
-  Unit parsed(ut_parse(&getUnitSystem(), text.c_str(), UT_UTF8));
+  UnitHandle parsed(ut_parse(&getUnitSystem(), text.c_str(), UT_UTF8));
   if (parsed == nullptr) {
     throw ExperimentError(where, unit, "is not a unit; write units like N s/m, kg m^2, rad/s");
   }
@@ -96,7 +96,7 @@ Dimension parseUnit(const std::string& unit, const SourceLocation& where) {
     return dimension;
   }
   const std::lock_guard<std::mutex> guard(udunits);
-  const Unit parsed = parse(unit, where);
+  const UnitHandle parsed = parse(unit, where);
   const ut_visitor visitor{visitBase, visitProduct, visitScaled, visitTimestamp, visitLogarithm};
   if (ut_accept_visitor(parsed.get(), &visitor, &dimension) != UT_SUCCESS) {
     throw ExperimentError(where, unit, "is not a coherent SI unit; give the value in m, kg, s, N, rad ...");
@@ -110,7 +110,7 @@ UnitConversion calcUnitConversion(const std::string& from, const std::string& to
     return {};
   }
   const std::lock_guard<std::mutex> guard(udunits);
-  const Unit source = parse(from, where), target = parse(to, where);
+  const UnitHandle source = parse(from, where), target = parse(to, where);
   const std::unique_ptr<cv_converter, FreeConverter> converter(ut_get_converter(source.get(), target.get()));
   if (converter == nullptr) {
     throw ExperimentError(where, from, "does not convert to " + (to.empty() ? "a number" : to));

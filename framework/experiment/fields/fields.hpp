@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace twinmap {
@@ -32,6 +33,31 @@ struct ListRule {
   const char* text = "";
 };
 
+/// The coherent SI unit in which an expression must come out. Checked where all names are known
+/// (check/check_model.cpp), and written into the JSON schema.
+struct Unit {
+  const char* text;  ///< "" is checked to be finite only
+  const char* rotation =
+      nullptr;          ///< on a coordinate that is an angle, and in the first three of six directions
+  bool varies = false;  ///< may use coordinates, speeds, signals and the time
+  bool own = false;     ///< the unit that is stated beside: of a signal, of an output
+};
+
+inline constexpr Unit kNoUnit{""};
+inline constexpr Unit kOwnUnit{"", nullptr, false, true};
+
+/// What a name must refer to; checked with the units.
+enum class Reference {
+  kBody,              ///< or ground
+  kEarlierBody,       ///< declared before, or ground
+  kCoordinate,        ///< of a joint
+  kForcedCoordinate,  ///< one on which forces may act
+};
+
+/// Rules that need more than the value itself, so that the reader leaves them to the checks.
+template <class Rule>
+inline constexpr bool kIsCheckedLater = std::is_same_v<Rule, Unit> || std::is_same_v<Rule, Reference>;
+
 inline constexpr ListRule kNotEmpty{1, "must not be empty; leave the key out for the default"};
 
 template <class Enum>
@@ -57,14 +83,15 @@ const char* getEnumText(Enum value) {
 
 /// How structs are described. Beside each struct of the experiment there is
 ///
-///   template <class Fields> void describe(Fields& f, SpringSpec& s) {
-///     f.required("coordinate", s.coordinate, "the coordinate it acts on");
-///     f.optional("rest", s.rest, "where the force vanishes; m or rad");
+///   template <class Fields> void describe(Fields& f, BodySpec& s) {
+///     f.required("mass", s.mass, "of the body", Unit{"kg"});
+///     f.optional("center_of_mass", s.center_of_mass, "in the body's frame", Unit{"m"});
 ///     f.rule(condition, "must ...");
 ///   }
 ///
-/// and visitors with these members that read YAML into it (FieldReader), write it out (FieldWriter) and
-/// derive the JSON schema (json_schema.cpp), so that a key is named in one place.
+/// and visitors with these members that read YAML into it (FieldReader), write it out (FieldWriter), derive
+/// the JSON schema (json_schema.cpp) and check units and references (check/check_model.cpp), so that a key is
+/// named in one place.
 ///   required, optional         a value; an optional one keeps its default when absent
 ///   requiredMap, optionalMap   a vector of structs with a Name `name`, written as a map from name to struct
 ///   oneOf                      keys of which exactly one is given (one_of.hpp)

@@ -129,6 +129,16 @@ void addRule(Json& schema, const ListRule& rule) {
   schema["minItems"] = rule.minimum;
 }
 
+void addRule(Json& schema, const Unit& unit) {
+  const std::string alternative = unit.rotation != nullptr ? std::string(" or ") + unit.rotation : "";
+  const std::string what = schema.value("description", "");
+  if (*unit.text != '\0') {
+    schema["description"] = what + (what.empty() ? "" : "; ") + unit.text + alternative;
+  }
+}
+
+void addRule(Json&, const Reference&) {}
+
 /// Whether a map without keys is valid.
 bool acceptsNoKeys(const Json& schema) {
   return !schema.contains("required") && !schema.contains("oneOf");
@@ -145,8 +155,9 @@ class FieldSchema {
   template <class T, class... Rule>
   void optional(const char* key, const T& value, const char* what, const Rule&... rule) {
     Json schema = makeSchema(value);
+    schema["description"] = what;
     (addRule(schema, rule), ...);
-    add(key, std::move(schema), what);
+    properties_[key] = std::move(schema);
   }
   template <class T>
   void requiredMap(const char* key, const std::vector<T>& values, const char* what) {
@@ -155,7 +166,7 @@ class FieldSchema {
   }
   template <class T>
   void optionalMap(const char* key, const std::vector<T>&, const char* what) {
-    add(key, {{"type", "object"}, {"additionalProperties", makeSchema(T{})}}, what);
+    properties_[key] = {{"type", "object"}, {"additionalProperties", makeSchema(T{})}, {"description", what}};
   }
   template <class... Choices>
   void oneOf(const char* /*text*/, const Choices&... choices) {
@@ -180,11 +191,6 @@ class FieldSchema {
   }
 
  private:
-  void add(const char* key, Json schema, const char* what) {
-    schema["description"] = what;
-    properties_[key] = std::move(schema);
-  }
-
   template <class Choice>
   void addChoice(const Choice& choice) {
     std::apply([&](const auto&... rule) { optional(choice.key, choice.value, choice.what, rule...); },

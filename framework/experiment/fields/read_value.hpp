@@ -176,15 +176,31 @@ void readMap(const YamlNode& node, std::vector<T>& values) {
   }
 }
 
+template <class T>
+void readByRule(const YamlNode& node, T& value) {
+  readValue(node, value);
+}
+
+/// By the one rule among them, if any, that the value alone must satisfy.
+template <class T, class Rule, class... Others>
+void readByRule(const YamlNode& node, T& value, const Rule& rule, const Others&... others) {
+  if constexpr (kIsCheckedLater<Rule>) {
+    readByRule(node, value, others...);
+  } else {
+    static_assert((kIsCheckedLater<Others> && ...));
+    readValue(node, value, rule);
+  }
+}
+
 template <class T, class... Rule>
 void FieldReader::required(const char* key, T& value, const char* what, const Rule&... rule) {
-  readValue(takeRequired(key, what), value, rule...);
+  readByRule(takeRequired(key, what), value, rule...);
 }
 
 template <class T, class... Rule>
 void FieldReader::optional(const char* key, T& value, const char*, const Rule&... rule) {
   if (const YamlNode* node = take(key)) {
-    readValue(*node, value, rule...);
+    readByRule(*node, value, rule...);
   }
 }
 
@@ -211,7 +227,7 @@ int FieldReader::readChoice(Choice& choice) {
   if (node == nullptr) {
     return 0;
   }
-  std::apply([&](const auto&... rule) { readValue(*node, choice.value, rule...); }, choice.rules);
+  std::apply([&](const auto&... rule) { readByRule(*node, choice.value, rule...); }, choice.rules);
   return isGiven(choice.value) ? 1 : 0;
 }
 
@@ -225,7 +241,7 @@ void FieldReader::oneOf(const char* text, Choices... choices) {
 template <class T, class... Rule>
 void FieldReader::value(T& value, const Rule&... rule) {
   is_value_ = true;
-  readValue(*node_, value, rule...);
+  readByRule(*node_, value, rule...);
 }
 
 }  // namespace twinmap

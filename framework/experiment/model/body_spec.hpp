@@ -5,45 +5,9 @@
 
 #include "framework/experiment/expression/expression.hpp"
 #include "framework/experiment/fields/fields.hpp"
+#include "framework/experiment/model/joint_type.hpp"
 
 namespace twinmap {
-
-/// Mobilities between a body and its parent. Coordinates in the order and units given in
-/// docs/experiment-file.md; angles in rad, lengths in m.
-enum class JointType {
-  kWeld,         // 0 coordinates
-  kSlider,       // 1: translation along `axis`
-  kPin,          // 1: rotation about `axis`
-  kScrew,        // 1: rotation about `axis`, translating by `pitch` m/rad
-  kCylinder,     // 2: rotation about and translation along `axis`
-  kUniversal,    // 2: rotations about x, then y
-  kBendStretch,  // 2: rotation about z, then translation along the rotated x
-  kPlanar,       // 3: rotation about z, translations along x and y
-  kTranslation,  // 3: translations x, y, z
-  kGimbal,       // 3: body-fixed x-y-z angles
-  kBall,         // 3: body-fixed x-y-z angles, speeds are the angular velocity
-  kBushing,      // 6: body-fixed x-y-z angles, translations
-  kFree,         // 6: body-fixed x-y-z angles, translations; speeds are angular and linear velocity
-};
-
-template <>
-struct EnumNames<JointType> {
-  static constexpr EnumName<JointType> values[] = {
-      {"weld", JointType::kWeld},
-      {"slider", JointType::kSlider},
-      {"pin", JointType::kPin},
-      {"screw", JointType::kScrew},
-      {"cylinder", JointType::kCylinder},
-      {"universal", JointType::kUniversal},
-      {"bend_stretch", JointType::kBendStretch},
-      {"planar", JointType::kPlanar},
-      {"translation", JointType::kTranslation},
-      {"gimbal", JointType::kGimbal},
-      {"ball", JointType::kBall},
-      {"bushing", JointType::kBushing},
-      {"free", JointType::kFree},
-  };
-};
 
 /// A frame fixed to a body: its origin and its orientation as body-fixed x-y-z angles (rad).
 struct FrameSpec {
@@ -53,8 +17,8 @@ struct FrameSpec {
 
 template <class Fields>
 void describe(Fields& f, FrameSpec& s) {
-  f.optional("point", s.point, "origin of the frame, in the body's frame; m");
-  f.optional("orientation", s.orientation, "body-fixed x-y-z angles; rad");
+  f.optional("point", s.point, "origin of the frame, in the body's frame", Unit{"m"});
+  f.optional("orientation", s.orientation, "body-fixed x-y-z angles", Unit{"rad"});
 }
 
 struct JointSpec {
@@ -70,11 +34,11 @@ struct JointSpec {
 template <class Fields>
 void describe(Fields& f, JointSpec& s) {
   f.required("type", s.type, "kind of joint");
-  f.optional("parent", s.parent, "ground, or a body declared before");
+  f.optional("parent", s.parent, "ground, or a body declared before", Reference::kEarlierBody);
   f.optional("coordinates", s.coordinates, "a name for each coordinate of the joint");
-  f.optional("axis", s.axis,
-             "joint axis in the joint frame (slider x, pin, screw and cylinder z by default)");
-  f.optional("pitch", s.pitch, "screw: translation per rotation; m/rad");
+  f.optional("axis", s.axis, "joint axis in the joint frame (slider x, pin, screw and cylinder z by default)",
+             kNoUnit);
+  f.optional("pitch", s.pitch, "screw: translation per rotation", Unit{"m/rad"});
   f.optional("in_parent", s.in_parent, "joint frame, fixed to the parent");
   f.optional("in_body", s.in_body, "joint frame, fixed to the body");
 }
@@ -86,8 +50,8 @@ struct InertiaSpec {
 
 template <class Fields>
 void describe(Fields& f, InertiaSpec& s) {
-  f.optional("moments", s.moments, "Ixx, Iyy, Izz about the body's own centre of mass; kg m2");
-  f.optional("products", s.products, "tensor entries Ixy, Ixz, Iyz; kg m2");
+  f.optional("moments", s.moments, "Ixx, Iyy, Izz about the body's own centre of mass", Unit{"kg m2"});
+  f.optional("products", s.products, "tensor entries Ixy, Ixz, Iyz", Unit{"kg m2"});
 }
 
 struct BodySpec {
@@ -100,8 +64,8 @@ struct BodySpec {
 
 template <class Fields>
 void describe(Fields& f, BodySpec& s) {
-  f.required("mass", s.mass, "kg");
-  f.optional("center_of_mass", s.center_of_mass, "in the body's frame; m");
+  f.required("mass", s.mass, "", Unit{"kg"});
+  f.optional("center_of_mass", s.center_of_mass, "in the body's frame", Unit{"m"});
   f.optional("inertia", s.inertia, "about the body's own centre of mass");
   f.required("joint", s.joint, "how the body is connected to its parent");
 }

@@ -17,9 +17,9 @@ struct PulseSpec {
 
 template <class Fields>
 void describe(Fields& f, PulseSpec& s) {
-  f.required("amplitude", s.amplitude, "value for start <= t < end, 0 elsewhere");
-  f.required("start", s.start, "s");
-  f.required("end", s.end, "s");
+  f.required("amplitude", s.amplitude, "value for start <= t < end, 0 elsewhere", kOwnUnit);
+  f.required("start", s.start, "", Unit{"s"});
+  f.required("end", s.end, "", Unit{"s"});
 }
 
 /// amplitude * sin(2 pi frequency t' + phase) with t' = t - start, for start <= t < end, 0 elsewhere.
@@ -30,11 +30,11 @@ struct SineSpec {
 
 template <class Fields>
 void describe(Fields& f, SineSpec& s) {
-  f.required("amplitude", s.amplitude, "amplitude * sin(2 pi frequency (t - start) + phase)");
-  f.required("frequency", s.frequency, "Hz");
-  f.optional("phase", s.phase, "rad");
-  f.optional("start", s.start, "s; 0 before");
-  f.optional("end", s.end, "s; 0 after; without it, to the end of the simulation");
+  f.required("amplitude", s.amplitude, "amplitude * sin(2 pi frequency (t - start) + phase)", kOwnUnit);
+  f.required("frequency", s.frequency, "", Unit{"Hz"});
+  f.optional("phase", s.phase, "", Unit{"rad"});
+  f.optional("start", s.start, "0 before", Unit{"s"});
+  f.optional("end", s.end, "0 after; without it, to the end of the simulation", Unit{"s"});
 }
 
 enum class SweepKind { kLinear, kLogarithmic };
@@ -53,11 +53,11 @@ struct ChirpSpec {
 
 template <class Fields>
 void describe(Fields& f, ChirpSpec& s) {
-  f.required("amplitude", s.amplitude, "of a sine with a sweeping frequency");
-  f.required("start_frequency", s.start_frequency, "Hz, at start");
-  f.required("end_frequency", s.end_frequency, "Hz, at end");
-  f.optional("start", s.start, "s; 0 before");
-  f.required("end", s.end, "s; 0 after");
+  f.required("amplitude", s.amplitude, "of a sine with a sweeping frequency", kOwnUnit);
+  f.required("start_frequency", s.start_frequency, "at start", Unit{"Hz"});
+  f.required("end_frequency", s.end_frequency, "at end", Unit{"Hz"});
+  f.optional("start", s.start, "0 before", Unit{"s"});
+  f.required("end", s.end, "0 after", Unit{"s"});
   f.optional("sweep", s.sweep, "how the frequency grows");
 }
 
@@ -72,12 +72,12 @@ struct MultisineSpec {
 
 template <class Fields>
 void describe(Fields& f, MultisineSpec& s) {
-  f.oneOf("must give exactly one of", choice("amplitude", s.amplitude, "the same of each sine"),
-          choice("amplitudes", s.amplitudes, "one for each of frequencies"));
-  f.required("frequencies", s.frequencies, "Hz");
-  f.optional("phases", s.phases, "rad; Schroeder's phases if absent", kNotEmpty);
-  f.optional("start", s.start, "s; 0 before");
-  f.optional("end", s.end, "s; 0 after; without it, to the end of the simulation");
+  f.oneOf("must give exactly one of", choice("amplitude", s.amplitude, "the same of each sine", kOwnUnit),
+          choice("amplitudes", s.amplitudes, "one for each of frequencies", kOwnUnit));
+  f.required("frequencies", s.frequencies, "", Unit{"Hz"});
+  f.optional("phases", s.phases, "Schroeder's phases if absent", kNotEmpty, Unit{"rad"});
+  f.optional("start", s.start, "0 before", Unit{"s"});
+  f.optional("end", s.end, "0 after; without it, to the end of the simulation", Unit{"s"});
   f.rule(!s.frequencies.empty(), "must list at least one of frequencies");
   f.rule(s.phases.empty() || s.phases.size() == s.frequencies.size(),
          "must give as many phases as frequencies, or none");

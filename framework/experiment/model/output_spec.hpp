@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "framework/experiment/fields/one_of.hpp"
-#include "framework/experiment/model/force_spec.hpp"
+#include "framework/experiment/model/elements/element.hpp"
 
 namespace twinmap {
 
@@ -15,9 +15,9 @@ struct StationOutputSpec {
 
 template <class Fields>
 void describe(Fields& f, StationOutputSpec& s) {
-  f.required("body", s.station.body, "a body");
-  f.optional("point", s.station.point, "in the body's frame; m");
-  f.required("direction", s.direction, "in the ground frame; normalised");
+  f.required("body", s.station.body, "a body", Reference::kBody);
+  f.optional("point", s.station.point, "in the body's frame", Unit{"m"});
+  f.required("direction", s.direction, "in the ground frame; normalised", kNoUnit);
 }
 
 /// One measured quantity of the system: gain * quantity + offset; exactly one of the optional members is set.
@@ -37,15 +37,17 @@ struct OutputSpec {
 
 template <class Fields>
 void describe(Fields& f, OutputSpec& s) {
-  f.oneOf("must give exactly one of", choice("coordinate", s.coordinate, "a joint coordinate; m or rad"),
-          choice("speed", s.speed, "time derivative of a joint coordinate; m/s or rad/s"),
-          choice("position", s.position, "of a station, along a direction; m"),
-          choice("velocity", s.velocity, "of a station, along a direction; m/s"),
-          choice("acceleration", s.acceleration, "of a station, along a direction; m/s2"),
-          choice("variable", s.variable, "of an FMU or a program"));
+  f.oneOf(
+      "must give exactly one of",
+      choice("coordinate", s.coordinate, "a joint coordinate; m or rad", Reference::kCoordinate),
+      choice("speed", s.speed, "time derivative of a joint coordinate; m/s or rad/s", Reference::kCoordinate),
+      choice("position", s.position, "of a station, along a direction; m"),
+      choice("velocity", s.velocity, "of a station, along a direction; m/s"),
+      choice("acceleration", s.acceleration, "of a station, along a direction; m/s2"),
+      choice("variable", s.variable, "of an FMU or a program"));
   f.optional("unit", s.unit, "coherent SI unit of a variable");
-  f.optional("gain", s.gain, "of the sensor, which measures gain * quantity + offset; default 1");
-  f.optional("offset", s.offset, "of the sensor, in the quantity's unit; default 0");
+  f.optional("gain", s.gain, "of the sensor, which measures gain * quantity + offset; default 1", Unit{"1"});
+  f.optional("offset", s.offset, "of the sensor, in the quantity's unit; default 0", kOwnUnit);
 }
 
 }  // namespace twinmap

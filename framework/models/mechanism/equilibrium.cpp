@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "framework/simulation/number_evaluator.hpp"
+#include "framework/simulation/simulation_failure.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "framework/simulation/number_evaluator.hpp"
+#include "framework/simulation/simulation_failure.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {

@@ -57,7 +57,7 @@ void SystemNames::addBody(const BodySpec& body) {
 }
 
 void SystemNames::addCoordinates(const JointSpec& joint, int body) {
-  const std::vector<JointCoordinate>& traits = getJointCoordinates(joint.type);
+  const JointCoordinates& traits = getJointCoordinates(joint.type);
   for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
     addOnce(coordinate_names_, joint.coordinates[i]);
     coordinates_.push_back({body, static_cast<int>(i), traits[i]});

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "framework/experiment/expression/output_units.hpp"
-#include "framework/models/mechanism/force_numbers.hpp"
+#include "framework/models/mechanism/load_numbers.hpp"
 #include "framework/models/mechanism/model_context.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
@@ -63,7 +63,7 @@ void checkOne(const OutputSpec& output) {
   }
 }
 
-Vector3d calcDirection(const StationOutputSpec& spec, NumberEvaluator& numbers, const std::string& owner) {
+Vector3d calcDirection(const StationOutputSpec& spec, ModelNumbers& numbers, const std::string& owner) {
   const Vector3d direction = calcVector(numbers, spec.direction, {owner, "direction", ""});
   const double length = std::sqrt(direction.squaredNorm());
   if (length == 0.0) {
@@ -72,7 +72,7 @@ Vector3d calcDirection(const StationOutputSpec& spec, NumberEvaluator& numbers, 
   return direction / length;
 }
 
-OutputNumbers calcQuantity(const OutputSpec& spec, const SystemNames& names, NumberEvaluator& numbers,
+OutputNumbers calcQuantity(const OutputSpec& spec, const SystemNames& names, ModelNumbers& numbers,
                            const std::string& owner) {
   if (spec.coordinate || spec.speed) {
     const Name& name = spec.coordinate ? *spec.coordinate : *spec.speed;
@@ -85,7 +85,7 @@ OutputNumbers calcQuantity(const OutputSpec& spec, const SystemNames& names, Num
   const OutputKind kind = spec.position   ? OutputKind::kPosition
                           : spec.velocity ? OutputKind::kVelocity
                                           : OutputKind::kAcceleration;
-  return {kind, -1, calcStation(at.station, names, numbers, owner), calcDirection(at, numbers, owner), {}};
+  return {kind, -1, calcBodyPoint(at.station, names, numbers, owner), calcDirection(at, numbers, owner), {}};
 }
 
 Eigen::VectorXd calcNamed(const std::vector<NamedExpression>& values, const char* what,
@@ -93,25 +93,24 @@ Eigen::VectorXd calcNamed(const std::vector<NamedExpression>& values, const char
   Eigen::VectorXd result = Eigen::VectorXd::Zero(context.names.getCoordinateNames().size());
   for (const NamedExpression& value : values) {
     const std::string owner = "initial condition of '" + value.name.text + "'";
-    result[context.names.findCoordinate(value.name)] =
-        context.numbers.updNumbers().calc(value.value, {owner, what, ""});
+    result[context.names.findCoordinate(value.name)] = context.numbers.calc(value.value, {owner, what, ""});
   }
   return result;
 }
 
 }  // namespace
 
-Vector3d calcVector(NumberEvaluator& numbers, const Expression3& expressions, const Quantity& quantity) {
+Vector3d calcVector(ModelNumbers& numbers, const Expression3& expressions, const Quantity& quantity) {
   const std::array<double, 3> values = numbers.calc3(expressions, quantity);
   return {values[0], values[1], values[2]};
 }
 
-FrameNumbers calcFrame(const FrameSpec& frame, NumberEvaluator& numbers, const std::string& owner) {
+FrameNumbers calcFrame(const FrameSpec& frame, ModelNumbers& numbers, const std::string& owner) {
   const Vector3d angles = calcVector(numbers, frame.orientation, {owner, "orientation", "rad"});
   return {calcVector(numbers, frame.point, {owner, "point", "m"}), angles};
 }
 
-MassNumbers calcMassNumbers(const BodySpec& body, NumberEvaluator& numbers) {
+MassNumbers calcMassNumbers(const BodySpec& body, ModelNumbers& numbers) {
   const std::string owner = "body '" + body.name.text + "'";
   MassNumbers mass{};
   mass.mass = numbers.calcPositive(body.mass, {owner, "mass", "kg"});
@@ -123,7 +122,7 @@ MassNumbers calcMassNumbers(const BodySpec& body, NumberEvaluator& numbers) {
   return mass;
 }
 
-JointNumbers calcJointNumbers(const BodySpec& body, NumberEvaluator& numbers) {
+JointNumbers calcJointNumbers(const BodySpec& body, ModelNumbers& numbers) {
   const std::string owner = "body '" + body.name.text + "'";
   JointNumbers joint;
   if (body.joint.axis) {
@@ -134,14 +133,14 @@ JointNumbers calcJointNumbers(const BodySpec& body, NumberEvaluator& numbers) {
   }
   joint.in_parent = calcFrame(body.joint.in_parent, numbers, owner);
   joint.in_body = calcFrame(body.joint.in_body, numbers, owner);
-  if (body.joint.type == JointType::kScrew) {
+  if (getTraits(body.joint.type).has_pitch) {
     joint.pitch = numbers.calc(body.joint.pitch, {owner, "joint.pitch", "m/rad"});
   }
   return joint;
 }
 
-Station calcStation(const StationSpec& spec, const SystemNames& names, NumberEvaluator& numbers,
-                    const std::string& owner) {
+BodyPoint calcBodyPoint(const StationSpec& spec, const SystemNames& names, ModelNumbers& numbers,
+                        const std::string& owner) {
   return {names.findBody(spec.body), calcVector(numbers, spec.point, {owner, "point", "m"})};
 }
 
@@ -154,7 +153,7 @@ std::vector<std::string> getOutputUnits(const std::vector<OutputSpec>& outputs, 
   return units;
 }
 
-OutputNumbers calcOutputNumbers(const OutputSpec& spec, const SystemNames& names, NumberEvaluator& numbers) {
+OutputNumbers calcOutputNumbers(const OutputSpec& spec, const SystemNames& names, ModelNumbers& numbers) {
   const std::string owner = "output '" + spec.name.text + "'";
   OutputNumbers output = calcQuantity(spec, names, numbers, owner);
   const bool has_gain = !spec.gain.text.empty(), has_offset = !spec.offset.text.empty();
@@ -171,16 +170,13 @@ InitialState calcInitialValues(ModelContext& context) {
 }
 
 void checkNumbers(ModelContext& context) {
-  NumberEvaluator& numbers = context.numbers.updNumbers();
+  ModelNumbers& numbers = context.numbers;
   const SystemSpec& system = context.model.system;
   for (const BodySpec& body : system.bodies) {
     calcMassNumbers(body, numbers);
     calcJointNumbers(body, numbers);
   }
-  calcPassiveForces(system, context.names, numbers);
-  for (const AppliedForceSpec& force : system.applied_forces) {
-    calcAppliedStation(force, context.names, numbers);
-  }
+  calcLoadNumbers(system, context.names, numbers);
   context.excitation.update(numbers);
   for (const OutputSpec& output : context.model.outputs) {
     calcOutputNumbers(output, context.names, numbers);

@@ -6,7 +6,7 @@
 
 #include "framework/experiment/model/output_spec.hpp"
 #include "framework/models/mechanism/system_names.hpp"
-#include "framework/simulation/number_evaluator.hpp"
+#include "framework/simulation/model_numbers.hpp"
 
 namespace twinmap {
 
@@ -30,7 +30,7 @@ struct JointNumbers {
 };
 
 /// A point fixed to a body, in its frame.
-struct Station {
+struct BodyPoint {
   int body;
   Eigen::Vector3d point;
 };
@@ -43,26 +43,25 @@ struct OutputNumbers {
   };
   OutputKind kind;
   int coordinate;             ///< of kCoordinate and kSpeed, else -1
-  Station station;            ///< of the others
+  BodyPoint station;          ///< of the others
   Eigen::Vector3d direction;  ///< a unit vector in ground axes
   std::optional<Sensor> sensor;
 };
 
-Eigen::Vector3d calcVector(NumberEvaluator& numbers, const Expression3& expressions,
-                           const Quantity& quantity);
-FrameNumbers calcFrame(const FrameSpec& frame, NumberEvaluator& numbers, const std::string& owner);
+Eigen::Vector3d calcVector(ModelNumbers& numbers, const Expression3& expressions, const Quantity& quantity);
+FrameNumbers calcFrame(const FrameSpec& frame, ModelNumbers& numbers, const std::string& owner);
 
 /// Throws SimulationFailure also for a mass that is not positive and an inertia that no body has.
-MassNumbers calcMassNumbers(const BodySpec& body, NumberEvaluator& numbers);
+MassNumbers calcMassNumbers(const BodySpec& body, ModelNumbers& numbers);
 
 /// Throws SimulationFailure also for an axis of no length.
-JointNumbers calcJointNumbers(const BodySpec& body, NumberEvaluator& numbers);
+JointNumbers calcJointNumbers(const BodySpec& body, ModelNumbers& numbers);
 
-Station calcStation(const StationSpec& spec, const SystemNames& names, NumberEvaluator& numbers,
-                    const std::string& owner);
+BodyPoint calcBodyPoint(const StationSpec& spec, const SystemNames& names, ModelNumbers& numbers,
+                        const std::string& owner);
 
 /// Throws SimulationFailure also for a direction of no length.
-OutputNumbers calcOutputNumbers(const OutputSpec& spec, const SystemNames& names, NumberEvaluator& numbers);
+OutputNumbers calcOutputNumbers(const OutputSpec& spec, const SystemNames& names, ModelNumbers& numbers);
 
 /// Units of all outputs: m, rad, m/s, rad/s or m/s2. Throws ExperimentError for unknown coordinates or bodies
 /// and for an output that measures nothing or several things.

@@ -68,9 +68,9 @@ TEST(ExperimentFile, OverridesReplaceAddAndIndex) {
   EXPECT_EQ(experiment.seed, 7u);
   EXPECT_DOUBLE_EQ(experiment.noise.scale, 0.1);
   EXPECT_DOUBLE_EQ(experiment.model.parameters[2].bounds.lower, 4.0);
-  EXPECT_EQ(experiment.model.system.springs[1].rest.text, "0.25");
+  EXPECT_EQ(experiment.model.system.elements.get<Spring>()[1].rest.text, "0.25");
   EXPECT_EQ(experiment.inverse_map.findGp()->length_scales, LengthScales::kPerOutput);
-  EXPECT_EQ(experiment.model.system.force_laws.size(), 1u);
+  EXPECT_EQ(experiment.model.system.elements.get<ForceLaw>().size(), 1u);
 }
 
 TEST(ExperimentFile, TheLastOverrideOfAKeyWins) {

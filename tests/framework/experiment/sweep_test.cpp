@@ -55,7 +55,7 @@ TEST(Sweep, ListsInBracketsAndCommasInParenthesesAndQuotesAreValues) {
   EXPECT_EQ(cases[0].experiment.transform.size(), 1u);
   EXPECT_EQ(cases[1].experiment.transform.size(), 2u);
   EXPECT_EQ(cases[1].values, (std::vector<std::string>{"[whiten, principal_components]"}));
-  EXPECT_EQ(cases[0].experiment.model.system.springs[0].stiffness.text, "max(k, 1)");
+  EXPECT_EQ(cases[0].experiment.model.system.elements.get<Spring>()[0].stiffness.text, "max(k, 1)");
   EXPECT_EQ(cases[0].experiment.description, "short, and sweet");
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "framework/models/mechanism/equations/named_values.hpp"
+#include "framework/experiment/expression/named_values.hpp"
+#include "framework/models/mechanism/equations/element_values.hpp"
 #include "framework/models/mechanism/equations/system_values.hpp"
 #include "framework/models/mechanism/system_names.hpp"
 
@@ -35,7 +36,7 @@ Vec3<S> calcAxis(const JointSpec& joint, const NamedValues<S>& names) {
   if (joint.axis) {
     return normalize(names.calc3(*joint.axis));
   }
-  return joint.type == JointType::kSlider ? Vec3<S>{1.0, 0.0, 0.0} : Vec3<S>{0.0, 0.0, 1.0};
+  return getTraits(joint.type).axis == JointAxis::kX ? Vec3<S>{1.0, 0.0, 0.0} : Vec3<S>{0.0, 0.0, 1.0};
 }
 
 template <class S>
@@ -44,7 +45,7 @@ BodyValues<S> calcBody(const BodySpec& spec, const SystemNames& system, const Na
   body.parent = system.findBody(spec.joint.parent);
   body.type = spec.joint.type;
   body.axis = calcAxis(spec.joint, names);
-  body.pitch = spec.joint.type == JointType::kScrew ? names.calc(spec.joint.pitch) : S(0.0);
+  body.pitch = getTraits(spec.joint.type).has_pitch ? names.calc(spec.joint.pitch) : S(0.0);
   body.in_parent = calcFrame(spec.joint.in_parent, names);
   body.in_body = calcFrame(spec.joint.in_body, names);
   body.mass = names.calc(spec.mass);
@@ -55,41 +56,18 @@ BodyValues<S> calcBody(const BodySpec& spec, const SystemNames& system, const Na
 }
 
 template <class S>
-StationValues<S> calcStation(const StationSpec& spec, const SystemNames& system,
-                             const NamedValues<S>& names) {
+Station<S> calcStation(const StationSpec& spec, const SystemNames& system, const NamedValues<S>& names) {
   return {system.findBody(spec.body), names.calc3(spec.point)};
 }
 
+/// Numbers without checks: those of a recorded program are symbols.
 template <class S>
-void addElements(const SystemSpec& spec, const SystemNames& system, const NamedValues<S>& names,
-                 SystemValues<S>& values) {
-  for (const SpringSpec& spring : spec.springs) {
-    values.springs.push_back(
-        {system.findCoordinate(spring.coordinate), names.calc(spring.stiffness), names.calc(spring.rest)});
+struct UncheckedNumbers {
+  const NamedValues<S>& names;
+  S calc(const Expression& expression, const std::string&, const char*, const char*) const {
+    return names.calc(expression);
   }
-  for (const DamperSpec& damper : spec.dampers) {
-    values.dampers.push_back({system.findCoordinate(damper.coordinate), names.calc(damper.damping)});
-  }
-  for (const TwoPointSpringSpec& spring : spec.two_point_springs) {
-    values.two_point_springs.push_back({calcStation(spring.from, system, names),
-                                        calcStation(spring.to, system, names), names.calc(spring.stiffness),
-                                        names.calc(spring.rest_length)});
-  }
-  for (const TwoPointDamperSpec& damper : spec.two_point_dampers) {
-    values.two_point_dampers.push_back({calcStation(damper.from, system, names),
-                                        calcStation(damper.to, system, names), names.calc(damper.damping)});
-  }
-  const auto calcFramed = [&](const BodyFrameSpec& framed) {
-    return FramedBodyValues<S>{system.findBody(framed.body), calcFrame(framed.frame, names)};
-  };
-  for (const BushingSpec& bushing : spec.bushings) {
-    values.bushings.push_back({calcFramed(bushing.from), calcFramed(bushing.to),
-                               names.calcEach(bushing.stiffness), names.calcEach(bushing.damping)});
-  }
-  for (const AppliedForceSpec& force : spec.applied_forces) {
-    values.loaded.push_back(calcStation(force.station, system, names));
-  }
-}
+};
 
 /// Evaluates all numbers of a system. `names`: parameters and constants.
 template <class S>
@@ -103,7 +81,7 @@ SystemValues<S> calcSystemValues(const SystemSpec& spec, const SystemNames& syst
     values.bodies.back().first_speed = values.coordinate_count;
     values.coordinate_count += values.bodies.back().speed_count;
   }
-  addElements(spec, system, names, values);
+  values.elements = calcElements<S>(spec.elements, system, UncheckedNumbers<S>{names});
   return values;
 }
 

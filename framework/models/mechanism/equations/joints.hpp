@@ -86,11 +86,11 @@ template <class S>
 JointMotion<S> calcAngleJoint(const BodyValues<S>& body, const S* q, const S* u) {
   const Vec3<S> angles{q[0], q[1], q[2]};
   JointMotion<S> motion{{rotateXyz(angles), {}}, {}, {}};
-  if (body.type == JointType::kGimbal || body.type == JointType::kBushing) {
+  if (hasAngularVelocity(body.type)) {
+    motion.columns = {{{1.0, 0.0, 0.0}, {}}, {{0.0, 1.0, 0.0}, {}}, {{0.0, 0.0, 1.0}, {}}};
+  } else {
     motion.columns = calcAngleColumns(angles);
     motion.bias.angular = calcAngleBias(motion.columns, u);
-  } else {
-    motion.columns = {{{1.0, 0.0, 0.0}, {}}, {{0.0, 1.0, 0.0}, {}}, {{0.0, 0.0, 1.0}, {}}};
   }
   if (body.speed_count == 6) {
     motion.frame.origin = {q[3], q[4], q[5]};
@@ -125,13 +125,13 @@ JointMotion<S> calcJoint(const BodyValues<S>& body, const S* q, const S* u) {
       return calcPlanar(q);
     case JointType::kTranslation:
       return calcTranslation(q);
-    default:
+    case JointType::kGimbal:
+    case JointType::kBall:
+    case JointType::kBushing:
+    case JointType::kFree:
       return calcAngleJoint(body, q, u);
   }
-}
-
-inline bool hasAngularVelocity(JointType type) {
-  return type == JointType::kBall || type == JointType::kFree;
+  return {};
 }
 
 /// N and its inverse in (body-fixed x-y-z angles)' = N * angular velocity in the first frame; N is singular

@@ -5,7 +5,7 @@
 
 #include "framework/experiment/model/model_spec.hpp"
 #include "framework/models/mechanism/equations/calc_system_values.hpp"
-#include "framework/models/mechanism/equations/forces.hpp"
+#include "framework/models/mechanism/equations/force_sum.hpp"
 
 namespace twinmap::equations {
 
@@ -42,27 +42,17 @@ NamedValues<S> nameState(const ModelSpec& model, const SystemNames& system, cons
   return names;
 }
 
-/// Applied forces, applied moments and force laws.
-template <class S>
-void addLoads(const SystemSpec& spec, const SystemNames& system, const NamedValues<S>& names,
-              ForceSum<S>& sum) {
-  const auto express = [&](const Expression3& components, ForceFrame frame, int body) {
-    const Vec3<S> value = names.calc3(components);
-    return frame == ForceFrame::kBody ? sum.motions[body].pose.rotation * value : value;
-  };
-  for (std::size_t i = 0; i < spec.applied_forces.size(); ++i) {
-    const AppliedForceSpec& force = spec.applied_forces[i];
-    const StationValues<S>& station = sum.system.loaded[i];
-    const Vec3<S> arm = sum.motions[station.body].pose.rotation * station.point;
-    sum.addAt(station.body, arm, express(force.force, force.frame, station.body));
+/// Gravity and all force elements. `named`: parameters, constants and the state.
+template <class S, class Named>
+Loads<S> calcLoads(const SystemValues<S>& values, const std::vector<BodyMotion<S>>& motions,
+                   const std::vector<S>& coordinates, const std::vector<S>& rates, const Named& named) {
+  Loads<S> loads{std::vector<Spatial<S>>(motions.size()), std::vector<S>(coordinates.size(), S(0.0))};
+  ForceSum<S, Named> sum(motions, coordinates, rates, named, loads);
+  for (std::size_t i = 1; i < motions.size(); ++i) {
+    sum.addGravity(static_cast<int>(i), values.gravity, values.bodies[i].mass, values.bodies[i].center);
   }
-  for (const AppliedMomentSpec& moment : spec.applied_moments) {
-    const int body = system.findBody(moment.body);
-    sum.addMoment(body, express(moment.moment, moment.frame, body));
-  }
-  for (const ForceLawSpec& law : spec.force_laws) {
-    sum.addOnCoordinate(system.findCoordinate(law.coordinate), names.calc(law.force));
-  }
+  addElementForces(values.elements, sum);
+  return loads;
 }
 
 /// The equations of motion of a model. `names`: its parameters and constants, `values`: calcSystemValues of
@@ -73,10 +63,10 @@ ModelMotion<S> calcModelMotion(const ModelSpec& model, const SystemNames& system
   ModelMotion<S> motion;
   motion.rates = calcRates(values, state.coordinates, state.speeds);
   motion.bodies = calcMotions(values, state.coordinates, state.speeds);
-  ForceSum<S> sum(values, motion.bodies);
-  addPassiveForces(state.coordinates, motion.rates, sum);
-  addLoads(model.system, system, nameState(model, system, state, motion.rates, names), sum);
-  Solution<S> solution = solve(calcEquationsOfMotion(values, motion.bodies, sum.on_bodies, sum.on_speeds));
+  Loads<S> loads = calcLoads(values, motion.bodies, state.coordinates, motion.rates,
+                             nameState(model, system, state, motion.rates, names));
+  Solution<S> solution =
+      solve(calcEquationsOfMotion(values, motion.bodies, loads.on_bodies, std::move(loads.on_speeds)));
   motion.accelerations = std::move(solution.values);
   motion.pivots = std::move(solution.pivots);
   return motion;

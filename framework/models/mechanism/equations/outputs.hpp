@@ -28,7 +28,7 @@ S calcStationOutput(const OutputSpec& spec, const SystemNames& names, const Name
   const StationOutputSpec& at = spec.position   ? *spec.position
                                 : spec.velocity ? *spec.velocity
                                                 : *spec.acceleration;
-  const StationValues<S> station = calcStation(at.station, names, values);
+  const Station<S> station = calcStation(at.station, names, values);
   const Vec3<S> direction = normalize(values.calc3(at.direction));
   const BodyMotion<S>& body = motion.bodies[station.body];
   const PointMotion<S> point = calcPoint(body, station.point);

@@ -1,12 +1,13 @@
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "framework/experiment/model/system_spec.hpp"
-#include "framework/models/mechanism/equations/algebra.hpp"
+#include "kernels/lanes/program/real.hpp"
 
 namespace twinmap::equations {
+
+using namespace algebra;
 
 /// The numbers of a system over a scalar, as SystemSpec describes them; bodies by index, ground is 0. SI
 /// units.
@@ -25,52 +26,10 @@ struct BodyValues {
 };
 
 template <class S>
-struct StationValues {
-  int body = 0;
-  Vec3<S> point;
-};
-
-template <class S>
-struct SpringValues {
-  int coordinate;
-  S stiffness, rest;
-};
-template <class S>
-struct DamperValues {
-  int coordinate;
-  S damping;
-};
-template <class S>
-struct TwoPointSpringValues {
-  StationValues<S> from, to;
-  S stiffness, rest_length;
-};
-template <class S>
-struct TwoPointDamperValues {
-  StationValues<S> from, to;
-  S damping;
-};
-template <class S>
-struct FramedBodyValues {
-  int body;
-  Transform<S> frame;
-};
-template <class S>
-struct BushingValues {
-  FramedBodyValues<S> from, to;
-  std::vector<S> stiffness, damping;  ///< 6 each
-};
-
-template <class S>
 struct SystemValues {
   Vec3<S> gravity;
   std::vector<BodyValues<S>> bodies;  ///< ground first
-  std::vector<SpringValues<S>> springs;
-  std::vector<DamperValues<S>> dampers;
-  std::vector<TwoPointSpringValues<S>> two_point_springs;
-  std::vector<TwoPointDamperValues<S>> two_point_dampers;
-  std::vector<BushingValues<S>> bushings;
-  std::vector<StationValues<S>> loaded;  ///< one for each applied force
+  ForceElements<S> elements;
   int coordinate_count = 0;
 };
 

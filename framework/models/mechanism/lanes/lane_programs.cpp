@@ -43,11 +43,7 @@ const program::Program& LanePrograms::getJacobian(const SystemNames& names) {
 
 /// Returns what prevents it, or "".
 std::string LanePrograms::compile(ModelContext& context, SimbodyModel& simbody) {
-  try {
-    values_ = compileModel(recordModel(model_, context.names, box_center_), false);
-  } catch (const UnknownSyntax& error) {
-    return error.what();
-  }
+  values_ = compileModel(recordModel(model_, context.names, box_center_), false);
   return compareWithSimbody(context, simbody, *values_);
 }
 

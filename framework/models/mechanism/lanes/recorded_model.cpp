@@ -9,7 +9,6 @@ namespace {
 
 using equations::ModelMotion;
 using equations::ModelState;
-using equations::NamedValues;
 using equations::SystemValues;
 using program::Symbol;
 using Symbols = RecordedModel::Symbols;

@@ -1,6 +1,6 @@
 #include "framework/models/mechanism/lanes/rest_program.hpp"
 
-#include "framework/simulation/number_evaluator.hpp"
+#include "framework/simulation/simulation_failure.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {

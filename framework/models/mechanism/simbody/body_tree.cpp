@@ -5,19 +5,13 @@
 
 namespace twinmap {
 
-BodyTree::BodyTree(const SystemSpec& spec, const SystemNames& names, NumberEvaluator& numbers)
-    : names_(names) {
+BodyTree::BodyTree(const SystemSpec& spec, const SystemNames& names, ModelNumbers& numbers) : names_(names) {
   matter_.setShowDefaultGeometry(false);
   for (const BodySpec& body : spec.bodies) {
     const SimTK::Body::Rigid rigid(toMassProperties(calcMassNumbers(body, numbers)));
     const SimTK::MobilizedBodyIndex parent(names.findBody(body.joint.parent));
     addMobilizer(matter_.updMobilizedBody(parent), rigid, body, numbers);
   }
-}
-
-void BodyTree::addForce(SimTK::Force::Custom::Implementation* force) {
-  SimTK::GeneralForceSubsystem subsystem(system_);
-  SimTK::Force::Custom(subsystem, force);
 }
 
 void BodyTree::realize() {

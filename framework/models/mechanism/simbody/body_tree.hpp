@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "framework/models/mechanism/system_names.hpp"
-#include "framework/simulation/number_evaluator.hpp"
+#include "framework/simulation/model_numbers.hpp"
 
 namespace twinmap {
 
@@ -19,10 +19,10 @@ class BodyTree {
   };
 
   /// Throws SimulationFailure for numbers that no real system has.
-  BodyTree(const SystemSpec& spec, const SystemNames& names, NumberEvaluator& numbers);
+  BodyTree(const SystemSpec& spec, const SystemNames& names, ModelNumbers& numbers);
 
-  /// Adds a force element that Simbody's own integrators are to see. Takes ownership; call before realize().
-  void addForce(SimTK::Force::Custom::Implementation* force);
+  /// Where forces are put that Simbody's own integrators are to see; call once, before realize().
+  SimTK::GeneralForceSubsystem addForceSubsystem() { return SimTK::GeneralForceSubsystem(system_); }
 
   /// Completes the system; the state is then ready to take coordinates.
   void realize();

@@ -22,7 +22,7 @@ Eigen::VectorXd calcEquilibriumPoint(SimbodyContext& context) {
   for (const NamedExpression& value : context.model.initial.equilibrium->parameters) {
     const std::string owner = "initial.equilibrium";
     point[findParameter(context.model, value.name)] =
-        context.numbers.updNumbers().calc(value.value, {owner, value.name.text.c_str(), ""});
+        context.numbers.calc(value.value, {owner, value.name.text.c_str(), ""});
   }
   return point;
 }
@@ -70,7 +70,7 @@ void checkInitialState(SimbodyContext& context, const Eigen::VectorXd& box_cente
 void buildAtBoxCenter(SimbodyContext& context) {
   atBoxCenter(context, [&] {
     const LoadedSystem system(context, false);
-    const Outputs outputs(context.model.outputs, context.names, context.numbers.updNumbers());
+    const Outputs outputs(context.model.outputs, context.names, context.numbers);
     calcInitialValues(context);
   });
 }

@@ -15,7 +15,7 @@ Rotation calcAxisAlignment(JointType type, const std::optional<Eigen::Vector3d>&
   if (!axis) {
     return Rotation();
   }
-  const SimTK::CoordinateAxis own = type == JointType::kSlider
+  const SimTK::CoordinateAxis own = getTraits(type).axis == JointAxis::kX
                                         ? static_cast<SimTK::CoordinateAxis>(SimTK::XAxis)
                                         : static_cast<SimTK::CoordinateAxis>(SimTK::ZAxis);
   return Rotation(SimTK::UnitVec3(toVec3(*axis)), own);
@@ -35,7 +35,7 @@ struct Joint {
 }  // namespace
 
 void addMobilizer(MobilizedBody parent, const SimTK::Body& body, const BodySpec& spec,
-                  NumberEvaluator& numbers) {
+                  ModelNumbers& numbers) {
   const JointNumbers values = calcJointNumbers(spec, numbers);
   const Transform alignment(calcAxisAlignment(spec.joint.type, values.axis));
   Joint joint{parent, body, toTransform(values.in_parent) * alignment,

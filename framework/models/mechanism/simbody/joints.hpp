@@ -3,7 +3,7 @@
 #include <Simbody.h>
 
 #include "framework/experiment/model/system_spec.hpp"
-#include "framework/simulation/number_evaluator.hpp"
+#include "framework/simulation/model_numbers.hpp"
 
 namespace twinmap {
 
@@ -11,6 +11,6 @@ namespace twinmap {
 /// coordinates are 0. A joint with an axis moves along or about that axis of the joint frame; by default
 /// Simbody's own: x for a slider, z for the others. Throws SimulationFailure for an axis of no length.
 void addMobilizer(SimTK::MobilizedBody parent, const SimTK::Body& body, const BodySpec& spec,
-                  NumberEvaluator& numbers);
+                  ModelNumbers& numbers);
 
 }  // namespace twinmap

@@ -3,6 +3,15 @@
 namespace twinmap {
 namespace {
 
+template <class Column>
+algebra::Vec3<double> toVector(const Column& v) {
+  return {v[0], v[1], v[2]};
+}
+
+SimTK::Vec3 toVec3(const algebra::Vec3<double>& v) {
+  return SimTK::Vec3(v.x, v.y, v.z);
+}
+
 /// Shows the forces of a loaded system to Simbody's own integrators.
 class ForceAdapter : public SimTK::Force::Custom::Implementation {
  public:
@@ -28,26 +37,64 @@ class ForceAdapter : public SimTK::Force::Custom::Implementation {
 
 LoadedSystem::LoadedSystem(SimbodyContext& context, bool for_simbody)
     : context_(context),
-      tree_(context.model.system, context.names, context.numbers.updNumbers()),
-      passive_(calcPassiveForces(context.model.system, context.names, context.numbers.updNumbers())),
+      tree_(context.model.system, context.names, context.numbers),
+      numbers_(calcLoadNumbers(context.model.system, context.names, context.numbers)),
+      coordinates_(context.names.getCoordinateNames().size()),
+      rates_(coordinates_.size()),
       signals_(context.excitation.getSignalCount(), 0.0) {
-  context.loads.update(context.numbers.getScope(), context.numbers.updNumbers());
-  context.excitation.update(context.numbers.updNumbers());
+  context.expressions.setNumbers(context.numbers.getValues());
+  context.excitation.update(context.numbers);
   if (for_simbody) {
-    tree_.addForce(new ForceAdapter(*this));
+    SimTK::GeneralForceSubsystem subsystem = tree_.addForceSubsystem();
+    SimTK::Force::Custom(subsystem, new ForceAdapter(*this));
   }
   tree_.realize();
+  motions_.resize(tree_.getMatter().getNumBodies());
+  loads_.on_bodies.resize(motions_.size());
+  loads_.on_speeds.resize(coordinates_.size());
   forces_.on_bodies.resize(tree_.getMatter().getNumBodies());
   forces_.on_speeds.resize(tree_.getDefaultState().getNU());
   dynamics_.emplace(tree_);
 }
 
+/// What force laws see: Simbody computes it here, the recorded equations by themselves.
+void LoadedSystem::readMotion(const SimTK::State& state) {
+  for (std::size_t i = 1; i < motions_.size(); ++i) {
+    const SimTK::MobilizedBody& body = tree_.getBody(static_cast<int>(i));
+    const SimTK::Transform& pose = body.getBodyTransform(state);
+    const SimTK::Rotation& r = pose.R();
+    motions_[i].pose = {{toVector(r.x()), toVector(r.y()), toVector(r.z())}, toVector(pose.p())};
+    motions_[i].velocity = {toVector(body.getBodyAngularVelocity(state)),
+                            toVector(body.getBodyOriginVelocity(state))};
+  }
+  const SimTK::Vector &q = state.getQ(), &rates = tree_.getMatter().getQDot(state);
+  for (std::size_t i = 0; i < coordinates_.size(); ++i) {
+    coordinates_[i] = q[tree_.getSlots()[i].q];
+    rates_[i] = rates[tree_.getSlots()[i].q];
+  }
+}
+
 const SystemForces& LoadedSystem::calcForces(const SimTK::State& state, double t) {
-  forces_.setToZero();
-  ForceSum sum(tree_, state, forces_);
-  addPassiveForces(passive_, sum);
+  readMotion(state);
   context_.excitation.calcValues(t, signals_);
-  context_.loads.add(t, signals_, sum);
+  context_.expressions.setState(t, coordinates_, rates_, signals_);
+  std::fill(loads_.on_bodies.begin(), loads_.on_bodies.end(), equations::Spatial<double>{});
+  std::fill(loads_.on_speeds.begin(), loads_.on_speeds.end(), 0.0);
+  equations::ForceSum<double, StateExpressions> sum(motions_, coordinates_, rates_, context_.expressions,
+                                                    loads_);
+  for (std::size_t i = 1; i < motions_.size(); ++i) {
+    const SimTK::MobilizedBody& body = tree_.getBody(static_cast<int>(i));
+    sum.addGravity(static_cast<int>(i), numbers_.gravity, body.getBodyMass(state),
+                   toVector(body.getBodyMassCenterStation(state)));
+  }
+  equations::addElementForces(numbers_.elements, sum);
+  for (std::size_t i = 0; i < motions_.size(); ++i) {
+    forces_.on_bodies[i] =
+        SimTK::SpatialVec(toVec3(loads_.on_bodies[i].angular), toVec3(loads_.on_bodies[i].linear));
+  }
+  for (std::size_t i = 0; i < coordinates_.size(); ++i) {
+    forces_.on_speeds[tree_.getSlots()[i].u] = loads_.on_speeds[i];
+  }
   return forces_;
 }
 

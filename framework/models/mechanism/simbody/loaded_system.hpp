@@ -4,17 +4,21 @@
 #include <optional>
 #include <vector>
 
+#include "framework/models/mechanism/equations/force_sum.hpp"
+#include "framework/models/mechanism/load_numbers.hpp"
 #include "framework/models/mechanism/model_context.hpp"
-#include "framework/models/mechanism/simbody/expression_loads.hpp"
+#include "framework/models/mechanism/simbody/body_tree.hpp"
+#include "framework/models/mechanism/simbody/state_expressions.hpp"
+#include "framework/models/mechanism/simbody/tree_dynamics.hpp"
 
 namespace twinmap {
 
 /// What a simulator keeps from sample to sample, with the forces that are expressions, compiled.
 struct SimbodyContext : ModelContext {
   /// Throws ExperimentError as its members do. `model` must outlive the context unchanged.
-  explicit SimbodyContext(const ModelSpec& of) : ModelContext(of), loads(of, names, numbers.getScope()) {}
+  explicit SimbodyContext(const ModelSpec& of) : ModelContext(of), expressions(of, numbers.getValues()) {}
 
-  ExpressionLoads loads;
+  StateExpressions expressions;
 };
 
 /// Of central differences of a system's accelerations: the cube root of the rounding unit.
@@ -39,10 +43,14 @@ class LoadedSystem {
   const Eigen::VectorXd& calcUDot(const SimTK::State& state, double t);
 
  private:
+  void readMotion(const SimTK::State& state);
+
   SimbodyContext& context_;
   BodyTree tree_;
-  PassiveForces passive_;
-  std::vector<double> signals_;
+  LoadNumbers numbers_;
+  std::vector<double> coordinates_, rates_, signals_;
+  std::vector<equations::BodyMotion<double>> motions_;  ///< ground first; without columns and bias
+  equations::Loads<double> loads_;
   SystemForces forces_;
   std::optional<TreeDynamics> dynamics_;
 };

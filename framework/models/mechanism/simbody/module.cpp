@@ -34,7 +34,7 @@ class LoadedModel final : public SimbodyModel {
     translateFailures([&] {
       context_.numbers.update(point);
       system_.emplace(context_, true);
-      outputs_.emplace(context_.model.outputs, context_.names, context_.numbers.updNumbers());
+      outputs_.emplace(context_.model.outputs, context_.names, context_.numbers);
     });
   }
 

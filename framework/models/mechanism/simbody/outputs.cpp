@@ -6,7 +6,7 @@ namespace twinmap {
 using SimTK::Stage;
 using SimTK::Vec3;
 
-Outputs::Outputs(const std::vector<OutputSpec>& outputs, const SystemNames& names, NumberEvaluator& numbers) {
+Outputs::Outputs(const std::vector<OutputSpec>& outputs, const SystemNames& names, ModelNumbers& numbers) {
   for (const OutputSpec& spec : outputs) {
     const OutputNumbers output = calcOutputNumbers(spec, names, numbers);
     needs_accelerations_ = needs_accelerations_ || output.kind == OutputKind::kAcceleration;

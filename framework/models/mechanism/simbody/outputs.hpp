@@ -10,7 +10,7 @@ namespace twinmap {
 class Outputs {
  public:
   /// Throws SimulationFailure for a direction of no length, and a gain or offset that is not finite.
-  Outputs(const std::vector<OutputSpec>& outputs, const SystemNames& names, NumberEvaluator& numbers);
+  Outputs(const std::vector<OutputSpec>& outputs, const SystemNames& names, ModelNumbers& numbers);
 
   /// How far a state must be realized before calc(): Time if only coordinates are measured.
   SimTK::Stage getNeededStage() const { return stage_; }

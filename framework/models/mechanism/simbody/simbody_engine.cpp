@@ -41,7 +41,7 @@ std::string SimbodyEngine::run(const Eigen::Ref<const Eigen::VectorXd>& paramete
   if (task_.layout.times.size() == 0) {
     return "";
   }
-  const Outputs outputs(context_.model.outputs, context_.names, context_.numbers.updNumbers());
+  const Outputs outputs(context_.model.outputs, context_.names, context_.numbers);
   const InitialState initial = calcInitialState(context_, system, task_.box_center);
   const SampleRun sample{system,     context_.excitation, outputs,        initial,
                          simulation, task_.layout.times,  response.data()};

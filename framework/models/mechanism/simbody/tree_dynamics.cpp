@@ -35,11 +35,6 @@ void factorize(Eigen::MatrixXd& matrix) {
 
 }  // namespace
 
-void SystemForces::setToZero() {
-  std::fill(on_bodies.begin(), on_bodies.end(), SpatialVec(Vec3(0.0)));
-  std::fill(on_speeds.begin(), on_speeds.end(), 0.0);
-}
-
 TreeDynamics::TreeDynamics(const BodyTree& tree) : tree_(tree) {
   const SimTK::State& state = tree.getDefaultState();
   bodies_.resize(tree.getMatter().getNumBodies());

@@ -11,8 +11,6 @@ namespace twinmap {
 struct SystemForces {
   std::vector<SimTK::SpatialVec> on_bodies;  ///< ground first
   std::vector<double> on_speeds;
-
-  void setToZero();
 };
 
 /// Accelerations of a tree of bodies from the kinematics that Simbody computes: mass matrix and generalized

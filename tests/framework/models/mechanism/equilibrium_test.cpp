@@ -58,7 +58,7 @@ ModelSpec makeLever(const std::string& start_angle) {
   model.system.gravity = ex3("0", "-9.81", "0");
   model.system.bodies = {
       body("lever", "1", ex3("0.5", "0", "0"), ex3("0.1", "0.1", "0.1"), joint(JointType::kPin, {"q"}))};
-  model.system.springs = {{name("q"), ex("4"), ex("0")}};
+  model.system.elements.get<Spring>() = {{name("q"), ex("4"), ex("0")}};
   model.initial.coordinates = {value("q", start_angle)};
   model.initial.equilibrium = EquilibriumSpec{};
   model.outputs = {coordinateOutput("q")};

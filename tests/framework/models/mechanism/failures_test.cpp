@@ -14,8 +14,8 @@ ModelSpec makeOscillator() {
   ModelSpec model = makeModel(2.0);
   model.parameters = {parameter("m", 0.5, 1.5), parameter("k", 5.0, 15.0), parameter("c", 0.0, 1.0)};
   model.system.bodies = {body("block", "m", kOrigin, kOrigin, joint(JointType::kSlider, {"x"}))};
-  model.system.springs = {{name("x"), ex("k"), ex("0")}};
-  model.system.dampers = {{name("x"), ex("c")}};
+  model.system.elements.get<Spring>() = {{name("x"), ex("k"), ex("0")}};
+  model.system.elements.get<Damper>() = {{name("x"), ex("c")}};
   start(model, "x", "1");
   model.outputs = {coordinateOutput("x")};
   return model;
@@ -70,7 +70,7 @@ TEST(Failures, LimitsHoldForSimbodysIntegratorsToo) {
 
 TEST(Failures, InstabilityIsReportedWithItsTime) {
   ModelSpec model = makeOscillator();
-  model.system.force_laws = {law("x", "100 * x^3")};  // x reaches infinity in finite time
+  model.system.elements.get<ForceLaw>() = {law("x", "100 * x^3")};  // x reaches infinity in finite time
   const std::string reason = getReason(model, Eigen::Vector3d(1.0, 10.0, 0.1));
   EXPECT_NE(reason.find(" at t = 0."), std::string::npos) << reason;
 }
@@ -81,7 +81,7 @@ TEST(Failures, BlowUpOfARotationIsReportedAsSuch) {
       body("arm", "1", ex3("0.1", "0.2", "0"), ex3("1", "1", "1"), joint(JointType::kPin, {"turn"})),
       body("tip", "1", ex3("0.1", "0", "0.3"), ex3("1", "1", "1"),
            joint(JointType::kUniversal, {"a", "b"}, "arm"))};
-  model.system.force_laws = {law("turn", "exp(turn)")};
+  model.system.elements.get<ForceLaw>() = {law("turn", "exp(turn)")};
   start(model, "turn", "5");
   model.outputs = {coordinateOutput("turn")};
   const std::string reason = getReason(model);
@@ -91,7 +91,7 @@ TEST(Failures, BlowUpOfARotationIsReportedAsSuch) {
 
 TEST(Failures, ForceThatBecomesNonFiniteIsReported) {
   ModelSpec model = makeOscillator();
-  model.system.force_laws = {law("x", "sqrt(0.5 - t)")};
+  model.system.elements.get<ForceLaw>() = {law("x", "sqrt(0.5 - t)")};
   EXPECT_EQ(getReason(model, Eigen::Vector3d(1.0, 10.0, 0.1)), "state became non-finite at t = 0.5 s");
 }
 
@@ -152,10 +152,10 @@ TEST(Failures, NeverShiftOtherSamples) {
 
 TEST(WrongInput, NamesWhatIsUnknownAndWhatIsNear) {
   ModelSpec model = makeOscillator();
-  model.system.springs[0].coordinate = name("y");
+  model.system.elements.get<Spring>()[0].coordinate = name("y");
   EXPECT_NE(getError(model).find("'y' is not a coordinate"), std::string::npos);
   model = makeOscillator();
-  model.system.springs[0].stiffness = ex("kk * 2");
+  model.system.elements.get<Spring>()[0].stiffness = ex("kk * 2");
   EXPECT_NE(getError(model).find("unknown name 'kk'; did you mean 'k'?"), std::string::npos);
   model = makeOscillator();
   model.system.bodies[0].joint.parent = name("grund");
@@ -174,7 +174,7 @@ TEST(WrongInput, NamesWhatIsUnknownAndWhatIsNear) {
 
 TEST(WrongInput, NumbersOfASystemMayNotUseItsMotion) {
   ModelSpec model = makeOscillator();
-  model.system.springs[0].stiffness = ex("k * x");
+  model.system.elements.get<Spring>()[0].stiffness = ex("k * x");
   EXPECT_NE(getError(model).find("unknown name 'x'"), std::string::npos);
 }
 
@@ -186,15 +186,15 @@ TEST(WrongInput, ForcesOnTheAnglesOfABallAreRefusedWithAdvice) {
     model.system.bodies = {body("top", "1", kOrigin, ex3("1", "1", "1"), joint(type, own))};
     model.outputs = {coordinateOutput("a")};
     ModelSpec spring = model, damper = model, force_law = model;
-    spring.system.springs = {{name("b"), ex("1"), ex("0")}};
-    damper.system.dampers = {{name("c"), ex("1")}};
-    force_law.system.force_laws = {law("a", "1")};
+    spring.system.elements.get<Spring>() = {{name("b"), ex("1"), ex("0")}};
+    damper.system.elements.get<Damper>() = {{name("c"), ex("1")}};
+    force_law.system.elements.get<ForceLaw>() = {law("a", "1")};
     for (const ModelSpec& wrong : {spring, damper, force_law}) {
       EXPECT_NE(getError(wrong).find("use a bushing or an applied moment"), std::string::npos)
           << getError(wrong);
     }
     if (type == JointType::kFree) {
-      model.system.springs = {{name("x"), ex("1"), ex("0")}};
+      model.system.elements.get<Spring>() = {{name("x"), ex("1"), ex("0")}};
       EXPECT_EQ(getError(model), "");
     }
   }
@@ -260,9 +260,10 @@ TEST(WrongInput, AnInitialStateThatFailsAtTheBoxCenterIsRefused) {
   ModelSpec model = makeOscillator();
   EXPECT_EQ(getStartError(model), "");
   model.system.bodies[0].name.where = at(5, "system.bodies.block");
-  model.system.force_laws = {law("x", "sqrt(x - 2)")};  // x = 1
+  model.system.elements.get<ForceLaw>() = {law("x", "sqrt(x - 2)")};  // x = 1
   EXPECT_EQ(getStartError(model), centre + "the accelerations of the initial state are not finite");
-  model.system.force_laws = {law("x", "-50 - k * x^2")};  // none: 10 x + 10 x^2 + 50 has no root
+  model.system.elements.get<ForceLaw>() = {
+      law("x", "-50 - k * x^2")};  // none: 10 x + 10 x^2 + 50 has no root
   for (const EquilibriumAt place : {EquilibriumAt::kBoxCenter, EquilibriumAt::kSample}) {
     model.initial.equilibrium = EquilibriumSpec{place, {}};
     EXPECT_EQ(getStartError(model).rfind(centre + "static equilibrium not found", 0), 0u)

@@ -18,7 +18,7 @@ TEST(ForceLaws, CubicSpringHasItsEllipticPeriod) {
   // m x'' = -k x^3 from rest at A: quarter period K(1 / sqrt 2) sqrt(m / k) / A
   ModelSpec model = makeBlock("2", 10.0);
   model.constants = {constant("k", "8")};
-  model.system.force_laws = {law("x", "-k * x^3")};
+  model.system.elements.get<ForceLaw>() = {law("x", "-k * x^3")};
   start(model, "x", "0.5");
   const double quarter = std::comp_ellint_1(std::sqrt(0.5)) * std::sqrt(2.0 / 8.0) / 0.5;
   Eigen::VectorXd times(2);
@@ -31,7 +31,7 @@ TEST(ForceLaws, CubicSpringHasItsEllipticPeriod) {
 TEST(ForceLaws, SmoothDryFrictionStopsABlock) {
   // m v' = -f tanh(v / w): sinh(v / w) = sinh(v0 / w) exp(-f t / (m w))
   ModelSpec model = makeBlock("2", 1.0);
-  model.system.force_laws = {law("x", "-3 * tanh(x_dot / 0.05)")};
+  model.system.elements.get<ForceLaw>() = {law("x", "-3 * tanh(x_dot / 0.05)")};
   start(model, "x", "0", "0.4");
   const Eigen::VectorXd times = Eigen::VectorXd::LinSpaced(11, 0.0, 1.0);
   const Eigen::MatrixXd result = runModel(model, times);
@@ -44,7 +44,7 @@ TEST(ForceLaws, SmoothDryFrictionStopsABlock) {
 TEST(ForceLaws, KnowTheTimeAndTheSignals) {
   ModelSpec model = makeBlock("2", 2.0);
   model.excitation = {pulse("F", "3", "0.5", "1")};
-  model.system.force_laws = {law("x", "6 * t + 2 * F")};
+  model.system.elements.get<ForceLaw>() = {law("x", "6 * t + 2 * F")};
   const Eigen::MatrixXd result = runModel(model, Eigen::VectorXd::Constant(1, 2.0));
   EXPECT_NEAR(result(0, 0), 0.5 * 8.0 + 3.0 * (0.125 + 0.5 * 1.0), 1e-9);  // t^3 / 2 + the pulse
   EXPECT_NEAR(result(0, 1), 1.5 * 4.0 + 3.0 * 0.5, 1e-9);
@@ -55,7 +55,8 @@ TEST(Forces, AppliedForceMayTurnWithItsBody) {
   ModelSpec model = makeModel(1.5);
   model.system.bodies = {
       body("rocket", "4", kOrigin, ex3("1", "1", "1"), joint(JointType::kPlanar, {"turn", "x", "y"}))};
-  model.system.applied_forces = {{station("rocket", kOrigin), ex3("6", "0", "0"), ForceFrame::kBody}};
+  model.system.elements.get<AppliedForce>() = {
+      {station("rocket", kOrigin), ex3("6", "0", "0"), ForceFrame::kBody}};
   start(model, "turn", "0", "2");
   model.outputs = {coordinateOutput("x"), coordinateOutput("y")};
   const Eigen::MatrixXd result = runModel(model, Eigen::VectorXd::Constant(1, 1.5));
@@ -66,7 +67,7 @@ TEST(Forces, AppliedForceMayTurnWithItsBody) {
 TEST(Forces, AppliedForceOffTheOriginTurnsTheBody) {
   ModelSpec model = makeModel(1.0);
   model.system.bodies = {body("disc", "4", kOrigin, ex3("1", "1", "2"), joint(JointType::kPin, {"turn"}))};
-  model.system.applied_forces = {
+  model.system.elements.get<AppliedForce>() = {
       {station("disc", ex3("0.5", "0", "0")), ex3("0", "3", "0"), ForceFrame::kBody}};
   model.outputs = {coordinateOutput("turn")};
   EXPECT_NEAR(runModel(model, Eigen::VectorXd::Constant(1, 1.0))(0, 0), 0.5 * 1.5 / 2.0, 1e-10);
@@ -76,15 +77,15 @@ TEST(Forces, AppliedMomentActsInEitherFrame) {
   ModelSpec model = makeModel(1.0);
   model.system.bodies = {
       body("disc", "4", kOrigin, ex3("2", "2", "2"), joint(JointType::kPin, ex3("1", "0", "0"), {"turn"}))};
-  model.system.applied_moments = {{name("disc"), ex3("1", "5", "7"), ForceFrame::kGround},
-                                  {name("disc"), ex3("0.5", "5", "7"), ForceFrame::kBody}};
+  model.system.elements.get<AppliedMoment>() = {{name("disc"), ex3("1", "5", "7"), ForceFrame::kGround},
+                                                {name("disc"), ex3("0.5", "5", "7"), ForceFrame::kBody}};
   model.outputs = {coordinateOutput("turn")};
   EXPECT_NEAR(runModel(model, Eigen::VectorXd::Constant(1, 1.0))(0, 0), 0.5 * 1.5 / 2.0, 1e-10);
 }
 
 TEST(Forces, TwoPointSpringConservesEnergy) {
   ModelSpec model = makeBlock("2", 5.0);
-  model.system.two_point_springs = {
+  model.system.elements.get<TwoPointSpring>() = {
       {station("ground", ex3("0", "0.3", "0.1")), station("block", kOrigin), ex("40"), ex("0.25")}};
   start(model, "x", "0.6");
   const Eigen::MatrixXd result = runModel(model, Eigen::VectorXd::LinSpaced(101, 0.0, 5.0));
@@ -97,7 +98,7 @@ TEST(Forces, TwoPointSpringConservesEnergy) {
 
 TEST(Forces, TwoPointDamperSlowsDown) {
   ModelSpec model = makeBlock("2", 1.0);
-  model.system.two_point_dampers = {
+  model.system.elements.get<TwoPointDamper>() = {
       {station("ground", ex3("-1", "0", "0")), station("block", kOrigin), ex("3")}};
   start(model, "x", "0", "0.8");
   EXPECT_NEAR(runModel(model, Eigen::VectorXd::Constant(1, 1.0))(0, 1), 0.8 * std::exp(-1.5), 1e-9);
@@ -105,9 +106,10 @@ TEST(Forces, TwoPointDamperSlowsDown) {
 
 TEST(Forces, CoincidentPointsExertNoForce) {
   ModelSpec model = makeBlock("2", 1.0);
-  model.system.two_point_springs = {
+  model.system.elements.get<TwoPointSpring>() = {
       {station("ground", kOrigin), station("block", kOrigin), ex("3"), ex("0")}};
-  model.system.two_point_dampers = {{station("ground", kOrigin), station("block", kOrigin), ex("3")}};
+  model.system.elements.get<TwoPointDamper>() = {
+      {station("ground", kOrigin), station("block", kOrigin), ex("3")}};
   EXPECT_EQ(runModel(model, Eigen::VectorXd::Constant(1, 1.0))(0, 0), 0.0);
 }
 
@@ -115,12 +117,12 @@ TEST(Forces, BushingOnAFreeBodyActsAsSpringsAlongItsAxes) {
   ModelSpec model = makeModel(1.0);
   model.system.bodies = {body("mass", "2", kOrigin, ex3("0.5", "0.5", "0.5"),
                               joint(JointType::kFree, {"a", "b", "c", "x", "y", "z"}))};
-  BushingSpec bushing;
+  Bushing<Expression> bushing;
   bushing.from.body = name("ground");
   bushing.to.body = name("mass");
   bushing.stiffness = {ex("4.5"), ex("0"), ex("0"), ex("18"), ex("0"), ex("8")};
-  bushing.damping = std::vector<Expression>(6, ex("0"));
-  model.system.bushings = {bushing};
+  bushing.damping.fill(ex("0"));
+  model.system.elements.get<Bushing>() = {bushing};
   start(model, "a", "0.3");
   start(model, "x", "1");
   start(model, "z", "1");
@@ -153,7 +155,7 @@ TEST(Outputs, StationsOfATurningBodyMoveOnACircle) {
 TEST(Outputs, AccelerationAtAnEventIsThatOfThePhaseThatBegins) {
   ModelSpec model = makeBlock("2", 2.0);
   model.excitation = {pulse("F", "3", "0.5", "1")};
-  model.system.force_laws = {law("x", "F")};
+  model.system.elements.get<ForceLaw>() = {law("x", "F")};
   model.outputs.resize(1);
   model.outputs[0] = {};
   model.outputs[0].acceleration = along("block", kOrigin, ex3("1", "0", "0"));

@@ -14,8 +14,8 @@ TEST(Joints, SliderCarriesADampedOscillator) {
   ModelSpec model = makeModel(3.0);
   model.system.bodies = {
       body("mass", "2", kOrigin, kOrigin, joint(JointType::kSlider, ex3("1", "2", "-2"), {"x"}))};
-  model.system.springs = {{name("x"), ex("50"), ex("0.1")}};
-  model.system.dampers = {{name("x"), ex("4")}};
+  model.system.elements.get<Spring>() = {{name("x"), ex("50"), ex("0.1")}};
+  model.system.elements.get<Damper>() = {{name("x"), ex("4")}};
   start(model, "x", "0.3");
   StationOutputSpec z = along("mass", kOrigin, ex3("0", "0", "1"));
   model.outputs = {coordinateOutput("x"), speedOutput("x")};
@@ -57,7 +57,7 @@ TEST(Joints, WeldAddsItsMassToItsParent) {
   model.system.bodies = {
       body("cart", "1", kOrigin, kOrigin, joint(JointType::kSlider, {"x"})),
       body("load", "3", ex3("0", "0.2", "0"), ex3("1", "1", "1"), joint(JointType::kWeld, {}, "cart"))};
-  model.system.springs = {{name("x"), ex("36"), ex("0")}};
+  model.system.elements.get<Spring>() = {{name("x"), ex("36"), ex("0")}};
   start(model, "x", "0.1");
   model.outputs = {coordinateOutput("x")};
   const Eigen::VectorXd times = Eigen::VectorXd::LinSpaced(21, 0.0, 2.0);
@@ -82,7 +82,7 @@ TEST(Joints, CylinderTurnsAndFallsIndependently) {
   model.system.gravity = ex3("-9.81", "0", "0");
   model.system.bodies = {body("rod", "2", kOrigin, ex3("0.01", "0.02", "0.02"),
                               joint(JointType::kCylinder, ex3("1", "0", "0"), {"turn", "slide"}))};
-  model.system.springs = {{name("turn"), ex("0.09"), ex("0")}};
+  model.system.elements.get<Spring>() = {{name("turn"), ex("0.09"), ex("0")}};
   start(model, "turn", "0.5");
   start(model, "slide", "1", "2");
   model.outputs = {coordinateOutput("turn"), coordinateOutput("slide")};
@@ -122,7 +122,7 @@ TEST(Joints, TranslationMovesAlongEachAxis) {
   ModelSpec model = makeModel(1.0);
   model.system.bodies = {
       body("mass", "2", kOrigin, kOrigin, joint(JointType::kTranslation, {"x", "y", "z"}))};
-  model.system.springs = {
+  model.system.elements.get<Spring>() = {
       {name("x"), ex("8"), ex("0")}, {name("y"), ex("18"), ex("0")}, {name("z"), ex("32"), ex("0")}};
   start(model, "x", "1");
   start(model, "y", "1");

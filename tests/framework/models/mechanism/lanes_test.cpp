@@ -4,6 +4,7 @@
 #include <random>
 
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/models/mechanism/compare_with_simbody.hpp"
 #include "framework/simulation/sample_generator.hpp"
 #include "tests/framework/models/mechanism/random_trees.hpp"
 #include "tests/framework/models/mechanism/two_beam.hpp"
@@ -58,12 +59,12 @@ TEST_P(LanesOfEveryJoint, MoveAndMeasureAsSimbodyDoes) {
   addAllOutputs(model);
   model.simulation.duration = 0.3;  // longer, the trees tumble chaotically or pass singular angles
   model.parameters = {parameter("k", 5.0, 9.0), parameter("weight", 0.2, 0.4)};
-  model.system.springs[0].stiffness = ex("k");
+  model.system.elements.get<Spring>()[0].stiffness = ex("k");
   model.system.bodies[2].mass = ex("weight");
   expectSameResponses(model, makePoints(model, 11), 1e-6);
 }
 
-INSTANTIATE_TEST_SUITE_P(AllTypes, LanesOfEveryJoint, ::testing::ValuesIn(kEveryJoint));
+INSTANTIATE_TEST_SUITE_P(AllTypes, LanesOfEveryJoint, ::testing::ValuesIn(listJoints()));
 
 TEST(Lanes, CarryBushings) {
   ModelSpec model = makeBushedBodies();
@@ -81,9 +82,9 @@ ModelSpec makeDriven() {
   ModelSpec model = makeModel(3.0);
   model.parameters = {parameter("a", 1.0, 2.0), parameter("t0", 0.3, 0.9), parameter("c", 0.1, 0.5)};
   model.system.bodies = {body("block", "1.5", kOrigin, kOrigin, joint(JointType::kSlider, {"x"}))};
-  model.system.springs = {{name("x"), ex("40"), ex("0.1")}};
-  model.system.dampers = {{name("x"), ex("c")}};
-  model.system.force_laws = {law("x", "u + 0.1 * sin(3 * t) - 0.2 * x^3 * abs(x_dot)")};
+  model.system.elements.get<Spring>() = {{name("x"), ex("40"), ex("0.1")}};
+  model.system.elements.get<Damper>() = {{name("x"), ex("c")}};
+  model.system.elements.get<ForceLaw>() = {law("x", "u + 0.1 * sin(3 * t) - 0.2 * x^3 * abs(x_dot)")};
   model.outputs = {coordinateOutput("x"), speedOutput("x")};
   model.outputs[1].gain = ex("1 + 0.1 * a");
   model.outputs[1].offset = ex("0.3 * c");
@@ -187,8 +188,8 @@ TEST(Lanes, TryWhatIsStiffOnceMoreImplicitly) {
   ModelSpec model = makeModel(2.0);
   model.parameters = {parameter("c", 1.0, 1e7)};
   model.system.bodies = {body("block", "1", kOrigin, kOrigin, joint(JointType::kSlider, {"x"}))};
-  model.system.springs = {{name("x"), ex("1"), ex("0")}};
-  model.system.dampers = {{name("x"), ex("c")}};
+  model.system.elements.get<Spring>() = {{name("x"), ex("1"), ex("0")}};
+  model.system.elements.get<Damper>() = {{name("x"), ex("c")}};
   start(model, "x", "1");
   model.outputs = {coordinateOutput("x")};
   model.simulation.relative_tolerance = 1e-6;
@@ -210,8 +211,8 @@ ModelSpec makeStiff() {
   ModelSpec model = makeModel(2.0);
   model.parameters = {parameter("k", 0.5e6, 1.5e6), parameter("c", 0.8e6, 1.2e6)};
   model.system.bodies = {body("block", "1", kOrigin, kOrigin, joint(JointType::kSlider, {"x"}))};
-  model.system.springs = {{name("x"), ex("k"), ex("0")}};
-  model.system.dampers = {{name("x"), ex("c")}};
+  model.system.elements.get<Spring>() = {{name("x"), ex("k"), ex("0")}};
+  model.system.elements.get<Damper>() = {{name("x"), ex("c")}};
   start(model, "x", "1");
   model.outputs = {coordinateOutput("x")};
   model.simulation.max_steps = 5000;
@@ -330,13 +331,13 @@ TEST_P(LanesDerivativesOfEveryJoint, AreThoseOfDifferences) {
   addAllOutputs(model);
   model.simulation.duration = 0.3;
   model.parameters = {parameter("k", 5.0, 9.0), parameter("weight", 0.2, 0.4), parameter("tilt", 0.2, 0.4)};
-  model.system.springs[0].stiffness = ex("k");
+  model.system.elements.get<Spring>()[0].stiffness = ex("k");
   model.system.bodies[2].mass = ex("weight");
   model.system.bodies[1].joint.in_parent.orientation[0] = ex("tilt");
   expectDerivatives(model, Eigen::Vector3d(7.0, 0.3, 0.31));
 }
 
-INSTANTIATE_TEST_SUITE_P(AllTypes, LanesDerivativesOfEveryJoint, ::testing::ValuesIn(kEveryJoint));
+INSTANTIATE_TEST_SUITE_P(AllTypes, LanesDerivativesOfEveryJoint, ::testing::ValuesIn(listJoints()));
 
 std::string getEngine(const ModelSpec& model) {
   return MultibodySimulator(model, Eigen::VectorXd::Constant(1, 1.0)).getEngine();
@@ -371,12 +372,19 @@ TEST(Lanes, AreWhatANativeBuildHasOfPortableSamples) {
 }
 #endif
 
-TEST(Lanes, LeaveToSimbodyWhatTheyDoNotCompute) {
+TEST(Lanes, AreComparedWithSimbodyBeforeTheySimulate) {
   ModelSpec model = makeDriven();
   model.excitation = {pulse("u", "a", "t0", "1.5")};
-  // of two constants muParser takes the whole parts: 0 && 1, where the recorded program has 1 && 1
-  model.system.force_laws = {law("x", "u + 5 * (0.5 && 1.5)")};
-  EXPECT_EQ(getEngine(model).rfind("simbody: acceleration of 'x' is ", 0), 0u) << getEngine(model);
+  ModelSpec other = model;
+  other.system.elements.get<ForceLaw>().push_back(law("x", "0.5 && 1.5"));
+  ModelContext context(model);
+  const std::unique_ptr<SimbodyModel> simbody = makeSimbodyModel(model);
+  const auto compare = [&](const ModelSpec& recorded) {
+    return compareWithSimbody(context, *simbody,
+                              compileModel(recordModel(recorded, context.names, {}), false));
+  };
+  EXPECT_EQ(compare(model), "");
+  EXPECT_EQ(compare(other).rfind("acceleration of 'x' is ", 0), 0u);
 }
 
 }  // namespace

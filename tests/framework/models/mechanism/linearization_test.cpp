@@ -39,8 +39,8 @@ ModelSpec makeChain(const std::vector<std::string>& masses, const std::vector<st
     model.system.bodies.push_back(body("mass" + number, masses[i], kOrigin, kOrigin,
                                        joint(JointType::kSlider, kAlongX, {"x" + number}, parent)));
     parent = "mass" + number;
-    model.system.springs.push_back({name("x" + number), ex(stiffnesses[i]), ex("0")});
-    model.system.dampers.push_back({name("x" + number), ex(dampings[i])});
+    model.system.elements.get<Spring>().push_back({name("x" + number), ex(stiffnesses[i]), ex("0")});
+    model.system.elements.get<Damper>().push_back({name("x" + number), ex(dampings[i])});
   }
   return model;
 }
@@ -82,8 +82,8 @@ TEST(Linearization, IsAtEachSamplesOwnEquilibrium) {
   model.parameters = {parameter("c", 1e3, 1e5)};
   model.system.gravity = ex3("9.81", "0", "0");
   model.system.bodies = {body("mass", "2", kOrigin, kOrigin, joint(JointType::kSlider, kAlongX, {"q"}))};
-  model.system.springs = {{name("q"), ex("100"), ex("0")}};
-  model.system.force_laws = {law("q", "-c * q^3")};
+  model.system.elements.get<Spring>() = {{name("q"), ex("100"), ex("0")}};
+  model.system.elements.get<ForceLaw>() = {law("q", "-c * q^3")};
   model.initial.equilibrium = EquilibriumSpec{};  // at the box centre: where Newton's method starts
   for (const double c : {2e3, 9e4}) {
     double q = 0.1;
@@ -100,7 +100,7 @@ TEST(Linearization, IsAtEachSamplesOwnEquilibrium) {
 TEST(Linearization, IgnoresTheExcitation) {
   ModelSpec model = makeChain({"2"}, {"800"}, {"4"});
   model.excitation = {pulse("F", "500", "0", "1")};
-  model.system.force_laws = {law("x1", "F * (1 + x1)")};
+  model.system.elements.get<ForceLaw>() = {law("x1", "F * (1 + x1)")};
   EXPECT_NEAR(kTwoPi * calcModes(model, 1).frequencies[0], 20.0, 1e-7);
 }
 

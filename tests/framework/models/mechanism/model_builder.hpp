@@ -90,7 +90,7 @@ inline SignalSpec pulse(const std::string& text, const std::string& amplitude, c
 }
 
 /// A force on a coordinate as a force law.
-inline ForceLawSpec law(const std::string& coordinate, const std::string& force) {
+inline ForceLaw<Expression> law(const std::string& coordinate, const std::string& force) {
   return {name(coordinate), ex(force)};
 }
 

@@ -7,11 +7,13 @@
 
 namespace twinmap::testing {
 
-constexpr std::array<JointType, 13> kEveryJoint{
-    JointType::kWeld,        JointType::kSlider,    JointType::kPin,         JointType::kScrew,
-    JointType::kCylinder,    JointType::kUniversal, JointType::kBendStretch, JointType::kPlanar,
-    JointType::kTranslation, JointType::kGimbal,    JointType::kBall,        JointType::kBushing,
-    JointType::kFree};
+inline std::vector<JointType> listJoints() {
+  std::vector<JointType> types;
+  for (const JointTraits& joint : kJoints) {
+    types.push_back(joint.value);
+  }
+  return types;
+}
 
 inline std::vector<std::string> makeNames(const std::string& prefix, JointType type) {
   std::vector<std::string> names;
@@ -40,13 +42,13 @@ inline ModelSpec makeTree(JointType type) {
            joint(JointType::kSlider, ex3("0", "1", "1"), {"ride"}, "tested")),
       body("beside", "0.4", ex3("0", "0.3", "0.1"), moments, joint(JointType::kPin, {"swing"}, "base"))};
   model.system.bodies[1].inertia.products = ex3("0.001", "-0.002", "0.003");
-  model.system.springs = {{name("ride"), ex("7"), ex("0.1")}};
-  model.system.dampers = {{name("swing"), ex("0.3")}};
-  model.system.two_point_springs = {
+  model.system.elements.get<Spring>() = {{name("ride"), ex("7"), ex("0.1")}};
+  model.system.elements.get<Damper>() = {{name("swing"), ex("0.3")}};
+  model.system.elements.get<TwoPointSpring>() = {
       {station("beside", ex3("0.1", "0", "0")), station("rider", ex3("0", "0.2", "0")), ex("5"), ex("0.1")}};
-  model.system.two_point_dampers = {
+  model.system.elements.get<TwoPointDamper>() = {
       {station("beside", ex3("0.1", "0", "0")), station("rider", ex3("0", "0.2", "0")), ex("2")}};
-  model.system.applied_forces = {
+  model.system.elements.get<AppliedForce>() = {
       {station("rider", ex3("0.1", "0", "0.2")), ex3("t", "2 * ride", "swing_dot"), ForceFrame::kBody}};
   return model;
 }
@@ -83,9 +85,10 @@ inline ModelSpec makeBranches(JointType type) {
     model.system.bodies.push_back(body(own, "0.5 + 0.1", ex3("0.05", "0.1", "-0.1"), moments, link));
   }
   model.excitation = {pulse("push", "3", "0", "2")};
-  model.system.applied_moments = {{name("b2"), ex3("push", "0.1", "t"), ForceFrame::kBody},
-                                  {name("b4"), ex3("0", "push * t", "0.2"), ForceFrame::kGround}};
-  model.system.applied_forces = {
+  model.system.elements.get<AppliedMoment>() = {
+      {name("b2"), ex3("push", "0.1", "t"), ForceFrame::kBody},
+      {name("b4"), ex3("0", "push * t", "0.2"), ForceFrame::kGround}};
+  model.system.elements.get<AppliedForce>() = {
       {station("b4", ex3("0.1", "0", "0.2")), ex3("push", "-1", "sin(t)"), ForceFrame::kGround}};
   return model;
 }
@@ -98,12 +101,12 @@ inline ModelSpec makeBushedBodies() {
                               joint(JointType::kFree, makeNames("p", JointType::kFree))),
                          body("two", "1", ex3("0", "0.2", "0"), moments,
                               joint(JointType::kFree, makeNames("q", JointType::kFree)))};
-  BushingSpec bushing;
+  Bushing<Expression> bushing;
   bushing.from = {name("one"), {ex3("0.1", "0.2", "0.3"), ex3("0.3", "0.1", "-0.2")}};
   bushing.to = {name("two"), {ex3("-0.2", "0.1", "0"), ex3("0.1", "0.2", "0.2")}};
   bushing.stiffness = {ex("1"), ex("2"), ex("3"), ex("40"), ex("50"), ex("60")};
   bushing.damping = {ex("0.1"), ex("0.2"), ex("0.3"), ex("4"), ex("5"), ex("6")};
-  model.system.bushings = {bushing};
+  model.system.elements.get<Bushing>() = {bushing};
   return model;
 }
 

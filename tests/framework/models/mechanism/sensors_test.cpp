@@ -53,11 +53,11 @@ TEST(Sensors, WithoutAFiniteNumberFailTheSample) {
 
 TEST(Roles, TheEquilibriumOfTheBoxCentreIsThatOfAllSampledParameters) {
   ModelSpec model = makeFlight();
-  model.system.springs = {{name("y"), ex("10"), ex("bias + g")}};
+  model.system.elements.get<Spring>() = {{name("y"), ex("10"), ex("bias + g")}};
   model.initial = {};
   model.initial.equilibrium = EquilibriumSpec{};
   model.initial.equilibrium->parameters = {value("bias", "0.5")};
-  model.system.springs[0].rest = ex("bias + g");
+  model.system.elements.get<Spring>()[0].rest = ex("bias + g");
   const Eigen::MatrixXd measured = runModel(model, Eigen::VectorXd::Zero(1), makePoint(1.0, 0.0, 0.0, 1.0));
   EXPECT_NEAR(measured(0, 0), 0.5 + 1.25, 1e-9);
 }

@@ -49,10 +49,11 @@ SystemSpec makeSystem() {
                                joint(JointType::kSlider, ex3("0", "1", "0"), {"y"})));
   system.bodies.push_back(body("beam2", "m2", ex3("0", "y_com", "z_com"), ex3("I", "I", "I"),
                                joint(JointType::kPin, ex3("1", "0", "0"), {"theta"}, "beam1")));
-  system.springs = {{name("y"), ex("k_y"), ex("0")}, {name("theta"), ex("k_theta"), ex("0")}};
-  system.dampers = {{name("y"), ex("d_y")}, {name("theta"), ex("d_theta")}};
-  system.applied_forces = {{station("beam1", ex3("0", "0", "0")), ex3("0", "F", "0"), ForceFrame::kGround}};
-  system.applied_moments = {{name("beam2"), ex3("M", "0", "0"), ForceFrame::kGround}};
+  system.elements.get<Spring>() = {{name("y"), ex("k_y"), ex("0")}, {name("theta"), ex("k_theta"), ex("0")}};
+  system.elements.get<Damper>() = {{name("y"), ex("d_y")}, {name("theta"), ex("d_theta")}};
+  system.elements.get<AppliedForce>() = {
+      {station("beam1", ex3("0", "0", "0")), ex3("0", "F", "0"), ForceFrame::kGround}};
+  system.elements.get<AppliedMoment>() = {{name("beam2"), ex3("M", "0", "0"), ForceFrame::kGround}};
   return system;
 }
 

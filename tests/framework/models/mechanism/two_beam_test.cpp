@@ -84,7 +84,7 @@ TEST(TwoBeam, HasNamesAndUnits) {
 
 TEST(TwoBeam, UndampedEnergyIsConserved) {
   ModelSpec model = makeTwoBeam();
-  model.system.dampers.clear();
+  model.system.elements.get<Damper>().clear();
   model.excitation[0].pulses[0].amplitude = ex("0");
   model.excitation[1].pulses[0].amplitude = ex("0");
   model.initial.equilibrium.reset();

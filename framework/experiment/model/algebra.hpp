@@ -1,11 +1,11 @@
 #pragma once
 
-#include "kernels/lanes/program/real.hpp"
+#include <cmath>
 
 // The algebra of 3-vectors over any scalar. Entries that are literally 0 or 1 stay so with a scalar that
 // folds constants; hence plain sums of products, and no loops over what may be empty.
 
-namespace twinmap::equations {
+namespace twinmap::algebra {
 
 template <class S>
 struct Vec3 {
@@ -81,19 +81,19 @@ Mat33<S> outer(const Vec3<S>& a, const Vec3<S>& b) {
 /// A rotation about x, y or z.
 template <class S>
 Mat33<S> rotateX(const S& angle) {
-  using namespace program::real;
+  using std::cos, std::sin;
   const S c = cos(angle), s = sin(angle);
   return {{1.0, 0.0, 0.0}, {0.0, c, s}, {0.0, -s, c}};
 }
 template <class S>
 Mat33<S> rotateY(const S& angle) {
-  using namespace program::real;
+  using std::cos, std::sin;
   const S c = cos(angle), s = sin(angle);
   return {{c, 0.0, -s}, {0.0, 1.0, 0.0}, {s, 0.0, c}};
 }
 template <class S>
 Mat33<S> rotateZ(const S& angle) {
-  using namespace program::real;
+  using std::cos, std::sin;
   const S c = cos(angle), s = sin(angle);
   return {{c, s, 0.0}, {-s, c, 0.0}, {0.0, 0.0, 1.0}};
 }
@@ -105,7 +105,7 @@ Mat33<S> rotateXyz(const Vec3<S>& angles) {
 /// About a unit vector n (Rodrigues): n n' + cos (1 - n n') + sin [n]x.
 template <class S>
 Mat33<S> rotateAbout(const Vec3<S>& n, const S& angle) {
-  using namespace program::real;
+  using std::cos, std::sin;
   const S c = cos(angle), s = sin(angle), zero = 0.0;
   const Mat33<S> along = outer(n, n);
   const Mat33<S> turn{{zero, n.z, -n.y}, {-n.z, zero, n.x}, {n.y, -n.x, zero}};
@@ -153,4 +153,4 @@ S dot(const Spatial<S>& a, const Spatial<S>& b) {
   return dot(a.angular, b.angular) + dot(a.linear, b.linear);
 }
 
-}  // namespace twinmap::equations
+}  // namespace twinmap::algebra

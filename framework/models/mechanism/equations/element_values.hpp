@@ -1,0 +1,139 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "framework/experiment/model/elements/force_elements.hpp"
+#include "framework/models/mechanism/system_names.hpp"
+
+// The numbers of force elements from what the file says: both structs have the same description, so that the
+// fields of one, listed in their order, are the sources of the other's.
+
+namespace twinmap::equations {
+
+/// The fields of an element as the file gives it, in the order of its description.
+class ElementSources {
+ public:
+  template <class T, class... Rule>
+  void required(const char*, T& field, const char*, const Rule&...) {
+    if constexpr (std::is_same_v<T, StationSpec> || std::is_same_v<T, AttachedFrame<Expression>>) {
+      describe(*this, field);
+    } else {
+      fields_.push_back(&field);
+      if constexpr (std::is_same_v<T, Name>) {
+        names_.push_back(field.text);
+      }
+    }
+  }
+  template <class T, class... Rule>
+  void optional(const char* key, T& field, const char* what, const Rule&... rule) {
+    required(key, field, what, rule...);
+  }
+  void rule(bool, const char*) const {}
+
+  template <class T>
+  const T& take() {
+    return *static_cast<const T*>(fields_[next_++]);
+  }
+  /// "spring on 'x'", "bushing from 'a' to 'b'"
+  std::string describeOwner(const char* noun) const {
+    return noun + (names_.size() == 2 ? " from '" + names_[0] + "' to '" + names_[1] + "'"
+                                      : " on '" + names_.at(0) + "'");
+  }
+
+ private:
+  std::vector<const void*> fields_;
+  std::vector<std::string> names_;
+  std::size_t next_ = 0;
+};
+
+/// Fills the fields of an element over S. `Numbers`: calc(expression, owner, key, unit) gives an S.
+template <class S, class Numbers>
+class ElementFiller {
+ public:
+  ElementFiller(ElementSources& sources, const char* noun, const SystemNames& names, Numbers& numbers)
+      : sources_(sources), owner_(sources.describeOwner(noun)), names_(names), numbers_(numbers) {}
+
+  template <class T, class... Rule>
+  void required(const char* key, T& field, const char*, const Rule&... rule) {
+    fill(key, field, rule...);
+  }
+  template <class T, class... Rule>
+  void optional(const char* key, T& field, const char*, const Rule&... rule) {
+    fill(key, field, rule...);
+  }
+  void rule(bool, const char*) const {}
+
+ private:
+  S calc(const Expression& expression, const std::string& key, const char* unit) {
+    return numbers_.calc(expression, owner_, key.c_str(), unit);
+  }
+  algebra::Vec3<S> calc3(const Expression3& expressions, const std::string& key, const char* unit) {
+    return {calc(expressions[0], key, unit), calc(expressions[1], key, unit),
+            calc(expressions[2], key, unit)};
+  }
+
+  void fill(const char*, int& field, Reference reference) {
+    const Name& name = sources_.take<Name>();
+    field = reference == Reference::kBody               ? names_.findBody(name)
+            : reference == Reference::kForcedCoordinate ? names_.findForcedCoordinate(name)
+                                                        : names_.findCoordinate(name);
+  }
+  void fill(const char* key, S& field, const Unit& unit) {
+    field = calc(sources_.take<Expression>(), prefix_ + key, unit.rotation == nullptr ? unit.text : "");
+  }
+  void fill(const char* key, algebra::Vec3<S>& field, const Unit& unit) {
+    field = calc3(sources_.take<Expression3>(), prefix_ + key, unit.text);
+  }
+  void fill(const char* key, SixOf<S>& field, const Unit& unit) {
+    constexpr int kRotations = 3;
+    const SixOf<Expression>& expressions = sources_.take<SixOf<Expression>>();
+    for (int i = 0; i < 2 * kRotations; ++i) {
+      field[i] = calc(expressions[i], prefix_ + key, i < kRotations ? unit.rotation : unit.text);
+    }
+  }
+  void fill(const char* key, algebra::Transform<S>& field) {
+    const FrameSpec& frame = sources_.take<FrameSpec>();
+    field = {rotateXyz(calc3(frame.orientation, prefix_ + key + ".orientation", "rad")),
+             calc3(frame.point, prefix_ + key + ".point", "m")};
+  }
+  void fill(const char*, const Expression*& field, const Unit&) { field = &sources_.take<Expression>(); }
+  void fill(const char*, const Expression3*& field, const Unit&) { field = &sources_.take<Expression3>(); }
+  template <class T>
+  void fill(const char* key, T& field) {
+    if constexpr (std::is_enum_v<T>) {
+      field = sources_.take<T>();
+    } else {
+      prefix_ = std::string(key) + ".";
+      describe(*this, field);
+      prefix_.clear();
+    }
+  }
+
+  ElementSources& sources_;
+  std::string owner_, prefix_;
+  const SystemNames& names_;
+  Numbers& numbers_;
+};
+
+/// The numbers of all force elements. `numbers`: calc(expression, owner, key, unit) gives an S, or throws.
+/// The numbers refer to expressions of `spec`, which must outlive them. Throws ExperimentError for unknown
+/// names and for a force on a coordinate that takes none.
+template <class S, class Numbers>
+ForceElements<S> calcElements(const ForceElements<Expression>& spec, const SystemNames& names,
+                              Numbers&& numbers) {
+  ForceElements<S> elements;
+  ForceElements<S>::forEachType([&](auto type) {
+    using Spec = typename decltype(type)::template Of<Expression>;
+    using Value = typename decltype(type)::template Of<S>;
+    for (const Spec& one : spec.getList(type)) {
+      ElementSources sources;
+      describe(sources, const_cast<Spec&>(one));  // which are listed, not changed
+      ElementFiller<S, std::remove_reference_t<Numbers>> filler(sources, Spec::kKind.noun, names, numbers);
+      describe(filler, elements.getList(type).emplace_back(Value{}));
+    }
+  });
+  return elements;
+}
+
+}  // namespace twinmap::equations

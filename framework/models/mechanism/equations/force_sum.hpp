@@ -1,0 +1,138 @@
+#pragma once
+
+#include <vector>
+
+#include "framework/models/mechanism/equations/tree.hpp"
+
+namespace twinmap::equations {
+
+/// Below this distance (m) two points have no direction between them, and exert no force on each other.
+constexpr double kCoincident = 1e-12;
+
+/// Forces on bodies (moment and force at their origins, in ground axes; ground first) and on speeds.
+template <class S>
+struct Loads {
+  std::vector<Spatial<S>> on_bodies;
+  std::vector<S> on_speeds;
+};
+
+/// A point of a body: from its origin in ground axes, and its place and velocity in ground.
+template <class S>
+struct PointMotion {
+  Vec3<S> arm, place, velocity;
+};
+
+template <class S>
+PointMotion<S> calcPoint(const BodyMotion<S>& body, const Vec3<S>& point) {
+  const Vec3<S> arm = body.pose.rotation * point;
+  return {arm, body.pose.origin + arm, body.velocity.linear + cross(body.velocity.angular, arm)};
+}
+
+/// Body-fixed x-y-z angles of a rotation, the middle one within +-90 degrees.
+template <class S>
+Vec3<S> calcAngles(const Mat33<S>& r) {
+  using namespace program::real;
+  return {atan2(-r.z.y, r.z.z), atan2(r.z.x, sqrt(r.x.x * r.x.x + r.y.x * r.y.x)), atan2(-r.y.x, r.x.x)};
+}
+
+/// What the laws of force elements see of a state, and where they add their forces: addForces(element, sum).
+/// `Named` evaluates what varies: its calc(expression) gives an S at the state. No memory is allocated.
+template <class S, class Named>
+class ForceSum {
+ public:
+  /// All must outlive the sum. `rates`: time derivatives of the coordinates.
+  ForceSum(const std::vector<BodyMotion<S>>& motions, const std::vector<S>& coordinates,
+           const std::vector<S>& rates, const Named& named, Loads<S>& loads)
+      : motions_(motions), coordinates_(coordinates), rates_(rates), named_(named), loads_(loads) {}
+
+  const S& getCoordinate(int coordinate) const { return coordinates_[coordinate]; }
+  const S& getRate(int coordinate) const { return rates_[coordinate]; }
+  S calc(const Expression& expression) const { return named_.calc(expression); }
+  /// Components in ground axes.
+  Vec3<S> calcInGround(const Expression3& components, ForceFrame frame, int body) const {
+    const Vec3<S> value{calc(components[0]), calc(components[1]), calc(components[2])};
+    return frame == ForceFrame::kBody ? motions_[body].pose.rotation * value : value;
+  }
+  /// From the body's origin to the station, in ground axes.
+  Vec3<S> calcArm(const Station<S>& station) const {
+    return motions_[station.body].pose.rotation * station.point;
+  }
+
+  void addAt(int body, const Vec3<S>& arm, const Vec3<S>& force) {
+    loads_.on_bodies[body] = loads_.on_bodies[body] + Spatial<S>{cross(arm, force), force};
+  }
+  void addMoment(int body, const Vec3<S>& moment) {
+    loads_.on_bodies[body].angular = loads_.on_bodies[body].angular + moment;
+  }
+  void addOnCoordinate(int coordinate, const S& force) {
+    loads_.on_speeds[coordinate] = loads_.on_speeds[coordinate] + force;
+  }
+
+  void addGravity(int body, const Vec3<S>& gravity, const S& mass, const Vec3<S>& center) {
+    addAt(body, motions_[body].pose.rotation * center, scale(mass, gravity));
+  }
+
+  /// Pulls two stations together by `tension(distance, rate)`.
+  template <class Tension>
+  void addPull(const Station<S>& from, const Station<S>& to, Tension tension) {
+    using namespace program::real;
+    const PointMotion<S> first = calcPoint(motions_[from.body], from.point);
+    const PointMotion<S> second = calcPoint(motions_[to.body], to.point);
+    const Vec3<S> between = second.place - first.place;
+    const S zero = 0.0, one = 1.0;
+    const S squared = dot(between, between);
+    const S apart = lessOrEqual(S(kCoincident * kCoincident), squared);
+    const S distance = sqrt(select(apart, squared, one));  // 1 in place of 0, whose root has no derivative
+    const S inverse = select(apart, one / distance, zero);
+    const Vec3<S> direction = scale(inverse, between);
+    const Vec3<S> pull =
+        scale(tension(distance, dot(second.velocity - first.velocity, direction)), direction);
+    addAt(from.body, first.arm, pull);
+    addAt(to.body, second.arm, -pull);
+  }
+
+  /// Acts on `to`, and against it on `from`, by `law(direction, q, q')` along each of the relative
+  /// coordinates of `to` in `from`: body-fixed x-y-z angles (directions 0 to 2), then translations (3 to 5).
+  template <class Law>
+  void addBetweenFrames(const AttachedFrame<S>& from, const AttachedFrame<S>& to, Law law) {
+    const BodyMotion<S>&from_body = motions_[from.body], &to_body = motions_[to.body];
+    const Transform<S> from_frame = from_body.pose * from.frame, to_frame = to_body.pose * to.frame;
+    const Transform<S> relative = invert(from_frame) * to_frame;
+    const Mat33<S> back = transpose(from_frame.rotation);
+    const Vec3<S> to_arm = to_frame.origin - to_body.pose.origin;
+    const Vec3<S> from_arm = to_frame.origin - from_body.pose.origin;
+    const Vec3<S> at_point = to_body.velocity.linear + cross(to_body.velocity.angular, to_arm);
+    const Vec3<S> carried = from_body.velocity.linear + cross(from_body.velocity.angular, from_arm);
+    const auto calcForces = [&law](int first, const Vec3<S>& q, const Vec3<S>& rate) {
+      return Vec3<S>{law(first, q.x, rate.x), law(first + 1, q.y, rate.y), law(first + 2, q.z, rate.z)};
+    };
+    const Vec3<S> angles = calcAngles(relative.rotation);
+    const Mat33<S> rates = calcAngleRates(angles);
+    const Vec3<S> spin = rates * (back * (to_body.velocity.angular - from_body.velocity.angular));
+    // virtual power: torque . angular velocity = angle forces . angle rates, so torque = N' * angle forces
+    const Vec3<S> torque = from_frame.rotation * (transpose(rates) * calcForces(0, angles, spin));
+    const Vec3<S> force = from_frame.rotation * calcForces(3, relative.origin, back * (at_point - carried));
+    addAt(to.body, to_arm, force);
+    addAt(from.body, from_arm, -force);
+    addMoment(to.body, torque);
+    addMoment(from.body, -torque);
+  }
+
+ private:
+  const std::vector<BodyMotion<S>>& motions_;
+  const std::vector<S>&coordinates_, &rates_;
+  const Named& named_;
+  Loads<S>& loads_;
+};
+
+/// The forces of all elements, kind by kind.
+template <class S, class Named>
+void addElementForces(const ForceElements<S>& elements, ForceSum<S, Named>& sum) {
+  elements.forEachList([&sum](const auto& list) {
+    for (const auto& element : list) {
+      addForces(element, sum);
+    }
+  });
+}
+
+}  // namespace twinmap::equations

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <unordered_map>
+#include <vector>
+
+#include "framework/simulation/model_numbers.hpp"
+
+namespace twinmap {
+
+/// The expressions of force elements that vary: of constants, parameters, coordinates, speeds
+/// (<coordinate>_dot), excitation signals and the time t. Parsed once, used for all parameter sets.
+class StateExpressions {
+ public:
+  /// Throws ExperimentError for names that are taken and wrong expressions. `model` must
+  /// outlive the object unchanged.
+  StateExpressions(const ModelSpec& model, const NamedValues<double>& numbers);
+
+  /// Takes over the values of constants and parameters.
+  void setNumbers(const NamedValues<double>& values);
+
+  /// In the order of the file; `rates`: time derivatives of the coordinates.
+  void setState(double t, const std::vector<double>& coordinates, const std::vector<double>& rates,
+                const std::vector<double>& signals);
+
+  /// The value at the state; may be inf or NaN. `expression`: one of the model's, by its address.
+  double calc(const Expression& expression) const { return values_.calc(bound_.at(&expression)); }
+
+ private:
+  void defineNames(const ModelSpec& model, const NamedValues<double>& numbers);
+  void setFrom(int first, const std::vector<double>& values);
+
+  NamedValues<double> values_;
+  int first_coordinate_ = 0, first_speed_ = 0, first_signal_ = 0, time_ = 0;
+  std::unordered_map<const Expression*, BoundExpression> bound_;
+};
+
+}  // namespace twinmap
