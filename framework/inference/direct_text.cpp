@@ -1,7 +1,7 @@
 #include <fmt/core.h>
 
 #include "framework/base/json/json.hpp"
-#include "framework/base/text/aligned_rows.hpp"
+#include "framework/base/text/text_tables.hpp"
 #include "framework/base/text/escape.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/inference/direct_inference.hpp"
