@@ -1,4 +1,5 @@
 #include <fmt/core.h>
+#include <malloc.h>
 
 #include <fstream>
 #include <iostream>
@@ -236,9 +237,19 @@ class InferCommand {
   int count_ = 0, errors_ = 0;
 };
 
+/// The arrays of a map are read, packed and freed: to give each back to the system, and to get the next one
+/// from it, takes a page fault for each 4 kB, a sixth of the time of one inference.
+void keepFreedMemory() {
+  constexpr int kMegabyte = 1 << 20;
+  mallopt(M_MMAP_THRESHOLD, 64 * kMegabyte);
+  mallopt(M_TRIM_THRESHOLD, 256 * kMegabyte);
+  mallopt(M_TOP_PAD, 16 * kMegabyte);
+}
+
 }  // namespace
 
 void infer(const InferArguments& arguments) {
+  keepFreedMemory();
   if (arguments.follow == !arguments.files.empty()) {
     throw ExperimentError(arguments.follow
                               ? "--follow reads measurements from the standard input; give no files"

@@ -13,7 +13,7 @@ using Eigen::VectorXd;
 SimulatorRefiner::SimulatorRefiner(const ExperimentSpec& experiment, const ResponseLayout& layout)
     : model_(experiment.model),
       extractor_(makeExtractor(experiment, layout)),
-      simulator_(makeSimulator(experiment.model, layout.times, layout.modes)),
+      simulator_(makeTrustedSimulator(experiment.model, layout.times, layout.modes)),
       noise_(extractor_, ResponseNoise(experiment.noise, layout), experiment.seed),
       wanted_(shouldRefine(experiment.refine, *simulator_, extractor_, noise_)),
       own_(simulator_->clone()) {}

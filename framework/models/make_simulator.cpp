@@ -5,8 +5,10 @@
 #include "framework/models/mechanism/multibody_simulator.hpp"
 
 namespace twinmap {
+namespace {
 
-std::unique_ptr<Simulator> makeSimulator(const ModelSpec& model, const Eigen::VectorXd& times, int modes) {
+std::unique_ptr<Simulator> make(const ModelSpec& model, const Eigen::VectorXd& times, int modes,
+                                ModelCheck check) {
   if (model.source && model.simulation.portable) {
     throw ExperimentError(
         "simulation.portable: true cannot be held for a model from elsewhere: what an FMU or a program "
@@ -19,7 +21,18 @@ std::unique_ptr<Simulator> makeSimulator(const ModelSpec& model, const Eigen::Ve
   if (model.source) {
     return std::make_unique<FmuSimulator>(model, times, modes);
   }
-  return std::make_unique<MultibodySimulator>(model, times, modes);
+  return std::make_unique<MultibodySimulator>(model, times, modes, check);
+}
+
+}  // namespace
+
+std::unique_ptr<Simulator> makeSimulator(const ModelSpec& model, const Eigen::VectorXd& times, int modes) {
+  return make(model, times, modes, ModelCheck::kBySimbody);
+}
+
+std::unique_ptr<Simulator> makeTrustedSimulator(const ModelSpec& model, const Eigen::VectorXd& times,
+                                                int modes) {
+  return make(model, times, modes, ModelCheck::kTrusted);
 }
 
 }  // namespace twinmap

@@ -13,4 +13,9 @@ namespace twinmap {
 /// that no parameter set can cure.
 std::unique_ptr<Simulator> makeSimulator(const ModelSpec& model, const Eigen::VectorXd& times, int modes = 0);
 
+/// The same for a model that a run has checked, as where one of its estimators is refined: a system that
+/// lanes simulate is not compared with Simbody, which is not even loaded then.
+std::unique_ptr<Simulator> makeTrustedSimulator(const ModelSpec& model, const Eigen::VectorXd& times,
+                                                int modes = 0);
+
 }  // namespace twinmap

@@ -89,7 +89,11 @@ Eigen::MatrixXd Hdf5Reader::readSamples(const std::string& dataset) const {
 }
 
 Eigen::VectorXd Hdf5Reader::readVector(const std::string& dataset) const {
-  return readSamples(dataset);
+  const Hdf5Handle data = openDataset(file_, path_, dataset);
+  Eigen::VectorXd values(static_cast<Eigen::Index>(countValues(getShape(data))));
+  requireHdf5(H5Dread(data.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+              path_ + ": " + dataset + " cannot be read");
+  return values;
 }
 
 double Hdf5Reader::readNumber(const std::string& dataset) const {

@@ -27,6 +27,10 @@ struct InitialState {
 /// ExperimentError for a name that is not a coordinate, SimulationFailure for values that are not finite.
 InitialState calcInitialValues(ModelContext& context);
 
+/// Where the equilibrium at the box centre is solved for: the centre with the values that replace it, which
+/// may use the centre's parameters and constants. The context's numbers must be those of the centre.
+Eigen::VectorXd calcEquilibriumPoint(ModelContext& context);
+
 /// Throws SimulationFailure for numbers of the current parameter set that no real system has: as building it
 /// would, and in the same order. Cost: some microseconds.
 void checkNumbers(ModelContext& context);

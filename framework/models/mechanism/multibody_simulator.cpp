@@ -17,11 +17,13 @@ std::recursive_mutex building;
 
 /// What all clones share.
 struct SharedModel {
-  SharedModel(ModelSpec of, ResponseLayout rows) : model(std::move(of)), layout(std::move(rows)) {}
+  SharedModel(ModelSpec of, ResponseLayout rows, ModelCheck how)
+      : model(std::move(of)), layout(std::move(rows)), check(how) {}
 
   ModelSpec model;
   ResponseLayout layout;
-  Eigen::VectorXd box_center;           ///< SimbodyModel::solveBoxCenter()
+  ModelCheck check;
+  Eigen::VectorXd box_center;           ///< coordinates of the equilibrium that all start from
   std::unique_ptr<LanePrograms> lanes;  ///< null where Simbody simulates
   std::string engine;
   std::mutex making_precise{};
@@ -69,9 +71,9 @@ void requirePortable(const SharedModel& shared, const std::string& obstacle) {
   }
 }
 
-/// Throws where lanes are asked for and cannot simulate the model.
-void chooseEngine(ModelContext& context, SimbodyModel& simbody, SharedModel& shared) {
-  auto lanes = std::make_unique<LanePrograms>(context, simbody, shared.box_center);
+/// Throws where lanes are asked for and cannot simulate the model. `simbody`: to compare with, or null.
+void chooseEngine(ModelContext& context, SimbodyModel* simbody, SharedModel& shared) {
+  auto lanes = std::make_unique<LanePrograms>(context, simbody);
   const std::string& obstacle = lanes->getObstacle();
   if (!obstacle.empty() && shared.model.simulation.engine == Engine::kLanes) {
     throw ExperimentError("simulation.engine: lanes cannot simulate this model: " + obstacle);
@@ -90,8 +92,8 @@ void chooseEngine(ModelContext& context, SimbodyModel& simbody, SharedModel& sha
 class MultibodySimulator::Impl {
  public:
   /// The first of the clones: completes what they share.
-  Impl(const ModelSpec& model, Eigen::VectorXd times, int modes)
-      : shared_(std::make_shared<SharedModel>(model, ResponseLayout{{}, {}, std::move(times), modes})),
+  Impl(const ModelSpec& model, Eigen::VectorXd times, int modes, ModelCheck check)
+      : shared_(std::make_shared<SharedModel>(model, ResponseLayout{{}, {}, std::move(times), modes}, check)),
         context_(shared_->model) {
     if (shared_->layout.times.size() > 0) {
       checkSimulation(shared_->model.simulation);
@@ -101,8 +103,10 @@ class MultibodySimulator::Impl {
     for (const OutputSpec& output : shared_->model.outputs) {
       shared_->layout.output_names.push_back(output.name.text);
     }
-    shared_->box_center = updSimbody().solveBoxCenter();
-    chooseEngine(context_, updSimbody(), *shared_);
+    chooseEngine(context_, check == ModelCheck::kBySimbody ? &updSimbody() : nullptr, *shared_);
+    shared_->box_center = check == ModelCheck::kTrusted && shared_->lanes
+                              ? solveBoxCenter(context_, shared_->lanes->getValues())
+                              : updSimbody().solveBoxCenter();
     makeLanes();
   }
 
@@ -167,9 +171,10 @@ class MultibodySimulator::Impl {
   std::optional<LaneEngine> lanes_;
 };
 
-MultibodySimulator::MultibodySimulator(const ModelSpec& model, Eigen::VectorXd times, int modes) {
+MultibodySimulator::MultibodySimulator(const ModelSpec& model, Eigen::VectorXd times, int modes,
+                                       ModelCheck check) {
   const std::lock_guard<std::recursive_mutex> guard(building);
-  impl_ = std::make_unique<Impl>(model, std::move(times), modes);
+  impl_ = std::make_unique<Impl>(model, std::move(times), modes, check);
 }
 
 MultibodySimulator::MultibodySimulator(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -224,7 +229,8 @@ std::unique_ptr<Simulator> MultibodySimulator::clonePrecisely() const {
     SimulationSpec& simulation = model.simulation;
     simulation.relative_tolerance = std::max(kShare * simulation.relative_tolerance, kMinRelative);
     simulation.absolute_tolerance = std::max(kShare * simulation.absolute_tolerance, kMinAbsolute);
-    shared.precise = std::make_unique<MultibodySimulator>(model, shared.layout.times, shared.layout.modes);
+    shared.precise =
+        std::make_unique<MultibodySimulator>(model, shared.layout.times, shared.layout.modes, shared.check);
   }
   return shared.precise->clone();
 }

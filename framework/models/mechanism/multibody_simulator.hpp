@@ -5,6 +5,11 @@
 
 namespace twinmap {
 
+/// Whether Simbody builds the model and the recorded equations are compared with it. Where a run starts they
+/// are; kTrusted: a run has done so, as where one of its estimators is refined, and lanes then need no
+/// Simbody.
+enum class ModelCheck { kBySimbody, kTrusted };
+
 /// Simulates a multibody system that is described by data. By default in lanes: the equations of motion are
 /// recorded once, compared with Simbody's, and integrated for several samples at a time (docs/lanes.md);
 /// where that is not possible, Simbody builds them anew for every sample. The default integrator of either is
@@ -20,7 +25,8 @@ class MultibodySimulator final : public Simulator {
   /// or doubled names, expressions that do not compile, springs, dampers or force laws on coordinates that
   /// take none, times out of range; and for a system that cannot exist at the box centre, with the place of
   /// the number that is the cause.
-  MultibodySimulator(const ModelSpec& model, Eigen::VectorXd times, int modes = 0);
+  MultibodySimulator(const ModelSpec& model, Eigen::VectorXd times, int modes = 0,
+                     ModelCheck check = ModelCheck::kBySimbody);
   ~MultibodySimulator() override;
 
   const ResponseLayout& getLayout() const override;

@@ -2,7 +2,9 @@
 
 #include <cmath>
 
+#include "framework/experiment/check/check_experiment.hpp"
 #include "framework/experiment/expression/output_units.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
 #include "framework/models/mechanism/load_numbers.hpp"
 #include "framework/models/mechanism/model_context.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -98,6 +100,12 @@ Eigen::VectorXd calcNamed(const std::vector<NamedExpression>& values, const char
   return result;
 }
 
+int findParameter(const ModelSpec& model, const Name& name) {
+  const std::vector<std::string> names = collectNames(collectSampled(model));
+  requireKnown(name, names, "a parameter");
+  return static_cast<int>(std::find(names.begin(), names.end(), name.text) - names.begin());
+}
+
 }  // namespace
 
 Vector3d calcVector(ModelNumbers& numbers, const Expression3& expressions, const Quantity& quantity) {
@@ -167,6 +175,16 @@ OutputNumbers calcOutputNumbers(const OutputSpec& spec, const SystemNames& names
 InitialState calcInitialValues(ModelContext& context) {
   const InitialSpec& initial = context.model.initial;
   return {calcNamed(initial.coordinates, "coordinate", context), calcNamed(initial.speeds, "speed", context)};
+}
+
+Eigen::VectorXd calcEquilibriumPoint(ModelContext& context) {
+  Eigen::VectorXd point = calcBoxCenter(collectSampled(context.model));
+  for (const NamedExpression& value : context.model.initial.equilibrium->parameters) {
+    const std::string owner = "initial.equilibrium";
+    point[findParameter(context.model, value.name)] =
+        context.numbers.calc(value.value, {owner, value.name.text.c_str(), ""});
+  }
+  return point;
 }
 
 void checkNumbers(ModelContext& context) {

@@ -107,7 +107,7 @@ void checkMapAndTables(const Study& study, const PreparedData& data, const std::
     map = trainAgain(study, data, folder / "maps.h5");
     refined = refineTestSamples(study, data, map->online).refined;
     const TemporaryFolder temporary;
-    storeMap(temporary.getPath() / "maps.h5", study.experiment, study.extractor, refined, *map);
+    storeMap(temporary.getPath() / "maps.h5", study, refined, *map);
     return findHdf5Difference(folder / "maps.h5", temporary.getPath() / "maps.h5");
   });
   if (!map) {

@@ -18,8 +18,8 @@ std::string findObstacle(const ModelContext& context) {
 
 }  // namespace
 
-LanePrograms::LanePrograms(ModelContext& context, SimbodyModel& simbody, const Eigen::VectorXd& box_center)
-    : model_(context.model), box_center_(box_center), obstacle_(findObstacle(context)) {
+LanePrograms::LanePrograms(ModelContext& context, SimbodyModel* simbody)
+    : model_(context.model), obstacle_(findObstacle(context)) {
   if (obstacle_.empty()) {
     obstacle_ = compile(context, simbody);
   }
@@ -28,7 +28,7 @@ LanePrograms::LanePrograms(ModelContext& context, SimbodyModel& simbody, const E
 const LaneModel& LanePrograms::getDerivatives(const SystemNames& names) {
   const std::lock_guard<std::mutex> guard(compiling_);
   if (!derivatives_) {
-    derivatives_ = compileModel(recordModel(model_, names, box_center_), true);
+    derivatives_ = compileModel(recordModel(model_, names), true);
   }
   return *derivatives_;
 }
@@ -36,15 +36,15 @@ const LaneModel& LanePrograms::getDerivatives(const SystemNames& names) {
 const program::Program& LanePrograms::getJacobian(const SystemNames& names) {
   const std::lock_guard<std::mutex> guard(compiling_);
   if (!jacobian_) {
-    jacobian_ = compileJacobian(recordModel(model_, names, box_center_));
+    jacobian_ = compileJacobian(recordModel(model_, names));
   }
   return *jacobian_;
 }
 
 /// Returns what prevents it, or "".
-std::string LanePrograms::compile(ModelContext& context, SimbodyModel& simbody) {
-  values_ = compileModel(recordModel(model_, context.names, box_center_), false);
-  return compareWithSimbody(context, simbody, *values_);
+std::string LanePrograms::compile(ModelContext& context, SimbodyModel* simbody) {
+  values_ = compileModel(recordModel(model_, context.names), false);
+  return simbody == nullptr ? "" : compareWithSimbody(context, *simbody, *values_);
 }
 
 }  // namespace twinmap

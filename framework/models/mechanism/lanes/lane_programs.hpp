@@ -12,9 +12,9 @@ namespace twinmap {
 /// A model compiled for lanes: what all clones of a simulator share.
 class LanePrograms {
  public:
-  /// Compiles the model, which must outlive the programs, if lanes can simulate it; `box_center` as for
-  /// recordModel(). Cost: some ten milliseconds, most of it the comparison with Simbody.
-  LanePrograms(ModelContext& context, SimbodyModel& simbody, const Eigen::VectorXd& box_center);
+  /// Compiles the model, which must outlive the programs, if lanes can simulate it, and compares it with
+  /// `simbody`, unless that is null. Cost: some ten milliseconds, most of it the comparison.
+  LanePrograms(ModelContext& context, SimbodyModel* simbody);
 
   /// Why lanes cannot simulate the model; empty if they can. Else the rest must not be used.
   const std::string& getObstacle() const { return obstacle_; }
@@ -28,10 +28,9 @@ class LanePrograms {
   const program::Program& getJacobian(const SystemNames& names);
 
  private:
-  std::string compile(ModelContext& context, SimbodyModel& simbody);
+  std::string compile(ModelContext& context, SimbodyModel* simbody);
 
   const ModelSpec& model_;
-  const Eigen::VectorXd box_center_;
   std::optional<LaneModel> values_, derivatives_;
   std::optional<program::Program> jacobian_;
   std::string obstacle_;

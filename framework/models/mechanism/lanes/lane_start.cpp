@@ -1,5 +1,7 @@
 #include "framework/models/mechanism/lanes/lane_start.hpp"
 
+#include "framework/experiment/model/parameter_box.hpp"
+
 namespace twinmap {
 
 using Eigen::Index;
@@ -23,7 +25,10 @@ void LaneStart::fill(const Parameters& parameters, lanes::Sample& sample) {
 
 void LaneStart::fillInitial(const Parameters& parameters, MatrixXd states, lanes::Sample& sample) {
   const Index n = model_.counts.states / 2;
-  if (spec_.initial.equilibrium && box_center_.size() == 0 && n > 0) {
+  if (box_center_.size() > 0) {
+    states.setZero();
+    states.col(0).head(n) = box_center_;
+  } else if (spec_.initial.equilibrium && n > 0) {
     rest_.setParameters(parameters);
     const VectorXd coordinates = twinmap::solveEquilibrium(rest_, states.col(0).head(n));
     if (model_.directions > 0) {
@@ -56,6 +61,16 @@ VectorXd LaneStart::solveEquilibrium(const Parameters& parameters) {
   rest_.setParameters(parameters);
   return twinmap::solveEquilibrium(
       rest_, box_center_.size() > 0 ? box_center_ : VectorXd(start_.calc({parameters}).head(n)));
+}
+
+VectorXd solveBoxCenter(ModelContext& context, const LaneModel& model) {
+  const std::optional<EquilibriumSpec>& equilibrium = context.model.initial.equilibrium;
+  if (!equilibrium || equilibrium->at != EquilibriumAt::kBoxCenter) {
+    return {};
+  }
+  context.numbers.update(calcBoxCenter(collectSampled(context.model)));
+  const VectorXd none;
+  return LaneStart(context.model, model, none).solveEquilibrium(calcEquilibriumPoint(context));
 }
 
 }  // namespace twinmap

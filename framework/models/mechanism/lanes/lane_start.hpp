@@ -1,6 +1,7 @@
 #pragma once
 
 #include "framework/models/mechanism/lanes/rest_program.hpp"
+#include "framework/models/mechanism/model_context.hpp"
 #include "kernels/lanes/sample.hpp"
 
 namespace twinmap {
@@ -8,7 +9,8 @@ namespace twinmap {
 /// Where the samples of a model start, and when their phases begin.
 class LaneStart {
  public:
-  /// `spec`, `model` and `box_center` (see recordModel) must outlive the object.
+  /// `box_center`: coordinates of the equilibrium that all samples start from, or empty. All must outlive the
+  /// object.
   LaneStart(const ModelSpec& spec, const LaneModel& model, const Eigen::VectorXd& box_center);
 
   /// Fills in parameters, initial states, phases and end of a sample. Throws SimulationFailure for an
@@ -29,5 +31,9 @@ class LaneStart {
   SingleProgram start_;
   RestProgram rest_;
 };
+
+/// Coordinates of the equilibrium at the box centre that all samples start from; empty if the spec does not
+/// ask for it. Throws SimulationFailure if it is not found.
+Eigen::VectorXd solveBoxCenter(ModelContext& context, const LaneModel& model);
 
 }  // namespace twinmap

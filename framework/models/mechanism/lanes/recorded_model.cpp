@@ -33,14 +33,14 @@ class ModelRecorder {
     system_ = equations::calcSystemValues(model.system, names, values_);
   }
 
-  RecordedModel record(const Eigen::VectorXd& box_center) {
+  RecordedModel record() {
     RecordedModel recorded;
     recorded.parameter_count = static_cast<int>(countSampled(model_));
     recorded.coordinate_count = system_.coordinate_count;
     recorded.excitation = recordExcitation(model_.excitation, *recorder_, values_);
     recordMotion(recorded);
     recordRest(recorded);
-    recorded.initial = recordInitial(box_center);
+    recorded.initial = recordInitial();
     recorded.recorder = std::move(recorder_);
     return recorded;
   }
@@ -125,14 +125,11 @@ class ModelRecorder {
     return values;
   }
 
-  Symbols recordInitial(const Eigen::VectorXd& box_center) {
+  Symbols recordInitial() {
     Symbols coordinates = calcNamed(model_.initial.coordinates);
     Symbols rates = calcNamed(model_.initial.speeds);
     if (model_.initial.equilibrium) {
       rates.assign(rates.size(), Symbol(0.0));
-    }
-    if (box_center.size() > 0) {
-      coordinates.assign(box_center.begin(), box_center.end());
     }
     const Symbols speeds = equations::calcSpeeds(system_, coordinates, rates);
     coordinates.insert(coordinates.end(), speeds.begin(), speeds.end());
@@ -148,9 +145,8 @@ class ModelRecorder {
 
 }  // namespace
 
-RecordedModel recordModel(const ModelSpec& model, const SystemNames& names,
-                          const Eigen::VectorXd& box_center) {
-  return ModelRecorder(model, names).record(box_center);
+RecordedModel recordModel(const ModelSpec& model, const SystemNames& names) {
+  return ModelRecorder(model, names).record();
 }
 
 }  // namespace twinmap

@@ -30,9 +30,7 @@ struct RecordedModel {
   Symbols stiffness_and_damping;
 };
 
-/// Writes a model down. `box_center`: coordinates of the equilibrium that all samples start from, or empty.
-/// Cost: some milliseconds.
-RecordedModel recordModel(const ModelSpec& model, const SystemNames& names,
-                          const Eigen::VectorXd& box_center);
+/// Writes a model down. Cost: some milliseconds.
+RecordedModel recordModel(const ModelSpec& model, const SystemNames& names);
 
 }  // namespace twinmap

@@ -10,23 +10,6 @@
 namespace twinmap {
 namespace {
 
-int findParameter(const ModelSpec& model, const Name& name) {
-  const std::vector<std::string> names = collectNames(collectSampled(model));
-  requireKnown(name, names, "a parameter");
-  return static_cast<int>(std::find(names.begin(), names.end(), name.text) - names.begin());
-}
-
-/// The box centre with the values that replace it; those may use the centre's parameters and constants.
-Eigen::VectorXd calcEquilibriumPoint(SimbodyContext& context) {
-  Eigen::VectorXd point = calcBoxCenter(collectSampled(context.model));
-  for (const NamedExpression& value : context.model.initial.equilibrium->parameters) {
-    const std::string owner = "initial.equilibrium";
-    point[findParameter(context.model, value.name)] =
-        context.numbers.calc(value.value, {owner, value.name.text.c_str(), ""});
-  }
-  return point;
-}
-
 /// What is wrong with the model at the centre of its box, with the number that is the cause, or `system`.
 ExperimentError makeCenterError(const ModelSpec& model, SourceLocation where, const std::string& reason) {
   if (where.file.empty() && !model.system.bodies.empty()) {

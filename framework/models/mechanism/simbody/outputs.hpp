@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "framework/models/mechanism/simbody/loaded_system.hpp"
+#include "framework/models/mechanism/system_numbers.hpp"
 
 namespace twinmap {
 

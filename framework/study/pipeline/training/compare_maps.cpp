@@ -35,7 +35,7 @@ std::vector<std::string> nameMaps(const std::vector<InverseMapSpec>& maps) {
 
 /// Writes the map; returns how many bytes that took.
 std::uintmax_t store(const fs::path& file, const Study& study, TrainedMap& map) {
-  storeMap(file, study.experiment, study.extractor, {}, map);
+  storeMap(file, study, {}, map);
   return fs::file_size(file);
 }
 

@@ -6,6 +6,18 @@
 #include "framework/store/estimators/maps_file.hpp"
 
 namespace twinmap {
+namespace {
+
+/// What Simbody had to simulate, Simbody simulates wherever the map is used: nothing compares it with lanes
+/// there.
+ExperimentSpec nameEngine(ExperimentSpec experiment, const Simulator& simulator) {
+  if (!experiment.model.source && simulator.getEngine() != "lanes") {
+    experiment.model.simulation.engine = Engine::kSimbody;
+  }
+  return experiment;
+}
+
+}  // namespace
 
 RefinementReference collectReference(const std::vector<Refined>& refined) {
   RefinementReference reference;
@@ -23,14 +35,15 @@ RefinementReference collectReference(const std::vector<Refined>& refined) {
   return reference;
 }
 
-void storeMap(const std::filesystem::path& file, const ExperimentSpec& experiment,
-              const FeatureExtractor& extractor, const std::vector<Refined>& refined, TrainedMap& map) {
+void storeMap(const std::filesystem::path& file, const Study& study, const std::vector<Refined>& refined,
+              TrainedMap& map) {
   if (map.online.trust) {
     map.online.trust->refinement = collectReference(refined);
   }
+  const ExperimentSpec experiment = nameEngine(study.experiment, study.simulator);
   StoredMap stored{experiment.model.parameters, {},         map.exact,
                    experiment.model.inputs,     map.online, writeExperiment(experiment)};
-  for (const FeatureInfo& info : extractor.getInfos()) {
+  for (const FeatureInfo& info : study.extractor.getInfos()) {
     stored.feature_names.push_back(info.name);
   }
   writeMapsFile(file, stored);

@@ -2,16 +2,15 @@
 
 #include <filesystem>
 
-#include "framework/data/features/feature_extractor.hpp"
-#include "framework/experiment/experiment_spec.hpp"
+#include "framework/study/pipeline/study.hpp"
 #include "framework/study/pipeline/training/trained_map.hpp"
 
 namespace twinmap {
 
 /// Tells the map's trust model what the refinement of the test samples did (`refined`: one for each, or
 /// empty), and writes maps.h5.
-void storeMap(const std::filesystem::path& file, const ExperimentSpec& experiment,
-              const FeatureExtractor& extractor, const std::vector<Refined>& refined, TrainedMap& map);
+void storeMap(const std::filesystem::path& file, const Study& study, const std::vector<Refined>& refined,
+              TrainedMap& map);
 
 /// What refined test samples tell a trust model: how many were not explained, and how badly.
 RefinementReference collectReference(const std::vector<Refined>& refined);

@@ -387,5 +387,18 @@ TEST(Lanes, AreComparedWithSimbodyBeforeTheySimulate) {
   EXPECT_EQ(compare(other).rfind("acceleration of 'x' is ", 0), 0u);
 }
 
+TEST(TrustedModel, MovesAsOneThatSimbodyHasChecked) {
+  const ModelSpec model = makeTwoBeam();  // starts from the equilibrium at the centre of the box
+  const Eigen::VectorXd times = Eigen::VectorXd::LinSpaced(20, 0.05, 1.0);
+  const Eigen::MatrixXd points = makeTwoBeamPoints(4);
+  MultibodySimulator checked(model, times), trusted(model, times, 0, ModelCheck::kTrusted);
+  ASSERT_EQ(trusted.getEngine(), "lanes");
+  Eigen::MatrixXd expected(checked.getLayout().getRowCount(), points.cols()), responses = expected;
+  std::vector<SampleStatus> statuses(points.cols());
+  checked.simulate(points, expected, statuses.data());
+  trusted.simulate(points, responses, statuses.data());
+  EXPECT_LT((responses - expected).cwiseAbs().maxCoeff(), 1e-11 * expected.cwiseAbs().maxCoeff());
+}
+
 }  // namespace
 }  // namespace twinmap::testing
