@@ -715,7 +715,3 @@ def predict_mean(group, inputs, scales, x):
     distance = (((x[:, None, :] - inputs[None, :, :]) / scales) ** 2).sum(axis=2)
     covariance = group["signal_stddev"][()] ** 2 * np.exp(-0.5 * distance)
     return covariance @ group["alpha"][:] + group["mean_coefficients"][0]
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -332,7 +332,3 @@ class Verify(TestCase):
         self.assert_wrong_input("verify", self.folder / "nowhere", message="there is no such folder")
         self.assert_wrong_input("verify", self.folder, message="is no folder of a run")
         self.assert_wrong_input("verify", self.folder / "run", "--samples", -1, message="--samples")
-
-
-if __name__ == "__main__":
-    unittest.main()

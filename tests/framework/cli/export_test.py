@@ -603,7 +603,3 @@ class Usage(FolderTestCase):
         result = call("export", self.folder, "--c", self.folder / "x")
         self.assertEqual(result.returncode, 1)
         self.assertIn("maps.h5", result.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

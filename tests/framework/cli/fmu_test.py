@@ -182,7 +182,3 @@ class FmuTest(OwnFolderTestCase):
         result = self.call("verify", out, "--samples", "3")
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
         self.check_nothing_is_left()
-
-
-if __name__ == "__main__":
-    unittest.main()

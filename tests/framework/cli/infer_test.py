@@ -376,7 +376,3 @@ design: {train: {samples: 120}, test: {samples: 60}}
             result = call("infer", self.run_folder, path, *arguments)
             self.assertEqual(result.returncode, 2)
             self.assertIn(text, result.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -113,7 +113,3 @@ class Mixture(OwnFolderTestCase):
         result = call("check", ROTOR, "inverse_map={network: {head: mixture, components: 5}}")
         self.assertEqual(result.returncode, 2)
         self.assertIn("must be a whole number from 2 to 4", result.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -168,7 +168,3 @@ class Network(OwnFolderTestCase):
         result = call("run", BEST, *SMALL, DIRECT, "design.train.samples=30", "--out", self.folder / "few")
         self.assertNotEqual(result.returncode, 0)
         self.assertIn("a network needs at least 50 training samples", result.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

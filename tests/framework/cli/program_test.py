@@ -130,7 +130,3 @@ class ProgramTest(OwnFolderTestCase):
     def test_a_parameter_without_effect_is_a_warning_at_the_start(self):
         result = call("run", self.write_faulty("[0, 0.5]"), *QUICK, "--out", self.folder / "run")
         self.assertIn("the parameter mode has no effect on any output", result.stdout + result.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()
