@@ -186,7 +186,7 @@ class StepLoops {
            (steps >= load(a.next_check + k));
   }
 
-  /// Of the stage just evaluated. A NaN is no small pivot: it shows in the error.
+  /// Of the stage just evaluated. A NaN is not a small pivot: it shows in the error.
   static void takePivots(const StepArrays& a, bool first) {
     for (int k = 0; k < kLanes; k += kWidth) {
       P smallest = first ? broadcast(__builtin_inf()) : load(a.smallest_pivot + k);

@@ -68,7 +68,7 @@ void checkStep(const SelectSpec& select, const Context& context) {
   const auto* names = std::get_if<FeatureNames>(&select);
   if (names != nullptr && context.progress.mixed) {
     throw ExperimentError(names->front().where, names->front().text,
-                          "is no feature behind a step that mixes them");
+                          "is not a feature behind a step that mixes them");
   }
   if (std::holds_alternative<FisherInformationSpec>(select)) {
     requireNoise(context.experiment, context.where, "select by fisher_information");

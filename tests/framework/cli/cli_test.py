@@ -566,7 +566,7 @@ class Run(TestCase):
         self.assertIn("2 runs side by side", (self.folder / "both/report.html").read_text())
         result = call("report", self.folder / "nowhere")
         self.assertEqual(result.returncode, 1)
-        self.assertIn("is no folder of a run", result.stderr)
+        self.assertIn("is not a folder of a run", result.stderr)
 
     def test_examples_of_updated_models_fit_their_measurement(self):
         self.copy_run("run")

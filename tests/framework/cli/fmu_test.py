@@ -162,7 +162,7 @@ class FmuTest(OwnFolderTestCase):
             ("variable: x}", "variable: z}", "has no variable 'z'"),
             ("  x: {bounds", "  y: {bounds", "has no variable 'y'"),
             ("variable: x}", "variable: x, unit: parsec2}", "parsec2"),
-            ("faulty_2.fmu", "two_beam.fmu", "is no file"),
+            ("faulty_2.fmu", "two_beam.fmu", "is not a file"),
             ("faulty_2.fmu", "not_a_zip.fmu", "not a ZIP archive"),
         ]
         for old, new, message in cases:
