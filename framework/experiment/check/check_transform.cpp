@@ -95,9 +95,10 @@ bool whitens(const TransformStepSpec& step, const NoiseSpec& noise) {
 void checkLengthScales(const TransformStepSpec& step, LengthScales length_scales) {
   if (length_scales == LengthScales::kPerOutput &&
       (mixes(step) || std::holds_alternative<SelectSpec>(step.kind))) {
-    throw ExperimentError(step.where, "",
-                          "goes not with inverse_map.gp.length_scales: per_output, because behind it inputs "
-                          "are not all the features; use per_feature or shared");
+    throw ExperimentError(
+        step.where, "",
+        "cannot be combined with inverse_map.gp.length_scales: per_output, because behind it inputs "
+        "are not all the features; use per_feature or shared");
   }
 }
 

@@ -147,7 +147,7 @@ class ExitCodes(TestCase):
         result = call("run", TABLE1, *many, "--out", self.folder / "run")
         self.assertEqual(result.returncode, 1)
         self.assertRegex(result.stderr, "3000 of 3000 train samples failed, .*step limit of 3 reached")
-        self.assertIn("all of the 12 train samples simulated failed; the other 2988 are given up", result.stderr)
+        self.assertIn("the first 12 train simulations all failed; the other 2988 are not run", result.stderr)
         failures = read_csv(self.folder / "run/failures.csv")
         simulated = [row for row in failures if row["reason"].startswith("step limit of 3 reached")]
         self.assertEqual(

@@ -125,7 +125,9 @@ class Compare(TestCase):
         self.assert_wrong_input("compare", run, message="B is required")
         self.assert_wrong_input("compare", run, run, "--csv", "--json", message="--csv excludes --json")
         self.assert_wrong_input("compare", run, self.folder / "nowhere", message="nowhere: there is no such folder")
-        self.assert_wrong_input("compare", self.folder, run, message="is not a folder of a run: it has no resolved.yaml")
+        self.assert_wrong_input(
+            "compare", self.folder, run, message="is not a folder of a run: it has no resolved.yaml"
+        )
         unfinished = self.copy("a")
         (unfinished / "provenance.json").unlink()
         self.assert_wrong_input("compare", run, unfinished, message="the run in it is not finished")
