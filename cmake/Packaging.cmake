@@ -33,10 +33,10 @@ install(DIRECTORY docs/ DESTINATION "${CMAKE_INSTALL_DOCDIR}/docs" FILES_MATCHIN
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME twinmap)
 set(CPACK_PACKAGE_CONTACT "The twinmap authors <twinmap@users.noreply.github.com>")
-set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "keep the physical parameters of digital twins true")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "estimate the physical parameters of digital twins")
 set(CPACK_PACKAGE_DESCRIPTION "twinmap simulates a first-principles model of a machine for many
 parameter sets, trains maps from features of the response to the
-parameters, and infers parameters with an honest standard deviation from
+parameters, and infers parameters with a calibrated standard deviation from
 measured responses, online.
 .
 This package has the command, the library libtwinmap with its header, the

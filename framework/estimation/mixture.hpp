@@ -6,7 +6,7 @@
 
 namespace twinmap {
 
-/// A mixture of c normal distributions of p parameters: several answers that may fit. No components where
+/// A mixture of c normal distributions of p parameters: several values that may fit. No components where
 /// there is no mixture.
 struct Mixture {
   Eigen::VectorXd weights;                    ///< c, positive, with the sum 1

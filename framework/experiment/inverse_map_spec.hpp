@@ -202,7 +202,7 @@ void describe(Fields& f, NetworkMapSpec& s) {
   f.optional("hidden", s.hidden,
              "units of each hidden layer (default: 64, 64; of 20000 simulations or more 192, 192; where they "
              "are sampled 8)");
-  f.optional("head", s.head, "one normal distribution, or a mixture: where several answers may fit");
+  f.optional("head", s.head, "one normal distribution, or a mixture: where estimates may be multimodal");
   f.optional("components", s.components, "normal distributions of a mixture", kMixtureComponents);
   f.optional("samples_from", s.samples_from,
              "simulations; a surrogate that is trained on them first; or automatic");

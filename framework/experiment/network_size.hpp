@@ -12,8 +12,8 @@ enum class NetworkSize {
 };
 
 /// For a network that so many simulations teach. Of 4000 of a smooth pendulum the errors were 1.32 times what
-/// measurements allow with a small one, 1.08 with a medium and 1.01 with a large one. But that learns some
-/// thousand simulations by heart: of 16000 of two beams, one of 7000 answers was 30 standard deviations off.
+/// measurements allow with a small one, 1.08 with a medium and 1.01 with a large one. But that overfits some
+/// thousand simulations: of 16000 of two beams, one of 7000 answers was 30 standard deviations off.
 NetworkSize chooseSize(int simulations);
 
 /// Whether hidden, steps, batch or learning_rate is given.

@@ -22,7 +22,7 @@ struct CSource {
   std::size_t trust_bytes = 0;  ///< of those that only the judgement needs
 };
 
-/// Throws ExperimentError for a prefix that is no C identifier, and std::runtime_error for a map whose
+/// Throws ExperimentError for a prefix that is not a C identifier, and std::runtime_error for a map whose
 /// numbers are not finite.
 CSource makeCSource(const ExportedModel& model, const COptions& options);
 

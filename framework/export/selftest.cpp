@@ -63,7 +63,7 @@ class DisturbanceGenerator {
   DisturbanceGenerator(const MatrixXd& responses, const VectorXd& noise_stddev)
       : mean_(responses.rowwise().mean()), noise_stddev_(noise_stddev) {}
 
-  VectorXd spoil(int index, VectorXd response) const {
+  VectorXd disturb(int index, VectorXd response) const {
     constexpr double kDisturbance = 8.0, kBeyond = 2.5, kSlightlyBeyond = 1.3;
     switch (index % 10) {
       case 6: {
@@ -176,7 +176,7 @@ std::vector<TestedMeasurement> makeTestedMeasurements(const std::filesystem::pat
   const ResponseLayout& layout = model.layout;
   const Samples samples = readSamples(run, model.countKnown(), layout.getRowCount());
   const ResponseNoise noise(model.experiment.noise, layout);
-  const DisturbanceGenerator spoiler(samples.responses, noise.getStddev());
+  const DisturbanceGenerator generator(samples.responses, noise.getStddev());
   const RandomStream random(model.experiment.seed, RandomPurpose::kSelftest);
   const auto n = static_cast<int>(samples.responses.cols());
   Answerer answerer(model);
@@ -186,20 +186,21 @@ std::vector<TestedMeasurement> makeTestedMeasurements(const std::filesystem::pat
     if (i % n == 0) {
       noisy = addNoise(samples.responses, noise, random, i / n);
     }
-    const VectorXd response = plan.spoilt ? spoiler.spoil(i, noisy.col(i % n)) : VectorXd(noisy.col(i % n));
+    const VectorXd response =
+        plan.disturbed ? generator.disturb(i, noisy.col(i % n)) : VectorXd(noisy.col(i % n));
     TestedMeasurement one;
     one.known = samples.known.col(i % n);
-    one.times = plan.spoilt ? makeTimes(layout.times, i) : layout.times;
+    one.times = plan.disturbed ? makeTimes(layout.times, i) : layout.times;
     try {
       one.values =
           shape(layout, roundTo(plan.number, layout.modes > 0 ? answerer.extract(response) : response));
       one.features = answerer.makeFeatures(one);
       one.answer = answerer.infer(one.features, one.known);
-      if (!plan.spoilt || answerer.isSteady(one)) {
+      if (!plan.disturbed || answerer.isSteady(one)) {
         tested.push_back(std::move(one));
       }
     } catch (const MeasurementError&) {
-      continue;  // such as a spoilt response that lacks a peak
+      continue;  // such as a disturbed response that lacks a peak
     }
   }
   if (tested.empty()) {

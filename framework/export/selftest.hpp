@@ -24,12 +24,12 @@ struct TestPlan {
   CNumber number = CNumber::kDouble;  ///< what values are rounded to before the answer is computed
   /// Some are a disturbance that lasts a while, a response beyond all that was simulated, times beside the
   /// grid.
-  bool spoilt = true;
+  bool disturbed = true;
 };
 
-/// The run's test samples with noise, and what the model makes of them; those spoilt leave out measurements
-/// whose answer hangs on rounding. Throws ExperimentError for a run without samples.h5 or with too few test
-/// samples.
+/// The run's test samples with noise, and what the model makes of them; those disturbed leave out
+/// measurements whose answer hangs on rounding. Throws ExperimentError for a run without samples.h5 or with
+/// too few test samples.
 std::vector<TestedMeasurement> makeTestedMeasurements(const std::filesystem::path& run,
                                                       const ExportedModel& model, const TestPlan& plan);
 

@@ -29,7 +29,7 @@ std::string joinStatuses(const InferredMeasurement& inferred, const char* separa
 std::string explainStatus(TrustStatus status, const Trust& trust, const std::vector<FeatureInfo>& features) {
   switch (status) {
     case TrustStatus::kModelMismatch:
-      return fmt::format("  No point of the parameter box explains the features: {}.\n",
+      return fmt::format("  No parameter values within the bounds fit the measurement: {}.\n",
                          describeAnomaly(trust, features));
     case TrustStatus::kOutsideTraining:
       return fmt::format(
@@ -85,10 +85,10 @@ Row makeRow(const ParameterSpec& parameter, const Estimates& estimates, Index i)
 /// How the refinement went; the table of its answer follows where it was accepted.
 std::string describeRefined(const Refined& refined) {
   if (!refined.isAccepted()) {
-    return fmt::format("  not refined ({}): {}; the map's answer, which nothing confirms:\n",
-                       toString(refined.status), refined.message);
+    return fmt::format("  not refined ({}): {}; the map's unconfirmed estimate:\n", toString(refined.status),
+                       refined.message);
   }
-  return fmt::format("  refined by {} steps ({} simulations), {:.2g} sd from the map's:\n",
+  return fmt::format("  refined by {} steps ({} simulations), {:.2g} sd from the map's estimate:\n",
                      refined.iterations, refined.simulations, refined.distance);
 }
 
@@ -104,7 +104,7 @@ std::string makeEstimateTable(const Estimates& estimates, const std::vector<Para
 std::string describeMixture(const Mixture& mixture, const std::vector<ParameterSpec>& parameters) {
   constexpr int kDigits = 5, kStddevDigits = 3;
   constexpr double kMin = 0.01;  // a lighter one is not worth a line
-  std::string text = "  several answers may fit:\n";
+  std::string text = "  multimodal, several parameter values may fit:\n";
   for (Index c = 0; c < mixture.countComponents(); ++c) {
     std::string values;
     for (std::size_t p = 0; p < parameters.size(); ++p) {
@@ -190,7 +190,8 @@ std::string describeMapLimit(const InferredMeasurement& inferred,
   std::string text =
       far.empty() ? "" : fmt::format("  {} above what the measurement allows: {}.\n", listNames(far), advice);
   if (!inferred.map_is_calibrated) {
-    text += fmt::format("  The map does not know its own errors (cross-validation): {}.\n", advice);
+    text +=
+        fmt::format("  The map's standard deviations are not calibrated (cross-validation): {}.\n", advice);
   }
   return text;
 }

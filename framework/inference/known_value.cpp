@@ -56,7 +56,7 @@ Eigen::VectorXd collectKnown(const std::vector<ParameterSpec>& inputs,
   const std::vector<std::string> names = collectNames(inputs);
   for (const KnownValue& value : values) {
     if (std::find(names.begin(), names.end(), value.name) == names.end()) {
-      throw ExperimentError("'" + value.name + "' is no input of this experiment" +
+      throw ExperimentError("'" + value.name + "' is not an input of this experiment" +
                             suggestName(value.name, names));
     }
   }

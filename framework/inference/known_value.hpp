@@ -21,7 +21,7 @@ KnownValue parseKnownValue(const std::string& text);
 std::vector<KnownValue> parseKnownValues(const std::vector<std::string>& texts);
 
 /// The values of all inputs of a model, in their order and units. Throws ExperimentError for an input that is
-/// missing, given twice or outside its bounds, and for a name that is no input.
+/// missing, given twice or outside its bounds, and for a name that is not an input.
 Eigen::VectorXd collectKnown(const std::vector<ParameterSpec>& inputs, const std::vector<KnownValue>& values);
 
 }  // namespace twinmap

@@ -16,7 +16,7 @@ struct ProvenanceRecord {
 
   /// nullptr if there is none.
   const std::string* find(const std::string& key) const;
-  /// NaN if there is none, or if it is no number.
+  /// NaN if there is none, or if it is not a number.
   double getNumber(const std::string& key) const;
 };
 

@@ -55,7 +55,7 @@ void readTables(const fs::path& path, RunFolder& run) {
 
 RunFolder readRunFolder(const fs::path& path) {
   if (!fs::exists(path / "resolved.yaml")) {
-    throw std::runtime_error(path.string() + ": is no folder of a run: it has no resolved.yaml");
+    throw std::runtime_error(path.string() + ": is not a folder of a run: it has no resolved.yaml");
   }
   RunFolder run;
   run.path = path;

@@ -63,7 +63,7 @@ double calcSeveralShare(const RunSummary& run, std::size_t p) {
   return count > 0 ? double(several) / double(count) : 0.0;
 }
 
-/// Whether errors and standard deviations are those between several answers, mostly.
+/// Whether errors and standard deviations are those between several modes, mostly.
 bool isMultimodal(const RunSummary& run, std::size_t p) {
   constexpr double kMostly = 0.1;
   return calcSeveralShare(run, p) > kMostly;
@@ -71,12 +71,12 @@ bool isMultimodal(const RunSummary& run, std::size_t p) {
 
 void appendSeveral(const RunSummary& run, std::vector<Warning>& warnings) {
   const auto share = [&](std::size_t p) { return calcSeveralShare(run, p); };
-  const std::string told = listParameters(run, share, [&](std::size_t p) { return isMultimodal(run, p); });
-  if (!told.empty()) {
+  const std::string listed = listParameters(run, share, [&](std::size_t p) { return isMultimodal(run, p); });
+  if (!listed.empty()) {
     warnings.push_back(
-        {Severity::kInfo, "several answers fit, in these shares of the test samples: " + told +
-                              ". Errors and standard deviations are those of all of them together; measure "
-                              "another output to tell them apart"});
+        {Severity::kInfo, "multimodal estimates, in these fractions of the test samples: " + listed +
+                              ". Errors and standard deviations are those of all modes together; measure "
+                              "another output to separate them"});
   }
 }
 
@@ -86,10 +86,9 @@ void appendLimit(const RunSummary& run, std::vector<Warning>& warnings) {
   const std::string far =
       listParameters(run, ratio, [&](std::size_t p) { return ratio(p) > kFar && !isMultimodal(run, p); });
   if (!far.empty()) {
-    warnings.push_back({Severity::kDegraded,
-                        "the answers are worse than the measurement allows, in standard deviations so many "
-                        "times: " +
-                            far + ". Refine them on the simulator, or add simulations"});
+    warnings.push_back(
+        {Severity::kDegraded, "the estimation error exceeds the information limit, by these factors: " + far +
+                                  ". Refine them on the simulator, or add simulations"});
   }
 }
 
@@ -128,7 +127,7 @@ void appendGain(const RunSummary& run, std::vector<Warning>& warnings) {
   }
 }
 
-/// Whether the information limit has told already that the parameter is not determined.
+/// Whether the information limit has already warned that the parameter is not determined.
 bool isUndetermined(const RunSummary& run, std::size_t p) {
   return run.evaluation.identifiability && run.evaluation.identifiability->isUndetermined(Index(p));
 }
@@ -146,11 +145,10 @@ void appendUninformed(const RunSummary& run, std::vector<Warning>& warnings) {
     return share(p) > kUninformed && !isUndetermined(run, p) && !isMultimodal(run, p);
   });
   if (!uninformed.empty()) {
-    warnings.push_back({Severity::kDegraded,
-                        "the answers say little more than the bounds do, in shares of their standard "
-                        "deviation: " +
-                            uninformed +
-                            ". Measure another output, excite differently, or do not infer them"});
+    warnings.push_back(
+        {Severity::kDegraded,
+         "the measurement is uninformative, ratio of estimated to prior standard deviation: " + uninformed +
+             ". Measure another output, excite differently, or do not infer them"});
   }
 }
 
@@ -172,10 +170,9 @@ void appendCorrelations(const RunSummary& run, std::vector<Warning>& warnings) {
     }
   }
   if (!pairs.empty()) {
-    warnings.push_back({Severity::kDegraded,
-                        "the response hardly tells parameters apart (correlation): " + listNames(pairs) +
-                            ". Only a combination of them is determined: measure another output or excite "
-                            "differently"});
+    warnings.push_back(
+        {Severity::kDegraded, "parameters are strongly correlated: " + listNames(pairs) +
+                                  ". Measure another output or excite differently to separate them"});
   }
 }
 

@@ -18,7 +18,7 @@ void requireFinishedRun(const fs::path& folder, const std::vector<std::string>& 
   const std::vector<fs::path> cases = listCases(folder);
   require(cases.empty(), "is the folder of a sweep; name one of its cases, such as " +
                              (cases.empty() ? "" : cases[0].string()));
-  require(fs::exists(folder / "resolved.yaml"), "is no folder of a run: it has no resolved.yaml");
+  require(fs::exists(folder / "resolved.yaml"), "is not a folder of a run: it has no resolved.yaml");
   require(fs::exists(folder / "provenance.json"), "the run in it is not finished: it has no provenance.json");
   for (const std::string& file : files) {
     require(fs::exists(folder / file), "has no " + file);

@@ -10,7 +10,7 @@ namespace twinmap {
 /// `files`. Of a sweep the error names a case.
 void requireFinishedRun(const std::filesystem::path& folder, const std::vector<std::string>& files);
 
-/// The folders of a sweep's cases, `folder`/cases/NAME, sorted by name; none if it is no sweep.
+/// The folders of a sweep's cases, `folder`/cases/NAME, sorted by name; none if it is not a sweep.
 std::vector<std::filesystem::path> listCases(const std::filesystem::path& folder);
 
 }  // namespace twinmap

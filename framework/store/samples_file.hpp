@@ -13,7 +13,7 @@ void writeSamplesFile(const std::filesystem::path& path, const ModelSpec& model,
                       const Trajectories& test);
 
 /// How many training samples a samples.h5 has, failed ones included. Throws std::runtime_error for a file
-/// that is no samples.h5.
+/// that is not a samples.h5.
 int countTrainingSamples(const std::filesystem::path& path);
 
 /// The clean responses of the test set, with the times they are known at.
@@ -24,7 +24,7 @@ struct StoredResponses {
   Eigen::MatrixXd responses;  ///< outputs * times x n, output by output; NaN where the sample failed
 };
 
-/// Reads the test set's responses back. Throws std::runtime_error for a file that is no samples.h5.
+/// Reads the test set's responses back. Throws std::runtime_error for a file that is not a samples.h5.
 StoredResponses readTestResponses(const std::filesystem::path& path);
 
 /// The training and the test set of samples.h5, as they were written.
@@ -32,7 +32,7 @@ struct StoredSamples {
   Trajectories train, test;
 };
 
-/// Reads samples.h5 back. Throws std::runtime_error for a file that is no samples.h5.
+/// Reads samples.h5 back. Throws std::runtime_error for a file that is not a samples.h5.
 StoredSamples readSamplesFile(const std::filesystem::path& path);
 
 }  // namespace twinmap

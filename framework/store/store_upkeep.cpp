@@ -27,7 +27,7 @@ std::vector<fs::path> listFolder(const fs::path& folder) {
 
 std::vector<fs::path> listModelFolders(const fs::path& root) {
   if (!fs::is_directory(root)) {
-    throw std::runtime_error(root.string() + ": is no folder of simulated samples");
+    throw std::runtime_error(root.string() + ": is not a folder of simulated samples");
   }
   std::vector<fs::path> folders;
   for (const fs::path& path : listFolder(root)) {

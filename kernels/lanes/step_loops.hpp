@@ -143,7 +143,7 @@ class StepLoops {
 
   static P calcError(const StepArrays& a, int k) {
     const P step = load(a.step + k);
-    P largest{}, spoilt{};
+    P largest{}, nonfinite{};
     for (int row = 0; row < a.rows; ++row) {
       const int at = row * kLanes + k;
       const P last = load(a.derivatives[row] + k);
@@ -158,9 +158,9 @@ class StepLoops {
       const P error = program::abs(step * sum) / scale;
       largest = program::select<P>(error > largest, error, largest);
       const P state = load(a.stage_state + at);
-      spoilt += (state - state) + (last - last);  // 0 or NaN
+      nonfinite += (state - state) + (last - last);  // 0 or NaN
     }
-    return largest + spoilt;
+    return largest + nonfinite;
   }
 
   /// The next step from this one's error, which is of order 5; returns where attention is needed.
@@ -186,7 +186,7 @@ class StepLoops {
            (steps >= load(a.next_check + k));
   }
 
-  /// Of the stage just evaluated. A NaN is no small pivot: it shows in the error.
+  /// Of the stage just evaluated. A NaN is not a small pivot: it shows in the error.
   static void takePivots(const StepArrays& a, bool first) {
     for (int k = 0; k < kLanes; k += kWidth) {
       P smallest = first ? broadcast(__builtin_inf()) : load(a.smallest_pivot + k);

@@ -231,7 +231,3 @@ class Elsewhere(unittest.TestCase):
         result = self.call("shard", self.folder / "run", "0")
         self.assertEqual(result.returncode, 2)
         self.assertIn("by one that computes with another build", result.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

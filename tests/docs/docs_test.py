@@ -154,6 +154,3 @@ def add_document(document):
 
 for path in sorted((SOURCE / "docs").glob("*.md")):
     add_document(path)
-
-if __name__ == "__main__":
-    unittest.main()

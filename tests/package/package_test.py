@@ -93,7 +93,3 @@ class PackageTest(unittest.TestCase):
             ["lintian", "--allow-root", "--fail-on", "error", str(self.package)], capture_output=True, text=True
         )
         self.assertEqual(result.returncode, 0, result.stdout)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -12,7 +12,7 @@ namespace twinmap {
 /// Throws Json::parse_error.
 Json parseJson(std::string_view text);
 
-/// A discarded value (Json::is_discarded) where the text is no JSON.
+/// A discarded value (Json::is_discarded) where the text is not JSON.
 Json tryParseJson(std::string_view text);
 
 /// On one line, or indented. Bytes that are no UTF-8 become U+FFFD.

@@ -31,7 +31,7 @@ std::size_t calcEditDistance(const std::string& a, const std::string& b) {
 }  // namespace
 
 std::string suggestName(const std::string& name, const std::vector<std::string>& candidates) {
-  constexpr std::size_t kLongestName = 100;  // a longer one is no typing error, and would be slow
+  constexpr std::size_t kLongestName = 100;  // a longer one is not a typing error, and would be slow
   if (name.size() > kLongestName) {
     return "";
   }

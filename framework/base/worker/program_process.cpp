@@ -141,7 +141,7 @@ void ProgramProcess::fail() {
       words_.describe());
 }
 
-/// What the program has written as answers and nobody has read: where it is none, its last words.
+/// What the program has written as answers and nobody has read: where there is none, the tail of its output.
 void ProgramProcess::keepRest() {
   char buffer[65536];  // what a pipe holds; processes that outlive the program may go on writing
   const ssize_t count = read(output_, buffer, sizeof buffer);

@@ -28,7 +28,7 @@ bool CsvLines::next(std::string_view& line) {
     line.remove_suffix(1);
   }
   if (line.find('\0') != std::string_view::npos) {
-    fail("has a NUL byte: is no text, or not in UTF-8");
+    fail("has a NUL byte: is not text, or not in UTF-8");
   }
   return true;
 }
@@ -40,7 +40,7 @@ bool CsvLines::fill() {
   at_ = 0;
   const std::size_t before = buffer_.size();
   if (before > kLongestLine) {
-    fail("has a line of more than 16 MiB: is no table of text");
+    fail("has a line of more than 16 MiB: is not a table of text");
   }
   buffer_.resize(before + kBlock);
   stream_.read(buffer_.data() + before, static_cast<std::streamsize>(kBlock));

@@ -30,7 +30,7 @@ std::optional<std::string> readUnit(const Hdf5Reader& file, const std::string& d
 void addDataset(const Hdf5Reader& file, const std::string& name, TableBuilder& table) {
   const std::optional<std::size_t> count = countVectorElements(file.readShape(name));
   if (!file.isRealNumber(name)) {
-    table.skip(name, "is no dataset of real numbers");
+    table.skip(name, "is not a dataset of real numbers");
   } else if (!count) {
     table.skip(name, "must have one dimension");
   } else {

@@ -55,7 +55,7 @@ Eigen::VectorXd getValues(const matvar_t& variable, std::size_t count) {
 std::string findProblem(const matvar_t& variable) {
   const bool numeric = variable.class_type >= MAT_C_DOUBLE && variable.class_type <= MAT_C_UINT64;
   if (!numeric || variable.isLogical != 0) {
-    return "is no array of numbers";
+    return "is not an array of numbers";
   }
   if (variable.isComplex != 0) {
     return "is complex; must be real";

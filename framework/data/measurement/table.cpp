@@ -65,7 +65,7 @@ std::string escapeCell(const std::string& text) {
 
 Table readTable(const fs::path& path, const std::vector<std::string>& wanted) {
   if (!fs::is_regular_file(path) && !fs::is_fifo(path) && !fs::is_character_file(path)) {
-    throw MeasurementError(path.string() + (fs::exists(path) ? ": is no file" : ": does not exist"));
+    throw MeasurementError(path.string() + (fs::exists(path) ? ": is not a file" : ": does not exist"));
   }
   const std::string extension = getExtension(path);
   if (extension == ".mat") {

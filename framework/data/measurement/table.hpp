@@ -46,7 +46,8 @@ constexpr std::size_t kMaxNumbers = 100'000'000;
 /// 5 or 7.3: variables that are real vectors), .h5, .hdf5 (datasets of one dimension by their path,
 /// "run1/enc1"; their attribute `unit` or `units`). `wanted`: names of the columns to keep, those of them
 /// that the file has; empty: all that are columns of numbers, the others are skipped with the reason.
-/// Throws MeasurementError for a file that cannot be read and a wanted column that is no column of numbers.
+/// Throws MeasurementError for a file that cannot be read and a wanted column that is not a column of
+/// numbers.
 Table readTable(const std::filesystem::path& path, const std::vector<std::string>& wanted = {});
 
 /// Reads a text table in one pass, memory for the wanted columns only. Its first line that is neither empty

@@ -16,7 +16,7 @@ std::vector<Eigen::Index> selectByName(const FeatureNames& names, const std::vec
 /// the largest relevance minus mean mutual information with those selected before. Relevance is the sum of
 /// the mutual information with each parameter, a lower bound of that with all where parameters are
 /// independent, as in a design. On the first noise draw, because the others repeat parameters exactly, which
-/// is no continuous variable. Throws std::invalid_argument for more features than there are. Cost: d (p +
+/// is not a continuous variable. Throws std::invalid_argument for more features than there are. Cost: d (p +
 /// count) estimates (calcMutualInformation).
 std::vector<Eigen::Index> selectByMutualInformation(const MutualInformationSpec& spec,
                                                     const LabelledFeatures& samples);

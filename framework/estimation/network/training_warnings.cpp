@@ -17,9 +17,10 @@ std::string describeShape(double probability, double share, Index components) {
   constexpr Index kMaxComponents = 4;
   const bool heavy_tails = (share > probability) == (probability < 0.9);
   if (components == 1) {
-    return heavy_tails ? "normal distributions: a few of its errors are much larger than the others"
-                       : "normal distributions: several answers fit, of which 'head: mixture' tells, or they "
-                         "lie at the bounds";
+    return heavy_tails
+               ? "normal distributions: a few of its errors are much larger than the others"
+               : "normal distributions: the estimates are multimodal, which 'head: mixture' describes, or "
+                 "they lie at the bounds";
   }
   return fmt::format("mixtures of {} normal distributions{}", components,
                      components < kMaxComponents ? "; 'components: 4' may serve better" : "");

@@ -9,7 +9,7 @@ namespace twinmap {
 enum class RefinementStatus {
   kAccepted,    ///< the answer explains the features, and its covariance is that of the misfit around it
   kMisfit,      ///< chi-square is too large: another basin, or a model that is wrong
-  kNonlinear,   ///< the misfit around the answer is no paraboloid: no covariance describes it
+  kNonlinear,   ///< the misfit around the answer is not a paraboloid: no covariance describes it
   kMultimodal,  ///< the map knows of other answers, which least squares from one of them does not see
   kFailed       ///< simulations failed, or the search did not converge
 };

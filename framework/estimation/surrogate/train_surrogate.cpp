@@ -41,10 +41,10 @@ SurrogateSamples takeFirst(const SurrogateSamples& samples) {
 }
 
 std::vector<std::string> listWarnings(const ModelSpec& model, const SurrogateValidation& validation) {
-  constexpr double kHonest = 0.9;
+  constexpr double kCalibrated = 0.9;
   std::vector<std::string> warnings, told;
   for (Index k = 0; k < validation.coverage95.size(); ++k) {
-    if (validation.coverage95(k) < kHonest) {
+    if (validation.coverage95(k) < kCalibrated) {
       told.push_back(fmt::format("{} ({:.2f}, {:.2f})",
                                  model.parameters[static_cast<std::size_t>(k)].name.text,
                                  validation.coverage95(k), validation.stddev_scale(k)));
@@ -52,15 +52,14 @@ std::vector<std::string> listWarnings(const ModelSpec& model, const SurrogateVal
   }
   if (!told.empty()) {
     warnings.push_back(
-        "the surrogate's own 95 % intervals held too seldom in cross-validation, so that its "
-        "standard deviations are multiplied (share, factor): " +
+        "cross-validation: the surrogate's own 95 % intervals contained the truth too rarely; its standard "
+        "deviations are multiplied (fraction contained, factor): " +
         listNames(told));
   }
   if (validation.status == SurrogateStatus::kEstimatorLimited) {
     warnings.emplace_back(
-        "estimator_limited: the surrogate does not know its own error; refine the answers on the simulator, "
-        "or add "
-        "simulations");
+        "estimator_limited: the surrogate's standard deviations are not calibrated; refine the estimates on "
+        "the simulator, or add simulations");
   }
   return warnings;
 }

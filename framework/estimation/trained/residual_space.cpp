@@ -15,7 +15,7 @@ namespace {
 constexpr double kSmallestStddev = 0.2;  // of the noise: what moves less counts as noise
 
 /// Appends the components of what the scores leave of one window, `rest` (k x n).
-void addUnlearnt(const FeatureWindow& rows, const MatrixXd& rest, ResidualSpace& space) {
+void addUnmodelled(const FeatureWindow& rows, const MatrixXd& rest, ResidualSpace& space) {
   const PrincipalComponents components = calcPrincipalComponents(rest(rows, Eigen::all));
   const Index count = (components.variances.array() > kSmallestStddev * kSmallestStddev).count();
   const Index before = space.unmodelled.cols();
@@ -57,7 +57,7 @@ ResidualSpace fitResidualSpace(const std::vector<FeatureInfo>& infos, const Matr
   const bool by_feature = whitened.rows() == static_cast<Index>(infos.size());
   for (const FeatureWindow& rows :
        by_feature ? makeFeatureWindows(infos) : makeWindowsInOrder(whitened.rows())) {
-    addUnlearnt(rows, rest, space);
+    addUnmodelled(rows, rest, space);
   }
   return space;
 }

@@ -285,7 +285,7 @@ class ModelCheck {
   void checkSourceFiles(const SourceSpec& source) const {
     std::error_code ignored;
     if (source.fmu && !std::filesystem::is_regular_file(source.fmu->file.text, ignored)) {
-      throw ExperimentError(source.fmu->file.where, source.fmu->file.text, "is no file");
+      throw ExperimentError(source.fmu->file.where, source.fmu->file.text, "is not a file");
     }
     if (!source.program) {
       return;
@@ -293,11 +293,11 @@ class ModelCheck {
     const std::filesystem::path folder = source.program->working_folder;
     const SourceLocation where{model_.parameters.front().name.where.file, 0, 0, "model.program"};
     if (!std::filesystem::is_directory(folder, ignored)) {
-      throw ExperimentError(where, folder.string(), "is no folder");
+      throw ExperimentError(where, folder.string(), "is not a folder");
     }
     for (const std::string& file : source.program->depends_on) {
       if (!std::filesystem::is_regular_file(folder / file, ignored)) {
-        throw ExperimentError(where, file, "is no file that it could depend on");
+        throw ExperimentError(where, file, "is not a file that it could depend on");
       }
     }
   }

@@ -68,7 +68,7 @@ void checkStep(const SelectSpec& select, const Context& context) {
   const auto* names = std::get_if<FeatureNames>(&select);
   if (names != nullptr && context.progress.mixed) {
     throw ExperimentError(names->front().where, names->front().text,
-                          "is no feature behind a step that mixes them");
+                          "is not a feature behind a step that mixes them");
   }
   if (std::holds_alternative<FisherInformationSpec>(select)) {
     requireNoise(context.experiment, context.where, "select by fisher_information");
@@ -95,9 +95,10 @@ bool whitens(const TransformStepSpec& step, const NoiseSpec& noise) {
 void checkLengthScales(const TransformStepSpec& step, LengthScales length_scales) {
   if (length_scales == LengthScales::kPerOutput &&
       (mixes(step) || std::holds_alternative<SelectSpec>(step.kind))) {
-    throw ExperimentError(step.where, "",
-                          "goes not with inverse_map.gp.length_scales: per_output, because behind it inputs "
-                          "are not all the features; use per_feature or shared");
+    throw ExperimentError(
+        step.where, "",
+        "cannot be combined with inverse_map.gp.length_scales: per_output, because behind it inputs "
+        "are not all the features; use per_feature or shared");
   }
 }
 

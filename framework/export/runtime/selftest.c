@@ -1,4 +1,4 @@
-/* Measurements with twinmap's own answers: simulated ones with noise, some of them spoilt so that the statuses
+/* Measurements with twinmap's own answers: simulated ones with noise, some of them disturbed so that the statuses
    occur. Prints what differs; the exit code is 0 if nothing does. */
 #include "twinmap_map.h"
 

@@ -45,7 +45,7 @@ Json parse(const std::string& line) {
     answer = tryParseJson(replaceNonFinite(line));
   }
   if (!answer.is_object()) {
-    throw ProtocolError("the program's answer is no JSON object: " + shorten(line));
+    throw ProtocolError("the program's answer is not a JSON object: " + shorten(line));
   }
   return answer;
 }
@@ -56,7 +56,7 @@ std::string readOutput(const Json& values, const std::string& name, const Respon
   const bool single = values.is_number();  // as MATLAB and Octave write a list of one
   const auto count = static_cast<Eigen::Index>(values.size());
   if (!single && !values.is_array()) {
-    return fmt::format("output '{}' is no list of numbers: {}", name, shorten(formatJson(values)));
+    return fmt::format("output '{}' is not a list of numbers: {}", name, shorten(formatJson(values)));
   }
   if (count != rows.size()) {
     return fmt::format("output '{}' has {} value{} instead of {}, one for each time", name, count,

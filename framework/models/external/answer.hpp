@@ -9,7 +9,7 @@
 
 namespace twinmap {
 
-/// The program answered what is no answer, so that nothing is known of what it will do next.
+/// The program answered what is not an answer, so that nothing is known of what it will do next.
 class ProtocolError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -71,7 +71,7 @@ class Experiment:
         self, experiment: _twinmap.Experiment, source: Tuple[str, Optional[str]], overrides: List[str]
     ) -> None:
         self._experiment = experiment
-        self._source = source  # the file's name, and the text where it is no file
+        self._source = source  # the file's name, and the text where it is not a file
         self._overrides = overrides
 
     @staticmethod

@@ -30,7 +30,7 @@ class Results:
         """Raises FileNotFoundError where there is no folder of a finished run."""
         path = Path(folder)
         if not (path / "metrics.csv").is_file() and not (path / "sweep.csv").is_file():
-            raise FileNotFoundError(f"{path}: is no folder of a finished run: it has no metrics.csv")
+            raise FileNotFoundError(f"{path}: is not a folder of a finished run: it has no metrics.csv")
         return Results(path)
 
     def list_tables(self) -> List[str]:

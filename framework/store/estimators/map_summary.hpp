@@ -18,7 +18,7 @@ struct MapSummary {
   std::vector<gp::Hyperparameters> hyperparameters;  ///< one per parameter
 };
 
-/// Reads the summary alone. Throws std::runtime_error for a file that is no maps.h5.
+/// Reads the summary alone. Throws std::runtime_error for a file that is not a maps.h5.
 MapSummary readMapSummary(const std::filesystem::path& path);
 
 }  // namespace twinmap

@@ -31,11 +31,11 @@ struct StoredOnlineModel {
 void writeMapsFile(const std::filesystem::path& path, const StoredMap& stored);
 
 /// Reads it back; predictions are those of the map that was written, bit for bit. Throws std::runtime_error
-/// for a file that is no maps.h5, or that of another map.
+/// for a file that is not a maps.h5, or that of another map.
 StoredMap readMapsFile(const std::filesystem::path& path);
 
 /// Whether the map is one of processes; surrogates and networks are not. Throws std::runtime_error for a file
-/// that is no maps.h5.
+/// that is not a maps.h5.
 bool holdsProcesses(const std::filesystem::path& path);
 
 /// Reads the online model alone, a fraction of the file. Throws std::runtime_error for a file that is no

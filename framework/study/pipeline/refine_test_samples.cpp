@@ -24,7 +24,7 @@ Eigen::VectorXd getKnown(const LabelledFeatures& test, Index i) {
 
 struct RefinementTasks {
   std::vector<RefinementTask> tasks;
-  std::vector<bool> several;  ///< whether the map knows of several answers
+  std::vector<bool> several;  ///< whether the map's estimate is multimodal
 };
 
 /// From what the online map and its trust model say.

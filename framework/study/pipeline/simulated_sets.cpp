@@ -49,7 +49,7 @@ StoredTrajectories simulateSet(const std::string& set, const Eigen::MatrixXd& po
                                   stored.counts.reused + stored.counts.simulated, points.cols(), set));
   }
   if (const int given_up = stored.counts.given_up; given_up > 0) {
-    logWarning(fmt::format("all of the {} {} samples simulated failed; the other {} are given up",
+    logWarning(fmt::format("the first {} {} simulations all failed; the other {} are not run",
                            points.cols() - given_up, set, given_up));
   }
   if (stored.counts.implicit > 0) {

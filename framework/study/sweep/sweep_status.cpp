@@ -24,7 +24,7 @@ std::string describeStored(const std::string& name, const PointCounts& counts) {
 SweepStatus readStatus(const fs::path& folder, const fs::path& store) {
   const fs::path resolved = folder / "resolved.yaml";
   if (!fs::exists(resolved)) {
-    throw ExperimentError(folder.string() + ": is no folder of a run: it has no resolved.yaml");
+    throw ExperimentError(folder.string() + ": is not a folder of a run: it has no resolved.yaml");
   }
   const YamlNode root = loadYaml(resolved.string());
   const bool is_sweep = root.find("sweep") != nullptr;

@@ -69,12 +69,12 @@ TEST(Pit, IsTheProbabilityBelowTheTruth) {
   EXPECT_EQ(countPit(ArrayXd::Constant(2, std::nan(""))), std::vector<int>(kPitBins, 0));
 }
 
-constexpr int kHonestSamples = 20000;
+constexpr int kCalibratedSamples = 20000;
 
 /// Three parameters p ~ N(0, I) seen through four features A p + noise of stddev 0.5; the exact posterior is
 /// normal with covariance C = (I + A'A / 0.25)^-1 and mean C A'x / 0.25.
 struct LinearGaussian {
-  MatrixXd truth = MatrixXd(3, kHonestSamples), correlation;
+  MatrixXd truth = MatrixXd(3, kCalibratedSamples), correlation;
   Predictions posterior;
   VectorXd stddev;
 };
@@ -82,10 +82,10 @@ struct LinearGaussian {
 LinearGaussian makeLinearGaussian() {
   constexpr double kNoiseVariance = 0.25;
   const RandomStream random(11, RandomPurpose::kTestNoise);
-  MatrixXd a(4, 3), features(4, kHonestSamples);
+  MatrixXd a(4, 3), features(4, kCalibratedSamples);
   a << 1, 0.8, 0, 0.5, 1, 0.3, 0, 0.2, 0.4, 1, 1, 1;
   LinearGaussian problem;
-  for (int i = 0; i < kHonestSamples; ++i) {
+  for (int i = 0; i < kCalibratedSamples; ++i) {
     for (int p = 0; p < 3; ++p) {
       problem.truth(p, i) = random.calcNormal(i, p);
     }
@@ -100,7 +100,7 @@ LinearGaussian makeLinearGaussian() {
   problem.correlation =
       problem.stddev.cwiseInverse().asDiagonal() * covariance * problem.stddev.cwiseInverse().asDiagonal();
   problem.posterior = {covariance * a.transpose() * features / kNoiseVariance,
-                       problem.stddev.replicate(1, kHonestSamples)};
+                       problem.stddev.replicate(1, kCalibratedSamples)};
   return problem;
 }
 
@@ -114,7 +114,7 @@ std::vector<ParameterMetrics> calcMetricsOf(const LinearGaussian& problem, doubl
 
 /// Pearson's statistic of a flat histogram: chi-square with 9 degrees of freedom.
 double calcChiSquared(const std::vector<int>& counts) {
-  const double expected = kHonestSamples / double(kPitBins);
+  const double expected = kCalibratedSamples / double(kPitBins);
   double sum = 0;
   for (const int count : counts) {
     sum += (count - expected) * (count - expected) / expected;
@@ -125,19 +125,19 @@ double calcChiSquared(const std::vector<int>& counts) {
 constexpr double kChiSquared999 = 27.88;  // of 9 degrees of freedom
 constexpr double kErrors = 4.0;           // standard errors that a figure may be off
 
-TEST(Calibration, TheExactPosteriorIsHonest) {
+TEST(Calibration, TheExactPosteriorIsCalibrated) {
   const LinearGaussian problem = makeLinearGaussian();
   for (const ParameterMetrics& m : calcMetricsOf(problem, 1.0)) {
-    EXPECT_NEAR(m.coverage95, 0.95, kErrors * std::sqrt(0.95 * 0.05 / kHonestSamples));
-    EXPECT_NEAR(m.coverage90, 0.90, kErrors * std::sqrt(0.90 * 0.10 / kHonestSamples));
-    EXPECT_NEAR(m.coverage50, 0.50, kErrors * std::sqrt(0.50 * 0.50 / kHonestSamples));
-    EXPECT_NEAR(m.z_mean, 0.0, kErrors / std::sqrt(kHonestSamples));
-    EXPECT_NEAR(m.z_sd, 1.0, kErrors / std::sqrt(2.0 * kHonestSamples));
-    EXPECT_NEAR(m.sd_pct / m.stddev_pct, 1.0, kErrors / std::sqrt(2.0 * kHonestSamples));
+    EXPECT_NEAR(m.coverage95, 0.95, kErrors * std::sqrt(0.95 * 0.05 / kCalibratedSamples));
+    EXPECT_NEAR(m.coverage90, 0.90, kErrors * std::sqrt(0.90 * 0.10 / kCalibratedSamples));
+    EXPECT_NEAR(m.coverage50, 0.50, kErrors * std::sqrt(0.50 * 0.50 / kCalibratedSamples));
+    EXPECT_NEAR(m.z_mean, 0.0, kErrors / std::sqrt(kCalibratedSamples));
+    EXPECT_NEAR(m.z_sd, 1.0, kErrors / std::sqrt(2.0 * kCalibratedSamples));
+    EXPECT_NEAR(m.sd_pct / m.stddev_pct, 1.0, kErrors / std::sqrt(2.0 * kCalibratedSamples));
     // The standard errors are those of these known distributions.
-    EXPECT_NEAR(m.se.coverage50, std::sqrt(0.25 / kHonestSamples), 1e-5);
-    EXPECT_NEAR(m.se.z_mean * std::sqrt(kHonestSamples), 1.0, 0.03);
-    EXPECT_NEAR(m.se.z_sd * std::sqrt(2.0 * kHonestSamples), 1.0, 0.05);
+    EXPECT_NEAR(m.se.coverage50, std::sqrt(0.25 / kCalibratedSamples), 1e-5);
+    EXPECT_NEAR(m.se.z_mean * std::sqrt(kCalibratedSamples), 1.0, 0.03);
+    EXPECT_NEAR(m.se.z_sd * std::sqrt(2.0 * kCalibratedSamples), 1.0, 0.05);
   }
   const MatrixXd pit = calcPit(problem.truth, problem.posterior);
   for (int p = 0; p < 3; ++p) {
@@ -176,7 +176,7 @@ TEST(JointCalibration, NeedsTheCorrelationOfTheExactPosterior) {
   const double entropy = 1.5 * (1 + std::log(2 * M_PI)) + problem.stddev.array().log().sum() +
                          0.5 * std::log(test::calcDeterminant(problem.correlation));
   EXPECT_NEAR(calibrated.nlpd, entropy, kErrors * calibrated.se.nlpd);
-  EXPECT_NEAR(calibrated.se.nlpd, std::sqrt(0.5 * 3 / kHonestSamples), 1e-4);  // half a chi-square of 3
+  EXPECT_NEAR(calibrated.se.nlpd, std::sqrt(0.5 * 3 / kCalibratedSamples), 1e-4);  // half a chi-square of 3
   const JointMetrics independent = calcJointMetrics(problem.truth, problem.posterior, {identity});
   EXPECT_GT(independent.nlpd, calibrated.nlpd + 20 * calibrated.se.nlpd);
   EXPECT_GT(std::abs(independent.coverage50 - 0.5), 5 * calibrated.se.coverage50);

@@ -43,7 +43,8 @@ TEST_F(LinearFit, IsTheWeightedLeastSquaresSolution) {
   measured << -1.6, 3.1, -0.2, -2.5;
   const MatrixXd weights = test::calcInverse(makeNoise());
   const MatrixXd information = makeLinearResponse().transpose() * weights * makeLinearResponse();
-  const VectorXd expected = test::calcInverse(information) * makeLinearResponse().transpose() * weights * measured;
+  const VectorXd expected =
+      test::calcInverse(information) * makeLinearResponse().transpose() * weights * measured;
   const LeastSquaresFit found = fit(measured, Eigen::Vector2d(1.0, 1.0));
   ASSERT_TRUE(found.converged) << found.message;
   EXPECT_LT((found.parameters - expected).norm(), 1e-4);  // a hundredth of the stddev
@@ -71,7 +72,8 @@ TEST_F(LinearFit, StaysWithinTheBounds) {
 }
 
 TEST_F(LinearFit, SaysThatItRanOutOfSimulations) {
-  const LeastSquaresFit found = fit(makeLinearResponse() * Eigen::Vector2d(2.0, 1.0), Eigen::Vector2d(-2.0, -2.0), 3);
+  const LeastSquaresFit found =
+      fit(makeLinearResponse() * Eigen::Vector2d(2.0, 1.0), Eigen::Vector2d(-2.0, -2.0), 3);
   EXPECT_FALSE(found.converged);
   EXPECT_NE(found.message.find("simulations"), std::string::npos);
 }

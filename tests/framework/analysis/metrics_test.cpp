@@ -99,7 +99,7 @@ TEST(Metrics, ASmallSpreadAboutALargeBiasKeepsItsDigits) {
 }
 
 // Errors drawn at the quantiles of the claimed distribution are covered as claimed.
-TEST(Metrics, AnHonestStandardDeviationIsCoveredAsClaimed) {
+TEST(Metrics, ACalibratedStandardDeviationIsCoveredAsClaimed) {
   constexpr int kSamples = 1000;
   Eigen::MatrixXd truth = Eigen::MatrixXd::Constant(1, kSamples, 2.0);
   Predictions predictions{truth, Eigen::MatrixXd::Constant(1, kSamples, 0.3)};

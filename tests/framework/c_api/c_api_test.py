@@ -52,7 +52,3 @@ class Library(RunTestCase):
     def test_may_be_used_by_several_threads(self):
         result = use("threads", self.run_folder, self.measurement)
         self.assertEqual(result.returncode, 0, result.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -91,7 +91,3 @@ class Installed(RunTestCase):
             "-o",
             self.folder / "header",
         )
-
-
-if __name__ == "__main__":
-    unittest.main()

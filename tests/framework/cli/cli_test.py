@@ -147,7 +147,7 @@ class ExitCodes(TestCase):
         result = call("run", TABLE1, *many, "--out", self.folder / "run")
         self.assertEqual(result.returncode, 1)
         self.assertRegex(result.stderr, "3000 of 3000 train samples failed, .*step limit of 3 reached")
-        self.assertIn("all of the 12 train samples simulated failed; the other 2988 are given up", result.stderr)
+        self.assertIn("the first 12 train simulations all failed; the other 2988 are not run", result.stderr)
         failures = read_csv(self.folder / "run/failures.csv")
         simulated = [row for row in failures if row["reason"].startswith("step limit of 3 reached")]
         self.assertEqual(
@@ -566,7 +566,7 @@ class Run(TestCase):
         self.assertIn("2 runs side by side", (self.folder / "both/report.html").read_text())
         result = call("report", self.folder / "nowhere")
         self.assertEqual(result.returncode, 1)
-        self.assertIn("is no folder of a run", result.stderr)
+        self.assertIn("is not a folder of a run", result.stderr)
 
     def test_examples_of_updated_models_fit_their_measurement(self):
         self.copy_run("run")
@@ -715,7 +715,3 @@ def predict_mean(group, inputs, scales, x):
     distance = (((x[:, None, :] - inputs[None, :, :]) / scales) ** 2).sum(axis=2)
     covariance = group["signal_stddev"][()] ** 2 * np.exp(-0.5 * distance)
     return covariance @ group["alpha"][:] + group["mean_coefficients"][0]
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -125,7 +125,9 @@ class Compare(TestCase):
         self.assert_wrong_input("compare", run, message="B is required")
         self.assert_wrong_input("compare", run, run, "--csv", "--json", message="--csv excludes --json")
         self.assert_wrong_input("compare", run, self.folder / "nowhere", message="nowhere: there is no such folder")
-        self.assert_wrong_input("compare", self.folder, run, message="is no folder of a run: it has no resolved.yaml")
+        self.assert_wrong_input(
+            "compare", self.folder, run, message="is not a folder of a run: it has no resolved.yaml"
+        )
         unfinished = self.copy("a")
         (unfinished / "provenance.json").unlink()
         self.assert_wrong_input("compare", run, unfinished, message="the run in it is not finished")
@@ -330,9 +332,5 @@ class Verify(TestCase):
     def test_folders_that_are_no_finished_run_are_wrong_input(self):
         self.assert_wrong_input("verify", message="DIR is required")
         self.assert_wrong_input("verify", self.folder / "nowhere", message="there is no such folder")
-        self.assert_wrong_input("verify", self.folder, message="is no folder of a run")
+        self.assert_wrong_input("verify", self.folder, message="is not a folder of a run")
         self.assert_wrong_input("verify", self.folder / "run", "--samples", -1, message="--samples")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -110,7 +110,3 @@ class CompletionTest(unittest.TestCase):
         result = call("completion", "tcsh")
         self.assertEqual(result.returncode, 2)
         self.assertIn("bash", result.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -104,7 +104,3 @@ class Design(FolderTestCase):
             result = call("design", "excitation", FILE, override, "--out", self.folder / "wrong")
             self.assertEqual(result.returncode, 2, override)
             self.assertIn(words, result.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -78,7 +78,7 @@ def compile_c(folder, sources, output, *options, compiler="gcc"):
 
 
 class Measurements:
-    """Noisy test responses of a run, some spoilt, on its grid; and what infer says of them."""
+    """Noisy test responses of a run, some disturbed, on its grid; and what infer says of them."""
 
     def __init__(self, run, noise, count):
         self.names, self.times, responses = read_test_responses(run)
@@ -86,17 +86,17 @@ class Measurements:
         good = responses[:, np.isfinite(responses).all(axis=0)]
         columns = good[:, rng.integers(good.shape[1], size=count)]
         stddev = np.repeat([noise[name] for name in self.names], len(self.times))[:, None]
-        spoilt = columns + stddev * rng.standard_normal(columns.shape)
+        disturbed = columns + stddev * rng.standard_normal(columns.shape)
         middle = good.mean(axis=1, keepdims=True)
         n = len(stddev)
         for i in range(count):
             if i % 10 == 3:
-                spoilt[n // 4 : n // 4 + n // 20, i] += 6 * stddev[n // 4 : n // 4 + n // 20, 0]
+                disturbed[n // 4 : n // 4 + n // 20, i] += 6 * stddev[n // 4 : n // 4 + n // 20, 0]
             elif i % 10 == 5:
-                spoilt[:, i] = middle[:, 0] + rng.uniform(1.1, 3) * (spoilt[:, i] - middle[:, 0])
+                disturbed[:, i] = middle[:, 0] + rng.uniform(1.1, 3) * (disturbed[:, i] - middle[:, 0])
             elif i % 10 == 8:
-                spoilt[:, i] *= rng.uniform(0.9, 1.1)
-        self.values = spoilt.T
+                disturbed[:, i] *= rng.uniform(0.9, 1.1)
+        self.values = disturbed.T
 
     def write(self, path):
         path.write_bytes(self.times.tobytes() + np.ascontiguousarray(self.values).tobytes())
@@ -603,7 +603,3 @@ class Usage(FolderTestCase):
         result = call("export", self.folder, "--c", self.folder / "x")
         self.assertEqual(result.returncode, 1)
         self.assertIn("maps.h5", result.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -162,7 +162,7 @@ class FmuTest(OwnFolderTestCase):
             ("variable: x}", "variable: z}", "has no variable 'z'"),
             ("  x: {bounds", "  y: {bounds", "has no variable 'y'"),
             ("variable: x}", "variable: x, unit: parsec2}", "parsec2"),
-            ("faulty_2.fmu", "two_beam.fmu", "is no file"),
+            ("faulty_2.fmu", "two_beam.fmu", "is not a file"),
             ("faulty_2.fmu", "not_a_zip.fmu", "not a ZIP archive"),
         ]
         for old, new, message in cases:
@@ -182,7 +182,3 @@ class FmuTest(OwnFolderTestCase):
         result = self.call("verify", out, "--samples", "3")
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
         self.check_nothing_is_left()
-
-
-if __name__ == "__main__":
-    unittest.main()

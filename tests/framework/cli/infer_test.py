@@ -217,7 +217,7 @@ class BadMeasurements(InferCase):
             self.assertIn(text, lines[0]["error"])
             self.assertIn(text, result.stderr)
 
-    def spoil(self, name, line, text):
+    def damage(self, name, line, text):
         path = self.folder / name
         lines = self.measurement.read_text().splitlines()
         lines[line] = text
@@ -225,10 +225,10 @@ class BadMeasurements(InferCase):
         return path
 
     def test_nan(self):
-        self.expect_error(self.spoil("nan.csv", 5, "0.25,nan,0.1"), "nan.csv:6", "y", "nan")
+        self.expect_error(self.damage("nan.csv", 5, "0.25,nan,0.1"), "nan.csv:6", "y", "nan")
 
     def test_text_in_a_number(self):
-        self.expect_error(self.spoil("text.csv", 7, "0.35,0.1,broken"), "text.csv:8", "theta", "broken")
+        self.expect_error(self.damage("text.csv", 7, "0.35,0.1,broken"), "text.csv:8", "theta", "broken")
 
     def test_missing_column(self):
         path = self.folder / "missing.csv"
@@ -376,7 +376,3 @@ design: {train: {samples: 120}, test: {samples: 60}}
             result = call("infer", self.run_folder, path, *arguments)
             self.assertEqual(result.returncode, 2)
             self.assertIn(text, result.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

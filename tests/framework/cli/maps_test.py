@@ -76,7 +76,3 @@ class Maps(FolderTestCase):
             (run / "run.log").read_text() + result.stderr + (run / "provenance.json").read_text(),
         )
         self.assertEqual({row["map"] for row in read_csv(run / "maps.csv")}, {"gp"})
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -160,7 +160,3 @@ class MeasuredExcitation(TestCase):
             values.append(np.interp(1.0, table["times"], table["values"]))
         np.testing.assert_allclose(values, 5 * np.sin(3 * np.array([1.0, 1.1])), rtol=1e-3)
         self.assertEqual(call("status", self.folder / "sweep").returncode, 0)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -24,9 +24,9 @@ class Mixture(OwnFolderTestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         return result.stdout
 
-    def test_intervals_are_honest_and_the_run_tells_of_multimodal(self):
+    def test_intervals_are_calibrated_and_the_run_warns_of_multimodal_estimates(self):
         run, result = run_once(ROTOR, *SMALL, QUICK)
-        self.assertIn("several answers fit, in these shares of the test samples: offset", result.stderr)
+        self.assertIn("multimodal estimates, in these fractions of the test samples: offset", result.stderr)
         self.assertNotIn("say little more than the bounds do", result.stderr)
         for row in read_csv(run / "metrics.csv"):
             self.assertGreater(float(row["coverage95"]), 0.91, row["parameter"])
@@ -55,7 +55,7 @@ class Mixture(OwnFolderTestCase):
         mean = sum(one["weight"] * one["parameters"]["offset"]["mean"] for one in answer["components"])
         self.assertAlmostEqual(answer["parameters"]["offset"]["mean"], mean, places=12)
         text = self.infer(run)
-        self.assertIn("several answers may fit:", text)
+        self.assertIn("multimodal, several parameter values may fit:", text)
         self.assertRegex(text, r"-0\.0\d+ \.\. -0\.0\d+, 0\.0\d+ \.\. 0\.0\d+")
 
     def test_refining_from_one_answer_is_not_accepted(self):
@@ -113,7 +113,3 @@ class Mixture(OwnFolderTestCase):
         result = call("check", ROTOR, "inverse_map={network: {head: mixture, components: 5}}")
         self.assertEqual(result.returncode, 2)
         self.assertIn("must be a whole number from 2 to 4", result.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -161,7 +161,3 @@ class MutatedExperiments(FolderTestCase):
             shutil.rmtree(run, ignore_errors=True)
 
         self.for_each(test, 0)
-
-
-if __name__ == "__main__":
-    unittest.main()

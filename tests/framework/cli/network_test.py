@@ -108,7 +108,7 @@ class Network(OwnFolderTestCase):
 
     def test_learns_from_a_surrogate_and_writes_its_evaluation(self):
         run = self.run_experiment("run", TAUGHT)
-        self.assertIn("the network learns from a surrogate", (run / "run.log").read_text())
+        self.assertIn("the network is trained on surrogate samples", (run / "run.log").read_text())
         for row, validated in zip(read_csv(run / "metrics.csv"), read_csv(run / "cross_validation.csv"), strict=True):
             self.assertEqual(row["parameter"], validated["parameter"])
             self.assertGreater(float(row["coverage95"]), 0.85)
@@ -140,7 +140,7 @@ class Network(OwnFolderTestCase):
 
     def test_learns_from_simulations_and_is_verified_by_training_it_again(self):
         run = self.run_experiment("run", DIRECT)
-        self.assertIn("the network learns from the simulations: asked for", (run / "run.log").read_text())
+        self.assertIn("the network is trained on the simulations: asked for", (run / "run.log").read_text())
         result = call("verify", run)
         self.assertEqual(result.returncode, 0, result.stderr + result.stdout)
         self.assertIn("ok       maps.h5: fitted again", result.stdout)
@@ -168,7 +168,3 @@ class Network(OwnFolderTestCase):
         result = call("run", BEST, *SMALL, DIRECT, "design.train.samples=30", "--out", self.folder / "few")
         self.assertNotEqual(result.returncode, 0)
         self.assertIn("a network needs at least 50 training samples", result.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -143,7 +143,3 @@ class Calibration(FolderTestCase):
             "no calibration of posteriors: the run has no surrogate",
             result.stderr + result.stdout + (run / "run.log").read_text(),
         )
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -117,8 +117,8 @@ class ProgramTest(OwnFolderTestCase):
             ("[python3, faulty.py]", "[no-such-program]", "cannot be started: No such file"),
             ("[python3, faulty.py]", "[]", "must name a program in 'command'"),
             ("[python3, faulty.py]", "['true']", "ended with exit code 0"),
-            ("timeout: 1", "depends_on: [none.csv]", "is no file that it could depend on"),
-            ("timeout: 1", "working_folder: nowhere", "is no folder"),
+            ("timeout: 1", "depends_on: [none.csv]", "is not a file that it could depend on"),
+            ("timeout: 1", "working_folder: nowhere", "is not a folder"),
         ]
         for old, new, message in cases:
             file = self.folder / "wrong.yaml"
@@ -130,7 +130,3 @@ class ProgramTest(OwnFolderTestCase):
     def test_a_parameter_without_effect_is_a_warning_at_the_start(self):
         result = call("run", self.write_faulty("[0, 0.5]"), *QUICK, "--out", self.folder / "run")
         self.assertIn("the parameter mode has no effect on any output", result.stdout + result.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

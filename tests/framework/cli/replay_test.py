@@ -318,7 +318,3 @@ class MeasuredExcitation(ReplayCase):
         result = call("replay", self.run_folder, path, "--set", "load=0.4", "--out", self.folder / "none")
         self.assertEqual(result.returncode, 1, result)
         self.assertIn("has no column 'F'", result.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -92,7 +92,3 @@ class Roles(FolderTestCase):
         resolved = yaml.safe_load((self.run_folder / "resolved.yaml").read_text())
         self.assertEqual(resolved["noise"]["correlation"]["y"]["sample_time"], 0.1)
         self.assertEqual(resolved["transform"][0], {"whiten": {"by": "covariance"}})
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -97,7 +97,3 @@ class Sensors(FolderTestCase):
             self.assertIn(message, result.stderr)
         result = call("design", "sensors", EXPERIMENTS / "two_beam/table1.yaml", "--out", self.folder / "wrong")
         self.assertIn("needs the key 'design.sensors'", result.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

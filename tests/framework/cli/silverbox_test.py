@@ -111,7 +111,3 @@ class Silverbox(FolderTestCase):
             path = self.folder / f"{name}.csv"
             write_csv(path, ["V1", "V2"], [u, disturbed])
             self.assertIn("model_mismatch", self.infer(self.run_folder, path, STARTS[:1])[0]["statuses"], name)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -99,7 +99,3 @@ class Surrogate(OwnFolderTestCase):
         cases = sorted((sweep / "cases").iterdir())
         self.assertEqual(len(cases), 2)
         self.assertEqual((cases[1] / "predictions.csv").read_bytes(), (alone / "predictions.csv").read_bytes())
-
-
-if __name__ == "__main__":
-    unittest.main()

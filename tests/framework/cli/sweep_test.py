@@ -593,7 +593,3 @@ class Failures(SweepTestCase):
         self.assertIn("command line: noise.scale: '-1' must be a number, 0 or above", result.stderr)
         self.assertFalse((self.folder / "run").exists())
         self.assertEqual(call("check", CART, "noise.scale=1,-1").returncode, 2)
-
-
-if __name__ == "__main__":
-    unittest.main()

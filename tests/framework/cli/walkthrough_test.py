@@ -90,7 +90,3 @@ class Walkthrough(RunTestCase):
             "--out",
             self.folder / "sparse",
         )
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -271,7 +271,7 @@ INSTANTIATE_TEST_SUITE_P(
                 {"transform[0].select", "must give one of features"}},
         Mistake{"SelectNamesBehindAProjection",
                 "transform=[whiten, principal_components, select: {features: [y(1 s)]}]",
-                {"transform[2].select.features[0]", "'y(1 s)' is no feature"}},
+                {"transform[2].select.features[0]", "'y(1 s)' is not a feature"}},
         Mistake{"TwoRanks",
                 "transform=[whiten, principal_components: {components: 3, explained_variance: 0.9}]",
                 {"not both"}},

@@ -61,7 +61,3 @@ class Endurance(unittest.TestCase):
             twinmap.Map.load(results.folder)
 
         self.expect_no_leak(call, 500)
-
-
-if __name__ == "__main__":
-    unittest.main()

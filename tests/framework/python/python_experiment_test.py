@@ -314,7 +314,3 @@ except KeyboardInterrupt:
             while True:  # the run may be over before the interrupt comes
                 experiment.run(self.folder / "run")
         self.assertEqual(len(experiment.run(self.folder / "run").metrics), 4)
-
-
-if __name__ == "__main__":
-    unittest.main()

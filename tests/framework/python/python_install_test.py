@@ -46,7 +46,3 @@ class Install(FolderTestCase):
         self.assertEqual(used.stdout, f"{target}/twinmap/__init__.py\n(1, 100) True\n", used.stderr)
         version = next(Path(target).glob("twinmap-*.dist-info")).name
         self.assertRegex(version, r"twinmap-\d+\.\d+\.\d+\.dist-info")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -264,7 +264,3 @@ class Interfaces(FolderTestCase):
         for name, estimate in parameters.items():
             found = block.get([references[f"{key}.{name}"] for key in ("mean", "sd", "lower", "upper")])
             self.check_exported(found, estimate)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -210,7 +210,3 @@ class KnownInputs(FolderTestCase):
         ]:
             with self.assertRaisesRegex(twinmap.ExperimentError, text):
                 map_.infer(responses.to_frame(1), known=known)
-
-
-if __name__ == "__main__":
-    unittest.main()

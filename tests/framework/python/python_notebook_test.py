@@ -61,7 +61,3 @@ class Notebook(unittest.TestCase):
     def test_is_kept_without_outputs(self):
         for cell in nbformat.read(SOURCE / NOTEBOOK, as_version=4).cells:
             self.assertFalse(cell.get("outputs"))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -54,7 +54,3 @@ class Results(unittest.TestCase):
         quoted = page.split('"')[1]  # nothing of the page ends the attribute
         self.assertGreater(len(quoted), 500000)
         self.assertIn("&lt;html", quoted[:1000])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -81,7 +81,3 @@ class Typing(unittest.TestCase):
         if "No module named mypy" in result.stderr:
             self.skipTest("mypy is not here")
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

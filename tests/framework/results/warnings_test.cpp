@@ -25,7 +25,7 @@ RunSummary makeGoodRun() {
   return run;
 }
 
-TEST(Warnings, AnHonestRunHasNone) {
+TEST(Warnings, ACalibratedRunHasNone) {
   EXPECT_TRUE(collectWarnings(makeGoodRun()).empty());
 }
 

@@ -67,7 +67,7 @@ TEST(LastLayerOfANetwork, IsSeenAsItsLossSeesIt) {
     const MatrixXd& precision = observed.precisions[std::size_t(i)];
     const VectorXd rest = observed.targets.col(i) - weights * observed.inputs.col(i);
     const double residual = rest.dot(precision * rest);
-    ASSERT_LT(residual, kLargestResidual * kLargestResidual);  // beyond, the loss is no normal density's
+    ASSERT_LT(residual, kLargestResidual * kLargestResidual);  // beyond, the loss is not a normal density's
     loss += 0.5 * residual - linalg::calcCholesky(precision).lower.diagonal().array().log().sum() +
             0.5 * double(kTargets) * std::log(2.0 * M_PI);
   }

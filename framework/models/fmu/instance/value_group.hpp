@@ -16,7 +16,7 @@ struct ValueSlot {
 
 /// Finds "spring.c" or "a[2]", "a[1,3]" (elements counted from 1). A variable that is itself named so comes
 /// first. Throws ExperimentError for an unknown name, with the nearest one, an array without an element, an
-/// element that is none, and a variable that is no number (String, Binary, Clock).
+/// element that is none, and a variable that is not a number (String, Binary, Clock).
 ValueSlot findSlot(const ModelDescription& description, const std::string& name);
 
 /// Numbers that are set or read together, prepared so that a call of the FMU is needed for each type only.

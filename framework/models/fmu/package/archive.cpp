@@ -32,7 +32,7 @@ Archive openArchive(const std::string& file) {
     const std::string reason = zip_error_strerror(&error);
     zip_error_fini(&error);
     const bool no_archive = code == ZIP_ER_NOZIP || code == ZIP_ER_INCONS;
-    throw ExperimentError(file + (no_archive ? ": is no FMU: not a ZIP archive" : ": cannot be opened") +
+    throw ExperimentError(file + (no_archive ? ": is not an FMU: not a ZIP archive" : ": cannot be opened") +
                           " (" + reason + ")");
   }
   return archive;

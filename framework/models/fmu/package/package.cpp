@@ -32,7 +32,7 @@ Package::Package(const std::string& file) : content_(new Content{file}) {
   content_->archive = unpackArchive(file, getFolder(), listOwnPlatforms());
   const fs::path xml = getFolder() / "modelDescription.xml";
   if (!fs::is_regular_file(xml)) {
-    throw ExperimentError(file + ": is no FMU: it has no modelDescription.xml");
+    throw ExperimentError(file + ": is not an FMU: it has no modelDescription.xml");
   }
   content_->description = readModelDescription(xml, file);
   fs::create_directories(getFolder() / "resources");  // named to the FMU whether it has one or not

@@ -13,7 +13,7 @@ namespace twinmap::fmi {
 /// when this process ends.
 class Package {
  public:
-  /// Throws ExperimentError for a file that is no FMU (unpackArchive(), readModelDescription()).
+  /// Throws ExperimentError for a file that is not an FMU (unpackArchive(), readModelDescription()).
   explicit Package(const std::string& file);
 
   const std::string& getFile() const;

@@ -79,8 +79,8 @@ BoundVariables bindInputs(const ModelDescription& description, const std::vector
   return bindEach(
       description, uses, [&](const VariableUse& use, const Variable& variable, const VariableUnits& units) {
         if (variable.causality != Causality::kInput) {
-          refuseUse(use, "is no input of the FMU but a " + std::string(toText(variable.causality)) + "; " +
-                             listInputs(description));
+          refuseUse(use, "is not an input of the FMU but a " + std::string(toText(variable.causality)) +
+                             "; " + listInputs(description));
         }
         return units.to_fmu;
       });

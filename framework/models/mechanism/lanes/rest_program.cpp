@@ -13,7 +13,8 @@ RestProgram::RestProgram(const LaneModel& model)
 
 VectorXd RestProgram::calcAll(const VectorXd& coordinates) {
   const VectorXd all = program_.calc({parameters_, coordinates});
-  if ((all.segment(count_, count_).array() <= 0.0).any()) {  // false for NaN, which is no equilibrium anyway
+  if ((all.segment(count_, count_).array() <= 0.0)
+          .any()) {  // false for NaN, which is not an equilibrium anyway
     throw SimulationFailure(kSingularMassMatrix);
   }
   return all;

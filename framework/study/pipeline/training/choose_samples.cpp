@@ -119,8 +119,9 @@ SampleChoice chooseTrainingSamples(const Study& study, int most) {
     if (!choice.training) {
       choice.data.reset();
       choice.samples = std::min(most, kOfProcesses);
-      logInfo(fmt::format("training samples: {}, because no surrogate can tell what more are worth",
-                          choice.samples));
+      logInfo(fmt::format(
+          "training samples: {}; automatic sizing needs a surrogate, which cannot be trained here",
+          choice.samples));
       return choice;
     }
     const std::string reason = findReason(samples, most, getSeconds(study.experiment), *choice.training);

@@ -56,13 +56,14 @@ std::optional<SurrogateMapTraining> findTeacher(const Study& study, const Prepar
                                                 StageNotes& notes) {
   const std::string reason = findReasonForSimulations(study, data);
   if (!reason.empty()) {
-    logInfo(fmt::format("the network learns from the simulations: {}", reason));
+    logInfo(fmt::format("the network is trained on the simulations: {}", reason));
     return std::nullopt;
   }
   SurrogateMapTraining teacher = trainSurrogateMap(study, data);
   notes.append(teacher.notes);
-  logInfo(fmt::format("the network learns from a surrogate, which promises {:.2f} of what measurements allow",
-                      teacher.surrogate.validation.limit_ratio.maxCoeff()));
+  logInfo(
+      fmt::format("the network is trained on surrogate samples (predicted sd / information limit: {:.2f})",
+                  teacher.surrogate.validation.limit_ratio.maxCoeff()));
   return teacher;
 }
 
@@ -90,7 +91,7 @@ Eigen::VectorXd calcExcess(const NetworkMapTraining& trained, const SurrogateMap
 }
 
 /// Tells where the network has not learnt all that the surrogate could teach it.
-void remarkOnPupil(const Eigen::VectorXd& excess, const ModelSpec& model, StageNotes& notes) {
+void remarkOnStudent(const Eigen::VectorXd& excess, const ModelSpec& model, StageNotes& notes) {
   Index worst = 0;
   if (excess.maxCoeff(&worst) > kMuchExcess) {
     notes.warn(
@@ -216,7 +217,7 @@ NetworkOutcome trainNetwork(const Study& study, const PreparedData& data) {
   if (teacher) {
     const Eigen::VectorXd excess = calcExcess(trained, *teacher);
     trained.map.validation.limit_ratio = excess.cwiseProduct(teacher->surrogate.validation.limit_ratio);
-    remarkOnPupil(excess, study.experiment.model, outcome.notes);
+    remarkOnStudent(excess, study.experiment.model, outcome.notes);
     outcome.forward = teacher->surrogate.forward;
     suggestSimulations(teacher->surrogate, study, outcome.notes);
   }

@@ -100,9 +100,9 @@ TEST(Csv, ErrorsNameLineColumnAndRule) {
 TEST(Csv, RefusesWhatIsNoText) {
   using namespace std::string_literals;
   EXPECT_EQ(getCsvError("\xff\xfet\0,\0y\0"s), "a.csv:1: is in UTF-16; save it in UTF-8");
-  EXPECT_EQ(getCsvError("t,y\n0,1\n\0\1"s), "a.csv:3: has a NUL byte: is no text, or not in UTF-8");
+  EXPECT_EQ(getCsvError("t,y\n0,1\n\0\1"s), "a.csv:3: has a NUL byte: is not text, or not in UTF-8");
   EXPECT_EQ(getCsvError(std::string(20 << 20, 'x')),
-            "a.csv:1: has a line of more than 16 MiB: is no table of text");
+            "a.csv:1: has a line of more than 16 MiB: is not a table of text");
 }
 
 TEST(Csv, ReadsBackTheBitsThatWereWrittenOverManyBlocks) {
@@ -137,7 +137,7 @@ TEST(ReadTable, ErrorsNameTheFile) {
   std::ofstream(folder / "a.h5") << "t,y\n1,2\n";
   EXPECT_EQ(getFileError("a.h5"), "a.h5: cannot be opened as an HDF5 file");
   std::filesystem::create_directory(folder / "b.csv");
-  EXPECT_EQ(getFileError("b.csv"), "b.csv: is no file");
+  EXPECT_EQ(getFileError("b.csv"), "b.csv: is not a file");
 }
 
 TEST(Hdf5Table, ColumnsAreVectorsByTheirPath) {
@@ -163,7 +163,7 @@ TEST(Hdf5Table, ColumnsAreVectorsByTheirPath) {
     return getError([&] { readTable(folder / "a.h5", {name}); }).substr(folder.getPath().string().size() + 7);
   };
   EXPECT_EQ(getSkipped("run1/matrix"), "column 'run1/matrix' must have one dimension");
-  EXPECT_EQ(getSkipped("text"), "column 'text' is no dataset of real numbers");
+  EXPECT_EQ(getSkipped("text"), "column 'text' is not a dataset of real numbers");
   EXPECT_EQ(getSkipped("empty"), "column 'empty' has no samples");
   EXPECT_EQ(getSkipped("bad"), "column 'bad' has nan at row 2; must be a finite number");
 }
@@ -212,7 +212,7 @@ TEST_P(MatTable, ColumnsAreRealVectors) {
   EXPECT_EQ(getSkipped("matrix"), "column 'matrix' must be a vector, with one row or one column");
   EXPECT_EQ(getSkipped("complex"), "column 'complex' is complex; must be real");
   EXPECT_EQ(getSkipped("bad"), "column 'bad' has inf at row 2; must be a finite number");
-  EXPECT_EQ(getSkipped("text"), "column 'text' is no array of numbers");
+  EXPECT_EQ(getSkipped("text"), "column 'text' is not an array of numbers");
 }
 
 INSTANTIATE_TEST_SUITE_P(Versions, MatTable, testing::Values(MAT_FT_MAT5, MAT_FT_MAT73));

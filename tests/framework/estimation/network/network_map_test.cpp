@@ -107,8 +107,8 @@ NetworkMapTraining trainOnPool(const Oscillation& oscillation, const SurrogateTr
 }
 
 /// Of unseen measurements; most_of_limit: of errors over what the noise allows.
-void expectHonestAndNearTheLimit(const Oscillation& oscillation, const NetworkMap& map,
-                                 double most_of_limit = 2.0) {
+void expectCalibratedAndNearTheLimit(const Oscillation& oscillation, const NetworkMap& map,
+                                     double most_of_limit = 2.0) {
   constexpr Index kTests = 600;
   const MatrixXd points = Oscillation::samplePoints(kTests, 2);
   const Predictions found = map.predict(oscillation.measure(points, 3), points.bottomRows(1), 2);
@@ -128,7 +128,7 @@ void expectHonestAndNearTheLimit(const Oscillation& oscillation, const NetworkMa
 
 TEST(NetworkMap, LearnsFromSimulationsAndTellsItsErrors) {
   const Oscillation oscillation;
-  expectHonestAndNearTheLimit(oscillation, trainOnSimulations(oscillation, 2000, 700).map);
+  expectCalibratedAndNearTheLimit(oscillation, trainOnSimulations(oscillation, 2000, 700).map);
 }
 
 TEST(NetworkMap, LearnsFromASurrogateOfFewSimulations) {
@@ -137,7 +137,7 @@ TEST(NetworkMap, LearnsFromASurrogateOfFewSimulations) {
   NetworkMapSpec spec = makeSpec(600);
   spec.surrogate_samples = 3000;
   const NetworkMapTraining trained = trainOnPool(oscillation, teacher, spec, 2);
-  expectHonestAndNearTheLimit(oscillation, trained.map);
+  expectCalibratedAndNearTheLimit(oscillation, trained.map);
 }
 
 TEST(NetworkMap, MakesUpForErrorsOfItsTeacherWhoseShapeIsNotToBlame) {
@@ -198,7 +198,7 @@ TEST(NetworkMap, IsTheSameForAnyNumberOfThreads) {
             trainOnPool(oscillation, teacher, spec, 3).map.members.front().network.skip);
 }
 
-TEST(NetworkMap, IsTrainedOftenEnoughToTellHowHonestItIs) {
+TEST(NetworkMap, IsTrainedOftenEnoughToTellHowCalibratedItIs) {
   const NetworkMapSpec plain;
   NetworkMapSpec several;
   several.bayesian = NetworkBayes::kLastLayer;
@@ -209,7 +209,7 @@ TEST(NetworkMap, IsTrainedOftenEnoughToTellHowHonestItIs) {
   EXPECT_EQ(countTrainings(several, 2001), 1);
 }
 
-TEST(NetworkMap, OfAnEnsembleIsHonestAndTheSameForAnyNumberOfThreads) {
+TEST(NetworkMap, OfAnEnsembleIsCalibratedAndTheSameForAnyNumberOfThreads) {
   const Oscillation oscillation;
   NetworkMapSpec spec = makeSpec(300);
   spec.bayesian = NetworkBayes::kLastLayer;
@@ -217,14 +217,14 @@ TEST(NetworkMap, OfAnEnsembleIsHonestAndTheSameForAnyNumberOfThreads) {
   ASSERT_EQ(one.map.members.size(), 5U);
   EXPECT_NE(one.map.members[0].network.skip, one.map.members[1].network.skip);
   EXPECT_EQ(one.map.members[0].last_layer.rows(), 2 * (24 + 1));
-  expectHonestAndNearTheLimit(oscillation, one.map, 3.5);
+  expectCalibratedAndNearTheLimit(oscillation, one.map, 3.5);
   const NetworkMapTraining three = trainOnSimulations(oscillation, 300, spec, 3);
   for (std::size_t i = 0; i < one.map.members.size(); ++i) {
     EXPECT_EQ(one.map.members[i].last_layer, three.map.members[i].last_layer);
   }
 }
 
-TEST(NetworkMap, OfSampledWeightsIsHonestAndSaysHowWellItKnowsThem) {
+TEST(NetworkMap, OfSampledWeightsIsCalibratedAndSaysHowWellItKnowsThem) {
   const Oscillation oscillation;
   NetworkMapSpec spec = makeSpec(300);
   spec.hidden = {3};

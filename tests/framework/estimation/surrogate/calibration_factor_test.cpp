@@ -19,7 +19,7 @@ Eigen::VectorXd makeErrors(Eigen::Index count, double factor) {
   return errors;
 }
 
-TEST(StddevScale, IsOneForHonestErrorsAndTheFactorForTooLargeOnes) {
+TEST(StddevScale, IsOneForCalibratedErrorsAndTheFactorForTooLargeOnes) {
   EXPECT_NEAR(calcStddevScale(makeErrors(1000, 1.0)), 1.0, 0.02);
   EXPECT_NEAR(calcStddevScale(makeErrors(1000, 2.5)), 2.5, 0.05);
 }

@@ -53,7 +53,7 @@ MatrixXd makeCorrelated() {
   return covariance;
 }
 
-TEST(ResidualSpace, PutsInnovationsInThePlaceOfScoresAndDividesWhatIsUnlearntByItsStandardDeviation) {
+TEST(ResidualSpace, PutsInnovationsInThePlaceOfScoresAndDividesWhatIsUnmodelledByItsStandardDeviation) {
   for (const bool correlated : {false, true}) {
     const Example example(correlated
                               ? makeCorrelated()

@@ -65,7 +65,7 @@ TEST(ProgramSimulator, NamesEveryFailureWithItsReason) {
   EXPECT_EQ(getReason(3), "the program did not answer within 1 s");
   EXPECT_EQ(getReason(4), "output 'x' is not finite at t = 1 s");
   EXPECT_EQ(getReason(5), "output 'x' has 1 value instead of 2, one for each time");
-  EXPECT_EQ(getReason(6), "the program's answer is no JSON object: {no JSON");
+  EXPECT_EQ(getReason(6), "the program's answer is not a JSON object: {no JSON");
   EXPECT_EQ(getReason(7), "no equilibrium");
 }
 
@@ -136,7 +136,7 @@ TEST(ProgramSimulator, SaysAtTheStartWhatItWaitedForAndWhatItGot) {
   EXPECT_EQ(getStartError(answering + "'{\"outputs\": {\"y\": [1], \"z\": [1]}}'; done"),
             centre + "the answer lacks output 'x'; it has 'y', 'z'");
   EXPECT_EQ(getStartError(answering + "'{\"outputs\": {\"x\": \"none\"}}'; done"),
-            centre + "output 'x' is no list of numbers: \"none\"");
+            centre + "output 'x' is not a list of numbers: \"none\"");
 }
 
 TEST(ProgramSimulator, TakesANumberForAListOfOne) {

@@ -183,7 +183,3 @@ class InterruptedSimulation(unittest.TestCase):
         self.assertEqual(first.wait(timeout=300), 0)
         first.communicate()
         self.assert_undisturbed()
-
-
-if __name__ == "__main__":
-    unittest.main()

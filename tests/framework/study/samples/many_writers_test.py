@@ -61,7 +61,3 @@ class ManyWriters(unittest.TestCase):
     @unittest.skipUnless(os.path.isdir("/dev/shm"), "there is no tmpfs")
     def test_nothing_torn_is_read_and_nothing_saved_is_lost_on_tmpfs(self):
         self.check("/dev/shm")
-
-
-if __name__ == "__main__":
-    unittest.main()

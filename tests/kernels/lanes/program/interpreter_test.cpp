@@ -192,22 +192,22 @@ TEST(Interpreter, OneLanesNanStaysThere) {
   const Program program = compile(recorder, recordAtRandom(recorder, 200, 3), kCounts);
   for (const Engine* engine : getEngines()) {
     std::mt19937 random(1);
-    Interpreter clean(program, *engine), spoilt(program, *engine);
+    Interpreter clean(program, *engine), disturbed(program, *engine);
     for (int lane = 0; lane < engine->lanes; ++lane) {
       const Inputs inputs = drawInputs(random);
       setLane(clean, lane, inputs);
-      setLane(spoilt, lane, inputs);
+      setLane(disturbed, lane, inputs);
     }
-    spoilt.updState(0)[2] = std::nan("");
-    spoilt.updParameter(1)[2] = INFINITY;
-    for (Interpreter* interpreter : {&clean, &spoilt}) {
+    disturbed.updState(0)[2] = std::nan("");
+    disturbed.updParameter(1)[2] = INFINITY;
+    for (Interpreter* interpreter : {&clean, &disturbed}) {
       interpreter->calcParameters();
       interpreter->calcPhase();
       interpreter->calcOutputs();
     }
     for (int lane = 0; lane < engine->lanes; ++lane) {
       for (int i = 0; lane != 2 && i < 20; ++i) {
-        EXPECT_EQ(clean.getOutput(i)[lane], spoilt.getOutput(i)[lane]);
+        EXPECT_EQ(clean.getOutput(i)[lane], disturbed.getOutput(i)[lane]);
       }
     }
   }

@@ -300,7 +300,7 @@ def main():
                 "</SourceFileSet></BuildConfiguration></fmiBuildDescription>"
             )
         write(out / f"source_{version}.fmu", {"modelDescription.xml": xml, **sources})
-    write(out / "broken_source.fmu", {"modelDescription.xml": xml, **sources, "sources/faulty.c": "this is no C"})
+    write(out / "broken_source.fmu", {"modelDescription.xml": xml, **sources, "sources/faulty.c": "this is not C"})
     write(out / "other_platform.fmu", {"modelDescription.xml": description, "binaries/win64/faulty.dll": b"MZ"})
     write(out / "no_library.fmu", {"modelDescription.xml": description, "binaries/linux64/faulty.so": b"no library"})
     write(out / "no_description.fmu", {"binaries/linux64/faulty.so": b""})
@@ -309,7 +309,7 @@ def main():
     write(out / "traversal.fmu", {"modelDescription.xml": description, "resources/../../escaped.txt": "out"})
     write(out / "backslashes.fmu", {"modelDescription.xml": description, "resources\\..\\..\\escaped.txt": "out"})
     write(out / "absolute.fmu", {"modelDescription.xml": description, "/tmp/twinmap-escaped.txt": "out"})
-    (out / "not_a_zip.fmu").write_text("this is no archive")
+    (out / "not_a_zip.fmu").write_text("this is not an archive")
     link = zipfile.ZipInfo("resources/link")
     link.create_system = 3
     link.external_attr = (stat.S_IFLNK | 0o777) << 16

@@ -1,4 +1,4 @@
-/* x'' = -c x - d x' + F and its directional derivatives; a power as an output that is no state. */
+/* x'' = -c x - d x' + F and its directional derivatives; a power as an output that is not a state. */
 #include "model.h"
 
 enum { X, V, DX, DV, C, D, F, P };
