@@ -2,7 +2,7 @@
 #include <iostream>
 #include <vector>
 
-#include "framework/base/text/aligned_rows.hpp"
+#include "framework/base/text/text_tables.hpp"
 #include "framework/cli/commands.hpp"
 #include "framework/models/fmu/package/package.hpp"
 #include "framework/models/fmu/run/bind_variables.hpp"

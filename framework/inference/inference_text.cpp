@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "framework/base/text/aligned_rows.hpp"
 #include "framework/base/text/escape.hpp"
 #include "framework/base/text/nearest_name.hpp"
 #include "framework/base/text/number_text.hpp"
+#include "framework/base/text/text_tables.hpp"
 #include "framework/estimation/predictions.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/answer.hpp"

@@ -6,7 +6,6 @@
 
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/base/text/csv.hpp"
-#include "framework/base/text/csv_file.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/simulation/excitation/calc_input_signals.hpp"
 

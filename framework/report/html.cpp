@@ -1,7 +1,10 @@
 #include "framework/report/html.hpp"
 
+#include <algorithm>
+
 #include "framework/base/text/number_text.hpp"
 #include "framework/base/text/number_with_error.hpp"
+#include "framework/experiment/parameter_figures.hpp"
 
 namespace twinmap {
 namespace {
@@ -20,6 +23,14 @@ std::string makeCell(const HtmlCell& cell) {
                      value + (cell.is_number ? " class=\"number\""
                               : is_short     ? " class=\"short\""
                                              : ""));
+}
+
+/// Whether every cell is a number, or empty, or one that is not known.
+bool holdsNumbers(const std::vector<std::string>& texts) {
+  double value = 0.0;
+  return std::all_of(texts.begin(), texts.end(), [&](const std::string& text) {
+    return text.empty() || text == "nan" || text == "-nan" || parseLiteral(text, value);
+  });
 }
 
 }  // namespace
@@ -57,6 +68,43 @@ std::string makeHtmlTable(const std::string& id, const std::string& caption,
     html += "</tr>\n";
   }
   return html + "</tbody></table></div>\n";
+}
+
+std::vector<HtmlCell> makeCells(const CsvTable& file, const ShownColumn& column) {
+  const std::vector<std::string> texts = file.listTexts(column.name);
+  const bool is_number = holdsNumbers(texts);
+  std::vector<HtmlCell> cells;
+  for (std::size_t row = 0; row < texts.size(); ++row) {
+    cells.push_back(is_number
+                        ? makeNumberCell(texts[row], column.digits, file.getText(row, column.name + "_se"))
+                        : makeTextCell(texts[row]));
+  }
+  return cells;
+}
+
+std::string makeHtmlTable(const std::string& id, const std::string& caption, const CsvTable& file,
+                          const std::vector<ShownColumn>& columns) {
+  std::vector<std::string> headings;
+  std::vector<std::vector<HtmlCell>> rows(file.rows.size());
+  for (const ShownColumn& column : columns) {
+    if (!file.hasColumn(column.name)) {
+      continue;
+    }
+    headings.push_back(column.heading);
+    const std::vector<HtmlCell> cells = makeCells(file, column);
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      rows[row].push_back(cells[row]);
+    }
+  }
+  return makeHtmlTable(id, caption, headings, rows);
+}
+
+std::vector<ShownColumn> showFigures(std::vector<ShownColumn> first, const std::vector<ShownColumn>& last) {
+  for (const FigureColumn& column : kFigureColumns) {
+    first.push_back({column.name, column.heading});
+  }
+  first.insert(first.end(), last.begin(), last.end());
+  return first;
 }
 
 std::string makeCopyButtons(const std::vector<std::pair<std::string, std::string>>& names_and_labels) {

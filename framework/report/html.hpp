@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/base/text/csv.hpp"
 #include "framework/base/text/escape.hpp"
 
 namespace twinmap {
@@ -34,6 +35,23 @@ HtmlCell makeNumberCell(const std::string& exact, int digits = 4, const std::str
 std::string makeHtmlTable(const std::string& id, const std::string& caption,
                           const std::vector<std::string>& headings,
                           const std::vector<std::vector<HtmlCell>>& rows);
+
+/// A column of a file as a table shows it.
+struct ShownColumn {
+  std::string name, heading;
+  int digits = 4;
+};
+
+/// Its cells: texts as they are, numbers with their standard error where the file has it (NAME_se).
+std::vector<HtmlCell> makeCells(const CsvTable& file, const ShownColumn& column);
+
+/// Those columns of a file that it has.
+std::string makeHtmlTable(const std::string& id, const std::string& caption, const CsvTable& file,
+                          const std::vector<ShownColumn>& columns);
+
+/// `first`, then kFigureColumns, then `last`.
+std::vector<ShownColumn> showFigures(std::vector<ShownColumn> first,
+                                     const std::vector<ShownColumn>& last = {});
 
 /// Buttons that copy texts of the page, by name.
 std::string makeCopyButtons(const std::vector<std::pair<std::string, std::string>>& names_and_labels);

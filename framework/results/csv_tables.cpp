@@ -12,26 +12,27 @@ using Row = CsvRow;
 struct MetricsColumn {
   std::string name;
   double ParameterFigures::*figure;
-  bool leave_one_out;
+  bool left_out;
 };
 
 std::vector<MetricsColumn> listMetricsColumns(const RunSummary& run) {
-  std::vector<MetricsColumn> columns;
+  std::vector<MetricsColumn> columns, left_out;
   for (const FigureColumn& column : kFigureColumns) {
-    if (!needsLimit(column) || run.evaluation.limit_stddev.size() > 0) {
+    if (!column.needs_limit || run.evaluation.limit_stddev.size() > 0) {
       columns.push_back({column.name, column.value, false});
     }
+    if (column.left_out) {
+      left_out.push_back({std::string("loo_") + column.name, column.value, true});
+    }
   }
-  columns.push_back({"loo_sd_pct", &ParameterFigures::sd_pct, true});
-  columns.push_back({"loo_coverage95", &ParameterFigures::coverage95, true});
-  columns.push_back({"loo_nlpd", &ParameterFigures::nlpd, true});
+  columns.insert(columns.end(), left_out.begin(), left_out.end());
   return columns;
 }
 
 /// The metrics that a column shows; null where there are none.
 const ParameterMetrics* findMetrics(const RunSummary& run, const MetricsColumn& column,
                                     std::size_t parameter) {
-  if (!column.leave_one_out) {
+  if (!column.left_out) {
     return &run.evaluation.metrics[parameter];
   }
   return run.training.leave_one_out.empty() ? nullptr : &run.training.leave_one_out[parameter];

@@ -1,5 +1,6 @@
 #include "framework/results/evaluation_tables.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "framework/base/text/csv.hpp"
@@ -20,6 +21,29 @@ CsvRow addParameterNames(CsvRow header, const RunSummary& run) {
 CsvRow addNumbers(CsvRow row, const Eigen::VectorXd& values) {
   for (const double value : values) {
     row.push_back(toText(value));
+  }
+  return row;
+}
+
+std::string toCell(double value) {
+  return std::isfinite(value) ? toText(value) : "";
+}
+
+CsvRow addFigureNames(CsvRow header, bool with_limit = true) {
+  for (const FigureColumn& column : kFigureColumns) {
+    if (with_limit || !column.needs_limit) {
+      header.emplace_back(column.name);
+    }
+  }
+  return header;
+}
+
+/// All figures of a parameter; an empty cell for one that is not known.
+CsvRow addFigures(CsvRow row, const ParameterFigures& figures, bool with_limit = true) {
+  for (const FigureColumn& column : kFigureColumns) {
+    if (with_limit || !column.needs_limit) {
+      row.push_back(toCell(figures.*column.value));
+    }
   }
   return row;
 }
@@ -92,62 +116,49 @@ std::string makeSbcCsv(const RunSummary& run) {
 }
 
 std::string makeBaselinesCsv(const RunSummary& run) {
-  std::vector<CsvRow> rows{{"method", "samples", "parameter", "bias_pct", "sd_pct", "mare_pct", "coverage50",
-                            "coverage90", "coverage95", "seconds_per_update", "unconverged"}};
+  std::vector<CsvRow> rows{addFigureNames({"method", "samples", "parameter"}, false)};
+  rows[0].insert(rows[0].end(), {"seconds_per_update", "unconverged"});
   for (const BaselineSummary& baseline : run.evaluation.baselines) {
     for (std::size_t p = 0; p < run.parameters.size(); ++p) {
-      const ParameterMetrics& m = baseline.metrics[p];
-      CsvRow row{baseline.method, std::to_string(baseline.samples), run.parameters[p].name.text};
-      for (const double value : {m.bias_pct, m.sd_pct, m.mare_pct, m.coverage50, m.coverage90, m.coverage95,
-                                 baseline.seconds_per_update}) {
-        row.push_back(toText(value));
-      }
-      row.push_back(std::to_string(baseline.unconverged));
-      rows.push_back(row);
+      rows.push_back(
+          addFigures({baseline.method, std::to_string(baseline.samples), run.parameters[p].name.text},
+                     baseline.metrics[p], false));
+      rows.back().insert(rows.back().end(),
+                         {toText(baseline.seconds_per_update), std::to_string(baseline.unconverged)});
     }
   }
   return makeCsv(rows);
 }
 
 std::string makeMapsCsv(const RunSummary& run) {
-  std::vector<CsvRow> rows{{"map", "parameter", "bias_pct", "sd_pct", "mare_pct", "limit_pct",
-                            "ratio_to_limit", "nats_above_limit", "coverage50", "coverage90", "coverage95",
-                            "nlpd", "joint_coverage95", "joint_nlpd", "training_seconds", "online_us",
-                            "bytes"}};
+  std::vector<CsvRow> rows{addFigureNames({"map", "parameter"})};
+  rows[0].insert(rows[0].end(), {"joint_coverage95", "joint_nlpd", "training_seconds", "online_us", "bytes"});
   for (const MapComparison& map : run.evaluation.maps) {
     for (std::size_t p = 0; p < run.parameters.size(); ++p) {
-      const ParameterMetrics& m = map.metrics[p];
-      CsvRow row{map.name, run.parameters[p].name.text};
+      rows.push_back(addFigures({map.name, run.parameters[p].name.text}, map.metrics[p]));
       for (const double value :
-           {m.bias_pct, m.sd_pct, m.mare_pct, m.limit_pct, m.ratio_to_limit, m.nats_above_limit, m.coverage50,
-            m.coverage90, m.coverage95, m.nlpd, map.joint.coverage95, map.joint.nlpd, map.training_seconds,
-            map.online.median_us}) {
-        row.push_back(std::isfinite(value) ? toText(value) : "");
+           {map.joint.coverage95, map.joint.nlpd, map.training_seconds, map.online.median_us}) {
+        rows.back().push_back(toCell(value));
       }
-      row.push_back(std::to_string(map.bytes));
-      rows.push_back(row);
+      rows.back().push_back(std::to_string(map.bytes));
     }
   }
   return makeCsv(rows);
 }
 
 std::string makeMethodsCsv(const RunSummary& run) {
-  std::vector<CsvRow> rows{{"method", "parameter", "bias_pct", "sd_pct", "mare_pct", "limit_pct",
-                            "ratio_to_limit", "coverage50", "coverage90", "coverage95", "samples", "accepted",
-                            "median_simulations"}};
+  std::vector<CsvRow> rows{addFigureNames({"method", "parameter"})};
+  rows[0].insert(rows[0].end(), {"samples", "accepted", "median_simulations"});
   for (const MethodSummary& method : run.evaluation.methods) {
     const double share = static_cast<double>(method.accepted) / static_cast<double>(method.samples);
     for (std::size_t p = 0; p < run.parameters.size(); ++p) {
-      const ParameterMetrics& m = method.metrics[p];
-      CsvRow row{method.method, run.parameters[p].name.text};
-      for (const double value : {m.bias_pct, m.sd_pct, m.mare_pct, m.limit_pct, m.ratio_to_limit,
-                                 m.coverage50, m.coverage90, m.coverage95}) {
-        row.push_back(method.accepted > 0 && std::isfinite(value) ? toText(value) : "");
+      CsvRow row = addFigures({method.method, run.parameters[p].name.text}, method.metrics[p]);
+      if (method.accepted == 0) {
+        std::fill(row.begin() + 2, row.end(), "");
       }
-      row.push_back(std::to_string(method.samples));
-      row.push_back(toText(share));
-      row.push_back(std::to_string(method.median_simulations));
-      rows.push_back(row);
+      row.insert(row.end(),
+                 {std::to_string(method.samples), toText(share), std::to_string(method.median_simulations)});
+      rows.push_back(std::move(row));
     }
   }
   return makeCsv(rows);

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/base/text/csv_file.hpp"
+#include "framework/base/text/csv.hpp"
 #include "framework/experiment/gate_spec.hpp"
 
 namespace twinmap {

@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "framework/base/json/json.hpp"
-#include "framework/base/text/csv_file.hpp"
+#include "framework/base/text/csv.hpp"
 #include "framework/base/text/number_text.hpp"
 
 namespace twinmap {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/base/text/csv_file.hpp"
+#include "framework/base/text/csv.hpp"
 #include "framework/estimation/mixture.hpp"
 #include "framework/experiment/experiment_spec.hpp"
 #include "framework/results/provenance_record.hpp"

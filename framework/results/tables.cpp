@@ -5,9 +5,9 @@
 #include <algorithm>
 
 #include "framework/base/text/escape.hpp"
-#include "framework/base/text/markdown_table.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/base/text/number_with_error.hpp"
+#include "framework/base/text/text_tables.hpp"
 
 namespace twinmap {
 namespace {
@@ -15,39 +15,36 @@ namespace {
 using Row = std::vector<std::string>;
 
 constexpr int kBoundDigits = 6;
-constexpr int kPercentDecimals = 4;  // as in the paper
-constexpr int kCoverageDecimals = 3;
 constexpr const char* kLegend =
     "In parentheses: the Monte Carlo standard error of the last digits, 0.938(30) = 0.938 with error "
     "0.030.\n";
 
 constexpr std::size_t kTextColumns = 2;  // to the left; numbers to the right
 
+bool isPrinted(const FigureColumn& column, const RunSummary& run) {
+  return column.in_print != InPrint::kNo && (!column.needs_limit || run.evaluation.limit_stddev.size() > 0);
+}
+
 Row makeHeader(const RunSummary& run) {
-  Row header{"parameter", "unit", "lower", "upper", "bias %", "sd %", "MARE %", "cov. 95 %"};
-  if (run.evaluation.limit_stddev.size() > 0) {
-    header.insert(header.end(), {"limit %", "ratio"});
+  Row header{"parameter", "unit", "lower", "upper"};
+  for (const FigureColumn& column : kFigureColumns) {
+    if (isPrinted(column, run)) {
+      header.emplace_back(column.heading);
+    }
   }
   return header;
 }
 
 Row makeRow(const RunSummary& run, std::size_t p) {
   const ParameterSpec& parameter = run.parameters[p];
-  const ParameterMetrics& m = run.evaluation.metrics[p];
-  const auto with_error = [&m](double ParameterFigures::*figure, int decimals) {
-    return toTextWithError(m.*figure, m.se.*figure, decimals);
-  };
-  Row row{parameter.name.text,
-          parameter.unit,
-          toShortText(parameter.bounds.lower, kBoundDigits),
-          toShortText(parameter.bounds.upper, kBoundDigits),
-          with_error(&ParameterFigures::bias_pct, kPercentDecimals),
-          with_error(&ParameterFigures::sd_pct, kPercentDecimals),
-          toFixedText(m.mare_pct, kPercentDecimals),
-          with_error(&ParameterFigures::coverage95, kCoverageDecimals)};
-  if (run.evaluation.limit_stddev.size() > 0) {
-    row.push_back(toFixedText(m.limit_pct, kPercentDecimals));
-    row.push_back(with_error(&ParameterFigures::ratio_to_limit, kCoverageDecimals));
+  const ParameterMetrics& metrics = run.evaluation.metrics[p];
+  Row row{parameter.name.text, parameter.unit, toShortText(parameter.bounds.lower, kBoundDigits),
+          toShortText(parameter.bounds.upper, kBoundDigits)};
+  for (const FigureColumn& column : kFigureColumns) {
+    if (isPrinted(column, run)) {
+      const double error = column.in_print == InPrint::kWithError ? metrics.se.*column.value : 0.0;
+      row.push_back(toTextWithError(metrics.*column.value, error, column.decimals));
+    }
   }
   return row;
 }
@@ -79,25 +76,12 @@ std::string makeRefinementLegend(const RunSummary& run) {
 }  // namespace
 
 std::string makeMarkdownTable(const RunSummary& run) {
-  return makeAlignedTable(makeRows(run, escapeMarkdown), kTextColumns) + "\n" + kLegend +
+  return makeMarkdownRows(makeRows(run, escapeMarkdown), kTextColumns) + "\n" + kLegend +
          makeRefinementLegend(run);
 }
 
 std::string makeLatexTable(const RunSummary& run) {
-  const std::vector<Row> rows = makeRows(run, escapeLatex);
-  const auto make_line = [](const Row& row) {
-    std::string line = row[0];
-    for (std::size_t i = 1; i < row.size(); ++i) {
-      line += " & " + row[i];
-    }
-    return line + " \\\\\n";
-  };
-  std::string text = "\\begin{tabular}{ll" + std::string(rows[0].size() - kTextColumns, 'r') +
-                     "}\n\\toprule\n" + make_line(rows[0]) + "\\midrule\n";
-  for (std::size_t i = 1; i < rows.size(); ++i) {
-    text += make_line(rows[i]);
-  }
-  return text + "\\bottomrule\n\\end{tabular}\n";
+  return makeLatexRows(makeRows(run, escapeLatex), kTextColumns);
 }
 
 }  // namespace twinmap

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "framework/base/text/csv_file.hpp"
+#include "framework/base/text/csv.hpp"
 
 namespace twinmap {
 namespace {

@@ -7,6 +7,7 @@
 #include "framework/experiment/check/check_features.hpp"
 #include "framework/experiment/check/check_measurement.hpp"
 #include "framework/experiment/check/check_noise.hpp"
+#include "framework/experiment/parameter_figures.hpp"
 
 namespace twinmap {
 namespace {
@@ -81,7 +82,7 @@ void checkSensorDesign(const SensorDesignSpec& design, const ExperimentSpec& exp
 
 void checkGates(const ExperimentSpec& experiment) {
   for (const GateSpec& gate : experiment.gates) {
-    requireKnown(gate.metric, {kGateMetrics.begin(), kGateMetrics.end()}, "a metric");
+    requireKnown(gate.metric, listGateMetrics(), "a metric");
     if (gate.parameter) {
       requireKnown(*gate.parameter, collectNames(experiment.model.parameters), "a parameter");
     }

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "framework/base/text/number_text.hpp"
+#include "framework/experiment/parameter_figures.hpp"
 #include "framework/report/html.hpp"
-#include "framework/report/sections/metric_columns.hpp"
 #include "framework/report/sections/sections.hpp"
 
 namespace twinmap {
@@ -26,33 +26,10 @@ std::vector<std::string> makeLabels(const std::vector<RunFolder>& runs) {
   return labels;
 }
 
-DataTable makeMetricTable(const std::vector<RunFolder>& runs, const std::vector<std::string>& labels) {
-  const std::vector<std::string> metrics{"sd_pct", "sd_pct_se", "coverage95", "coverage95_se", "limit_pct"};
-  std::vector<std::string> run, parameter;
-  std::vector<std::vector<double>> values(metrics.size());
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    for (std::size_t row = 0; row < runs[i].metrics.rows.size(); ++row) {
-      run.push_back(labels[i]);
-      parameter.push_back(runs[i].metrics.getText(row, "parameter"));
-      for (std::size_t m = 0; m < metrics.size(); ++m) {
-        values[m].push_back(runs[i].metrics.getNumber(row, metrics[m]));
-      }
-    }
-  }
-  DataTable table;
-  table.add("run", run);
-  table.add("parameter", parameter);
-  for (std::size_t m = 0; m < metrics.size(); ++m) {
-    table.add(metrics[m], values[m]);
-  }
-  return table;
-}
-
 std::vector<std::string> collectRunParameters(const std::vector<RunFolder>& runs) {
   std::vector<std::string> names;
   for (const RunFolder& run : runs) {
-    for (std::size_t row = 0; row < run.metrics.rows.size(); ++row) {
-      const std::string& name = run.metrics.getText(row, "parameter");
+    for (const std::string& name : run.metrics.listDistinct("parameter")) {
       if (std::find(names.begin(), names.end(), name) == names.end()) {
         names.push_back(name);
       }
@@ -61,13 +38,43 @@ std::vector<std::string> collectRunParameters(const std::vector<RunFolder>& runs
   return names;
 }
 
-bool hasLimit(const std::vector<RunFolder>& runs, const std::string& parameter) {
-  for (const RunFolder& run : runs) {
-    for (std::size_t row = 0; row < run.metrics.rows.size(); ++row) {
-      if (run.metrics.getText(row, "parameter") == parameter &&
-          std::isfinite(run.metrics.getNumber(row, "limit_pct"))) {
-        return true;
+/// The metrics of all runs, each row with its run's label: parameter by parameter.
+CsvTable uniteMetrics(const std::vector<RunFolder>& runs, const std::vector<std::string>& labels) {
+  CsvTable united{{"parameter", "run", "lower", "upper"}, {}};
+  for (const FigureColumn& column : kFigureColumns) {
+    united.columns.insert(united.columns.end(), {column.name, std::string(column.name) + "_se"});
+  }
+  for (const std::string& parameter : collectRunParameters(runs)) {
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      const CsvTable& metrics = runs[i].metrics;
+      for (std::size_t row = 0; row < metrics.rows.size(); ++row) {
+        if (metrics.getText(row, "parameter") == parameter) {
+          united.rows.emplace_back();
+          for (const std::string& column : united.columns) {
+            united.rows.back().push_back(column == "run" ? labels[i] : metrics.getText(row, column));
+          }
+        }
       }
+    }
+  }
+  return united;
+}
+
+DataTable makeMetricTable(const CsvTable& metrics) {
+  DataTable table;
+  table.add("run", metrics.listTexts("run"));
+  table.add("parameter", metrics.listTexts("parameter"));
+  for (const char* column : {"sd_pct", "sd_pct_se", "coverage95", "coverage95_se", "limit_pct"}) {
+    table.add(column, metrics.listNumbers(column));
+  }
+  return table;
+}
+
+bool hasLimit(const CsvTable& metrics, const std::string& parameter) {
+  for (std::size_t row = 0; row < metrics.rows.size(); ++row) {
+    if (metrics.getText(row, "parameter") == parameter &&
+        std::isfinite(metrics.getNumber(row, "limit_pct"))) {
+      return true;
     }
   }
   return false;
@@ -82,7 +89,7 @@ Panel makeRunsPanel(const std::string& figure, const std::string& parameter,
           {{"height", calcHeight(labels.size(), kRowHeight, kFrame)}, {"runs", labels}}};
 }
 
-Figure makeErrorFigure(const std::vector<RunFolder>& runs, const std::vector<std::string>& parameters,
+Figure makeErrorFigure(const CsvTable& metrics, const std::vector<std::string>& parameters,
                        const std::vector<std::string>& labels) {
   Figure figure{
       "errors-side-by-side",
@@ -95,7 +102,7 @@ Figure makeErrorFigure(const std::vector<RunFolder>& runs, const std::vector<std
       2};
   for (const std::string& parameter : parameters) {
     figure.panels.push_back(makeRunsPanel(figure.name, parameter, labels));
-    if (!hasLimit(runs, parameter)) {
+    if (!hasLimit(metrics, parameter)) {
       figure.panels.back().without = {"limit"};
     }
   }
@@ -117,39 +124,18 @@ Figure makeCoverageFigure(const std::vector<std::string>& parameters,
   return figure;
 }
 
-std::string makeMetricsTable(const std::vector<RunFolder>& runs, const std::vector<std::string>& labels) {
-  std::vector<std::string> headings{"parameter", "run"};
-  for (const MetricColumn& column : getMetricColumns()) {
-    headings.push_back(column.heading);
-  }
-  std::vector<std::vector<HtmlCell>> rows;
-  for (const std::string& parameter : collectRunParameters(runs)) {
-    for (std::size_t i = 0; i < runs.size(); ++i) {
-      const CsvTable& metrics = runs[i].metrics;
-      for (std::size_t row = 0; row < metrics.rows.size(); ++row) {
-        if (metrics.getText(row, "parameter") != parameter) {
-          continue;
-        }
-        rows.push_back({makeTextCell(parameter), makeTextCell(labels[i])});
-        for (const MetricColumn& column : getMetricColumns()) {
-          rows.back().push_back(makeNumberCell(metrics.getText(row, column.name), kMetricDigits,
-                                               metrics.getText(row, column.name + "_se")));
-        }
-      }
-    }
-  }
-  return makeHtmlTable("comparison-table", "Press a heading to sort.", headings, rows);
-}
-
 }  // namespace
 
 void addComparison(const std::vector<RunFolder>& runs, Page& page) {
   const std::vector<std::string> labels = makeLabels(runs);
   const std::vector<std::string> parameters = collectRunParameters(runs);
-  page.tables[kComparison] = makeMetricTable(runs, labels);
+  const CsvTable metrics = uniteMetrics(runs, labels);
+  page.tables[kComparison] = makeMetricTable(metrics);
   Section section{"comparison", "Side by side", "", {}};
-  section.html = makeMetricsTable(runs, labels);
-  addFigure(makeErrorFigure(runs, parameters, labels), section);
+  section.html = makeHtmlTable(
+      "comparison-table", "Press a heading to sort.", metrics,
+      showFigures({{"parameter", "parameter"}, {"run", "run"}, {"lower", "lower"}, {"upper", "upper"}}));
+  addFigure(makeErrorFigure(metrics, parameters, labels), section);
   addFigure(makeCoverageFigure(parameters, labels), section);
   page.sections.push_back(std::move(section));
 }

@@ -18,17 +18,9 @@ const std::vector<std::string>& getShownColumns() {
 
 DataTable makePosteriorTable(const CsvTable& posterior) {
   DataTable table;
-  std::vector<std::string> parameters;
-  for (std::size_t row = 0; row < posterior.rows.size(); ++row) {
-    parameters.push_back(posterior.getText(row, "parameter"));
-  }
-  table.add("parameter", std::move(parameters));
+  table.add("parameter", posterior.listTexts("parameter"));
   for (const std::string& column : getShownColumns()) {
-    std::vector<double> values;
-    for (std::size_t row = 0; row < posterior.rows.size(); ++row) {
-      values.push_back(posterior.getNumber(row, column));
-    }
-    table.add(column, std::move(values));
+    table.add(column, posterior.listNumbers(column));
   }
   return table;
 }

@@ -28,17 +28,9 @@ std::vector<RankedQuantity> listQuantities(const CsvTable& sbc) {
 
 DataTable makeRankTable(const CsvTable& sbc) {
   DataTable table;
-  std::vector<std::string> quantities;
-  for (std::size_t row = 0; row < sbc.rows.size(); ++row) {
-    quantities.push_back(sbc.getText(row, "quantity"));
-  }
-  table.add("quantity", std::move(quantities));
+  table.add("quantity", sbc.listTexts("quantity"));
   for (const char* column : {"lower", "upper", "count"}) {
-    std::vector<double> values;
-    for (std::size_t row = 0; row < sbc.rows.size(); ++row) {
-      values.push_back(sbc.getNumber(row, column));
-    }
-    table.add(column, std::move(values));
+    table.add(column, sbc.listNumbers(column));
   }
   return table;
 }

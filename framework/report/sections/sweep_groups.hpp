@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/base/text/csv_file.hpp"
+#include "framework/base/text/csv.hpp"
 
 namespace twinmap {
 

@@ -4,48 +4,45 @@
 #include <cmath>
 
 #include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/parameter_figures.hpp"
 #include "framework/report/html.hpp"
 #include "framework/report/sections/sections.hpp"
 
 namespace twinmap {
 namespace {
 
-double findBestNlml(const CsvTable& training, const std::string& parameter) {
-  double best = HUGE_VAL;
+/// How far each start ended above the best of its parameter, in nats.
+std::vector<double> calcAboveBest(const CsvTable& training) {
+  std::vector<double> above;
   for (std::size_t row = 0; row < training.rows.size(); ++row) {
-    const double nlml = training.getNumber(row, "nlml");
-    if (training.getText(row, "parameter") == parameter && nlml < best) {
-      best = nlml;
+    double best = HUGE_VAL;
+    for (std::size_t other = 0; other < training.rows.size(); ++other) {
+      const bool same = training.getText(other, "parameter") == training.getText(row, "parameter");
+      best = same ? std::fmin(best, training.getNumber(other, "nlml")) : best;
     }
+    above.push_back(std::max(training.getNumber(row, "nlml") - best, 0.0));
   }
-  return best;
+  return above;
 }
 
 DataTable makeStartsTable(const CsvTable& training) {
-  std::vector<std::string> parameter, found;
-  std::vector<double> start, nlml, above;
-  for (std::size_t row = 0; row < training.rows.size(); ++row) {
-    parameter.push_back(training.getText(row, "parameter"));
-    found.push_back(training.getText(row, "best") == "1" ? "kept" : "other start");
-    start.push_back(training.getNumber(row, "start"));
-    nlml.push_back(training.getNumber(row, "nlml"));
-    above.push_back(std::max(nlml.back() - findBestNlml(training, parameter.back()), 0.0));
+  std::vector<std::string> found;
+  for (const std::string& best : training.listTexts("best")) {
+    found.emplace_back(best == "1" ? "kept" : "other start");
   }
   DataTable table;
-  table.add("parameter", parameter);
-  table.add("start", start);
-  table.add("found", found);
-  table.add("nlml", nlml);
-  table.add("above_best", above);
+  table.add("parameter", training.listTexts("parameter"));
+  table.add("start", training.listNumbers("start"));
+  table.add("found", std::move(found));
+  table.add("nlml", training.listNumbers("nlml"));
+  table.add("above_best", calcAboveBest(training));
   return table;
 }
 
-/// How far the worst start ended above the best of its parameter; at least 1 nat.
+/// At least 1 nat.
 double findFurthestStart(const CsvTable& training) {
   double furthest = 1.0;
-  for (std::size_t row = 0; row < training.rows.size(); ++row) {
-    const double above =
-        training.getNumber(row, "nlml") - findBestNlml(training, training.getText(row, "parameter"));
+  for (const double above : calcAboveBest(training)) {
     furthest = std::isfinite(above) ? std::max(furthest, above) : furthest;
   }
   return furthest;
@@ -72,24 +69,23 @@ void addStarts(const RunFolder& run, Section& section, Page& page) {
 }
 
 std::string makeTrainingTable(const CsvTable& training) {
-  std::vector<std::vector<HtmlCell>> rows;
+  CsvTable kept{training.columns, {}};
+  const auto at_bound = static_cast<std::size_t>(std::max(0, training.findColumn("at_bound")));
   for (std::size_t row = 0; row < training.rows.size(); ++row) {
-    if (training.getText(row, "best") != "1") {
-      continue;
+    if (training.getText(row, "best") == "1") {
+      kept.rows.push_back(training.rows[row]);
+      std::string& bounds = kept.rows.back()[at_bound];
+      bounds = bounds.empty() ? "none" : bounds;
     }
-    const std::string& at_bound = training.getText(row, "at_bound");
-    rows.push_back({makeTextCell(training.getText(row, "parameter")),
-                    makeNumberCell(training.getText(row, "nlml"), 6),
-                    makeNumberCell(training.getText(row, "evaluations"), 6),
-                    makeTextCell(training.getText(row, "stop_reason")),
-                    makeTextCell(at_bound.empty() ? "none" : at_bound),
-                    makeNumberCell(training.getText(row, "condition"), 3),
-                    makeNumberCell(training.getText(row, "jitter"), 3)});
   }
-  return makeHtmlTable("training-table", "The start that was kept.",
-                       {"parameter", "NLML [nats]", "evaluations", "why it stopped", "at a bound",
-                        "condition", "jitter"},
-                       rows) +
+  return makeHtmlTable("training-table", "The start that was kept.", kept,
+                       {{"parameter", "parameter"},
+                        {"nlml", "NLML [nats]", 6},
+                        {"evaluations", "evaluations", 6},
+                        {"stop_reason", "why it stopped"},
+                        {"at_bound", "at a bound"},
+                        {"condition", "condition", 3},
+                        {"jitter", "jitter", 3}}) +
          makeParagraph(
              "A condition above 1e12 or a jitter above 0 means that the covariance matrix is nearly "
              "singular: "
@@ -98,23 +94,19 @@ std::string makeTrainingTable(const CsvTable& training) {
 }
 
 DataTable makeHyperparameterTable(const CsvTable& hyperparameters) {
-  std::vector<std::string> parameter, name;
-  std::vector<double> value, lower, upper, place;
+  std::vector<double> place;
   for (std::size_t row = 0; row < hyperparameters.rows.size(); ++row) {
-    parameter.push_back(hyperparameters.getText(row, "parameter"));
-    name.push_back(hyperparameters.getText(row, "hyperparameter"));
-    value.push_back(hyperparameters.getNumber(row, "value"));
-    lower.push_back(hyperparameters.getNumber(row, "lower"));
-    upper.push_back(hyperparameters.getNumber(row, "upper"));
-    place.push_back(std::log(value.back() / lower.back()) / std::log(upper.back() / lower.back()));
+    const double lower = hyperparameters.getNumber(row, "lower");
+    place.push_back(std::log(hyperparameters.getNumber(row, "value") / lower) /
+                    std::log(hyperparameters.getNumber(row, "upper") / lower));
   }
   DataTable table;
-  table.add("parameter", parameter);
-  table.add("hyperparameter", name);
-  table.add("value", value);
-  table.add("lower", lower);
-  table.add("upper", upper);
-  table.add("place", place);
+  table.add("parameter", hyperparameters.listTexts("parameter"));
+  table.add("hyperparameter", hyperparameters.listTexts("hyperparameter"));
+  for (const char* column : {"value", "lower", "upper"}) {
+    table.add(column, hyperparameters.listNumbers(column));
+  }
+  table.add("place", std::move(place));
   return table;
 }
 
@@ -147,12 +139,6 @@ void addHyperparameters(const RunFolder& run, Section& section, Page& page) {
 
 /// How well the chains know a network whose weights were sampled.
 std::string makeChains(const CsvTable& chains) {
-  std::vector<std::vector<HtmlCell>> rows;
-  for (std::size_t row = 0; row < chains.rows.size(); ++row) {
-    rows.push_back({makeTextCell(chains.getText(row, "quantity")),
-                    makeNumberCell(chains.getText(row, "r_hat"), 4),
-                    makeNumberCell(chains.getText(row, "effective_draws"), 4)});
-  }
   return makeElement("h3", "Draws of the network's weights") + "\n" +
          makeHtmlTable(
              "chains-table",
@@ -161,7 +147,7 @@ std::string makeChains(const CsvTable& chains) {
                          chains.getText(0, "chains"), chains.getText(0, "draws"),
                          chains.getText(0, "weights"), chains.getText(0, "divergences"),
                          chains.getText(0, "cut"), chains.getNumber(0, "acceptance")),
-             {"quantity", "R-hat", "effective draws"}, rows) +
+             chains, {{"quantity", "quantity"}, {"r_hat", "R-hat"}, {"effective_draws", "effective draws"}}) +
          makeParagraph(
              "R-hat is 1 where the chains agree; above 1.05, or with fewer than 100 effective draws, "
              "they do not know the posterior yet.",
@@ -170,25 +156,15 @@ std::string makeChains(const CsvTable& chains) {
 
 /// Leave-one-out figures from training alone, beside those on the test set.
 std::string makeLeaveOneOut(const CsvTable& metrics) {
-  const std::vector<std::pair<std::string, std::string>> pairs{
-      {"loo_sd_pct", "sd_pct"}, {"loo_coverage95", "coverage95"}, {"loo_z_sd", "z_sd"}, {"loo_nlpd", "nlpd"}};
-  std::vector<std::string> headings{"parameter"};
-  std::vector<std::vector<HtmlCell>> rows(metrics.rows.size());
-  for (std::size_t row = 0; row < rows.size(); ++row) {
-    rows[row].push_back(makeTextCell(metrics.getText(row, "parameter")));
-  }
-  for (const auto& [left_out, test] : pairs) {
-    if (!metrics.hasColumn(left_out)) {
-      continue;
-    }
-    headings.push_back(test + ", left out");
-    headings.push_back(test + ", test");
-    for (std::size_t row = 0; row < rows.size(); ++row) {
-      rows[row].push_back(makeNumberCell(metrics.getText(row, left_out)));
-      rows[row].push_back(makeNumberCell(metrics.getText(row, test)));
+  std::vector<ShownColumn> columns{{"parameter", "parameter"}};
+  for (const FigureColumn& column : kFigureColumns) {
+    const std::string name = column.name, heading = column.heading;
+    if (column.left_out && metrics.hasColumn("loo_" + name)) {
+      columns.push_back({"loo_" + name, heading + ", left out"});
+      columns.push_back({name, heading + ", test"});
     }
   }
-  if (headings.size() == 1) {
+  if (columns.size() == 1) {
     return "";
   }
   return makeElement("h3", "Leave-one-out beside test") + "\n" +
@@ -196,7 +172,7 @@ std::string makeLeaveOneOut(const CsvTable& metrics) {
              "loo-table",
              "Each training sample inferred from the others, without a test set: where both columns agree, "
              "training alone tells how good the map is.",
-             headings, rows);
+             metrics, columns);
 }
 
 }  // namespace

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "framework/base/json/json.hpp"
-#include "framework/base/text/aligned_rows.hpp"
-#include "framework/base/text/escape.hpp"
+#include "framework/base/text/csv.hpp"
 #include "framework/base/text/number_text.hpp"
+#include "framework/base/text/text_tables.hpp"
 
 namespace twinmap {
 namespace {
@@ -102,17 +102,18 @@ std::string makeComparisonText(const RunComparison& comparison) {
 }
 
 std::string makeComparisonCsv(const RunComparison& comparison) {
-  std::string text = "parameter,unit,figure,a,b,difference,lower,upper,paired\n";
+  std::vector<CsvRow> rows{
+      {"parameter", "unit", "figure", "a", "b", "difference", "lower", "upper", "paired"}};
   for (const ComparedParameter& parameter : comparison.parameters) {
     for (const ComparedFigure& figure : parameter.figures) {
-      text += escapeCsv(parameter.name) + "," + escapeCsv(parameter.unit) + "," + figure.name;
+      rows.push_back({parameter.name, parameter.unit, figure.name});
       for (const double value : {figure.a, figure.b, figure.difference, figure.lower, figure.upper}) {
-        text += "," + toCsvCell(value);
+        rows.back().push_back(toCsvCell(value));
       }
-      text += comparison.paired ? ",1\n" : ",0\n";
+      rows.back().emplace_back(comparison.paired ? "1" : "0");
     }
   }
-  return text;
+  return makeCsv(rows);
 }
 
 std::string makeComparisonJson(const RunComparison& comparison) {

@@ -5,8 +5,8 @@
 
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/base/text/csv.hpp"
-#include "framework/base/text/markdown_table.hpp"
 #include "framework/base/text/number_text.hpp"
+#include "framework/base/text/text_tables.hpp"
 #include "framework/inference/inference_text.hpp"
 #include "framework/study/replay/replay_page.hpp"
 
@@ -79,7 +79,7 @@ std::string makeFitTable(const Replay& replay) {
       cell = parseLiteral(cell, value) ? toShortText(value, kDigits) : "-";
     }
   }
-  return makeAlignedTable(rows, 1);
+  return makeMarkdownRows(rows, 1);
 }
 
 void writeReplay(const std::filesystem::path& folder, const Inferrer& inferrer, const Replay& replay) {

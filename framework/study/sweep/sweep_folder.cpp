@@ -1,7 +1,7 @@
 #include "framework/study/sweep/sweep_folder.hpp"
 
 #include "framework/base/files/atomic_file.hpp"
-#include "framework/base/text/csv_file.hpp"
+#include "framework/base/text/csv.hpp"
 #include "framework/base/text/escape.hpp"
 #include "framework/results/run_state.hpp"
 

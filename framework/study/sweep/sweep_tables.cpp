@@ -5,11 +5,11 @@
 
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/base/text/csv.hpp"
-#include "framework/base/text/csv_file.hpp"
 #include "framework/base/text/escape.hpp"
-#include "framework/base/text/markdown_table.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/base/text/number_with_error.hpp"
+#include "framework/base/text/text_tables.hpp"
+#include "framework/experiment/parameter_figures.hpp"
 #include "framework/study/sweep/sweep_folder.hpp"
 
 namespace twinmap {
@@ -168,16 +168,6 @@ std::string makeSummaryCsv(const std::vector<std::string>& keys, const std::vect
   return makeCsv(table);
 }
 
-struct TableColumn {
-  const char* figure;
-  const char* heading;
-  int decimals;
-};
-
-constexpr TableColumn kTableColumns[] = {{"bias_pct", "bias %", 4},   {"sd_pct", "sd %", 4},
-                                         {"mare_pct", "MARE %", 4},   {"coverage95", "cov. 95 %", 3},
-                                         {"limit_pct", "limit %", 4}, {"ratio_to_limit", "ratio", 3}};
-
 std::string makeSweepTable(const std::vector<std::string>& keys, const std::vector<SeedGroup>& groups,
                            const Row& figures) {
   std::vector<Row> table{withoutSeed(keys, keys)};
@@ -187,20 +177,21 @@ std::string makeSweepTable(const std::vector<std::string>& keys, const std::vect
     table.push_back(group.values);
     table.back().insert(table.back().end(), {group.parameter, group.unit, std::to_string(group.rows.size())});
   }
-  for (const TableColumn& column : kTableColumns) {
-    if (std::find(figures.begin(), figures.end(), column.figure) == figures.end()) {
+  for (const FigureColumn& column : kFigureColumns) {
+    if (column.in_print == InPrint::kNo ||
+        std::find(figures.begin(), figures.end(), column.name) == figures.end()) {
       continue;
     }
     table[0].emplace_back(column.heading);
     for (std::size_t i = 0; i < groups.size(); ++i) {
-      const Estimate estimate = calcEstimate(groups[i], column.figure);
+      const Estimate estimate = calcEstimate(groups[i], column.name);
       table[i + 1].push_back(toTextWithError(estimate.mean, estimate.standard_error, column.decimals));
     }
   }
   for (Row& row : table) {
     std::transform(row.begin(), row.end(), row.begin(), escapeMarkdown);
   }
-  return makeAlignedTable(table, text_columns) +
+  return makeMarkdownRows(table, text_columns) +
          "\nMeans over the cases that differ in their seed alone; in parentheses: the standard error of the "
          "last digits.\n";
 }

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "framework/base/files/atomic_file.hpp"
-#include "framework/base/text/csv_file.hpp"
+#include "framework/base/text/csv.hpp"
 #include "framework/store/hdf5_difference.hpp"
 
 namespace twinmap {

@@ -1,9 +1,8 @@
-#include "framework/base/text/csv_file.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "framework/base/text/csv.hpp"
 #include "tests/framework/test_folder.hpp"
 
 namespace twinmap {

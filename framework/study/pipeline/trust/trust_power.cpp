@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "framework/base/random/random.hpp"
-#include "framework/base/text/escape.hpp"
+#include "framework/base/text/csv.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/study/pipeline/trust/power_judges.hpp"
 
@@ -153,13 +153,13 @@ std::vector<DetectableChange> calcTrustPower(const Study& study, const PreparedD
 }
 
 std::string makeTrustPowerCsv(const std::vector<DetectableChange>& changes) {
-  std::string text = "kind,name,unit,smallest_change,largest_change,largest_found\n";
+  std::vector<CsvRow> rows{{"kind", "name", "unit", "smallest_change", "largest_change", "largest_found"}};
   for (const DetectableChange& change : changes) {
-    text += change.kind + "," + escapeCsv(change.name) + "," + escapeCsv(change.unit) + "," +
-            (std::isfinite(change.smallest) ? toText(change.smallest) : "") + "," + toText(change.largest) +
-            "," + toText(change.found) + "\n";
+    rows.push_back({change.kind, change.name, change.unit,
+                    std::isfinite(change.smallest) ? toText(change.smallest) : "", toText(change.largest),
+                    toText(change.found)});
   }
-  return text;
+  return makeCsv(rows);
 }
 
 std::vector<std::string> listPowerWarnings(const std::vector<DetectableChange>& changes) {

@@ -136,7 +136,7 @@ test('PIT histograms count the samples', async () => {
 test('the table says what metrics.csv says, sorts, and copies', async () => {
   const page = await open('run/report.html');
   const metrics = readCsv(join(folder, 'run/metrics.csv'));
-  const columns = {'bias %': 'bias_pct', 'sd %': 'sd_pct', 'MARE %': 'mare_pct', 'coverage 95 %': 'coverage95',
+  const columns = {'bias %': 'bias_pct', 'sd %': 'sd_pct', 'MARE %': 'mare_pct', 'cov. 95 %': 'coverage95',
                    'lower': 'lower', 'upper': 'upper', 'claimed sd %': 'stddev_pct', 'sd of z': 'z_sd', 'NLPD': 'nlpd'};
   const headings = await page.locator('#metrics-table th').allTextContents();
   for (const [heading, column] of Object.entries(columns)) {
