@@ -1,6 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
+
+#include "framework/experiment/criterion_spec.hpp"
+#include "framework/experiment/model/parameter_spec.hpp"
 
 namespace twinmap::experiment_design {
 
@@ -19,5 +23,8 @@ double calcCost(const Criterion& criterion, const Eigen::MatrixXd& information);
 
 /// d cost / d M (symmetric). Where the least eigenvalue is double, that of one of its eigenvectors.
 Eigen::MatrixXd calcCostGradient(const Criterion& criterion, const Eigen::MatrixXd& information);
+
+/// The criterion that an experiment asks for; the parameters it names are among `parameters`.
+Criterion makeCriterion(const CriterionSpec& spec, const std::vector<ParameterSpec>& parameters);
 
 }  // namespace twinmap::experiment_design

@@ -12,7 +12,7 @@
 #include "framework/data/sensitivity/fisher_information.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/models/make_simulator.hpp"
-#include "framework/optimal_design/make_criterion.hpp"
+#include "framework/optimal_design/criterion.hpp"
 #include "framework/simulation/number_evaluator.hpp"
 #include "framework/simulation/sample_generator.hpp"
 

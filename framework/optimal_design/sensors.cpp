@@ -15,7 +15,7 @@
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/points/point_set.hpp"
 #include "framework/models/make_simulator.hpp"
-#include "framework/optimal_design/make_criterion.hpp"
+#include "framework/optimal_design/criterion.hpp"
 #include "framework/optimal_design/sensor_files.hpp"
 #include "framework/optimal_design/sensor_page.hpp"
 

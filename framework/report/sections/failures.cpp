@@ -4,7 +4,6 @@
 #include <map>
 
 #include "framework/report/html.hpp"
-#include "framework/report/sections/axis_choice.hpp"
 #include "framework/report/sections/samples_table.hpp"
 #include "framework/report/sections/sections.hpp"
 

@@ -3,7 +3,9 @@
 #include <string>
 #include <vector>
 
+#include "framework/experiment/model/model_spec.hpp"
 #include "framework/report/data_table.hpp"
+#include "framework/report/figure.hpp"
 #include "framework/results/run_folder.hpp"
 
 namespace twinmap {
@@ -51,5 +53,12 @@ DataTable makeSamplesTable(const RunFolder& run);
 
 /// "The first 1000 of 5000 test samples are drawn.", or "".
 std::string describeDrawnSamples(const RunFolder& run);
+
+/// A choice among the parameters, whose domain is their bounds.
+Choice makeParameterChoice(const std::string& name, const std::string& label,
+                           const std::vector<ParameterSpec>& parameters, std::size_t chosen);
+
+/// The domains of the axes "{x}" and "{y}" that the reader chooses, for the slots x_domain and y_domain.
+std::map<std::string, SlotValue> makeChosenDomains();
 
 }  // namespace twinmap

@@ -33,8 +33,6 @@ void addRelevance(const RunFolder& run, Section& section, Page& page);
 void addCorrelations(const RunFolder& run, Section& section, Page& page);
 void addTraining(const RunFolder& run, Page& page);
 void addCost(const RunFolder& run, Page& page);
-/// The smallest changes of the model that the trust status would find, where the run knows.
-void addTrustPower(const RunFolder& run, Section& section);
 /// Where in the box and why samples could not be simulated.
 void addFailures(const RunFolder& run, Section& section, Page& page);
 

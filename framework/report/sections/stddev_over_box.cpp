@@ -1,6 +1,5 @@
 #include <algorithm>
 
-#include "framework/report/sections/axis_choice.hpp"
 #include "framework/report/sections/samples_table.hpp"
 #include "framework/report/sections/sections.hpp"
 
