@@ -26,38 +26,36 @@ std::vector<std::string> makeLabels(const std::vector<RunFolder>& runs) {
   return labels;
 }
 
-std::vector<std::string> collectRunParameters(const std::vector<RunFolder>& runs) {
-  std::vector<std::string> names;
-  for (const RunFolder& run : runs) {
-    for (const std::string& name : run.metrics.listDistinct("parameter")) {
-      if (std::find(names.begin(), names.end(), name) == names.end()) {
-        names.push_back(name);
-      }
-    }
-  }
-  return names;
-}
-
-/// The metrics of all runs, each row with its run's label: parameter by parameter.
+/// The metrics of all runs, run by run, each row with its run's label.
 CsvTable uniteMetrics(const std::vector<RunFolder>& runs, const std::vector<std::string>& labels) {
   CsvTable united{{"parameter", "run", "lower", "upper"}, {}};
   for (const FigureColumn& column : kFigureColumns) {
     united.columns.insert(united.columns.end(), {column.name, std::string(column.name) + "_se"});
   }
-  for (const std::string& parameter : collectRunParameters(runs)) {
-    for (std::size_t i = 0; i < runs.size(); ++i) {
-      const CsvTable& metrics = runs[i].metrics;
-      for (std::size_t row = 0; row < metrics.rows.size(); ++row) {
-        if (metrics.getText(row, "parameter") == parameter) {
-          united.rows.emplace_back();
-          for (const std::string& column : united.columns) {
-            united.rows.back().push_back(column == "run" ? labels[i] : metrics.getText(row, column));
-          }
-        }
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    for (std::size_t row = 0; row < runs[i].metrics.rows.size(); ++row) {
+      united.rows.emplace_back();
+      for (const std::string& column : united.columns) {
+        united.rows.back().push_back(column == "run" ? labels[i] : runs[i].metrics.getText(row, column));
       }
     }
   }
   return united;
+}
+
+/// The same, parameter by parameter.
+std::string makeMetricsTable(const CsvTable& metrics) {
+  CsvTable ordered{metrics.columns, {}};
+  for (const std::string& parameter : metrics.listDistinct("parameter")) {
+    for (std::size_t row = 0; row < metrics.rows.size(); ++row) {
+      if (metrics.getText(row, "parameter") == parameter) {
+        ordered.rows.push_back(metrics.rows[row]);
+      }
+    }
+  }
+  return makeHtmlTable(
+      "comparison-table", "Press a heading to sort.", ordered,
+      showFigures({{"parameter", "parameter"}, {"run", "run"}, {"lower", "lower"}, {"upper", "upper"}}));
 }
 
 DataTable makeMetricTable(const CsvTable& metrics) {
@@ -128,13 +126,11 @@ Figure makeCoverageFigure(const std::vector<std::string>& parameters,
 
 void addComparison(const std::vector<RunFolder>& runs, Page& page) {
   const std::vector<std::string> labels = makeLabels(runs);
-  const std::vector<std::string> parameters = collectRunParameters(runs);
   const CsvTable metrics = uniteMetrics(runs, labels);
+  const std::vector<std::string> parameters = metrics.listDistinct("parameter");
   page.tables[kComparison] = makeMetricTable(metrics);
   Section section{"comparison", "Side by side", "", {}};
-  section.html = makeHtmlTable(
-      "comparison-table", "Press a heading to sort.", metrics,
-      showFigures({{"parameter", "parameter"}, {"run", "run"}, {"lower", "lower"}, {"upper", "upper"}}));
+  section.html = makeMetricsTable(metrics);
   addFigure(makeErrorFigure(metrics, parameters, labels), section);
   addFigure(makeCoverageFigure(parameters, labels), section);
   page.sections.push_back(std::move(section));

@@ -7,57 +7,80 @@
 namespace twinmap {
 namespace {
 
-constexpr const char* kMethods = "methods";
+/// Methods, or maps, beside each other on the same samples.
+struct Methods {
+  const CsvTable& file;
+  std::string key;   ///< the column that names them
+  std::string name;  ///< of the section, of its figure and of that's data
+  std::string title;
+  std::vector<ShownColumn> beyond;  ///< shown behind the figures
+};
 
-std::string makeMethodTable(const CsvTable& methods) {
-  return makeHtmlTable(
-      "methods-table",
-      "The figures of a method are those of the measurements that it accepted; the table above "
-      "has what is answered by default.",
-      methods,
-      showFigures({{"method", "method"}, {"parameter", "parameter"}},
-                  {{"accepted", "share accepted"}, {"median_simulations", "simulations, median"}}));
-}
-
-DataTable makeMethodData(const CsvTable& methods) {
-  DataTable table;
-  table.add("method", methods.listTexts("method"));
-  table.add("parameter", methods.listTexts("parameter"));
-  table.add("ratio", methods.listNumbers("ratio_to_limit"));
-  table.add("coverage95", methods.listNumbers("coverage95"));
-  return table;
-}
-
-bool hasRatio(const CsvTable& methods) {
-  const std::vector<double> ratios = methods.listNumbers("ratio_to_limit");
+bool hasRatio(const CsvTable& file) {
+  const std::vector<double> ratios = file.listNumbers("ratio_to_limit");
   return std::any_of(ratios.begin(), ratios.end(), [](double ratio) { return std::isfinite(ratio); });
+}
+
+void addLimitFigure(const Methods& methods, Page& page, Section& section) {
+  constexpr int kRowHeight = 28, kFrame = 20;
+  const std::vector<std::string> names = methods.file.listDistinct(methods.key);
+  const double height = calcHeight(methods.file.rows.size() / names.size(), kRowHeight, kFrame);
+  DataTable& table = page.tables[methods.name];
+  table.add("method", methods.file.listTexts(methods.key));
+  table.add("parameter", methods.file.listTexts("parameter"));
+  table.add("ratio", methods.file.listNumbers("ratio_to_limit"));
+  table.add("coverage95", methods.file.listNumbers("coverage95"));
+  addFigure({methods.name,
+             "How near the limit each " + methods.key + " comes",
+             "On the dashed line a " + methods.key + " is as good as the noise of the data allows any.",
+             methods.name,
+             {{"methods", {}, {{"height", height}, {"methods", names}}}},
+             {},
+             1},
+            section);
+}
+
+/// Their figures in a table, and how near the limit they come.
+void addSection(const Methods& methods, const std::string& caption, Page& page) {
+  if (methods.file.empty()) {
+    return;
+  }
+  Section section{methods.name, methods.title, "", {}};
+  section.html =
+      makeHtmlTable(methods.name + "-table", caption, methods.file,
+                    showFigures({{methods.key, methods.key}, {"parameter", "parameter"}}, methods.beyond));
+  if (hasRatio(methods.file)) {
+    addLimitFigure(methods, page, section);
+  }
+  page.sections.push_back(std::move(section));
 }
 
 }  // namespace
 
 void addMethods(const RunFolder& run, Page& page) {
-  const CsvTable& methods = run.methods;
-  if (methods.empty()) {
-    return;
-  }
-  constexpr int kRowHeight = 28, kFrame = 20;
-  Section section{"methods", "From the map to the answer", "", {}};
-  section.html = makeMethodTable(methods);
-  if (hasRatio(methods)) {
-    const std::vector<std::string> names = methods.listDistinct("method");
-    const std::size_t parameters = methods.rows.size() / names.size();
-    page.tables[kMethods] = makeMethodData(methods);
-    addFigure(
-        {"methods",
-         "How near the limit each method comes",
-         "On the dashed line a method is as good as the noise of the data allows any.",
-         kMethods,
-         {{"methods", {}, {{"height", calcHeight(parameters, kRowHeight, kFrame)}, {"methods", names}}}},
-         {},
-         1},
-        section);
-  }
-  page.sections.push_back(std::move(section));
+  addSection({run.methods,
+              "method",
+              "methods",
+              "From the map to the answer",
+              {{"accepted", "share accepted"}, {"median_simulations", "simulations, median"}}},
+             "The figures of a method are those of the measurements that it accepted; the table above has "
+             "what is answered by default.",
+             page);
+}
+
+void addComparedMaps(const RunFolder& run, Page& page) {
+  addSection({run.compared_maps,
+              "map",
+              "compared-maps",
+              "Which map",
+              {{"joint_coverage95", "joint cov. 95 %"},
+               {"joint_nlpd", "joint NLPD"},
+               {"training_seconds", "training, s"},
+               {"online_us", "a measurement, us"},
+               {"bytes", "bytes"}}},
+             "Each map alone, without refinement, on the same samples. Training includes what its answers "
+             "are judged by; the smallest joint nlpd is the best density of all parameters.",
+             page);
 }
 
 }  // namespace twinmap

@@ -12,18 +12,6 @@ namespace {
 
 constexpr const char* kResponses = "responses";
 
-/// The distinct texts of a column, in their order.
-std::vector<std::string> collectDistinct(const CsvTable& table, const std::string& column) {
-  std::vector<std::string> distinct;
-  for (std::size_t row = 0; row < table.rows.size(); ++row) {
-    const std::string& text = table.getText(row, column);
-    if (std::find(distinct.begin(), distinct.end(), text) == distinct.end()) {
-      distinct.push_back(text);
-    }
-  }
-  return distinct;
-}
-
 std::string findUnit(const RunFolder& run, const std::string& output) {
   for (std::size_t i = 0; run.test_responses && i < run.test_responses->output_names.size(); ++i) {
     if (run.test_responses->output_names[i] == output) {
@@ -46,18 +34,10 @@ DataTable makeResponseTable(const CsvTable& responses) {
   DataTable table;
   for (const std::string& column : responses.columns) {
     if (column == "case" || column == "output") {
-      std::vector<std::string> texts;
-      for (std::size_t row = 0; row < responses.rows.size(); ++row) {
-        texts.push_back(responses.getText(row, column));
-      }
-      table.add(column, std::move(texts));
-      continue;
+      table.add(column, responses.listTexts(column));
+    } else {
+      table.add(column, responses.listNumbers(column));
     }
-    std::vector<double> numbers;
-    for (std::size_t row = 0; row < responses.rows.size(); ++row) {
-      numbers.push_back(responses.getNumber(row, column));
-    }
-    table.add(column, std::move(numbers));
   }
   return table;
 }
@@ -74,13 +54,13 @@ void addResponses(const RunFolder& run, Page& page) {
     return;
   }
   page.tables[kResponses] = makeResponseTable(responses);
-  const std::vector<std::string> outputs = collectDistinct(responses, "output");
+  const std::vector<std::string> outputs = responses.listDistinct("output");
   Section section{"responses", "Responses", "", {}};
   section.html = makeParagraph(
       "Three test samples, by their error (each parameter's in units of its root mean square over the test "
       "set).",
       "class=\"quiet\"");
-  for (const std::string& which : collectDistinct(responses, "case")) {
+  for (const std::string& which : responses.listDistinct("case")) {
     Figure figure{
         fmt::format("response-{}", section.figures.size()),
         "The " + which + " case, test sample " + findSample(responses, which),

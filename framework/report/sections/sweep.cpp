@@ -14,16 +14,6 @@
 namespace twinmap {
 namespace {
 
-std::vector<std::string> collectGroupParameters(const std::vector<SweepGroup>& groups) {
-  std::vector<std::string> names;
-  for (const SweepGroup& group : groups) {
-    if (std::find(names.begin(), names.end(), group.parameter) == names.end()) {
-      names.push_back(group.parameter);
-    }
-  }
-  return names;
-}
-
 /// The distinct finite values of a member, ascending.
 std::vector<double> collectValues(const std::vector<SweepGroup>& groups, double SweepGroup::*member) {
   std::set<double> values;
@@ -35,59 +25,45 @@ std::vector<double> collectValues(const std::vector<SweepGroup>& groups, double 
   return {values.begin(), values.end()};
 }
 
-std::vector<std::string> collectVariants(const std::vector<SweepGroup>& groups) {
-  std::vector<std::string> variants;
+/// A row for each group.
+CsvTable tabulate(const std::vector<SweepGroup>& groups) {
+  CsvTable table{{"parameter", "variant", "size", "noise", "seeds", "sd_pct", "lowest", "highest",
+                  "limit_pct", "coverage95"},
+                 {}};
   for (const SweepGroup& group : groups) {
-    if (std::find(variants.begin(), variants.end(), group.variant) == variants.end()) {
-      variants.push_back(group.variant);
+    table.rows.push_back({group.parameter, group.variant});
+    for (const double value : {group.size, group.noise, static_cast<double>(group.seeds), group.mean,
+                               group.lowest, group.highest, group.limit, group.coverage}) {
+      table.rows.back().push_back(toText(value));
     }
   }
-  return variants;
-}
-
-DataTable makeGroupTable(const std::vector<SweepGroup>& groups) {
-  std::vector<std::string> variant, parameter;
-  std::vector<double> size, noise, seeds, mean, lowest, highest, limit, coverage;
-  for (const SweepGroup& group : groups) {
-    variant.push_back(group.variant);
-    parameter.push_back(group.parameter);
-    size.push_back(group.size);
-    noise.push_back(group.noise);
-    seeds.push_back(group.seeds);
-    mean.push_back(group.mean);
-    lowest.push_back(group.lowest);
-    highest.push_back(group.highest);
-    limit.push_back(group.limit);
-    coverage.push_back(group.coverage);
-  }
-  DataTable table;
-  table.add("variant", variant);
-  table.add("parameter", parameter);
-  table.add("size", size);
-  table.add("noise", noise);
-  table.add("seeds", seeds);
-  table.add("sd_pct", mean);
-  table.add("lowest", lowest);
-  table.add("highest", highest);
-  table.add("limit_pct", limit);
-  table.add("coverage95", coverage);
   return table;
 }
 
-std::string makeGroupTable(const SweepAxes& axes) {
-  std::vector<std::vector<HtmlCell>> rows;
-  for (const SweepGroup& group : axes.groups) {
-    rows.push_back({makeTextCell(group.parameter), makeTextCell(group.variant),
-                    makeNumberCell(toText(group.size), 6), makeNumberCell(toText(group.noise), 6),
-                    makeNumberCell(std::to_string(group.seeds)), makeNumberCell(toText(group.mean)),
-                    makeNumberCell(toText(group.lowest)), makeNumberCell(toText(group.highest)),
-                    makeNumberCell(toText(group.limit)), makeNumberCell(toText(group.coverage), 3)});
+DataTable makeGroupData(const CsvTable& groups) {
+  DataTable table;
+  table.add("variant", groups.listTexts("variant"));
+  table.add("parameter", groups.listTexts("parameter"));
+  for (const char* column :
+       {"size", "noise", "seeds", "sd_pct", "lowest", "highest", "limit_pct", "coverage95"}) {
+    table.add(column, groups.listNumbers(column));
   }
+  return table;
+}
+
+std::string makeGroupTable(const CsvTable& groups) {
   return makeHtmlTable("sweep-table",
-                       "Means over the seeds; press a heading to sort. Every case is in sweep.csv.",
-                       {"parameter", "variant", "training samples", "noise scale", "seeds", "sd %",
-                        "lowest %", "highest %", "limit %", "coverage 95 %"},
-                       rows);
+                       "Means over the seeds; press a heading to sort. Every case is in sweep.csv.", groups,
+                       {{"parameter", "parameter"},
+                        {"variant", "variant"},
+                        {"size", "training samples", 6},
+                        {"noise", "noise scale", 6},
+                        {"seeds", "seeds"},
+                        {"sd_pct", "sd %"},
+                        {"lowest", "lowest %"},
+                        {"highest", "highest %"},
+                        {"limit_pct", "limit %"},
+                        {"coverage95", "cov. 95 %", 3}});
 }
 
 std::size_t countCases(const CsvTable& sweep) {
@@ -133,12 +109,13 @@ void addSweep(const SweepFolder& sweep, Page& page) {
   if (axes.groups.empty()) {
     return;
   }
-  axes.parameters = collectGroupParameters(axes.groups);
-  axes.variants = collectVariants(axes.groups);
+  const CsvTable groups = tabulate(axes.groups);
+  axes.parameters = groups.listDistinct("parameter");
+  axes.variants = groups.listDistinct("variant");
   axes.sizes = collectValues(axes.groups, &SweepGroup::size);
   axes.noises = collectValues(axes.groups, &SweepGroup::noise);
   axes.has_limits = !collectValues(axes.groups, &SweepGroup::limit).empty();
-  page.tables[kSweepTable] = makeGroupTable(axes.groups);
+  page.tables[kSweepTable] = makeGroupData(groups);
   page.texts.emplace_back("sweep-csv", makeCsv(sweep.table));
   Section section{"sweep", "Sweep", "", {}};
   if (axes.sizes.size() > 1) {
@@ -153,7 +130,7 @@ void addSweep(const SweepFolder& sweep, Page& page) {
   if (section.figures.empty()) {
     addFigure(makeVariantFigure(axes), section);
   }
-  section.html += makeGroupTable(axes) + makeCopyButtons({{"sweep-csv", "CSV of every case"}});
+  section.html += makeGroupTable(groups) + makeCopyButtons({{"sweep-csv", "CSV of every case"}});
   page.sections.push_back(std::move(section));
 }
 

@@ -6,6 +6,7 @@
 #include "framework/base/log/run_control.hpp"
 #include "framework/data/features/feature_extractor.hpp"
 #include "framework/data/noise/feature_noise.hpp"
+#include "framework/data/sensitivity/feature_sensitivities.hpp"
 #include "framework/estimation/training_control.hpp"
 #include "framework/experiment/experiment_spec.hpp"
 #include "framework/simulation/simulator.hpp"

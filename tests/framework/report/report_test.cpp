@@ -58,7 +58,8 @@ TEST_F(ReportTest, TheTableCarriesExactValuesAndShowsThemRounded) {
 TEST_F(ReportTest, CopiesOfTheTableAreEscapedForTheirFormat) {
   const nlohmann::json texts = readPageData(make().html)["texts"];
   EXPECT_EQ(texts["metrics-csv"], readFile(folder_ / "run" / "metrics.csv"));
-  EXPECT_NE(texts["metrics-markdown"].get<std::string>().find("| k | N/m | 80 | 120 | 0.125 | 0.0749(24) |"),
+  EXPECT_NE(texts["metrics-markdown"].get<std::string>().find(
+                "| k         | N/m   |    80 |   120 |  0.125 | 0.0749(24) |"),
             std::string::npos);
   const std::string latex = texts["metrics-latex"];
   EXPECT_NE(latex.find("bias \\% & sd \\%"), std::string::npos);
