@@ -9,7 +9,6 @@ link_libraries(OpenMP::OpenMP_CXX fmt::fmt) # every target, as precompiled heade
 find_package(Boost 1.74 REQUIRED)
 find_package(Simbody 3.7 REQUIRED)
 find_package(yaml-cpp 0.7 REQUIRED)
-find_package(muparser 2.3 REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(spdlog REQUIRED)
 find_package(nlohmann_json REQUIRED)

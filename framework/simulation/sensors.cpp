@@ -23,8 +23,7 @@ void forEachOutput(const ModelSpec& model, Index rows, const Use& use) {
 void applyGains(const ModelSpec& model, ModelNumbers& numbers, Eigen::Ref<Eigen::MatrixXd> derivatives) {
   forEachOutput(model, derivatives.rows(), [&](const OutputSpec& output, Index first, Index rows) {
     if (!output.gain.text.empty()) {
-      derivatives.middleRows(first, rows) *=
-          numbers.updNumbers().calc(output.gain, {getOwner(output), "gain", ""});
+      derivatives.middleRows(first, rows) *= numbers.calc(output.gain, {getOwner(output), "gain", ""});
     }
   });
 }
@@ -34,7 +33,7 @@ void applySensors(const ModelSpec& model, ModelNumbers& numbers, Eigen::Ref<Eige
   forEachOutput(model, response.size(), [&](const OutputSpec& output, Index first, Index rows) {
     if (!output.offset.text.empty()) {
       response.segment(first, rows).array() +=
-          numbers.updNumbers().calc(output.offset, {getOwner(output), "offset", output.unit.c_str()});
+          numbers.calc(output.offset, {getOwner(output), "offset", output.unit.c_str()});
     }
   });
 }

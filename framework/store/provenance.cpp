@@ -114,10 +114,8 @@ std::string makeProvenanceJson(const Provenance& provenance) {
     json["digests"][name] = digest;
   }
   json["build"] = {{"compiler", kCompiler}, {"type", kBuildType}, {"instruction_set", kInstructionSet}};
-  json["libraries"] = {{"Eigen", kEigenVersion},      {"Simbody", kSimbodyVersion},
-                       {"NLopt", kNloptVersion},      {"Boost", kBoostVersion},
-                       {"yaml-cpp", kYamlCppVersion}, {"muParser", kMuparserVersion},
-                       {"HDF5", kHdf5Version}};
+  json["libraries"] = {{"Eigen", kEigenVersion}, {"Simbody", kSimbodyVersion},  {"NLopt", kNloptVersion},
+                       {"Boost", kBoostVersion}, {"yaml-cpp", kYamlCppVersion}, {"HDF5", kHdf5Version}};
   json["machine"] = {{"cpu", readCpuModel()},
                      {"cores", std::thread::hardware_concurrency()},
                      {"system", readOperatingSystem()}};

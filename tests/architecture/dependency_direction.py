@@ -6,6 +6,7 @@ from pathlib import Path
 # What each room may include besides itself. Whoever includes a room gets what that room includes.
 ALLOWED = {
     "linalg": set(),
+    "operations": set(),
     "kernels": set(),
     "base": set(),
     "experiment": {"base"},
@@ -72,8 +73,9 @@ ORDER_WITHIN = {
     "study": ["samples", "pipeline", "verification", "replay", "sweep", "shards"],
 }
 
-# Dense linear algebra, which every room may include.
-COMMON = {"linalg"}
+# Dense linear algebra, and the operations that expressions and recorded programs share, which every room may include.
+COMMON = {"linalg", "operations"}
+OPERATIONS = re.compile(r"kernels/lanes/program/(operation_list|operation|real)\.hpp")
 
 # Libraries that stay behind one room. Eigen's decompositions take 3 to 15 s in each translation unit that has one.
 LIBRARIES = {
@@ -83,7 +85,6 @@ LIBRARIES = {
     },
     r"(Simbody|SimTK\w*|simbody/.*|simmath/.*)(\.h)?": {"models/mechanism"},
     r"yaml-cpp/.*": {"experiment"},
-    r"muParser.*": {"experiment"},
     r"udunits2.*": {"experiment"},
     r"hdf5.*": {"base", "store"},
     r"matio.*": {"data"},
@@ -135,7 +136,9 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 
 
 def part_of(path):
-    """'linalg', 'kernels' for the rest of kernels/, or a room of framework."""
+    """'linalg', 'operations', 'kernels' for the rest of kernels/, or a room of framework."""
+    if OPERATIONS.fullmatch(path.as_posix()):
+        return "operations"
     if path.parts[0] == "kernels":
         return "linalg" if path.parts[1] == "linalg" else "kernels"
     inner = "/".join(path.parts[1:3])

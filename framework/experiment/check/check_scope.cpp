@@ -1,13 +1,12 @@
 #include "framework/experiment/check/check_scope.hpp"
 
-#include <muParser.h>
-
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 
 #include "framework/base/text/nearest_name.hpp"
 #include "framework/base/text/number_text.hpp"
+#include "framework/experiment/expression/named_values.hpp"
 #include "framework/experiment/fields/read_value.hpp"
 
 namespace twinmap {
@@ -21,11 +20,6 @@ double calcUnitChange(const Dimension& dimension) {
     factor *= std::pow(change, power);
   }
   return factor;
-}
-
-bool isFunctionName(const std::string& name) {
-  static const mu::Parser kParser;
-  return kParser.GetFunDef().count(name) > 0;
 }
 
 /// Whether the expression has a number that may carry a unit of its own (7850 * area * length): one that is
@@ -49,7 +43,7 @@ bool hasFreeNumber(const std::string& text) {
 
 void CheckScope::define(const Name& name, const std::optional<Dimension>& dimension, double reference_value) {
   requireIdentifier(name);
-  if (isReservedName(name.text) || isFunctionName(name.text)) {
+  if (isReservedName(name.text)) {
     throw ExperimentError(name.where, name.text, "is reserved in expressions; choose another name");
   }
   if (std::find(names_.begin(), names_.end(), name.text) != names_.end()) {
@@ -114,12 +108,12 @@ bool CheckScope::isUnitStated(const std::vector<std::string>& names) const {
 }
 
 double CheckScope::calcScaled(const Expression& expression, bool scaled) const {
-  ExpressionScope scope;
+  NamedValues<double> values;
   for (std::size_t i = 0; i < names_.size(); ++i) {
     const double change = scaled && symbols_[i].dimension ? calcUnitChange(*symbols_[i].dimension) : 1.0;
-    scope.define(names_[i], change * symbols_[i].reference_value);
+    values.define(names_[i], change * symbols_[i].reference_value);
   }
-  return scope.compile(expression).calc();
+  return values.calc(expression);
 }
 
 }  // namespace twinmap

@@ -11,34 +11,37 @@
 namespace twinmap {
 namespace {
 
-const std::map<std::string, Operation> kFunctions{
-    {"sin", Operation::kSin},     {"cos", Operation::kCos},     {"tan", Operation::kTan},
-    {"asin", Operation::kAsin},   {"acos", Operation::kAcos},   {"atan", Operation::kAtan},
-    {"sinh", Operation::kSinh},   {"cosh", Operation::kCosh},   {"tanh", Operation::kTanh},
-    {"asinh", Operation::kAsinh}, {"acosh", Operation::kAcosh}, {"atanh", Operation::kAtanh},
-    {"exp", Operation::kExp},     {"log", Operation::kLog},     {"ln", Operation::kLog},
-    {"log2", Operation::kLog2},   {"log10", Operation::kLog10}, {"sqrt", Operation::kSqrt},
-    {"abs", Operation::kAbs},     {"sign", Operation::kSign},   {"rint", Operation::kRint}};
+using program::Operation;
 
-/// Binary operators that take their operands from left to right, by increasing precedence; a token that
-/// begins another comes after it.
-const std::vector<std::vector<std::pair<std::string, Operation>>> kLevels{
-    {{"||", Operation::kOr}},
-    {{"&&", Operation::kAnd}},
-    {{"<=", Operation::kLessEqual},
-     {">=", Operation::kGreaterEqual},
-     {"==", Operation::kEqual},
-     {"!=", Operation::kNotEqual},
-     {"<", Operation::kLess},
-     {">", Operation::kGreater}},
-    {{"+", Operation::kAdd}, {"-", Operation::kSubtract}},
-    {{"*", Operation::kMultiply}, {"/", Operation::kDivide}}};
+/// Operators between two operands, which they take from left to right; a token that begins another comes
+/// after it.
+struct Infix {
+  const char* token;
+  int precedence;
+  Operation operation;
+  bool swapped = false;  ///< a > b is b < a
+};
 
-/// Nested deeper than this, an expression is refused: parsing one nests as deeply.
-constexpr int kDeepest = 200;
+constexpr Infix kInfixes[] = {{"||", 1, Operation::kOr},          {"&&", 2, Operation::kAnd},
+                              {"<=", 3, Operation::kLessOrEqual}, {">=", 3, Operation::kLessOrEqual, true},
+                              {"==", 3, Operation::kEqual},       {"!=", 3, Operation::kNotEqual},
+                              {"<", 3, Operation::kLess},         {">", 3, Operation::kLess, true},
+                              {"+", 4, Operation::kAdd},          {"-", 4, Operation::kSubtract},
+                              {"*", 5, Operation::kMultiply},     {"/", 5, Operation::kDivide}};
 
-/// muParser's own constant _pi, which has 13 digits.
-constexpr double kMuparserPi = 3.141592653589;
+const std::map<std::string, double> kConstants{{"pi", boost::math::constants::pi<double>()},
+                                               {"_pi", boost::math::constants::pi<double>()},
+                                               {"_e", boost::math::constants::e<double>()}};
+
+const std::map<std::string, Operation> kUnaryFunctions{
+#define TWINMAP_NAMED(kind, function, ...) {#function, Operation::k##kind},
+    TWINMAP_UNARY_FUNCTIONS(TWINMAP_NAMED)
+#undef TWINMAP_NAMED
+        {"ln", Operation::kLog}};
+
+/// Functions of any number of operands: the operation takes in one after the other.
+const std::map<std::string, Operation> kFolds{
+    {"sum", Operation::kAdd}, {"avg", Operation::kAdd}, {"min", Operation::kMin}, {"max", Operation::kMax}};
 
 bool isNameCharacter(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
@@ -47,19 +50,27 @@ bool isNameCharacter(char c) {
 /// Recursive descent; each member parses one rule of the grammar and returns its node.
 class Parser {
  public:
-  explicit Parser(const std::string& text) : text_(text) {}
+  explicit Parser(const Expression& expression) : expression_(expression), text_(expression.text) {}
 
   ExpressionTree parse() {
+    constexpr std::size_t kLongest = 4000;
+    if (text_.size() > kLongest) {
+      throw ExperimentError(expression_.where, text_, "must have at most 4000 characters");
+    }
     parseChoice();
+    if (peek() == '=') {
+      throw ExperimentError(expression_.where, text_, "must not assign; write '==' to compare");
+    }
     if (peek() != '\0') {
-      fail();
+      fail("an operator is missing");
     }
     return std::move(tree_);
   }
 
  private:
-  [[noreturn]] void fail() const {
-    throw UnknownSyntax(fmt::format("'{}' is not understood at character {}", text_, at_ + 1));
+  [[noreturn]] void fail(const std::string& what) const {
+    throw ExperimentError(expression_.where, text_,
+                          fmt::format("is not a valid expression: {} at character {}", what, at_ + 1));
   }
 
   char peek() {
@@ -78,83 +89,71 @@ class Parser {
 
   void expect(const std::string& token) {
     if (!accept(token)) {
-      fail();
+      fail("'" + token + "' is missing");
     }
   }
 
-  int add(Operation operation, std::vector<int> operands) {
-    tree_.nodes.push_back({operation, 0.0, -1, std::move(operands)});
+  int add(Operation operation, int a, int b = -1, int c = -1) {
+    tree_.nodes.push_back({operation, 0.0, {a, b, c}});
     return static_cast<int>(tree_.nodes.size()) - 1;
   }
 
   int addLiteral(double value) {
-    const int node = add(Operation::kLiteral, {});
+    const int node = add(Operation::kLiteral, -1);
     tree_.nodes.back().literal = value;
     return node;
   }
 
   int parseChoice() {
-    const int condition = parseLevel(0);
+    const int condition = parseBinary(0);
     if (!accept("?")) {
       return condition;
     }
     const int yes = parseChoice();
     expect(":");
     const int no = parseChoice();
-    return add(Operation::kChoose, {condition, yes, no});
+    return add(Operation::kSelect, condition, yes, no);
   }
 
-  int parseLevel(std::size_t level) {
-    if (level == kLevels.size()) {
-      return parseSigned();
-    }
-    int left = parseLevel(level + 1);
-    while (const Operation* operation = acceptOperator(level)) {
-      const int right = parseLevel(level + 1);
-      left = add(*operation, {left, right});
+  /// Operators that bind at least as strongly as `precedence`.
+  int parseBinary(int precedence) {
+    int left = parseSigned();
+    while (const Infix* infix = acceptInfix(precedence)) {
+      const int right = parseBinary(infix->precedence + 1);
+      left = infix->swapped ? add(infix->operation, right, left) : add(infix->operation, left, right);
     }
     return left;
   }
 
-  const Operation* acceptOperator(std::size_t level) {
-    for (const auto& [token, operation] : kLevels[level]) {
-      if (accept(token)) {
-        return &operation;
+  const Infix* acceptInfix(int precedence) {
+    for (const Infix& infix : kInfixes) {
+      if (infix.precedence >= precedence && accept(infix.token)) {
+        return &infix;
       }
     }
     return nullptr;
   }
 
-  /// A sign binds weaker than a power: -x^2 = -(x^2).
   int parseSigned() {
+    constexpr int kDeepest = 1024;  // parsing nests as deeply, on the stack of any thread
     if (++depth_ > kDeepest) {
-      fail();
+      fail("there are more than 1024 levels of nesting");
     }
-    const int node = parseSign();
+    const int node = accept("-")   ? add(Operation::kNegate, parseSigned())
+                     : accept("+") ? parseSigned()
+                                   : parsePower();
     --depth_;
     return node;
   }
 
-  int parseSign() {
-    if (accept("-")) {
-      return add(Operation::kNegate, {parseSigned()});
-    }
-    return accept("+") ? parseSigned() : parsePower();
-  }
-
   int parsePower() {
     const int base = parsePrimary();
-    if (!accept("^")) {
-      return base;
-    }
-    const int exponent = parseSigned();  // from right to left: x^y^z = x^(y^z)
-    return add(Operation::kPower, {base, exponent});
+    return accept("^") ? add(Operation::kPow, base, parseSigned()) : base;
   }
 
   int parsePrimary() {
     const char next = peek();
-    if (next == '(') {
-      expect("(");
+    if (accept("(")) {
       const int inside = parseChoice();
       expect(")");
       return inside;
@@ -162,7 +161,10 @@ class Parser {
     if (std::isdigit(static_cast<unsigned char>(next)) != 0 || next == '.') {
       return parseNumber();
     }
-    return isNameCharacter(next) ? parseNamed() : (fail(), 0);
+    if (!isNameCharacter(next)) {
+      fail("a number, a name or '(' is missing");
+    }
+    return parseNamed();
   }
 
   int parseNumber() {
@@ -170,80 +172,70 @@ class Parser {
     const char* const end = text_.data() + text_.size();
     const auto [after, error] = std::from_chars(text_.data() + at_, end, value);
     if (error != std::errc() || (after != end && isNameCharacter(*after))) {
-      fail();
+      fail("what is not a number begins with a digit");
     }
     at_ = static_cast<std::size_t>(after - text_.data());
     return addLiteral(value);
   }
 
   int parseNamed() {
-    std::size_t end = at_;
-    while (end < text_.size() && isNameCharacter(text_[end])) {
-      ++end;
+    const std::size_t begin = at_;
+    while (at_ < text_.size() && isNameCharacter(text_[at_])) {
+      ++at_;
     }
-    const std::string name = text_.substr(at_, end - at_);
-    at_ = end;
-    return peek() == '(' ? parseCall(name) : addName(name);
+    const std::string name = text_.substr(begin, at_ - begin);
+    return peek() == '(' ? parseCall(name, begin) : addName(name);
   }
 
   int addName(const std::string& name) {
-    if (name == "pi") {
-      return addLiteral(boost::math::constants::pi<double>());
-    }
-    if (name == "_pi") {
-      return addLiteral(kMuparserPi);
-    }
-    if (name == "_e") {
-      return addLiteral(boost::math::constants::e<double>());
+    if (const auto constant = kConstants.find(name); constant != kConstants.end()) {
+      return addLiteral(constant->second);
     }
     const auto found = std::find(tree_.names.begin(), tree_.names.end(), name);
-    const int index = static_cast<int>(found - tree_.names.begin());
+    const int place = static_cast<int>(found - tree_.names.begin());
     if (found == tree_.names.end()) {
       tree_.names.push_back(name);
     }
-    const int node = add(Operation::kName, {});
-    tree_.nodes.back().name = index;
-    return node;
+    return add(Operation::kParameter, place);
   }
 
-  int parseCall(const std::string& name) {
-    std::vector<int> arguments;
+  int parseCall(const std::string& name, std::size_t begin) {
+    std::vector<int> operands;
     expect("(");
     do {
-      arguments.push_back(parseChoice());
+      operands.push_back(parseChoice());
     } while (accept(","));
     expect(")");
-    const auto found = kFunctions.find(name);
-    if (found != kFunctions.end() && arguments.size() == 1) {
-      return add(found->second, arguments);
+    const auto unary = kUnaryFunctions.find(name);
+    if (unary != kUnaryFunctions.end() && operands.size() == 1) {
+      return add(unary->second, operands[0]);
     }
-    if (name == "atan2" && arguments.size() == 2) {
-      return add(Operation::kAtan2, arguments);
+    if (name == "atan2" && operands.size() == 2) {
+      return add(Operation::kAtan2, operands[0], operands[1]);
     }
-    return fold(name, arguments);
+    if (const auto fold = kFolds.find(name); fold != kFolds.end()) {
+      return addFold(name, fold->second, operands);
+    }
+    at_ = begin;
+    fail(name == "atan2" ? fmt::format("'atan2' takes two operands, not {},", operands.size())
+         : unary != kUnaryFunctions.end()
+             ? fmt::format("'{}' takes one operand, not {},", name, operands.size())
+             : fmt::format("there is no function '{}'", name));
   }
 
-  /// A function of any number of arguments.
-  int fold(const std::string& name, const std::vector<int>& arguments) {
-    const std::map<std::string, Operation> folds{{"sum", Operation::kAdd},
-                                                 {"avg", Operation::kAdd},
-                                                 {"min", Operation::kMin},
-                                                 {"max", Operation::kMax}};
-    const auto found = folds.find(name);
-    if (found == folds.end()) {
-      fail();
-    }
-    int value = arguments[0];
-    for (std::size_t i = 1; i < arguments.size(); ++i) {
-      value = add(found->second, {value, arguments[i]});
+  int addFold(const std::string& name, Operation operation, const std::vector<int>& operands) {
+    int value = operands[0];
+    for (std::size_t i = 1; i < operands.size(); ++i) {
+      value = add(operation, value, operands[i]);
     }
     if (name != "avg") {
       return value;
     }
-    const int count = addLiteral(static_cast<double>(arguments.size()));
-    return add(Operation::kDivide, {value, count});
+    const int count = addLiteral(static_cast<double>(operands.size()));
+    return add(Operation::kDivide, value, count);
   }
 
+  const Expression& expression_;
   const std::string& text_;
   std::size_t at_ = 0;
   int depth_ = 0;
@@ -252,8 +244,17 @@ class Parser {
 
 }  // namespace
 
-ExpressionTree parseExpression(const std::string& text) {
-  return Parser(text).parse();
+ExpressionTree parseExpression(const Expression& expression) {
+  return Parser(expression).parse();
+}
+
+std::vector<std::string> getUsedNames(const Expression& expression) {
+  return parseExpression(expression).names;
+}
+
+bool isReservedName(const std::string& name) {
+  return name == "t" || name == "atan2" || kConstants.count(name) > 0 || kUnaryFunctions.count(name) > 0 ||
+         kFolds.count(name) > 0;
 }
 
 }  // namespace twinmap

@@ -1,76 +1,41 @@
 #pragma once
 
-#include <stdexcept>
+#include <array>
 #include <string>
 #include <vector>
 
+#include "framework/experiment/expression/expression.hpp"
+#include "kernels/lanes/program/operation.hpp"
+
 namespace twinmap {
 
-/// What a node of an expression does with its operands.
-enum class Operation {
-  kLiteral,
-  kName,
-  kNegate,
-  kAdd,
-  kSubtract,
-  kMultiply,
-  kDivide,
-  kPower,
-  kLess,
-  kLessEqual,
-  kGreater,
-  kGreaterEqual,
-  kEqual,
-  kNotEqual,
-  kAnd,
-  kOr,
-  kChoose,
-  kSin,
-  kCos,
-  kTan,
-  kAsin,
-  kAcos,
-  kAtan,
-  kAtan2,
-  kSinh,
-  kCosh,
-  kTanh,
-  kAsinh,
-  kAcosh,
-  kAtanh,
-  kExp,
-  kLog,
-  kLog2,
-  kLog10,
-  kSqrt,
-  kAbs,
-  kSign,
-  kRint,
-  kMin,
-  kMax
-};
-
-/// An expression in muParser's grammar as a sequence of operations, operands before what uses them, so that
-/// it can be evaluated over any scalar (equations::calcExpression); an ExpressionScope evaluates numbers, by
-/// muParser itself.
+/// An expression as a sequence of the operations of recorded programs, operands before what uses them, so
+/// that it can be evaluated over any scalar (NamedValues).
 struct ExpressionTree {
   struct Node {
-    Operation operation;
-    double literal = 0.0;         ///< of kLiteral
-    int name = -1;                ///< of kName: its place in `names`
-    std::vector<int> operands{};  ///< nodes before this one
+    program::Operation operation = program::Operation::kLiteral;
+    double literal = 0.0;                     ///< of kLiteral
+    std::array<int, 3> operands{-1, -1, -1};  ///< nodes before this one; of kParameter, its place in `names`
   };
   std::vector<Node> nodes;         ///< the last one is the value
-  std::vector<std::string> names;  ///< in order of appearance; `pi` is a literal
+  std::vector<std::string> names;  ///< in order of appearance
 };
 
-/// What muParser may accept but this parser does not know: other number formats, several values.
-class UnknownSyntax : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-/// Parses an expression that an ExpressionScope compiles. Throws UnknownSyntax. Cost: linear in its length.
-ExpressionTree parseExpression(const std::string& text);
+/// Parses an expression. From the weakest to the strongest:
+///
+///   c ? a : b        from right to left; both sides are computed
+///   ||               1 or 0; any number but 0 is true
+///   &&
+///   < <= > >= == !=  1 or 0
+///   + -
+///   * /
+///   - +              signs: -x^2 = -(x^2)
+///   ^                from right to left: x^y^z = x^(y^z)
+///
+/// then numbers (decimal), names, parentheses and functions: those of one operand in operation_list.hpp, ln
+/// (log), atan2(y, x), and of any number of operands min, max, sum and avg; the constants pi, _pi and _e.
+/// Throws ExperimentError with the character at which it is not understood, for an assignment, for more than
+/// 4000 characters or 1024 levels of nesting. Cost: linear in its length.
+ExpressionTree parseExpression(const Expression& expression);
 
 }  // namespace twinmap

@@ -84,7 +84,7 @@ class ProgramSimulator::Sampler {
  private:
   void update(const Eigen::Ref<const Eigen::VectorXd>& point) {
     numbers_.update(point);
-    excitation_.update(numbers_.updNumbers());
+    excitation_.update(numbers_);
   }
 
   ExcitationTable calcTable() {
@@ -95,7 +95,7 @@ class ProgramSimulator::Sampler {
     std::vector<double> values(point.begin(), point.end());
     for (const ConstantSpec& constant : model_.constants) {
       if (constant.variable) {
-        values.push_back(numbers_.updNumbers().calc(constant.value, {constant.name.text, "value", ""}));
+        values.push_back(numbers_.calc(constant.value, {constant.name.text, "value", ""}));
       }
     }
     return values;

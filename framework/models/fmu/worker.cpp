@@ -182,7 +182,7 @@ class FmuWorker {
     }
     try {
       numbers_.update(point);
-      excitation_.update(numbers_.updNumbers());
+      excitation_.update(numbers_);
       SampleStatus status = runner_.run(collectValues(point).data(), excitation_, response_, path);
       if (status.ok) {
         applySensors(job_.model, numbers_, response_);
@@ -197,7 +197,7 @@ class FmuWorker {
   std::vector<double> collectValues(const Eigen::VectorXd& point) {
     std::vector<double> values(point.begin(), point.end());
     for (const ConstantSpec& constant : job_.model.constants) {
-      values.push_back(numbers_.updNumbers().calc(constant.value, {constant.name.text, "value", ""}));
+      values.push_back(numbers_.calc(constant.value, {constant.name.text, "value", ""}));
     }
     return values;
   }

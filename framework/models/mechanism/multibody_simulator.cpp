@@ -12,8 +12,7 @@
 namespace twinmap {
 namespace {
 
-/// Systems and expressions are built one at a time: Simbody and muParser do not say that they may be
-/// otherwise.
+/// Systems are built one at a time: Simbody does not say that they may be otherwise.
 std::recursive_mutex building;
 
 /// What all clones share.

@@ -10,7 +10,7 @@ InputSignals calcInputSignals(const ModelSpec& model, const Eigen::VectorXd& tim
   ModelNumbers numbers(model);
   numbers.update(calcBoxCenter(collectSampled(model)));
   Excitation excitation(model.excitation);
-  excitation.update(numbers.updNumbers());
+  excitation.update(numbers);
   const std::vector<double> events = excitation.calcEventTimes(model.simulation.duration);
 
   InputSignals inputs;

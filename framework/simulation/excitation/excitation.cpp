@@ -1,37 +1,10 @@
 #include "framework/simulation/excitation/excitation.hpp"
 
 #include <algorithm>
-#include <cmath>
-
-#include "framework/simulation/excitation/excitation_terms.hpp"
+#include <limits>
 
 namespace twinmap {
 namespace {
-
-constexpr double kTwoPi = 6.283185307179586;
-
-struct ShapeAt {
-  double elapsed;  ///< time since the term's begin, s
-
-  double operator()(const LineShape& line) const { return line.value + line.slope * elapsed; }
-
-  double operator()(const ToneShape& shape) const {
-    double sum = 0.0;
-    for (const ToneShape::Tone& tone : shape.tones) {
-      sum += tone.weight * std::sin(tone.omega * elapsed + tone.phase);
-    }
-    return shape.amplitude * sum;
-  }
-
-  double operator()(const ChirpShape& chirp) const {
-    const double cycles = chirp.logarithmic
-                              ? chirp.start_frequency * std::expm1(chirp.rate * elapsed) / chirp.rate
-                              : elapsed * (chirp.start_frequency + 0.5 * chirp.rate * elapsed);
-    return chirp.amplitude * std::sin(kTwoPi * cycles);
-  }
-
-  double operator()(const SplineShape& shape) const { return shape.spline->calc(elapsed); }
-};
 
 void checkTables(const SignalSpec& signal) {
   for (const TableSpec& table : signal.tables) {
@@ -48,6 +21,47 @@ void checkTables(const SignalSpec& signal) {
     }
   }
 }
+
+/// Evaluates the terms of a signal at a parameter set. A table is one line an interval, a cubic one its
+/// spline.
+class TermWriter {
+ public:
+  TermWriter(const SignalSpec& spec, int signal, ModelNumbers& numbers, std::vector<ExcitationTerm>& terms)
+      : shapes_(spec, numbers), signal_(signal), terms_(terms) {}
+
+  template <class Term>
+  void add(const Term& term) {
+    const double begin = shapes_.calcTime(term.start, "start");
+    const double end = calcEnd(term.end, begin);
+    terms_.push_back({signal_, begin, end, shapes_.make(term)});
+  }
+
+  void addTable(const TableSpec& table, const TableSplines& splines) {
+    if (table.interpolation == TableInterpolation::kCubic) {
+      terms_.push_back({signal_, table.times.front(), table.times.back(), SplineShape{&splines.at(&table)}});
+      return;
+    }
+    for (const TablePiece& piece : calcTablePieces(table)) {
+      terms_.push_back({signal_, piece.begin, piece.end, LineShape{piece.values[0], piece.values[1]}});
+    }
+  }
+
+ private:
+  double calcEnd(const Expression& expression, double start) {
+    if (expression.text.empty()) {
+      return std::numeric_limits<double>::infinity();
+    }
+    const double end = shapes_.calcTime(expression, "end");
+    if (end <= start) {
+      throwUnusable({shapes_.getOwner(), "end", "s"}, end, "must be after its start", expression.where);
+    }
+    return end;
+  }
+
+  ShapeMaker<double, ModelNumbers> shapes_;
+  int signal_;
+  std::vector<ExcitationTerm>& terms_;
+};
 
 void checkPhases(const SignalSpec& signal) {
   for (const MultisineSpec& multisine : signal.multisines) {
@@ -72,11 +86,15 @@ Excitation::Excitation(const std::vector<SignalSpec>& signals) : signals_(signal
   }
 }
 
-void Excitation::update(NumberEvaluator& numbers) {
+void Excitation::update(ModelNumbers& numbers) {
   mute();
   terms_.clear();
   for (std::size_t i = 0; i < signals_.size(); ++i) {
-    appendTerms(signals_[i], static_cast<int>(i), splines_, numbers, terms_);
+    TermWriter writer(signals_[i], static_cast<int>(i), numbers, terms_);
+    visitTerms(signals_[i], [&writer](const auto& term) { writer.add(term); });
+    for (const TableSpec& table : signals_[i].tables) {
+      writer.addTable(table, splines_);
+    }
   }
   std::stable_sort(terms_.begin(), terms_.end(),
                    [](const ExcitationTerm& a, const ExcitationTerm& b) { return a.begin < b.begin; });
@@ -117,7 +135,8 @@ void Excitation::calcValues(double t, std::vector<double>& values) const {
 }
 
 double calcTerm(const ExcitationTerm& term, double t) {
-  return std::visit(ShapeAt{t - term.begin}, term.shape);
+  return std::visit([elapsed = t - term.begin](const auto& shape) { return shape.calc(elapsed); },
+                    term.shape);
 }
 
 }  // namespace twinmap

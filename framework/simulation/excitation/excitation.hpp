@@ -7,42 +7,29 @@
 
 #include "framework/experiment/model/excitation_spec.hpp"
 #include "framework/simulation/excitation/cubic_spline.hpp"
-#include "framework/simulation/number_evaluator.hpp"
+#include "framework/simulation/excitation/excitation_terms.hpp"
+#include "framework/simulation/model_numbers.hpp"
 
 namespace twinmap {
 
-/// value + slope * (t - begin)
+/// value + slope * elapsed: of a table between two of its times
 struct LineShape {
   double value, slope;
+
+  double calc(double elapsed) const { return value + slope * elapsed; }
 };
 
-/// amplitude * sum of weight * sin(omega * (t - begin) + phase)
-struct ToneShape {
-  struct Tone {
-    double omega, phase;  ///< rad/s, rad
-    double weight = 1.0;
-  };
-  double amplitude;
-  std::vector<Tone> tones;
-};
-
-/// amplitude * sin(phase(t - begin)); linear: 2 pi (f0 s + rate s^2 / 2), logarithmic:
-/// 2 pi f0 (exp(rate s) - 1) / rate.
-struct ChirpShape {
-  double amplitude, start_frequency, rate;
-  bool logarithmic;
-};
-
-/// (t - begin) -> the spline's value
 struct SplineShape {
   const CubicSpline* spline;
+
+  double calc(double elapsed) const { return spline->calc(elapsed); }
 };
 
 /// A function, smooth enough to integrate across, that is switched on for begin <= t < end.
 struct ExcitationTerm {
   int signal;
   double begin, end;  ///< s; end may be infinity
-  std::variant<LineShape, ToneShape, ChirpShape, SplineShape> shape;
+  std::variant<PulseShape<double>, ToneShape<double>, ChirpShape<double>, LineShape, SplineShape> shape;
 };
 
 /// The splines of cubic tables, which no parameter changes.
@@ -62,7 +49,7 @@ class Excitation {
 
   /// Evaluates all numbers for a parameter set and mutes the signals. Throws SimulationFailure for a number
   /// that is not finite, an end that is not after its start, or a frequency that is not positive.
-  void update(NumberEvaluator& numbers);
+  void update(ModelNumbers& numbers);
 
   /// The times in (0, duration) at which a signal may jump or bend, increasing, each once.
   std::vector<double> calcEventTimes(double duration) const;

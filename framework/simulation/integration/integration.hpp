@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/simulation/number_evaluator.hpp"
+#include "framework/simulation/simulation_failure.hpp"
 
 namespace twinmap {
 

@@ -8,58 +8,46 @@
 namespace twinmap::program {
 namespace {
 
-constexpr double kLn2 = 0.693147180559945309417;
-constexpr double kLn10 = 2.302585092994045684018;
-
-/// The derivative of y = f(x) with respect to x.
-Symbol calcSlope(Operation operation, Symbol x, Symbol y) {
+/// The derivative of y = f(a) with respect to a.
+Symbol calcSlope(Operation operation, Symbol a, Symbol y) {
   switch (operation) {
-    case Operation::kNegate:
-      return -1.0;
-    case Operation::kSqrt:
-      return 0.5 / y;
-    case Operation::kAbs:
-      return sign(x);
-    case Operation::kSin:
-      return cos(x);
-    case Operation::kCos:
-      return -sin(x);
-    case Operation::kTan:
-      return 1.0 + y * y;
-    case Operation::kAsin:
-      return 1.0 / sqrt(1.0 - x * x);
-    case Operation::kAcos:
-      return -1.0 / sqrt(1.0 - x * x);
-    case Operation::kAtan:
-      return 1.0 / (1.0 + x * x);
-    case Operation::kExp:
-      return y;
-    case Operation::kLog:
-      return 1.0 / x;
-    case Operation::kLog2:
-      return (1.0 / kLn2) / x;
-    case Operation::kLog10:
-      return (1.0 / kLn10) / x;
-    case Operation::kSinh:
-      return cosh(x);
-    case Operation::kCosh:
-      return sinh(x);
-    case Operation::kTanh:
-      return 1.0 - y * y;
-    case Operation::kAsinh:
-      return 1.0 / sqrt(1.0 + x * x);
-    case Operation::kAcosh:
-      return 1.0 / (sqrt(x - 1.0) * sqrt(x + 1.0));
-    case Operation::kAtanh:
-      return 1.0 / (1.0 - x * x);
+#define TWINMAP_SLOPE(kind, function, rule, value, slope) \
+  case Operation::k##kind:                                \
+    return slope;
+    TWINMAP_UNARY_OPERATIONS(TWINMAP_SLOPE)
+#undef TWINMAP_SLOPE
     default:
-      return 0.0;  // steps
+      assert(false && "made by compile()");
+      return {};
   }
 }
 
-/// d(x^y) = y x^(y-1) dx + x^y log(x) dy
-Symbol calcPowerTangent(Symbol x, Symbol dx, Symbol y, Symbol dy, Symbol power) {
-  return y * pow(x, y - 1.0) * dx + (dy.isLiteral(0.0) ? Symbol(0.0) : power * log(x) * dy);
+/// The change of y = f(a, b).
+Symbol calcBinary(Operation operation, Symbol a, Symbol da, Symbol b, Symbol db, Symbol y) {
+  switch (operation) {
+#define TWINMAP_TANGENT(kind, function, commutes, rule, value, tangent) \
+  case Operation::k##kind:                                              \
+    return tangent;
+    TWINMAP_BINARY_OPERATIONS(TWINMAP_TANGENT)
+#undef TWINMAP_TANGENT
+    default:
+      assert(false && "made by compile()");
+      return {};
+  }
+}
+
+/// The change of f(a, b, c), of which a is a condition.
+Symbol calcTernary(Operation operation, Symbol a, Symbol db, Symbol dc) {
+  switch (operation) {
+#define TWINMAP_TANGENT(kind, function, rule, value, tangent) \
+  case Operation::k##kind:                                    \
+    return tangent;
+    TWINMAP_TERNARY_FUNCTIONS(TWINMAP_TANGENT)
+#undef TWINMAP_TANGENT
+    default:
+      assert(false && "made by compile()");
+      return {};
+  }
 }
 
 /// One direction through the graph. Operands stand before their results, so that one pass suffices.
@@ -99,37 +87,11 @@ class ForwardMode {
       return da.isLiteral(0.0) ? da : calcSlope(n.operation, a, result) * da;
     }
     const Symbol db = tangents_[n.b];
-    if (n.operation == Operation::kSelect) {
-      return select(a, db, tangents_[n.c]);
+    if (count == 3) {
+      return calcTernary(n.operation, a, db, tangents_[n.c]);
     }
     const bool constant = da.isLiteral(0.0) && db.isLiteral(0.0);
-    return constant ? Symbol(0.0) : calcBinary(n.operation, {a, da}, {recorder_.getSymbol(n.b), db}, result);
-  }
-
-  struct Dual {
-    Symbol value, tangent;
-  };
-  static Symbol calcBinary(Operation operation, const Dual& a, const Dual& b, Symbol result) {
-    switch (operation) {
-      case Operation::kAdd:
-        return a.tangent + b.tangent;
-      case Operation::kSubtract:
-        return a.tangent - b.tangent;
-      case Operation::kMultiply:
-        return a.value * b.tangent + b.value * a.tangent;
-      case Operation::kDivide:  // 1 / b is shared by all directions
-        return (a.tangent - result * b.tangent) * (1.0 / b.value);
-      case Operation::kAtan2:
-        return (b.value * a.tangent - a.value * b.tangent) / (a.value * a.value + b.value * b.value);
-      case Operation::kPow:
-        return calcPowerTangent(a.value, a.tangent, b.value, b.tangent, result);
-      case Operation::kMin:
-        return select(less(b.value, a.value), b.tangent, a.tangent);
-      case Operation::kMax:
-        return select(less(a.value, b.value), b.tangent, a.tangent);
-      default:
-        return 0.0;  // comparisons
-    }
+    return constant ? Symbol(0.0) : calcBinary(n.operation, a, da, recorder_.getSymbol(n.b), db, result);
   }
 
   Recorder& recorder_;

@@ -1,5 +1,3 @@
-#include "kernels/lanes/program/evaluate.hpp"
-
 #include <algorithm>
 
 #include "kernels/lanes/program/engine.hpp"

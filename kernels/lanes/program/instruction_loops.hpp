@@ -68,103 +68,28 @@ class InstructionLoops {
 
   static void runOne(Operation operation, const I* i, const I* end, double* slots) {
     switch (operation) {
-      case Operation::kAdd:
-        return binary(i, end, slots, [](P a, P b) { return a + b; });
-      case Operation::kSubtract:
-        return binary(i, end, slots, [](P a, P b) { return a - b; });
-      case Operation::kMultiply:
-        return binary(i, end, slots, [](P a, P b) { return a * b; });
-      case Operation::kDivide:
-        return binary(i, end, slots, [](P a, P b) { return a / b; });
-      case Operation::kNegate:
-        return unary(i, end, slots, [](P a) { return -a; });
-      case Operation::kMultiplyAdd:
-        return ternary(i, end, slots, [](P a, P b, P c) { return fma(a, b, c); });
-      case Operation::kMultiplySubtract:
-        return ternary(i, end, slots, [](P a, P b, P c) { return fms(a, b, c); });
-      case Operation::kNegativeMultiplyAdd:
-        return ternary(i, end, slots, [](P a, P b, P c) { return fnma(a, b, c); });
+#define TWINMAP_UNARY(kind, function, rule, value, slope) \
+  case Operation::k##kind:                                \
+    return unary(i, end, slots, [](P a) { return value; });
+#define TWINMAP_BINARY(kind, function, commutes, rule, value, tangent) \
+  case Operation::k##kind:                                             \
+    return binary(i, end, slots, [](P a, P b) { return value; });
+#define TWINMAP_TERNARY(kind, function, rule, value, tangent) \
+  case Operation::k##kind:                                    \
+    return ternary(i, end, slots, [](P a, P b, P c) { return value; });
+#define TWINMAP_FUSED(kind, value) \
+  case Operation::k##kind:         \
+    return ternary(i, end, slots, [](P a, P b, P c) { return value; });
+      TWINMAP_UNARY_OPERATIONS(TWINMAP_UNARY)
+      TWINMAP_BINARY_OPERATIONS(TWINMAP_BINARY)
+      TWINMAP_TERNARY_FUNCTIONS(TWINMAP_TERNARY)
+      TWINMAP_FUSED_OPERATIONS(TWINMAP_FUSED)
+#undef TWINMAP_UNARY
+#undef TWINMAP_BINARY
+#undef TWINMAP_TERNARY
+#undef TWINMAP_FUSED
       case Operation::kSinCos:
         return sineCosine(i, end, slots);
-      case Operation::kSqrt:
-        return unary(i, end, slots, [](P a) { return sqrt(a); });
-      default:
-        return callFunction(operation, i, end, slots);
-    }
-  }
-
-  static void callFunction(Operation operation, const I* i, const I* end, double* slots) {
-    switch (operation) {
-      case Operation::kAbs:
-        return unary(i, end, slots, [](P a) { return abs(a); });
-      case Operation::kFloor:
-        return unary(i, end, slots, [](P a) { return floor(a); });
-      case Operation::kRint:
-        return unary(i, end, slots, [](P a) { return rint(a); });
-      case Operation::kSin:
-        return unary(i, end, slots, [](P a) { return sin(a); });
-      case Operation::kCos:
-        return unary(i, end, slots, [](P a) { return cos(a); });
-      case Operation::kTan:
-        return unary(i, end, slots, [](P a) { return tan(a); });
-      case Operation::kAsin:
-        return unary(i, end, slots, [](P a) { return asin(a); });
-      case Operation::kAcos:
-        return unary(i, end, slots, [](P a) { return acos(a); });
-      case Operation::kAtan:
-        return unary(i, end, slots, [](P a) { return atan(a); });
-      case Operation::kAtan2:
-        return binary(i, end, slots, [](P a, P b) { return atan2(a, b); });
-      case Operation::kExp:
-        return unary(i, end, slots, [](P a) { return exp(a); });
-      case Operation::kLog:
-        return unary(i, end, slots, [](P a) { return log(a); });
-      case Operation::kLog2:
-        return unary(i, end, slots, [](P a) { return log2(a); });
-      case Operation::kLog10:
-        return unary(i, end, slots, [](P a) { return log10(a); });
-      case Operation::kPow:
-        return binary(i, end, slots, [](P a, P b) { return power(a, b); });
-      case Operation::kSinh:
-        return unary(i, end, slots, [](P a) { return sinh(a); });
-      case Operation::kCosh:
-        return unary(i, end, slots, [](P a) { return cosh(a); });
-      case Operation::kTanh:
-        return unary(i, end, slots, [](P a) { return tanh(a); });
-      case Operation::kAsinh:
-        return unary(i, end, slots, [](P a) { return asinh(a); });
-      case Operation::kAcosh:
-        return unary(i, end, slots, [](P a) { return acosh(a); });
-      case Operation::kAtanh:
-        return unary(i, end, slots, [](P a) { return atanh(a); });
-      default:
-        return decide(operation, i, end, slots);
-    }
-  }
-
-  static void decide(Operation operation, const I* i, const I* end, double* slots) {
-    switch (operation) {
-      case Operation::kSign:
-        return unary(i, end, slots,
-                     [](P a) { return select<P>((a > 0.0) | (a < 0.0), copySign(broadcast<P>(1.0), a), a); });
-      case Operation::kMin:  // a number rather than a NaN
-        return binary(i, end, slots, [](P a, P b) { return select<P>((b < a) | (a != a), b, a); });
-      case Operation::kMax:
-        return binary(i, end, slots, [](P a, P b) { return select<P>((a < b) | (a != a), b, a); });
-      case Operation::kLess:
-        return binary(i, end, slots, [](P a, P b) { return truth(a < b); });
-      case Operation::kLessOrEqual:
-        return binary(i, end, slots, [](P a, P b) { return truth(a <= b); });
-      case Operation::kEqual:
-        return binary(i, end, slots, [](P a, P b) { return truth(a == b); });
-      case Operation::kNotEqual:
-        return binary(i, end, slots, [](P a, P b) { return truth(a != b); });
-      case Operation::kAnd:
-        return binary(i, end, slots, [](P a, P b) { return truth((a != 0.0) & (b != 0.0)); });
-      case Operation::kOr:
-        return binary(i, end, slots, [](P a, P b) { return truth((a != 0.0) | (b != 0.0)); });
-      case Operation::kSelect:
-        return ternary(i, end, slots, [](P a, P b, P c) { return select<P>(a != 0.0, b, c); });
       default:
         __builtin_trap();
     }

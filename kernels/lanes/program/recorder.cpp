@@ -16,39 +16,6 @@ std::uint64_t getBits(double value) {
 
 }  // namespace
 
-int countOperands(Operation operation) {
-  switch (operation) {
-    case Operation::kLiteral:
-    case Operation::kTime:
-    case Operation::kState:
-    case Operation::kParameter:
-    case Operation::kPhaseInput:
-      return 0;
-    case Operation::kMultiplyAdd:
-    case Operation::kMultiplySubtract:
-    case Operation::kNegativeMultiplyAdd:
-    case Operation::kSelect:
-      return 3;
-    case Operation::kAdd:
-    case Operation::kSubtract:
-    case Operation::kMultiply:
-    case Operation::kDivide:
-    case Operation::kAtan2:
-    case Operation::kPow:
-    case Operation::kMin:
-    case Operation::kMax:
-    case Operation::kLess:
-    case Operation::kLessOrEqual:
-    case Operation::kEqual:
-    case Operation::kNotEqual:
-    case Operation::kAnd:
-    case Operation::kOr:
-      return 2;
-    default:
-      return 1;
-  }
-}
-
 std::size_t Recorder::Hash::operator()(const Node& node) const {
   std::uint64_t hash = getBits(node.literal) + static_cast<std::uint64_t>(node.operation);
   for (const int operand : {node.a, node.b, node.c}) {

@@ -2,7 +2,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "kernels/lanes/program/evaluate.hpp"
+#include "kernels/lanes/program/real.hpp"
 #include "kernels/lanes/program/recorder.hpp"
 
 namespace twinmap::program {
@@ -33,17 +33,17 @@ Symbol append(Operation operation, Symbol a, Symbol b = {}, Symbol c = {}) {
   return getRecorder(a, b, c).append(operation, a, b, c);
 }
 
-Symbol negate(Symbol a) {
+Symbol negate(Operation operation, Symbol a) {
   if (is(a, Operation::kNegate)) {
     return getOperand(a, &Node::a);
   }
   if (is(a, Operation::kSubtract)) {
     return getOperand(a, &Node::b) - getOperand(a, &Node::a);
   }
-  return append(Operation::kNegate, a);
+  return append(operation, a);
 }
 
-Symbol add(Symbol a, Symbol b) {
+Symbol add(Operation operation, Symbol a, Symbol b) {
   if (a.isLiteral(0.0)) {
     return b;
   }
@@ -56,10 +56,10 @@ Symbol add(Symbol a, Symbol b) {
   if (is(a, Operation::kNegate)) {
     return b - getOperand(a, &Node::a);
   }
-  return append(Operation::kAdd, a, b);
+  return append(operation, a, b);
 }
 
-Symbol subtract(Symbol a, Symbol b) {
+Symbol subtract(Operation operation, Symbol a, Symbol b) {
   if (b.isLiteral(0.0)) {
     return a;
   }
@@ -75,7 +75,7 @@ Symbol subtract(Symbol a, Symbol b) {
   if (is(a, Operation::kNegate)) {
     return -(getOperand(a, &Node::a) + b);
   }
-  return append(Operation::kSubtract, a, b);
+  return append(operation, a, b);
 }
 
 /// p * (q * x) becomes (p * q) * x where p is known earlier than x: then so may be p * q.
@@ -88,7 +88,7 @@ Symbol gatherFactors(Symbol p, Symbol product) {
   return getLevel(x) < getLevel(q) ? (p * x) * q : append(Operation::kMultiply, p, product);
 }
 
-Symbol multiply(Symbol a, Symbol b) {
+Symbol multiply(Operation operation, Symbol a, Symbol b) {
   if (getLevel(b) < getLevel(a)) {
     return b * a;
   }
@@ -110,11 +110,11 @@ Symbol multiply(Symbol a, Symbol b) {
   if (getLevel(a) < getLevel(b) && is(b, Operation::kMultiply)) {
     return gatherFactors(a, b);
   }
-  return append(Operation::kMultiply, a, b);
+  return append(operation, a, b);
 }
 
 /// A divisor that is known earlier is inverted there: a product is several times cheaper than a quotient.
-Symbol divide(Symbol a, Symbol b) {
+Symbol divide(Operation operation, Symbol a, Symbol b) {
   if (a.isLiteral(0.0)) {
     return 0.0;
   }
@@ -127,86 +127,81 @@ Symbol divide(Symbol a, Symbol b) {
   if (getLevel(b) < getLevel(a)) {
     return a * (Symbol(1.0) / b);
   }
-  return append(Operation::kDivide, a, b);
+  return append(operation, a, b);
 }
 
-Symbol expandPower(Symbol x, int exponent) {
+template <typename S>
+S expandPower(S x, int exponent) {
   if (exponent == 1) {
     return x;
   }
-  const Symbol half = expandPower(x, exponent / 2);
+  const S half = expandPower(x, exponent / 2);
   return exponent % 2 == 0 ? half * half : half * half * x;
 }
 
-Symbol power(Symbol x, Symbol y) {
-  if (y.isLiteral(0.0)) {
+/// x^y of a known exponent; `general` where products and roots do not give it.
+template <typename S, typename General>
+S calcPower(S x, double y, const General& general) {
+  using namespace real;
+  if (y == 0.0) {
     return 1.0;
   }
-  if (y.isLiteral(0.5)) {
+  if (y == 0.5) {
     return sqrt(x);
   }
-  if (y.isLiteral() && y.getLiteral() == std::rint(y.getLiteral()) &&
-      std::abs(y.getLiteral()) <= kLargestExpandedPower) {
-    const int exponent = static_cast<int>(y.getLiteral());
-    return exponent > 0 ? expandPower(x, exponent) : Symbol(1.0) / expandPower(x, -exponent);
+  if (y == std::rint(y) && std::abs(y) <= kLargestExpandedPower) {
+    const int exponent = static_cast<int>(y);
+    return exponent > 0 ? expandPower(x, exponent) : S(1.0) / expandPower(x, -exponent);
   }
-  return append(Operation::kPow, x, y);
+  return general();
 }
 
-Symbol choose(Symbol condition, Symbol a, Symbol b) {
+Symbol power(Operation operation, Symbol x, Symbol y) {
+  const auto general = [&] { return append(operation, x, y); };
+  return y.isLiteral() ? calcPower(x, y.getLiteral(), general) : general();
+}
+
+Symbol choose(Operation operation, Symbol condition, Symbol a, Symbol b) {
   if (condition.isLiteral()) {
     return condition.getLiteral() != 0.0 ? a : b;
   }
   const bool same_literal = a.isLiteral() && b.isLiteral() && a.getLiteral() == b.getLiteral();
-  return isSame(a, b) || same_literal ? a : append(Operation::kSelect, condition, a, b);
+  return isSame(a, b) || same_literal ? a : append(operation, condition, a, b);
 }
 
 /// sin(-x) and its like.
-bool isOdd(Operation operation) {
-  switch (operation) {
-    case Operation::kSin:
-    case Operation::kTan:
-    case Operation::kAsin:
-    case Operation::kAtan:
-    case Operation::kSinh:
-    case Operation::kTanh:
-    case Operation::kAsinh:
-    case Operation::kAtanh:
-      return true;
-    default:
-      return false;
-  }
+Symbol odd(Operation operation, Symbol x) {
+  return is(x, Operation::kNegate) ? -record(operation, getOperand(x, &Node::a)) : append(operation, x);
 }
-bool isEven(Operation operation) {
-  return operation == Operation::kCos || operation == Operation::kCosh || operation == Operation::kAbs;
+/// cos(-x) and its like.
+Symbol even(Operation operation, Symbol x) {
+  return is(x, Operation::kNegate) ? record(operation, getOperand(x, &Node::a)) : append(operation, x);
 }
 
-Symbol applyFunction(Operation operation, Symbol x) {
-  if (is(x, Operation::kNegate) && (isOdd(operation) || isEven(operation))) {
-    const Symbol value = record(operation, getOperand(x, &Node::a));
-    return isOdd(operation) ? -value : value;
-  }
-  return append(operation, x);
+Symbol keep(Operation operation, Symbol a, Symbol b = {}) {
+  return append(operation, a, b);
 }
 
 Symbol simplify(Operation operation, Symbol a, Symbol b, Symbol c) {
   switch (operation) {
-    case Operation::kAdd:
-      return add(a, b);
-    case Operation::kSubtract:
-      return subtract(a, b);
-    case Operation::kMultiply:
-      return multiply(a, b);
-    case Operation::kDivide:
-      return divide(a, b);
-    case Operation::kNegate:
-      return negate(a);
-    case Operation::kPow:
-      return power(a, b);
-    case Operation::kSelect:
-      return choose(a, b, c);
+#define TWINMAP_UNARY(kind, function, rule, ...) \
+  case Operation::k##kind:                       \
+    return rule(operation, a);
+#define TWINMAP_BINARY(kind, function, commutes, rule, ...) \
+  case Operation::k##kind:                                  \
+    return rule(operation, a, b);
+#define TWINMAP_TERNARY(kind, function, rule, ...) \
+  case Operation::k##kind:                         \
+    return rule(operation, a, b, c);
+    TWINMAP_UNARY_OPERATIONS(TWINMAP_UNARY)
+    TWINMAP_BINARY_OPERATIONS(TWINMAP_BINARY)
+    TWINMAP_TERNARY_FUNCTIONS(TWINMAP_TERNARY)
+#undef TWINMAP_UNARY
+#undef TWINMAP_BINARY
+#undef TWINMAP_TERNARY
     default:
-      return countOperands(operation) == 1 ? applyFunction(operation, a) : append(operation, a, b);
+      assert(false && "an input, or what compile() makes");
+      return {};
   }
 }
 
@@ -214,8 +209,13 @@ Symbol simplify(Operation operation, Symbol a, Symbol b, Symbol c) {
 
 Symbol record(Operation operation, Symbol a, Symbol b, Symbol c) {
   const bool literal = a.isLiteral() && b.isLiteral() && c.isLiteral();
-  return literal ? Symbol(evaluate(operation, a.getLiteral(), b.getLiteral(), c.getLiteral()))
+  return literal ? Symbol(apply(operation, a.getLiteral(), b.getLiteral(), c.getLiteral()))
                  : simplify(operation, a, b, c);
+}
+
+double apply(Operation operation, double a, double b, double c) {
+  const auto general = [&] { return evaluate(operation, a, b, c); };
+  return operation == Operation::kPow ? calcPower(a, b, general) : general();
 }
 
 }  // namespace twinmap::program

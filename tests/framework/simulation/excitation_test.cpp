@@ -22,17 +22,24 @@ SignalSpec makeSignal(const std::string& name) {
   return spec;
 }
 
+/// With a parameter "p".
+ModelSpec makeNamedModel() {
+  ModelSpec model;
+  model.parameters.emplace_back();
+  model.parameters.front().name.text = "p";
+  return model;
+}
+
 /// An excitation of one signal with the values of a parameter "p" = 2.
 class OneSignal {
  public:
   explicit OneSignal(SignalSpec spec) : signals_{std::move(spec)}, excitation_(signals_) {
-    scope_.define("p", 2.0);
-    excitation_.update(numbers_);
+    setParameter(2.0);
   }
 
   Excitation& get() { return excitation_; }
   void setParameter(double p) {
-    scope_.upd(0) = p;
+    numbers_.update(Eigen::VectorXd::Constant(1, p));
     excitation_.update(numbers_);
   }
 
@@ -55,8 +62,8 @@ class OneSignal {
  private:
   std::vector<SignalSpec> signals_;
   Excitation excitation_;
-  ExpressionScope scope_;
-  NumberEvaluator numbers_{scope_};
+  ModelSpec model_ = makeNamedModel();
+  ModelNumbers numbers_{model_};
 };
 
 SignalSpec makePulse() {
@@ -208,9 +215,9 @@ TEST(Excitation, SignalsAreSumsOfTheirTermsAndIndependent) {
   std::vector<SignalSpec> signals{makePulse(), makeSignal("M")};
   signals[0].pulses.push_back({ex("1"), ex("0"), ex("1")});
   signals[1].pulses.push_back({ex("7"), ex("0.2"), ex("1")});
-  ExpressionScope scope;
-  scope.define("p", 1.0);
-  NumberEvaluator numbers(scope);
+  const ModelSpec model = makeNamedModel();
+  ModelNumbers numbers(model);
+  numbers.update(Eigen::VectorXd::Ones(1));
   Excitation excitation(signals);
   excitation.update(numbers);
   excitation.beginPhase(0.0);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "framework/simulation/number_evaluator.hpp"
+#include "framework/simulation/simulation_failure.hpp"
 
 namespace twinmap::fmi {
 

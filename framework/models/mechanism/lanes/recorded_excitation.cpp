@@ -2,42 +2,20 @@
 
 #include <algorithm>
 
-#include "framework/simulation/excitation/cubic_spline.hpp"
 #include "framework/simulation/excitation/excitation_terms.hpp"
 
 namespace twinmap {
 namespace {
 
-using equations::NamedValues;
 using program::Symbol;
-using Piece = RecordedExcitation::Piece;
 
-constexpr double kTwoPi = 6.283185307179586;
+/// What ShapeMaker evaluates; whether a value can be used is not known before it is computed.
+struct RecordedNumbers {
+  const NamedValues<Symbol>& names;
 
-std::vector<Piece> calcSplinePieces(const TableSpec& table) {
-  const CubicSpline spline(table.times, table.values);
-  std::vector<Piece> pieces;
-  for (std::size_t i = 0; i < spline.getSegments().size(); ++i) {
-    const CubicSpline::Segment& segment = spline.getSegments()[i];
-    pieces.push_back({table.times[i],
-                      table.times[i + 1],
-                      {segment.value, segment.slope, segment.curvature, segment.third}});
-  }
-  return pieces;
-}
-
-std::vector<Piece> calcLinearPieces(const TableSpec& table) {
-  const bool hold = table.interpolation == TableInterpolation::kHold;
-  std::vector<Piece> pieces;
-  for (std::size_t i = 0; i + 1 < table.times.size(); ++i) {
-    const double length = table.times[i + 1] - table.times[i];
-    if (length > 0.0) {  // a time given twice is a jump
-      const double slope = hold ? 0.0 : (table.values[i + 1] - table.values[i]) / length;
-      pieces.push_back({table.times[i], table.times[i + 1], {table.values[i], slope, 0.0, 0.0}});
-    }
-  }
-  return pieces;
-}
+  Symbol calc(const Expression& expression, const Quantity&) const { return names.calc(expression); }
+  Symbol calcPositive(const Expression& expression, const Quantity&) const { return names.calc(expression); }
+};
 
 int getDegree(TableInterpolation interpolation) {
   switch (interpolation) {
@@ -50,73 +28,37 @@ int getDegree(TableInterpolation interpolation) {
   }
 }
 
-/// Appends the terms of one signal after the other; as appendTerms does for numbers.
+/// Appends the terms of one signal after the other.
 class ExcitationRecorder {
  public:
   ExcitationRecorder(program::Recorder& recorder, const NamedValues<Symbol>& names)
-      : recorder_(recorder), names_(names) {}
+      : recorder_(recorder), numbers_{names} {}
 
   void add(const SignalSpec& spec) {
     signal_ = Symbol(0.0);
-    const auto addAll = [this](const auto& specs) {
-      for (const auto& term : specs) {
-        addTerm(term);
-      }
-    };
-    addAll(spec.pulses);
-    addAll(spec.sines);
-    addAll(spec.chirps);
-    addAll(spec.multisines);
-    addAll(spec.tables);
+    Shapes shapes(spec, numbers_);
+    visitTerms(spec, [&](const auto& term) { switchOn(term.start, term.end, calcTerm(term, shapes)); });
+    for (const TableSpec& table : spec.tables) {
+      addTable(table);
+    }
     excitation_.signals.push_back(signal_);
   }
 
   RecordedExcitation finish() { return std::move(excitation_); }
 
  private:
-  void addTerm(const PulseSpec& pulse) { switchOn(pulse.start, pulse.end, names_.calc(pulse.amplitude)); }
+  using Shapes = ShapeMaker<Symbol, const RecordedNumbers>;
 
-  void addTerm(const SineSpec& sine) {
-    const Symbol elapsed = recorder_.time() - names_.calc(sine.start);
-    const Symbol angle = kTwoPi * names_.calc(sine.frequency) * elapsed + names_.calc(sine.phase);
-    switchOn(sine.start, sine.end, names_.calc(sine.amplitude) * sin(angle));
+  static Symbol calcTerm(const PulseSpec& pulse, Shapes& shapes) { return shapes.make(pulse).value; }
+  template <class Term>
+  Symbol calcTerm(const Term& term, Shapes& shapes) {
+    const Symbol elapsed = recorder_.time() - shapes.calcTime(term.start, "start");
+    return shapes.make(term).calc(elapsed);
   }
 
-  void addTerm(const ChirpSpec& chirp) {
-    const Symbol start = names_.calc(chirp.start), duration = names_.calc(chirp.end) - start;
-    const Symbol first = names_.calc(chirp.start_frequency), last = names_.calc(chirp.end_frequency);
-    const Symbol elapsed = recorder_.time() - start;
-    Symbol cycles = elapsed * (first + 0.5 * (last - first) / duration * elapsed);
-    if (chirp.sweep == SweepKind::kLogarithmic) {
-      const Symbol rate = log(last / first) / duration, half = 0.5 * rate * elapsed;
-      const Symbol growth = 2.0 * sinh(half) * exp(half);  // exp(rate * elapsed) - 1, without cancellation
-      cycles = select(notEqual(first, last), first * growth / rate, cycles);
-    }
-    switchOn(chirp.start, chirp.end, names_.calc(chirp.amplitude) * sin(kTwoPi * cycles));
-  }
-
-  void addTerm(const MultisineSpec& multisine) {
-    const std::vector<Symbol> frequencies = names_.calcEach(multisine.frequencies);
-    std::vector<Symbol> phases = names_.calcEach(multisine.phases);
-    if (phases.empty()) {
-      const std::vector<double> schroeder = calcSchroederPhases(static_cast<int>(frequencies.size()));
-      phases.assign(schroeder.begin(), schroeder.end());
-    }
-    const std::vector<Symbol> amplitudes = names_.calcEach(multisine.amplitudes);
-    const Symbol elapsed = recorder_.time() - names_.calc(multisine.start);
-    Symbol sum = 0.0;
-    for (std::size_t k = 0; k < frequencies.size(); ++k) {
-      const Symbol tone = sin(kTwoPi * frequencies[k] * elapsed + phases[k]);
-      sum += amplitudes.empty() ? tone : amplitudes[k] * tone;
-    }
-    switchOn(multisine.start, multisine.end,
-             amplitudes.empty() ? names_.calc(multisine.amplitude) * sum : sum);
-  }
-
-  void addTerm(const TableSpec& table) {
-    const bool cubic = table.interpolation == TableInterpolation::kCubic;
+  void addTable(const TableSpec& table) {
     const int degree = getDegree(table.interpolation), first = excitation_.input_count;
-    excitation_.tables.push_back({first, degree, cubic ? calcSplinePieces(table) : calcLinearPieces(table)});
+    excitation_.tables.push_back({first, degree, calcTablePieces(table)});
     excitation_.input_count += degree + 2;
     const Symbol elapsed = recorder_.time() - recorder_.phaseInput(first);
     Symbol value = recorder_.phaseInput(first + 1 + degree);
@@ -136,12 +78,12 @@ class ExcitationRecorder {
   }
 
   int addEvent(const Expression& time) {
-    excitation_.events.push_back(names_.calc(time));
+    excitation_.events.push_back(numbers_.names.calc(time));
     return static_cast<int>(excitation_.events.size()) - 1;
   }
 
   program::Recorder& recorder_;
-  const NamedValues<Symbol>& names_;
+  const RecordedNumbers numbers_;
   RecordedExcitation excitation_;
   Symbol signal_;
 };
@@ -150,7 +92,7 @@ void fillTable(const RecordedExcitation::Table& table, double begin, double* inp
   double* const own = inputs + table.first_input;
   std::fill_n(own, table.degree + 2, 0.0);
   const auto after = std::upper_bound(table.pieces.begin(), table.pieces.end(), begin,
-                                      [](double t, const Piece& piece) { return t < piece.begin; });
+                                      [](double t, const TablePiece& piece) { return t < piece.begin; });
   if (after != table.pieces.begin() && begin < (after - 1)->end) {
     own[0] = (after - 1)->begin;
     std::copy_n((after - 1)->values.begin(), table.degree + 1, own + 1);
@@ -180,7 +122,7 @@ std::vector<Boundary> calcBoundaries(const RecordedExcitation& excitation, const
     add(events[i], static_cast<int>(i));
   }
   for (const RecordedExcitation::Table& table : excitation.tables) {
-    for (const Piece& piece : table.pieces) {
+    for (const TablePiece& piece : table.pieces) {
       add(piece.begin, -1);
       add(piece.end, -1);
     }

@@ -1,10 +1,9 @@
 #pragma once
 
-#include <array>
 #include <vector>
 
-#include "framework/experiment/model/excitation_spec.hpp"
-#include "framework/models/mechanism/equations/named_values.hpp"
+#include "framework/experiment/expression/named_values.hpp"
+#include "framework/simulation/excitation/excitation_terms.hpp"
 #include "kernels/lanes/program/recorder.hpp"
 
 namespace twinmap {
@@ -17,15 +16,10 @@ struct RecordedExcitation {
   struct Term {
     int flag, begin, end;
   };
-  /// values[0] + s (values[1] + s (values[2] + s values[3])) with s = t - begin, for begin <= t < end.
-  struct Piece {
-    double begin, end;
-    std::array<double, 4> values;
-  };
   /// The piece's begin and its first `degree` + 1 values are the inputs from `first_input` on.
   struct Table {
     int first_input, degree;
-    std::vector<Piece> pieces;  ///< by increasing begin
+    std::vector<TablePiece> pieces;  ///< by increasing begin
   };
 
   std::vector<program::Symbol> signals;
@@ -35,9 +29,9 @@ struct RecordedExcitation {
   int input_count = 0;
 };
 
-/// `names`: parameters and constants. Throws UnknownSyntax.
+/// `names`: parameters and constants.
 RecordedExcitation recordExcitation(const std::vector<SignalSpec>& signals, program::Recorder& recorder,
-                                    const equations::NamedValues<program::Symbol>& names);
+                                    const NamedValues<program::Symbol>& names);
 
 /// A time at which a phase begins, s; `event`: the one of parameters that it is, or -1.
 struct Boundary {

@@ -31,7 +31,7 @@ struct RecordedModel {
 };
 
 /// Writes a model down. `box_center`: coordinates of the equilibrium that all samples start from, or empty.
-/// Throws UnknownSyntax for an expression that only muParser understands. Cost: some milliseconds.
+/// Cost: some milliseconds.
 RecordedModel recordModel(const ModelSpec& model, const SystemNames& names,
                           const Eigen::VectorXd& box_center);
 

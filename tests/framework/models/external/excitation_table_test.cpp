@@ -10,8 +10,8 @@ TEST(ExcitationTable, HasTheLimitsOfAPulseFromWithinEachPhaseAndValuesAfterItsEd
   pulse.name.text = "F";
   pulse.pulses = {{{"5", {}}, {"0.2", {}}, {"0.25", {}}}};
   const std::vector<SignalSpec> signals{pulse};
-  ExpressionScope scope;
-  NumberEvaluator numbers(scope);
+  const ModelSpec nothing_named;
+  ModelNumbers numbers(nothing_named);
   Excitation excitation(signals);
   excitation.update(numbers);
   const ExcitationTable table = calcExcitationTable(excitation, Eigen::Vector4d(0.0, 0.2, 0.25, 1.0), 1.0);

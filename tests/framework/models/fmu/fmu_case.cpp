@@ -54,8 +54,8 @@ FmuResult simulate(const FmuCase& fmu, int runs) {
   fmi::Runner runner(
       {description, fmu.kind, package.requireLibrary(fmu.kind), package.getFolder() / "resources"}, setting,
       static_cast<int>(fmu.excitation.size()));
-  ExpressionScope scope;
-  NumberEvaluator numbers(scope);
+  const ModelSpec nothing_named;
+  ModelNumbers numbers(nothing_named);
   Excitation excitation(fmu.excitation);
   excitation.update(numbers);
   std::vector<double> values;

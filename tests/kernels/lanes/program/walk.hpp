@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "kernels/lanes/program/evaluate.hpp"
 #include "kernels/lanes/program/recorder.hpp"
 
 namespace twinmap::program::testing {
