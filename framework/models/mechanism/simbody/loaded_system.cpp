@@ -83,9 +83,10 @@ const SystemForces& LoadedSystem::calcForces(const SimTK::State& state, double t
   equations::ForceSum<double, StateExpressions> sum(motions_, coordinates_, rates_, context_.expressions,
                                                     loads_);
   for (std::size_t i = 1; i < motions_.size(); ++i) {
-    const SimTK::MobilizedBody& body = tree_.getBody(static_cast<int>(i));
-    sum.addGravity(static_cast<int>(i), numbers_.gravity, body.getBodyMass(state),
-                   toVector(body.getBodyMassCenterStation(state)));
+    const SimTK::SpatialInertia& inertia =
+        tree_.getBody(static_cast<int>(i)).getBodySpatialInertiaInGround(state);
+    sum.addAt(static_cast<int>(i), toVector(inertia.getMassCenter()),
+              algebra::scale(inertia.getMass(), numbers_.gravity));
   }
   equations::addElementForces(numbers_.elements, sum);
   for (std::size_t i = 0; i < motions_.size(); ++i) {

@@ -1,6 +1,8 @@
 // Each force element against Simbody's own force class for it: accelerations at random states of a branched
 // tree, by the recorded equations and by the Simbody engine, which share the laws of our elements.
 
+#include <memory>
+
 #include "framework/models/mechanism/equations/model_equations.hpp"
 #include "framework/models/mechanism/simbody/initial_state.hpp"
 #include "tests/framework/models/mechanism/random_state.hpp"
@@ -50,9 +52,9 @@ class ThreeWays {
   ThreeWays(const ModelSpec& model, Add add) : model_(model), context_(model) {
     context_.numbers.update(Eigen::VectorXd());
     engine_.emplace(context_, false);
-    own_.emplace(model.system, context_.names, context_.numbers);
-    SimTK::GeneralForceSubsystem forces = own_->addForceSubsystem();
-    add(OwnForces{forces, *own_});
+    own_.emplace(model.system, context_.names, context_.numbers.updNumbers());
+    forces_.reset(new SimTK::GeneralForceSubsystem(own_->addForceSubsystem()));
+    add(OwnForces{*forces_, *own_});
     own_->realize();
     values_ = equations::calcSystemValues(model.system, context_.names, names_);
   }
@@ -91,10 +93,11 @@ class ThreeWays {
 
   const ModelSpec& model_;
   SimbodyContext context_;
-  NamedValues<double> names_;
+  equations::NamedValues<double> names_;
   equations::SystemValues<double> values_;
   std::optional<LoadedSystem> engine_;
   std::optional<BodyTree> own_;
+  std::unique_ptr<SimTK::GeneralForceSubsystem> forces_;  ///< the forces refer to this handle
   SimTK::State state_;
   InitialState random_;
 };
