@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "framework/experiment/experiment_file.hpp"
-#include "framework/store/estimators/maps_file.hpp"
+#include "framework/store/trained_file.hpp"
 
 namespace twinmap {
 
@@ -28,12 +28,12 @@ void storeMap(const std::filesystem::path& file, const ExperimentSpec& experimen
   if (map.online.trust) {
     map.online.trust->refinement = collectReference(refined);
   }
-  StoredMap stored{experiment.model.parameters, {},         map.exact,
-                   experiment.model.inputs,     map.online, writeExperiment(experiment)};
+  TrainedFile stored{
+      experiment.model.parameters, experiment.model.inputs, {}, map.online, writeExperiment(experiment)};
   for (const FeatureInfo& info : extractor.getInfos()) {
     stored.feature_names.push_back(info.name);
   }
-  writeMapsFile(file, stored);
+  writeTrainedFile(file, stored);
 }
 
 }  // namespace twinmap
