@@ -8,6 +8,7 @@
 #include "framework/export/c_folder.hpp"
 #include "framework/export/fmu_export.hpp"
 #include "framework/export/json_export.hpp"
+#include "framework/study/pipeline/training/refit_map.hpp"
 
 namespace twinmap::cli {
 
@@ -21,6 +22,9 @@ void exportMap(const ExportArguments& arguments) {
     options.c.prefix = arguments.prefix;
     options.c.compressed = arguments.compressed;
     options.trust = arguments.trust;
+    options.make_exact = [&](const ExperimentSpec& experiment, const GpMap& deployed) {
+      return refitExactMap(arguments.run, experiment, deployed);
+    };
     writeCFolder(arguments.run, arguments.c_folder, options, std::cout);
   }
   if (!arguments.fmu.empty()) {

@@ -10,14 +10,14 @@
 #include "framework/export/runtime_sources.hpp"
 #include "framework/export/selftest.hpp"
 #include "framework/inference/inferrer.hpp"
-#include "framework/store/estimators/maps_file.hpp"
 
 namespace twinmap {
 
 namespace {
 
 /// Replaces the map by one that is smaller; tells what that costs.
-std::string compressModel(const std::filesystem::path& run, ExportedModel& model) {
+std::string compressModel(const std::filesystem::path& run, const CFolderOptions& options,
+                          ExportedModel& model) {
   constexpr int kMeasurements = 500;
   constexpr double kMaxLoss = 0.02;  // of a standard deviation
   if (model.findProcesses() == nullptr) {
@@ -31,7 +31,8 @@ std::string compressModel(const std::filesystem::path& run, ExportedModel& model
     test.features.col(static_cast<Eigen::Index>(i)) = measurements[i].features;
     test.known.col(static_cast<Eigen::Index>(i)) = measurements[i].known;
   }
-  CompressedMap compressed = compressMap(readMapsFile(findMaps(run)).map, test, kMaxLoss);
+  CompressedMap compressed =
+      compressMap(options.make_exact(model.experiment, *model.findProcesses()), test, kMaxLoss);
   model.online.map = std::move(compressed.map);
   return fmt::format(
       "Compressed: on {} simulated measurements means move by {:.2g} sd (root mean square) and standard "
@@ -48,7 +49,7 @@ void writeCFolder(const std::filesystem::path& run, const std::filesystem::path&
   if (!options.trust) {
     model.online.trust.reset();
   }
-  const std::string loss = options.c.compressed ? compressModel(run, model) : "";
+  const std::string loss = options.c.compressed ? compressModel(run, options, model) : "";
   const CSource source = makeCSource(model, options.c);
   const auto measurements = makeTestedMeasurements(run, model, {50, options.c.number, true});
   std::filesystem::create_directories(folder);

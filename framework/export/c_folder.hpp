@@ -1,8 +1,10 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <iosfwd>
 
+#include "framework/estimation/gp/gp_map.hpp"
 #include "framework/export/c_source.hpp"
 
 namespace twinmap {
@@ -11,6 +13,8 @@ namespace twinmap {
 struct CFolderOptions {
   COptions c;
   bool trust = true;  ///< else measurements are not judged
+  /// For a compressed map: the exact processes of the run's experiment, of which it has the compressed ones.
+  std::function<GpMap(const ExperimentSpec& experiment, const GpMap& deployed)> make_exact{};
 };
 
 /// Writes a run's map as C into a folder, made where it is missing: PREFIX_map.h, PREFIX_map.c, selftest.c,

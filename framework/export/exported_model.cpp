@@ -4,7 +4,7 @@
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/inferrer.hpp"
-#include "framework/store/estimators/maps_file.hpp"
+#include "framework/store/trained_file.hpp"
 
 namespace twinmap {
 
@@ -69,7 +69,7 @@ VectorXd ExportedModel::getBoxHalfWidth() const {
 }
 
 ExportedModel loadExportedModel(const std::filesystem::path& run_or_maps) {
-  StoredOnlineModel stored = readOnlineModel(findMaps(run_or_maps));
+  TrainedFile stored = readTrainedFile(findMaps(run_or_maps));
   ExportedModel model;
   model.experiment = readResolved(stored.experiment);
   model.layout = makeLayout(model.experiment);

@@ -6,7 +6,7 @@
 #include "framework/data/features/experiment_features.hpp"
 #include "framework/data/measurement/trained_excitation.hpp"
 #include "framework/experiment/experiment_file.hpp"
-#include "framework/store/estimators/maps_file.hpp"
+#include "framework/store/trained_file.hpp"
 
 namespace twinmap {
 
@@ -22,14 +22,14 @@ fs::path findMaps(const fs::path& run_or_maps) {
 }
 
 struct Inferrer::Loaded {
-  StoredOnlineModel stored;
+  TrainedFile stored;
   ExperimentSpec experiment;
   ResponseLayout layout;
 };
 
 Inferrer::Inferrer(const fs::path& run_or_maps)
     : Inferrer([&] {
-        Loaded loaded{readOnlineModel(findMaps(run_or_maps)), {}, {}};
+        Loaded loaded{readTrainedFile(findMaps(run_or_maps)), {}, {}};
         loaded.experiment = readResolved(loaded.stored.experiment);
         loaded.layout = makeLayout(loaded.experiment);
         return loaded;

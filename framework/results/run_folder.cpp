@@ -6,9 +6,9 @@
 #include "framework/experiment/check/check_experiment.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/resolve_defaults.hpp"
-#include "framework/store/estimators/map_summary.hpp"
 #include "framework/store/predictions_file.hpp"
 #include "framework/store/samples_file.hpp"
+#include "framework/store/trained_file.hpp"
 
 namespace twinmap {
 namespace {
@@ -72,7 +72,7 @@ RunFolder readRunFolder(const fs::path& path) {
     run.test_responses = std::make_shared<StoredResponses>(readTestResponses(path / "samples.h5"));
   }
   if (fs::exists(path / "maps.h5")) {
-    run.map = std::make_shared<MapSummary>(readMapSummary(path / "maps.h5"));
+    run.map = std::make_shared<TrainedFile>(readTrainedFile(path / "maps.h5"));
   }
   return run;
 }

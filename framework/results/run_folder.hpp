@@ -11,7 +11,7 @@
 
 namespace twinmap {
 
-struct MapSummary;
+struct TrainedFile;
 struct StoredResponses;
 
 /// What a run left in its folder: all that the report knows. Files that are not there leave an empty table.
@@ -39,7 +39,7 @@ struct RunFolder {
   CsvTable responses;
   ProvenanceRecord provenance;
   std::shared_ptr<const StoredResponses> test_responses;  ///< nullptr if absent
-  std::shared_ptr<const MapSummary> map;                  ///< nullptr if absent
+  std::shared_ptr<const TrainedFile> map;                 ///< nullptr if absent
 };
 
 /// Reads a run's folder (docs/file-formats.md). Throws std::runtime_error naming a damaged file, or the

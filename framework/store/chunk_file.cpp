@@ -13,7 +13,7 @@ namespace {
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "chunk files are little-endian");
 
 constexpr char kMagic[8] = {'t', 'w', 'm', 'c', 'h', 'u', 'n', 'k'};
-constexpr std::uint64_t kVersion = 1;
+constexpr std::uint64_t kChunkVersion = 1;
 
 struct Header {
   char magic[8];
@@ -61,7 +61,7 @@ class Pieces {
 
 Header makeHeader(const ChunkShape& shape, std::uint64_t samples) {
   Header header{{},
-                kVersion,
+                kChunkVersion,
                 shape.content,
                 static_cast<std::uint64_t>(shape.parameters),
                 static_cast<std::uint64_t>(shape.rows),
@@ -87,9 +87,9 @@ std::string_view verifyChecksum(const std::string& bytes) {
 }
 
 void checkVersion(const Header& header) {
-  if (header.version != kVersion) {
+  if (header.version != kChunkVersion) {
     throw std::runtime_error(fmt::format("is a chunk of format version {}; this program reads version {}",
-                                         header.version, kVersion));
+                                         header.version, kChunkVersion));
   }
 }
 

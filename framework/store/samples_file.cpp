@@ -4,7 +4,7 @@
 #include "framework/base/hdf5/hdf5_file.hpp"
 #include "framework/experiment/check/check_experiment.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/store/estimators/parameters_group.hpp"
+#include "framework/store/parameters_group.hpp"
 
 namespace twinmap {
 namespace {

@@ -12,6 +12,10 @@ namespace twinmap {
 /// The library's only user, as long as it is held. HDF5 then prints no errors of its own.
 std::unique_lock<std::recursive_mutex> lockHdf5();
 
+/// Whether a file begins with a digest of all that follows (sealed_file.hpp). A sealed file is read into
+/// memory and compared with its digest before HDF5 sees it, which may crash on a damaged one.
+enum class Hdf5Seal { kNone, kDigest };
+
 /// A small face on HDF5: datasets of numbers and texts by path ("/train/parameters"), groups made on the way,
 /// no time stamps, so that equal content gives equal bytes. Throws std::runtime_error naming file and
 /// dataset. HDF5 is not thread safe: while a thread has a file open, others wait for it.
@@ -20,7 +24,7 @@ std::unique_lock<std::recursive_mutex> lockHdf5();
 /// written without a copy.
 class Hdf5Writer {
  public:
-  explicit Hdf5Writer(const std::filesystem::path& path);
+  explicit Hdf5Writer(const std::filesystem::path& path, Hdf5Seal seal = Hdf5Seal::kNone);
   Hdf5Writer(const Hdf5Writer&) = delete;
   Hdf5Writer& operator=(const Hdf5Writer&) = delete;
   ~Hdf5Writer();
@@ -36,7 +40,7 @@ class Hdf5Writer {
   /// A text attached to a dataset or group (also "/").
   void writeAttribute(const std::string& object, const std::string& name, const std::string& text);
 
-  /// Flushes and closes; throws if that fails. The destructor closes without a word.
+  /// Flushes, closes and seals; throws if that fails. The destructor closes without a word.
   void close();
 
  private:
@@ -44,13 +48,16 @@ class Hdf5Writer {
 
   std::unique_lock<std::recursive_mutex> library_ = lockHdf5();
   std::string path_;
+  Hdf5Seal seal_;
   std::int64_t file_ = -1;
 };
 
 /// Reads what Hdf5Writer writes.
 class Hdf5Reader {
  public:
-  explicit Hdf5Reader(const std::filesystem::path& path);
+  /// With a seal each byte is as it was written, or this throws (readSealedFile); without, one is not looked
+  /// at.
+  explicit Hdf5Reader(const std::filesystem::path& path, Hdf5Seal seal = Hdf5Seal::kNone);
   Hdf5Reader(const Hdf5Reader&) = delete;
   Hdf5Reader& operator=(const Hdf5Reader&) = delete;
   ~Hdf5Reader();
@@ -61,10 +68,13 @@ class Hdf5Reader {
   /// Whether a dataset is of integers or floating-point numbers.
   bool isRealNumber(const std::string& dataset) const;
   std::vector<std::size_t> readShape(const std::string& dataset) const;
+  const std::string& getPath() const { return path_; }
   /// (n, d) -> d x n; a vector (n) -> n x 1; a number -> 1 x 1.
   Eigen::MatrixXd readSamples(const std::string& dataset) const;
   Eigen::VectorXd readVector(const std::string& dataset) const;
   double readNumber(const std::string& dataset) const;
+  /// A whole number from 0 to a million.
+  std::int64_t readCount(const std::string& dataset) const;
   std::vector<std::int64_t> readIntegers(const std::string& dataset) const;
   std::vector<std::string> readTexts(const std::string& dataset) const;
   bool hasAttribute(const std::string& object, const std::string& name) const;

@@ -1,11 +1,15 @@
+#include <cmath>
 #include <functional>
 #include <numeric>
 
 #include "framework/base/hdf5/hdf5_file.hpp"
 #include "framework/base/hdf5/hdf5_handle.hpp"
+#include "framework/base/hdf5/sealed_file.hpp"
 
 namespace twinmap {
 namespace {
+
+constexpr std::size_t kImageStep = 1 << 16;  // of memory that a growing file would take; none does
 
 Hdf5Handle openDataset(hid_t file, const std::string& path, const std::string& dataset) {
   return {H5Dopen2(file, dataset.c_str(), H5P_DEFAULT), H5Dclose, path + ": has no dataset " + dataset};
@@ -44,8 +48,16 @@ std::string trimZeros(const std::string& padded) {
 
 }  // namespace
 
-Hdf5Reader::Hdf5Reader(const std::filesystem::path& path) : path_(path.string()) {
-  file_ = H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+Hdf5Reader::Hdf5Reader(const std::filesystem::path& path, Hdf5Seal seal) : path_(path.string()) {
+  const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "HDF5 property list");
+  std::string name = path_;
+  if (seal == Hdf5Seal::kDigest) {
+    name += "/image";  // HDF5 refuses an image under the name of a file that exists
+    std::string bytes = readSealedFile(path);
+    H5Pset_fapl_core(access.get(), kImageStep, 0);
+    requireHdf5(H5Pset_file_image(access.get(), bytes.data(), bytes.size()), path_ + ": cannot be opened");
+  }
+  file_ = H5Fopen(name.c_str(), H5F_ACC_RDONLY, access.get());
   if (file_ < 0) {
     throw std::runtime_error(path_ + ": cannot be opened as an HDF5 file");
   }
@@ -80,8 +92,9 @@ std::vector<std::size_t> Hdf5Reader::readShape(const std::string& dataset) const
 Eigen::MatrixXd Hdf5Reader::readSamples(const std::string& dataset) const {
   const Hdf5Handle data = openDataset(file_, path_, dataset);
   const std::vector<std::size_t> shape = getShape(data);
-  const std::size_t columns = shape.size() < 2 ? 1 : shape[0];
-  const std::size_t rows = columns == 0 ? 0 : countValues(shape) / columns;
+  const bool is_table = shape.size() >= 2;
+  const std::size_t columns = is_table ? shape[0] : 1;
+  const std::size_t rows = countValues({shape.begin() + (is_table ? 1 : 0), shape.end()});
   Eigen::MatrixXd values(rows, columns);
   requireHdf5(H5Dread(data.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
               path_ + ": " + dataset + " cannot be read");
@@ -90,14 +103,31 @@ Eigen::MatrixXd Hdf5Reader::readSamples(const std::string& dataset) const {
 
 Eigen::VectorXd Hdf5Reader::readVector(const std::string& dataset) const {
   const Hdf5Handle data = openDataset(file_, path_, dataset);
-  Eigen::VectorXd values(static_cast<Eigen::Index>(countValues(getShape(data))));
+  const std::vector<std::size_t> shape = getShape(data);
+  if (shape.size() >= 2 && shape[0] != 1) {
+    throw std::runtime_error(path_ + ": " + dataset + " is not a vector");
+  }
+  Eigen::VectorXd values(static_cast<Eigen::Index>(countValues(shape)));
   requireHdf5(H5Dread(data.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
               path_ + ": " + dataset + " cannot be read");
   return values;
 }
 
 double Hdf5Reader::readNumber(const std::string& dataset) const {
-  return readSamples(dataset)(0, 0);
+  const Eigen::MatrixXd values = readSamples(dataset);
+  if (values.size() != 1) {
+    throw std::runtime_error(path_ + ": " + dataset + " is not one number");
+  }
+  return values(0, 0);
+}
+
+std::int64_t Hdf5Reader::readCount(const std::string& dataset) const {
+  constexpr double kMost = 1e6;
+  const double number = readNumber(dataset);
+  if (!(number >= 0.0 && number <= kMost && number == std::floor(number))) {
+    throw std::runtime_error(path_ + ": " + dataset + " is not a count");
+  }
+  return static_cast<std::int64_t>(number);
 }
 
 std::vector<std::int64_t> Hdf5Reader::readIntegers(const std::string& dataset) const {

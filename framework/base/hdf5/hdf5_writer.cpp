@@ -2,6 +2,7 @@
 
 #include "framework/base/hdf5/hdf5_file.hpp"
 #include "framework/base/hdf5/hdf5_handle.hpp"
+#include "framework/base/hdf5/sealed_file.hpp"
 
 namespace twinmap {
 namespace {
@@ -35,8 +36,12 @@ std::unique_lock<std::recursive_mutex> lockHdf5() {
   return lock;
 }
 
-Hdf5Writer::Hdf5Writer(const std::filesystem::path& path) : path_(path.string()) {
-  file_ = H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+Hdf5Writer::Hdf5Writer(const std::filesystem::path& path, Hdf5Seal seal) : path_(path.string()), seal_(seal) {
+  const Hdf5Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "HDF5 property list");
+  if (seal == Hdf5Seal::kDigest) {
+    H5Pset_userblock(creation.get(), kSealBytes);
+  }
+  file_ = H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, creation.get(), H5P_DEFAULT);
   if (file_ < 0) {
     throw std::runtime_error(path_ + ": cannot be created as an HDF5 file");
   }
@@ -52,6 +57,9 @@ void Hdf5Writer::close() {
   const hid_t file = file_;
   file_ = -1;
   requireHdf5(H5Fclose(file), path_ + ": cannot be closed; is the disk full?");
+  if (seal_ == Hdf5Seal::kDigest) {
+    sealFile(path_);
+  }
 }
 
 std::int64_t Hdf5Writer::createDataset(const std::string& dataset, std::int64_t type, std::int64_t space) {

@@ -76,23 +76,33 @@ std::vector<gp::Hyperparameters> findHyperparameters(const Eigen::MatrixXd& inpu
   return found;
 }
 
-using ExactProcess = std::shared_ptr<const gp::GaussianProcess>;
 using SparseProcess = std::shared_ptr<const gp::SparseGaussianProcess>;
 
-gp::Process refit(const ExactProcess& trained, const Eigen::MatrixXd& inputs, const Eigen::VectorXd& target,
-                  const gp::ModelStructure& structure, int threads) {
-  return gp::fit(inputs, target, structure, trained->getHyperparameters(), threads);
-}
-
-gp::Process refit(const SparseProcess& trained, const Eigen::MatrixXd& inputs, const Eigen::VectorXd& target,
-                  const gp::ModelStructure& structure, int /*threads*/) {
+gp::Process refitSparse(const gp::SparseGaussianProcessParts& trained, const Eigen::MatrixXd& inputs,
+                        const Eigen::VectorXd& target, const gp::ModelStructure& structure) {
   gp::SparseGaussianProcessParts parts{
-      structure, trained->getHyperparameters(), gp::calcCenter(inputs), trained->getParts().inducing, {}};
+      structure, trained.hyperparameters, gp::calcCenter(inputs), trained.inducing, {}};
   const gp::VariationalBound bound(inputs, target, parts.inducing, structure);
   if (!bound.calcPosterior(parts.hyperparameters, parts.posterior)) {
     throw std::runtime_error("the inducing inputs' covariance is not positive definite");
   }
   return std::make_shared<const gp::SparseGaussianProcess>(std::move(parts));
+}
+
+/// An exact process, which may be stored compressed, has its hyperparameters alone; a sparse one its inducing
+/// inputs, too.
+gp::Process refit(GpApproximation approximation, const gp::Process& trained, const Eigen::MatrixXd& inputs,
+                  const Eigen::VectorXd& target, const gp::ModelStructure& structure, int threads) {
+  if (approximation == GpApproximation::kSgpr) {
+    const auto* sparse = std::get_if<SparseProcess>(&trained);
+    if (sparse == nullptr) {
+      throw std::runtime_error("the trained processes are not sparse");
+    }
+    return refitSparse((*sparse)->getParts(), inputs, target, structure);
+  }
+  const gp::Hyperparameters hyperparameters =
+      std::visit([](const auto& process) { return process->getHyperparameters(); }, trained);
+  return gp::fit(inputs, target, structure, hyperparameters, threads);
 }
 
 Eigen::VectorXd calcStddev(const Eigen::MatrixXd& rows, const Eigen::VectorXd& mean) {
@@ -206,9 +216,8 @@ GpMapTraining refitGpMap(const GpMap& trained, const GpMapSpec& spec,
       spec, samples.infos, static_cast<int>(data.inputs.rows()), static_cast<int>(known_inputs.size()));
   for (Eigen::Index p = 0; p < data.targets.rows(); ++p) {
     const Eigen::VectorXd target = data.targets.row(p).transpose();
-    training.map.processes.push_back(std::visit(
-        [&](const auto& process) { return refit(process, data.inputs, target, structure, threads); },
-        trained.processes.at(p)));
+    training.map.processes.push_back(
+        refit(spec.approximation, trained.processes.at(p), data.inputs, target, structure, threads));
   }
   finish(spec, data, samples, {threads}, training);
   return training;

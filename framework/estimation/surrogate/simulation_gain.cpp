@@ -39,9 +39,9 @@ SimulationGain calcSimulationGain(const Surrogate& whole, const SurrogateSamples
   const Surrogate fitted =
       fitSimilar(whole, selectSimulations(forward, listRange(0, half)), choices, control);
   const std::vector<Index> others = listRange(half, std::min(n - half, kMaxInferred));
+  const MatrixXd inputs = samples.points(Eigen::all, others).bottomRows(known);
   const Predictions found =
-      fitted.predict(samples.measured(Eigen::all, others),
-                     samples.points(Eigen::all, others).bottomRows(known), control.threads);
+      fitted.infer(samples.measured(Eigen::all, others), inputs, control.threads).predictions;
   gp::throwIfStopped(control.stop);
   const MatrixXd truth = held_out.truth(Eigen::all, others);
   const VectorXd of_half = calcMeanErrors(found.mean, truth);

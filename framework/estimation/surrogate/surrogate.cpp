@@ -5,6 +5,7 @@
 
 #include "framework/estimation/run_tasks.hpp"
 #include "framework/estimation/surrogate/score_inversion.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
 
 namespace twinmap {
 
@@ -21,6 +22,19 @@ void Surrogate::answer(const gp::Moments& normalised, VectorXd& mean, VectorXd& 
   mean = center.head(parameters).array() + widths * normalised.mean.head(parameters).array();
   stddev = validation.stddev_scale.array() * widths *
            normalised.covariance.diagonal().head(parameters).array().sqrt();
+}
+
+void Surrogate::shrinkToPrior(Eigen::Ref<VectorXd> mean, Eigen::Ref<VectorXd> stddev) const {
+  const VectorXd prior = 2.0 * kUniformStddev * half_width.head(parameters);
+  shrinkToBounds(center.head(parameters), prior, mean, stddev);
+}
+
+Predictions Surrogate::predict(const MatrixXd& features, const MatrixXd& inputs, int threads) const {
+  Predictions predictions = infer(features, inputs, threads).predictions;
+  for (Index i = 0; i < predictions.mean.cols(); ++i) {
+    shrinkToPrior(predictions.mean.col(i), predictions.stddev.col(i));
+  }
+  return predictions;
 }
 
 VectorXd Surrogate::calcLimit(const VectorXd& noise_stddev) const {

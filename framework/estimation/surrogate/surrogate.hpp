@@ -48,21 +48,24 @@ struct Surrogate {
   /// Mean and standard deviation (p) of the parameters, in their units, for moments of normalised unknowns.
   void answer(const gp::Moments& normalised, Eigen::VectorXd& mean, Eigen::VectorXd& stddev) const;
 
+  /// What is inferred that is less certain than the bounds alone, because two answers far apart fit or the
+  /// factor of standard deviations is large, is drawn towards the middle of the bounds until it is as certain
+  /// (shrinkToBounds): an interval of it still holds what it says, as it reaches over the bounds.
+  void shrinkToPrior(Eigen::Ref<Eigen::VectorXd> mean, Eigen::Ref<Eigen::VectorXd> stddev) const;
+
   /// The standard deviations (p, in the parameters' units) that a measurement allows, from those that the
   /// noise of the scores leaves of normalised unknowns (u): times validation.limit_scale, for what other
   /// scores would say.
   Eigen::VectorXd calcLimit(const Eigen::VectorXd& noise_stddev) const;
 
   /// Features (d x n, finite) and known inputs (m - u x n) -> mean and standard deviation of the parameters
-  /// (p x n). The result does not depend on the number of threads. Throws std::invalid_argument for sizes
-  /// that do not fit. Cost: that of ScoreInversion, some ms a column.
+  /// (p x n), before shrinkToPrior(). The result does not depend on the number of threads. Throws
+  /// std::invalid_argument for sizes that do not fit. Cost: that of ScoreInversion, some ms a column.
   SurrogateAnswers infer(const Eigen::MatrixXd& features, const Eigen::MatrixXd& inputs = {},
                          int threads = 1) const;
-  /// The same without the limit.
+  /// The same without the limit, after shrinkToPrior().
   Predictions predict(const Eigen::MatrixXd& features, const Eigen::MatrixXd& inputs = {},
-                      int threads = 1) const {
-    return infer(features, inputs, threads).predictions;
-  }
+                      int threads = 1) const;
 };
 
 }  // namespace twinmap

@@ -106,6 +106,9 @@ SurrogateTraining trainSurrogate(const ModelSpec& model, const SurrogateSamples&
   training.held_out_truth = std::move(held_out.truth);
   training.held_out_draws = static_cast<int>(training.held_out.mean.cols() / samples.points.cols());
   training.held_out.stddev = surrogate.validation.stddev_scale.asDiagonal() * training.held_out.stddev;
+  for (Index i = 0; i < training.held_out.mean.cols(); ++i) {
+    surrogate.shrinkToPrior(training.held_out.mean.col(i), training.held_out.stddev.col(i));
+  }
   training.warnings = listWarnings(model, surrogate.validation);
   return training;
 }

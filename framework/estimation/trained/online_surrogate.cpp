@@ -13,6 +13,7 @@ const Inference& OnlineSurrogate::infer(const Eigen::Ref<const VectorXd>& featur
   const Index r = surrogate_->forward->getScoreCount();
   surrogate_->answer(workspace.inversion.infer(inference.inputs.head(r), inference.inputs.tail(known.size())),
                      inference.mean, inference.stddev);
+  surrogate_->shrinkToPrior(inference.mean, inference.stddev);
   inference.limit_stddev = surrogate_->calcLimit(workspace.inversion.getNoiseStddev());
   return inference;
 }

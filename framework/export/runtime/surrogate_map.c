@@ -77,6 +77,16 @@ static void invert_scores(twinmap_state *state)
   keep_explanation(state, best);
 }
 
+/* What is less certain than the bounds alone is drawn towards their middle until it is as certain. */
+static void shrink_to_prior(double half_width, double center, double *mean, double *sd)
+{
+  const double prior = 0.57735026918962573 * half_width; /* of a uniform distribution */
+  if (*sd > prior) {
+    *mean = multiply_add(prior / *sd, *mean - center, center);
+    *sd = prior;
+  }
+}
+
 static void infer_by_map(twinmap_state *state, const double *known, twinmap_result *result)
 {
   int p;
@@ -91,6 +101,7 @@ static void infer_by_map(twinmap_state *state, const double *known, twinmap_resu
     const double width = box_half_width[p];
     result->mean[p] = multiply_add(width, state->mixed_mean[p], box_center[p]);
     result->sd[p] = stddev_scale[p] * width * sqrt(state->mixed_covariance[p * U + p]);
+    shrink_to_prior(width, box_center[p], &result->mean[p], &result->sd[p]);
     result->ratio_to_limit[p] = result->sd[p] / (limit_scale[p] * width * state->noise_stddev[p]);
   }
 }

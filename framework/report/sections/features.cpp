@@ -6,7 +6,7 @@
 #include "framework/experiment/check/check_experiment.hpp"
 #include "framework/report/html.hpp"
 #include "framework/report/sections/sections.hpp"
-#include "framework/store/estimators/map_summary.hpp"
+#include "framework/store/trained_file.hpp"
 
 namespace twinmap {
 namespace {
@@ -126,8 +126,10 @@ void addSensitivities(const RunFolder& run, const std::vector<FeaturePlace>& pla
 /// Rows of the last projection, and what scaled the features before it.
 const Eigen::MatrixXd* findProjection(const RunFolder& run) {
   const Eigen::MatrixXd* projection = nullptr;
-  for (const AffineStep& step : run.map->transform.steps) {
-    projection = step.projection.size() > 0 ? &step.projection : projection;
+  if (const auto* processes = std::get_if<GpMap>(&run.map->model.map)) {
+    for (const AffineStep& step : processes->transform.steps) {
+      projection = step.projection.size() > 0 ? &step.projection : projection;
+    }
   }
   return projection;
 }

@@ -2,29 +2,42 @@
 
 #include "framework/experiment/check/check_experiment.hpp"
 #include "framework/report/sections/sections.hpp"
-#include "framework/store/estimators/map_summary.hpp"
+#include "framework/store/trained_file.hpp"
 
 namespace twinmap {
 
+namespace {
+
+/// Of each process, where the map is one of processes.
+std::vector<Eigen::VectorXd> collectLengthScales(const RunFolder& run) {
+  std::vector<Eigen::VectorXd> scales;
+  const auto* map = run.map ? std::get_if<GpMap>(&run.map->model.map) : nullptr;
+  for (std::size_t p = 0; map != nullptr && p < map->processes.size(); ++p) {
+    scales.push_back(std::visit(
+        [](const auto& process) { return process->getHyperparameters().length_scales; }, map->processes[p]));
+  }
+  return scales;
+}
+
+}  // namespace
+
 void addRelevance(const RunFolder& run, Section& section, Page& page) {
-  if (!run.map) {
+  const std::vector<Eigen::VectorXd> length_scales = collectLengthScales(run);
+  if (length_scales.empty() || length_scales[0].size() < 2) {
     return;
   }
   constexpr Eigen::Index kMaxInputs = 24;
   std::vector<std::string> parameters, inputs;
   std::vector<double> relevance, length_scale;
   const std::vector<std::string> names = collectNames(run.experiment.model.parameters);
-  for (std::size_t p = 0; p < std::min(names.size(), run.map->hyperparameters.size()); ++p) {
-    const Eigen::VectorXd& scales = run.map->hyperparameters[p].length_scales;
+  for (std::size_t p = 0; p < std::min(names.size(), length_scales.size()); ++p) {
+    const Eigen::VectorXd& scales = length_scales[p];
     for (Eigen::Index i = 0; i < std::min(scales.size(), kMaxInputs); ++i) {
       parameters.push_back(names[p]);
       inputs.push_back(std::to_string(i + 1));
       length_scale.push_back(scales[i]);
       relevance.push_back(scales.minCoeff() / scales[i]);
     }
-  }
-  if (run.map->hyperparameters.empty() || run.map->hyperparameters[0].length_scales.size() < 2) {
-    return;
   }
   DataTable table;
   table.add("parameter", parameters);

@@ -233,19 +233,22 @@ class Verify(TestCase):
             run = self.copy("run")
             self.flip_bit(run / file, 1)
             differing, output = self.verify(run)
-            self.assertIn("cannot be opened as an HDF5 file", output)
+            self.assertIn(
+                "cannot be opened as an HDF5 file" if file == "samples.h5" else "does not begin with a checksum", output
+            )
             self.assertEqual([name[: len(file)] for name in differing], [file])
             shutil.rmtree(run)
 
     def test_a_flipped_bit_in_the_map_is_found_and_named(self):
         for dataset, index in (
-            ("maps/k_y/alpha", (7,)),
-            ("maps/d_y/factor", (9, 4)),
-            ("training_inputs", (3, 5)),
-            ("target/scale", (0,)),
-            ("transform/0/offset", (2,)),
-            ("residual_correlation", (1, 0)),
-            ("maps/k_theta/nlml", ()),
+            ("map/processes/0/alpha", (7,)),
+            ("map/processes/1/factor", (9, 4)),
+            ("map/training_inputs", (3, 5)),
+            ("map/target/scale", (0,)),
+            ("map/transform/0/offset", (2,)),
+            ("map/residual_correlation", (1, 0)),
+            ("map/processes/2/nlml", ()),
+            ("trust/reference/chi_square", (5,)),
         ):
             run = self.copy("run")
             self.flip_number(run / "maps.h5", dataset, index)
@@ -257,12 +260,12 @@ class Verify(TestCase):
 
     def test_a_flipped_bit_in_a_hyperparameter_is_found_and_named(self):
         run = self.copy("run")
-        self.flip_number(run / "maps.h5", "maps/k_y/noise_stddev", ())
+        self.flip_number(run / "maps.h5", "map/processes/0/noise_stddev", ())
         self.verify(run)
         self.assertEqual(self.changed, "maps.h5 is not as it was written")  # too small a change for anything else
         differing, _ = self.verify(run, "--all")
         self.assertEqual(list(differing), ["maps.h5"])
-        self.assertRegex(differing["maps.h5"], r"^/maps/k_y/noise_stddev: \S+ instead of \S+$")
+        self.assertRegex(differing["maps.h5"], r"^/map/processes/0/noise_stddev: \S+ instead of \S+$")
 
     def test_a_changed_digit_in_a_table_is_found_and_named(self):
         for file, column in (("predictions.csv", "inferred"), ("metrics.csv", "loo_sd_pct"), ("joint.csv", "value")):

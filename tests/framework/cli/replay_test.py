@@ -116,7 +116,7 @@ class Replay(ReplayCase):
         mean = {name: estimate["mean"] for name, estimate in inferred.items()}
         stddev = np.array([estimate["sd"] for estimate in inferred.values()])
         with h5py.File(self.run_folder / "maps.h5") as file:
-            covariance = file["residual_correlation"][:] * np.outer(stddev, stddev)
+            covariance = file["map/residual_correlation"][:] * np.outer(stddev, stddev)
         moved = [
             [self.simulate_clean({**mean, name: mean[name] + sign * inferred[name]["sd"]}) for sign in (1, -1)]
             for name in mean

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "framework/experiment/experiment_file.hpp"
-#include "framework/store/estimators/maps_file.hpp"
+#include "framework/store/trained_file.hpp"
 
 namespace twinmap {
 namespace {
@@ -41,12 +41,12 @@ void storeMap(const std::filesystem::path& file, const Study& study, const std::
     map.online.trust->refinement = collectReference(refined);
   }
   const ExperimentSpec experiment = nameEngine(study.experiment, study.simulator);
-  StoredMap stored{experiment.model.parameters, {},         map.exact,
-                   experiment.model.inputs,     map.online, writeExperiment(experiment)};
+  TrainedFile stored{
+      experiment.model.parameters, experiment.model.inputs, {}, map.online, writeExperiment(experiment)};
   for (const FeatureInfo& info : study.extractor.getInfos()) {
     stored.feature_names.push_back(info.name);
   }
-  writeMapsFile(file, stored);
+  writeTrainedFile(file, stored);
 }
 
 }  // namespace twinmap

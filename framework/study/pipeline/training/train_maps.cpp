@@ -50,8 +50,7 @@ TrainedMap trainNeurally(const Study& study, const PreparedData& data) {
           std::move(outcome.transform),
           std::move(outcome.summary),
           std::move(outcome.notes),
-          std::move(online.model),
-          {}};
+          std::move(online.model)};
 }
 
 TrainedMap trainAutomatically(const Study& study, const PreparedData& data) {
@@ -80,8 +79,7 @@ TrainedMap makeTrainedMap(const Study& study, const PreparedData& data, Training
           map->transform,
           std::move(training.summary),
           std::move(training.notes),
-          std::move(online.model),
-          *map};
+          std::move(online.model)};
 }
 
 TrainedMap makeTrainedMap(const Study& study, const PreparedData& data, SurrogateMapTraining training) {
@@ -98,8 +96,7 @@ TrainedMap makeTrainedMap(const Study& study, const PreparedData& data, Surrogat
           fitTransform(study.experiment.transform, data.labelled.train),
           std::move(training.summary),
           std::move(training.notes),
-          std::move(online.model),
-          {}};
+          std::move(online.model)};
 }
 
 TrainedMap trainChosenMap(const Study& study, const PreparedData& data) {

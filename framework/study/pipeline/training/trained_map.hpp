@@ -23,7 +23,6 @@ struct TrainedMap {
   TrainingSummary summary;
   StageNotes notes;
   OnlineModel online;
-  GpMap exact;  ///< what online was compressed from; without processes where it is of another kind
 };
 
 }  // namespace twinmap

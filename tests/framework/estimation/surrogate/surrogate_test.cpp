@@ -177,6 +177,35 @@ TEST(Surrogate, StaysWithinTheBoundsWhateverIsMeasured) {
   EXPECT_GT(found.stddev.minCoeff(), 0.0);
 }
 
+/// Of a parameter whose sign nothing shows, and of one that all shows.
+MatrixXd calcSquared(const MatrixXd& points) {
+  MatrixXd features(kTimes, points.cols());
+  for (Index i = 0; i < kTimes; ++i) {
+    features.row(i) = std::sin(0.5 * i) * (10.0 * points.row(0)).array().square() +
+                      std::cos(0.3 * i) * points.row(1).array();
+  }
+  return features;
+}
+
+TEST(Surrogate, IsNeverLessCertainThanTheBoundsAlone) {
+  ModelSpec model;
+  model.parameters = {makeParameter("unseen_sign", -0.1, 0.1), makeParameter("seen", -1.0, 1.0)};
+  const MatrixXd points = samplePoints(listBox(model), 200, 2);
+  const MatrixXd measured = addNoise(calcSquared(points), 3);
+  Surrogate surrogate = trainOn(model, calcSquared, 100).surrogate;
+  for (const double scale : {1.0, 300.0}) {  // the factor of a surrogate that knows little of its errors
+    surrogate.validation.stddev_scale[0] = scale;
+    const Predictions found = surrogate.predict(measured, {}, 2);
+    const double prior = 0.2 / std::sqrt(12.0);
+    EXPECT_NEAR(found.stddev.row(0).maxCoeff(), prior, 1e-12);
+    EXPECT_LT(found.stddev.row(1).maxCoeff(), 0.1);
+    EXPECT_LE(found.mean.row(0).cwiseAbs().maxCoeff(), 0.1);
+    const auto inside =
+        (found.mean.row(0) - points.row(0)).cwiseAbs().array() < 1.96 * found.stddev.row(0).array();
+    EXPECT_GE(inside.count(), 185) << scale;  // of 200: 95 % less 2 standard errors
+  }
+}
+
 TEST(Surrogate, DoesNotDependOnTheThreads) {
   const ModelSpec model = makeOscillationModel();
   const SurrogateTraining one = trainOn(model, calcOscillation, 60, 1),

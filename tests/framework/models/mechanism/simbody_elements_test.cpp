@@ -52,7 +52,7 @@ class ThreeWays {
   ThreeWays(const ModelSpec& model, Add add) : model_(model), context_(model) {
     context_.numbers.update(Eigen::VectorXd());
     engine_.emplace(context_, false);
-    own_.emplace(model.system, context_.names, context_.numbers.updNumbers());
+    own_.emplace(model.system, context_.names, context_.numbers);
     forces_.reset(new SimTK::GeneralForceSubsystem(own_->addForceSubsystem()));
     add(OwnForces{*forces_, *own_});
     own_->realize();

@@ -1,4 +1,4 @@
-#include "framework/store/estimators/surrogate_group.hpp"
+#include "framework/estimation/surrogate/surrogate_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -37,14 +37,14 @@ ForwardSurrogate fitExample() {
   return fitForward(samples, {}, {}).surrogate;
 }
 
-TEST(SurrogateGroup, GivesASurrogateThatInfersTheSameBits) {
+TEST(SurrogateFile, GivesASurrogateThatInfersTheSameBits) {
   const ForwardSurrogate surrogate = fitExample();
   const TemporaryFolder folder;
   const auto path = folder.getPath() / "surrogate.h5";
   Hdf5Writer writer(path);
-  writeSurrogateGroup(writer, "/some/surrogate", surrogate);
+  writeForward(writer, "/some/surrogate", surrogate);
   writer.close();
-  const ForwardSurrogate read = readSurrogateGroup(Hdf5Reader(path), "/some/surrogate");
+  const ForwardSurrogate read = readForward(Hdf5Reader(path), "/some/surrogate");
   ASSERT_EQ(read.windows.size(), surrogate.windows.size());
   EXPECT_EQ(read.projection, surrogate.projection);
   ScoreInversion before(surrogate, 2), after(read, 2);
@@ -56,13 +56,13 @@ TEST(SurrogateGroup, GivesASurrogateThatInfersTheSameBits) {
   }
 }
 
-TEST(SurrogateGroup, RefusesAFileThatHasNone) {
+TEST(SurrogateFile, RefusesAFileThatHasNone) {
   const TemporaryFolder folder;
   const auto path = folder.getPath() / "other.h5";
   Hdf5Writer writer(path);
   writer.write("/some/number", 1.0);
   writer.close();
-  EXPECT_THROW(readSurrogateGroup(Hdf5Reader(path), "/some"), std::runtime_error);
+  EXPECT_THROW(readForward(Hdf5Reader(path), "/some"), std::runtime_error);
 }
 
 }  // namespace

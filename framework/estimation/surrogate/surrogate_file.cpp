@@ -1,7 +1,9 @@
-#include "framework/store/estimators/surrogate_group.hpp"
+#include "framework/estimation/surrogate/surrogate_file.hpp"
 
 #include <stdexcept>
 #include <vector>
+
+#include "framework/estimation/surrogate/validation_file.hpp"
 
 namespace twinmap {
 namespace {
@@ -17,14 +19,14 @@ constexpr const char* kQuadratic = "quadratic";
 
 gp::SmoothCovariance parseCovariance(const std::string& text) {
   if (text != kSquaredExponential && text != kMatern52) {
-    throw std::runtime_error("maps.h5: unknown '" + text + "'");
+    throw std::runtime_error("a surrogate has an unknown '" + text + "'");
   }
   return text == kMatern52 ? gp::SmoothCovariance::kMatern52 : gp::SmoothCovariance::kSquaredExponential;
 }
 
 gp::Trend parseTrend(const std::string& text) {
   if (text != kLinear && text != kQuadratic) {
-    throw std::runtime_error("maps.h5: unknown '" + text + "'");
+    throw std::runtime_error("a surrogate has an unknown '" + text + "'");
   }
   return text == kQuadratic ? gp::Trend::kQuadratic : gp::Trend::kLinear;
 }
@@ -43,8 +45,9 @@ class Flat {
 
   /// The next ones, column by column.
   MatrixXd take(Index rows, Index cols) {
-    if (taken_ + rows * cols > numbers_.size()) {
-      throw std::invalid_argument("maps.h5: a surrogate's numbers are too few");
+    const Index left = numbers_.size() - taken_;
+    if (rows < 0 || cols < 0 || (rows > 0 && cols > left / rows)) {
+      throw std::invalid_argument("a surrogate's numbers are too few");
     }
     const MatrixXd part = Eigen::Map<const MatrixXd>(numbers_.data() + taken_, rows, cols);
     taken_ += rows * cols;
@@ -103,6 +106,13 @@ void appendProcess(const gp::SharedProcessParts& parts, WindowTable& table, Wind
   numbers.left_out_ratios.append(parts.left_out_ratio);
 }
 
+bool describesEachWindow(const WindowTable& table) {
+  const std::size_t windows = table.functions.size();
+  return table.covariances.size() == windows && table.trends.size() == windows &&
+         table.slope_points.size() == windows && table.slope_variables.size() == windows &&
+         table.nuggets.size() == static_cast<Index>(windows);
+}
+
 /// The next window of p variables and n points.
 gp::SharedProcessParts take(const WindowTable& table, std::size_t window, Index p, Index n,
                             WindowNumbers& numbers) {
@@ -112,6 +122,10 @@ gp::SharedProcessParts take(const WindowTable& table, std::size_t window, Index 
   parts.slope_variables = table.slope_variables.at(window);
   parts.structure.slopes = parts.slope_points > 0;
   const Index functions = table.functions.at(window), terms = gp::countTerms(parts.structure.trend, p);
+  if (parts.slope_points < 0 || parts.slope_points > n || parts.slope_variables < 0 ||
+      parts.slope_variables > p) {
+    throw std::invalid_argument("a surrogate has slopes at points or of variables that it lacks");
+  }
   parts.hyperparameters = {numbers.length_scales.take(p, 1), table.nuggets(static_cast<Index>(window))};
   parts.scaled_points = numbers.scaled_points.take(n, p);
   parts.weights = numbers.weights.take(n + parts.slope_points * parts.slope_variables, functions);
@@ -150,6 +164,9 @@ std::vector<gp::SharedProcess> readWindows(const Hdf5Reader& file, const std::st
       file.readTexts(group + "/covariance"),         file.readTexts(group + "/trend"),
       file.readIntegers(group + "/functions"),       file.readIntegers(group + "/slope_points"),
       file.readIntegers(group + "/slope_variables"), file.readVector(group + "/nugget")};
+  if (!describesEachWindow(table)) {
+    throw std::runtime_error(file.getPath() + ": " + group + " does not describe each window");
+  }
   WindowNumbers numbers;
   forEachKind(numbers,
               [&](const char* name, Flat& flat) { flat = Flat(file.readVector(group + "/" + name)); });
@@ -160,9 +177,35 @@ std::vector<gp::SharedProcess> readWindows(const Hdf5Reader& file, const std::st
   return windows;
 }
 
+bool fitsTogether(const ForwardSurrogate& surrogate) {
+  const Index r = surrogate.projection.rows();
+  Index functions = 0;
+  for (const gp::SharedProcess& window : surrogate.windows) {
+    functions += window.getFunctionCount();
+  }
+  return r > 0 && functions == r && surrogate.projection.cols() == surrogate.center.size() &&
+         surrogate.points.size() > 0 && surrogate.scores.rows() == r &&
+         surrogate.scores.cols() == surrogate.points.cols() && surrogate.error_correlation.rows() == r &&
+         surrogate.error_correlation.cols() == r && surrogate.error_variance.size() == r;
+}
+
+bool fitsTogether(const Surrogate& surrogate) {
+  const Index variables = surrogate.forward->points.rows();
+  return surrogate.center.size() == variables && surrogate.half_width.size() == variables &&
+         surrogate.parameters > 0 && surrogate.parameters <= surrogate.unknown &&
+         surrogate.unknown <= variables && fitsParameters(surrogate.validation, surrogate.parameters) &&
+         surrogate.validation.limit_scale.size() == surrogate.parameters;
+}
+
+void requireFit(bool fits, const Hdf5Reader& file, const std::string& group) {
+  if (!fits) {
+    throw std::runtime_error(file.getPath() + ": " + group + " has parts that do not fit each other");
+  }
+}
+
 }  // namespace
 
-void writeSurrogateGroup(Hdf5Writer& file, const std::string& group, const ForwardSurrogate& surrogate) {
+void writeForward(Hdf5Writer& file, const std::string& group, const ForwardSurrogate& surrogate) {
   file.write(group + "/center", surrogate.center);
   file.writeSamples(group + "/projection", surrogate.projection);
   file.writeSamples(group + "/points", surrogate.points);
@@ -172,7 +215,7 @@ void writeSurrogateGroup(Hdf5Writer& file, const std::string& group, const Forwa
   writeWindows(file, group + "/windows", surrogate.windows);
 }
 
-ForwardSurrogate readSurrogateGroup(const Hdf5Reader& file, const std::string& group) {
+ForwardSurrogate readForward(const Hdf5Reader& file, const std::string& group) {
   ForwardSurrogate surrogate;
   surrogate.center = file.readVector(group + "/center");
   surrogate.projection = file.readSamples(group + "/projection");
@@ -181,6 +224,28 @@ ForwardSurrogate readSurrogateGroup(const Hdf5Reader& file, const std::string& g
   surrogate.error_correlation = file.readSamples(group + "/error_correlation");
   surrogate.error_variance = file.readVector(group + "/error_variance");
   surrogate.windows = readWindows(file, group + "/windows", surrogate.points.rows(), surrogate.points.cols());
+  requireFit(fitsTogether(surrogate), file, group);
+  return surrogate;
+}
+
+void writeSurrogate(Hdf5Writer& file, const std::string& group, const Surrogate& surrogate) {
+  writeForward(file, group + "/forward", *surrogate.forward);
+  file.write(group + "/box/center", surrogate.center);
+  file.write(group + "/box/half_width", surrogate.half_width);
+  file.write(group + "/parameters", static_cast<double>(surrogate.parameters));
+  file.write(group + "/unknown", static_cast<double>(surrogate.unknown));
+  writeValidation(file, group + "/validation", surrogate.validation);
+}
+
+Surrogate readSurrogate(const Hdf5Reader& file, const std::string& group) {
+  Surrogate surrogate;
+  surrogate.forward = std::make_shared<const ForwardSurrogate>(readForward(file, group + "/forward"));
+  surrogate.center = file.readVector(group + "/box/center");
+  surrogate.half_width = file.readVector(group + "/box/half_width");
+  surrogate.parameters = file.readCount(group + "/parameters");
+  surrogate.unknown = file.readCount(group + "/unknown");
+  surrogate.validation = readValidation(file, group + "/validation");
+  requireFit(fitsTogether(surrogate), file, group);
   return surrogate;
 }
 

@@ -3,16 +3,20 @@
 #include <string>
 
 #include "framework/base/hdf5/hdf5_file.hpp"
-#include "framework/estimation/surrogate/forward_surrogate.hpp"
+#include "framework/estimation/surrogate/surrogate.hpp"
 
 namespace twinmap {
 
 /// Writes all numbers of a forward surrogate below `group` (docs/file-formats.md): those of all windows side
 /// by side, so that reading takes a few calls however many windows there are.
-void writeSurrogateGroup(Hdf5Writer& file, const std::string& group, const ForwardSurrogate& surrogate);
+void writeForward(Hdf5Writer& file, const std::string& group, const ForwardSurrogate& surrogate);
 
 /// Reads it back; it predicts bit for bit as the one that was written. Throws std::runtime_error for unknown
 /// names, std::invalid_argument for sizes that do not fit each other.
-ForwardSurrogate readSurrogateGroup(const Hdf5Reader& file, const std::string& group);
+ForwardSurrogate readForward(const Hdf5Reader& file, const std::string& group);
+
+/// A surrogate as a map: its forward part, the box and the validation. Errors as above.
+void writeSurrogate(Hdf5Writer& file, const std::string& group, const Surrogate& surrogate);
+Surrogate readSurrogate(const Hdf5Reader& file, const std::string& group);
 
 }  // namespace twinmap

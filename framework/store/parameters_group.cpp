@@ -1,4 +1,6 @@
-#include "framework/store/estimators/parameters_group.hpp"
+#include "framework/store/parameters_group.hpp"
+
+#include <stdexcept>
 
 namespace twinmap {
 
@@ -23,6 +25,10 @@ std::vector<ParameterSpec> readParametersGroup(const Hdf5Reader& file, const std
   const std::vector<std::string> units = file.readTexts(group + "/unit");
   const Eigen::VectorXd lower = file.readVector(group + "/lower");
   const Eigen::VectorXd upper = file.readVector(group + "/upper");
+  const auto count = static_cast<Eigen::Index>(names.size());
+  if (units.size() != names.size() || lower.size() != count || upper.size() != count) {
+    throw std::runtime_error(file.getPath() + ": " + group + " does not describe each parameter");
+  }
   std::vector<ParameterSpec> parameters(names.size());
   for (std::size_t p = 0; p < names.size(); ++p) {
     const auto row = static_cast<Eigen::Index>(p);
