@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "framework/estimation/surrogate/validation_file.hpp"
+#include "framework/estimation/surrogate/surrogate_file.hpp"
 
 namespace twinmap {
 namespace {

@@ -169,6 +169,44 @@ std::vector<PosteriorMode> collectModes(const std::vector<Basin>& basins,
   return modes;
 }
 
+/// Points (u x n, in the parameters' units) in LogCoordinates, moved within the bounds.
+MatrixXd toCoordinates(const SearchBox& box, const LogCoordinates& coordinates, const MatrixXd& points) {
+  MatrixXd at(coordinates.getCount(), points.cols());
+  for (Index i = 0; i < points.cols(); ++i) {
+    at.col(i) = coordinates.fromBox(box.normalize(points.col(i)).cwiseMax(-1.0).cwiseMin(1.0));
+  }
+  return at;
+}
+
+MatrixXd toParameters(const SearchBox& box, const LogCoordinates& coordinates, const MatrixXd& at) {
+  MatrixXd points(at.rows(), at.cols());
+  for (Index i = 0; i < at.cols(); ++i) {
+    points.col(i) = box.makePoint(coordinates.toBox(at.col(i))).head(at.rows());
+  }
+  return points;
+}
+
+void setBest(const BasinSearch& found, const SearchBox& box, const LogCoordinates& coordinates,
+             SimulatorPosterior& posterior) {
+  const Basin& best = found.basins.front();
+  posterior.best = toParameters(box, coordinates, best.local.at);
+  posterior.chi_square = best.local.chi_square;
+  posterior.residual = best.local.residual;
+  posterior.degrees = best.local.degrees;
+  posterior.found_best = best.searches;
+}
+
+AdaptiveDraws drawFrom(MisfitSurface& surface, const BasinSearch& found,
+                       const SimulatorPosteriorOptions& options) {
+  Numbers numbers(surface.getDimensions(), options);
+  importance::AdaptiveOptions adaptive;
+  adaptive.max_rounds = kMaxRounds;
+  return importance::sampleAdaptively(
+      [&](const MatrixXd& points) { return surface.calcLogPosteriors(points); },
+      proposeFirst(found.basins, surface.getCoordinates()),
+      [&](int round) -> const RoundNumbers& { return numbers.get(round); }, adaptive);
+}
+
 }  // namespace
 
 bool SimulatorPosterior::isExplained() const {
@@ -183,40 +221,21 @@ SimulatorPosterior samplePosterior(Simulator& simulator, const RefinementModel& 
                                    const VectorXd& features, const VectorXd& held, const MatrixXd& given,
                                    const SimulatorPosteriorOptions& options) {
   const std::vector<ParameterSpec>& unknown = model.getUnknown();
-  const auto u = static_cast<Index>(unknown.size());
-  const SearchBox box(unknown, {0, u}, held);
+  const SearchBox box(unknown, {0, static_cast<Index>(unknown.size())}, held);
   const LogCoordinates coordinates(unknown);
   Misfit misfit(simulator, model, box, features);
   MisfitSurface surface(misfit, model, coordinates);
-  MatrixXd given_at(u, given.cols());
-  for (Index i = 0; i < given.cols(); ++i) {
-    given_at.col(i) = coordinates.fromBox(box.normalize(given.col(i)).cwiseMax(-1.0).cwiseMin(1.0));
-  }
+  const BasinSearch found =
+      findBasins(surface, toCoordinates(box, coordinates, given), options.seed, options.search);
   SimulatorPosterior posterior;
-  const auto to_parameters = [&](const VectorXd& at) -> VectorXd {
-    return box.makePoint(coordinates.toBox(at)).head(u);
-  };
-  const BasinSearch found = findBasins(surface, given_at, options.seed, options.search);
   posterior.starts = found.starts;
   posterior.simulations = surface.getSimulations();
   if (found.basins.empty()) {
     posterior.message = "no simulation within the bounds succeeded";
     return posterior;
   }
-  const Basin& best = found.basins.front();
-  posterior.best = to_parameters(best.local.at);
-  posterior.chi_square = best.local.chi_square;
-  posterior.residual = best.local.residual;
-  posterior.degrees = best.local.degrees;
-  posterior.found_best = best.searches;
-
-  Numbers numbers(u, options);
-  importance::AdaptiveOptions adaptive;
-  adaptive.max_rounds = kMaxRounds;
-  const AdaptiveDraws drawn = importance::sampleAdaptively(
-      [&](const MatrixXd& points) { return surface.calcLogPosteriors(points); },
-      proposeFirst(found.basins, coordinates),
-      [&](int round) -> const RoundNumbers& { return numbers.get(round); }, adaptive);
+  setBest(found, box, coordinates, posterior);
+  const AdaptiveDraws drawn = drawFrom(surface, found, options);
   posterior.simulations = surface.getSimulations();
   posterior.effective_sample_size = drawn.effective_sample_size;
   posterior.pareto_shape = drawn.pareto_shape;
@@ -225,10 +244,7 @@ SimulatorPosterior samplePosterior(Simulator& simulator, const RefinementModel& 
     return posterior;
   }
   posterior.weights = drawn.draws.weights;
-  posterior.draws.resize(u, drawn.draws.points.cols());
-  for (Index i = 0; i < posterior.draws.cols(); ++i) {
-    posterior.draws.col(i) = to_parameters(drawn.draws.points.col(i));
-  }
+  posterior.draws = toParameters(box, coordinates, drawn.draws.points);
   const importance::WeightedDraws draws{posterior.draws, posterior.weights};
   posterior.mean = importance::calcMean(draws);
   posterior.covariance = importance::calcCovariance(draws);
