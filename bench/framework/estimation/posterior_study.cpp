@@ -10,7 +10,7 @@
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/models/make_simulator.hpp"
-#include "framework/study/pipeline/prepare_data.hpp"
+#include "framework/data/features/experiment_features.hpp"
 
 namespace twinmap {
 namespace {

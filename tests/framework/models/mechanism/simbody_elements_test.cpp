@@ -93,7 +93,7 @@ class ThreeWays {
 
   const ModelSpec& model_;
   SimbodyContext context_;
-  equations::NamedValues<double> names_;
+  NamedValues<double> names_;
   equations::SystemValues<double> values_;
   std::optional<LoadedSystem> engine_;
   std::optional<BodyTree> own_;
