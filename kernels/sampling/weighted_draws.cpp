@@ -89,8 +89,7 @@ double averageProfile(const ArrayXd& excesses) {
 }  // namespace
 
 WeightedDraws weigh(MatrixXd points, const VectorXd& log_weights) {
-  const ArrayXd relative = log_weights.array() - log_weights.maxCoeff();
-  VectorXd weights = (relative < -700.0).select(0.0, relative.exp());  // Eigen's exponential does not reach 0
+  VectorXd weights = (log_weights.array() - log_weights.maxCoeff()).exp();
   weights /= weights.sum();
   return {std::move(points), std::move(weights)};
 }
