@@ -370,10 +370,13 @@ class Run(TestCase):
                     mean, stddev = predict(maps["map"], p, x)
                     offset, scale = maps["map/target/offset"][p], maps["map/target/scale"][p]
                     mine = [row for row in rows if row["parameter"] == name]
-                    np.testing.assert_allclose(
-                        offset + scale * mean, [float(r["inferred"]) for r in mine], rtol=tolerance
-                    )
-                    np.testing.assert_allclose(scale * stddev, [float(r["stddev"]) for r in mine], rtol=100 * tolerance)
+                    inferred, sd = (np.array([float(r[key]) for r in mine]) for key in ("inferred", "stddev"))
+                    if maps[f"map/processes/{p}"].attrs["approximation"] == b"exact":
+                        np.testing.assert_allclose(offset + scale * mean, inferred, rtol=tolerance)
+                        np.testing.assert_allclose(scale * stddev, sd, rtol=100 * tolerance)
+                    else:  # compressed: the tables are of the exact process, whose sd it keeps to 2 %
+                        self.assertLess(np.max(np.abs(offset + scale * mean - inferred) / sd), 0.02)
+                        np.testing.assert_allclose(scale * stddev, sd, rtol=0.02)
                 self.assertEqual(maps["map/noise/mean_of_slope"].size, 4 if noise == "follows_slope" else 0)
 
     def test_every_transform_is_stored_so_that_the_file_is_enough(self):

@@ -234,7 +234,7 @@ class Verify(TestCase):
             self.flip_bit(run / file, 1)
             differing, output = self.verify(run)
             self.assertIn(
-                "cannot be opened as an HDF5 file" if file == "samples.h5" else "does not begin with a checksum", output
+                "cannot be opened as an HDF5 file" if file == "samples.h5" else "byte 1 differs", output
             )
             self.assertEqual([name[: len(file)] for name in differing], [file])
             shutil.rmtree(run)

@@ -112,7 +112,7 @@ class Infer(InferCase):
         self.assertEqual(inferred["refined"]["status"], "accepted")
         self.assertEqual(inferred["parameters"], inferred["refined"]["parameters"])
         by_map = self.infer_json(self.measurement, "--no-refine")
-        self.assertEqual(by_map["method"], "surrogate")
+        self.assertEqual(by_map["method"], "gp")
         self.assertNotIn("refined", by_map)
         self.assertEqual(by_map["parameters"], inferred["inverse_map"]["parameters"])
 
@@ -123,7 +123,7 @@ class Infer(InferCase):
         write_csv(path, ["t", "y", "theta"], [wrong[name] for name in ("t", "y", "theta")])
         inferred = self.infer_json(path)
         self.assertIn("not_refined", inferred["statuses"])
-        self.assertEqual(inferred["method"], "surrogate")
+        self.assertEqual(inferred["method"], "gp")
         self.assertEqual(inferred["parameters"], inferred["inverse_map"]["parameters"])
         self.assertNotIn("parameters", inferred["refined"])
         self.assertIn("not refined", self.infer(path))
@@ -303,7 +303,7 @@ class Trust(InferCase):
         inferred = self.infer_json(other)
         self.assertEqual(inferred["status"], "model_mismatch")
         self.assertLess(inferred["trust"]["p_value"], 0.01)
-        self.assertIn("No point of the parameter box explains", self.infer(other))
+        self.assertIn("No parameter values within the bounds fit", self.infer(other))
 
 
 class WrongUsage(InferCase):
@@ -316,7 +316,7 @@ class WrongUsage(InferCase):
         self.expect(self.run_folder, code=2, text="--follow")
         self.expect(self.run_folder, self.measurement, "--follow", code=2, text="give no files")
         self.expect(self.folder / "nothing", self.measurement, code=1, text="does not exist")
-        self.expect(self.run_folder, self.measurement, "--set", "k=1", code=2, text="no input")
+        self.expect(self.run_folder, self.measurement, "--set", "k=1", code=2, text="is not an input")
         self.expect(self.run_folder, self.measurement, "--set", "k", code=2, text="NAME=NUMBER")
         self.expect(self.measurement, self.measurement, code=1, text="m.csv")
 
