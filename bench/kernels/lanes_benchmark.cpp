@@ -81,7 +81,7 @@ const Batch& getReference(int directions) {
   return batch;
 }
 
-const Problem& getTwoBeamProblem() {
+[[maybe_unused]] const Problem& getTwoBeamProblem() {
   static const Problem problem = two_beam::makeProblem();
   return problem;
 }

@@ -36,7 +36,7 @@ struct ParameterFigures {
 
 /// How a printed table (Markdown, LaTeX, of a sweep) shows a figure; the report's and all files have them
 /// all.
-enum class InPrint { kNo, kValue, kWithError };
+enum class InPrint { kOmitted, kValue, kWithError };
 
 /// A figure as files, tables, the report and gates name and show it. Another one is a line here, and its
 /// value in calcFigures.
@@ -45,7 +45,7 @@ struct FigureColumn {
   const char* heading;  ///< in tables
   double ParameterFigures::*value;
   int decimals = 4;  ///< in print, where there is no standard error
-  InPrint in_print = InPrint::kNo;
+  InPrint in_print = InPrint::kOmitted;
   bool left_out = false;     ///< known of the training samples too: column loo_NAME
   bool needs_limit = false;  ///< known only where the information limit is
 };
@@ -61,12 +61,12 @@ inline constexpr std::array<FigureColumn, 14> kFigureColumns{
      {"stddev_pct", "claimed sd %", &ParameterFigures::stddev_pct},
      {"z_mean", "mean of z", &ParameterFigures::z_mean, 3},
      {"z_sd", "sd of z", &ParameterFigures::z_sd, 3},
-     {"nlpd", "NLPD", &ParameterFigures::nlpd, 4, InPrint::kNo, true},
+     {"nlpd", "NLPD", &ParameterFigures::nlpd, 4, InPrint::kOmitted, true},
      {"crps_pct", "CRPS %", &ParameterFigures::crps_pct},
      {"limit_pct", "limit %", &ParameterFigures::limit_pct, 4, InPrint::kValue, false, true},
      {"ratio_to_limit", "ratio", &ParameterFigures::ratio_to_limit, 3, InPrint::kWithError, false, true},
-     {"nats_above_limit", "nats above limit", &ParameterFigures::nats_above_limit, 4, InPrint::kNo, false,
-      true}}};
+     {"nats_above_limit", "nats above limit", &ParameterFigures::nats_above_limit, 4, InPrint::kOmitted,
+      false, true}}};
 
 /// The columns of metrics.csv that a gate may hold: the figures, those of left-out training samples, nlml and
 /// test_samples.

@@ -1,9 +1,9 @@
 #include <fmt/core.h>
 
 #include "framework/base/json/json.hpp"
-#include "framework/base/text/text_tables.hpp"
 #include "framework/base/text/escape.hpp"
 #include "framework/base/text/number_text.hpp"
+#include "framework/base/text/text_tables.hpp"
 #include "framework/inference/direct_inference.hpp"
 
 namespace twinmap {
@@ -14,7 +14,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr int kDigits = 6, kStddevDigits = 3;
+constexpr int kShownDigits = 6, kShownStddevDigits = 3;
 constexpr double kProbabilities[] = {0.025, 0.16, 0.5, 0.84, 0.975};
 
 /// u x kProbabilities.
@@ -75,7 +75,8 @@ std::string describeModes(const SimulatorPosterior& posterior, const std::vector
     for (std::size_t p = 0; p < parameters.size(); ++p) {
       const auto i = static_cast<Index>(p);
       values += fmt::format("{}{} = {} +- {}", p == 0 ? "" : ", ", parameters[p].name.text,
-                            toShortText(mode.mean[i], kDigits), toShortText(mode.stddev[i], kStddevDigits));
+                            toShortText(mode.mean[i], kShownDigits),
+                            toShortText(mode.stddev[i], kShownStddevDigits));
     }
     text += fmt::format("    {:3.0f} %: {}\n", 100.0 * mode.weight, values);
   }
@@ -88,10 +89,10 @@ std::string makeParameterTable(const SimulatorPosterior& posterior,
   std::vector<std::vector<std::string>> rows{{"parameter", "unit", "mean", "sd", "95 % interval"}};
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const auto i = static_cast<Index>(p);
-    rows.push_back({parameters[p].name.text, parameters[p].unit, toShortText(posterior.mean[i], kDigits),
-                    toShortText(posterior.stddev[i], kStddevDigits),
-                    toShortText(quantiles(i, 0), kDigits) + " .. " +
-                        toShortText(quantiles(i, quantiles.cols() - 1), kDigits)});
+    rows.push_back({parameters[p].name.text, parameters[p].unit, toShortText(posterior.mean[i], kShownDigits),
+                    toShortText(posterior.stddev[i], kShownStddevDigits),
+                    toShortText(quantiles(i, 0), kShownDigits) + " .. " +
+                        toShortText(quantiles(i, quantiles.cols() - 1), kShownDigits)});
   }
   return alignRows(rows, rows.front().size(), "  ");
 }

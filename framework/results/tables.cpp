@@ -22,7 +22,8 @@ constexpr const char* kLegend =
 constexpr std::size_t kTextColumns = 2;  // to the left; numbers to the right
 
 bool isPrinted(const FigureColumn& column, const RunSummary& run) {
-  return column.in_print != InPrint::kNo && (!column.needs_limit || run.evaluation.limit_stddev.size() > 0);
+  return column.in_print != InPrint::kOmitted &&
+         (!column.needs_limit || run.evaluation.limit_stddev.size() > 0);
 }
 
 Row makeHeader(const RunSummary& run) {

@@ -33,9 +33,25 @@ def check_folders(files):
 
 def check_functions(root, files):
     sources = [str(f) for f in files if f.suffix in (".cpp", ".hpp", ".c", ".h", ".py") and str(f) not in NOT_FUNCTIONS]
-    tags = subprocess.run(["ctags", "--output-format=json", "--fields=+ne", "--kinds-C=f", "--kinds-C++=f",
-                           "--kinds-Python=fm", "-f", "-", "-L", "-"],
-                          cwd=root, input="\n".join(sources), capture_output=True, text=True, check=True)
+    tags = subprocess.run(
+        [
+            "ctags",
+            "--output-format=json",
+            "--fields=+ne",
+            "--kinds-C=f",
+            "--kinds-C++=f",
+            "--kinds-Python=fm",
+            "-f",
+            "-",
+            "-L",
+            "-",
+        ],
+        cwd=root,
+        input="\n".join(sources),
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     count = 0
     for tag in map(json.loads, tags.stdout.splitlines()):
         count += 1

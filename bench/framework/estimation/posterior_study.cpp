@@ -6,11 +6,11 @@
 #include <cmath>
 
 #include "framework/base/random/random.hpp"
+#include "framework/data/features/experiment_features.hpp"
 #include "framework/estimation/posterior/simulator_posterior.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/models/make_simulator.hpp"
-#include "framework/data/features/experiment_features.hpp"
 
 namespace twinmap {
 namespace {

@@ -57,7 +57,7 @@ class Numbers {
 };
 
 /// The shares of the basins by Laplace's approximation, half of all spread evenly: it is wrong where a basin
-/// is no paraboloid.
+/// is not a paraboloid.
 VectorXd calcShares(const std::vector<Basin>& basins, const LogCoordinates& coordinates) {
   const auto count = static_cast<Index>(basins.size());
   VectorXd logs(count);

@@ -178,7 +178,7 @@ std::string makeSweepTable(const std::vector<std::string>& keys, const std::vect
     table.back().insert(table.back().end(), {group.parameter, group.unit, std::to_string(group.rows.size())});
   }
   for (const FigureColumn& column : kFigureColumns) {
-    if (column.in_print == InPrint::kNo ||
+    if (column.in_print == InPrint::kOmitted ||
         std::find(figures.begin(), figures.end(), column.name) == figures.end()) {
       continue;
     }

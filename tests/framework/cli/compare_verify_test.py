@@ -233,9 +233,7 @@ class Verify(TestCase):
             run = self.copy("run")
             self.flip_bit(run / file, 1)
             differing, output = self.verify(run)
-            self.assertIn(
-                "cannot be opened as an HDF5 file" if file == "samples.h5" else "byte 1 differs", output
-            )
+            self.assertIn("cannot be opened as an HDF5 file" if file == "samples.h5" else "byte 1 differs", output)
             self.assertEqual([name[: len(file)] for name in differing], [file])
             shutil.rmtree(run)
 

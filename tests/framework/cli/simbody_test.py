@@ -10,8 +10,9 @@ CART = EXPERIMENTS / "duffing" / "cart.yaml"
 
 
 def call_with(program, *arguments, **environment):
-    return subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, timeout=600,
-                          env={**os.environ, **environment})
+    return subprocess.run(
+        [program, *map(str, arguments)], capture_output=True, text=True, timeout=600, env={**os.environ, **environment}
+    )
 
 
 class Loaded(RunTestCase):

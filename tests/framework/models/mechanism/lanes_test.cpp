@@ -380,8 +380,7 @@ TEST(Lanes, AreComparedWithSimbodyBeforeTheySimulate) {
   ModelContext context(model);
   const std::unique_ptr<SimbodyModel> simbody = makeSimbodyModel(model);
   const auto compare = [&](const ModelSpec& recorded) {
-    return compareWithSimbody(context, *simbody,
-                              compileModel(recordModel(recorded, context.names), false));
+    return compareWithSimbody(context, *simbody, compileModel(recordModel(recorded, context.names), false));
   };
   EXPECT_EQ(compare(model), "");
   EXPECT_EQ(compare(other).rfind("acceleration of 'x' is ", 0), 0u);
