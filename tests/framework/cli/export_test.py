@@ -252,7 +252,9 @@ class Processes(Exported):
         cls.trained, _ = run_once(EXPERIMENTS / "two_beam/best.yaml", *SMALL, "design.train.samples=100")
 
     def test_the_c_says_what_infer_says(self):
-        self.compare(self.trained, TWO_BEAM, 1e-12, 1e-9)
+        # Rounding in another order (fused multiply-adds, other vector widths) is amplified by the condition of the
+        # processes: 1e-7 sd were seen without AVX-512, 1e-10 with it.
+        self.compare(self.trained, TWO_BEAM, 1e-12, 1e-6)
 
     def test_in_float_it_says_so_within_a_ten_thousandth_of_an_sd(self):
         self.compare(self.trained, TWO_BEAM, 0.0, 1e-4, "--float")
