@@ -160,7 +160,7 @@ class Inferring(TwoBeams):
         ]:
             with self.assertRaisesRegex(twinmap.MeasurementError, text):
                 self.map.infer(wrong)
-        with self.assertRaisesRegex(twinmap.ExperimentError, "no input"):
+        with self.assertRaisesRegex(twinmap.ExperimentError, "not an input"):
             self.map.infer(frame, known={"payload": 1})
         with self.assertRaisesRegex(RuntimeError, "does not exist"):
             twinmap.Map.load("missing")
@@ -206,7 +206,7 @@ class KnownInputs(FolderTestCase):
         for known, text in [
             (None, "'payload' is not given"),
             ({"payload": 3}, "within the bounds"),
-            ({"load": 0.5}, "no input"),
+            ({"load": 0.5}, "not an input"),
         ]:
             with self.assertRaisesRegex(twinmap.ExperimentError, text):
                 map_.infer(responses.to_frame(1), known=known)
