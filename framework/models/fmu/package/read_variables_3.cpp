@@ -7,14 +7,14 @@ namespace twinmap::fmi {
 namespace {
 
 const std::map<std::string, Type>& getTypes() {
-  static const std::map<std::string, Type> kTypes = [] {
+  static const std::map<std::string, Type> kByName = [] {
     std::map<std::string, Type> types;
     for (int i = 0; i <= static_cast<int>(Type::kClock); ++i) {
       types[toText(static_cast<Type>(i))] = static_cast<Type>(i);
     }
     return types;
   }();
-  return kTypes;
+  return kByName;
 }
 
 using Nodes = std::map<std::string, pugi::xml_node>;
