@@ -51,7 +51,8 @@ twinmap_result answer(twinmap_inferrer* inferrer, const Infer& infer) {
 
 twinmap::InferredMeasurement inferTable(twinmap_inferrer& inferrer, const VectorXd& known,
                                         const std::vector<twinmap::NamedValues>& columns) {
-  const twinmap::Table table = twinmap::makeTable("measurement", columns, inferrer.inferrer.listColumns());
+  const twinmap::Table table =
+      twinmap::makeTable("measurement", columns, inferrer.inferrer.getReader().listColumns());
   return inferrer.session.infer(table, inferrer.start, known);
 }
 
@@ -118,7 +119,8 @@ twinmap_result twinmap_infer_columns(twinmap_inferrer* inferrer, const twinmap_c
 
 twinmap_result twinmap_infer_file(twinmap_inferrer* inferrer, const char* path) {
   return answer(inferrer, [&](twinmap_inferrer& self, const VectorXd& known) {
-    const twinmap::Table table = twinmap::readTable(&require(path, "path"), self.inferrer.listColumns());
+    const twinmap::Table table =
+        twinmap::readTable(&require(path, "path"), self.inferrer.getReader().listColumns());
     return self.session.infer(table, self.start, known);
   });
 }

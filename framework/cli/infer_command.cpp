@@ -50,7 +50,7 @@ class RunSource final : public InferenceSource {
         known_(collectKnown(inferrer_.getExperiment().model.inputs, parseKnownValues(arguments.known))),
         session_(inferrer_, arguments.refine, arguments.posterior_draws) {}
 
-  std::vector<std::string> listColumns() const override { return inferrer_.listColumns(); }
+  std::vector<std::string> listColumns() const override { return inferrer_.getReader().listColumns(); }
   double getStart(std::optional<double> start) const override { return session_.getStart(start); }
   std::string makeCsvHeader() const override {
     return makeInferenceCsvHeader(session_.refines(), session_.samplesPosteriors());

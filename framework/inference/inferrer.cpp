@@ -1,12 +1,8 @@
 #include "framework/inference/inferrer.hpp"
 
-#include <cmath>
 #include <stdexcept>
 
-#include "framework/data/features/experiment_features.hpp"
-#include "framework/data/measurement/trained_excitation.hpp"
 #include "framework/experiment/experiment_file.hpp"
-#include "framework/store/trained_file.hpp"
 
 namespace twinmap {
 
@@ -21,59 +17,12 @@ fs::path findMaps(const fs::path& run_or_maps) {
   return file;
 }
 
-struct Inferrer::Loaded {
-  TrainedFile stored;
-  ExperimentSpec experiment;
-  ResponseLayout layout;
-};
+Inferrer::Inferrer(const fs::path& run_or_maps) : Inferrer(readTrainedFile(findMaps(run_or_maps))) {}
 
-Inferrer::Inferrer(const fs::path& run_or_maps)
-    : Inferrer([&] {
-        Loaded loaded{readTrainedFile(findMaps(run_or_maps)), {}, {}};
-        loaded.experiment = readResolved(loaded.stored.experiment);
-        loaded.layout = makeLayout(loaded.experiment);
-        return loaded;
-      }()) {}
-
-Inferrer::Inferrer(Loaded loaded)
-    : experiment_(std::move(loaded.experiment)),
-      layout_(std::move(loaded.layout)),
-      sample_interval_(findSampleInterval(experiment_.features)),
-      extractor_(makeExtractor(experiment_, layout_)),
-      map_(std::move(loaded.stored.model.map)),
-      trust_(std::move(loaded.stored.model.trust)) {}
-
-std::vector<std::string> Inferrer::listColumns() const {
-  std::vector<std::string> names = twinmap::listColumns(experiment_.measurement, layout_.output_names);
-  const std::vector<std::string> excitation = listExcitationColumns(experiment_);
-  names.insert(names.end(), excitation.begin(), excitation.end());
-  return names;
-}
-
-void Inferrer::requireExcitation(const Table& table, std::optional<double> start) const {
-  requireTrainedExcitation(experiment_, table, start.value_or(experiment_.measurement.start));
-}
-
-Eigen::VectorXd Inferrer::readResponse(const Table& table, std::optional<double> start) const {
-  MeasurementSpec spec = experiment_.measurement;
-  spec.start = start.value_or(spec.start);
-  return resample(readMeasurement(table, spec, layout_), layout_, sample_interval_);
-}
-
-Eigen::VectorXd Inferrer::extractFeatures(const Eigen::VectorXd& response, const std::string& source) const {
-  return twinmap::extractFeatures(extractor_, response, source);
-}
-
-Eigen::VectorXd extractFeatures(const FeatureExtractor& extractor, const Eigen::VectorXd& response,
-                                const std::string& source) {
-  Eigen::VectorXd features = extractor.extract(response);
-  for (Eigen::Index i = 0; i < features.size(); ++i) {
-    if (!std::isfinite(features[i])) {
-      throw MeasurementError(source + ": the response has no feature '" + extractor.getInfos()[i].name + "'");
-    }
-  }
-  return features;
-}
+Inferrer::Inferrer(TrainedFile loaded)
+    : reader_(readResolved(loaded.experiment)),
+      map_(std::move(loaded.model.map)),
+      trust_(std::move(loaded.model.trust)) {}
 
 Inferrer::Workspace::Workspace(const Inferrer& inferrer) : map(inferrer.getMap()) {
   if (inferrer.getTrustModel()) {

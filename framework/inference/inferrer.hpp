@@ -3,15 +3,13 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <vector>
 
-#include "framework/data/features/feature_extractor.hpp"
-#include "framework/data/measurement/measurement.hpp"
 #include "framework/estimation/refined/refined.hpp"
 #include "framework/estimation/surrogate/posterior_sampler.hpp"
 #include "framework/estimation/trained/online_map.hpp"
 #include "framework/estimation/trained/online_model.hpp"
-#include "framework/experiment/experiment_spec.hpp"
+#include "framework/inference/measurement_reader.hpp"
+#include "framework/store/trained_file.hpp"
 
 namespace twinmap {
 
@@ -32,11 +30,6 @@ struct InferredMeasurement {
 /// is none.
 std::filesystem::path findMaps(const std::filesystem::path& run_or_maps);
 
-/// The features of a response (rows of the layout). Throws MeasurementError, naming `source`, where the
-/// response lacks a feature, such as a third peak.
-Eigen::VectorXd extractFeatures(const FeatureExtractor& extractor, const Eigen::VectorXd& response,
-                                const std::string& source);
-
 /// A finished run made ready for measurements. Immutable; its workspaces are for one thread each.
 class Inferrer {
  public:
@@ -44,24 +37,12 @@ class Inferrer {
   /// std::runtime_error for a file that is missing or was made by another version.
   explicit Inferrer(const std::filesystem::path& run_or_maps);
 
-  const ExperimentSpec& getExperiment() const { return experiment_; }
-  const ResponseLayout& getLayout() const { return layout_; }
-  const FeatureExtractor& getExtractor() const { return extractor_; }
+  const MeasurementReader& getReader() const { return reader_; }
+  const ExperimentSpec& getExperiment() const { return reader_.getExperiment(); }
+  const ResponseLayout& getLayout() const { return reader_.getLayout(); }
+  const FeatureExtractor& getExtractor() const { return reader_.getExtractor(); }
   const OnlineMap& getMap() const { return map_; }
   const std::optional<TrustModel>& getTrustModel() const { return trust_; }
-
-  /// The columns that a table of a measurement must have, and those that it may have, for readTable().
-  std::vector<std::string> listColumns() const;
-
-  /// Throws MeasurementError where the table tells another excitation than the map was trained on
-  /// (requireTrainedExcitation). `start` replaces that of the experiment's `measurement:`.
-  void requireExcitation(const Table& table, std::optional<double> start) const;
-
-  /// A measured response at the layout's times (its rows); `start` as above. Throws MeasurementError.
-  Eigen::VectorXd readResponse(const Table& table, std::optional<double> start) const;
-
-  /// extractFeatures() by the run's extractor.
-  Eigen::VectorXd extractFeatures(const Eigen::VectorXd& response, const std::string& source) const;
 
   struct Workspace {
     explicit Workspace(const Inferrer& inferrer);
@@ -75,13 +56,9 @@ class Inferrer {
                             Workspace& workspace) const;
 
  private:
-  struct Loaded;
-  explicit Inferrer(Loaded loaded);
+  explicit Inferrer(TrainedFile loaded);
 
-  ExperimentSpec experiment_;
-  ResponseLayout layout_;
-  std::optional<double> sample_interval_;
-  FeatureExtractor extractor_;
+  MeasurementReader reader_;
   OnlineMap map_;
   std::optional<TrustModel> trust_;
 };

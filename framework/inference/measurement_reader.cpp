@@ -1,9 +1,10 @@
 #include "framework/inference/measurement_reader.hpp"
 
+#include <cmath>
+
 #include "framework/data/features/experiment_features.hpp"
 #include "framework/data/measurement/measurement.hpp"
 #include "framework/data/measurement/trained_excitation.hpp"
-#include "framework/inference/inferrer.hpp"
 
 namespace twinmap {
 
@@ -24,12 +25,30 @@ double MeasurementReader::getStart(std::optional<double> start) const {
   return start.value_or(experiment_.measurement.start);
 }
 
-Eigen::VectorXd MeasurementReader::readFeatures(const Table& table, std::optional<double> start) const {
+void MeasurementReader::requireExcitation(const Table& table, std::optional<double> start) const {
   requireTrainedExcitation(experiment_, table, getStart(start));
+}
+
+Eigen::VectorXd MeasurementReader::readResponse(const Table& table, std::optional<double> start) const {
   MeasurementSpec spec = experiment_.measurement;
   spec.start = getStart(start);
-  const Eigen::VectorXd response = resample(readMeasurement(table, spec, layout_), layout_, sample_interval_);
-  return extractFeatures(extractor_, response, table.source);
+  return resample(readMeasurement(table, spec, layout_), layout_, sample_interval_);
+}
+
+Eigen::VectorXd MeasurementReader::readFeatures(const Table& table, std::optional<double> start) const {
+  requireExcitation(table, start);
+  return extractFeatures(extractor_, readResponse(table, start), table.source);
+}
+
+Eigen::VectorXd extractFeatures(const FeatureExtractor& extractor, const Eigen::VectorXd& response,
+                                const std::string& source) {
+  Eigen::VectorXd features = extractor.extract(response);
+  for (Eigen::Index i = 0; i < features.size(); ++i) {
+    if (!std::isfinite(features[i])) {
+      throw MeasurementError(source + ": the response has no feature '" + extractor.getInfos()[i].name + "'");
+    }
+  }
+  return features;
 }
 
 }  // namespace twinmap

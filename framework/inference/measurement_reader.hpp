@@ -12,6 +12,11 @@
 
 namespace twinmap {
 
+/// The features of a response (rows of the layout). Throws MeasurementError, naming `source`, where the
+/// response lacks a feature, such as a third peak.
+Eigen::VectorXd extractFeatures(const FeatureExtractor& extractor, const Eigen::VectorXd& response,
+                                const std::string& source);
+
 /// From tables of measurements to the features of an experiment. Immutable.
 class MeasurementReader {
  public:
@@ -26,8 +31,14 @@ class MeasurementReader {
   /// The time in a table that is the model's 0: `start`, or that of the experiment's `measurement:`.
   double getStart(std::optional<double> start) const;
 
-  /// d. Throws MeasurementError for a table that has another excitation than the experiment
-  /// (requireTrainedExcitation), lacks what is needed, or whose response lacks a feature.
+  /// Throws MeasurementError where the table has another excitation than the experiment
+  /// (requireTrainedExcitation).
+  void requireExcitation(const Table& table, std::optional<double> start) const;
+
+  /// A measured response at the layout's times (its rows). Throws MeasurementError.
+  Eigen::VectorXd readResponse(const Table& table, std::optional<double> start) const;
+
+  /// d: requireExcitation(), readResponse() and extractFeatures().
   Eigen::VectorXd readFeatures(const Table& table, std::optional<double> start) const;
 
  private:

@@ -40,14 +40,12 @@ MeasurementSession::MeasurementSession(const Inferrer& inferrer, std::optional<b
 }
 
 double MeasurementSession::getStart(std::optional<double> start) const {
-  return start.value_or(inferrer_.getExperiment().measurement.start);
+  return inferrer_.getReader().getStart(start);
 }
 
 InferredMeasurement MeasurementSession::infer(const Table& table, std::optional<double> start,
                                               const Eigen::VectorXd& known) {
-  inferrer_.requireExcitation(table, start);
-  InferredMeasurement inferred =
-      infer(inferrer_.extractFeatures(inferrer_.readResponse(table, start), table.source), known);
+  InferredMeasurement inferred = infer(inferrer_.getReader().readFeatures(table, start), known);
   inferred.source = table.source;
   inferred.start = getStart(start);
   return inferred;

@@ -25,7 +25,7 @@ class MeasurementSession {
   double getStart(std::optional<double> start) const;
 
   /// known: the inputs of the set-up (q). Throws MeasurementError for a table that cannot be used
-  /// (Inferrer::requireExcitation, readResponse, extractFeatures). Cost: that of Inferrer::infer(),
+  /// (MeasurementReader::readFeatures). Cost: that of Inferrer::infer(),
   /// SimulatorRefiner::refineAndJudge() and PosteriorSampler::sample().
   InferredMeasurement infer(const Table& table, std::optional<double> start, const Eigen::VectorXd& known);
 

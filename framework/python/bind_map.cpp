@@ -61,7 +61,7 @@ Answered answer(PythonMap& map, const InferRequest& request, const Infer& infer)
 
 Answered inferFile(PythonMap& map, const std::string& path, const InferRequest& request) {
   return answer(map, request, [&](MeasurementSession& session, const Eigen::VectorXd& known) {
-    return session.infer(readTable(path, map.getInferrer().listColumns()), request.start, known);
+    return session.infer(readTable(path, map.getInferrer().getReader().listColumns()), request.start, known);
   });
 }
 
@@ -71,7 +71,7 @@ Answered inferColumns(PythonMap& map, const NamedVectors& columns, const InferRe
     named.push_back({name, viewVector(values, "column '" + name + "'")});
   }
   return answer(map, request, [&](MeasurementSession& session, const Eigen::VectorXd& known) {
-    const Table table = makeTable("measurement", named, map.getInferrer().listColumns());
+    const Table table = makeTable("measurement", named, map.getInferrer().getReader().listColumns());
     return session.infer(table, request.start, known);
   });
 }

@@ -22,7 +22,7 @@ Eigen::MatrixXd measure(const Inferrer& inferrer, const std::filesystem::path& r
   Eigen::MatrixXd features(static_cast<Eigen::Index>(inferrer.getExtractor().getInfos().size()),
                            measured.cols());
   for (Eigen::Index i = 0; i < measured.cols(); ++i) {
-    features.col(i) = inferrer.extractFeatures(measured.col(i), "test sample");
+    features.col(i) = extractFeatures(inferrer.getExtractor(), measured.col(i), "test sample");
   }
   return features;
 }

@@ -10,8 +10,7 @@ namespace twinmap {
 /// Coordinates in which products and quotients of parameters are straight: of each parameter, v in [-1, 1] is
 /// its logarithm scaled to the bounds where both bounds have one sign, else the parameter itself. What
 /// depends on k / m or m l alone has a bent ridge as its likelihood in the parameters, and a plane one here.
-/// u in
-/// [-1, 1] is the parameter in half-widths of its bounds, as everywhere. Immutable.
+/// u in [-1, 1] is the parameter in half-widths of its bounds, as everywhere. Immutable.
 class LogCoordinates {
  public:
   /// Of u parameters, those that are unknown.

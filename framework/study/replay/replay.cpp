@@ -21,7 +21,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 Table readWindow(const Inferrer& inferrer, const MeasuredWindow& window) {
-  std::vector<std::string> columns = inferrer.listColumns();
+  std::vector<std::string> columns = inferrer.getReader().listColumns();
   const std::vector<std::string> signals = listSignalColumns(inferrer.getExperiment());
   columns.insert(columns.end(), signals.begin(), signals.end());
   return readTable(window.file, columns);
@@ -36,7 +36,7 @@ ExperimentSpec makeExperiment(const Inferrer& inferrer, const Table& table, doub
 /// What was measured in a window, and the model with the excitation of the window.
 struct Window {
   Window(const Inferrer& inferrer, const Table& table, double start)
-      : response(inferrer.readResponse(table, start)),
+      : response(inferrer.getReader().readResponse(table, start)),
         refiner(makeExperiment(inferrer, table, start), inferrer.getLayout()),
         features(extractFeatures(refiner.getExtractor(), response, table.source)) {}
 
@@ -150,7 +150,7 @@ InferredMeasurement inferFrom(const Inferrer& inferrer, const Table& table, cons
   const bool same_file = options.from.file == options.measurement.file;
   const Table other = same_file ? Table() : readWindow(inferrer, options.from);
   const Table& source = same_file ? table : other;
-  inferrer.requireExcitation(source, options.from.start);
+  inferrer.getReader().requireExcitation(source, options.from.start);
   if (options.from == options.measurement) {
     return infer(inferrer, window, options);
   }
