@@ -39,7 +39,7 @@ SimulationGain calcSimulationGain(const Surrogate& whole, const SurrogateSamples
   const Surrogate fitted =
       fitSimilar(whole, selectSimulations(forward, listRange(0, half)), choices, control);
   const std::vector<Index> others = listRange(half, std::min(n - half, kMaxInferred));
-  const Predictions found =
+  const Estimates found =
       fitted.predict(samples.measured(Eigen::all, others),
                      samples.points(Eigen::all, others).bottomRows(known), control.threads);
   gp::throwIfStopped(control.stop);

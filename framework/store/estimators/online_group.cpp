@@ -90,9 +90,9 @@ void writeValidation(Hdf5Writer& file, const std::string& group, const Surrogate
   file.write(group + "/limit_scale", validation.limit_scale);
   file.write(group + "/limit_ratio", validation.limit_ratio);
   file.write(group + "/status", static_cast<double>(validation.status));
-  if (validation.reach.isGiven()) {
-    file.write(group + "/reach50", validation.reach.of50.col(0));
-    file.write(group + "/reach95", validation.reach.of95.col(0));
+  if (validation.interval_factors.isGiven()) {
+    file.write(group + "/interval_factor50", validation.interval_factors.of50.col(0));
+    file.write(group + "/interval_factor95", validation.interval_factors.of95.col(0));
   }
 }
 
@@ -104,9 +104,10 @@ SurrogateValidation readValidation(const Hdf5Reader& file, const std::string& gr
           file.readVector(group + "/limit_scale"),
           file.readVector(group + "/limit_ratio"),
           static_cast<SurrogateStatus>(file.readNumber(group + "/status")),
-          file.contains(group + "/reach95")
-              ? IntervalReach{file.readVector(group + "/reach50"), file.readVector(group + "/reach95")}
-              : IntervalReach{}};
+          file.contains(group + "/interval_factor95")
+              ? IntervalFactors{file.readVector(group + "/interval_factor50"),
+                                file.readVector(group + "/interval_factor95")}
+              : IntervalFactors{}};
 }
 
 /// A surrogate's forward part is the trust model's.

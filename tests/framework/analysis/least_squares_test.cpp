@@ -43,7 +43,8 @@ TEST_F(LinearFit, IsTheWeightedLeastSquaresSolution) {
   measured << -1.6, 3.1, -0.2, -2.5;
   const MatrixXd weights = test::calcInverse(makeNoise());
   const MatrixXd information = makeLinearResponse().transpose() * weights * makeLinearResponse();
-  const VectorXd expected = test::calcInverse(information) * makeLinearResponse().transpose() * weights * measured;
+  const VectorXd expected =
+      test::calcInverse(information) * makeLinearResponse().transpose() * weights * measured;
   const LeastSquaresFit found = fit(measured, Eigen::Vector2d(1.0, 1.0));
   ASSERT_TRUE(found.converged) << found.message;
   EXPECT_LT((found.parameters - expected).norm(), 1e-4);  // a hundredth of the stddev
@@ -71,7 +72,8 @@ TEST_F(LinearFit, StaysWithinTheBounds) {
 }
 
 TEST_F(LinearFit, SaysThatItRanOutOfSimulations) {
-  const LeastSquaresFit found = fit(makeLinearResponse() * Eigen::Vector2d(2.0, 1.0), Eigen::Vector2d(-2.0, -2.0), 3);
+  const LeastSquaresFit found =
+      fit(makeLinearResponse() * Eigen::Vector2d(2.0, 1.0), Eigen::Vector2d(-2.0, -2.0), 3);
   EXPECT_FALSE(found.converged);
   EXPECT_NE(found.message.find("simulations"), std::string::npos);
 }
@@ -91,7 +93,7 @@ TEST(LinearMap, InvertsWhatIsLinear) {
   samples.features = (makeLinearResponse() * points).array() + 3.0;
   samples.parameters = points;
   const LinearMap map = trainLinearMap({}, samples);
-  const Predictions predictions = map.predict(samples.features, {});
+  const Estimates predictions = map.predict(samples.features, {});
   EXPECT_LT((predictions.mean - points).cwiseAbs().maxCoeff(), 1e-12);
   EXPECT_LT(predictions.stddev.maxCoeff(), 1e-12);
 }
@@ -101,7 +103,7 @@ TEST(LinearMap, SeesKnownInputs) {
   samples.parameters = MatrixXd::Random(1, 50);
   samples.inputs = MatrixXd::Random(1, 50);
   samples.features = 2.0 * samples.parameters + 5.0 * samples.inputs;
-  const Predictions predictions = trainLinearMap({}, samples).predict(samples.features, samples.inputs);
+  const Estimates predictions = trainLinearMap({}, samples).predict(samples.features, samples.inputs);
   EXPECT_LT((predictions.mean - samples.parameters).cwiseAbs().maxCoeff(), 1e-12);
 }
 

@@ -55,7 +55,7 @@ class Mixture(OwnFolderTestCase):
         mean = sum(one["weight"] * one["parameters"]["offset"]["mean"] for one in answer["components"])
         self.assertAlmostEqual(answer["parameters"]["offset"]["mean"], mean, places=12)
         text = self.infer(run)
-        self.assertIn("several answers may fit:", text)
+        self.assertIn("several values may fit:", text)
         self.assertRegex(text, r"-0\.0\d+ \.\. -0\.0\d+, 0\.0\d+ \.\. 0\.0\d+")
 
     def test_refining_from_one_answer_is_not_accepted(self):

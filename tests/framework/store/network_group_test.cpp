@@ -37,7 +37,7 @@ void expectTheSameBitsBack(NetworkMap map) {
   NetworkMap read = readNetworkGroup(Hdf5Reader(folder.getPath() / "map.h5"), "/online/network");
   map.validation.stddev_scale = read.validation.stddev_scale = VectorXd::Ones(2);
   const MatrixXd features = MatrixXd::Random(5, 9), known = MatrixXd::Random(1, 9);
-  const Predictions expected = map.predict(features, known), found = read.predict(features, known);
+  const Estimates expected = map.predict(features, known), found = read.predict(features, known);
   EXPECT_EQ(found.mean, expected.mean);
   EXPECT_EQ(found.stddev, expected.stddev);
 }

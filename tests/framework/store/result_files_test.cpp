@@ -82,7 +82,7 @@ TEST(MapsFile, ARestoredMapPredictsTheSameBits) {
     EXPECT_EQ(stored.feature_names, (std::vector<std::string>{"a", "b", "c"}));
     EXPECT_EQ(stored.parameters[0].unit, "N/m");
     const Eigen::MatrixXd at = Eigen::MatrixXd::Random(3, 10);
-    const Predictions expected = training.map.predict(at), restored = stored.map.predict(at);
+    const Estimates expected = training.map.predict(at), restored = stored.map.predict(at);
     EXPECT_EQ(restored.mean, expected.mean);
     EXPECT_EQ(restored.stddev, expected.stddev);
     EXPECT_EQ(stored.map.residual_correlation, training.map.residual_correlation);
