@@ -249,8 +249,8 @@ TEST(MapsFile, RestoresProcessesOfEveryKind) {
     writeTrainedFile(folder / "maps.h5", stored);
     const TrainedFile read = readTrainedFile(folder / "maps.h5");
     EXPECT_EQ(read.inputs.at(0).name.text, "load");
-    const Predictions expected = map.predict(features, samples.inputs);
-    const Predictions restored = std::get<GpMap>(read.model.map).predict(features, samples.inputs);
+    const Estimates expected = map.predict(features, samples.inputs);
+    const Estimates restored = std::get<GpMap>(read.model.map).predict(features, samples.inputs);
     EXPECT_EQ(restored.mean, expected.mean);
     EXPECT_EQ(restored.stddev, expected.stddev);
   }
