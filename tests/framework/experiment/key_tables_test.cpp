@@ -1,5 +1,5 @@
-// The documentation of the experiment file names the keys that there are: docs/reference/experiment-file.md against the
-// schema.
+// The documentation of the experiment file names the keys that there are:
+// docs/reference/experiment-file.md against the schema.
 #include <gtest/gtest.h>
 
 #include <algorithm>
