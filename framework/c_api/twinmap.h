@@ -1,4 +1,4 @@
-/* twinmap.h: parameters from measurements by a trained map, in C (docs/library.md).
+/* twinmap.h: parameters from measurements by a trained map, in C (docs/how-to/use-from-c.md).
  *
  * A map is opened once and shared by all threads; each thread has an inferrer of its own, which takes one
  * measurement after another and keeps the estimate of the last. Nothing else is shared: functions with different
@@ -106,7 +106,7 @@ TWINMAP_API twinmap_result twinmap_infer_features(twinmap_inferrer* inferrer, co
 
 /** A column of raw samples. */
 typedef struct twinmap_column {
-  const char* name;     /**< as in the header of a file: "t", "enc1 [mm]" (docs/measurements.md) */
+  const char* name;     /**< as in the header of a file: "t", "enc1 [mm]" (docs/how-to/read-recordings.md) */
   const double* values; /**< count */
   size_t count;
 } twinmap_column;
@@ -147,7 +147,7 @@ TWINMAP_API const char* twinmap_get_method(const twinmap_inferrer* inferrer);
 /** How many statuses the estimate has; 0 without an estimate, or where the run has no trust model. */
 TWINMAP_API size_t twinmap_count_statuses(const twinmap_inferrer* inferrer);
 /** "ok", or what is to be said against the estimate, the most severe first: "model_mismatch", "outside_training",
- * "at_bounds", "uninformative", "multimodal", "nonlinear", "not_refined", "estimator_limited" (docs/trust.md). NULL
+ * "at_bounds", "uninformative", "multimodal", "nonlinear", "not_refined", "estimator_limited" (docs/explanation/trust.md). NULL
  * beyond the last. */
 TWINMAP_API const char* twinmap_get_status(const twinmap_inferrer* inferrer, size_t index);
 

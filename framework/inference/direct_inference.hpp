@@ -54,7 +54,7 @@ std::string makeDirectTable(const DirectInference& inferred, const std::vector<P
 /// CSV: a row per measurement and parameter, in the columns of makeInferenceCsvHeader().
 std::string makeDirectCsvRows(const DirectInference& inferred, const std::vector<ParameterSpec>& parameters);
 
-/// One line of JSON, without a line end (docs/inference.md).
+/// One line of JSON, without a line end (docs/how-to/estimate-from-measurements.md).
 std::string makeDirectJson(const DirectInference& inferred, const std::vector<ParameterSpec>& parameters);
 
 /// CSV of the draws, a row each: source, start, draw, weight, then all unknown parameters; the row of names,

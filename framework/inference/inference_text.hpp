@@ -26,7 +26,7 @@ std::string makeInferenceCsvHeader(bool refined, bool posterior = false);
 std::string makeInferenceCsvRows(const InferredMeasurement& inferred,
                                  const std::vector<ParameterSpec>& parameters);
 
-/// One line of JSON, without a line end (docs/inference.md).
+/// One line of JSON, without a line end (docs/how-to/estimate-from-measurements.md).
 std::string makeInferenceJson(const InferredMeasurement& inferred,
                               const std::vector<ParameterSpec>& parameters,
                               const std::vector<FeatureInfo>& features);

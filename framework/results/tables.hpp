@@ -17,7 +17,7 @@ std::string makeJointCsv(const RunSummary& run);
 /// pit.csv: parameter, bin_lower, bin_upper, count.
 std::string makePitCsv(const RunSummary& run);
 
-/// components.csv: of predictions that are mixtures; docs/file-formats.md.
+/// components.csv: of predictions that are mixtures; docs/reference/files.md.
 std::string makeComponentsCsv(const RunSummary& run);
 
 /// predictions.csv: sample, parameter, true, inferred, stddev, limit_stddev where the limit is known,

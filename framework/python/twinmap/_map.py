@@ -18,7 +18,7 @@ _PROBABILITIES = [0.025, 0.16, 0.5, 0.84, 0.975]
 
 
 class Posterior:
-    """The posterior of p parameters given a measurement, without a normal approximation (docs/posterior.md).
+    """The posterior of p parameters given a measurement, without a normal approximation (docs/how-to/sample-the-posterior.md).
 
     `reliable`: whether its draws stand for the posterior; if not, `message` says why and there are no numbers but the
     diagnostics. `mean`, `stddev` (p): in the parameters' units. `quantiles`: a row for each of 0.025, 0.16, 0.5, 0.84
@@ -50,7 +50,7 @@ class Estimate:
 
     `names`, `units`: of the parameters. `mean`, `stddev` (p): in those units. `covariance` (p, p). `intervals95`,
     `intervals50`: for each parameter a list of intervals (lower, upper), several of a mixture where they lie apart.
-    `statuses`: ["ok"], or what is to be said against the estimate, the most severe first (docs/trust.md); empty where the
+    `statuses`: ["ok"], or what is to be said against the estimate, the most severe first (docs/explanation/trust.md); empty where the
     run has no trust model. `method`: "refined" where the estimate was refined on the simulator and accepted, else the kind
     of the map: "gp", "surrogate" or "network". `posterior`: where it was asked for, else None.
     """
