@@ -96,7 +96,7 @@ std::string makeJointTable(const JointInference& inferred, const std::vector<Par
 /// makeInferenceCsvHeader().
 std::string makeJointCsvRows(const JointInference& inferred, const std::vector<ParameterSpec>& parameters);
 
-/// One line of JSON, without a line end (docs/inference.md).
+/// One line of JSON, without a line end (docs/how-to/estimate-from-measurements.md).
 std::string makeJointJson(const JointInference& inferred, const std::vector<ParameterSpec>& parameters);
 
 }  // namespace twinmap
