@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "framework/base/random/random.hpp"
+#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 namespace {
@@ -46,8 +47,9 @@ LinearTrials makeLinearTrials(const std::vector<double>& scales) {
 }
 
 double calcLeast(const MatrixXd& jacobian, const VectorXd& errors) {
+  const MatrixXd information = jacobian.transpose() * jacobian;
   const VectorXd fitted =
-      jacobian * (jacobian.transpose() * jacobian).ldlt().solve(jacobian.transpose() * errors);
+      jacobian * linalg::solvePositiveDefinite(information, VectorXd(jacobian.transpose() * errors));
   return (errors - fitted).squaredNorm();
 }
 
