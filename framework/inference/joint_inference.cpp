@@ -9,7 +9,7 @@
 
 #include "framework/base/text/nearest_name.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"
-#include "framework/experiment/trials.hpp"
+#include "framework/experiment/sweep/trials.hpp"
 
 namespace twinmap {
 

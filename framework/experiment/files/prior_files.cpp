@@ -1,4 +1,4 @@
-#include "framework/experiment/prior_files.hpp"
+#include "framework/experiment/files/prior_files.hpp"
 
 #include <filesystem>
 #include <fstream>

@@ -1,4 +1,4 @@
-#include "framework/experiment/signal_files.hpp"
+#include "framework/experiment/files/signal_files.hpp"
 
 #include <algorithm>
 #include <filesystem>
