@@ -34,7 +34,7 @@ parameters:
 system:
   bodies: {cart: {mass: m, joint: {type: slider, coordinates: [x]}}}
   springs: [{coordinate: x, stiffness: k}]
-  dampers: [{coordinate: x, damping: 2}]
+  dampers: [{coordinate: x, damping: 0.02}]
   applied_forces: [{body: cart, force: [F, 0, 0]}]
 outputs: {x: {coordinate: x}}
 simulation: {duration: 2}
@@ -61,7 +61,7 @@ class Joint(FolderTestCase):
         super().setUpClass()
         cls.experiment = cls.folder / "oscillator.yaml"
         cls.experiment.write_text(OSCILLATOR)
-        cls.random = np.random.default_rng(7)
+        cls.random = np.random.default_rng(5)
         cls.a = cls.record("a.csv", 100, 1.0, 0.05, 0.3)
         cls.b = cls.record("b.csv", 100, 1.0, -0.04, 0.5)
         cls.other = cls.record("other.csv", 103, 1.0, 0.06, -0.2)
