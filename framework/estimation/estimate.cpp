@@ -14,6 +14,8 @@ const char* toString(EstimationMethod method) {
       return "surrogate";
     case EstimationMethod::kNetwork:
       return "network";
+    case EstimationMethod::kPosterior:
+      return "posterior";
     case EstimationMethod::kRefined:
       break;
   }
@@ -25,7 +27,14 @@ MatrixXd Estimate::calcCovariance() const {
   return 0.5 * (covariance + covariance.transpose());  // correlations are symmetric to rounding only
 }
 
+bool Estimate::isMultimodal() const {
+  return draws.isGiven() ? mixture.countComponents() > 1 : twinmap::isMultimodal(mixture);
+}
+
 Intervals Estimate::findIntervals(Index parameter, Coverage coverage) const {
+  if (draws.isGiven()) {
+    return {draws.findInterval(parameter, coverage == Coverage::k50 ? 0.5 : 0.95)};
+  }
   const IntervalFactor both = interval_factors.get(parameter);
   const double factor = coverage == Coverage::k50 ? both.of50 : both.of95;
   if (mixture.isGiven()) {

@@ -35,7 +35,9 @@ InferredMeasurement Inferrer::infer(const Eigen::VectorXd& features, const Eigen
   InferredMeasurement inferred;
   inferred.by_estimator = map_.infer(features, known, workspace.map);
   inferred.estimator_is_calibrated = map_.isCalibrated();
+  inferred.basins = map_.listBasins(workspace.map);
   if (trust_) {
+    inferred.coverage_is_short = trust_->coverage.isShort();
     inferred.trust = judge(*trust_, features, known, inferred.by_estimator, workspace.map.findExplanation(),
                            *workspace.trust);
     inferred.explanation = trust_->makeSampledPoint(workspace.trust->explanation->point);
