@@ -1,10 +1,24 @@
 #include "framework/estimation/estimate.hpp"
 
+#include <algorithm>
+
 namespace twinmap {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+
+namespace {
+
+Intervals clampTo(double lower, double upper, Intervals intervals) {
+  for (auto& [from, to] : intervals) {
+    from = std::clamp(from, lower, upper);
+    to = std::clamp(to, lower, upper);
+  }
+  return intervals;
+}
+
+}  // namespace
 
 const char* toString(EstimationMethod method) {
   switch (method) {
@@ -32,13 +46,19 @@ bool Estimate::isMultimodal() const {
 }
 
 Intervals Estimate::findIntervals(Index parameter, Coverage coverage) const {
-  if (draws.isGiven()) {
-    return {draws.findInterval(parameter, coverage == Coverage::k50 ? 0.5 : 0.95)};
-  }
   const IntervalFactor both = interval_factors.get(parameter);
   const double factor = coverage == Coverage::k50 ? both.of50 : both.of95;
   if (mixture.isGiven()) {
-    return findWithin(takeMarginal(mixture, parameter), factor);
+    Intervals intervals = findWithin(takeMarginal(mixture, parameter), factor);
+    if (!draws.isGiven()) {
+      return intervals;
+    }
+    if (intervals.size() > 1) {
+      return clampTo(draws.lower[parameter], draws.upper[parameter], std::move(intervals));
+    }
+  }
+  if (draws.isGiven()) {
+    return {draws.findInterval(parameter, coverage == Coverage::k50 ? 0.5 : 0.95)};
   }
   const double half_width = factor * stddev[parameter];
   return {{mean[parameter] - half_width, mean[parameter] + half_width}};

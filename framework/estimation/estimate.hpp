@@ -49,7 +49,8 @@ struct Estimate {
   Eigen::MatrixXd calcCovariance() const;
 
   /// A parameter's intervals, ascending: one, mean +- its factor times stddev, the smallest set of a mixture,
-  /// or one between quantiles of draws (BoundedDraws::findInterval). Cost: of a mixture some 0.2 ms.
+  /// or one between quantiles of draws (BoundedDraws::findInterval) unless their modes lie apart. Cost: of a
+  /// mixture some 0.2 ms.
   Intervals findIntervals(Eigen::Index parameter, Coverage coverage) const;
 
   /// The outermost bounds of all parameters' 95 % intervals.

@@ -185,7 +185,7 @@ std::string describeTrust(const InferredMeasurement& inferred, const std::vector
     }
   }
   if (isUncalibrated(inferred)) {
-    text += "  The run's own 95 % intervals held fewer than 92 % of the truths of its test samples.\n";
+    text += "  95 % intervals of the run's own refined test samples held less than 92 % of the truths.\n";
   }
   return text;
 }
@@ -217,8 +217,8 @@ std::string describeMapLimit(const InferredMeasurement& inferred,
   std::string text =
       far.empty() ? "" : fmt::format("  {} above what the measurement allows: {}.\n", listNames(far), advice);
   if (!inferred.estimator_is_calibrated) {
-    text +=
-        fmt::format("  The map's standard deviations are not calibrated (cross-validation): {}.\n", advice);
+    text += fmt::format(
+        "  The map's standard deviations are not calibrated (cross-validation, test samples): {}.\n", advice);
   }
   return text;
 }

@@ -1,7 +1,6 @@
 #include "framework/inference/posterior_estimate.hpp"
 
 #include "framework/experiment/model/parameter_box.hpp"
-#include "kernels/sampling/weighted_draws.hpp"
 
 namespace twinmap {
 

@@ -112,7 +112,7 @@ bool isEstimatorLimited(const InferredMeasurement& inferred) {
 }
 
 bool isUncalibrated(const InferredMeasurement& inferred) {
-  return inferred.coverage_is_short && !isSampled(inferred);
+  return inferred.coverage_is_short && isAccepted(inferred) && !isSampled(inferred);
 }
 
 std::vector<std::string> listStatuses(const InferredMeasurement& inferred) {

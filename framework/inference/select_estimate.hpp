@@ -21,8 +21,8 @@ constexpr double kEstimatorLimitedRatio = 1.5;
 /// Whether the estimate is the estimator's and its errors are mostly the estimator's own, or not known to it.
 bool isEstimatorLimited(const InferredMeasurement& inferred);
 
-/// Whether intervals of the run's test samples held less than they say, of the method that made the estimate,
-/// and no posterior on the simulator takes its place.
+/// Whether the estimate is refined, and the intervals of the run's refined test samples held less than they
+/// say.
 bool isUncalibrated(const InferredMeasurement& inferred);
 
 /// Names of all that is to be said against an estimate, the most severe first: "not_simulated"; what the

@@ -66,5 +66,19 @@ TEST(BoundedDraws, GiveAnEstimateItsIntervals) {
   EXPECT_FALSE(estimate.isMultimodal());
 }
 
+TEST(BoundedDraws, WithModesThatLieApartGiveAnIntervalForEach) {
+  Estimate estimate{VectorXd::Zero(1), VectorXd::Constant(1, 3.0)};
+  estimate.draws = drawWithin(0.0, -3.5, 20.0);
+  estimate.mixture = {Eigen::Vector2d(0.5, 0.5),
+                      Eigen::RowVector2d(-3.0, 3.0),
+                      Eigen::RowVector2d(0.5, 0.5),
+                      {Eigen::MatrixXd::Ones(1, 1), Eigen::MatrixXd::Ones(1, 1)}};
+  const Intervals intervals = estimate.findIntervals(0, Coverage::k95);
+  ASSERT_EQ(intervals.size(), 2U);
+  EXPECT_EQ(intervals[0].first, -3.5);  // the bound
+  EXPECT_NEAR(intervals[0].second, -3.0 + 1.96 * 0.5, 1e-2);
+  EXPECT_TRUE(estimate.isMultimodal());
+}
+
 }  // namespace
 }  // namespace twinmap
