@@ -158,12 +158,9 @@ MapEvaluation evaluateMap(const Study& study, const PreparedData& data, const Tr
   result.evaluation =
       evaluateEstimates(parameters, test.parameters,
                         selectEstimates(predictions, map.residual_correlation, refined), limit_stddev);
-  result.evaluation.methods = {
-      summarizeMap(map.name, parameters, test.parameters, predictions, limit_stddev)};
-  if (!refined.empty()) {
-    result.evaluation.methods.push_back(summarizeRefined(parameters, test.parameters, refined, limit_stddev));
-    result.evaluation.refined = refined;
-  }
+  result.evaluation.methods =
+      summarizeMethods(map.name, parameters, test.parameters, predictions, refined, limit_stddev);
+  result.evaluation.refined = refined;
   if (limit) {
     addLimit(study, test, *limit, result);
   }

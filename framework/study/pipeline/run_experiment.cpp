@@ -173,7 +173,7 @@ RunSummary runStages(const Study& study, SampleChoice choice) {
   ComparedMaps compared = compareMaps(study, data, evaluated.evaluation.limit_stddev);
   evaluated.evaluation.maps = std::move(compared.maps);
   evaluated.notes.append(compared.notes);
-  storeMap(study.folder / "maps.h5", study, evaluated.evaluation.refined, trained);
+  storeMap(study.folder / "maps.h5", study, evaluated.evaluation, trained);
   evaluated.notes.append(writeTrustPower(study, data, trained.online));
 
   summary.test_indices = data.test_indices;
