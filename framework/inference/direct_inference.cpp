@@ -3,6 +3,7 @@
 #include "framework/base/text/source_location.hpp"
 #include "framework/data/noise/noise.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/inference/tolerances.hpp"
 #include "framework/models/make_simulator.hpp"
 
 namespace twinmap {
@@ -57,7 +58,7 @@ std::vector<std::string> listStatuses(const DirectInference& inferred,
 }
 
 DirectInferrer::DirectInferrer(ExperimentSpec experiment, int draws)
-    : reader_(std::move(experiment)),
+    : reader_(followNoise(std::move(experiment))),
       prototype_(
           makeSimulator(reader_.getExperiment().model, reader_.getLayout().times, reader_.getLayout().modes)),
       simulator_(prototype_->clone()),
@@ -80,6 +81,7 @@ DirectInference DirectInferrer::infer(const Table& table, std::optional<double> 
   inferred.start = reader_.getStart(start);
   inferred.posterior = samplePosterior(*simulator_, *model_, features, held, MatrixXd(u, 0), options_);
   if (inferred.posterior.degrees > 0.0) {
+    inferred.posterior.residual = model_->placeResidual(inferred.posterior.residual);
     inferred.test = testResidual(inferred.posterior.residual, inferred.posterior.degrees,
                                  reader_.getExtractor().getInfos());
   }

@@ -15,7 +15,7 @@ SimulatorRefiner::SimulatorRefiner(const ExperimentSpec& experiment, const Respo
       extractor_(makeExtractor(experiment, layout)),
       simulator_(makeTrustedSimulator(experiment.model, layout.times, layout.modes)),
       noise_(extractor_, ResponseNoise(experiment.noise, layout), experiment.seed),
-      wanted_(shouldRefine(experiment.refine, *simulator_, extractor_, noise_)),
+      wanted_(shouldRefine(experiment.refine, *simulator_, noise_)),
       own_(simulator_->clone()) {}
 
 const RefinementModel& SimulatorRefiner::getModel() const {
