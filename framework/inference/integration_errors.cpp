@@ -4,7 +4,7 @@
 #include "framework/data/noise/noise.hpp"
 #include "framework/data/sensitivity/feature_sensitivities.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/experiment/points/sample_points.hpp"
+#include "framework/experiment/points/point_set.hpp"
 #include "framework/models/make_simulator.hpp"
 #include "framework/simulation/sample_generator.hpp"
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include "framework/base/log/log.hpp"
 #include "framework/base/text/number_text.hpp"
@@ -150,6 +151,7 @@ ExperimentSpec followNoise(ExperimentSpec experiment) {
 
 void followNoise(std::vector<SweepCase>& cases) {
   std::map<std::string, SimulationSpec> known;
+  std::map<std::tuple<int, double, double>, int> models;
   for (SweepCase& one : cases) {
     ExperimentSpec key;
     key.model = one.experiment.model;
@@ -160,7 +162,15 @@ void followNoise(std::vector<SweepCase>& cases) {
     if (is_new) {
       entry->second = followNoise(one.experiment).model.simulation;
     }
-    one.experiment.model.simulation = entry->second;
+    SimulationSpec& simulation = one.experiment.model.simulation;
+    simulation.relative_tolerance = entry->second.relative_tolerance;
+    simulation.absolute_tolerance = entry->second.absolute_tolerance;
+    const auto index = static_cast<int>(&one - cases.data());
+    one.model = models
+                    .emplace(std::tuple(one.model, double(simulation.relative_tolerance),
+                                        double(simulation.absolute_tolerance)),
+                             index)
+                    .first->second;
   }
 }
 

@@ -18,7 +18,8 @@ namespace twinmap {
 /// the noise, and 32 for each further tolerance that is tried; in lanes some milliseconds.
 ExperimentSpec followNoise(ExperimentSpec experiment);
 
-/// The same of the cases of a sweep, once for those that differ in none of the three.
+/// The same of the cases of a sweep, once for those that differ in none of the three. Cases of one model
+/// whose tolerances come out different have different models then (SweepCase::model).
 void followNoise(std::vector<SweepCase>& cases);
 
 }  // namespace twinmap
