@@ -4,6 +4,7 @@
 #include "framework/data/measurement/signal_experiment.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/inference/direct_inference.hpp"
+#include "framework/inference/tolerances.hpp"
 
 namespace twinmap {
 namespace {
@@ -33,7 +34,7 @@ std::unique_ptr<MeasurementInference> makeDirect(const MeasurementReader& reader
 
 InferenceSource::InferenceSource(const std::filesystem::path& run_or_experiment) {
   if (isExperimentFile(run_or_experiment)) {
-    reader_.emplace(readExperimentWithSignals(loadExperimentTree(run_or_experiment)));
+    reader_.emplace(followNoise(readExperimentWithSignals(loadExperimentTree(run_or_experiment))));
   } else {
     trained_.emplace(run_or_experiment);
   }

@@ -10,6 +10,7 @@
 #include "framework/base/text/nearest_name.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"
 #include "framework/experiment/sweep/trials.hpp"
+#include "framework/inference/tolerances.hpp"
 
 namespace twinmap {
 
@@ -180,7 +181,7 @@ std::vector<std::string> listStatuses(const JointInference& inferred,
 
 JointInferrer::JointInferrer(const YamlNode& root, const std::vector<std::string>& known, int draws) {
   for (const Trial& trial : expandTrials(root)) {
-    auto reader = std::make_unique<const MeasurementReader>(readExperimentWithSignals(trial.tree));
+    auto reader = std::make_unique<const MeasurementReader>(followNoise(readExperimentWithSignals(trial.tree)));
     const ExperimentSpec& experiment = reader->getExperiment();
     auto simulator = std::make_unique<const SimulatorRefiner>(experiment, reader->getLayout(),
                                                               SimulatorRefiner::Model::kToBeChecked);

@@ -35,7 +35,7 @@ SimulatorRefiner::SimulatorRefiner(const ExperimentSpec& experiment, const Respo
       simulator_(model == Model::kTrusted ? makeTrustedSimulator(experiment.model, layout.times, layout.modes)
                                           : makeSimulator(experiment.model, layout.times, layout.modes)),
       noise_(extractor_, ResponseNoise(experiment.noise, layout), experiment.seed),
-      wanted_(shouldRefine(experiment.refine, *simulator_, extractor_, noise_)),
+      wanted_(shouldRefine(experiment.refine, *simulator_, noise_)),
       own_(simulator_->clone()) {}
 
 const RefinementModel& SimulatorRefiner::getModel() const {
@@ -94,7 +94,7 @@ void SimulatorRefiner::requireNoise() const {
 }
 
 bool SimulatorRefiner::samplesFast() const {
-  return shouldRefine(RefineMode::kAutomatic, *simulator_, extractor_, noise_);
+  return shouldRefine(RefineMode::kAutomatic, *simulator_, noise_);
 }
 
 PosteriorEstimate SimulatorRefiner::samplePosterior(const VectorXd& features, const VectorXd& known,
@@ -103,8 +103,16 @@ PosteriorEstimate SimulatorRefiner::samplePosterior(const VectorXd& features, co
   const std::vector<ParameterSpec>& unknown = getUnknown();
   const PosteriorProblem problem{
       unknown, model_.priors, {makeTrial(features, known)}, static_cast<Index>(unknown.size())};
-  return makePosteriorEstimate(twinmap::samplePosterior(problem, given, options), unknown,
-                               static_cast<Index>(model_.parameters.size()), extractor_.getInfos());
+  SimulatorPosterior posterior = twinmap::samplePosterior(problem, given, options);
+  placeResidual(posterior);
+  return makePosteriorEstimate(posterior, unknown, static_cast<Index>(model_.parameters.size()),
+                               extractor_.getInfos());
+}
+
+void SimulatorRefiner::placeResidual(SimulatorPosterior& posterior) const {
+  if (posterior.degrees > 0.0) {
+    posterior.residual = getModel().placeResidual(posterior.residual);
+  }
 }
 
 MeasuredTrial SimulatorRefiner::makeTrial(const VectorXd& features, const VectorXd& known) const {

@@ -45,6 +45,9 @@ class SimulatorRefiner {
   /// object, which simulates for it. Throws std::invalid_argument for a feature without noise.
   MeasuredTrial makeTrial(const Eigen::VectorXd& features, const Eigen::VectorXd& known) const;
 
+  /// Puts the residual in the places of the experiment's features.
+  void placeResidual(SimulatorPosterior& posterior) const;
+
   /// The posterior of all unknown parameters (samplePosterior). given: points to search from as well (u x n).
   /// known: q. Throws std::invalid_argument for a feature without noise.
   PosteriorEstimate samplePosterior(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
