@@ -2,7 +2,7 @@
 
 #include "framework/c_api/guard.hpp"
 #include "framework/c_api/handles.hpp"
-#include "framework/inference/inference_text.hpp"
+#include "framework/inference/text/inference_text.hpp"
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include "framework/cli/commands.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"
 #include "framework/experiment/experiment_file.hpp"
-#include "framework/inference/tolerances.hpp"
+#include "framework/inference/tolerances/tolerances.hpp"
 #include "framework/study/sweep/plan.hpp"
 
 namespace twinmap::cli {

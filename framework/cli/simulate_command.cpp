@@ -12,7 +12,7 @@
 #include "framework/experiment/check/check_experiment.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/inference/tolerances.hpp"
+#include "framework/inference/tolerances/tolerances.hpp"
 #include "framework/models/make_simulator.hpp"
 
 namespace twinmap::cli {

@@ -4,7 +4,7 @@
 #include "framework/data/measurement/signal_experiment.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/inference/direct_inference.hpp"
-#include "framework/inference/tolerances.hpp"
+#include "framework/inference/tolerances/tolerances.hpp"
 
 namespace twinmap {
 namespace {
@@ -40,7 +40,7 @@ InferenceSource::InferenceSource(const std::filesystem::path& run_or_experiment)
   }
 }
 
-InferenceSource::InferenceSource(ExperimentSpec experiment) : reader_(std::move(experiment)) {}
+InferenceSource::InferenceSource(ExperimentSpec experiment) : reader_(followNoise(std::move(experiment))) {}
 
 std::unique_ptr<MeasurementInference> InferenceSource::makeSession(const SessionOptions& options) const {
   if (trained_) {

@@ -10,7 +10,7 @@
 #include "framework/base/text/nearest_name.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"
 #include "framework/experiment/sweep/trials.hpp"
-#include "framework/inference/tolerances.hpp"
+#include "framework/inference/tolerances/tolerances.hpp"
 
 namespace twinmap {
 
@@ -181,7 +181,8 @@ std::vector<std::string> listStatuses(const JointInference& inferred,
 
 JointInferrer::JointInferrer(const YamlNode& root, const std::vector<std::string>& known, int draws) {
   for (const Trial& trial : expandTrials(root)) {
-    auto reader = std::make_unique<const MeasurementReader>(followNoise(readExperimentWithSignals(trial.tree)));
+    auto reader =
+        std::make_unique<const MeasurementReader>(followNoise(readExperimentWithSignals(trial.tree)));
     const ExperimentSpec& experiment = reader->getExperiment();
     auto simulator = std::make_unique<const SimulatorRefiner>(experiment, reader->getLayout(),
                                                               SimulatorRefiner::Model::kToBeChecked);
@@ -233,6 +234,7 @@ RecordingInference JointInferrer::inferAlone(const Recording& recording) const {
   alone.posterior =
       samplePosterior({unknown, member.reader->getExperiment().model.priors, {makeTrial(recording)}, u},
                       MatrixXd(u, 0), options_);
+  member.simulator->placeResidual(alone.posterior);
   alone.inferred.posterior =
       makePosteriorEstimate(alone.posterior, unknown, static_cast<Index>(getParameters().size()),
                             member.reader->getExtractor().getInfos());

@@ -2,7 +2,7 @@
 
 #include "framework/data/features/experiment_features.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"
-#include "framework/inference/tolerances.hpp"
+#include "framework/inference/tolerances/tolerances.hpp"
 #include "framework/models/make_simulator.hpp"
 
 namespace twinmap::python {

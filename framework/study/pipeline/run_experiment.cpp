@@ -12,7 +12,7 @@
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/resolve_defaults.hpp"
-#include "framework/inference/tolerances.hpp"
+#include "framework/inference/tolerances/tolerances.hpp"
 #include "framework/models/make_simulator.hpp"
 #include "framework/report/report.hpp"
 #include "framework/results/result_files.hpp"

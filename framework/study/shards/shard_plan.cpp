@@ -7,7 +7,7 @@
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/base/json/json.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"
-#include "framework/inference/tolerances.hpp"
+#include "framework/inference/tolerances/tolerances.hpp"
 #include "framework/results/run_state.hpp"
 #include "framework/study/samples/model_store.hpp"
 #include "framework/study/sweep/run_sweep.hpp"

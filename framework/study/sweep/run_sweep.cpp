@@ -14,7 +14,7 @@
 #include "framework/data/sensitivity/stencil_simulator.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/inference/tolerances.hpp"
+#include "framework/inference/tolerances/tolerances.hpp"
 #include "framework/models/make_simulator.hpp"
 #include "framework/report/report.hpp"
 #include "framework/results/run_state.hpp"

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "framework/inference/inference_text.hpp"
+#include "framework/inference/text/inference_text.hpp"
 
 namespace twinmap {
 namespace {

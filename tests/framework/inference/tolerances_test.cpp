@@ -1,9 +1,9 @@
-#include "framework/inference/tolerances.hpp"
+#include "framework/inference/tolerances/tolerances.hpp"
 
 #include <gtest/gtest.h>
 
 #include "framework/experiment/experiment_file.hpp"
-#include "framework/inference/integration_errors.hpp"
+#include "framework/inference/tolerances/integration_errors.hpp"
 #include "tests/framework/experiment/experiments.hpp"
 
 namespace twinmap {

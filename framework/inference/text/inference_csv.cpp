@@ -2,8 +2,8 @@
 
 #include "framework/base/text/escape.hpp"
 #include "framework/base/text/number_text.hpp"
-#include "framework/inference/inference_text.hpp"
 #include "framework/inference/select_estimate.hpp"
+#include "framework/inference/text/inference_text.hpp"
 
 namespace twinmap {
 namespace {

@@ -1,4 +1,4 @@
-#include "framework/inference/tolerances.hpp"
+#include "framework/inference/tolerances/tolerances.hpp"
 
 #include <fmt/core.h>
 
@@ -11,7 +11,7 @@
 #include "framework/base/text/number_text.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/feature_spec.hpp"
-#include "framework/inference/integration_errors.hpp"
+#include "framework/inference/tolerances/integration_errors.hpp"
 
 namespace twinmap {
 namespace {

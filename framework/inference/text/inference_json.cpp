@@ -2,8 +2,8 @@
 
 #include "framework/base/json/json.hpp"
 #include "framework/estimation/estimate.hpp"
-#include "framework/inference/inference_text.hpp"
 #include "framework/inference/select_estimate.hpp"
+#include "framework/inference/text/inference_text.hpp"
 
 namespace twinmap {
 namespace {

@@ -1,4 +1,4 @@
-#include "framework/inference/integration_errors.hpp"
+#include "framework/inference/tolerances/integration_errors.hpp"
 
 #include "framework/data/features/experiment_features.hpp"
 #include "framework/data/noise/noise.hpp"

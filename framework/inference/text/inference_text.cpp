@@ -1,4 +1,4 @@
-#include "framework/inference/inference_text.hpp"
+#include "framework/inference/text/inference_text.hpp"
 
 #include <fmt/core.h>
 
