@@ -46,8 +46,8 @@ MatrixXd takeFiniteColumns(const MatrixXd& values) {
 }  // namespace
 
 struct FeatureNoise::LinearForm {
-  LinearForm(const FeatureExtractor& features, const ResponseNoise& noise, std::uint64_t seed)
-      : extractor(features.makeLinearForm()), noise(extractor, noise, seed) {}
+  LinearForm(const FeatureExtractor& features, const ResponseNoise& response_noise, std::uint64_t seed)
+      : extractor(features.makeLinearForm()), noise(extractor, response_noise, seed) {}
 
   FeatureExtractor extractor;
   FeatureNoise noise;

@@ -68,7 +68,8 @@ std::vector<SimulatorPosterior> sampleTestPosteriors(const Study& study, const L
           held.tail(known) = test.inputs.col(i);
         }
         posteriors[static_cast<std::size_t>(i)] =
-            samplePosterior(simulator, model, test.features.col(i), held, MatrixXd(unknown, 0), options);
+            samplePosterior(simulator, model, study.experiment.model.priors, test.features.col(i), held,
+                            MatrixXd(unknown, 0), options);
       });
   return posteriors;
 }

@@ -13,11 +13,11 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr Index kDraws = 20000;
+constexpr Index kManyDraws = 20000;
 
 /// Draws of N(mean, 1) cut at the bounds, by their quantile function.
 BoundedDraws drawWithin(double mean, double lower, double upper, std::uint64_t sample = 0,
-                        Index count = kDraws) {
+                        Index count = kManyDraws) {
   const boost::math::normal normal(mean, 1.0);
   const RandomStream random(3, RandomPurpose::kPosterior);
   const double from = cdf(normal, lower), to = cdf(normal, upper);
