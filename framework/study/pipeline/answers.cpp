@@ -24,6 +24,27 @@ int calcMedianSimulations(const std::vector<Refined>& refined) {
   return *middle;
 }
 
+/// Intervals of the answer reach as those of a refined one.
+void setReach(const Refined& refined, Index sample, Predictions& predictions) {
+  if (refined.reach.isGiven() && !predictions.reach.isGiven()) {
+    predictions.reach = {MatrixXd::Constant(predictions.mean.rows(), predictions.mean.cols(), kNormal50),
+                         MatrixXd::Constant(predictions.mean.rows(), predictions.mean.cols(), kNormal95)};
+  }
+  for (Index p = 0; p < predictions.mean.rows() && predictions.reach.isGiven(); ++p) {
+    predictions.reach.set(p, sample, refined.reach.get(p));
+  }
+}
+
+/// The mixture of the first p of its parameters.
+Mixture takeFirst(Mixture mixture, Index p) {
+  mixture.means = mixture.means.topRows(p).eval();
+  mixture.stddevs = mixture.stddevs.topRows(p).eval();
+  for (MatrixXd& correlation : mixture.correlations) {
+    correlation = correlation.topLeftCorner(p, p).eval();
+  }
+  return mixture;
+}
+
 /// Of all samples, or of none.
 MatrixXd chooseColumns(const MatrixXd& values, const std::vector<Index>& columns) {
   return values.cols() > 0 ? MatrixXd(values(Eigen::all, columns)) : MatrixXd();
@@ -51,13 +72,17 @@ Answers makeAnswers(const Predictions& map, const MatrixXd& residual_correlation
   for (const Index i : findAccepted(refined)) {
     const auto column = static_cast<std::size_t>(i);
     const Refined& one = refined[column];
-    answers.predictions.mean.col(i) = one.point.head(p);
+    answers.predictions.mean.col(i) = one.mean.head(p);
     answers.predictions.stddev.col(i) = one.stddev.head(p);
     answers.correlations[column] = calcCorrelation(one.covariance.topLeftCorner(p, p));
-    answers.predictions.reach.setNormal(i);
+    setReach(one, i, answers.predictions);
+    if (one.ridge.isGiven()) {
+      answers.ridges.resize(refined.size());
+      answers.ridges[column] = takeFirst(one.ridge, p);
+    }
     if (!map.mixtures.empty()) {
       answers.predictions.mixtures[column] = {
-          VectorXd::Ones(1), one.point.head(p), one.stddev.head(p), {answers.correlations[column]}};
+          VectorXd::Ones(1), one.mean.head(p), one.stddev.head(p), {answers.correlations[column]}};
     }
   }
   return answers;
@@ -98,8 +123,9 @@ MethodSummary summarizeRefined(const std::vector<ParameterSpec>& parameters, con
   Predictions predictions{MatrixXd(truth.rows(), summary.accepted), MatrixXd(truth.rows(), summary.accepted)};
   for (Index i = 0; i < summary.accepted; ++i) {
     const Refined& one = refined[static_cast<std::size_t>(accepted[static_cast<std::size_t>(i)])];
-    predictions.mean.col(i) = one.point.head(truth.rows());
+    predictions.mean.col(i) = one.mean.head(truth.rows());
     predictions.stddev.col(i) = one.stddev.head(truth.rows());
+    setReach(one, i, predictions);
   }
   summary.metrics = calcMetrics(parameters, chooseColumns(truth, accepted), predictions,
                                 chooseColumns(limit_stddev, accepted));

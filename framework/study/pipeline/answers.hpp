@@ -11,6 +11,7 @@ namespace twinmap {
 struct Answers {
   Predictions predictions;                    ///< p x n
   std::vector<Eigen::MatrixXd> correlations;  ///< p x p, of the errors: one for all samples, or one for each
+  std::vector<Mixture> ridges{};              ///< of each sample, where refinement followed one; else empty
 };
 
 /// The map's answers, their errors correlated as the map says of each, or else as its cross-validation found

@@ -129,12 +129,29 @@ std::vector<BaselineSummary> runBaselines(const Study& study, const LabelledSets
   return rows;
 }
 
+/// What the answers say of the derived quantities, if there are any.
+std::optional<DerivedEvaluation> evaluateDerivedOf(const Study& study, const LabelledFeatures& test,
+                                                   const Answers& answers,
+                                                   const std::optional<InformationLimit>& limit) {
+  const DerivedQuantities quantities(study.experiment);
+  if (quantities.count() == 0) {
+    return std::nullopt;
+  }
+  return evaluateDerived(quantities, test.parameters, answers.predictions, answers.correlations,
+                         answers.ridges,
+                         limit ? calcDerivedLimit(quantities, getParameters(study), test.parameters, *limit)
+                               : Eigen::MatrixXd());
+}
+
 void addLimit(const Study& study, const LabelledFeatures& test, const InformationLimit& limit,
               MapEvaluation& result) {
   result.evaluation.relevance =
       FeatureRelevance{test.infos, test.noise_covariance.diagonal().cwiseSqrt(), limit.relevance};
   result.evaluation.identifiability = calcIdentifiability(limit, getParameters(study));
   result.notes.warn(Severity::kDegraded, result.evaluation.identifiability->warnings);
+  result.evaluation.ridges = findRidges(limit.information, test.parameters, getParameters(study));
+  result.notes.warn(Severity::kDegraded,
+                    adviseOnRidges(result.evaluation.ridges, study.experiment.model.parameters));
   if (limit.failures > 0) {
     result.notes.warn(
         Severity::kInfo,
@@ -155,8 +172,9 @@ MapEvaluation evaluateMap(const Study& study, const PreparedData& data, const Tr
   RefinedTests tests = refineTestSamples(study, data, map.online);
   const std::vector<Refined> refined = std::move(tests.refined);
   result.notes.append(tests.notes);
-  result.evaluation = evaluateAnswers(
-      parameters, test.parameters, makeAnswers(predictions, map.residual_correlation, refined), limit_stddev);
+  const Answers answers = makeAnswers(predictions, map.residual_correlation, refined);
+  result.evaluation = evaluateAnswers(parameters, test.parameters, answers, limit_stddev);
+  result.evaluation.derived = evaluateDerivedOf(study, test, answers, limit);
   result.evaluation.methods = {
       summarizeMap(map.name, parameters, test.parameters, predictions, limit_stddev)};
   if (!refined.empty()) {
