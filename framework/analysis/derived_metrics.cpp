@@ -14,33 +14,24 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-bool isRidge(const std::vector<Mixture>& ridges, Index sample) {
-  return !ridges.empty() && ridges[static_cast<std::size_t>(sample)].isGiven();
-}
-
-std::vector<ValueDistribution> propagateSample(const DerivedQuantities& quantities,
-                                               const Predictions& predictions,
-                                               const std::vector<MatrixXd>& correlations,
-                                               const std::vector<Mixture>& ridges, Index sample) {
+/// One of n estimates.
+Estimate takeEstimate(const Estimates& estimates, Index sample) {
   const auto i = static_cast<std::size_t>(sample);
-  if (isRidge(ridges, sample)) {
-    return quantities.propagate(ridges[i]);
+  Estimate estimate{estimates.mean.col(sample), estimates.stddev.col(sample)};
+  estimate.correlation =
+      estimates.correlations.size() == 1 ? estimates.correlations.front() : estimates.correlations[i];
+  if (!estimates.mixtures.empty()) {
+    estimate.mixture = estimates.mixtures[i];
   }
-  if (!predictions.mixtures.empty()) {
-    return quantities.propagate(predictions.mixtures[i]);
+  if (!estimates.ridges.empty()) {
+    estimate.ridge = estimates.ridges[i];
   }
-  const MatrixXd& correlation = correlations.size() == 1 ? correlations.front() : correlations[i];
-  const auto stddev = predictions.stddev.col(sample).asDiagonal();
-  return quantities.propagate(predictions.mean.col(sample), stddev * correlation * stddev);
-}
-
-Reach findFarthest(const IntervalReach& reach, Index sample) {
-  Reach farthest;
-  for (Index p = 0; p < reach.of95.rows(); ++p) {
-    const Reach one = reach.get(p, reach.of95.cols() == 1 ? 0 : sample);
-    farthest = one.of95 > farthest.of95 ? one : farthest;
+  const IntervalFactors& factors = estimates.interval_factors;
+  if (factors.isGiven()) {
+    const Index column = factors.of95.cols() == 1 ? 0 : sample;
+    estimate.interval_factors = {factors.of50.col(column), factors.of95.col(column)};
   }
-  return farthest;
+  return estimate;
 }
 
 ParameterSamples takeQuantity(const DerivedEvaluation& evaluation, Index k) {
@@ -58,35 +49,32 @@ ParameterSamples takeQuantity(const DerivedEvaluation& evaluation, Index k) {
 }  // namespace
 
 DerivedEvaluation evaluateDerived(const DerivedQuantities& quantities, const MatrixXd& truth,
-                                  const Predictions& predictions, const std::vector<MatrixXd>& correlations,
-                                  const std::vector<Mixture>& ridges, const MatrixXd& limit_stddev) {
+                                  const Estimates& estimates, const MatrixXd& limit_stddev) {
   const Index q = quantities.count(), n = truth.cols();
   DerivedEvaluation result{quantities.getSpecs(), quantities.calcAll(truth),
                            MatrixXd(q, n),        MatrixXd(q, n),
                            MatrixXd(q, n),        MatrixXd(q, n),
                            limit_stddev};
   MatrixXd z(q, n);
-  std::vector<Reach> reaches;
+  std::vector<IntervalFactor> factors;
   for (Index i = 0; i < n; ++i) {
-    const auto distributions = propagateSample(quantities, predictions, correlations, ridges, i);
-    const Reach reach = isRidge(ridges, i) ? Reach{} : findFarthest(predictions.reach, i);
-    const DerivedEstimate estimate = summarize(distributions, reach.of95);
-    result.mean.col(i) = estimate.mean;
-    result.stddev.col(i) = estimate.stddev;
-    result.lower95.col(i) = estimate.lower95;
-    result.upper95.col(i) = estimate.upper95;
+    const Estimate estimate = takeEstimate(estimates, i);
+    const auto distributions = quantities.propagate(estimate);
+    factors.push_back(findLargestFactor(estimate));
+    const DerivedEstimate derived = summarize(distributions, factors.back().of95);
+    result.mean.col(i) = derived.mean;
+    result.stddev.col(i) = derived.stddev;
+    result.lower95.col(i) = derived.lower95;
+    result.upper95.col(i) = derived.upper95;
     for (Index k = 0; k < q; ++k) {
       const double below = distributions[static_cast<std::size_t>(k)].calcProbability(result.truth(k, i));
       z(k, i) = -calcNormalQuantile(below);
-    }
-    if (predictions.reach.isGiven()) {
-      reaches.push_back(reach);
     }
   }
   for (Index k = 0; k < q; ++k) {
     ParameterSamples samples = takeQuantity(result, k);
     samples.z = z.row(k).transpose().array();
-    samples.reaches = reaches;
+    samples.factors = factors;
     result.metrics.push_back(calcMetrics(result.quantities[static_cast<std::size_t>(k)], samples));
   }
   return result;

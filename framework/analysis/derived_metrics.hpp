@@ -18,14 +18,10 @@ struct DerivedEvaluation {
   std::vector<ParameterMetrics> metrics{};           ///< coverage is that of the quantiles
 };
 
-/// What estimates of the parameters say of the derived quantities. `truth`: p x n; `correlations`: p x p, one
-/// for all samples or one each, where estimates are no mixtures; `ridges`: n or none, where given the mixture
-/// that stands for a sample's estimate; `limit_stddev`: q x n or empty. Intervals reach as far as those of
-/// the parameter that reach farthest, but those of ridges.
+/// What estimates of the parameters, with their correlations, say of the derived quantities. `truth`: p x n;
+/// `limit_stddev`: q x n or empty. The factor of intervals is the largest of the parameters'.
 DerivedEvaluation evaluateDerived(const DerivedQuantities& quantities, const Eigen::MatrixXd& truth,
-                                  const Predictions& predictions,
-                                  const std::vector<Eigen::MatrixXd>& correlations,
-                                  const std::vector<Mixture>& ridges, const Eigen::MatrixXd& limit_stddev);
+                                  const Estimates& estimates, const Eigen::MatrixXd& limit_stddev);
 
 /// The limit of the derived quantities (q x n, their units) at the points (p x n) that the limit is of, to
 /// first order: with the gradient g the square root of g' C g. NaN where the limit has failed.

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "framework/experiment/experiment_file.hpp"
+#include "framework/inference/derived_values.hpp"
 
 namespace twinmap {
 
@@ -22,7 +23,8 @@ Inferrer::Inferrer(const fs::path& run_or_maps) : Inferrer(readTrainedFile(findM
 Inferrer::Inferrer(TrainedFile loaded)
     : reader_(readResolved(loaded.experiment)),
       map_(std::move(loaded.model.map)),
-      trust_(std::move(loaded.model.trust)) {}
+      trust_(std::move(loaded.model.trust)),
+      quantities_(makeDerivedQuantities(reader_.getExperiment())) {}
 
 Inferrer::Workspace::Workspace(const Inferrer& inferrer) : map(inferrer.getMap()) {
   if (inferrer.getTrustModel()) {
@@ -33,10 +35,11 @@ Inferrer::Workspace::Workspace(const Inferrer& inferrer) : map(inferrer.getMap()
 InferredMeasurement Inferrer::infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
                                     Workspace& workspace) const {
   InferredMeasurement inferred;
-  inferred.inference = map_.infer(features, known, workspace.map);
-  inferred.map_is_calibrated = map_.isCalibrated();
+  inferred.quantities = quantities_;
+  inferred.by_estimator = map_.infer(features, known, workspace.map);
+  inferred.estimator_is_calibrated = map_.isCalibrated();
   if (trust_) {
-    inferred.trust = judge(*trust_, features, known, inferred.inference, workspace.map.findExplanation(),
+    inferred.trust = judge(*trust_, features, known, inferred.by_estimator, workspace.map.findExplanation(),
                            *workspace.trust);
     inferred.explanation = trust_->makeSampledPoint(workspace.trust->explanation->point);
     inferred.covariance = workspace.trust->explanation->calcCovariance();

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 
+#include "framework/estimation/derived/derived_quantities.hpp"
 #include "framework/estimation/refined/refined.hpp"
 #include "framework/estimation/surrogate/posterior_sampler.hpp"
 #include "framework/estimation/trained/online_map.hpp"
@@ -15,15 +17,16 @@ namespace twinmap {
 
 /// What a measurement says about the machine.
 struct InferredMeasurement {
-  std::string source;             ///< the file
-  double start = 0.0;             ///< time in the file that is 0 of the model, s
-  Inference inference;            ///< by the map
-  bool map_is_calibrated = true;  ///< OnlineMap::isCalibrated()
-  std::optional<Trust> trust;     ///< none where the run could fit no trust model
-  Eigen::VectorXd explanation;    ///< sampled point that explains the features best; empty without trust
+  std::string source;  ///< the file
+  double start = 0.0;  ///< time in the file that is 0 of the model, s
+  Estimate by_estimator;
+  bool estimator_is_calibrated = true;  ///< OnlineMap::isCalibrated()
+  std::optional<Trust> trust;           ///< none where the run could fit no trust model
+  Eigen::VectorXd explanation;   ///< sampled point that explains the features best; empty without trust
   Eigen::MatrixXd covariance{};  ///< there, u x u in half-widths, with the surrogate's errors; empty likewise
   std::optional<Refined> refined;                 ///< on the simulator, where that was tried; accepted or not
   std::optional<SurrogatePosterior> posterior{};  ///< where it was asked for; reliable or not
+  std::shared_ptr<const DerivedQuantities> quantities{};  ///< of the experiment, if it derives any
 };
 
 /// The maps.h5 of a finished run, given its folder or the file itself. Throws std::runtime_error where there
@@ -61,6 +64,7 @@ class Inferrer {
   MeasurementReader reader_;
   OnlineMap map_;
   std::optional<TrustModel> trust_;
+  std::shared_ptr<const DerivedQuantities> quantities_;  // none where nothing is derived
 };
 
 }  // namespace twinmap

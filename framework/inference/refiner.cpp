@@ -29,13 +29,14 @@ Refined SimulatorRefiner::refine(const InferredMeasurement& inferred, const Vect
                                  const VectorXd& known, const TrustModel* trust) const {
   const RefinementTask task = makeRefinementTask(
       model_, trust, features,
-      {findLikeliest(inferred.inference).mean, inferred.explanation, known, inferred.covariance});
+      {inferred.by_estimator.takeLikeliest().mean, inferred.explanation, known, inferred.covariance});
   Refined refined = twinmap::refine(*own_, getModel(), task);
-  if (isMultimodal(inferred.inference.mixture)) {
+  if (isMultimodal(inferred.by_estimator.mixture)) {
     rejectAsMultimodal(refined);
   }
   if (refined.isAccepted()) {
-    const Index p = inferred.inference.mean.size();
+    const Index p = inferred.by_estimator.mean.size();
+    refined.mean.conservativeResize(p);
     refined.stddev.conservativeResize(p);
     refined.covariance.conservativeResize(p, p);
   }
@@ -50,7 +51,7 @@ void SimulatorRefiner::refineAndJudge(const VectorXd& features, const VectorXd& 
     SimulatorResidual found{
         refined.residual, refined.calcReducedChiSquare(), refined.degrees, refined.explained, {}, {}};
     if (refined.isAccepted()) {
-      found.mean = refined.point.head(refined.stddev.size());
+      found.mean = refined.mean;
       found.stddev = refined.stddev;
     }
     inferred.trust = judgeAnew(*trust, *inferred.trust, found);

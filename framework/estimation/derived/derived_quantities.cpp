@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "framework/estimation/draws.hpp"
-#include "framework/estimation/predictions.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 
 namespace twinmap {
@@ -177,18 +176,26 @@ std::vector<ValueDistribution> DerivedQuantities::propagate(const Mixture& mixtu
   return distributions;
 }
 
-std::vector<ValueDistribution> DerivedQuantities::propagateDraws(const MatrixXd& draws) const {
+std::vector<ValueDistribution> DerivedQuantities::propagate(const Estimate& estimate) const {
+  if (estimate.mixture.isGiven() || estimate.ridge.isGiven()) {
+    return propagate(estimate.ridge.isGiven() ? estimate.ridge : estimate.mixture);
+  }
+  return propagate(estimate.mean, estimate.calcCovariance());
+}
+
+std::vector<ValueDistribution> DerivedQuantities::propagateDraws(const MatrixXd& draws,
+                                                                 const VectorXd& weights) const {
   const MatrixXd values = calcAll(draws);
   std::vector<ValueDistribution> distributions;
   for (Index k = 0; k < count(); ++k) {
-    distributions.emplace_back(values.row(k).transpose(), VectorXd::Ones(draws.cols()));
+    distributions.emplace_back(values.row(k).transpose(), weights);
   }
   return distributions;
 }
 
-DerivedEstimate summarize(const std::vector<ValueDistribution>& distributions, double reach) {
+DerivedEstimate summarize(const std::vector<ValueDistribution>& distributions, double factor) {
   const auto q = static_cast<Index>(distributions.size());
-  const double tail = 0.5 * boost::math::erfc(reach / std::sqrt(2.0));
+  const double tail = 0.5 * boost::math::erfc(factor / std::sqrt(2.0));
   DerivedEstimate estimate{VectorXd(q), VectorXd(q), VectorXd(q), VectorXd(q)};
   for (Index k = 0; k < q; ++k) {
     const ValueDistribution& one = distributions[static_cast<std::size_t>(k)];
@@ -198,6 +205,15 @@ DerivedEstimate summarize(const std::vector<ValueDistribution>& distributions, d
     estimate.upper95[k] = one.calcQuantile(1.0 - tail);
   }
   return estimate;
+}
+
+IntervalFactor findLargestFactor(const Estimate& estimate) {
+  IntervalFactor largest;
+  for (Index p = 0; p < estimate.interval_factors.of95.rows() && !estimate.ridge.isGiven(); ++p) {
+    const IntervalFactor one = estimate.interval_factors.get(p);
+    largest = one.of95 > largest.of95 ? one : largest;
+  }
+  return largest;
 }
 
 }  // namespace twinmap

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "framework/estimation/derived/value_distribution.hpp"
-#include "framework/estimation/mixture.hpp"
+#include "framework/estimation/estimate.hpp"
 #include "framework/experiment/experiment_spec.hpp"
 #include "framework/experiment/expression/named_values.hpp"
 
@@ -49,8 +49,12 @@ class DerivedQuantities {
   /// The same of each component of a mixture, in its proportion.
   std::vector<ValueDistribution> propagate(const Mixture& mixture) const;
 
-  /// The values at draws of the parameters (p x n), equally likely.
-  std::vector<ValueDistribution> propagateDraws(const Eigen::MatrixXd& draws) const;
+  /// The same of an estimate: of its mixture or ridge where it is one, else of its normal distribution.
+  std::vector<ValueDistribution> propagate(const Estimate& estimate) const;
+
+  /// The values at draws of the parameters (p x n) with their weights (n).
+  std::vector<ValueDistribution> propagateDraws(const Eigen::MatrixXd& draws,
+                                                const Eigen::VectorXd& weights) const;
 
  private:
   struct Nodes {
@@ -70,12 +74,15 @@ class DerivedQuantities {
   Eigen::VectorXd lower_, upper_;
 };
 
-/// How tables and answers state the distribution of each quantity (q): the 95 % interval reaches from 2.5 to
-/// 97.5 %, or as far as a normal distribution within `reach` standard deviations.
+/// How tables and answers state the distribution of each quantity (q): its 95 % interval leaves 2.5 % on
+/// either side, or as much as a normal distribution's of `factor` standard deviations.
 struct DerivedEstimate {
   Eigen::VectorXd mean, stddev, lower95, upper95;
 };
-DerivedEstimate summarize(const std::vector<ValueDistribution>& distributions,
-                          double reach = 1.959963984540054);
+DerivedEstimate summarize(const std::vector<ValueDistribution>& distributions, double factor = kNormal95);
+
+/// The largest factor of an estimate's intervals: that of what is derived from it. A normal distribution's
+/// along a ridge, whose distribution is known.
+IntervalFactor findLargestFactor(const Estimate& estimate);
 
 }  // namespace twinmap

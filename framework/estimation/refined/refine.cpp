@@ -184,7 +184,7 @@ class Refinement {
         box_.makePoint(VectorXd::Zero(scale.size())).segment(searched.first, searched.count);
     found.mean = center + scale.cwiseProduct(trace->mean);
     found.stddev = scale.cwiseProduct(trace->stddev);
-    found.reach = trace->reach;
+    found.interval_factors = trace->factors;
     found.ridge = trace->pieces;
     convert(center, scale, VectorXd::Ones(scale.size()), found.ridge);
   }

@@ -16,7 +16,7 @@ void rejectAsMultimodal(Refined& refined) {
     refined.mean.resize(0);
     refined.stddev.resize(0);
     refined.ridge = {};
-    refined.reach = {};
+    refined.interval_factors = {};
   }
 }
 

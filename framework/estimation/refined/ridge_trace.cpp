@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "framework/estimation/derived/value_distribution.hpp"
-#include "framework/estimation/predictions.hpp"
+#include "framework/estimation/estimate.hpp"
 #include "framework/estimation/refined/acceptance.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -174,8 +174,8 @@ Mixture makePieces(const std::vector<RidgePiece>& pieces) {
 
 /// How far intervals of one parameter reach, in its standard deviations: quantiles of the distance from the
 /// mean over ten places of each piece, with 25 of the normal distribution across.
-Reach calcReachAlong(const std::vector<RidgePiece>& pieces, const VectorXd& weights, Index j, double mean,
-                     double stddev) {
+IntervalFactor calcFactor(const std::vector<RidgePiece>& pieces, const VectorXd& weights, Index j,
+                          double mean, double stddev) {
   constexpr Index kPlaces = 10, kAcross = 25;
   constexpr double kFarthest = 3.0;
   const Index count = static_cast<Index>(pieces.size()) * kPlaces * kAcross;
@@ -204,11 +204,11 @@ RidgeTrace summarize(const std::vector<RidgePiece>& pieces) {
   const Index s = covariance.rows();
   trace.mean = calcMean(trace.pieces);
   trace.stddev = covariance.diagonal().cwiseSqrt();
-  trace.reach = {MatrixXd::Constant(s, 1, kNormal50), MatrixXd::Constant(s, 1, kNormal95)};
+  trace.factors = {MatrixXd::Constant(s, 1, kNormal50), MatrixXd::Constant(s, 1, kNormal95)};
   for (Index j = 0; j < s; ++j) {
     const VectorXd moved = trace.pieces.means.row(j).transpose().array() - trace.mean[j];
     if (moved.cwiseAbs().maxCoeff() > kHardlyMoves * trace.stddev[j]) {
-      trace.reach.set(j, 0, calcReachAlong(pieces, trace.pieces.weights, j, trace.mean[j], trace.stddev[j]));
+      trace.factors.set(j, 0, calcFactor(pieces, trace.pieces.weights, j, trace.mean[j], trace.stddev[j]));
     }
   }
   return trace;

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "framework/estimation/interval_reach.hpp"
+#include "framework/estimation/interval_factor.hpp"
 #include "framework/estimation/mixture.hpp"
 #include "framework/estimation/refined/misfit.hpp"
 
@@ -10,10 +10,10 @@ namespace twinmap {
 
 /// The posterior along a ridge: values of the parameters that fit alike, one after the other.
 struct RidgeTrace {
-  Mixture pieces;          ///< of equal length along the ridge, in half-widths (s), at most 200
-  Eigen::VectorXd mean;    ///< s, half-widths
-  Eigen::VectorXd stddev;  ///< s, half-widths
-  IntervalReach reach;     ///< s x 1: intervals mean +- reach stddev have their probability
+  Mixture pieces;           ///< of equal length along the ridge, in half-widths (s), at most 200
+  Eigen::VectorXd mean;     ///< s, half-widths
+  Eigen::VectorXd stddev;   ///< s, half-widths
+  IntervalFactors factors;  ///< s x 1: intervals mean +- factor stddev have their probability
 };
 
 /// Whether the data leave one direction at the minimum to the box: half of the standard deviation that the

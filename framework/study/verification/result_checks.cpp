@@ -16,7 +16,7 @@
 #include "framework/store/hdf5_difference.hpp"
 #include "framework/store/predictions_file.hpp"
 #include "framework/store/trained_file.hpp"
-#include "framework/study/pipeline/answers.hpp"
+#include "framework/study/pipeline/evaluate_estimates.hpp"
 #include "framework/study/pipeline/prepare_data.hpp"
 #include "framework/study/pipeline/refine_test_samples.hpp"
 #include "framework/study/pipeline/training/store_map.hpp"
@@ -92,13 +92,12 @@ RunSummary summarize(const Study& study, const PreparedData& data, const Trained
   RunSummary run;
   run.parameters = study.experiment.model.parameters;
   run.test_indices = data.test_indices;
-  const Answers answers =
-      makeAnswers(map.predict(test.features, test.inputs), map.residual_correlation, refined);
-  run.evaluation = evaluateAnswers(run.parameters, test.parameters, answers, limits.parameters);
+  const Estimates estimates =
+      selectEstimates(map.predict(test.features, test.inputs), map.residual_correlation, refined);
+  run.evaluation = evaluateEstimates(run.parameters, test.parameters, estimates, limits.parameters);
   const DerivedQuantities quantities(study.experiment);
   if (quantities.count() > 0) {
-    run.evaluation.derived = evaluateDerived(quantities, test.parameters, answers.predictions,
-                                             answers.correlations, answers.ridges, limits.derived);
+    run.evaluation.derived = evaluateDerived(quantities, test.parameters, estimates, limits.derived);
   }
   run.evaluation.refined = refined;
   run.training = map.summary;
