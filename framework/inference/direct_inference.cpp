@@ -2,7 +2,9 @@
 
 #include "framework/base/text/source_location.hpp"
 #include "framework/data/noise/noise.hpp"
+#include "framework/estimation/ridges/simulated_ridges.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/inference/derived_values.hpp"
 #include "framework/models/make_simulator.hpp"
 
 namespace twinmap {
@@ -23,6 +25,21 @@ std::unique_ptr<const RefinementModel> makeModel(const MeasurementReader& reader
         ": a measurement says nothing about parameters unless its noise is known; give every "
         "output that features read a 'noise.stddev'");
   }
+}
+
+/// Draws that stand for the posterior, each once at most: where the sum of the weights passes equal steps.
+std::vector<Index> chooseDraws(const VectorXd& weights) {
+  constexpr double kDraws = 32.0;
+  std::vector<Index> chosen;
+  double passed = 0.0;
+  for (Index i = 0; i < weights.size(); ++i) {
+    const double before = passed;
+    passed += weights[i];
+    if (std::floor(passed * kDraws + 0.5) > std::floor(before * kDraws + 0.5)) {
+      chosen.push_back(i);
+    }
+  }
+  return chosen;
 }
 
 bool isUninformative(const SimulatorPosterior& posterior, const std::vector<ParameterSpec>& parameters) {
@@ -63,7 +80,8 @@ DirectInferrer::DirectInferrer(ExperimentSpec experiment, int draws)
       simulator_(prototype_->clone()),
       noise_(reader_.getExtractor(), ResponseNoise(reader_.getExperiment().noise, reader_.getLayout()),
              reader_.getExperiment().seed),
-      model_(makeModel(reader_, noise_)) {
+      model_(makeModel(reader_, noise_)),
+      quantities_(makeDerivedQuantities(reader_.getExperiment())) {
   options_.draws = draws;
   options_.seed = reader_.getExperiment().seed;
 }
@@ -83,7 +101,22 @@ DirectInference DirectInferrer::infer(const Table& table, std::optional<double> 
     inferred.test = testResidual(inferred.posterior.residual, inferred.posterior.degrees,
                                  reader_.getExtractor().getInfos());
   }
+  inferred.ridges = findRidges(inferred.posterior, known);
+  inferred.quantities = quantities_;
   return inferred;
+}
+
+std::vector<Ridge> DirectInferrer::findRidges(const SimulatorPosterior& posterior,
+                                              const VectorXd& known) const {
+  if (!posterior.isReliable() || !prototype_->hasDerivatives()) {
+    return {};
+  }
+  const std::vector<Index> chosen = chooseDraws(posterior.weights);
+  const Index u = posterior.draws.rows(), count = static_cast<Index>(chosen.size());
+  MatrixXd points(u + known.size(), count);
+  points << posterior.draws(Eigen::all, chosen), known.replicate(1, count);
+  return simulateRidges(*prototype_, reader_.getExtractor(), noise_, reader_.getExperiment().model, points,
+                        1);
 }
 
 }  // namespace twinmap

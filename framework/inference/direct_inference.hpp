@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "framework/data/noise/feature_noise.hpp"
+#include "framework/estimation/derived/derived_quantities.hpp"
 #include "framework/estimation/posterior/residual_test.hpp"
 #include "framework/estimation/posterior/simulator_posterior.hpp"
+#include "framework/estimation/ridges/identified_combinations.hpp"
 #include "framework/inference/measurement_reader.hpp"
 
 namespace twinmap {
@@ -17,7 +19,9 @@ struct DirectInference {
   std::string source;  ///< the file
   double start = 0.0;  ///< time in the file that is 0 of the model, s
   SimulatorPosterior posterior;
-  ResidualTest test;  ///< of the residual at the best point; where anything could be simulated
+  ResidualTest test;            ///< of the residual at the best point; where anything could be simulated
+  std::vector<Ridge> ridges{};  ///< of the posterior; sought where derivatives are exact
+  std::shared_ptr<const DerivedQuantities> quantities{};  ///< of the experiment, if it derives any
 };
 
 /// Names of all that is to be said against it, the most severe first: "not_simulated", "model_mismatch"
@@ -40,11 +44,14 @@ class DirectInferrer {
   DirectInference infer(const Table& table, std::optional<double> start, const Eigen::VectorXd& known);
 
  private:
+  std::vector<Ridge> findRidges(const SimulatorPosterior& posterior, const Eigen::VectorXd& known) const;
+
   MeasurementReader reader_;
   std::unique_ptr<Simulator> prototype_, simulator_;  // a clone of the first, which simulates
   FeatureNoise noise_;
   std::unique_ptr<const RefinementModel> model_;
   SimulatorPosteriorOptions options_;
+  std::shared_ptr<const DerivedQuantities> quantities_;  // none where nothing is derived
 };
 
 /// A table for people: the status with its numbers, a row per parameter, how the posterior was found.

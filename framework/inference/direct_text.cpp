@@ -4,6 +4,7 @@
 #include "framework/base/text/escape.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/base/text/text_tables.hpp"
+#include "framework/inference/derived_values.hpp"
 #include "framework/inference/direct_inference.hpp"
 
 namespace twinmap {
@@ -84,7 +85,8 @@ std::string describeModes(const SimulatorPosterior& posterior, const std::vector
 }
 
 std::string makeParameterTable(const SimulatorPosterior& posterior,
-                               const std::vector<ParameterSpec>& parameters) {
+                               const std::vector<ParameterSpec>& parameters,
+                               const std::vector<DerivedValue>& derived) {
   const MatrixXd quantiles = calcQuantiles(posterior);
   std::vector<std::vector<std::string>> rows{{"parameter", "unit", "mean", "sd", "95 % interval"}};
   for (std::size_t p = 0; p < parameters.size(); ++p) {
@@ -94,7 +96,21 @@ std::string makeParameterTable(const SimulatorPosterior& posterior,
                     toShortText(quantiles(i, 0), kShownDigits) + " .. " +
                         toShortText(quantiles(i, quantiles.cols() - 1), kShownDigits)});
   }
+  for (const DerivedValue& value : derived) {
+    rows.push_back(
+        {value.name, value.unit, toShortText(value.mean, kShownDigits),
+         toShortText(value.stddev, kShownStddevDigits),
+         toShortText(value.lower95, kShownDigits) + " .. " + toShortText(value.upper95, kShownDigits)});
+  }
   return alignRows(rows, rows.front().size(), "  ");
+}
+
+std::string describeRidges(const DirectInference& inferred, const std::vector<ParameterSpec>& parameters) {
+  std::string text;
+  for (const std::string& advice : adviseOnRidges(inferred.ridges, parameters)) {
+    text += "  " + advice + "\n";
+  }
+  return text;
 }
 
 Json makeParametersJson(const SimulatorPosterior& posterior, const std::vector<ParameterSpec>& parameters) {
@@ -158,7 +174,8 @@ std::string makeDirectTable(const DirectInference& inferred, const std::vector<P
     return text + fmt::format("  No estimate: {}. Give narrower bounds, or more draws (--posterior=2000).\n",
                               posterior.message);
   }
-  return text + makeParameterTable(posterior, parameters) + describeModes(posterior, parameters) +
+  return text + makeParameterTable(posterior, parameters, deriveFrom(inferred.quantities.get(), posterior)) +
+         describeRidges(inferred, parameters) + describeModes(posterior, parameters) +
          describeSearch(posterior);
 }
 
@@ -178,6 +195,13 @@ std::string makeDirectCsvRows(const DirectInference& inferred, const std::vector
                     escapeCsv(parameters[p].name.text), escapeCsv(parameters[p].unit), numbers,
                     join(listStatuses(inferred, parameters), " "), toText(inferred.test.calcPValue()));
   }
+  for (const DerivedValue& value : deriveFrom(inferred.quantities.get(), posterior)) {
+    text +=
+        fmt::format("{},{},{},{},{},{},{},{},{},{},posterior\n", escapeCsv(inferred.source),
+                    toText(inferred.start), escapeCsv(value.name), escapeCsv(value.unit), toText(value.mean),
+                    toText(value.stddev), toText(value.lower95), toText(value.upper95),
+                    join(listStatuses(inferred, parameters), " "), toText(inferred.test.calcPValue()));
+  }
   return text;
 }
 
@@ -191,6 +215,17 @@ std::string makeDirectJson(const DirectInference& inferred, const std::vector<Pa
             {"method", "posterior"}};
   if (posterior.isReliable()) {
     json["parameters"] = makeParametersJson(posterior, parameters);
+    for (const DerivedValue& value : deriveFrom(inferred.quantities.get(), posterior)) {
+      json["derived"][value.name] = {{"mean", value.mean},
+                                     {"sd", value.stddev},
+                                     {"lower", value.lower95},
+                                     {"upper", value.upper95},
+                                     {"unit", value.unit}};
+    }
+    for (const DerivedEntry& entry : listDerived(inferred.ridges, parameters)) {
+      json["identified"].push_back(
+          {{"name", entry.name}, {"expression", entry.expression}, {"unit", entry.unit}});
+    }
     json["covariance"] = makeCovarianceJson(posterior, parameters.size());
     json["modes"] = makeModesJson(posterior, parameters);
   } else {

@@ -75,7 +75,7 @@ TEST(IdentifiedCombinations, NameAProduct) {
   EXPECT_EQ(ridges[0].parameters, (std::vector<Index>{0, 1}));
   EXPECT_EQ(ridges[0].dimension, 1);
   EXPECT_LT(ridges[0].combinations[0].residual, 1e-6);
-  EXPECT_EQ(describeRidge(ridges[0], parameters), "of m and L the features determine only m * L");
+  EXPECT_EQ(describeRidge(ridges[0], parameters), "of m, L the features determine only m * L");
   EXPECT_EQ(makeDerivedYaml(ridges, parameters), "derived:\n  m_L: {value: m * L, unit: kg m}\n");
 }
 
