@@ -9,6 +9,7 @@
 #include "framework/study/sweep/model_groups.hpp"
 
 namespace twinmap::cli {
+
 void check(const ExperimentArguments& arguments) {
   const YamlNode tree = loadExperimentTree(arguments.file, arguments.overrides);
   std::set<std::string> engines;

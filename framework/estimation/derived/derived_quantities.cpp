@@ -64,6 +64,12 @@ DerivedQuantities::DerivedQuantities(const ExperimentSpec& experiment)
   findRanges();
 }
 
+std::vector<BoundExpression> DerivedQuantities::listExpressions() const {
+  std::vector<BoundExpression> all = constants_;
+  all.insert(all.end(), expressions_.begin(), expressions_.end());
+  return all;
+}
+
 void DerivedQuantities::findRanges() {
   const MatrixXd box = makeBoxPoints(lower_.size());
   const MatrixXd values = calcAll(((upper_ - lower_).asDiagonal() * box).colwise() + lower_);

@@ -25,6 +25,10 @@ class DerivedQuantities {
   /// 0.
   const std::vector<ParameterSpec>& getSpecs() const { return specs_; }
 
+  /// What defines one name after another: of the constants that follow from the parameters, then of the
+  /// quantities. Places of names: the parameters', then these.
+  std::vector<BoundExpression> listExpressions() const;
+
   /// The values (q) at a point (p); NaN or infinite where an expression is not defined there. About 0.1 us an
   /// operation.
   Eigen::VectorXd calc(const Eigen::Ref<const Eigen::VectorXd>& point) const;
