@@ -65,11 +65,11 @@ class RidgeWalk {
     constexpr double kNegligible = 18.0;  // exp(-18) of the weight
     RidgePiece last = pieces_.front();
     for (std::size_t before = pieces_.size(); pieces_.size() < kMost; before = pieces_.size()) {
-      const VectorXd next = last.local.at + step * last.tangent;
-      if ((misfit_.getBox().clamp(next) - next).cwiseAbs().maxCoeff() > std::abs(step)) {
-        return true;
+      const VectorXd next = misfit_.getBox().clamp(last.local.at + step * last.tangent);
+      if ((next - last.local.at).dot(along_) / step < 0.5) {
+        return true;  // the limits of the search stop it
       }
-      const LocalMisfit local = misfit_.linearize(misfit_.getBox().clamp(next));
+      const LocalMisfit local = misfit_.linearize(next);
       if (!local.status.ok || !settle(local)) {
         return false;
       }
