@@ -2,7 +2,7 @@
 
 #include "framework/estimation/derived/derived_quantities.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/export/c_model_tables.hpp"
+#include "framework/export/c_code/c_model_tables.hpp"
 
 namespace twinmap {
 namespace {

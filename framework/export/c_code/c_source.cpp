@@ -1,4 +1,4 @@
-#include "framework/export/c_source.hpp"
+#include "framework/export/c_code/c_source.hpp"
 
 #include <fmt/core.h>
 

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "framework/export/c_tables.hpp"
+#include "framework/export/c_code/c_tables.hpp"
 #include "framework/export/exported_model.hpp"
 
 namespace twinmap {
