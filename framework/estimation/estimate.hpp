@@ -35,6 +35,9 @@ struct Estimate {
   Mixture mixture{};              ///< where it is one, whose mean and stddev are above
   BoundedDraws draws{};           ///< where it is known by draws; a mixture then has their separate modes
   IntervalFactors interval_factors{};  ///< of intervals, where they are not those of the distribution above
+  /// Where refinement followed a ridge: the joint distribution along it, of which mean, stddev and intervals
+  /// are those of each parameter. What is derived from several follows from it.
+  Mixture ridge{};
   EstimationMethod method{};
   std::vector<std::string> statuses{};  ///< listStatuses(); empty where nobody has judged
   /// k, the features and known inputs as the estimator sees them, for a trust model; empty where refined.
@@ -73,6 +76,7 @@ struct Estimates {
   /// Of each measurement, where the estimator gives mixtures; else empty.
   std::vector<Mixture> mixtures{};
   IntervalFactors interval_factors{};
+  std::vector<Mixture> ridges{};   ///< Estimate::ridge of each, where any has one; else empty
   Eigen::MatrixXd limit_stddev{};  ///< what the measurements allow, as the estimator predicts it; or empty
 };
 

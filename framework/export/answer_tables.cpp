@@ -1,6 +1,6 @@
 #include <fmt/core.h>
 
-#include "framework/export/c_model_tables.hpp"
+#include "framework/export/c_code/c_model_tables.hpp"
 #include "kernels/linalg/packed_lower.hpp"
 
 namespace twinmap {

@@ -1,19 +1,23 @@
 #include "framework/inference/direct_inference.hpp"
 
 #include "framework/base/text/source_location.hpp"
+#include "framework/inference/derived_values.hpp"
 
 namespace twinmap {
 
 DirectInference::DirectInference(const MeasurementReader& reader, int draws)
     : reader_(reader),
       simulator_(reader.getExperiment(), reader.getLayout(), SimulatorRefiner::Model::kToBeChecked),
-      options_(makePosteriorOptions(reader.getExperiment(), draws)) {
+      options_(makePosteriorOptions(reader.getExperiment(), draws)),
+      quantities_(makeDerivedQuantities(reader.getExperiment())) {
   simulator_.requireNoise();
 }
 
 InferredMeasurement DirectInference::infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known) {
   InferredMeasurement inferred;
   inferred.posterior = simulator_.samplePosterior(features, known, {}, options_);
+  inferred.ridges = simulator_.findRidges(inferred.posterior->estimate.draws, known);
+  inferred.quantities = quantities_;
   return inferred;
 }
 

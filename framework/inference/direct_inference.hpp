@@ -25,6 +25,7 @@ class DirectInference final : public MeasurementInference {
   const MeasurementReader& reader_;
   const SimulatorRefiner simulator_;
   SimulatorPosteriorOptions options_;
+  std::shared_ptr<const DerivedQuantities> quantities_;  // none where nothing is derived
 };
 
 }  // namespace twinmap

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 
+#include "framework/estimation/derived/derived_quantities.hpp"
 #include "framework/estimation/refined/refined.hpp"
+#include "framework/estimation/ridges/identified_combinations.hpp"
 #include "framework/estimation/trained/online_map.hpp"
 #include "framework/estimation/trained/online_model.hpp"
 #include "framework/inference/measurement_reader.hpp"
@@ -28,6 +31,8 @@ struct InferredMeasurement {
   bool coverage_is_short = false;  ///< of the run's refined test samples, where the refinement was accepted
   std::optional<Refined> refined;  ///< on the simulator, where that was tried; accepted or not
   std::optional<PosteriorEstimate> posterior{};  ///< where it was asked for, or taken; reliable or not
+  std::shared_ptr<const DerivedQuantities> quantities{};  ///< of the experiment, if it derives any
+  std::vector<Ridge> ridges{};  ///< of the simulator's posterior, where that alone was sampled
 };
 
 /// The maps.h5 of a finished run, given its folder or the file itself. Throws std::runtime_error where there
@@ -69,6 +74,7 @@ class Inferrer {
   MeasurementReader reader_;
   OnlineMap map_;
   std::optional<TrustModel> trust_;
+  std::shared_ptr<const DerivedQuantities> quantities_;  // none where nothing is derived
 };
 
 }  // namespace twinmap

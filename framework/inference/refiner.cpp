@@ -2,12 +2,14 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
 #include <numeric>
 #include <stdexcept>
 
 #include "framework/base/text/source_location.hpp"
 #include "framework/data/features/experiment_features.hpp"
 #include "framework/data/noise/noise.hpp"
+#include "framework/estimation/ridges/simulated_ridges.hpp"
 #include "framework/estimation/trained/refinement_starts.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 
@@ -16,6 +18,25 @@ namespace twinmap {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+
+namespace {
+
+/// Draws that stand for the posterior, each once at most: where the sum of the weights passes equal steps.
+std::vector<Index> chooseDraws(const VectorXd& weights) {
+  constexpr double kDraws = 32.0;
+  std::vector<Index> chosen;
+  double passed = 0.0;
+  for (Index i = 0; i < weights.size(); ++i) {
+    const double before = passed;
+    passed += weights[i];
+    if (std::floor(passed * kDraws + 0.5) > std::floor(before * kDraws + 0.5)) {
+      chosen.push_back(i);
+    }
+  }
+  return chosen;
+}
+
+}  // namespace
 
 SimulatorPosteriorOptions makePosteriorOptions(const ExperimentSpec& experiment, int draws) {
   if (draws < kMinPosteriorDraws) {
@@ -60,6 +81,7 @@ Refined SimulatorRefiner::refine(const InferredMeasurement& inferred, const Vect
   }
   if (refined.isAccepted()) {
     const Index p = inferred.by_estimator.mean.size();
+    refined.mean.conservativeResize(p);
     refined.stddev.conservativeResize(p);
     refined.covariance.conservativeResize(p, p);
   }
@@ -75,7 +97,7 @@ void SimulatorRefiner::refineAndJudge(const VectorXd& features, const VectorXd& 
         refined.residual, refined.calcReducedChiSquare(), refined.degrees, refined.explained, {}, {}};
     if (refined.isAccepted()) {
       inferred.coverage_is_short = trust->refined_coverage.isShort();
-      found.mean = refined.point.head(refined.stddev.size());
+      found.mean = refined.mean;
       found.stddev = refined.stddev;
     }
     inferred.trust = judgeAnew(*trust, *inferred.trust, found);
@@ -107,6 +129,17 @@ PosteriorEstimate SimulatorRefiner::samplePosterior(const VectorXd& features, co
   placeResidual(posterior);
   return makePosteriorEstimate(posterior, unknown, static_cast<Index>(model_.parameters.size()),
                                extractor_.getInfos());
+}
+
+std::vector<Ridge> SimulatorRefiner::findRidges(const BoundedDraws& draws, const VectorXd& known) const {
+  if (!draws.isGiven() || !simulator_->hasDerivatives()) {
+    return {};
+  }
+  const std::vector<Index> chosen = chooseDraws(draws.weights);
+  const Index u = draws.points.rows(), count = static_cast<Index>(chosen.size());
+  MatrixXd points(u + known.size(), count);
+  points << draws.points(Eigen::all, chosen), known.replicate(1, count);
+  return simulateRidges(*simulator_, extractor_, noise_, model_, points, 1);
 }
 
 void SimulatorRefiner::placeResidual(SimulatorPosterior& posterior) const {

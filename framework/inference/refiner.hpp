@@ -45,6 +45,10 @@ class SimulatorRefiner {
   /// object, which simulates for it. Throws std::invalid_argument for a feature without noise.
   MeasuredTrial makeTrial(const Eigen::VectorXd& features, const Eigen::VectorXd& known) const;
 
+  /// The ridges along which draws of a posterior lie; none where derivatives are not exact. Cost: 32
+  /// simulations with derivatives.
+  std::vector<Ridge> findRidges(const BoundedDraws& draws, const Eigen::VectorXd& known) const;
+
   /// Puts the residual in the places of the experiment's features.
   void placeResidual(SimulatorPosterior& posterior) const;
 

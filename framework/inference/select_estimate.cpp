@@ -97,8 +97,13 @@ Estimate selectEstimate(const InferredMeasurement& inferred) {
 }
 
 Estimate makeEstimate(const Refined& refined, Eigen::Index parameters) {
-  Estimate estimate{refined.point.head(parameters), refined.stddev.head(parameters)};
+  Estimate estimate{refined.mean.head(parameters), refined.stddev.head(parameters)};
   estimate.correlation = calcCorrelation(refined.covariance.topLeftCorner(parameters, parameters));
+  if (refined.ridge.isGiven()) {
+    estimate.ridge = takeFirst(refined.ridge, parameters);
+    estimate.interval_factors = {refined.interval_factors.of50.topRows(parameters),
+                                 refined.interval_factors.of95.topRows(parameters)};
+  }
   estimate.method = EstimationMethod::kRefined;
   return estimate;
 }

@@ -81,6 +81,24 @@ std::string makeIdentifiabilityCsv(const RunSummary& run) {
   return makeCsv(rows);
 }
 
+std::string makeIdentifiedCsv(const RunSummary& run) {
+  std::vector<CsvRow> rows{{"parameters", "undetermined", "name", "expression", "unit", "residual"}};
+  for (const Ridge& ridge : run.evaluation.ridges) {
+    std::string names;
+    for (const Index j : ridge.parameters) {
+      names += (names.empty() ? "" : " ") + run.parameters[static_cast<std::size_t>(j)].name.text;
+    }
+    const std::string dimension = std::to_string(ridge.dimension);
+    for (const DerivedEntry& entry : listDerived({ridge}, run.parameters)) {
+      rows.push_back({names, dimension, entry.name, entry.expression, entry.unit, toText(entry.residual)});
+    }
+    if (ridge.combinations.empty()) {
+      rows.push_back({names, dimension, "", "", "", ""});
+    }
+  }
+  return makeCsv(rows);
+}
+
 std::string makePosteriorCsv(const RunSummary& run) {
   std::vector<CsvRow> rows{{"sample", "parameter", "posterior_mean", "posterior_stddev", "map_mean",
                             "map_stddev", "limit_stddev", "effective_sample_size", "simulations"}};
@@ -181,7 +199,7 @@ std::string makeRefinedCsv(const RunSummary& run) {
                     std::to_string(one.simulations), one.message});
     for (Index j = 0; j < run.evaluation.truth.rows(); ++j) {
       rows.back().push_back(toText(run.evaluation.truth(j, static_cast<Index>(i))));
-      rows.back().push_back(one.isAccepted() ? toText(one.point[j]) : "");
+      rows.back().push_back(one.isAccepted() ? toText(one.mean[j]) : "");
       rows.back().push_back(one.isAccepted() ? toText(one.stddev[j]) : "");
     }
   }

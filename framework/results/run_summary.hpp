@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/analysis/derived_metrics.hpp"
 #include "framework/analysis/identifiability.hpp"
 #include "framework/analysis/joint_metrics.hpp"
 #include "framework/analysis/metrics.hpp"
@@ -14,6 +15,7 @@
 #include "framework/data/features/feature_block.hpp"
 #include "framework/estimation/estimate.hpp"
 #include "framework/estimation/refined/refined.hpp"
+#include "framework/estimation/ridges/identified_combinations.hpp"
 #include "framework/experiment/model/model_spec.hpp"
 #include "framework/results/gates.hpp"
 
@@ -153,12 +155,14 @@ struct Evaluation {
   JointMetrics joint;
   std::optional<FeatureRelevance> relevance;
   std::optional<Identifiability> identifiability;
+  std::vector<Ridge> ridges;  ///< parameters of which combinations alone are determined
   std::vector<PosteriorComparison> posteriors;
   std::optional<PosteriorCalibration> calibration;
   std::vector<BaselineSummary> baselines;
   std::vector<Refined> refined;        ///< n; empty where nothing was refined
   std::vector<MethodSummary> methods;  ///< empty where nothing was refined
   std::vector<MapComparison> maps;
+  std::optional<DerivedEvaluation> derived;  ///< where the experiment derives quantities
 };
 
 /// Everything that the tables of one run show.

@@ -2,6 +2,7 @@
 
 #include "framework/base/text/escape.hpp"
 #include "framework/base/text/number_text.hpp"
+#include "framework/inference/derived_values.hpp"
 #include "framework/inference/select_estimate.hpp"
 #include "framework/inference/text/inference_text.hpp"
 
@@ -59,6 +60,44 @@ std::string makeRefinedCells(const InferredMeasurement& inferred, const Estimate
          fmt::format(",{},{}", toText(by_estimator.mean[parameter]), toText(by_estimator.stddev[parameter]));
 }
 
+/// ",mean,sd" of a derived quantity by one of the estimates beside; empty cells where there is none.
+std::string makeDerivedMoments(const std::vector<DerivedValue>& values, std::size_t quantity) {
+  return values.empty()
+             ? ",,"
+             : fmt::format(",{},{}", toText(values[quantity].mean), toText(values[quantity].stddev));
+}
+
+/// Rows like those of parameters.
+std::string makeDerivedRows(const InferredMeasurement& inferred, const Estimate& estimate, bool posterior) {
+  const DerivedQuantities* quantities = inferred.quantities.get();
+  const std::vector<DerivedValue> found = deriveFrom(quantities, estimate);
+  std::string text;
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    text +=
+        fmt::format("{},{},{},{},{},{},{},{},{},{},{}", escapeCsv(inferred.source), toText(inferred.start),
+                    escapeCsv(found[k].name), escapeCsv(found[k].unit), toText(found[k].mean),
+                    toText(found[k].stddev), toText(found[k].lower95), toText(found[k].upper95),
+                    joinStatuses(estimate.statuses, " "), makePValue(inferred), toString(estimate.method));
+    if (inferred.refined) {
+      const bool accepted = inferred.refined->isAccepted();
+      const Estimate refined = accepted ? makeEstimate(*inferred.refined, estimate.mean.size()) : Estimate{};
+      text += makeDerivedMoments(deriveFrom(quantities, refined), k) +
+              makeDerivedMoments(deriveFrom(quantities, inferred.by_estimator), k);
+    }
+    if (posterior) {
+      const std::vector<DerivedValue> sampled = deriveFrom(quantities, inferred.posterior->estimate);
+      text += makeDerivedMoments(sampled, k) +
+              (sampled.empty()
+                   ? ",,,,,"
+                   : fmt::format(",{},,,,{}", toText(sampled[k].lower95), toText(sampled[k].upper95))) +
+              fmt::format(",{},{}", toText(inferred.posterior->effective_sample_size),
+                          toText(inferred.posterior->pareto_shape));
+    }
+    text += ",\n";
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string makeInferenceCsvHeader(bool refined, bool posterior) {
@@ -89,7 +128,7 @@ std::string makeInferenceCsvRows(const InferredMeasurement& inferred,
     }
     text += "," + makeComponents(estimate.mixture, i) + "\n";
   }
-  return text;
+  return text + makeDerivedRows(inferred, estimate, posterior);
 }
 
 std::string makeDrawsCsvHeader(const std::vector<ParameterSpec>& unknown) {

@@ -2,6 +2,7 @@
 
 #include "framework/base/json/json.hpp"
 #include "framework/estimation/estimate.hpp"
+#include "framework/inference/derived_values.hpp"
 #include "framework/inference/select_estimate.hpp"
 #include "framework/inference/text/inference_text.hpp"
 
@@ -50,6 +51,26 @@ Json toJson(const Estimate& estimate, const std::vector<ParameterSpec>& paramete
     }
   }
   return json;
+}
+
+Json toJson(const std::vector<DerivedValue>& derived) {
+  Json json = Json::object();
+  for (const DerivedValue& value : derived) {
+    json[value.name] = {{"mean", value.mean},
+                        {"sd", value.stddev},
+                        {"lower", value.lower95},
+                        {"upper", value.upper95},
+                        {"unit", value.unit}};
+  }
+  return json;
+}
+
+Json makeIdentified(const InferredMeasurement& inferred, const std::vector<ParameterSpec>& parameters) {
+  Json identified = Json::array();
+  for (const DerivedEntry& entry : listDerived(inferred.ridges, parameters)) {
+    identified.push_back({{"name", entry.name}, {"expression", entry.expression}, {"unit", entry.unit}});
+  }
+  return identified;
 }
 
 Json makeRows(const Eigen::MatrixXd& matrix) {
@@ -142,6 +163,12 @@ std::string makeInferenceJson(const InferredMeasurement& inferred,
   json["method"] = toString(estimate.method);
   if (estimate.isGiven()) {
     json["parameters"] = toJson(estimate, parameters);
+  }
+  if (inferred.quantities) {
+    json["derived"] = toJson(deriveFrom(inferred.quantities.get(), estimate));
+  }
+  if (!inferred.ridges.empty()) {
+    json["identified"] = makeIdentified(inferred, parameters);
   }
   if (estimate.correlation.size() > 0) {
     json["covariance"] = makeRows(estimate.calcCovariance());

@@ -10,6 +10,7 @@
 #include "framework/base/text/text_tables.hpp"
 #include "framework/estimation/estimate.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/inference/derived_values.hpp"
 #include "framework/inference/select_estimate.hpp"
 
 namespace twinmap {
@@ -63,13 +64,25 @@ std::string makeTable(std::vector<Row> rows) {
   return alignRows(rows, rows.front().size(), kIndent);
 }
 
-std::string makeTable(const Estimate& estimate, const std::vector<ParameterSpec>& parameters) {
+void addRows(const std::vector<DerivedValue>& derived, std::vector<Row>& rows) {
+  for (const DerivedValue& value : derived) {
+    ParameterSpec shown;
+    shown.name.text = value.name;
+    shown.unit = value.unit;
+    rows.push_back(makeRow(shown, value.mean, value.stddev, {{value.lower95, value.upper95}}));
+  }
+}
+
+/// `quantities`: null where nothing is derived.
+std::string makeTable(const Estimate& estimate, const std::vector<ParameterSpec>& parameters,
+                      const DerivedQuantities* quantities) {
   std::vector<Row> rows;
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const auto i = static_cast<Index>(p);
     rows.push_back(makeRow(parameters[p], estimate.mean[i], estimate.stddev[i],
                            estimate.findIntervals(i, Coverage::k95)));
   }
+  addRows(deriveFrom(quantities, estimate), rows);
   return makeTable(std::move(rows));
 }
 
@@ -116,7 +129,8 @@ std::string describeSearches(const PosteriorEstimate& posterior) {
 
 /// The simulator's: how it was found, or why it is not the estimate. The surrogate's: its own table.
 std::string describePosterior(const PosteriorEstimate& posterior,
-                              const std::vector<ParameterSpec>& parameters) {
+                              const std::vector<ParameterSpec>& parameters,
+                              const DerivedQuantities* quantities) {
   if (!posterior.isReliable()) {
     const std::string advice = posterior.fit && posterior.fit->isSimulated()
                                    ? "; give narrower bounds, or more draws (--posterior=2000)"
@@ -128,7 +142,7 @@ std::string describePosterior(const PosteriorEstimate& posterior,
     return describeSearches(posterior);
   }
   return fmt::format("  the posterior ({}):\n", describeDiagnostics(posterior)) +
-         makeTable(posterior.estimate, parameters);
+         makeTable(posterior.estimate, parameters, quantities);
 }
 
 /// What a mismatch shows itself by, and what to look at.
@@ -233,16 +247,19 @@ std::string makeInferenceTable(const InferredMeasurement& inferred,
     text += describeRefined(*inferred.refined);
   }
   if (estimate.isGiven()) {
-    text += makeTable(estimate, parameters);
+    text += makeTable(estimate, parameters, inferred.quantities.get());
+  }
+  for (const std::string& advice : adviseOnRidges(inferred.ridges, parameters)) {
+    text += "  " + advice + "\n";
   }
   if (estimate.isMultimodal()) {
     text += describeMixture(estimate.mixture, parameters);
   }
   if (inferred.posterior) {
-    text += describePosterior(*inferred.posterior, parameters);
+    text += describePosterior(*inferred.posterior, parameters, inferred.quantities.get());
   }
   if (inferred.by_estimator.isGiven() && (estimate.isRefined() || sampled)) {
-    text += "  the map's:\n" + makeTable(inferred.by_estimator, parameters);
+    text += "  the map's:\n" + makeTable(inferred.by_estimator, parameters, inferred.quantities.get());
   }
   return text;
 }

@@ -85,6 +85,16 @@ class Estimate:
         """All of it, as `twinmap infer --json` prints it."""
         return json.loads(self._map.write_json(self._estimate))
 
+    @functools.cached_property
+    def derived(self) -> pd.DataFrame:
+        """A row for each quantity that the experiment derives: unit, mean, stddev, lower, upper (of 95 %)."""
+        found = self.details.get("derived", {})
+        columns = {"unit": "unit", "mean": "mean", "stddev": "sd", "lower": "lower", "upper": "upper"}
+        return pd.DataFrame(
+            {column: [value[key] for value in found.values()] for column, key in columns.items()},
+            index=pd.Index(list(found), name="quantity"),
+        )
+
     @property
     def trust(self) -> Dict[str, Any]:
         """The numbers behind the statuses, as p_value and chi_square; empty where the run has no trust model."""
@@ -109,7 +119,9 @@ class Estimate:
         )
 
     def __getitem__(self, parameter: str) -> Tuple[float, float]:
-        """Mean and standard deviation of one parameter."""
+        """Mean and standard deviation of one parameter or derived quantity."""
+        if parameter in self.derived.index:
+            return float(self.derived.loc[parameter, "mean"]), float(self.derived.loc[parameter, "stddev"])
         if parameter not in self.names:
             raise KeyError(f"{parameter}: the parameters are {', '.join(self.names)}")
         index = self.names.index(parameter)

@@ -149,12 +149,28 @@ std::vector<BaselineSummary> runBaselines(const Study& study, const LabelledSets
   return rows;
 }
 
+/// What the answers say of the derived quantities, if there are any.
+std::optional<DerivedEvaluation> evaluateDerivedOf(const Study& study, const LabelledFeatures& test,
+                                                   const Estimates& estimates,
+                                                   const std::optional<InformationLimit>& limit) {
+  const DerivedQuantities quantities(study.experiment);
+  if (quantities.count() == 0) {
+    return std::nullopt;
+  }
+  return evaluateDerived(quantities, test.parameters, estimates,
+                         limit ? calcDerivedLimit(quantities, getParameters(study), test.parameters, *limit)
+                               : Eigen::MatrixXd());
+}
+
 void addLimit(const Study& study, const LabelledFeatures& test, const InformationLimit& limit,
               MapEvaluation& result) {
   result.evaluation.relevance =
       FeatureRelevance{test.infos, test.noise_covariance.diagonal().cwiseSqrt(), limit.relevance};
   result.evaluation.identifiability = calcIdentifiability(limit, getParameters(study));
   result.notes.warn(Severity::kDegraded, result.evaluation.identifiability->warnings);
+  result.evaluation.ridges = findRidges(limit.information, test.parameters, getParameters(study));
+  result.notes.warn(Severity::kDegraded,
+                    adviseOnRidges(result.evaluation.ridges, study.experiment.model.parameters));
   if (limit.failures > 0) {
     result.notes.warn(
         Severity::kInfo,
@@ -175,9 +191,9 @@ MapEvaluation evaluateMap(const Study& study, const PreparedData& data, const Tr
   RefinedTests tests = refineTestSamples(study, data, map.online);
   const std::vector<Refined> refined = std::move(tests.refined);
   result.notes.append(tests.notes);
-  result.evaluation =
-      evaluateEstimates(parameters, test.parameters,
-                        selectEstimates(predictions, map.residual_correlation, refined), limit_stddev);
+  const Estimates estimates = selectEstimates(predictions, map.residual_correlation, refined);
+  result.evaluation = evaluateEstimates(parameters, test.parameters, estimates, limit_stddev);
+  result.evaluation.derived = evaluateDerivedOf(study, test, estimates, limit);
   result.evaluation.methods =
       summarizeMethods(map.name, parameters, test.parameters, predictions, refined, limit_stddev);
   result.evaluation.refined = refined;

@@ -5,7 +5,7 @@
 #include <iosfwd>
 
 #include "framework/estimation/gp/gp_map.hpp"
-#include "framework/export/c_source.hpp"
+#include "framework/export/c_code/c_source.hpp"
 
 namespace twinmap {
 

@@ -1,4 +1,4 @@
-#include "framework/export/c_readme.hpp"
+#include "framework/export/c_code/c_readme.hpp"
 
 #include <fmt/core.h>
 

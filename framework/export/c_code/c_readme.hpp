@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "framework/export/c_source.hpp"
+#include "framework/export/c_code/c_source.hpp"
 
 namespace twinmap {
 

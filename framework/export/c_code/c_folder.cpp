@@ -1,11 +1,11 @@
-#include "framework/export/c_folder.hpp"
+#include "framework/export/c_code/c_folder.hpp"
 
 #include <fmt/core.h>
 
 #include <ostream>
 
 #include "framework/base/files/atomic_file.hpp"
-#include "framework/export/c_readme.hpp"
+#include "framework/export/c_code/c_readme.hpp"
 #include "framework/export/compress_map.hpp"
 #include "framework/export/runtime_sources.hpp"
 #include "framework/export/selftest.hpp"

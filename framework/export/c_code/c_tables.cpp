@@ -1,4 +1,4 @@
-#include "framework/export/c_tables.hpp"
+#include "framework/export/c_code/c_tables.hpp"
 
 #include <fmt/core.h>
 

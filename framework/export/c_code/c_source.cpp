@@ -1,4 +1,4 @@
-#include "framework/export/c_source.hpp"
+#include "framework/export/c_code/c_source.hpp"
 
 #include <fmt/core.h>
 
@@ -40,6 +40,8 @@ class Composer {
     addSize("PROCESSES", processes != nullptr ? 1 : 0, "1: the map is one of Gaussian processes");
     addSize("NETWORK", model.findNetwork() != nullptr ? 1 : 0, "1: the map is a neural network");
     addSize("COMPRESSED", options.compressed ? 1 : 0, "1: the processes are summarised by few inputs");
+    addSize("DERIVED", static_cast<Eigen::Index>(model.experiment.derived.size()),
+            "quantities that follow from the parameters");
     addSize("TRUST", model.online.trust ? 1 : 0, "1: measurements are judged");
   }
 
@@ -71,6 +73,7 @@ class Composer {
     }
     bytes_ = &source_.map_bytes;
     add("infer.c", [&](CTables& tables) { addResult(model_, options_.prefix, tables, source_.sizes); });
+    addDerivedQuantities();
     finish();
     return std::move(source_);
   }
@@ -97,6 +100,13 @@ class Composer {
     if (surrogate != nullptr) {
       addPlain("box_moments.c");
       add("surrogate_map.c", [&](CTables& tables) { addSurrogateMap(*surrogate, tables, source_.sizes); });
+    }
+  }
+
+  void addDerivedQuantities() {
+    if (!model_.experiment.derived.empty()) {
+      add("derived.c", [&](CTables& tables) { addDerived(model_, options_.prefix, tables); });
+      text_ = fillSlot(std::move(text_), "@EXPRESSIONS@\n", makeDerivedExpressions(model_));
     }
   }
 

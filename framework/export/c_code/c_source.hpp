@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "framework/export/c_model_tables.hpp"
+#include "framework/export/c_code/c_model_tables.hpp"
 #include "framework/export/exported_model.hpp"
 
 namespace twinmap {

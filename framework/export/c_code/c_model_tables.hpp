@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "framework/export/c_tables.hpp"
+#include "framework/export/c_code/c_tables.hpp"
 #include "framework/export/exported_model.hpp"
 
 namespace twinmap {
@@ -41,5 +41,8 @@ void addNetwork(const NetworkMap& map, CTables& tables, CSizes& sizes);
 void addTrust(const TrustModel& trust, CTables& tables, CSizes& sizes);
 /// infer.c
 void addResult(const ExportedModel& model, const std::string& prefix, CTables& tables, CSizes& sizes);
+/// derived.c, and the statements of its calc_derived()
+void addDerived(const ExportedModel& model, const std::string& prefix, CTables& tables);
+std::string makeDerivedExpressions(const ExportedModel& model);
 
 }  // namespace twinmap
