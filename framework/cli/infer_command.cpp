@@ -1,6 +1,9 @@
 #include <fmt/core.h>
 #include <malloc.h>
+#include <sys/mman.h>
 
+#include <cstdint>
+#include <cstdlib>
 #include <fstream>
 #include <iostream>
 #include <sstream>
@@ -152,12 +155,18 @@ class InferCommand {
 };
 
 /// The arrays of a map are read, packed and freed: to give each back to the system, and to get the next one
-/// from it, takes a page fault for each 4 kB, a sixth of the time of one inference.
+/// from it, takes a page fault for each 4 kB, a third of the time of one inference. So freed memory is kept,
+/// and comes in huge pages where the system has some.
 void keepFreedMemory() {
-  constexpr int kMegabyte = 1 << 20;
+  constexpr std::size_t kMegabyte = 1 << 20, kHugePage = 2 * kMegabyte, kSize = 24 * kMegabyte;
   mallopt(M_MMAP_THRESHOLD, 64 * kMegabyte);
   mallopt(M_TRIM_THRESHOLD, 256 * kMegabyte);
-  mallopt(M_TOP_PAD, 16 * kMegabyte);
+  if (void* heap = std::malloc(kSize)) {
+    const std::uintptr_t begin =
+        (reinterpret_cast<std::uintptr_t>(heap) + kHugePage - 1) / kHugePage * kHugePage;
+    madvise(reinterpret_cast<void*>(begin), kSize - kHugePage, MADV_HUGEPAGE);  // else as it was
+    std::free(heap);
+  }
 }
 
 }  // namespace

@@ -21,23 +21,30 @@ struct Task {
   std::size_t start;
 };
 
-// Where Newton's steps end early, L-BFGS goes on.
+// Where Newton's steps do not arrive soon, the start was not near an optimum, or near a poor one: L-BFGS,
+// whose line search reaches further, begins there as well, and the better of the two ends counts.
 SearchResult searchWarm(const TrainingSet& set, const TrainingOptions& options, const TargetSearches& target,
                         LikelihoodWorkspace& workspace) {
+  constexpr int kSoon = 16;  // evaluations; from near an optimum 5 to 15
   const Objective objective = [&](const VectorXd& point, VectorXd& gradient) {
     return evaluateLikelihoodGradient(set, target.values, fromLog(set.getStructure(), point), workspace,
                                       gradient);
   };
-  SearchLimits limits{options.max_evaluations, options.tolerance, nullptr, options.stop};
+  SearchLimits limits{std::min(kSoon, options.max_evaluations), options.tolerance, nullptr, options.stop};
   const SearchResult polished = polish(objective, target.starts[0], target.curvature, target.box, limits);
-  limits.max_evaluations -= polished.evaluations;
+  limits.max_evaluations = options.max_evaluations - polished.evaluations;
   if (polished.converged || limits.max_evaluations < 1 || isStopRequested(options.stop)) {
     return polished;
   }
-  SearchResult result = minimize(objective, set.size(), polished.end, target.box, limits);
-  result.evaluations += polished.evaluations;
-  result.largest_jitter = std::max(result.largest_jitter, polished.largest_jitter);
-  return result;
+  SearchResult further = minimize(objective, set.size(), target.starts[0], target.box, limits);
+  if (polished.objective < further.objective) {
+    further.end = polished.end;
+    further.nlml = polished.nlml;
+    further.objective = polished.objective;
+  }
+  further.evaluations += polished.evaluations;
+  further.largest_jitter = std::max(polished.largest_jitter, further.largest_jitter);
+  return further;
 }
 
 // The starts after the first know its optimum, and stop once they have come near it.

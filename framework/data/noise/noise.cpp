@@ -97,11 +97,11 @@ void ResponseNoise::correlate(const NoiseCorrelationSpec& spec, const ResponseLa
 }
 
 Eigen::MatrixXd ResponseNoise::add(const Eigen::MatrixXd& responses, const RandomStream& random,
-                                   std::uint64_t replicate) const {
+                                   std::uint64_t replicate, Eigen::Index first) const {
   Eigen::MatrixXd noisy(responses.rows(), responses.cols());
   Eigen::VectorXd normal(responses.rows());
   for (Eigen::Index sample = 0; sample < responses.cols(); ++sample) {
-    random.drawNormals(static_cast<std::uint64_t>(sample), replicate, normal.data(),
+    random.drawNormals(static_cast<std::uint64_t>(first + sample), replicate, normal.data(),
                        static_cast<std::size_t>(normal.size()));
     for (const Block& block : blocks_) {
       const Eigen::VectorXd independent = normal(block.rows);

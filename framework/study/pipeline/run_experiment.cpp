@@ -32,6 +32,7 @@
 #include "framework/study/samples/ineffective_parameters.hpp"
 #include "framework/study/samples/model_store.hpp"
 #include "framework/study/samples/stencils.hpp"
+#include "framework/study/samples/write_features.hpp"
 
 namespace twinmap {
 namespace {
@@ -236,6 +237,27 @@ RunSummary runExperiment(const ExperimentSpec& given, const RunOptions& options,
   throwIfCancelled(control);
   run.gates = writeFolder(experiment, options, control.threads, run);
   return run;
+}
+
+void runFeatures(const ExperimentSpec& experiment, const RunOptions& options, const RunControl& control) {
+  if (experiment.design.train.samples.automatic) {
+    throw ExperimentError(
+        "--features-only needs a number of training samples, which is chosen by training: set "
+        "design.train.samples");
+  }
+  makeFolders(options.folder);
+  const FolderLock lock(options.folder);
+  const RunLog log(options.folder);
+  const std::unique_ptr<Simulator> simulator =
+      makeSimulator(experiment.model, collectTimes(experiment.features), countModes(experiment.features));
+  logInfo(fmt::format("simulated by: {}", simulator->getEngine()));
+  warnOfIneffective(experiment.model, *simulator);
+  const FeatureExtractor extractor = makeExtractor(experiment, simulator->getLayout());
+  noteStore(options.folder, options.store);
+  const std::unique_ptr<TrajectoryStore> store =
+      openStore(experiment.model, simulator->getLayout(), getStoreRoot(options.folder, options.store));
+  writeFeatures(options.folder / "features.h5", experiment, extractor, {*simulator, *store, nullptr},
+                control);
 }
 
 }  // namespace twinmap

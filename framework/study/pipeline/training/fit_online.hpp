@@ -13,8 +13,9 @@ struct OnlineFit {
   StageNotes notes{};
 };
 
-/// Of how many simulated measurements a trust model's references are made: as fine as the map deserves.
-int countReferences(int train_samples);
+/// Of how many simulated measurements a trust model's references are made: as fine as the map and the level
+/// of false alarms deserve.
+int countReferences(const ExperimentSpec& experiment);
 
 /// Compresses a map of processes and fits its trust model: a forward surrogate to the clean responses of at
 /// most the first 500 training samples (its size and the time of a judgement grow with their number squared),
