@@ -37,6 +37,7 @@ class InferenceSource {
  public:
   virtual ~InferenceSource() = default;
   virtual std::vector<std::string> listColumns() const = 0;
+  virtual MissingCells getMissingCells() const = 0;
   virtual double getStart(std::optional<double> start) const = 0;
   virtual std::string makeCsvHeader() const = 0;
   virtual std::string makeDrawsHeader() const = 0;
@@ -51,6 +52,9 @@ class RunSource final : public InferenceSource {
         session_(inferrer_, arguments.refine, arguments.posterior_draws) {}
 
   std::vector<std::string> listColumns() const override { return inferrer_.getReader().listColumns(); }
+  MissingCells getMissingCells() const override {
+    return MissingCells::kRefuse;
+  }  // a map needs every feature
   double getStart(std::optional<double> start) const override { return session_.getStart(start); }
   std::string makeCsvHeader() const override {
     return makeInferenceCsvHeader(session_.refines(), session_.samplesPosteriors());
@@ -90,6 +94,7 @@ class ExperimentSource final : public InferenceSource {
         known_(collectKnown(getModel().inputs, parseKnownValues(arguments.known))) {}
 
   std::vector<std::string> listColumns() const override { return inferrer_.getReader().listColumns(); }
+  MissingCells getMissingCells() const override { return MissingCells::kKeep; }
   double getStart(std::optional<double> start) const override {
     return inferrer_.getReader().getStart(start);
   }
@@ -102,8 +107,7 @@ class ExperimentSource final : public InferenceSource {
     const std::string draws = makeDirectDrawsRows(inferred);
     switch (format) {
       case Format::kTable:
-        return {makeDirectTable(inferred, parameters, inferrer_.getReader().getExtractor().getInfos()),
-                draws};
+        return {makeDirectTable(inferred, parameters), draws};
       case Format::kCsv:
         return {makeDirectCsvRows(inferred, parameters), draws};
       case Format::kJson:
@@ -161,7 +165,7 @@ class InferCommand {
 
   void inferFile(const std::string& file) {
     try {
-      inferTable(readTable(file, source_->listColumns()));
+      inferTable(readTable(file, source_->listColumns(), source_->getMissingCells()));
     } catch (const std::exception& error) {
       reportError(file, source_->getStart(starts_.front()), error.what());
     }
@@ -174,7 +178,7 @@ class InferCommand {
       const std::string source = "measurement " + std::to_string(i);
       try {
         std::istringstream table(text);
-        inferTable(readCsv(table, source, source_->listColumns()));
+        inferTable(readCsv(table, source, source_->listColumns(), source_->getMissingCells()));
       } catch (const std::exception& error) {
         reportError(source, source_->getStart(starts_.front()), error.what());
       }

@@ -43,7 +43,7 @@ class RecordingList {
   RecordingList(const InferArguments& arguments, const JointInferrer& inferrer) {
     for (const RecordedFile& one : listFiles(arguments, inferrer)) {
       const MeasurementReader& reader = inferrer.get(one.trial).getReader();
-      tables_.push_back(readTable(one.file, reader.listColumns()));
+      tables_.push_back(readTable(one.file, reader.listColumns(), MissingCells::kKeep));
       for (const std::optional<double>& start : listStarts(arguments, reader, tables_.back())) {
         add(one, start, arguments);
       }

@@ -68,26 +68,45 @@ DirectInferrer::DirectInferrer(ExperimentSpec experiment, int draws)
   options_.seed = reader_.getExperiment().seed;
 }
 
-MeasuredTrial DirectInferrer::prepare(const Table& table, std::optional<double> start,
-                                      const VectorXd& known) {
+MeasuredTrial DirectInferrer::prepare(const AvailableFeatures& found, const VectorXd& known) const {
   const std::vector<ParameterSpec>& unknown = model_->getUnknown();
   VectorXd held(static_cast<Index>(unknown.size()) + known.size());
   held << calcBoxCenter(unknown), known;
-  return {simulator_.get(), model_.get(), reader_.readFeatures(table, start), held, {}};
+  MeasuredTrial trial{simulator_.get(), model_.get(), found.features, held, {}};
+  if (static_cast<Index>(found.available.size()) < found.features.size()) {
+    trial.own_model =
+        std::make_shared<const RefinementModel>(unknown, reader_.getExtractor(), noise_, found.available);
+    trial.model = trial.own_model.get();
+  }
+  return trial;
+}
+
+MeasuredTrial DirectInferrer::prepare(const Table& table, std::optional<double> start,
+                                      const VectorXd& known) {
+  return prepare(reader_.readAvailableFeatures(table, start), known);
 }
 
 DirectInference DirectInferrer::infer(const Table& table, std::optional<double> start,
                                       const VectorXd& known) {
-  const MeasuredTrial trial = prepare(table, start, known);
+  const AvailableFeatures found = reader_.readAvailableFeatures(table, start);
+  const MeasuredTrial trial = prepare(found, known);
   DirectInference inferred;
+  inferred.remarks = found.remarks;
+  inferred.left_out = found.features.size() - static_cast<Index>(found.available.size());
   inferred.source = table.source;
   inferred.start = reader_.getStart(start);
   inferred.posterior =
-      samplePosterior(*simulator_, *model_, reader_.getExperiment().model.priors, trial.features, trial.held,
-                      MatrixXd(static_cast<Index>(getUnknown().size()), 0), options_);
+      samplePosterior(*simulator_, *trial.model, reader_.getExperiment().model.priors, trial.features,
+                      trial.held, MatrixXd(static_cast<Index>(getUnknown().size()), 0), options_);
   if (inferred.posterior.degrees > 0.0) {
-    inferred.test = testResidual(inferred.posterior.residual, inferred.posterior.degrees,
-                                 reader_.getExtractor().getInfos());
+    std::vector<FeatureInfo> infos;
+    for (const Index i : found.available) {
+      infos.push_back(reader_.getExtractor().getInfos()[static_cast<std::size_t>(i)]);
+    }
+    inferred.test = testResidual(inferred.posterior.residual, inferred.posterior.degrees, infos);
+    if (inferred.test.largest >= 0) {
+      inferred.largest = infos[static_cast<std::size_t>(inferred.test.largest)].name;
+    }
   }
   return inferred;
 }

@@ -14,10 +14,13 @@ namespace twinmap {
 
 /// What a measurement says about the machine, by simulation alone.
 struct DirectInference {
-  std::string source;  ///< the file
-  double start = 0.0;  ///< time in the file that is 0 of the model, s
+  std::string source;                ///< the file
+  double start = 0.0;                ///< time in the file that is 0 of the model, s
+  std::vector<std::string> remarks;  ///< what of the recording is missing and why, a phrase each
+  Eigen::Index left_out = 0;         ///< features that are missing
   SimulatorPosterior posterior;
-  ResidualTest test;  ///< of the residual at the best point; where anything could be simulated
+  ResidualTest test;    ///< of the residual at the best point; where anything could be simulated
+  std::string largest;  ///< name of the feature with the largest residual
 };
 
 /// Names of all that is to be said against it, the most severe first: "not_simulated", "model_mismatch"
@@ -45,6 +48,8 @@ class DirectInferrer {
   DirectInference infer(const Table& table, std::optional<double> start, const Eigen::VectorXd& known);
 
  private:
+  MeasuredTrial prepare(const AvailableFeatures& found, const Eigen::VectorXd& known) const;
+
   MeasurementReader reader_;
   std::unique_ptr<Simulator> prototype_, simulator_;  // a clone of the first, which simulates
   FeatureNoise noise_;
@@ -53,8 +58,7 @@ class DirectInferrer {
 };
 
 /// A table for people: the status with its numbers, a row per parameter, how the posterior was found.
-std::string makeDirectTable(const DirectInference& inferred, const std::vector<ParameterSpec>& parameters,
-                            const std::vector<FeatureInfo>& features);
+std::string makeDirectTable(const DirectInference& inferred, const std::vector<ParameterSpec>& parameters);
 
 /// CSV: a row per measurement and parameter, in the columns of makeInferenceCsvHeader().
 std::string makeDirectCsvRows(const DirectInference& inferred, const std::vector<ParameterSpec>& parameters);

@@ -35,7 +35,7 @@ std::string join(const std::vector<std::string>& texts, const char* separator) {
 }
 
 /// What a mismatch shows itself by, and what to look at.
-std::string describeMismatch(const DirectInference& inferred, const std::vector<FeatureInfo>& features) {
+std::string describeMismatch(const DirectInference& inferred) {
   const ResidualTest& test = inferred.test;
   if (test.calcPValue() >= kMismatchLevel) {
     return "";
@@ -43,8 +43,7 @@ std::string describeMismatch(const DirectInference& inferred, const std::vector<
   if (test.largest_p <= std::min(test.chi_square_p, test.whiteness_p)) {
     return fmt::format(
         "  No parameter values within the bounds fit {}: it is {:.3g} noise sd off. Is it a spike?\n",
-        features[static_cast<std::size_t>(test.largest)].name,
-        std::abs(inferred.posterior.residual[test.largest]));
+        inferred.largest, std::abs(inferred.posterior.residual[test.largest]));
   }
   if (test.whiteness_p < test.chi_square_p) {
     return "  The residuals of neighbouring samples agree more than the stated noise allows: the noise is "
@@ -54,6 +53,14 @@ std::string describeMismatch(const DirectInference& inferred, const std::vector<
   return "  No parameter values within the bounds fit the measurement: look at the residuals (a sensor "
          "fault, a wrong "
          "trigger, larger noise, physics that the model lacks).\n";
+}
+
+std::string describeMissing(const DirectInference& inferred) {
+  std::string text;
+  for (const std::string& remark : inferred.remarks) {
+    text += "  left out: " + remark + "\n";
+  }
+  return text;
 }
 
 std::string describeSearch(const SimulatorPosterior& posterior) {
@@ -143,8 +150,7 @@ Json makeCovarianceJson(const SimulatorPosterior& posterior, std::size_t count) 
 
 }  // namespace
 
-std::string makeDirectTable(const DirectInference& inferred, const std::vector<ParameterSpec>& parameters,
-                            const std::vector<FeatureInfo>& features) {
+std::string makeDirectTable(const DirectInference& inferred, const std::vector<ParameterSpec>& parameters) {
   const SimulatorPosterior& posterior = inferred.posterior;
   const std::string statuses = join(listStatuses(inferred, parameters), ", ");
   if (!(posterior.degrees > 0.0)) {
@@ -153,7 +159,7 @@ std::string makeDirectTable(const DirectInference& inferred, const std::vector<P
   std::string text =
       fmt::format("{}: {} (p = {:.2g}, chi-square {:.4g} of {:.4g} degrees of freedom)\n", inferred.source,
                   statuses, inferred.test.calcPValue(), posterior.chi_square, posterior.degrees);
-  text += describeMismatch(inferred, features);
+  text += describeMismatch(inferred) + describeMissing(inferred);
   if (!posterior.isReliable()) {
     return text + fmt::format("  No estimate: {}. Give narrower bounds, or more draws (--posterior=2000).\n",
                               posterior.message);
@@ -189,6 +195,9 @@ std::string makeDirectJson(const DirectInference& inferred, const std::vector<Pa
             {"status", statuses.front()},
             {"statuses", statuses},
             {"method", "posterior"}};
+  if (!inferred.remarks.empty()) {
+    json["left_out"] = {{"features", inferred.left_out}, {"remarks", inferred.remarks}};
+  }
   if (posterior.isReliable()) {
     json["parameters"] = makeParametersJson(posterior, parameters);
     json["covariance"] = makeCovarianceJson(posterior, parameters.size());

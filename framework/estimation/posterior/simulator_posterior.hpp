@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -48,9 +49,10 @@ struct SimulatorPosterior {
 struct MeasuredTrial {
   Simulator* simulator;
   const RefinementModel* model;
-  Eigen::VectorXd features;           ///< d, finite
+  Eigen::VectorXd features;           ///< d, finite where the model looks at them
   Eigen::VectorXd held;               ///< a point of the trial's sampled box, whose known inputs are kept
   std::vector<Eigen::Index> unknown;  ///< which of all unknown parameters the trial's are, in its order
+  std::shared_ptr<const RefinementModel> own_model{};  ///< `model`, where it is of this measurement alone
 };
 
 /// What is known of a machine: one or several measurements, and what was known before.

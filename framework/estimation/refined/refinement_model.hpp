@@ -23,6 +23,9 @@ class RefinementModel {
   /// for a feature without noise.
   RefinementModel(std::vector<ParameterSpec> unknown, const FeatureExtractor& extractor,
                   const FeatureNoise& noise);
+  /// Of some features alone (their numbers, ascending), where a measurement lacks the others.
+  RefinementModel(std::vector<ParameterSpec> unknown, const FeatureExtractor& extractor,
+                  const FeatureNoise& noise, const std::vector<Eigen::Index>& available);
 
   const std::vector<ParameterSpec>& getUnknown() const { return unknown_; }
   const FeatureExtractor& getExtractor() const { return extractor_; }
