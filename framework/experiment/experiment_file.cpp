@@ -7,11 +7,11 @@
 #include "framework/experiment/fields/overrides.hpp"
 #include "framework/experiment/fields/read_value.hpp"
 #include "framework/experiment/fields/write_value.hpp"
-#include "framework/experiment/prior_files.hpp"
+#include "framework/experiment/files/prior_files.hpp"
+#include "framework/experiment/files/signal_files.hpp"
 #include "framework/experiment/resolve_defaults.hpp"
-#include "framework/experiment/signal_files.hpp"
 #include "framework/experiment/sweep/swept_keys.hpp"
-#include "framework/experiment/trials.hpp"
+#include "framework/experiment/sweep/trials.hpp"
 
 namespace twinmap {
 namespace {

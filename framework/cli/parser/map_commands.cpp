@@ -8,6 +8,24 @@
 namespace twinmap::cli {
 namespace {
 
+/// Recordings that are inferred together.
+void addJointInference(CLI::App& command, InferArguments& arguments) {
+  command
+      .add_option("--trial", arguments.trials,
+                  "A recording of one of the experiment's trials; all of them are inferred together, several "
+                  "of one trial are repeats")
+      ->type_name("NAME=FILE");
+  command.add_flag("--joint", arguments.joint,
+                   "Infer all files and --start together as recordings of one machine, and test whether they "
+                   "agree");
+  command
+      .add_option("--windows", arguments.windows,
+                  "Infer the windows of each file that begin every S seconds together, and test whether they "
+                  "agree")
+      ->type_name("S")
+      ->check(CLI::PositiveNumber);
+}
+
 void addInfer(CLI::App& app) {
   const auto arguments = std::make_shared<InferArguments>();
   CLI::App* command = app.add_subcommand("infer",
@@ -30,23 +48,7 @@ void addInfer(CLI::App& app) {
       ->add_option("--start", arguments->starts,
                    "Time in the file (s) at which the model's time is 0; several infer several windows")
       ->type_name("S");
-  command
-      ->add_option(
-          "--trial", arguments->trials,
-          "A recording of one of the experiment's trials; all of them are inferred together, several "
-          "of one trial are repeats")
-      ->type_name("NAME=FILE");
-  command->add_flag(
-      "--joint", arguments->joint,
-      "Infer all files and --start together as recordings of one machine, and test whether they "
-      "agree");
-  command
-      ->add_option(
-          "--windows", arguments->windows,
-          "Infer the windows of each file that begin every S seconds together, and test whether they "
-          "agree")
-      ->type_name("S")
-      ->check(CLI::PositiveNumber);
+  addJointInference(*command, *arguments);
   CLI::Option* csv = command->add_flag("--csv", arguments->csv, "Print CSV instead of a table");
   command->add_flag("--json", arguments->json, "Print a line of JSON per measurement")->excludes(csv);
   command
@@ -58,8 +60,14 @@ void addInfer(CLI::App& app) {
   addRefine(*command, arguments->refine);
   CLI::Option* posterior = command->add_flag(
       "--posterior{512}", arguments->posterior_draws,
-      "The posterior as well, without a normal approximation: quantiles, from so many draws weighted by a "
-      "surrogate's likelihood; --posterior=2000 for more than 512");
+      "The posterior as well, without a normal approximation: quantiles, from so many draws weighted by "
+      "their likelihood on the simulator, or a surrogate's where that takes long; --posterior=2000 for more "
+      "than 512");
+  command
+      ->add_option("--posterior-from", arguments->posterior_from,
+                   "What the posterior's likelihood is computed by: simulator or surrogate")
+      ->check(CLI::IsMember({"simulator", "surrogate"}))
+      ->type_name("SOURCE");
   command->add_option("--draws", arguments->draws, "File for the posterior's joint draws (CSV)")
       ->type_name("FILE")
       ->needs(posterior);

@@ -14,8 +14,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Adds a part's linear model, in half-widths of the bounds, to the surface's. Its own descent holds the box as
-/// a normal distribution, too.
+/// Adds a part's linear model, in half-widths of the bounds, to the surface's. Its own descent holds the box
+/// as a normal distribution, too.
 void addPart(const LocalMisfit& local, const MeasuredPart& part, LocalSurface& surface) {
   surface.simulated = surface.simulated && local.status.ok && std::isfinite(local.chi_square);
   if (!surface.simulated) {
@@ -91,8 +91,11 @@ std::vector<LocalSurface> MisfitSurface::linearize(const MatrixXd& points) {
   const Index u = points.rows();
   std::vector<LocalSurface> surfaces(static_cast<std::size_t>(points.cols()));
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    surfaces[i] = {
-        true, points.col(static_cast<Index>(i)), 0.0, 0.0, 0.0, MatrixXd::Zero(u, u), VectorXd::Zero(u), {}};
+    LocalSurface& surface = surfaces[i];
+    surface.simulated = true;
+    surface.at = points.col(static_cast<Index>(i));
+    surface.information = MatrixXd::Zero(u, u);
+    surface.descent = VectorXd::Zero(u);
   }
   for (const MeasuredPart& part : parts_) {
     const std::vector<LocalMisfit> local = part.misfit->linearizeAll(box(part.unknown, Eigen::all));

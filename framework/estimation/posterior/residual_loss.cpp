@@ -35,7 +35,8 @@ ResidualLoss::ResidualLoss(std::vector<int> level_of, double outlier_share)
   }
 }
 
-ResidualLoss::Levels ResidualLoss::sumLevels(const VectorXd& residual, const std::vector<Index>& features) const {
+ResidualLoss::Levels ResidualLoss::sumLevels(const VectorXd& residual,
+                                             const std::vector<Index>& features) const {
   Levels levels{VectorXd::Zero(levels_), VectorXd::Zero(levels_)};
   for (Index i = 0; i < residual.size(); ++i) {
     if (const int level = getLevel(features[static_cast<std::size_t>(i)]); level >= 0) {

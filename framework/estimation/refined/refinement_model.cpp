@@ -42,12 +42,15 @@ double findLastTime(const std::vector<FeatureInfo>& infos) {
 
 RefinementModel::RefinementModel(std::vector<ParameterSpec> unknown, const FeatureExtractor& extractor,
                                  const FeatureNoise& noise)
-    : RefinementModel(std::move(unknown), extractor, noise, listAll(extractor)) {}
+    : RefinementModel(std::move(unknown), extractor, noise, {}) {}
 
 RefinementModel::RefinementModel(std::vector<ParameterSpec> unknown, const FeatureExtractor& extractor,
-                                 const FeatureNoise& noise, const std::vector<Index>& available)
-    : unknown_(std::move(unknown)), extractor_(extractor), noise_(noise) {
-  const std::vector<FeatureInfo>& infos = extractor.getInfos();
+                                 const FeatureNoise& noise, std::vector<Index> available)
+    : unknown_(std::move(unknown)), features_(extractor), noise_(noise.getLinearForm()) {
+  const std::vector<FeatureInfo>& infos = getExtractor().getInfos();
+  if (available.empty()) {
+    available = listAll(getExtractor());
+  }
   const double last = findLastTime(infos);
   for (const double fraction : {0.125, 0.25, 0.5}) {
     std::vector<Index> samples = findSamplesUntil(infos, available, fraction * last);
@@ -56,7 +59,11 @@ RefinementModel::RefinementModel(std::vector<ParameterSpec> unknown, const Featu
       addWindow(std::move(samples));
     }
   }
-  addWindow(available);
+  addWindow(std::move(available));
+}
+
+VectorXd RefinementModel::placeResidual(const VectorXd& residual) const {
+  return residual.size() == getExtractor().getFeatureCount() ? features_.placeLinearForm(residual) : residual;
 }
 
 void RefinementModel::addWindow(std::vector<Index> features) {

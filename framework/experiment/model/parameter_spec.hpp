@@ -27,7 +27,7 @@ struct ParameterSpec {
   std::string description;
   RelativeTo relative_to = RelativeTo::kValue;  ///< of an updating parameter
   std::optional<Name> variable;                 ///< of a model from elsewhere; default: the name
-  std::optional<PriorSpec> prior;               ///< default: uniform within the bounds
+  std::optional<PriorSpec> prior{};             ///< default: uniform within the bounds
 };
 
 template <class Fields>

@@ -42,7 +42,8 @@ void describe(Fields& f, SourceContent& s) {
   f.optional("excitation_interval", s.excitation_interval, "");
 }
 
-YamlNode writeSimulation(const SimulationSpec& simulation) {
+YamlNode writeSimulation(SimulationSpec simulation) {
+  simulation.relative_tolerance.automatic = simulation.absolute_tolerance.automatic = false;
   YamlNode map = writeValue(simulation);
   erase(map, "max_wall_time");
   erase(map, "allowed_failures");
@@ -134,8 +135,9 @@ YamlNode writeResponse(const ResponseLayout& layout) {
 
 std::string writeTrajectoryContent(const ModelSpec& model, const ResponseLayout& layout) {
   // A new member must be written here, or left out on purpose: the binding then no longer compiles.
-  const auto& [parameters, nuisance, inputs, constants, system, source, excitation, initial, outputs,
+  const auto& [parameters, nuisance, inputs, priors, constants, system, source, excitation, initial, outputs,
                simulation] = model;
+  static_cast<void>(priors);  // no response depends on what is known of its parameters
   const std::vector<ParameterSpec> sampled = collectSampled(model);  // all three; which is which is no matter
   FieldWriter content;
   content.required("parameters", collectNames(sampled), "");

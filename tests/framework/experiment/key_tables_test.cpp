@@ -154,6 +154,8 @@ struct Described {
 
 const std::vector<Described> kKeyTables{
     {"key", ""},
+    {"kind of `prior`", "parameters.*.prior"},
+    {"entry of `priors`", "priors.[]"},
     {"key of `fmu`", "model.fmu"},
     {"key of `program`", "model.program"},
     {"key", "system.bodies.*"},

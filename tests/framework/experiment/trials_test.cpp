@@ -1,4 +1,4 @@
-#include "framework/experiment/trials.hpp"
+#include "framework/experiment/sweep/trials.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <cmath>
 
 #include "framework/estimation/posterior/simulator_posterior.hpp"
@@ -44,7 +45,7 @@ void expectLeastSquares(const SimulatorPosterior& posterior, const MatrixXd& a, 
   jacobian.block(a.rows(), 3, b.rows(), 1).setOnes();
   VectorXd measured(a.rows() + b.rows());
   measured << of_a, of_b;
-  const MatrixXd covariance = kNoise * kNoise * (jacobian.transpose() * jacobian).inverse();
+  const MatrixXd covariance = kNoise * kNoise * Eigen::Matrix4d(jacobian.transpose() * jacobian).inverse();
   const VectorXd mean = covariance * jacobian.transpose() * measured / (kNoise * kNoise);
   ASSERT_TRUE(posterior.isReliable()) << posterior.message;
   for (Index j = 0; j < posterior.mean.size(); ++j) {
