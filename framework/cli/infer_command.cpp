@@ -12,9 +12,9 @@
 #include "framework/cli/commands.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/inference_source.hpp"
-#include "framework/inference/text/inference_text.hpp"
 #include "framework/inference/known_value.hpp"
 #include "framework/inference/measurement_stream.hpp"
+#include "framework/inference/text/inference_text.hpp"
 
 namespace twinmap::cli {
 namespace {
@@ -62,7 +62,7 @@ class InferCommand {
 
   void inferFile(const std::string& file) {
     try {
-      inferTable(readTable(file, source_.getReader().listColumns()));
+      inferTable(readTable(file, source_.getReader().listColumns(), getMissingCells()));
     } catch (const std::exception& error) {
       reportError(file, source_.getReader().getStart(starts_.front()), error.what());
     }
@@ -75,7 +75,7 @@ class InferCommand {
       const std::string source = "measurement " + std::to_string(i);
       try {
         std::istringstream table(text);
-        inferTable(readCsv(table, source, source_.getReader().listColumns()));
+        inferTable(readCsv(table, source, source_.getReader().listColumns(), getMissingCells()));
       } catch (const std::exception& error) {
         reportError(source, source_.getReader().getStart(starts_.front()), error.what());
       }
@@ -114,6 +114,10 @@ class InferCommand {
   }
 
   const ModelSpec& getModel() const { return source_.getExperiment().model; }
+  /// A trained estimator needs every feature.
+  MissingCells getMissingCells() const {
+    return source_.findTrained() != nullptr ? MissingCells::kRefuse : MissingCells::kKeep;
+  }
 
   void print(const InferredMeasurement& inferred) {
     const std::vector<ParameterSpec>& parameters = getModel().parameters;

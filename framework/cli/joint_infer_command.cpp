@@ -7,8 +7,8 @@
 #include "framework/base/text/number_text.hpp"
 #include "framework/cli/commands.hpp"
 #include "framework/experiment/experiment_file.hpp"
-#include "framework/inference/text/inference_text.hpp"
 #include "framework/inference/joint_inference.hpp"
+#include "framework/inference/text/inference_text.hpp"
 
 namespace twinmap::cli {
 namespace {
@@ -43,7 +43,7 @@ class RecordingList {
   RecordingList(const InferArguments& arguments, const JointInferrer& inferrer) {
     for (const RecordedFile& one : listFiles(arguments, inferrer)) {
       const MeasurementReader& reader = inferrer.getReader(one.trial);
-      tables_.push_back(readTable(one.file, reader.listColumns()));
+      tables_.push_back(readTable(one.file, reader.listColumns(), MissingCells::kKeep));
       for (const std::optional<double>& start : listStarts(arguments, reader, tables_.back())) {
         add(one, start, arguments);
       }

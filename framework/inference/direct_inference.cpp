@@ -13,6 +13,16 @@ DirectInference::DirectInference(const MeasurementReader& reader, int draws)
   simulator_.requireNoise();
 }
 
+InferredMeasurement DirectInference::infer(const Table& table, std::optional<double> start,
+                                           const Eigen::VectorXd& known) {
+  const AvailableFeatures found = reader_.readAvailableFeatures(table, start);
+  InferredMeasurement inferred = infer(found.features, known);
+  inferred.source = table.source;
+  inferred.start = reader_.getStart(start);
+  inferred.left_out = found.remarks;
+  return inferred;
+}
+
 InferredMeasurement DirectInference::infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known) {
   InferredMeasurement inferred;
   inferred.posterior = simulator_.samplePosterior(features, known, {}, options_);

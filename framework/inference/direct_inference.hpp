@@ -17,7 +17,9 @@ class DirectInference final : public MeasurementInference {
   bool refines() const override { return false; }
   bool samplesPosteriors() const override { return false; }
 
-  using MeasurementInference::infer;
+  /// Samples that the table lacks are left out of the likelihood (MeasurementReader::readAvailableFeatures).
+  InferredMeasurement infer(const Table& table, std::optional<double> start,
+                            const Eigen::VectorXd& known) override;
   /// Cost: that of samplePosterior().
   InferredMeasurement infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known) override;
 

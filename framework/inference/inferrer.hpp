@@ -20,6 +20,7 @@ namespace twinmap {
 struct InferredMeasurement {
   std::string source;                   ///< the file
   double start = 0.0;                   ///< time in the file that is 0 of the model, s
+  std::vector<std::string> left_out{};  ///< what of the recording is missing and why, a phrase each
   Estimate by_estimator;                ///< not given where there is no trained estimator
   bool estimator_is_calibrated = true;  ///< isCalibrated()
   std::optional<Trust> trust;           ///< none where the run could fit no trust model

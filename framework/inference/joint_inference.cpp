@@ -220,8 +220,8 @@ const JointInferrer::Member& JointInferrer::find(const std::string& trial) const
 
 MeasuredTrial JointInferrer::makeTrial(const Recording& recording) const {
   const Member& member = find(recording.trial);
-  return member.simulator->makeTrial(member.reader->readFeatures(*recording.table, recording.start),
-                                     member.known);
+  return member.simulator->makeTrial(
+      member.reader->readAvailableFeatures(*recording.table, recording.start).features, member.known);
 }
 
 RecordingInference JointInferrer::inferAlone(const Recording& recording) const {
@@ -231,13 +231,10 @@ RecordingInference JointInferrer::inferAlone(const Recording& recording) const {
   RecordingInference alone{recording.label, {}, {}};
   alone.inferred.source = recording.table->source;
   alone.inferred.start = member.reader->getStart(recording.start);
-  alone.posterior =
-      samplePosterior({unknown, member.reader->getExperiment().model.priors, {makeTrial(recording)}, u},
-                      MatrixXd(u, 0), options_);
-  member.simulator->placeResidual(alone.posterior);
-  alone.inferred.posterior =
-      makePosteriorEstimate(alone.posterior, unknown, static_cast<Index>(getParameters().size()),
-                            member.reader->getExtractor().getInfos());
+  const PosteriorProblem problem{
+      unknown, member.reader->getExperiment().model.priors, {makeTrial(recording)}, u};
+  alone.posterior = samplePosterior(problem, MatrixXd(u, 0), options_);
+  alone.inferred.posterior = member.simulator->makeEstimate(problem.trials.front(), alone.posterior);
   return alone;
 }
 

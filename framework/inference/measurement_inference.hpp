@@ -22,7 +22,8 @@ class MeasurementInference {
   virtual InferredMeasurement infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known) = 0;
 
   /// From a table: throws MeasurementError where it cannot be used (MeasurementReader::readFeatures).
-  InferredMeasurement infer(const Table& table, std::optional<double> start, const Eigen::VectorXd& known);
+  virtual InferredMeasurement infer(const Table& table, std::optional<double> start,
+                                    const Eigen::VectorXd& known);
 };
 
 }  // namespace twinmap

@@ -122,13 +122,23 @@ bool SimulatorRefiner::samplesFast() const {
 PosteriorEstimate SimulatorRefiner::samplePosterior(const VectorXd& features, const VectorXd& known,
                                                     const MatrixXd& given,
                                                     const SimulatorPosteriorOptions& options) const {
-  const std::vector<ParameterSpec>& unknown = getUnknown();
-  const PosteriorProblem problem{
-      unknown, model_.priors, {makeTrial(features, known)}, static_cast<Index>(unknown.size())};
-  SimulatorPosterior posterior = twinmap::samplePosterior(problem, given, options);
-  placeResidual(posterior);
-  return makePosteriorEstimate(posterior, unknown, static_cast<Index>(model_.parameters.size()),
-                               extractor_.getInfos());
+  const auto u = static_cast<Index>(getUnknown().size());
+  const PosteriorProblem problem{getUnknown(), model_.priors, {makeTrial(features, known)}, u};
+  return makeEstimate(problem.trials.front(), twinmap::samplePosterior(problem, given, options));
+}
+
+PosteriorEstimate SimulatorRefiner::makeEstimate(const MeasuredTrial& trial,
+                                                 SimulatorPosterior posterior) const {
+  std::vector<FeatureInfo> infos = extractor_.getInfos();
+  if (trial.own_model) {
+    infos.clear();
+    for (const Index i : trial.own_model->getWhole().features) {
+      infos.push_back(trial.own_model->getExtractor().getInfos()[static_cast<std::size_t>(i)]);
+    }
+  } else if (posterior.degrees > 0.0) {
+    posterior.residual = getModel().placeResidual(posterior.residual);
+  }
+  return makePosteriorEstimate(posterior, getUnknown(), static_cast<Index>(model_.parameters.size()), infos);
 }
 
 std::vector<Ridge> SimulatorRefiner::findRidges(const BoundedDraws& draws, const VectorXd& known) const {
@@ -142,19 +152,26 @@ std::vector<Ridge> SimulatorRefiner::findRidges(const BoundedDraws& draws, const
   return simulateRidges(*simulator_, extractor_, noise_, model_, points, 1);
 }
 
-void SimulatorRefiner::placeResidual(SimulatorPosterior& posterior) const {
-  if (posterior.degrees > 0.0) {
-    posterior.residual = getModel().placeResidual(posterior.residual);
-  }
-}
-
 MeasuredTrial SimulatorRefiner::makeTrial(const VectorXd& features, const VectorXd& known) const {
   const std::vector<ParameterSpec>& unknown = getUnknown();
   VectorXd held(static_cast<Index>(unknown.size()) + known.size());
   held << calcBoxCenter(unknown), known;
   std::vector<Index> all(unknown.size());
   std::iota(all.begin(), all.end(), Index{0});
-  return {own_.get(), &getModel(), features, held, std::move(all)};
+  MeasuredTrial trial{own_.get(), &getModel(), features, held, std::move(all)};
+  if (features.hasNaN()) {
+    const VectorXd fitted = getModel().convert(features);
+    std::vector<Index> available;
+    for (Index i = 0; i < fitted.size(); ++i) {
+      if (std::isfinite(fitted[i])) {
+        available.push_back(i);
+      }
+    }
+    trial.own_model =
+        std::make_shared<const RefinementModel>(unknown, extractor_, noise_, std::move(available));
+    trial.model = trial.own_model.get();
+  }
+  return trial;
 }
 
 MatrixXd SimulatorRefiner::listStarts(const InferredMeasurement& inferred, const VectorXd& features,

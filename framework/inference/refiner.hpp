@@ -41,16 +41,18 @@ class SimulatorRefiner {
 
   const std::vector<ParameterSpec>& getUnknown() const { return getModel().getUnknown(); }
 
-  /// A measurement as a part of a problem: of all unknown parameters in their order. It refers to this
-  /// object, which simulates for it. Throws std::invalid_argument for a feature without noise.
+  /// A measurement as a part of a problem: of all unknown parameters in their order. Features (d) that are
+  /// NaN are missing and left out. It refers to this object, which simulates for it. Throws
+  /// std::invalid_argument for a feature without noise.
   MeasuredTrial makeTrial(const Eigen::VectorXd& features, const Eigen::VectorXd& known) const;
 
   /// The ridges along which draws of a posterior lie; none where derivatives are not exact. Cost: 32
   /// simulations with derivatives.
   std::vector<Ridge> findRidges(const BoundedDraws& draws, const Eigen::VectorXd& known) const;
 
-  /// Puts the residual in the places of the experiment's features.
-  void placeResidual(SimulatorPosterior& posterior) const;
+  /// The posterior of a trial alone as an estimate, its residual in the places of the features that are
+  /// there.
+  PosteriorEstimate makeEstimate(const MeasuredTrial& trial, SimulatorPosterior posterior) const;
 
   /// The posterior of all unknown parameters (samplePosterior). given: points to search from as well (u x n).
   /// known: q. Throws std::invalid_argument for a feature without noise.

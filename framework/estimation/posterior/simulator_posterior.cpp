@@ -214,7 +214,7 @@ class ProblemSurface {
     std::vector<MeasuredPart> parts;
     for (const MeasuredTrial& trial : problem.trials) {
       parts_.push_back(std::make_unique<Part>(trial));
-      parts.push_back({&parts_.back()->misfit, trial.model, trial.unknown});
+      parts.push_back({&parts_.back()->misfit, trial.model, trial.unknown, trial.loss});
     }
     return parts;
   }
@@ -232,6 +232,7 @@ void setBest(const BasinSearch& found, const LogCoordinates& coordinates, Simula
   posterior.misfit = best.local.misfit;
   posterior.information = best.local.information;
   posterior.residual = best.local.residual;
+  posterior.residual_weights = best.local.weights;
   posterior.degrees = best.local.degrees;
   posterior.found_best = best.searches;
 }

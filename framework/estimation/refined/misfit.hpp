@@ -21,6 +21,7 @@ struct LocalMisfit {
   Eigen::MatrixXd information;  ///< J'J, s x s
   Eigen::VectorXd descent;      ///< J'r - 3 at
   Eigen::VectorXd residual;     ///< r, k
+  Eigen::MatrixXd jacobian;     ///< J, k x s
 
   /// Degrees of freedom: residuals less the parameters that they, not the box, determine (trace of
   /// J'J (J'J + prior)^-1), at least one.
@@ -65,13 +66,17 @@ class Misfit {
   /// whitener: 2 s + 1 simulations, one batch.
   ProbedMisfit probe(const Eigen::VectorXd& at, const Eigen::MatrixXd& ways);
 
+  /// Whitened residuals (k x n) at the columns of `points` (s x n), simulated as one batch. After linearize().
+  Eigen::MatrixXd simulateResiduals(const Eigen::MatrixXd& points, std::vector<SampleStatus>& statuses);
+  /// The features that the residuals are of, now.
+  const std::vector<Eigen::Index>& getFeatures() const { return window_->features; }
+
   /// The misfits at the columns of `points` (s x n), simulated as one batch; infinity where a simulation
   /// fails. After linearize().
   Eigen::VectorXd evaluate(const Eigen::MatrixXd& points);
 
  private:
   const NoiseWhitener& getWhitener() const;
-  Eigen::MatrixXd simulateResiduals(const Eigen::MatrixXd& points, std::vector<SampleStatus>& statuses);
   Eigen::MatrixXd makePoints(const Eigen::MatrixXd& points) const;
   LocalMisfit makeLocalMisfit(const Eigen::VectorXd& at, const LocalModel& local);
 

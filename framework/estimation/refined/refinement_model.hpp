@@ -25,6 +25,10 @@ class RefinementModel {
   /// in them is a narrow bent valley. Throws std::invalid_argument for a feature without noise.
   RefinementModel(std::vector<ParameterSpec> unknown, const FeatureExtractor& extractor,
                   const FeatureNoise& noise);
+  /// Of some fitted features alone (their numbers, ascending), where a measurement lacks the others; empty:
+  /// all.
+  RefinementModel(std::vector<ParameterSpec> unknown, const FeatureExtractor& extractor,
+                  const FeatureNoise& noise, std::vector<Eigen::Index> available);
 
   const std::vector<ParameterSpec>& getUnknown() const { return unknown_; }
   /// Of the features that are fitted, d'.

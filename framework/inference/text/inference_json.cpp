@@ -161,6 +161,9 @@ std::string makeInferenceJson(const InferredMeasurement& inferred,
     json["statuses"] = estimate.statuses;
   }
   json["method"] = toString(estimate.method);
+  if (!inferred.left_out.empty()) {
+    json["left_out"] = inferred.left_out;
+  }
   if (estimate.isGiven()) {
     json["parameters"] = toJson(estimate, parameters);
   }

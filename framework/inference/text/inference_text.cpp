@@ -243,6 +243,9 @@ std::string makeInferenceTable(const InferredMeasurement& inferred,
   const Estimate estimate = selectEstimate(inferred);
   const bool sampled = estimate.method == EstimationMethod::kPosterior;
   std::string text = describeTrust(inferred, features) + describeMapLimit(inferred, parameters);
+  for (const std::string& missing : inferred.left_out) {
+    text += "  left out: " + missing + "\n";
+  }
   if (inferred.refined && !sampled) {
     text += describeRefined(*inferred.refined);
   }

@@ -40,6 +40,24 @@ class Direct(FolderTestCase):
             self.assertAlmostEqual(covariance[i, i] ** 0.5 / estimate["sd"], 1)
         self.assertGreater(found["posterior"]["effective_sample_size"], 100)
 
+    def test_leaves_missing_samples_out_and_says_so(self):
+        lines = self.measured.read_text().splitlines()
+        rows = [line.split(",") for line in lines[1:]]
+        for i in range(5, len(rows), 10):
+            rows[i][1] = ["", "nan", "NA"][i % 3]
+        rows[40], rows[60] = rows[60], rows[40]
+        damaged = self.folder / "damaged.csv"
+        damaged.write_text("\n".join([lines[0]] + [",".join(row) for row in rows]) + "\n")
+        whole = json.loads(self.infer(CART, self.measured, "--json"))
+        found = json.loads(self.infer(CART, damaged, "--json"))
+        self.assertEqual(found["status"], "ok")
+        self.assertIn("samples of", found["left_out"][-1])
+        for name, true in TRUE.items():
+            estimate = found["parameters"][name]
+            self.assertLess(abs(estimate["mean"] - true), 4 * estimate["sd"], name)
+            self.assertLess(estimate["sd"], 1.25 * whole["parameters"][name]["sd"])
+        self.assertIn("left out:", self.infer(CART, damaged))
+
     def test_table_and_csv_say_the_same(self):
         found = json.loads(self.infer(CART, self.measured, "--json"))
         table = self.infer(CART, self.measured)
