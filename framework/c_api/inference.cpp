@@ -64,7 +64,7 @@ twinmap_result inferBy(twinmap_inferrer* inferrer, const Infer& infer) {
 }
 
 twinmap::InferredMeasurement inferTable(twinmap_inferrer& inferrer, const VectorXd& known,
-                                        const std::vector<twinmap::NamedValues>& columns) {
+                                        const std::vector<twinmap::NamedColumn>& columns) {
   const twinmap::Table table =
       twinmap::makeTable("measurement", columns, inferrer.source.getReader().listColumns());
   return inferrer.session->infer(table, inferrer.start, known);
@@ -128,7 +128,7 @@ twinmap_result twinmap_infer_features(twinmap_inferrer* inferrer, const double* 
 twinmap_result twinmap_infer_columns(twinmap_inferrer* inferrer, const twinmap_column* columns,
                                      size_t count) {
   return inferBy(inferrer, [&](twinmap_inferrer& self, const VectorXd& known) {
-    std::vector<twinmap::NamedValues> named;
+    std::vector<twinmap::NamedColumn> named;
     for (std::size_t i = 0; i < count; ++i) {
       const twinmap_column& column = (&require(columns, "columns"))[i];
       named.push_back({&require(column.name, "name of a column"),
@@ -173,7 +173,7 @@ twinmap_result twinmap_push(twinmap_inferrer* inferrer, const double* values, si
 
 twinmap_result twinmap_infer_pushed(twinmap_inferrer* inferrer) {
   return inferBy(inferrer, [](twinmap_inferrer& self, const VectorXd& known) {
-    std::vector<twinmap::NamedValues> named;
+    std::vector<twinmap::NamedColumn> named;
     for (std::size_t i = 0; i < self.pushed.names.size(); ++i) {
       const std::vector<double>& values = self.pushed.values[i];
       named.push_back({self.pushed.names[i], ConstVector(values.data(), static_cast<Index>(values.size()))});

@@ -74,7 +74,7 @@ InferredEstimate inferFile(PythonMap& map, const std::string& path, const InferR
 }
 
 InferredEstimate inferColumns(PythonMap& map, const NamedVectors& columns, const InferRequest& request) {
-  std::vector<NamedValues> named;
+  std::vector<NamedColumn> named;
   for (const auto& [name, values] : columns) {
     named.push_back({name, viewVector(values, "column '" + name + "'")});
   }
