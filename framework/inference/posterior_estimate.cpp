@@ -1,5 +1,11 @@
 #include "framework/inference/posterior_estimate.hpp"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "framework/estimation/refined/acceptance.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 
 namespace twinmap {
@@ -49,6 +55,43 @@ Estimate makeEstimate(BoundedDraws draws, const VectorXd& mean, const MatrixXd& 
   return estimate;
 }
 
+/// Below this weight a residual is an outlier: noise of 3 standard deviations has more than .99.
+constexpr double kOutlierWeight = 0.5;
+
+/// Residuals as they are tested.
+struct TestedResidual {
+  VectorXd residual;
+  std::vector<FeatureInfo> infos;
+  double degrees;
+};
+
+/// Without the outliers, which are named.
+TestedResidual takeInliers(const SimulatorPosterior& posterior, const std::vector<FeatureInfo>& infos,
+                           std::vector<std::string>& outliers) {
+  TestedResidual tested{{}, {}, posterior.degrees};
+  std::vector<Index> inliers;
+  for (Index i = 0; i < posterior.residual.size(); ++i) {
+    const FeatureInfo& info = infos[static_cast<std::size_t>(i)];
+    if (posterior.residual_weights[i] < kOutlierWeight) {
+      outliers.push_back(fmt::format("{} ({:.3g} sd)", info.name, std::abs(posterior.residual[i])));
+      tested.degrees -= 1.0;
+    } else {
+      inliers.push_back(i);
+      tested.infos.push_back(info);
+    }
+  }
+  tested.residual = posterior.residual(inliers);
+  tested.degrees = std::max(tested.degrees, 1.0);
+  return tested;
+}
+
+/// As many standard deviations of the noise that was found, with as many degrees of freedom as it has.
+TestedResidual scaleToNoise(const SimulatorPosterior& posterior, const std::vector<FeatureInfo>& infos,
+                            double& noise_factor) {
+  noise_factor = std::sqrt(posterior.residual.squaredNorm() / posterior.degrees);
+  return {posterior.residual / noise_factor, infos, posterior.degrees};
+}
+
 SimulatorFit makeFit(const SimulatorPosterior& posterior, const std::vector<FeatureInfo>& infos) {
   SimulatorFit fit;
   fit.searches = posterior.starts;
@@ -59,7 +102,18 @@ SimulatorFit makeFit(const SimulatorPosterior& posterior, const std::vector<Feat
     fit.degrees = posterior.degrees;
     fit.explained = posterior.isExplained();
     fit.residual = posterior.residual;
-    fit.test = testResidual(posterior.residual, posterior.degrees, infos);
+    const TestedResidual tested = posterior.loss == LossKind::kOutliers
+                                      ? takeInliers(posterior, infos, fit.outliers)
+                                  : posterior.loss == LossKind::kUnknownNoise
+                                      ? scaleToNoise(posterior, infos, fit.noise_factor)
+                                      : TestedResidual{posterior.residual, infos, posterior.degrees};
+    if (posterior.loss != LossKind::kPlain) {
+      fit.residual = tested.residual;
+      fit.chi_square = tested.residual.squaredNorm();
+      fit.degrees = tested.degrees;
+      fit.explained = fit.chi_square < calcChiSquareLimit(fit.degrees);
+    }
+    fit.test = testResidual(tested.residual, tested.degrees, tested.infos);
   }
   return fit;
 }

@@ -25,6 +25,9 @@ struct SimulatorFit {
   bool explained = false;                  ///< SimulatorPosterior::isExplained()
   Eigen::VectorXd residual;                ///< whitened
   ResidualTest test;
+  std::vector<std::string>
+      outliers{};             ///< features that are not noise and count for nothing, with their size
+  double noise_factor = 1.0;  ///< of the noise found over that stated, where it was inferred
   int searches = 0, found_best = 0, simulations = 0;
 
   bool isSimulated() const { return degrees > 0.0; }
@@ -47,7 +50,9 @@ struct PosteriorEstimate {
 /// unknown: all u parameters that were drawn.
 PosteriorEstimate makePosteriorEstimate(const SurrogatePosterior& posterior,
                                         const std::vector<ParameterSpec>& unknown);
-/// p: how many of them are reported, the first ones; infos: of the features.
+/// p: how many of them are reported, the first ones; infos: of the residuals, which are tested as their
+/// weights say (SimulatorPosterior::residual_weights): outliers not at all, noise of unknown size by its
+/// shape alone.
 PosteriorEstimate makePosteriorEstimate(const SimulatorPosterior& posterior,
                                         const std::vector<ParameterSpec>& unknown, Eigen::Index p,
                                         const std::vector<FeatureInfo>& infos);

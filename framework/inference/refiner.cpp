@@ -121,9 +121,11 @@ bool SimulatorRefiner::samplesFast() const {
 
 PosteriorEstimate SimulatorRefiner::samplePosterior(const VectorXd& features, const VectorXd& known,
                                                     const MatrixXd& given,
-                                                    const SimulatorPosteriorOptions& options) const {
+                                                    const SimulatorPosteriorOptions& options,
+                                                    LossKind loss) const {
   const auto u = static_cast<Index>(getUnknown().size());
-  const PosteriorProblem problem{getUnknown(), model_.priors, {makeTrial(features, known)}, u};
+  PosteriorProblem problem{getUnknown(), model_.priors, {makeTrial(features, known)}, u};
+  problem.trials.front().loss = loss;
   return makeEstimate(problem.trials.front(), twinmap::samplePosterior(problem, given, options));
 }
 

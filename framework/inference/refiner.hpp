@@ -57,8 +57,8 @@ class SimulatorRefiner {
   /// The posterior of all unknown parameters (samplePosterior). given: points to search from as well (u x n).
   /// known: q. Throws std::invalid_argument for a feature without noise.
   PosteriorEstimate samplePosterior(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
-                                    const Eigen::MatrixXd& given,
-                                    const SimulatorPosteriorOptions& options) const;
+                                    const Eigen::MatrixXd& given, const SimulatorPosteriorOptions& options,
+                                    LossKind loss = LossKind::kPlain) const;
 
   /// The same, searched from all that is known of the measurement too: the estimator's basins, the training
   /// simulations of the most similar features, the refined estimate; and what follows for its trust

@@ -37,6 +37,12 @@ Statuses listOfSampled(const InferredMeasurement& inferred) {
   if (isMismatch(inferred)) {
     statuses.emplace_back(toString(TrustStatus::kModelMismatch));
   }
+  if (inferred.posterior->fit && !inferred.posterior->fit->outliers.empty()) {
+    statuses.emplace_back("outliers");
+  }
+  if (inferred.posterior->fit && inferred.posterior->fit->noise_factor != 1.0) {
+    statuses.emplace_back(inferred.posterior->fit->noise_factor > 1.0 ? "noise_larger" : "noise_smaller");
+  }
   if (inferred.posterior->estimate.isMultimodal()) {
     statuses.emplace_back(toString(RefinementStatus::kMultimodal));
   }

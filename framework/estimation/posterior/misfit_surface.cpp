@@ -26,7 +26,7 @@ void addPart(const LocalMisfit& local, const MeasuredPart& part, LocalSurface& s
   surface.residual.tail(local.residual.size()) = local.residual;
   surface.weights.conservativeResize(surface.residual.size());
   auto weights = surface.weights.tail(local.residual.size());
-  if (part.loss.isPlain()) {
+  if (part.loss == LossKind::kPlain) {
     weights.setOnes();
     surface.chi_square += local.chi_square;
     surface.loss += local.chi_square;
@@ -34,10 +34,9 @@ void addPart(const LocalMisfit& local, const MeasuredPart& part, LocalSurface& s
     surface.descent(part.unknown) += local.descent + kHalfWidthInformation * local.at;
     return;
   }
-  const std::vector<Index>& features = part.misfit->getFeatures();
-  weights = part.loss.calcWeights(local.residual, features);
+  weights = calcLossWeights(part.loss, local.residual);
   surface.chi_square += weights.dot(local.residual.cwiseAbs2());
-  surface.loss += part.loss.calc(local.residual, features);
+  surface.loss += calcLoss(part.loss, local.residual);
   const MatrixXd weighted = weights.asDiagonal() * local.jacobian;
   surface.information(part.unknown, part.unknown) += local.jacobian.transpose() * weighted;
   surface.descent(part.unknown) += weighted.transpose() * local.residual;
@@ -132,16 +131,15 @@ VectorXd MisfitSurface::calcLosses(const MatrixXd& points) {
   VectorXd sums = VectorXd::Zero(points.cols());
   for (const MeasuredPart& part : parts_) {
     const MatrixXd own = box(part.unknown, Eigen::all);
-    if (part.loss.isPlain()) {
+    if (part.loss == LossKind::kPlain) {
       sums += part.misfit->evaluate(own) - kHalfWidthInformation * own.colwise().squaredNorm().transpose();
       continue;
     }
     std::vector<SampleStatus> statuses;
     const MatrixXd residuals = part.misfit->simulateResiduals(own, statuses);
     for (Index i = 0; i < points.cols(); ++i) {
-      sums[i] += statuses[static_cast<std::size_t>(i)].ok
-                     ? part.loss.calc(residuals.col(i), part.misfit->getFeatures())
-                     : std::numeric_limits<double>::infinity();
+      sums[i] += statuses[static_cast<std::size_t>(i)].ok ? calcLoss(part.loss, residuals.col(i))
+                                                          : std::numeric_limits<double>::infinity();
     }
   }
   return sums;

@@ -31,7 +31,7 @@ struct MeasuredPart {
   Misfit* misfit;                     ///< of all unknown parameters of its trial
   const RefinementModel* model;       ///< of its trial
   std::vector<Eigen::Index> unknown;  ///< which of all unknown parameters these are
-  ResidualLoss loss{};
+  LossKind loss = LossKind::kPlain;
 };
 
 /// How well simulators explain one or several measurements of one machine, over the box of all unknown

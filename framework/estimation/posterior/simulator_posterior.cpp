@@ -305,6 +305,7 @@ SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Matrix
     return posterior;
   }
   setBest(found, coordinates, posterior);
+  posterior.loss = problem.trials.front().loss;
   const std::vector<Basin> projected = projectBasins(found.basins, problem.drawn);
   const AdaptiveDraws drawn = drawFrom(surface, found, projected, options);
   posterior.simulations = surface.getSimulations();

@@ -68,8 +68,6 @@ class Misfit {
 
   /// Whitened residuals (k x n) at the columns of `points` (s x n), simulated as one batch. After linearize().
   Eigen::MatrixXd simulateResiduals(const Eigen::MatrixXd& points, std::vector<SampleStatus>& statuses);
-  /// The features that the residuals are of, now.
-  const std::vector<Eigen::Index>& getFeatures() const { return window_->features; }
 
   /// The misfits at the columns of `points` (s x n), simulated as one batch; infinity where a simulation
   /// fails. After linearize().

@@ -164,6 +164,12 @@ std::string makeInferenceJson(const InferredMeasurement& inferred,
   if (!inferred.left_out.empty()) {
     json["left_out"] = inferred.left_out;
   }
+  if (inferred.posterior && inferred.posterior->fit && !inferred.posterior->fit->outliers.empty()) {
+    json["outliers"] = inferred.posterior->fit->outliers;
+  }
+  if (inferred.posterior && inferred.posterior->fit && inferred.posterior->fit->noise_factor != 1.0) {
+    json["noise_factor"] = inferred.posterior->fit->noise_factor;
+  }
   if (estimate.isGiven()) {
     json["parameters"] = toJson(estimate, parameters);
   }

@@ -178,6 +178,25 @@ std::string describeUntrained(const InferredMeasurement& inferred, const std::st
          (p_value < kMismatchLevel ? explainMismatch(fit, features) : "");
 }
 
+/// What the recording has other than the stated noise.
+std::string describeNoise(const SimulatorFit& fit) {
+  constexpr std::size_t kShown = 8;
+  std::string text;
+  if (!fit.outliers.empty()) {
+    for (std::size_t i = 0; i < std::min(kShown, fit.outliers.size()); ++i) {
+      text += (i == 0 ? "" : ", ") + fit.outliers[i];
+    }
+    text = fmt::format("  {} samples are not noise and are left out: {}{}\n", fit.outliers.size(), text,
+                       fit.outliers.size() > kShown ? " ..." : "");
+  }
+  if (fit.noise_factor != 1.0) {
+    text += fmt::format(
+        "  The noise is {:.3g} times what the file states. The intervals are those of the noise found.\n",
+        fit.noise_factor);
+  }
+  return text;
+}
+
 bool contains(const std::vector<std::string>& statuses, const std::string& status) {
   return std::find(statuses.begin(), statuses.end(), status) != statuses.end();
 }
@@ -243,6 +262,9 @@ std::string makeInferenceTable(const InferredMeasurement& inferred,
   const Estimate estimate = selectEstimate(inferred);
   const bool sampled = estimate.method == EstimationMethod::kPosterior;
   std::string text = describeTrust(inferred, features) + describeMapLimit(inferred, parameters);
+  if (inferred.posterior && inferred.posterior->fit) {
+    text += describeNoise(*inferred.posterior->fit);
+  }
   for (const std::string& missing : inferred.left_out) {
     text += "  left out: " + missing + "\n";
   }

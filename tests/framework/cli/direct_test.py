@@ -58,6 +58,37 @@ class Direct(FolderTestCase):
             self.assertLess(estimate["sd"], 1.25 * whole["parameters"][name]["sd"])
         self.assertIn("left out:", self.infer(CART, damaged))
 
+    def change(self, name, change):
+        """The measurement with the numbers of its first output changed."""
+        lines = self.measured.read_text().splitlines()
+        rows = [line.split(",") for line in lines[1:]]
+        for i, row in enumerate(rows):
+            row[1] = repr(change(i, float(row[1])))
+        path = self.folder / name
+        path.write_text("\n".join([lines[0]] + [",".join(row) for row in rows]) + "\n")
+        return path
+
+    def test_spikes_are_named_and_left_out(self):
+        spiked = self.change("spiked.csv", lambda i, x: x + (0.5 if i in (31, 64) else 0.0))
+        found = json.loads(self.infer(CART, spiked, "--json"))
+        self.assertEqual(found["statuses"], ["outliers"])
+        self.assertEqual(len(found["outliers"]), 2)
+        for name, true in TRUE.items():
+            estimate = found["parameters"][name]
+            self.assertLess(abs(estimate["mean"] - true), 4 * estimate["sd"], name)
+        self.assertIn("2 samples are not noise and are left out", self.infer(CART, spiked))
+
+    def test_noise_of_another_size_is_found(self):
+        noisy = self.simulate(CART, "noisy.csv", "noise.scale=3", *POINT)
+        found = json.loads(self.infer(CART, noisy, "--json"))
+        self.assertEqual(found["statuses"], ["noise_larger"])
+        self.assertAlmostEqual(found["noise_factor"], 3, delta=0.6)
+        stated = json.loads(self.infer(CART, self.measured, "--json"))
+        for name, true in TRUE.items():
+            estimate = found["parameters"][name]
+            self.assertLess(abs(estimate["mean"] - true), 4 * estimate["sd"], name)
+            self.assertGreater(estimate["sd"], 2 * stated["parameters"][name]["sd"])
+
     def test_table_and_csv_say_the_same(self):
         found = json.loads(self.infer(CART, self.measured, "--json"))
         table = self.infer(CART, self.measured)
