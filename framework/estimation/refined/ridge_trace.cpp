@@ -71,7 +71,7 @@ class RidgeWalk {
       }
       const LocalMisfit local = misfit_.linearize(next);
       if (!local.status.ok || !settle(local)) {
-        return false;
+        return next.cwiseAbs().maxCoeff() > 1.0;  // beyond the bounds it need not go on
       }
       if (pieces_.size() == before || pieces_.back().log_weight < pieces_.front().log_weight - kNegligible) {
         return true;
@@ -114,14 +114,14 @@ class RidgeWalk {
       return;
     }
     piece.log_weight = -0.5 * local.chi_square - factor.lower.diagonal().array().log().sum() +
-                       std::log(piece.to - piece.from);
+                       std::log(piece.to - piece.from) + calcLogWithin(piece);
     pieces_.push_back(piece);
   }
 
-  /// The part of half a step on both sides that is within the bounds, or beyond them by less than the
-  /// parameters' standard deviations across the ridge allow.
+  /// The part of half a step on both sides that may be within the bounds, given the standard deviations
+  /// across the ridge.
   bool cutAtBounds(RidgePiece& piece) const {
-    constexpr double kBeyond = 2.0;
+    constexpr double kBeyond = 3.0;
     piece.from = -0.5 * step_;
     piece.to = 0.5 * step_;
     for (Index j = 0; j < piece.tangent.size(); ++j) {
@@ -138,6 +138,17 @@ class RidgeWalk {
       piece.to = std::min(piece.to, std::max(first, second));
     }
     return piece.to > piece.from;
+  }
+
+  /// The probability of being within the bounds at the middle of a piece, parameter by parameter.
+  static double calcLogWithin(const RidgePiece& piece) {
+    const VectorXd middle = piece.local.at + 0.5 * (piece.from + piece.to) * piece.tangent;
+    double sum = 0.0;
+    for (Index j = 0; j < middle.size(); ++j) {
+      const double scale = std::sqrt(2.0 * piece.covariance(j, j));
+      sum += std::log(0.5 * (std::erfc((middle[j] - 1.0) / scale) - std::erfc((middle[j] + 1.0) / scale)));
+    }
+    return sum;
   }
 
   Misfit& misfit_;

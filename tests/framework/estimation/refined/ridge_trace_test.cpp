@@ -35,8 +35,8 @@ Refined refineAt(Problem& problem, const VectorXd& truth) {
 TEST(RidgeTrace, OfAProductIsUniformInTheLogarithm) {
   // of a with a b = s the density is the integral of N(a b; s) over b: 1 / a, from s / 2 to 2
   Problem problem = makeRidge(true);
-  const Refined refined =
-      problem.refineFrom(problem.measure(makeVector({1.6, 1.5, 1.4}), 1e-9), {{"map", makeVector({1.5, 1.5, 1.5})}});
+  const Refined refined = problem.refineFrom(problem.measure(makeVector({1.6, 1.5, 1.4}), 1e-9),
+                                             {{"map", makeVector({1.5, 1.5, 1.5})}});
   ASSERT_TRUE(refined.isAccepted()) << refined.message;
   ASSERT_TRUE(refined.ridge.isGiven());
   const double lower = 1.2, upper = 2.0, length = std::log(upper / lower);
@@ -45,8 +45,8 @@ TEST(RidgeTrace, OfAProductIsUniformInTheLogarithm) {
   EXPECT_NEAR(refined.mean[0], mean, 0.05 * stddev);
   EXPECT_NEAR(refined.stddev[0], stddev, 0.05 * stddev);
   // the distance from the mean that holds so much of the density
-  for (const auto& [factor, probability] :
-       {std::pair(refined.interval_factors.get(0).of95, 0.95), std::pair(refined.interval_factors.get(0).of50, 0.5)}) {
+  for (const auto& [factor, probability] : {std::pair(refined.interval_factors.get(0).of95, 0.95),
+                                            std::pair(refined.interval_factors.get(0).of50, 0.5)}) {
     const double from = std::max(lower, mean - factor * stddev), to = std::min(upper, mean + factor * stddev);
     EXPECT_NEAR(std::log(to / from) / length, probability, 0.02);
   }
@@ -66,7 +66,8 @@ TEST(RidgeTrace, HoldsWhatItDerives) {
   const Refined refined = refineAt(problem, makeVector({1.6, 1.5, 1.4}));
   ASSERT_TRUE(refined.ridge.isGiven());
   for (Index i = 0; i < refined.ridge.countComponents(); ++i) {
-    EXPECT_NEAR(refined.ridge.means(0, i) * refined.ridge.means(1, i), 2.4, 4.0 * kRidgeNoise / std::sqrt(20.0));
+    EXPECT_NEAR(refined.ridge.means(0, i) * refined.ridge.means(1, i), 2.4,
+                4.0 * kRidgeNoise / std::sqrt(20.0));
   }
 }
 
@@ -79,8 +80,8 @@ TEST(RidgeTrace, IsTakenWhereOneDirectionIsFlat) {
         return values;
       },
       testing::makeParameters(2, 1.0, 2.0), kRidgeNoise);
-  const Refined refined = all.refineFrom(all.measure(makeVector({1.6, 1.5}), kRidgeNoise),
-                                         {{"map", makeVector({1.5, 1.5})}});
+  const Refined refined =
+      all.refineFrom(all.measure(makeVector({1.6, 1.5}), kRidgeNoise), {{"map", makeVector({1.5, 1.5})}});
   ASSERT_TRUE(refined.isAccepted()) << refined.message;
   EXPECT_FALSE(refined.ridge.isGiven());
   EXPECT_EQ(refined.mean, refined.point);
@@ -97,8 +98,8 @@ void expectCalibrated(bool product) {
     const VectorXd truth = VectorXd::NullaryExpr(3, [&](Index j) {
       return 1.0 + random.calcUniform(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(j));
     });
-    const Refined refined = problem.refineFrom(problem.measure(truth, kRidgeNoise, i),
-                                               {{"map", makeVector({1.5, 1.5, 1.5})}});
+    const Refined refined =
+        problem.refineFrom(problem.measure(truth, kRidgeNoise, i), {{"map", makeVector({1.5, 1.5, 1.5})}});
     if (!refined.isAccepted()) {
       continue;
     }
