@@ -35,12 +35,12 @@ IntegrationErrors::IntegrationErrors(const ExperimentSpec& experiment)
 
 /// Leaves out points where a feature is missing or has no noise.
 void IntegrationErrors::whiten(const MatrixXd& responses) {
-  const MatrixXd features = extractor_.extract(responses);
-  whiteners_.resize(noise_.isConstant() ? 1 : static_cast<std::size_t>(responses.cols()));
+  const MatrixXd features = getExtractor().extract(responses);
+  whiteners_.resize(getNoise().isConstant() ? 1 : static_cast<std::size_t>(responses.cols()));
   for (std::size_t i = 0; i < whiteners_.size(); ++i) {
     const auto column = static_cast<Index>(i);
-    if (noise_.isConstant() || features.col(column).allFinite()) {
-      const MatrixXd covariance = noise_.calcCovariance(responses.col(column));
+    if (getNoise().isConstant() || features.col(column).allFinite()) {
+      const MatrixXd covariance = getNoise().calcCovariance(responses.col(column));
       if (covariance.diagonal().minCoeff() > 0.0) {
         whiteners_[i].emplace(covariance);
       }
@@ -49,13 +49,13 @@ void IntegrationErrors::whiten(const MatrixXd& responses) {
 }
 
 const NoiseWhitener* IntegrationErrors::findWhitener(std::size_t point) const {
-  const std::optional<NoiseWhitener>& own = whiteners_[noise_.isConstant() ? 0 : point];
+  const std::optional<NoiseWhitener>& own = whiteners_[getNoise().isConstant() ? 0 : point];
   return own ? &*own : nullptr;
 }
 
 void IntegrationErrors::linearize(const Simulator& simulator) {
   const std::vector<LocalModel> models =
-      calcLocalModels(simulator, extractor_, collectUnknown(experiment_.model), points_, 0);
+      calcLocalModels(simulator, getExtractor(), collectUnknown(experiment_.model), points_, 0);
   for (std::size_t i = 0; i < models.size(); ++i) {
     const NoiseWhitener* whitener = findWhitener(i);
     sensitivities_.push_back(
@@ -72,8 +72,8 @@ std::optional<IntegrationError> IntegrationErrors::calc(const SimulationSpec& si
     return std::nullopt;
   }
   const MatrixXd responses = generateSamples(*precise, points_).responses;
-  const MatrixXd errors =
-      extractor_.extract(generateSamples(*simulator, points_).responses) - extractor_.extract(responses);
+  const MatrixXd errors = getExtractor().extract(generateSamples(*simulator, points_).responses) -
+                          getExtractor().extract(responses);
   if (whiteners_.empty()) {
     whiten(responses);
   }

@@ -25,6 +25,9 @@ class IntegrationErrors {
   std::optional<IntegrationError> calc(const SimulationSpec& simulation);
 
  private:
+  /// Of the features in their linear form, where they have one: known without sampling.
+  const FeatureNoise& getNoise() const { return noise_.getLinearForm(); }
+  const FeatureExtractor& getExtractor() const { return getNoise().getExtractor(); }
   void whiten(const Eigen::MatrixXd& responses);
   const NoiseWhitener* findWhitener(std::size_t point) const;
   void linearize(const Simulator& simulator);
