@@ -83,6 +83,14 @@ class MagnitudePhaseBlock final : public FeatureBlock {
     }
   }
 
+  void placeLinearForm(const Eigen::Ref<const Eigen::VectorXd>& linear,
+                       Eigen::Ref<Eigen::VectorXd> placed) const override {
+    for (Index line = 0; 3 * line < placed.size(); ++line) {
+      placed.segment(3 * line, 2) = linear.segment(2 * line, 2);
+      placed[3 * line + 2] = 0.0;
+    }
+  }
+
  private:
   std::shared_ptr<const LinearBlock> parts_;
 };

@@ -37,6 +37,11 @@ class FeatureBlock {
   /// Features linear in the response that stand for these one to one, as real and imaginary parts do for
   /// magnitude and phase: their noise is normal and the same for every response. Null where there are none.
   virtual std::shared_ptr<const FeatureBlock> findLinearForm() const { return nullptr; }
+  /// Puts a vector of the linear form in the places of the features that it stands for, 0 in those left over.
+  virtual void placeLinearForm(const Eigen::Ref<const Eigen::VectorXd>& linear,
+                               Eigen::Ref<Eigen::VectorXd> placed) const {
+    placed = linear;
+  }
   /// From features (infos x n) to those of the linear form (its infos x n), where there is one.
   virtual void convertToLinearForm(const Eigen::Ref<const Eigen::MatrixXd>& /*features*/,
                                    Eigen::Ref<Eigen::MatrixXd> /*linear*/) const {}

@@ -124,9 +124,10 @@ Eigen::VectorXd FeatureExtractor::placeLinearForm(const Eigen::VectorXd& linear)
   for (const auto& block : blocks_) {
     const auto form = block->findLinearForm();
     const auto rows = static_cast<Eigen::Index>((form ? form : block)->getInfos().size());
-    placed.segment(to, rows) = linear.segment(from, rows);
+    const auto places = static_cast<Eigen::Index>(block->getInfos().size());
+    block->placeLinearForm(linear.segment(from, rows), placed.segment(to, places));
     from += rows;
-    to += static_cast<Eigen::Index>(block->getInfos().size());
+    to += places;
   }
   return placed;
 }

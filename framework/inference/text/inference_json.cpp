@@ -149,6 +149,23 @@ Json toJson(const SimulatorFit& fit) {
           {"largest_p_value", fit.test.largest_p}};
 }
 
+/// What the recording lacks, and what it has other than the stated noise.
+void addRecording(const InferredMeasurement& inferred, Json& json) {
+  if (!inferred.left_out.empty()) {
+    json["left_out"] = inferred.left_out;
+  }
+  if (!inferred.posterior || !inferred.posterior->fit) {
+    return;
+  }
+  const SimulatorFit& fit = *inferred.posterior->fit;
+  if (!fit.outliers.empty()) {
+    json["outliers"] = fit.outliers;
+  }
+  if (fit.noise_factor != 1.0) {
+    json["noise_factor"] = fit.noise_factor;
+  }
+}
+
 }  // namespace
 
 std::string makeInferenceJson(const InferredMeasurement& inferred,
@@ -161,15 +178,7 @@ std::string makeInferenceJson(const InferredMeasurement& inferred,
     json["statuses"] = estimate.statuses;
   }
   json["method"] = toString(estimate.method);
-  if (!inferred.left_out.empty()) {
-    json["left_out"] = inferred.left_out;
-  }
-  if (inferred.posterior && inferred.posterior->fit && !inferred.posterior->fit->outliers.empty()) {
-    json["outliers"] = inferred.posterior->fit->outliers;
-  }
-  if (inferred.posterior && inferred.posterior->fit && inferred.posterior->fit->noise_factor != 1.0) {
-    json["noise_factor"] = inferred.posterior->fit->noise_factor;
-  }
+  addRecording(inferred, json);
   if (estimate.isGiven()) {
     json["parameters"] = toJson(estimate, parameters);
   }

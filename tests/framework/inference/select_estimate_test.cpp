@@ -30,6 +30,7 @@ Refined makeRefined(RefinementStatus status) {
   Refined refined;
   refined.status = status;
   refined.point = Eigen::Vector2d(1.0, 2.0);
+  refined.mean = refined.point;
   refined.stddev = Eigen::Vector2d(0.1, 0.1);
   refined.covariance = (Eigen::Matrix2d() << 0.01, -0.002, -0.002, 0.01).finished();
   return refined;

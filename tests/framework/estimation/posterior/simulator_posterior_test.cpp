@@ -73,7 +73,7 @@ void expectQuadrature(const Response& response, const std::vector<ParameterSpec>
                       double noise_stddev, int times, const VectorXd& truth) {
   Problem problem(times, response, unknown, noise_stddev);
   const VectorXd features = problem.measure(truth, noise_stddev);
-  expectMoments(sample(problem, features, 8000), integrate(response, unknown, features, noise_stddev));
+  expectMoments(sample(problem, features, 20000), integrate(response, unknown, features, noise_stddev));
 }
 
 TEST(SimulatorPosterior, IsThatOfQuadratureOnABanana) {
