@@ -1,4 +1,4 @@
-"""How near the information limit each kind of map comes, by the number of simulations: writes docs/map-study.md.
+"""How near the information limit each kind of map comes, by the number of simulations: writes docs/benchmarks/map-study.md.
 
 Usage: map_study.py TWINMAP [--threads N] [--tests N] [--results FOLDER] [--page] [--web FOLDER] [EXPERIMENT ...]
                     [--maps NAME ...] [--sizes N ...]
@@ -324,7 +324,7 @@ Written by `bench/map_study.py TWINMAP`: {count} mechanisms, {tests} test sample
 deviation of the errors over the information limit, geometric mean over the parameters and the worst of them. Nats: how much the logarithmic
 density of the true parameters is below that of normal distributions as narrow as the limit, a parameter on average. Coverage: smallest and largest
 over the parameters. Processor time: of the whole run, simulation, training, trust and evaluation, but for baselines. A measurement: median time from features to an
-answer with its judgement, on a busy machine (a network alone takes 1 to 2 us, docs/networks.md). [maps.md](maps.md) says what the maps are, [networks.md](networks.md) what the kinds of network.
+answer with its judgement, on a busy machine (a network alone takes 1 to 2 us). What they are: [choosing an estimator](../how-to/choose-an-estimator.md), [neural estimators](../explanation/networks.md).
 
 One of them, smaller:
 
@@ -334,9 +334,9 @@ twinmap run $common inverse_map=surrogate "evaluation.maps=[gp, {{network: {{sam
 cat results/which/maps.csv
 ```
 
-![ratio to the limit against the number of simulations](images/map-study-ratio.svg)
+![ratio to the limit against the number of simulations](../images/map-study-ratio.svg)
 
-![nats above the limit against the number of simulations](images/map-study-nats.svg)
+![nats above the limit against the number of simulations](../images/map-study-nats.svg)
 
 {findings}
 """
@@ -354,7 +354,7 @@ def write_page(arguments, found):
     arguments.results.mkdir(parents=True, exist_ok=True)
     draw(arguments, make_figure(points, "ratio", "errors over the limit"), ROOT / "docs/images/map-study-ratio.svg")
     draw(arguments, make_figure(points, "nats", "nats above the limit"), ROOT / "docs/images/map-study-nats.svg")
-    page = ROOT / "docs/map-study.md"
+    page = ROOT / "docs/benchmarks/map-study.md"
     experiments = list(dict.fromkeys(point["experiment"] for point in points))
     text = HEAD.format(count=len(experiments), tests=arguments.tests, findings=read_findings(page))
     for experiment in experiments:

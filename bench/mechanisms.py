@@ -1,4 +1,4 @@
-"""Runs mechanisms of many kinds and writes docs/mechanisms.md: how near the information limit, and how calibrated, they are.
+"""Runs mechanisms of many kinds and writes docs/benchmarks/mechanisms.md: how near the information limit, and how calibrated, they are.
 
 Usage: mechanisms.py TWINMAP [--threads N] [--tests N] [--page FILE] [--results FOLDER] [EXPERIMENT ...]
 Each experiment (default: those listed in the page) runs with the default map, 250 training samples and 400 test samples.
@@ -43,7 +43,7 @@ def parse_arguments():
     parser.add_argument("experiments", nargs="*", default=list(SHOWS), help="as experiments/NAME.yaml")
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--tests", type=int, default=400)
-    parser.add_argument("--page", type=Path, default=ROOT / "docs/mechanisms.md")
+    parser.add_argument("--page", type=Path, default=ROOT / "docs/benchmarks/mechanisms.md")
     parser.add_argument("--results", type=Path, default=ROOT / "results/mechanisms")
     return parser.parse_intermixed_args()
 
@@ -172,9 +172,9 @@ HEAD = """# Mechanisms of many kinds
 
 Written by `bench/mechanisms.py TWINMAP`: {count} mechanisms, each with its own experiment file, 250 training samples, {tests} test
 samples, the default map (a surrogate) and defaults otherwise, {threads}. Ratio: standard deviation of the errors
-over the information limit ([experiment-file.md](experiment-file.md#evaluation)), smallest and largest over the parameters. Predicted: the same as the map predicts it
+over the information limit ([the experiment file](../reference/experiment-file.md#evaluation)), smallest and largest over the parameters. Predicted: the same as the map predicts it
 without the simulator. Coverage: share of true values within the 95 % intervals. Accepted: share of the test samples whose
-refinement on the simulator passed its test ([refinement.md](refinement.md)); ratio and coverage are of these. Simulations: median of a
+refinement on the simulator passed its test ([refinement](../explanation/refinement.md)); ratio and coverage are of these. Simulations: median of a
 refinement. Time: of a processor, for the whole run.
 
 ```sh

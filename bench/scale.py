@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""How twinmap grows: plans of many cases, stores of many samples, training on many simulations (docs/scale.md).
+"""How twinmap grows: plans of many cases, stores of many samples, training on many simulations (docs/benchmarks/scale.md).
 
   bench/scale.py plan  build/release/framework/cli/twinmap
   bench/scale.py store build/release/bench/framework/store/store_bench

@@ -1,6 +1,6 @@
 """The two connected beams of experiments/two_beam as a Python program: many samples at once, by NumPy.
 
-Reads lines of JSON on its standard input and answers each with a line of JSON (docs/programs.md).
+Reads lines of JSON on its standard input and answers each with a line of JSON (docs/how-to/use-a-program.md).
 """
 import json
 import sys

@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "framework/data/sensitivity/fisher_information.hpp"
-#include "framework/estimation/predictions.hpp"
+#include "framework/estimation/estimate.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
 

@@ -165,7 +165,7 @@ struct EnumNames<NetworkBayes> {
                                                       {"hamiltonian", NetworkBayes::kHamiltonian}};
 };
 
-/// A neural network from features to the distribution of all parameters (docs/networks.md).
+/// A neural network from features to the distribution of all parameters (docs/explanation/networks.md).
 struct NetworkMapSpec {
   std::optional<std::vector<int>> hidden;
   NetworkHead head = NetworkHead::kGaussian;

@@ -35,6 +35,11 @@ class DirectInferrer {
   const MeasurementReader& getReader() const { return reader_; }
   const std::vector<ParameterSpec>& getParameters() const { return reader_.getExperiment().model.parameters; }
 
+  const std::vector<ParameterSpec>& getUnknown() const { return model_->getUnknown(); }
+  /// A measurement as a part of a joint problem: all but which of its unknown parameters these are. It refers
+  /// to this object, which simulates for it. Throws MeasurementError for a table that cannot be used.
+  MeasuredTrial prepare(const Table& table, std::optional<double> start, const Eigen::VectorXd& known);
+
   /// known: the inputs of the set-up (q). Throws MeasurementError for a table that cannot be used. Cost: that
   /// of samplePosterior().
   DirectInference infer(const Table& table, std::optional<double> start, const Eigen::VectorXd& known);
@@ -54,7 +59,7 @@ std::string makeDirectTable(const DirectInference& inferred, const std::vector<P
 /// CSV: a row per measurement and parameter, in the columns of makeInferenceCsvHeader().
 std::string makeDirectCsvRows(const DirectInference& inferred, const std::vector<ParameterSpec>& parameters);
 
-/// One line of JSON, without a line end (docs/inference.md).
+/// One line of JSON, without a line end (docs/how-to/estimate-from-measurements.md).
 std::string makeDirectJson(const DirectInference& inferred, const std::vector<ParameterSpec>& parameters);
 
 /// CSV of the draws, a row each: source, start, draw, weight, then all unknown parameters; the row of names,

@@ -7,7 +7,7 @@
 
 namespace twinmap {
 
-/// What a run's provenance.json says (docs/file-formats.md), in its order.
+/// What a run's provenance.json says (docs/reference/files.md), in its order.
 struct ProvenanceRecord {
   /// Key and value of what is neither a list nor below; a key within another is "libraries: Eigen".
   std::vector<std::pair<std::string, std::string>> entries;

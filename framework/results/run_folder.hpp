@@ -42,7 +42,7 @@ struct RunFolder {
   std::shared_ptr<const TrainedFile> map;                 ///< nullptr if absent
 };
 
-/// Reads a run's folder (docs/file-formats.md). Throws std::runtime_error naming a damaged file, or the
+/// Reads a run's folder (docs/reference/files.md). Throws std::runtime_error naming a damaged file, or the
 /// folder if it has no resolved.yaml.
 RunFolder readRunFolder(const std::filesystem::path& path);
 

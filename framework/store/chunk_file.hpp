@@ -35,7 +35,7 @@ class BadChunk : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The bytes of a chunk file (docs/file-formats.md): header, parameters, responses, statuses, reasons, and
+/// The bytes of a chunk file (docs/reference/files.md): header, parameters, responses, statuses, reasons, and
 /// the digest of all of them. Equal samples give equal bytes.
 std::string makeChunk(const SampleBlock& block, const ChunkShape& shape);
 

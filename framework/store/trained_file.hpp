@@ -19,7 +19,7 @@ struct TrainedFile {
   std::string experiment;  ///< resolved.yaml's text
 };
 
-/// Writes maps.h5 (docs/file-formats.md), sealed. Equal content gives equal bytes.
+/// Writes maps.h5 (docs/reference/files.md), sealed. Equal content gives equal bytes.
 void writeTrainedFile(const std::filesystem::path& path, const TrainedFile& stored);
 
 /// Reads it back; it infers bit for bit as the one that was written. Throws std::runtime_error or

@@ -1,4 +1,4 @@
-"""Everything in docs/ has a snippet, and every snippet does what it is there for.
+"""Every snippet of docs/ does what it is there for; a tutorial and a how-to page has one.
 
 Blocks of a document are run in their order, in one folder with a copy of experiments/, where `twinmap` is a command:
   sh      by bash, which ends at the first command that fails
@@ -136,7 +136,8 @@ class Docs(unittest.TestCase):
         with tempfile.TemporaryDirectory(prefix="twinmap_docs_") as folder:
             sandbox = Sandbox(Path(folder))
             snippets = find_snippets(document)
-            self.assertTrue(snippets, f"{document.name} has nothing to run")
+            if document.parent.name in ("tutorials", "how-to"):
+                self.assertTrue(snippets, f"{document.name} has nothing to run")
             if not (PACKAGE / "twinmap").is_dir() and any("import twinmap" in text for _, text in snippets):
                 self.skipTest("the Python package was not built")
             try:
@@ -152,5 +153,5 @@ def add_document(document):
     setattr(Docs, name, lambda self: self.run_document(document))
 
 
-for path in sorted((SOURCE / "docs").glob("*.md")):
+for path in sorted((SOURCE / "docs").rglob("*.md")):
     add_document(path)

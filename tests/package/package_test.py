@@ -77,7 +77,7 @@ class PackageTest(unittest.TestCase):
         documents = self.root / "usr/share/doc/twinmap"
         for path in EXPERIMENTS.rglob("*.yaml"):
             self.assertTrue((documents / "examples/experiments" / path.relative_to(EXPERIMENTS)).is_file(), path)
-        for name in ("copyright", "changelog.gz", "CHANGELOG.md", "README.md", "docs/experiment-file.md"):
+        for name in ("copyright", "changelog.gz", "CHANGELOG.md", "README.md", "docs/reference/experiment-file.md"):
             self.assertTrue((documents / name).is_file(), name)
         self.assertTrue(list(self.root.rglob("twinmap.h")) and list(self.root.rglob("libtwinmap.so.0")))
         self.assertTrue(list(self.root.rglob("twinmap.pc")))

@@ -124,7 +124,7 @@ class Bench {
     options.seed = experiment_.seed;
     const std::clock_t begin = std::clock();
     const SimulatorPosterior posterior =
-        samplePosterior(*simulator_, model_, measured.features, measured.truth,
+        samplePosterior(*simulator_, model_, experiment_.model.priors, measured.features, measured.truth,
                         MatrixXd(static_cast<Index>(unknown_.size()), 0), options);
     Judged judged;
     judged.seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;

@@ -7,7 +7,7 @@
 
 namespace twinmap {
 
-/// Writes all that a map of processes consists of below `group` (docs/file-formats.md).
+/// Writes all that a map of processes consists of below `group` (docs/reference/files.md).
 void writeGpMap(Hdf5Writer& file, const std::string& group, const GpMap& map);
 
 /// Reads it back; it predicts bit for bit as the one that was written. Throws std::runtime_error or

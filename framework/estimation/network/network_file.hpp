@@ -7,7 +7,7 @@
 
 namespace twinmap {
 
-/// Writes inputs, bounds, weights and validation of a network below `group` (docs/file-formats.md).
+/// Writes inputs, bounds, weights and validation of a network below `group` (docs/reference/files.md).
 void writeNetworkMap(Hdf5Writer& file, const std::string& group, const NetworkMap& map);
 
 /// Reads it back; it predicts bit for bit as the one that was written. Throws std::runtime_error for parts

@@ -66,13 +66,14 @@ void warnOfShape(const std::vector<ParameterSpec>& parameters, NetworkMapTrainin
     const Eigen::ArrayXd depths = calcDepths(training.held_out, training.held_out_truth, p);
     for (const auto& [probability, quantile, small] : kLevels) {
       const double share = (depths < quantile).cast<double>().mean();
-      if (std::abs(share - probability) > small + 2.0 * calcShareError(probability, simulations)) {
+      if (std::abs(share - probability) > small + 2.0 * calcProportionError(probability, simulations)) {
         training.warnings.push_back(fmt::format(
             "{}: {:.0f} % intervals of the network would hold {:.0f} % of the samples held out, so that its "
             "answers are not {}{}",
             parameters[static_cast<std::size_t>(p)].name.text, 100.0 * probability, 100.0 * share,
             describeShape(probability, share, training.map.countComponents()),
-            training.held_out.reach.isGiven() ? ". Intervals reach as far as those samples' errors" : ""));
+            training.held_out.interval_factors.isGiven() ? ". Intervals reach as far as those samples' errors"
+                                                         : ""));
         break;
       }
     }

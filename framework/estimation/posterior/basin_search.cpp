@@ -30,10 +30,10 @@ std::vector<Basin> collectBasins(std::vector<LocalSurface> ends) {
   constexpr double kAbove = 25.0;
   constexpr std::size_t kMax = 12;
   std::stable_sort(ends.begin(), ends.end(),
-                   [](const LocalSurface& a, const LocalSurface& b) { return a.chi_square < b.chi_square; });
+                   [](const LocalSurface& a, const LocalSurface& b) { return a.misfit < b.misfit; });
   std::vector<Basin> basins;
   for (LocalSurface& end : ends) {
-    if (end.chi_square > ends.front().chi_square + kAbove) {
+    if (end.misfit > ends.front().misfit + kAbove) {
       break;
     }
     const auto known =
@@ -57,9 +57,9 @@ bool isExplained(const std::vector<Basin>& basins) {
 /// response has many minima, but its beginning has few, and they lie where the next ones do.
 std::vector<LocalSurface> searchGrowing(MisfitSurface& surface, MatrixXd starts, int max_iterations) {
   constexpr int kIterations = 8;  // where a window ends is but the next one's start
-  const std::vector<GrowingWindow>& windows = surface.getModel().getWindows();
-  for (std::size_t i = 0; i + 1 < windows.size() && starts.cols() > 0; ++i) {
-    surface.updMisfit().setWindow(windows[i]);
+  const std::size_t windows = surface.countWindows();
+  for (std::size_t i = 0; i + 1 < windows && starts.cols() > 0; ++i) {
+    surface.setWindow(i);
     SearchTeam team(surface, starts);
     team.run(kIterations);
     const std::vector<LocalSurface> ends = team.listEnds();
@@ -68,7 +68,7 @@ std::vector<LocalSurface> searchGrowing(MisfitSurface& surface, MatrixXd starts,
       starts.col(static_cast<Index>(k)) = ends[k].at;
     }
   }
-  surface.updMisfit().setWindow(windows.back());
+  surface.setWindow(windows - 1);
   if (starts.cols() == 0) {
     return {};
   }
@@ -108,10 +108,10 @@ MatrixXd findFalls(MisfitSurface& surface, const std::vector<Basin>& basins, con
       ways.col(i * kPlaces + k) = from + share * (points.col(i) - from);
     }
   }
-  const VectorXd reached = surface.calcChiSquares(ways);
+  const VectorXd reached = surface.calcMisfits(ways);
   std::vector<Index> falls;
   for (Index i = 0; i < points.cols(); ++i) {
-    double before = findNearest(basins, points.col(i)).local.chi_square;
+    double before = findNearest(basins, points.col(i)).local.misfit;
     Index lowest = -1;
     for (Index k = i * kPlaces; k < (i + 1) * kPlaces; ++k) {
       if (std::isfinite(reached[k]) && reached[k] < before - kNoticed) {
@@ -208,7 +208,7 @@ BasinSearch findBasins(MisfitSurface& surface, const MatrixXd& given, std::uint6
   for (int batch = 0; batch < options.max_batches; ++batch) {
     const MatrixXd starts = hunt.takeStarts(batch == 0 ? options.starts - options.scouts : options.starts);
     hunt.search(starts);
-    if (!hunt.isExplained() && surface.getModel().getWindows().size() > 1) {
+    if (!hunt.isExplained() && surface.countWindows() > 1) {
       MatrixXd all(starts.rows(), starts.cols() + (batch == 0 ? scouts.cols() : 0));
       all << starts, scouts.leftCols(all.cols() - starts.cols());
       hunt.searchWindows(all);

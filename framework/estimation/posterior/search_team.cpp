@@ -153,7 +153,7 @@ bool SearchTeam::improve() {
           take(search->local, calcStep(search->local, search->held, search->damping * factor));
     }
   }
-  const VectorXd reached = surface_.calcChiSquares(trials);
+  const VectorXd reached = surface_.calcMisfits(trials);
   std::vector<Search*> moved;
   std::vector<Index> columns;
   column = 0;
@@ -161,10 +161,10 @@ bool SearchTeam::improve() {
     const auto tried = static_cast<Index>(search->factors.size());
     Index best = 0;
     const double least = reached.segment(column, tried).minCoeff(&best);
-    search->before = search->local.chi_square;
-    if (least < search->local.chi_square) {
+    search->before = search->local.misfit;
+    if (least < search->local.misfit) {
       const double expected = calcLinearGain(search->local, trials.col(column + best) - search->local.at);
-      search->linear = best == 0 && search->local.chi_square - least > kHeldLinear * expected;
+      search->linear = best == 0 && search->local.misfit - least > kHeldLinear * expected;
       search->damping = std::max(search->damping * kDampings[best], kMinDamping);
       moved.push_back(search);
       columns.push_back(column + best);
@@ -199,7 +199,7 @@ void SearchTeam::giveUpHopeless() {
   std::vector<double> reached;
   for (const Search& search : searches_) {
     if (search.local.simulated) {
-      reached.push_back(search.local.chi_square);
+      reached.push_back(search.local.misfit);
     }
   }
   if (reached.empty()) {
@@ -209,7 +209,7 @@ void SearchTeam::giveUpHopeless() {
   const double near = reached.front() + std::max(kFarAbove, kOfBest * reached.front());
   const double limit = std::max(near, reached[reached.size() / 4]);
   for (Search& search : searches_) {
-    search.active = search.active && search.local.chi_square <= limit;
+    search.active = search.active && search.local.misfit <= limit;
   }
 }
 
@@ -218,7 +218,7 @@ void SearchTeam::giveUpSlow() {
   constexpr double kSlow = 0.5;
   const Search* best = nullptr;
   for (const Search& search : searches_) {
-    if (search.local.simulated && (best == nullptr || search.local.chi_square < best->local.chi_square)) {
+    if (search.local.simulated && (best == nullptr || search.local.misfit < best->local.misfit)) {
       best = &search;
     }
   }
@@ -226,9 +226,9 @@ void SearchTeam::giveUpSlow() {
     return;
   }
   for (Search& search : searches_) {
-    const double above = search.local.chi_square - best->local.chi_square;
+    const double above = search.local.misfit - best->local.misfit;
     search.active =
-        search.active && (above < kFarAbove || above < kSlow * (search.before - best->local.chi_square));
+        search.active && (above < kFarAbove || above < kSlow * (search.before - best->local.misfit));
   }
 }
 

@@ -107,13 +107,12 @@ std::vector<Way> listBent(MisfitSurface& surface, const std::vector<Basin>& basi
   for (Way& test : tests) {
     test.lengths = {test.lengths.back()};
   }
-  const VectorXd reached = surface.calcChiSquares(listPoints(tests, surface.getDimensions()));
+  const VectorXd reached = surface.calcMisfits(listPoints(tests, surface.getDimensions()));
   std::vector<Way> bent;
   for (std::size_t i = 0; i < ways.size(); ++i) {
     const LocalSurface& local = basins[ways[i].basin].local;
     const VectorXd step = ways[i].lengths.back() * ways[i].direction;
-    const double expected =
-        local.chi_square - 2.0 * step.dot(local.descent) + step.dot(local.information * step);
+    const double expected = local.misfit - 2.0 * step.dot(local.descent) + step.dot(local.information * step);
     if (reached[static_cast<Index>(i)] > expected + kNoticed) {
       bent.push_back(std::move(ways[i]));
     }
@@ -151,19 +150,18 @@ Valleys followValleys(MisfitSurface& surface, const std::vector<Basin>& basins) 
   }
   SearchTeam team(surface, starts, held);
   team.run(kIterations);
-  const double limit = basins.front().local.chi_square + kBears;
+  const double limit = basins.front().local.misfit + kBears;
   column = 0;
   for (const Way& way : ways) {
     double highest = 0.0;
     for (std::size_t k = 0; k < way.lengths.size(); ++k) {
       const LocalSurface& local = team.getLocal(column++);
-      highest =
-          std::max(highest, local.simulated ? local.chi_square : std::numeric_limits<double>::infinity());
-      if (local.simulated && local.chi_square < limit) {
+      highest = std::max(highest, local.simulated ? local.misfit : std::numeric_limits<double>::infinity());
+      if (local.simulated && local.misfit < limit) {
         valleys.floors.push_back(makeFloor(local, way));
       }
     }
-    const double ends = std::max(basins[way.basin].local.chi_square, basins[way.other].local.chi_square);
+    const double ends = std::max(basins[way.basin].local.misfit, basins[way.other].local.misfit);
     if (way.basin != way.other && highest < ends + kBarrier) {
       valleys.connected.emplace_back(way.basin, way.other);
     }

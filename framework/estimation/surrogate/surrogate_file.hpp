@@ -7,8 +7,8 @@
 
 namespace twinmap {
 
-/// Writes all numbers of a forward surrogate below `group` (docs/file-formats.md): those of all windows side
-/// by side, so that reading takes a few calls however many windows there are.
+/// Writes all numbers of a forward surrogate below `group` (docs/reference/files.md): those of all windows
+/// side by side, so that reading takes a few calls however many windows there are.
 void writeForward(Hdf5Writer& file, const std::string& group, const ForwardSurrogate& surrogate);
 
 /// Reads it back; it predicts bit for bit as the one that was written. Throws std::runtime_error for unknown
@@ -19,7 +19,7 @@ ForwardSurrogate readForward(const Hdf5Reader& file, const std::string& group);
 void writeSurrogate(Hdf5Writer& file, const std::string& group, const Surrogate& surrogate);
 Surrogate readSurrogate(const Hdf5Reader& file, const std::string& group);
 
-/// Writes what is known of the errors of a map below `group` (docs/file-formats.md).
+/// Writes what is known of the errors of a map below `group` (docs/reference/files.md).
 void writeValidation(Hdf5Writer& file, const std::string& group, const SurrogateValidation& validation);
 
 /// Reads it back. Throws std::runtime_error for parts that are missing.

@@ -36,7 +36,7 @@ class JointCoordinates {
 };
 
 /// Mobilities between a body and its parent. Coordinates in the order and units given in
-/// docs/experiment-file.md; angles in rad, lengths in m.
+/// docs/reference/experiment-file.md; angles in rad, lengths in m.
 enum class JointType {
   kWeld,
   kSlider,

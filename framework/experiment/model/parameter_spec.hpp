@@ -6,6 +6,7 @@
 #include "framework/experiment/expression/expression.hpp"
 #include "framework/experiment/fields/fields.hpp"
 #include "framework/experiment/model/bounds_spec.hpp"
+#include "framework/experiment/model/prior_spec.hpp"
 
 namespace twinmap {
 
@@ -26,16 +27,24 @@ struct ParameterSpec {
   std::string description;
   RelativeTo relative_to = RelativeTo::kValue;  ///< of an updating parameter
   std::optional<Name> variable;                 ///< of a model from elsewhere; default: the name
+  std::optional<PriorSpec> prior{};             ///< default: uniform within the bounds
 };
 
 template <class Fields>
 void describe(Fields& f, ParameterSpec& s) {
-  f.required("bounds", s.bounds, "[lower, upper]; the parameter box is sampled within");
+  f.optional("bounds", s.bounds,
+             "[lower, upper], which the box is sampled within; default: the prior's range of .9999");
+  f.optional("prior", s.prior,
+             "what is known of it before a measurement; default: uniform within the bounds");
   f.optional("unit", s.unit, "coherent SI unit, such as N s/m; shown in tables and checked where it is used");
   f.optional("description", s.description, "for people");
   f.optional("relative_to", s.relative_to,
              "what relative errors are relative to: the value, or upper - lower");
   f.optional("variable", s.variable, "its name in the FMU or program; default: its own");
+  f.rule(s.bounds.isGiven() || (s.prior && s.prior->hasRange()),
+         "must give 'bounds', or a normal, lognormal or student_t prior");
+  f.rule(!s.prior || !s.prior->isOfLogarithm() || !s.bounds.isGiven() || s.bounds.lower > 0.0,
+         "must have bounds above 0 where the prior is of the logarithm");
 }
 
 /// A named value of the model; may use parameters of any kind and the constants declared before it.

@@ -18,7 +18,7 @@ struct EnumNames<FmuKind> {
                                                  {"model_exchange", FmuKind::kModelExchange}};
 };
 
-/// A model that comes as a Functional Mock-up Unit (docs/fmu.md).
+/// A model that comes as a Functional Mock-up Unit (docs/how-to/use-an-fmu.md).
 struct FmuSpec {
   Name file;                    ///< relative to the experiment file
   std::optional<FmuKind> kind;  ///< none: what the FMU has, co-simulation if both
@@ -46,7 +46,7 @@ void describe(Fields& f, EnvironmentSpec& s) {
   f.required("value", s.value, "text");
 }
 
-/// A model that is a program, started once and kept: lines of JSON in, lines of JSON out (docs/programs.md).
+/// A model that is a program, started once and kept: lines of JSON in, lines of JSON out (docs/how-to/use-a-program.md).
 struct ProgramSpec {
   std::vector<std::string> command;           ///< the program, found as a shell finds it, and its arguments
   std::string working_folder;                 ///< absolute once read; the experiment file's by default

@@ -9,7 +9,7 @@
 
 namespace twinmap {
 
-// The lines of JSON that a program gets (docs/programs.md).
+// The lines of JSON that a program gets (docs/how-to/use-a-program.md).
 
 constexpr int kProtocolVersion = 1;
 

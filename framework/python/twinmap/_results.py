@@ -15,7 +15,7 @@ _INDEXES = {"metrics": "parameter"}
 
 
 class Results:
-    """The folder of a finished run (docs/file-formats.md).
+    """The folder of a finished run (docs/reference/files.md).
 
     Each of its CSV files is a DataFrame under the file's name: results.metrics, results.predictions, results.methods,
     results.tables["cross_validation"]. Files are read when asked for. In a notebook the report is shown.

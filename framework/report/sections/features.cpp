@@ -101,7 +101,7 @@ void addSensitivities(const RunFolder& run, const std::vector<FeaturePlace>& pla
   if (run.features.empty()) {
     section.html += makeParagraph(
         "Sensitivities of the features are not in this run: they come with the information "
-        "limit (docs/experiment-file.md, evaluation).",
+        "limit (docs/reference/experiment-file.md, evaluation).",
         "class=\"quiet\"");
     return;
   }

@@ -7,7 +7,7 @@
 
 namespace twinmap {
 
-// Files of a replay (docs/replay.md). Cells without a finite number are empty.
+// Files of a replay (docs/how-to/replay-a-measurement.md). Cells without a finite number are empty.
 
 /// output, time, measured, nominal, updated, lower, upper, noise_stddev.
 std::string makeReplayCsv(const Replay& replay);

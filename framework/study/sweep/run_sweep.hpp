@@ -32,7 +32,7 @@ struct SweepResult {
   std::vector<GateResult> gates;
 };
 
-/// Runs the cases of an experiment's tree with a sweep (docs/file-formats.md says what is left in the
+/// Runs the cases of an experiment's tree with a sweep (docs/reference/files.md says what is left in the
 /// folder): first all that is missing of the simulations, each point of a model once for all cases; then the
 /// cases that are not complete. The results of a case are those of runExperiment() alone, bit for bit, for
 /// any number of threads and however often the sweep was interrupted. Once `control`

@@ -347,7 +347,7 @@ class Run(TestCase):
             self.assertGreater(float(row["loo_coverage95"]), 0.8)
 
     def test_maps_file_is_enough_to_predict(self):
-        """docs/file-formats.md as numpy: with little noise, features are the clean responses of samples.h5."""
+        """docs/reference/files.md as numpy: with little noise, features are the clean responses of samples.h5."""
         for length_scales, noise, tolerance in (("shared", "constant", 1e-8), ("per_output", "follows_slope", 1e-4)):
             shutil.rmtree(self.folder / "run", ignore_errors=True)
             scale = 0 if noise == "constant" else 1e-6
@@ -692,7 +692,7 @@ def transform(maps, features):
 
 
 def predict(map_, parameter, x):
-    """Mean and standard deviation of the standardised parameter, from docs/file-formats.md."""
+    """Mean and standard deviation of the standardised parameter, from docs/reference/files.md."""
     group = map_[f"processes/{parameter}"]
     assert group.attrs["covariance"] == b"squared_exponential" and group.attrs["mean"] == b"constant"
     exact = group.attrs["approximation"] == b"exact"

@@ -17,7 +17,7 @@ from roles_test import EXPERIMENT
 from support import EXPERIMENTS, FolderTestCase, call, run_once
 
 COUNT = int(os.environ.get("TWINMAP_EXPORT_MEASUREMENTS", "150"))
-DOCUMENT = (Path(os.environ["TWINMAP_SOURCE_DIR"]) / "docs/export.md").read_text()
+DOCUMENT = (Path(os.environ["TWINMAP_SOURCE_DIR"]) / "docs/how-to/export-to-a-controller.md").read_text()
 CORTEX_M7 = Path(__file__).parent / "cortex_m7"
 STRICT = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wconversion", "-Wundef"]
 STATUSES = ["model_mismatch", "outside_training", "at_bounds", "uninformative", "estimator_limited"]

@@ -42,7 +42,7 @@ RESULTS = [
 
 
 def read_points(chunk):
-    """The parameter points of a chunk file, by docs/file-formats.md."""
+    """The parameter points of a chunk file, by docs/reference/files.md."""
     data = chunk.read_bytes()
     parameters, _, samples = struct.unpack("<3Q", data[32:56])
     size = 8 * parameters

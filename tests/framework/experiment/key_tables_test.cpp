@@ -1,5 +1,5 @@
-// The documentation of the experiment file names the keys that there are: docs/experiment-file.md against the
-// schema.
+// The documentation of the experiment file names the keys that there are:
+// docs/reference/experiment-file.md against the schema.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -154,6 +154,8 @@ struct Described {
 
 const std::vector<Described> kKeyTables{
     {"key", ""},
+    {"kind of `prior`", "parameters.*.prior"},
+    {"entry of `priors`", "priors.[]"},
     {"key of `fmu`", "model.fmu"},
     {"key of `program`", "model.program"},
     {"key", "system.bodies.*"},
@@ -181,7 +183,7 @@ const std::vector<Described> kNameTables{
 };
 
 std::vector<Table> takeTables(const std::string& header) {
-  std::vector<Table> tables = readTables(readDocs("experiment-file.md"));
+  std::vector<Table> tables = readTables(readDocs("reference/experiment-file.md"));
   tables.erase(std::remove_if(tables.begin(), tables.end(),
                               [&](const Table& table) { return table.header != header; }),
                tables.end());
@@ -202,7 +204,7 @@ TEST(KeyTables, AreAllKnownHere) {
       described.insert(table.header);
     }
   }
-  for (const Table& table : readTables(readDocs("experiment-file.md"))) {
+  for (const Table& table : readTables(readDocs("reference/experiment-file.md"))) {
     found.insert(table.header);
   }
   EXPECT_EQ(found, described);
@@ -243,7 +245,7 @@ TEST(KeyTables, ListTheKeysOfElementsAndNoOthers) {
 
 /// The text that documents a key of the top level: its section, or the file that the table at the top names.
 std::string getSection(const std::string& key) {
-  const std::string docs = readDocs("experiment-file.md");
+  const std::string docs = readDocs("reference/experiment-file.md");
   std::size_t begin = docs.find("\n## ");
   while (begin != std::string::npos) {
     const std::size_t title_end = docs.find('\n', begin + 1), end = docs.find("\n## ", title_end);
@@ -254,7 +256,7 @@ std::string getSection(const std::string& key) {
     }
     begin = end;
   }
-  return key == "measurement" ? readDocs("measurements.md") : docs;
+  return key == "measurement" ? readDocs("how-to/read-recordings.md") : docs;
 }
 
 void collectKeys(const Json& schema, Words& keys) {

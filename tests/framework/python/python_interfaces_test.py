@@ -88,7 +88,7 @@ int main(void)
   return 0;
 }
 """
-# Exported C may be compiled for another processor: these digits of a standard deviation are the same (docs/export.md).
+# Exported C may be compiled for another processor: these digits of a standard deviation are the same (docs/how-to/export-to-a-controller.md).
 DIGITS = 1e-6
 
 

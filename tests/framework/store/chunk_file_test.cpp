@@ -64,7 +64,7 @@ TEST(ChunkFile, ReadsBackEveryBit) {
   }
 }
 
-// The layout of docs/file-formats.md, byte by byte.
+// The layout of docs/reference/files.md, byte by byte.
 TEST(ChunkFile, IsLaidOutAsDocumented) {
   const std::string bytes = makeChunk(makeBlock(), makeShape());
   ASSERT_EQ(bytes.size(), 56u + 8 * 6 + 8 * 9 + 8 * 3 + 10 + 16);

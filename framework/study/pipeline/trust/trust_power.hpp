@@ -29,7 +29,7 @@ struct DetectableChange {
 std::vector<DetectableChange> calcTrustPower(const Study& study, const PreparedData& data,
                                              const OnlineModel& online);
 
-/// trust_power.csv (docs/file-formats.md).
+/// trust_power.csv (docs/reference/files.md).
 std::string makeTrustPowerCsv(const std::vector<DetectableChange>& changes);
 
 /// One warning that names all that is not found even in half of the cases; empty if there is none.

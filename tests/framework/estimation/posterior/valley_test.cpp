@@ -24,7 +24,8 @@ struct Surface {
         coordinates(unknown),
         box(unknown, {0, 2}, VectorXd::Zero(2)),
         misfit(problem.simulator, problem.model, box, features),
-        surface(misfit, problem.model, coordinates) {}
+        prior(unknown, {}),
+        surface({{&misfit, &problem.model, {0, 1}}}, coordinates, prior) {}
 
   /// Minima that are known.
   std::vector<Basin> makeBasins(const MatrixXd& points) {
@@ -42,6 +43,7 @@ struct Surface {
   const LogCoordinates coordinates;
   const SearchBox box;
   Misfit misfit;
+  const Prior prior;
   MisfitSurface surface;
 };
 

@@ -11,9 +11,9 @@
 namespace twinmap::testing {
 namespace {
 
-/// The first block of docs/programs.md in a language.
+/// The first block of docs/how-to/use-a-program.md in a language.
 std::string readBlock(const std::string& language) {
-  std::ifstream file(TWINMAP_SOURCE_DIR "/docs/programs.md");
+  std::ifstream file(TWINMAP_SOURCE_DIR "/docs/how-to/use-a-program.md");
   std::stringstream page;
   page << file.rdbuf();
   const std::string text = page.str(), begin = "```" + language + " program\n";

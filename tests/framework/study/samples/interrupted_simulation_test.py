@@ -1,6 +1,6 @@
 """A simulation that is killed, runs out of disk, finds its chunks damaged, or meets other processes.
 
-The chunks are read here by docs/file-formats.md alone, and the simulated points are in the child's log.
+The chunks are read here by docs/reference/files.md alone, and the simulated points are in the child's log.
 """
 import os
 import random
