@@ -3,9 +3,11 @@
 
   bench/scale.py plan  build/release/framework/cli/twinmap
   bench/scale.py store build/release/bench/framework/store/store_bench
+  bench/scale.py features build/release/framework/cli/twinmap [SIZE...]  a million samples by default
   bench/scale.py train build/release/framework/cli/twinmap [SIZE...]     16000, 32000, 64000, 100000 simulations by default
 
-Prints wall time, processor time (user and system, of all threads) and the largest memory. `train` simulates the two beams in
+Prints wall time, processor time (user and system, of all threads) and the largest memory. `features` simulates
+the two beams on two threads and writes features and store, without a map. `train` simulates the two beams in
 lanes and trains four sparse maps on two threads, fits a power of the size to times and memory, and says what it
 makes of a million.
 """
@@ -77,6 +79,29 @@ def store(bench):
             print(line)
 
 
+def features(twinmap, *sizes):
+    for size in [int(size) for size in sizes] or [1000000]:
+        with tempfile.TemporaryDirectory(prefix="twinmap_scale_") as folder:
+            wall, cpu, memory, _ = measure(
+                [
+                    twinmap,
+                    "run",
+                    EXPERIMENTS / "table1.yaml",
+                    f"design.train.samples={size}",
+                    "--features-only",
+                    "--threads",
+                    2,
+                    "--quiet",
+                    "--out",
+                    folder + "/run",
+                ]
+            )
+            disk = sum(file.stat().st_size for file in Path(folder).rglob("*") if file.is_file()) / 2**20
+            print(
+                f"{size}: wall {wall:.1f} s, processor {cpu:.1f} s, {memory:.0f} MiB, disk {disk:.0f} MiB", flush=True
+            )
+
+
 def read_errors(folder):
     lines = [line.split(",") for line in (folder / "metrics.csv").read_text().splitlines()]
     return [
@@ -129,7 +154,7 @@ def train(twinmap, *sizes):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) < 3 or sys.argv[1] not in ("plan", "store", "train"):
+    if len(sys.argv) < 3 or sys.argv[1] not in ("plan", "store", "features", "train"):
         sys.exit(__doc__)
     print("load", *os.getloadavg())
-    {"plan": plan, "store": store, "train": train}[sys.argv[1]](*sys.argv[2:])
+    {"plan": plan, "store": store, "features": features, "train": train}[sys.argv[1]](*sys.argv[2:])

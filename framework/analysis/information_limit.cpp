@@ -45,6 +45,7 @@ InformationLimit calcInformationLimit(const std::vector<LocalModel>& models, con
   limit.stddev.setConstant(p, n, std::numeric_limits<double>::quiet_NaN());
   limit.mean_information.setZero(p, p);
   limit.mean_covariance.setZero(p, p);
+  limit.information.resize(models.size());
   NoiseOfSamples noise_of_samples(noise);
   for (Index i = 0; i < n; ++i) {
     const LocalModel& model = models[i];
@@ -59,6 +60,7 @@ InformationLimit calcInformationLimit(const std::vector<LocalModel>& models, con
     limit.stddev.col(i) = covariance.diagonal().cwiseSqrt().cwiseProduct(widths);
     limit.mean_information += information;
     limit.mean_covariance += covariance;
+    limit.information[static_cast<std::size_t>(i)] = information;
     const MatrixXd relevance =
         (model.sensitivities.leftCols(p).array().colwise() / noise_of_samples.getStddev().array()).square();
     limit.relevance = limit.relevance.size() == 0 ? relevance : MatrixXd(limit.relevance + relevance);

@@ -17,6 +17,9 @@ struct InformationLimit {
   /// d x p: root mean square over the samples of the change of a feature per width of a parameter's bounds,
   /// in standard deviations of the feature's noise.
   Eigen::MatrixXd relevance;
+  /// n: of each sample the Fisher information (p x p), marginal, per width; empty where its simulation
+  /// failed.
+  std::vector<Eigen::MatrixXd> information{};
   int failures = 0;  ///< samples without a limit
 };
 

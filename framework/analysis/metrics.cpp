@@ -15,6 +15,8 @@ void setFigures(const VectorXd& values, ParameterFigures& figures) {
   }
 }
 
+}  // namespace
+
 ParameterMetrics calcMetrics(const ParameterSpec& parameter, const ParameterSamples& samples, int draws) {
   const SampleTerms terms = calcSampleTerms(parameter, samples);
   const JackknifeFigures estimates = calcWithJackknife(
@@ -26,8 +28,6 @@ ParameterMetrics calcMetrics(const ParameterSpec& parameter, const ParameterSamp
   metrics.samples = static_cast<int>(samples.truth.size());
   return metrics;
 }
-
-}  // namespace
 
 std::vector<ParameterMetrics> calcMetrics(const std::vector<ParameterSpec>& parameters,
                                           const Eigen::MatrixXd& truth, const Estimates& predictions,

@@ -22,4 +22,9 @@ std::vector<ParameterMetrics> calcMetrics(const std::vector<ParameterSpec>& para
                                           const Eigen::MatrixXd& truth, const Estimates& predictions,
                                           const Eigen::MatrixXd& limit_stddev = {}, int draws = 1);
 
+struct ParameterSamples;
+
+/// Of one parameter, or of what is shown like one. Needs 3 samples for standard errors.
+ParameterMetrics calcMetrics(const ParameterSpec& parameter, const ParameterSamples& samples, int draws = 1);
+
 }  // namespace twinmap

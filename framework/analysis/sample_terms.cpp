@@ -45,8 +45,10 @@ struct Scores {
 };
 
 Scores scoreNormal(const ParameterSamples& samples) {
-  const ArrayXd z = (samples.mean - samples.truth) / samples.stddev;
-  return {z, z.abs(), 0.5 * z.square() + samples.stddev.log() + kLogRootTwoPi, calcCrps(z, samples.stddev)};
+  const ArrayXd error = (samples.mean - samples.truth) / samples.stddev;
+  const ArrayXd z = samples.z.size() > 0 ? samples.z : error;
+  return {z, z.abs(), 0.5 * z.square() + samples.stddev.log() + kLogRootTwoPi,
+          calcCrps(error, samples.stddev)};
 }
 
 Scores scoreMixtures(const ParameterSamples& samples) {
@@ -122,6 +124,7 @@ ParameterSamples takeParameter(const Eigen::MatrixXd& truth, const Estimates& pr
           predictions.stddev.row(row),
           limit_stddev.size() == 0 ? unknown : limit_stddev.row(row).array(),
           takeMarginals(predictions.mixtures, row),
+          {},
           takeFactors(predictions.interval_factors, row)};
 }
 

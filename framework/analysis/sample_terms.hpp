@@ -11,6 +11,7 @@ struct ParameterSamples {
   Eigen::ArrayXd truth, mean, stddev;
   Eigen::ArrayXd limit_stddev;              ///< NaN where the limit is not known
   std::vector<MarginalMixture> mixtures{};  ///< where the distributions are no normal ones; else empty
+  Eigen::ArrayXd z{};  ///< the truths as normal quantiles, where known otherwise; else empty
   std::vector<IntervalFactor> factors{};  ///< where intervals are not those of the distributions; else empty
 };
 

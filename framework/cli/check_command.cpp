@@ -5,6 +5,7 @@
 #include "framework/data/measurement/signal_experiment.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/models/make_simulator.hpp"
+#include "framework/study/pipeline/box_ridges.hpp"
 #include "framework/study/sweep/model_groups.hpp"
 
 namespace twinmap::cli {
@@ -20,8 +21,15 @@ void check(const ExperimentArguments& arguments) {
   for (const std::string& engine : engines) {
     std::cout << "# simulated by: " << engine << '\n';
   }
-  std::cout << (tree.find("sweep") == nullptr ? writeExperiment(readExperimentWithSignals(tree))
-                                              : writeIndependentDefaults(tree));
+  if (tree.find("sweep") != nullptr) {
+    std::cout << writeIndependentDefaults(tree);
+    return;
+  }
+  const ExperimentSpec experiment = readExperimentWithSignals(tree);
+  for (const std::string& advice : adviseOnBox(experiment)) {
+    std::cout << "# " << advice << '\n';
+  }
+  std::cout << writeExperiment(experiment);
 }
 
 }  // namespace twinmap::cli

@@ -29,9 +29,10 @@ struct RunArguments {
   std::string folder;  ///< "": results/NAME
   std::string store;   ///< "": chunks in the folder
   int threads = 1;
-  double memory = 0.0;     ///< GiB that a sweep may take; 0: half of the machine's
-  bool fail_fast = false;  ///< of a sweep: begin no case after one has failed
-  bool quiet = false;      ///< no progress, only warnings
+  double memory = 0.0;         ///< GiB that a sweep may take; 0: half of the machine's
+  bool fail_fast = false;      ///< of a sweep: begin no case after one has failed
+  bool quiet = false;          ///< no progress, only warnings
+  bool features_only = false;  ///< simulate and write features.h5, train nothing
   std::string command_line;
   bool fail_on_gates = false;
 };
@@ -104,6 +105,7 @@ struct InferArguments {
   bool follow = false;              ///< measurements from the standard input, JSON lines out
   std::optional<bool> refine;       ///< none: as the experiment says
   int posterior_draws = 0;          ///< of each measurement's posterior; 0: none
+  std::string posterior_from;       ///< "simulator", "surrogate"; "": the simulator where that is fast
   std::string draws;                ///< file for them; "": none
 };
 

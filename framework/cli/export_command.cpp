@@ -5,7 +5,7 @@
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/base/text/source_location.hpp"
 #include "framework/cli/commands.hpp"
-#include "framework/export/c_folder.hpp"
+#include "framework/export/c_code/c_folder.hpp"
 #include "framework/export/fmu_export.hpp"
 #include "framework/export/json_export.hpp"
 #include "framework/study/pipeline/training/refit_map.hpp"

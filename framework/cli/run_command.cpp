@@ -55,6 +55,20 @@ void runSingle(const ExperimentSpec& experiment, const RunArguments& arguments, 
   requireGates(summary.gates, arguments.fail_on_gates);
 }
 
+/// Its memory does not grow with the samples, so that none is asked for.
+void runFeaturesOnly(const ExperimentSpec& experiment, const RunArguments& arguments,
+                     const fs::path& folder) {
+  requireModel(experiment);
+  ProgressLine line;
+  RunOptions options;
+  options.folder = folder;
+  options.store = arguments.store;
+  options.command = arguments.command_line;
+  runFeatures(experiment, options, makeControl(arguments, line));
+  line.clear();
+  std::cerr << "Features: " << (folder / "features.h5").string() << "\n";
+}
+
 void runCases(const YamlNode& tree, const RunArguments& arguments, const fs::path& folder) {
   showWarningsOnly();
   ProgressLine line;
@@ -101,7 +115,16 @@ void run(const RunArguments& arguments) {
     showWarningsOnly();
   }
   try {
-    readSweep(tree) ? runCases(tree, arguments, folder) : runSingle(experiment, arguments, folder);
+    const bool sweep = readSweep(tree).has_value();
+    if (sweep && arguments.features_only) {
+      throw ExperimentError(
+          "--features-only cannot be combined with a sweep; write the features of each case alone");
+    }
+    if (arguments.features_only) {
+      runFeaturesOnly(experiment, arguments, folder);
+    } else {
+      sweep ? runCases(tree, arguments, folder) : runSingle(experiment, arguments, folder);
+    }
   } catch (const Interrupted& interrupted) {
     throw Interrupted(std::string(interrupted.what()) + "; the same command continues:\n  " +
                       arguments.command_line);

@@ -129,6 +129,14 @@ void shrinkToBounds(const VectorXd& center, const VectorXd& half_width, const Ve
   convert(center - factor.cwiseProduct(center), factor, VectorXd::Ones(center.size()), mixture);
 }
 
+Mixture takeFirst(const Mixture& mixture, Index p) {
+  Mixture first{mixture.weights, mixture.means.topRows(p), mixture.stddevs.topRows(p), {}};
+  for (const MatrixXd& correlation : mixture.correlations) {
+    first.correlations.push_back(correlation.topLeftCorner(p, p));
+  }
+  return first;
+}
+
 Index findLikeliest(const Mixture& mixture) {
   const MixtureDensity mixed(mixture);
   Index best = 0;

@@ -31,6 +31,9 @@ void convert(const Eigen::VectorXd& center, const Eigen::VectorXd& unit, const E
 void shrinkToBounds(const Eigen::VectorXd& center, const Eigen::VectorXd& half_width,
                     const Eigen::VectorXd& stddev, Mixture& mixture);
 
+/// The mixture of the first p of its parameters.
+Mixture takeFirst(const Mixture& mixture, Eigen::Index p);
+
 /// The component at whose mean the density is highest: one answer that fits.
 Eigen::Index findLikeliest(const Mixture& mixture);
 

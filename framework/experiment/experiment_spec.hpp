@@ -10,6 +10,7 @@
 #include "framework/experiment/gate_spec.hpp"
 #include "framework/experiment/inverse_map_spec.hpp"
 #include "framework/experiment/measurement_spec.hpp"
+#include "framework/experiment/model/derived_spec.hpp"
 #include "framework/experiment/model/model_spec.hpp"
 #include "framework/experiment/noise_spec.hpp"
 #include "framework/experiment/refinement_spec.hpp"
@@ -45,6 +46,7 @@ struct ExperimentSpec {
   std::string description;
   std::uint64_t seed = 1;
   ModelSpec model;
+  std::vector<DerivedSpec> derived;  ///< what follows from the parameters and is reported as they are
   std::vector<FeatureSpec> features;
   std::vector<TransformStepSpec> transform;  ///< default: whiten, principal_components
   NoiseSpec noise;
@@ -76,6 +78,7 @@ void describe(Fields& f, ExperimentSpec& s) {
   f.optionalMap("inputs", s.model.inputs, "known settings, sampled in training, given with a measurement");
   f.optional("priors", s.model.priors, "what is known of several parameters together");
   f.optionalMap("constants", s.model.constants, "named values for expressions");
+  f.optionalMap("derived", s.derived, "quantities that follow from the parameters, reported as they are");
   f.oneOf("must give exactly one of", choice("system", s.model.system, "the multibody model"),
           choice("model", s.model.source, "or a model that comes as a file"));
   f.optionalMap("excitation", s.model.excitation, "named signals for forces and moments");

@@ -1,6 +1,6 @@
 #include <fmt/core.h>
 
-#include "framework/export/c_model_tables.hpp"
+#include "framework/export/c_code/c_model_tables.hpp"
 #include "kernels/linalg/packed_lower.hpp"
 
 namespace twinmap {
@@ -70,7 +70,8 @@ void addResult(const ExportedModel& model, const std::string& prefix, CTables& t
   }
   tables.addWide("interval_factor", model.getIntervalFactors(),
                  "Half widths of 95 % intervals in standard deviations.");
-  const bool calibrated = validation == nullptr || validation->status == SurrogateStatus::kOk;
+  const bool calibrated = (validation == nullptr || validation->status == SurrogateStatus::kOk) &&
+                          (!model.online.trust || !model.online.trust->coverage.isShort());
   sizes.push_back({"UNCALIBRATED", calibrated ? 0 : 1, "1: the map is known to misjudge its own errors"});
 }
 

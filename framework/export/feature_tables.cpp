@@ -2,7 +2,7 @@
 
 #include "framework/data/features/experiment_features.hpp"
 #include "framework/data/features/layout_rows.hpp"
-#include "framework/export/c_model_tables.hpp"
+#include "framework/export/c_code/c_model_tables.hpp"
 
 namespace twinmap {
 namespace {

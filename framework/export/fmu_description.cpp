@@ -6,7 +6,7 @@
 
 #include "framework/base/text/escape.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/export/c_tables.hpp"
+#include "framework/export/c_code/c_tables.hpp"
 
 namespace twinmap {
 namespace {

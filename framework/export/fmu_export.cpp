@@ -7,7 +7,7 @@
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/base/files/temporary_folder.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/export/c_source.hpp"
+#include "framework/export/c_code/c_source.hpp"
 #include "framework/export/fmu_description.hpp"
 #include "framework/export/runtime_sources.hpp"
 #include "framework/models/fmu/package/compile_sources.hpp"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "framework/export/c_model_tables.hpp"
+#include "framework/export/c_code/c_model_tables.hpp"
 
 namespace twinmap {
 namespace {

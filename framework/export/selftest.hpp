@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/export/c_source.hpp"
+#include "framework/export/c_code/c_source.hpp"
 #include "framework/inference/inferrer.hpp"
 
 namespace twinmap {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "framework/estimation/surrogate/score_inversion.hpp"
-#include "framework/export/c_model_tables.hpp"
+#include "framework/export/c_code/c_model_tables.hpp"
 #include "kernels/linalg/packed_lower.hpp"
 
 namespace twinmap {

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "framework/experiment/experiment_file.hpp"
+#include "framework/inference/derived_values.hpp"
 
 namespace twinmap {
 
@@ -17,12 +18,17 @@ fs::path findMaps(const fs::path& run_or_maps) {
   return file;
 }
 
+bool isCalibrated(const OnlineMap& map, const TrustModel* trust) {
+  return map.isCalibrated() && (trust == nullptr || !trust->coverage.isShort());
+}
+
 Inferrer::Inferrer(const fs::path& run_or_maps) : Inferrer(readTrainedFile(findMaps(run_or_maps))) {}
 
 Inferrer::Inferrer(TrainedFile loaded)
     : reader_(readResolved(loaded.experiment)),
       map_(std::move(loaded.model.map)),
-      trust_(std::move(loaded.model.trust)) {}
+      trust_(std::move(loaded.model.trust)),
+      quantities_(makeDerivedQuantities(reader_.getExperiment())) {}
 
 Inferrer::Workspace::Workspace(const Inferrer& inferrer) : map(inferrer.getMap()) {
   if (inferrer.getTrustModel()) {
@@ -33,8 +39,10 @@ Inferrer::Workspace::Workspace(const Inferrer& inferrer) : map(inferrer.getMap()
 InferredMeasurement Inferrer::infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
                                     Workspace& workspace) const {
   InferredMeasurement inferred;
+  inferred.quantities = quantities_;
   inferred.by_estimator = map_.infer(features, known, workspace.map);
-  inferred.estimator_is_calibrated = map_.isCalibrated();
+  inferred.estimator_is_calibrated = isCalibrated(map_, trust_ ? &*trust_ : nullptr);
+  inferred.basins = map_.listBasins(workspace.map);
   if (trust_) {
     inferred.trust = judge(*trust_, features, known, inferred.by_estimator, workspace.map.findExplanation(),
                            *workspace.trust);

@@ -1,34 +1,48 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 
+#include "framework/estimation/derived/derived_quantities.hpp"
 #include "framework/estimation/refined/refined.hpp"
-#include "framework/estimation/surrogate/posterior_sampler.hpp"
+#include "framework/estimation/ridges/identified_combinations.hpp"
 #include "framework/estimation/trained/online_map.hpp"
 #include "framework/estimation/trained/online_model.hpp"
 #include "framework/inference/measurement_reader.hpp"
+#include "framework/inference/posterior_estimate.hpp"
 #include "framework/store/trained_file.hpp"
 
 namespace twinmap {
 
 /// What a measurement says about the machine.
 struct InferredMeasurement {
-  std::string source;  ///< the file
-  double start = 0.0;  ///< time in the file that is 0 of the model, s
-  Estimate by_estimator;
-  bool estimator_is_calibrated = true;  ///< OnlineMap::isCalibrated()
+  std::string source;                   ///< the file
+  double start = 0.0;                   ///< time in the file that is 0 of the model, s
+  std::vector<std::string> left_out{};  ///< what of the recording is missing and why, a phrase each
+  Estimate by_estimator;                ///< not given where there is no trained estimator
+  bool estimator_is_calibrated = true;  ///< isCalibrated()
   std::optional<Trust> trust;           ///< none where the run could fit no trust model
   Eigen::VectorXd explanation;   ///< sampled point that explains the features best; empty without trust
   Eigen::MatrixXd covariance{};  ///< there, u x u in half-widths, with the surrogate's errors; empty likewise
-  std::optional<Refined> refined;                 ///< on the simulator, where that was tried; accepted or not
-  std::optional<SurrogatePosterior> posterior{};  ///< where it was asked for; reliable or not
+  /// u x n: the separate places that fit by the estimator, in the parameters' units, the likeliest first;
+  /// one, or none where the estimator does not look for them.
+  Eigen::MatrixXd basins{};
+  bool coverage_is_short = false;  ///< of the run's refined test samples, where the refinement was accepted
+  std::optional<Refined> refined;  ///< on the simulator, where that was tried; accepted or not
+  std::optional<PosteriorEstimate> posterior{};  ///< where it was asked for, or taken; reliable or not
+  std::shared_ptr<const DerivedQuantities> quantities{};  ///< of the experiment, if it derives any
+  std::vector<Ridge> ridges{};  ///< of the simulator's posterior, where that alone was sampled
 };
 
 /// The maps.h5 of a finished run, given its folder or the file itself. Throws std::runtime_error where there
 /// is none.
 std::filesystem::path findMaps(const std::filesystem::path& run_or_maps);
+
+/// Whether nothing is known against a map's standard deviations: neither by its cross-validation nor by the
+/// run's test samples.
+bool isCalibrated(const OnlineMap& map, const TrustModel* trust);
 
 /// A finished run made ready for measurements. Immutable; its workspaces are for one thread each.
 class Inferrer {
@@ -61,6 +75,7 @@ class Inferrer {
   MeasurementReader reader_;
   OnlineMap map_;
   std::optional<TrustModel> trust_;
+  std::shared_ptr<const DerivedQuantities> quantities_;  // none where nothing is derived
 };
 
 }  // namespace twinmap

@@ -33,8 +33,11 @@ std::vector<double> MeasurementReader::listWindows(const Table& table, std::opti
                                                    double length) const {
   const MeasurementSpec& spec = experiment_.measurement;
   const Eigen::Index rows = table.columns.empty() ? 0 : table.columns.front().values.size();
-  const Eigen::VectorXd times = readTimes(table, {spec.time, spec.sample_rate, 0.0}, rows);
-  const double first = getStart(start), last = times.size() > 0 ? times[times.size() - 1] : first;
+  double last = getStart(start);
+  for (const double time : readUnorderedTimes(table, {spec.time, spec.sample_rate, 0.0}, rows)) {
+    last = std::isfinite(time) ? std::max(last, time) : last;
+  }
+  const double first = getStart(start);
   const double duration = layout_.times.size() > 0 ? layout_.times[layout_.times.size() - 1] : 0.0;
   const double slack = 1e-6 * length;  // as times are compared when they are read
   std::vector<double> starts;
@@ -57,6 +60,28 @@ Eigen::VectorXd MeasurementReader::readResponse(const Table& table, std::optiona
   MeasurementSpec spec = experiment_.measurement;
   spec.start = getStart(start);
   return resample(readMeasurement(table, spec, layout_), layout_, sample_interval_);
+}
+
+AvailableFeatures MeasurementReader::readAvailableFeatures(const Table& table,
+                                                           std::optional<double> start) const {
+  requireExcitation(table, start);
+  MeasurementSpec spec = experiment_.measurement;
+  spec.start = getStart(start);
+  AvailableResponse response = readAvailable(table, spec, layout_, sample_interval_);
+  AvailableFeatures found{extractor_.extract(response.response), {}, std::move(response.remarks)};
+  const Eigen::Index missing_samples = response.missing;
+  for (Eigen::Index i = 0; i < found.features.size(); ++i) {
+    if (std::isfinite(found.features[i])) {
+      found.available.push_back(i);
+    } else if (missing_samples == 0) {
+      throw MeasurementError(table.source + ": the response has no feature '" +
+                             extractor_.getInfos()[static_cast<std::size_t>(i)].name + "'");
+    }
+  }
+  if (found.available.empty()) {
+    throw MeasurementError(table.source + ": no feature can be computed from the samples that are there");
+  }
+  return found;
 }
 
 Eigen::VectorXd MeasurementReader::readFeatures(const Table& table, std::optional<double> start) const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "framework/data/features/feature_extractor.hpp"
+#include "framework/data/measurement/available_response.hpp"
 #include "framework/data/measurement/table.hpp"
 #include "framework/experiment/experiment_spec.hpp"
 #include "framework/simulation/response_layout.hpp"
@@ -16,6 +17,13 @@ namespace twinmap {
 /// response lacks a feature, such as a third peak.
 Eigen::VectorXd extractFeatures(const FeatureExtractor& extractor, const Eigen::VectorXd& response,
                                 const std::string& source);
+
+/// Features of which some may be missing.
+struct AvailableFeatures {
+  Eigen::VectorXd features;             ///< d, NaN where missing
+  std::vector<Eigen::Index> available;  ///< the others, ascending
+  std::vector<std::string> remarks;     ///< what is missing and why, a phrase each
+};
 
 /// From tables of measurements to the features of an experiment. Immutable.
 class MeasurementReader {
@@ -41,6 +49,10 @@ class MeasurementReader {
 
   /// A measured response at the layout's times (its rows). Throws MeasurementError.
   Eigen::VectorXd readResponse(const Table& table, std::optional<double> start) const;
+
+  /// Features of a measurement, NaN where samples that they need are missing (readAvailable); at least one is
+  /// there. Throws MeasurementError.
+  AvailableFeatures readAvailableFeatures(const Table& table, std::optional<double> start) const;
 
   /// d: requireExcitation(), readResponse() and extractFeatures().
   Eigen::VectorXd readFeatures(const Table& table, std::optional<double> start) const;

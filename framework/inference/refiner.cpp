@@ -1,21 +1,62 @@
 #include "framework/inference/refiner.hpp"
 
+#include <fmt/core.h>
+
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+#include "framework/base/text/source_location.hpp"
 #include "framework/data/features/experiment_features.hpp"
 #include "framework/data/noise/noise.hpp"
+#include "framework/estimation/ridges/simulated_ridges.hpp"
 #include "framework/estimation/trained/refinement_starts.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 
 namespace twinmap {
 
 using Eigen::Index;
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-SimulatorRefiner::SimulatorRefiner(const ExperimentSpec& experiment, const ResponseLayout& layout)
+namespace {
+
+/// Draws that stand for the posterior, each once at most: where the sum of the weights passes equal steps.
+std::vector<Index> chooseDraws(const VectorXd& weights) {
+  constexpr double kDraws = 32.0;
+  std::vector<Index> chosen;
+  double passed = 0.0;
+  for (Index i = 0; i < weights.size(); ++i) {
+    const double before = passed;
+    passed += weights[i];
+    if (std::floor(passed * kDraws + 0.5) > std::floor(before * kDraws + 0.5)) {
+      chosen.push_back(i);
+    }
+  }
+  return chosen;
+}
+
+}  // namespace
+
+SimulatorPosteriorOptions makePosteriorOptions(const ExperimentSpec& experiment, int draws) {
+  if (draws < kMinPosteriorDraws) {
+    throw ExperimentError(
+        fmt::format("a posterior needs at least {} draws, not {}", kMinPosteriorDraws, draws));
+  }
+  SimulatorPosteriorOptions options;
+  options.draws = draws;
+  options.seed = experiment.seed;
+  return options;
+}
+
+SimulatorRefiner::SimulatorRefiner(const ExperimentSpec& experiment, const ResponseLayout& layout,
+                                   Model model)
     : model_(experiment.model),
       extractor_(makeExtractor(experiment, layout)),
-      simulator_(makeTrustedSimulator(experiment.model, layout.times, layout.modes)),
+      simulator_(model == Model::kTrusted ? makeTrustedSimulator(experiment.model, layout.times, layout.modes)
+                                          : makeSimulator(experiment.model, layout.times, layout.modes)),
       noise_(extractor_, ResponseNoise(experiment.noise, layout), experiment.seed),
-      wanted_(shouldRefine(experiment.refine, *simulator_, extractor_, noise_)),
+      wanted_(shouldRefine(experiment.refine, *simulator_, noise_)),
       own_(simulator_->clone()) {}
 
 const RefinementModel& SimulatorRefiner::getModel() const {
@@ -25,17 +66,22 @@ const RefinementModel& SimulatorRefiner::getModel() const {
   return *shared_;
 }
 
-Refined SimulatorRefiner::refine(const InferredMeasurement& inferred, const VectorXd& features,
-                                 const VectorXd& known, const TrustModel* trust) const {
-  const RefinementTask task = makeRefinementTask(
+RefinementTask SimulatorRefiner::makeTask(const InferredMeasurement& inferred, const VectorXd& features,
+                                          const VectorXd& known, const TrustModel* trust) const {
+  return makeRefinementTask(
       model_, trust, features,
       {inferred.by_estimator.takeLikeliest().mean, inferred.explanation, known, inferred.covariance});
-  Refined refined = twinmap::refine(*own_, getModel(), task);
+}
+
+Refined SimulatorRefiner::refine(const InferredMeasurement& inferred, const VectorXd& features,
+                                 const VectorXd& known, const TrustModel* trust) const {
+  Refined refined = twinmap::refine(*own_, getModel(), makeTask(inferred, features, known, trust));
   if (isMultimodal(inferred.by_estimator.mixture)) {
     rejectAsMultimodal(refined);
   }
   if (refined.isAccepted()) {
     const Index p = inferred.by_estimator.mean.size();
+    refined.mean.conservativeResize(p);
     refined.stddev.conservativeResize(p);
     refined.covariance.conservativeResize(p, p);
   }
@@ -50,10 +96,121 @@ void SimulatorRefiner::refineAndJudge(const VectorXd& features, const VectorXd& 
     SimulatorResidual found{
         refined.residual, refined.calcReducedChiSquare(), refined.degrees, refined.explained, {}, {}};
     if (refined.isAccepted()) {
-      found.mean = refined.point.head(refined.stddev.size());
+      inferred.coverage_is_short = trust->refined_coverage.isShort();
+      found.mean = refined.mean;
       found.stddev = refined.stddev;
     }
     inferred.trust = judgeAnew(*trust, *inferred.trust, found);
+  }
+}
+
+void SimulatorRefiner::requireNoise() const {
+  try {
+    getModel();
+  } catch (const std::invalid_argument& error) {
+    throw ExperimentError(
+        std::string(error.what()) +
+        ": a measurement says nothing about parameters unless its noise is known; give every output that "
+        "features read a 'noise.stddev'");
+  }
+}
+
+bool SimulatorRefiner::samplesFast() const {
+  return shouldRefine(RefineMode::kAutomatic, *simulator_, noise_);
+}
+
+PosteriorEstimate SimulatorRefiner::samplePosterior(const VectorXd& features, const VectorXd& known,
+                                                    const MatrixXd& given,
+                                                    const SimulatorPosteriorOptions& options,
+                                                    LossKind loss) const {
+  const auto u = static_cast<Index>(getUnknown().size());
+  PosteriorProblem problem{getUnknown(), model_.priors, {makeTrial(features, known)}, u};
+  problem.trials.front().loss = loss;
+  return makeEstimate(problem.trials.front(), twinmap::samplePosterior(problem, given, options));
+}
+
+PosteriorEstimate SimulatorRefiner::makeEstimate(const MeasuredTrial& trial,
+                                                 SimulatorPosterior posterior) const {
+  std::vector<FeatureInfo> infos = extractor_.getInfos();
+  if (trial.own_model) {
+    infos.clear();
+    for (const Index i : trial.own_model->getWhole().features) {
+      infos.push_back(trial.own_model->getExtractor().getInfos()[static_cast<std::size_t>(i)]);
+    }
+  } else if (posterior.degrees > 0.0) {
+    posterior.residual = getModel().placeResidual(posterior.residual);
+  }
+  return makePosteriorEstimate(posterior, getUnknown(), static_cast<Index>(model_.parameters.size()), infos);
+}
+
+std::vector<Ridge> SimulatorRefiner::findRidges(const BoundedDraws& draws, const VectorXd& known) const {
+  if (!draws.isGiven() || !simulator_->hasDerivatives()) {
+    return {};
+  }
+  const std::vector<Index> chosen = chooseDraws(draws.weights);
+  const Index u = draws.points.rows(), count = static_cast<Index>(chosen.size());
+  MatrixXd points(u + known.size(), count);
+  points << draws.points(Eigen::all, chosen), known.replicate(1, count);
+  return simulateRidges(*simulator_, extractor_, noise_, model_, points, 1);
+}
+
+MeasuredTrial SimulatorRefiner::makeTrial(const VectorXd& features, const VectorXd& known) const {
+  const std::vector<ParameterSpec>& unknown = getUnknown();
+  VectorXd held(static_cast<Index>(unknown.size()) + known.size());
+  held << calcBoxCenter(unknown), known;
+  std::vector<Index> all(unknown.size());
+  std::iota(all.begin(), all.end(), Index{0});
+  MeasuredTrial trial{own_.get(), &getModel(), features, held, std::move(all)};
+  if (features.hasNaN()) {
+    const VectorXd fitted = getModel().convert(features);
+    std::vector<Index> available;
+    for (Index i = 0; i < fitted.size(); ++i) {
+      if (std::isfinite(fitted[i])) {
+        available.push_back(i);
+      }
+    }
+    trial.own_model =
+        std::make_shared<const RefinementModel>(unknown, extractor_, noise_, std::move(available));
+    trial.model = trial.own_model.get();
+  }
+  return trial;
+}
+
+MatrixXd SimulatorRefiner::listStarts(const InferredMeasurement& inferred, const VectorXd& features,
+                                      const VectorXd& known, const TrustModel* trust) const {
+  std::vector<VectorXd> points;
+  for (Index k = 0; k < inferred.basins.cols(); ++k) {
+    points.emplace_back(inferred.basins.col(k));
+  }
+  for (const RefinementStart& start : makeTask(inferred, features, known, trust).starts) {
+    points.push_back(start.point);
+  }
+  for (Index c = 0; c < inferred.by_estimator.mixture.countComponents(); ++c) {
+    points.push_back(
+        makePoint(model_, inferred.by_estimator.mixture.means.col(c), inferred.explanation, known));
+  }
+  if (inferred.refined) {
+    points.push_back(inferred.refined->point);
+  }
+  const auto u = static_cast<Index>(getModel().getUnknown().size());
+  MatrixXd starts(u, static_cast<Index>(points.size()));
+  for (Index k = 0; k < starts.cols(); ++k) {
+    starts.col(k) = points[static_cast<std::size_t>(k)].head(u);
+  }
+  return starts;
+}
+
+void SimulatorRefiner::sampleAndJudge(const VectorXd& features, const VectorXd& known,
+                                      const TrustModel* trust, const SimulatorPosteriorOptions& options,
+                                      InferredMeasurement& inferred) const {
+  inferred.posterior =
+      samplePosterior(features, known, listStarts(inferred, features, known, trust), options);
+  const SimulatorFit& fit = *inferred.posterior->fit;
+  if (trust != nullptr && fit.isSimulated()) {
+    const Estimate& estimate = inferred.posterior->estimate;
+    inferred.trust = judgeAnew(*trust, *inferred.trust,
+                               {fit.residual, fit.chi_square / fit.degrees, fit.degrees, fit.explained,
+                                estimate.mean, estimate.stddev});
   }
 }
 

@@ -38,6 +38,22 @@ const ParameterMetrics* findMetrics(const RunSummary& run, const MetricsColumn& 
   return run.training.leave_one_out.empty() ? nullptr : &run.training.leave_one_out[parameter];
 }
 
+/// Of a derived quantity, which is not trained for.
+Row makeDerivedRow(const DerivedEvaluation& derived, const std::vector<MetricsColumn>& columns,
+                   std::size_t k) {
+  const ParameterSpec& quantity = derived.quantities[k];
+  const ParameterMetrics& metrics = derived.metrics[k];
+  Row row{quantity.name.text, quantity.unit, toText(quantity.bounds.lower), toText(quantity.bounds.upper)};
+  Row errors;
+  for (const MetricsColumn& column : columns) {
+    row.push_back(column.left_out ? "" : toText(metrics.*column.figure));
+    errors.push_back(column.left_out ? "" : toText(metrics.se.*column.figure));
+  }
+  row.insert(row.end(), {"", std::to_string(metrics.samples)});
+  row.insert(row.end(), errors.begin(), errors.end());
+  return row;
+}
+
 Row makeMetricsRow(const RunSummary& run, const std::vector<MetricsColumn>& columns, std::size_t p) {
   const ParameterSpec& parameter = run.parameters[p];
   Row row{parameter.name.text, parameter.unit, toText(parameter.bounds.lower),
@@ -69,6 +85,11 @@ std::string makeMetricsCsv(const RunSummary& run) {
   std::vector<Row> rows{header};
   for (std::size_t p = 0; p < run.parameters.size(); ++p) {
     rows.push_back(makeMetricsRow(run, columns, p));
+  }
+  if (run.evaluation.derived) {
+    for (std::size_t k = 0; k < run.evaluation.derived->quantities.size(); ++k) {
+      rows.push_back(makeDerivedRow(*run.evaluation.derived, columns, k));
+    }
   }
   return makeCsv(rows);
 }
@@ -117,6 +138,27 @@ std::string makePredictionsCsv(const RunSummary& run) {
       if (factors.isGiven()) {
         rows.back().insert(rows.back().end(),
                            {toText(factors.of50(row, column)), toText(factors.of95(row, column))});
+      }
+    }
+  }
+  return makeCsv(rows);
+}
+
+std::string makeDerivedCsv(const RunSummary& run) {
+  const DerivedEvaluation& derived = *run.evaluation.derived;
+  const bool has_limit = derived.limit_stddev.size() > 0;
+  std::vector<Row> rows{{"sample", "parameter", "true", "inferred", "stddev", "lower", "upper"}};
+  if (has_limit) {
+    rows[0].emplace_back("limit_stddev");
+  }
+  for (Eigen::Index i = 0; i < derived.truth.cols(); ++i) {
+    for (Eigen::Index k = 0; k < derived.truth.rows(); ++k) {
+      rows.push_back({std::to_string(run.test_indices[static_cast<std::size_t>(i)]),
+                      derived.quantities[static_cast<std::size_t>(k)].name.text, toText(derived.truth(k, i)),
+                      toText(derived.mean(k, i)), toText(derived.stddev(k, i)), toText(derived.lower95(k, i)),
+                      toText(derived.upper95(k, i))});
+      if (has_limit) {
+        rows.back().push_back(toText(derived.limit_stddev(k, i)));
       }
     }
   }

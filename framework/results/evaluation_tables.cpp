@@ -81,16 +81,34 @@ std::string makeIdentifiabilityCsv(const RunSummary& run) {
   return makeCsv(rows);
 }
 
+std::string makeIdentifiedCsv(const RunSummary& run) {
+  std::vector<CsvRow> rows{{"parameters", "undetermined", "name", "expression", "unit", "residual"}};
+  for (const Ridge& ridge : run.evaluation.ridges) {
+    std::string names;
+    for (const Index j : ridge.parameters) {
+      names += (names.empty() ? "" : " ") + run.parameters[static_cast<std::size_t>(j)].name.text;
+    }
+    const std::string dimension = std::to_string(ridge.dimension);
+    for (const DerivedEntry& entry : listDerived({ridge}, run.parameters)) {
+      rows.push_back({names, dimension, entry.name, entry.expression, entry.unit, toText(entry.residual)});
+    }
+    if (ridge.combinations.empty()) {
+      rows.push_back({names, dimension, "", "", "", ""});
+    }
+  }
+  return makeCsv(rows);
+}
+
 std::string makePosteriorCsv(const RunSummary& run) {
   std::vector<CsvRow> rows{{"sample", "parameter", "posterior_mean", "posterior_stddev", "map_mean",
                             "map_stddev", "limit_stddev", "effective_sample_size", "simulations"}};
   for (const PosteriorComparison& row : run.evaluation.posteriors) {
     for (std::size_t p = 0; p < run.parameters.size(); ++p) {
       const auto j = static_cast<Index>(p);
-      rows.push_back({std::to_string(row.sample), run.parameters[p].name.text, toText(row.exact.mean[j]),
-                      toText(row.exact.stddev[j]), toText(row.map_mean[j]), toText(row.map_stddev[j]),
+      rows.push_back({std::to_string(row.sample), run.parameters[p].name.text, toText(row.mean[j]),
+                      toText(row.stddev[j]), toText(row.map_mean[j]), toText(row.map_stddev[j]),
                       row.limit_stddev.size() > 0 ? toText(row.limit_stddev[j]) : "",
-                      toText(row.exact.effective_sample_size), std::to_string(row.exact.simulations)});
+                      toText(row.effective_sample_size), std::to_string(row.simulations)});
     }
   }
   return makeCsv(rows);
@@ -148,7 +166,7 @@ std::string makeMapsCsv(const RunSummary& run) {
 
 std::string makeMethodsCsv(const RunSummary& run) {
   std::vector<CsvRow> rows{addFigureNames({"method", "parameter"})};
-  rows[0].insert(rows[0].end(), {"samples", "accepted", "median_simulations"});
+  rows[0].insert(rows[0].end(), {"samples", "accepted", "median_simulations", "apart_from_posterior"});
   for (const MethodSummary& method : run.evaluation.methods) {
     const double share = static_cast<double>(method.accepted) / static_cast<double>(method.samples);
     for (std::size_t p = 0; p < run.parameters.size(); ++p) {
@@ -157,7 +175,8 @@ std::string makeMethodsCsv(const RunSummary& run) {
         std::fill(row.begin() + 2, row.end(), "");
       }
       row.insert(row.end(),
-                 {std::to_string(method.samples), toText(share), std::to_string(method.median_simulations)});
+                 {std::to_string(method.samples), toText(share), std::to_string(method.median_simulations),
+                  method.apart_from_posterior ? toText(*method.apart_from_posterior) : ""});
       rows.push_back(std::move(row));
     }
   }
@@ -180,7 +199,7 @@ std::string makeRefinedCsv(const RunSummary& run) {
                     std::to_string(one.simulations), one.message});
     for (Index j = 0; j < run.evaluation.truth.rows(); ++j) {
       rows.back().push_back(toText(run.evaluation.truth(j, static_cast<Index>(i))));
-      rows.back().push_back(one.isAccepted() ? toText(one.point[j]) : "");
+      rows.back().push_back(one.isAccepted() ? toText(one.mean[j]) : "");
       rows.back().push_back(one.isAccepted() ? toText(one.stddev[j]) : "");
     }
   }

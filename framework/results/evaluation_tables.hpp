@@ -17,6 +17,11 @@ std::string makeCorrelationsCsv(const RunSummary& run);
 /// its eigenvector, a column for each parameter.
 std::string makeIdentifiabilityCsv(const RunSummary& run);
 
+/// identified.csv: of parameters that are not determined one by one a row for each combination that is, with
+/// what to name it below `derived`; columns parameters (separated by spaces), undetermined (how many stay
+/// so), name, expression, unit, residual (Combination::residual).
+std::string makeIdentifiedCsv(const RunSummary& run);
+
 /// posterior.csv: sample, parameter, posterior_mean, posterior_stddev, map_mean, map_stddev, limit_stddev,
 /// effective_sample_size, simulations.
 std::string makePosteriorCsv(const RunSummary& run);

@@ -17,6 +17,12 @@ void writeEvaluation(const fs::path& folder, const RunSummary& run) {
     writeTextFile(folder / "correlations.csv", makeCorrelationsCsv(run));
     writeTextFile(folder / "identifiability.csv", makeIdentifiabilityCsv(run));
   }
+  if (!run.evaluation.ridges.empty()) {
+    writeTextFile(folder / "identified.csv", makeIdentifiedCsv(run));
+  }
+  if (run.evaluation.derived) {
+    writeTextFile(folder / "derived.csv", makeDerivedCsv(run));
+  }
   if (!run.evaluation.posteriors.empty()) {
     writeTextFile(folder / "posterior.csv", makePosteriorCsv(run));
   }

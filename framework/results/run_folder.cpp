@@ -44,6 +44,7 @@ void readTables(const fs::path& path, RunFolder& run) {
   run.features = readCsvFile(path / "features.csv");
   run.correlations = readCsvFile(path / "correlations.csv");
   run.identifiability = readCsvFile(path / "identifiability.csv");
+  run.identified = readCsvFile(path / "identified.csv");
   run.posterior = readCsvFile(path / "posterior.csv");
   run.sbc = readCsvFile(path / "sbc.csv");
   run.compared_maps = readCsvFile(path / "maps.csv");

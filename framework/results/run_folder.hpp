@@ -32,6 +32,7 @@ struct RunFolder {
   CsvTable features;
   CsvTable correlations;
   CsvTable identifiability;
+  CsvTable identified;
   CsvTable posterior;
   CsvTable sbc;
   CsvTable baselines;

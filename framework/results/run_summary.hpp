@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/analysis/exact_posterior.hpp"
+#include "framework/analysis/derived_metrics.hpp"
 #include "framework/analysis/identifiability.hpp"
 #include "framework/analysis/joint_metrics.hpp"
 #include "framework/analysis/metrics.hpp"
@@ -15,6 +15,7 @@
 #include "framework/data/features/feature_block.hpp"
 #include "framework/estimation/estimate.hpp"
 #include "framework/estimation/refined/refined.hpp"
+#include "framework/estimation/ridges/identified_combinations.hpp"
 #include "framework/experiment/model/model_spec.hpp"
 #include "framework/results/gates.hpp"
 
@@ -94,8 +95,10 @@ struct FeatureRelevance {
 
 /// One test sample's exact posterior beside what the map says.
 struct PosteriorComparison {
-  int sample = 0;  ///< index in the test set
-  ExactPosterior exact;
+  int sample = 0;                ///< index in the test set
+  Eigen::VectorXd mean, stddev;  ///< p, of the posterior; NaN where it is not reliable
+  double effective_sample_size = 0.0;
+  int simulations = 0;
   Eigen::VectorXd map_mean, map_stddev, limit_stddev;  ///< p; no limit if it is switched off
 };
 
@@ -117,10 +120,13 @@ struct BaselineSummary {
 
 /// How well a method infers the test samples.
 struct MethodSummary {
-  std::string method;  ///< "gp", "surrogate", "network", "refined"
+  std::string method;  ///< "gp", "surrogate", "network", "refined", "posterior"
   Eigen::Index samples = 0, accepted = 0;
   int median_simulations = 0;             ///< of a measurement
   std::vector<ParameterMetrics> metrics;  ///< of the accepted
+  /// Of refined estimates, where exact posteriors are known: the share that differs from them by more than .3
+  /// of their standard deviations.
+  std::optional<double> apart_from_posterior{};
 };
 
 /// What one online update costs: the inference of all parameters from one feature vector.
@@ -149,12 +155,14 @@ struct Evaluation {
   JointMetrics joint;
   std::optional<FeatureRelevance> relevance;
   std::optional<Identifiability> identifiability;
+  std::vector<Ridge> ridges;  ///< parameters of which combinations alone are determined
   std::vector<PosteriorComparison> posteriors;
   std::optional<PosteriorCalibration> calibration;
   std::vector<BaselineSummary> baselines;
   std::vector<Refined> refined;        ///< n; empty where nothing was refined
   std::vector<MethodSummary> methods;  ///< empty where nothing was refined
   std::vector<MapComparison> maps;
+  std::optional<DerivedEvaluation> derived;  ///< where the experiment derives quantities
 };
 
 /// Everything that the tables of one run show.

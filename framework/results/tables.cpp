@@ -36,9 +36,7 @@ Row makeHeader(const RunSummary& run) {
   return header;
 }
 
-Row makeRow(const RunSummary& run, std::size_t p) {
-  const ParameterSpec& parameter = run.parameters[p];
-  const ParameterMetrics& metrics = run.evaluation.metrics[p];
+Row makeRow(const RunSummary& run, const ParameterSpec& parameter, const ParameterMetrics& metrics) {
   Row row{parameter.name.text, parameter.unit, toShortText(parameter.bounds.lower, kBoundDigits),
           toShortText(parameter.bounds.upper, kBoundDigits)};
   for (const FigureColumn& column : kFigureColumns) {
@@ -50,11 +48,17 @@ Row makeRow(const RunSummary& run, std::size_t p) {
   return row;
 }
 
-/// Header and a row a parameter, each cell escaped.
+/// Header and a row a parameter, then one a derived quantity, each cell escaped.
 std::vector<Row> makeRows(const RunSummary& run, std::string (*escape)(const std::string&)) {
   std::vector<Row> rows{makeHeader(run)};
   for (std::size_t p = 0; p < run.parameters.size(); ++p) {
-    rows.push_back(makeRow(run, p));
+    rows.push_back(makeRow(run, run.parameters[p], run.evaluation.metrics[p]));
+  }
+  if (run.evaluation.derived) {
+    const DerivedEvaluation& derived = *run.evaluation.derived;
+    for (std::size_t k = 0; k < derived.quantities.size(); ++k) {
+      rows.push_back(makeRow(run, derived.quantities[k], derived.metrics[k]));
+    }
   }
   for (Row& row : rows) {
     std::transform(row.begin(), row.end(), row.begin(), escape);

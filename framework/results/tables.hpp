@@ -6,9 +6,10 @@
 
 namespace twinmap {
 
-/// metrics.csv: one row a parameter; columns parameter, unit, lower, upper, kFigureColumns (limit_pct and
-/// ratio_to_limit only where the limit is known), loo_sd_pct, loo_coverage95, loo_nlpd (empty where not
-/// available), nlml, test_samples, then the standard error of each figure as NAME_se.
+/// metrics.csv: one row a parameter, then one a derived quantity; columns parameter, unit, lower, upper,
+/// kFigureColumns (limit_pct and ratio_to_limit only where the limit is known), loo_sd_pct, loo_coverage95,
+/// loo_nlpd (empty where not available), nlml, test_samples, then the standard error of each figure as
+/// NAME_se.
 std::string makeMetricsCsv(const RunSummary& run);
 
 /// joint.csv: metric, value, se; one row each of kJointColumns.
@@ -24,6 +25,10 @@ std::string makeComponentsCsv(const RunSummary& run);
 /// interval_factor50 and interval_factor95 where intervals are not those of normal distributions; all
 /// parameters of a sample, then the next.
 std::string makePredictionsCsv(const RunSummary& run);
+
+/// derived.csv: sample, parameter (a derived quantity), true, inferred, stddev, lower, upper (of 95 %),
+/// limit_stddev where the limit is known. Needs Evaluation::derived.
+std::string makeDerivedCsv(const RunSummary& run);
 
 /// failures.csv: set, sample, the value of each parameter of the sampled box, reason.
 std::string makeFailuresCsv(const std::vector<ParameterSpec>& sampled,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/gp/polish.hpp"
 #include "kernels/gp/starts.hpp"
 
 namespace twinmap::gp {
@@ -20,10 +21,40 @@ struct Task {
   std::size_t start;
 };
 
+// Where Newton's steps do not arrive soon, the start was not near an optimum, or near a poor one: L-BFGS,
+// whose line search reaches further, begins there as well, and the better of the two ends counts.
+SearchResult searchWarm(const TrainingSet& set, const TrainingOptions& options, const TargetSearches& target,
+                        LikelihoodWorkspace& workspace) {
+  constexpr int kSoon = 16;  // evaluations; from near an optimum 5 to 15
+  const Objective objective = [&](const VectorXd& point, VectorXd& gradient) {
+    return evaluateLikelihoodGradient(set, target.values, fromLog(set.getStructure(), point), workspace,
+                                      gradient);
+  };
+  SearchLimits limits{std::min(kSoon, options.max_evaluations), options.tolerance, nullptr, options.stop};
+  const SearchResult polished = polish(objective, target.starts[0], target.curvature, target.box, limits);
+  limits.max_evaluations = options.max_evaluations - polished.evaluations;
+  if (polished.converged || limits.max_evaluations < 1 || isStopRequested(options.stop)) {
+    return polished;
+  }
+  SearchResult further = minimize(objective, set.size(), target.starts[0], target.box, limits);
+  if (polished.objective < further.objective) {
+    further.end = polished.end;
+    further.nlml = polished.nlml;
+    further.objective = polished.objective;
+  }
+  further.evaluations += polished.evaluations;
+  further.largest_jitter = std::max(polished.largest_jitter, further.largest_jitter);
+  return further;
+}
+
 // The starts after the first know its optimum, and stop once they have come near it.
 void runTask(const TrainingSet& set, const TrainingOptions& options, const Task& task,
              LikelihoodWorkspace& workspace) {
   TargetSearches& target = *task.target;
+  if (target.curvature.size() > 0) {
+    target.results[task.start] = searchWarm(set, options, target, workspace);
+    return;
+  }
   const SearchResult* known = task.start > 0 ? &target.results[0] : nullptr;
   target.results[task.start] =
       search(set, target.values, target.starts[task.start], target.box,
@@ -142,7 +173,8 @@ std::vector<TargetSearches> searchAllStarts(const TrainingSet& set, const Eigen:
   if (!options.warm_starts.empty()) {
     for (std::size_t t = 0; t < all.size(); ++t) {
       if (!all[t].constant) {
-        all[t].starts = {toLog(set.getStructure(), options.warm_starts[t])};
+        all[t].starts = {toLog(set.getStructure(), options.warm_starts[t].hyperparameters)};
+        all[t].curvature = options.warm_starts[t].curvature;
       }
     }
     runTasks(set, options, makeTasks(all, 0, 1));

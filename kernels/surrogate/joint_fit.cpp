@@ -68,19 +68,21 @@ bool fitJointly(const SharedStructure& structure, const SharedHyperparameters& h
   if (!invertFactor(inverse)) {
     return false;
   }
+  const auto whiten = inverse.triangularView<Eigen::Lower>();
+  const auto whiten_transposed = inverse.transpose().triangularView<Eigen::Upper>();
   const MatrixXd terms =
-      inverse * calcJointTerms(structure.trend, hyperparameters.length_scales, points, m, u);
-  const MatrixXd known = inverse * stackValues(values, slopes, hyperparameters.length_scales);
+      whiten * calcJointTerms(structure.trend, hyperparameters.length_scales, points, m, u);
+  const MatrixXd known = whiten * stackValues(values, slopes, hyperparameters.length_scales);
   fit.coefficients = linalg::fitLinear(terms, known).coefficients;
   const MatrixXd rest = known - terms * fit.coefficients;
-  fit.weights = inverse.transpose() * rest;
+  fit.weights = whiten_transposed * rest;
   const linalg::Cholesky of_terms = linalg::calcCholesky(terms.transpose() * terms);
   if (!of_terms.positive_definite || !fit.weights.allFinite()) {
     return false;
   }
   fit.residual.resize(points.cols(), values.cols());
   fit.variance.resize(points.cols());
-  const MatrixXd solved = inverse.transpose() * terms;
+  const MatrixXd solved = whiten_transposed * terms;
   leaveOut(inverse, linalg::solveLower(of_terms.lower, solved.transpose()), slopes, fit);
   return fit.variance.minCoeff() > 0.0 && fit.residual.allFinite();
 }

@@ -33,6 +33,10 @@ class Hdf5Writer {
   void write(const std::string& dataset, const double* values, const std::vector<std::size_t>& shape);
   /// d x n -> (n, d).
   void writeSamples(const std::string& dataset, const Eigen::MatrixXd& columns);
+  /// A dataset (n, d) that is filled part by part; what is not written is 0.
+  void createSamples(const std::string& dataset, Eigen::Index samples, Eigen::Index numbers);
+  /// Columns (d x k) of it, from sample `first` on.
+  void writeSamples(const std::string& dataset, Eigen::Index first, const Eigen::MatrixXd& columns);
   void write(const std::string& dataset, const Eigen::VectorXd& values);
   void write(const std::string& dataset, double value);
   void write(const std::string& dataset, const std::vector<std::int64_t>& values);

@@ -83,6 +83,26 @@ void Hdf5Writer::writeSamples(const std::string& dataset, const Eigen::MatrixXd&
         {static_cast<std::size_t>(columns.cols()), static_cast<std::size_t>(columns.rows())});
 }
 
+void Hdf5Writer::createSamples(const std::string& dataset, Eigen::Index samples, Eigen::Index numbers) {
+  const Hdf5Handle space = makeSpace({static_cast<std::size_t>(samples), static_cast<std::size_t>(numbers)});
+  const Hdf5Handle data(createDataset(dataset, H5T_IEEE_F64LE, space.get()), H5Dclose,
+                        path_ + ": " + dataset + " cannot be created");
+}
+
+void Hdf5Writer::writeSamples(const std::string& dataset, Eigen::Index first,
+                              const Eigen::MatrixXd& columns) {
+  const std::string what = path_ + ": " + dataset + " cannot be written";
+  const Hdf5Handle data(H5Dopen2(file_, dataset.c_str(), H5P_DEFAULT), H5Dclose, what);
+  const Hdf5Handle place(H5Dget_space(data.get()), H5Sclose, what);
+  const Hdf5Handle part =
+      makeSpace({static_cast<std::size_t>(columns.cols()), static_cast<std::size_t>(columns.rows())});
+  const hsize_t offset[] = {static_cast<hsize_t>(first), 0};
+  const hsize_t count[] = {static_cast<hsize_t>(columns.cols()), static_cast<hsize_t>(columns.rows())};
+  requireHdf5(H5Sselect_hyperslab(place.get(), H5S_SELECT_SET, offset, nullptr, count, nullptr), what);
+  requireHdf5(H5Dwrite(data.get(), H5T_NATIVE_DOUBLE, part.get(), place.get(), H5P_DEFAULT, columns.data()),
+              what);
+}
+
 void Hdf5Writer::write(const std::string& dataset, const Eigen::VectorXd& values) {
   write(dataset, values.data(), {static_cast<std::size_t>(values.size())});
 }

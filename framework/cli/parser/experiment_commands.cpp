@@ -41,6 +41,10 @@ void addRun(CLI::App& app, const Invocation& invocation) {
       ->excludes(fail_fast);
   addFailOnGates(*command, arguments->fail_on_gates);
   command->add_flag("--quiet", arguments->quiet, "No progress, only warnings and errors");
+  command->add_flag(
+      "--features-only", arguments->features_only,
+      "Simulate, write the points and noisy features of all samples to features.h5, and train nothing; "
+      "memory does not grow with the samples");
   command->callback([arguments] { run(*arguments); });
 }
 

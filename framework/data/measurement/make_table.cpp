@@ -7,11 +7,11 @@
 
 namespace twinmap {
 
-Table makeTable(const std::string& source, const std::vector<NamedValues>& columns,
+Table makeTable(const std::string& source, const std::vector<NamedColumn>& columns,
                 const std::vector<std::string>& wanted) {
   TableBuilder table(source, wanted);
   std::set<std::string> names;
-  for (const NamedValues& column : columns) {
+  for (const NamedColumn& column : columns) {
     const ColumnSpec header = parseColumn(column.header);
     if (!names.insert(header.name).second) {
       throw MeasurementError(source + ": names the column '" + header.name + "' twice");

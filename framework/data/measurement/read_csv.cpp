@@ -1,5 +1,9 @@
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 #include "framework/data/measurement/csv_cells.hpp"
 #include "framework/data/measurement/csv_lines.hpp"
@@ -27,10 +31,19 @@ const char* parseNumber(std::string_view cell, double& value) {
   return std::isfinite(value) ? nullptr : "must be a finite number";
 }
 
+/// Whether a cell says that there is no number.
+bool isMissing(std::string_view cell) {
+  static constexpr std::array<std::string_view, 8> kWords{"", "nan", "na", "n/a", "null", "none", "-", "?"};
+  std::string lower(cell);
+  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  return std::find(kWords.begin(), kWords.end(), lower) != kWords.end();
+}
+
 class CsvReader {
  public:
-  CsvReader(std::istream& stream, const std::string& source, const std::vector<std::string>& wanted)
-      : lines_(stream, source), source_(source), table_(source, wanted) {}
+  CsvReader(std::istream& stream, const std::string& source, const std::vector<std::string>& wanted,
+            MissingCells missing)
+      : lines_(stream, source), source_(source), table_(source, wanted, missing), missing_(missing) {}
 
   Table read() {
     readHeader();
@@ -112,7 +125,9 @@ class CsvReader {
     if (!cells.kept) {
       return;
     }
-    if (const char* problem = parseNumber(cell, value)) {
+    if (missing_ == MissingCells::kKeep && isMissing(cell)) {
+      value = std::numeric_limits<double>::quiet_NaN();
+    } else if (const char* problem = parseNumber(cell, value)) {
       skip(cells, cell, problem);
       return;
     }
@@ -150,14 +165,16 @@ class CsvReader {
   CsvLines lines_;
   const std::string& source_;
   TableBuilder table_;
+  const MissingCells missing_;
   char separator_ = ',';
   std::vector<Cells> columns_;
 };
 
 }  // namespace
 
-Table readCsv(std::istream& stream, const std::string& source, const std::vector<std::string>& wanted) {
-  return CsvReader(stream, source, wanted).read();
+Table readCsv(std::istream& stream, const std::string& source, const std::vector<std::string>& wanted,
+              MissingCells missing) {
+  return CsvReader(stream, source, wanted, missing).read();
 }
 
 }  // namespace twinmap

@@ -42,10 +42,11 @@ void addDataset(const Hdf5Reader& file, const std::string& name, TableBuilder& t
 
 }  // namespace
 
-Table readHdf5Table(const std::filesystem::path& path, const std::vector<std::string>& wanted) {
+Table readHdf5Table(const std::filesystem::path& path, const std::vector<std::string>& wanted,
+                    MissingCells missing) {
   try {
     const Hdf5Reader file(path);
-    TableBuilder table(path.string(), wanted);
+    TableBuilder table(path.string(), wanted, missing);
     for (const std::string& name : file.listDatasets()) {
       if (table.takes(name)) {
         addDataset(file, name, table);

@@ -5,6 +5,7 @@
 namespace twinmap {
 
 /// See readTable().
-Table readHdf5Table(const std::filesystem::path& path, const std::vector<std::string>& wanted);
+Table readHdf5Table(const std::filesystem::path& path, const std::vector<std::string>& wanted,
+                    MissingCells missing);
 
 }  // namespace twinmap

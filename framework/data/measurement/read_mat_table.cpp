@@ -95,13 +95,14 @@ void addVariable(mat_t& file, matvar_t& variable, TableBuilder& table) {
 
 }  // namespace
 
-Table readMatTable(const std::filesystem::path& path, const std::vector<std::string>& wanted) {
+Table readMatTable(const std::filesystem::path& path, const std::vector<std::string>& wanted,
+                   MissingCells missing) {
   const auto library = lockHdf5();
   const MatFile file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
   if (file == nullptr) {
     throw MeasurementError(path.string() + ": cannot be read as a MATLAB file");
   }
-  TableBuilder table(path.string(), wanted);
+  TableBuilder table(path.string(), wanted, missing);
   std::vector<MatVariable> variables;
   while (matvar_t* variable = Mat_VarReadNextInfo(file.get())) {
     variables.emplace_back(variable);

@@ -15,12 +15,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Table readCsvFile(const fs::path& path, const std::vector<std::string>& wanted) {
+Table readCsvFile(const fs::path& path, const std::vector<std::string>& wanted, MissingCells missing) {
   std::ifstream file(path, std::ios::binary);
   if (!file) {
     throw MeasurementError(path.string() + ": cannot be opened");
   }
-  return readCsv(file, path.string(), wanted);
+  return readCsv(file, path.string(), wanted, missing);
 }
 
 std::string getExtension(const fs::path& path) {
@@ -63,20 +63,20 @@ std::string escapeCell(const std::string& text) {
 
 }  // namespace
 
-Table readTable(const fs::path& path, const std::vector<std::string>& wanted) {
+Table readTable(const fs::path& path, const std::vector<std::string>& wanted, MissingCells missing) {
   if (!fs::is_regular_file(path) && !fs::is_fifo(path) && !fs::is_character_file(path)) {
     throw MeasurementError(path.string() + (fs::exists(path) ? ": is not a file" : ": does not exist"));
   }
   const std::string extension = getExtension(path);
   if (extension == ".mat") {
-    return readMatTable(path, wanted);
+    return readMatTable(path, wanted, missing);
   }
   if (extension == ".h5" || extension == ".hdf5") {
-    return readHdf5Table(path, wanted);
+    return readHdf5Table(path, wanted, missing);
   }
   for (const char* text : {".csv", ".txt", ".tsv", ".dat"}) {
     if (extension == text) {
-      return readCsvFile(path, wanted);
+      return readCsvFile(path, wanted, missing);
     }
   }
   throw MeasurementError(path.string() +

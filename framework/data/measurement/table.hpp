@@ -31,12 +31,19 @@ struct SkippedColumn {
   std::string reason;  ///< "" if it was not asked for; else the whole message
 };
 
-/// Columns of a file of measurements. All numbers are finite; no column is empty. Those of a text file have
-/// the same length.
+/// Columns of a file of measurements. All numbers are finite, or NaN where cells may be missing
+/// (MissingCells); no column is empty. Those of a text file have the same length.
 struct Table {
   std::string source;  ///< names the file in errors
   std::vector<Column> columns;
   std::vector<SkippedColumn> skipped;
+};
+
+/// What becomes of a cell without a number: empty, nan, NA, N/A, null, none, - or ?, and NaN in a binary
+/// file.
+enum class MissingCells {
+  kRefuse,  ///< MeasurementError
+  kKeep,    ///< NaN
 };
 
 /// The most numbers that are kept of one file (0.8 GB).
@@ -48,13 +55,15 @@ constexpr std::size_t kMaxNumbers = 100'000'000;
 /// that the file has; empty: all that are columns of numbers, the others are skipped with the reason.
 /// Throws MeasurementError for a file that cannot be read and a wanted column that is not a column of
 /// numbers.
-Table readTable(const std::filesystem::path& path, const std::vector<std::string>& wanted = {});
+Table readTable(const std::filesystem::path& path, const std::vector<std::string>& wanted = {},
+                MissingCells missing = MissingCells::kRefuse);
 
 /// Reads a text table in one pass, memory for the wanted columns only. Its first line that is neither empty
 /// nor a comment (#) names the columns, "enc1" or "enc1 [mm]", perhaps in quotes; cells are separated by
 /// commas, semicolons or tabs, whichever the header has most. Columns without a name are ignored, empty lines
 /// and comments as well. Numbers have a decimal point. UTF-8, with or without byte-order mark.
-Table readCsv(std::istream& stream, const std::string& source, const std::vector<std::string>& wanted = {});
+Table readCsv(std::istream& stream, const std::string& source, const std::vector<std::string>& wanted = {},
+              MissingCells missing = MissingCells::kRefuse);
 
 /// The column of that name, or nullptr. Throws MeasurementError where it was skipped for a reason.
 const Column* findColumn(const Table& table, const std::string& name);

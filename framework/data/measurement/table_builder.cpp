@@ -7,8 +7,9 @@
 
 namespace twinmap {
 
-TableBuilder::TableBuilder(const std::string& source, const std::vector<std::string>& wanted)
-    : table_{source, {}, {}}, wanted_(wanted) {}
+TableBuilder::TableBuilder(const std::string& source, const std::vector<std::string>& wanted,
+                           MissingCells missing)
+    : table_{source, {}, {}}, wanted_(wanted), missing_(missing) {}
 
 bool TableBuilder::takes(const std::string& name) {
   const bool taken = wanted_.empty() || std::find(wanted_.begin(), wanted_.end(), name) != wanted_.end();
@@ -28,7 +29,10 @@ void TableBuilder::reserve(std::size_t count) {
 
 void TableBuilder::add(Column column) {
   const Eigen::Index bad =
-      std::find_if(column.values.begin(), column.values.end(), [](double x) { return !std::isfinite(x); }) -
+      std::find_if(column.values.begin(), column.values.end(),
+                   [&](double x) {
+                     return !std::isfinite(x) && !(missing_ == MissingCells::kKeep && std::isnan(x));
+                   }) -
       column.values.begin();
   if (column.values.size() == 0) {
     skip(column.name, "has no samples");

@@ -10,7 +10,8 @@ namespace twinmap {
 /// Makes a table of the columns that are wanted, for the readers of the formats.
 class TableBuilder {
  public:
-  TableBuilder(const std::string& source, const std::vector<std::string>& wanted);
+  TableBuilder(const std::string& source, const std::vector<std::string>& wanted,
+               MissingCells missing = MissingCells::kRefuse);
 
   /// Whether a column is to be read; one that is not is noted as not asked for.
   bool takes(const std::string& name);
@@ -18,7 +19,7 @@ class TableBuilder {
   /// Throws MeasurementError if `count` numbers more are too many for one table.
   void reserve(std::size_t count);
 
-  /// Adds a column, unless it is empty or has a number that is not finite.
+  /// Adds a column, unless it is empty or has a number that is neither finite nor missing.
   void add(Column column);
 
   /// What is wrong with a column (in a line of a text file): thrown where the column was asked for by name,
@@ -31,6 +32,7 @@ class TableBuilder {
  private:
   Table table_;
   std::vector<std::string> wanted_;
+  MissingCells missing_;
   std::size_t numbers_ = 0;
 };
 

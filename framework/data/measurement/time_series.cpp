@@ -59,7 +59,7 @@ std::vector<std::string> listTimeColumns(const TimeBase& base) {
   return base.time ? std::vector<std::string>{base.time->name} : std::vector<std::string>{"t", "time"};
 }
 
-VectorXd readTimes(const Table& table, const TimeBase& base, Index rows) {
+VectorXd readUnorderedTimes(const Table& table, const TimeBase& base, Index rows) {
   if (base.sample_rate) {
     return VectorXd::NullaryExpr(
         rows, [&](Index i) { return static_cast<double>(i) / *base.sample_rate - base.start; });
@@ -67,8 +67,14 @@ VectorXd readTimes(const Table& table, const TimeBase& base, Index rows) {
   const Column& column = getTimeColumn(table, base);
   const UnitConversion conversion =
       findConversion(table, column, base.time.value_or(ColumnSpec{column.name, {}, {}}), "s");
-  const VectorXd times = column.values.unaryExpr([&](double t) { return conversion.apply(t) - base.start; });
-  requireIncreasing(table, column, times);
+  return column.values.unaryExpr([&](double t) { return conversion.apply(t) - base.start; });
+}
+
+VectorXd readTimes(const Table& table, const TimeBase& base, Index rows) {
+  VectorXd times = readUnorderedTimes(table, base, rows);
+  if (!base.sample_rate) {
+    requireIncreasing(table, getTimeColumn(table, base), times);
+  }
   return times;
 }
 

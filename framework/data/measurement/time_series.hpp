@@ -20,6 +20,8 @@ std::vector<std::string> listTimeColumns(const TimeBase& base);
 /// rate. Throws MeasurementError for a missing column, a unit that does not convert to s, and times that do
 /// not increase. O(rows).
 Eigen::VectorXd readTimes(const Table& table, const TimeBase& base, Eigen::Index rows);
+/// The same, whatever their order, NaN where a row has no time.
+Eigen::VectorXd readUnorderedTimes(const Table& table, const TimeBase& base, Eigen::Index rows);
 
 /// Rows `first` .. `first` + `count` - 1 of a column, converted to `unit`; "" takes the numbers as they
 /// stand. The column's unit is the wanted one if that is given, else the one that the table states, else

@@ -29,10 +29,10 @@ class ResponseNoise {
 
   const Eigen::VectorXd& getStddev() const { return stddev_; }
 
-  /// Responses (rows x n) plus noise. That of a response depends on the stream, its column and the replicate
-  /// alone.
-  Eigen::MatrixXd add(const Eigen::MatrixXd& responses, const RandomStream& random,
-                      std::uint64_t replicate) const;
+  /// Responses (rows x n) plus noise. That of a response depends on the stream, its number and the replicate
+  /// alone; the columns are numbered from `first` on.
+  Eigen::MatrixXd add(const Eigen::MatrixXd& responses, const RandomStream& random, std::uint64_t replicate,
+                      Eigen::Index first = 0) const;
 
   /// The covariance M C M' (d x d) of features = M * response.
   Eigen::MatrixXd calcCovariance(const FeatureMatrix& matrix) const;

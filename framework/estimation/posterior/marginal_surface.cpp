@@ -61,8 +61,7 @@ double MarginalSurface::integrate(const LocalSurface& local) const {
   }
   const MatrixXd lower = factorize(local.information, others_);
   const double gain = linalg::solveLower(lower, local.descent(others_)).squaredNorm();
-  return -0.5 * (local.chi_square - gain) - lower.diagonal().array().log().sum() +
-         surface_.calcLogPrior(local.at);
+  return -0.5 * (local.loss - gain) - lower.diagonal().array().log().sum() + surface_.calcLogPrior(local.at);
 }
 
 VectorXd MarginalSurface::calcLogPosteriors(const MatrixXd& points) {

@@ -14,19 +14,32 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Adds a part's linear model, in half-widths of the bounds, to the surface's. Its descent holds the box as a
-/// normal distribution, too.
-void addPart(const LocalMisfit& local, const std::vector<Index>& unknown, LocalSurface& surface) {
+/// Adds a part's linear model, in half-widths of the bounds, to the surface's. Its own descent holds the box
+/// as a normal distribution, too.
+void addPart(const LocalMisfit& local, const MeasuredPart& part, LocalSurface& surface) {
   surface.simulated = surface.simulated && local.status.ok && std::isfinite(local.chi_square);
   if (!surface.simulated) {
     return;
   }
-  surface.chi_square += local.chi_square;
-  surface.information(unknown, unknown) += local.information;
-  surface.descent(unknown) += local.descent + kHalfWidthInformation * local.at;
   const Index before = surface.residual.size();
   surface.residual.conservativeResize(before + local.residual.size());
   surface.residual.tail(local.residual.size()) = local.residual;
+  surface.weights.conservativeResize(surface.residual.size());
+  auto weights = surface.weights.tail(local.residual.size());
+  if (part.loss == LossKind::kPlain) {
+    weights.setOnes();
+    surface.chi_square += local.chi_square;
+    surface.loss += local.chi_square;
+    surface.information(part.unknown, part.unknown) += local.information;
+    surface.descent(part.unknown) += local.descent + kHalfWidthInformation * local.at;
+    return;
+  }
+  weights = calcLossWeights(part.loss, local.residual);
+  surface.chi_square += weights.dot(local.residual.cwiseAbs2());
+  surface.loss += calcLoss(part.loss, local.residual);
+  const MatrixXd weighted = weights.asDiagonal() * local.jacobian;
+  surface.information(part.unknown, part.unknown) += local.jacobian.transpose() * weighted;
+  surface.descent(part.unknown) += weighted.transpose() * local.residual;
 }
 
 /// Residuals less the parameters that they, not the box, determine: trace of I (I + prior)^-1.
@@ -77,13 +90,16 @@ std::vector<LocalSurface> MisfitSurface::linearize(const MatrixXd& points) {
   const Index u = points.rows();
   std::vector<LocalSurface> surfaces(static_cast<std::size_t>(points.cols()));
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    surfaces[i] = {
-        true, points.col(static_cast<Index>(i)), 0.0, 0.0, 0.0, MatrixXd::Zero(u, u), VectorXd::Zero(u), {}};
+    LocalSurface& surface = surfaces[i];
+    surface.simulated = true;
+    surface.at = points.col(static_cast<Index>(i));
+    surface.information = MatrixXd::Zero(u, u);
+    surface.descent = VectorXd::Zero(u);
   }
   for (const MeasuredPart& part : parts_) {
     const std::vector<LocalMisfit> local = part.misfit->linearizeAll(box(part.unknown, Eigen::all));
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
-      addPart(local[i], part.unknown, surfaces[i]);
+      addPart(local[i], part, surfaces[i]);
     }
   }
   for (LocalSurface& surface : surfaces) {
@@ -99,7 +115,7 @@ std::vector<LocalSurface> MisfitSurface::linearize(const MatrixXd& points) {
 }
 
 void MisfitSurface::addPrior(LocalSurface& surface) const {
-  surface.misfit = surface.chi_square;
+  surface.misfit = surface.loss;
   if (prior_.isUniform()) {
     return;
   }
@@ -110,18 +126,27 @@ void MisfitSurface::addPrior(LocalSurface& surface) const {
   surface.descent += slopes.cwiseProduct(prior.descent);
 }
 
-VectorXd MisfitSurface::calcChiSquares(const MatrixXd& points) {
+VectorXd MisfitSurface::calcLosses(const MatrixXd& points) {
   const MatrixXd box = toBox(points);
   VectorXd sums = VectorXd::Zero(points.cols());
   for (const MeasuredPart& part : parts_) {
     const MatrixXd own = box(part.unknown, Eigen::all);
-    sums += part.misfit->evaluate(own) - kHalfWidthInformation * own.colwise().squaredNorm().transpose();
+    if (part.loss == LossKind::kPlain) {
+      sums += part.misfit->evaluate(own) - kHalfWidthInformation * own.colwise().squaredNorm().transpose();
+      continue;
+    }
+    std::vector<SampleStatus> statuses;
+    const MatrixXd residuals = part.misfit->simulateResiduals(own, statuses);
+    for (Index i = 0; i < points.cols(); ++i) {
+      sums[i] += statuses[static_cast<std::size_t>(i)].ok ? calcLoss(part.loss, residuals.col(i))
+                                                          : std::numeric_limits<double>::infinity();
+    }
   }
   return sums;
 }
 
 VectorXd MisfitSurface::calcMisfits(const MatrixXd& points) {
-  VectorXd misfits = calcChiSquares(points);
+  VectorXd misfits = calcLosses(points);
   for (Index i = 0; i < points.cols() && !prior_.isUniform(); ++i) {
     misfits[i] += prior_.calcMisfit(coordinates_.toParameters(points.col(i))).misfit;
   }
@@ -137,7 +162,7 @@ VectorXd MisfitSurface::calcLogPosteriors(const MatrixXd& points) {
   }
   VectorXd logs = VectorXd::Constant(points.cols(), -std::numeric_limits<double>::infinity());
   if (!inside.empty()) {
-    logs(inside) = -0.5 * calcChiSquares(points(Eigen::all, inside));
+    logs(inside) = -0.5 * calcLosses(points(Eigen::all, inside));
   }
   for (const Index i : inside) {
     logs[i] += calcLogPrior(points.col(i));

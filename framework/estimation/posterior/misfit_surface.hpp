@@ -4,23 +4,26 @@
 #include <vector>
 
 #include "framework/estimation/posterior/log_coordinates.hpp"
+#include "framework/estimation/posterior/residual_loss.hpp"
 #include "framework/estimation/refined/misfit.hpp"
 #include "framework/experiment/points/prior.hpp"
 
 namespace twinmap {
 
-/// chi-square and its linear model at a point, in LogCoordinates: with the whitened residual r and its
-/// derivatives -J, and the prior's misfit beside it,
+/// chi-square and its linear model at a point, in LogCoordinates: with the whitened residual r, weighted, and
+/// its derivatives -J, and the prior's misfit beside it,
 ///   misfit(at + step) ~ misfit - 2 step' descent + step' information step.
 struct LocalSurface {
   bool simulated = false;  ///< if not, the rest is empty
   Eigen::VectorXd at;      ///< u
   double chi_square = 0.0;
-  double misfit = 0.0;   ///< chi-square and that of the prior, which is 0 where it is uniform
+  double loss = 0.0;     ///< chi-square where the loss is plain
+  double misfit = 0.0;   ///< loss and the prior's misfit, which is 0 where it is uniform
   double degrees = 0.0;  ///< of freedom: residuals less the parameters that they determine
   Eigen::MatrixXd information;
   Eigen::VectorXd descent;
   Eigen::VectorXd residual;  ///< whitened; of one measurement after the other
+  Eigen::VectorXd weights;   ///< of their squares in chi-square: 1 but for unknown noise and outliers
 };
 
 /// One measurement of those that a surface explains together.
@@ -28,6 +31,7 @@ struct MeasuredPart {
   Misfit* misfit;                     ///< of all unknown parameters of its trial
   const RefinementModel* model;       ///< of its trial
   std::vector<Eigen::Index> unknown;  ///< which of all unknown parameters these are
+  LossKind loss = LossKind::kPlain;
 };
 
 /// How well simulators explain one or several measurements of one machine, over the box of all unknown
@@ -62,7 +66,7 @@ class MisfitSurface {
 
  private:
   Eigen::MatrixXd toBox(const Eigen::MatrixXd& points) const;
-  Eigen::VectorXd calcChiSquares(const Eigen::MatrixXd& points);
+  Eigen::VectorXd calcLosses(const Eigen::MatrixXd& points);
   void addPrior(LocalSurface& surface) const;
 
   std::vector<MeasuredPart> parts_;

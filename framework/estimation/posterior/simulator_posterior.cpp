@@ -178,8 +178,9 @@ std::vector<PosteriorMode> collectModes(const std::vector<Basin>& basins,
     const double weight = part.weights.sum();
     if (weight >= kMinWeight) {
       part.weights /= weight;
-      modes.push_back({weight, importance::calcMean(part),
-                       importance::calcCovariance(part).diagonal().cwiseSqrt(), basins[k].local.chi_square});
+      const MatrixXd covariance = importance::calcCovariance(part);
+      modes.push_back({weight, importance::calcMean(part), covariance.diagonal().cwiseSqrt(),
+                       basins[k].local.chi_square, covariance});
     }
   }
   std::stable_sort(modes.begin(), modes.end(),
@@ -229,7 +230,7 @@ class ProblemSurface {
     std::vector<MeasuredPart> parts;
     for (const MeasuredTrial& trial : problem.trials) {
       parts_.push_back(std::make_unique<Part>(trial));
-      parts.push_back({&parts_.back()->misfit, trial.model, trial.unknown});
+      parts.push_back({&parts_.back()->misfit, trial.model, trial.unknown, trial.loss});
     }
     return parts;
   }
@@ -247,6 +248,7 @@ void setBest(const BasinSearch& found, const LogCoordinates& coordinates, Simula
   posterior.misfit = best.local.misfit;
   posterior.information = best.local.information;
   posterior.residual = best.local.residual;
+  posterior.residual_weights = best.local.weights;
   posterior.degrees = best.local.degrees;
   posterior.found_best = best.searches;
 }
@@ -321,6 +323,7 @@ SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Matrix
     return posterior;
   }
   setBest(found, coordinates, posterior);
+  posterior.loss = problem.trials.front().loss;
   const Valleys valleys = followValleys(surface, found.basins);
   std::vector<Basin> places = found.basins;
   places.insert(places.end(), valleys.floors.begin(), valleys.floors.end());

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,10 +12,11 @@ namespace twinmap {
 
 /// A place where the posterior has some of its mass, apart from the others.
 struct PosteriorMode {
-  double weight = 0.0;      ///< share of the posterior
-  Eigen::VectorXd mean;     ///< u, in the parameters' units
-  Eigen::VectorXd stddev;   ///< u
-  double chi_square = 0.0;  ///< at its minimum
+  double weight = 0.0;           ///< share of the posterior
+  Eigen::VectorXd mean;          ///< u, in the parameters' units
+  Eigen::VectorXd stddev;        ///< u
+  double chi_square = 0.0;       ///< at its minimum
+  Eigen::MatrixXd covariance{};  ///< u x u
 };
 
 /// The posterior of unknown parameters given measurements, by simulation alone: normal noise, a prior within
@@ -29,6 +31,8 @@ struct SimulatorPosterior {
   double misfit = 0.0;               ///< there: chi-square and that of the prior
   Eigen::MatrixXd information;       ///< there, of all unknown, in LogCoordinates
   Eigen::VectorXd residual;          ///< there, whitened; of one measurement after the other
+  Eigen::VectorXd residual_weights;  ///< of its squares (LocalSurface::weights)
+  LossKind loss = LossKind::kPlain;  ///< of its measurement, where that is one
   double chi_square = 0.0, degrees = 0.0;  ///< of the best point; 0 degrees where nothing could be simulated
   double effective_sample_size = 0.0;
   double pareto_shape = 0.0;
@@ -48,9 +52,11 @@ struct SimulatorPosterior {
 struct MeasuredTrial {
   Simulator* simulator;
   const RefinementModel* model;
-  Eigen::VectorXd features;           ///< d, finite
+  Eigen::VectorXd features;           ///< d, finite where the model looks at them
   Eigen::VectorXd held;               ///< a point of the trial's sampled box, whose known inputs are kept
   std::vector<Eigen::Index> unknown;  ///< which of all unknown parameters the trial's are, in its order
+  LossKind loss = LossKind::kPlain;
+  std::shared_ptr<const RefinementModel> own_model{};  ///< `model`, where it is of this measurement alone
 };
 
 /// What is known of a machine: one or several measurements, and what was known before.

@@ -27,10 +27,10 @@ struct Probes {
   VectorXd reach;
 };
 
-Probes makeProbes(const SearchBox& box, const LocalMisfit& minimum) {
+Probes makeProbes(const SearchBox& box, const LocalMisfit& minimum, bool along_ridge) {
   const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(minimum.calcCovariance());
-  const Index count = minimum.at.size();
-  Probes probes{MatrixXd(count, 2 * count + 1), VectorXd(2 * count)};
+  const Index count = minimum.at.size() - (along_ridge ? 1 : 0);
+  Probes probes{MatrixXd(minimum.at.size(), 2 * count + 1), VectorXd(2 * count)};
   probes.points.col(2 * count) = minimum.at;
   for (Index i = 0; i < 2 * count; ++i) {
     const double side = i < count ? 1.0 : -1.0;
@@ -90,11 +90,11 @@ double calcChiSquareLimit(const LocalMisfit& minimum) {
   return calcChiSquareLimit(minimum.calcDegrees());
 }
 
-Acceptance testMinimum(Misfit& misfit, const LocalMisfit& minimum) {
+Acceptance testMinimum(Misfit& misfit, const LocalMisfit& minimum, bool along_ridge) {
   if (!isExplained(minimum)) {
     return refuseMisfit(minimum);
   }
-  const Probes probes = makeProbes(misfit.getBox(), minimum);
+  const Probes probes = makeProbes(misfit.getBox(), minimum, along_ridge);
   const VectorXd misfits = misfit.evaluate(probes.points);
   const Index last = probes.reach.size();
   // the bottom is simulated as the others: integration errors differ

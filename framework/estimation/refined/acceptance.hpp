@@ -24,8 +24,9 @@ double calcChiSquareLimit(const LocalMisfit& minimum);
 ///   4, beyond which a standard deviation would be wrong by a factor of 2. Where the limits of the search
 ///   come first, the rise is that at the limit, and none is asked for within half a standard deviation: there
 ///   the box decides and not the model.
-/// Cost: 2 s + 1 simulations, one batch.
-Acceptance testMinimum(Misfit& misfit, const LocalMisfit& minimum);
+/// Cost: 2 s + 1 simulations, one batch. `along_ridge`: the eigenvector of largest variance is left out, as
+/// its direction is followed by traceRidge().
+Acceptance testMinimum(Misfit& misfit, const LocalMisfit& minimum, bool along_ridge = false);
 
 /// The same of a minimum and of the misfits that were simulated with it.
 Acceptance testProbed(const ProbedMisfit& minimum);

@@ -27,7 +27,8 @@ LocalMisfit combine(const SampleStatus& status, const VectorXd& at, const Vector
           residual.size(),
           jacobian.transpose() * jacobian,
           jacobian.transpose() * residual - kHalfWidthInformation * at,
-          residual};
+          residual,
+          jacobian};
 }
 
 }  // namespace
@@ -50,7 +51,11 @@ double LocalMisfit::calcDegrees() const {
 
 Misfit::Misfit(Simulator& simulator, const RefinementModel& model, const SearchBox& box,
                const VectorXd& measured)
-    : simulator_(simulator), model_(model), box_(box), measured_(measured), window_(&model.getWhole()) {}
+    : simulator_(simulator),
+      model_(model),
+      box_(box),
+      measured_(model.convert(measured)),
+      window_(&model.getWhole()) {}
 
 void Misfit::setWindow(const GrowingWindow& window) {
   window_ = &window;
@@ -88,7 +93,7 @@ std::vector<LocalMisfit> Misfit::linearizeAll(const MatrixXd& points) {
 LocalMisfit Misfit::makeLocalMisfit(const VectorXd& at, const LocalModel& local) {
   const SearchedParameters& searched = box_.getSearched();
   if (!local.status.ok) {
-    return {local.status, {}, 0.0, 0.0, 0, {}, {}, {}};
+    return {local.status, {}, 0.0, 0.0, 0, {}, {}, {}, {}};
   }
   if (!window_->whitener && !whitener_) {
     whitener_ = model_.makeWhitener(*window_, local.response);
@@ -99,7 +104,6 @@ LocalMisfit Misfit::makeLocalMisfit(const VectorXd& at, const LocalModel& local)
   return combine(local.status, at, getWhitener().apply(difference), getWhitener().apply(sensitivities));
 }
 
-/// Whitened residuals (k x n) at the columns of `points`.
 MatrixXd Misfit::simulateResiduals(const MatrixXd& points, std::vector<SampleStatus>& statuses) {
   const MatrixXd sampled = makePoints(points);
   MatrixXd responses(simulator_.getLayout().getRowCount(), points.cols());

@@ -21,6 +21,7 @@ struct LocalMisfit {
   Eigen::MatrixXd information;  ///< J'J, s x s
   Eigen::VectorXd descent;      ///< J'r - 3 at
   Eigen::VectorXd residual;     ///< r, k
+  Eigen::MatrixXd jacobian;     ///< J, k x s
 
   /// Degrees of freedom: residuals less the parameters that they, not the box, determine (trace of
   /// J'J (J'J + prior)^-1), at least one.
@@ -40,7 +41,7 @@ struct ProbedMisfit {
 /// How badly the simulator explains measured features, in units of their noise. One measurement, one thread.
 class Misfit {
  public:
-  /// All must outlive the object.
+  /// measured: the experiment's features. Simulator, model and box must outlive the object.
   Misfit(Simulator& simulator, const RefinementModel& model, const SearchBox& box,
          const Eigen::VectorXd& measured);
 
@@ -65,20 +66,22 @@ class Misfit {
   /// whitener: 2 s + 1 simulations, one batch.
   ProbedMisfit probe(const Eigen::VectorXd& at, const Eigen::MatrixXd& ways);
 
+  /// Whitened residuals (k x n) at the columns of `points` (s x n), simulated as one batch. After linearize().
+  Eigen::MatrixXd simulateResiduals(const Eigen::MatrixXd& points, std::vector<SampleStatus>& statuses);
+
   /// The misfits at the columns of `points` (s x n), simulated as one batch; infinity where a simulation
   /// fails. After linearize().
   Eigen::VectorXd evaluate(const Eigen::MatrixXd& points);
 
  private:
   const NoiseWhitener& getWhitener() const;
-  Eigen::MatrixXd simulateResiduals(const Eigen::MatrixXd& points, std::vector<SampleStatus>& statuses);
   Eigen::MatrixXd makePoints(const Eigen::MatrixXd& points) const;
   LocalMisfit makeLocalMisfit(const Eigen::VectorXd& at, const LocalModel& local);
 
   Simulator& simulator_;
   const RefinementModel& model_;
   const SearchBox& box_;
-  const Eigen::VectorXd& measured_;
+  const Eigen::VectorXd measured_;  // converted
   const GrowingWindow* window_;
   std::optional<NoiseWhitener> whitener_;  // where the noise depends on the response
   int simulations_ = 0;

@@ -10,6 +10,7 @@
 
 #include "framework/estimation/refined/acceptance.hpp"
 #include "framework/estimation/refined/confirmation.hpp"
+#include "framework/estimation/refined/ridge_trace.hpp"
 #include "framework/estimation/refined/search.hpp"
 #include "framework/simulation/simulator_team.hpp"
 
@@ -58,6 +59,9 @@ class Refinement {
       best_ = describe(*end, start.name);
       best_.status = RefinementStatus::kAccepted;
       setCovariance(calcCovariance(*end), best_);
+      if (hasFlatDirection(end->local)) {
+        setRidge(traceRidge(misfit_, end->local), best_);
+      }
     }
     return end.has_value();
   }
@@ -133,7 +137,7 @@ class Refinement {
       found.point = box_.makePoint(end.local.at);
       found.chi_square = end.local.chi_square;
       found.degrees = end.local.calcDegrees();
-      found.residual = end.local.residual;
+      found.residual = model_.placeResidual(end.local.residual);
       found.explained = end.local.chi_square < calcChiSquareLimit(end.local);
       const VectorXd way = end.local.at - box_.normalize(task_.starts.front().point);
       found.distance = std::sqrt(way.dot(end.local.calcHessian() * way));
@@ -143,13 +147,16 @@ class Refinement {
 
   Refined judge(Misfit& misfit, const SearchEnd& end, const std::string& name) const {
     Refined found = describe(end, name);
-    if (end.converged) {
-      const Acceptance acceptance = testMinimum(misfit, end.local);
-      found.status = acceptance.status;
-      found.message = acceptance.message;
+    if (!end.converged) {
+      return found;
     }
+    const std::optional<RidgeTrace> ridge = found.explained ? traceRidge(misfit, end.local) : std::nullopt;
+    const Acceptance acceptance = testMinimum(misfit, end.local, ridge.has_value());
+    found.status = acceptance.status;
+    found.message = acceptance.message;
     if (found.isAccepted()) {
       setCovariance(calcCovariance(end), found);
+      setRidge(ridge, found);
     }
     return found;
   }
@@ -163,6 +170,23 @@ class Refinement {
     const VectorXd& scale = box_.getHalfWidths();
     found.covariance = scale.asDiagonal() * covariance * scale.asDiagonal();
     found.stddev = found.covariance.diagonal().cwiseSqrt();
+    found.mean = found.point.segment(box_.getSearched().first, box_.getSearched().count);
+  }
+
+  /// What is known along a ridge instead of the covariance, which is that of its linear model.
+  void setRidge(const std::optional<RidgeTrace>& trace, Refined& found) const {
+    if (!trace) {
+      return;
+    }
+    const SearchedParameters& searched = box_.getSearched();
+    const VectorXd& scale = box_.getHalfWidths();
+    const VectorXd center =
+        box_.makePoint(VectorXd::Zero(scale.size())).segment(searched.first, searched.count);
+    found.mean = center + scale.cwiseProduct(trace->mean);
+    found.stddev = scale.cwiseProduct(trace->stddev);
+    found.interval_factors = trace->factors;
+    found.ridge = trace->pieces;
+    convert(center, scale, VectorXd::Ones(scale.size()), found.ridge);
   }
 
   /// What the usual tolerance would move the answer by counts as uncertainty: whoever compares with
@@ -177,7 +201,12 @@ class Refinement {
       const VectorXd moved = end.local.calcCovariance() * (usual.descent - end.local.descent);
       covariance += moved * moved.transpose();
     }
+    const VectorXd mean = found.mean, stddev = found.stddev;
     setCovariance(covariance, found);
+    if (found.ridge.isGiven()) {  // along it the box decides
+      found.mean = mean;
+      found.stddev = found.stddev.cwiseMax(stddev);
+    }
   }
 
   /// Accepted before nonlinear before the rest, of which the least chi-square is kept.

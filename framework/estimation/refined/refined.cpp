@@ -13,7 +13,10 @@ void rejectAsMultimodal(Refined& refined) {
     refined.status = RefinementStatus::kMultimodal;
     refined.message = "other values of the parameters fit the measurement as well";
     refined.covariance.resize(0, 0);
+    refined.mean.resize(0);
     refined.stddev.resize(0);
+    refined.ridge = {};
+    refined.interval_factors = {};
   }
 }
 

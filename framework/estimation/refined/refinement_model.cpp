@@ -11,12 +11,20 @@ using Eigen::VectorXd;
 
 namespace {
 
+std::vector<Index> listAll(const FeatureExtractor& extractor) {
+  std::vector<Index> all(extractor.getInfos().size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
 /// Samples after 0 and until `end`; what has no time of its own says something about the whole response.
-std::vector<Index> findSamplesUntil(const std::vector<FeatureInfo>& infos, double end) {
+std::vector<Index> findSamplesUntil(const std::vector<FeatureInfo>& infos,
+                                    const std::vector<Index>& available, double end) {
   std::vector<Index> found;
-  for (std::size_t i = 0; i < infos.size(); ++i) {
-    if (infos[i].time > 0.0 && infos[i].time <= end) {
-      found.push_back(static_cast<Index>(i));
+  for (const Index i : available) {
+    const double time = infos[static_cast<std::size_t>(i)].time;
+    if (time > 0.0 && time <= end) {
+      found.push_back(i);
     }
   }
   return found;
@@ -34,19 +42,28 @@ double findLastTime(const std::vector<FeatureInfo>& infos) {
 
 RefinementModel::RefinementModel(std::vector<ParameterSpec> unknown, const FeatureExtractor& extractor,
                                  const FeatureNoise& noise)
-    : unknown_(std::move(unknown)), extractor_(extractor), noise_(noise) {
-  const std::vector<FeatureInfo>& infos = extractor.getInfos();
+    : RefinementModel(std::move(unknown), extractor, noise, {}) {}
+
+RefinementModel::RefinementModel(std::vector<ParameterSpec> unknown, const FeatureExtractor& extractor,
+                                 const FeatureNoise& noise, std::vector<Index> available)
+    : unknown_(std::move(unknown)), features_(extractor), noise_(noise.getLinearForm()) {
+  const std::vector<FeatureInfo>& infos = getExtractor().getInfos();
+  if (available.empty()) {
+    available = listAll(getExtractor());
+  }
   const double last = findLastTime(infos);
   for (const double fraction : {0.125, 0.25, 0.5}) {
-    std::vector<Index> samples = findSamplesUntil(infos, fraction * last);
+    std::vector<Index> samples = findSamplesUntil(infos, available, fraction * last);
     const std::size_t known = windows_.empty() ? unknown_.size() : windows_.back().features.size();
     if (samples.size() > known) {
       addWindow(std::move(samples));
     }
   }
-  std::vector<Index> all(infos.size());
-  std::iota(all.begin(), all.end(), 0);
-  addWindow(std::move(all));
+  addWindow(std::move(available));
+}
+
+VectorXd RefinementModel::placeResidual(const VectorXd& residual) const {
+  return residual.size() == getExtractor().getFeatureCount() ? features_.placeLinearForm(residual) : residual;
 }
 
 void RefinementModel::addWindow(std::vector<Index> features) {

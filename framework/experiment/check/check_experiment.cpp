@@ -81,10 +81,13 @@ void checkSensorDesign(const SensorDesignSpec& design, const ExperimentSpec& exp
 }
 
 void checkGates(const ExperimentSpec& experiment) {
+  std::vector<std::string> known = collectNames(experiment.model.parameters);
+  const std::vector<std::string> derived = collectNames(experiment.derived);
+  known.insert(known.end(), derived.begin(), derived.end());
   for (const GateSpec& gate : experiment.gates) {
     requireKnown(gate.metric, listGateMetrics(), "a metric");
     if (gate.parameter) {
-      requireKnown(*gate.parameter, collectNames(experiment.model.parameters), "a parameter");
+      requireKnown(*gate.parameter, known, "a parameter or a derived quantity");
     }
   }
 }
@@ -106,6 +109,7 @@ void checkExperiment(const ExperimentSpec& experiment) {
 void checkBesideModel(const ExperimentSpec& experiment) {
   checkName(experiment.name);
   checkDuration(experiment);
+  checkDerived(experiment);
   checkFeatures(experiment.features, experiment.model);
   checkNoise(experiment);
   checkTransform(experiment);

@@ -15,6 +15,7 @@ void checkBesideModel(const ExperimentSpec& experiment);
 /// Parts of it, in this order.
 void checkModel(const ModelSpec& model);
 void checkTransform(const ExperimentSpec& experiment);
+void checkDerived(const ExperimentSpec& experiment);
 
 /// Throws ExperimentError unless `name` is one of `known`; `what` says what it should be ("a body").
 void requireKnown(const Name& name, const std::vector<std::string>& known, const std::string& what);

@@ -134,6 +134,23 @@ twinmap_error twinmap_infer(twinmap_state *state, int count, const double *times
 twinmap_error twinmap_infer_features(twinmap_state *state, const twinmap_real *features, const double *known,
                                      twinmap_result *result);
 
+#if TWINMAP_DERIVED
+extern const char *const twinmap_derived_names[TWINMAP_DERIVED];
+extern const char *const twinmap_derived_units[TWINMAP_DERIVED];
+
+/* Of each quantity that the experiment derives from the parameters, in its unit. Not numbers where it is not
+   defined, and where it does not change with the parameters to first order. */
+typedef struct {
+  double mean[TWINMAP_DERIVED];
+  double sd[TWINMAP_DERIVED];
+  double lower[TWINMAP_DERIVED], upper[TWINMAP_DERIVED]; /* 95 % interval */
+} twinmap_derived;
+
+/* What follows from a result: the values along the parameters that are likeliest for each of them, so that
+   intervals of curved functions are right and what is well determined stays so. */
+void twinmap_derive(const twinmap_result *result, twinmap_derived *derived);
+#endif
+
 /* "ok", "model_mismatch", ... */
 const char *twinmap_status_text(twinmap_status status);
 

@@ -76,6 +76,35 @@ DataTable makeCombinationTable(const RunFolder& run) {
   return table;
 }
 
+/// The functions of parameters that the data determine where they do not determine these one by one.
+std::string makeIdentified(const CsvTable& identified) {
+  if (identified.empty()) {
+    return "";
+  }
+  std::string yaml;
+  for (std::size_t row = 0; row < identified.rows.size(); ++row) {
+    const std::string& unit = identified.getText(row, "unit");
+    if (!identified.getText(row, "name").empty()) {
+      yaml += "  " + identified.getText(row, "name") + ": {value: " + identified.getText(row, "expression") +
+              (unit.empty() ? "" : ", unit: " + unit) + "}\n";
+    }
+  }
+  return makeElement("h3", "What is identified") + "\n" +
+         makeHtmlTable(
+             "identified-table",
+             "Of these parameters the data determine these expressions; the residual is the sine of "
+             "the angle to what is determined, 0 where the expression is exact.",
+             identified,
+             {{"parameters", "parameters"},
+              {"undetermined", "undetermined"},
+              {"expression", "identified"},
+              {"unit", "unit"},
+              {"residual", "residual", 2}}) +
+         (yaml.empty() ? ""
+                       : makeParagraph("In the experiment file, to have them in all tables:") +
+                             makeElement("pre", escapeHtml("derived:\n" + yaml)));
+}
+
 }  // namespace
 
 void addCombinations(const RunFolder& run, Section& section, Page& page) {
@@ -96,7 +125,7 @@ void addCombinations(const RunFolder& run, Section& section, Page& page) {
              {},
              1},
             section);
-  section.html += makeParagraph(undetermined);
+  section.html += makeParagraph(undetermined) + makeIdentified(run.identified);
 }
 
 }  // namespace twinmap

@@ -155,7 +155,9 @@ std::string makeChains(const CsvTable& chains) {
 }
 
 /// Leave-one-out figures from training alone, beside those on the test set.
-std::string makeLeaveOneOut(const CsvTable& metrics) {
+/// Of the parameters, whose rows come before those of derived quantities.
+std::string makeLeaveOneOut(CsvTable metrics, std::size_t parameters) {
+  metrics.rows.resize(std::min(metrics.rows.size(), parameters));
   std::vector<ShownColumn> columns{{"parameter", "parameter"}};
   for (const FigureColumn& column : kFigureColumns) {
     const std::string name = column.name, heading = column.heading;
@@ -190,7 +192,7 @@ void addTraining(const RunFolder& run, Page& page) {
     section.html += makeChains(run.chains);
   }
   addHyperparameters(run, section, page);
-  section.html += makeLeaveOneOut(run.metrics);
+  section.html += makeLeaveOneOut(run.metrics, run.experiment.model.parameters.size());
   page.sections.push_back(std::move(section));
 }
 

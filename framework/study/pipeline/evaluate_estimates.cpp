@@ -24,6 +24,18 @@ int calcMedianSimulations(const std::vector<Refined>& refined) {
   return *middle;
 }
 
+/// Intervals of the estimate are those of a refined one.
+void setFactors(const Refined& refined, Index sample, Estimates& estimates) {
+  IntervalFactors& factors = estimates.interval_factors;
+  if (refined.interval_factors.isGiven() && !factors.isGiven()) {
+    factors = {MatrixXd::Constant(estimates.mean.rows(), estimates.mean.cols(), kNormal50),
+               MatrixXd::Constant(estimates.mean.rows(), estimates.mean.cols(), kNormal95)};
+  }
+  for (Index p = 0; p < estimates.mean.rows() && factors.isGiven(); ++p) {
+    factors.set(p, sample, refined.interval_factors.get(p));
+  }
+}
+
 /// Of all samples, or of none.
 MatrixXd chooseColumns(const MatrixXd& values, const std::vector<Index>& columns) {
   return values.cols() > 0 ? MatrixXd(values(Eigen::all, columns)) : MatrixXd();
@@ -51,13 +63,17 @@ Estimates selectEstimates(Estimates by_estimator, const MatrixXd& residual_corre
   for (const Index i : findAccepted(refined)) {
     const auto column = static_cast<std::size_t>(i);
     const Refined& one = refined[column];
-    estimates.mean.col(i) = one.point.head(p);
+    estimates.mean.col(i) = one.mean.head(p);
     estimates.stddev.col(i) = one.stddev.head(p);
     estimates.correlations[column] = calcCorrelation(one.covariance.topLeftCorner(p, p));
-    estimates.interval_factors.setNormal(i);
+    setFactors(one, i, estimates);
+    if (one.ridge.isGiven()) {
+      estimates.ridges.resize(refined.size());
+      estimates.ridges[column] = takeFirst(one.ridge, p);
+    }
     if (!estimates.mixtures.empty()) {
       estimates.mixtures[column] = {
-          VectorXd::Ones(1), one.point.head(p), one.stddev.head(p), {estimates.correlations[column]}};
+          VectorXd::Ones(1), one.mean.head(p), one.stddev.head(p), {estimates.correlations[column]}};
     }
   }
   return estimates;
@@ -98,12 +114,25 @@ MethodSummary summarizeRefined(const std::vector<ParameterSpec>& parameters, con
   Estimates predictions{MatrixXd(truth.rows(), summary.accepted), MatrixXd(truth.rows(), summary.accepted)};
   for (Index i = 0; i < summary.accepted; ++i) {
     const Refined& one = refined[static_cast<std::size_t>(accepted[static_cast<std::size_t>(i)])];
-    predictions.mean.col(i) = one.point.head(truth.rows());
+    predictions.mean.col(i) = one.mean.head(truth.rows());
     predictions.stddev.col(i) = one.stddev.head(truth.rows());
+    setFactors(one, i, predictions);
   }
   summary.metrics = calcMetrics(parameters, chooseColumns(truth, accepted), predictions,
                                 chooseColumns(limit_stddev, accepted));
   return summary;
+}
+
+std::vector<MethodSummary> summarizeMethods(const std::string& name,
+                                            const std::vector<ParameterSpec>& parameters,
+                                            const MatrixXd& truth, const Estimates& by_estimator,
+                                            const std::vector<Refined>& refined,
+                                            const MatrixXd& limit_stddev) {
+  std::vector<MethodSummary> methods{summarizeMap(name, parameters, truth, by_estimator, limit_stddev)};
+  if (!refined.empty()) {
+    methods.push_back(summarizeRefined(parameters, truth, refined, limit_stddev));
+  }
+  return methods;
 }
 
 }  // namespace twinmap

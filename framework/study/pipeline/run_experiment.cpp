@@ -12,6 +12,7 @@
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/resolve_defaults.hpp"
+#include "framework/inference/tolerances/tolerances.hpp"
 #include "framework/models/make_simulator.hpp"
 #include "framework/report/report.hpp"
 #include "framework/results/result_files.hpp"
@@ -31,6 +32,7 @@
 #include "framework/study/samples/ineffective_parameters.hpp"
 #include "framework/study/samples/model_store.hpp"
 #include "framework/study/samples/stencils.hpp"
+#include "framework/study/samples/write_features.hpp"
 
 namespace twinmap {
 namespace {
@@ -173,7 +175,7 @@ RunSummary runStages(const Study& study, SampleChoice choice) {
   ComparedMaps compared = compareMaps(study, data, evaluated.evaluation.limit_stddev);
   evaluated.evaluation.maps = std::move(compared.maps);
   evaluated.notes.append(compared.notes);
-  storeMap(study.folder / "maps.h5", study, evaluated.evaluation.refined, trained);
+  storeMap(study.folder / "maps.h5", study, evaluated.evaluation, trained);
   evaluated.notes.append(writeTrustPower(study, data, trained.online));
 
   summary.test_indices = data.test_indices;
@@ -203,12 +205,12 @@ std::vector<GateResult> writeFolder(const ExperimentSpec& experiment, const RunO
 
 }  // namespace
 
-RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& options,
-                         const RunControl& control) {
+RunSummary runExperiment(const ExperimentSpec& given, const RunOptions& options, const RunControl& control) {
   makeFolders(options.folder);
   const FolderLock lock(options.folder);
-  beginFolder(experiment, options);
   const std::unique_ptr<RunLog> log = options.samples ? nullptr : std::make_unique<RunLog>(options.folder);
+  const ExperimentSpec experiment = options.samples ? given : followNoise(given);  // a sweep has done so
+  beginFolder(experiment, options);
 
   const std::unique_ptr<Simulator> made =
       makeSimulator(experiment.model, collectTimes(experiment.features), countModes(experiment.features));
@@ -235,6 +237,27 @@ RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& opt
   throwIfCancelled(control);
   run.gates = writeFolder(experiment, options, control.threads, run);
   return run;
+}
+
+void runFeatures(const ExperimentSpec& experiment, const RunOptions& options, const RunControl& control) {
+  if (experiment.design.train.samples.automatic) {
+    throw ExperimentError(
+        "--features-only needs a number of training samples, which is chosen by training: set "
+        "design.train.samples");
+  }
+  makeFolders(options.folder);
+  const FolderLock lock(options.folder);
+  const RunLog log(options.folder);
+  const std::unique_ptr<Simulator> simulator =
+      makeSimulator(experiment.model, collectTimes(experiment.features), countModes(experiment.features));
+  logInfo(fmt::format("simulated by: {}", simulator->getEngine()));
+  warnOfIneffective(experiment.model, *simulator);
+  const FeatureExtractor extractor = makeExtractor(experiment, simulator->getLayout());
+  noteStore(options.folder, options.store);
+  const std::unique_ptr<TrajectoryStore> store =
+      openStore(experiment.model, simulator->getLayout(), getStoreRoot(options.folder, options.store));
+  writeFeatures(options.folder / "features.h5", experiment, extractor, {*simulator, *store, nullptr},
+                control);
 }
 
 }  // namespace twinmap

@@ -34,4 +34,10 @@ struct RunOptions {
 RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& options,
                          const RunControl& control);
 
+/// Simulates the samples of an experiment and writes their points and noisy features to features.h5 of the
+/// folder, in memory that does not grow with their number (writeFeatures()); trains nothing. An automatic
+/// number of training samples is not chosen: throws ExperimentError. Otherwise throws as runExperiment()
+/// does.
+void runFeatures(const ExperimentSpec& experiment, const RunOptions& options, const RunControl& control);
+
 }  // namespace twinmap

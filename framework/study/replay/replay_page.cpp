@@ -8,7 +8,7 @@
 #include "framework/base/text/csv.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/inference/inference_text.hpp"
+#include "framework/inference/text/inference_text.hpp"
 #include "framework/report/figure.hpp"
 #include "framework/report/html.hpp"
 #include "framework/report/response_panels.hpp"

@@ -51,8 +51,7 @@ double calcCaseDisk(const ExperimentSpec& e) {
 double calcCaseSeconds(const ExperimentSpec& e, const ProbeTimes& times) {
   const double limit = e.evaluation.limit ? times.limit * e.design.test.samples : 0.0;
   const double refinement = times.refinement * e.design.test.samples;  // 0 where nothing is refined
-  return times.training.calcTraining(e) + times.calcPreparation(e.design.train.samples) + limit + refinement +
-         times.overhead;
+  return times.training.calcTraining(e) + times.calcPreparation(e) + limit + refinement + times.overhead;
 }
 
 /// The time of a team that takes the longest first, and no less than the longest.

@@ -147,7 +147,7 @@ ProbeTimes measure(const ExperimentSpec& experiment, double most_samples) {
   const double refining = run.getStage("refine ");
   times.refinement = refining / kTestSamples;
   const double preparing = run.getStage("prepare for ");
-  times.preparation = preparing / (double(kTrainSamples) * countReferences(kTrainSamples));
+  times.preparation = preparing / (double(kTrainSamples) * countReferences(small));
   times.overhead =
       std::max(run.seconds - simulating - stencils - limit - refining - run.getTraining() - preparing, 0.0);
   times.training = experiment.inverse_map.findGp() != nullptr
@@ -158,8 +158,8 @@ ProbeTimes measure(const ExperimentSpec& experiment, double most_samples) {
 
 }  // namespace
 
-double ProbeTimes::calcPreparation(int train_samples) const {
-  return preparation * train_samples * countReferences(train_samples);
+double ProbeTimes::calcPreparation(const ExperimentSpec& experiment) const {
+  return preparation * double(experiment.design.train.samples) * countReferences(experiment);
 }
 
 ProbeTimes measureProbe(const ExperimentSpec& experiment, double most_samples) {

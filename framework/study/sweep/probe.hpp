@@ -19,7 +19,7 @@ struct ProbeTimes {
   std::string failure;       ///< why there are no times; empty if there are
 
   /// Preparing for measurements: a prediction per reference, which an exact process makes from all samples.
-  double calcPreparation(int train_samples) const;
+  double calcPreparation(const ExperimentSpec& experiment) const;
 };
 
 /// Runs small versions of an experiment in a temporary folder: 60 training and 20 test samples, for the times

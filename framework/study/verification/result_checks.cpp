@@ -29,18 +29,31 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// The limit of all test samples as the file has it, and of `chosen` ones computed again.
-MatrixXd calcLimit(const Study& study, const PreparedData& data, const std::vector<int>& chosen,
-                   const std::filesystem::path& predictions) {
+/// p x n of the parameters, q x n of the derived quantities.
+struct Limits {
+  MatrixXd parameters, derived;
+};
+
+/// The column limit_stddev of a file, r x n; NaN where it has another shape.
+MatrixXd readLimit(const std::filesystem::path& file, const std::vector<std::string>& names, Index samples) {
+  const auto rows = static_cast<Index>(names.size());
+  MatrixXd limit = rows > 0 ? readPredictionsFile(file, names).limit_stddev : MatrixXd();
+  if (limit.rows() != rows || limit.cols() != samples) {
+    limit.setConstant(rows, samples, std::numeric_limits<double>::quiet_NaN());
+  }
+  return limit;
+}
+
+/// The limit of all test samples as the files of a folder have it, and of `chosen` ones computed again.
+Limits calcLimits(const Study& study, const PreparedData& data, const std::vector<int>& chosen,
+                  const std::filesystem::path& folder) {
   if (!hasInformationLimit(study.experiment, data.labelled.test)) {
     return {};
   }
   const std::vector<ParameterSpec>& parameters = study.experiment.model.parameters;
   const MatrixXd& truth = data.labelled.test.parameters;
-  MatrixXd limit = readPredictionsFile(predictions, collectNames(parameters)).limit_stddev;
-  if (limit.rows() != truth.rows() || limit.cols() != truth.cols()) {
-    limit.setConstant(truth.rows(), truth.cols(), std::numeric_limits<double>::quiet_NaN());
-  }
+  Limits limits{readLimit(folder / "predictions.csv", collectNames(parameters), truth.cols()),
+                readLimit(folder / "derived.csv", collectNames(study.experiment.derived), truth.cols())};
   std::vector<Index> columns;
   for (const int sample : chosen) {
     const auto found = std::find(data.test_indices.begin(), data.test_indices.end(), sample);
@@ -50,10 +63,13 @@ MatrixXd calcLimit(const Study& study, const PreparedData& data, const std::vect
   }
   if (!columns.empty()) {
     const MatrixXd points = data.labelled.test.collectPoints()(Eigen::all, columns);
-    limit(Eigen::all, columns) =
-        calcInformationLimit(calcLocalModels(study, points), study.noise, parameters).stddev;
+    const InformationLimit limit =
+        calcInformationLimit(calcLocalModels(study, points), study.noise, parameters);
+    limits.parameters(Eigen::all, columns) = limit.stddev;
+    limits.derived(Eigen::all, columns) = calcDerivedLimit(DerivedQuantities(study.experiment), parameters,
+                                                           points.topRows(truth.rows()), limit);
   }
-  return limit;
+  return limits;
 }
 
 /// Processes are fitted at the hyperparameters of the file, without a search; a surrogate is trained again.
@@ -71,14 +87,18 @@ TrainedMap trainAgain(const Study& study, const PreparedData& data, const std::f
 }
 
 RunSummary summarize(const Study& study, const PreparedData& data, const TrainedMap& map,
-                     const std::vector<Refined>& refined, const MatrixXd& limit) {
+                     const std::vector<Refined>& refined, const Limits& limits) {
   const LabelledFeatures& test = data.labelled.test;
   RunSummary run;
   run.parameters = study.experiment.model.parameters;
   run.test_indices = data.test_indices;
-  run.evaluation = evaluateEstimates(
-      run.parameters, test.parameters,
-      selectEstimates(map.predict(test.features, test.inputs), map.residual_correlation, refined), limit);
+  const Estimates estimates =
+      selectEstimates(map.predict(test.features, test.inputs), map.residual_correlation, refined);
+  run.evaluation = evaluateEstimates(run.parameters, test.parameters, estimates, limits.parameters);
+  const DerivedQuantities quantities(study.experiment);
+  if (quantities.count() > 0) {
+    run.evaluation.derived = evaluateDerived(quantities, test.parameters, estimates, limits.derived);
+  }
   run.evaluation.refined = refined;
   run.training = map.summary;
   return run;
@@ -108,8 +128,13 @@ void checkMapAndTables(const Study& study, const PreparedData& data, const std::
   verification.check("maps.h5: fitted again", [&] {
     map = trainAgain(study, data, folder / "maps.h5");
     refined = refineTestSamples(study, data, map->online).refined;
+    const LabelledFeatures& test = data.labelled.test;
+    Evaluation evaluation;
+    evaluation.refined = refined;
+    evaluation.methods = summarizeMethods(map->name, study.experiment.model.parameters, test.parameters,
+                                          map->predict(test.features, test.inputs), refined, {});
     const TemporaryFolder temporary;
-    storeMap(temporary.getPath() / "maps.h5", study, refined, *map);
+    storeMap(temporary.getPath() / "maps.h5", study, evaluation, *map);
     std::string difference = findHdf5Difference(folder / "maps.h5", temporary.getPath() / "maps.h5");
     if (difference.empty()) {
       readSealedFile(folder / "maps.h5");  // or throws
@@ -122,9 +147,13 @@ void checkMapAndTables(const Study& study, const PreparedData& data, const std::
   }
   RunSummary run;
   verification.check("predictions.csv: all test samples inferred again", [&] {
-    run = summarize(study, data, *map, refined, calcLimit(study, data, limits, folder / "predictions.csv"));
+    run = summarize(study, data, *map, refined, calcLimits(study, data, limits, folder));
     return findDifference(folder / "predictions.csv", makePredictionsCsv(run));
   });
+  if (run.evaluation.derived) {
+    verification.check("derived.csv: made again",
+                       [&] { return findDifference(folder / "derived.csv", makeDerivedCsv(run)); });
+  }
   if (run.evaluation.metrics.empty()) {
     verification.notes.emplace_back("tables are not compared, for they follow from predictions.csv");
     return;

@@ -4,31 +4,11 @@ import unittest
 
 import numpy as np
 
-from support import EXPERIMENTS, FolderTestCase, call, read_csv, write_csv
+from support import EXPERIMENTS, MIRROR, FolderTestCase, call, read_csv, write_csv
 
 CART = EXPERIMENTS / "duffing/cart.yaml"
 TRUE = {"k": 95.0, "d": 1.2, "k3": 2500.0}
 POINT = [f"parameters.{name}={value}" for name, value in TRUE.items()]
-
-MIRROR = """
-name: mirror
-parameters:
-  e: {bounds: [-0.1, 0.1], unit: m, relative_to: range}
-  k: {bounds: [3, 6], unit: N m/rad}
-constants: {m: {value: 1.5, unit: kg}}
-system:
-  bodies:
-    table: {mass: 2, inertia: {moments: [0.01, 0.01, 0.01]}, joint: {type: pin, coordinates: [th]}}
-    load: {mass: m, joint: {type: weld, parent: table, in_parent: {point: [e, 0, 0]}}}
-  springs: [{coordinate: th, stiffness: k}]
-  dampers: [{coordinate: th, damping: 0.03}]
-  applied_moments: [{body: table, moment: [0, 0, T]}]
-excitation: {T: {unit: N m, pulses: [{amplitude: 1, start: 0.05, end: 0.2}]}}
-outputs: {th: {coordinate: th}}
-simulation: {duration: 3}
-features: [{samples: {outputs: [th], start: 0.03, interval: 0.03, count: 99}}]
-noise: {stddev: {th: 3e-3}}
-"""
 
 
 class Direct(FolderTestCase):
@@ -60,6 +40,55 @@ class Direct(FolderTestCase):
             self.assertAlmostEqual(covariance[i, i] ** 0.5 / estimate["sd"], 1)
         self.assertGreater(found["posterior"]["effective_sample_size"], 100)
 
+    def test_leaves_missing_samples_out_and_says_so(self):
+        lines = self.measured.read_text().splitlines()
+        rows = [line.split(",") for line in lines[1:]]
+        for i in range(5, len(rows), 10):
+            rows[i][1] = ["", "nan", "NA"][i % 3]
+        rows[40], rows[60] = rows[60], rows[40]
+        damaged = self.folder / "damaged.csv"
+        damaged.write_text("\n".join([lines[0]] + [",".join(row) for row in rows]) + "\n")
+        whole = json.loads(self.infer(CART, self.measured, "--json"))
+        found = json.loads(self.infer(CART, damaged, "--json"))
+        self.assertEqual(found["status"], "ok")
+        self.assertIn("samples of", found["left_out"][-1])
+        for name, true in TRUE.items():
+            estimate = found["parameters"][name]
+            self.assertLess(abs(estimate["mean"] - true), 4 * estimate["sd"], name)
+            self.assertLess(estimate["sd"], 1.25 * whole["parameters"][name]["sd"])
+        self.assertIn("left out:", self.infer(CART, damaged))
+
+    def change(self, name, change):
+        """The measurement with the numbers of its first output changed."""
+        lines = self.measured.read_text().splitlines()
+        rows = [line.split(",") for line in lines[1:]]
+        for i, row in enumerate(rows):
+            row[1] = repr(change(i, float(row[1])))
+        path = self.folder / name
+        path.write_text("\n".join([lines[0]] + [",".join(row) for row in rows]) + "\n")
+        return path
+
+    def test_spikes_are_named_and_left_out(self):
+        spiked = self.change("spiked.csv", lambda i, x: x + (0.5 if i in (31, 64) else 0.0))
+        found = json.loads(self.infer(CART, spiked, "--json"))
+        self.assertEqual(found["statuses"], ["outliers"])
+        self.assertEqual(len(found["outliers"]), 2)
+        for name, true in TRUE.items():
+            estimate = found["parameters"][name]
+            self.assertLess(abs(estimate["mean"] - true), 4 * estimate["sd"], name)
+        self.assertIn("2 samples are not noise and are left out", self.infer(CART, spiked))
+
+    def test_noise_of_another_size_is_found(self):
+        noisy = self.simulate(CART, "noisy.csv", "noise.scale=3", *POINT)
+        found = json.loads(self.infer(CART, noisy, "--json"))
+        self.assertEqual(found["statuses"], ["noise_larger"])
+        self.assertAlmostEqual(found["noise_factor"], 3, delta=0.6)
+        stated = json.loads(self.infer(CART, self.measured, "--json"))
+        for name, true in TRUE.items():
+            estimate = found["parameters"][name]
+            self.assertLess(abs(estimate["mean"] - true), 4 * estimate["sd"], name)
+            self.assertGreater(estimate["sd"], 2 * stated["parameters"][name]["sd"])
+
     def test_table_and_csv_say_the_same(self):
         found = json.loads(self.infer(CART, self.measured, "--json"))
         table = self.infer(CART, self.measured)
@@ -89,13 +118,37 @@ class Direct(FolderTestCase):
         measured = self.simulate(path, "mirror.csv", "parameters.e=0.05", "parameters.k=4")
         found = json.loads(self.infer(path, measured, "--json"))
         self.assertEqual(found["status"], "multimodal")
-        modes = sorted(mode["parameters"]["e"]["mean"] for mode in found["modes"])
+        modes = sorted(mode["parameters"]["e"]["mean"] for mode in found["components"])
         self.assertEqual(len(modes), 2)
         for mode, true in zip(modes, (-0.05, 0.05)):
             self.assertAlmostEqual(mode, true, delta=0.01)
-        for mode in found["modes"]:
+        for mode in found["components"]:
             self.assertAlmostEqual(mode["weight"], 0.5, delta=0.1)
-        self.assertIn("fits in separate places", self.infer(path, measured))
+        self.assertIn("multimodal, several parameter values may fit", self.infer(path, measured))
+        (self.folder / "mirror_found.csv").write_text(self.infer(path, measured, "--csv"))
+        row = read_csv(self.folder / "mirror_found.csv")[0]
+        self.assertEqual(row["status"], "multimodal")
+        self.assertEqual(
+            [float(part.split(":")[0]) for part in row["components"].split("; ")],
+            [mode["weight"] for mode in found["components"]],
+        )
+
+    def test_a_run_names_both_signs_too(self):
+        path = self.folder / "mirror_run.yaml"
+        path.write_text(MIRROR)
+        measured = self.simulate(path, "mirror_run.csv", "parameters.e=0.05", "parameters.k=4")
+        run = self.folder / "mirror_run"
+        result = call(
+            "run", path, "design.train.samples=60", "design.test.samples=60", "evaluation.limit=false", "--out", run
+        )
+        self.assertEqual(result.returncode, 0, result.stderr)
+        found = json.loads(self.infer(run, measured, "--json"))
+        self.assertEqual((found["status"], found["method"]), ("multimodal", "posterior"))
+        modes = sorted(mode["parameters"]["e"]["mean"] for mode in found["components"])
+        for mode, true in zip(modes, (-0.05, 0.05)):
+            self.assertAlmostEqual(mode, true, delta=0.01)
+        self.assertEqual(found["parameters"], found["posterior"]["parameters"])
+        self.assertIn("parameters", found["inverse_map"])
 
     def test_another_machine_is_a_mismatch(self):
         rows = read_csv(self.measured)

@@ -1,11 +1,11 @@
-#include "framework/export/c_tables.hpp"
+#include "framework/export/c_code/c_tables.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "framework/export/c_source.hpp"
+#include "framework/export/c_code/c_source.hpp"
 #include "framework/export/runtime_sources.hpp"
 
 namespace twinmap {

@@ -1,6 +1,7 @@
 #include "framework/study/pipeline/training/fit_online.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "framework/data/noise/noise.hpp"
@@ -26,13 +27,29 @@ std::vector<Index> findComplete(const MatrixXd& features) {
   return complete;
 }
 
-/// Test responses, each with several draws of the noise.
+/// How many test responses are judged: as many as place half of the level, which each of two tests has, to a
+/// third. More make no better reference, and each takes as long as an inference.
+int calcMostReferences(double level) {
+  constexpr double kBeyond = 10.0;
+  return static_cast<int>(std::ceil(std::min(kBeyond / (0.5 * level), 1e9)));
+}
+
+/// Of each of so many test responses.
+int countDraws(int train_samples, int responses) {
+  // a thousand place the 1 % quantile to a third of it
+  constexpr int kMin = 200, kMax = 1000, kPerSimulation = 10;
+  const int wanted = std::clamp(train_samples, kMin / kPerSimulation, kMax / kPerSimulation) * kPerSimulation;
+  return std::max(1, wanted / std::max(1, responses));
+}
+
+/// Test responses, each with several draws of the noise where they are few.
 void simulateMeasurements(const Study& study, const Trajectories& test, TrustTraining& training) {
   const ExperimentSpec& experiment = study.experiment;
-  const std::vector<int> samples = findSuccessful(test);
+  std::vector<int> samples = findSuccessful(test);
+  samples.resize(
+      std::min(samples.size(), static_cast<std::size_t>(calcMostReferences(experiment.trust.level))));
   const MatrixXd responses = test.responses(Eigen::all, samples);
-  const auto count = std::max(1, static_cast<int>(samples.size()));
-  const int draws = std::max(1, countReferences(experiment.design.train.samples) / count);
+  const int draws = countDraws(experiment.design.train.samples, static_cast<int>(samples.size()));
   const ResponseNoise noise(experiment.noise, test.layout);
   const RandomStream random(experiment.seed, RandomPurpose::kTrust);
   MatrixXd measured(study.extractor.getFeatureCount(), responses.cols() * draws);
@@ -99,10 +116,10 @@ OnlineFit fitTrust(const Study& study, const PreparedData& data, AnyMap map,
 
 }  // namespace
 
-int countReferences(int train_samples) {
-  // a thousand place the 1 % quantile to a third of it
-  constexpr int kMin = 200, kMax = 1000, kPerSimulation = 10;
-  return std::clamp(train_samples, kMin / kPerSimulation, kMax / kPerSimulation) * kPerSimulation;
+int countReferences(const ExperimentSpec& experiment) {
+  const int responses =
+      std::min<int>(experiment.design.test.samples, calcMostReferences(experiment.trust.level));
+  return responses * countDraws(experiment.design.train.samples, responses);
 }
 
 OnlineFit fitOnline(const Study& study, const PreparedData& data, const GpMap& map) {

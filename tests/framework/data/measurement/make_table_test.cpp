@@ -12,7 +12,7 @@ using Eigen::VectorXd;
 const VectorXd kTimes = (VectorXd(3) << 0.0, 0.1, 0.2).finished();
 const VectorXd kValues = (VectorXd(3) << 4.0, 5.0, 6.0).finished();
 
-void expectError(const std::vector<NamedValues>& columns, const std::vector<std::string>& wanted,
+void expectError(const std::vector<NamedColumn>& columns, const std::vector<std::string>& wanted,
                  const std::string& text) {
   try {
     makeTable("rig", columns, wanted);

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/data/measurement/table.hpp"
+#include "framework/experiment/measurement_spec.hpp"
+#include "framework/simulation/response_layout.hpp"
+
+namespace twinmap {
+
+/// A measured response of which some samples may be missing.
+struct AvailableResponse {
+  Eigen::VectorXd response;          ///< rows of the layout; NaN where missing
+  Eigen::Index missing = 0;          ///< rows
+  std::vector<std::string> remarks;  ///< what is missing and why, a phrase each; rows that were put in order
+};
+
+/// The outputs of a layout at its times, from a table in which cells may be NaN, rows lost, out of order or
+/// doubled, and each column may have a rate of its own. Rows without a time are left out, the others sorted
+/// by it, the first of several with the same time kept. A needed sample is there where the column has one
+/// within 1e-6 of its median step; else it is interpolated (cubic through the four nearest samples) where the
+/// column's median step is at most `interval`, the smallest at which features sample the outputs (default:
+/// that of the layout's times), and no step about it is longer than 1.5 median steps; else it is missing.
+/// Throws MeasurementError for an output without any needed sample, one that is the same at all of them (a
+/// dead sensor), and where no time series can be meant (a layout with modes).
+AvailableResponse readAvailable(const Table& table, const MeasurementSpec& spec, const ResponseLayout& layout,
+                                std::optional<double> interval = {});
+
+}  // namespace twinmap

@@ -1,0 +1,245 @@
+#include "framework/estimation/refined/ridge_trace.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "framework/estimation/derived/value_distribution.hpp"
+#include "framework/estimation/estimate.hpp"
+#include "framework/estimation/refined/acceptance.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
+#include "kernels/linalg/decompositions.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+/// Per half-width^2: the data leave half of the box's standard deviation, sqrt(3 / (3 + information)) = 1/2.
+constexpr double kFlatInformation = 9.0;
+
+Index countFlat(const LocalMisfit& minimum) {
+  return (linalg::calcSymmetricEigenvalues(minimum.information).array() < kFlatInformation).count();
+}
+
+/// One piece of a ridge.
+struct RidgePiece {
+  LocalMisfit local;
+  VectorXd tangent;     ///< s: the way of one unit of the flat coordinate
+  MatrixXd covariance;  ///< s x s, across the ridge
+  double from, to;      ///< of the tangent, the part of the piece that is within the box
+  double log_weight;
+};
+
+class RidgeWalk {
+ public:
+  RidgeWalk(Misfit& misfit, const LocalMisfit& minimum) : misfit_(misfit) {
+    const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(minimum.information);
+    along_ = eigen.vectors.col(0);
+    across_ = eigen.vectors.rightCols(eigen.vectors.cols() - 1);
+    constexpr double kPieces = 16.0, kFar = 10.0;
+    const double length = calcReach(misfit.getBox(), minimum.at, along_, kFar) +
+                          calcReach(misfit.getBox(), minimum.at, -along_, kFar);
+    step_ = length / kPieces;
+  }
+
+  /// Whether it reached the ends.
+  bool run(const LocalMisfit& minimum) {
+    if (!(step_ > 0.0) || !settle(minimum)) {
+      return false;
+    }
+    if (pieces_.empty()) {
+      return false;  // the minimum lies beyond the bounds
+    }
+    return walk(step_) && walk(-step_);
+  }
+
+  const std::vector<RidgePiece>& getPieces() const { return pieces_; }
+
+ private:
+  bool walk(double step) {
+    constexpr std::size_t kMost = 200;
+    constexpr double kNegligible = 18.0;  // exp(-18) of the weight
+    RidgePiece last = pieces_.front();
+    for (std::size_t before = pieces_.size(); pieces_.size() < kMost; before = pieces_.size()) {
+      const VectorXd next = misfit_.getBox().clamp(last.local.at + step * last.tangent);
+      if ((next - last.local.at).dot(along_) / step < 0.5) {
+        return true;  // the limits of the search stop it
+      }
+      const LocalMisfit local = misfit_.linearize(next);
+      if (!local.status.ok || !settle(local)) {
+        return next.cwiseAbs().maxCoeff() > 1.0;  // beyond the bounds it need not go on
+      }
+      if (pieces_.size() == before || pieces_.back().log_weight < pieces_.front().log_weight - kNegligible) {
+        return true;
+      }
+      last = pieces_.back();
+    }
+    return false;
+  }
+
+  /// Gauss-Newton steps across the ridge from a point; adds the piece there if any of it is within the box.
+  bool settle(LocalMisfit local) {
+    constexpr int kMostSteps = 6;
+    constexpr double kSettled = 0.1;  // standard deviations: adds 1 % to chi-square of a degree
+    for (int k = 0; k < kMostSteps; ++k) {
+      const MatrixXd information = across_.transpose() * local.information * across_;
+      const VectorXd descent =
+          across_.transpose() * (local.descent + kHalfWidthInformation * local.at);  // of chi-square alone
+      const VectorXd step = linalg::solvePositiveDefinite(information, descent);
+      if (std::sqrt(step.dot(information * step)) < kSettled) {
+        add(local, information);
+        return true;
+      }
+      local = misfit_.linearize(misfit_.getBox().clamp(local.at + across_ * step));
+      if (!local.status.ok) {
+        return false;
+      }
+    }
+    return false;
+  }
+
+  void add(const LocalMisfit& local, const MatrixXd& information) {
+    const linalg::Cholesky factor = linalg::calcCholesky(information);
+    const VectorXd coupling = across_.transpose() * local.information * along_;
+    RidgePiece piece{local, along_ - across_ * linalg::solveCholesky(factor.lower, coupling), {}, 0.0, 0.0,
+                     0.0};
+    piece.covariance =
+        across_ * linalg::solveCholesky(factor.lower, MatrixXd::Identity(coupling.size(), coupling.size())) *
+        across_.transpose();
+    if (!cutAtBounds(piece)) {
+      return;
+    }
+    piece.log_weight = -0.5 * local.chi_square - factor.lower.diagonal().array().log().sum() +
+                       std::log(piece.to - piece.from) + calcLogWithin(piece);
+    pieces_.push_back(piece);
+  }
+
+  /// The part of half a step on both sides that may be within the bounds, given the standard deviations
+  /// across the ridge.
+  bool cutAtBounds(RidgePiece& piece) const {
+    constexpr double kBeyond = 3.0;
+    piece.from = -0.5 * step_;
+    piece.to = 0.5 * step_;
+    for (Index j = 0; j < piece.tangent.size(); ++j) {
+      const double slope = piece.tangent[j], at = piece.local.at[j];
+      const double limit = 1.0 + kBeyond * std::sqrt(piece.covariance(j, j));
+      if (std::abs(slope) < 1e-12) {
+        if (std::abs(at) > limit) {
+          return false;
+        }
+        continue;
+      }
+      const double first = (-limit - at) / slope, second = (limit - at) / slope;
+      piece.from = std::max(piece.from, std::min(first, second));
+      piece.to = std::min(piece.to, std::max(first, second));
+    }
+    return piece.to > piece.from;
+  }
+
+  /// The probability of being within the bounds at the middle of a piece, parameter by parameter.
+  static double calcLogWithin(const RidgePiece& piece) {
+    const VectorXd middle = piece.local.at + 0.5 * (piece.from + piece.to) * piece.tangent;
+    double sum = 0.0;
+    for (Index j = 0; j < middle.size(); ++j) {
+      const double scale = std::sqrt(2.0 * piece.covariance(j, j));
+      sum += std::log(0.5 * (std::erfc((middle[j] - 1.0) / scale) - std::erfc((middle[j] + 1.0) / scale)));
+    }
+    return sum;
+  }
+
+  Misfit& misfit_;
+  VectorXd along_;
+  MatrixXd across_;
+  double step_;
+  std::vector<RidgePiece> pieces_;
+};
+
+VectorXd calcWeights(const std::vector<RidgePiece>& pieces) {
+  VectorXd weights(static_cast<Index>(pieces.size()));
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    weights[static_cast<Index>(i)] = pieces[i].log_weight;
+  }
+  weights = (weights.array() - weights.maxCoeff()).exp();
+  return weights / weights.sum();
+}
+
+/// Each piece as a normal distribution of its own mean and covariance: uniform along, normal across.
+Mixture makePieces(const std::vector<RidgePiece>& pieces) {
+  const Index s = pieces.front().tangent.size(), count = static_cast<Index>(pieces.size());
+  Mixture mixture{calcWeights(pieces), MatrixXd(s, count), MatrixXd(s, count), {}};
+  for (Index i = 0; i < count; ++i) {
+    const RidgePiece& piece = pieces[static_cast<std::size_t>(i)];
+    const double spread = (piece.to - piece.from) * kUniformStddev;
+    const MatrixXd covariance =
+        piece.covariance + spread * spread * piece.tangent * piece.tangent.transpose();
+    mixture.means.col(i) = piece.local.at + 0.5 * (piece.from + piece.to) * piece.tangent;
+    mixture.stddevs.col(i) = covariance.diagonal().cwiseSqrt();
+    mixture.correlations.push_back(calcCorrelation(covariance));
+  }
+  return mixture;
+}
+
+/// How far intervals of one parameter reach, in its standard deviations: quantiles of the distance from the
+/// mean over ten places of each piece, with 25 of the normal distribution across.
+IntervalFactor calcFactor(const std::vector<RidgePiece>& pieces, const VectorXd& weights, Index j,
+                          double mean, double stddev) {
+  constexpr Index kPlaces = 10, kAcross = 25;
+  constexpr double kFarthest = 3.0;
+  const Index count = static_cast<Index>(pieces.size()) * kPlaces * kAcross;
+  VectorXd distances(count), shares(count);
+  Index k = 0;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const RidgePiece& piece = pieces[i];
+    const double across = std::sqrt(piece.covariance(j, j));
+    for (Index place = 0; place < kPlaces; ++place) {
+      const double along =
+          piece.from + (piece.to - piece.from) * (static_cast<double>(place) + 0.5) / kPlaces;
+      for (const double z : VectorXd::LinSpaced(kAcross, -kFarthest, kFarthest)) {
+        distances[k] = std::abs(piece.local.at[j] + along * piece.tangent[j] + z * across - mean) / stddev;
+        shares[k++] = weights[static_cast<Index>(i)] * std::exp(-0.5 * z * z);
+      }
+    }
+  }
+  const ValueDistribution distribution(distances, shares);
+  return {distribution.calcQuantile(0.5), distribution.calcQuantile(0.95)};
+}
+
+RidgeTrace summarize(const std::vector<RidgePiece>& pieces) {
+  constexpr double kHardlyMoves = 0.1;  // of the standard deviation across: the sum is normal
+  RidgeTrace trace{makePieces(pieces), {}, {}, {}};
+  const MatrixXd covariance = calcCovariance(trace.pieces);
+  const Index s = covariance.rows();
+  trace.mean = calcMean(trace.pieces);
+  trace.stddev = covariance.diagonal().cwiseSqrt();
+  trace.factors = {MatrixXd::Constant(s, 1, kNormal50), MatrixXd::Constant(s, 1, kNormal95)};
+  for (Index j = 0; j < s; ++j) {
+    const VectorXd moved = trace.pieces.means.row(j).transpose().array() - trace.mean[j];
+    if (moved.cwiseAbs().maxCoeff() > kHardlyMoves * trace.stddev[j]) {
+      trace.factors.set(j, 0, calcFactor(pieces, trace.pieces.weights, j, trace.mean[j], trace.stddev[j]));
+    }
+  }
+  return trace;
+}
+
+}  // namespace
+
+bool hasFlatDirection(const LocalMisfit& minimum) {
+  return countFlat(minimum) == 1 && minimum.information.rows() > 1;
+}
+
+std::optional<RidgeTrace> traceRidge(Misfit& misfit, const LocalMisfit& minimum) {
+  if (!hasFlatDirection(minimum)) {
+    return std::nullopt;
+  }
+  RidgeWalk walk(misfit, minimum);
+  if (!walk.run(minimum)) {
+    return std::nullopt;
+  }
+  return summarize(walk.getPieces());
+}
+
+}  // namespace twinmap

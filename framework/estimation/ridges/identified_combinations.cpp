@@ -1,0 +1,198 @@
+#include "framework/estimation/ridges/identified_combinations.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include "framework/base/text/nearest_name.hpp"
+#include "framework/estimation/ridges/candidates.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// How well a function fits: exact flat directions leave rounding; weak ones are directions of little
+/// information, which products and sums describe to some percent.
+constexpr std::array<double, 3> kResiduals{1e-3, 1e-2, 5e-2};
+
+/// The functions that were chosen, by their gradients at every point.
+class ChosenFunctions {
+ public:
+  ChosenFunctions(const FlatDirections& flat, const std::vector<ParameterSpec>& parameters)
+      : flat_(flat), widths_(calcWidths(parameters)), bases_(flat.changes.size()) {}
+
+  /// Whether a gradient has a part, a tenth on average, that those of the chosen do not span.
+  bool isIndependent(const Combination& combination) const {
+    constexpr double kNew = 0.1;
+    double rest = 0.0;
+    for (std::size_t i = 0; i < bases_.size(); ++i) {
+      rest += project(combination, i).norm();
+    }
+    return rest > kNew * static_cast<double>(bases_.size());
+  }
+
+  void add(const Combination& combination) {
+    for (std::size_t i = 0; i < bases_.size(); ++i) {
+      bases_[i].push_back(project(combination, i).normalized());
+    }
+  }
+
+ private:
+  /// The unit gradient at a point less its part in the span of the chosen.
+  VectorXd project(const Combination& combination, std::size_t i) const {
+    VectorXd rest = calcGradient(combination, flat_.points.col(static_cast<Index>(i)))
+                        .cwiseProduct(widths_)(flat_.parameters)
+                        .normalized();
+    for (const VectorXd& direction : bases_[i]) {
+      rest -= direction * direction.dot(rest);
+    }
+    return rest;
+  }
+
+  const FlatDirections& flat_;
+  VectorXd widths_;
+  std::vector<std::vector<VectorXd>> bases_;
+};
+
+/// The simplest candidates first; of equally simple ones the better.
+void sortBySimplicity(std::vector<Candidate>& candidates) {
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.complexity < b.complexity; });
+}
+
+/// Takes of the candidates within the residual those that are independent, until so many are chosen.
+void choose(const std::vector<Candidate>& candidates, double largest, std::size_t count,
+            ChosenFunctions& chosen, std::vector<Combination>& combinations) {
+  for (const Candidate& candidate : candidates) {
+    if (combinations.size() < count && candidate.combination.residual <= largest &&
+        chosen.isIndependent(candidate.combination)) {
+      chosen.add(candidate.combination);
+      combinations.push_back(candidate.combination);
+    }
+  }
+}
+
+std::vector<Combination> nameCombinations(const FlatDirections& flat,
+                                          const std::vector<ParameterSpec>& parameters) {
+  const auto count = static_cast<std::size_t>(static_cast<Index>(flat.parameters.size()) - flat.dimension);
+  std::vector<Candidate> simple = findProducts(flat, parameters, kResiduals.back());
+  const std::vector<Candidate> sums = findSums(flat, parameters, kResiduals.back());
+  simple.insert(simple.end(), sums.begin(), sums.end());
+  sortBySimplicity(simple);
+  ChosenFunctions chosen(flat, parameters);
+  std::vector<Combination> combinations;
+  for (const double largest : kResiduals) {
+    choose(simple, largest, count, chosen, combinations);
+    if (combinations.size() < count) {
+      std::vector<Candidate> bases = findBaseParameters(flat, parameters, largest);
+      sortBySimplicity(bases);
+      choose(bases, largest, count, chosen, combinations);
+    }
+  }
+  return combinations;
+}
+
+std::string listParameters(const Ridge& ridge, const std::vector<ParameterSpec>& parameters) {
+  std::vector<std::string> names;
+  for (const Index j : ridge.parameters) {
+    names.push_back(parameters[static_cast<std::size_t>(j)].name.text);
+  }
+  return listNames(names);
+}
+
+/// "{value: m * L, unit: kg m}"
+std::string makeFlowMap(const DerivedEntry& entry) {
+  return "{value: " + entry.expression + (entry.unit.empty() ? "" : ", unit: " + entry.unit) + "}";
+}
+
+}  // namespace
+
+std::vector<Ridge> nameRidges(const std::vector<FlatDirections>& flat,
+                              const std::vector<ParameterSpec>& parameters) {
+  std::vector<Ridge> ridges;
+  for (const FlatDirections& one : flat) {
+    ridges.push_back({one.parameters, one.dimension, {}});
+    if (one.dimension < static_cast<Index>(one.parameters.size())) {
+      ridges.back().combinations = nameCombinations(one, parameters);
+    }
+  }
+  return ridges;
+}
+
+std::vector<Ridge> findRidges(const std::vector<MatrixXd>& information, const MatrixXd& points,
+                              const std::vector<ParameterSpec>& parameters) {
+  constexpr std::size_t kMost = 64;
+  std::vector<MatrixXd> looked_at;
+  std::vector<Index> places;
+  for (std::size_t i = 0; i < information.size() && looked_at.size() < kMost; ++i) {
+    if (information[i].size() > 0) {
+      looked_at.push_back(information[i]);
+      places.push_back(static_cast<Index>(i));
+    }
+  }
+  return nameRidges(findFlatDirections(looked_at, points(Eigen::all, places)), parameters);
+}
+
+std::string describeRidge(const Ridge& ridge, const std::vector<ParameterSpec>& parameters) {
+  const std::string names = listParameters(ridge, parameters);
+  if (ridge.combinations.empty()) {
+    return fmt::format(
+        "the features do not determine {} one by one, and no simple combination of them is known", names);
+  }
+  std::vector<std::string> expressions;
+  for (const Combination& combination : ridge.combinations) {
+    expressions.push_back(makeExpression(combination, parameters));
+  }
+  const bool all =
+      static_cast<Index>(ridge.combinations.size() + static_cast<std::size_t>(ridge.dimension)) ==
+      static_cast<Index>(ridge.parameters.size());
+  return fmt::format("of {} the features determine {}{}", names, all ? "only " : "", listNames(expressions));
+}
+
+std::vector<DerivedEntry> listDerived(const std::vector<Ridge>& ridges,
+                                      const std::vector<ParameterSpec>& parameters) {
+  std::vector<DerivedEntry> entries;
+  std::set<std::string> taken;
+  for (const Ridge& ridge : ridges) {
+    for (const Combination& combination : ridge.combinations) {
+      const std::string base = makeName(combination, parameters);
+      std::string name = base;
+      for (int number = 2; !taken.insert(name).second; ++number) {
+        name = base + "_" + std::to_string(number);
+      }
+      entries.push_back({name, makeExpression(combination, parameters), findUnit(combination, parameters),
+                         combination.residual});
+    }
+  }
+  return entries;
+}
+
+std::string makeDerivedYaml(const std::vector<Ridge>& ridges, const std::vector<ParameterSpec>& parameters) {
+  std::string text;
+  for (const DerivedEntry& entry : listDerived(ridges, parameters)) {
+    text += fmt::format("  {}: {}\n", entry.name, makeFlowMap(entry));
+  }
+  return text.empty() ? "" : "derived:\n" + text;
+}
+
+std::vector<std::string> adviseOnRidges(const std::vector<Ridge>& ridges,
+                                        const std::vector<ParameterSpec>& parameters) {
+  std::vector<std::string> sentences;
+  for (const Ridge& ridge : ridges) {
+    std::string entries;
+    for (const DerivedEntry& entry : listDerived({ridge}, parameters)) {
+      entries += (entries.empty() ? "" : ", ") + entry.name + ": " + makeFlowMap(entry);
+    }
+    sentences.push_back(describeRidge(ridge, parameters) +
+                        (entries.empty() ? "" : "; reported with 'derived: {" + entries + "}'"));
+  }
+  return sentences;
+}
+
+}  // namespace twinmap

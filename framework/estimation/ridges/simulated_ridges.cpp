@@ -1,0 +1,41 @@
+#include "framework/estimation/ridges/simulated_ridges.hpp"
+
+#include <algorithm>
+
+#include "framework/data/noise/noise_whitener.hpp"
+#include "framework/data/sensitivity/feature_sensitivities.hpp"
+#include "framework/data/sensitivity/fisher_information.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+std::vector<MatrixXd> calcInformation(const Simulator& simulator, const FeatureExtractor& extractor,
+                                      const FeatureNoise& noise, const ModelSpec& model,
+                                      const MatrixXd& points, int threads) {
+  const auto p = static_cast<Index>(model.parameters.size());
+  std::vector<MatrixXd> information;
+  for (const LocalModel& local :
+       calcLocalModels(simulator, extractor, collectUnknown(model), points, threads)) {
+    information.emplace_back();
+    if (local.status.ok) {
+      const NoiseWhitener whitener(noise.calcCovariance(local.response));
+      information.back() = calcMarginalInformation(calcFisherInformation(whitener, local.sensitivities), p);
+    }
+  }
+  return information;
+}
+
+std::vector<Ridge> simulateRidges(const Simulator& simulator, const FeatureExtractor& extractor,
+                                  const FeatureNoise& noise, const ModelSpec& model, const MatrixXd& points,
+                                  int threads) {
+  constexpr Index kMost = 32;
+  const MatrixXd chosen = points.leftCols(std::min(kMost, points.cols()));
+  const auto p = static_cast<Index>(model.parameters.size());
+  return findRidges(calcInformation(simulator, extractor, noise, model, chosen, threads), chosen.topRows(p),
+                    model.parameters);
+}
+
+}  // namespace twinmap

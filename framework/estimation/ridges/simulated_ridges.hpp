@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "framework/data/features/feature_extractor.hpp"
+#include "framework/data/noise/feature_noise.hpp"
+#include "framework/estimation/ridges/identified_combinations.hpp"
+#include "framework/experiment/model/model_spec.hpp"
+#include "framework/simulation/simulator.hpp"
+
+namespace twinmap {
+
+/// The marginal Fisher information about the updating parameters (p x p each, per width of their bounds) at
+/// points of the sampled box (columns); empty where a simulation fails. Throws std::invalid_argument for a
+/// feature without noise. Cost: a simulation with derivatives, or 2 u + 1 simulations, a point.
+std::vector<Eigen::MatrixXd> calcInformation(const Simulator& simulator, const FeatureExtractor& extractor,
+                                             const FeatureNoise& noise, const ModelSpec& model,
+                                             const Eigen::MatrixXd& points, int threads);
+
+/// Ridges as the simulator shows them at points of the sampled box, of which at most 32 are taken.
+std::vector<Ridge> simulateRidges(const Simulator& simulator, const FeatureExtractor& extractor,
+                                  const FeatureNoise& noise, const ModelSpec& model,
+                                  const Eigen::MatrixXd& points, int threads);
+
+}  // namespace twinmap

@@ -1,0 +1,210 @@
+#include <cmath>
+
+#include "framework/base/json/json.hpp"
+#include "framework/estimation/estimate.hpp"
+#include "framework/inference/derived_values.hpp"
+#include "framework/inference/select_estimate.hpp"
+#include "framework/inference/text/inference_text.hpp"
+
+namespace twinmap {
+namespace {
+
+Json makeIntervals(const Intervals& intervals) {
+  Json list = Json::array();
+  for (const auto& [lower, upper] : intervals) {
+    list.push_back({lower, upper});
+  }
+  return list;
+}
+
+/// Pairs of probability and value.
+Json makeQuantiles(const Eigen::MatrixXd& quantiles, Eigen::Index parameter) {
+  Json list = Json::array();
+  for (std::size_t k = 0; k < kQuantileProbabilities.size(); ++k) {
+    list.push_back({kQuantileProbabilities[k], quantiles(parameter, static_cast<Eigen::Index>(k))});
+  }
+  return list;
+}
+
+/// Name -> mean, sd, the outermost bounds of its 95 % intervals, unit, its intervals of 95 % and 50 %; of
+/// draws its quantiles.
+Json toJson(const Estimate& estimate, const std::vector<ParameterSpec>& parameters) {
+  const Eigen::VectorXd ratio = estimate.calcRatioToLimit();
+  const Eigen::MatrixXd quantiles = estimate.draws.isGiven() ? calcQuantiles(estimate) : Eigen::MatrixXd();
+  Json json = Json::object();
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const auto i = static_cast<Eigen::Index>(p);
+    const Intervals of95 = estimate.findIntervals(i, Coverage::k95);
+    Json& one = json[parameters[p].name.text];
+    one["mean"] = estimate.mean[i];
+    one["sd"] = estimate.stddev[i];
+    one["lower"] = of95.front().first;
+    one["upper"] = of95.back().second;
+    one["unit"] = parameters[p].unit;
+    one["intervals95"] = makeIntervals(of95);
+    one["intervals50"] = makeIntervals(estimate.findIntervals(i, Coverage::k50));
+    if (quantiles.size() > 0) {
+      one["quantiles"] = makeQuantiles(quantiles, i);
+    }
+    if (ratio.size() > 0) {
+      one["ratio_to_limit"] = ratio[i];
+    }
+  }
+  return json;
+}
+
+Json toJson(const std::vector<DerivedValue>& derived) {
+  Json json = Json::object();
+  for (const DerivedValue& value : derived) {
+    json[value.name] = {{"mean", value.mean},
+                        {"sd", value.stddev},
+                        {"lower", value.lower95},
+                        {"upper", value.upper95},
+                        {"unit", value.unit}};
+  }
+  return json;
+}
+
+Json makeIdentified(const InferredMeasurement& inferred, const std::vector<ParameterSpec>& parameters) {
+  Json identified = Json::array();
+  for (const DerivedEntry& entry : listDerived(inferred.ridges, parameters)) {
+    identified.push_back({{"name", entry.name}, {"expression", entry.expression}, {"unit", entry.unit}});
+  }
+  return identified;
+}
+
+Json makeRows(const Eigen::MatrixXd& matrix) {
+  Json rows = Json::array();
+  for (const auto& row : matrix.rowwise()) {
+    rows.push_back(std::vector<double>(row.begin(), row.end()));
+  }
+  return rows;
+}
+
+/// The components, each with its weight.
+Json makeComponents(const Mixture& mixture, const std::vector<ParameterSpec>& parameters) {
+  Json components = Json::array();
+  for (Eigen::Index c = 0; c < mixture.countComponents(); ++c) {
+    components.push_back(
+        {{"weight", mixture.weights[c]},
+         {"parameters", toJson(Estimate{mixture.means.col(c), mixture.stddevs.col(c)}, parameters)}});
+  }
+  return components;
+}
+
+Json toJson(const Trust& trust, const std::vector<FeatureInfo>& features) {
+  Json json;
+  json["p_value"] = trust.p_value;
+  json["chi_square"] = trust.chi_square;
+  json["residuals"] = trust.residuals;
+  json["chi_square_p_value"] = trust.chi_square_p_value;
+  json["anomaly_p_value"] = trust.anomaly_p_value;
+  json["anomaly"] = describeAnomaly(trust, features);
+  json["distance"] = trust.distance;
+  return json;
+}
+
+Json toJson(const Refined& refined, const std::vector<ParameterSpec>& parameters) {
+  Json json{{"status", toString(refined.status)}};
+  if (refined.isAccepted()) {
+    json["parameters"] =
+        toJson(makeEstimate(refined, static_cast<Eigen::Index>(parameters.size())), parameters);
+  } else {
+    json[refined.hasConverged() ? "message" : "error"] = refined.message;
+  }
+  json["start"] = refined.start;
+  json["distance"] = refined.distance;
+  json["chi_square"] = refined.chi_square;
+  json["steps"] = refined.iterations;
+  json["simulations"] = refined.simulations;
+  json["converged"] = refined.hasConverged();
+  return json;
+}
+
+Json toJson(const PosteriorEstimate& posterior, const std::vector<ParameterSpec>& parameters) {
+  Json json{{"status", posterior.getStatus()}, {"from", toString(posterior.source)}};
+  if (posterior.isReliable()) {
+    json["parameters"] = toJson(posterior.estimate, parameters);
+  } else {
+    json["message"] = posterior.message;
+  }
+  json["effective_sample_size"] = posterior.effective_sample_size;
+  json["pareto_shape"] = posterior.pareto_shape;
+  json["evaluations"] = posterior.evaluations;
+  if (posterior.fit) {
+    json["searches"] = posterior.fit->searches;
+    json["found_best"] = posterior.fit->found_best;
+    json["simulations"] = posterior.fit->simulations;
+  }
+  return json;
+}
+
+/// What the simulator leaves of a measurement, where no trust model judges it.
+Json toJson(const SimulatorFit& fit) {
+  return {{"p_value", fit.test.calcPValue()},
+          {"chi_square", fit.chi_square},
+          {"degrees", fit.degrees},
+          {"chi_square_p_value", fit.test.chi_square_p},
+          {"whiteness_p_value", fit.test.whiteness_p},
+          {"largest_p_value", fit.test.largest_p}};
+}
+
+}  // namespace
+
+std::string makeInferenceJson(const InferredMeasurement& inferred,
+                              const std::vector<ParameterSpec>& parameters,
+                              const std::vector<FeatureInfo>& features) {
+  Json json{{"source", inferred.source}, {"start", inferred.start}};
+  const Estimate estimate = selectEstimate(inferred);
+  json["status"] = estimate.statuses.empty() ? Json() : Json(estimate.statuses.front());
+  if (!estimate.statuses.empty()) {
+    json["statuses"] = estimate.statuses;
+  }
+  json["method"] = toString(estimate.method);
+  if (!inferred.left_out.empty()) {
+    json["left_out"] = inferred.left_out;
+  }
+  if (inferred.posterior && inferred.posterior->fit && !inferred.posterior->fit->outliers.empty()) {
+    json["outliers"] = inferred.posterior->fit->outliers;
+  }
+  if (inferred.posterior && inferred.posterior->fit && inferred.posterior->fit->noise_factor != 1.0) {
+    json["noise_factor"] = inferred.posterior->fit->noise_factor;
+  }
+  if (estimate.isGiven()) {
+    json["parameters"] = toJson(estimate, parameters);
+  }
+  if (inferred.quantities) {
+    json["derived"] = toJson(deriveFrom(inferred.quantities.get(), estimate));
+  }
+  if (!inferred.ridges.empty()) {
+    json["identified"] = makeIdentified(inferred, parameters);
+  }
+  if (estimate.correlation.size() > 0) {
+    json["covariance"] = makeRows(estimate.calcCovariance());
+  }
+  if (estimate.mixture.isGiven()) {
+    json["components"] = makeComponents(estimate.mixture, parameters);
+  }
+  if (inferred.trust) {
+    json["trust"] = toJson(*inferred.trust, features);
+  } else if (inferred.posterior && inferred.posterior->fit) {
+    json["trust"] = toJson(*inferred.posterior->fit);
+  }
+  if (inferred.refined) {
+    json["refined"] = toJson(*inferred.refined, parameters);
+  }
+  if (inferred.refined ||
+      (inferred.by_estimator.isGiven() && estimate.method != inferred.by_estimator.method)) {
+    json["inverse_map"]["parameters"] = toJson(inferred.by_estimator, parameters);
+  }
+  if (inferred.posterior) {
+    json["posterior"] = toJson(*inferred.posterior, parameters);
+  }
+  return formatJson(json);
+}
+
+std::string makeErrorJson(const std::string& source, double start, const std::string& error) {
+  return formatJson({{"source", source}, {"start", start}, {"status", "error"}, {"error", error}});
+}
+
+}  // namespace twinmap

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "framework/inference/inferrer.hpp"
+
+namespace twinmap {
+
+/// The status with its numbers, and a line for each thing that is wrong.
+std::string describeTrust(const InferredMeasurement& inferred, const std::vector<FeatureInfo>& features);
+
+/// How far the map's estimate is from what the measurement allows, where it is estimator_limited; a line
+/// each, or "".
+std::string describeMapLimit(const InferredMeasurement& inferred,
+                             const std::vector<ParameterSpec>& parameters);
+
+/// A human-readable table: the status with its numbers, then a row per parameter; where the estimate is not
+/// the map's, the map's follows.
+std::string makeInferenceTable(const InferredMeasurement& inferred,
+                               const std::vector<ParameterSpec>& parameters,
+                               const std::vector<FeatureInfo>& features);
+
+/// CSV: a row per measurement and parameter; `refined`, `posterior`: with the columns of these, as
+/// MeasurementInference::refines() and samplesPosteriors() say.
+std::string makeInferenceCsvHeader(bool refined, bool posterior);
+std::string makeInferenceCsvRows(const InferredMeasurement& inferred,
+                                 const std::vector<ParameterSpec>& parameters, bool posterior);
+
+/// One line of JSON, without a line end (docs/how-to/estimate-from-measurements.md).
+std::string makeInferenceJson(const InferredMeasurement& inferred,
+                              const std::vector<ParameterSpec>& parameters,
+                              const std::vector<FeatureInfo>& features);
+/// The same for a measurement that could not be used.
+std::string makeErrorJson(const std::string& source, double start, const std::string& error);
+
+/// CSV of the draws of posteriors, a row each: source, start, draw, weight, then all unknown parameters; the
+/// row of names, and the rows of one measurement, none where its posterior is not reliable.
+std::string makeDrawsCsvHeader(const std::vector<ParameterSpec>& unknown);
+std::string makeDrawsCsvRows(const InferredMeasurement& inferred);
+
+/// "the largest residuals: y(0.1 s) to y(0.4 s)"; "" without a trust model.
+std::string describeAnomaly(const Trust& trust, const std::vector<FeatureInfo>& features);
+
+}  // namespace twinmap

@@ -1,0 +1,130 @@
+#include "framework/data/measurement/available_response.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// Outputs a and b at .1, .2, ... 2 s.
+ResponseLayout makeTwoOutputs() {
+  return {{"a", "b"}, {"m", "m"}, VectorXd::LinSpaced(20, 0.1, 2.0)};
+}
+
+double calcA(double t) {
+  return std::sin(3.0 * t);
+}
+double calcB(double t) {
+  return std::cos(2.0 * t);
+}
+
+/// Both, sampled every `step` s from 0 to 2.2 s.
+Table record(double step) {
+  const auto rows = static_cast<Index>(std::lround(2.2 / step)) + 1;
+  const VectorXd times = VectorXd::NullaryExpr(rows, [&](Index i) { return static_cast<double>(i) * step; });
+  return {"m.csv",
+          {{"t", {}, times}, {"a", {}, times.unaryExpr(&calcA)}, {"b", {}, times.unaryExpr(&calcB)}},
+          {}};
+}
+
+/// Of the rows that are there: whether each is right; returns how many are missing.
+Index expectRight(const AvailableResponse& available, double tolerance) {
+  const ResponseLayout layout = makeTwoOutputs();
+  Index missing = 0;
+  for (Index i = 0; i < layout.times.size(); ++i) {
+    const double a = available.response[layout.getRow(0, i)], b = available.response[layout.getRow(1, i)];
+    missing += (std::isnan(a) ? 1 : 0) + (std::isnan(b) ? 1 : 0);
+    if (!std::isnan(a)) {
+      EXPECT_NEAR(a, calcA(layout.times[i]), tolerance);
+    }
+    if (!std::isnan(b)) {
+      EXPECT_NEAR(b, calcB(layout.times[i]), tolerance);
+    }
+  }
+  EXPECT_EQ(missing, available.missing);
+  return missing;
+}
+
+TEST(AvailableResponse, IsWholeWhereNothingIsMissing) {
+  const AvailableResponse available = readAvailable(record(0.05), {}, makeTwoOutputs());
+  EXPECT_EQ(expectRight(available, 1e-12), 0);
+  EXPECT_TRUE(available.remarks.empty());
+}
+
+TEST(AvailableResponse, InterpolatesBetweenSamplesOfAFastColumn) {
+  EXPECT_EQ(expectRight(readAvailable(record(0.04), {}, makeTwoOutputs()), 1e-4), 0);
+}
+
+TEST(AvailableResponse, LeavesOutEmptyCellsAndSaysWhich) {
+  Table table = record(0.1);
+  table.columns[1].values[3] = kNone;
+  table.columns[1].values.segment(7, 4).setConstant(kNone);
+  const AvailableResponse available = readAvailable(table, {}, makeTwoOutputs());
+  EXPECT_EQ(expectRight(available, 1e-12), 5);
+  ASSERT_EQ(available.remarks.size(), 1u);
+  EXPECT_EQ(available.remarks[0], "5 of 20 samples of a, the longest gap 4 at 0.7 s to 1 s");
+}
+
+TEST(AvailableResponse, TakesAColumnAtALowerRateWhereItHasSamples) {
+  Table table = record(0.05);
+  for (Index i = 0; i < table.columns[2].values.size(); ++i) {
+    table.columns[2].values[i] = i % 6 == 0 ? table.columns[2].values[i] : kNone;  // each .3 s
+  }
+  EXPECT_EQ(expectRight(readAvailable(table, {}, makeTwoOutputs()), 1e-12), 14);
+}
+
+TEST(AvailableResponse, DoesNotInterpolateOverLostRows) {
+  Table table = record(0.04);
+  const Index rows = table.columns[0].values.size();
+  for (Column& column : table.columns) {  // .8 s to 1.2 s lost
+    VectorXd left(rows - 10);
+    left << column.values.head(20), column.values.tail(rows - 30);
+    column.values = left;
+  }
+  const Index missing = expectRight(readAvailable(table, {}, makeTwoOutputs()), 1e-4);
+  EXPECT_GE(missing, 2 * 4);
+  EXPECT_LE(missing, 2 * 6);
+}
+
+TEST(AvailableResponse, PutsRowsInOrderAndTakesTheFirstOfDoubles) {
+  Table table = record(0.05);
+  for (Column& column : table.columns) {
+    column.values.segment(10, 20).reverseInPlace();
+    column.values.conservativeResize(column.values.size() + 1);
+    column.values.tail(1)[0] = column.name == "t" ? 0.5 : 77.0;
+  }
+  const AvailableResponse available = readAvailable(table, {}, makeTwoOutputs());
+  EXPECT_EQ(expectRight(available, 1e-12), 0);
+  ASSERT_EQ(available.remarks.size(), 2u);
+  EXPECT_EQ(available.remarks[0], "rows are not in the order of their times: sorted");
+  EXPECT_EQ(available.remarks[1], "1 rows with the time of another: the first is taken");
+}
+
+TEST(AvailableResponse, RefusesAnOutputThatIsAbsentOrDead) {
+  Table absent = record(0.1), dead = record(0.1);
+  absent.columns[1].values.setConstant(kNone);
+  dead.columns[2].values.setConstant(3.0);
+  EXPECT_THROW(readAvailable(absent, {}, makeTwoOutputs()), MeasurementError);
+  EXPECT_THROW(readAvailable(dead, {}, makeTwoOutputs()), MeasurementError);
+}
+
+TEST(MissingCells, AreReadAsNaNOnRequest) {
+  const std::string text = "t,a\n0,1\n0.1,\n0.2,NaN\n0.3,n/a\n0.4,2\n";
+  std::istringstream lenient(text), strict(text), wrong("t,a\n0,1\n0.1,off\n");
+  const Table table = readCsv(lenient, "m.csv", {"t", "a"}, MissingCells::kKeep);
+  EXPECT_EQ(table.columns[1].values.array().isNaN().count(), 3);
+  EXPECT_EQ(table.columns[1].values[4], 2.0);
+  EXPECT_THROW(readCsv(strict, "m.csv", {"t", "a"}), MeasurementError);
+  EXPECT_THROW(readCsv(wrong, "m.csv", {"t", "a"}, MissingCells::kKeep), MeasurementError);
+}
+
+}  // namespace
+}  // namespace twinmap
