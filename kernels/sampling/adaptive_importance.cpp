@@ -30,7 +30,8 @@ void addRound(const LogDensities& density, const BoxMixture& proposal, const Rou
   evaluated.proposals.push_back(proposal);
 }
 
-AdaptiveDraws weighAll(const Evaluated& evaluated) {
+/// Of all draws, by the mixture of all proposals.
+VectorXd calcLogWeights(const Evaluated& evaluated) {
   const auto rounds = static_cast<Index>(evaluated.proposals.size());
   MatrixXd proposed(evaluated.points.cols(), rounds);
   for (Index round = 0; round < rounds; ++round) {
@@ -38,11 +39,15 @@ AdaptiveDraws weighAll(const Evaluated& evaluated) {
         evaluated.proposals[static_cast<std::size_t>(round)].calcLogDensities(evaluated.points);
   }
   const VectorXd equal = VectorXd::Constant(rounds, 1.0 / static_cast<double>(rounds));
+  return evaluated.log_densities - mixLogDensities(proposed, equal);
+}
+
+AdaptiveDraws summarize(const Evaluated& evaluated, const VectorXd& log_weights) {
   AdaptiveDraws weighted;
-  weighted.draws = weigh(evaluated.points, evaluated.log_densities - mixLogDensities(proposed, equal));
+  weighted.draws = weigh(evaluated.points, log_weights);
   weighted.effective_sample_size = calcEffectiveSampleSize(weighted.draws);
   weighted.pareto_shape = calcParetoShape(weighted.draws);
-  weighted.rounds = static_cast<int>(rounds);
+  weighted.rounds = static_cast<int>(evaluated.proposals.size());
   return weighted;
 }
 
@@ -63,7 +68,8 @@ AdaptiveDraws sampleAdaptively(const LogDensities& density, const BoxMixture& fi
   constexpr double kMinDraws = 10.0;  // a dimension that a covariance needs
   Evaluated evaluated;
   addRound(density, first, numbers(0), evaluated);
-  AdaptiveDraws weighted = weighAll(evaluated);
+  VectorXd log_weights = calcLogWeights(evaluated);
+  AdaptiveDraws weighted = summarize(evaluated, log_weights);
   const auto needs_more = [&] {
     const auto draws = static_cast<double>(numbers(0).picks.size());
     return !(weighted.effective_sample_size >= options.enough * draws) ||
@@ -72,9 +78,10 @@ AdaptiveDraws sampleAdaptively(const LogDensities& density, const BoxMixture& fi
   for (int round = 1; round < options.max_rounds && needs_more(); ++round) {
     const RoundNumbers& next = numbers(round);
     const WeightedDraws spread =
-        temper(weighted.draws, kMinDraws * static_cast<double>(evaluated.points.rows()));
+        temper(evaluated.points, log_weights, kMinDraws * static_cast<double>(evaluated.points.rows()));
     addRound(density, coverDraws(spread, next.centers), next, evaluated);
-    weighted = weighAll(evaluated);
+    log_weights = calcLogWeights(evaluated);
+    weighted = summarize(evaluated, log_weights);
   }
   return weighted;
 }

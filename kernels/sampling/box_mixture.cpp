@@ -90,12 +90,21 @@ VectorXd BoxMixture::calcLogDensities(const MatrixXd& points) const {
 }
 
 BoxMixture coverDraws(const WeightedDraws& draws, const VectorXd& uniforms) {
-  constexpr double kWidening = 1.25, kMomentShare = 0.5, kUniformShare = 0.05;
-  const MatrixXd lower = factorise(draws), centers = resample(draws, uniforms);
+  constexpr double kWidening = 1.25, kMomentShare = 0.4, kUniformShare = 0.05;
+  // wider parts beside those of the draws nearby, which have thinner ends than what they were drawn from
+  constexpr double kWidths[] = {1.0, 2.0, 4.0}, kWidthShares[] = {0.7, 0.2, 0.1};
+  const Index count = uniforms.size(), flat_count = count / 2;
+  const MatrixXd lower = factorise(draws);
+  const WeightedDraws flat = weigh(draws.points, 0.5 * draws.weights.array().log());
+  MatrixXd centers(draws.points.rows(), count);
+  centers << resample(draws, uniforms.head(count - flat_count)), resample(flat, uniforms.tail(flat_count));
   std::vector<NormalPart> parts{{kMomentShare, calcMean(draws), kWidening * lower}};
-  const double share = (1.0 - kMomentShare - kUniformShare) / static_cast<double>(centers.cols());
+  const double share = (1.0 - kMomentShare - kUniformShare) / static_cast<double>(count);
   for (const auto& center : centers.colwise()) {
-    parts.push_back({share, center, factorise(weighNearby(draws, center, lower))});
+    const MatrixXd own = factorise(weighNearby(draws, center, lower));
+    for (std::size_t k = 0; k < std::size(kWidths); ++k) {
+      parts.push_back({kWidthShares[k] * share, center, kWidths[k] * own});
+    }
   }
   return BoxMixture(std::move(parts));
 }

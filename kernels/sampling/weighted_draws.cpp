@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <vector>
 
@@ -89,7 +88,9 @@ double averageProfile(const ArrayXd& excesses) {
 }  // namespace
 
 WeightedDraws weigh(MatrixXd points, const VectorXd& log_weights) {
-  VectorXd weights = (log_weights.array() - log_weights.maxCoeff()).exp();
+  constexpr double kNothing = -700.0;  // Eigen's exponential does not go below e^-716, which is not 0
+  const ArrayXd relative = log_weights.array() - log_weights.maxCoeff();
+  VectorXd weights = (relative < kNothing).select(0.0, relative.exp());
   weights /= weights.sum();
   return {std::move(points), std::move(weights)};
 }
@@ -130,17 +131,17 @@ MatrixXd resample(const WeightedDraws& draws, const VectorXd& uniforms) {
   return chosen;
 }
 
-WeightedDraws temper(const WeightedDraws& draws, double least) {
-  constexpr int kBisections = 20;
-  const auto raise = [&](double power) {
-    return weigh(draws.points, draws.weights.unaryExpr([&](double w) {
-      return w > 0.0 ? power * std::log(w) : -std::numeric_limits<double>::infinity();
-    }));
+WeightedDraws temper(const MatrixXd& points, const VectorXd& log_weights, double least) {
+  constexpr int kBisections = 40;
+  constexpr double kLeastPower = 1e-12;
+  const auto raise = [&](double log_power) {
+    return weigh(points, std::exp(log_power) * (log_weights.array() - log_weights.maxCoeff()));
   };
+  WeightedDraws draws = raise(0.0);
   if (calcEffectiveSampleSize(draws) >= least) {
     return draws;
   }
-  double below = 0.0, above = 1.0;
+  double below = std::log(kLeastPower), above = 0.0;
   for (int i = 0; i < kBisections; ++i) {
     const double middle = 0.5 * (below + above);
     (calcEffectiveSampleSize(raise(middle)) < least ? above : below) = middle;

@@ -31,9 +31,11 @@ Eigen::MatrixXd calcQuantiles(const WeightedDraws& draws, const Eigen::VectorXd&
 /// independent where the uniforms are. Cost: n log n.
 Eigen::MatrixXd resample(const WeightedDraws& draws, const Eigen::VectorXd& uniforms);
 
-/// The weights to that power in (0, 1], the largest by bisection with which the effective sample size is at
-/// least `least`: where few draws bear all the weight, their neighbours tell where to look too.
-WeightedDraws temper(const WeightedDraws& draws, double least);
+/// Weights to that power in (0, 1], the largest by bisection with which the effective sample size is at least
+/// `least`: where few draws bear all the weight, their neighbours tell where to look too. Of logarithms (n),
+/// for most of such draws have no weight that a double can hold; impossible ones (-infinity) stay so. Where
+/// fewer than `least` are possible, these are about equal.
+WeightedDraws temper(const Eigen::MatrixXd& points, const Eigen::VectorXd& log_weights, double least);
 
 /// Shape k of the generalised Pareto distribution of the largest weights, a fifth of all but at most
 /// 3 sqrt(n), by Zhang and Stephens (2009), drawn to 0.5 as ten weights would (Vehtari, Simpson, Gelman, Yao

@@ -1,10 +1,9 @@
 #include "framework/estimation/posterior/basin_search.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 
+#include "framework/estimation/posterior/search_team.hpp"
 #include "framework/estimation/refined/acceptance.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/points/point_set.hpp"
@@ -17,168 +16,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
-
-/// From nearly a Gauss-Newton step to a short one: one of them fits wherever the linear model holds at all.
-constexpr std::array<double, 3> kDampings{0.01, 1.0, 30.0};
-constexpr double kFirstDamping = 1e-2, kMinDamping = 1e-9, kMaxDamping = 1e8, kRaise = 100.0;
-constexpr double kLongestStep = 0.5;      // half of a coordinate's bounds
-constexpr double kConvergedGain = 0.01;   // of chi-square: a tenth of a standard deviation
-constexpr double kFirstDiagonal = 1e-12;  // of the largest: what the response does not depend on stays
-
-struct Search {
-  LocalSurface local;
-  double damping = kFirstDamping;
-  bool active = true;
-};
-
-/// The coordinates that a step may move: those at a bound whose descent points outwards are held.
-std::vector<Index> findFree(const LocalSurface& local) {
-  std::vector<Index> free;
-  for (Index j = 0; j < local.at.size(); ++j) {
-    if (!(std::abs(local.at[j]) >= 1.0 && local.at[j] * local.descent[j] > 0.0)) {
-      free.push_back(j);
-    }
-  }
-  return free;
-}
-
-/// (I + damping diag(I)) step = descent for the free coordinates; the others stay.
-VectorXd calcStep(const LocalSurface& local, double damping) {
-  const std::vector<Index> free = findFree(local);
-  VectorXd step = VectorXd::Zero(local.at.size());
-  if (free.empty()) {
-    return step;
-  }
-  MatrixXd damped = local.information(free, free);
-  const double floor = kFirstDiagonal * damped.diagonal().maxCoeff() + std::numeric_limits<double>::min();
-  damped.diagonal() = (1.0 + damping) * damped.diagonal().array() + floor;
-  step(free) = linalg::solvePositiveDefinite(damped, local.descent(free));
-  return step;
-}
-
-/// What a Gauss-Newton step would gain of chi-square if the linear model held.
-double predictGain(const LocalSurface& local) {
-  return local.descent.dot(calcStep(local, kMinDamping));
-}
-
-VectorXd take(const LocalSurface& local, const VectorXd& step) {
-  const double length = step.cwiseAbs().maxCoeff();
-  const double scale = length > kLongestStep ? kLongestStep / length : 1.0;
-  return (local.at + scale * step).cwiseMax(-1.0).cwiseMin(1.0);
-}
-
-/// Searches that go side by side.
-class SearchTeam {
- public:
-  SearchTeam(MisfitSurface& surface, const MatrixXd& starts) : surface_(surface) {
-    for (LocalSurface& local : surface.linearize(starts)) {
-      const bool simulated = local.simulated;
-      searches_.push_back({std::move(local), kFirstDamping, simulated});
-    }
-  }
-
-  void run(int max_iterations) {
-    for (int i = 1; i <= max_iterations && improve(); ++i) {
-      if (i == 5 || i == 10) {
-        giveUpHopeless();
-      }
-    }
-  }
-
-  /// The ends that could be simulated.
-  std::vector<LocalSurface> listEnds() const {
-    std::vector<LocalSurface> ends;
-    for (const Search& search : searches_) {
-      if (search.local.simulated) {
-        ends.push_back(search.local);
-      }
-    }
-    return ends;
-  }
-
- private:
-  /// One iteration of all that have not converged; false if there are none.
-  bool improve() {
-    std::vector<Search*> active;
-    for (Search& search : searches_) {
-      if (search.active) {
-        active.push_back(&search);
-      }
-    }
-    if (active.empty()) {
-      return false;
-    }
-    const auto count = static_cast<Index>(active.size());
-    constexpr auto kTrials = static_cast<Index>(kDampings.size());
-    MatrixXd trials(surface_.getDimensions(), kTrials * count);
-    for (Index k = 0; k < kTrials * count; ++k) {
-      const Search& search = *active[static_cast<std::size_t>(k / kTrials)];
-      const double factor = kDampings[static_cast<std::size_t>(k % kTrials)];
-      trials.col(k) = take(search.local, calcStep(search.local, search.damping * factor));
-    }
-    const VectorXd reached = surface_.calcMisfits(trials);
-    std::vector<Search*> moved;
-    std::vector<Index> columns;
-    for (Index i = 0; i < count; ++i) {
-      Search& search = *active[static_cast<std::size_t>(i)];
-      Index best = 0;
-      if (reached.segment(i * kTrials, kTrials).minCoeff(&best) < search.local.misfit) {
-        search.damping = std::max(search.damping * kDampings[static_cast<std::size_t>(best)], kMinDamping);
-        moved.push_back(&search);
-        columns.push_back(i * kTrials + best);
-      } else {
-        search.damping *= kRaise;
-        search.active = search.damping < kMaxDamping;
-      }
-    }
-    move(moved, trials(Eigen::all, columns));
-    return true;
-  }
-
-  void move(const std::vector<Search*>& moved, const MatrixXd& to) {
-    if (moved.empty()) {
-      return;
-    }
-    std::vector<LocalSurface> reached = surface_.linearize(to);
-    for (std::size_t i = 0; i < moved.size(); ++i) {
-      Search& search = *moved[i];
-      search.active = reached[i].simulated && predictGain(reached[i]) > kConvergedGain;
-      if (reached[i].simulated) {
-        search.local = std::move(reached[i]);
-      }
-    }
-  }
-
-  /// Searches far above the best one; a quarter of all is kept whatever it is.
-  void giveUpHopeless() {
-    constexpr double kAbove = 50.0, kOfBest = 0.5;
-    std::vector<double> reached;
-    for (const Search& search : searches_) {
-      if (search.local.simulated) {
-        reached.push_back(search.local.misfit);
-      }
-    }
-    if (reached.empty()) {
-      return;
-    }
-    std::sort(reached.begin(), reached.end());
-    const double near = reached.front() + std::max(kAbove, kOfBest * reached.front());
-    const double limit = std::max(near, reached[reached.size() / 4]);
-    for (Search& search : searches_) {
-      search.active = search.active && search.local.misfit <= limit;
-    }
-  }
-
-  MisfitSurface& surface_;
-  std::vector<Search> searches_;
-};
-
-MatrixXd calcCovariance(const MatrixXd& information) {
-  const Index u = information.rows();
-  return linalg::solveCholesky(
-      linalg::calcCholesky(information + kHalfWidthInformation * MatrixXd::Identity(u, u)).lower,
-      MatrixXd::Identity(u, u));
-}
 
 /// Whether a point is within three standard deviations of a basin's minimum.
 bool liesIn(const Basin& basin, const VectorXd& at) {
@@ -204,7 +41,7 @@ std::vector<Basin> collectBasins(std::vector<LocalSurface> ends) {
     if (known != basins.end()) {
       ++known->searches;
     } else if (basins.size() < kMax) {
-      MatrixXd covariance = calcCovariance(end.information);
+      MatrixXd covariance = calcBasinCovariance(end.information);
       basins.push_back({end, std::move(covariance), 1});
     }
   }
@@ -240,46 +77,147 @@ std::vector<LocalSurface> searchGrowing(MisfitSurface& surface, MatrixXd starts,
   return team.listEnds();
 }
 
-/// All starts that may be needed (u x n): a batch is n columns on from those before it.
-MatrixXd makeStarts(Index dimensions, std::uint64_t seed, const BasinSearchOptions& options) {
+/// All starts that may be needed (u x n).
+MatrixXd makeStarts(Index dimensions, std::uint64_t seed, int count) {
   PointSetSpec sobol;
   sobol.method = DesignMethod::kSobol;
-  sobol.samples = options.starts * options.max_batches;
+  sobol.samples = count;
   const MatrixXd unit =
       sampleUnitCube(sobol, static_cast<int>(dimensions), seed, RandomPurpose::kBasinStarts);
   return 2.0 * unit.array() - 1.0;
 }
 
+/// The basin that is nearest to a point.
+const Basin& findNearest(const std::vector<Basin>& basins, const VectorXd& at) {
+  return *std::min_element(basins.begin(), basins.end(), [&](const Basin& a, const Basin& b) {
+    return (a.local.at - at).squaredNorm() < (b.local.at - at).squaredNorm();
+  });
+}
+
+/// Chi-square on the way from the nearest basin to each point (u x n), in thirds: a search from a point to
+/// which it rises all the way would most likely end in that basin. Returns where it falls again, the lowest
+/// of these places first, but for what noise could be.
+MatrixXd findFalls(MisfitSurface& surface, const std::vector<Basin>& basins, const MatrixXd& points) {
+  constexpr Index kPlaces = 3;
+  constexpr double kNoticed = 1.0;
+  MatrixXd ways(points.rows(), kPlaces * points.cols());
+  for (Index i = 0; i < points.cols(); ++i) {
+    const VectorXd& from = findNearest(basins, points.col(i)).local.at;
+    for (Index k = 0; k < kPlaces; ++k) {
+      const double share = static_cast<double>(k + 1) / static_cast<double>(kPlaces);
+      ways.col(i * kPlaces + k) = from + share * (points.col(i) - from);
+    }
+  }
+  const VectorXd reached = surface.calcMisfits(ways);
+  std::vector<Index> falls;
+  for (Index i = 0; i < points.cols(); ++i) {
+    double before = findNearest(basins, points.col(i)).local.misfit;
+    Index lowest = -1;
+    for (Index k = i * kPlaces; k < (i + 1) * kPlaces; ++k) {
+      if (std::isfinite(reached[k]) && reached[k] < before - kNoticed) {
+        lowest = lowest < 0 || reached[k] < reached[lowest] ? k : lowest;
+      }
+      before = reached[k];
+    }
+    if (lowest >= 0) {
+      falls.push_back(lowest);
+    }
+  }
+  std::stable_sort(falls.begin(), falls.end(), [&](Index a, Index b) { return reached[a] < reached[b]; });
+  return ways(Eigen::all, falls);
+}
+
+/// Ends of searches and the starts that are left.
+class BasinHunt {
+ public:
+  BasinHunt(MisfitSurface& surface, MatrixXd starts, const BasinSearchOptions& options)
+      : surface_(surface), starts_(std::move(starts)), options_(options) {}
+
+  const BasinSearch& getFound() const { return found_; }
+  bool isExplained() const { return twinmap::isExplained(found_.basins); }
+  bool isConfirmed() const {
+    return !found_.basins.empty() && found_.basins.front().searches >= options_.confirmations;
+  }
+
+  /// The next starts, at most so many.
+  MatrixXd takeStarts(int count) {
+    const Index most = std::min<Index>(count, starts_.cols() - taken_);
+    taken_ += most;
+    return starts_.middleCols(taken_ - most, most);
+  }
+
+  void search(const MatrixXd& starts) {
+    SearchTeam team(surface_, starts);
+    team.run(options_.max_iterations);
+    add(team.listEnds());
+    found_.starts += static_cast<int>(starts.cols());
+  }
+
+  void searchWindows(const MatrixXd& starts) {
+    add(searchGrowing(surface_, starts, options_.max_iterations));
+  }
+
+  /// Instead of searches from the next starts, where chi-square rises towards them all the way.
+  void probe() {
+    const MatrixXd starts = takeStarts(options_.probes);
+    const MatrixXd falls = findFalls(surface_, found_.basins, starts);
+    found_.starts += static_cast<int>(starts.cols());
+    if (falls.cols() > 0) {
+      SearchTeam team(surface_, falls.leftCols(std::min<Index>(falls.cols(), options_.starts)));
+      team.run(options_.max_iterations);
+      add(team.listEnds());
+    }
+  }
+
+ private:
+  void add(std::vector<LocalSurface> ends) {
+    ends_.insert(ends_.end(), std::make_move_iterator(ends.begin()), std::make_move_iterator(ends.end()));
+    found_.basins = collectBasins(ends_);
+  }
+
+  MisfitSurface& surface_;
+  const MatrixXd starts_;
+  const BasinSearchOptions options_;
+  Index taken_ = 0;
+  std::vector<LocalSurface> ends_;
+  BasinSearch found_;
+};
+
 }  // namespace
+
+MatrixXd calcBasinCovariance(const MatrixXd& information) {
+  const Index u = information.rows();
+  return linalg::solveCholesky(
+      linalg::calcCholesky(information + kHalfWidthInformation * MatrixXd::Identity(u, u)).lower,
+      MatrixXd::Identity(u, u));
+}
 
 BasinSearch findBasins(MisfitSurface& surface, const MatrixXd& given, std::uint64_t seed,
                        const BasinSearchOptions& options) {
-  const MatrixXd all = makeStarts(surface.getDimensions(), seed, options);
-  BasinSearch search;
-  std::vector<LocalSurface> ends;
+  const int most = options.starts * options.max_batches + options.probes;
+  BasinHunt hunt(surface, makeStarts(surface.getDimensions(), seed, most), options);
+  MatrixXd scouts(surface.getDimensions(), options.scouts + given.cols());
+  scouts << hunt.takeStarts(options.scouts), given;
+  hunt.search(scouts);
+  if (hunt.isExplained() && hunt.isConfirmed()) {
+    hunt.probe();
+    if (hunt.isConfirmed()) {
+      return hunt.getFound();
+    }
+  }
   for (int batch = 0; batch < options.max_batches; ++batch) {
-    const bool first = batch == 0;
-    MatrixXd starts(all.rows(), options.starts + (first ? given.cols() : 0));
-    starts.leftCols(options.starts) = all.middleCols(batch * options.starts, options.starts);
-    if (first && given.cols() > 0) {
-      starts.rightCols(given.cols()) = given;
+    const MatrixXd starts = hunt.takeStarts(batch == 0 ? options.starts - options.scouts : options.starts);
+    hunt.search(starts);
+    if (!hunt.isExplained() && surface.countWindows() > 1) {
+      MatrixXd all(starts.rows(), starts.cols() + (batch == 0 ? scouts.cols() : 0));
+      all << starts, scouts.leftCols(all.cols() - starts.cols());
+      hunt.searchWindows(all);
     }
-    SearchTeam team(surface, starts);
-    team.run(options.max_iterations);
-    std::vector<LocalSurface> found = team.listEnds();
-    ends.insert(ends.end(), found.begin(), found.end());
-    search.starts += static_cast<int>(starts.cols());
-    search.basins = collectBasins(ends);
-    if (!isExplained(search.basins) && surface.countWindows() > 1) {
-      found = searchGrowing(surface, starts, options.max_iterations);
-      ends.insert(ends.end(), found.begin(), found.end());
-      search.basins = collectBasins(ends);
-    }
-    if (search.basins.empty() || search.basins.front().searches >= options.confirmations) {
+    if (hunt.getFound().basins.empty() || hunt.isConfirmed()) {
       break;
     }
   }
-  return search;
+  return hunt.getFound();
 }
 
 }  // namespace twinmap

@@ -14,6 +14,9 @@ struct Basin {
   int searches = 0;            ///< that ended in it
 };
 
+/// (information + that of the box as a normal distribution)^-1, u x u.
+Eigen::MatrixXd calcBasinCovariance(const Eigen::MatrixXd& information);
+
 /// What searches from all over the box found.
 struct BasinSearch {
   std::vector<Basin> basins;  ///< the least chi-square first; empty where no start could be simulated
@@ -21,8 +24,13 @@ struct BasinSearch {
 };
 
 struct BasinSearchOptions {
-  /// Starts, of a Sobol sequence. With 64, a basin that attracts a twentieth of the box is missed once in 27
-  /// measurements by the first batch.
+  /// Searches before anything is known, of a Sobol sequence as all starts.
+  int scouts = 16;
+  /// Where the scouts agree, so many points more are looked at from the basins: a basin that attracts a
+  /// twentieth of the box has three of them in it.
+  int probes = 64;
+  /// Else so many searches, the scouts among them: a basin that attracts a twentieth of the box is missed
+  /// once in 27 measurements by the first batch.
   int starts = 64;
   /// Batches of starts follow until the best basin was found this often, or so many batches were searched:
   /// a basin found once may have a better neighbour that was not found at all.
@@ -31,13 +39,13 @@ struct BasinSearchOptions {
   int max_iterations = 25;
 };
 
-/// The minima of a surface that may bear some of the posterior: chi-square at most 25 above the best. All
-/// searches go side by side, by Levenberg and Marquardt's method with three dampings an iteration, so that an
-/// iteration is a batch of simulations and one of derivatives; parameters at a bound whose descent points
-/// outwards are held. After 5 and after 10 iterations those far above the best are given up. Where the best
+/// The minima of a surface that may bear some of the posterior: chi-square at most 25 above the best.
+/// Searches go side by side (SearchTeam). Where the first of them agree on a basin that noise explains,
+/// points all over the box follow, each with the way to it from the nearest basin: if chi-square does not
+/// rise all along the way, a search starts where it falls again. Else more searches follow; where the best
 /// end is not explained by noise and the response has windows that grow (RefinementModel), all are searched
 /// again from windows that grow. `given`: points (u x n, may be empty) to search from as well. The starts
-/// depend on `seed` alone. Cost: some 20 to 40 simulations a start.
+/// depend on `seed` alone. Cost: some 10 simulations, 5 of them with derivatives, a search; 3 a probe.
 BasinSearch findBasins(MisfitSurface& surface, const Eigen::MatrixXd& given, std::uint64_t seed,
                        const BasinSearchOptions& options = {});
 

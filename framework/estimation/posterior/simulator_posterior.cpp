@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "framework/estimation/posterior/marginal_surface.hpp"
+#include "framework/estimation/posterior/valley.hpp"
 #include "framework/estimation/refined/acceptance.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -23,7 +24,9 @@ using importance::RoundNumbers;
 namespace {
 
 constexpr int kMaxRounds = 8;  // bent ridges take several until the mixture follows them
-constexpr int kCenters = 24;   // parts about single draws, of a proposal
+constexpr double kEnough =
+    0.4;  // effective draws a draw of a round: with 200, quantiles at 2.5 % are as good as means
+constexpr int kCenters = 24;  // parts about single draws, of a proposal
 
 /// The numbers of the rounds, made when first asked for.
 class Numbers {
@@ -133,16 +136,29 @@ bool areApart(const importance::WeightedDraws& a, const importance::WeightedDraw
   return length > kApart * (spread(first) + spread(second));
 }
 
-/// The nearest basin of each draw, with basins that have no gap between them taken together: they are a
-/// ridge, or one basin found twice.
-std::vector<std::size_t> groupDraws(const MatrixXd& points, const VectorXd& weights, std::size_t basins,
-                                    std::vector<std::size_t> group_of_draw) {
-  for (std::size_t a = 0; a < basins; ++a) {
-    for (std::size_t b = a + 1; b < basins; ++b) {
+/// The nearest basin of each draw, with those taken together that a valley connects or that have no gap
+/// between them: they are a ridge, or one basin found twice.
+std::vector<std::size_t> groupDraws(const MatrixXd& points, const VectorXd& weights,
+                                    const std::vector<Basin>& basins, const Valleys& valleys) {
+  std::vector<std::size_t> group_of_draw = assign(points, basins);
+  const auto unite = [&](std::size_t kept, std::size_t other) {
+    std::replace(group_of_draw.begin(), group_of_draw.end(), other, kept);
+  };
+  std::vector<std::size_t> group_of_basin(basins.size());
+  std::iota(group_of_basin.begin(), group_of_basin.end(), std::size_t{0});
+  for (const auto& [from, to] : valleys.connected) {
+    const std::size_t kept = group_of_basin[from], other = group_of_basin[to];
+    std::replace(group_of_basin.begin(), group_of_basin.end(), other, kept);
+    if (kept != other) {
+      unite(kept, other);
+    }
+  }
+  for (std::size_t a = 0; a < basins.size(); ++a) {
+    for (std::size_t b = a + 1; b < basins.size(); ++b) {
       const importance::WeightedDraws first = takePart(points, weights, group_of_draw, a),
                                       second = takePart(points, weights, group_of_draw, b);
       if (first.weights.sum() > 0.0 && second.weights.sum() > 0.0 && !areApart(first, second)) {
-        std::replace(group_of_draw.begin(), group_of_draw.end(), b, a);
+        unite(a, b);
         b = a;  // the group has grown: it may touch others now
       }
     }
@@ -246,28 +262,30 @@ std::vector<Basin> projectBasins(std::vector<Basin> basins, Index drawn) {
   return basins;
 }
 
-AdaptiveDraws drawFrom(MisfitSurface& surface, const BasinSearch& found, const std::vector<Basin>& projected,
+AdaptiveDraws drawFrom(MisfitSurface& surface, const std::vector<Basin>& places,
+                       const std::vector<Basin>& basins, const std::vector<Basin>& projected,
                        const SimulatorPosteriorOptions& options) {
   const Index drawn = projected.front().local.at.size();
   Numbers numbers(drawn, options);
   importance::AdaptiveOptions adaptive;
   adaptive.max_rounds = kMaxRounds;
+  adaptive.enough = kEnough;
   std::vector<Index> kept(static_cast<std::size_t>(drawn));
   std::iota(kept.begin(), kept.end(), Index{0});
   std::optional<MarginalSurface> marginal;
   if (drawn < surface.getDimensions()) {
-    marginal.emplace(surface, kept, found.basins);
+    marginal.emplace(surface, kept, basins);
   }
   return importance::sampleAdaptively(
       [&](const MatrixXd& points) {
         return marginal ? marginal->calcLogPosteriors(points) : surface.calcLogPosteriors(points);
       },
-      proposeFirst(projected, calcShares(found.basins, surface)),
+      proposeFirst(projected, calcShares(places, surface)),
       [&](int round) -> const RoundNumbers& { return numbers.get(round); }, adaptive);
 }
 
 /// Moments, draws and modes, of the first parameters, as many as `projected` has coordinates.
-void setDraws(const AdaptiveDraws& drawn, const std::vector<Basin>& projected,
+void setDraws(const AdaptiveDraws& drawn, const std::vector<Basin>& projected, const Valleys& valleys,
               const LogCoordinates& coordinates, SimulatorPosterior& posterior) {
   posterior.weights = drawn.draws.weights;
   posterior.draws = toParameters(coordinates, drawn.draws.points);
@@ -275,8 +293,8 @@ void setDraws(const AdaptiveDraws& drawn, const std::vector<Basin>& projected,
   posterior.mean = importance::calcMean(draws);
   posterior.covariance = importance::calcCovariance(draws);
   posterior.stddev = posterior.covariance.diagonal().cwiseSqrt();
-  const std::vector<std::size_t> groups = groupDraws(drawn.draws.points, posterior.weights, projected.size(),
-                                                     assign(drawn.draws.points, projected));
+  const std::vector<std::size_t> groups =
+      groupDraws(drawn.draws.points, posterior.weights, projected, valleys);
   posterior.modes = collectModes(projected, groups, posterior.draws, posterior.weights);
 }
 
@@ -306,15 +324,19 @@ SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Matrix
   }
   setBest(found, coordinates, posterior);
   posterior.loss = problem.trials.front().loss;
+  const Valleys valleys = followValleys(surface, found.basins);
+  std::vector<Basin> places = found.basins;
+  places.insert(places.end(), valleys.floors.begin(), valleys.floors.end());
   const std::vector<Basin> projected = projectBasins(found.basins, problem.drawn);
-  const AdaptiveDraws drawn = drawFrom(surface, found, projected, options);
+  const AdaptiveDraws drawn =
+      drawFrom(surface, places, found.basins, projectBasins(places, problem.drawn), options);
   posterior.simulations = surface.getSimulations();
   posterior.effective_sample_size = drawn.effective_sample_size;
   posterior.pareto_shape = drawn.pareto_shape;
   posterior.message = drawn.findObstacle();
   if (posterior.isReliable()) {
     const std::vector<ParameterSpec> kept(problem.unknown.begin(), problem.unknown.begin() + problem.drawn);
-    setDraws(drawn, projected, LogCoordinates(kept), posterior);
+    setDraws(drawn, projected, valleys, LogCoordinates(kept), posterior);
   }
   return posterior;
 }

@@ -64,10 +64,21 @@ TEST(WeightedDraws, ResamplesEachPointAsOftenAsItsWeightSays) {
 
 TEST(WeightedDraws, TemperingReachesTheSampleSizeAskedForAndNoMore) {
   const VectorXd at = makeMidpoints(200);
-  const WeightedDraws draws = weigh(at.transpose(), 300.0 * at);
-  ASSERT_LT(calcEffectiveSampleSize(draws), 3.0);
-  EXPECT_NEAR(calcEffectiveSampleSize(temper(draws, 50.0)), 50.0, 0.1);
-  EXPECT_EQ(temper(draws, 1.0).weights, draws.weights);
+  const MatrixXd points = at.transpose();
+  // the last by far outweigh all others, of most of which no double holds the weight
+  for (const double scale : {300.0, 3e6}) {
+    ASSERT_LT(calcEffectiveSampleSize(weigh(points, scale * at)), 3.0);
+    EXPECT_NEAR(calcEffectiveSampleSize(temper(points, scale * at, 50.0)), 50.0, 0.1);
+  }
+  EXPECT_EQ(temper(points, 300.0 * at, 1.0).weights, weigh(points, 300.0 * at).weights);
+}
+
+TEST(WeightedDraws, TemperingLeavesTheImpossibleImpossible) {
+  VectorXd log_weights = -3000.0 * makeMidpoints(100);
+  log_weights.tail(50).setConstant(kImpossible);
+  const WeightedDraws draws = temper(makeMidpoints(100).transpose(), log_weights, 80.0);
+  EXPECT_TRUE((draws.weights.tail(50).array() == 0.0).all());
+  EXPECT_NEAR(calcEffectiveSampleSize(draws), 50.0, 1e-3);
 }
 
 /// Weights that are quantiles of a generalised Pareto distribution, 1 added.

@@ -1,0 +1,235 @@
+#include "framework/estimation/posterior/search_team.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "framework/estimation/refined/acceptance.hpp"
+#include "kernels/linalg/decompositions.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+/// From nearly a Gauss-Newton step to a short one: one of them fits wherever the linear model holds at all.
+constexpr double kDampings[] = {0.01, 1.0, 30.0};
+constexpr double kFirstDamping = 1e-2, kMinDamping = 1e-9, kMaxDamping = 1e8, kRaise = 100.0;
+constexpr double kHeldLinear = 0.75;      // of the gain that the linear model says
+constexpr double kLongestStep = 0.5;      // half of a coordinate's bounds
+constexpr double kConvergedGain = 0.01;   // of chi-square: a tenth of a standard deviation
+constexpr double kFirstDiagonal = 1e-12;  // of the largest: what the response does not depend on stays
+constexpr double kFarAbove = 50.0;        // of the best chi-square: e^-25 of its density
+
+/// The coordinates that a step may move: those at a bound whose descent points outwards are held.
+std::vector<Index> findFree(const LocalSurface& local) {
+  std::vector<Index> free;
+  for (Index j = 0; j < local.at.size(); ++j) {
+    if (!(std::abs(local.at[j]) >= 1.0 && local.at[j] * local.descent[j] > 0.0)) {
+      free.push_back(j);
+    }
+  }
+  return free;
+}
+
+/// What a step of the free coordinates may be made of (f x k): all of them, or what is at right angles to the
+/// direction that is held.
+MatrixXd makeBasis(const VectorXd& held, const std::vector<Index>& free) {
+  const auto count = static_cast<Index>(free.size());
+  Index largest = 0;
+  if (held.size() == 0 || !(held(free).cwiseAbs().maxCoeff(&largest) > 0.0)) {
+    return MatrixXd::Identity(count, count);
+  }
+  MatrixXd basis = MatrixXd::Zero(count, count - 1);
+  for (Index i = 0, k = 0; i < count; ++i) {
+    if (i != largest) {
+      basis(i, k) = 1.0;
+      basis(largest, k++) =
+          -held[free[static_cast<std::size_t>(i)]] / held[free[static_cast<std::size_t>(largest)]];
+    }
+  }
+  return basis;
+}
+
+/// (I + damping diag(I)) step = descent for what may move; the rest stays.
+VectorXd calcStep(const LocalSurface& local, const VectorXd& held, double damping) {
+  const std::vector<Index> free = findFree(local);
+  VectorXd step = VectorXd::Zero(local.at.size());
+  if (free.empty()) {
+    return step;
+  }
+  const MatrixXd basis = makeBasis(held, free);
+  if (basis.cols() == 0) {
+    return step;
+  }
+  MatrixXd damped = basis.transpose() * local.information(free, free) * basis;
+  const double floor = kFirstDiagonal * damped.diagonal().maxCoeff() + std::numeric_limits<double>::min();
+  damped.diagonal() = (1.0 + damping) * damped.diagonal().array() + floor;
+  step(free) = basis * linalg::solvePositiveDefinite(damped, basis.transpose() * local.descent(free));
+  return step;
+}
+
+/// What a Gauss-Newton step would gain of chi-square if the linear model held.
+double predictGain(const LocalSurface& local, const VectorXd& held) {
+  return local.descent.dot(calcStep(local, held, kMinDamping));
+}
+
+VectorXd take(const LocalSurface& local, const VectorXd& step) {
+  const double length = step.cwiseAbs().maxCoeff();
+  const double scale = length > kLongestStep ? kLongestStep / length : 1.0;
+  return (local.at + scale * step).cwiseMax(-1.0).cwiseMin(1.0);
+}
+
+/// What a step gains of chi-square if the linear model holds.
+double calcLinearGain(const LocalSurface& local, const VectorXd& step) {
+  return 2.0 * step.dot(local.descent) - step.dot(local.information * step);
+}
+
+}  // namespace
+
+SearchTeam::SearchTeam(MisfitSurface& surface, const MatrixXd& starts, const MatrixXd& held)
+    : surface_(surface) {
+  std::vector<LocalSurface> locals = surface.linearize(starts);
+  for (std::size_t i = 0; i < locals.size(); ++i) {
+    const bool simulated = locals[i].simulated;
+    searches_.push_back({std::move(locals[i]),
+                         held.cols() > 0 ? VectorXd(held.col(static_cast<Index>(i))) : VectorXd(),
+                         kFirstDamping, simulated});
+  }
+}
+
+void SearchTeam::run(int max_iterations) {
+  constexpr int kFirstJudged = 5;  // by then whatever is near a minimum has come down to it
+  for (int i = 1; i <= max_iterations && improve(); ++i) {
+    if (i == kFirstJudged || i == 2 * kFirstJudged) {
+      giveUpHopeless();
+    }
+    if (i >= kFirstJudged) {
+      giveUpSlow();
+    }
+  }
+}
+
+std::vector<LocalSurface> SearchTeam::listEnds() const {
+  std::vector<LocalSurface> ends;
+  for (const Search& search : searches_) {
+    if (search.local.simulated) {
+      ends.push_back(search.local);
+    }
+  }
+  return ends;
+}
+
+std::vector<SearchTeam::Search*> SearchTeam::listActive() {
+  std::vector<Search*> active;
+  for (Search& search : searches_) {
+    if (search.active) {
+      active.push_back(&search);
+    }
+  }
+  return active;
+}
+
+/// One iteration of all that have not converged; false if there are none.
+bool SearchTeam::improve() {
+  const std::vector<Search*> active = listActive();
+  if (active.empty()) {
+    return false;
+  }
+  Index count = 0;
+  for (Search* search : active) {
+    search->factors.assign(std::begin(kDampings),
+                           search->linear ? std::begin(kDampings) + 1 : std::end(kDampings));
+    count += static_cast<Index>(search->factors.size());
+  }
+  MatrixXd trials(surface_.getDimensions(), count);
+  Index column = 0;
+  for (const Search* search : active) {
+    for (const double factor : search->factors) {
+      trials.col(column++) =
+          take(search->local, calcStep(search->local, search->held, search->damping * factor));
+    }
+  }
+  const VectorXd reached = surface_.calcMisfits(trials);
+  std::vector<Search*> moved;
+  std::vector<Index> columns;
+  column = 0;
+  for (Search* search : active) {
+    const auto tried = static_cast<Index>(search->factors.size());
+    Index best = 0;
+    const double least = reached.segment(column, tried).minCoeff(&best);
+    search->before = search->local.misfit;
+    if (least < search->local.misfit) {
+      const double expected = calcLinearGain(search->local, trials.col(column + best) - search->local.at);
+      search->linear = best == 0 && search->local.misfit - least > kHeldLinear * expected;
+      search->damping = std::max(search->damping * kDampings[best], kMinDamping);
+      moved.push_back(search);
+      columns.push_back(column + best);
+    } else {
+      search->damping *= search->linear ? 1.0 : kRaise;
+      search->linear = false;
+      search->active = search->damping < kMaxDamping;
+    }
+    column += tried;
+  }
+  move(moved, trials(Eigen::all, columns));
+  return true;
+}
+
+void SearchTeam::move(const std::vector<Search*>& moved, const MatrixXd& to) {
+  if (moved.empty()) {
+    return;
+  }
+  std::vector<LocalSurface> reached = surface_.linearize(to);
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    Search& search = *moved[i];
+    search.active = reached[i].simulated && predictGain(reached[i], search.held) > kConvergedGain;
+    if (reached[i].simulated) {
+      search.local = std::move(reached[i]);
+    }
+  }
+}
+
+/// Searches far above the best one; a quarter of all is kept whatever it is.
+void SearchTeam::giveUpHopeless() {
+  constexpr double kOfBest = 0.5;
+  std::vector<double> reached;
+  for (const Search& search : searches_) {
+    if (search.local.simulated) {
+      reached.push_back(search.local.misfit);
+    }
+  }
+  if (reached.empty()) {
+    return;
+  }
+  std::sort(reached.begin(), reached.end());
+  const double near = reached.front() + std::max(kFarAbove, kOfBest * reached.front());
+  const double limit = std::max(near, reached[reached.size() / 4]);
+  for (Search& search : searches_) {
+    search.active = search.active && search.local.misfit <= limit;
+  }
+}
+
+/// Where noise explains the best: searches far above it that an iteration brought less than half the way.
+void SearchTeam::giveUpSlow() {
+  constexpr double kSlow = 0.5;
+  const Search* best = nullptr;
+  for (const Search& search : searches_) {
+    if (search.local.simulated && (best == nullptr || search.local.misfit < best->local.misfit)) {
+      best = &search;
+    }
+  }
+  if (best == nullptr || !(best->local.chi_square < calcChiSquareLimit(best->local.degrees))) {
+    return;
+  }
+  for (Search& search : searches_) {
+    const double above = search.local.misfit - best->local.misfit;
+    search.active =
+        search.active && (above < kFarAbove || above < kSlow * (search.before - best->local.misfit));
+  }
+}
+
+}  // namespace twinmap

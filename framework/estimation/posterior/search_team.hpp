@@ -1,0 +1,49 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "framework/estimation/posterior/misfit_surface.hpp"
+
+namespace twinmap {
+
+/// Searches for minima of chi-square that go side by side, by Levenberg and Marquardt's method: an iteration
+/// is a batch of simulations, three dampings for each search or one where its linear model held the last
+/// time, and a batch with derivatives for those that moved. Parameters at a bound whose descent points
+/// outwards are held. Searches far above the best are given up.
+class SearchTeam {
+ public:
+  /// starts: u x n. Search i does not move along column i of `held` (u x n; empty: all move freely).
+  /// `surface` must outlive the object.
+  SearchTeam(MisfitSurface& surface, const Eigen::MatrixXd& starts,
+             const Eigen::MatrixXd& held = Eigen::MatrixXd());
+
+  void run(int max_iterations);
+
+  /// Where search i is.
+  const LocalSurface& getLocal(Eigen::Index i) const { return searches_[static_cast<std::size_t>(i)].local; }
+  /// Where the searches are that could be simulated.
+  std::vector<LocalSurface> listEnds() const;
+
+ private:
+  struct Search {
+    LocalSurface local;
+    Eigen::VectorXd held;  ///< u, the direction in which it stays; or empty
+    double damping;
+    bool active;
+    bool linear = false;            ///< whether the last step gained what the linear model said
+    double before = 0.0;            ///< chi-square before the last iteration
+    std::vector<double> factors{};  ///< of the damping, that an iteration tries
+  };
+
+  bool improve();
+  std::vector<Search*> listActive();
+  void move(const std::vector<Search*>& moved, const Eigen::MatrixXd& to);
+  void giveUpHopeless();
+  void giveUpSlow();
+
+  MisfitSurface& surface_;
+  std::vector<Search> searches_;
+};
+
+}  // namespace twinmap
