@@ -119,16 +119,25 @@ class ExperimentSource final : public InferenceSource {
   Eigen::VectorXd known_;
 };
 
-/// An experiment's file; anything else is a run.
-bool isExperimentFile(const std::string& path) {
-  const std::string extension = std::filesystem::path(path).extension().string();
-  return extension == ".yaml" || extension == ".yml";
+/// The experiment that answers without a map: a file, or that of a run with 'inverse_map: none'; "" for a run
+/// with a map.
+std::string findExperiment(const std::filesystem::path& path) {
+  const std::string extension = path.extension().string();
+  if (extension == ".yaml" || extension == ".yml") {
+    return path.string();
+  }
+  const std::filesystem::path resolved = path / "resolved.yaml";
+  const bool has_no_map = std::filesystem::exists(resolved) && !std::filesystem::exists(path / "maps.h5") &&
+                          loadExperiment(resolved.string()).inverse_map.isNone();
+  return has_no_map ? resolved.string() : "";
 }
 
-std::unique_ptr<InferenceSource> makeSource(const InferArguments& arguments) {
-  if (!isExperimentFile(arguments.run)) {
+std::unique_ptr<InferenceSource> makeSource(InferArguments arguments) {
+  const std::string experiment = findExperiment(arguments.run);
+  if (experiment.empty()) {
     return std::make_unique<RunSource>(arguments);
   }
+  arguments.run = experiment;
   if (arguments.refine) {
     throw ExperimentError(
         "an experiment file is inferred by simulation alone: there is nothing to refine; leave "
