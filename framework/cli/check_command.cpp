@@ -21,6 +21,9 @@ void check(const ExperimentArguments& arguments) {
   for (const std::string& engine : engines) {
     std::cout << "# simulated by: " << engine << '\n';
   }
+  if (readExperiment(tree).inverse_map.isNone()) {
+    std::cout << "# no inverse map: measurements are answered by their posterior on the simulator\n";
+  }
   if (tree.find("sweep") != nullptr) {
     std::cout << writeIndependentDefaults(tree);
     return;

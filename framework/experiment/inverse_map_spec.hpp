@@ -242,9 +242,16 @@ struct AutomaticMapSpec {
 template <class Fields>
 void describe(Fields&, AutomaticMapSpec&) {}
 
-struct InverseMapSpec {
-  std::variant<AutomaticMapSpec, GpMapSpec, SurrogateMapSpec, NetworkMapSpec> kind;
+/// None: each measurement is answered by the exact posterior on the simulator (docs/posterior.md).
+struct NoMapSpec {};
 
+template <class Fields>
+void describe(Fields&, NoMapSpec&) {}
+
+struct InverseMapSpec {
+  std::variant<AutomaticMapSpec, GpMapSpec, SurrogateMapSpec, NetworkMapSpec, NoMapSpec> kind;
+
+  bool isNone() const { return std::holds_alternative<NoMapSpec>(kind); }
   bool isAutomatic() const { return std::holds_alternative<AutomaticMapSpec>(kind); }
   /// Null for another kind.
   const GpMapSpec* findGp() const { return std::get_if<GpMapSpec>(&kind); }
@@ -260,12 +267,14 @@ struct InverseMapSpec {
 template <class Fields>
 void describe(Fields& f, InverseMapSpec& s) {
   f.scalarIsKey();
-  f.oneOf("must be one of",
-          choice<AutomaticMapSpec>("automatic", s.kind, "a surrogate where it can be trained, else gp"),
-          choice<GpMapSpec>("gp", s.kind, "one Gaussian process per parameter"),
-          choice<SurrogateMapSpec>("surrogate", s.kind,
-                                   "processes from parameters to features, inverted for each measurement"),
-          choice<NetworkMapSpec>("network", s.kind, "a neural network, the fastest to infer"));
+  f.oneOf(
+      "must be one of",
+      choice<AutomaticMapSpec>("automatic", s.kind, "a surrogate where it can be trained, else gp"),
+      choice<GpMapSpec>("gp", s.kind, "one Gaussian process per parameter"),
+      choice<SurrogateMapSpec>("surrogate", s.kind,
+                               "processes from parameters to features, inverted for each measurement"),
+      choice<NetworkMapSpec>("network", s.kind, "a neural network, the fastest to infer"),
+      choice<NoMapSpec>("none", s.kind, "no map: the posterior on the simulator answers each measurement"));
 }
 
 }  // namespace twinmap

@@ -49,10 +49,16 @@ void resolveProminence(const NoiseSpec& noise, ExtremaFeatureSpec& extrema) {
 
 /// A surrogate's cross-validation tells what more samples are worth; processes from features to parameters
 /// take the paper's number, and so does a network, which a surrogate can teach. 100 samples are the fewest
-/// that five folds of 8 unknowns can be learnt from; a longer set must begin with the shorter one.
+/// that five folds of 8 unknowns can be learnt from; a longer set must begin with the shorter one. Without a
+/// map nothing is trained, whatever number the file gives.
 void resolveTrainingSamples(const InverseMapSpec& map, PointSetSpec& train) {
   constexpr int kSmallest = 100, kMax = 800, kOfProcesses = 250;
   constexpr double kSeconds = 10.0;
+  if (map.isNone()) {
+    train.samples = SampleCount::makeAutomatic(0);
+    train.time.reset();
+    return;
+  }
   if (!train.samples.automatic) {
     return;
   }
@@ -86,7 +92,7 @@ void resolveNetwork(int simulations, InverseMapSpec& map) {
 /// 4 draws; fewer where the training set would have more than 3000 columns.
 void resolveReplicates(int samples, NoiseSpec& noise) {
   constexpr int kMaxReplicates = 4, kMaxColumns = 3000;
-  if (!noise.replicates) {
+  if (!noise.replicates && samples > 0) {
     noise.replicates = std::clamp(kMaxColumns / samples, 1, kMaxReplicates);
   }
 }

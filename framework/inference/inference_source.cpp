@@ -9,9 +9,16 @@
 namespace twinmap {
 namespace {
 
-/// An experiment's file; anything else is a run.
-bool isExperimentFile(const std::filesystem::path& path) {
-  return path.extension() == ".yaml" || path.extension() == ".yml";
+/// The file of the experiment that is inferred by without a map: the path itself, or that of a run with
+/// `inverse_map: none`; empty for a run with a map.
+std::filesystem::path findExperiment(const std::filesystem::path& path) {
+  if (path.extension() == ".yaml" || path.extension() == ".yml") {
+    return path;
+  }
+  const std::filesystem::path resolved = path / "resolved.yaml";
+  const bool has_no_map = std::filesystem::exists(resolved) && !std::filesystem::exists(path / "maps.h5") &&
+                          loadExperiment(resolved.string()).inverse_map.isNone();
+  return has_no_map ? resolved : std::filesystem::path();
 }
 
 std::unique_ptr<MeasurementInference> makeDirect(const MeasurementReader& reader,
@@ -33,8 +40,8 @@ std::unique_ptr<MeasurementInference> makeDirect(const MeasurementReader& reader
 }  // namespace
 
 InferenceSource::InferenceSource(const std::filesystem::path& run_or_experiment) {
-  if (isExperimentFile(run_or_experiment)) {
-    reader_.emplace(followNoise(readExperimentWithSignals(loadExperimentTree(run_or_experiment))));
+  if (const std::filesystem::path experiment = findExperiment(run_or_experiment); !experiment.empty()) {
+    reader_.emplace(followNoise(readExperimentWithSignals(loadExperimentTree(experiment.string()))));
   } else {
     trained_.emplace(run_or_experiment);
   }

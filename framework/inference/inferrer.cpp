@@ -12,8 +12,10 @@ namespace fs = std::filesystem;
 fs::path findMaps(const fs::path& run_or_maps) {
   const fs::path file = fs::is_directory(run_or_maps) ? run_or_maps / "maps.h5" : run_or_maps;
   if (!fs::exists(file)) {
-    throw std::runtime_error(file.string() +
-                             ": does not exist; give the folder of a finished run, or its maps.h5");
+    throw std::runtime_error(
+        file.string() +
+        ": does not exist; give the folder of a finished run, or its maps.h5 (a run with "
+        "'inverse_map: none' has none: only `twinmap infer` answers from it)");
   }
   return file;
 }

@@ -122,6 +122,9 @@ std::string makeWarningList(const std::vector<std::string>& warnings) {
 }
 
 std::string describeCount(const SampleCount& samples) {
+  if (samples.number == 0) {
+    return "none: no map was trained";
+  }
   return std::to_string(samples.number) + (samples.automatic ? ", chosen automatically" : "");
 }
 

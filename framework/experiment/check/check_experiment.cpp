@@ -34,9 +34,12 @@ void checkDuration(const ExperimentSpec& experiment) {
   }
 }
 
-void checkDesign(const DesignSpec& design, const SourceLocation& where) {
+void checkDesign(const ExperimentSpec& experiment) {
+  const DesignSpec& design = experiment.design;
+  const SourceLocation& where = experiment.name.where;
   constexpr int kMin = 2;  // standard deviations need two
-  if (design.train.samples < kMin || design.test.samples < kMin) {
+  const bool trains = !experiment.inverse_map.isNone();
+  if ((trains && design.train.samples < kMin) || design.test.samples < kMin) {
     throw ExperimentError({where.file, 0, 0, "design"}, "", "needs at least 2 training and 2 test samples");
   }
 }
@@ -92,6 +95,19 @@ void checkGates(const ExperimentSpec& experiment) {
   }
 }
 
+/// Without a map there is nothing to compare with: all answers are exact posteriors.
+void checkEvaluation(const ExperimentSpec& experiment) {
+  const EvaluationSpec& evaluation = experiment.evaluation;
+  const bool compares = evaluation.posterior || !evaluation.baselines.empty() || !evaluation.maps.empty() ||
+                        evaluation.calibration != PosteriorCalibrationMethod::kNone;
+  if (experiment.inverse_map.isNone() && compares) {
+    throw ExperimentError(
+        {experiment.name.where.file, 0, 0, "evaluation"}, "",
+        "must ask for no posterior, calibration, baselines or maps with 'inverse_map: none': "
+        "every test sample is answered by its exact posterior");
+  }
+}
+
 }  // namespace
 
 void requireKnown(const Name& name, const std::vector<std::string>& known, const std::string& what) {
@@ -113,13 +129,14 @@ void checkBesideModel(const ExperimentSpec& experiment) {
   checkFeatures(experiment.features, experiment.model);
   checkNoise(experiment);
   checkTransform(experiment);
-  checkDesign(experiment.design, experiment.name.where);
+  checkDesign(experiment);
   if (experiment.design.excitation) {
     checkExcitationDesign(*experiment.design.excitation, experiment.model);
   }
   if (experiment.design.sensors) {
     checkSensorDesign(*experiment.design.sensors, experiment);
   }
+  checkEvaluation(experiment);
   checkGates(experiment);
   checkMeasurement(experiment.measurement, experiment.model);
   for (const Name& axis : experiment.report.over) {

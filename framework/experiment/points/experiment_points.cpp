@@ -6,6 +6,9 @@
 namespace twinmap {
 
 Eigen::MatrixXd sampleTrainPoints(const ExperimentSpec& experiment) {
+  if (experiment.inverse_map.isNone()) {
+    return Eigen::MatrixXd(countSampled(experiment.model), 0);
+  }
   return samplePoints(experiment.design.train, collectSampled(experiment.model), experiment.seed,
                       RandomPurpose::kTrainDesign);
 }

@@ -6,7 +6,8 @@
 
 namespace twinmap {
 
-/// The training points of an experiment in its sampled box (collectSampled): parameters x n.
+/// The training points of an experiment in its sampled box (collectSampled): parameters x n; none without a
+/// map.
 Eigen::MatrixXd sampleTrainPoints(const ExperimentSpec& experiment);
 
 /// The test points, likewise.

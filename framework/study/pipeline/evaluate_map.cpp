@@ -178,6 +178,30 @@ void addLimit(const Study& study, const LabelledFeatures& test, const Informatio
   }
 }
 
+OnlineTimes summarizeTimes(VectorXd seconds) {
+  constexpr double kMicro = 1e6;
+  std::sort(seconds.begin(), seconds.end());
+  const Index last = seconds.size() - 1;
+  return {static_cast<int>(seconds.size()), kMicro * seconds[last / 2], kMicro * seconds[last * 99 / 100]};
+}
+
+/// A warning of those that are not reliable, or an error where too few are.
+void requireReliable(const std::vector<SimulatorPosterior>& exact, std::size_t reliable, StageNotes& notes) {
+  constexpr std::size_t kMin = 3;  // for a standard error
+  const auto first = std::find_if(exact.begin(), exact.end(),
+                                  [](const SimulatorPosterior& one) { return !one.isReliable(); });
+  if (first == exact.end()) {
+    return;
+  }
+  const std::string text =
+      fmt::format("the posteriors of {} of {} test samples are not reliable and left out of the tables: {}",
+                  exact.size() - reliable, exact.size(), first->message);
+  if (reliable < kMin) {
+    throw std::runtime_error(text + ". Give narrower bounds");
+  }
+  notes.warn(Severity::kDegraded, std::vector<std::string>{text});
+}
+
 }  // namespace
 
 MapEvaluation evaluateMap(const Study& study, const PreparedData& data, const TrainedMap& map) {
@@ -209,6 +233,39 @@ MapEvaluation evaluateMap(const Study& study, const PreparedData& data, const Tr
     result.notes.append(calibrated.notes);
   }
   result.evaluation.baselines = runBaselines(study, data.labelled, map, result.notes);
+  return result;
+}
+
+PosteriorEvaluation evaluatePosteriors(const Study& study, PreparedData& data) {
+  const LabelledFeatures& test = data.labelled.test;
+  const std::vector<ParameterSpec>& parameters = getParameters(study);
+  PosteriorEvaluation result;
+  StageNotes& notes = result.evaluated.notes;
+  const Index count = test.features.cols();
+  VectorXd seconds;
+  const std::vector<SimulatorPosterior> exact = timeStage(
+      fmt::format("exact posteriors of {} test samples", count), notes,
+      [&] { return sampleTestPosteriors(study, test, count, SimulatorPosteriorOptions{}.draws, &seconds); });
+  result.times = summarizeTimes(seconds);
+  ReliablePosteriors reliable = takeReliable(exact, static_cast<Index>(parameters.size()));
+  requireReliable(exact, reliable.samples.size(), notes);
+  const std::optional<InformationLimit> limit = findLimit(study, data, notes);
+  const Eigen::MatrixXd limit_stddev = limit ? limit->stddev : Eigen::MatrixXd();
+  const auto choose = [&](const Eigen::MatrixXd& values) {
+    return values.cols() > 0 ? Eigen::MatrixXd(values(Eigen::all, reliable.samples)) : Eigen::MatrixXd();
+  };
+  Evaluation& evaluation = result.evaluated.evaluation;
+  evaluation = evaluateEstimates(parameters, choose(test.parameters), std::move(reliable.estimates),
+                                 choose(limit_stddev));
+  evaluation.methods = {summarizePosteriors(parameters, test.parameters, exact, limit_stddev)};
+  if (limit) {
+    addLimit(study, test, *limit, result.evaluated);
+  }
+  std::vector<int> kept;
+  for (const Index i : reliable.samples) {
+    kept.push_back(data.test_indices[static_cast<std::size_t>(i)]);
+  }
+  data.test_indices = std::move(kept);
   return result;
 }
 

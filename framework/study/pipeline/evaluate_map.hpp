@@ -16,4 +16,15 @@ struct MapEvaluation {
 /// exact posteriors, calibration of posteriors and baselines.
 MapEvaluation evaluateMap(const Study& study, const PreparedData& data, const TrainedMap& map);
 
+/// An evaluation without a map.
+struct PosteriorEvaluation {
+  MapEvaluation evaluated;
+  OnlineTimes times;  ///< of a measurement, on one of the threads
+};
+
+/// The same of the exact posterior of each test sample, as `twinmap infer FILE.yaml` gives it. What is not
+/// reliable is left out of the samples of `data`, with a warning. Throws std::runtime_error where fewer than
+/// three are reliable.
+PosteriorEvaluation evaluatePosteriors(const Study& study, PreparedData& data);
+
 }  // namespace twinmap

@@ -1,6 +1,8 @@
 #include "framework/study/pipeline/exact_posteriors.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <mutex>
 #include <numeric>
 
 #include "framework/analysis/metrics.hpp"
@@ -41,6 +43,25 @@ int calcMedianSimulationsOf(const std::vector<SimulatorPosterior>& posteriors) {
   return simulations.empty() ? 0 : *middle;
 }
 
+/// How many measurements are done, from any thread.
+class SharedProgress {
+ public:
+  SharedProgress(const RunControl& control, int total) : control_(control), total_(total) {}
+
+  void advance() {
+    const std::lock_guard<std::mutex> guard(lock_);
+    ++done_;
+    if (control_.progress) {
+      control_.progress({"posteriors", done_, total_, 0, static_cast<double>(done_) / total_, false});
+    }
+  }
+
+ private:
+  const RunControl& control_;
+  std::mutex lock_;
+  int done_ = 0, total_;
+};
+
 bool isApart(const Refined& refined, const SimulatorPosterior& posterior, Index parameters) {
   constexpr double kApart = 0.3;  // of the posterior's sd
   const Eigen::ArrayXd sd = posterior.stddev.head(parameters);
@@ -52,7 +73,8 @@ bool isApart(const Refined& refined, const SimulatorPosterior& posterior, Index 
 }  // namespace
 
 std::vector<SimulatorPosterior> sampleTestPosteriors(const Study& study, const LabelledFeatures& test,
-                                                     Index count, int draws) {
+                                                     Index count, int draws, VectorXd* seconds) {
+  using Clock = std::chrono::steady_clock;
   const RefinementModel model(collectUnknown(study.experiment.model), study.extractor, study.noise);
   const VectorXd center = calcBoxCenter(collectSampled(study.experiment.model));
   const Index known = test.inputs.rows(), unknown = center.size() - known;
@@ -60,17 +82,25 @@ std::vector<SimulatorPosterior> sampleTestPosteriors(const Study& study, const L
   options.draws = draws;
   options.seed = study.experiment.seed;
   std::vector<SimulatorPosterior> posteriors(static_cast<std::size_t>(count));
-  runOnTeam(
-      study.simulator, static_cast<int>(count), study.control.threads, [&](Simulator& simulator, int i) {
-        throwIfCancelled(study.control, "interrupted while posteriors were sampled");
-        VectorXd held = center;
-        if (known > 0) {
-          held.tail(known) = test.inputs.col(i);
-        }
-        posteriors[static_cast<std::size_t>(i)] =
-            samplePosterior(simulator, model, study.experiment.model.priors, test.features.col(i), held,
-                            MatrixXd(unknown, 0), options);
-      });
+  VectorXd times(count);
+  SharedProgress progress(study.control, static_cast<int>(count));
+  runOnTeam(study.simulator, static_cast<int>(count), study.control.threads,
+            [&](Simulator& simulator, int i) {
+              throwIfCancelled(study.control, "interrupted while posteriors were sampled");
+              VectorXd held = center;
+              if (known > 0) {
+                held.tail(known) = test.inputs.col(i);
+              }
+              const auto start = Clock::now();
+              posteriors[static_cast<std::size_t>(i)] =
+                  samplePosterior(simulator, model, study.experiment.model.priors, test.features.col(i), held,
+                                  MatrixXd(unknown, 0), options);
+              times[i] = std::chrono::duration<double>(Clock::now() - start).count();
+              progress.advance();
+            });
+  if (seconds != nullptr) {
+    *seconds = std::move(times);
+  }
   return posteriors;
 }
 

@@ -9,10 +9,11 @@
 namespace twinmap {
 
 /// The exact posteriors of the first `count` test samples, on a team of threads (samplePosterior), as
-/// `twinmap infer FILE.yaml` gives them. draws: of a round. Throws std::invalid_argument for a feature
-/// without noise.
+/// `twinmap infer FILE.yaml` gives them. draws: of a round; seconds: unless null, what each took. Throws
+/// std::invalid_argument for a feature without noise.
 std::vector<SimulatorPosterior> sampleTestPosteriors(const Study& study, const LabelledFeatures& test,
-                                                     Eigen::Index count, int draws);
+                                                     Eigen::Index count, int draws,
+                                                     Eigen::VectorXd* seconds = nullptr);
 
 /// The posteriors that are reliable (p x n) as estimates whose intervals hold the draws that they say: mean
 /// +- what holds half, and 95 %, of their weight. `samples`: their indices.

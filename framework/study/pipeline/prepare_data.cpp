@@ -105,8 +105,9 @@ LabelledSets makeLabelledSets(const ExperimentSpec& experiment, const SimulatedS
                                              experiment.noise.replicates.value_or(1)),
                         makeLabelledFeatures(experiment.model, sets.test, extractor, response_noise,
                                              {experiment.seed, RandomPurpose::kTestNoise}, 1)};
+  const Trajectories& clean = experiment.inverse_map.isNone() ? sets.test : sets.train;
   labelled.train.noise_covariance =
-      noise.calcMeanCovariance(sets.train.responses(Eigen::all, findSuccessful(sets.train)));
+      noise.calcMeanCovariance(clean.responses(Eigen::all, findSuccessful(clean)));
   labelled.test.noise_covariance = labelled.train.noise_covariance;
   return labelled;
 }

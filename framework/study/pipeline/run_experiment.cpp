@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <limits>
+
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/base/files/folder_lock.hpp"
 #include "framework/base/log/log.hpp"
@@ -139,6 +141,9 @@ SampleChoice chooseSamples(const Study& study, const RunOptions& options) {
   const SampleCount& asked = study.experiment.design.train.samples;
   const fs::path recorded = study.folder / "samples.h5";
   SampleChoice choice;
+  if (study.experiment.inverse_map.isNone()) {
+    return choice;
+  }
   if (!asked.automatic || options.train_samples > 0) {
     choice.samples = asked.automatic ? options.train_samples : asked.number;
     return choice;
@@ -189,6 +194,26 @@ RunSummary runStages(const Study& study, SampleChoice choice) {
   return summary;
 }
 
+/// The stages of a run without a map.
+RunSummary runStagesWithoutMap(const Study& study) {
+  Samples samples = simulateSamples(study);
+  RunSummary summary;
+  summary.parameters = study.experiment.model.parameters;
+  summary.training.nlml.assign(summary.parameters.size(), std::numeric_limits<double>::quiet_NaN());
+  summary.failures = std::move(samples.failures);
+  summary.reused_samples = samples.sets.reused;
+  summary.notes.append(samples.sets.notes);
+
+  PreparedData data = prepareData(study, std::move(samples.sets));
+  PosteriorEvaluation found = evaluatePosteriors(study, data);
+  summary.test_indices = data.test_indices;
+  summary.notes.append(found.evaluated.notes);
+  summary.notes.append(writeExamples(study, data, found.evaluated.evaluation));
+  summary.evaluation = std::move(found.evaluated.evaluation);
+  summary.online = found.times;
+  return summary;
+}
+
 /// Writes the tables, then provenance.json, then the report from all of them; returns its gates.
 std::vector<GateResult> writeFolder(const ExperimentSpec& experiment, const RunOptions& options, int threads,
                                     const RunSummary& run) {
@@ -230,10 +255,11 @@ RunSummary runExperiment(const ExperimentSpec& given, const RunOptions& options,
                            experiment.seed);
   const Study asked{experiment, simulator, extractor, noise, &source, options.folder, control};
   SampleChoice choice = chooseSamples(asked, options);
-  const ExperimentSpec chosen = experiment.design.train.samples.automatic
+  const bool has_map = !experiment.inverse_map.isNone();
+  const ExperimentSpec chosen = has_map && experiment.design.train.samples.automatic
                                     ? takeTrainingSamples(experiment, choice.samples)
                                     : experiment;
-  RunSummary run = runStages(asked.with(chosen), std::move(choice));
+  RunSummary run = has_map ? runStages(asked.with(chosen), std::move(choice)) : runStagesWithoutMap(asked);
   throwIfCancelled(control);
   run.gates = writeFolder(experiment, options, control.threads, run);
   return run;

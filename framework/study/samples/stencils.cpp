@@ -51,7 +51,8 @@ std::vector<LocalModel> calcStoredLocalModels(const SampleSource& source, const 
 }  // namespace
 
 bool selectsByFisherInformation(const ExperimentSpec& experiment) {
-  return std::any_of(experiment.transform.begin(), experiment.transform.end(),
+  return !experiment.inverse_map.isNone() &&
+         std::any_of(experiment.transform.begin(), experiment.transform.end(),
                      [](const TransformStepSpec& step) {
                        const auto* select = std::get_if<SelectSpec>(&step.kind);
                        return select != nullptr && std::holds_alternative<FisherInformationSpec>(*select);

@@ -127,6 +127,12 @@ void warnAboutPlainDesigns(const std::vector<SweepCase>& cases, SweepPlan& plan)
 
 void noteAutomaticSamples(const std::vector<SweepCase>& cases, SweepPlan& plan) {
   for (const SweepCase& one : cases) {
+    if (one.experiment.inverse_map.isNone()) {
+      plan.warnings.emplace_back(
+          "inverse_map is none: nothing is trained; each test sample is answered by its posterior on the "
+          "simulator");
+      return;
+    }
     if (one.experiment.design.train.samples.automatic) {
       plan.warnings.push_back(fmt::format(
           "design.train.samples is automatic: all figures are for {} training samples, the most there may be",

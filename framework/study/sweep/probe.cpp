@@ -138,18 +138,22 @@ ProbeTimes measure(const ExperimentSpec& experiment, double most_samples) {
   const TemporaryFolder folder;
   const ExperimentSpec small = makeSmall(experiment);
   const TimedRun run = timeRun(small, "small", folder.getPath());
+  const bool has_map = !experiment.inverse_map.isNone();
   ProbeTimes times;
   const double simulating = run.getStage("simulate "), limit = run.getStage("information limit");
-  times.simulation = simulating / (kTrainSamples + kTestSamples);
+  times.simulation = simulating / ((has_map ? kTrainSamples : 0) + kTestSamples);
   const double stencils = run.getStage("stencils of ");
   times.limit = limit / kTestSamples;
   times.stencil = stencils / std::max<double>(listDerivativePoints(small).cols(), 1.0);
-  const double refining = run.getStage("refine ");
+  const double refining = run.getStage("refine ") + (has_map ? 0.0 : run.getStage("exact posterior"));
   times.refinement = refining / kTestSamples;
   const double preparing = run.getStage("prepare for ");
   times.preparation = preparing / (double(kTrainSamples) * countReferences(small));
   times.overhead =
       std::max(run.seconds - simulating - stencils - limit - refining - run.getTraining() - preparing, 0.0);
+  if (!has_map) {
+    return times;
+  }
   times.training = experiment.inverse_map.findGp() != nullptr
                        ? measureProcesses(experiment, small, run, most_samples, folder.getPath())
                        : measureSurrogate(small, run, folder.getPath());

@@ -41,7 +41,7 @@ void limitAutomaticSamples(std::vector<SweepCase>& cases) {
     std::unique_ptr<Simulator> simulator;
     for (const int member : group.cases) {
       SampleCount& samples = cases[static_cast<std::size_t>(member)].experiment.design.train.samples;
-      if (samples.automatic) {
+      if (samples.automatic && samples.number > 0) {
         simulator = simulator ? std::move(simulator) : makeSimulator(group.model, group.times, group.modes);
         samples.number = limitByTime(cases[static_cast<std::size_t>(member)].experiment, *simulator);
       }

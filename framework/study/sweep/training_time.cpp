@@ -31,6 +31,9 @@ double TrainingTime::calcEvaluation(double samples) const {
 }
 
 double TrainingTime::calcTraining(const ExperimentSpec& experiment) const {
+  if (experiment.inverse_map.isNone()) {
+    return 0.0;
+  }
   if (experiment.inverse_map.findNetwork() != nullptr) {
     return measured.back().seconds;  // steps and batches do not grow with the samples
   }

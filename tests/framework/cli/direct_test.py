@@ -89,6 +89,14 @@ class Direct(FolderTestCase):
             self.assertLess(abs(estimate["mean"] - true), 4 * estimate["sd"], name)
             self.assertGreater(estimate["sd"], 2 * stated["parameters"][name]["sd"])
 
+    def infer_json(self):
+        return json.loads(self.infer(CART, self.measured, "--json"))
+
+    def stdout(self, *arguments):
+        result = call(*arguments)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return result.stdout
+
     def test_table_and_csv_say_the_same(self):
         found = json.loads(self.infer(CART, self.measured, "--json"))
         table = self.infer(CART, self.measured)
@@ -162,6 +170,46 @@ class Direct(FolderTestCase):
         self.assertEqual(found["status"], "model_mismatch")
         self.assertLess(found["trust"]["p_value"], 1e-6)
         self.assertIn("No parameter values within the bounds fit", self.infer(CART, wrong))
+
+    def test_a_run_without_a_map_answers_as_its_file(self):
+        run = self.folder / "run"
+        result = call("run", CART, "inverse_map=none", "design.test.samples=40", "--out", run)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertFalse((run / "maps.h5").exists())
+        self.assertTrue((run / "report.html").exists())
+        for row in read_csv(run / "metrics.csv"):
+            self.assertGreater(float(row["coverage95"]), 0.8)  # 40 samples: two of 10000 are below by chance
+            self.assertTrue(0.6 < float(row["ratio_to_limit"]) < 1.6, row)  # errors of 11 to 16 %
+        methods = read_csv(run / "methods.csv")
+        self.assertEqual({row["method"] for row in methods}, {"posterior"})
+        self.assertEqual(json.loads(self.infer(run, self.measured, "--json")), self.infer_json())
+        self.assertEqual(call("verify", run).returncode, 0)
+        self.assertIn("posterior on the simulator", self.stdout("check", run / "resolved.yaml"))
+        result = call("infer", run, self.measured, "--refine")
+        self.assertEqual(result.returncode, 2)
+        result = call("run", CART, "inverse_map=none", "evaluation.baselines=[prior_mean]", "--out", run)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("every test sample is answered by its exact posterior", result.stderr)
+
+    def test_without_a_map_sweeps_and_plans_work(self):
+        sweep = self.folder / "sweep"
+        overrides = ["inverse_map=none", "design.test.samples=10", "noise.scale=1,2"]
+        self.assertIn("nothing is trained", self.stdout("plan", CART, *overrides, "--out", sweep))
+        result = call("run", CART, *overrides, "--out", sweep)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(len(list((sweep / "cases").iterdir())), 2)
+
+    def test_coarse_tolerances_are_named_and_automatic_ones_follow_the_noise(self):
+        low = ["noise.scale=1e-4", "--noise", "--csv", self.folder / "low.csv"]
+        result = call("simulate", CART, *low)
+        self.assertIn("tolerances of the integration: ", result.stderr)
+        self.assertNotIn("warning", result.stderr)
+        path = self.folder / "coarse.yaml"
+        path.write_text(CART.read_text().replace("{duration: 5}", "{duration: 5, relative_tolerance: 1e-3}"))
+        result = call("simulate", path, "--csv", self.folder / "coarse.csv")
+        line = next(i for i, text in enumerate(path.read_text().splitlines(), 1) if "1e-3}" in text)
+        self.assertRegex(result.stderr, rf"coarse.yaml:{line}:\d+: simulation.relative_tolerance: 0.001: too coarse")
+        self.assertIn("would do", result.stderr)
 
     def test_what_it_cannot_do_is_explained(self):
         result = call("infer", CART, self.measured, "--refine")
