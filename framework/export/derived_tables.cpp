@@ -69,7 +69,8 @@ std::string getFunctionInC(Operation operation) {
   }
 }
 
-std::string makeOperation(const ExpressionTree::Node& node) {
+/// Names below `parameters` are parameters, the others computed before.
+std::string makeOperation(const ExpressionTree::Node& node, std::size_t parameters) {
   const auto operand = [&](int k) {
     return "n" + std::to_string(node.operands[static_cast<std::size_t>(k)]);
   };
@@ -77,7 +78,8 @@ std::string makeOperation(const ExpressionTree::Node& node) {
     return toC(node.literal);
   }
   if (node.operation == Operation::kParameter) {
-    return "v" + std::to_string(node.operands[0]);
+    const auto place = static_cast<std::size_t>(node.operands[0]);
+    return place < parameters ? fmt::format("parameters[{}]", place) : fmt::format("v{}", place);
   }
   if (const char* in_c = getOperationInC(node.operation)) {
     return fmt::format(fmt::runtime(in_c), operand(0), operand(1), operand(2));
@@ -88,12 +90,13 @@ std::string makeOperation(const ExpressionTree::Node& node) {
 }
 
 /// A block that computes the name at a place from those before it.
-std::string makeBlock(const BoundExpression& expression, std::size_t place) {
+std::string makeBlock(const BoundExpression& expression, std::size_t place, std::size_t parameters) {
   std::string text = fmt::format("  double v{};\n  {{\n", place);
   for (std::size_t i = 0; i < expression.nodes.size(); ++i) {
-    text += fmt::format("    const double n{} = {};\n", i, makeOperation(expression.nodes[i]));
+    text += fmt::format("    const double n{} = {};\n", i, makeOperation(expression.nodes[i], parameters));
   }
-  return text + fmt::format("    v{} = n{};\n  }}\n", place, expression.nodes.size() - 1);
+  return text +
+         fmt::format("    v{} = n{};\n  }}\n  (void)v{};\n", place, expression.nodes.size() - 1, place);
 }
 
 }  // namespace
@@ -102,13 +105,9 @@ std::string makeDerivedExpressions(const ExportedModel& model) {
   const DerivedQuantities quantities(model.experiment);
   const auto parameters = static_cast<std::size_t>(quantities.countParameters());
   std::string text;
-  for (std::size_t p = 0; p < parameters; ++p) {
-    text += fmt::format("  const double v{} = parameters[{}]; /* {} */\n", p, p,
-                        model.experiment.model.parameters[p].name.text);
-  }
   const std::vector<BoundExpression> expressions = quantities.listExpressions();
   for (std::size_t i = 0; i < expressions.size(); ++i) {
-    text += makeBlock(expressions[i], parameters + i);
+    text += makeBlock(expressions[i], parameters + i, parameters);
   }
   const std::size_t first = parameters + expressions.size() - static_cast<std::size_t>(quantities.count());
   for (std::size_t k = 0; k < static_cast<std::size_t>(quantities.count()); ++k) {

@@ -176,7 +176,7 @@ Mixture makePieces(const std::vector<RidgePiece>& pieces) {
     const double spread = (piece.to - piece.from) * kUniformStddev;
     const MatrixXd covariance =
         piece.covariance + spread * spread * piece.tangent * piece.tangent.transpose();
-    mixture.means.col(i) = piece.local.at + 0.5 * (piece.from + piece.to) * piece.tangent;
+    mixture.means.col(i) = piece.local.at;  // the middle of a cut piece would lie beside a bent ridge
     mixture.stddevs.col(i) = covariance.diagonal().cwiseSqrt();
     mixture.correlations.push_back(calcCorrelation(covariance));
   }

@@ -106,7 +106,7 @@ class Composer {
   void addDerivedQuantities() {
     if (!model_.experiment.derived.empty()) {
       add("derived.c", [&](CTables& tables) { addDerived(model_, options_.prefix, tables); });
-      text_ = fillSlot(std::move(text_), "@EXPRESSIONS@\n", makeDerivedExpressions(model_));
+      text_ = fillSlot(std::move(text_), "@EXPRESSIONS@", makeDerivedExpressions(model_));
     }
   }
 
