@@ -242,7 +242,8 @@ struct AutomaticMapSpec {
 template <class Fields>
 void describe(Fields&, AutomaticMapSpec&) {}
 
-/// None: each measurement is answered by the exact posterior on the simulator (docs/how-to/sample-the-posterior.md).
+/// None: each measurement is answered by the exact posterior on the simulator
+/// (docs/how-to/sample-the-posterior.md).
 struct NoMapSpec {};
 
 template <class Fields>

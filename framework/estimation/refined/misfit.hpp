@@ -66,7 +66,8 @@ class Misfit {
   /// whitener: 2 s + 1 simulations, one batch.
   ProbedMisfit probe(const Eigen::VectorXd& at, const Eigen::MatrixXd& ways);
 
-  /// Whitened residuals (k x n) at the columns of `points` (s x n), simulated as one batch. After linearize().
+  /// Whitened residuals (k x n) at the columns of `points` (s x n), simulated as one batch. After
+  /// linearize().
   Eigen::MatrixXd simulateResiduals(const Eigen::MatrixXd& points, std::vector<SampleStatus>& statuses);
 
   /// The misfits at the columns of `points` (s x n), simulated as one batch; infinity where a simulation

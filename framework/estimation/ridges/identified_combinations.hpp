@@ -32,7 +32,8 @@ std::vector<Ridge> nameRidges(const std::vector<FlatDirections>& flat,
 std::vector<Ridge> findRidges(const std::vector<Eigen::MatrixXd>& information, const Eigen::MatrixXd& points,
                               const std::vector<ParameterSpec>& parameters);
 
-/// "of m, L the features determine only m * L"; without combinations that they do not determine them one by one.
+/// "of m, L the features determine only m * L"; without combinations that they do not determine them one by
+/// one.
 std::string describeRidge(const Ridge& ridge, const std::vector<ParameterSpec>& parameters);
 
 /// A sentence for each ridge that has combinations, with what to add to the experiment file for them.
