@@ -84,6 +84,9 @@ MatrixXd calcDerivedLimit(const DerivedQuantities& quantities, const std::vector
                           const MatrixXd& points, const InformationLimit& limit) {
   const VectorXd widths = calcWidths(parameters);
   MatrixXd stddev = MatrixXd::Constant(quantities.count(), points.cols(), std::nan(""));
+  if (quantities.count() == 0) {
+    return stddev;  // names of nothing have no places for parameters
+  }
   for (Index i = 0; i < points.cols(); ++i) {
     const MatrixXd& information = limit.information[static_cast<std::size_t>(i)];
     if (information.size() > 0) {
