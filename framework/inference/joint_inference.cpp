@@ -192,7 +192,8 @@ JointInferrer::JointInferrer(const YamlNode& root, const std::vector<std::string
     requireSameParameters(getParameters(), members_.back().reader->getExperiment().model.parameters);
   }
   options_ = joint_options_ = makePosteriorOptions(members_.front().reader->getExperiment(), draws);
-  joint_options_.search.starts = kOwnStarts;
+  joint_options_.search.scouts = kOwnStarts;
+  joint_options_.search.starts = 2 * kOwnStarts;
   joint_options_.search.max_batches = 1;
 }
 

@@ -46,7 +46,7 @@ Statuses listOfSampled(const InferredMeasurement& inferred) {
   if (inferred.posterior->estimate.isMultimodal()) {
     statuses.emplace_back(toString(RefinementStatus::kMultimodal));
   }
-  if (isUninformative(inferred.posterior->estimate)) {
+  if (isUninformative(inferred.posterior->estimate) && !inferred.posterior->estimate.isMultimodal()) {
     statuses.emplace_back(toString(TrustStatus::kUninformative));
   }
   return statuses;

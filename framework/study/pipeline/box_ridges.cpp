@@ -15,8 +15,11 @@ std::vector<std::string> adviseOnBox(const ExperimentSpec& experiment) {
     return {};
   }
   const FeatureExtractor extractor = makeExtractor(experiment, simulator->getLayout());
-  const FeatureNoise noise(extractor, ResponseNoise(experiment.noise, simulator->getLayout()),
-                           experiment.seed);
+  const ResponseNoise response_noise(experiment.noise, simulator->getLayout());
+  if (!(response_noise.getStddev().minCoeff() > 0.0)) {
+    return {};  // what is seen without noise tells everything apart
+  }
+  const FeatureNoise noise(extractor, response_noise, experiment.seed);
   return adviseOnRidges(
       simulateRidges(*simulator, extractor, noise, experiment.model, sampleTestPoints(experiment), 1),
       experiment.model.parameters);
