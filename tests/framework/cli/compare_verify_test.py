@@ -239,7 +239,7 @@ class Verify(TestCase):
 
     def test_a_flipped_bit_in_the_map_is_found_and_named(self):
         for dataset, index in (
-            ("map/processes/0/alpha", (7,)),
+            ("map/processes/3/alpha", (7,)),
             ("map/processes/1/factor", (9, 4)),
             ("map/training_inputs", (3, 5)),
             ("map/target/scale", (0,)),
