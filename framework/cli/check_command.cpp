@@ -5,7 +5,6 @@
 #include "framework/data/measurement/signal_experiment.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/models/make_simulator.hpp"
-#include "framework/study/pipeline/box_ridges.hpp"
 #include "framework/study/sweep/model_groups.hpp"
 
 namespace twinmap::cli {
@@ -28,11 +27,7 @@ void check(const ExperimentArguments& arguments) {
     std::cout << writeIndependentDefaults(tree);
     return;
   }
-  const ExperimentSpec experiment = readExperimentWithSignals(tree);
-  for (const std::string& advice : adviseOnBox(experiment)) {
-    std::cout << "# " << advice << '\n';
-  }
-  std::cout << writeExperiment(experiment);
+  std::cout << writeExperiment(readExperimentWithSignals(tree));
 }
 
 }  // namespace twinmap::cli

@@ -130,9 +130,9 @@ class Inferring(TwoBeams):
         self.assertIn("sampled on the simulator", repr(alone))
 
     def test_of_an_experiment_without_a_possible_simulation_nothing_is_believed(self):
-        experiment = twinmap.Experiment.from_yaml(self.map.to_yaml()).override("noise.stddev.y=0")
+        experiment = twinmap.Experiment.from_yaml(self.map.to_yaml())
         with self.assertRaisesRegex(twinmap.ExperimentError, "noise.stddev"):
-            experiment.infer(self.measurement.to_frame())
+            experiment.override("noise.stddev.y=0", "transform=[z_score]").infer(self.measurement.to_frame())
 
     def test_shows_itself(self):
         answer = self.map.infer(self.measurement.to_frame())

@@ -16,7 +16,7 @@ import twinmap
 experiment = twinmap.Experiment.from_file("a.yaml").override("seed=2", seed=3)
 results = experiment.run(progress=True)
 estimate: twinmap.Estimate = results.map.infer("m.csv", known={"payload": 1.0})
-mean, stddev = answer["k_y"]
+mean, stddev = estimate["k_y"]
 total: float = mean + stddev
 """
 
