@@ -149,6 +149,15 @@ ExperimentSpec followNoise(ExperimentSpec experiment) {
   return experiment;
 }
 
+/// Those of a model that cannot be simulated stay: the case itself fails, and says why, while others go on.
+static SimulationSpec followOrKeep(const ExperimentSpec& experiment) {
+  try {
+    return followNoise(experiment).model.simulation;
+  } catch (const std::exception&) {
+    return experiment.model.simulation;
+  }
+}
+
 void followNoise(std::vector<SweepCase>& cases) {
   std::map<std::string, SimulationSpec> known;
   std::map<std::tuple<int, double, double>, int> models;
@@ -160,7 +169,7 @@ void followNoise(std::vector<SweepCase>& cases) {
     key.noise.replicates.reset();
     const auto [entry, is_new] = known.emplace(writeExperiment(key), SimulationSpec{});
     if (is_new) {
-      entry->second = followNoise(one.experiment).model.simulation;
+      entry->second = followOrKeep(one.experiment);
     }
     SimulationSpec& simulation = one.experiment.model.simulation;
     simulation.relative_tolerance = entry->second.relative_tolerance;
