@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "framework/analysis/information_limit.hpp"
+#include "framework/base/log/notice.hpp"
 #include "framework/base/log/stage_timer.hpp"
 #include "framework/data/sensitivity/fisher_information.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
@@ -34,7 +35,7 @@ std::optional<InformationLimit> findLimit(const Study& study, const PreparedData
     });
   }
   if (study.experiment.evaluation.limit) {
-    notes.warn(Severity::kInfo, "no information limit: the noise of a feature is 0");
+    notes.warn(makeWarning(Notice::kNoLimit));
   }
   return std::nullopt;
 }
@@ -73,8 +74,7 @@ std::vector<PosteriorComparison> comparePosteriors(const Study& study, const Pre
                         predictions.stddev.col(i),
                         limit_stddev.cols() > 0 ? VectorXd(limit_stddev.col(i)) : VectorXd()});
     if (!exact[i].warning.empty()) {
-      notes.warn(Severity::kInfo,
-                 fmt::format("exact posterior of test sample {}: {}", sample, exact[i].warning));
+      notes.warn(makeWarning(Notice::kExactPosterior, sample, exact[i].warning));
     }
   }
   return compared;
@@ -107,8 +107,7 @@ BaselineResult timeBaseline(const BaselineSpec& spec, const Study& study, const 
       timeStage("baseline", notes, [&] { return runBaseline(spec, study, samples, transform); });
   notes.times.back().stage = "baseline " + result.method;
   if (result.unconverged > 0) {
-    notes.warn(Severity::kInfo, fmt::format("baseline {}: {} of {} searches did not converge", result.method,
-                                            result.unconverged, result.samples));
+    notes.warn(makeWarning(Notice::kUnconverged, result.unconverged, result.samples, result.method));
   }
   return result;
 }
@@ -136,9 +135,7 @@ void addLimit(const Study& study, const LabelledFeatures& test, const Informatio
   result.evaluation.identifiability = calcIdentifiability(limit, getParameters(study));
   result.notes.warn(Severity::kDegraded, result.evaluation.identifiability->warnings);
   if (limit.failures > 0) {
-    result.notes.warn(
-        Severity::kInfo,
-        fmt::format("the information limit of {} test samples could not be computed", limit.failures));
+    result.notes.warn(makeWarning(Notice::kLimitFailed, limit.failures));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "framework/base/log/notice.hpp"
 #include "framework/base/text/csv.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
@@ -51,8 +52,7 @@ std::vector<std::string> collectWarnings(const Replay& replay) {
   std::vector<std::string> warnings;
   for (const auto& [name, model] : {std::pair("nominal", &replay.nominal), {"updated", &replay.updated}}) {
     if (!model->nuisance_converged) {
-      warnings.push_back(
-          fmt::format("the search for the nuisance parameters of the {} model did not converge", name));
+      warnings.push_back(describeNotice(Notice::kNuisanceSearch, name));
     }
   }
   if (replay.inferred.refined && !replay.inferred.refined->isAccepted()) {

@@ -118,7 +118,7 @@ class ExitCodes(TestCase):
         ):
             self.assert_wrong_input(
                 *command,
-                message="at the centre of the parameter box: body 'beam2': mass = -0.13 kg " "must be positive",
+                message="at the centre of the bounds: body 'beam2': mass = -0.13 kg " "must be positive",
             )
             self.assert_wrong_input(*command, message=f"{path}:{line}:")
         self.assertFalse((self.folder / "run").exists())

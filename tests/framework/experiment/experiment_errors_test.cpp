@@ -292,7 +292,7 @@ INSTANTIATE_TEST_SUITE_P(
                 {"system.applied_forces[0].force[1]: 'sqrt(-1)' is not a finite number"}},
         Mistake{"NotANumberOfParameters",
                 "system.springs[0].stiffness=k_y / (k_y - 10)",
-                {"system.springs[0].stiffness", "is not a finite number at the centre of the parameter box"}},
+                {"system.springs[0].stiffness", "is not a finite number at the centre of the bounds"}},
         Mistake{"SeedThatADoubleRounds", "seed=9007199254740993", {"seed: '9007199254740993' must be"}},
         Mistake{"NoStep", "transform=[]", {"transform: '[]' must not be empty"}},
         Mistake{"NoAxis", "report.over=[]", {"report.over: '[]' must not be empty"}},
