@@ -34,7 +34,7 @@ Eigen::ArrayXd calcCrps(const Eigen::ArrayXd& z, const Eigen::ArrayXd& stddev) {
   return stddev * z.unaryExpr(&calcStandardCrps);
 }
 
-Eigen::MatrixXd calcPit(const Eigen::MatrixXd& truth, const Predictions& predictions) {
+Eigen::MatrixXd calcPit(const Eigen::MatrixXd& truth, const Estimates& predictions) {
   if (!predictions.mixtures.empty()) {
     return Eigen::MatrixXd::NullaryExpr(truth.rows(), truth.cols(), [&](Eigen::Index p, Eigen::Index i) {
       return takeMarginal(predictions.mixtures[static_cast<std::size_t>(i)], p).calcProbability(truth(p, i));

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "framework/estimation/predictions.hpp"
+#include "framework/estimation/estimate.hpp"
 
 namespace twinmap {
 
@@ -21,7 +21,7 @@ Eigen::ArrayXd calcCrps(const Eigen::ArrayXd& z, const Eigen::ArrayXd& stddev);
 
 /// Probability integral transform Phi((true - mean) / stddev), or that of the mixture, of each parameter and
 /// sample (p x n): uniform on [0, 1] where the predictive distributions are calibrated.
-Eigen::MatrixXd calcPit(const Eigen::MatrixXd& truth, const Predictions& predictions);
+Eigen::MatrixXd calcPit(const Eigen::MatrixXd& truth, const Estimates& predictions);
 
 constexpr int kPitBins = 10;
 

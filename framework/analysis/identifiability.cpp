@@ -5,7 +5,7 @@
 
 #include "framework/base/log/notice.hpp"
 #include "framework/data/sensitivity/fisher_information.hpp"
-#include "framework/estimation/predictions.hpp"
+#include "framework/estimation/estimate.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
 

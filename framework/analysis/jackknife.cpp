@@ -18,11 +18,11 @@ Eigen::MatrixXd averageDraws(const Eigen::MatrixXd& terms, int draws) {
 
 }  // namespace
 
-Estimates calcWithJackknife(const Eigen::MatrixXd& terms, const FigureFunction& figures, int draws) {
+JackknifeFigures calcWithJackknife(const Eigen::MatrixXd& terms, const FigureFunction& figures, int draws) {
   const Eigen::MatrixXd samples = averageDraws(terms, draws);
   const auto n = static_cast<double>(samples.cols());
   const Eigen::VectorXd mean = samples.rowwise().mean();
-  Estimates estimates;
+  JackknifeFigures estimates;
   estimates.value = figures(mean, n * draws);
   Eigen::MatrixXd without(estimates.value.size(), samples.cols());
   for (Eigen::Index i = 0; i < samples.cols(); ++i) {

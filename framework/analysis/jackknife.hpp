@@ -9,7 +9,7 @@ namespace twinmap {
 /// deviation does, through the means of e and e^2): means (k) and number of samples -> figures.
 using FigureFunction = std::function<Eigen::VectorXd(const Eigen::VectorXd& mean, double samples)>;
 
-struct Estimates {
+struct JackknifeFigures {
   Eigen::VectorXd value;
   Eigen::VectorXd standard_error;
 };
@@ -22,6 +22,7 @@ struct Estimates {
 ///
 /// Several draws of one sample (column j + i n / draws of sample j) are left out together, since they are not
 /// independent.
-Estimates calcWithJackknife(const Eigen::MatrixXd& terms, const FigureFunction& figures, int draws = 1);
+JackknifeFigures calcWithJackknife(const Eigen::MatrixXd& terms, const FigureFunction& figures,
+                                   int draws = 1);
 
 }  // namespace twinmap

@@ -62,13 +62,12 @@ Eigen::MatrixXd calcMixtureTerms(const Eigen::MatrixXd& truth, const std::vector
 }
 
 /// Rows as in kJointColumns.
-Eigen::MatrixXd calcTerms(const Eigen::MatrixXd& truth, const Predictions& predictions,
-                          const std::vector<Eigen::MatrixXd>& correlations) {
+Eigen::MatrixXd calcTerms(const Eigen::MatrixXd& truth, const Estimates& predictions) {
   if (!predictions.mixtures.empty()) {
     return calcMixtureTerms(truth, predictions.mixtures);
   }
   const Distances distances =
-      calcDistances((predictions.mean - truth).cwiseQuotient(predictions.stddev), correlations);
+      calcDistances((predictions.mean - truth).cwiseQuotient(predictions.stddev), predictions.correlations);
   const auto parameters = static_cast<double>(truth.rows());
   const boost::math::chi_squared chi_squared(parameters);
   const auto within = [&](double probability) -> Eigen::RowVectorXd {
@@ -86,15 +85,14 @@ Eigen::MatrixXd calcTerms(const Eigen::MatrixXd& truth, const Predictions& predi
 
 }  // namespace
 
-JointMetrics calcJointMetrics(const Eigen::MatrixXd& truth, const Predictions& predictions,
-                              const std::vector<Eigen::MatrixXd>& correlations) {
-  const Estimates estimates = calcWithJackknife(calcTerms(truth, predictions, correlations),
-                                                [](const Eigen::VectorXd& mean, double) { return mean; });
+JointMetrics calcJointMetrics(const Eigen::MatrixXd& truth, const Estimates& estimates) {
+  const JackknifeFigures figures = calcWithJackknife(
+      calcTerms(truth, estimates), [](const Eigen::VectorXd& mean, double) { return mean; });
   JointMetrics metrics;
   for (std::size_t i = 0; i < kJointColumns.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    metrics.*kJointColumns[i].value = estimates.value[row];
-    metrics.se.*kJointColumns[i].value = estimates.standard_error[row];
+    metrics.*kJointColumns[i].value = figures.value[row];
+    metrics.se.*kJointColumns[i].value = figures.standard_error[row];
   }
   return metrics;
 }

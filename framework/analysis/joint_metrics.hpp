@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "framework/estimation/predictions.hpp"
+#include "framework/estimation/estimate.hpp"
 
 namespace twinmap {
 
@@ -33,9 +33,8 @@ constexpr std::array<JointColumn, 4> kJointColumns{{{"coverage95", &JointFigures
                                                     {"coverage50", &JointFigures::coverage50},
                                                     {"nlpd", &JointFigures::nlpd}}};
 
-/// `truth` is p x n; `correlations`: R (p x p, positive definite), one for all samples or one for each.
-/// O(p^2 n), O(p^3 n) for one each.
-JointMetrics calcJointMetrics(const Eigen::MatrixXd& truth, const Predictions& predictions,
-                              const std::vector<Eigen::MatrixXd>& correlations);
+/// `truth` is p x n; the estimates have R (p x p, positive definite), one for all samples or one for each, or
+/// mixtures. O(p^2 n), O(p^3 n) for one each.
+JointMetrics calcJointMetrics(const Eigen::MatrixXd& truth, const Estimates& estimates);
 
 }  // namespace twinmap

@@ -9,7 +9,7 @@ namespace twinmap {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-Predictions LinearMap::predict(const MatrixXd& features, const MatrixXd& inputs) const {
+Estimates LinearMap::predict(const MatrixXd& features, const MatrixXd& inputs) const {
   return {(slopes * stackRows(transform.apply(features), inputs)).colwise() + offset,
           stddev.replicate(1, features.cols())};
 }

@@ -4,7 +4,7 @@
 
 #include "framework/data/features/labelled_features.hpp"
 #include "framework/data/reduction/feature_transform.hpp"
-#include "framework/estimation/predictions.hpp"
+#include "framework/estimation/estimate.hpp"
 
 namespace twinmap {
 
@@ -17,7 +17,7 @@ struct LinearMap {
   Eigen::VectorXd stddev;  ///< p, of the training residuals, with 1 / (n - k - 1)
 
   /// Features (d x m, untransformed) and known inputs (q x m) -> predictions (p x m each).
-  Predictions predict(const Eigen::MatrixXd& features, const Eigen::MatrixXd& inputs) const;
+  Estimates predict(const Eigen::MatrixXd& features, const Eigen::MatrixXd& inputs) const;
 };
 
 /// Least squares of the training parameters on the transformed features and known inputs, of minimum norm

@@ -17,7 +17,7 @@ void setFigures(const VectorXd& values, ParameterFigures& figures) {
 
 ParameterMetrics calcMetrics(const ParameterSpec& parameter, const ParameterSamples& samples, int draws) {
   const SampleTerms terms = calcSampleTerms(parameter, samples);
-  const Estimates estimates = calcWithJackknife(
+  const JackknifeFigures estimates = calcWithJackknife(
       terms.terms, [&](const VectorXd& mean, double count) { return calcFigureValues(terms, mean, count); },
       draws);
   ParameterMetrics metrics;
@@ -30,7 +30,7 @@ ParameterMetrics calcMetrics(const ParameterSpec& parameter, const ParameterSamp
 }  // namespace
 
 std::vector<ParameterMetrics> calcMetrics(const std::vector<ParameterSpec>& parameters,
-                                          const Eigen::MatrixXd& truth, const Predictions& predictions,
+                                          const Eigen::MatrixXd& truth, const Estimates& predictions,
                                           const Eigen::MatrixXd& limit_stddev, int draws) {
   std::vector<ParameterMetrics> metrics;
   for (std::size_t p = 0; p < parameters.size(); ++p) {

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "framework/estimation/predictions.hpp"
+#include "framework/estimation/estimate.hpp"
 #include "framework/experiment/model/model_spec.hpp"
 #include "framework/experiment/parameter_figures.hpp"
 
@@ -19,7 +19,7 @@ struct ParameterMetrics : ParameterFigures {
 /// parameter's limit NaN. `draws`: columns j + i n / draws are draws of one sample, which standard errors
 /// leave out together. O(p n).
 std::vector<ParameterMetrics> calcMetrics(const std::vector<ParameterSpec>& parameters,
-                                          const Eigen::MatrixXd& truth, const Predictions& predictions,
+                                          const Eigen::MatrixXd& truth, const Estimates& predictions,
                                           const Eigen::MatrixXd& limit_stddev = {}, int draws = 1);
 
 }  // namespace twinmap

@@ -64,10 +64,10 @@ Scores scoreMixtures(const ParameterSamples& samples) {
 }
 
 /// Depths as a normal distribution's, which has intervals of the same probability.
-ArrayXd toNormal(const std::vector<Reach>& reaches, ArrayXd depths) {
-  for (std::size_t i = 0; i < reaches.size(); ++i) {
+ArrayXd toNormal(const std::vector<IntervalFactor>& factors, ArrayXd depths) {
+  for (std::size_t i = 0; i < factors.size(); ++i) {
     double& depth = depths[static_cast<Index>(i)];
-    depth = reaches[i].toNormalDepth(depth);
+    depth = factors[i].calcEquivalentZ(depth);
   }
   return depths;
 }
@@ -114,7 +114,7 @@ VectorXd toVector(const ParameterFigures& figures) {
 
 }  // namespace
 
-ParameterSamples takeParameter(const Eigen::MatrixXd& truth, const Predictions& predictions,
+ParameterSamples takeParameter(const Eigen::MatrixXd& truth, const Estimates& predictions,
                                const Eigen::MatrixXd& limit_stddev, Index row) {
   const ArrayXd unknown = ArrayXd::Constant(truth.cols(), std::nan(""));
   return {truth.row(row),
@@ -122,14 +122,14 @@ ParameterSamples takeParameter(const Eigen::MatrixXd& truth, const Predictions& 
           predictions.stddev.row(row),
           limit_stddev.size() == 0 ? unknown : limit_stddev.row(row).array(),
           takeMarginals(predictions.mixtures, row),
-          takeReaches(predictions.reach, row)};
+          takeFactors(predictions.interval_factors, row)};
 }
 
 SampleTerms calcSampleTerms(const ParameterSpec& parameter, const ParameterSamples& samples) {
   const ArrayXd scale = calcScale(parameter, samples.truth);
   const ArrayXd error = (samples.mean - samples.truth) / scale;
   const Scores scores = samples.mixtures.empty() ? scoreNormal(samples) : scoreMixtures(samples);
-  const ArrayXd depth = toNormal(samples.reaches, scores.depth);
+  const ArrayXd depth = toNormal(samples.factors, scores.depth);
   SampleTerms result{Eigen::MatrixXd(kTerms, error.size()), error.mean(), scores.z.mean()};
   auto terms = result.terms.array();
   terms.row(kError) = (error - result.error_offset).transpose();

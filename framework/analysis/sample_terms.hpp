@@ -11,11 +11,11 @@ struct ParameterSamples {
   Eigen::ArrayXd truth, mean, stddev;
   Eigen::ArrayXd limit_stddev;              ///< NaN where the limit is not known
   std::vector<MarginalMixture> mixtures{};  ///< where the distributions are no normal ones; else empty
-  std::vector<Reach> reaches{};  ///< where intervals are not those of the distributions; else empty
+  std::vector<IntervalFactor> factors{};  ///< where intervals are not those of the distributions; else empty
 };
 
 /// Those of one row of p x n each; limit_stddev may be empty.
-ParameterSamples takeParameter(const Eigen::MatrixXd& truth, const Predictions& predictions,
+ParameterSamples takeParameter(const Eigen::MatrixXd& truth, const Estimates& predictions,
                                const Eigen::MatrixXd& limit_stddev, Eigen::Index row);
 
 /// What each sample adds to the figures, which depend on the samples through the means of these terms alone.
@@ -27,7 +27,7 @@ struct SampleTerms {
 };
 
 /// Of mixtures, z is the normal quantile of the probability integral transform, and intervals are the
-/// smallest highest-density sets, or those that `reaches` says.
+/// smallest highest-density sets, or those that `factors` says.
 SampleTerms calcSampleTerms(const ParameterSpec& parameter, const ParameterSamples& samples);
 
 /// The figures of kFigureColumns, in their order, of a set with the given means of the terms (k) and number

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "framework/c_api/twinmap.h"
-#include "framework/inference/answer.hpp"
 #include "framework/inference/inferrer.hpp"
 #include "framework/inference/measurement_session.hpp"
 
@@ -29,11 +28,10 @@ struct twinmap_inferrer {
   twinmap_inferrer(const twinmap::Inferrer& by, std::optional<bool> refine)
       : inferrer(by), session(by, refine) {}
 
-  /// An inference, or what the last one left.
-  struct Answered {
+  /// What the last inference left.
+  struct Inferred {
     twinmap::InferredMeasurement measurement;
-    twinmap::Answer answer;
-    std::vector<std::string> statuses;
+    twinmap::Estimate estimate;
   };
 
   /// Columns whose values come one by one.
@@ -47,6 +45,6 @@ struct twinmap_inferrer {
   std::optional<double> start;
   std::optional<Eigen::VectorXd> known;
   Pushed pushed;
-  std::optional<Answered> answered;
+  std::optional<Inferred> inferred;
   std::string json;
 };

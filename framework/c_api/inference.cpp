@@ -4,8 +4,8 @@
 #include "framework/c_api/guard.hpp"
 #include "framework/c_api/handles.hpp"
 #include "framework/data/measurement/make_table.hpp"
-#include "framework/inference/answer.hpp"
 #include "framework/inference/known_value.hpp"
+#include "framework/inference/select_estimate.hpp"
 
 namespace {
 
@@ -36,16 +36,15 @@ const VectorXd& getKnown(twinmap_inferrer& inferrer) {
   return *inferrer.known;
 }
 
-/// Infers by `infer`, which takes the known inputs; what was answered before is forgotten.
+/// Infers by `infer`, which takes the known inputs; what was inferred before is forgotten.
 template <class Infer>
-twinmap_result answer(twinmap_inferrer* inferrer, const Infer& infer) {
+twinmap_result inferBy(twinmap_inferrer* inferrer, const Infer& infer) {
   return guard([&] {
     twinmap_inferrer& self = require(inferrer, "inferrer");
-    self.answered.reset();
+    self.inferred.reset();
     twinmap::InferredMeasurement measurement = infer(self, getKnown(self));
-    twinmap::Answer chosen = twinmap::chooseAnswer(measurement);
-    std::vector<std::string> statuses = twinmap::listStatuses(measurement);
-    self.answered = {std::move(measurement), std::move(chosen), std::move(statuses)};
+    twinmap::Estimate estimate = twinmap::selectEstimate(measurement);
+    self.inferred = {std::move(measurement), std::move(estimate)};
   });
 }
 
@@ -93,7 +92,7 @@ twinmap_result twinmap_set_start(twinmap_inferrer* inferrer, double start) {
 }
 
 twinmap_result twinmap_infer_features(twinmap_inferrer* inferrer, const double* features, size_t count) {
-  return answer(inferrer, [&](twinmap_inferrer& self, const VectorXd& known) {
+  return inferBy(inferrer, [&](twinmap_inferrer& self, const VectorXd& known) {
     requireCount(count, static_cast<std::size_t>(self.inferrer.getExtractor().getFeatureCount()), "features");
     const ConstVector values(&require(features, "features"), static_cast<Index>(count));
     if (!values.allFinite()) {
@@ -105,7 +104,7 @@ twinmap_result twinmap_infer_features(twinmap_inferrer* inferrer, const double* 
 
 twinmap_result twinmap_infer_columns(twinmap_inferrer* inferrer, const twinmap_column* columns,
                                      size_t count) {
-  return answer(inferrer, [&](twinmap_inferrer& self, const VectorXd& known) {
+  return inferBy(inferrer, [&](twinmap_inferrer& self, const VectorXd& known) {
     std::vector<twinmap::NamedValues> named;
     for (std::size_t i = 0; i < count; ++i) {
       const twinmap_column& column = (&require(columns, "columns"))[i];
@@ -118,7 +117,7 @@ twinmap_result twinmap_infer_columns(twinmap_inferrer* inferrer, const twinmap_c
 }
 
 twinmap_result twinmap_infer_file(twinmap_inferrer* inferrer, const char* path) {
-  return answer(inferrer, [&](twinmap_inferrer& self, const VectorXd& known) {
+  return inferBy(inferrer, [&](twinmap_inferrer& self, const VectorXd& known) {
     const twinmap::Table table =
         twinmap::readTable(&require(path, "path"), self.inferrer.getReader().listColumns());
     return self.session.infer(table, self.start, known);
@@ -150,7 +149,7 @@ twinmap_result twinmap_push(twinmap_inferrer* inferrer, const double* values, si
 }
 
 twinmap_result twinmap_infer_pushed(twinmap_inferrer* inferrer) {
-  return answer(inferrer, [](twinmap_inferrer& self, const VectorXd& known) {
+  return inferBy(inferrer, [](twinmap_inferrer& self, const VectorXd& known) {
     std::vector<twinmap::NamedValues> named;
     for (std::size_t i = 0; i < self.pushed.names.size(); ++i) {
       const std::vector<double>& values = self.pushed.values[i];

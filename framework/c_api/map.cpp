@@ -114,11 +114,11 @@ twinmap_result twinmap_predict(const twinmap_map* map, const double* features, c
     const auto p = static_cast<Eigen::Index>(getModel(map).parameters.size());
     const auto q = static_cast<Eigen::Index>(getModel(map).inputs.size());
     const double* known = q > 0 ? &require(inputs, "inputs") : nullptr;
-    const twinmap::Predictions predictions = map->inferrer.getMap().predict(
+    const twinmap::Estimates estimates = map->inferrer.getMap().predict(
         Eigen::Map<const Eigen::MatrixXd>(&require(features, "features"),
                                           map->inferrer.getExtractor().getFeatureCount(), n),
         Eigen::Map<const Eigen::MatrixXd>(known, q, q > 0 ? n : 0), threads);
-    Eigen::Map<Eigen::MatrixXd>(&require(mean, "mean"), p, n) = predictions.mean;
-    Eigen::Map<Eigen::MatrixXd>(&require(stddev, "stddev"), p, n) = predictions.stddev;
+    Eigen::Map<Eigen::MatrixXd>(&require(mean, "mean"), p, n) = estimates.mean;
+    Eigen::Map<Eigen::MatrixXd>(&require(stddev, "stddev"), p, n) = estimates.stddev;
   });
 }

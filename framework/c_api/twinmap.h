@@ -1,7 +1,7 @@
 /* twinmap.h: parameters from measurements by a trained map, in C (docs/how-to/use-from-c.md).
  *
  * A map is opened once and shared by all threads; each thread has an inferrer of its own, which takes one
- * measurement after another and keeps the answer to the last. Nothing else is shared: functions with different
+ * measurement after another and keeps the estimate of the last. Nothing else is shared: functions with different
  * inferrers may run at the same time. No exception leaves a function; what went wrong is told by its result, and in
  * words by twinmap_get_error(). Texts that functions return belong to the map or the inferrer, or are constant.
  */
@@ -33,9 +33,9 @@ typedef enum twinmap_result {
   TWINMAP_WRONG_INPUT = 2 /**< an argument or a measurement that cannot be used; the text says where and why */
 } twinmap_result;
 
-/** Whether answers are refined by least squares on the simulator. */
+/** Whether estimates are refined by least squares on the simulator. */
 typedef enum twinmap_refine {
-  TWINMAP_REFINE_NEVER = 0,        /**< the map's answer, in microseconds to a millisecond */
+  TWINMAP_REFINE_NEVER = 0,        /**< the map's estimate, in microseconds to a millisecond */
   TWINMAP_REFINE_AS_EXPERIMENT = 1, /**< as the command does: as the experiment's `refine` says */
   TWINMAP_REFINE_ALWAYS = 2
 } twinmap_refine;
@@ -127,26 +127,26 @@ TWINMAP_API twinmap_result twinmap_push(twinmap_inferrer* inferrer, const double
 /** From all that was pushed, which stays. */
 TWINMAP_API twinmap_result twinmap_infer_pushed(twinmap_inferrer* inferrer);
 
-/* ---- The answer to the last measurement; TWINMAP_WRONG_INPUT unless its inference ended with TWINMAP_OK ------ */
+/* ---- The estimate of the last measurement; TWINMAP_WRONG_INPUT unless its inference ended with TWINMAP_OK ---- */
 
 /** Mean, standard deviation: p values in the parameters' units. */
 TWINMAP_API twinmap_result twinmap_get_mean(const twinmap_inferrer* inferrer, double* values, size_t count);
 TWINMAP_API twinmap_result twinmap_get_stddev(const twinmap_inferrer* inferrer, double* values, size_t count);
-/** Bounds of the 95 % intervals: p values each. */
+/** The outermost bounds of the 95 % intervals: p values each. */
 TWINMAP_API twinmap_result twinmap_get_interval(const twinmap_inferrer* inferrer, double* lower, double* upper,
                                                 size_t count);
 /** Joint covariance: p x p values, symmetric. */
 TWINMAP_API twinmap_result twinmap_get_covariance(const twinmap_inferrer* inferrer, double* values, size_t count);
 
-/** Whether the answer is that of a refinement on the simulator that was accepted: 1 or 0. */
+/** Whether the estimate is that of a refinement on the simulator that was accepted: 1 or 0. */
 TWINMAP_API int twinmap_is_refined(const twinmap_inferrer* inferrer);
 
-/** What made the answer: "gp", "surrogate" or "network", the kind of the map, or "refined"; NULL without an answer. */
+/** What made the estimate: "gp", "surrogate" or "network", the kind of the map, or "refined"; NULL without an estimate. */
 TWINMAP_API const char* twinmap_get_method(const twinmap_inferrer* inferrer);
 
-/** How many statuses the answer has; 0 without an answer, or where the run has no trust model. */
+/** How many statuses the estimate has; 0 without an estimate, or where the run has no trust model. */
 TWINMAP_API size_t twinmap_count_statuses(const twinmap_inferrer* inferrer);
-/** "ok", or what is to be said against the answer, the most severe first: "model_mismatch", "outside_training",
+/** "ok", or what is to be said against the estimate, the most severe first: "model_mismatch", "outside_training",
  * "at_bounds", "uninformative", "multimodal", "nonlinear", "not_refined", "estimator_limited" (docs/explanation/trust.md). NULL
  * beyond the last. */
 TWINMAP_API const char* twinmap_get_status(const twinmap_inferrer* inferrer, size_t index);
@@ -161,10 +161,10 @@ typedef enum twinmap_number {
   TWINMAP_DISTANCE = 5            /**< to the nearest training sample; 1: the farthest of simulated measurements */
 } twinmap_number;
 
-/** NaN without an answer, or where the run has no trust model. */
+/** NaN without an estimate, or where the run has no trust model. */
 TWINMAP_API double twinmap_get_number(const twinmap_inferrer* inferrer, twinmap_number number);
 
-/** All of the answer as a line of JSON, as `twinmap infer --json` prints it; NULL without an answer. Valid until the
+/** All of the estimate as a line of JSON, as `twinmap infer --json` prints it; NULL without an estimate. Valid until the
  * inferrer's next function. */
 TWINMAP_API const char* twinmap_get_json(twinmap_inferrer* inferrer);
 

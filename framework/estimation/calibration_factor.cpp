@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "framework/estimation/interval_reach.hpp"
+#include "framework/estimation/interval_factor.hpp"
 
 namespace twinmap {
 namespace {
@@ -11,7 +11,7 @@ namespace {
 /// A quantile over that of the normal distribution; of its confidence limit so many standard errors of the
 /// rank above it.
 double calcQuantileScale(const Eigen::VectorXd& sorted, double level, double normal, double errors_above) {
-  const double error = calcShareError(level, static_cast<double>(sorted.size()));
+  const double error = calcProportionError(level, static_cast<double>(sorted.size()));
   return calcConformalQuantile(sorted, level + errors_above * error) / normal;
 }
 

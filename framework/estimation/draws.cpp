@@ -38,4 +38,10 @@ MatrixXd drawFrom(const Mixture& mixture, int draws, const RandomStream& random)
   return drawn;
 }
 
+MatrixXd drawFrom(const Estimate& estimate, int draws, const RandomStream& random) {
+  return estimate.mixture.isGiven()
+             ? drawFrom(estimate.mixture, draws, random)
+             : drawNormal(estimate.mean, estimate.stddev, estimate.correlation, draws, random);
+}
+
 }  // namespace twinmap

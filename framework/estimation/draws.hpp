@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 #include "framework/base/random/random.hpp"
-#include "framework/estimation/mixture.hpp"
+#include "framework/estimation/estimate.hpp"
 
 namespace twinmap {
 
@@ -12,7 +12,8 @@ namespace twinmap {
 Eigen::MatrixXd drawNormal(const Eigen::VectorXd& mean, const Eigen::VectorXd& stddev,
                            const Eigen::MatrixXd& correlation, int draws, const RandomStream& random);
 
-/// Draws (p x n) from a mixture.
+/// Draws (p x n) from a mixture, or from an estimate, whose mixture or normal distribution that is.
 Eigen::MatrixXd drawFrom(const Mixture& mixture, int draws, const RandomStream& random);
+Eigen::MatrixXd drawFrom(const Estimate& estimate, int draws, const RandomStream& random);
 
 }  // namespace twinmap

@@ -10,8 +10,8 @@ namespace twinmap {
 /// How well one parameter is inferred over a set of samples. Relative errors are e = (inferred - true) /
 /// true, or relative to upper - lower where the parameter says so; z = (inferred - true) / stddev. Where the
 /// predictions are mixtures, coverage is of their smallest highest-density sets, and z the normal quantile of
-/// the probability above the truth. Where intervals reach elsewhere than those of these distributions
-/// (Predictions::reach), coverage is theirs.
+/// the probability above the truth. Where intervals are not those of these distributions
+/// (Estimates::interval_factors), coverage is theirs.
 struct ParameterFigures {
   double bias_pct = 0.0;    ///< 100 mean(e)
   double sd_pct = 0.0;      ///< 100 sd(e), with 1/(n-1)

@@ -68,8 +68,8 @@ void addResult(const ExportedModel& model, const std::string& prefix, CTables& t
     tables.addWide("parameter_correlation", flattenColumns(model.getCorrelation()),
                    "Correlation of the errors of a sample's parameters.");
   }
-  tables.addWide("interval_reach", model.getIntervalReach(),
-                 "Standard deviations that 95 % intervals reach.");
+  tables.addWide("interval_factor", model.getIntervalFactors(),
+                 "Half widths of 95 % intervals in standard deviations.");
   const bool calibrated = validation == nullptr || validation->status == SurrogateStatus::kOk;
   sizes.push_back({"UNCALIBRATED", calibrated ? 0 : 1, "1: the map is known to misjudge its own errors"});
 }

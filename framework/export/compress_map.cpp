@@ -38,7 +38,7 @@ struct Loss {
   double mean, stddev;
 };
 
-Loss calcLoss(const Predictions& before, const Predictions& after, Index parameter) {
+Loss calcLoss(const Estimates& before, const Estimates& after, Index parameter) {
   const auto sd = before.stddev.row(parameter).array();
   const auto moved = (after.mean.row(parameter) - before.mean.row(parameter)).array() / sd;
   const auto grown = after.stddev.row(parameter).array() / sd - 1.0;
@@ -49,7 +49,7 @@ Loss calcLoss(const Predictions& before, const Predictions& after, Index paramet
 
 CompressedMap compressMap(const GpMap& exact, const CompressionTest& test, double most) {
   constexpr double kLoosest = 10.0, kTightest = 1e-5, kTighter = 0.5;  // of the noise variance
-  const Predictions before = exact.predict(test.features, test.known);
+  const Estimates before = exact.predict(test.features, test.known);
   CompressedMap compressed{exact};
   compressed.map.transform = roundTransform(exact.transform);
   for (std::size_t p = 0; p < exact.processes.size(); ++p) {

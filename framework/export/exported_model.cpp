@@ -53,10 +53,10 @@ Eigen::MatrixXd ExportedModel::getCorrelation() const {
   return validation != nullptr ? validation->residual_correlation : findProcesses()->residual_correlation;
 }
 
-VectorXd ExportedModel::getIntervalReach() const {
+VectorXd ExportedModel::getIntervalFactors() const {
   const SurrogateValidation* validation = findValidation();
-  return validation != nullptr && validation->reach.isGiven()
-             ? VectorXd(validation->reach.of95)
+  return validation != nullptr && validation->interval_factors.isGiven()
+             ? VectorXd(validation->interval_factors.of95)
              : VectorXd::Constant(countParameters(), kNormal95);
 }
 

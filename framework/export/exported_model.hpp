@@ -29,11 +29,11 @@ struct ExportedModel {
   const ForwardSurrogate* findForward() const;
 
   Eigen::Index countParameters() const;
-  Eigen::Index countKnown() const;           ///< inputs of the set-up
-  Eigen::Index countUnknown() const;         ///< of the sampled box, nuisance parameters included
-  Eigen::MatrixXd getCorrelation() const;    ///< of the errors of a sample's parameters
-  Eigen::VectorXd getIntervalReach() const;  ///< standard deviations that 95 % intervals reach
-  Eigen::VectorXd getBoxCenter() const;      ///< of the sampled box
+  Eigen::Index countKnown() const;             ///< inputs of the set-up
+  Eigen::Index countUnknown() const;           ///< of the sampled box, nuisance parameters included
+  Eigen::MatrixXd getCorrelation() const;      ///< of the errors of a sample's parameters
+  Eigen::VectorXd getIntervalFactors() const;  ///< half widths of 95 % intervals, in standard deviations
+  Eigen::VectorXd getBoxCenter() const;        ///< of the sampled box
   Eigen::VectorXd getBoxHalfWidth() const;
 
   /// Whether features are made of measured signals; of modes they are not.

@@ -222,7 +222,7 @@ std::string makeMapJson(const ExportedModel& model) {
                  {"half_width", toJson(model.getBoxHalfWidth())},
                  {"unknown", model.countUnknown()}};
   json["correlation"] = toRows(model.getCorrelation());
-  json["interval_reach"] = toJson(model.getIntervalReach());
+  json["interval_factor"] = toJson(model.getIntervalFactors());
   json["map"] = makeMap(model);
   const ForwardSurrogate* forward = model.findForward();
   json["surrogate"] = forward != nullptr ? toJson(*forward) : Json();

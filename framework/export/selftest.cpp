@@ -8,7 +8,7 @@
 #include "framework/data/measurement/measurement.hpp"
 #include "framework/data/noise/noise.hpp"
 #include "framework/export/runtime_sources.hpp"
-#include "framework/inference/answer.hpp"
+#include "framework/inference/select_estimate.hpp"
 #include "framework/store/samples_file.hpp"
 
 namespace twinmap {
@@ -94,10 +94,10 @@ VectorXd makeTimes(const VectorXd& grid, int index) {
   return (middle + kStretched * (grid.array() - middle)).matrix();
 }
 
-/// Answers as Inferrer gives them, by a model that may be compressed.
-class Answerer {
+/// Estimates as Inferrer gives them, by a model that may be compressed.
+class EstimatorUnderTest {
  public:
-  explicit Answerer(const ExportedModel& model)
+  explicit EstimatorUnderTest(const ExportedModel& model)
       : model_(model),
         extractor_(makeExtractor(model.experiment, model.layout)),
         map_(model.online.map),
@@ -120,29 +120,29 @@ class Answerer {
 
   InferredMeasurement infer(const VectorXd& features, const VectorXd& known) {
     InferredMeasurement inferred;
-    inferred.inference = map_.infer(features, known, workspace_);
-    inferred.map_is_calibrated = map_.isCalibrated();
+    inferred.by_estimator = map_.infer(features, known, workspace_);
+    inferred.estimator_is_calibrated = map_.isCalibrated();
     if (trust_) {
-      inferred.trust = judge(*model_.online.trust, features, known, inferred.inference,
+      inferred.trust = judge(*model_.online.trust, features, known, inferred.by_estimator,
                              workspace_.findExplanation(), *trust_);
     }
     return inferred;
   }
 
-  /// Whether changes of the last digits leave the answer as it is. A surrogate's search may take a last step
-  /// or not for a rounding error, and then another machine's answer is as good.
+  /// Whether changes of the last digits leave the estimate as it is. A surrogate's search may take a last
+  /// step or not for a rounding error, and then another machine's estimate is as good.
   bool isSteady(const TestedMeasurement& tested) {
     // What the cancellation of a surrogate's weights leaves of rounding; half of what the self-test allows,
     // in standard deviations.
     constexpr double kDigits = 1e-9, kMax = 5e-5;
-    const Inference& inference = tested.answer.inference;
+    const Estimate& estimate = tested.inferred.by_estimator;
     for (const int period : {2, 3, 5, 7, 11, 13}) {
       const VectorXd features = VectorXd::NullaryExpr(tested.features.size(), [&](Index i) {
         return tested.features[i] * (1.0 + (i % period == 0 ? kDigits : -kDigits));
       });
-      const Inference other = infer(features, tested.known).inference;
-      if (((other.mean - inference.mean).array().abs() > kMax * inference.stddev.array()).any() ||
-          ((other.stddev - inference.stddev).array().abs() > kMax * inference.stddev.array()).any()) {
+      const Estimate other = infer(features, tested.known).by_estimator;
+      if (((other.mean - estimate.mean).array().abs() > kMax * estimate.stddev.array()).any() ||
+          ((other.stddev - estimate.stddev).array().abs() > kMax * estimate.stddev.array()).any()) {
         return false;
       }
     }
@@ -157,10 +157,10 @@ class Answerer {
   std::optional<TrustWorkspace> trust_;
 };
 
-int toBits(const InferredMeasurement& answer) {
+int toBits(const InferredMeasurement& inferred) {
   constexpr int kEstimatorLimited = 16;
-  int bits = isEstimatorLimited(answer) ? kEstimatorLimited : 0;
-  for (const TrustStatus status : answer.trust ? answer.trust->statuses : std::vector<TrustStatus>{}) {
+  int bits = isEstimatorLimited(inferred) ? kEstimatorLimited : 0;
+  for (const TrustStatus status : inferred.trust ? inferred.trust->statuses : std::vector<TrustStatus>{}) {
     if (status != TrustStatus::kOk) {
       bits |= 1 << static_cast<int>(status);
     }
@@ -179,7 +179,7 @@ std::vector<TestedMeasurement> makeTestedMeasurements(const std::filesystem::pat
   const DisturbanceGenerator generator(samples.responses, noise.getStddev());
   const RandomStream random(model.experiment.seed, RandomPurpose::kSelftest);
   const auto n = static_cast<int>(samples.responses.cols());
-  Answerer answerer(model);
+  EstimatorUnderTest estimator(model);
   std::vector<TestedMeasurement> tested;
   MatrixXd noisy;
   for (int i = 0; static_cast<int>(tested.size()) < plan.count && i < kMaxTries * plan.count; ++i) {
@@ -193,10 +193,10 @@ std::vector<TestedMeasurement> makeTestedMeasurements(const std::filesystem::pat
     one.times = plan.disturbed ? makeTimes(layout.times, i) : layout.times;
     try {
       one.values =
-          shape(layout, roundTo(plan.number, layout.modes > 0 ? answerer.extract(response) : response));
-      one.features = answerer.makeFeatures(one);
-      one.answer = answerer.infer(one.features, one.known);
-      if (!plan.disturbed || answerer.isSteady(one)) {
+          shape(layout, roundTo(plan.number, layout.modes > 0 ? estimator.extract(response) : response));
+      one.features = estimator.makeFeatures(one);
+      one.inferred = estimator.infer(one.features, one.known);
+      if (!plan.disturbed || estimator.isSteady(one)) {
         tested.push_back(std::move(one));
       }
     } catch (const MeasurementError&) {
@@ -221,10 +221,10 @@ std::string makeSelftest(const ExportedModel& model, const COptions& options,
   for (Index i = 0; i < count; ++i) {
     const TestedMeasurement& one = measurements[static_cast<std::size_t>(i)];
     values.col(i) = flattenColumns(one.values);
-    mean.col(i) = one.answer.inference.mean;
-    stddev.col(i) = one.answer.inference.stddev;
+    mean.col(i) = one.inferred.by_estimator.mean;
+    stddev.col(i) = one.inferred.by_estimator.stddev;
     known.col(i).head(one.known.size()) = one.known;
-    statuses.push_back(toBits(one.answer));
+    statuses.push_back(toBits(one.inferred));
     axis.push_back(one.times == measurements.front().times ? 0 : 1);
     stretched = axis.back() == 1 ? one.times : stretched;
   }
@@ -244,7 +244,8 @@ std::string makeSelftest(const ExportedModel& model, const COptions& options,
   tables.addReal("measured", flattenColumns(values),
                  "Samples: measurement by measurement, signal by signal.");
   tables.addWide("known_inputs", flattenColumns(known), "Known inputs of each measurement.");
-  tables.addWide("expected_mean", flattenColumns(mean), "twinmap's answers: parameters of each measurement.");
+  tables.addWide("expected_mean", flattenColumns(mean),
+                 "twinmap's estimates: parameters of each measurement.");
   tables.addWide("expected_sd", flattenColumns(stddev), "Their standard deviations.");
   tables.addInts("expected_statuses", statuses, "The statuses, as bits.");
   const std::string text = fmt::format("enum {{ MEASUREMENTS = {} }};\ntypedef {} real_t;\n\n", count,

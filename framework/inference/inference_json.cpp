@@ -1,32 +1,12 @@
 #include <cmath>
 
 #include "framework/base/json/json.hpp"
-#include "framework/estimation/predictions.hpp"
-#include "framework/inference/answer.hpp"
+#include "framework/estimation/estimate.hpp"
 #include "framework/inference/inference_text.hpp"
+#include "framework/inference/select_estimate.hpp"
 
 namespace twinmap {
 namespace {
-
-Json makeEstimate(double mean, double stddev, const std::string& unit) {
-  Json estimate;
-  estimate["mean"] = mean;
-  estimate["sd"] = stddev;
-  estimate["lower"] = mean - kNormal95 * stddev;
-  estimate["upper"] = mean + kNormal95 * stddev;
-  estimate["unit"] = unit;
-  return estimate;
-}
-
-Json makeEstimatesJson(const Eigen::VectorXd& mean, const Eigen::VectorXd& stddev,
-                       const std::vector<ParameterSpec>& parameters) {
-  Json estimates = Json::object();
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    const auto i = static_cast<Eigen::Index>(p);
-    estimates[parameters[p].name.text] = makeEstimate(mean[i], stddev[i], parameters[p].unit);
-  }
-  return estimates;
-}
 
 Json makeIntervals(const Intervals& intervals) {
   Json list = Json::array();
@@ -36,21 +16,26 @@ Json makeIntervals(const Intervals& intervals) {
   return list;
 }
 
-/// With the answer's own intervals, and a mixture's smallest sets.
-Json makeEstimatesJson(const Answer& answer, const std::vector<ParameterSpec>& parameters) {
-  Json estimates = makeEstimatesJson(answer.mean, answer.stddev, parameters);
+/// Name -> mean, sd, the outermost bounds of its 95 % intervals, unit, its intervals of 95 % and 50 %.
+Json toJson(const Estimate& estimate, const std::vector<ParameterSpec>& parameters) {
+  const Eigen::VectorXd ratio = estimate.calcRatioToLimit();
+  Json json = Json::object();
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const auto i = static_cast<Eigen::Index>(p);
-    Json& estimate = estimates[parameters[p].name.text];
-    estimate["lower"] = answer.lower95[i];
-    estimate["upper"] = answer.upper95[i];
-    if (answer.mixture.isGiven()) {
-      estimate["intervals95"] = makeIntervals(answer.intervals95[p]);
-      estimate["intervals50"] =
-          makeIntervals(findWithin(takeMarginal(answer.mixture, i), answer.reach.get(i).of50));
+    const Intervals of95 = estimate.findIntervals(i, Coverage::k95);
+    Json& one = json[parameters[p].name.text];
+    one["mean"] = estimate.mean[i];
+    one["sd"] = estimate.stddev[i];
+    one["lower"] = of95.front().first;
+    one["upper"] = of95.back().second;
+    one["unit"] = parameters[p].unit;
+    one["intervals95"] = makeIntervals(of95);
+    one["intervals50"] = makeIntervals(estimate.findIntervals(i, Coverage::k50));
+    if (ratio.size() > 0) {
+      one["ratio_to_limit"] = ratio[i];
     }
   }
-  return estimates;
+  return json;
 }
 
 /// The components, each with its weight.
@@ -59,19 +44,9 @@ Json makeComponents(const Mixture& mixture, const std::vector<ParameterSpec>& pa
   for (Eigen::Index c = 0; c < mixture.countComponents(); ++c) {
     components.push_back(
         {{"weight", mixture.weights[c]},
-         {"parameters", makeEstimatesJson(mixture.means.col(c), mixture.stddevs.col(c), parameters)}});
+         {"parameters", toJson(Estimate{mixture.means.col(c), mixture.stddevs.col(c)}, parameters)}});
   }
   return components;
-}
-
-/// The map's, with how far they are from what the measurement allows.
-Json makeMapEstimates(const Inference& inference, const std::vector<ParameterSpec>& parameters) {
-  Json estimates = makeEstimatesJson(makeMapAnswer(inference), parameters);
-  const Eigen::VectorXd ratio = calcRatioToLimit(inference);
-  for (Eigen::Index p = 0; p < ratio.size(); ++p) {
-    estimates[parameters[static_cast<std::size_t>(p)].name.text]["ratio_to_limit"] = ratio[p];
-  }
-  return estimates;
 }
 
 Json toJson(const Trust& trust, const std::vector<FeatureInfo>& features) {
@@ -89,7 +64,8 @@ Json toJson(const Trust& trust, const std::vector<FeatureInfo>& features) {
 Json toJson(const Refined& refined, const std::vector<ParameterSpec>& parameters) {
   Json json{{"status", toString(refined.status)}};
   if (refined.isAccepted()) {
-    json["parameters"] = makeEstimatesJson(refined.point, refined.stddev, parameters);
+    json["parameters"] =
+        toJson(makeEstimate(refined, static_cast<Eigen::Index>(parameters.size())), parameters);
   } else {
     json[refined.hasConverged() ? "message" : "error"] = refined.message;
   }
@@ -114,13 +90,12 @@ Json makeQuantiles(const SurrogatePosterior& posterior, Eigen::Index parameter) 
 Json toJson(const SurrogatePosterior& posterior, const std::vector<ParameterSpec>& parameters) {
   Json json{{"status", posterior.getStatus()}};
   if (posterior.isReliable()) {
-    json["parameters"] = makeEstimatesJson(posterior.mean, posterior.stddev, parameters);
     for (std::size_t p = 0; p < parameters.size(); ++p) {
       const auto i = static_cast<Eigen::Index>(p);
-      Json& estimate = json["parameters"][parameters[p].name.text];
-      estimate["lower"] = posterior.getLower95()[i];
-      estimate["upper"] = posterior.getUpper95()[i];
-      estimate["quantiles"] = makeQuantiles(posterior, i);
+      json["parameters"][parameters[p].name.text] = {
+          {"mean", posterior.mean[i]},          {"sd", posterior.stddev[i]},
+          {"lower", posterior.getLower95()[i]}, {"upper", posterior.getUpper95()[i]},
+          {"unit", parameters[p].unit},         {"quantiles", makeQuantiles(posterior, i)}};
     }
   } else {
     json["message"] = posterior.message;
@@ -137,24 +112,22 @@ std::string makeInferenceJson(const InferredMeasurement& inferred,
                               const std::vector<ParameterSpec>& parameters,
                               const std::vector<FeatureInfo>& features) {
   Json json{{"source", inferred.source}, {"start", inferred.start}};
-  const std::vector<std::string> statuses = listStatuses(inferred);
-  json["status"] = statuses.empty() ? Json() : Json(statuses.front());
-  if (!statuses.empty()) {
-    json["statuses"] = statuses;
+  const Estimate estimate = selectEstimate(inferred);
+  json["status"] = estimate.statuses.empty() ? Json() : Json(estimate.statuses.front());
+  if (!estimate.statuses.empty()) {
+    json["statuses"] = estimate.statuses;
   }
-  const Answer answer = chooseAnswer(inferred);
-  json["method"] = toString(answer.method);
-  json["parameters"] = answer.isRefined() ? makeEstimatesJson(answer, parameters)
-                                          : makeMapEstimates(inferred.inference, parameters);
-  if (answer.mixture.isGiven()) {
-    json["components"] = makeComponents(answer.mixture, parameters);
+  json["method"] = toString(estimate.method);
+  json["parameters"] = toJson(estimate, parameters);
+  if (estimate.mixture.isGiven()) {
+    json["components"] = makeComponents(estimate.mixture, parameters);
   }
   if (inferred.trust) {
     json["trust"] = toJson(*inferred.trust, features);
   }
   if (inferred.refined) {
     json["refined"] = toJson(*inferred.refined, parameters);
-    json["inverse_map"]["parameters"] = makeMapEstimates(inferred.inference, parameters);
+    json["inverse_map"]["parameters"] = toJson(inferred.by_estimator, parameters);
   }
   if (inferred.posterior) {
     json["posterior"] = toJson(*inferred.posterior, parameters);

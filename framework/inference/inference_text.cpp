@@ -8,18 +8,18 @@
 #include "framework/base/text/nearest_name.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/base/text/text_tables.hpp"
-#include "framework/estimation/predictions.hpp"
+#include "framework/estimation/estimate.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/inference/answer.hpp"
+#include "framework/inference/select_estimate.hpp"
 
 namespace twinmap {
 namespace {
 
 using Eigen::Index;
 
-std::string joinStatuses(const InferredMeasurement& inferred, const char* separator) {
+std::string joinStatuses(const std::vector<std::string>& statuses, const char* separator) {
   std::string joined;
-  for (const std::string& status : listStatuses(inferred)) {
+  for (const std::string& status : statuses) {
     joined += (joined.empty() ? "" : separator) + status;
   }
   return joined;
@@ -50,39 +50,38 @@ using Row = std::vector<std::string>;
 
 constexpr const char* kIndent = "  ";
 
-/// Of all parameters, the bounds those of the 95 % intervals.
-struct Estimates {
-  Eigen::VectorXd mean, stddev, lower, upper;
-  std::vector<Intervals> sets{};  ///< a mixture's smallest ones, which are shown instead
-};
-
-std::string describeInterval(double lower, double upper) {
+std::string describeIntervals(const Intervals& intervals) {
   constexpr int kDigits = 6;
-  return fmt::format("{} .. {}", toShortText(lower, kDigits), toShortText(upper, kDigits));
-}
-
-std::string describeInterval(const Estimates& estimates, Index i) {
-  if (estimates.sets.empty()) {
-    return describeInterval(estimates.lower[i], estimates.upper[i]);
-  }
   std::string text;
-  for (const auto& [lower, upper] : estimates.sets[static_cast<std::size_t>(i)]) {
-    text += (text.empty() ? "" : ", ") + describeInterval(lower, upper);
+  for (const auto& [lower, upper] : intervals) {
+    text += fmt::format("{}{} .. {}", text.empty() ? "" : ", ", toShortText(lower, kDigits),
+                        toShortText(upper, kDigits));
   }
   return text;
 }
 
-Estimates makeEstimates(const Answer& answer) {
-  return {answer.mean, answer.stddev, answer.lower95, answer.upper95, answer.intervals95};
-}
-
-Row makeRow(const ParameterSpec& parameter, const Estimates& estimates, Index i) {
+Row makeRow(const ParameterSpec& parameter, double mean, double stddev, const Intervals& intervals95) {
   constexpr int kDigits = 6, kStddevDigits = 3;
-  return {parameter.name.text, parameter.unit, toShortText(estimates.mean[i], kDigits),
-          toShortText(estimates.stddev[i], kStddevDigits), describeInterval(estimates, i)};
+  return {parameter.name.text, parameter.unit, toShortText(mean, kDigits), toShortText(stddev, kStddevDigits),
+          describeIntervals(intervals95)};
 }
 
-/// How the refinement went; the table of its answer follows where it was accepted.
+std::string makeTable(std::vector<Row> rows) {
+  rows.insert(rows.begin(), {"parameter", "unit", "mean", "sd", "95 % interval"});
+  return alignRows(rows, rows.front().size(), kIndent);
+}
+
+std::string makeTable(const Estimate& estimate, const std::vector<ParameterSpec>& parameters) {
+  std::vector<Row> rows;
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const auto i = static_cast<Index>(p);
+    rows.push_back(makeRow(parameters[p], estimate.mean[i], estimate.stddev[i],
+                           estimate.findIntervals(i, Coverage::k95)));
+  }
+  return makeTable(std::move(rows));
+}
+
+/// How the refinement went; the table of its estimate follows where it was accepted.
 std::string describeRefined(const Refined& refined) {
   if (!refined.isAccepted()) {
     return fmt::format("  not refined ({}): {}; the map's unconfirmed estimate:\n", toString(refined.status),
@@ -92,15 +91,7 @@ std::string describeRefined(const Refined& refined) {
                      refined.iterations, refined.simulations, refined.distance);
 }
 
-std::string makeEstimateTable(const Estimates& estimates, const std::vector<ParameterSpec>& parameters) {
-  std::vector<Row> rows{{"parameter", "unit", "mean", "sd", "95 % interval"}};
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    rows.push_back(makeRow(parameters[p], estimates, static_cast<Index>(p)));
-  }
-  return alignRows(rows, rows.front().size(), kIndent);
-}
-
-/// The intervals that a mixture's smallest sets of 95 % are of, and its components.
+/// The components of a mixture.
 std::string describeMixture(const Mixture& mixture, const std::vector<ParameterSpec>& parameters) {
   constexpr int kDigits = 5, kStddevDigits = 3;
   constexpr double kMin = 0.01;  // a lighter one is not worth a line
@@ -128,9 +119,13 @@ std::string describePosterior(const SurrogatePosterior& posterior,
   if (!posterior.isReliable()) {
     return fmt::format("  no posterior: {} ({})\n", posterior.message, diagnostics);
   }
-  return fmt::format("  the posterior ({}):\n", diagnostics) +
-         makeEstimateTable({posterior.mean, posterior.stddev, posterior.getLower95(), posterior.getUpper95()},
-                           parameters);
+  std::vector<Row> rows;
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const auto i = static_cast<Index>(p);
+    rows.push_back(makeRow(parameters[p], posterior.mean[i], posterior.stddev[i],
+                           {{posterior.getLower95()[i], posterior.getUpper95()[i]}}));
+  }
+  return fmt::format("  the posterior ({}):\n", diagnostics) + makeTable(std::move(rows));
 }
 
 /// Empty but for the diagnostics where it is not reliable.
@@ -149,14 +144,14 @@ std::string makePosteriorCells(const SurrogatePosterior& posterior, Index parame
 
 std::string describeTrust(const InferredMeasurement& inferred, const std::vector<FeatureInfo>& features) {
   if (!inferred.trust) {
-    const std::string statuses = joinStatuses(inferred, ", ");
+    const std::string statuses = joinStatuses(listStatuses(inferred), ", ");
     return inferred.source + ": " + statuses + (statuses.empty() ? "" : "; ") +
            "not judged (the run has no trust model)\n";
   }
   const Trust& trust = *inferred.trust;
-  std::string text =
-      fmt::format("{}: {} (p = {:.2g}, chi-square {:.1f} of {} residuals)\n", inferred.source,
-                  joinStatuses(inferred, ", "), trust.p_value, trust.chi_square, trust.residuals);
+  std::string text = fmt::format("{}: {} (p = {:.2g}, chi-square {:.1f} of {} residuals)\n", inferred.source,
+                                 joinStatuses(listStatuses(inferred), ", "), trust.p_value, trust.chi_square,
+                                 trust.residuals);
   for (const TrustStatus status : trust.statuses) {
     text += explainStatus(status, trust, features);
   }
@@ -179,7 +174,7 @@ std::string describeMapLimit(const InferredMeasurement& inferred,
     return "";
   }
   const char* advice = inferred.refined ? "add simulations" : "refine, or add simulations";
-  const Eigen::VectorXd ratio = calcRatioToLimit(inferred.inference);
+  const Eigen::VectorXd ratio = inferred.by_estimator.calcRatioToLimit();
   std::vector<std::string> far;
   for (Index p = 0; p < ratio.size(); ++p) {
     if (ratio[p] > kEstimatorLimitedRatio) {
@@ -189,7 +184,7 @@ std::string describeMapLimit(const InferredMeasurement& inferred,
   }
   std::string text =
       far.empty() ? "" : fmt::format("  {} above what the measurement allows: {}.\n", listNames(far), advice);
-  if (!inferred.map_is_calibrated) {
+  if (!inferred.estimator_is_calibrated) {
     text +=
         fmt::format("  The map's standard deviations are not calibrated (cross-validation): {}.\n", advice);
   }
@@ -199,18 +194,17 @@ std::string describeMapLimit(const InferredMeasurement& inferred,
 std::string makeInferenceTable(const InferredMeasurement& inferred,
                                const std::vector<ParameterSpec>& parameters,
                                const std::vector<FeatureInfo>& features) {
-  const Answer answer = chooseAnswer(inferred);
+  const Estimate estimate = selectEstimate(inferred);
   std::string text = describeTrust(inferred, features) + describeMapLimit(inferred, parameters);
   if (inferred.refined) {
     text += describeRefined(*inferred.refined);
   }
-  text += makeEstimateTable(makeEstimates(answer), parameters);
-  if (answer.isRefined()) {
-    text +=
-        "  the map's:\n" + makeEstimateTable(makeEstimates(makeMapAnswer(inferred.inference)), parameters);
+  text += makeTable(estimate, parameters);
+  if (estimate.isRefined()) {
+    text += "  the map's:\n" + makeTable(inferred.by_estimator, parameters);
   }
-  if (isMultimodal(answer.mixture)) {
-    text += describeMixture(answer.mixture, parameters);
+  if (isMultimodal(estimate.mixture)) {
+    text += describeMixture(estimate.mixture, parameters);
   }
   if (inferred.posterior) {
     text += describePosterior(*inferred.posterior, parameters);
@@ -251,20 +245,21 @@ std::string makeDrawsCsvRows(const InferredMeasurement& inferred) {
 
 std::string makeInferenceCsvRows(const InferredMeasurement& inferred,
                                  const std::vector<ParameterSpec>& parameters) {
-  const Answer answer = chooseAnswer(inferred);
-  const Inference& by_map = inferred.inference;
+  const Estimate estimate = selectEstimate(inferred);
+  const Bounds95 bounds = estimate.calcBounds95();
+  const Estimate& by_estimator = inferred.by_estimator;
   std::string text;
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const auto i = static_cast<Index>(p);
-    const double mean = answer.mean[i], stddev = answer.stddev[i];
+    const double mean = estimate.mean[i], stddev = estimate.stddev[i];
     text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}", escapeCsv(inferred.source),
                         toText(inferred.start), escapeCsv(parameters[p].name.text),
-                        escapeCsv(parameters[p].unit), toText(mean), toText(stddev),
-                        toText(answer.lower95[i]), toText(answer.upper95[i]), joinStatuses(inferred, " "),
-                        inferred.trust ? toText(inferred.trust->p_value) : "", toString(answer.method));
+                        escapeCsv(parameters[p].unit), toText(mean), toText(stddev), toText(bounds.lower[i]),
+                        toText(bounds.upper[i]), joinStatuses(estimate.statuses, " "),
+                        inferred.trust ? toText(inferred.trust->p_value) : "", toString(estimate.method));
     if (inferred.refined) {
-      text += answer.isRefined() ? fmt::format(",{},{}", toText(mean), toText(stddev)) : ",,";
-      text += fmt::format(",{},{}", toText(by_map.mean[i]), toText(by_map.stddev[i]));
+      text += estimate.isRefined() ? fmt::format(",{},{}", toText(mean), toText(stddev)) : ",,";
+      text += fmt::format(",{},{}", toText(by_estimator.mean[i]), toText(by_estimator.stddev[i]));
     }
     if (inferred.posterior) {
       text += makePosteriorCells(*inferred.posterior, i);

@@ -10,13 +10,13 @@ namespace twinmap {
 /// The status with its numbers, and a line for each thing that is wrong.
 std::string describeTrust(const InferredMeasurement& inferred, const std::vector<FeatureInfo>& features);
 
-/// How far the map's answer is from what the measurement allows, where it is estimator_limited; a line each,
-/// or "".
+/// How far the map's estimate is from what the measurement allows, where it is estimator_limited; a line
+/// each, or "".
 std::string describeMapLimit(const InferredMeasurement& inferred,
                              const std::vector<ParameterSpec>& parameters);
 
-/// A table for people: the status with its numbers, then a row per parameter; where a refinement was accepted
-/// its answer first, then the map's.
+/// A human-readable table: the status with its numbers, then a row per parameter; where a refinement was
+/// accepted its estimate first, then the map's.
 std::string makeInferenceTable(const InferredMeasurement& inferred,
                                const std::vector<ParameterSpec>& parameters,
                                const std::vector<FeatureInfo>& features);

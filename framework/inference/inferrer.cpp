@@ -33,10 +33,10 @@ Inferrer::Workspace::Workspace(const Inferrer& inferrer) : map(inferrer.getMap()
 InferredMeasurement Inferrer::infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
                                     Workspace& workspace) const {
   InferredMeasurement inferred;
-  inferred.inference = map_.infer(features, known, workspace.map);
-  inferred.map_is_calibrated = map_.isCalibrated();
+  inferred.by_estimator = map_.infer(features, known, workspace.map);
+  inferred.estimator_is_calibrated = map_.isCalibrated();
   if (trust_) {
-    inferred.trust = judge(*trust_, features, known, inferred.inference, workspace.map.findExplanation(),
+    inferred.trust = judge(*trust_, features, known, inferred.by_estimator, workspace.map.findExplanation(),
                            *workspace.trust);
     inferred.explanation = trust_->makeSampledPoint(workspace.trust->explanation->point);
     inferred.covariance = workspace.trust->explanation->calcCovariance();

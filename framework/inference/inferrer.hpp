@@ -15,12 +15,12 @@ namespace twinmap {
 
 /// What a measurement says about the machine.
 struct InferredMeasurement {
-  std::string source;             ///< the file
-  double start = 0.0;             ///< time in the file that is 0 of the model, s
-  Inference inference;            ///< by the map
-  bool map_is_calibrated = true;  ///< OnlineMap::isCalibrated()
-  std::optional<Trust> trust;     ///< none where the run could fit no trust model
-  Eigen::VectorXd explanation;    ///< sampled point that explains the features best; empty without trust
+  std::string source;  ///< the file
+  double start = 0.0;  ///< time in the file that is 0 of the model, s
+  Estimate by_estimator;
+  bool estimator_is_calibrated = true;  ///< OnlineMap::isCalibrated()
+  std::optional<Trust> trust;           ///< none where the run could fit no trust model
+  Eigen::VectorXd explanation;   ///< sampled point that explains the features best; empty without trust
   Eigen::MatrixXd covariance{};  ///< there, u x u in half-widths, with the surrogate's errors; empty likewise
   std::optional<Refined> refined;                 ///< on the simulator, where that was tried; accepted or not
   std::optional<SurrogatePosterior> posterior{};  ///< where it was asked for; reliable or not

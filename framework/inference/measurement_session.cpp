@@ -4,7 +4,6 @@
 
 #include "framework/base/text/source_location.hpp"
 #include "framework/estimation/trained/posterior_model.hpp"
-#include "framework/inference/answer.hpp"
 
 namespace twinmap {
 namespace {
@@ -61,16 +60,6 @@ InferredMeasurement MeasurementSession::infer(const Eigen::VectorXd& features, c
     inferred.posterior = sampler_->sampleFeatures(features, known);
   }
   return inferred;
-}
-
-Eigen::MatrixXd calcAnswerCovariance(const Inferrer& inferrer, const InferredMeasurement& inferred) {
-  const Eigen::VectorXd& stddev = inferred.inference.stddev;
-  if (inferred.refined && inferred.refined->isAccepted()) {
-    const Eigen::MatrixXd covariance =
-        inferred.refined->covariance.topLeftCorner(stddev.size(), stddev.size());
-    return 0.5 * (covariance + covariance.transpose());  // an inverse is symmetric to rounding only
-  }
-  return inferrer.getMap().chooseCorrelation(inferred.inference).cwiseProduct(stddev * stddev.transpose());
 }
 
 }  // namespace twinmap

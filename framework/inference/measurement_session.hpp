@@ -13,7 +13,7 @@ namespace twinmap {
 /// it.
 class MeasurementSession {
  public:
-  /// `refine`: whether answers are refined on the simulator; none: as the experiment's `refine` says.
+  /// `refine`: whether estimates are refined on the simulator; none: as the experiment's `refine` says.
   /// `posterior_draws`: of the posterior that each measurement is given as well; 0 for none. Throws
   /// ExperimentError where the simulator cannot be made, or the run has no surrogate for posteriors.
   MeasurementSession(const Inferrer& inferrer, std::optional<bool> refine, int posterior_draws = 0);
@@ -38,10 +38,5 @@ class MeasurementSession {
   std::optional<SimulatorRefiner> refiner_;
   std::optional<PosteriorSampler> sampler_;
 };
-
-/// The covariance (p x p, symmetric, in the parameters' units) of what is believed of a measurement
-/// (chooseAnswer): that of the refinement, or D R D with the map's standard deviations and the correlation of
-/// its errors.
-Eigen::MatrixXd calcAnswerCovariance(const Inferrer& inferrer, const InferredMeasurement& inferred);
 
 }  // namespace twinmap

@@ -29,13 +29,13 @@ Refined SimulatorRefiner::refine(const InferredMeasurement& inferred, const Vect
                                  const VectorXd& known, const TrustModel* trust) const {
   const RefinementTask task = makeRefinementTask(
       model_, trust, features,
-      {findLikeliest(inferred.inference).mean, inferred.explanation, known, inferred.covariance});
+      {inferred.by_estimator.takeLikeliest().mean, inferred.explanation, known, inferred.covariance});
   Refined refined = twinmap::refine(*own_, getModel(), task);
-  if (isMultimodal(inferred.inference.mixture)) {
+  if (isMultimodal(inferred.by_estimator.mixture)) {
     rejectAsMultimodal(refined);
   }
   if (refined.isAccepted()) {
-    const Index p = inferred.inference.mean.size();
+    const Index p = inferred.by_estimator.mean.size();
     refined.stddev.conservativeResize(p);
     refined.covariance.conservativeResize(p, p);
   }

@@ -3,9 +3,9 @@
 #include "framework/data/measurement/make_table.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/inference/answer.hpp"
 #include "framework/inference/inference_text.hpp"
 #include "framework/inference/known_value.hpp"
+#include "framework/inference/select_estimate.hpp"
 #include "framework/python/arrays.hpp"
 #include "framework/python/bindings.hpp"
 #include "framework/python/python_map.hpp"
@@ -33,16 +33,15 @@ struct InferRequest {
   int posterior_draws;
 };
 
-/// What Python makes its Inference of.
-struct Answered {
+/// What Python makes its Estimate of.
+struct InferredEstimate {
   InferredMeasurement measurement;
-  Answer answer;
-  Eigen::MatrixXd covariance;
+  Estimate estimate;
 };
 
 /// Infers by a borrowed session, without the interpreter's lock; `infer` takes it and the known inputs.
 template <class Infer>
-Answered answer(PythonMap& map, const InferRequest& request, const Infer& infer) {
+InferredEstimate inferBy(PythonMap& map, const InferRequest& request, const Infer& infer) {
   const py::gil_scoped_release release;
   const Inferrer& inferrer = map.getInferrer();
   std::vector<KnownValue> values;
@@ -54,35 +53,34 @@ Answered answer(PythonMap& map, const InferRequest& request, const Infer& infer)
   PythonMap::Session session = map.borrow(manner);
   InferredMeasurement measurement = infer(*session, known);
   map.giveBack(manner, std::move(session));
-  Answer chosen = chooseAnswer(measurement);
-  Eigen::MatrixXd covariance = calcAnswerCovariance(inferrer, measurement);
-  return {std::move(measurement), std::move(chosen), std::move(covariance)};
+  Estimate estimate = selectEstimate(measurement);
+  return {std::move(measurement), std::move(estimate)};
 }
 
-Answered inferFile(PythonMap& map, const std::string& path, const InferRequest& request) {
-  return answer(map, request, [&](MeasurementSession& session, const Eigen::VectorXd& known) {
+InferredEstimate inferFile(PythonMap& map, const std::string& path, const InferRequest& request) {
+  return inferBy(map, request, [&](MeasurementSession& session, const Eigen::VectorXd& known) {
     return session.infer(readTable(path, map.getInferrer().getReader().listColumns()), request.start, known);
   });
 }
 
-Answered inferColumns(PythonMap& map, const NamedVectors& columns, const InferRequest& request) {
+InferredEstimate inferColumns(PythonMap& map, const NamedVectors& columns, const InferRequest& request) {
   std::vector<NamedValues> named;
   for (const auto& [name, values] : columns) {
     named.push_back({name, viewVector(values, "column '" + name + "'")});
   }
-  return answer(map, request, [&](MeasurementSession& session, const Eigen::VectorXd& known) {
+  return inferBy(map, request, [&](MeasurementSession& session, const Eigen::VectorXd& known) {
     const Table table = makeTable("measurement", named, map.getInferrer().getReader().listColumns());
     return session.infer(table, request.start, known);
   });
 }
 
-Answered inferFeatures(PythonMap& map, const Vector& features, const InferRequest& request) {
+InferredEstimate inferFeatures(PythonMap& map, const Vector& features, const InferRequest& request) {
   const Eigen::VectorXd values = viewVector(features, "features");
   const Eigen::Index count = map.getInferrer().getExtractor().getFeatureCount();
   if (values.size() != count || !values.allFinite()) {
     throw MeasurementError("features: must be " + std::to_string(count) + " finite numbers");
   }
-  return answer(map, request, [&](MeasurementSession& session, const Eigen::VectorXd& known) {
+  return inferBy(map, request, [&](MeasurementSession& session, const Eigen::VectorXd& known) {
     return session.infer(values, known);
   });
 }
@@ -92,12 +90,12 @@ py::tuple predict(const PythonMap& map, const Rows& features, const Rows& known,
   const auto inputs = static_cast<Eigen::Index>(inferrer.getExperiment().model.inputs.size());
   const auto columns = viewColumns(features, inferrer.getExtractor().getFeatureCount(), "X");
   const auto settings = viewColumns(known, inputs, "inputs");
-  Predictions predictions;
+  Estimates estimates;
   {
     const py::gil_scoped_release release;
-    predictions = inferrer.getMap().predict(columns, settings, threads);
+    estimates = inferrer.getMap().predict(columns, settings, threads);
   }
-  return py::make_tuple(moveToRows(std::move(predictions.mean)), moveToRows(std::move(predictions.stddev)));
+  return py::make_tuple(moveToRows(std::move(estimates.mean)), moveToRows(std::move(estimates.stddev)));
 }
 
 std::unique_ptr<PythonMap> loadMap(const std::string& run_or_maps) {
@@ -108,13 +106,13 @@ const ModelSpec& getModel(const PythonMap& map) {
   return map.getInferrer().getExperiment().model;
 }
 
-std::string writeJson(const PythonMap& map, const Answered& answered) {
-  return makeInferenceJson(answered.measurement, getModel(map).parameters,
+std::string writeJson(const PythonMap& map, const InferredEstimate& inferred) {
+  return makeInferenceJson(inferred.measurement, getModel(map).parameters,
                            map.getInferrer().getExtractor().getInfos());
 }
 
-std::string writeText(const PythonMap& map, const Answered& answered) {
-  return makeInferenceTable(answered.measurement, getModel(map).parameters,
+std::string writeText(const PythonMap& map, const InferredEstimate& inferred) {
+  return makeInferenceTable(inferred.measurement, getModel(map).parameters,
                             map.getInferrer().getExtractor().getInfos());
 }
 
@@ -132,17 +130,29 @@ void bindPosterior(py::module_& module) {
       .def_readonly("message", &SurrogatePosterior::message);
 }
 
-void bindAnswered(py::module_& module) {
-  py::class_<Answered>(module, "Answered")
-      .def_property_readonly("mean", [](const Answered& a) { return copyVector(a.answer.mean); })
-      .def_property_readonly("stddev", [](const Answered& a) { return copyVector(a.answer.stddev); })
+/// Of each parameter its intervals, lower and upper bound each.
+std::vector<Intervals> listIntervals(const Estimate& estimate, Coverage coverage) {
+  std::vector<Intervals> intervals;
+  for (Eigen::Index p = 0; p < estimate.mean.size(); ++p) {
+    intervals.push_back(estimate.findIntervals(p, coverage));
+  }
+  return intervals;
+}
+
+void bindEstimate(py::module_& module) {
+  using Inferred = InferredEstimate;
+  py::class_<Inferred>(module, "Estimate")
+      .def_property_readonly("mean", [](const Inferred& i) { return copyVector(i.estimate.mean); })
+      .def_property_readonly("stddev", [](const Inferred& i) { return copyVector(i.estimate.stddev); })
       .def_property_readonly("covariance",
-                             [](const Answered& a) { return moveToRows(Eigen::MatrixXd(a.covariance)); })
-      .def_property_readonly("statuses", [](const Answered& a) { return listStatuses(a.measurement); })
-      .def_property_readonly("method", [](const Answered& a) { return toString(a.answer.method); })
-      .def_property_readonly("lower95", [](const Answered& a) { return copyVector(a.answer.lower95); })
-      .def_property_readonly("upper95", [](const Answered& a) { return copyVector(a.answer.upper95); })
-      .def_property_readonly("posterior", [](const Answered& a) { return a.measurement.posterior; });
+                             [](const Inferred& i) { return moveToRows(i.estimate.calcCovariance()); })
+      .def_property_readonly("intervals50",
+                             [](const Inferred& i) { return listIntervals(i.estimate, Coverage::k50); })
+      .def_property_readonly("intervals95",
+                             [](const Inferred& i) { return listIntervals(i.estimate, Coverage::k95); })
+      .def_property_readonly("statuses", [](const Inferred& i) { return i.estimate.statuses; })
+      .def_property_readonly("method", [](const Inferred& i) { return toString(i.estimate.method); })
+      .def_property_readonly("posterior", [](const Inferred& i) { return i.measurement.posterior; });
   py::class_<InferRequest>(module, "InferRequest")
       .def(py::init<Known, std::optional<double>, std::optional<bool>, int>(), py::arg("known"),
            py::arg("start"), py::arg("refine"), py::arg("posterior_draws"));
@@ -152,7 +162,7 @@ void bindAnswered(py::module_& module) {
 
 void bindMap(py::module_& module) {
   bindPosterior(module);
-  bindAnswered(module);
+  bindEstimate(module);
   py::class_<PythonMap>(module, "Map")
       .def_static("load", &loadMap, py::call_guard<py::gil_scoped_release>())
       .def("infer_file", &inferFile)

@@ -99,9 +99,9 @@ std::string makePredictionsCsv(const RunSummary& run) {
   if (has_limit) {
     rows[0].emplace_back("limit_stddev");
   }
-  const IntervalReach& reach = run.evaluation.predictions.reach;
-  if (reach.isGiven()) {
-    rows[0].insert(rows[0].end(), {"reach50", "reach95"});
+  const IntervalFactors& factors = run.evaluation.predictions.interval_factors;
+  if (factors.isGiven()) {
+    rows[0].insert(rows[0].end(), {"interval_factor50", "interval_factor95"});
   }
   for (std::size_t i = 0; i < run.test_indices.size(); ++i) {
     for (std::size_t p = 0; p < run.parameters.size(); ++p) {
@@ -114,9 +114,9 @@ std::string makePredictionsCsv(const RunSummary& run) {
       if (has_limit) {
         rows.back().push_back(toText(run.evaluation.limit_stddev(row, column)));
       }
-      if (reach.isGiven()) {
+      if (factors.isGiven()) {
         rows.back().insert(rows.back().end(),
-                           {toText(reach.of50(row, column)), toText(reach.of95(row, column))});
+                           {toText(factors.of50(row, column)), toText(factors.of95(row, column))});
       }
     }
   }
@@ -160,15 +160,16 @@ std::string makeFailuresCsv(const std::vector<ParameterSpec>& sampled,
 
 std::string makeCrossValidationCsv(const RunSummary& run) {
   std::vector<Row> rows{{"parameter", "coverage95", "stddev_scale", "log_density", "status", "limit_ratio",
-                         "halved_to", "error_ratio", "reach50", "reach95"}};
+                         "halved_to", "error_ratio", "interval_factor50", "interval_factor95"}};
   const CrossValidation& found = *run.training.cross_validation;
   for (std::size_t p = 0; p < run.parameters.size(); ++p) {
     const auto row = static_cast<Eigen::Index>(p);
     rows.push_back({run.parameters[p].name.text, toText(found.coverage95[row]),
                     toText(found.stddev_scale[row]), toText(found.log_density), found.status,
                     toText(found.limit_ratio[row]), found.half > 0 ? std::to_string(found.half) : "",
-                    found.half > 0 ? toText(found.error_ratio[row]) : "", toText(found.reach.get(row).of50),
-                    toText(found.reach.get(row).of95)});
+                    found.half > 0 ? toText(found.error_ratio[row]) : "",
+                    toText(found.interval_factors.get(row).of50),
+                    toText(found.interval_factors.get(row).of95)});
   }
   return makeCsv(rows);
 }

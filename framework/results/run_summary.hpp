@@ -13,7 +13,7 @@
 #include "framework/analysis/rank_calibration.hpp"
 #include "framework/base/log/stage_notes.hpp"
 #include "framework/data/features/feature_block.hpp"
-#include "framework/estimation/predictions.hpp"
+#include "framework/estimation/estimate.hpp"
 #include "framework/estimation/refined/refined.hpp"
 #include "framework/experiment/model/model_spec.hpp"
 #include "framework/results/gates.hpp"
@@ -57,7 +57,7 @@ struct CrossValidation {
   Eigen::VectorXd limit_ratio;   ///< predicted: standard deviations over what the measurements allow
   int half = 0, all = 0;         ///< simulations compared; 0 where they were too few
   Eigen::VectorXd error_ratio;   ///< errors with all simulations over those with half of them; empty likewise
-  IntervalReach reach{};         ///< of intervals after that, in standard deviations
+  IntervalFactors interval_factors{};  ///< half widths of intervals after that
 };
 
 /// How well chains know a quantity (markov::Convergence).
@@ -142,7 +142,7 @@ struct MapComparison {
 /// How well the inverse map infers the test samples: p parameters, n samples that could be simulated.
 struct Evaluation {
   Eigen::MatrixXd truth;         ///< p x n
-  Predictions predictions;       ///< p x n
+  Estimates predictions;         ///< p x n
   Eigen::MatrixXd limit_stddev;  ///< p x n, of the information limit; empty where there is none
   std::vector<ParameterMetrics> metrics;
   std::vector<std::vector<int>> pit_counts;  ///< one histogram per parameter, kPitBins bins

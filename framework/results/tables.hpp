@@ -20,9 +20,9 @@ std::string makePitCsv(const RunSummary& run);
 /// components.csv: of predictions that are mixtures; docs/reference/files.md.
 std::string makeComponentsCsv(const RunSummary& run);
 
-/// predictions.csv: sample, parameter, true, inferred, stddev, limit_stddev where the limit is known, reach50
-/// and reach95 where intervals are not those of normal distributions; all parameters of a sample, then the
-/// next.
+/// predictions.csv: sample, parameter, true, inferred, stddev, limit_stddev where the limit is known,
+/// interval_factor50 and interval_factor95 where intervals are not those of normal distributions; all
+/// parameters of a sample, then the next.
 std::string makePredictionsCsv(const RunSummary& run);
 
 /// failures.csv: set, sample, the value of each parameter of the sampled box, reason.
@@ -34,7 +34,7 @@ std::string makeFailuresCsv(const std::vector<ParameterSpec>& sampled,
 std::string makeTrainingCsv(const RunSummary& run);
 
 /// cross_validation.csv: parameter, coverage95, stddev_scale, log_density, status, limit_ratio, halved_to,
-/// error_ratio, reach50, reach95.
+/// error_ratio, interval_factor50, interval_factor95.
 std::string makeCrossValidationCsv(const RunSummary& run);
 
 /// chains.csv: quantity, r_hat, effective_draws; the same in each row: weights, chains, draws, divergences,

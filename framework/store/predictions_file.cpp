@@ -52,8 +52,8 @@ StoredPredictions readPredictionsFile(const std::filesystem::path& path,
   StoredPredictions stored;
   stored.truth.resize(count, samples);
   stored.predictions = {stored.truth, stored.truth};
-  if (table.hasColumn("reach95")) {
-    stored.predictions.reach = {stored.truth, stored.truth};
+  if (table.hasColumn("interval_factor95")) {
+    stored.predictions.interval_factors = {stored.truth, stored.truth};
   }
   stored.limit_stddev.resize(table.hasColumn("limit_stddev") ? count : 0, samples);
   for (Eigen::Index i = 0; i < samples; ++i) {
@@ -66,8 +66,9 @@ StoredPredictions readPredictionsFile(const std::filesystem::path& path,
       stored.truth(p, i) = rows.getNumber(row, "true");
       stored.predictions.mean(p, i) = rows.getNumber(row, "inferred");
       stored.predictions.stddev(p, i) = rows.getNumber(row, "stddev");
-      if (stored.predictions.reach.isGiven()) {
-        stored.predictions.reach.set(p, i, {rows.getNumber(row, "reach50"), rows.getNumber(row, "reach95")});
+      if (stored.predictions.interval_factors.isGiven()) {
+        stored.predictions.interval_factors.set(
+            p, i, {rows.getNumber(row, "interval_factor50"), rows.getNumber(row, "interval_factor95")});
       }
       if (stored.limit_stddev.rows() > 0) {
         stored.limit_stddev(p, i) = table.getNumber(row, "limit_stddev");

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/estimation/predictions.hpp"
+#include "framework/estimation/estimate.hpp"
 
 namespace twinmap {
 
@@ -12,7 +12,7 @@ namespace twinmap {
 struct StoredPredictions {
   std::vector<int> samples;  ///< index in the test set of each column
   Eigen::MatrixXd truth;
-  Predictions predictions;
+  Estimates predictions;
   Eigen::MatrixXd limit_stddev;  ///< NaN where it is not known; empty where the file has no such column
 };
 

@@ -41,7 +41,7 @@ void benchInference(const Inferrer& inferrer, const Eigen::MatrixXd& measured) {
     Inferrer::Workspace workspace(inferrer);
     Eigen::Index i = 0;
     for (auto _ : state) {
-      benchmark::DoNotOptimize(inferrer.infer(measured.col(i), known, workspace).inference.mean.data());
+      benchmark::DoNotOptimize(inferrer.infer(measured.col(i), known, workspace).by_estimator.mean.data());
       i = (i + 1) % measured.cols();
     }
   })->Unit(benchmark::kMicrosecond);

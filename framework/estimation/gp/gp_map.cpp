@@ -7,11 +7,11 @@ Eigen::MatrixXd GpMap::makeProcessInputs(const Eigen::MatrixXd& features,
   return stackRows(transform.apply(features), known_inputs.scale(inputs));
 }
 
-Predictions GpMap::predict(const Eigen::MatrixXd& features, const Eigen::MatrixXd& known) const {
+Estimates GpMap::predict(const Eigen::MatrixXd& features, const Eigen::MatrixXd& known) const {
   const Eigen::MatrixXd inputs = makeProcessInputs(features, known);
   const auto parameters = static_cast<Eigen::Index>(processes.size());
-  Predictions predictions{Eigen::MatrixXd(parameters, features.cols()),
-                          Eigen::MatrixXd(parameters, features.cols())};
+  Estimates predictions{Eigen::MatrixXd(parameters, features.cols()),
+                        Eigen::MatrixXd(parameters, features.cols())};
   for (Eigen::Index p = 0; p < parameters; ++p) {
     const gp::Prediction standardised =
         std::visit([&](const auto& process) { return process->predict(inputs); }, processes[p]);

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "framework/data/reduction/feature_transform.hpp"
+#include "framework/estimation/estimate.hpp"
 #include "framework/estimation/gp/noise_profile.hpp"
 #include "framework/estimation/known_inputs.hpp"
-#include "framework/estimation/predictions.hpp"
 #include "kernels/gp/online/process.hpp"
 
 namespace twinmap {
@@ -31,7 +31,7 @@ struct GpMap {
   /// Features (d x m, untransformed) and known inputs (q x m, an empty matrix where there are none, else
   /// std::invalid_argument) -> predictions (p x m each). The standard deviation is the predictive one, noise
   /// included: the spread of the parameter given the features.
-  Predictions predict(const Eigen::MatrixXd& features, const Eigen::MatrixXd& inputs = {}) const;
+  Estimates predict(const Eigen::MatrixXd& features, const Eigen::MatrixXd& inputs = {}) const;
 };
 
 }  // namespace twinmap

@@ -18,10 +18,10 @@ gp::LeaveOneOut calcLeftOut(const gp::Process& process, const Eigen::MatrixXd& i
 
 }  // namespace
 
-Predictions predictLeftOut(const GpMap& map, const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
-                           int replicates, const TrainingControl& control) {
+Estimates predictLeftOut(const GpMap& map, const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
+                         int replicates, const TrainingControl& control) {
   const gp::SampleGroups groups = gp::makeDrawGroups(inputs.cols(), replicates);
-  Predictions predictions{targets, targets};
+  Estimates predictions{targets, targets};
   for (Eigen::Index p = 0; p < targets.rows(); ++p) {
     gp::throwIfStopped(control.stop);
     const gp::LeaveOneOut left_out =

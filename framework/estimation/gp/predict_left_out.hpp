@@ -12,7 +12,7 @@ namespace twinmap {
 /// hyperparameters are kept. `inputs` (k x n, transformed) and `targets` (p x n, standardised) are those the
 /// processes were trained on. Throws gp::Stopped between two processes. Cost: n^3 / 3 flops per exact
 /// process, 3 n m^2 per sparse one.
-Predictions predictLeftOut(const GpMap& map, const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
-                           int replicates, const TrainingControl& control);
+Estimates predictLeftOut(const GpMap& map, const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
+                         int replicates, const TrainingControl& control);
 
 }  // namespace twinmap

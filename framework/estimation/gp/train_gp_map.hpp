@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "framework/data/features/labelled_features.hpp"
+#include "framework/estimation/estimate.hpp"
 #include "framework/estimation/gp/gp_map.hpp"
-#include "framework/estimation/predictions.hpp"
 #include "framework/estimation/training_control.hpp"
 #include "framework/experiment/experiment_spec.hpp"
 #include "kernels/gp/training.hpp"
@@ -18,7 +18,7 @@ struct GpMapTraining {
   GpMap map;
   std::vector<gp::TrainingReport> reports;  ///< one per parameter; of a sparse process, that of its subset
   std::vector<std::string> warnings;        ///< "parameter 'd_y': ..."; empty if every process converged
-  Predictions leave_one_out;  ///< of each training sample without itself and its replicates (predictLeftOut)
+  Estimates leave_one_out;  ///< of each training sample without itself and its replicates (predictLeftOut)
 };
 
 /// Draws of the noise, at least one, that the hyperparameters of exact processes are searched with: those

@@ -30,40 +30,40 @@ Mixture takeMixture(const network::Predictor::Workspace& predicted) {
   return mixture;
 }
 
-Predictions predictTargets(const std::vector<network::Member>& members, const MatrixXd& inputs, int threads) {
+Estimates predictTargets(const std::vector<network::Member>& members, const MatrixXd& inputs, int threads) {
   constexpr Index kChunk = 256;  // measurements that share buffers
   const network::Network& network = members.front().network;
   const network::EnsemblePredictor predictor(members);
   const Index n = inputs.cols(), p = network.countTargets();
-  Predictions predictions{MatrixXd(p, n), MatrixXd(p, n), std::vector<MatrixXd>(static_cast<std::size_t>(n))};
+  Estimates predictions{MatrixXd(p, n), MatrixXd(p, n), std::vector<MatrixXd>(static_cast<std::size_t>(n))};
   const bool mixed = network.countComponents() > 1;
   predictions.mixtures.resize(static_cast<std::size_t>(mixed ? n : 0));
   runTasks(threads, static_cast<std::size_t>((n + kChunk - 1) / kChunk), [&](std::size_t chunk) {
     network::EnsemblePredictor::Workspace workspace(predictor);
     const Index first = static_cast<Index>(chunk) * kChunk;
     for (Index i = first; i < std::min(n, first + kChunk); ++i) {
-      const network::Predictor::Workspace& answer = predictor.predict(inputs.col(i), workspace);
-      predictions.mean.col(i) = answer.mean;
-      predictions.stddev.col(i) = answer.stddev;
-      predictions.correlations[static_cast<std::size_t>(i)] = calcCorrelation(answer.covariance);
+      const network::Predictor::Workspace& predicted = predictor.predict(inputs.col(i), workspace);
+      predictions.mean.col(i) = predicted.mean;
+      predictions.stddev.col(i) = predicted.stddev;
+      predictions.correlations[static_cast<std::size_t>(i)] = calcCorrelation(predicted.covariance);
       if (mixed) {
-        predictions.mixtures[static_cast<std::size_t>(i)] = takeMixture(answer);
+        predictions.mixtures[static_cast<std::size_t>(i)] = takeMixture(predicted);
       }
     }
   });
   return predictions;
 }
 
-Predictions NetworkMap::convertTargets(Predictions predictions, const Eigen::VectorXd& stddev_scale) const {
+Estimates NetworkMap::convertTargets(Estimates predictions, const Eigen::VectorXd& stddev_scale) const {
   convert(center, half_width, stddev_scale, predictions);
   shrinkToBounds(center, half_width, predictions);
   return predictions;
 }
 
-Predictions NetworkMap::predict(const MatrixXd& features, const MatrixXd& known_values, int threads) const {
-  Predictions predictions = convertTargets(
+Estimates NetworkMap::predict(const MatrixXd& features, const MatrixXd& known_values, int threads) const {
+  Estimates predictions = convertTargets(
       predictTargets(members, inputs.apply(features, known_values), threads), validation.stddev_scale);
-  predictions.reach = replicate(validation.reach, features.cols());
+  predictions.interval_factors = replicate(validation.interval_factors, features.cols());
   return predictions;
 }
 

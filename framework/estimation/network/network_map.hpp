@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "framework/estimation/estimate.hpp"
 #include "framework/estimation/known_inputs.hpp"
-#include "framework/estimation/predictions.hpp"
 #include "framework/estimation/surrogate/surrogate.hpp"
 #include "kernels/network/ensemble.hpp"
 
@@ -35,11 +35,11 @@ struct NetworkMap {
   /// Features (d x n, finite) and known inputs (q x n) -> mean and standard deviation of the parameters (p x
   /// n), with the correlations of each column. The result does not depend on the threads. Throws
   /// std::invalid_argument for sizes that do not fit. Cost: some us a column.
-  Predictions predict(const Eigen::MatrixXd& features, const Eigen::MatrixXd& known_values,
-                      int threads = 1) const;
+  Estimates predict(const Eigen::MatrixXd& features, const Eigen::MatrixXd& known_values,
+                    int threads = 1) const;
 
   /// Of the targets to the parameters, standard deviations multiplied (p), answers no wider than the bounds.
-  Predictions convertTargets(Predictions predictions, const Eigen::VectorXd& stddev_scale) const;
+  Estimates convertTargets(Estimates predictions, const Eigen::VectorXd& stddev_scale) const;
 
   /// Normal distributions of an answer, of which a mixture has several.
   Eigen::Index countComponents() const { return members.front().network.countComponents(); }
@@ -52,7 +52,7 @@ Mixture takeMixture(const network::Predictor::Workspace& predicted);
 
 /// Mean, standard deviation (p x n), correlations and, of several components, mixtures of the targets of
 /// networks for their inputs (k x n).
-Predictions predictTargets(const std::vector<network::Member>& members, const Eigen::MatrixXd& inputs,
-                           int threads);
+Estimates predictTargets(const std::vector<network::Member>& members, const Eigen::MatrixXd& inputs,
+                         int threads);
 
 }  // namespace twinmap

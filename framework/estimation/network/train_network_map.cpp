@@ -77,7 +77,7 @@ Index countDraws(Index samples, Index columns) {
 
 /// What networks say of samples that they had not seen.
 struct HeldOutTargets {
-  Predictions predictions;
+  Estimates predictions;
   MatrixXd truth;
   int draws = 1;
 };
@@ -90,7 +90,7 @@ HeldOutTargets predictHeldOut(const NetworkSet& set, const std::vector<network::
 }
 
 /// Sets columns of `all`.
-void place(const Predictions& some, const std::vector<Index>& columns, Predictions& all) {
+void place(const Estimates& some, const std::vector<Index>& columns, Estimates& all) {
   all.mean(Eigen::all, columns) = some.mean;
   all.stddev(Eigen::all, columns) = some.stddev;
   for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -131,14 +131,14 @@ HeldOutTargets crossValidate(const NetworkSet& set, const NetworkTask& task, con
         columns.push_back(i + draw * n);
       }
     }
-    const Predictions found = predictTargets(fit.members, measured(Eigen::all, columns), 1);
+    const Estimates found = predictTargets(fit.members, measured(Eigen::all, columns), 1);
     place(found, columns, held_out.predictions);
   });
   return held_out;
 }
 
 /// Held-out samples in the parameters' units, and what follows from them: factors of standard deviations, how
-/// far intervals reach, and whether answers have the shape of the network's.
+/// wide intervals are, and whether estimates have the shape of the network's.
 void validateMap(const HeldOutTargets& targets, const NetworkTask& task, NetworkMapTraining& training) {
   NetworkMap& map = training.map;
   HeldOut found;
@@ -148,8 +148,8 @@ void validateMap(const HeldOutTargets& targets, const NetworkTask& task, Network
       MatrixXd::Constant(found.truth.rows(), found.truth.cols(), std::numeric_limits<double>::quiet_NaN());
   map.validation = validate(found);
   training.held_out = map.convertTargets(targets.predictions, map.validation.stddev_scale);
-  map.validation.reach = calcIntervalReach(training.held_out, found.truth, targets.draws);
-  training.held_out.reach = replicate(map.validation.reach, found.truth.cols());
+  map.validation.interval_factors = calcIntervalFactors(training.held_out, found.truth, targets.draws);
+  training.held_out.interval_factors = replicate(map.validation.interval_factors, found.truth.cols());
   training.held_out_truth = std::move(found.truth);
   training.held_out_draws = targets.draws;
   warnOfShape(task.model.parameters, training);
@@ -179,9 +179,9 @@ void makeUpFor(const VectorXd& student_scale, const HeldOutTargets& targets, Net
   const NetworkMap& map = training.map;
   VectorXd& scale = training.map.validation.stddev_scale;
   scale = scale.cwiseMax(student_scale);
-  IntervalReach reach = std::move(training.held_out.reach);
+  IntervalFactors factors = std::move(training.held_out.interval_factors);
   training.held_out = map.convertTargets(targets.predictions, scale);
-  training.held_out.reach = std::move(reach);
+  training.held_out.interval_factors = std::move(factors);
 }
 
 /// Takes what a fit gives into the map.

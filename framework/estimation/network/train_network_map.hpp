@@ -22,7 +22,7 @@ struct NetworkTask {
 /// A trained network and what a person should know about it.
 struct NetworkMapTraining {
   NetworkMap map;
-  Predictions held_out;            ///< p x n draws, of samples that the network predicting them had not seen
+  Estimates held_out;              ///< p x n draws, of samples that the network predicting them had not seen
   Eigen::MatrixXd held_out_truth;  ///< p x n draws
   int held_out_draws = 1;          ///< column j + i n is draw i of sample j
   std::optional<WeightChains> chains{};  ///< where weights were sampled

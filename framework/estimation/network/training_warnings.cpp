@@ -58,7 +58,7 @@ void warnOfShape(const std::vector<ParameterSpec>& parameters, NetworkMapTrainin
     const Eigen::ArrayXd depths = calcDepths(training.held_out, training.held_out_truth, p);
     for (const auto& [probability, quantile, small] : kLevels) {
       const double share = (depths < quantile).cast<double>().mean();
-      if (std::abs(share - probability) > small + 2.0 * calcShareError(probability, simulations)) {
+      if (std::abs(share - probability) > small + 2.0 * calcProportionError(probability, simulations)) {
         training.warnings.push_back(describeNotice(
             Notice::kShape, parameters[static_cast<std::size_t>(p)].name.text, 100.0 * probability,
             100.0 * share, describeShape(probability, share, training.map.countComponents())));

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "framework/estimation/calibration_factor.hpp"
+#include "framework/estimation/estimate.hpp"
 #include "framework/estimation/folds.hpp"
-#include "framework/estimation/predictions.hpp"
 #include "framework/estimation/residual_correlation.hpp"
 #include "framework/estimation/surrogate/predicted_limit.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -37,7 +37,7 @@ double calcLogDensity(const MatrixXd& standardised, const MatrixXd& correlation)
 
 /// With each sample's own correlation where the predictions have them.
 double calcMeanLogDensity(const MatrixXd& standardised, const VectorXd& stddev_scale,
-                          const Predictions& predictions, const MatrixXd& correlation) {
+                          const Estimates& predictions, const MatrixXd& correlation) {
   double sum = -(stddev_scale.asDiagonal() * predictions.stddev).array().log().sum();
   for (Index i = 0; i < static_cast<Index>(predictions.correlations.size()); ++i) {
     sum += calcLogDensity(standardised.col(i), predictions.correlations[static_cast<std::size_t>(i)]);
@@ -103,10 +103,9 @@ HeldOut crossValidate(const Surrogate& whole, const SurrogateSamples& samples, c
       for (const Index simulation : left_out) {
         columns.push_back(simulation + draw * n);
       }
-      const SurrogateAnswers found =
-          fitted.infer(samples.measured(Eigen::all, columns), inputs, control.threads);
-      held_out.predictions.mean(Eigen::all, columns) = found.predictions.mean;
-      held_out.predictions.stddev(Eigen::all, columns) = found.predictions.stddev;
+      const Estimates found = fitted.invert(samples.measured(Eigen::all, columns), inputs, control.threads);
+      held_out.predictions.mean(Eigen::all, columns) = found.mean;
+      held_out.predictions.stddev(Eigen::all, columns) = found.stddev;
       held_out.limit_stddev(Eigen::all, columns) = found.limit_stddev;
       gp::throwIfStopped(control.stop);
     }
@@ -117,7 +116,7 @@ HeldOut crossValidate(const Surrogate& whole, const SurrogateSamples& samples, c
 
 SurrogateValidation validate(const HeldOut& held_out) {
   constexpr double kEstimatorLimited = 0.8;
-  const Predictions& found = held_out.predictions;
+  const Estimates& found = held_out.predictions;
   const MatrixXd z = (found.mean - held_out.truth).cwiseQuotient(found.stddev);
   const Index p = z.rows();
   SurrogateValidation validation;

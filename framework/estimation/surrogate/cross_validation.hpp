@@ -9,7 +9,7 @@ namespace twinmap {
 /// draw.
 struct HeldOut {
   Eigen::MatrixXd truth;         ///< p x c
-  Predictions predictions;       ///< p x c, before any scaling
+  Estimates predictions;         ///< p x c, before any scaling
   Eigen::MatrixXd limit_stddev;  ///< p x c, what the measurement allows
 };
 

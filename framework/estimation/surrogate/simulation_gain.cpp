@@ -40,8 +40,7 @@ SimulationGain calcSimulationGain(const Surrogate& whole, const SurrogateSamples
       fitSimilar(whole, selectSimulations(forward, listRange(0, half)), choices, control);
   const std::vector<Index> others = listRange(half, std::min(n - half, kMaxInferred));
   const MatrixXd inputs = samples.points(Eigen::all, others).bottomRows(known);
-  const Predictions found =
-      fitted.infer(samples.measured(Eigen::all, others), inputs, control.threads).predictions;
+  const Estimates found = fitted.invert(samples.measured(Eigen::all, others), inputs, control.threads);
   gp::throwIfStopped(control.stop);
   const MatrixXd truth = held_out.truth(Eigen::all, others);
   const VectorXd of_half = calcMeanErrors(found.mean, truth);

@@ -17,7 +17,7 @@ const char* toString(SurrogateStatus status) {
   return status == SurrogateStatus::kOk ? "ok" : "estimator_limited";
 }
 
-void Surrogate::answer(const gp::Moments& normalised, VectorXd& mean, VectorXd& stddev) const {
+void Surrogate::convertMoments(const gp::Moments& normalised, VectorXd& mean, VectorXd& stddev) const {
   const auto widths = half_width.head(parameters).array();
   mean = center.head(parameters).array() + widths * normalised.mean.head(parameters).array();
   stddev = validation.stddev_scale.array() * widths *
@@ -29,20 +29,12 @@ void Surrogate::shrinkToPrior(Eigen::Ref<VectorXd> mean, Eigen::Ref<VectorXd> st
   shrinkToBounds(center.head(parameters), prior, mean, stddev);
 }
 
-Predictions Surrogate::predict(const MatrixXd& features, const MatrixXd& inputs, int threads) const {
-  Predictions predictions = infer(features, inputs, threads).predictions;
-  for (Index i = 0; i < predictions.mean.cols(); ++i) {
-    shrinkToPrior(predictions.mean.col(i), predictions.stddev.col(i));
-  }
-  return predictions;
-}
-
 VectorXd Surrogate::calcLimit(const VectorXd& noise_stddev) const {
   return validation.limit_scale.array() * half_width.head(parameters).array() *
          noise_stddev.head(parameters).array();
 }
 
-SurrogateAnswers Surrogate::infer(const MatrixXd& features, const MatrixXd& inputs, int threads) const {
+Estimates Surrogate::invert(const MatrixXd& features, const MatrixXd& inputs, int threads) const {
   constexpr Index kChunk = 16;  // measurements that share buffers
   const Index n = features.cols(), known = center.size() - unknown;
   if (features.rows() != forward->center.size() || inputs.rows() != known ||
@@ -50,7 +42,8 @@ SurrogateAnswers Surrogate::infer(const MatrixXd& features, const MatrixXd& inpu
     throw std::invalid_argument("a surrogate needs all features, and all known inputs");
   }
   const MatrixXd scores = forward->calcScores(features);
-  SurrogateAnswers answers{{MatrixXd(parameters, n), MatrixXd(parameters, n)}, MatrixXd(parameters, n)};
+  Estimates estimates{MatrixXd(parameters, n), MatrixXd(parameters, n)};
+  estimates.limit_stddev.resize(parameters, n);
   runTasks(threads, static_cast<std::size_t>((n + kChunk - 1) / kChunk), [&](std::size_t chunk) {
     ScoreInversion inversion(*forward, unknown);
     VectorXd mean, stddev;
@@ -59,13 +52,21 @@ SurrogateAnswers Surrogate::infer(const MatrixXd& features, const MatrixXd& inpu
       const VectorXd at =
           known > 0 ? VectorXd((inputs.col(i) - center.tail(known)).cwiseQuotient(half_width.tail(known)))
                     : VectorXd();
-      answer(inversion.infer(scores.col(i), at), mean, stddev);
-      answers.predictions.mean.col(i) = mean;
-      answers.predictions.stddev.col(i) = stddev;
-      answers.limit_stddev.col(i) = calcLimit(inversion.getNoiseStddev());
+      convertMoments(inversion.infer(scores.col(i), at), mean, stddev);
+      estimates.mean.col(i) = mean;
+      estimates.stddev.col(i) = stddev;
+      estimates.limit_stddev.col(i) = calcLimit(inversion.getNoiseStddev());
     }
   });
-  return answers;
+  return estimates;
+}
+
+Estimates Surrogate::predict(const MatrixXd& features, const MatrixXd& inputs, int threads) const {
+  Estimates estimates = invert(features, inputs, threads);
+  for (Index i = 0; i < estimates.mean.cols(); ++i) {
+    shrinkToPrior(estimates.mean.col(i), estimates.stddev.col(i));
+  }
+  return estimates;
 }
 
 }  // namespace twinmap

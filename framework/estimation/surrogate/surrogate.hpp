@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <memory>
 
-#include "framework/estimation/predictions.hpp"
+#include "framework/estimation/estimate.hpp"
 #include "framework/estimation/surrogate/forward_surrogate.hpp"
 #include "kernels/surrogate/box_moments.hpp"
 
@@ -27,13 +27,7 @@ struct SurrogateValidation {
   Eigen::VectorXd limit_scale;  ///< p: calcLimitScale()
   Eigen::VectorXd limit_ratio;  ///< p, root of the mean variance over that of the limit, both as predicted
   SurrogateStatus status = SurrogateStatus::kOk;
-  IntervalReach reach{};  ///< of intervals, of a network whose errors are not normal
-};
-
-/// What a surrogate says of n measurements.
-struct SurrogateAnswers {
-  Predictions predictions;       ///< p x n
-  Eigen::MatrixXd limit_stddev;  ///< p x n, what the measurement would allow without the surrogate's errors
+  IntervalFactors interval_factors{};  ///< of a network whose errors are not normal
 };
 
 /// A map from features to parameters by a forward surrogate, inverted for each measurement. A fitted,
@@ -46,7 +40,7 @@ struct Surrogate {
   SurrogateValidation validation;
 
   /// Mean and standard deviation (p) of the parameters, in their units, for moments of normalised unknowns.
-  void answer(const gp::Moments& normalised, Eigen::VectorXd& mean, Eigen::VectorXd& stddev) const;
+  void convertMoments(const gp::Moments& normalised, Eigen::VectorXd& mean, Eigen::VectorXd& stddev) const;
 
   /// What is inferred that is less certain than the bounds alone, because two answers far apart fit or the
   /// factor of standard deviations is large, is drawn towards the middle of the bounds until it is as certain
@@ -59,13 +53,14 @@ struct Surrogate {
   Eigen::VectorXd calcLimit(const Eigen::VectorXd& noise_stddev) const;
 
   /// Features (d x n, finite) and known inputs (m - u x n) -> mean and standard deviation of the parameters
-  /// (p x n), before shrinkToPrior(). The result does not depend on the number of threads. Throws
-  /// std::invalid_argument for sizes that do not fit. Cost: that of ScoreInversion, some ms a column.
-  SurrogateAnswers infer(const Eigen::MatrixXd& features, const Eigen::MatrixXd& inputs = {},
-                         int threads = 1) const;
-  /// The same without the limit, after shrinkToPrior().
-  Predictions predict(const Eigen::MatrixXd& features, const Eigen::MatrixXd& inputs = {},
-                      int threads = 1) const;
+  /// (p x n), before shrinkToPrior(), with what the measurements would allow without the surrogate's errors.
+  /// The result does not depend on the number of threads. Throws std::invalid_argument for sizes that do not
+  /// fit. Cost: that of ScoreInversion, some ms a column.
+  Estimates invert(const Eigen::MatrixXd& features, const Eigen::MatrixXd& inputs = {},
+                   int threads = 1) const;
+  /// The same after shrinkToPrior().
+  Estimates predict(const Eigen::MatrixXd& features, const Eigen::MatrixXd& inputs = {},
+                    int threads = 1) const;
 };
 
 }  // namespace twinmap

@@ -255,9 +255,9 @@ void writeValidation(Hdf5Writer& file, const std::string& group, const Surrogate
   file.write(group + "/limit_scale", validation.limit_scale);
   file.write(group + "/limit_ratio", validation.limit_ratio);
   file.write(group + "/status", static_cast<double>(validation.status));
-  if (validation.reach.isGiven()) {
-    file.write(group + "/reach50", validation.reach.of50.col(0));
-    file.write(group + "/reach95", validation.reach.of95.col(0));
+  if (validation.interval_factors.isGiven()) {
+    file.write(group + "/interval_factor50", validation.interval_factors.of50.col(0));
+    file.write(group + "/interval_factor95", validation.interval_factors.of95.col(0));
   }
 }
 
@@ -270,17 +270,18 @@ SurrogateValidation readValidation(const Hdf5Reader& file, const std::string& gr
       file.readVector(group + "/limit_scale"),
       file.readVector(group + "/limit_ratio"),
       file.readNumber(group + "/status") == 0.0 ? SurrogateStatus::kOk : SurrogateStatus::kEstimatorLimited,
-      file.contains(group + "/reach95")
-          ? IntervalReach{file.readVector(group + "/reach50"), file.readVector(group + "/reach95")}
-          : IntervalReach{}};
+      file.contains(group + "/interval_factor95")
+          ? IntervalFactors{file.readVector(group + "/interval_factor50"),
+                            file.readVector(group + "/interval_factor95")}
+          : IntervalFactors{}};
 }
 
 bool fitsParameters(const SurrogateValidation& validation, Eigen::Index parameters) {
-  const IntervalReach& reach = validation.reach;
+  const IntervalFactors& factors = validation.interval_factors;
   return validation.stddev_scale.size() == parameters &&
          validation.residual_correlation.rows() == parameters &&
          validation.residual_correlation.cols() == parameters &&
-         (!reach.isGiven() || (reach.of50.size() == parameters && reach.of95.size() == parameters));
+         (!factors.isGiven() || (factors.of50.size() == parameters && factors.of95.size() == parameters));
 }
 
 }  // namespace twinmap

@@ -27,7 +27,7 @@ struct SurrogateSamples {
 /// A trained surrogate and what a person should know about it.
 struct SurrogateTraining {
   Surrogate surrogate;
-  Predictions
+  Estimates
       held_out;  ///< p x n draws, of measured features, by surrogates that had not seen their simulation
   Eigen::MatrixXd held_out_truth;  ///< p x n draws
   SimulationGain gain;

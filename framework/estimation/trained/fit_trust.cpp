@@ -60,8 +60,8 @@ void fitReferences(const TrustTraining& training, const OnlineMap& map, const Tr
     for (Index i = first; i < std::min(count, first + kChunk); ++i) {
       const auto features = training.measured.col(i);
       const auto known = training.known.col(i);
-      const Inference& inference = map.inferMean(features, known, inferring);
-      const Trust trust = judge(model, features, known, inference, inferring.findExplanation(), judging);
+      const Estimate& estimate = map.inferMean(features, known, inferring);
+      const Trust trust = judge(model, features, known, estimate, inferring.findExplanation(), judging);
       chi_squares[i] = trust.chi_square;
       anomalies[i] = trust.anomaly.score;
       distances[i] = trust.distance;

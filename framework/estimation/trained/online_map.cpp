@@ -108,26 +108,26 @@ bool OnlineMap::givesMixtures() const {
   return network != nullptr && network->getMap().countComponents() > 1;
 }
 
-const Inference& OnlineMap::infer(const Eigen::Ref<const VectorXd>& features,
-                                  const Eigen::Ref<const VectorXd>& known, Workspace& workspace) const {
+const Estimate& OnlineMap::infer(const Eigen::Ref<const VectorXd>& features,
+                                 const Eigen::Ref<const VectorXd>& known, Workspace& workspace) const {
   return std::visit(
-      [&](const auto& map) -> const Inference& {
+      [&](const auto& map) -> const Estimate& {
         using Buffers = typename std::decay_t<decltype(map)>::Workspace;
         return map.infer(features, known, std::get<Buffers>(workspace.kind));
       },
       kind_);
 }
 
-const Inference& OnlineMap::inferMean(const Eigen::Ref<const VectorXd>& features,
-                                      const Eigen::Ref<const VectorXd>& known, Workspace& workspace) const {
+const Estimate& OnlineMap::inferMean(const Eigen::Ref<const VectorXd>& features,
+                                     const Eigen::Ref<const VectorXd>& known, Workspace& workspace) const {
   if (const auto* processes = std::get_if<OnlineProcesses>(&kind_)) {
     return processes->inferMean(features, known, std::get<OnlineProcesses::Workspace>(workspace.kind));
   }
   return infer(features, known, workspace);
 }
 
-Predictions OnlineMap::predict(const Eigen::Ref<const MatrixXd>& features,
-                               const Eigen::Ref<const MatrixXd>& known, int threads) const {
+Estimates OnlineMap::predict(const Eigen::Ref<const MatrixXd>& features,
+                             const Eigen::Ref<const MatrixXd>& known, int threads) const {
   const Sizes sizes = std::visit([](const auto& map) { return getSizes(map); }, kind_);
   if (features.rows() != sizes.features || known.rows() != sizes.known ||
       (sizes.known > 0 && known.cols() != features.cols())) {
@@ -135,10 +135,10 @@ Predictions OnlineMap::predict(const Eigen::Ref<const MatrixXd>& features,
   }
   constexpr Index kBlock = 64;  // columns that share buffers
   const Index count = features.cols(), parameters = getResidualCorrelation().rows();
-  Predictions all{MatrixXd(parameters, count), MatrixXd(parameters, count)};
+  Estimates all{MatrixXd(parameters, count), MatrixXd(parameters, count)};
   if (const auto* network = std::get_if<OnlineNetwork>(&kind_)) {
     all.correlations.resize(static_cast<std::size_t>(count));
-    all.reach = replicate(network->getMap().validation.reach, count);
+    all.interval_factors = replicate(network->getMap().validation.interval_factors, count);
   }
   if (givesMixtures()) {
     all.mixtures.resize(static_cast<std::size_t>(count));
@@ -151,14 +151,14 @@ Predictions OnlineMap::predict(const Eigen::Ref<const MatrixXd>& features,
       if (settings.size() > 0) {
         settings = known.col(i);
       }
-      const Inference& inference = infer(features.col(i), settings, workspace);
-      all.mean.col(i) = inference.mean;
-      all.stddev.col(i) = inference.stddev;
-      if (inference.mixture.isGiven()) {
-        all.mixtures[static_cast<std::size_t>(i)] = inference.mixture;
+      const Estimate& estimate = infer(features.col(i), settings, workspace);
+      all.mean.col(i) = estimate.mean;
+      all.stddev.col(i) = estimate.stddev;
+      if (estimate.mixture.isGiven()) {
+        all.mixtures[static_cast<std::size_t>(i)] = estimate.mixture;
       }
       if (!all.correlations.empty()) {
-        all.correlations[static_cast<std::size_t>(i)] = inference.correlation;
+        all.correlations[static_cast<std::size_t>(i)] = estimate.correlation;
       }
     }
   });

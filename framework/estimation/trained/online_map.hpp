@@ -24,11 +24,6 @@ class OnlineMap {
   /// The correlation of the errors of a sample's parameters, p x p, over all samples.
   const Eigen::MatrixXd& getResidualCorrelation() const;
 
-  /// That of what was inferred from one measurement where the map tells, else that over all.
-  const Eigen::MatrixXd& chooseCorrelation(const Inference& inference) const {
-    return inference.correlation.size() > 0 ? inference.correlation : getResidualCorrelation();
-  }
-
   /// Whether inferences are mixtures.
   bool givesMixtures() const;
 
@@ -52,17 +47,17 @@ class OnlineMap {
   /// features: d, finite; known: the inputs of the set-up (q). The result lies in the workspace until its
   /// next use. Cost: some 10 us for the processes of four parameters, a ms by a surrogate, some us by a
   /// network.
-  const Inference& infer(const Eigen::Ref<const Eigen::VectorXd>& features,
-                         const Eigen::Ref<const Eigen::VectorXd>& known, Workspace& workspace) const;
+  const Estimate& infer(const Eigen::Ref<const Eigen::VectorXd>& features,
+                        const Eigen::Ref<const Eigen::VectorXd>& known, Workspace& workspace) const;
   /// Mean and inputs alone, where that is cheaper; the stddev may be zero.
-  const Inference& inferMean(const Eigen::Ref<const Eigen::VectorXd>& features,
-                             const Eigen::Ref<const Eigen::VectorXd>& known, Workspace& workspace) const;
+  const Estimate& inferMean(const Eigen::Ref<const Eigen::VectorXd>& features,
+                            const Eigen::Ref<const Eigen::VectorXd>& known, Workspace& workspace) const;
 
-  /// Mean, standard deviation (p x n) and, where the map tells, correlations for features (d x n, finite) and
-  /// known inputs (q x n): those of infer(), bit for bit, for any number of threads. Throws
-  /// std::invalid_argument for sizes that do not fit. Cost: that of n inferences.
-  Predictions predict(const Eigen::Ref<const Eigen::MatrixXd>& features,
-                      const Eigen::Ref<const Eigen::MatrixXd>& known, int threads) const;
+  /// Mean, standard deviation (p x n) and, where they differ between measurements, correlations for features
+  /// (d x n, finite) and known inputs (q x n): those of infer(), bit for bit, for any number of threads.
+  /// Throws std::invalid_argument for sizes that do not fit. Cost: that of n inferences.
+  Estimates predict(const Eigen::Ref<const Eigen::MatrixXd>& features,
+                    const Eigen::Ref<const Eigen::MatrixXd>& known, int threads) const;
 
   /// What the inferences' inputs are for features (d x n) and known inputs (q x n).
   Eigen::MatrixXd makeInputs(const Eigen::MatrixXd& features, const Eigen::MatrixXd& known) const;

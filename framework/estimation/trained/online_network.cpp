@@ -6,44 +6,43 @@ using Eigen::VectorXd;
 
 OnlineNetwork::Workspace::Workspace(const OnlineNetwork& map)
     : predicting(map.predictor_), centered(map.map_->inputs.center.size()) {
-  inference.method = EstimationMethod::kNetwork;
-  inference.mean.resize(map.map_->center.size());
-  inference.stddev.resize(map.map_->center.size());
-  inference.inputs.resize(map.map_->inputs.countInputs());
-  inference.correlation.resize(map.map_->center.size(), map.map_->center.size());
-  inference.reach = map.map_->validation.reach;
+  estimate.method = EstimationMethod::kNetwork;
+  estimate.mean.resize(map.map_->center.size());
+  estimate.stddev.resize(map.map_->center.size());
+  estimate.inputs.resize(map.map_->inputs.countInputs());
+  estimate.correlation.resize(map.map_->center.size(), map.map_->center.size());
+  estimate.interval_factors = map.map_->validation.interval_factors;
 }
 
-void OnlineNetwork::setMixture(const network::Predictor::Workspace& predicted, Inference& inference) const {
-  inference.mixture = takeMixture(predicted);
-  convert(map_->center, map_->half_width, map_->validation.stddev_scale, inference.mixture);
-  const Eigen::MatrixXd covariance = calcCovariance(inference.mixture);
-  inference.stddev = covariance.diagonal().cwiseSqrt();
-  inference.correlation = calcCorrelation(covariance);
-  shrinkToBounds(map_->center, map_->half_width, inference.stddev, inference.mixture);
+void OnlineNetwork::setMixture(const network::Predictor::Workspace& predicted, Estimate& estimate) const {
+  estimate.mixture = takeMixture(predicted);
+  convert(map_->center, map_->half_width, map_->validation.stddev_scale, estimate.mixture);
+  const Eigen::MatrixXd covariance = calcCovariance(estimate.mixture);
+  estimate.stddev = covariance.diagonal().cwiseSqrt();
+  estimate.correlation = calcCorrelation(covariance);
+  shrinkToBounds(map_->center, map_->half_width, estimate.stddev, estimate.mixture);
 }
 
-const Inference& OnlineNetwork::infer(const Eigen::Ref<const VectorXd>& features,
-                                      const Eigen::Ref<const VectorXd>& known, Workspace& workspace) const {
+const Estimate& OnlineNetwork::infer(const Eigen::Ref<const VectorXd>& features,
+                                     const Eigen::Ref<const VectorXd>& known, Workspace& workspace) const {
   const NetworkInputs& inputs = map_->inputs;
-  Inference& inference = workspace.inference;
+  Estimate& estimate = workspace.estimate;
   workspace.centered = features - inputs.center;
-  projection_.multiply(workspace.centered.data(), inference.inputs.data());
+  projection_.multiply(workspace.centered.data(), estimate.inputs.data());
   if (known.size() > 0) {
-    inference.inputs.tail(known.size()) =
-        (known - inputs.known.center).cwiseQuotient(inputs.known.half_width);
+    estimate.inputs.tail(known.size()) = (known - inputs.known.center).cwiseQuotient(inputs.known.half_width);
   }
-  const network::Predictor::Workspace& answer = predictor_.predict(inference.inputs, workspace.predicting);
-  inference.mean = map_->center + map_->half_width.cwiseProduct(answer.mean);
-  inference.stddev =
-      (map_->validation.stddev_scale.array() * map_->half_width.array()) * answer.stddev.array();
-  const auto inverse_stddev = answer.stddev.cwiseInverse().asDiagonal();
-  inference.correlation = inverse_stddev * answer.covariance * inverse_stddev;
-  if (answer.weights.size() > 1) {
-    setMixture(answer, inference);
+  const network::Predictor::Workspace& predicted = predictor_.predict(estimate.inputs, workspace.predicting);
+  estimate.mean = map_->center + map_->half_width.cwiseProduct(predicted.mean);
+  estimate.stddev =
+      (map_->validation.stddev_scale.array() * map_->half_width.array()) * predicted.stddev.array();
+  const auto inverse_stddev = predicted.stddev.cwiseInverse().asDiagonal();
+  estimate.correlation = inverse_stddev * predicted.covariance * inverse_stddev;
+  if (predicted.weights.size() > 1) {
+    setMixture(predicted, estimate);
   }
-  shrinkToBounds(map_->center, map_->half_width, inference.mean, inference.stddev);
-  return inference;
+  shrinkToBounds(map_->center, map_->half_width, estimate.mean, estimate.stddev);
+  return estimate;
 }
 
 }  // namespace twinmap

@@ -2,14 +2,14 @@
 
 #include <memory>
 
+#include "framework/estimation/estimate.hpp"
 #include "framework/estimation/network/network_map.hpp"
-#include "framework/estimation/trained/inference.hpp"
 #include "kernels/linalg/paired_matrix.hpp"
 #include "kernels/network/ensemble.hpp"
 
 namespace twinmap {
 
-/// A network made ready for one measurement after another. Predictions are those of the map, whose numbers
+/// A network made ready for one measurement after another. Estimates are those of the map, whose numbers
 /// are rounded already, up to rounding of sums.
 /// Immutable.
 class OnlineNetwork {
@@ -23,7 +23,7 @@ class OnlineNetwork {
   class Workspace {
    public:
     explicit Workspace(const OnlineNetwork& map);
-    Inference inference;
+    Estimate estimate;
 
    private:
     friend class OnlineNetwork;
@@ -34,8 +34,8 @@ class OnlineNetwork {
   /// features: d, finite; known: the inputs of the set-up (q). The result, whose inputs are the network's,
   /// lies in the workspace until its next use. Does not allocate but for mixtures and Bayesian networks.
   /// Cost: 2 flops a number of the map.
-  const Inference& infer(const Eigen::Ref<const Eigen::VectorXd>& features,
-                         const Eigen::Ref<const Eigen::VectorXd>& known, Workspace& workspace) const;
+  const Estimate& infer(const Eigen::Ref<const Eigen::VectorXd>& features,
+                        const Eigen::Ref<const Eigen::VectorXd>& known, Workspace& workspace) const;
 
   /// What the inferences' inputs are for features (d x n) and known inputs (q x n).
   Eigen::MatrixXd makeInputs(const Eigen::MatrixXd& features, const Eigen::MatrixXd& known) const {
@@ -43,7 +43,7 @@ class OnlineNetwork {
   }
 
  private:
-  void setMixture(const network::Predictor::Workspace& predicted, Inference& inference) const;
+  void setMixture(const network::Predictor::Workspace& predicted, Estimate& estimate) const;
 
   std::shared_ptr<const NetworkMap> map_;
   linalg::PairedMatrix projection_;

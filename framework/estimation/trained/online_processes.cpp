@@ -30,10 +30,11 @@ OnlineProcesses::OnlineProcesses(GpMap map) : map_(std::move(map)), predictor_(m
 
 OnlineProcesses::Workspace::Workspace(const OnlineProcesses& map) : predictor(map.predictor_) {
   const auto parameters = static_cast<Index>(map.map_.processes.size());
-  inference.method = EstimationMethod::kGp;
-  inference.mean.setZero(parameters);
-  inference.stddev.setZero(parameters);
-  inference.inputs.setZero(map.matrix_.rows() + map.map_.known_inputs.center.size());
+  estimate.method = EstimationMethod::kGp;
+  estimate.correlation = map.map_.residual_correlation;
+  estimate.mean.setZero(parameters);
+  estimate.stddev.setZero(parameters);
+  estimate.inputs.setZero(map.matrix_.rows() + map.map_.known_inputs.center.size());
   slope.setZero(map.map_.noise.directions.cols());
 }
 
@@ -45,34 +46,34 @@ void OnlineProcesses::makeInputs(const Eigen::Ref<const VectorXd>& features,
   inputs.tail(known.size()) = (known - map_.known_inputs.center).cwiseQuotient(map_.known_inputs.half_width);
 }
 
-const Inference& OnlineProcesses::infer(const Eigen::Ref<const VectorXd>& features,
-                                        const Eigen::Ref<const VectorXd>& known, Workspace& workspace) const {
-  Inference& inference = workspace.inference;
-  makeInputs(features, known, inference.inputs);
+const Estimate& OnlineProcesses::infer(const Eigen::Ref<const VectorXd>& features,
+                                       const Eigen::Ref<const VectorXd>& known, Workspace& workspace) const {
+  Estimate& estimate = workspace.estimate;
+  makeInputs(features, known, estimate.inputs);
   if (map_.noise.isConstant()) {
-    predictor_.predict(inference.inputs, workspace.predictor);
+    predictor_.predict(estimate.inputs, workspace.predictor);
   } else {
-    predictor_.predictWithGradient(inference.inputs, workspace.predictor);
+    predictor_.predictWithGradient(estimate.inputs, workspace.predictor);
   }
   const gp::OnlinePredictor::Values& values = workspace.predictor.values;
-  inference.mean = map_.target_offset + map_.target_scale.cwiseProduct(values.mean);
-  for (Index p = 0; p < inference.stddev.size(); ++p) {
+  estimate.mean = map_.target_offset + map_.target_scale.cwiseProduct(values.mean);
+  for (Index p = 0; p < estimate.stddev.size(); ++p) {
     const double factor = calcNoiseFactor(p, values.gradient.col(p), workspace.slope);
-    inference.stddev[p] =
+    estimate.stddev[p] =
         map_.target_scale[p] * std::sqrt(values.latent_variance[p] + noise_variance_[p] * factor);
   }
-  return inference;
+  return estimate;
 }
 
-const Inference& OnlineProcesses::inferMean(const Eigen::Ref<const VectorXd>& features,
-                                            const Eigen::Ref<const VectorXd>& known,
-                                            Workspace& workspace) const {
-  Inference& inference = workspace.inference;
-  makeInputs(features, known, inference.inputs);
-  predictor_.predictMean(inference.inputs, workspace.predictor);
-  inference.mean = map_.target_offset + map_.target_scale.cwiseProduct(workspace.predictor.values.mean);
-  inference.stddev.setZero();
-  return inference;
+const Estimate& OnlineProcesses::inferMean(const Eigen::Ref<const VectorXd>& features,
+                                           const Eigen::Ref<const VectorXd>& known,
+                                           Workspace& workspace) const {
+  Estimate& estimate = workspace.estimate;
+  makeInputs(features, known, estimate.inputs);
+  predictor_.predictMean(estimate.inputs, workspace.predictor);
+  estimate.mean = map_.target_offset + map_.target_scale.cwiseProduct(workspace.predictor.values.mean);
+  estimate.stddev.setZero();
+  return estimate;
 }
 
 double OnlineProcesses::calcNoiseFactor(Index parameter, const Eigen::Ref<const VectorXd>& gradient,

@@ -2,14 +2,14 @@
 
 #include <Eigen/Core>
 
+#include "framework/estimation/estimate.hpp"
 #include "framework/estimation/gp/gp_map.hpp"
-#include "framework/estimation/trained/inference.hpp"
 #include "kernels/gp/online/online_predictor.hpp"
 
 namespace twinmap {
 
 /// An inverse map made ready for one measurement after another: the transform's steps become one, the
-/// processes are packed. Predictions are those of the map to rounding. Immutable.
+/// processes are packed. Estimates are those of the map to rounding. Immutable.
 class OnlineProcesses {
  public:
   explicit OnlineProcesses(GpMap map);
@@ -21,7 +21,7 @@ class OnlineProcesses {
   class Workspace {
    public:
     explicit Workspace(const OnlineProcesses& map);
-    Inference inference;
+    Estimate estimate;
 
    private:
     friend class OnlineProcesses;
@@ -32,11 +32,11 @@ class OnlineProcesses {
   /// features: d, finite; known: the inputs of the set-up (q). The result lies in the workspace until its
   /// next use. It allocates nothing.
   /// Cost: 2 k d flops, then those of OnlinePredictor; some 10 us for four parameters.
-  const Inference& infer(const Eigen::Ref<const Eigen::VectorXd>& features,
-                         const Eigen::Ref<const Eigen::VectorXd>& known, Workspace& workspace) const;
+  const Estimate& infer(const Eigen::Ref<const Eigen::VectorXd>& features,
+                        const Eigen::Ref<const Eigen::VectorXd>& known, Workspace& workspace) const;
   /// Mean and inputs alone; the stddev is zero.
-  const Inference& inferMean(const Eigen::Ref<const Eigen::VectorXd>& features,
-                             const Eigen::Ref<const Eigen::VectorXd>& known, Workspace& workspace) const;
+  const Estimate& inferMean(const Eigen::Ref<const Eigen::VectorXd>& features,
+                            const Eigen::Ref<const Eigen::VectorXd>& known, Workspace& workspace) const;
 
  private:
   void makeInputs(const Eigen::Ref<const Eigen::VectorXd>& features,

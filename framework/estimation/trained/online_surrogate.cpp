@@ -6,16 +6,17 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-const Inference& OnlineSurrogate::infer(const Eigen::Ref<const VectorXd>& features,
-                                        const Eigen::Ref<const VectorXd>& known, Workspace& workspace) const {
-  Inference& inference = workspace.inference;
-  inference.inputs = makeInputs(features, known);
+const Estimate& OnlineSurrogate::infer(const Eigen::Ref<const VectorXd>& features,
+                                       const Eigen::Ref<const VectorXd>& known, Workspace& workspace) const {
+  Estimate& estimate = workspace.estimate;
+  estimate.inputs = makeInputs(features, known);
   const Index r = surrogate_->forward->getScoreCount();
-  surrogate_->answer(workspace.inversion.infer(inference.inputs.head(r), inference.inputs.tail(known.size())),
-                     inference.mean, inference.stddev);
-  surrogate_->shrinkToPrior(inference.mean, inference.stddev);
-  inference.limit_stddev = surrogate_->calcLimit(workspace.inversion.getNoiseStddev());
-  return inference;
+  surrogate_->convertMoments(
+      workspace.inversion.infer(estimate.inputs.head(r), estimate.inputs.tail(known.size())), estimate.mean,
+      estimate.stddev);
+  surrogate_->shrinkToPrior(estimate.mean, estimate.stddev);
+  estimate.limit_stddev = surrogate_->calcLimit(workspace.inversion.getNoiseStddev());
+  return estimate;
 }
 
 MatrixXd OnlineSurrogate::makeInputs(const MatrixXd& features, const MatrixXd& known) const {

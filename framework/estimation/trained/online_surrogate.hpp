@@ -2,13 +2,13 @@
 
 #include <memory>
 
+#include "framework/estimation/estimate.hpp"
 #include "framework/estimation/surrogate/score_inversion.hpp"
 #include "framework/estimation/surrogate/surrogate.hpp"
-#include "framework/estimation/trained/inference.hpp"
 
 namespace twinmap {
 
-/// A surrogate made ready for one measurement after another. Predictions are those of the surrogate, bit for
+/// A surrogate made ready for one measurement after another. Estimates are those of the surrogate, bit for
 /// bit. Immutable.
 class OnlineSurrogate {
  public:
@@ -21,9 +21,10 @@ class OnlineSurrogate {
    public:
     explicit Workspace(const OnlineSurrogate& map)
         : inversion(*map.surrogate_->forward, map.surrogate_->unknown) {
-      inference.method = EstimationMethod::kSurrogate;
+      estimate.method = EstimationMethod::kSurrogate;
+      estimate.correlation = map.surrogate_->validation.residual_correlation;
     }
-    Inference inference;
+    Estimate estimate;
     const ScoreExplanation* findExplanation() const { return inversion.findExplanation(); }
 
    private:
@@ -34,8 +35,8 @@ class OnlineSurrogate {
   /// features: d, finite; known: the inputs of the set-up (q). The result, whose inputs are the scores and
   /// the normalised known inputs, lies in the workspace until its next use. Cost: that of
   /// ScoreInversion::infer().
-  const Inference& infer(const Eigen::Ref<const Eigen::VectorXd>& features,
-                         const Eigen::Ref<const Eigen::VectorXd>& known, Workspace& workspace) const;
+  const Estimate& infer(const Eigen::Ref<const Eigen::VectorXd>& features,
+                        const Eigen::Ref<const Eigen::VectorXd>& known, Workspace& workspace) const;
 
   /// What the inferences' inputs are for features (d x n) and known inputs (q x n).
   Eigen::MatrixXd makeInputs(const Eigen::MatrixXd& features, const Eigen::MatrixXd& known) const;

@@ -25,18 +25,18 @@ VectorXd makePoint(const ModelSpec& model, const VectorXd& parameters, const Vec
 }
 
 RefinementTask makeRefinementTask(const ModelSpec& model, const TrustModel* trust, const VectorXd& features,
-                                  const MapAnswer& answer) {
+                                  const InitialEstimate& initial) {
   RefinementTask task;
   task.features = features;
   task.searched = {0, static_cast<Index>(collectUnknown(model).size())};
-  task.starts.push_back({"inverse_map", makePoint(model, answer.mean, answer.explanation, answer.known)});
+  task.starts.push_back({"inverse_map", makePoint(model, initial.mean, initial.explanation, initial.known)});
   if (trust == nullptr) {
-    task.starts.push_back({"box_center", makePoint(model, {}, {}, answer.known)});
+    task.starts.push_back({"box_center", makePoint(model, {}, {}, initial.known)});
     return task;
   }
-  task.covariance = answer.covariance;
-  if (answer.explanation.size() > 0) {
-    task.starts.push_back({"explanation", answer.explanation});
+  task.covariance = initial.covariance;
+  if (initial.explanation.size() > 0) {
+    task.starts.push_back({"explanation", initial.explanation});
   }
   const ForwardSurrogate& forward = *trust->forward;
   const std::vector<Index> similar = rankSimulations(forward, forward.calcScores(features));

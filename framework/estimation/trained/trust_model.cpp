@@ -30,7 +30,7 @@ bool isUninformative(const TrustModel& model, const VectorXd& stddev) {
   return (stddev.array() > kShareOfPrior * prior).any();
 }
 
-/// All that apply to an answer, by the p-value and the distance found.
+/// All that apply to an estimate, by the p-value and the distance found.
 void setStatuses(const TrustModel& model, const VectorXd& mean, const VectorXd& stddev, Trust& trust) {
   trust.statuses.clear();
   if (trust.p_value < model.level) {
@@ -118,17 +118,17 @@ void replaceStatuses(const TrustModel& model, const SimulatorResidual& found, Tr
 
 /// The inferred parameters, or the likeliest of several, the middle of the nuisance parameters' box, the
 /// known inputs; normalised.
-void makeStart(const TrustModel& model, const Eigen::Ref<const VectorXd>& known, const Inference& inference,
+void makeStart(const TrustModel& model, const Eigen::Ref<const VectorXd>& known, const Estimate& estimate,
                VectorXd& start) {
   start = model.center;
-  start.head(inference.mean.size()) = findLikeliest(inference).mean;
+  start.head(estimate.mean.size()) = estimate.takeLikeliest().mean;
   start.tail(known.size()) = known;
   start = (start - model.center).cwiseQuotient(model.half_width);
 }
 
 const ScoreExplanation& explain(const TrustModel& model, const Eigen::Ref<const VectorXd>& known,
-                                const Inference& inference, TrustWorkspace& workspace) {
-  makeStart(model, known, inference, workspace.start);
+                                const Estimate& estimate, TrustWorkspace& workspace) {
+  makeStart(model, known, estimate, workspace.start);
   workspace.scores.noalias() = model.forward->projection * workspace.centered;
   return workspace.inversion.explain(workspace.scores, workspace.start.tail(known.size()),
                                      workspace.start.head(model.unknown));
@@ -164,16 +164,16 @@ double TrainingCloud::calcDistance(const Eigen::Ref<const VectorXd>& at, VectorX
 }
 
 Trust judge(const TrustModel& model, const Eigen::Ref<const VectorXd>& features,
-            const Eigen::Ref<const VectorXd>& known, const Inference& inference,
+            const Eigen::Ref<const VectorXd>& known, const Estimate& estimate,
             const ScoreExplanation* explained, TrustWorkspace& workspace) {
   workspace.centered = features - model.forward->center;
-  workspace.explanation = explained != nullptr ? explained : &explain(model, known, inference, workspace);
+  workspace.explanation = explained != nullptr ? explained : &explain(model, known, estimate, workspace);
   model.space.calcResidual(workspace.centered, workspace.explanation->innovation, workspace.residual);
   Trust trust;
   compareWithSimulated(model, workspace.residual, trust);
-  trust.distance = model.cloud.calcDistance(inference.inputs, workspace.distance);
-  const LikeliestAnswer answer = findLikeliest(inference);
-  setStatuses(model, answer.mean, answer.stddev, trust);
+  trust.distance = model.cloud.calcDistance(estimate.inputs, workspace.distance);
+  const Estimate likeliest = estimate.takeLikeliest();
+  setStatuses(model, likeliest.mean, likeliest.stddev, trust);
   return trust;
 }
 

@@ -91,12 +91,12 @@ struct TrustWorkspace {
   Eigen::VectorXd start, centered, scores, residual, distance;  // the start is normalised
 };
 
-/// Judges an inference from features (d, finite) and known inputs (q), by the point of the box that explains
+/// Judges an estimate from features (d, finite) and known inputs (q), by the point of the box that explains
 /// them best according to the surrogate: `explained`, where the map found it (OnlineMap::Workspace), else
-/// searched from the inference. Cost: that of one pass over the training cloud, and of the search, about 1 ms
+/// searched from the estimate. Cost: that of one pass over the training cloud, and of the search, about 1 ms
 /// for 200 features.
 Trust judge(const TrustModel& model, const Eigen::Ref<const Eigen::VectorXd>& features,
-            const Eigen::Ref<const Eigen::VectorXd>& known, const Inference& inference,
+            const Eigen::Ref<const Eigen::VectorXd>& known, const Estimate& estimate,
             const ScoreExplanation* explained, TrustWorkspace& workspace);
 
 /// Sets residual, statistics and p-values of `trust` from what the surrogate leaves (ResidualSpace).
@@ -108,7 +108,7 @@ struct SimulatorResidual {
   double reduced_chi_square = 0.0;  ///< over its degrees of freedom
   double degrees = 0.0;             ///< of freedom: k less the parameters that were determined
   bool explained = false;  ///< whether noise explains the residual, at a level far below TrustModel::level
-  Eigen::VectorXd mean;    ///< p, the answer where it was accepted; else empty
+  Eigen::VectorXd mean;    ///< p, the refined estimate where it was accepted; else empty
   Eigen::VectorXd stddev;  ///< p
 };
 

@@ -18,8 +18,8 @@ static void finish(twinmap_result *result)
 {
   int a, limited = TWINMAP_UNCALIBRATED;
   for (a = 0; a < TWINMAP_PARAMETERS; ++a) {
-    result->lower[a] = result->mean[a] - interval_reach[a] * result->sd[a];
-    result->upper[a] = result->mean[a] + interval_reach[a] * result->sd[a];
+    result->lower[a] = result->mean[a] - interval_factor[a] * result->sd[a];
+    result->upper[a] = result->mean[a] + interval_factor[a] * result->sd[a];
     limited |= result->ratio_to_limit[a] > 1.5;
   }
 #if !TWINMAP_NETWORK

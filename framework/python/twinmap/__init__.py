@@ -5,7 +5,7 @@
     experiment = twinmap.Experiment.from_file("experiments/two_beam/best.yaml")
     results = experiment.run(progress=True)         # simulate, train, evaluate: results.metrics is a DataFrame
     map_ = twinmap.Map.load(results.folder)
-    answer = map_.infer("measured.csv")             # mean, stddev, interval, covariance, statuses
+    estimate = map_.infer("measured.csv")           # mean, stddev, interval, covariance, statuses
 
 Arrays have a row for each sample: points are (n, parameters), features (n, d). All values are in the units that the
 experiment states. Everything may be used from several threads at once; runs take turns.
@@ -16,7 +16,7 @@ import sys
 from . import _twinmap
 from ._errors import ExperimentError, MeasurementError
 from ._experiment import Experiment, Responses, sweep
-from ._map import Inference, Map, Posterior
+from ._map import Estimate, Map, Posterior
 from ._results import Results
 from ._twinmap import Progress, Quantity
 
@@ -24,7 +24,7 @@ __version__ = _twinmap.__version__
 __all__ = [
     "Experiment",
     "ExperimentError",
-    "Inference",
+    "Estimate",
     "Map",
     "MeasurementError",
     "Posterior",

@@ -45,34 +45,36 @@ class Posterior:
         return self.quantiles.iloc[[0, -1]].to_numpy().T
 
 
-class Inference:
-    """What a measurement says of p parameters: a normal distribution and whether to trust it.
+class Estimate:
+    """What is believed of p parameters after one measurement, and whether to trust it.
 
-    `names`, `units`: of the parameters. `mean`, `stddev` (p): in those units. `covariance` (p, p). `statuses`: ["ok"],
-    or what is to be said against the answer, the most severe first (docs/explanation/trust.md); empty where the run has no trust
-    model. `method`: "refined" where the answer was refined on the simulator and accepted, else the kind of the map:
-    "gp", "surrogate" or "network".
-    `posterior`: where it was asked for, else None.
+    `names`, `units`: of the parameters. `mean`, `stddev` (p): in those units. `covariance` (p, p). `intervals95`,
+    `intervals50`: for each parameter a list of intervals (lower, upper), several of a mixture where they lie apart.
+    `statuses`: ["ok"], or what is to be said against the estimate, the most severe first (docs/explanation/trust.md); empty where the
+    run has no trust model. `method`: "refined" where the estimate was refined on the simulator and accepted, else the kind
+    of the map: "gp", "surrogate" or "network". `posterior`: where it was asked for, else None.
     """
 
-    def __init__(self, answered: _twinmap.Answered, map_: _twinmap.Map, parameters: List[Quantity]) -> None:
-        self._answered, self._map = answered, map_
+    def __init__(self, estimate: _twinmap.Estimate, map_: _twinmap.Map, parameters: List[Quantity]) -> None:
+        self._estimate, self._map = estimate, map_
         self.names = [parameter.name for parameter in parameters]
         self.units = [parameter.unit for parameter in parameters]
-        self.mean: np.ndarray = answered.mean
-        self.stddev: np.ndarray = answered.stddev
-        self.covariance: np.ndarray = answered.covariance
-        self.statuses: List[str] = answered.statuses
-        self.method = answered.method
+        self.mean: np.ndarray = estimate.mean
+        self.stddev: np.ndarray = estimate.stddev
+        self.covariance: np.ndarray = estimate.covariance
+        self.intervals95: List[List[Tuple[float, float]]] = estimate.intervals95
+        self.intervals50: List[List[Tuple[float, float]]] = estimate.intervals50
+        self.statuses: List[str] = estimate.statuses
+        self.method: str = estimate.method
         self.posterior: Optional[Posterior] = None
-        if answered.posterior is not None:
+        if estimate.posterior is not None:
             unknown = [parameter.name for parameter in map_.unknown]
-            self.posterior = Posterior(answered.posterior, self.names, unknown)
+            self.posterior = Posterior(estimate.posterior, self.names, unknown)
 
     @functools.cached_property
     def details(self) -> Dict[str, Any]:
         """All of it, as `twinmap infer --json` prints it."""
-        return json.loads(self._map.write_json(self._answered))
+        return json.loads(self._map.write_json(self._estimate))
 
     @property
     def trust(self) -> Dict[str, Any]:
@@ -86,9 +88,8 @@ class Inference:
 
     @property
     def interval(self) -> np.ndarray:
-        """The 95 % intervals (p, 2): lower and upper bound; of a mixture, whose smallest sets may be several
-        intervals (details["parameters"][NAME]["intervals95"]), the outermost bounds."""
-        return np.column_stack([self._answered.lower95, self._answered.upper95])
+        """The outermost bounds of the 95 % intervals (p, 2): lower and upper."""
+        return np.array([(intervals[0][0], intervals[-1][1]) for intervals in self.intervals95])
 
     def to_frame(self) -> pd.DataFrame:
         """A row for each parameter: unit, mean, stddev, lower, upper."""
@@ -106,7 +107,7 @@ class Inference:
         return float(self.mean[index]), float(self.stddev[index])
 
     def __repr__(self) -> str:
-        return self._map.write_text(self._answered).rstrip("\n")
+        return self._map.write_text(self._estimate).rstrip("\n")
 
     def _repr_html_(self) -> str:
         first_line = html.escape(repr(self).split("\n", 1)[0])
@@ -188,8 +189,8 @@ class Map:
         start: Optional[float] = None,
         refine: Optional[bool] = None,
         posterior: Union[bool, int] = False,
-    ) -> Inference:
-        """Infers the parameters of one measurement and judges the answer.
+    ) -> Estimate:
+        """Infers the parameters of one measurement and judges the estimate.
 
         measurement: a file (CSV, MATLAB, HDF5); a DataFrame or mapping from columns to samples, named as in a file ("t",
         "enc1 [mm]"; a DataFrame's named index is a column as well); or an array (d) of features. known: values of the
@@ -201,12 +202,12 @@ class Map:
         draws = _DRAWS if posterior is True else int(posterior)
         request = _twinmap.InferRequest(list_known(known), start, refine, draws)
         if isinstance(measurement, (pd.DataFrame, Mapping)):
-            answered = self._map.infer_columns(list_columns(measurement), request)
+            estimate = self._map.infer_columns(list_columns(measurement), request)
         elif isinstance(measurement, (str, os.PathLike)):
-            answered = self._map.infer_file(os.fspath(measurement), request)
+            estimate = self._map.infer_file(os.fspath(measurement), request)
         else:
-            answered = self._map.infer_features(np.asarray(measurement, dtype=float), request)
-        return Inference(answered, self._map, self._parameters)
+            estimate = self._map.infer_features(np.asarray(measurement, dtype=float), request)
+        return Estimate(estimate, self._map, self._parameters)
 
     def __repr__(self) -> str:
         names = ", ".join(parameter.name for parameter in self._parameters)

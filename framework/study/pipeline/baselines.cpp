@@ -78,7 +78,7 @@ BaselineResult runLeastSquares(const LeastSquaresSpec& spec, const Study& study,
 
 }  // namespace
 
-Predictions predictPriorMean(const std::vector<ParameterSpec>& parameters, Index samples) {
+Estimates predictPriorMean(const std::vector<ParameterSpec>& parameters, Index samples) {
   return {calcBoxCenter(parameters).replicate(1, samples),
           (kUniformStddev * calcWidths(parameters)).replicate(1, samples)};
 }

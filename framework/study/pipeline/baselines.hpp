@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "framework/data/reduction/feature_transform.hpp"
-#include "framework/estimation/predictions.hpp"
+#include "framework/estimation/estimate.hpp"
 #include "framework/study/pipeline/prepare_data.hpp"
 
 namespace twinmap {
@@ -14,13 +14,13 @@ namespace twinmap {
 struct BaselineResult {
   std::string method;  ///< "prior_mean", "linear_regression", "least_squares"
   int samples = 0;     ///< the first test samples
-  Predictions predictions;
+  Estimates predictions;
   double seconds_per_update = 0.0;  ///< wall time of one sample on one thread
   int unconverged = 0;              ///< samples whose search did not end at a minimum
 };
 
 /// The middle of the box and a uniform distribution's standard deviation, whatever was measured.
-Predictions predictPriorMean(const std::vector<ParameterSpec>& parameters, Eigen::Index samples);
+Estimates predictPriorMean(const std::vector<ParameterSpec>& parameters, Eigen::Index samples);
 
 /// Runs one baseline on the test samples. `transform`: what a linear regression sees of the features. Least
 /// squares searches all that is unknown, with the inputs of each sample; it compares features in units of

@@ -10,9 +10,9 @@
 #include "framework/base/log/stage_timer.hpp"
 #include "framework/data/sensitivity/fisher_information.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/study/pipeline/answers.hpp"
 #include "framework/study/pipeline/baselines.hpp"
 #include "framework/study/pipeline/calibrate_posteriors.hpp"
+#include "framework/study/pipeline/evaluate_estimates.hpp"
 #include "framework/study/pipeline/refine_test_samples.hpp"
 
 namespace twinmap {
@@ -62,7 +62,7 @@ std::vector<ExactPosterior> calcPosteriors(const Study& study, const PreparedDat
 
 /// The exact posteriors of the first test samples beside what the map infers of them.
 std::vector<PosteriorComparison> comparePosteriors(const Study& study, const PreparedData& data,
-                                                   const Predictions& predictions,
+                                                   const Estimates& predictions,
                                                    const Eigen::MatrixXd& limit_stddev, StageNotes& notes) {
   const Index count =
       std::min<Index>(study.experiment.evaluation.posterior->samples, data.labelled.test.features.cols());
@@ -145,15 +145,16 @@ MapEvaluation evaluateMap(const Study& study, const PreparedData& data, const Tr
   const LabelledFeatures& test = data.labelled.test;
   const std::vector<ParameterSpec>& parameters = getParameters(study);
   MapEvaluation result;
-  const Predictions predictions = timeStage("infer the test samples", result.notes,
-                                            [&] { return map.predict(test.features, test.inputs); });
+  const Estimates predictions = timeStage("infer the test samples", result.notes,
+                                          [&] { return map.predict(test.features, test.inputs); });
   const std::optional<InformationLimit> limit = findLimit(study, data, result.notes);
   const Eigen::MatrixXd limit_stddev = limit ? limit->stddev : Eigen::MatrixXd();
   RefinedTests tests = refineTestSamples(study, data, map.online);
   const std::vector<Refined> refined = std::move(tests.refined);
   result.notes.append(tests.notes);
-  result.evaluation = evaluateAnswers(
-      parameters, test.parameters, makeAnswers(predictions, map.residual_correlation, refined), limit_stddev);
+  result.evaluation =
+      evaluateEstimates(parameters, test.parameters,
+                        selectEstimates(predictions, map.residual_correlation, refined), limit_stddev);
   result.evaluation.methods = {
       summarizeMap(map.name, parameters, test.parameters, predictions, limit_stddev)};
   if (!refined.empty()) {

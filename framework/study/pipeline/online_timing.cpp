@@ -36,7 +36,7 @@ OnlineTimes timeOnlineUpdates(const OnlineModel& model, const LabelledFeatures& 
   return timeUpdates(testing.features.cols(), [&](Eigen::Index i) {
     const auto features = testing.features.col(i);
     const auto known = testing.inputs.col(i);
-    const Inference& inferred = map.infer(features, known, inferring);
+    const Estimate& inferred = map.infer(features, known, inferring);
     if (model.trust) {
       judge(*model.trust, features, known, inferred, inferring.findExplanation(), *judging);
     }

@@ -12,7 +12,7 @@
 #include "framework/estimation/refined/refine.hpp"
 #include "framework/estimation/trained/refinement_starts.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/study/pipeline/answers.hpp"
+#include "framework/study/pipeline/evaluate_estimates.hpp"
 
 namespace twinmap {
 namespace {
@@ -25,7 +25,7 @@ Eigen::VectorXd getKnown(const LabelledFeatures& test, Index i) {
 
 struct RefinementTasks {
   std::vector<RefinementTask> tasks;
-  std::vector<bool> several;  ///< whether the map's estimate is multimodal
+  std::vector<bool> multimodal;  ///< whether the map's estimate is
 };
 
 /// From what the online map and its trust model say.
@@ -40,17 +40,17 @@ RefinementTasks makeTasks(const Study& study, const PreparedData& data, const On
   }
   RefinementTasks all;
   for (Index i = 0; i < test.features.cols(); ++i) {
-    MapAnswer answer;
-    answer.known = getKnown(test, i);
-    const Inference& inference = map.infer(test.features.col(i), answer.known, inferring);
-    answer.mean = findLikeliest(inference).mean;
+    InitialEstimate initial;
+    initial.known = getKnown(test, i);
+    const Estimate& estimate = map.infer(test.features.col(i), initial.known, inferring);
+    initial.mean = estimate.takeLikeliest().mean;
     if (trust != nullptr) {
-      judge(*trust, test.features.col(i), answer.known, inference, inferring.findExplanation(), *judging);
-      answer.explanation = trust->makeSampledPoint(judging->explanation->point);
-      answer.covariance = judging->explanation->calcCovariance();
+      judge(*trust, test.features.col(i), initial.known, estimate, inferring.findExplanation(), *judging);
+      initial.explanation = trust->makeSampledPoint(judging->explanation->point);
+      initial.covariance = judging->explanation->calcCovariance();
     }
-    all.tasks.push_back(makeRefinementTask(study.experiment.model, trust, test.features.col(i), answer));
-    all.several.push_back(isMultimodal(inference.mixture));
+    all.tasks.push_back(makeRefinementTask(study.experiment.model, trust, test.features.col(i), initial));
+    all.multimodal.push_back(isMultimodal(estimate.mixture));
   }
   return all;
 }
@@ -68,7 +68,7 @@ std::string describe(const std::vector<Refined>& refined) {
   return text;
 }
 
-/// A warning where a user would not get a refined answer to one measurement in ten or more.
+/// A warning where a user would not get a refined estimate of one measurement in ten or more.
 void warnOfFew(const std::vector<Refined>& refined, const std::string& outcome, StageNotes& notes) {
   constexpr double kMin = 0.9;
   const std::size_t accepted = findAccepted(refined).size();
@@ -85,7 +85,7 @@ std::vector<Refined> refineAll(const Study& study, const PreparedData& data, con
         throwIfCancelled(study.control, "interrupted during refinement; the simulated samples are kept");
       });
   for (std::size_t i = 0; i < refined.size(); ++i) {
-    if (all.several[i]) {
+    if (all.multimodal[i]) {
       rejectAsMultimodal(refined[i]);
     }
   }

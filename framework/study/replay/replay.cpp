@@ -8,9 +8,9 @@
 #include "framework/estimation/draws.hpp"
 #include "framework/estimation/trained/refinement_starts.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/inference/answer.hpp"
 #include "framework/inference/ensemble.hpp"
 #include "framework/inference/refiner.hpp"
+#include "framework/inference/select_estimate.hpp"
 #include "framework/simulation/sample_generator.hpp"
 
 namespace twinmap {
@@ -70,16 +70,16 @@ class Replayer {
         model_(inferrer.getExperiment().model),
         window_(window),
         replay_(replay),
-        answer_(chooseAnswer(replay.inferred)) {
+        estimate_(selectEstimate(replay.inferred)) {
     if (replay.options.measurement == replay.options.from) {
-      explanation_ = answer_.isRefined() ? replay.inferred.refined->point : replay.inferred.explanation;
+      explanation_ = estimate_.isRefined() ? replay.inferred.refined->point : replay.inferred.explanation;
     }
   }
 
   void run() {
     const Index p = static_cast<Index>(model_.parameters.size());
     fitNuisance(calcBoxCenter(model_.parameters), replay_.nominal);
-    fitNuisance(clipToBounds(answer_.mean, model_.parameters), replay_.updated);
+    fitNuisance(clipToBounds(estimate_.mean, model_.parameters), replay_.updated);
     MatrixXd points(replay_.updated.point.size(), 2 + replay_.options.draws);
     points.colwise() = replay_.updated.point;
     points.col(0) = replay_.nominal.point;
@@ -104,20 +104,7 @@ class Replayer {
   MatrixXd draw() const {
     const RandomStream random(inferrer_.getExperiment().seed, RandomPurpose::kEnsemble);
     const int draws = replay_.options.draws;
-    const Mixture& mixture = replay_.inferred.inference.mixture;
-    return clipToBounds(answer_.isRefined() || !mixture.isGiven()
-                            ? drawNormal(answer_.mean, answer_.stddev, calcCorrelation(), draws, random)
-                            : drawFrom(mixture, draws, random),
-                        model_.parameters);
-  }
-
-  /// Of the answer's errors.
-  MatrixXd calcCorrelation() const {
-    if (!answer_.isRefined()) {
-      return inferrer_.getMap().chooseCorrelation(replay_.inferred.inference);
-    }
-    const VectorXd scale = answer_.stddev.cwiseInverse();
-    return scale.asDiagonal() * replay_.inferred.refined->covariance * scale.asDiagonal();
+    return clipToBounds(drawFrom(estimate_, draws, random), model_.parameters);
   }
 
   MatrixXd simulate(const MatrixXd& points) const {
@@ -141,7 +128,7 @@ class Replayer {
   const ModelSpec& model_;
   const Window& window_;
   Replay& replay_;
-  const Answer answer_;
+  const Estimate estimate_;
   VectorXd explanation_;  // of the window; empty: its nuisance parameters are sought from the box's centre
 };
 

@@ -59,7 +59,7 @@ struct Replay {
 /// distribution of covariance D R D (GpMap), or of that of an accepted refinement, around the inferred ones,
 /// the nuisance parameters held at those of the updated model. Points are moved into the box. The result does
 /// not depend on `threads`. Throws MeasurementError for a file that cannot be used, std::runtime_error for a
-/// simulation that fails. A refinement that is not accepted leaves the map's answer. Cost: draws + 2
+/// simulation that fails. A refinement that is not accepted leaves the estimator's. Cost: draws + 2
 /// simulations, and those of the searches (refine).
 Replay replay(const Inferrer& inferrer, const ReplayOptions& options);
 

@@ -9,7 +9,6 @@
 #include "framework/base/text/csv.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/inference/answer.hpp"
 #include "framework/inference/inference_text.hpp"
 #include "framework/report/figure.hpp"
 #include "framework/report/html.hpp"
@@ -89,7 +88,8 @@ std::string makeParameterTable(const Inferrer& inferrer, const Replay& replay) {
   constexpr int kStddevDigits = 3;
   const std::vector<ParameterSpec>& parameters = inferrer.getExperiment().model.parameters;
   const bool refined = replay.inferred.refined && replay.inferred.refined->isAccepted();
-  const Answer by_map = makeMapAnswer(replay.inferred.inference);
+  const Estimate& by_estimator = replay.inferred.by_estimator;
+  const Bounds95 bounds = by_estimator.calcBounds95();
   std::vector<std::string> headings{"parameter", "unit", "inferred", "sd", "95 % from", "to"};
   if (refined) {
     headings.insert(headings.end(), {"refined", "its sd"});
@@ -99,8 +99,8 @@ std::string makeParameterTable(const Inferrer& inferrer, const Replay& replay) {
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const auto i = static_cast<Index>(p);
     rows.push_back({makeTextCell(parameters[p].name.text), makeTextCell(parameters[p].unit),
-                    makeShownCell(by_map.mean[i]), makeShownCell(by_map.stddev[i], kStddevDigits),
-                    makeShownCell(by_map.lower95[i]), makeShownCell(by_map.upper95[i])});
+                    makeShownCell(by_estimator.mean[i]), makeShownCell(by_estimator.stddev[i], kStddevDigits),
+                    makeShownCell(bounds.lower[i]), makeShownCell(bounds.upper[i])});
     if (refined) {
       rows.back().push_back(makeShownCell(replay.inferred.refined->point[i]));
       rows.back().push_back(makeShownCell(replay.inferred.refined->stddev[i], kStddevDigits));

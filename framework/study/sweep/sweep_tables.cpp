@@ -34,7 +34,7 @@ struct SeedGroup {
   std::vector<CaseRow> rows;
 };
 
-struct Estimate {
+struct MeanOverSeeds {
   double mean = NAN, standard_error = NAN;
 };
 
@@ -116,7 +116,7 @@ std::vector<SeedGroup> groupSeeds(const std::vector<std::string>& keys, const st
 }
 
 /// Mean, and standard deviation over the root of the number; NaN where there are too few figures.
-Estimate calcEstimate(const SeedGroup& group, const std::string& column) {
+MeanOverSeeds calcEstimate(const SeedGroup& group, const std::string& column) {
   std::vector<double> values;
   for (const CaseRow& row : group.rows) {
     values.push_back(row.metrics->getNumber(row.row, column));
@@ -160,7 +160,7 @@ std::string makeSummaryCsv(const std::vector<std::string>& keys, const std::vect
     Row row = group.values;
     row.insert(row.end(), {group.parameter, group.unit, std::to_string(group.rows.size())});
     for (const std::string& figure : figures) {
-      const Estimate estimate = calcEstimate(group, figure);
+      const MeanOverSeeds estimate = calcEstimate(group, figure);
       row.insert(row.end(), {toCell(estimate.mean), toCell(estimate.standard_error)});
     }
     table.push_back(row);
@@ -184,7 +184,7 @@ std::string makeSweepTable(const std::vector<std::string>& keys, const std::vect
     }
     table[0].emplace_back(column.heading);
     for (std::size_t i = 0; i < groups.size(); ++i) {
-      const Estimate estimate = calcEstimate(groups[i], column.name);
+      const MeanOverSeeds estimate = calcEstimate(groups[i], column.name);
       table[i + 1].push_back(toTextWithError(estimate.mean, estimate.standard_error, column.decimals));
     }
   }

@@ -16,7 +16,7 @@
 #include "framework/store/hdf5_difference.hpp"
 #include "framework/store/predictions_file.hpp"
 #include "framework/store/trained_file.hpp"
-#include "framework/study/pipeline/answers.hpp"
+#include "framework/study/pipeline/evaluate_estimates.hpp"
 #include "framework/study/pipeline/prepare_data.hpp"
 #include "framework/study/pipeline/refine_test_samples.hpp"
 #include "framework/study/pipeline/training/store_map.hpp"
@@ -76,9 +76,9 @@ RunSummary summarize(const Study& study, const PreparedData& data, const Trained
   RunSummary run;
   run.parameters = study.experiment.model.parameters;
   run.test_indices = data.test_indices;
-  run.evaluation = evaluateAnswers(
+  run.evaluation = evaluateEstimates(
       run.parameters, test.parameters,
-      makeAnswers(map.predict(test.features, test.inputs), map.residual_correlation, refined), limit);
+      selectEstimates(map.predict(test.features, test.inputs), map.residual_correlation, refined), limit);
   run.evaluation.refined = refined;
   run.training = map.summary;
   return run;

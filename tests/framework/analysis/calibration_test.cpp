@@ -48,17 +48,17 @@ TEST(Crps, IsRelativeToTheParameterInTheMetrics) {
   ParameterSpec parameter;
   parameter.bounds = {-8, 8, {}};
   const Eigen::RowVector2d truth(-4, -4);
-  const Predictions exact{truth, Eigen::RowVector2d(0.1, 0.1)};
+  const Estimates exact{truth, Eigen::RowVector2d(0.1, 0.1)};
   const double crps = 0.1 * (std::sqrt(2.0) - 1) / std::sqrt(M_PI);
   EXPECT_NEAR(calcMetrics({parameter}, truth, exact).at(0).crps_pct, 100 * crps / 4, 1e-12);
-  const Predictions far{truth.array() + 3.0, Eigen::RowVector2d(0.1, 0.1)};
+  const Estimates far{truth.array() + 3.0, Eigen::RowVector2d(0.1, 0.1)};
   EXPECT_NEAR(calcMetrics({parameter}, truth, far).at(0).crps_pct, 100 * (3 - 0.1 / std::sqrt(M_PI)) / 4,
               1e-10);
 }
 
 TEST(Pit, IsTheProbabilityBelowTheTruth) {
   const Eigen::RowVector4d truth(1.0, 2.0, 0.0, 3.0);
-  const Predictions predictions{Eigen::RowVector4d::Ones(), Eigen::RowVector4d(1, 1, 2, 1e-3)};
+  const Estimates predictions{Eigen::RowVector4d::Ones(), Eigen::RowVector4d(1, 1, 2, 1e-3)};
   const MatrixXd pit = calcPit(truth, predictions);
   EXPECT_NEAR(pit(0), 0.5, 1e-15);
   EXPECT_NEAR(pit(1), 0.841344746068543, 1e-14);
@@ -75,7 +75,7 @@ constexpr int kCalibratedSamples = 20000;
 /// normal with covariance C = (I + A'A / 0.25)^-1 and mean C A'x / 0.25.
 struct LinearGaussian {
   MatrixXd truth = MatrixXd(3, kCalibratedSamples), correlation;
-  Predictions posterior;
+  Estimates posterior;
   VectorXd stddev;
 };
 
@@ -168,7 +168,9 @@ TEST(JointCalibration, NeedsTheCorrelationOfTheExactPosterior) {
   const LinearGaussian problem = makeLinearGaussian();
   const MatrixXd identity = MatrixXd::Identity(3, 3);
   EXPECT_GT((problem.correlation - identity).cwiseAbs().maxCoeff(), 0.3);  // there is something to find
-  const JointMetrics calibrated = calcJointMetrics(problem.truth, problem.posterior, {problem.correlation});
+  Estimates posterior = problem.posterior;
+  posterior.correlations = {problem.correlation};
+  const JointMetrics calibrated = calcJointMetrics(problem.truth, posterior);
   EXPECT_NEAR(calibrated.coverage95, 0.95, kErrors * calibrated.se.coverage95);
   EXPECT_NEAR(calibrated.coverage90, 0.90, kErrors * calibrated.se.coverage90);
   EXPECT_NEAR(calibrated.coverage50, 0.50, kErrors * calibrated.se.coverage50);
@@ -177,7 +179,8 @@ TEST(JointCalibration, NeedsTheCorrelationOfTheExactPosterior) {
                          0.5 * std::log(test::calcDeterminant(problem.correlation));
   EXPECT_NEAR(calibrated.nlpd, entropy, kErrors * calibrated.se.nlpd);
   EXPECT_NEAR(calibrated.se.nlpd, std::sqrt(0.5 * 3 / kCalibratedSamples), 1e-4);  // half a chi-square of 3
-  const JointMetrics independent = calcJointMetrics(problem.truth, problem.posterior, {identity});
+  posterior.correlations = {identity};
+  const JointMetrics independent = calcJointMetrics(problem.truth, posterior);
   EXPECT_GT(independent.nlpd, calibrated.nlpd + 20 * calibrated.se.nlpd);
   EXPECT_GT(std::abs(independent.coverage50 - 0.5), 5 * calibrated.se.coverage50);
 }
@@ -186,12 +189,13 @@ TEST(JointCalibration, NeedsTheCorrelationOfTheExactPosterior) {
 // d^2 = 8 / 0.4 = 20. Chi-square of 2 degrees of freedom: quantiles -2 log(1 - P) = 1.386, 4.6, 5.99.
 TEST(JointCalibration, ByHand) {
   const Eigen::Matrix2d truth = Eigen::Matrix2d::Zero();
-  Predictions predictions{MatrixXd(2, 2), MatrixXd(2, 2)};
+  Estimates predictions{MatrixXd(2, 2), MatrixXd(2, 2)};
   predictions.mean << 1, 2, 3, -6;
   predictions.stddev << 1, 1, 3, 3;
   Eigen::Matrix2d correlation;
   correlation << 1, 0.6, 0.6, 1;
-  const JointMetrics metrics = calcJointMetrics(truth, predictions, {correlation});
+  predictions.correlations = {correlation};
+  const JointMetrics metrics = calcJointMetrics(truth, predictions);
   EXPECT_DOUBLE_EQ(metrics.coverage50, 0.5);
   EXPECT_DOUBLE_EQ(metrics.coverage95, 0.5);
   EXPECT_NEAR(metrics.nlpd, 0.5 * (1.25 + 20) / 2 + std::log(3.0) + 0.5 * std::log(0.64) + std::log(2 * M_PI),

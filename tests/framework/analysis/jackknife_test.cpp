@@ -14,14 +14,14 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-Estimates calcMean(const MatrixXd& terms, int draws = 1) {
+JackknifeFigures calcMean(const MatrixXd& terms, int draws = 1) {
   return calcWithJackknife(
       terms, [](const VectorXd& mean, double) { return mean; }, draws);
 }
 
 TEST(Jackknife, OfAMeanIsItsStandardErrorExactly) {
   const Eigen::RowVector4d values(1, 2, 4, 9);  // mean 4, squared deviations 9 + 4 + 0 + 25 = 38
-  const Estimates estimates = calcMean(values);
+  const JackknifeFigures estimates = calcMean(values);
   EXPECT_DOUBLE_EQ(estimates.value[0], 4.0);
   EXPECT_NEAR(estimates.standard_error[0], std::sqrt(38.0 / 3.0) / std::sqrt(4.0), 1e-14);
 }
@@ -30,7 +30,7 @@ TEST(Jackknife, OfAMeanIsItsStandardErrorExactly) {
 TEST(Jackknife, LeavesEverySampleOutOfTheWholeFigure) {
   MatrixXd terms(2, 3);
   terms << 0, 1, 3, 0, 1, 9;
-  const Estimates estimates = calcWithJackknife(terms, [](const VectorXd& mean, double samples) {
+  const JackknifeFigures estimates = calcWithJackknife(terms, [](const VectorXd& mean, double samples) {
     return VectorXd::Constant(1, (mean[1] - mean[0] * mean[0]) * samples / (samples - 1));
   });
   EXPECT_NEAR(estimates.value[0], 7.0 / 3.0, 1e-14);
@@ -51,7 +51,7 @@ TEST(Jackknife, DrawsOfOneSampleLeaveTogether) {
 
 struct TestSet {
   MatrixXd truth, limit_stddev;
-  Predictions predictions;
+  Estimates predictions;
 };
 
 TestSet makeTestSet(int samples) {

@@ -93,7 +93,7 @@ TEST(LinearMap, InvertsWhatIsLinear) {
   samples.features = (makeLinearResponse() * points).array() + 3.0;
   samples.parameters = points;
   const LinearMap map = trainLinearMap({}, samples);
-  const Predictions predictions = map.predict(samples.features, {});
+  const Estimates predictions = map.predict(samples.features, {});
   EXPECT_LT((predictions.mean - points).cwiseAbs().maxCoeff(), 1e-12);
   EXPECT_LT(predictions.stddev.maxCoeff(), 1e-12);
 }
@@ -103,7 +103,7 @@ TEST(LinearMap, SeesKnownInputs) {
   samples.parameters = MatrixXd::Random(1, 50);
   samples.inputs = MatrixXd::Random(1, 50);
   samples.features = 2.0 * samples.parameters + 5.0 * samples.inputs;
-  const Predictions predictions = trainLinearMap({}, samples).predict(samples.features, samples.inputs);
+  const Estimates predictions = trainLinearMap({}, samples).predict(samples.features, samples.inputs);
   EXPECT_LT((predictions.mean - samples.parameters).cwiseAbs().maxCoeff(), 1e-12);
 }
 

@@ -18,7 +18,7 @@ ParameterSpec makeParameter(double lower, double upper, RelativeTo relative_to =
 TEST(Metrics, ByHand) {
   Eigen::MatrixXd truth(1, 3);
   truth << 1, 2, 4;
-  Predictions predictions{Eigen::MatrixXd(1, 3), Eigen::MatrixXd(1, 3)};
+  Estimates predictions{Eigen::MatrixXd(1, 3), Eigen::MatrixXd(1, 3)};
   predictions.mean << 1.1, 1.8, 4.0;
   predictions.stddev << 0.1, 0.05, 1.0;  // z = 1, -4, 0
   const ParameterMetrics metrics = calcMetrics({makeParameter(1, 4)}, truth, predictions).at(0);
@@ -39,8 +39,8 @@ TEST(Metrics, ByHand) {
 // z = 1, -4, 0 of intervals that reach 0.9 and 4.5.
 TEST(Metrics, CoverageIsThatOfTheIntervalsThatAreClaimed) {
   const Eigen::RowVector3d truth(1, 2, 4);
-  Predictions predictions{truth + Eigen::RowVector3d(0.1, -0.2, 0.0), Eigen::RowVector3d(0.1, 0.05, 1.0)};
-  predictions.reach = {Eigen::MatrixXd::Constant(1, 3, 0.9), Eigen::MatrixXd::Constant(1, 3, 4.5)};
+  Estimates predictions{truth + Eigen::RowVector3d(0.1, -0.2, 0.0), Eigen::RowVector3d(0.1, 0.05, 1.0)};
+  predictions.interval_factors = {Eigen::MatrixXd::Constant(1, 3, 0.9), Eigen::MatrixXd::Constant(1, 3, 4.5)};
   const ParameterMetrics metrics = calcMetrics({makeParameter(1, 4)}, truth, predictions).at(0);
   EXPECT_EQ(metrics.coverage95, 1.0);
   EXPECT_NEAR(metrics.coverage90, 2.0 / 3.0, 1e-15);
@@ -51,7 +51,7 @@ TEST(Metrics, CoverageIsThatOfTheIntervalsThatAreClaimed) {
 TEST(Metrics, RelativeToTheRangeWhereTheParameterSaysSo) {
   Eigen::MatrixXd truth(1, 2);
   truth << 0, 1;
-  const Predictions predictions{truth.array() + 0.2, Eigen::MatrixXd::Ones(1, 2)};
+  const Estimates predictions{truth.array() + 0.2, Eigen::MatrixXd::Ones(1, 2)};
   const ParameterMetrics metrics =
       calcMetrics({makeParameter(-1, 3, RelativeTo::kRange)}, truth, predictions).at(0);
   EXPECT_NEAR(metrics.bias_pct, 5.0, 1e-12);
@@ -62,7 +62,7 @@ TEST(Metrics, RelativeToTheRangeWhereTheParameterSaysSo) {
 // Scales 2 and 4, limits 0.1 and 0.4: relative 5 % and 10 %. Errors 10 % and -10 %: sd 10 sqrt(2) %.
 TEST(Metrics, TheInformationLimitIsRelativeAsTheStandardDeviationIs) {
   const Eigen::RowVector2d truth(2, 4), limit(0.1, 0.4);
-  const Predictions predictions{Eigen::RowVector2d(2.2, 3.6), Eigen::RowVector2d(1, 1)};
+  const Estimates predictions{Eigen::RowVector2d(2.2, 3.6), Eigen::RowVector2d(1, 1)};
   const auto calc = [&](const Eigen::MatrixXd& limit_stddev, RelativeTo relative_to = RelativeTo::kValue) {
     return calcMetrics({makeParameter(1, 5, relative_to)}, truth, predictions, limit_stddev).at(0);
   };
@@ -92,7 +92,7 @@ TEST(Metrics, TheDensityIsComparedWithThatOfTheLimit) {
 // A bias a million times the spread costs the spread no digits.
 TEST(Metrics, ASmallSpreadAboutALargeBiasKeepsItsDigits) {
   const Eigen::RowVector3d truth(1, 1, 1);
-  const Predictions predictions{Eigen::RowVector3d(3, 3 + 1e-6, 3 + 2e-6), Eigen::RowVector3d(1, 1, 1)};
+  const Estimates predictions{Eigen::RowVector3d(3, 3 + 1e-6, 3 + 2e-6), Eigen::RowVector3d(1, 1, 1)};
   const ParameterMetrics metrics = calcMetrics({makeParameter(1, 5)}, truth, predictions).at(0);
   EXPECT_NEAR(metrics.sd_pct, 1e-4, 1e-13);
   EXPECT_NEAR(metrics.z_sd, 1e-6, 1e-15);
@@ -102,7 +102,7 @@ TEST(Metrics, ASmallSpreadAboutALargeBiasKeepsItsDigits) {
 TEST(Metrics, ACalibratedStandardDeviationIsCoveredAsClaimed) {
   constexpr int kSamples = 1000;
   Eigen::MatrixXd truth = Eigen::MatrixXd::Constant(1, kSamples, 2.0);
-  Predictions predictions{truth, Eigen::MatrixXd::Constant(1, kSamples, 0.3)};
+  Estimates predictions{truth, Eigen::MatrixXd::Constant(1, kSamples, 0.3)};
   for (int i = 0; i < kSamples; ++i) {
     const double probability = (i + 0.5) / kSamples;
     double low = -10, high = 10;  // bisection: the normal quantile, independent of the code under test

@@ -64,7 +64,7 @@ static void check_quantities(const twinmap_map* map) {
 
 static void check_no_answer(twinmap_inferrer* inferrer) {
   double values[4];
-  EXPECT_WRONG(twinmap_get_mean(inferrer, values, 4), "no answer");
+  EXPECT_WRONG(twinmap_get_mean(inferrer, values, 4), "no estimate");
   EXPECT(twinmap_count_statuses(inferrer) == 0 && twinmap_get_status(inferrer, 0) == NULL);
   EXPECT(isnan(twinmap_get_number(inferrer, TWINMAP_P_VALUE)));
   EXPECT(twinmap_get_json(inferrer) == NULL && !twinmap_is_refined(inferrer));

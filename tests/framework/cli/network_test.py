@@ -52,7 +52,7 @@ class Undetermined(FolderTestCase):
         cls.file = cls.folder / "springs.yaml"
         cls.file.write_text(SPRINGS)
         cls.trained, cls.result = run_once(cls.file)
-        cls.reaches = {row["parameter"]: row for row in read_csv(cls.trained / "cross_validation.csv")}
+        cls.factors = {row["parameter"]: row for row in read_csv(cls.trained / "cross_validation.csv")}
 
     def test_intervals_hold_what_they_say(self):
         self.assertIn("Intervals reach as far as those samples' errors", self.result.stderr)
@@ -61,31 +61,31 @@ class Undetermined(FolderTestCase):
             name = row["parameter"]
             self.assertTrue(0.93 < float(row["coverage95"]) < 0.97, row)
             self.assertTrue(0.45 < float(row["coverage50"]) < 0.55, row)
-            reach = float(self.reaches[name]["reach95"])
-            self.assertTrue(all(float(one["reach95"]) == reach for one in rows if one["parameter"] == name))
+            factor = float(self.factors[name]["interval_factor95"])
+            self.assertTrue(all(float(one["interval_factor95"]) == factor for one in rows if one["parameter"] == name))
             within = [
-                abs(float(one["inferred"]) - float(one["true"])) < reach * float(one["stddev"])
+                abs(float(one["inferred"]) - float(one["true"])) < factor * float(one["stddev"])
                 for one in rows
                 if one["parameter"] == name
             ]
             self.assertAlmostEqual(sum(within) / len(within), float(row["coverage95"]), places=12)
         for name in ("k_left", "k_right"):
-            self.assertLess(float(self.reaches[name]["reach95"]), 1.9)
+            self.assertLess(float(self.factors[name]["interval_factor95"]), 1.9)
 
     def test_they_are_those_of_infer_and_of_what_is_exported(self):
         measured = self.folder / "measured.csv"
         self.assertEqual(call("simulate", self.file, "--csv", measured).returncode, 0)
         answer = json.loads(call("infer", self.trained, measured, "--json").stdout)["parameters"]
-        for name, row in self.reaches.items():
-            found, reach = answer[name], float(row["reach95"])
-            self.assertAlmostEqual(found["lower"], found["mean"] - reach * found["sd"], places=9)
-            self.assertAlmostEqual(found["upper"], found["mean"] + reach * found["sd"], places=9)
+        for name, row in self.factors.items():
+            found, factor = answer[name], float(row["interval_factor95"])
+            self.assertAlmostEqual(found["lower"], found["mean"] - factor * found["sd"], places=9)
+            self.assertAlmostEqual(found["upper"], found["mean"] + factor * found["sd"], places=9)
         self.assertEqual(
             call("export", self.trained, "--json", self.folder / "map.json", "--c", self.folder / "c").returncode, 0
         )
-        expected = [float(row["reach95"]) for row in self.reaches.values()]
-        self.assertEqual(json.loads((self.folder / "map.json").read_text())["interval_reach"], expected)
-        table = re.search(r"interval_reach\[\d+\] = \{([^}]*)\}", (self.folder / "c/twinmap_map.c").read_text()).group(
+        expected = [float(row["interval_factor95"]) for row in self.factors.values()]
+        self.assertEqual(json.loads((self.folder / "map.json").read_text())["interval_factor"], expected)
+        table = re.search(r"interval_factor\[\d+\] = \{([^}]*)\}", (self.folder / "c/twinmap_map.c").read_text()).group(
             1
         )
         self.assertEqual([float(number) for number in table.split(",") if number.strip()], expected)

@@ -54,7 +54,7 @@ double calcError(const Problem& problem, double noise_stddev) {
 TEST(GpMap, InfersParametersInTheirOwnUnits) {
   const GpMapTraining training = trainOn(makeProblem(80, 1));
   const Problem test = makeProblem(50, 2);
-  const Predictions predictions = training.map.predict(test.features);
+  const Estimates predictions = training.map.predict(test.features);
   EXPECT_TRUE(training.warnings.empty());
   const Eigen::MatrixXd error = predictions.mean - test.parameters;
   EXPECT_LT(error.row(0).cwiseAbs().mean(), 1.0);   // of a range of 200
@@ -86,8 +86,8 @@ TEST(GpMap, ASparseMapOnAllInputsIsTheExactOne) {
   spec.approximation = GpApproximation::kSgpr;
   spec.inducing = 80;
   spec.refine_evaluations = 0;
-  const Predictions sparse = trainOn(problem, spec).map.predict(test.features);
-  const Predictions exact = trainOn(problem).map.predict(test.features);
+  const Estimates sparse = trainOn(problem, spec).map.predict(test.features);
+  const Estimates exact = trainOn(problem).map.predict(test.features);
   const Eigen::ArrayXXd difference = (sparse.mean - exact.mean).array() / exact.stddev.array();
   EXPECT_LT(difference.abs().maxCoeff(), 1e-2);
   EXPECT_LT((sparse.stddev.array() / exact.stddev.array() - 1.0).abs().maxCoeff(), 1e-2);
@@ -147,9 +147,9 @@ TEST(GpMap, IsFittedToAllDrawsAlsoWhereTheSearchUsesFewer) {
 
 TEST(GpMap, TheResultDoesNotDependOnTheThreads) {
   const Problem problem = makeProblem(60, 3);
-  const Predictions expected = trainOn(problem).map.predict(problem.features);
+  const Estimates expected = trainOn(problem).map.predict(problem.features);
   for (const int threads : {2, 3, 5}) {
-    const Predictions predictions = trainOn(problem, {}, threads).map.predict(problem.features);
+    const Estimates predictions = trainOn(problem, {}, threads).map.predict(problem.features);
     EXPECT_EQ(predictions.mean, expected.mean) << threads;
     EXPECT_EQ(predictions.stddev, expected.stddev) << threads;
   }
@@ -166,7 +166,7 @@ TEST(GpMap, FeaturesThatSayNothingGiveAWarningAndThePriorsSpread) {
   EXPECT_NE(training.warnings[0].find("parameter '"), std::string::npos);
   Eigen::MatrixXd unseen(4, 1);
   unseen << 0.3, -0.2, 0.1, 0.5;
-  const Predictions predictions = training.map.predict(unseen);
+  const Estimates predictions = training.map.predict(unseen);
   EXPECT_NEAR(predictions.stddev(0, 0) / training.map.target_scale[0], 1.0, 0.3);
 }
 
@@ -226,7 +226,7 @@ TEST(GpMap, InfersWithKnownInputsWhatTheFeaturesAloneLeaveOpen) {
     GpMapSpec spec;
     spec.length_scales = length_scales;
     const GpMapTraining training = trainGpMap(spec, {whiten}, {"p"}, train, {1}, known);
-    const Predictions predictions = training.map.predict(test.features, test.inputs);
+    const Estimates predictions = training.map.predict(test.features, test.inputs);
     const Eigen::ArrayXXd error = (predictions.mean - test.parameters).array();
     EXPECT_LT(std::sqrt(error.square().mean()), 1e-3);  // the noise leaves 1e-3 / u = 2.5e-4
     EXPECT_THROW(training.map.predict(test.features), std::invalid_argument);

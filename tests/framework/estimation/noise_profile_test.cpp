@@ -58,7 +58,7 @@ TEST(NoiseProfile, FollowsTheSlopeOfTheMap) {
 TEST(NoiseProfile, MakesCoverageRightWhereTheMapIsSteepAndWhereItIsFlat) {
   const GpMap map = trainWithNoise(makeSquares(300, 1), GpNoise::kFollowsSlope, GpApproximation::kExact);
   const LabelledFeatures test = makeSquares(4000, 2);
-  const Predictions predictions = map.predict(test.features);
+  const Estimates predictions = map.predict(test.features);
   for (const bool steep : {true, false}) {
     int covered = 0, count = 0;
     for (Eigen::Index i = 0; i < 4000; ++i) {

@@ -15,7 +15,7 @@ USER = """
 import twinmap
 experiment = twinmap.Experiment.from_file("a.yaml").override("seed=2", seed=3)
 results = experiment.run(progress=True)
-answer: twinmap.Inference = results.map.infer("m.csv", known={"payload": 1.0})
+estimate: twinmap.Estimate = results.map.infer("m.csv", known={"payload": 1.0})
 mean, stddev = answer["k_y"]
 total: float = mean + stddev
 """

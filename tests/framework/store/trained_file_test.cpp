@@ -52,7 +52,7 @@ std::shared_ptr<const NetworkMap> makeNetwork() {
   map.members.back().last_layer =
       linalg::calcCholesky(root * root.transpose() + MatrixXd::Identity(10, 10)).lower;
   map.validation = makeSurrogate(nullptr)->validation;
-  map.validation.reach = {VectorXd::Constant(2, 0.7), VectorXd::Constant(2, 2.5)};
+  map.validation.interval_factors = {VectorXd::Constant(2, 0.7), VectorXd::Constant(2, 2.5)};
   return std::make_shared<const NetworkMap>(std::move(map));
 }
 
@@ -64,12 +64,12 @@ std::vector<double> inferAll(const TrainedFile& stored) {
   OnlineMap::Workspace inferring(map);
   std::vector<double> numbers;
   for (Eigen::Index i = 0; i < measured.cols(); ++i) {
-    const Inference& inference = map.infer(measured.col(i), VectorXd(0), inferring);
-    numbers.insert(numbers.end(), {inference.mean[0], inference.mean[1], inference.stddev[0],
-                                   inference.stddev[1], inference.reach.get(1).of95});
+    const Estimate& estimate = map.infer(measured.col(i), VectorXd(0), inferring);
+    numbers.insert(numbers.end(), {estimate.mean[0], estimate.mean[1], estimate.stddev[0], estimate.stddev[1],
+                                   estimate.interval_factors.get(1).of95});
     if (stored.model.trust) {
       TrustWorkspace judging(*stored.model.trust);
-      const Trust trust = judge(*stored.model.trust, measured.col(i), VectorXd(0), inference,
+      const Trust trust = judge(*stored.model.trust, measured.col(i), VectorXd(0), estimate,
                                 inferring.findExplanation(), judging);
       numbers.insert(numbers.end(), {trust.p_value, trust.anomaly.score, trust.distance});
     }
@@ -249,8 +249,8 @@ TEST(MapsFile, RestoresProcessesOfEveryKind) {
     writeTrainedFile(folder / "maps.h5", stored);
     const TrainedFile read = readTrainedFile(folder / "maps.h5");
     EXPECT_EQ(read.inputs.at(0).name.text, "load");
-    const Predictions expected = map.predict(features, samples.inputs);
-    const Predictions restored = std::get<GpMap>(read.model.map).predict(features, samples.inputs);
+    const Estimates expected = map.predict(features, samples.inputs);
+    const Estimates restored = std::get<GpMap>(read.model.map).predict(features, samples.inputs);
     EXPECT_EQ(restored.mean, expected.mean);
     EXPECT_EQ(restored.stddev, expected.stddev);
   }

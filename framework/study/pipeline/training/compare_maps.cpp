@@ -7,7 +7,7 @@
 #include "framework/base/log/interrupted.hpp"
 #include "framework/base/log/notice.hpp"
 #include "framework/base/log/stage_timer.hpp"
-#include "framework/study/pipeline/answers.hpp"
+#include "framework/study/pipeline/evaluate_estimates.hpp"
 #include "framework/study/pipeline/online_timing.hpp"
 #include "framework/study/pipeline/training/store_map.hpp"
 
@@ -45,10 +45,10 @@ MapComparison compare(const std::string& name, const Study& study, const Prepare
   const LabelledFeatures& test = data.labelled.test;
   StageNotes notes;
   TrainedMap map = timeStage("train " + name, notes, [&] { return trainChosenMap(study, data); });
-  const Predictions predictions = map.predict(test.features, test.inputs);
+  const Estimates predictions = map.predict(test.features, test.inputs);
   const Evaluation evaluation =
-      evaluateAnswers(study.experiment.model.parameters, test.parameters,
-                      makeAnswers(predictions, map.residual_correlation, {}), limit_stddev);
+      evaluateEstimates(study.experiment.model.parameters, test.parameters,
+                        selectEstimates(predictions, map.residual_correlation, {}), limit_stddev);
   return {name,
           evaluation.metrics,
           evaluation.joint,

@@ -190,7 +190,7 @@ TrainingSummary summarizeNetwork(const ModelSpec& model, const NetworkMapTrainin
   found.log_density = validation.log_density;
   found.status = toString(validation.status);
   found.limit_ratio = validation.limit_ratio;
-  found.reach = validation.reach;
+  found.interval_factors = validation.interval_factors;
   summary.cross_validation = std::move(found);
   if (trained.chains) {
     summary.chains = describeChains(model, *trained.chains);

@@ -5,14 +5,14 @@
 #include <vector>
 
 #include "framework/data/reduction/feature_transform.hpp"
-#include "framework/estimation/predictions.hpp"
+#include "framework/estimation/estimate.hpp"
 #include "framework/estimation/trained/online_model.hpp"
 #include "framework/results/run_summary.hpp"
 
 namespace twinmap {
 
 /// Features (d x n) and known inputs (q x n) -> parameters (p x n each).
-using Predictor = std::function<Predictions(const Eigen::MatrixXd& features, const Eigen::MatrixXd& inputs)>;
+using Predictor = std::function<Estimates(const Eigen::MatrixXd& features, const Eigen::MatrixXd& inputs)>;
 
 /// A trained map of any kind.
 struct TrainedMap {

@@ -60,8 +60,8 @@ class SurrogateJudge final : public PowerJudge {
   static ScoreExplanation explain(const OnlineMap& map, const TrustModel& trust, const Stencil& at) {
     OnlineMap::Workspace inferring(map);
     TrustWorkspace judging(trust);
-    const Inference& inference = map.inferMean(at.features, at.known, inferring);
-    judge(trust, at.features, at.known, inference, inferring.findExplanation(), judging);
+    const Estimate& estimate = map.inferMean(at.features, at.known, inferring);
+    judge(trust, at.features, at.known, estimate, inferring.findExplanation(), judging);
     return *judging.explanation;
   }
 

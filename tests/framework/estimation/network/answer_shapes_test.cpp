@@ -59,7 +59,7 @@ TEST(NetworkMap, OfAMixtureKnowsBothAnswers) {
   ASSERT_EQ(mixed.held_out.mixtures.size(), static_cast<std::size_t>(mixed.held_out.mean.cols()));
   EXPECT_NEAR(calcShareWithin(mixed, 0.5), 0.5, 0.05);
   EXPECT_NEAR(calcShareWithin(mixed, 0.95), 0.95, 0.025);
-  const Predictions at = mixed.map.predict(Eigen::Vector2d(0.36, 0.5), MatrixXd(0, 1));
+  const Estimates at = mixed.map.predict(Eigen::Vector2d(0.36, 0.5), MatrixXd(0, 1));
   const Intervals sets = findHighestDensity(takeMarginal(at.mixtures.front(), 0), 0.95);
   ASSERT_EQ(sets.size(), 2U);
   EXPECT_NEAR(0.5 * (sets[0].first + sets[0].second), -0.6, 0.02);
@@ -94,15 +94,15 @@ MatrixXd sumPairs(const MatrixXd& points) {
 TEST(NetworkMap, HasIntervalsThatHoldWhatTheySayWhereErrorsAreNotNormal) {
   const MatrixXd points = samplePairs(20000);
   const NetworkMapTraining trained = trainOnPairs(points, sumPairs(points), NetworkHead::kGaussian);
-  ASSERT_TRUE(trained.map.validation.reach.isGiven());
+  ASSERT_TRUE(trained.map.validation.interval_factors.isGiven());
   const Index tests = 5000;
   const MatrixXd truth = samplePairs(20000 + tests).rightCols(tests);
-  const Predictions found = trained.map.predict(sumPairs(truth), MatrixXd(0, tests));
+  const Estimates found = trained.map.predict(sumPairs(truth), MatrixXd(0, tests));
   for (Index p = 0; p < 2; ++p) {
     const Eigen::ArrayXd depths = calcDepths(found, truth, p);
     EXPECT_GT((depths < kNormal95).cast<double>().mean(), 0.965);  // what normal distributions say
-    EXPECT_NEAR((depths < found.reach.get(p).of50).cast<double>().mean(), 0.5, 0.03);
-    EXPECT_NEAR((depths < found.reach.get(p).of95).cast<double>().mean(), 0.95, 0.015);
+    EXPECT_NEAR((depths < found.interval_factors.get(p).of50).cast<double>().mean(), 0.5, 0.03);
+    EXPECT_NEAR((depths < found.interval_factors.get(p).of95).cast<double>().mean(), 0.95, 0.015);
   }
 }
 

@@ -111,7 +111,7 @@ void expectCalibratedAndNearTheLimit(const Oscillation& oscillation, const Netwo
                                      double most_of_limit = 2.0) {
   constexpr Index kTests = 600;
   const MatrixXd points = Oscillation::samplePoints(kTests, 2);
-  const Predictions found = map.predict(oscillation.measure(points, 3), points.bottomRows(1), 2);
+  const Estimates found = map.predict(oscillation.measure(points, 3), points.bottomRows(1), 2);
   MatrixXd limit(2, kTests);
   for (Index i = 0; i < kTests; ++i) {
     limit.col(i) = Oscillation::calcLimit(points.col(i));
@@ -243,8 +243,7 @@ TEST(NetworkMap, OfSampledWeightsIsCalibratedAndSaysHowWellItKnowsThem) {
   ASSERT_FALSE(trained.warnings.empty());
   EXPECT_NE(trained.warnings.front().find("have not converged"), std::string::npos);
   const MatrixXd points = Oscillation::samplePoints(200, 2);
-  const Predictions found =
-      trained.map.predict(oscillation.measure(points, 9), MatrixXd(points.bottomRows(1)));
+  const Estimates found = trained.map.predict(oscillation.measure(points, 9), MatrixXd(points.bottomRows(1)));
   const MatrixXd z = (found.mean - points.topRows(2)).cwiseQuotient(found.stddev);
   EXPECT_NEAR((z.array().abs() < 1.96).cast<double>().mean(), 0.95, 0.06);
 }

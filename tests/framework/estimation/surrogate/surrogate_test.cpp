@@ -129,7 +129,7 @@ TEST(Surrogate, OfALinearModelGivesTheClosedFormPosterior) {
   const MatrixXd covariance = invert(information);
   const MatrixXd points = (MatrixXd(3, 3) << 2.0, 1.7, 2.3, 0.1, -0.2, 0.3, 0.1, -0.1, 0.0).finished();
   const MatrixXd clean = calcLinear(points);
-  const Predictions found = trained.surrogate.predict(clean, MatrixXd(0, 3));
+  const Estimates found = trained.surrogate.predict(clean, MatrixXd(0, 3));
   for (Index j = 0; j < 3; ++j) {
     const VectorXd mean = covariance * (slopes.transpose() * clean.col(j)) / (kNoise * kNoise);
     for (Index k = 0; k < 2; ++k) {
@@ -146,7 +146,7 @@ TEST(Surrogate, CoversTheTruthNearTheLimitOfANonlinearModelWithAKnownInput) {
   EXPECT_EQ(trained.surrogate.validation.status, SurrogateStatus::kOk);
   constexpr Index kTests = 400;
   const MatrixXd points = samplePoints(listBox(model), kTests, 2);
-  const Predictions found =
+  const Estimates found =
       trained.surrogate.predict(addNoise(calcOscillation(points), 3), points.bottomRows(1), 2);
   const MatrixXd z = (found.mean - points.topRows(2)).cwiseQuotient(found.stddev);
   for (Index k = 0; k < 2; ++k) {
@@ -161,7 +161,7 @@ TEST(Surrogate, CoversTheTruthNearTheLimitOfANonlinearModelWithAKnownInput) {
     slopes.col(k) = (calcOscillation(middle + moved) - calcOscillation(middle - moved)) / (2.0 * kStep);
   }
   const MatrixXd limit = invert(slopes.transpose() * slopes / (kNoise * kNoise));
-  const Predictions at = trained.surrogate.predict(calcOscillation(middle), middle.tail(1));
+  const Estimates at = trained.surrogate.predict(calcOscillation(middle), middle.tail(1));
   for (Index k = 0; k < 2; ++k) {
     EXPECT_NEAR(at.stddev(k, 0) / std::sqrt(limit(k, k)), 1.0, 0.25) << k;
   }
@@ -170,7 +170,7 @@ TEST(Surrogate, CoversTheTruthNearTheLimitOfANonlinearModelWithAKnownInput) {
 TEST(Surrogate, StaysWithinTheBoundsWhateverIsMeasured) {
   const SurrogateTraining trained = trainOn(makeLinearModel(), calcLinear, 60);
   const MatrixXd points = (MatrixXd(3, 2) << 3.5, 40.0, 0.9, -30.0, 0.0, 0.0).finished();
-  const Predictions found = trained.surrogate.predict(calcLinear(points), MatrixXd(0, 2));
+  const Estimates found = trained.surrogate.predict(calcLinear(points), MatrixXd(0, 2));
   EXPECT_TRUE(found.mean.allFinite() && found.stddev.allFinite());
   EXPECT_LE(found.mean.row(0).maxCoeff(), 3.0);
   EXPECT_GE(found.mean.row(1).minCoeff(), -1.0);
@@ -195,7 +195,7 @@ TEST(Surrogate, IsNeverLessCertainThanTheBoundsAlone) {
   Surrogate surrogate = trainOn(model, calcSquared, 100).surrogate;
   for (const double scale : {1.0, 300.0}) {  // the factor of a surrogate that knows little of its errors
     surrogate.validation.stddev_scale[0] = scale;
-    const Predictions found = surrogate.predict(measured, {}, 2);
+    const Estimates found = surrogate.predict(measured, {}, 2);
     const double prior = 0.2 / std::sqrt(12.0);
     EXPECT_NEAR(found.stddev.row(0).maxCoeff(), prior, 1e-12);
     EXPECT_LT(found.stddev.row(1).maxCoeff(), 0.1);
@@ -213,8 +213,8 @@ TEST(Surrogate, DoesNotDependOnTheThreads) {
   EXPECT_TRUE(one.held_out.mean == three.held_out.mean && one.held_out.stddev == three.held_out.stddev);
   const MatrixXd points = samplePoints(listBox(model), 40, 2),
                  features = addNoise(calcOscillation(points), 3);
-  const Predictions a = one.surrogate.predict(features, points.bottomRows(1), 1);
-  const Predictions b = three.surrogate.predict(features, points.bottomRows(1), 3);
+  const Estimates a = one.surrogate.predict(features, points.bottomRows(1), 1);
+  const Estimates b = three.surrogate.predict(features, points.bottomRows(1), 3);
   EXPECT_TRUE(a.mean == b.mean && a.stddev == b.stddev);
 }
 
@@ -299,7 +299,7 @@ TEST(PredictedLimit, OfALinearModelIsThatOfItsFisherInformation) {
       invert(slopes.transpose() * slopes / (kNoise * kNoise) + 3.0 * MatrixXd::Identity(3, 3));
   const VectorXd point = (VectorXd(3) << 2.0, 0.1, 0.0).finished();
   for (const SurrogateTraining* trained : {&without, &with}) {
-    const SurrogateAnswers found = trained->surrogate.infer(calcLinear(point));
+    const Estimates found = trained->surrogate.predict(calcLinear(point));
     for (Index k = 0; k < 2; ++k) {
       EXPECT_NEAR(found.limit_stddev(k, 0) / std::sqrt(limit(k, k)), 1.0, 0.02) << k;
       EXPECT_NEAR(trained->surrogate.validation.limit_ratio(k), 1.0, 0.15) << k;
@@ -367,9 +367,9 @@ TEST(Surrogate, TakesTheErrorOfAWindowForLargeWhereTheMeasurementContradictsIt) 
   const SurrogateTraining trained = trainOn(makeLinearModel(), calcLinear, 100);
   const VectorXd point = (VectorXd(3) << 2.0, 0.1, 0.0).finished();
   MatrixXd features = calcLinear(point);
-  const Predictions clean = trained.surrogate.predict(features, MatrixXd(0, 1));
+  const Estimates clean = trained.surrogate.predict(features, MatrixXd(0, 1));
   features.bottomRows(8).array() += 200.0 * kNoise;  // the last of three windows
-  const Predictions found = trained.surrogate.predict(features, MatrixXd(0, 1));
+  const Estimates found = trained.surrogate.predict(features, MatrixXd(0, 1));
   for (Index k = 0; k < 2; ++k) {
     EXPECT_LT(std::abs(found.mean(k, 0) - point(k)), 3.0 * found.stddev(k, 0)) << k;
     EXPECT_GT(found.stddev(k, 0), clean.stddev(k, 0)) << k;

@@ -47,10 +47,10 @@ void expectThePredictionsOf(const std::shared_ptr<const NetworkMap>& map, double
   const OnlineMap online{AnyMap(map)};
   OnlineMap::Workspace workspace(online);
   const MatrixXd features = far * MatrixXd::Random(5, 3), known = MatrixXd::Random(1, 3);
-  const Predictions expected = map->predict(features, known);
+  const Estimates expected = map->predict(features, known);
   const MatrixXd inputs = online.makeInputs(features, known);
   for (Eigen::Index i = 0; i < 3; ++i) {
-    const Inference& inference = online.infer(features.col(i), known.col(i), workspace);
+    const Estimate& inference = online.infer(features.col(i), known.col(i), workspace);
     EXPECT_LT((inference.mean - expected.mean.col(i)).norm(), 1e-13);
     EXPECT_LT((inference.stddev - expected.stddev.col(i)).norm(), 1e-13);
     EXPECT_LT((inference.inputs - inputs.col(i)).norm(), 1e-13);
@@ -66,14 +66,14 @@ TEST(OnlineNetwork, InfersWhatTheMapPredicts) {
 
 TEST(OnlineNetwork, SaysHowFarIntervalsReach) {
   NetworkMap map = makeExample();
-  map.validation.reach = {Eigen::Vector2d(0.8, 0.7), Eigen::Vector2d(1.6, 2.0)};
+  map.validation.interval_factors = {Eigen::Vector2d(0.8, 0.7), Eigen::Vector2d(1.6, 2.0)};
   const OnlineMap online{AnyMap(std::make_shared<const NetworkMap>(map))};
   OnlineMap::Workspace workspace(online);
   const MatrixXd features = MatrixXd::Random(5, 3), known = MatrixXd::Random(1, 3);
-  EXPECT_EQ(online.infer(features.col(0), known.col(0), workspace).reach.get(0).of95, 1.6);
-  for (const Predictions& all : {online.predict(features, known, 2), map.predict(features, known)}) {
-    ASSERT_EQ(all.reach.of50.cols(), 3);
-    EXPECT_EQ(all.reach.get(1, 2).of50, 0.7);
+  EXPECT_EQ(online.infer(features.col(0), known.col(0), workspace).interval_factors.get(0).of95, 1.6);
+  for (const Estimates& all : {online.predict(features, known, 2), map.predict(features, known)}) {
+    ASSERT_EQ(all.interval_factors.of50.cols(), 3);
+    EXPECT_EQ(all.interval_factors.get(1, 2).of50, 0.7);
   }
 }
 

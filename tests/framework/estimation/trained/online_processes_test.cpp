@@ -12,10 +12,10 @@ using Eigen::VectorXd;
 using testing::Oscillation;
 
 void expectSame(const OnlineProcesses& online, const MatrixXd& features) {
-  const Predictions expected = online.getMap().predict(features);
+  const Estimates expected = online.getMap().predict(features);
   OnlineProcesses::Workspace workspace(online);
   for (Eigen::Index i = 0; i < features.cols(); ++i) {
-    const Inference& inferred = online.infer(features.col(i), VectorXd(0), workspace);
+    const Estimate& inferred = online.infer(features.col(i), VectorXd(0), workspace);
     EXPECT_TRUE(inferred.mean.isApprox(expected.mean.col(i), 1e-9));
     EXPECT_TRUE(inferred.stddev.isApprox(expected.stddev.col(i), 1e-6));
   }
@@ -37,7 +37,7 @@ TEST(OnlineProcesses, ACompressedMapPredictsAsTheExactOne) {
   for (const gp::Process& process : compact.processes) {
     ASSERT_TRUE(std::holds_alternative<std::shared_ptr<const gp::SparseGaussianProcess>>(process));
   }
-  const Predictions expected = exact.predict(features), actual = compact.predict(features);
+  const Estimates expected = exact.predict(features), actual = compact.predict(features);
   EXPECT_LT((actual.mean - expected.mean).cwiseQuotient(expected.stddev).cwiseAbs().maxCoeff(), 0.02);
   EXPECT_LT((actual.stddev.cwiseQuotient(expected.stddev).array() - 1.0).abs().maxCoeff(), 0.005);
 }
@@ -46,13 +46,13 @@ TEST(OnlineMap, PredictsEachColumnAsItInfersIt) {
   const MatrixXd features =
       Oscillation::addNoise(Oscillation::calcClean(Oscillation::samplePoints(150, 5)), 5);
   const OnlineMap map(Oscillation().trainMap());
-  const Predictions alone = map.predict(features, MatrixXd(), 1),
-                    together = map.predict(features, MatrixXd(), 3);
+  const Estimates alone = map.predict(features, MatrixXd(), 1),
+                  together = map.predict(features, MatrixXd(), 3);
   EXPECT_EQ(alone.mean, together.mean);
   EXPECT_EQ(alone.stddev, together.stddev);
   OnlineMap::Workspace workspace(map);
   for (Eigen::Index i = 0; i < features.cols(); ++i) {
-    const Inference& inferred = map.infer(features.col(i), VectorXd(0), workspace);
+    const Estimate& inferred = map.infer(features.col(i), VectorXd(0), workspace);
     EXPECT_EQ(alone.mean.col(i), inferred.mean);
     EXPECT_EQ(alone.stddev.col(i), inferred.stddev);
   }

@@ -86,7 +86,7 @@ TEST_F(TrustTest, FindsParametersBeyondTheirBounds) {
 }
 
 TEST_F(TrustTest, SaysWhereItIsUninformed) {
-  Inference inference;
+  Estimate inference;
   inference.mean = (VectorXd(2) << 0.2, 2.5).finished();
   inference.stddev = (VectorXd(2) << 0.056, 0.01).finished();  // the box has 0.0577 and 0.29
   OnlineMap::Workspace workspace(*map_);

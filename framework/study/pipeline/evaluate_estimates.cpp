@@ -1,4 +1,4 @@
-#include "framework/study/pipeline/answers.hpp"
+#include "framework/study/pipeline/evaluate_estimates.hpp"
 
 #include <algorithm>
 
@@ -41,45 +41,44 @@ std::vector<Index> findAccepted(const std::vector<Refined>& refined) {
   return accepted;
 }
 
-Answers makeAnswers(const Predictions& map, const MatrixXd& residual_correlation,
-                    const std::vector<Refined>& refined) {
-  Answers answers{map, map.correlations};
-  if (answers.correlations.empty()) {
-    answers.correlations.assign(std::max<std::size_t>(refined.size(), 1), residual_correlation);
+Estimates selectEstimates(Estimates by_estimator, const MatrixXd& residual_correlation,
+                          const std::vector<Refined>& refined) {
+  Estimates estimates = std::move(by_estimator);
+  if (estimates.correlations.empty()) {
+    estimates.correlations.assign(std::max<std::size_t>(refined.size(), 1), residual_correlation);
   }
-  const Index p = map.mean.rows();
+  const Index p = estimates.mean.rows();
   for (const Index i : findAccepted(refined)) {
     const auto column = static_cast<std::size_t>(i);
     const Refined& one = refined[column];
-    answers.predictions.mean.col(i) = one.point.head(p);
-    answers.predictions.stddev.col(i) = one.stddev.head(p);
-    answers.correlations[column] = calcCorrelation(one.covariance.topLeftCorner(p, p));
-    answers.predictions.reach.setNormal(i);
-    if (!map.mixtures.empty()) {
-      answers.predictions.mixtures[column] = {
-          VectorXd::Ones(1), one.point.head(p), one.stddev.head(p), {answers.correlations[column]}};
+    estimates.mean.col(i) = one.point.head(p);
+    estimates.stddev.col(i) = one.stddev.head(p);
+    estimates.correlations[column] = calcCorrelation(one.covariance.topLeftCorner(p, p));
+    estimates.interval_factors.setNormal(i);
+    if (!estimates.mixtures.empty()) {
+      estimates.mixtures[column] = {
+          VectorXd::Ones(1), one.point.head(p), one.stddev.head(p), {estimates.correlations[column]}};
     }
   }
-  return answers;
+  return estimates;
 }
 
-Evaluation evaluateAnswers(const std::vector<ParameterSpec>& parameters, const MatrixXd& truth,
-                           const Answers& answers, const MatrixXd& limit_stddev) {
+Evaluation evaluateEstimates(const std::vector<ParameterSpec>& parameters, const MatrixXd& truth,
+                             Estimates estimates, const MatrixXd& limit_stddev) {
   Evaluation evaluation;
   evaluation.truth = truth;
-  evaluation.predictions = answers.predictions;
   evaluation.limit_stddev = limit_stddev;
-  evaluation.metrics = calcMetrics(parameters, truth, answers.predictions, limit_stddev);
-  evaluation.joint = calcJointMetrics(truth, answers.predictions, answers.correlations);
-  const MatrixXd pit = calcPit(truth, answers.predictions);
-  for (const auto& row : pit.rowwise()) {
+  evaluation.metrics = calcMetrics(parameters, truth, estimates, limit_stddev);
+  evaluation.joint = calcJointMetrics(truth, estimates);
+  for (const auto& row : calcPit(truth, estimates).rowwise()) {
     evaluation.pit_counts.push_back(countPit(row.transpose()));
   }
+  evaluation.predictions = std::move(estimates);
   return evaluation;
 }
 
 MethodSummary summarizeMap(const std::string& name, const std::vector<ParameterSpec>& parameters,
-                           const MatrixXd& truth, const Predictions& predictions,
+                           const MatrixXd& truth, const Estimates& predictions,
                            const MatrixXd& limit_stddev) {
   const Index n = truth.cols();
   return {name, n, n, 0, calcMetrics(parameters, truth, predictions, limit_stddev)};
@@ -95,7 +94,7 @@ MethodSummary summarizeRefined(const std::vector<ParameterSpec>& parameters, con
     summary.metrics.assign(parameters.size(), {});
     return summary;
   }
-  Predictions predictions{MatrixXd(truth.rows(), summary.accepted), MatrixXd(truth.rows(), summary.accepted)};
+  Estimates predictions{MatrixXd(truth.rows(), summary.accepted), MatrixXd(truth.rows(), summary.accepted)};
   for (Index i = 0; i < summary.accepted; ++i) {
     const Refined& one = refined[static_cast<std::size_t>(accepted[static_cast<std::size_t>(i)])];
     predictions.mean.col(i) = one.point.head(truth.rows());

@@ -1,6 +1,7 @@
+#include "framework/estimation/estimate.hpp"
+
 #include "framework/c_api/guard.hpp"
 #include "framework/c_api/handles.hpp"
-#include "framework/estimation/predictions.hpp"
 #include "framework/inference/inference_text.hpp"
 
 namespace {
@@ -12,13 +13,21 @@ using twinmap::c_api::require;
 using twinmap::c_api::requireCount;
 using twinmap::c_api::WrongArgument;
 
-const twinmap_inferrer::Answered& getAnswered(const twinmap_inferrer* inferrer) {
+const twinmap_inferrer::Inferred& getInferred(const twinmap_inferrer* inferrer) {
   const twinmap_inferrer& self = require(inferrer, "inferrer");
-  if (!self.answered) {
+  if (!self.inferred) {
     throw WrongArgument(
-        "there is no answer: nothing was inferred, or the last measurement could not be used");
+        "there is no estimate: nothing was inferred, or the last measurement could not be used");
   }
-  return *self.answered;
+  return *self.inferred;
+}
+
+const twinmap::Estimate& getEstimate(const twinmap_inferrer* inferrer) {
+  return getInferred(inferrer).estimate;
+}
+
+const twinmap::Estimate* findEstimate(const twinmap_inferrer* inferrer) {
+  return inferrer != nullptr && inferrer->inferred ? &inferrer->inferred->estimate : nullptr;
 }
 
 void copy(const Eigen::Ref<const VectorXd>& from, double* values, std::size_t count, const char* what) {
@@ -27,51 +36,53 @@ void copy(const Eigen::Ref<const VectorXd>& from, double* values, std::size_t co
 }
 
 const twinmap::Trust* findTrust(const twinmap_inferrer* inferrer) {
-  const bool known = inferrer != nullptr && inferrer->answered && inferrer->answered->measurement.trust;
-  return known ? &*inferrer->answered->measurement.trust : nullptr;
+  const bool known = inferrer != nullptr && inferrer->inferred && inferrer->inferred->measurement.trust;
+  return known ? &*inferrer->inferred->measurement.trust : nullptr;
 }
 
 }  // namespace
 
 twinmap_result twinmap_get_mean(const twinmap_inferrer* inferrer, double* values, size_t count) {
-  return guard([&] { copy(getAnswered(inferrer).answer.mean, values, count, "values"); });
+  return guard([&] { copy(getEstimate(inferrer).mean, values, count, "values"); });
 }
 
 twinmap_result twinmap_get_stddev(const twinmap_inferrer* inferrer, double* values, size_t count) {
-  return guard([&] { copy(getAnswered(inferrer).answer.stddev, values, count, "values"); });
+  return guard([&] { copy(getEstimate(inferrer).stddev, values, count, "values"); });
 }
 
 twinmap_result twinmap_get_interval(const twinmap_inferrer* inferrer, double* lower, double* upper,
                                     size_t count) {
   return guard([&] {
-    const twinmap::Answer& answer = getAnswered(inferrer).answer;
-    copy(answer.lower95, lower, count, "lower");
-    copy(answer.upper95, upper, count, "upper");
+    const twinmap::Bounds95 bounds = getEstimate(inferrer).calcBounds95();
+    copy(bounds.lower, lower, count, "lower");
+    copy(bounds.upper, upper, count, "upper");
   });
 }
 
 twinmap_result twinmap_get_covariance(const twinmap_inferrer* inferrer, double* values, size_t count) {
   return guard([&] {
-    const twinmap::InferredMeasurement& measurement = getAnswered(inferrer).measurement;
-    const Eigen::MatrixXd covariance = twinmap::calcAnswerCovariance(inferrer->inferrer, measurement);
+    const Eigen::MatrixXd covariance = getEstimate(inferrer).calcCovariance();
     copy(covariance.reshaped(), values, count, "values");
   });
 }
 
 int twinmap_is_refined(const twinmap_inferrer* inferrer) {
-  return inferrer != nullptr && inferrer->answered && inferrer->answered->answer.isRefined() ? 1 : 0;
+  const twinmap::Estimate* estimate = findEstimate(inferrer);
+  return estimate != nullptr && estimate->isRefined() ? 1 : 0;
 }
 
 const char* twinmap_get_method(const twinmap_inferrer* inferrer) {
-  return inferrer != nullptr && inferrer->answered ? toString(inferrer->answered->answer.method) : nullptr;
+  const twinmap::Estimate* estimate = findEstimate(inferrer);
+  return estimate != nullptr ? toString(estimate->method) : nullptr;
 }
 
 size_t twinmap_count_statuses(const twinmap_inferrer* inferrer) {
-  return inferrer != nullptr && inferrer->answered ? inferrer->answered->statuses.size() : 0;
+  const twinmap::Estimate* estimate = findEstimate(inferrer);
+  return estimate != nullptr ? estimate->statuses.size() : 0;
 }
 
 const char* twinmap_get_status(const twinmap_inferrer* inferrer, size_t index) {
-  return index < twinmap_count_statuses(inferrer) ? inferrer->answered->statuses[index].c_str() : nullptr;
+  return index < twinmap_count_statuses(inferrer) ? findEstimate(inferrer)->statuses[index].c_str() : nullptr;
 }
 
 double twinmap_get_number(const twinmap_inferrer* inferrer, twinmap_number number) {
@@ -98,7 +109,7 @@ double twinmap_get_number(const twinmap_inferrer* inferrer, twinmap_number numbe
 
 const char* twinmap_get_json(twinmap_inferrer* inferrer) {
   const twinmap_result result = guard([&] {
-    const twinmap::InferredMeasurement& measurement = getAnswered(inferrer).measurement;
+    const twinmap::InferredMeasurement& measurement = getInferred(inferrer).measurement;
     inferrer->json =
         twinmap::makeInferenceJson(measurement, inferrer->inferrer.getExperiment().model.parameters,
                                    inferrer->inferrer.getExtractor().getInfos());

@@ -1,4 +1,4 @@
-#include "framework/estimation/interval_reach.hpp"
+#include "framework/estimation/interval_factor.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,15 +7,15 @@ namespace twinmap {
 namespace {
 
 /// Whether a normal distribution's intervals of such a probability hold something else.
-bool isMissed(const Eigen::VectorXd& depths, double probability, double reach, double samples) {
+bool isMissed(const Eigen::VectorXd& depths, double probability, double factor, double samples) {
   constexpr double kErrors = 2.0;
-  const double held = (depths.array() < reach).cast<double>().mean();
-  return std::abs(held - probability) > kErrors * calcShareError(probability, samples);
+  const double held = (depths.array() < factor).cast<double>().mean();
+  return std::abs(held - probability) > kErrors * calcProportionError(probability, samples);
 }
 
 }  // namespace
 
-double Reach::toNormalDepth(double depth) const {
+double IntervalFactor::calcEquivalentZ(double depth) const {
   if (depth < of50) {
     return kNormal50 * depth / of50;
   }
@@ -25,19 +25,19 @@ double Reach::toNormalDepth(double depth) const {
   return kNormal50 + (kNormal95 - kNormal50) * (depth - of50) / (of95 - of50);
 }
 
-IntervalReach replicate(const IntervalReach& reach, Eigen::Index answers) {
-  return {reach.of50.replicate(1, answers), reach.of95.replicate(1, answers)};
+IntervalFactors replicate(const IntervalFactors& factors, Eigen::Index estimates) {
+  return {factors.of50.replicate(1, estimates), factors.of95.replicate(1, estimates)};
 }
 
-std::vector<Reach> takeReaches(const IntervalReach& reach, Eigen::Index parameter) {
-  std::vector<Reach> reaches;
-  for (Eigen::Index i = 0; i < reach.of95.cols(); ++i) {
-    reaches.push_back(reach.get(parameter, i));
+std::vector<IntervalFactor> takeFactors(const IntervalFactors& factors, Eigen::Index parameter) {
+  std::vector<IntervalFactor> of_each;
+  for (Eigen::Index i = 0; i < factors.of95.cols(); ++i) {
+    of_each.push_back(factors.get(parameter, i));
   }
-  return reaches;
+  return of_each;
 }
 
-double calcShareError(double probability, double samples) {
+double calcProportionError(double probability, double samples) {
   return std::sqrt(probability * (1.0 - probability) / samples);
 }
 
@@ -47,7 +47,7 @@ double calcConformalQuantile(const Eigen::VectorXd& sorted, double probability) 
   return sorted[static_cast<Eigen::Index>(std::clamp(rank, 1.0, n)) - 1];
 }
 
-Reach calcReach(const Eigen::VectorXd& depths, double samples) {
+IntervalFactor calcIntervalFactor(const Eigen::VectorXd& depths, double samples) {
   Eigen::VectorXd sorted = depths;
   std::sort(sorted.begin(), sorted.end());
   const double stretch = calcConformalQuantile(sorted, 0.68) / kNormal68;

@@ -1,4 +1,4 @@
-#include "framework/estimation/predictions.hpp"
+#include "framework/estimation/estimate.hpp"
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ TEST(ShrinkToBounds, DrawsWiderOnesTowardsTheCenter) {
 }
 
 /// Of two parameters, the first of two far answers.
-Predictions makeMixed() {
+Estimates makeMixed() {
   const Mixture mixture{Vector2d(0.25, 0.75),
                         (MatrixXd(2, 2) << -90.0, 110.0, -1.0, -0.9).finished(),
                         (MatrixXd(2, 2) << 4.0, 30.0, 0.1, 0.2).finished(),
@@ -35,7 +35,7 @@ Predictions makeMixed() {
 }
 
 TEST(ShrinkToBounds, ShrinksMixturesAsAWhole) {
-  Predictions found = makeMixed();
+  Estimates found = makeMixed();
   const MatrixXd correlation = found.correlations.front();
   shrinkToBounds(kCenter, kHalfWidth, found);
   const Mixture& mixture = found.mixtures.front();

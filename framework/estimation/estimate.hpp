@@ -1,0 +1,98 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "framework/estimation/interval_factor.hpp"
+#include "framework/estimation/mixture.hpp"
+
+namespace twinmap {
+
+/// What made an estimate: the trained estimator by its kind, or a refinement on the simulator.
+enum class EstimationMethod { kGp, kSurrogate, kNetwork, kRefined };
+
+/// "gp", "surrogate", "network", "refined".
+const char* toString(EstimationMethod method);
+
+/// The probability of an interval.
+enum class Coverage { k50, k95 };
+
+/// Bounds of one interval of each parameter: p each.
+struct Bounds95 {
+  Eigen::VectorXd lower, upper;
+};
+
+/// What is believed of p parameters after one measurement: a normal distribution, or a mixture of them, in
+/// the parameters' units. Whoever shows intervals takes them from here.
+struct Estimate {
+  Eigen::VectorXd mean, stddev;
+  /// p, what the measurement allows as the estimator predicts it; empty where it cannot.
+  Eigen::VectorXd limit_stddev{};
+  Eigen::MatrixXd correlation{};       ///< p x p, of the errors
+  Mixture mixture{};                   ///< where it is one, whose mean and stddev are above
+  IntervalFactors interval_factors{};  ///< of intervals, where they are not those of the distribution above
+  EstimationMethod method{};
+  std::vector<std::string> statuses{};  ///< listStatuses(); empty where nobody has judged
+  /// k, the features and known inputs as the estimator sees them, for a trust model; empty where refined.
+  Eigen::VectorXd inputs{};
+
+  bool isRefined() const { return method == EstimationMethod::kRefined; }
+
+  /// p x p, symmetric.
+  Eigen::MatrixXd calcCovariance() const;
+
+  /// A parameter's intervals, ascending: one, mean +- its factor times stddev, or the smallest set of a
+  /// mixture. Cost: of a mixture some 0.2 ms.
+  Intervals findIntervals(Eigen::Index parameter, Coverage coverage) const;
+
+  /// The outermost bounds of all parameters' 95 % intervals.
+  Bounds95 calcBounds95() const;
+
+  /// By how much standard deviations are above what the measurement allows (p); empty where that is not
+  /// known.
+  Eigen::VectorXd calcRatioToLimit() const;
+
+  /// One that fits: mean and stddev alone, or those of the likeliest component.
+  Estimate takeLikeliest() const;
+};
+
+/// Estimates of n measurements (p x n each).
+struct Estimates {
+  Eigen::MatrixXd mean, stddev;
+  /// p x p, of the errors: one for all measurements, or one for each; empty where the estimator's own
+  /// (OnlineMap::getResidualCorrelation) holds.
+  std::vector<Eigen::MatrixXd> correlations{};
+  /// Of each measurement, where the estimator gives mixtures; else empty.
+  std::vector<Mixture> mixtures{};
+  IntervalFactors interval_factors{};
+  Eigen::MatrixXd limit_stddev{};  ///< what the measurements allow, as the estimator predicts it; or empty
+};
+
+/// In other units, as convert() of a mixture; the mean and standard deviation of a mixture follow from it.
+void convert(const Eigen::VectorXd& center, const Eigen::VectorXd& unit, const Eigen::VectorXd& stddev_scale,
+             Estimates& estimates);
+
+/// An estimate that knows less of a parameter than its bounds do, its standard deviation being more than
+/// their half width, is drawn towards their center until it is that: what a network extrapolates to may be
+/// thousands of widths away. Bounds alone leave .58 of the half width, so that estimates that are informative
+/// at all are left as they are. All p numbers each; the result does not allocate.
+void shrinkToBounds(const Eigen::VectorXd& center, const Eigen::VectorXd& half_width,
+                    Eigen::Ref<Eigen::VectorXd> mean, Eigen::Ref<Eigen::VectorXd> stddev);
+
+/// The same of each measurement, and of its mixture.
+void shrinkToBounds(const Eigen::VectorXd& center, const Eigen::VectorXd& half_width, Estimates& estimates);
+
+/// How far a parameter's truths (p x n) lie from the estimates, in standard deviations (n): of mixtures,
+/// calcDepth(), at some 0.1 ms a measurement.
+Eigen::VectorXd calcDepths(const Estimates& estimates, const Eigen::MatrixXd& truth, Eigen::Index parameter);
+
+/// The factors with which intervals hold what they say (calcIntervalFactor()) of each parameter's truths (p x
+/// n), `draws` of each simulation; empty where those of normal distributions do, and for fewer than 400
+/// simulations, whose quantiles are chance: 2.5 % of those of 50 % intervals, 1 % of those of 95 %.
+IntervalFactors calcIntervalFactors(const Estimates& estimates, const Eigen::MatrixXd& truth, int draws);
+
+/// The correlation matrix of a covariance (p x p, positive diagonal).
+Eigen::MatrixXd calcCorrelation(const Eigen::MatrixXd& covariance);
+
+}  // namespace twinmap

@@ -1,0 +1,123 @@
+#include "framework/inference/select_estimate.hpp"
+
+#include <gtest/gtest.h>
+
+#include "framework/inference/inference_text.hpp"
+
+namespace twinmap {
+namespace {
+
+/// The map is twice above what the measurement allows for k, at the limit for c.
+InferredMeasurement makeInferred() {
+  InferredMeasurement inferred;
+  inferred.by_estimator.mean = Eigen::Vector2d(1.0, 2.0);
+  inferred.by_estimator.stddev = Eigen::Vector2d(0.2, 0.1);
+  inferred.by_estimator.limit_stddev = Eigen::Vector2d(0.1, 0.1);
+  inferred.by_estimator.correlation = (Eigen::Matrix2d() << 1.0, 0.5, 0.5, 1.0).finished();
+  inferred.trust.emplace();
+  inferred.trust->statuses = {TrustStatus::kOk};
+  return inferred;
+}
+
+std::vector<ParameterSpec> makeParameters() {
+  std::vector<ParameterSpec> parameters(2);
+  parameters[0].name.text = "k";
+  parameters[1].name.text = "c";
+  return parameters;
+}
+
+Refined makeRefined(RefinementStatus status) {
+  Refined refined;
+  refined.status = status;
+  refined.point = Eigen::Vector2d(1.0, 2.0);
+  refined.stddev = Eigen::Vector2d(0.1, 0.1);
+  refined.covariance = (Eigen::Matrix2d() << 0.01, -0.002, -0.002, 0.01).finished();
+  return refined;
+}
+
+using Statuses = std::vector<std::string>;
+
+TEST(SelectEstimate, HasTheIntervalsThatTheEstimatorSays) {
+  InferredMeasurement inferred = makeInferred();
+  const Bounds95 normal = selectEstimate(inferred).calcBounds95();
+  EXPECT_DOUBLE_EQ(normal.lower[0], 1.0 - kNormal95 * 0.2);
+  EXPECT_DOUBLE_EQ(normal.upper[1], 2.0 + kNormal95 * 0.1);
+  inferred.by_estimator.interval_factors = {Eigen::Vector2d(0.8, kNormal50), Eigen::Vector2d(1.6, kNormal95)};
+  const Estimate estimate = selectEstimate(inferred);
+  const Bounds95 bounds = estimate.calcBounds95();
+  EXPECT_DOUBLE_EQ(bounds.lower[0], 1.0 - 1.6 * 0.2);
+  EXPECT_DOUBLE_EQ(bounds.upper[0], 1.0 + 1.6 * 0.2);
+  EXPECT_EQ(bounds.upper[1], normal.upper[1]);
+  EXPECT_DOUBLE_EQ(estimate.findIntervals(0, Coverage::k50).front().second, 1.0 + 0.8 * 0.2);
+  inferred.refined = makeRefined(RefinementStatus::kAccepted);
+  EXPECT_DOUBLE_EQ(selectEstimate(inferred).calcBounds95().lower[0], 1.0 - kNormal95 * 0.1);
+}
+
+TEST(SelectEstimate, OfAMixtureHasItsSmallestSets) {
+  InferredMeasurement inferred = makeInferred();
+  inferred.by_estimator.mixture = {Eigen::VectorXd::Ones(1),
+                                   inferred.by_estimator.mean,
+                                   inferred.by_estimator.stddev,
+                                   {Eigen::MatrixXd::Identity(2, 2)}};
+  inferred.by_estimator.interval_factors = {Eigen::Vector2d(0.8, kNormal50), Eigen::Vector2d(1.6, kNormal95)};
+  const Estimate estimate = selectEstimate(inferred);
+  EXPECT_NEAR(estimate.calcBounds95().lower[0], 1.0 - 1.6 * 0.2, 1e-9);
+  EXPECT_NEAR(estimate.findIntervals(0, Coverage::k50).front().second, 1.0 + 0.8 * 0.2, 1e-9);
+}
+
+TEST(SelectEstimate, SaysWhatMadeItAndItsCovariance) {
+  InferredMeasurement inferred = makeInferred();
+  inferred.by_estimator.method = EstimationMethod::kSurrogate;
+  EXPECT_EQ(selectEstimate(inferred).method, EstimationMethod::kSurrogate);
+  EXPECT_NEAR(selectEstimate(inferred).calcCovariance()(0, 1), 0.5 * 0.2 * 0.1, 1e-15);
+  inferred.refined = makeRefined(RefinementStatus::kAccepted);
+  const Estimate refined = selectEstimate(inferred);
+  EXPECT_EQ(refined.method, EstimationMethod::kRefined);
+  EXPECT_TRUE(refined.calcCovariance().isApprox(inferred.refined->covariance, 1e-14));
+  EXPECT_EQ(refined.statuses, Statuses{"ok"});
+}
+
+TEST(SelectEstimate, OfAMapFarAboveWhatTheMeasurementAllowsIsEstimatorLimited) {
+  const InferredMeasurement inferred = makeInferred();
+  EXPECT_EQ(listStatuses(inferred), Statuses{"estimator_limited"});
+  EXPECT_EQ(describeMapLimit(inferred, makeParameters()),
+            "  k is 2 times above what the measurement allows: refine, or add simulations.\n");
+}
+
+TEST(SelectEstimate, OfAMapNearTheLimitIsOk) {
+  InferredMeasurement inferred = makeInferred();
+  inferred.by_estimator.limit_stddev = Eigen::Vector2d(0.15, 0.1);
+  EXPECT_EQ(listStatuses(inferred), Statuses{"ok"});
+  EXPECT_EQ(describeMapLimit(inferred, makeParameters()), "");
+}
+
+TEST(SelectEstimate, OfAMapWhoseLimitNobodyKnowsIsOk) {
+  InferredMeasurement inferred = makeInferred();
+  inferred.by_estimator.limit_stddev.resize(0);
+  EXPECT_EQ(listStatuses(inferred), Statuses{"ok"});
+}
+
+TEST(SelectEstimate, OfAMapThatDoesNotKnowItsErrorsIsEstimatorLimitedWhateverItsDeviation) {
+  InferredMeasurement inferred = makeInferred();
+  inferred.by_estimator.stddev = inferred.by_estimator.limit_stddev;
+  inferred.estimator_is_calibrated = false;
+  EXPECT_EQ(listStatuses(inferred), Statuses{"estimator_limited"});
+}
+
+TEST(SelectEstimate, RefinedIsNotLimitedByTheMap) {
+  InferredMeasurement inferred = makeInferred();
+  inferred.refined = makeRefined(RefinementStatus::kAccepted);
+  EXPECT_EQ(listStatuses(inferred), Statuses{"ok"});
+}
+
+TEST(SelectEstimate, NotRefinedIsTheMapsWithAllItsLimits) {
+  InferredMeasurement inferred = makeInferred();
+  inferred.trust->statuses = {TrustStatus::kAtBounds};
+  inferred.refined = makeRefined(RefinementStatus::kMisfit);
+  EXPECT_EQ(listStatuses(inferred), (Statuses{"at_bounds", "not_refined", "estimator_limited"}));
+  EXPECT_EQ(describeMapLimit(inferred, makeParameters()),
+            "  k is 2 times above what the measurement allows: add simulations.\n");
+}
+
+}  // namespace
+}  // namespace twinmap
