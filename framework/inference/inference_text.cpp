@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "framework/base/log/notice.hpp"
 #include "framework/base/text/escape.hpp"
 #include "framework/base/text/nearest_name.hpp"
 #include "framework/base/text/number_text.hpp"
@@ -25,25 +26,73 @@ std::string joinStatuses(const std::vector<std::string>& statuses, const char* s
   return joined;
 }
 
-/// What is wrong, in words; one line each.
-std::string explainStatus(TrustStatus status, const Trust& trust, const std::vector<FeatureInfo>& features) {
+/// A status with what happened and what to do, a line each.
+template <class... Arguments>
+std::string explain(Notice notice, const Arguments&... arguments) {
+  std::string text = describeNotice(notice, arguments...);
+  text.insert(std::min(text.find('\n') + 1, text.size()), text.find('\n') == std::string::npos ? "" : "  ");
+  return fmt::format("  {}: {}\n", getNotice(notice).name, text);
+}
+
+/// The first line alone, where its remedy has been tried or is another.
+template <class... Arguments>
+std::string explainBriefly(Notice notice, const Arguments&... arguments) {
+  const std::string text = describeNotice(notice, arguments...);
+  return fmt::format("  {}: {}\n", getNotice(notice).name, text.substr(0, text.find('\n')));
+}
+
+std::string listBeyondBounds(const Estimate& estimate, const std::vector<ParameterSpec>& parameters) {
+  std::vector<std::string> names;
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const double mean = estimate.mean[static_cast<Index>(p)];
+    if (mean <= parameters[p].bounds.lower || mean >= parameters[p].bounds.upper) {
+      names.push_back(parameters[p].name.text);
+    }
+  }
+  return names.empty() ? "a nuisance parameter" : listNames(names);
+}
+
+/// Names and, of the first, the reduction.
+std::string explainUninformative(const Estimate& estimate, const std::vector<ParameterSpec>& parameters) {
+  constexpr double kUninformative = 0.9, kPercent = 100.0;  // of the standard deviation of the bounds
+  std::string text;
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const Bounds& bounds = parameters[p].bounds;
+    const double left =
+        estimate.stddev[static_cast<Index>(p)] / (kUniformStddev * (bounds.upper - bounds.lower));
+    if (left > kUninformative) {
+      text += explain(Notice::kUninformative, parameters[p].name.text,
+                      fmt::format("{:.0f} %", kPercent * std::max(0.0, 1.0 - left)));
+    }
+  }
+  return text;
+}
+
+std::string explainStatus(TrustStatus status, const InferredMeasurement& inferred, const Estimate& estimate,
+                          const std::vector<ParameterSpec>& parameters,
+                          const std::vector<FeatureInfo>& features) {
   switch (status) {
     case TrustStatus::kModelMismatch:
-      return fmt::format("  No parameter values within the bounds fit the measurement: {}.\n",
-                         describeAnomaly(trust, features));
+      return inferred.fault.empty()
+                 ? explain(Notice::kModelMismatch, describeAnomaly(*inferred.trust, features))
+                 : explainBriefly(Notice::kModelMismatch,
+                                  inferred.fault + " (this explains 99 % of the misfit)");
     case TrustStatus::kOutsideTraining:
-      return fmt::format(
-          "  The features are {:.2g} times as far from the training samples as simulated "
-          "measurements are at most.\n",
-          trust.distance);
+      return explain(Notice::kOutsideTraining, inferred.trust->distance);
     case TrustStatus::kAtBounds:
-      return "  A parameter lies beyond its bounds: widen them and train again.\n";
+      return explain(Notice::kAtBounds, listBeyondBounds(estimate, parameters));
     case TrustStatus::kUninformative:
-      return "  A parameter's sd is close to that of its bounds: this measurement says little about it.\n";
+      return explainUninformative(estimate, parameters);
     case TrustStatus::kOk:
       break;
   }
   return "";
+}
+
+/// "p = 0.61", or "p < 0.002" where simulated measurements can tell no more.
+std::string describePValue(const Trust& trust) {
+  return trust.p_value <= trust.smallest_p_value ? fmt::format("p < {:.2g}", trust.smallest_p_value)
+                                                 : fmt::format("p = {:.2g}", trust.p_value);
 }
 
 using Row = std::vector<std::string>;
@@ -81,14 +130,30 @@ std::string makeTable(const Estimate& estimate, const std::vector<ParameterSpec>
   return makeTable(std::move(rows));
 }
 
+/// "y(0.1 s)", "y between 0.1 s and 0.4 s", "y(0.1 s) to theta(0.2 s)".
+std::string describeStretch(const std::string& first, const std::string& last) {
+  const std::size_t open = first.find('(');
+  if (first == last) {
+    return first;
+  }
+  if (open == std::string::npos || last.compare(0, open + 1, first, 0, open + 1) != 0) {
+    return first + " to " + last;
+  }
+  const auto take = [open](const std::string& name) { return name.substr(open + 1, name.size() - open - 2); };
+  return first.substr(0, open) + " between " + take(first) + " and " + take(last);
+}
+
 /// How the refinement went; the table of its estimate follows where it was accepted.
 std::string describeRefined(const Refined& refined) {
   if (!refined.isAccepted()) {
-    return fmt::format("  not refined ({}): {}; the map's unconfirmed estimate:\n", toString(refined.status),
-                       refined.message);
+    return fmt::format("  refinement rejected ({}): {}; unconfirmed quick estimate:\n",
+                       toString(refined.status), refined.message);
   }
-  return fmt::format("  refined by {} steps ({} simulations), {:.2g} sd from the map's estimate:\n",
-                     refined.iterations, refined.simulations, refined.distance);
+  constexpr double kFar = 5.0;
+  return fmt::format(
+      "  refined in {} step{} ({} simulations), moved {:.2g} sd from the starting estimate{}:\n",
+      refined.iterations, refined.iterations == 1 ? "" : "s", refined.simulations, refined.distance,
+      refined.distance > kFar ? " (the quick estimate was poor; this is normal)" : "");
 }
 
 /// The components of a mixture.
@@ -112,7 +177,7 @@ std::string describeMixture(const Mixture& mixture, const std::vector<ParameterS
 }
 
 std::string describePosterior(const SurrogatePosterior& posterior,
-                              const std::vector<ParameterSpec>& parameters) {
+                              const std::vector<ParameterSpec>& parameters, bool is_refined) {
   const std::string diagnostics =
       fmt::format("effective sample size {:.0f} of {}, Pareto shape {:.2f}", posterior.effective_sample_size,
                   posterior.evaluations, posterior.pareto_shape);
@@ -125,7 +190,9 @@ std::string describePosterior(const SurrogatePosterior& posterior,
     rows.push_back(makeRow(parameters[p], posterior.mean[i], posterior.stddev[i],
                            {{posterior.getLower95()[i], posterior.getUpper95()[i]}}));
   }
-  return fmt::format("  the posterior ({}):\n", diagnostics) + makeTable(std::move(rows));
+  return fmt::format("  posterior under the surrogate ({}){}:\n", diagnostics,
+                     is_refined ? ", for its shape; the refined estimate is the more accurate one" : "") +
+         makeTable(std::move(rows));
 }
 
 /// Empty but for the diagnostics where it is not reliable.
@@ -142,18 +209,20 @@ std::string makePosteriorCells(const SurrogatePosterior& posterior, Index parame
 
 }  // namespace
 
-std::string describeTrust(const InferredMeasurement& inferred, const std::vector<FeatureInfo>& features) {
+std::string describeTrust(const InferredMeasurement& inferred, const std::vector<ParameterSpec>& parameters,
+                          const std::vector<FeatureInfo>& features) {
   if (!inferred.trust) {
     const std::string statuses = joinStatuses(listStatuses(inferred), ", ");
     return inferred.source + ": " + statuses + (statuses.empty() ? "" : "; ") +
            "not judged (the run has no trust model)\n";
   }
   const Trust& trust = *inferred.trust;
-  std::string text = fmt::format("{}: {} (p = {:.2g}, chi-square {:.1f} of {} residuals)\n", inferred.source,
-                                 joinStatuses(listStatuses(inferred), ", "), trust.p_value, trust.chi_square,
-                                 trust.residuals);
+  std::string text = fmt::format("{}: {} ({}, chi-square {:.1f} of {} residuals)\n", inferred.source,
+                                 joinStatuses(listStatuses(inferred), ", "), describePValue(trust),
+                                 trust.chi_square, trust.residuals);
+  const Estimate estimate = selectEstimate(inferred);
   for (const TrustStatus status : trust.statuses) {
-    text += explainStatus(status, trust, features);
+    text += explainStatus(status, inferred, estimate, parameters, features);
   }
   return text;
 }
@@ -165,7 +234,7 @@ std::string describeAnomaly(const Trust& trust, const std::vector<FeatureInfo>& 
   }
   const std::string& first = features[static_cast<std::size_t>(anomaly.first)].name;
   const std::string& last = features[static_cast<std::size_t>(anomaly.first + anomaly.count - 1)].name;
-  return "it is worst at " + (anomaly.count == 1 ? first : first + " to " + last);
+  return "the largest misfit is in " + describeStretch(first, last);
 }
 
 std::string describeMapLimit(const InferredMeasurement& inferred,
@@ -173,7 +242,10 @@ std::string describeMapLimit(const InferredMeasurement& inferred,
   if (!isEstimatorLimited(inferred)) {
     return "";
   }
-  const char* advice = inferred.refined ? "add simulations" : "refine, or add simulations";
+  const bool misfits = inferred.trust && inferred.trust->statuses.front() == TrustStatus::kModelMismatch;
+  if (misfits) {
+    return "";  // no standard deviation means anything then
+  }
   const Eigen::VectorXd ratio = inferred.by_estimator.calcRatioToLimit();
   std::vector<std::string> far;
   for (Index p = 0; p < ratio.size(); ++p) {
@@ -182,32 +254,33 @@ std::string describeMapLimit(const InferredMeasurement& inferred,
           fmt::format("{} is {:.2g} times", parameters[static_cast<std::size_t>(p)].name.text, ratio[p]));
     }
   }
-  std::string text =
-      far.empty() ? "" : fmt::format("  {} above what the measurement allows: {}.\n", listNames(far), advice);
-  if (!inferred.estimator_is_calibrated) {
-    text +=
-        fmt::format("  The map's standard deviations are not calibrated (cross-validation): {}.\n", advice);
+  if (!far.empty()) {
+    return inferred.refined ? explainBriefly(Notice::kEstimatorLimited, listNames(far))
+                            : explain(Notice::kEstimatorLimited, listNames(far));
   }
-  return text;
+  return fmt::format(
+      "  estimator_limited: the error estimate of the fast model is unreliable "
+      "(cross-validation)\n{}",
+      inferred.refined ? "" : "    Refine the estimate: --refine.\n");
 }
 
 std::string makeInferenceTable(const InferredMeasurement& inferred,
                                const std::vector<ParameterSpec>& parameters,
                                const std::vector<FeatureInfo>& features) {
   const Estimate estimate = selectEstimate(inferred);
-  std::string text = describeTrust(inferred, features) + describeMapLimit(inferred, parameters);
+  std::string text = describeTrust(inferred, parameters, features) + describeMapLimit(inferred, parameters);
   if (inferred.refined) {
     text += describeRefined(*inferred.refined);
   }
   text += makeTable(estimate, parameters);
   if (estimate.isRefined()) {
-    text += "  the map's:\n" + makeTable(inferred.by_estimator, parameters);
+    text += "  starting estimate (quick, not refined):\n" + makeTable(inferred.by_estimator, parameters);
   }
   if (isMultimodal(estimate.mixture)) {
     text += describeMixture(estimate.mixture, parameters);
   }
   if (inferred.posterior) {
-    text += describePosterior(*inferred.posterior, parameters);
+    text += describePosterior(*inferred.posterior, parameters, estimate.isRefined());
   }
   return text;
 }

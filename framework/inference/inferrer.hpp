@@ -22,6 +22,7 @@ struct InferredMeasurement {
   std::optional<Trust> trust;           ///< none where the run could fit no trust model
   Eigen::VectorXd explanation;   ///< sampled point that explains the features best; empty without trust
   Eigen::MatrixXd covariance{};  ///< there, u x u in half-widths, with the surrogate's errors; empty likewise
+  std::string fault{};  ///< of the measurement, that explains a gross misfit (explainByFault()); "" of none
   std::optional<Refined> refined;                 ///< on the simulator, where that was tried; accepted or not
   std::optional<SurrogatePosterior> posterior{};  ///< where it was asked for; reliable or not
 };

@@ -2,8 +2,11 @@
 
 #include <fmt/core.h>
 
+#include <limits>
+
 #include "framework/base/text/source_location.hpp"
 #include "framework/estimation/trained/posterior_model.hpp"
+#include "framework/inference/measurement_faults.hpp"
 
 namespace twinmap {
 namespace {
@@ -44,7 +47,11 @@ double MeasurementSession::getStart(std::optional<double> start) const {
 
 InferredMeasurement MeasurementSession::infer(const Table& table, std::optional<double> start,
                                               const Eigen::VectorXd& known) {
-  InferredMeasurement inferred = infer(inferrer_.getReader().readFeatures(table, start), known);
+  const MeasurementReader& reader = inferrer_.getReader();
+  reader.requireExcitation(table, start);
+  const Eigen::VectorXd response = reader.readResponse(table, start);
+  InferredMeasurement inferred = infer(extractFeatures(reader.getExtractor(), response, table.source), known);
+  inferred.fault = findFault(response, known, inferred);
   inferred.source = table.source;
   inferred.start = getStart(start);
   return inferred;
@@ -60,6 +67,21 @@ InferredMeasurement MeasurementSession::infer(const Eigen::VectorXd& features, c
     inferred.posterior = sampler_->sampleFeatures(features, known);
   }
   return inferred;
+}
+
+std::string MeasurementSession::findFault(const Eigen::VectorXd& response, const Eigen::VectorXd& known,
+                                          const InferredMeasurement& inferred) {
+  if (!inferred.trust || inferred.trust->statuses.front() != TrustStatus::kModelMismatch) {
+    return "";
+  }
+  // what the surrogate leaves, also where a refinement has judged the measurement anew
+  const auto calcMisfit = [&](const Eigen::VectorXd& corrected) {
+    const Eigen::VectorXd features = inferrer_.getExtractor().extract(corrected);
+    return features.allFinite() ? inferrer_.infer(features, known, workspace_).trust->chi_square
+                                : std::numeric_limits<double>::infinity();
+  };
+  return explainByFault(response, inferrer_.getLayout(), calcMisfit(response), inferred.trust->residuals,
+                        calcMisfit);
 }
 
 }  // namespace twinmap

@@ -25,7 +25,8 @@ class MeasurementSession {
   double getStart(std::optional<double> start) const;
 
   /// known: the inputs of the set-up (q). Throws MeasurementError for a table that cannot be used
-  /// (MeasurementReader::readFeatures). Cost: that of Inferrer::infer(),
+  /// (MeasurementReader::readFeatures). Cost: that of Inferrer::infer() (of a gross misfit 17 an output
+  /// more),
   /// SimulatorRefiner::refineAndJudge() and PosteriorSampler::sample().
   InferredMeasurement infer(const Table& table, std::optional<double> start, const Eigen::VectorXd& known);
 
@@ -33,6 +34,10 @@ class MeasurementSession {
   InferredMeasurement infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known);
 
  private:
+  /// explainByFault() of a measurement that is a model_mismatch.
+  std::string findFault(const Eigen::VectorXd& response, const Eigen::VectorXd& known,
+                        const InferredMeasurement& inferred);
+
   const Inferrer& inferrer_;
   Inferrer::Workspace workspace_;
   std::optional<SimulatorRefiner> refiner_;
