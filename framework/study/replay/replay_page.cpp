@@ -11,6 +11,7 @@
 #include "framework/base/text/number_text.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/inference_text.hpp"
+#include "framework/inference/select_estimate.hpp"
 #include "framework/report/estimate_panel.hpp"
 #include "framework/report/figure.hpp"
 #include "framework/report/html.hpp"
