@@ -110,8 +110,9 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"BoundsOfThree",
                 "parameters.k_y.bounds=[1, 2, 3]",
                 {"parameters.k_y.bounds", "list of 2 values"}},
-        Mistake{
-            "BoundsContainZero", "parameters.k_y.bounds=[-1, 1]", {"parameters.k_y", "relative_to: range"}},
+        Mistake{"BoundsContainZero",
+                "parameters.k_y={bounds: [-1, 1], relative_to: value}",
+                {"parameters.k_y", "an error relative to the value is undefined"}},
         Mistake{"UnknownUnit",
                 "parameters.k_y.unit=Nm/quux",
                 {"parameters.k_y.unit", "'Nm/quux'", "is not a unit"}},
