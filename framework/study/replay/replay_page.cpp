@@ -212,8 +212,8 @@ std::optional<Figure> makeSpectrum(const Replay& replay, Index output, Page& pag
   const ResidualSpectrum spectrum = calcResidualSpectrum(replay.layout.times, residual);
   const std::string name = "spectrum-" + std::to_string(output);
   DataTable& table = page.tables[name];
-  table.add("frequency", {spectrum.frequency.begin(), spectrum.frequency.end()});
-  table.add("power", {spectrum.power.begin(), spectrum.power.end()});
+  table.add("frequency", std::vector<double>(spectrum.frequency.begin(), spectrum.frequency.end()));
+  table.add("power", std::vector<double>(spectrum.power.begin(), spectrum.power.end()));
   const std::string& label = replay.layout.output_names[static_cast<std::size_t>(output)];
   return Figure{name,
                 label + ": spectrum of the residual",
