@@ -6,8 +6,8 @@
 
 namespace twinmap {
 
-/// All numbers of a map, as docs/how-to/export-to-a-controller.md documents them: matrices as lists of rows, everything finite.
-/// Throws std::runtime_error for a number that is not.
+/// All numbers of a map, as docs/how-to/export-to-a-controller.md documents them: matrices as lists of rows,
+/// everything finite. Throws std::runtime_error for a number that is not.
 std::string makeMapJson(const ExportedModel& model);
 
 }  // namespace twinmap

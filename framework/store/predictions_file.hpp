@@ -16,15 +16,15 @@ struct StoredPredictions {
   Eigen::MatrixXd limit_stddev;  ///< NaN where it is not known; empty where the file has no such column
 };
 
-/// Reads components.csv (docs/reference/files.md): the mixture of each of `samples`, without its correlations;
-/// empty if there is no such file. Throws as readPredictionsFile().
+/// Reads components.csv (docs/reference/files.md): the mixture of each of `samples`, without its
+/// correlations; empty if there is no such file. Throws as readPredictionsFile().
 std::vector<Mixture> readComponentsFile(const std::filesystem::path& path,
                                         const std::vector<std::string>& parameters,
                                         const std::vector<int>& samples);
 
-/// Reads predictions.csv (docs/reference/files.md); `parameters` are the names in its order. Numbers are those
-/// that were written, bit for bit. Throws std::runtime_error naming the file, the row and what is wrong with
-/// it.
+/// Reads predictions.csv (docs/reference/files.md); `parameters` are the names in its order. Numbers are
+/// those that were written, bit for bit. Throws std::runtime_error naming the file, the row and what is wrong
+/// with it.
 StoredPredictions readPredictionsFile(const std::filesystem::path& path,
                                       const std::vector<std::string>& parameters);
 

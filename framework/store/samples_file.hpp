@@ -7,8 +7,8 @@
 
 namespace twinmap {
 
-/// Writes samples.h5 (docs/reference/files.md): parameters and clean responses of the training and the test set,
-/// failed samples included (responses NaN, with their reason). Equal content gives equal bytes.
+/// Writes samples.h5 (docs/reference/files.md): parameters and clean responses of the training and the test
+/// set, failed samples included (responses NaN, with their reason). Equal content gives equal bytes.
 void writeSamplesFile(const std::filesystem::path& path, const ModelSpec& model, const Trajectories& train,
                       const Trajectories& test);
 

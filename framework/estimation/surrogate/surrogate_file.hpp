@@ -7,8 +7,8 @@
 
 namespace twinmap {
 
-/// Writes all numbers of a forward surrogate below `group` (docs/reference/files.md): those of all windows side
-/// by side, so that reading takes a few calls however many windows there are.
+/// Writes all numbers of a forward surrogate below `group` (docs/reference/files.md): those of all windows
+/// side by side, so that reading takes a few calls however many windows there are.
 void writeForward(Hdf5Writer& file, const std::string& group, const ForwardSurrogate& surrogate);
 
 /// Reads it back; it predicts bit for bit as the one that was written. Throws std::runtime_error for unknown

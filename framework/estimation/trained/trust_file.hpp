@@ -8,8 +8,8 @@
 
 namespace twinmap {
 
-/// Writes a trust model below `group` (docs/reference/files.md); its surrogate only where that is not the map's
-/// own (`of_map`; may be null).
+/// Writes a trust model below `group` (docs/reference/files.md); its surrogate only where that is not the
+/// map's own (`of_map`; may be null).
 void writeTrustModel(Hdf5Writer& file, const std::string& group, const TrustModel& trust,
                      const ForwardSurrogate* of_map);
 

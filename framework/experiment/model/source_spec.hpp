@@ -46,7 +46,8 @@ void describe(Fields& f, EnvironmentSpec& s) {
   f.required("value", s.value, "text");
 }
 
-/// A model that is a program, started once and kept: lines of JSON in, lines of JSON out (docs/how-to/use-a-program.md).
+/// A model that is a program, started once and kept: lines of JSON in, lines of JSON out
+/// (docs/how-to/use-a-program.md).
 struct ProgramSpec {
   std::vector<std::string> command;           ///< the program, found as a shell finds it, and its arguments
   std::string working_folder;                 ///< absolute once read; the experiment file's by default

@@ -5,9 +5,10 @@
 
 namespace twinmap {
 
-/// Simulates a model that is a program (docs/how-to/use-a-program.md). Each thread that simulates has one of its own,
-/// started once and kept. What happens to it, a crash, an end, a hang, is a failed sample: first, but for a
-/// hang, the sample is tried again in a fresh process, so that what other samples did there decides nothing.
+/// Simulates a model that is a program (docs/how-to/use-a-program.md). Each thread that simulates has one of
+/// its own, started once and kept. What happens to it, a crash, an end, a hang, is a failed sample: first,
+/// but for a hang, the sample is tried again in a fresh process, so that what other samples did there decides
+/// nothing.
 class ProgramSimulator final : public Simulator {
  public:
   /// Starts nothing. `times`: of the outputs, s, increasing, within [0, duration]. Throws ExperimentError for

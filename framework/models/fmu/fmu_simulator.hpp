@@ -6,9 +6,9 @@
 
 namespace twinmap {
 
-/// Simulates a model that comes as an FMU (docs/how-to/use-an-fmu.md). Each clone that simulates has the FMU in a process
-/// of its own, which its successors use again: what happens to it there, a crash, an end, a hang, is a failed
-/// sample.
+/// Simulates a model that comes as an FMU (docs/how-to/use-an-fmu.md). Each clone that simulates has the FMU
+/// in a process of its own, which its successors use again: what happens to it there, a crash, an end, a
+/// hang, is a failed sample.
 class FmuSimulator final : public Simulator {
  public:
   /// Unpacks the FMU and finds the model's names among its variables; starts nothing. `times`: of the

@@ -14,8 +14,8 @@ TrainedMap makeTrainedMap(const Study& study, const PreparedData& data, Training
 /// Trains the map that the experiment asks for and prepares it for measurements. Automatic is
 /// a surrogate, and Gaussian processes from features to parameters where it cannot be trained: on eleven
 /// mechanisms of different kinds the surrogate was the better map of 52 parameters of 56, with calibrated
-/// standard deviations, in a tenth of the time (docs/how-to/choose-an-estimator.md). Throws Interrupted if it is stopped,
-/// std::runtime_error where the experiment does not fit the map.
+/// standard deviations, in a tenth of the time (docs/how-to/choose-an-estimator.md). Throws Interrupted if it
+/// is stopped, std::runtime_error where the experiment does not fit the map.
 TrainedMap trainChosenMap(const Study& study, const PreparedData& data);
 
 /// Prepares a surrogate for measurements that was trained on these samples.

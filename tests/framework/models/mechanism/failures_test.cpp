@@ -218,8 +218,7 @@ TEST(WrongInput, NamesAreUniqueAndCountsMatch) {
 TEST(WrongInput, SystemThatCannotExistAtTheBoxCenterIsRefused) {
   ModelSpec model = makeOscillator();
   model.parameters[0] = parameter("m", -2.0, 1.0);
-  EXPECT_EQ(getError(model),
-            "at the centre of the bounds: body 'block': mass = -0.5 kg must be positive");
+  EXPECT_EQ(getError(model), "at the centre of the bounds: body 'block': mass = -0.5 kg must be positive");
 }
 
 /// As read from a file.
