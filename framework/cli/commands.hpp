@@ -98,15 +98,18 @@ struct VerifyArguments {
 };
 
 struct InferArguments {
-  std::string run;                 ///< folder of a run, its maps.h5, or an experiment file
-  std::vector<std::string> files;  ///< measurements
-  std::vector<std::string> known;  ///< "NAME=VALUE" of the inputs
-  std::vector<double> starts;      ///< times in each file that are 0 of the model; empty: the experiment's
-  bool json = false, csv = false;  ///< at most one; neither: a table for people
-  bool follow = false;             ///< measurements from the standard input, JSON lines out
-  std::optional<bool> refine;      ///< none: as the experiment says
-  int posterior_draws = 0;         ///< of each measurement's posterior; 0: none
-  std::string draws;               ///< file for them; "": none
+  std::string run;                  ///< folder of a run, its maps.h5, or an experiment file
+  std::vector<std::string> files;   ///< measurements
+  std::vector<std::string> known;   ///< "NAME=VALUE" of the inputs
+  std::vector<double> starts;       ///< times in each file that are 0 of the model; empty: the experiment's
+  std::vector<std::string> trials;  ///< "NAME=FILE": recordings of trials, inferred together
+  bool joint = false;               ///< all files and starts together
+  std::optional<double> windows;    ///< s: windows of each file, one after another, inferred together
+  bool json = false, csv = false;   ///< at most one; neither: a table for people
+  bool follow = false;              ///< measurements from the standard input, JSON lines out
+  std::optional<bool> refine;       ///< none: as the experiment says
+  int posterior_draws = 0;          ///< of each measurement's posterior; 0: none
+  std::string draws;                ///< file for them; "": none
 };
 
 struct ExportArguments {
@@ -216,6 +219,8 @@ void compare(const CompareArguments& arguments);
 /// Infers the parameters of measurements and prints them with their trust status. Throws std::runtime_error
 /// after the last one if some could not be used.
 void infer(const InferArguments& arguments);
+/// Of several recordings together: where trials, windows or joint are given.
+void inferJointly(const InferArguments& arguments);
 
 /// Writes a trained map for other programs. Throws ExperimentError for a run that cannot be exported.
 void exportMap(const ExportArguments& arguments);

@@ -250,6 +250,10 @@ void keepFreedMemory() {
 
 void infer(const InferArguments& arguments) {
   keepFreedMemory();
+  if (!arguments.trials.empty() || arguments.joint || arguments.windows) {
+    inferJointly(arguments);
+    return;
+  }
   if (arguments.follow == !arguments.files.empty()) {
     throw ExperimentError(arguments.follow
                               ? "--follow reads measurements from the standard input; give no files"

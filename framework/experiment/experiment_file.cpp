@@ -7,9 +7,11 @@
 #include "framework/experiment/fields/overrides.hpp"
 #include "framework/experiment/fields/read_value.hpp"
 #include "framework/experiment/fields/write_value.hpp"
+#include "framework/experiment/files/prior_files.hpp"
+#include "framework/experiment/files/signal_files.hpp"
 #include "framework/experiment/resolve_defaults.hpp"
-#include "framework/experiment/signal_files.hpp"
 #include "framework/experiment/sweep/swept_keys.hpp"
+#include "framework/experiment/sweep/trials.hpp"
 
 namespace twinmap {
 namespace {
@@ -22,13 +24,14 @@ YamlNode finishTree(YamlNode root, const std::string& path, const std::vector<st
     applyOverride(root, text);
   }
   resolveSignalFiles(root, path);
+  resolvePriorFiles(root, path);
   return root;
 }
 
 /// With its defaults resolved.
 ExperimentSpec readUnchecked(const YamlNode& root) {
   ExperimentSpec experiment;
-  readValue(withoutSweep(root), experiment);
+  readValue(withoutSweep(selectTrial(root)), experiment);
   requireFewSamples(experiment.features, experiment.name.where);
   resolveDefaults(experiment);
   return experiment;
@@ -72,6 +75,9 @@ ExperimentSpec readResolved(const std::string& text) {
 }
 
 std::string writeIndependentDefaults(const YamlNode& root) {
+  if (root.find("trials") != nullptr) {
+    return writeYaml(root);  // each trial has defaults of its own
+  }
   ExperimentSpec experiment;
   readValue(withoutSweep(root), experiment);
   YamlNode tree = writeValue(experiment);

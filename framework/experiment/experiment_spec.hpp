@@ -74,6 +74,7 @@ void describe(Fields& f, ExperimentSpec& s) {
   f.requiredMap("parameters", s.model.parameters, "the parameters to estimate");
   f.optionalMap("nuisance", s.model.nuisance, "unknown parameters that are sampled, but not inferred");
   f.optionalMap("inputs", s.model.inputs, "known settings, sampled in training, given with a measurement");
+  f.optional("priors", s.model.priors, "what is known of several parameters together");
   f.optionalMap("constants", s.model.constants, "named values for expressions");
   f.oneOf("must give exactly one of", choice("system", s.model.system, "the multibody model"),
           choice("model", s.model.source, "or a model that comes as a file"));

@@ -5,9 +5,19 @@
 
 #include "framework/experiment/network_size.hpp"
 #include "framework/experiment/noise_correlation.hpp"
+#include "framework/experiment/points/prior.hpp"
 
 namespace twinmap {
 namespace {
+
+void resolveBounds(std::vector<ParameterSpec>& parameters) {
+  for (ParameterSpec& parameter : parameters) {
+    if (!parameter.bounds.isGiven()) {
+      parameter.bounds = calcPriorRange(*parameter.prior);
+      parameter.bounds.where = parameter.name.where;
+    }
+  }
+}
 
 void resolveReport(const std::vector<ParameterSpec>& parameters, ReportSpec& report) {
   if (report.over.empty() && parameters.size() >= 2) {
@@ -84,6 +94,10 @@ void resolveReplicates(int samples, NoiseSpec& noise) {
 }  // namespace
 
 void resolveDefaults(ExperimentSpec& experiment) {
+  for (auto* parameters :
+       {&experiment.model.parameters, &experiment.model.nuisance, &experiment.model.inputs}) {
+    resolveBounds(*parameters);
+  }
   resolveReport(experiment.model.parameters, experiment.report);
   resolveTransform(experiment);
   resolveNoiseCorrelation(experiment);

@@ -27,7 +27,7 @@ std::unique_ptr<const RefinementModel> makeModel(const MeasurementReader& reader
 
 bool isUninformative(const SimulatorPosterior& posterior, const std::vector<ParameterSpec>& parameters) {
   constexpr double kShare = 0.9;  // as trained estimators judge it
-  const VectorXd prior = calcWidths(parameters) / std::sqrt(12.0);
+  const VectorXd prior = Prior(parameters, {}).calcStddevs();
   return (posterior.stddev.head(prior.size()).array() > kShare * prior.array()).any();
 }
 
@@ -68,17 +68,23 @@ DirectInferrer::DirectInferrer(ExperimentSpec experiment, int draws)
   options_.seed = reader_.getExperiment().seed;
 }
 
+MeasuredTrial DirectInferrer::prepare(const Table& table, std::optional<double> start,
+                                      const VectorXd& known) {
+  const std::vector<ParameterSpec>& unknown = model_->getUnknown();
+  VectorXd held(static_cast<Index>(unknown.size()) + known.size());
+  held << calcBoxCenter(unknown), known;
+  return {simulator_.get(), model_.get(), reader_.readFeatures(table, start), held, {}};
+}
+
 DirectInference DirectInferrer::infer(const Table& table, std::optional<double> start,
                                       const VectorXd& known) {
-  const VectorXd features = reader_.readFeatures(table, start);
-  const std::vector<ParameterSpec>& unknown = model_->getUnknown();
-  const auto u = static_cast<Index>(unknown.size());
-  VectorXd held(u + known.size());
-  held << calcBoxCenter(unknown), known;
+  const MeasuredTrial trial = prepare(table, start, known);
   DirectInference inferred;
   inferred.source = table.source;
   inferred.start = reader_.getStart(start);
-  inferred.posterior = samplePosterior(*simulator_, *model_, features, held, MatrixXd(u, 0), options_);
+  inferred.posterior =
+      samplePosterior(*simulator_, *model_, reader_.getExperiment().model.priors, trial.features, trial.held,
+                      MatrixXd(static_cast<Index>(getUnknown().size()), 0), options_);
   if (inferred.posterior.degrees > 0.0) {
     inferred.test = testResidual(inferred.posterior.residual, inferred.posterior.degrees,
                                  reader_.getExtractor().getInfos());

@@ -35,6 +35,11 @@ class DirectInferrer {
   const MeasurementReader& getReader() const { return reader_; }
   const std::vector<ParameterSpec>& getParameters() const { return reader_.getExperiment().model.parameters; }
 
+  const std::vector<ParameterSpec>& getUnknown() const { return model_->getUnknown(); }
+  /// A measurement as a part of a joint problem: all but which of its unknown parameters these are. It refers
+  /// to this object, which simulates for it. Throws MeasurementError for a table that cannot be used.
+  MeasuredTrial prepare(const Table& table, std::optional<double> start, const Eigen::VectorXd& known);
+
   /// known: the inputs of the set-up (q). Throws MeasurementError for a table that cannot be used. Cost: that
   /// of samplePosterior().
   DirectInference infer(const Table& table, std::optional<double> start, const Eigen::VectorXd& known);

@@ -1,9 +1,13 @@
 #include "framework/inference/measurement_reader.hpp"
 
+#include <fmt/core.h>
+
 #include <cmath>
 
+#include "framework/base/text/number_text.hpp"
 #include "framework/data/features/experiment_features.hpp"
 #include "framework/data/measurement/measurement.hpp"
+#include "framework/data/measurement/time_series.hpp"
 #include "framework/data/measurement/trained_excitation.hpp"
 
 namespace twinmap {
@@ -23,6 +27,26 @@ std::vector<std::string> MeasurementReader::listColumns() const {
 
 double MeasurementReader::getStart(std::optional<double> start) const {
   return start.value_or(experiment_.measurement.start);
+}
+
+std::vector<double> MeasurementReader::listWindows(const Table& table, std::optional<double> start,
+                                                   double length) const {
+  const MeasurementSpec& spec = experiment_.measurement;
+  const Eigen::Index rows = table.columns.empty() ? 0 : table.columns.front().values.size();
+  const Eigen::VectorXd times = readTimes(table, {spec.time, spec.sample_rate, 0.0}, rows);
+  const double first = getStart(start), last = times.size() > 0 ? times[times.size() - 1] : first;
+  const double duration = layout_.times.size() > 0 ? layout_.times[layout_.times.size() - 1] : 0.0;
+  const double slack = 1e-6 * length;  // as times are compared when they are read
+  std::vector<double> starts;
+  for (double i = 0.0; first + i * length + duration <= last + slack; i += 1.0) {
+    starts.push_back(first + i * length);
+  }
+  if (starts.empty()) {
+    throw MeasurementError(fmt::format("{}: ends at {} s, but a window from {} s on takes {} s", table.source,
+                                       toShortText(last, 6), toShortText(first, 6),
+                                       toShortText(duration, 6)));
+  }
+  return starts;
 }
 
 void MeasurementReader::requireExcitation(const Table& table, std::optional<double> start) const {

@@ -31,6 +31,10 @@ class MeasurementReader {
   /// The time in a table that is the model's 0: `start`, or that of the experiment's `measurement:`.
   double getStart(std::optional<double> start) const;
 
+  /// The starts of windows every `length` s that the table covers, from getStart(start) on. At least one;
+  /// throws MeasurementError where it covers none.
+  std::vector<double> listWindows(const Table& table, std::optional<double> start, double length) const;
+
   /// Throws MeasurementError where the table has another excitation than the experiment
   /// (requireTrainedExcitation).
   void requireExcitation(const Table& table, std::optional<double> start) const;

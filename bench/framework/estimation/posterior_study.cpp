@@ -59,8 +59,9 @@ int run(const std::string& file, int tests, int draws, std::uint64_t seed) {
     SimulatorPosteriorOptions options;
     options.draws = draws;
     options.seed = experiment.seed;
-    const SimulatorPosterior posterior = samplePosterior(
-        *simulator, model, features, truth, MatrixXd(static_cast<Index>(unknown.size()), 0), options);
+    const SimulatorPosterior posterior =
+        samplePosterior(*simulator, model, experiment.model.priors, features, truth,
+                        MatrixXd(static_cast<Index>(unknown.size()), 0), options);
     seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
     simulations.push_back(posterior.simulations);
     sizes.push_back(posterior.effective_sample_size);

@@ -33,6 +33,7 @@ enum class RandomPurpose : std::uint64_t {
   kJointCoverage = 27,   // of mixtures, whose highest-density sets are counted
   kNetworkChains = 28,   // along which a network's weights are sampled
   kBasinStarts = 29,     // where searches of a measurement's basins begin
+  kAgreement = 30,       // errors that the disagreement of measurements is compared with
 };
 
 /// Counter-based random numbers (Philox 4x64-10, Salmon et al. 2011): a number depends on

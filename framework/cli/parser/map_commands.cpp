@@ -8,6 +8,24 @@
 namespace twinmap::cli {
 namespace {
 
+/// Recordings that are inferred together.
+void addJointInference(CLI::App& command, InferArguments& arguments) {
+  command
+      .add_option("--trial", arguments.trials,
+                  "A recording of one of the experiment's trials; all of them are inferred together, several "
+                  "of one trial are repeats")
+      ->type_name("NAME=FILE");
+  command.add_flag("--joint", arguments.joint,
+                   "Infer all files and --start together as recordings of one machine, and test whether they "
+                   "agree");
+  command
+      .add_option("--windows", arguments.windows,
+                  "Infer the windows of each file that begin every S seconds together, and test whether they "
+                  "agree")
+      ->type_name("S")
+      ->check(CLI::PositiveNumber);
+}
+
 void addInfer(CLI::App& app) {
   const auto arguments = std::make_shared<InferArguments>();
   CLI::App* command = app.add_subcommand("infer", "Estimate the parameters from measurements");
@@ -31,6 +49,7 @@ void addInfer(CLI::App& app) {
       ->add_option("--start", arguments->starts,
                    "Time in the file (s) at which the model's time is 0; several infer several windows")
       ->type_name("S");
+  addJointInference(*command, *arguments);
   CLI::Option* csv = command->add_flag("--csv", arguments->csv, "Print CSV instead of a table");
   command->add_flag("--json", arguments->json, "Print a line of JSON per measurement")->excludes(csv);
   command

@@ -116,13 +116,13 @@ class SearchTeam {
       const double factor = kDampings[static_cast<std::size_t>(k % kTrials)];
       trials.col(k) = take(search.local, calcStep(search.local, search.damping * factor));
     }
-    const VectorXd reached = surface_.calcChiSquares(trials);
+    const VectorXd reached = surface_.calcMisfits(trials);
     std::vector<Search*> moved;
     std::vector<Index> columns;
     for (Index i = 0; i < count; ++i) {
       Search& search = *active[static_cast<std::size_t>(i)];
       Index best = 0;
-      if (reached.segment(i * kTrials, kTrials).minCoeff(&best) < search.local.chi_square) {
+      if (reached.segment(i * kTrials, kTrials).minCoeff(&best) < search.local.misfit) {
         search.damping = std::max(search.damping * kDampings[static_cast<std::size_t>(best)], kMinDamping);
         moved.push_back(&search);
         columns.push_back(i * kTrials + best);
@@ -155,7 +155,7 @@ class SearchTeam {
     std::vector<double> reached;
     for (const Search& search : searches_) {
       if (search.local.simulated) {
-        reached.push_back(search.local.chi_square);
+        reached.push_back(search.local.misfit);
       }
     }
     if (reached.empty()) {
@@ -165,7 +165,7 @@ class SearchTeam {
     const double near = reached.front() + std::max(kAbove, kOfBest * reached.front());
     const double limit = std::max(near, reached[reached.size() / 4]);
     for (Search& search : searches_) {
-      search.active = search.active && search.local.chi_square <= limit;
+      search.active = search.active && search.local.misfit <= limit;
     }
   }
 
@@ -193,10 +193,10 @@ std::vector<Basin> collectBasins(std::vector<LocalSurface> ends) {
   constexpr double kAbove = 25.0;
   constexpr std::size_t kMax = 12;
   std::stable_sort(ends.begin(), ends.end(),
-                   [](const LocalSurface& a, const LocalSurface& b) { return a.chi_square < b.chi_square; });
+                   [](const LocalSurface& a, const LocalSurface& b) { return a.misfit < b.misfit; });
   std::vector<Basin> basins;
   for (LocalSurface& end : ends) {
-    if (end.chi_square > ends.front().chi_square + kAbove) {
+    if (end.misfit > ends.front().misfit + kAbove) {
       break;
     }
     const auto known =
@@ -220,9 +220,9 @@ bool isExplained(const std::vector<Basin>& basins) {
 /// response has many minima, but its beginning has few, and they lie where the next ones do.
 std::vector<LocalSurface> searchGrowing(MisfitSurface& surface, MatrixXd starts, int max_iterations) {
   constexpr int kIterations = 8;  // where a window ends is but the next one's start
-  const std::vector<GrowingWindow>& windows = surface.getModel().getWindows();
-  for (std::size_t i = 0; i + 1 < windows.size() && starts.cols() > 0; ++i) {
-    surface.updMisfit().setWindow(windows[i]);
+  const std::size_t windows = surface.countWindows();
+  for (std::size_t i = 0; i + 1 < windows && starts.cols() > 0; ++i) {
+    surface.setWindow(i);
     SearchTeam team(surface, starts);
     team.run(kIterations);
     const std::vector<LocalSurface> ends = team.listEnds();
@@ -231,7 +231,7 @@ std::vector<LocalSurface> searchGrowing(MisfitSurface& surface, MatrixXd starts,
       starts.col(static_cast<Index>(k)) = ends[k].at;
     }
   }
-  surface.updMisfit().setWindow(windows.back());
+  surface.setWindow(windows - 1);
   if (starts.cols() == 0) {
     return {};
   }
@@ -270,7 +270,7 @@ BasinSearch findBasins(MisfitSurface& surface, const MatrixXd& given, std::uint6
     ends.insert(ends.end(), found.begin(), found.end());
     search.starts += static_cast<int>(starts.cols());
     search.basins = collectBasins(ends);
-    if (!isExplained(search.basins) && surface.getModel().getWindows().size() > 1) {
+    if (!isExplained(search.basins) && surface.countWindows() > 1) {
       found = searchGrowing(surface, starts, options.max_iterations);
       ends.insert(ends.end(), found.begin(), found.end());
       search.basins = collectBasins(ends);

@@ -50,6 +50,14 @@ VectorXd LogCoordinates::fromBox(const Ref<const VectorXd>& u) const {
   return v;
 }
 
+VectorXd LogCoordinates::toParameters(const Ref<const VectorXd>& v) const {
+  return center_ + half_width_.cwiseProduct(toBox(v));
+}
+
+VectorXd LogCoordinates::fromParameters(const Ref<const VectorXd>& x) const {
+  return fromBox((x - center_).cwiseQuotient(half_width_).cwiseMax(-1.0).cwiseMin(1.0));
+}
+
 VectorXd LogCoordinates::calcSlopes(const Ref<const VectorXd>& v) const {
   VectorXd slopes = VectorXd::Ones(v.size());
   for (Index j = 0; j < v.size(); ++j) {

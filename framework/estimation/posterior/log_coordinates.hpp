@@ -20,6 +20,10 @@ class LogCoordinates {
 
   Eigen::VectorXd toBox(const Eigen::Ref<const Eigen::VectorXd>& v) const;    ///< v -> u
   Eigen::VectorXd fromBox(const Eigen::Ref<const Eigen::VectorXd>& u) const;  ///< u -> v; u within the bounds
+  Eigen::VectorXd toParameters(const Eigen::Ref<const Eigen::VectorXd>& v) const;  ///< in their units
+  /// Moved within the bounds.
+  Eigen::VectorXd fromParameters(const Eigen::Ref<const Eigen::VectorXd>& x) const;
+  const Eigen::VectorXd& getHalfWidths() const { return half_width_; }  ///< of the bounds
   /// du / dv of each parameter.
   Eigen::VectorXd calcSlopes(const Eigen::Ref<const Eigen::VectorXd>& v) const;
   /// log of the density in v of what is uniform in u, but for a summand: sum log du/dv.

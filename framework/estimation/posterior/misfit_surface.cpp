@@ -1,14 +1,68 @@
 #include "framework/estimation/posterior/misfit_surface.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "framework/experiment/model/parameter_box.hpp"
+#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+
+namespace {
+
+/// Adds a part's linear model, in half-widths of the bounds, to the surface's. Its descent holds the box as a
+/// normal distribution, too.
+void addPart(const LocalMisfit& local, const std::vector<Index>& unknown, LocalSurface& surface) {
+  surface.simulated = surface.simulated && local.status.ok && std::isfinite(local.chi_square);
+  if (!surface.simulated) {
+    return;
+  }
+  surface.chi_square += local.chi_square;
+  surface.information(unknown, unknown) += local.information;
+  surface.descent(unknown) += local.descent + kHalfWidthInformation * local.at;
+  const Index before = surface.residual.size();
+  surface.residual.conservativeResize(before + local.residual.size());
+  surface.residual.tail(local.residual.size()) = local.residual;
+}
+
+/// Residuals less the parameters that they, not the box, determine: trace of I (I + prior)^-1.
+double calcDegrees(const LocalSurface& surface) {
+  const Index u = surface.information.rows();
+  const MatrixXd hessian = surface.information + kHalfWidthInformation * MatrixXd::Identity(u, u);
+  const MatrixXd inverse =
+      linalg::solveCholesky(linalg::calcCholesky(hessian).lower, MatrixXd::Identity(u, u));
+  const double determined = inverse.cwiseProduct(surface.information).sum();
+  return std::max(1.0, static_cast<double>(surface.residual.size()) - determined);
+}
+
+}  // namespace
+
+int MisfitSurface::getSimulations() const {
+  int simulations = 0;
+  for (const MeasuredPart& part : parts_) {
+    simulations += part.misfit->getSimulations();
+  }
+  return simulations;
+}
+
+std::size_t MisfitSurface::countWindows() const {
+  std::size_t count = 0;
+  for (const MeasuredPart& part : parts_) {
+    count = std::max(count, part.model->getWindows().size());
+  }
+  return count;
+}
+
+void MisfitSurface::setWindow(std::size_t window) {
+  for (const MeasuredPart& part : parts_) {
+    const std::vector<GrowingWindow>& windows = part.model->getWindows();
+    part.misfit->setWindow(windows[std::min(window, windows.size() - 1)]);
+  }
+}
 
 MatrixXd MisfitSurface::toBox(const MatrixXd& points) const {
   MatrixXd box(points.rows(), points.cols());
@@ -19,29 +73,59 @@ MatrixXd MisfitSurface::toBox(const MatrixXd& points) const {
 }
 
 std::vector<LocalSurface> MisfitSurface::linearize(const MatrixXd& points) {
-  std::vector<LocalMisfit> local = misfit_.linearizeAll(toBox(points));
-  std::vector<LocalSurface> surfaces(local.size());
-  for (std::size_t i = 0; i < local.size(); ++i) {
-    LocalSurface& surface = surfaces[i];
-    surface.at = points.col(static_cast<Index>(i));
-    surface.simulated = local[i].status.ok && std::isfinite(local[i].chi_square);
-    if (!surface.simulated) {
-      continue;
+  const MatrixXd box = toBox(points);
+  const Index u = points.rows();
+  std::vector<LocalSurface> surfaces(static_cast<std::size_t>(points.cols()));
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    surfaces[i] = {
+        true, points.col(static_cast<Index>(i)), 0.0, 0.0, 0.0, MatrixXd::Zero(u, u), VectorXd::Zero(u), {}};
+  }
+  for (const MeasuredPart& part : parts_) {
+    const std::vector<LocalMisfit> local = part.misfit->linearizeAll(box(part.unknown, Eigen::all));
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+      addPart(local[i], part.unknown, surfaces[i]);
     }
-    const VectorXd slopes = coordinates_.calcSlopes(surface.at);
-    surface.chi_square = local[i].chi_square;
-    surface.degrees = local[i].calcDegrees();
-    surface.information = slopes.asDiagonal() * local[i].information * slopes.asDiagonal();
-    // the misfit's descent holds the box as a normal distribution, too
-    surface.residual = std::move(local[i].residual);
-    surface.descent = slopes.cwiseProduct(local[i].descent + kHalfWidthInformation * local[i].at);
+  }
+  for (LocalSurface& surface : surfaces) {
+    if (surface.simulated) {
+      surface.degrees = calcDegrees(surface);
+      const VectorXd slopes = coordinates_.calcSlopes(surface.at);
+      surface.information = slopes.asDiagonal() * surface.information * slopes.asDiagonal();
+      surface.descent = slopes.cwiseProduct(surface.descent);
+      addPrior(surface);
+    }
   }
   return surfaces;
 }
 
+void MisfitSurface::addPrior(LocalSurface& surface) const {
+  surface.misfit = surface.chi_square;
+  if (prior_.isUniform()) {
+    return;
+  }
+  const PriorMisfit prior = prior_.calcMisfit(coordinates_.toParameters(surface.at));
+  const VectorXd slopes = coordinates_.calcSlopes(surface.at).cwiseProduct(coordinates_.getHalfWidths());
+  surface.misfit += prior.misfit;
+  surface.information += slopes.asDiagonal() * prior.information * slopes.asDiagonal();
+  surface.descent += slopes.cwiseProduct(prior.descent);
+}
+
 VectorXd MisfitSurface::calcChiSquares(const MatrixXd& points) {
   const MatrixXd box = toBox(points);
-  return misfit_.evaluate(box) - kHalfWidthInformation * box.colwise().squaredNorm().transpose();
+  VectorXd sums = VectorXd::Zero(points.cols());
+  for (const MeasuredPart& part : parts_) {
+    const MatrixXd own = box(part.unknown, Eigen::all);
+    sums += part.misfit->evaluate(own) - kHalfWidthInformation * own.colwise().squaredNorm().transpose();
+  }
+  return sums;
+}
+
+VectorXd MisfitSurface::calcMisfits(const MatrixXd& points) {
+  VectorXd misfits = calcChiSquares(points);
+  for (Index i = 0; i < points.cols() && !prior_.isUniform(); ++i) {
+    misfits[i] += prior_.calcMisfit(coordinates_.toParameters(points.col(i))).misfit;
+  }
+  return misfits;
 }
 
 VectorXd MisfitSurface::calcLogPosteriors(const MatrixXd& points) {
@@ -56,7 +140,7 @@ VectorXd MisfitSurface::calcLogPosteriors(const MatrixXd& points) {
     logs(inside) = -0.5 * calcChiSquares(points(Eigen::all, inside));
   }
   for (const Index i : inside) {
-    logs[i] += coordinates_.calcLogUniform(points.col(i));
+    logs[i] += calcLogPrior(points.col(i));
   }
   return logs;
 }

@@ -5,48 +5,69 @@
 
 #include "framework/estimation/posterior/log_coordinates.hpp"
 #include "framework/estimation/refined/misfit.hpp"
+#include "framework/experiment/points/prior.hpp"
 
 namespace twinmap {
 
 /// chi-square and its linear model at a point, in LogCoordinates: with the whitened residual r and its
-/// derivatives -J, chi_square(at + step) ~ chi_square - 2 step' descent + step' information step.
+/// derivatives -J, and the prior's misfit beside it,
+///   misfit(at + step) ~ misfit - 2 step' descent + step' information step.
 struct LocalSurface {
   bool simulated = false;  ///< if not, the rest is empty
   Eigen::VectorXd at;      ///< u
   double chi_square = 0.0;
+  double misfit = 0.0;   ///< chi-square and that of the prior, which is 0 where it is uniform
   double degrees = 0.0;  ///< of freedom: residuals less the parameters that they determine
   Eigen::MatrixXd information;
   Eigen::VectorXd descent;
-  Eigen::VectorXd residual;  ///< whitened
+  Eigen::VectorXd residual;  ///< whitened; of one measurement after the other
 };
 
-/// How well the simulator explains one measurement, over the box in LogCoordinates. One thread.
+/// One measurement of those that a surface explains together.
+struct MeasuredPart {
+  Misfit* misfit;                     ///< of all unknown parameters of its trial
+  const RefinementModel* model;       ///< of its trial
+  std::vector<Eigen::Index> unknown;  ///< which of all unknown parameters these are
+};
+
+/// How well simulators explain one or several measurements of one machine, over the box of all unknown
+/// parameters in LogCoordinates. One thread.
 class MisfitSurface {
  public:
-  /// All must outlive the object; `misfit` is that of `model`, of all unknown parameters.
-  MisfitSurface(Misfit& misfit, const RefinementModel& model, const LogCoordinates& coordinates)
-      : misfit_(misfit), model_(model), coordinates_(coordinates) {}
+  /// Coordinates and prior, of all unknown parameters, and what the parts point to must outlive the object.
+  MisfitSurface(std::vector<MeasuredPart> parts, const LogCoordinates& coordinates, const Prior& prior)
+      : parts_(std::move(parts)), coordinates_(coordinates), prior_(prior) {}
 
   Eigen::Index getDimensions() const { return coordinates_.getCount(); }
-  int getSimulations() const { return misfit_.getSimulations(); }
-  Misfit& updMisfit() { return misfit_; }
-  const RefinementModel& getModel() const { return model_; }
+  int getSimulations() const;
   const LogCoordinates& getCoordinates() const { return coordinates_; }
+  const std::vector<MeasuredPart>& getParts() const { return parts_; }
 
-  /// At all columns of `points` (u x n), one batch with derivatives.
+  /// Of the parts' windows (RefinementModel::getWindows), as many as the one with the most has.
+  std::size_t countWindows() const;
+  /// Every part looks at its window of that number from now on, its last one where it has fewer.
+  void setWindow(std::size_t window);
+
+  /// At all columns of `points` (u x n), one batch of each part, with derivatives.
   std::vector<LocalSurface> linearize(const Eigen::MatrixXd& points);
-  /// chi-squares (n), infinite where a simulation fails; one batch. After linearize().
-  Eigen::VectorXd calcChiSquares(const Eigen::MatrixXd& points);
-  /// log of the posterior density (n) in these coordinates, but for a summand: normal noise, a prior that is
-  /// uniform in the parameters, -infinity outside the bounds, where nothing is simulated.
+  /// LocalSurface::misfit (n), infinite where a simulation fails; one batch of each part. After linearize().
+  Eigen::VectorXd calcMisfits(const Eigen::MatrixXd& points);
+  /// log of the posterior density (n) in these coordinates, but for a summand: normal noise, -infinity
+  /// outside the bounds, where nothing is simulated.
   Eigen::VectorXd calcLogPosteriors(const Eigen::MatrixXd& points);
+  /// log of the prior's density in these coordinates, but for a summand.
+  double calcLogPrior(const Eigen::VectorXd& point) const {
+    return coordinates_.calcLogUniform(point) + prior_.calcLogDensity(coordinates_.toParameters(point));
+  }
 
  private:
   Eigen::MatrixXd toBox(const Eigen::MatrixXd& points) const;
+  Eigen::VectorXd calcChiSquares(const Eigen::MatrixXd& points);
+  void addPrior(LocalSurface& surface) const;
 
-  Misfit& misfit_;
-  const RefinementModel& model_;
+  std::vector<MeasuredPart> parts_;
   const LogCoordinates& coordinates_;
+  const Prior& prior_;
 };
 
 }  // namespace twinmap

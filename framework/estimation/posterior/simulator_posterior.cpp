@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <numeric>
 
+#include "framework/estimation/posterior/marginal_surface.hpp"
 #include "framework/estimation/refined/acceptance.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -58,14 +61,14 @@ class Numbers {
 
 /// The shares of the basins by Laplace's approximation, half of all spread evenly: it is wrong where a basin
 /// is not a paraboloid.
-VectorXd calcShares(const std::vector<Basin>& basins, const LogCoordinates& coordinates) {
+VectorXd calcShares(const std::vector<Basin>& basins, const MisfitSurface& surface) {
   const auto count = static_cast<Index>(basins.size());
   VectorXd logs(count);
   for (Index k = 0; k < count; ++k) {
     const Basin& basin = basins[static_cast<std::size_t>(k)];
     const MatrixXd lower = linalg::calcCholesky(basin.covariance).lower;
     logs[k] = -0.5 * basin.local.chi_square + lower.diagonal().array().log().sum() +
-              coordinates.calcLogUniform(basin.local.at);
+              surface.calcLogPrior(basin.local.at);
   }
   const VectorXd weights = (logs.array() - logs.maxCoeff()).exp();
   return (0.5 * weights / weights.sum()).array() + 0.5 / static_cast<double>(count);
@@ -73,9 +76,8 @@ VectorXd calcShares(const std::vector<Basin>& basins, const LogCoordinates& coor
 
 /// Most draws as far from a basin's minimum as its linear model says, some twice and few four times as far,
 /// and few anywhere.
-BoxMixture proposeFirst(const std::vector<Basin>& basins, const LogCoordinates& coordinates) {
+BoxMixture proposeFirst(const std::vector<Basin>& basins, const VectorXd& shares) {
   constexpr double kNear = 0.7, kFar = 0.2, kFarthest = 0.05;
-  const VectorXd shares = calcShares(basins, coordinates);
   std::vector<importance::NormalPart> parts;
   for (std::size_t k = 0; k < basins.size(); ++k) {
     const double share = shares[static_cast<Index>(k)];
@@ -169,42 +171,111 @@ std::vector<PosteriorMode> collectModes(const std::vector<Basin>& basins,
   return modes;
 }
 
-/// Points (u x n, in the parameters' units) in LogCoordinates, moved within the bounds.
-MatrixXd toCoordinates(const SearchBox& box, const LogCoordinates& coordinates, const MatrixXd& points) {
-  MatrixXd at(coordinates.getCount(), points.cols());
+MatrixXd toCoordinates(const LogCoordinates& coordinates, const MatrixXd& points) {
+  MatrixXd at(points.rows(), points.cols());
   for (Index i = 0; i < points.cols(); ++i) {
-    at.col(i) = coordinates.fromBox(box.normalize(points.col(i)).cwiseMax(-1.0).cwiseMin(1.0));
+    at.col(i) = coordinates.fromParameters(points.col(i));
   }
   return at;
 }
 
-MatrixXd toParameters(const SearchBox& box, const LogCoordinates& coordinates, const MatrixXd& at) {
+MatrixXd toParameters(const LogCoordinates& coordinates, const MatrixXd& at) {
   MatrixXd points(at.rows(), at.cols());
   for (Index i = 0; i < at.cols(); ++i) {
-    points.col(i) = box.makePoint(coordinates.toBox(at.col(i))).head(at.rows());
+    points.col(i) = coordinates.toParameters(at.col(i));
   }
   return points;
 }
 
-void setBest(const BasinSearch& found, const SearchBox& box, const LogCoordinates& coordinates,
-             SimulatorPosterior& posterior) {
+/// The misfits of all measurements, and the surface that they make.
+class ProblemSurface {
+ public:
+  explicit ProblemSurface(const PosteriorProblem& problem)
+      : coordinates_(problem.unknown),
+        prior_(problem.unknown, problem.priors),
+        surface_(makeParts(problem), coordinates_, prior_) {}
+
+  MisfitSurface& upd() { return surface_; }
+  const LogCoordinates& getCoordinates() const { return coordinates_; }
+
+ private:
+  struct Part {
+    explicit Part(const MeasuredTrial& trial)
+        : box(trial.model->getUnknown(), {0, static_cast<Index>(trial.model->getUnknown().size())},
+              trial.held),
+          misfit(*trial.simulator, *trial.model, box, trial.features) {}
+
+    const SearchBox box;
+    Misfit misfit;
+  };
+
+  std::vector<MeasuredPart> makeParts(const PosteriorProblem& problem) {
+    std::vector<MeasuredPart> parts;
+    for (const MeasuredTrial& trial : problem.trials) {
+      parts_.push_back(std::make_unique<Part>(trial));
+      parts.push_back({&parts_.back()->misfit, trial.model, trial.unknown});
+    }
+    return parts;
+  }
+
+  const LogCoordinates coordinates_;
+  const Prior prior_;
+  std::vector<std::unique_ptr<Part>> parts_;
+  MisfitSurface surface_;
+};
+
+void setBest(const BasinSearch& found, const LogCoordinates& coordinates, SimulatorPosterior& posterior) {
   const Basin& best = found.basins.front();
-  posterior.best = toParameters(box, coordinates, best.local.at);
+  posterior.best = coordinates.toParameters(best.local.at);
   posterior.chi_square = best.local.chi_square;
+  posterior.misfit = best.local.misfit;
+  posterior.information = best.local.information;
   posterior.residual = best.local.residual;
   posterior.degrees = best.local.degrees;
   posterior.found_best = best.searches;
 }
 
-AdaptiveDraws drawFrom(MisfitSurface& surface, const BasinSearch& found,
+/// The basins as they are seen in the first `drawn` coordinates alone.
+std::vector<Basin> projectBasins(std::vector<Basin> basins, Index drawn) {
+  for (Basin& basin : basins) {
+    basin.local.at = VectorXd(basin.local.at.head(drawn));
+    basin.covariance = MatrixXd(basin.covariance.topLeftCorner(drawn, drawn));
+  }
+  return basins;
+}
+
+AdaptiveDraws drawFrom(MisfitSurface& surface, const BasinSearch& found, const std::vector<Basin>& projected,
                        const SimulatorPosteriorOptions& options) {
-  Numbers numbers(surface.getDimensions(), options);
+  const Index drawn = projected.front().local.at.size();
+  Numbers numbers(drawn, options);
   importance::AdaptiveOptions adaptive;
   adaptive.max_rounds = kMaxRounds;
+  std::vector<Index> kept(static_cast<std::size_t>(drawn));
+  std::iota(kept.begin(), kept.end(), Index{0});
+  std::optional<MarginalSurface> marginal;
+  if (drawn < surface.getDimensions()) {
+    marginal.emplace(surface, kept, found.basins);
+  }
   return importance::sampleAdaptively(
-      [&](const MatrixXd& points) { return surface.calcLogPosteriors(points); },
-      proposeFirst(found.basins, surface.getCoordinates()),
+      [&](const MatrixXd& points) {
+        return marginal ? marginal->calcLogPosteriors(points) : surface.calcLogPosteriors(points);
+      },
+      proposeFirst(projected, calcShares(found.basins, surface)),
       [&](int round) -> const RoundNumbers& { return numbers.get(round); }, adaptive);
+}
+
+/// Moments, draws and modes, of the first parameters, as many as `projected` has coordinates.
+void setDraws(const AdaptiveDraws& drawn, const std::vector<Basin>& projected,
+              const LogCoordinates& coordinates, SimulatorPosterior& posterior) {
+  posterior.weights = drawn.draws.weights;
+  posterior.draws = toParameters(coordinates, drawn.draws.points);
+  const importance::WeightedDraws draws{posterior.draws, posterior.weights};
+  posterior.mean = importance::calcMean(draws);
+  posterior.covariance = importance::calcCovariance(draws);
+  posterior.stddev = posterior.covariance.diagonal().cwiseSqrt();
+  const std::vector<std::size_t> groups = groupDraws(drawn.draws.points, posterior.weights, projected.size(),
+                                                     assign(drawn.draws.points, projected));
+  posterior.modes = collectModes(projected, groups, posterior.draws, posterior.weights);
 }
 
 }  // namespace
@@ -217,16 +288,13 @@ MatrixXd SimulatorPosterior::calcQuantiles(const VectorXd& probabilities) const 
   return importance::calcQuantiles({draws, weights}, probabilities);
 }
 
-SimulatorPosterior samplePosterior(Simulator& simulator, const RefinementModel& model,
-                                   const VectorXd& features, const VectorXd& held, const MatrixXd& given,
+SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const MatrixXd& given,
                                    const SimulatorPosteriorOptions& options) {
-  const std::vector<ParameterSpec>& unknown = model.getUnknown();
-  const SearchBox box(unknown, {0, static_cast<Index>(unknown.size())}, held);
-  const LogCoordinates coordinates(unknown);
-  Misfit misfit(simulator, model, box, features);
-  MisfitSurface surface(misfit, model, coordinates);
+  ProblemSurface whole(problem);
+  MisfitSurface& surface = whole.upd();
+  const LogCoordinates& coordinates = whole.getCoordinates();
   const BasinSearch found =
-      findBasins(surface, toCoordinates(box, coordinates, given), options.seed, options.search);
+      findBasins(surface, toCoordinates(coordinates, given), options.seed, options.search);
   SimulatorPosterior posterior;
   posterior.starts = found.starts;
   posterior.simulations = surface.getSimulations();
@@ -234,25 +302,29 @@ SimulatorPosterior samplePosterior(Simulator& simulator, const RefinementModel& 
     posterior.message = "no simulation within the bounds succeeded";
     return posterior;
   }
-  setBest(found, box, coordinates, posterior);
-  const AdaptiveDraws drawn = drawFrom(surface, found, options);
+  setBest(found, coordinates, posterior);
+  const std::vector<Basin> projected = projectBasins(found.basins, problem.drawn);
+  const AdaptiveDraws drawn = drawFrom(surface, found, projected, options);
   posterior.simulations = surface.getSimulations();
   posterior.effective_sample_size = drawn.effective_sample_size;
   posterior.pareto_shape = drawn.pareto_shape;
   posterior.message = drawn.findObstacle();
-  if (!posterior.isReliable()) {
-    return posterior;
+  if (posterior.isReliable()) {
+    const std::vector<ParameterSpec> kept(problem.unknown.begin(), problem.unknown.begin() + problem.drawn);
+    setDraws(drawn, projected, LogCoordinates(kept), posterior);
   }
-  posterior.weights = drawn.draws.weights;
-  posterior.draws = toParameters(box, coordinates, drawn.draws.points);
-  const importance::WeightedDraws draws{posterior.draws, posterior.weights};
-  posterior.mean = importance::calcMean(draws);
-  posterior.covariance = importance::calcCovariance(draws);
-  posterior.stddev = posterior.covariance.diagonal().cwiseSqrt();
-  const std::vector<std::size_t> groups = groupDraws(
-      drawn.draws.points, posterior.weights, found.basins.size(), assign(drawn.draws.points, found.basins));
-  posterior.modes = collectModes(found.basins, groups, posterior.draws, posterior.weights);
   return posterior;
+}
+
+SimulatorPosterior samplePosterior(Simulator& simulator, const RefinementModel& model,
+                                   const std::vector<PriorGroupSpec>& priors, const VectorXd& features,
+                                   const VectorXd& held, const MatrixXd& given,
+                                   const SimulatorPosteriorOptions& options) {
+  PosteriorProblem problem{model.getUnknown(), priors, {}, static_cast<Index>(model.getUnknown().size())};
+  std::vector<Index> all(problem.unknown.size());
+  std::iota(all.begin(), all.end(), Index{0});
+  problem.trials.push_back({&simulator, &model, features, held, std::move(all)});
+  return samplePosterior(problem, given, options);
 }
 
 }  // namespace twinmap

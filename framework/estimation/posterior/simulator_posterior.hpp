@@ -17,17 +17,18 @@ struct PosteriorMode {
   double chi_square = 0.0;  ///< at its minimum
 };
 
-/// The posterior of the unknown parameters given one measurement, by simulation alone: normal noise, a prior
-/// that is uniform within the bounds. u parameters in their units. Moments, quantiles and draws are there
-/// only where it is reliable.
+/// The posterior of unknown parameters given measurements, by simulation alone: normal noise, a prior within
+/// the bounds. u parameters in their units. Moments, quantiles and draws are there only where it is reliable.
 struct SimulatorPosterior {
-  Eigen::VectorXd mean, stddev;            ///< u
-  Eigen::MatrixXd covariance;              ///< u x u
-  Eigen::MatrixXd draws;                   ///< u x n, weighted by `weights`
-  Eigen::VectorXd weights;                 ///< n, sum 1
-  Eigen::VectorXd best;                    ///< u, the least chi-square; there where anything was simulated
-  std::vector<PosteriorMode> modes;        ///< the heaviest first
-  Eigen::VectorXd residual;                ///< there, whitened
+  Eigen::VectorXd mean, stddev;      ///< u
+  Eigen::MatrixXd covariance;        ///< u x u
+  Eigen::MatrixXd draws;             ///< u x n, weighted by `weights`
+  Eigen::VectorXd weights;           ///< n, sum 1
+  Eigen::VectorXd best;              ///< all unknown, the least misfit; there where anything was simulated
+  std::vector<PosteriorMode> modes;  ///< the heaviest first
+  double misfit = 0.0;               ///< there: chi-square and that of the prior
+  Eigen::MatrixXd information;       ///< there, of all unknown, in LogCoordinates
+  Eigen::VectorXd residual;          ///< there, whitened; of one measurement after the other
   double chi_square = 0.0, degrees = 0.0;  ///< of the best point; 0 degrees where nothing could be simulated
   double effective_sample_size = 0.0;
   double pareto_shape = 0.0;
@@ -43,6 +44,25 @@ struct SimulatorPosterior {
   Eigen::MatrixXd calcQuantiles(const Eigen::VectorXd& probabilities) const;
 };
 
+/// One measurement, and what simulates its trial.
+struct MeasuredTrial {
+  Simulator* simulator;
+  const RefinementModel* model;
+  Eigen::VectorXd features;           ///< d, finite
+  Eigen::VectorXd held;               ///< a point of the trial's sampled box, whose known inputs are kept
+  std::vector<Eigen::Index> unknown;  ///< which of all unknown parameters the trial's are, in its order
+};
+
+/// What is known of a machine: one or several measurements, and what was known before.
+struct PosteriorProblem {
+  /// u: the machine's parameters, then what each measurement leaves unknown besides.
+  std::vector<ParameterSpec> unknown;
+  std::vector<PriorGroupSpec> priors;  ///< of several of them together
+  std::vector<MeasuredTrial> trials;
+  /// Of the unknown parameters, the first that are drawn; the others are integrated out (MarginalSurface).
+  Eigen::Index drawn = 0;
+};
+
 struct SimulatorPosteriorOptions {
   int draws = 512;  ///< of a round; the error of a mean is then below a tenth of a standard deviation
   std::uint64_t seed = 1;
@@ -51,11 +71,15 @@ struct SimulatorPosteriorOptions {
 
 /// Finds every basin (findBasins), then samples all of them together (importance::sampleAdaptively) in
 /// LogCoordinates, from a mixture of what the linear models in the basins say. Without a map or a surrogate.
-/// features: d, finite; held: a point of the sampled box whose known inputs are kept; given: points of the
-/// unknown parameters (u x n, within the bounds) to search from as well. The result depends on neither
+/// given: points of the unknown parameters (u x n) to search from as well. The result depends on neither
 /// threads nor other measurements. Cost: some 2000 simulations for the basins and `draws` a round.
+SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Eigen::MatrixXd& given,
+                                   const SimulatorPosteriorOptions& options);
+
+/// The same of one measurement, of all unknown parameters of `model`.
 SimulatorPosterior samplePosterior(Simulator& simulator, const RefinementModel& model,
-                                   const Eigen::VectorXd& features, const Eigen::VectorXd& held,
-                                   const Eigen::MatrixXd& given, const SimulatorPosteriorOptions& options);
+                                   const std::vector<PriorGroupSpec>& priors, const Eigen::VectorXd& features,
+                                   const Eigen::VectorXd& held, const Eigen::MatrixXd& given,
+                                   const SimulatorPosteriorOptions& options);
 
 }  // namespace twinmap

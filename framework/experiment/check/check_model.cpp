@@ -8,6 +8,7 @@
 #include "framework/experiment/expression/output_units.hpp"
 #include "framework/experiment/model/joint_type.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/experiment/points/prior.hpp"
 
 namespace twinmap {
 namespace {
@@ -26,6 +27,16 @@ void checkRelativeTo(const ParameterSpec& parameter) {
                           "has bounds that contain 0, where an error relative to the value is undefined; "
                           "leave out 'relative_to'");
   }
+}
+
+void checkPriors(const ModelSpec& model) {
+  for (const ParameterSpec& input : model.inputs) {
+    if (input.prior) {
+      throw ExperimentError(input.name.where, input.name.text,
+                            "is a known input, given with each measurement, so that it has no prior");
+    }
+  }
+  Prior(collectUnknown(model), model.priors);
 }
 
 std::vector<Coordinate> collectCoordinates(const SystemSpec& system) {
@@ -208,6 +219,7 @@ class ModelCheck {
     for (const ParameterSpec& parameter : model_.parameters) {
       checkRelativeTo(parameter);
     }
+    checkPriors(model_);
   }
 
   void declareConstants() {

@@ -272,6 +272,11 @@ std::string makeJsonSchema() {
   schema.update(makeStructSchema<ExperimentSpec>());
   schema["properties"]["sweep"] = makeStructSchema<SweepSpec>();
   schema["properties"]["sweep"]["description"] = "repeats the experiment with other values";
+  schema["properties"]["trials"] = {
+      {"type", "object"},
+      {"additionalProperties", {{"type", "object"}}},
+      {"description", "several experiments with one machine: sections that differ, by name of the trial"}};
+  schema["properties"]["trial"] = {{"type", "string"}, {"description", "the one trial that is meant"}};
   constexpr int kIndent = 2;
   return formatJson(schema, kIndent) + "\n";
 }

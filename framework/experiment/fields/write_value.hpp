@@ -31,6 +31,9 @@ YamlNode writeValue(const FreeValues& value);
 inline bool isGiven(const ComponentCount& value) {
   return value.number.has_value();
 }
+inline bool isGiven(const Bounds& value) {
+  return value.isGiven();
+}
 inline bool isGiven(const Expression& value) {
   return !value.text.empty();
 }

@@ -8,6 +8,8 @@ namespace twinmap {
 struct Bounds {
   double lower = 0.0, upper = 0.0;
   SourceLocation where;
+
+  bool isGiven() const { return lower < upper; }
 };
 
 }  // namespace twinmap

@@ -17,6 +17,7 @@ struct ModelSpec {
   std::vector<ParameterSpec> parameters;  ///< updating: to be inferred from a response
   std::vector<ParameterSpec> nuisance;    ///< unknown too, but not inferred: initial state, offset, friction
   std::vector<ParameterSpec> inputs;      ///< known settings of the set-up, given with a measurement
+  std::vector<PriorGroupSpec> priors;     ///< of several unknown parameters together
   std::vector<ConstantSpec> constants;
   SystemSpec system;                 ///< without bodies where `source` is the model
   std::optional<SourceSpec> source;  ///< a model from elsewhere

@@ -6,6 +6,7 @@
 #include "framework/experiment/expression/expression.hpp"
 #include "framework/experiment/fields/fields.hpp"
 #include "framework/experiment/model/bounds_spec.hpp"
+#include "framework/experiment/model/prior_spec.hpp"
 
 namespace twinmap {
 
@@ -27,6 +28,7 @@ struct ParameterSpec {
   std::string description;
   RelativeTo relative_to = RelativeTo::kAutomatic;  ///< of an updating parameter
   std::optional<Name> variable;                     ///< of a model from elsewhere; default: the name
+  std::optional<PriorSpec> prior{};                 ///< default: uniform within the bounds
 };
 
 /// Whether the bounds contain 0, where an error relative to the value is undefined.
@@ -41,13 +43,20 @@ inline bool isRelativeToRange(const ParameterSpec& parameter) {
 
 template <class Fields>
 void describe(Fields& f, ParameterSpec& s) {
-  f.required("bounds", s.bounds, "[lower, upper]; samples lie within");
+  f.optional("bounds", s.bounds,
+             "[lower, upper], within which samples lie; default: the prior's range of .9999");
+  f.optional("prior", s.prior,
+             "what is known of it before a measurement; default: uniform within the bounds");
   f.optional("unit", s.unit, "coherent SI unit, such as N s/m; shown in tables and checked where it is used");
   f.optional("description", s.description, "human-readable");
   f.optional("relative_to", s.relative_to,
              "what relative errors are relative to: the value, or the range (upper - lower); automatic: the "
              "value, or the range where the bounds contain 0");
   f.optional("variable", s.variable, "its name in the FMU or program; default: its own");
+  f.rule(s.bounds.isGiven() || (s.prior && s.prior->hasRange()),
+         "must give 'bounds', or a normal, lognormal or student_t prior");
+  f.rule(!s.prior || !s.prior->isOfLogarithm() || !s.bounds.isGiven() || s.bounds.lower > 0.0,
+         "must have bounds above 0 where the prior is of the logarithm");
 }
 
 /// A named value of the model; may use parameters of any kind and the constants declared before it.

@@ -70,7 +70,8 @@ Evaluation evaluateEstimates(const std::vector<ParameterSpec>& parameters, const
   evaluation.limit_stddev = limit_stddev;
   evaluation.metrics = calcMetrics(parameters, truth, estimates, limit_stddev);
   evaluation.joint = calcJointMetrics(truth, estimates);
-  for (const auto& row : calcPit(truth, estimates).rowwise()) {
+  const MatrixXd pit = calcPit(truth, estimates);
+  for (const auto& row : pit.rowwise()) {
     evaluation.pit_counts.push_back(countPit(row.transpose()));
   }
   evaluation.predictions = std::move(estimates);

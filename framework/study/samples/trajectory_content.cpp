@@ -134,8 +134,9 @@ YamlNode writeResponse(const ResponseLayout& layout) {
 
 std::string writeTrajectoryContent(const ModelSpec& model, const ResponseLayout& layout) {
   // A new member must be written here, or left out on purpose: the binding then no longer compiles.
-  const auto& [parameters, nuisance, inputs, constants, system, source, excitation, initial, outputs,
+  const auto& [parameters, nuisance, inputs, priors, constants, system, source, excitation, initial, outputs,
                simulation] = model;
+  static_cast<void>(priors);  // no response depends on what is known of its parameters
   const std::vector<ParameterSpec> sampled = collectSampled(model);  // all three; which is which is no matter
   FieldWriter content;
   content.required("parameters", collectNames(sampled), "");

@@ -146,6 +146,8 @@ const std::vector<Described> kElementTables{
     {"system", "element", "system"},
     {"excitation", "terms", "excitation.*"},
     {"features", "kind of feature", "features.[]"},
+    {"parameters", "kind of `prior`", "parameters.*.prior"},
+    {"parameters", "entry of `priors`", "priors.[]"},
 };
 
 const std::vector<Described> kNameTables{

@@ -22,7 +22,7 @@ SimulatorPosterior sample(Problem& problem, const VectorXd& features, int draws 
   const auto u = static_cast<Index>(problem.model.getUnknown().size());
   SimulatorPosteriorOptions options;
   options.draws = draws;
-  return samplePosterior(problem.simulator, problem.model, features,
+  return samplePosterior(problem.simulator, problem.model, {}, features,
                          held.size() > 0 ? held : VectorXd(VectorXd::Zero(u)), MatrixXd(u, 0), options);
 }
 

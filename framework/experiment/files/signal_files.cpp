@@ -1,4 +1,4 @@
-#include "framework/experiment/signal_files.hpp"
+#include "framework/experiment/files/signal_files.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -33,6 +33,11 @@ void visitNodes(YamlNode& node, const char* const* keys, const char* const* end,
 }  // namespace
 
 void resolveSignalFiles(YamlNode& root, const std::string& path) {
+  if (YamlNode* trials = root.find("trials")) {
+    for (YamlEntry& trial : trials->entries) {
+      resolveSignalFiles(trial.value, path);
+    }
+  }
   const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
   const auto resolve = [&](YamlNode& file) {
     if (file.kind == YamlNode::Kind::kScalar && !file.scalar.empty()) {

@@ -1,0 +1,265 @@
+#include "framework/experiment/points/prior.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <boost/math/distributions/beta.hpp>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <limits>
+
+#include "kernels/linalg/decompositions.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+/// s of a beta distribution; its derivatives are infinite at the bounds themselves.
+double calcShare(const Bounds& bounds, double x) {
+  constexpr double kNearest = 1e-9;
+  return std::clamp((x - bounds.lower) / (bounds.upper - bounds.lower), kNearest, 1.0 - kNearest);
+}
+
+/// The quantile of a continuous distribution that is cut off at the bounds.
+template <class Distribution>
+double calcTruncatedQuantile(const Distribution& distribution, double lower, double upper,
+                             double probability) {
+  const double below = boost::math::cdf(distribution, lower), until = boost::math::cdf(distribution, upper);
+  if (below > 0.5) {  // its upper tail keeps its digits by its complement
+    const double above = boost::math::cdf(boost::math::complement(distribution, lower));
+    const double beyond = boost::math::cdf(boost::math::complement(distribution, upper));
+    const double tail = above - probability * (above - beyond);
+    return tail > 0.0
+               ? std::clamp(boost::math::quantile(boost::math::complement(distribution, tail)), lower, upper)
+               : upper;
+  }
+  const double share = below + probability * (until - below);
+  return share > 0.0 ? std::clamp(boost::math::quantile(distribution, share), lower, upper) : lower;
+}
+
+/// misfit, half its negative slope, half its curvature where that is positive.
+struct MarginalMisfit {
+  double misfit, descent, information;
+};
+
+/// -2 log density in the parameter; log-uniform in the logarithm, where it is level.
+MarginalMisfit calcMarginal(const PriorSpec& prior, const Bounds& bounds, double x) {
+  if (const auto* beta = std::get_if<BetaPrior>(&prior.kind)) {
+    const double s = calcShare(bounds, x), width = bounds.upper - bounds.lower;
+    const double a = beta->alpha - 1.0, b = beta->beta - 1.0;
+    return {-2.0 * (a * std::log(s) + b * std::log1p(-s)), (a / s - b / (1.0 - s)) / width,
+            (std::max(a, 0.0) / (s * s) + std::max(b, 0.0) / ((1.0 - s) * (1.0 - s))) / (width * width)};
+  }
+  if (const auto* student = std::get_if<StudentPrior>(&prior.kind)) {
+    const double t = (x - student->location) / student->scale, n = student->degrees;
+    const double weight = (n + 1.0) / (n + t * t);  // that of the same distance from a normal distribution
+    return {(n + 1.0) * std::log1p(t * t / n), -weight * t / student->scale,
+            weight / (student->scale * student->scale)};
+  }
+  return {0.0, 0.0, 0.0};
+}
+
+double calcLogMarginal(const PriorSpec& prior, const Bounds& bounds, double x) {
+  const double log_jacobian =
+      std::holds_alternative<LogUniformPrior>(prior.kind) ? -std::log(std::abs(x)) : 0.0;
+  return -0.5 * calcMarginal(prior, bounds, x).misfit + log_jacobian;
+}
+
+double calcMarginalQuantile(const PriorSpec& prior, const Bounds& bounds, double probability) {
+  if (const auto* beta = std::get_if<BetaPrior>(&prior.kind)) {
+    const boost::math::beta_distribution<> distribution(beta->alpha, beta->beta);
+    return bounds.lower + (bounds.upper - bounds.lower) * boost::math::quantile(distribution, probability);
+  }
+  if (const auto* student = std::get_if<StudentPrior>(&prior.kind)) {
+    const boost::math::students_t_distribution<> distribution(student->degrees);
+    const auto standardize = [&](double x) { return (x - student->location) / student->scale; };
+    return student->location + student->scale * calcTruncatedQuantile(distribution, standardize(bounds.lower),
+                                                                      standardize(bounds.upper), probability);
+  }
+  return bounds.lower * std::pow(bounds.upper / bounds.lower, probability);
+}
+
+Index findParameter(const std::vector<ParameterSpec>& unknown, const Name& name) {
+  const auto found = std::find_if(unknown.begin(), unknown.end(),
+                                  [&](const ParameterSpec& p) { return p.name.text == name.text; });
+  return found == unknown.end() ? -1 : found - unknown.begin();
+}
+
+}  // namespace
+
+Prior::Prior(const std::vector<ParameterSpec>& unknown, const std::vector<PriorGroupSpec>& groups) {
+  for (std::size_t j = 0; j < unknown.size(); ++j) {
+    bounds_.push_back(unknown[j].bounds);
+    addMarginal(static_cast<Index>(j), unknown[j].prior);
+  }
+  correlation_ = MatrixXd::Identity(static_cast<Index>(normals_.size()), static_cast<Index>(normals_.size()));
+  for (const PriorGroupSpec& group : groups) {
+    join(unknown, group);
+  }
+  const linalg::Cholesky cholesky = linalg::calcCholesky(correlation_);
+  if (!normals_.empty() && !cholesky.positive_definite) {
+    throw ExperimentError(groups.empty() ? SourceLocation{} : groups.front().where, "",
+                          "must have a covariance that is positive definite, together with the other priors");
+  }
+  lower_ = normals_.empty() ? correlation_ : cholesky.lower;
+}
+
+void Prior::addMarginal(Index parameter, const std::optional<PriorSpec>& prior) {
+  if (!prior) {
+    return;
+  }
+  if (const auto* normal = std::get_if<NormalPrior>(&prior->kind)) {
+    normals_.push_back({parameter, false, normal->mean, normal->stddev});
+  } else if (const auto* lognormal = std::get_if<LognormalPrior>(&prior->kind)) {
+    normals_.push_back({parameter, true, std::log(lognormal->median), std::log(lognormal->factor)});
+  } else {
+    others_.push_back({parameter, *prior});
+  }
+}
+
+void Prior::join(const std::vector<ParameterSpec>& unknown, const PriorGroupSpec& group) {
+  const auto find_normal = [&](const Name& name) {
+    const Index parameter = findParameter(unknown, name);
+    const auto found = std::find_if(normals_.begin(), normals_.end(),
+                                    [&](const Normal& normal) { return normal.parameter == parameter; });
+    if (found == normals_.end()) {
+      throw ExperimentError(name.where, name.text,
+                            "must be an unknown parameter with a normal or lognormal prior to be correlated");
+    }
+    return static_cast<Index>(found - normals_.begin());
+  };
+  if (const auto* pair = std::get_if<CorrelatedPriors>(&group.kind)) {
+    const Index a = find_normal(pair->names[0]), b = find_normal(pair->names[1]);
+    correlation_(a, b) = correlation_(b, a) = pair->correlation;
+  }
+  if (const auto* joint = std::get_if<JointNormalPrior>(&group.kind)) {
+    const auto n = static_cast<Index>(joint->names.size()), before = static_cast<Index>(normals_.size());
+    const MatrixXd covariance = Eigen::Map<const MatrixXd>(joint->covariance.data(), n, n);
+    for (Index k = 0; k < n; ++k) {
+      const Name& name = joint->names[static_cast<std::size_t>(k)];
+      const Index parameter = findParameter(unknown, name);
+      if (parameter < 0 || unknown[static_cast<std::size_t>(parameter)].prior || !(covariance(k, k) > 0.0)) {
+        throw ExperimentError(
+            name.where, name.text,
+            "must be an unknown parameter without a prior of its own, with a variance above 0");
+      }
+      normals_.push_back(
+          {parameter, false, joint->mean[static_cast<std::size_t>(k)], std::sqrt(covariance(k, k))});
+    }
+    MatrixXd larger = MatrixXd::Identity(before + n, before + n);
+    larger.topLeftCorner(before, before) = correlation_;
+    const VectorXd scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
+    larger.bottomRightCorner(n, n) = scale.asDiagonal() * covariance * scale.asDiagonal();
+    correlation_ = larger;
+  }
+}
+
+VectorXd Prior::standardize(const VectorXd& x) const {
+  VectorXd z(static_cast<Index>(normals_.size()));
+  for (Index k = 0; k < z.size(); ++k) {
+    const Normal& normal = normals_[static_cast<std::size_t>(k)];
+    z[k] = normal.standardize(x[normal.parameter]);
+  }
+  return z;
+}
+
+double Prior::calcLogDensity(const VectorXd& x) const {
+  double log_density = 0.0;
+  if (!normals_.empty()) {
+    log_density -= 0.5 * linalg::solveLower(lower_, standardize(x)).squaredNorm();
+  }
+  for (const Normal& normal : normals_) {
+    log_density -= normal.of_logarithm ? std::log(x[normal.parameter]) : 0.0;
+  }
+  for (const Other& other : others_) {
+    log_density +=
+        calcLogMarginal(other.prior, bounds_[static_cast<std::size_t>(other.parameter)], x[other.parameter]);
+  }
+  return log_density;
+}
+
+PriorMisfit Prior::calcMisfit(const VectorXd& x) const {
+  PriorMisfit prior{0.0, VectorXd::Zero(x.size()), MatrixXd::Zero(x.size(), x.size())};
+  if (!normals_.empty()) {
+    const auto n = static_cast<Index>(normals_.size());
+    MatrixXd slopes = MatrixXd::Zero(n, x.size());
+    for (Index k = 0; k < n; ++k) {
+      const Normal& normal = normals_[static_cast<std::size_t>(k)];
+      slopes(k, normal.parameter) = normal.calcSlope(x[normal.parameter]);
+    }
+    const VectorXd residual = linalg::solveLower(lower_, standardize(x));
+    slopes = linalg::solveLower(lower_, slopes);
+    prior.misfit = residual.squaredNorm();
+    prior.descent = -slopes.transpose() * residual;
+    prior.information = slopes.transpose() * slopes;
+  }
+  for (const Other& other : others_) {
+    const Index j = other.parameter;
+    const MarginalMisfit marginal = calcMarginal(other.prior, bounds_[static_cast<std::size_t>(j)], x[j]);
+    prior.misfit += marginal.misfit;
+    prior.descent[j] += marginal.descent;
+    prior.information(j, j) += marginal.information;
+  }
+  return prior;
+}
+
+VectorXd Prior::calcPoint(const VectorXd& unit) const {
+  VectorXd x(unit.size());
+  for (Index j = 0; j < unit.size(); ++j) {
+    const Bounds& bounds = bounds_[static_cast<std::size_t>(j)];
+    x[j] = bounds.lower + unit[j] * (bounds.upper - bounds.lower);
+  }
+  for (const Other& other : others_) {
+    x[other.parameter] = calcMarginalQuantile(other.prior, bounds_[static_cast<std::size_t>(other.parameter)],
+                                              unit[other.parameter]);
+  }
+  const boost::math::normal_distribution<> standard;
+  VectorXd independent(static_cast<Index>(normals_.size()));
+  for (Index k = 0; k < independent.size(); ++k) {
+    const Normal& normal = normals_[static_cast<std::size_t>(k)];
+    const Bounds& bounds = bounds_[static_cast<std::size_t>(normal.parameter)];
+    const double mean = lower_.row(k).head(k).dot(independent.head(k)), spread = lower_(k, k);
+    independent[k] =
+        calcTruncatedQuantile(standard, (normal.standardize(bounds.lower) - mean) / spread,
+                              (normal.standardize(bounds.upper) - mean) / spread, unit[normal.parameter]);
+    const double value = normal.mean + normal.stddev * (mean + spread * independent[k]);
+    x[normal.parameter] =
+        std::clamp(normal.of_logarithm ? std::exp(value) : value, bounds.lower, bounds.upper);
+  }
+  return x;
+}
+
+VectorXd Prior::calcStddevs() const {
+  constexpr Index kPoints =
+      512;  // equally likely ones; those of a normal distribution have 0.2 % less spread
+  Prior alone = *this;
+  alone.lower_.setIdentity();
+  MatrixXd points(static_cast<Index>(bounds_.size()), kPoints);
+  for (Index i = 0; i < kPoints; ++i) {
+    points.col(i) =
+        alone.calcPoint(VectorXd::Constant(points.rows(), (static_cast<double>(i) + 0.5) / kPoints));
+  }
+  const VectorXd mean = points.rowwise().mean();
+  return ((points.colwise() - mean).rowwise().squaredNorm() / static_cast<double>(kPoints)).cwiseSqrt();
+}
+
+Bounds calcPriorRange(const PriorSpec& prior) {
+  constexpr double kTail = 0.5e-4, kNormal = 3.8905918864131;  // of the standard normal distribution
+  if (const auto* normal = std::get_if<NormalPrior>(&prior.kind)) {
+    return {normal->mean - kNormal * normal->stddev, normal->mean + kNormal * normal->stddev, {}};
+  }
+  if (const auto* lognormal = std::get_if<LognormalPrior>(&prior.kind)) {
+    const double factor = std::pow(lognormal->factor, kNormal);
+    return {lognormal->median / factor, lognormal->median * factor, {}};
+  }
+  const StudentPrior& student = std::get<StudentPrior>(prior.kind);
+  const double reach = boost::math::quantile(
+      boost::math::complement(boost::math::students_t_distribution<>(student.degrees), kTail));
+  return {student.location - reach * student.scale, student.location + reach * student.scale, {}};
+}
+
+}  // namespace twinmap

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "framework/experiment/model/parameter_spec.hpp"
+
+namespace twinmap {
+
+/// -2 log of a prior's density at a point, as a misfit with a linear model, as chi-square has one:
+/// misfit(at + step) ~ misfit - 2 step' descent + step' information step.
+struct PriorMisfit {
+  double misfit = 0.0;          ///< 0 where the prior is uniform
+  Eigen::VectorXd descent;      ///< u
+  Eigen::MatrixXd information;  ///< u x u, positive semidefinite
+};
+
+/// What is known of the unknown parameters before a measurement: a distribution of each within its bounds,
+/// some of them jointly normal (or their logarithms). Immutable.
+class Prior {
+ public:
+  /// unknown: u parameters. Throws ExperimentError for a group that names others, or parameters whose priors
+  /// it cannot join, and for a covariance that is not positive definite.
+  Prior(const std::vector<ParameterSpec>& unknown, const std::vector<PriorGroupSpec>& groups);
+
+  /// Whether every parameter is uniform within its bounds.
+  bool isUniform() const { return others_.empty() && normals_.empty(); }
+
+  /// log of the density at x (u, within the bounds, in the parameters' units), but for a summand.
+  double calcLogDensity(const Eigen::VectorXd& x) const;
+
+  /// The misfit of the density in the logarithm for lognormal and log-uniform priors, in the parameter for
+  /// the others, so that the most probable point of a lognormal prior is its median.
+  PriorMisfit calcMisfit(const Eigen::VectorXd& x) const;
+
+  /// The point of the prior (u) at a point of the unit cube (u): the quantiles of each parameter, one after
+  /// the other given those before it where they are correlated. Uniform points give draws of the prior;
+  /// correlated ones only about where bounds cut off a part of them.
+  Eigen::VectorXd calcPoint(const Eigen::VectorXd& unit) const;
+
+  /// Standard deviation of each parameter (u) within its bounds.
+  Eigen::VectorXd calcStddevs() const;
+
+ private:
+  /// Normal, or of a normal logarithm.
+  struct Normal {
+    Eigen::Index parameter = 0;
+    bool of_logarithm = false;
+    double mean = 0.0, stddev = 1.0;
+
+    double standardize(double x) const { return ((of_logarithm ? std::log(x) : x) - mean) / stddev; }
+    double calcSlope(double x) const { return 1.0 / ((of_logarithm ? x : 1.0) * stddev); }
+  };
+  struct Other {
+    Eigen::Index parameter = 0;
+    PriorSpec prior;
+  };
+
+  void addMarginal(Eigen::Index parameter, const std::optional<PriorSpec>& prior);
+  void join(const std::vector<ParameterSpec>& unknown, const PriorGroupSpec& group);
+  Eigen::VectorXd standardize(const Eigen::VectorXd& x) const;
+
+  std::vector<Bounds> bounds_;
+  std::vector<Normal> normals_;  ///< correlated or not
+  std::vector<Other> others_;    ///< neither uniform nor normal
+  Eigen::MatrixXd correlation_;  ///< of the standardized normal ones
+  Eigen::MatrixXd lower_;        ///< its Cholesky factor
+};
+
+/// The central interval of probability .9999: the bounds of a parameter that states none. Of a normal,
+/// lognormal or Student prior, which have a range of their own (PriorSpec::hasRange).
+Bounds calcPriorRange(const PriorSpec& prior);
+
+}  // namespace twinmap

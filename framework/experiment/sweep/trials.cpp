@@ -1,0 +1,106 @@
+#include "framework/experiment/sweep/trials.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "framework/base/text/nearest_name.hpp"
+
+namespace twinmap {
+namespace {
+
+constexpr const char* kTrials = "trials";
+constexpr const char* kTrial = "trial";
+
+/// What may differ between experiments with one machine.
+constexpr std::array kOwnSections = {"excitation", "initial",     "outputs",   "features",
+                                     "noise",      "nuisance",    "inputs",    "constants",
+                                     "simulation", "measurement", "transform", "description"};
+
+void eraseEntry(YamlNode& map, const std::string& key) {
+  map.entries.erase(std::remove_if(map.entries.begin(), map.entries.end(),
+                                   [&](const YamlEntry& entry) { return entry.key == key; }),
+                    map.entries.end());
+}
+
+void requireOwnSection(const YamlEntry& section) {
+  const std::vector<std::string> names(kOwnSections.begin(), kOwnSections.end());
+  if (std::find(names.begin(), names.end(), section.key) == names.end()) {
+    throw ExperimentError(section.key_where, section.key,
+                          "is not a section that a trial may have of its own (" + listNames(names) +
+                              "); the machine and its parameters are shared by all trials");
+  }
+}
+
+Trial makeTrial(const YamlNode& base, const YamlEntry& entry) {
+  if (entry.value.kind != YamlNode::Kind::kMap) {
+    throw ExperimentError(entry.key_where, entry.key,
+                          "must be a map of the sections that are this trial's own");
+  }
+  Trial trial{entry.key, base};
+  for (const YamlEntry& section : entry.value.entries) {
+    requireOwnSection(section);
+    eraseEntry(trial.tree, section.key);
+    trial.tree.entries.push_back(section);
+  }
+  return trial;
+}
+
+/// The value that `trial` has, or would have first in a sweep; null without one.
+const YamlNode* findChoice(const YamlNode& root) {
+  if (const YamlNode* chosen = root.find(kTrial)) {
+    return chosen;
+  }
+  const YamlNode* sweep = root.find("sweep");
+  const YamlNode* over = sweep != nullptr ? sweep->find("over") : nullptr;
+  const YamlNode* swept = over != nullptr ? over->find(kTrial) : nullptr;
+  return swept != nullptr && !swept->items.empty() ? &swept->items.front() : nullptr;
+}
+
+}  // namespace
+
+std::vector<Trial> expandTrials(const YamlNode& root) {
+  const YamlNode* trials = root.find(kTrials);
+  if (trials == nullptr) {
+    return {{"", root}};
+  }
+  if (trials->kind != YamlNode::Kind::kMap || trials->entries.empty()) {
+    throw ExperimentError(trials->where, describeValue(*trials),
+                          "must be a map from names of trials to sections");
+  }
+  YamlNode base = root;
+  eraseEntry(base, kTrials);
+  eraseEntry(base, kTrial);
+  std::vector<Trial> expanded;
+  for (const YamlEntry& entry : trials->entries) {
+    expanded.push_back(makeTrial(base, entry));
+  }
+  return expanded;
+}
+
+YamlNode selectTrial(const YamlNode& root) {
+  if (root.find(kTrials) == nullptr) {
+    return root;
+  }
+  std::vector<Trial> trials = expandTrials(root);
+  std::vector<std::string> names;
+  for (const Trial& trial : trials) {
+    names.push_back(trial.name);
+  }
+  const YamlNode* chosen = findChoice(root);
+  if (chosen == nullptr) {
+    throw ExperimentError(root.find(kTrials)->where, "",
+                          fmt::format("describes {} trials; choose one (trial={}) or run each (trial={})",
+                                      names.size(), names.front(), fmt::join(names, ",")));
+  }
+  const auto found = std::find(names.begin(), names.end(), chosen->scalar);
+  if (found == names.end()) {
+    throw ExperimentError(
+        chosen->where, chosen->scalar,
+        "must be one of the trials " + listNames(names) + suggestName(chosen->scalar, names));
+  }
+  return std::move(trials[static_cast<std::size_t>(found - names.begin())].tree);
+}
+
+}  // namespace twinmap

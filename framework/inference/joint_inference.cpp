@@ -1,0 +1,271 @@
+#include "framework/inference/joint_inference.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <numeric>
+
+#include "framework/base/text/nearest_name.hpp"
+#include "framework/data/measurement/signal_experiment.hpp"
+#include "framework/experiment/sweep/trials.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+/// The joint search begins where the recordings alone ended; so few starts of its own suffice.
+constexpr int kOwnStarts = 8;
+/// With more unknown parameters than these, those of single recordings are integrated out: importance
+/// sampling is good for some ten dimensions.
+constexpr Index kMaxDrawn = 8;
+
+/// Starts of the joint search: what each recording alone found for the machine, beside what the others alone
+/// found for themselves; and the mean of all, weighted by their information.
+MatrixXd makeStarts(const PosteriorProblem& problem, const std::vector<DirectInference>& alone,
+                    Index shared) {
+  VectorXd base = VectorXd::Zero(static_cast<Index>(problem.unknown.size()));
+  for (std::size_t k = 0; k < alone.size(); ++k) {
+    base(problem.trials[k].unknown) = alone[k].posterior.best;
+  }
+  std::vector<VectorXd> starts;
+  VectorXd sum = VectorXd::Zero(shared), weight = VectorXd::Zero(shared);
+  for (const DirectInference& one : alone) {
+    const SimulatorPosterior& posterior = one.posterior;
+    starts.push_back(base);
+    starts.back().head(shared) = posterior.best.head(shared);
+    for (std::size_t m = 1; m < posterior.modes.size(); ++m) {
+      starts.push_back(base);
+      starts.back().head(shared) = posterior.modes[m].mean.head(shared);
+    }
+    if (posterior.isReliable()) {
+      const VectorXd own = posterior.stddev.head(shared).cwiseAbs2().cwiseInverse();
+      sum += own.cwiseProduct(posterior.mean.head(shared));
+      weight += own;
+    }
+  }
+  if (weight.minCoeff() > 0.0) {
+    starts.push_back(base);
+    starts.back().head(shared) = sum.cwiseQuotient(weight);
+  }
+  MatrixXd given(base.size(), static_cast<Index>(starts.size()));
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    given.col(static_cast<Index>(i)) = starts[i];
+  }
+  return given;
+}
+
+std::vector<std::size_t> listReliable(const std::vector<DirectInference>& alone) {
+  std::vector<std::size_t> reliable;
+  for (std::size_t k = 0; k < alone.size(); ++k) {
+    if (alone[k].posterior.isReliable()) {
+      reliable.push_back(k);
+    }
+  }
+  return reliable;
+}
+
+std::vector<Contradiction> findContradictions(const std::vector<DirectInference>& alone, Index shared) {
+  const std::vector<std::size_t> reliable = listReliable(alone);
+  std::vector<Contradiction> largest;
+  for (Index j = 0; j < shared && reliable.size() > 1; ++j) {
+    Contradiction of_parameter{static_cast<std::size_t>(j), reliable[0], reliable[1], 0.0};
+    for (const std::size_t a : reliable) {
+      for (const std::size_t b : reliable) {
+        const SimulatorPosterior &first = alone[a].posterior, &second = alone[b].posterior;
+        const double distance =
+            std::abs(first.mean[j] - second.mean[j]) / std::hypot(first.stddev[j], second.stddev[j]);
+        if (a < b && distance > of_parameter.distance) {
+          of_parameter = {static_cast<std::size_t>(j), a, b, distance};
+        }
+      }
+    }
+    largest.push_back(of_parameter);
+  }
+  std::stable_sort(largest.begin(), largest.end(),
+                   [](const Contradiction& a, const Contradiction& b) { return a.distance > b.distance; });
+  return largest;
+}
+
+std::vector<ScatterEstimate> combineRecordings(const std::vector<DirectInference>& alone,
+                                               const std::vector<ParameterSpec>& parameters) {
+  const std::vector<std::size_t> reliable = listReliable(alone);
+  std::vector<ScatterEstimate> combined;
+  if (reliable.size() < 2) {
+    return combined;
+  }
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    VectorXd values(static_cast<Index>(reliable.size())), stddevs(values.size());
+    for (Index i = 0; i < values.size(); ++i) {
+      const SimulatorPosterior& posterior = alone[reliable[static_cast<std::size_t>(i)]].posterior;
+      values[i] = posterior.mean[static_cast<Index>(p)];
+      stddevs[i] = posterior.stddev[static_cast<Index>(p)];
+    }
+    ScatterEstimate estimate = combineScattered(values, stddevs);
+    const Bounds& bounds = parameters[p].bounds;
+    estimate.lower = std::max(estimate.lower, bounds.lower);
+    estimate.upper = std::min(estimate.upper, bounds.upper);
+    combined.push_back(estimate);
+  }
+  return combined;
+}
+
+void requireSameParameters(const std::vector<ParameterSpec>& parameters,
+                           const std::vector<ParameterSpec>& others) {
+  const bool same =
+      std::equal(parameters.begin(), parameters.end(), others.begin(), others.end(),
+                 [](const ParameterSpec& a, const ParameterSpec& b) { return a.name.text == b.name.text; });
+  if (!same) {
+    throw std::logic_error("trials of one machine have other parameters");
+  }
+}
+
+}  // namespace
+
+ScatterEstimate combineScattered(const VectorXd& values, const VectorXd& stddevs) {
+  const auto degrees = static_cast<double>(values.size() - 1);
+  const VectorXd precise = stddevs.cwiseAbs2().cwiseInverse();
+  const double precise_mean = precise.dot(values) / precise.sum();
+  const double excess =
+      precise.dot((values.array() - precise_mean).square().matrix()) - degrees;  // of Cochran's Q
+  const double variance = std::max(0.0, excess / (precise.sum() - precise.squaredNorm() / precise.sum()));
+  const VectorXd weights = (stddevs.array().square() + variance).inverse();
+  ScatterEstimate estimate;
+  estimate.scatter = std::sqrt(variance);
+  estimate.mean = weights.dot(values) / weights.sum();
+  const double spread = weights.dot((values.array() - estimate.mean).square().matrix()) / degrees;
+  // never narrower than the stated standard deviations allow (Röver, Knapp and Friede 2015)
+  estimate.stddev = std::sqrt(std::max(1.0, spread) / weights.sum());
+  const double reach = boost::math::quantile(boost::math::students_t_distribution<>(degrees), 0.975);
+  estimate.lower = estimate.mean - reach * estimate.stddev;
+  estimate.upper = estimate.mean + reach * estimate.stddev;
+  return estimate;
+}
+
+std::vector<std::string> listStatuses(const JointInference& inferred,
+                                      const std::vector<ParameterSpec>& parameters) {
+  if (!inferred.agreement) {
+    return {"not_simulated"};
+  }
+  std::vector<std::string> statuses;
+  // each recording is one of many chances of a false alarm
+  const double level = kMismatchLevel / static_cast<double>(inferred.alone.size());
+  if (std::any_of(inferred.alone.begin(), inferred.alone.end(),
+                  [&](const DirectInference& one) { return one.test.calcPValue() < level; })) {
+    statuses.emplace_back("model_mismatch");
+  }
+  if (inferred.disagrees()) {
+    statuses.emplace_back("trials_disagree");
+  }
+  DirectInference joint;
+  joint.posterior = inferred.joint;
+  for (const std::string& status : listStatuses(joint, parameters)) {
+    if (status != "ok" && status != "model_mismatch") {
+      statuses.push_back(status);
+    }
+  }
+  return statuses.empty() ? std::vector<std::string>{"ok"} : statuses;
+}
+
+JointInferrer::JointInferrer(const YamlNode& root, const std::vector<std::string>& known, int draws) {
+  for (const Trial& trial : expandTrials(root)) {
+    auto inferrer = std::make_unique<DirectInferrer>(readExperimentWithSignals(trial.tree), draws);
+    const VectorXd inputs =
+        collectKnown(inferrer->getReader().getExperiment().model.inputs, parseKnownValues(known));
+    members_.push_back({trial.name, std::move(inferrer), inputs});
+    requireSameParameters(getParameters(), members_.back().inferrer->getParameters());
+  }
+  options_.draws = draws;
+  options_.seed = members_.front().inferrer->getReader().getExperiment().seed;
+  options_.search.starts = kOwnStarts;
+  options_.search.max_batches = 1;
+}
+
+const std::vector<ParameterSpec>& JointInferrer::getParameters() const {
+  return members_.front().inferrer->getParameters();
+}
+
+std::vector<std::string> JointInferrer::listTrials() const {
+  std::vector<std::string> names;
+  for (const Member& member : members_) {
+    names.push_back(member.name);
+  }
+  return names;
+}
+
+JointInferrer::Member& JointInferrer::upd(const std::string& trial) {
+  const auto found = std::find_if(members_.begin(), members_.end(),
+                                  [&](const Member& member) { return member.name == trial; });
+  if (found == members_.end()) {
+    throw ExperimentError("'" + trial + "' is not a trial of the experiment: it has " +
+                          listNames(listTrials()) + suggestName(trial, listTrials()));
+  }
+  return *found;
+}
+
+const DirectInferrer& JointInferrer::get(const std::string& trial) const {
+  return *const_cast<JointInferrer*>(this)->upd(trial).inferrer;
+}
+
+PosteriorProblem JointInferrer::makeProblem(const std::vector<Recording>& recordings) {
+  PosteriorProblem problem;
+  problem.unknown = getParameters();
+  problem.priors = members_.front().inferrer->getReader().getExperiment().model.priors;
+  const auto shared = static_cast<Index>(problem.unknown.size());
+  for (const Recording& recording : recordings) {
+    Member& member = upd(recording.trial);
+    MeasuredTrial trial = member.inferrer->prepare(*recording.table, recording.start, member.known);
+    const std::vector<ParameterSpec>& own = member.inferrer->getUnknown();
+    for (Index j = 0; j < static_cast<Index>(own.size()); ++j) {
+      trial.unknown.push_back(j < shared ? j : static_cast<Index>(problem.unknown.size()));
+      if (j >= shared) {
+        problem.unknown.push_back(own[static_cast<std::size_t>(j)]);
+        problem.unknown.back().name.text = recording.label + "." + problem.unknown.back().name.text;
+      }
+    }
+    problem.trials.push_back(std::move(trial));
+  }
+  const auto all = static_cast<Index>(problem.unknown.size());
+  problem.drawn = all <= kMaxDrawn ? all : shared;
+  return problem;
+}
+
+JointInference JointInferrer::infer(const std::vector<Recording>& recordings) {
+  JointInference inferred;
+  for (const Recording& recording : recordings) {
+    Member& member = upd(recording.trial);
+    inferred.labels.push_back(recording.label);
+    inferred.alone.push_back(member.inferrer->infer(*recording.table, recording.start, member.known));
+    inferred.simulations += inferred.alone.back().posterior.simulations;
+    if (!(inferred.alone.back().posterior.degrees > 0.0)) {
+      inferred.joint.message = recording.label + " cannot be simulated anywhere within the bounds";
+      return inferred;
+    }
+  }
+  const auto shared = static_cast<Index>(getParameters().size());
+  const PosteriorProblem problem = makeProblem(recordings);
+  inferred.joint = samplePosterior(problem, makeStarts(problem, inferred.alone, shared), options_);
+  inferred.simulations += inferred.joint.simulations;
+  if (!(inferred.joint.degrees > 0.0)) {
+    return inferred;
+  }
+  std::vector<double> separate;
+  for (const DirectInference& one : inferred.alone) {
+    separate.push_back(one.posterior.misfit);
+  }
+  inferred.agreement =
+      testAgreement(inferred.joint.misfit, separate, linearizeParts(problem, inferred.joint.best), problem,
+                    inferred.joint.best, options_.seed);
+  inferred.contradictions = findContradictions(inferred.alone, shared);
+  if (inferred.disagrees()) {
+    inferred.scatter = combineRecordings(inferred.alone, getParameters());
+  }
+  return inferred;
+}
+
+}  // namespace twinmap

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "framework/estimation/posterior/agreement.hpp"
+#include "framework/experiment/yaml/yaml_node.hpp"
+#include "framework/inference/direct_inference.hpp"
+#include "framework/inference/known_value.hpp"
+
+namespace twinmap {
+
+/// A recording of one trial, or a window of it.
+struct Recording {
+  std::string label;            ///< names it among the others
+  std::string trial;            ///< "" of an experiment without trials
+  const Table* table;           ///< must outlive the inference
+  std::optional<double> start;  ///< time in the table that is 0 of the model
+};
+
+/// Two recordings whose estimates of a parameter differ.
+struct Contradiction {
+  std::size_t parameter = 0, first = 0, second = 0;
+  double distance = 0.0;  ///< in standard deviations of the difference
+};
+
+/// A parameter's mean over recordings that scatter more than their standard deviations say.
+struct ScatterEstimate {
+  double mean = 0.0, stddev = 0.0, lower = 0.0, upper = 0.0;  ///< 95 % interval
+  double scatter = 0.0;  ///< standard deviation between recordings that their own does not explain
+};
+
+/// What several recordings say about one machine.
+struct JointInference {
+  std::vector<std::string> labels;
+  std::vector<DirectInference> alone;         ///< each recording by itself
+  SimulatorPosterior joint;                   ///< of the machine's parameters
+  std::optional<Agreement> agreement;         ///< where all could be simulated
+  std::vector<Contradiction> contradictions;  ///< the largest of each parameter, the largest first
+  std::vector<ScatterEstimate> scatter;       ///< of each parameter; empty unless they disagree
+  int simulations = 0;
+
+  bool disagrees() const { return agreement && agreement->p_value < kAgreementLevel; }
+};
+
+/// Names of all that is to be said against the joint estimate, the most severe first: "not_simulated",
+/// "model_mismatch" (of a recording alone), "trials_disagree" (below kAgreementLevel), "unreliable",
+/// "multimodal", "uninformative"; {"ok"} where nothing is.
+std::vector<std::string> listStatuses(const JointInference& inferred,
+                                      const std::vector<ParameterSpec>& parameters);
+
+/// The mean of values with standard deviations that scatter more than these say: variance between them by
+/// DerSimonian and Laird (1986), interval by Hartung and Knapp (2001), which holds for few values as well.
+/// At least two values; stddevs above 0.
+ScatterEstimate combineScattered(const Eigen::VectorXd& values, const Eigen::VectorXd& stddevs);
+
+/// Infers one machine from several recordings together, each with an initial state, an offset ... (nuisance
+/// parameters) of its own, by simulation alone. For one thread.
+class JointInferrer {
+ public:
+  /// root: the experiment's tree, with trials or without; draws: of a round.
+  JointInferrer(const YamlNode& root, const std::vector<std::string>& known,
+                int draws = SimulatorPosteriorOptions{}.draws);
+
+  /// The machine's, the same in all trials.
+  const std::vector<ParameterSpec>& getParameters() const;
+  /// Of a trial; throws ExperimentError for an unknown one.
+  const DirectInferrer& get(const std::string& trial) const;
+  std::vector<std::string> listTrials() const;
+
+  /// Cost: that of DirectInferrer::infer() for each recording, and two simulations with derivatives of each
+  /// recording and joint draw.
+  JointInference infer(const std::vector<Recording>& recordings);
+
+ private:
+  struct Member {
+    std::string name;
+    std::unique_ptr<DirectInferrer> inferrer;
+    Eigen::VectorXd known;
+  };
+
+  Member& upd(const std::string& trial);
+  PosteriorProblem makeProblem(const std::vector<Recording>& recordings);
+
+  std::vector<Member> members_;
+  SimulatorPosteriorOptions options_;
+};
+
+/// A table for people: whether they agree, the joint estimate, each recording's.
+std::string makeJointTable(const JointInference& inferred, const std::vector<ParameterSpec>& parameters);
+
+/// CSV: rows of each recording, then of the joint estimate (source "joint"), in the columns of
+/// makeInferenceCsvHeader().
+std::string makeJointCsvRows(const JointInference& inferred, const std::vector<ParameterSpec>& parameters);
+
+/// One line of JSON, without a line end (docs/how-to/estimate-from-measurements.md).
+std::string makeJointJson(const JointInference& inferred, const std::vector<ParameterSpec>& parameters);
+
+}  // namespace twinmap

@@ -1,0 +1,218 @@
+#include <fmt/format.h>
+
+#include "framework/base/json/json.hpp"
+#include "framework/base/text/escape.hpp"
+#include "framework/base/text/number_text.hpp"
+#include "framework/base/text/text_tables.hpp"
+#include "framework/inference/joint_inference.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr int kJointDigits = 6, kJointStddevDigits = 3;
+
+/// A parameter's estimate from all recordings: the posterior's, or that of recordings that scatter.
+ScatterEstimate takeEstimate(const JointInference& inferred, std::size_t parameter) {
+  if (!inferred.scatter.empty()) {
+    return inferred.scatter[parameter];
+  }
+  const auto i = static_cast<Index>(parameter);
+  const MatrixXd quantiles = inferred.joint.calcQuantiles(Eigen::Vector2d(0.025, 0.975));
+  return {inferred.joint.mean[i], inferred.joint.stddev[i], quantiles(i, 0), quantiles(i, 1), 0.0};
+}
+
+bool isStated(const JointInference& inferred) {
+  return inferred.agreement && (!inferred.scatter.empty() || inferred.joint.isReliable());
+}
+
+/// "0.34", "< 0.0005" where the simulations can say no more.
+std::string describeLevel(const Agreement& agreement) {
+  return agreement.isAtFloor() ? fmt::format("p < {:.2g}", agreement.p_value)
+                               : fmt::format("p = {:.2g}", agreement.p_value);
+}
+
+std::string describeContradictions(const JointInference& inferred,
+                                   const std::vector<ParameterSpec>& parameters) {
+  constexpr double kShown = 2.0;
+  std::string text;
+  for (const Contradiction& one : inferred.contradictions) {
+    if (one.distance < kShown) {
+      break;
+    }
+    const auto i = static_cast<Index>(one.parameter);
+    const SimulatorPosterior &first = inferred.alone[one.first].posterior,
+                             &second = inferred.alone[one.second].posterior;
+    text += fmt::format(
+        "  {} contradicts {} in {} by {:.3g} sd: {} +- {}, {} +- {} {}\n", inferred.labels[one.first],
+        inferred.labels[one.second], parameters[one.parameter].name.text, one.distance,
+        toShortText(first.mean[i], kJointDigits), toShortText(first.stddev[i], kJointStddevDigits),
+        toShortText(second.mean[i], kJointDigits), toShortText(second.stddev[i], kJointStddevDigits),
+        parameters[one.parameter].unit);
+  }
+  return text;
+}
+
+std::string describeAgreement(const JointInference& inferred, const std::vector<ParameterSpec>& parameters) {
+  const std::size_t count = inferred.alone.size();
+  const Agreement& agreement = *inferred.agreement;
+  if (!inferred.disagrees()) {
+    return fmt::format("  The {} recordings agree ({}).\n", count, describeLevel(agreement));
+  }
+  return fmt::format(
+             "  The {} recordings disagree ({}): together they fit worse than each alone, by {:.4g} of "
+             "chi-square.\n",
+             count, describeLevel(agreement), agreement.excess) +
+         describeContradictions(inferred, parameters) +
+         "  The model lacks something that the parameters take up in each recording. The intervals below "
+         "cover "
+         "the scatter between recordings.\n";
+}
+
+std::string makeEstimateTable(const JointInference& inferred, const std::vector<ParameterSpec>& parameters) {
+  std::vector<std::vector<std::string>> rows{{"parameter", "unit", "mean", "sd", "95 % interval"}};
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const ScatterEstimate estimate = takeEstimate(inferred, p);
+    rows.push_back(
+        {parameters[p].name.text, parameters[p].unit, toShortText(estimate.mean, kJointDigits),
+         toShortText(estimate.stddev, kJointStddevDigits),
+         toShortText(estimate.lower, kJointDigits) + " .. " + toShortText(estimate.upper, kJointDigits)});
+  }
+  return alignRows(rows, rows.front().size(), "  ");
+}
+
+std::string makeAloneTable(const JointInference& inferred, const std::vector<ParameterSpec>& parameters) {
+  std::vector<std::vector<std::string>> rows{{"alone"}};
+  rows.front().emplace_back("status");
+  for (const ParameterSpec& parameter : parameters) {
+    rows.front().push_back(parameter.name.text);
+  }
+  for (std::size_t k = 0; k < inferred.alone.size(); ++k) {
+    const DirectInference& one = inferred.alone[k];
+    rows.push_back({inferred.labels[k], listStatuses(one, parameters).front()});
+    for (std::size_t p = 0; p < parameters.size(); ++p) {
+      const auto i = static_cast<Index>(p);
+      rows.back().push_back(one.posterior.isReliable()
+                                ? toShortText(one.posterior.mean[i], kJointDigits) + " +- " +
+                                      toShortText(one.posterior.stddev[i], kJointStddevDigits)
+                                : "-");
+    }
+  }
+  return alignRows(rows, rows.front().size(), "  ");
+}
+
+Json makeEstimateJson(const JointInference& inferred, const std::vector<ParameterSpec>& parameters) {
+  Json json = Json::object();
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const ScatterEstimate estimate = takeEstimate(inferred, p);
+    json[parameters[p].name.text] = {{"mean", estimate.mean},
+                                     {"sd", estimate.stddev},
+                                     {"lower", estimate.lower},
+                                     {"upper", estimate.upper},
+                                     {"unit", parameters[p].unit}};
+    if (!inferred.scatter.empty()) {
+      json[parameters[p].name.text]["scatter"] = estimate.scatter;
+    }
+  }
+  return json;
+}
+
+/// Of the parameters in their units: the posterior's, or the variances of recordings that scatter.
+Json makeJointCovariance(const JointInference& inferred, std::size_t count) {
+  Json rows = Json::array();
+  for (std::size_t i = 0; i < count; ++i) {
+    Json row = Json::array();
+    for (std::size_t j = 0; j < count; ++j) {
+      const double variance =
+          i == j && !inferred.scatter.empty() ? inferred.scatter[i].stddev * inferred.scatter[i].stddev : 0.0;
+      row.push_back(inferred.scatter.empty()
+                        ? inferred.joint.covariance(static_cast<Index>(i), static_cast<Index>(j))
+                        : variance);
+    }
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+Json makeTrialsJson(const JointInference& inferred, const std::vector<ParameterSpec>& parameters) {
+  Json trials = Json::array();
+  for (std::size_t k = 0; k < inferred.alone.size(); ++k) {
+    Json one = parseJson(makeDirectJson(inferred.alone[k], parameters));
+    one["label"] = inferred.labels[k];
+    trials.push_back(one);
+  }
+  return trials;
+}
+
+}  // namespace
+
+std::string makeJointTable(const JointInference& inferred, const std::vector<ParameterSpec>& parameters) {
+  const std::string statuses = fmt::format("{}", fmt::join(listStatuses(inferred, parameters), ", "));
+  std::string text = fmt::format("{} recordings together: {}\n", inferred.labels.size(), statuses);
+  if (!inferred.agreement) {
+    return text + fmt::format("  No estimate: {}.\n", inferred.joint.message);
+  }
+  text += describeAgreement(inferred, parameters);
+  if (isStated(inferred)) {
+    text += makeEstimateTable(inferred, parameters);
+  } else {
+    text += fmt::format("  No joint estimate: {}.\n", inferred.joint.message);
+  }
+  return text + makeAloneTable(inferred, parameters) +
+         fmt::format("  sampled on the simulator: {} simulations\n", inferred.simulations);
+}
+
+std::string makeJointCsvRows(const JointInference& inferred, const std::vector<ParameterSpec>& parameters) {
+  std::string text;
+  for (const DirectInference& one : inferred.alone) {
+    text += makeDirectCsvRows(one, parameters);
+  }
+  const std::string statuses = fmt::format("{}", fmt::join(listStatuses(inferred, parameters), " "));
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    std::string numbers = ",,,";
+    if (isStated(inferred)) {
+      const ScatterEstimate estimate = takeEstimate(inferred, p);
+      numbers = toText(estimate.mean) + "," + toText(estimate.stddev) + "," + toText(estimate.lower) + "," +
+                toText(estimate.upper);
+    }
+    text += fmt::format("joint,,{},{},{},{},{},posterior\n", escapeCsv(parameters[p].name.text),
+                        escapeCsv(parameters[p].unit), numbers, statuses,
+                        inferred.agreement ? toText(inferred.agreement->p_value) : "");
+  }
+  return text;
+}
+
+std::string makeJointJson(const JointInference& inferred, const std::vector<ParameterSpec>& parameters) {
+  const std::vector<std::string> statuses = listStatuses(inferred, parameters);
+  Json json{{"source", "joint"},
+            {"status", statuses.front()},
+            {"statuses", statuses},
+            {"method", inferred.scatter.empty() ? "posterior" : "scatter"}};
+  if (isStated(inferred)) {
+    json["parameters"] = makeEstimateJson(inferred, parameters);
+    json["covariance"] = makeJointCovariance(inferred, parameters.size());
+  } else {
+    json["message"] = inferred.joint.message;
+  }
+  if (inferred.agreement) {
+    json["agreement"] = {{"agrees", !inferred.disagrees()},
+                         {"p_value", inferred.agreement->p_value},
+                         {"excess", inferred.agreement->excess},
+                         {"contradictions", Json::array()}};
+    for (const Contradiction& one : inferred.contradictions) {
+      json["agreement"]["contradictions"].push_back({{"parameter", parameters[one.parameter].name.text},
+                                                     {"first", inferred.labels[one.first]},
+                                                     {"second", inferred.labels[one.second]},
+                                                     {"distance", one.distance}});
+    }
+  }
+  json["trials"] = makeTrialsJson(inferred, parameters);
+  json["simulations"] = inferred.simulations;
+  return formatJson(json);
+}
+
+}  // namespace twinmap

@@ -1,0 +1,47 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "framework/base/random/random.hpp"
+#include "framework/inference/joint_inference.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::VectorXd;
+
+TEST(Scatter, IsNoneWhereValuesAgree) {
+  const ScatterEstimate estimate =
+      combineScattered(Eigen::Vector3d(1.0, 1.1, 0.9), Eigen::Vector3d(0.2, 0.1, 0.2));
+  EXPECT_EQ(estimate.scatter, 0.0);
+  EXPECT_NEAR(estimate.mean, (25.0 * 1.0 + 100.0 * 1.1 + 25.0 * 0.9) / 150.0, 1e-12);
+  EXPECT_NEAR(estimate.stddev, 1.0 / std::sqrt(150.0), 1e-12);
+}
+
+TEST(Scatter, OfEquallyKnownValuesIsTheirSpread) {
+  const Eigen::Vector4d values(1.0, 3.0, 2.0, 6.0);
+  const ScatterEstimate estimate = combineScattered(values, VectorXd::Constant(4, 0.01));
+  const double variance = (values.array() - 3.0).square().sum() / 3.0;
+  EXPECT_NEAR(estimate.mean, 3.0, 1e-12);
+  EXPECT_NEAR(estimate.scatter * estimate.scatter, variance - 1e-4, 1e-9);
+  EXPECT_NEAR(estimate.stddev, std::sqrt(variance / 4.0), 1e-9);
+  EXPECT_NEAR(estimate.upper - estimate.mean, 3.182446 * estimate.stddev, 1e-5);  // t of 3 degrees
+}
+
+TEST(Scatter, IntervalsHoldWithFewRecordings) {
+  constexpr int kTests = 2000;
+  const RandomStream random(5, RandomPurpose::kVerification);
+  int holds = 0;
+  for (int test = 0; test < kTests; ++test) {
+    VectorXd normals(8);
+    random.drawNormals(static_cast<std::uint64_t>(test), 0, normals.data(), 8);
+    const Eigen::Vector4d stddevs(0.1, 0.2, 0.1, 0.3);
+    const VectorXd values = normals.head(4) + stddevs.cwiseProduct(normals.tail(4));
+    const ScatterEstimate estimate = combineScattered(values, stddevs);
+    holds += estimate.lower < 0.0 && 0.0 < estimate.upper ? 1 : 0;
+  }
+  EXPECT_NEAR(static_cast<double>(holds) / kTests, 0.95, 0.02);
+}
+
+}  // namespace
+}  // namespace twinmap
