@@ -19,6 +19,8 @@ enum class Notice {
   kAtBounds,
   kUninformative,
   kMultimodal,
+  kTrialsDisagree,
+  kUncalibrated,
   kNonlinear,
   kNotRefined,
   kEstimatorLimited,

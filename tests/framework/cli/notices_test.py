@@ -38,6 +38,13 @@ class Notices(unittest.TestCase):
         for name, example in EXAMPLES.items():
             self.assertTrue("run" in example or "why_none" in example, name)
 
+    def test_every_status_that_the_code_gives_is_listed(self):
+        given = set()
+        for file in (SOURCE / "framework/inference").glob("*.cpp"):
+            given.update(re.findall(r"emplace_back\(\"([a-z_]+)\"\)", file.read_text()))
+        self.assertGreater(len(given), 4)
+        self.assertLessEqual(given, set(NOTICES))
+
     def test_every_one_says_what_to_do_in_one_sentence_or_nothing(self):
         for name, notice in NOTICES.items():
             with self.subTest(name):
