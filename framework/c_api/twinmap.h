@@ -40,7 +40,7 @@ typedef enum twinmap_refine {
   TWINMAP_REFINE_ALWAYS = 2
 } twinmap_refine;
 
-/** Whose posterior a measurement is given (docs/posterior.md). */
+/** Whose posterior a measurement is given (docs/how-to/sample-the-posterior.md). */
 typedef enum twinmap_posterior {
   TWINMAP_POSTERIOR_AS_NEEDED = 0, /**< the simulator's, where estimates are refined and least squares may mislead */
   TWINMAP_POSTERIOR_AUTOMATIC = 1, /**< always: the simulator's where that takes tenths of a second, else the map's */

@@ -18,6 +18,11 @@ struct ExperimentArguments {
   std::vector<std::string> overrides;  ///< "key.path=value"
 };
 
+struct CheckArguments {
+  ExperimentArguments experiment;
+  bool full = false;  ///< long tables with all values
+};
+
 struct SimulateArguments {
   ExperimentArguments experiment;  ///< parameters.NAME=VALUE among the overrides sets the point
   std::string csv;                 ///< "": standard output
@@ -145,12 +150,20 @@ struct DesignArguments {
 // One file a subcommand. Results go to stdout, progress and warnings to stderr. Each throws ExperimentError
 // for wrong input and any other std::exception for a failure.
 
-/// Validates an experiment, builds the model of each of its cases at the centre of the parameter box, and
+/// Validates an experiment, builds the model of each of its cases at the centre of the bounds, and
 /// prints it with all defaults.
-void check(const ExperimentArguments& arguments);
+void check(const CheckArguments& arguments);
 
 /// Prints the variables of an FMU: name, causality, variability, type, unit, start value, description.
 void printVariables(const std::string& file);
+
+struct ExplainArguments {
+  std::string name;  ///< "": all
+  bool json = false;
+};
+
+/// Prints what statuses and warnings say, their causes and remedies.
+void explain(const ExplainArguments& arguments);
 
 /// Prints the JSON schema of experiment files.
 void printSchema();

@@ -2,8 +2,8 @@
 #include <stdexcept>
 
 #include "framework/cli/commands.hpp"
-#include "framework/inference/text/inference_text.hpp"
 #include "framework/inference/known_value.hpp"
+#include "framework/inference/text/inference_text.hpp"
 #include "framework/study/replay/replay_files.hpp"
 
 namespace twinmap::cli {
@@ -50,7 +50,8 @@ void replay(const ReplayArguments& arguments) {
   const Replay replay = replayMeasurement(inferrer, chooseOptions(arguments, inferrer.getExperiment()));
   const fs::path folder = chooseFolder(arguments);
   writeReplay(folder, inferrer, replay);
-  std::cout << describeTrust(replay.inferred, inferrer.getExtractor().getInfos())
+  std::cout << describeTrust(replay.inferred, inferrer.getExperiment().model.parameters,
+                             inferrer.getExtractor().getInfos())
             << describeMapLimit(replay.inferred, inferrer.getExperiment().model.parameters) << "\n"
             << makeFitTable(replay);
   std::cout.flush();

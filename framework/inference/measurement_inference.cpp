@@ -4,10 +4,19 @@ namespace twinmap {
 
 InferredMeasurement MeasurementInference::infer(const Table& table, std::optional<double> start,
                                                 const Eigen::VectorXd& known) {
-  InferredMeasurement inferred = infer(getReader().readFeatures(table, start), known);
+  const MeasurementReader& reader = getReader();
+  reader.requireExcitation(table, start);
+  const Eigen::VectorXd response = reader.readResponse(table, start);
+  InferredMeasurement inferred = infer(extractFeatures(reader.getExtractor(), response, table.source), known);
+  inferred.fault = findFault(response, known, inferred);
   inferred.source = table.source;
-  inferred.start = getReader().getStart(start);
+  inferred.start = reader.getStart(start);
   return inferred;
+}
+
+std::string MeasurementInference::findFault(const Eigen::VectorXd&, const Eigen::VectorXd&,
+                                            const InferredMeasurement&) {
+  return "";
 }
 
 }  // namespace twinmap

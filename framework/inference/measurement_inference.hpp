@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "framework/inference/inferrer.hpp"
 #include "framework/inference/measurement_reader.hpp"
@@ -23,6 +24,12 @@ class MeasurementInference {
 
   /// From a table: throws MeasurementError where it cannot be used (MeasurementReader::readFeatures).
   InferredMeasurement infer(const Table& table, std::optional<double> start, const Eigen::VectorXd& known);
+
+ private:
+  /// Which simple fault explains what was inferred of a measured response; "" where none does, or where
+  /// nothing trained can ask that fast.
+  virtual std::string findFault(const Eigen::VectorXd& response, const Eigen::VectorXd& known,
+                                const InferredMeasurement& inferred);
 };
 
 }  // namespace twinmap

@@ -1,8 +1,11 @@
 #include "framework/inference/measurement_session.hpp"
 
+#include <limits>
+
 #include "framework/base/text/source_location.hpp"
 #include "framework/estimation/trained/posterior_model.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/inference/measurement_faults.hpp"
 #include "framework/inference/select_estimate.hpp"
 
 namespace twinmap {
@@ -88,6 +91,21 @@ InferredMeasurement MeasurementSession::infer(const Eigen::VectorXd& features, c
                                                collectUnknown(inferrer_.getExperiment().model));
   }
   return inferred;
+}
+
+std::string MeasurementSession::findFault(const Eigen::VectorXd& response, const Eigen::VectorXd& known,
+                                          const InferredMeasurement& inferred) {
+  if (!inferred.trust || inferred.trust->statuses.front() != TrustStatus::kModelMismatch) {
+    return "";
+  }
+  // what the surrogate leaves, also where a refinement has judged the measurement anew
+  const auto calcMisfit = [&](const Eigen::VectorXd& corrected) {
+    const Eigen::VectorXd features = inferrer_.getExtractor().extract(corrected);
+    return features.allFinite() ? inferrer_.infer(features, known, workspace_).trust->chi_square
+                                : std::numeric_limits<double>::infinity();
+  };
+  return explainByFault(response, inferrer_.getLayout(), calcMisfit(response), inferred.trust->residuals,
+                        calcMisfit);
 }
 
 }  // namespace twinmap

@@ -42,13 +42,16 @@ class MeasurementSession final : public MeasurementInference {
   bool samplesPosteriors() const override { return sampler_.has_value() || samples_always_; }
 
   using MeasurementInference::infer;
-  /// Cost: that of Inferrer::infer(), SimulatorRefiner::refineAndJudge(), sampleAndJudge() and
-  /// PosteriorSampler::sample().
+  /// Cost: that of Inferrer::infer() (of a table with a gross misfit 17 an output more),
+  /// SimulatorRefiner::refineAndJudge(), sampleAndJudge() and PosteriorSampler::sample().
   InferredMeasurement infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known) override;
 
  private:
   void choosePosterior(const SessionOptions& options);
   bool needsPosterior(const InferredMeasurement& inferred) const;
+  /// explainByFault() of a measurement that is a model_mismatch.
+  std::string findFault(const Eigen::VectorXd& response, const Eigen::VectorXd& known,
+                        const InferredMeasurement& inferred) override;
 
   const Inferrer& inferrer_;
   Inferrer::Workspace workspace_;

@@ -181,7 +181,7 @@ class Experiment:
         draws: int = 512,
     ) -> Estimate:
         """Infers the parameters of one measurement without a run: its posterior, sampled on the simulator
-        (docs/posterior.md), by so many draws a round.
+        (docs/how-to/sample-the-posterior.md), by so many draws a round.
 
         measurement, known, start: as Map.infer() takes them. Cost: some thousand simulations. Raises MeasurementError
         for a measurement that cannot be used, ExperimentError where a feature has no noise.

@@ -60,16 +60,17 @@ std::vector<SimulatorPosterior> sampleTestPosteriors(const Study& study, const L
   options.draws = draws;
   options.seed = study.experiment.seed;
   std::vector<SimulatorPosterior> posteriors(static_cast<std::size_t>(count));
-  runOnTeam(
-      study.simulator, static_cast<int>(count), study.control.threads, [&](Simulator& simulator, int i) {
-        throwIfCancelled(study.control, "interrupted while posteriors were sampled");
-        VectorXd held = center;
-        if (known > 0) {
-          held.tail(known) = test.inputs.col(i);
-        }
-        posteriors[static_cast<std::size_t>(i)] =
-            samplePosterior(simulator, model, test.features.col(i), held, MatrixXd(unknown, 0), options);
-      });
+  runOnTeam(study.simulator, static_cast<int>(count), study.control.threads,
+            [&](Simulator& simulator, int i) {
+              throwIfCancelled(study.control, "interrupted while posteriors were sampled");
+              VectorXd held = center;
+              if (known > 0) {
+                held.tail(known) = test.inputs.col(i);
+              }
+              posteriors[static_cast<std::size_t>(i)] =
+                  samplePosterior(simulator, model, study.experiment.model.priors, test.features.col(i), held,
+                                  MatrixXd(unknown, 0), options);
+            });
   return posteriors;
 }
 

@@ -139,14 +139,15 @@ ProbeTimes measure(const ExperimentSpec& experiment, double most_samples) {
   const ExperimentSpec small = makeSmall(experiment);
   const TimedRun run = timeRun(small, "small", folder.getPath());
   ProbeTimes times;
-  const double simulating = run.getStage("simulate "), limit = run.getStage("information limit");
+  const double simulating = run.getStage("simulate ") + run.getStage("compute parameter sensitivities");
+  const double limit = run.getStage("information limit");
   times.simulation = simulating / (kTrainSamples + kTestSamples);
   const double stencils = run.getStage("stencils of ");
   times.limit = limit / kTestSamples;
   times.stencil = stencils / std::max<double>(listDerivativePoints(small).cols(), 1.0);
   const double refining = run.getStage("refine ");
   times.refinement = refining / kTestSamples;
-  const double preparing = run.getStage("prepare for ");
+  const double preparing = run.getStage("calibrate the goodness-of-fit test");
   times.preparation = preparing / (double(kTrainSamples) * countReferences(kTrainSamples));
   times.overhead =
       std::max(run.seconds - simulating - stencils - limit - refining - run.getTraining() - preparing, 0.0);

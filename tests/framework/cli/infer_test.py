@@ -104,7 +104,7 @@ class Infer(InferCase):
         for name, true in TRUE.items():
             estimate = refined["parameters"][name]
             self.assertLess(abs(estimate["mean"] - true), 4 * estimate["sd"], name)
-        self.assertIn("refined by", self.infer(self.measurement, "--refine"))
+        self.assertIn("refined in", self.infer(self.measurement, "--refine"))
 
     def test_the_answer_is_the_refined_one_where_it_is_accepted(self):
         inferred = self.infer_json(self.measurement)
@@ -302,7 +302,7 @@ class Trust(InferCase):
         inferred = self.infer_json(other)
         self.assertEqual(inferred["status"], "model_mismatch")
         self.assertLess(inferred["trust"]["p_value"], 0.01)
-        self.assertIn("No parameter values within the bounds fit", self.infer(other))
+        self.assertIn("no parameter values within the bounds fit", self.infer(other))
 
 
 class WrongUsage(InferCase):
