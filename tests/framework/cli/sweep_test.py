@@ -151,7 +151,7 @@ class Simulations(SweepTestCase):
         ]
         self.run_sweep("run", sweep=sweep)
         self.assertEqual(list(map(len, self.get_all_stored("run"))), [16 + 8, 8])
-        self.assertIn("stencils of test points: 8 of 8 stored", call("status", self.folder / "run").stdout)
+        self.assertIn("differences at test points: 8 of 8 stored", call("status", self.folder / "run").stdout)
         self.run_sweep(
             "alone",
             sweep=[
@@ -360,7 +360,7 @@ class Continuing(SweepTestCase):
         self.run_sweep("run", "--store", self.folder / "store", sweep=[*LIMITS, "design.train.samples=8,16"])
         self.assertFalse((self.folder / "run/chunks").exists())
         status = call("status", self.folder / "run").stdout
-        self.assertIn("samples: 24 of 24 stored\nlimits:  stencils of test points: 8 of 8 stored", status)
+        self.assertIn("samples: 24 of 24 stored\nlimits:  differences at test points: 8 of 8 stored", status)
         verified = call("verify", self.folder / "run")
         self.assertEqual(verified.returncode, 0, verified.stdout)
         self.assertIn("responses of the 24 samples that chunks hold", verified.stdout)
