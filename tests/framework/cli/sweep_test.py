@@ -499,11 +499,11 @@ class Plan(SweepTestCase):
         self.run_sweep("run", sweep=[*SMALL, DIFFERENCES, "design.train.samples=8"])
         plan = self.plan(*LIMITS, "design.train.samples=8,24", "--store", self.folder / "run/chunks")
         self.assertIn("simulations: 32 needed, 16 stored, 16 to do", plan)
-        self.assertIn(f"stencils of 8 points needed, 0 stored, 8 to do: {8 * (2 * 3 + 1)} simulations", plan)
+        self.assertIn(f"finite differences at 8 points needed, 0 stored, 8 to do: {8 * (2 * 3 + 1)} simulations", plan)
         store = ["--store", self.folder / "run/chunks"]
         self.run_sweep("limits", *store, sweep=[*LIMITS, "design.train.samples=8,24"])
         self.assertIn(
-            "stencils of 8 points needed, 8 stored, 0 to do: 0 simulations",
+            "finite differences at 8 points needed, 8 stored, 0 to do: 0 simulations",
             self.plan(*LIMITS, "design.train.samples=8,24,30", *store),
         )
 
