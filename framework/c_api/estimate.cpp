@@ -2,7 +2,7 @@
 
 #include "framework/c_api/guard.hpp"
 #include "framework/c_api/handles.hpp"
-#include "framework/inference/inference_text.hpp"
+#include "framework/inference/text/inference_text.hpp"
 
 namespace {
 
@@ -23,7 +23,11 @@ const twinmap_inferrer::Inferred& getInferred(const twinmap_inferrer* inferrer) 
 }
 
 const twinmap::Estimate& getEstimate(const twinmap_inferrer* inferrer) {
-  return getInferred(inferrer).estimate;
+  const twinmap::Estimate& estimate = getInferred(inferrer).estimate;
+  if (!estimate.isGiven()) {
+    throw WrongArgument("there is no estimate: the measurement's status is " + estimate.statuses.back());
+  }
+  return estimate;
 }
 
 const twinmap::Estimate* findEstimate(const twinmap_inferrer* inferrer) {
@@ -38,6 +42,32 @@ void copy(const Eigen::Ref<const VectorXd>& from, double* values, std::size_t co
 const twinmap::Trust* findTrust(const twinmap_inferrer* inferrer) {
   const bool known = inferrer != nullptr && inferrer->inferred && inferrer->inferred->measurement.trust;
   return known ? &*inferrer->inferred->measurement.trust : nullptr;
+}
+
+/// Of an experiment alone; null where there is none, or nothing was simulated.
+const twinmap::SimulatorFit* findFit(const twinmap_inferrer* inferrer) {
+  if (inferrer == nullptr || !inferrer->inferred) {
+    return nullptr;
+  }
+  const std::optional<twinmap::PosteriorEstimate>& posterior = inferrer->inferred->measurement.posterior;
+  return posterior && posterior->fit && posterior->fit->isSimulated() ? &*posterior->fit : nullptr;
+}
+
+double getNumber(const twinmap::SimulatorFit& fit, twinmap_number number) {
+  switch (number) {
+    case TWINMAP_P_VALUE:
+      return fit.test.calcPValue();
+    case TWINMAP_CHI_SQUARE:
+      return fit.chi_square;
+    case TWINMAP_RESIDUALS:
+      return static_cast<double>(fit.residual.size());
+    case TWINMAP_CHI_SQUARE_P_VALUE:
+      return fit.test.chi_square_p;
+    case TWINMAP_ANOMALY_P_VALUE:
+    case TWINMAP_DISTANCE:
+      break;
+  }
+  return kNaN;
 }
 
 }  // namespace
@@ -66,6 +96,48 @@ twinmap_result twinmap_get_covariance(const twinmap_inferrer* inferrer, double* 
   });
 }
 
+size_t twinmap_count_components(const twinmap_inferrer* inferrer) {
+  const twinmap::Estimate* estimate = findEstimate(inferrer);
+  if (estimate == nullptr || !estimate->isGiven()) {
+    return 0;
+  }
+  return estimate->mixture.isGiven() ? static_cast<std::size_t>(estimate->mixture.countComponents()) : 1;
+}
+
+twinmap_result twinmap_get_component(const twinmap_inferrer* inferrer, size_t index, double* weight,
+                                     double* mean, double* stddev, size_t count) {
+  return guard([&] {
+    const twinmap::Estimate& estimate = getEstimate(inferrer);
+    const std::size_t components = twinmap_count_components(inferrer);
+    if (index >= components) {
+      throw WrongArgument("component " + std::to_string(index) + ": there are " + std::to_string(components));
+    }
+    const auto k = static_cast<Eigen::Index>(index);
+    const twinmap::Mixture& mixture = estimate.mixture;
+    require(weight, "weight") = mixture.isGiven() ? mixture.weights[k] : 1.0;
+    copy(mixture.isGiven() ? VectorXd(mixture.means.col(k)) : estimate.mean, mean, count, "mean");
+    copy(mixture.isGiven() ? VectorXd(mixture.stddevs.col(k)) : estimate.stddev, stddev, count, "stddev");
+  });
+}
+
+size_t twinmap_count_draws(const twinmap_inferrer* inferrer) {
+  const twinmap::Estimate* estimate = findEstimate(inferrer);
+  return estimate != nullptr ? static_cast<std::size_t>(estimate->draws.weights.size()) : 0;
+}
+
+twinmap_result twinmap_get_draws(const twinmap_inferrer* inferrer, double* values, double* weights,
+                                 size_t draws) {
+  return guard([&] {
+    const twinmap::Estimate& estimate = getEstimate(inferrer);
+    if (!estimate.draws.isGiven()) {
+      throw WrongArgument("the estimate has no draws: it is no posterior");
+    }
+    copy(estimate.draws.weights, weights, draws, "weights");
+    const Eigen::MatrixXd points = estimate.draws.points.topRows(estimate.mean.size());
+    Eigen::Map<Eigen::MatrixXd>(&require(values, "values"), points.rows(), points.cols()) = points;
+  });
+}
+
 int twinmap_is_refined(const twinmap_inferrer* inferrer) {
   const twinmap::Estimate* estimate = findEstimate(inferrer);
   return estimate != nullptr && estimate->isRefined() ? 1 : 0;
@@ -88,7 +160,8 @@ const char* twinmap_get_status(const twinmap_inferrer* inferrer, size_t index) {
 double twinmap_get_number(const twinmap_inferrer* inferrer, twinmap_number number) {
   const twinmap::Trust* trust = findTrust(inferrer);
   if (trust == nullptr) {
-    return kNaN;
+    const twinmap::SimulatorFit* fit = findFit(inferrer);
+    return fit != nullptr ? getNumber(*fit, number) : kNaN;
   }
   switch (number) {
     case TWINMAP_P_VALUE:
@@ -111,8 +184,8 @@ const char* twinmap_get_json(twinmap_inferrer* inferrer) {
   const twinmap_result result = guard([&] {
     const twinmap::InferredMeasurement& measurement = getInferred(inferrer).measurement;
     inferrer->json =
-        twinmap::makeInferenceJson(measurement, inferrer->inferrer.getExperiment().model.parameters,
-                                   inferrer->inferrer.getExtractor().getInfos());
+        twinmap::makeInferenceJson(measurement, inferrer->source.getExperiment().model.parameters,
+                                   inferrer->source.getReader().getExtractor().getInfos());
   });
   return result == TWINMAP_OK ? inferrer->json.c_str() : nullptr;
 }

@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "framework/c_api/twinmap.h"
-#include "framework/inference/inferrer.hpp"
-#include "framework/inference/measurement_session.hpp"
+#include "framework/inference/inference_source.hpp"
 
 namespace twinmap::c_api {
 
@@ -18,15 +17,15 @@ inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// What twinmap_map stands for.
 struct twinmap_map {
-  explicit twinmap_map(const std::filesystem::path& run_or_maps);
+  explicit twinmap_map(const std::filesystem::path& run_or_experiment);
 
-  twinmap::Inferrer inferrer;
+  twinmap::InferenceSource source;
 };
 
 /// What twinmap_inferrer stands for.
 struct twinmap_inferrer {
-  twinmap_inferrer(const twinmap::Inferrer& by, std::optional<bool> refine)
-      : inferrer(by), session(by, refine) {}
+  twinmap_inferrer(const twinmap::InferenceSource& by, const twinmap::SessionOptions& options)
+      : source(by), session(by.makeSession(options)) {}
 
   /// What the last inference left.
   struct Inferred {
@@ -40,8 +39,8 @@ struct twinmap_inferrer {
     std::vector<std::vector<double>> values;
   };
 
-  const twinmap::Inferrer& inferrer;
-  twinmap::MeasurementSession session;
+  const twinmap::InferenceSource& source;
+  const std::unique_ptr<twinmap::MeasurementInference> session;
   std::optional<double> start;
   std::optional<Eigen::VectorXd> known;
   Pushed pushed;

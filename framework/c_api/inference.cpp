@@ -29,9 +29,24 @@ std::optional<bool> toChoice(twinmap_refine refine) {
   throw WrongArgument("refine: " + std::to_string(refine) + " is none of its values");
 }
 
+twinmap::SessionOptions makeOptions(std::optional<bool> refine, twinmap_posterior posterior, int draws) {
+  const int asked = draws != 0 ? draws : twinmap::kDefaultPosteriorDraws;
+  switch (posterior) {
+    case TWINMAP_POSTERIOR_AS_NEEDED:
+      return {refine, 0, {}};
+    case TWINMAP_POSTERIOR_AUTOMATIC:
+      return {refine, asked, {}};
+    case TWINMAP_POSTERIOR_SIMULATOR:
+      return {refine, asked, twinmap::PosteriorSource::kSimulator};
+    case TWINMAP_POSTERIOR_SURROGATE:
+      return {refine, asked, twinmap::PosteriorSource::kSurrogate};
+  }
+  throw WrongArgument("posterior: " + std::to_string(posterior) + " is none of its values");
+}
+
 const VectorXd& getKnown(twinmap_inferrer& inferrer) {
   if (!inferrer.known) {  // says which are missing
-    inferrer.known = twinmap::collectKnown(inferrer.inferrer.getExperiment().model.inputs, {});
+    inferrer.known = twinmap::collectKnown(inferrer.source.getExperiment().model.inputs, {});
   }
   return *inferrer.known;
 }
@@ -51,17 +66,24 @@ twinmap_result inferBy(twinmap_inferrer* inferrer, const Infer& infer) {
 twinmap::InferredMeasurement inferTable(twinmap_inferrer& inferrer, const VectorXd& known,
                                         const std::vector<twinmap::NamedValues>& columns) {
   const twinmap::Table table =
-      twinmap::makeTable("measurement", columns, inferrer.inferrer.getReader().listColumns());
-  return inferrer.session.infer(table, inferrer.start, known);
+      twinmap::makeTable("measurement", columns, inferrer.source.getReader().listColumns());
+  return inferrer.session->infer(table, inferrer.start, known);
 }
 
 }  // namespace
 
 twinmap_result twinmap_new_inferrer(const twinmap_map* map, twinmap_refine refine,
                                     twinmap_inferrer** inferrer) {
+  return twinmap_new_posterior_inferrer(map, refine, TWINMAP_POSTERIOR_AS_NEEDED, 0, inferrer);
+}
+
+twinmap_result twinmap_new_posterior_inferrer(const twinmap_map* map, twinmap_refine refine,
+                                              twinmap_posterior posterior, int draws,
+                                              twinmap_inferrer** inferrer) {
   return guard([&] {
     require(inferrer, "inferrer") = nullptr;
-    *inferrer = new twinmap_inferrer(require(map, "map").inferrer, toChoice(refine));
+    *inferrer =
+        new twinmap_inferrer(require(map, "map").source, makeOptions(toChoice(refine), posterior, draws));
   });
 }
 
@@ -72,7 +94,7 @@ void twinmap_close_inferrer(twinmap_inferrer* inferrer) {
 twinmap_result twinmap_set_inputs(twinmap_inferrer* inferrer, const double* values, size_t count) {
   return guard([&] {
     const std::vector<twinmap::ParameterSpec>& inputs =
-        require(inferrer, "inferrer").inferrer.getExperiment().model.inputs;
+        require(inferrer, "inferrer").source.getExperiment().model.inputs;
     requireCount(count, inputs.size(), "values");
     std::vector<twinmap::KnownValue> known;
     for (std::size_t i = 0; i < count; ++i) {
@@ -93,12 +115,13 @@ twinmap_result twinmap_set_start(twinmap_inferrer* inferrer, double start) {
 
 twinmap_result twinmap_infer_features(twinmap_inferrer* inferrer, const double* features, size_t count) {
   return inferBy(inferrer, [&](twinmap_inferrer& self, const VectorXd& known) {
-    requireCount(count, static_cast<std::size_t>(self.inferrer.getExtractor().getFeatureCount()), "features");
+    requireCount(count, static_cast<std::size_t>(self.source.getReader().getExtractor().getFeatureCount()),
+                 "features");
     const ConstVector values(&require(features, "features"), static_cast<Index>(count));
     if (!values.allFinite()) {
       throw WrongArgument("features: must be finite numbers");
     }
-    return self.session.infer(VectorXd(values), known);
+    return self.session->infer(VectorXd(values), known);
   });
 }
 
@@ -119,8 +142,8 @@ twinmap_result twinmap_infer_columns(twinmap_inferrer* inferrer, const twinmap_c
 twinmap_result twinmap_infer_file(twinmap_inferrer* inferrer, const char* path) {
   return inferBy(inferrer, [&](twinmap_inferrer& self, const VectorXd& known) {
     const twinmap::Table table =
-        twinmap::readTable(&require(path, "path"), self.inferrer.getReader().listColumns());
-    return self.session.infer(table, self.start, known);
+        twinmap::readTable(&require(path, "path"), self.source.getReader().listColumns());
+    return self.session->infer(table, self.start, known);
   });
 }
 

@@ -27,18 +27,18 @@ twinmap_quantity describe(const twinmap::ParameterSpec& parameter) {
 }
 
 const twinmap::ModelSpec& getModel(const twinmap_map* map) {
-  return require(map, "map").inferrer.getExperiment().model;
+  return require(map, "map").source.getExperiment().model;
 }
 
 /// What counts is 0 of no map.
 template <class Count>
 std::size_t count(const twinmap_map* map, const Count& how_many) {
-  return map == nullptr ? 0 : static_cast<std::size_t>(how_many(map->inferrer));
+  return map == nullptr ? 0 : static_cast<std::size_t>(how_many(map->source.getReader()));
 }
 
 }  // namespace
 
-twinmap_map::twinmap_map(const std::filesystem::path& run_or_maps) : inferrer(run_or_maps) {}
+twinmap_map::twinmap_map(const std::filesystem::path& run_or_experiment) : source(run_or_experiment) {}
 
 const char* twinmap_get_version(void) {
   return twinmap::kVersion;
@@ -61,19 +61,19 @@ void twinmap_close(twinmap_map* map) {
 }
 
 size_t twinmap_count_parameters(const twinmap_map* map) {
-  return count(map, [](const auto& inferrer) { return inferrer.getExperiment().model.parameters.size(); });
+  return count(map, [](const auto& reader) { return reader.getExperiment().model.parameters.size(); });
 }
 
 size_t twinmap_count_features(const twinmap_map* map) {
-  return count(map, [](const auto& inferrer) { return inferrer.getExtractor().getFeatureCount(); });
+  return count(map, [](const auto& reader) { return reader.getExtractor().getFeatureCount(); });
 }
 
 size_t twinmap_count_inputs(const twinmap_map* map) {
-  return count(map, [](const auto& inferrer) { return inferrer.getExperiment().model.inputs.size(); });
+  return count(map, [](const auto& reader) { return reader.getExperiment().model.inputs.size(); });
 }
 
 size_t twinmap_count_outputs(const twinmap_map* map) {
-  return count(map, [](const auto& inferrer) { return inferrer.getLayout().getOutputCount(); });
+  return count(map, [](const auto& reader) { return reader.getLayout().getOutputCount(); });
 }
 
 twinmap_result twinmap_get_parameter(const twinmap_map* map, size_t index, twinmap_quantity* quantity) {
@@ -90,14 +90,14 @@ twinmap_result twinmap_get_input(const twinmap_map* map, size_t index, twinmap_q
 twinmap_result twinmap_get_feature(const twinmap_map* map, size_t index, twinmap_quantity* quantity) {
   return guard([&] {
     const twinmap::FeatureInfo& info =
-        getItem(require(map, "map").inferrer.getExtractor().getInfos(), index, "feature");
+        getItem(require(map, "map").source.getReader().getExtractor().getInfos(), index, "feature");
     require(quantity, "quantity") = {info.name.c_str(), info.unit.c_str(), kNaN, kNaN};
   });
 }
 
 twinmap_result twinmap_get_output(const twinmap_map* map, size_t index, twinmap_quantity* quantity) {
   return guard([&] {
-    const twinmap::ResponseLayout& layout = require(map, "map").inferrer.getLayout();
+    const twinmap::ResponseLayout& layout = require(map, "map").source.getReader().getLayout();
     require(quantity, "quantity") = {getItem(layout.output_names, index, "output").c_str(),
                                      layout.output_units[index].c_str(), kNaN, kNaN};
   });
@@ -114,9 +114,13 @@ twinmap_result twinmap_predict(const twinmap_map* map, const double* features, c
     const auto p = static_cast<Eigen::Index>(getModel(map).parameters.size());
     const auto q = static_cast<Eigen::Index>(getModel(map).inputs.size());
     const double* known = q > 0 ? &require(inputs, "inputs") : nullptr;
-    const twinmap::Estimates estimates = map->inferrer.getMap().predict(
+    const twinmap::Inferrer* trained = map->source.findTrained();
+    if (trained == nullptr) {
+      throw WrongArgument("map: an experiment has no map to predict by; infer each measurement");
+    }
+    const twinmap::Estimates estimates = trained->getMap().predict(
         Eigen::Map<const Eigen::MatrixXd>(&require(features, "features"),
-                                          map->inferrer.getExtractor().getFeatureCount(), n),
+                                          map->source.getReader().getExtractor().getFeatureCount(), n),
         Eigen::Map<const Eigen::MatrixXd>(known, q, q > 0 ? n : 0), threads);
     Eigen::Map<Eigen::MatrixXd>(&require(mean, "mean"), p, n) = estimates.mean;
     Eigen::Map<Eigen::MatrixXd>(&require(stddev, "stddev"), p, n) = estimates.stddev;

@@ -109,6 +109,7 @@ struct InferArguments {
   bool follow = false;              ///< measurements from the standard input, JSON lines out
   std::optional<bool> refine;       ///< none: as the experiment says
   int posterior_draws = 0;          ///< of each measurement's posterior; 0: none
+  std::string posterior_from;       ///< "simulator", "surrogate"; "": the simulator where that is fast
   std::string draws;                ///< file for them; "": none
 };
 

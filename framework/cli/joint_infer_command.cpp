@@ -7,7 +7,7 @@
 #include "framework/base/text/number_text.hpp"
 #include "framework/cli/commands.hpp"
 #include "framework/experiment/experiment_file.hpp"
-#include "framework/inference/inference_text.hpp"
+#include "framework/inference/text/inference_text.hpp"
 #include "framework/inference/joint_inference.hpp"
 
 namespace twinmap::cli {
@@ -26,7 +26,7 @@ std::vector<RecordedFile> listFiles(const InferArguments& arguments, const Joint
       throw ExperimentError("--trial " + text + ": must be NAME=FILE, the name of a trial and its recording");
     }
     files.push_back({text.substr(0, equals), text.substr(equals + 1)});
-    inferrer.get(files.back().trial);
+    inferrer.getReader(files.back().trial);
   }
   for (const std::string& file : arguments.files) {
     if (inferrer.listTrials().size() > 1) {
@@ -42,7 +42,7 @@ class RecordingList {
  public:
   RecordingList(const InferArguments& arguments, const JointInferrer& inferrer) {
     for (const RecordedFile& one : listFiles(arguments, inferrer)) {
-      const MeasurementReader& reader = inferrer.get(one.trial).getReader();
+      const MeasurementReader& reader = inferrer.getReader(one.trial);
       tables_.push_back(readTable(one.file, reader.listColumns()));
       for (const std::optional<double>& start : listStarts(arguments, reader, tables_.back())) {
         add(one, start, arguments);
@@ -105,7 +105,7 @@ void inferJointly(const InferArguments& arguments) {
   requireJointArguments(arguments);
   const int draws =
       arguments.posterior_draws > 0 ? arguments.posterior_draws : SimulatorPosteriorOptions{}.draws;
-  JointInferrer inferrer(loadExperimentTree(arguments.run), arguments.known, draws);
+  const JointInferrer inferrer(loadExperimentTree(arguments.run), arguments.known, draws);
   const RecordingList recordings(arguments, inferrer);
   if (recordings.get().size() < 2) {
     throw ExperimentError(

@@ -2,7 +2,7 @@
 #include <stdexcept>
 
 #include "framework/cli/commands.hpp"
-#include "framework/inference/inference_text.hpp"
+#include "framework/inference/text/inference_text.hpp"
 #include "framework/inference/known_value.hpp"
 #include "framework/study/replay/replay_files.hpp"
 

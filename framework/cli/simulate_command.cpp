@@ -12,6 +12,7 @@
 #include "framework/experiment/check/check_experiment.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/inference/tolerances/tolerances.hpp"
 #include "framework/models/make_simulator.hpp"
 
 namespace twinmap::cli {
@@ -100,7 +101,7 @@ void simulate(const SimulateArguments& arguments) {
   std::vector<std::string> overrides = arguments.experiment.overrides;
   const std::vector<ParameterValue> values = takeParameterValues(overrides);
   const ExperimentSpec experiment =
-      readExperimentWithSignals(loadExperimentTree(arguments.experiment.file, overrides));
+      followNoise(readExperimentWithSignals(loadExperimentTree(arguments.experiment.file, overrides)));
   const Eigen::MatrixXd point = makePoint(experiment.model, values);
   const std::unique_ptr<Simulator> made =
       makeSimulator(experiment.model, collectTimes(experiment.features), countModes(experiment.features));

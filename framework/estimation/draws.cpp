@@ -1,6 +1,7 @@
 #include "framework/estimation/draws.hpp"
 
 #include "kernels/linalg/decompositions.hpp"
+#include "kernels/sampling/weighted_draws.hpp"
 
 namespace twinmap {
 
@@ -39,6 +40,12 @@ MatrixXd drawFrom(const Mixture& mixture, int draws, const RandomStream& random)
 }
 
 MatrixXd drawFrom(const Estimate& estimate, int draws, const RandomStream& random) {
+  if (estimate.draws.isGiven()) {
+    const VectorXd uniforms = VectorXd::NullaryExpr(
+        draws, [&](Index i) { return random.calcUniform(static_cast<std::uint64_t>(i), 0); });
+    return importance::resample({estimate.draws.points, estimate.draws.weights}, uniforms)
+        .topRows(estimate.mean.size());
+  }
   return estimate.mixture.isGiven()
              ? drawFrom(estimate.mixture, draws, random)
              : drawNormal(estimate.mean, estimate.stddev, estimate.correlation, draws, random);

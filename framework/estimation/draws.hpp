@@ -12,7 +12,7 @@ namespace twinmap {
 Eigen::MatrixXd drawNormal(const Eigen::VectorXd& mean, const Eigen::VectorXd& stddev,
                            const Eigen::MatrixXd& correlation, int draws, const RandomStream& random);
 
-/// Draws (p x n) from a mixture, or from an estimate, whose mixture or normal distribution that is.
+/// Draws (p x n) from a mixture, or from an estimate: of its own draws, mixture or normal distribution.
 Eigen::MatrixXd drawFrom(const Mixture& mixture, int draws, const RandomStream& random);
 Eigen::MatrixXd drawFrom(const Estimate& estimate, int draws, const RandomStream& random);
 

@@ -1,10 +1,24 @@
 #include "framework/estimation/estimate.hpp"
 
+#include <algorithm>
+
 namespace twinmap {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+
+namespace {
+
+Intervals clampTo(double lower, double upper, Intervals intervals) {
+  for (auto& [from, to] : intervals) {
+    from = std::clamp(from, lower, upper);
+    to = std::clamp(to, lower, upper);
+  }
+  return intervals;
+}
+
+}  // namespace
 
 const char* toString(EstimationMethod method) {
   switch (method) {
@@ -14,6 +28,8 @@ const char* toString(EstimationMethod method) {
       return "surrogate";
     case EstimationMethod::kNetwork:
       return "network";
+    case EstimationMethod::kPosterior:
+      return "posterior";
     case EstimationMethod::kRefined:
       break;
   }
@@ -25,11 +41,24 @@ MatrixXd Estimate::calcCovariance() const {
   return 0.5 * (covariance + covariance.transpose());  // correlations are symmetric to rounding only
 }
 
+bool Estimate::isMultimodal() const {
+  return draws.isGiven() ? mixture.countComponents() > 1 : twinmap::isMultimodal(mixture);
+}
+
 Intervals Estimate::findIntervals(Index parameter, Coverage coverage) const {
   const IntervalFactor both = interval_factors.get(parameter);
   const double factor = coverage == Coverage::k50 ? both.of50 : both.of95;
   if (mixture.isGiven()) {
-    return findWithin(takeMarginal(mixture, parameter), factor);
+    Intervals intervals = findWithin(takeMarginal(mixture, parameter), factor);
+    if (!draws.isGiven()) {
+      return intervals;
+    }
+    if (intervals.size() > 1) {
+      return clampTo(draws.lower[parameter], draws.upper[parameter], std::move(intervals));
+    }
+  }
+  if (draws.isGiven()) {
+    return {draws.findInterval(parameter, coverage == Coverage::k50 ? 0.5 : 0.95)};
   }
   const double half_width = factor * stddev[parameter];
   return {{mean[parameter] - half_width, mean[parameter] + half_width}};

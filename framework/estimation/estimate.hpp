@@ -4,15 +4,17 @@
 #include <string>
 #include <vector>
 
+#include "framework/estimation/bounded_draws.hpp"
 #include "framework/estimation/interval_factor.hpp"
 #include "framework/estimation/mixture.hpp"
 
 namespace twinmap {
 
-/// What made an estimate: the trained estimator by its kind, or a refinement on the simulator.
-enum class EstimationMethod { kGp, kSurrogate, kNetwork, kRefined };
+/// What made an estimate: the trained estimator by its kind, a refinement on the simulator, or draws of the
+/// posterior.
+enum class EstimationMethod { kGp, kSurrogate, kNetwork, kRefined, kPosterior };
 
-/// "gp", "surrogate", "network", "refined".
+/// "gp", "surrogate", "network", "refined", "posterior".
 const char* toString(EstimationMethod method);
 
 /// The probability of an interval.
@@ -23,27 +25,32 @@ struct Bounds95 {
   Eigen::VectorXd lower, upper;
 };
 
-/// What is believed of p parameters after one measurement: a normal distribution, or a mixture of them, in
-/// the parameters' units. Whoever shows intervals takes them from here.
+/// What is believed of p parameters after one measurement: a normal distribution, a mixture of them, or draws
+/// of any, in the parameters' units. Whoever shows intervals takes them from here.
 struct Estimate {
-  Eigen::VectorXd mean, stddev;
+  Eigen::VectorXd mean{}, stddev{};  ///< p; empty where nothing is believed
   /// p, what the measurement allows as the estimator predicts it; empty where it cannot.
   Eigen::VectorXd limit_stddev{};
-  Eigen::MatrixXd correlation{};       ///< p x p, of the errors
-  Mixture mixture{};                   ///< where it is one, whose mean and stddev are above
+  Eigen::MatrixXd correlation{};  ///< p x p, of the errors
+  Mixture mixture{};              ///< where it is one, whose mean and stddev are above
+  BoundedDraws draws{};           ///< where it is known by draws; a mixture then has their separate modes
   IntervalFactors interval_factors{};  ///< of intervals, where they are not those of the distribution above
   EstimationMethod method{};
   std::vector<std::string> statuses{};  ///< listStatuses(); empty where nobody has judged
   /// k, the features and known inputs as the estimator sees them, for a trust model; empty where refined.
   Eigen::VectorXd inputs{};
 
+  bool isGiven() const { return mean.size() > 0; }
+  /// Whether several values that lie apart fit.
+  bool isMultimodal() const;
   bool isRefined() const { return method == EstimationMethod::kRefined; }
 
   /// p x p, symmetric.
   Eigen::MatrixXd calcCovariance() const;
 
-  /// A parameter's intervals, ascending: one, mean +- its factor times stddev, or the smallest set of a
-  /// mixture. Cost: of a mixture some 0.2 ms.
+  /// A parameter's intervals, ascending: one, mean +- its factor times stddev, the smallest set of a mixture,
+  /// or one between quantiles of draws (BoundedDraws::findInterval) unless their modes lie apart. Cost: of a
+  /// mixture some 0.2 ms.
   Intervals findIntervals(Eigen::Index parameter, Coverage coverage) const;
 
   /// The outermost bounds of all parameters' 95 % intervals.

@@ -70,7 +70,8 @@ void addResult(const ExportedModel& model, const std::string& prefix, CTables& t
   }
   tables.addWide("interval_factor", model.getIntervalFactors(),
                  "Half widths of 95 % intervals in standard deviations.");
-  const bool calibrated = validation == nullptr || validation->status == SurrogateStatus::kOk;
+  const bool calibrated = (validation == nullptr || validation->status == SurrogateStatus::kOk) &&
+                          (!model.online.trust || !model.online.trust->coverage.isShort());
   sizes.push_back({"UNCALIBRATED", calibrated ? 0 : 1, "1: the map is known to misjudge its own errors"});
 }
 

@@ -121,7 +121,7 @@ class EstimatorUnderTest {
   InferredMeasurement infer(const VectorXd& features, const VectorXd& known) {
     InferredMeasurement inferred;
     inferred.by_estimator = map_.infer(features, known, workspace_);
-    inferred.estimator_is_calibrated = map_.isCalibrated();
+    inferred.estimator_is_calibrated = isCalibrated(map_, trust_ ? &*model_.online.trust : nullptr);
     if (trust_) {
       inferred.trust = judge(*model_.online.trust, features, known, inferred.by_estimator,
                              workspace_.findExplanation(), *trust_);

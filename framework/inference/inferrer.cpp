@@ -17,6 +17,10 @@ fs::path findMaps(const fs::path& run_or_maps) {
   return file;
 }
 
+bool isCalibrated(const OnlineMap& map, const TrustModel* trust) {
+  return map.isCalibrated() && (trust == nullptr || !trust->coverage.isShort());
+}
+
 Inferrer::Inferrer(const fs::path& run_or_maps) : Inferrer(readTrainedFile(findMaps(run_or_maps))) {}
 
 Inferrer::Inferrer(TrainedFile loaded)
@@ -34,7 +38,8 @@ InferredMeasurement Inferrer::infer(const Eigen::VectorXd& features, const Eigen
                                     Workspace& workspace) const {
   InferredMeasurement inferred;
   inferred.by_estimator = map_.infer(features, known, workspace.map);
-  inferred.estimator_is_calibrated = map_.isCalibrated();
+  inferred.estimator_is_calibrated = isCalibrated(map_, trust_ ? &*trust_ : nullptr);
+  inferred.basins = map_.listBasins(workspace.map);
   if (trust_) {
     inferred.trust = judge(*trust_, features, known, inferred.by_estimator, workspace.map.findExplanation(),
                            *workspace.trust);

@@ -5,31 +5,39 @@
 #include <string>
 
 #include "framework/estimation/refined/refined.hpp"
-#include "framework/estimation/surrogate/posterior_sampler.hpp"
 #include "framework/estimation/trained/online_map.hpp"
 #include "framework/estimation/trained/online_model.hpp"
 #include "framework/inference/measurement_reader.hpp"
+#include "framework/inference/posterior_estimate.hpp"
 #include "framework/store/trained_file.hpp"
 
 namespace twinmap {
 
 /// What a measurement says about the machine.
 struct InferredMeasurement {
-  std::string source;  ///< the file
-  double start = 0.0;  ///< time in the file that is 0 of the model, s
-  Estimate by_estimator;
-  bool estimator_is_calibrated = true;  ///< OnlineMap::isCalibrated()
+  std::string source;                   ///< the file
+  double start = 0.0;                   ///< time in the file that is 0 of the model, s
+  Estimate by_estimator;                ///< not given where there is no trained estimator
+  bool estimator_is_calibrated = true;  ///< isCalibrated()
   std::optional<Trust> trust;           ///< none where the run could fit no trust model
   Eigen::VectorXd explanation;   ///< sampled point that explains the features best; empty without trust
   Eigen::MatrixXd covariance{};  ///< there, u x u in half-widths, with the surrogate's errors; empty likewise
+  /// u x n: the separate places that fit by the estimator, in the parameters' units, the likeliest first;
+  /// one, or none where the estimator does not look for them.
+  Eigen::MatrixXd basins{};
+  bool coverage_is_short = false;  ///< of the run's refined test samples, where the refinement was accepted
   std::string fault{};  ///< of the measurement, that explains a gross misfit (explainByFault()); "" of none
-  std::optional<Refined> refined;                 ///< on the simulator, where that was tried; accepted or not
-  std::optional<SurrogatePosterior> posterior{};  ///< where it was asked for; reliable or not
+  std::optional<Refined> refined;                ///< on the simulator, where that was tried; accepted or not
+  std::optional<PosteriorEstimate> posterior{};  ///< where it was asked for, or taken; reliable or not
 };
 
 /// The maps.h5 of a finished run, given its folder or the file itself. Throws std::runtime_error where there
 /// is none.
 std::filesystem::path findMaps(const std::filesystem::path& run_or_maps);
+
+/// Whether nothing is known against a map's standard deviations: neither by its cross-validation nor by the
+/// run's test samples.
+bool isCalibrated(const OnlineMap& map, const TrustModel* trust);
 
 /// A finished run made ready for measurements. Immutable; its workspaces are for one thread each.
 class Inferrer {

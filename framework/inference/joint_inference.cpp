@@ -10,6 +10,7 @@
 #include "framework/base/text/nearest_name.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"
 #include "framework/experiment/sweep/trials.hpp"
+#include "framework/inference/tolerances/tolerances.hpp"
 
 namespace twinmap {
 
@@ -27,7 +28,7 @@ constexpr Index kMaxDrawn = 8;
 
 /// Starts of the joint search: what each recording alone found for the machine, beside what the others alone
 /// found for themselves; and the mean of all, weighted by their information.
-MatrixXd makeStarts(const PosteriorProblem& problem, const std::vector<DirectInference>& alone,
+MatrixXd makeStarts(const PosteriorProblem& problem, const std::vector<RecordingInference>& alone,
                     Index shared) {
   VectorXd base = VectorXd::Zero(static_cast<Index>(problem.unknown.size()));
   for (std::size_t k = 0; k < alone.size(); ++k) {
@@ -35,7 +36,7 @@ MatrixXd makeStarts(const PosteriorProblem& problem, const std::vector<DirectInf
   }
   std::vector<VectorXd> starts;
   VectorXd sum = VectorXd::Zero(shared), weight = VectorXd::Zero(shared);
-  for (const DirectInference& one : alone) {
+  for (const RecordingInference& one : alone) {
     const SimulatorPosterior& posterior = one.posterior;
     starts.push_back(base);
     starts.back().head(shared) = posterior.best.head(shared);
@@ -60,7 +61,7 @@ MatrixXd makeStarts(const PosteriorProblem& problem, const std::vector<DirectInf
   return given;
 }
 
-std::vector<std::size_t> listReliable(const std::vector<DirectInference>& alone) {
+std::vector<std::size_t> listReliable(const std::vector<RecordingInference>& alone) {
   std::vector<std::size_t> reliable;
   for (std::size_t k = 0; k < alone.size(); ++k) {
     if (alone[k].posterior.isReliable()) {
@@ -70,7 +71,7 @@ std::vector<std::size_t> listReliable(const std::vector<DirectInference>& alone)
   return reliable;
 }
 
-std::vector<Contradiction> findContradictions(const std::vector<DirectInference>& alone, Index shared) {
+std::vector<Contradiction> findContradictions(const std::vector<RecordingInference>& alone, Index shared) {
   const std::vector<std::size_t> reliable = listReliable(alone);
   std::vector<Contradiction> largest;
   for (Index j = 0; j < shared && reliable.size() > 1; ++j) {
@@ -92,7 +93,7 @@ std::vector<Contradiction> findContradictions(const std::vector<DirectInference>
   return largest;
 }
 
-std::vector<ScatterEstimate> combineRecordings(const std::vector<DirectInference>& alone,
+std::vector<ScatterEstimate> combineRecordings(const std::vector<RecordingInference>& alone,
                                                const std::vector<ParameterSpec>& parameters) {
   const std::vector<std::size_t> reliable = listReliable(alone);
   std::vector<ScatterEstimate> combined;
@@ -155,18 +156,24 @@ std::vector<std::string> listStatuses(const JointInference& inferred,
   std::vector<std::string> statuses;
   // each recording is one of many chances of a false alarm
   const double level = kMismatchLevel / static_cast<double>(inferred.alone.size());
-  if (std::any_of(inferred.alone.begin(), inferred.alone.end(),
-                  [&](const DirectInference& one) { return one.test.calcPValue() < level; })) {
+  if (std::any_of(inferred.alone.begin(), inferred.alone.end(), [&](const RecordingInference& one) {
+        return one.inferred.posterior->fit->test.calcPValue() < level;
+      })) {
     statuses.emplace_back("model_mismatch");
   }
   if (inferred.disagrees()) {
     statuses.emplace_back("trials_disagree");
   }
-  DirectInference joint;
-  joint.posterior = inferred.joint;
-  for (const std::string& status : listStatuses(joint, parameters)) {
-    if (status != "ok" && status != "model_mismatch") {
-      statuses.push_back(status);
+  if (!inferred.joint.isReliable()) {
+    statuses.emplace_back("unreliable");
+  } else {
+    if (inferred.joint.modes.size() > 1) {
+      statuses.emplace_back("multimodal");
+    }
+    constexpr double kShare = 0.9;  // as of a single measurement
+    const VectorXd prior = Prior(parameters, {}).calcStddevs();
+    if ((inferred.joint.stddev.head(prior.size()).array() > kShare * prior.array()).any()) {
+      statuses.emplace_back("uninformative");
     }
   }
   return statuses.empty() ? std::vector<std::string>{"ok"} : statuses;
@@ -174,20 +181,23 @@ std::vector<std::string> listStatuses(const JointInference& inferred,
 
 JointInferrer::JointInferrer(const YamlNode& root, const std::vector<std::string>& known, int draws) {
   for (const Trial& trial : expandTrials(root)) {
-    auto inferrer = std::make_unique<DirectInferrer>(readExperimentWithSignals(trial.tree), draws);
-    const VectorXd inputs =
-        collectKnown(inferrer->getReader().getExperiment().model.inputs, parseKnownValues(known));
-    members_.push_back({trial.name, std::move(inferrer), inputs});
-    requireSameParameters(getParameters(), members_.back().inferrer->getParameters());
+    auto reader =
+        std::make_unique<const MeasurementReader>(followNoise(readExperimentWithSignals(trial.tree)));
+    const ExperimentSpec& experiment = reader->getExperiment();
+    auto simulator = std::make_unique<const SimulatorRefiner>(experiment, reader->getLayout(),
+                                                              SimulatorRefiner::Model::kToBeChecked);
+    simulator->requireNoise();
+    const VectorXd inputs = collectKnown(experiment.model.inputs, parseKnownValues(known));
+    members_.push_back({trial.name, std::move(reader), std::move(simulator), inputs});
+    requireSameParameters(getParameters(), members_.back().reader->getExperiment().model.parameters);
   }
-  options_.draws = draws;
-  options_.seed = members_.front().inferrer->getReader().getExperiment().seed;
-  options_.search.starts = kOwnStarts;
-  options_.search.max_batches = 1;
+  options_ = joint_options_ = makePosteriorOptions(members_.front().reader->getExperiment(), draws);
+  joint_options_.search.starts = kOwnStarts;
+  joint_options_.search.max_batches = 1;
 }
 
 const std::vector<ParameterSpec>& JointInferrer::getParameters() const {
-  return members_.front().inferrer->getParameters();
+  return members_.front().reader->getExperiment().model.parameters;
 }
 
 std::vector<std::string> JointInferrer::listTrials() const {
@@ -198,7 +208,7 @@ std::vector<std::string> JointInferrer::listTrials() const {
   return names;
 }
 
-JointInferrer::Member& JointInferrer::upd(const std::string& trial) {
+const JointInferrer::Member& JointInferrer::find(const std::string& trial) const {
   const auto found = std::find_if(members_.begin(), members_.end(),
                                   [&](const Member& member) { return member.name == trial; });
   if (found == members_.end()) {
@@ -208,25 +218,41 @@ JointInferrer::Member& JointInferrer::upd(const std::string& trial) {
   return *found;
 }
 
-const DirectInferrer& JointInferrer::get(const std::string& trial) const {
-  return *const_cast<JointInferrer*>(this)->upd(trial).inferrer;
+MeasuredTrial JointInferrer::makeTrial(const Recording& recording) const {
+  const Member& member = find(recording.trial);
+  return member.simulator->makeTrial(member.reader->readFeatures(*recording.table, recording.start),
+                                     member.known);
 }
 
-PosteriorProblem JointInferrer::makeProblem(const std::vector<Recording>& recordings) {
+RecordingInference JointInferrer::inferAlone(const Recording& recording) const {
+  const Member& member = find(recording.trial);
+  const std::vector<ParameterSpec>& unknown = member.simulator->getUnknown();
+  const auto u = static_cast<Index>(unknown.size());
+  RecordingInference alone{recording.label, {}, {}};
+  alone.inferred.source = recording.table->source;
+  alone.inferred.start = member.reader->getStart(recording.start);
+  alone.posterior =
+      samplePosterior({unknown, member.reader->getExperiment().model.priors, {makeTrial(recording)}, u},
+                      MatrixXd(u, 0), options_);
+  member.simulator->placeResidual(alone.posterior);
+  alone.inferred.posterior =
+      makePosteriorEstimate(alone.posterior, unknown, static_cast<Index>(getParameters().size()),
+                            member.reader->getExtractor().getInfos());
+  return alone;
+}
+
+PosteriorProblem JointInferrer::makeProblem(const std::vector<Recording>& recordings) const {
   PosteriorProblem problem;
   problem.unknown = getParameters();
-  problem.priors = members_.front().inferrer->getReader().getExperiment().model.priors;
+  problem.priors = members_.front().reader->getExperiment().model.priors;
   const auto shared = static_cast<Index>(problem.unknown.size());
   for (const Recording& recording : recordings) {
-    Member& member = upd(recording.trial);
-    MeasuredTrial trial = member.inferrer->prepare(*recording.table, recording.start, member.known);
-    const std::vector<ParameterSpec>& own = member.inferrer->getUnknown();
-    for (Index j = 0; j < static_cast<Index>(own.size()); ++j) {
-      trial.unknown.push_back(j < shared ? j : static_cast<Index>(problem.unknown.size()));
-      if (j >= shared) {
-        problem.unknown.push_back(own[static_cast<std::size_t>(j)]);
-        problem.unknown.back().name.text = recording.label + "." + problem.unknown.back().name.text;
-      }
+    MeasuredTrial trial = makeTrial(recording);
+    const std::vector<ParameterSpec>& own = find(recording.trial).simulator->getUnknown();
+    for (Index j = shared; j < static_cast<Index>(own.size()); ++j) {
+      trial.unknown[static_cast<std::size_t>(j)] = static_cast<Index>(problem.unknown.size());
+      problem.unknown.push_back(own[static_cast<std::size_t>(j)]);
+      problem.unknown.back().name.text = recording.label + "." + problem.unknown.back().name.text;
     }
     problem.trials.push_back(std::move(trial));
   }
@@ -235,12 +261,10 @@ PosteriorProblem JointInferrer::makeProblem(const std::vector<Recording>& record
   return problem;
 }
 
-JointInference JointInferrer::infer(const std::vector<Recording>& recordings) {
+JointInference JointInferrer::infer(const std::vector<Recording>& recordings) const {
   JointInference inferred;
   for (const Recording& recording : recordings) {
-    Member& member = upd(recording.trial);
-    inferred.labels.push_back(recording.label);
-    inferred.alone.push_back(member.inferrer->infer(*recording.table, recording.start, member.known));
+    inferred.alone.push_back(inferAlone(recording));
     inferred.simulations += inferred.alone.back().posterior.simulations;
     if (!(inferred.alone.back().posterior.degrees > 0.0)) {
       inferred.joint.message = recording.label + " cannot be simulated anywhere within the bounds";
@@ -249,13 +273,13 @@ JointInference JointInferrer::infer(const std::vector<Recording>& recordings) {
   }
   const auto shared = static_cast<Index>(getParameters().size());
   const PosteriorProblem problem = makeProblem(recordings);
-  inferred.joint = samplePosterior(problem, makeStarts(problem, inferred.alone, shared), options_);
+  inferred.joint = samplePosterior(problem, makeStarts(problem, inferred.alone, shared), joint_options_);
   inferred.simulations += inferred.joint.simulations;
   if (!(inferred.joint.degrees > 0.0)) {
     return inferred;
   }
   std::vector<double> separate;
-  for (const DirectInference& one : inferred.alone) {
+  for (const RecordingInference& one : inferred.alone) {
     separate.push_back(one.posterior.misfit);
   }
   inferred.agreement =

@@ -8,8 +8,8 @@
 
 #include "framework/estimation/posterior/agreement.hpp"
 #include "framework/experiment/yaml/yaml_node.hpp"
-#include "framework/inference/direct_inference.hpp"
 #include "framework/inference/known_value.hpp"
+#include "framework/inference/refiner.hpp"
 
 namespace twinmap {
 
@@ -33,10 +33,16 @@ struct ScatterEstimate {
   double scatter = 0.0;  ///< standard deviation between recordings that their own does not explain
 };
 
+/// A recording by itself.
+struct RecordingInference {
+  std::string label;
+  InferredMeasurement inferred;
+  SimulatorPosterior posterior;  ///< that of `inferred`, of all its unknown parameters
+};
+
 /// What several recordings say about one machine.
 struct JointInference {
-  std::vector<std::string> labels;
-  std::vector<DirectInference> alone;         ///< each recording by itself
+  std::vector<RecordingInference> alone;
   SimulatorPosterior joint;                   ///< of the machine's parameters
   std::optional<Agreement> agreement;         ///< where all could be simulated
   std::vector<Contradiction> contradictions;  ///< the largest of each parameter, the largest first
@@ -68,25 +74,28 @@ class JointInferrer {
   /// The machine's, the same in all trials.
   const std::vector<ParameterSpec>& getParameters() const;
   /// Of a trial; throws ExperimentError for an unknown one.
-  const DirectInferrer& get(const std::string& trial) const;
+  const MeasurementReader& getReader(const std::string& trial) const { return *find(trial).reader; }
   std::vector<std::string> listTrials() const;
 
-  /// Cost: that of DirectInferrer::infer() for each recording, and two simulations with derivatives of each
+  /// Cost: that of DirectInference::infer() for each recording, and two simulations with derivatives of each
   /// recording and joint draw.
-  JointInference infer(const std::vector<Recording>& recordings);
+  JointInference infer(const std::vector<Recording>& recordings) const;
 
  private:
   struct Member {
     std::string name;
-    std::unique_ptr<DirectInferrer> inferrer;
+    std::unique_ptr<const MeasurementReader> reader;
+    std::unique_ptr<const SimulatorRefiner> simulator;
     Eigen::VectorXd known;
   };
 
-  Member& upd(const std::string& trial);
-  PosteriorProblem makeProblem(const std::vector<Recording>& recordings);
+  const Member& find(const std::string& trial) const;
+  MeasuredTrial makeTrial(const Recording& recording) const;
+  RecordingInference inferAlone(const Recording& recording) const;
+  PosteriorProblem makeProblem(const std::vector<Recording>& recordings) const;
 
   std::vector<Member> members_;
-  SimulatorPosteriorOptions options_;
+  SimulatorPosteriorOptions options_, joint_options_;
 };
 
 /// A table for people: whether they agree, the joint estimate, each recording's.

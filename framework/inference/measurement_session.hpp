@@ -2,46 +2,65 @@
 
 #include <optional>
 #include <string>
+#include <tuple>
 
 #include "framework/estimation/surrogate/posterior_sampler.hpp"
-#include "framework/inference/inferrer.hpp"
+#include "framework/inference/measurement_inference.hpp"
 #include "framework/inference/refiner.hpp"
 
 namespace twinmap {
 
-/// Infers one measurement after another by a run, refined or not; for one thread. The inferrer must outlive
-/// it.
-class MeasurementSession {
+/// How measurements are inferred.
+struct SessionOptions {
+  /// Whether estimates are refined on the simulator; none: as the experiment's `refine` says.
+  std::optional<bool> refine{};
+  /// Of the posterior that each measurement is given; 0: only where nothing less will do.
+  int posterior_draws = 0;
+  /// Whose posterior; none: the simulator's where it takes tenths of a second
+  /// (SimulatorRefiner::samplesFast), else the surrogate's.
+  std::optional<PosteriorSource> posterior_from{};
+
+  friend bool operator<(const SessionOptions& a, const SessionOptions& b) {
+    return std::tie(a.refine, a.posterior_draws, a.posterior_from) <
+           std::tie(b.refine, b.posterior_draws, b.posterior_from);
+  }
+};
+
+/// Infers one measurement after another by a run, refined or not. The inferrer must outlive it.
+///
+/// Where estimates are refined, the simulator is fast and the surrogate's posterior was not asked for, its
+/// own takes the place of the refined estimate where least squares may mislead: the refinement was not
+/// accepted, the estimator knows of other basins, an interval crosses a bound, or the refined test samples of
+/// the run had intervals that held less than they say.
+class MeasurementSession final : public MeasurementInference {
  public:
-  /// `refine`: whether estimates are refined on the simulator; none: as the experiment's `refine` says.
-  /// `posterior_draws`: of the posterior that each measurement is given as well; 0 for none. Throws
-  /// ExperimentError where the simulator cannot be made, or the run has no surrogate for posteriors.
-  MeasurementSession(const Inferrer& inferrer, std::optional<bool> refine, int posterior_draws = 0);
+  /// Throws ExperimentError where the simulator cannot be made, or the posterior that is asked for cannot be
+  /// had.
+  MeasurementSession(const Inferrer& inferrer, const SessionOptions& options);
 
-  bool refines() const { return refiner_.has_value(); }
-  bool samplesPosteriors() const { return sampler_.has_value(); }
+  const MeasurementReader& getReader() const override { return inferrer_.getReader(); }
+  bool refines() const override { return refines_; }
+  bool samplesPosteriors() const override { return sampler_.has_value() || samples_always_; }
 
-  /// The time in a file that is the model's 0: `start`, or that of the experiment's `measurement:`.
-  double getStart(std::optional<double> start) const;
-
-  /// known: the inputs of the set-up (q). Throws MeasurementError for a table that cannot be used
-  /// (MeasurementReader::readFeatures). Cost: that of Inferrer::infer() (of a gross misfit 17 an output
-  /// more),
-  /// SimulatorRefiner::refineAndJudge() and PosteriorSampler::sample().
-  InferredMeasurement infer(const Table& table, std::optional<double> start, const Eigen::VectorXd& known);
-
-  /// The same from features (d, finite) that were extracted elsewhere.
-  InferredMeasurement infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known);
-
- private:
+  using MeasurementInference::infer;
+  /// Cost: that of Inferrer::infer(), SimulatorRefiner::refineAndJudge(), sampleAndJudge() and
+  /// PosteriorSampler::sample().
+  InferredMeasurement infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known) override;
   /// explainByFault() of a measurement that is a model_mismatch.
   std::string findFault(const Eigen::VectorXd& response, const Eigen::VectorXd& known,
-                        const InferredMeasurement& inferred);
+                        const InferredMeasurement& inferred) override;
+
+ private:
+  void choosePosterior(const SessionOptions& options);
+  bool needsPosterior(const InferredMeasurement& inferred) const;
 
   const Inferrer& inferrer_;
   Inferrer::Workspace workspace_;
-  std::optional<SimulatorRefiner> refiner_;
-  std::optional<PosteriorSampler> sampler_;
+  std::optional<SimulatorRefiner> simulator_;  // where it may be asked
+  std::optional<PosteriorSampler> sampler_;    // where the surrogate's posterior was asked for
+  SimulatorPosteriorOptions posterior_options_;
+  bool refines_ = false;
+  bool samples_always_ = false, samples_where_needed_ = false;  // posteriors on the simulator
 };
 
 }  // namespace twinmap

@@ -1,5 +1,11 @@
 #include "framework/inference/refiner.hpp"
 
+#include <fmt/core.h>
+
+#include <numeric>
+#include <stdexcept>
+
+#include "framework/base/text/source_location.hpp"
 #include "framework/data/features/experiment_features.hpp"
 #include "framework/data/noise/noise.hpp"
 #include "framework/estimation/trained/refinement_starts.hpp"
@@ -8,14 +14,28 @@
 namespace twinmap {
 
 using Eigen::Index;
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-SimulatorRefiner::SimulatorRefiner(const ExperimentSpec& experiment, const ResponseLayout& layout)
+SimulatorPosteriorOptions makePosteriorOptions(const ExperimentSpec& experiment, int draws) {
+  if (draws < kMinPosteriorDraws) {
+    throw ExperimentError(
+        fmt::format("a posterior needs at least {} draws, not {}", kMinPosteriorDraws, draws));
+  }
+  SimulatorPosteriorOptions options;
+  options.draws = draws;
+  options.seed = experiment.seed;
+  return options;
+}
+
+SimulatorRefiner::SimulatorRefiner(const ExperimentSpec& experiment, const ResponseLayout& layout,
+                                   Model model)
     : model_(experiment.model),
       extractor_(makeExtractor(experiment, layout)),
-      simulator_(makeTrustedSimulator(experiment.model, layout.times, layout.modes)),
+      simulator_(model == Model::kTrusted ? makeTrustedSimulator(experiment.model, layout.times, layout.modes)
+                                          : makeSimulator(experiment.model, layout.times, layout.modes)),
       noise_(extractor_, ResponseNoise(experiment.noise, layout), experiment.seed),
-      wanted_(shouldRefine(experiment.refine, *simulator_, extractor_, noise_)),
+      wanted_(shouldRefine(experiment.refine, *simulator_, noise_)),
       own_(simulator_->clone()) {}
 
 const RefinementModel& SimulatorRefiner::getModel() const {
@@ -25,12 +45,16 @@ const RefinementModel& SimulatorRefiner::getModel() const {
   return *shared_;
 }
 
-Refined SimulatorRefiner::refine(const InferredMeasurement& inferred, const VectorXd& features,
-                                 const VectorXd& known, const TrustModel* trust) const {
-  const RefinementTask task = makeRefinementTask(
+RefinementTask SimulatorRefiner::makeTask(const InferredMeasurement& inferred, const VectorXd& features,
+                                          const VectorXd& known, const TrustModel* trust) const {
+  return makeRefinementTask(
       model_, trust, features,
       {inferred.by_estimator.takeLikeliest().mean, inferred.explanation, known, inferred.covariance});
-  Refined refined = twinmap::refine(*own_, getModel(), task);
+}
+
+Refined SimulatorRefiner::refine(const InferredMeasurement& inferred, const VectorXd& features,
+                                 const VectorXd& known, const TrustModel* trust) const {
+  Refined refined = twinmap::refine(*own_, getModel(), makeTask(inferred, features, known, trust));
   if (isMultimodal(inferred.by_estimator.mixture)) {
     rejectAsMultimodal(refined);
   }
@@ -50,10 +74,91 @@ void SimulatorRefiner::refineAndJudge(const VectorXd& features, const VectorXd& 
     SimulatorResidual found{
         refined.residual, refined.calcReducedChiSquare(), refined.degrees, refined.explained, {}, {}};
     if (refined.isAccepted()) {
+      inferred.coverage_is_short = trust->refined_coverage.isShort();
       found.mean = refined.point.head(refined.stddev.size());
       found.stddev = refined.stddev;
     }
     inferred.trust = judgeAnew(*trust, *inferred.trust, found);
+  }
+}
+
+void SimulatorRefiner::requireNoise() const {
+  try {
+    getModel();
+  } catch (const std::invalid_argument& error) {
+    throw ExperimentError(
+        std::string(error.what()) +
+        ": a measurement says nothing about parameters unless its noise is known; give every output that "
+        "features read a 'noise.stddev'");
+  }
+}
+
+bool SimulatorRefiner::samplesFast() const {
+  return shouldRefine(RefineMode::kAutomatic, *simulator_, noise_);
+}
+
+PosteriorEstimate SimulatorRefiner::samplePosterior(const VectorXd& features, const VectorXd& known,
+                                                    const MatrixXd& given,
+                                                    const SimulatorPosteriorOptions& options) const {
+  const std::vector<ParameterSpec>& unknown = getUnknown();
+  const PosteriorProblem problem{
+      unknown, model_.priors, {makeTrial(features, known)}, static_cast<Index>(unknown.size())};
+  SimulatorPosterior posterior = twinmap::samplePosterior(problem, given, options);
+  placeResidual(posterior);
+  return makePosteriorEstimate(posterior, unknown, static_cast<Index>(model_.parameters.size()),
+                               extractor_.getInfos());
+}
+
+void SimulatorRefiner::placeResidual(SimulatorPosterior& posterior) const {
+  if (posterior.degrees > 0.0) {
+    posterior.residual = getModel().placeResidual(posterior.residual);
+  }
+}
+
+MeasuredTrial SimulatorRefiner::makeTrial(const VectorXd& features, const VectorXd& known) const {
+  const std::vector<ParameterSpec>& unknown = getUnknown();
+  VectorXd held(static_cast<Index>(unknown.size()) + known.size());
+  held << calcBoxCenter(unknown), known;
+  std::vector<Index> all(unknown.size());
+  std::iota(all.begin(), all.end(), Index{0});
+  return {own_.get(), &getModel(), features, held, std::move(all)};
+}
+
+MatrixXd SimulatorRefiner::listStarts(const InferredMeasurement& inferred, const VectorXd& features,
+                                      const VectorXd& known, const TrustModel* trust) const {
+  std::vector<VectorXd> points;
+  for (Index k = 0; k < inferred.basins.cols(); ++k) {
+    points.emplace_back(inferred.basins.col(k));
+  }
+  for (const RefinementStart& start : makeTask(inferred, features, known, trust).starts) {
+    points.push_back(start.point);
+  }
+  for (Index c = 0; c < inferred.by_estimator.mixture.countComponents(); ++c) {
+    points.push_back(
+        makePoint(model_, inferred.by_estimator.mixture.means.col(c), inferred.explanation, known));
+  }
+  if (inferred.refined) {
+    points.push_back(inferred.refined->point);
+  }
+  const auto u = static_cast<Index>(getModel().getUnknown().size());
+  MatrixXd starts(u, static_cast<Index>(points.size()));
+  for (Index k = 0; k < starts.cols(); ++k) {
+    starts.col(k) = points[static_cast<std::size_t>(k)].head(u);
+  }
+  return starts;
+}
+
+void SimulatorRefiner::sampleAndJudge(const VectorXd& features, const VectorXd& known,
+                                      const TrustModel* trust, const SimulatorPosteriorOptions& options,
+                                      InferredMeasurement& inferred) const {
+  inferred.posterior =
+      samplePosterior(features, known, listStarts(inferred, features, known, trust), options);
+  const SimulatorFit& fit = *inferred.posterior->fit;
+  if (trust != nullptr && fit.isSimulated()) {
+    const Estimate& estimate = inferred.posterior->estimate;
+    inferred.trust = judgeAnew(*trust, *inferred.trust,
+                               {fit.residual, fit.chi_square / fit.degrees, fit.degrees, fit.explained,
+                                estimate.mean, estimate.stddev});
   }
 }
 

@@ -10,11 +10,19 @@
 
 namespace twinmap {
 
-/// Refines inferences of one run on its simulator; for one thread.
+/// Options for posteriors of an experiment's measurements. Throws ExperimentError for fewer draws than
+/// kMinPosteriorDraws.
+SimulatorPosteriorOptions makePosteriorOptions(const ExperimentSpec& experiment, int draws);
+
+/// What is inferred on the simulator of an experiment: estimates refined, posteriors; for one thread.
 class SimulatorRefiner {
  public:
+  /// Whether a run has checked the model by Simbody (makeTrustedSimulator), or this is to (makeSimulator).
+  enum class Model { kTrusted, kToBeChecked };
+
   /// `experiment`: that of the run, with the excitation of the measurement where it is measured.
-  SimulatorRefiner(const ExperimentSpec& experiment, const ResponseLayout& layout);
+  SimulatorRefiner(const ExperimentSpec& experiment, const ResponseLayout& layout,
+                   Model model = Model::kTrusted);
   SimulatorRefiner(const SimulatorRefiner&) = delete;
   SimulatorRefiner& operator=(const SimulatorRefiner&) = delete;
 
@@ -23,6 +31,34 @@ class SimulatorRefiner {
 
   /// Whether the experiment's `refine` asks for it (shouldRefine).
   bool isWanted() const { return wanted_; }
+
+  /// Whether a posterior is a matter of some tenths of a second: exact derivatives, features that are linear
+  /// in the response, noise on all of them.
+  bool samplesFast() const;
+
+  /// Throws ExperimentError, which says what to do, where a feature has no noise.
+  void requireNoise() const;
+
+  const std::vector<ParameterSpec>& getUnknown() const { return getModel().getUnknown(); }
+
+  /// A measurement as a part of a problem: of all unknown parameters in their order. It refers to this
+  /// object, which simulates for it. Throws std::invalid_argument for a feature without noise.
+  MeasuredTrial makeTrial(const Eigen::VectorXd& features, const Eigen::VectorXd& known) const;
+
+  /// Puts the residual in the places of the experiment's features.
+  void placeResidual(SimulatorPosterior& posterior) const;
+
+  /// The posterior of all unknown parameters (samplePosterior). given: points to search from as well (u x n).
+  /// known: q. Throws std::invalid_argument for a feature without noise.
+  PosteriorEstimate samplePosterior(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
+                                    const Eigen::MatrixXd& given,
+                                    const SimulatorPosteriorOptions& options) const;
+
+  /// The same, searched from all that is known of the measurement too: the estimator's basins, the training
+  /// simulations of the most similar features, the refined estimate; and what follows for its trust
+  /// (judgeAnew): sets both.
+  void sampleAndJudge(const Eigen::VectorXd& features, const Eigen::VectorXd& known, const TrustModel* trust,
+                      const SimulatorPosteriorOptions& options, InferredMeasurement& inferred) const;
 
   /// Searches all unknown parameters from what was inferred (makeRefinementTask). known: q. The covariance
   /// and the standard deviations are those of the updating parameters. Throws std::invalid_argument for a
@@ -40,6 +76,10 @@ class SimulatorRefiner {
 
  private:
   const RefinementModel& getModel() const;
+  RefinementTask makeTask(const InferredMeasurement& inferred, const Eigen::VectorXd& features,
+                          const Eigen::VectorXd& known, const TrustModel* trust) const;
+  Eigen::MatrixXd listStarts(const InferredMeasurement& inferred, const Eigen::VectorXd& features,
+                             const Eigen::VectorXd& known, const TrustModel* trust) const;
 
   const ModelSpec model_;
   const FeatureExtractor extractor_;

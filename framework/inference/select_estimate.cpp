@@ -1,11 +1,97 @@
 #include "framework/inference/select_estimate.hpp"
 
+#include <algorithm>
+
 namespace twinmap {
+namespace {
+
+using Statuses = std::vector<std::string>;
+
+const PosteriorEstimate* findSimulated(const InferredMeasurement& inferred) {
+  return inferred.posterior && inferred.posterior->fit ? &*inferred.posterior : nullptr;
+}
+
+/// Whether the simulator's posterior is the estimate.
+bool isSampled(const InferredMeasurement& inferred) {
+  const PosteriorEstimate* posterior = findSimulated(inferred);
+  return posterior != nullptr && posterior->isReliable();
+}
+
+bool isAccepted(const InferredMeasurement& inferred) {
+  return inferred.refined && inferred.refined->isAccepted();
+}
+
+/// By the trust model, where there is one, else by the residual of the simulator's best point.
+bool isMismatch(const InferredMeasurement& inferred) {
+  if (inferred.trust) {
+    const std::vector<TrustStatus>& all = inferred.trust->statuses;
+    return std::find(all.begin(), all.end(), TrustStatus::kModelMismatch) != all.end();
+  }
+  const PosteriorEstimate* posterior = findSimulated(inferred);
+  return posterior != nullptr && posterior->fit->isSimulated() &&
+         posterior->fit->test.calcPValue() < kMismatchLevel;
+}
+
+Statuses listOfSampled(const InferredMeasurement& inferred) {
+  Statuses statuses;
+  if (isMismatch(inferred)) {
+    statuses.emplace_back(toString(TrustStatus::kModelMismatch));
+  }
+  if (inferred.posterior->estimate.isMultimodal()) {
+    statuses.emplace_back(toString(RefinementStatus::kMultimodal));
+  }
+  if (isUninformative(inferred.posterior->estimate)) {
+    statuses.emplace_back(toString(TrustStatus::kUninformative));
+  }
+  return statuses;
+}
+
+void addRefinement(const InferredMeasurement& inferred, Statuses& statuses) {
+  const bool multimodal = inferred.by_estimator.isMultimodal();
+  if (multimodal) {
+    statuses.emplace_back(toString(RefinementStatus::kMultimodal));
+  }
+  if (inferred.refined && !inferred.refined->isAccepted() && !multimodal) {
+    statuses.emplace_back(inferred.refined->status == RefinementStatus::kNonlinear ? "nonlinear"
+                                                                                   : "not_refined");
+  }
+}
+
+/// Of the refined or the estimator's estimate, or of none.
+Statuses listOfOthers(const InferredMeasurement& inferred) {
+  Statuses statuses;
+  if (inferred.trust) {
+    for (const TrustStatus status : inferred.trust->statuses) {
+      if (status != TrustStatus::kOk) {
+        statuses.emplace_back(toString(status));
+      }
+    }
+  } else if (isMismatch(inferred)) {
+    statuses.emplace_back(toString(TrustStatus::kModelMismatch));
+  }
+  addRefinement(inferred, statuses);
+  if (findSimulated(inferred) != nullptr) {
+    statuses.emplace_back(inferred.posterior->getStatus());
+  }
+  if (isUncalibrated(inferred)) {
+    statuses.emplace_back("uncalibrated");
+  }
+  if (isEstimatorLimited(inferred)) {
+    statuses.emplace_back("estimator_limited");
+  }
+  return statuses;
+}
+
+}  // namespace
 
 Estimate selectEstimate(const InferredMeasurement& inferred) {
-  Estimate estimate = inferred.refined && inferred.refined->isAccepted()
+  Estimate estimate = isSampled(inferred) ? inferred.posterior->estimate
+                      : isAccepted(inferred)
                           ? makeEstimate(*inferred.refined, inferred.by_estimator.mean.size())
                           : inferred.by_estimator;
+  if (!estimate.isGiven()) {
+    estimate.method = EstimationMethod::kPosterior;
+  }
   estimate.statuses = listStatuses(inferred);
   return estimate;
 }
@@ -18,37 +104,35 @@ Estimate makeEstimate(const Refined& refined, Eigen::Index parameters) {
 }
 
 bool isEstimatorLimited(const InferredMeasurement& inferred) {
-  if (inferred.refined && inferred.refined->isAccepted()) {
+  if (isSampled(inferred) || isAccepted(inferred)) {
     return false;
   }
   const Eigen::VectorXd ratio = inferred.by_estimator.calcRatioToLimit();
   return !inferred.estimator_is_calibrated || (ratio.size() > 0 && ratio.maxCoeff() > kEstimatorLimitedRatio);
 }
 
+bool isUncalibrated(const InferredMeasurement& inferred) {
+  return inferred.coverage_is_short && isAccepted(inferred) && !isSampled(inferred);
+}
+
 std::vector<std::string> listStatuses(const InferredMeasurement& inferred) {
-  std::vector<std::string> statuses;
-  if (inferred.trust) {
-    for (const TrustStatus status : inferred.trust->statuses) {
-      if (status != TrustStatus::kOk) {
-        statuses.emplace_back(toString(status));
-      }
-    }
+  const PosteriorEstimate* posterior = findSimulated(inferred);
+  if (posterior != nullptr && !posterior->fit->isSimulated() && !inferred.by_estimator.isGiven()) {
+    return {"not_simulated"};
   }
-  const bool multimodal = isMultimodal(inferred.by_estimator.mixture);
-  if (multimodal) {
-    statuses.emplace_back(toString(RefinementStatus::kMultimodal));
-  }
-  if (inferred.refined && !inferred.refined->isAccepted() && !multimodal) {
-    statuses.emplace_back(inferred.refined->status == RefinementStatus::kNonlinear ? "nonlinear"
-                                                                                   : "not_refined");
-  }
-  if (isEstimatorLimited(inferred)) {
-    statuses.emplace_back("estimator_limited");
-  }
-  if (statuses.empty() && inferred.trust) {
+  std::vector<std::string> statuses = isSampled(inferred) ? listOfSampled(inferred) : listOfOthers(inferred);
+  if (statuses.empty() && (inferred.trust || posterior != nullptr)) {
     statuses.emplace_back(toString(TrustStatus::kOk));
   }
   return statuses;
+}
+
+std::string joinStatuses(const std::vector<std::string>& statuses, const char* separator) {
+  std::string joined;
+  for (const std::string& status : statuses) {
+    joined += (joined.empty() ? "" : separator) + status;
+  }
+  return joined;
 }
 
 }  // namespace twinmap

@@ -7,8 +7,9 @@
 
 namespace twinmap {
 
-/// What is believed of a measurement: the refined estimate where it was accepted, else the estimator's; with
-/// its statuses.
+/// What is believed of a measurement: the simulator's posterior where that was sampled and is reliable, else
+/// the refined estimate where it was accepted, else the estimator's; with its statuses. Not given where there
+/// is none of them.
 Estimate selectEstimate(const InferredMeasurement& inferred);
 
 /// That of a refinement that was accepted: its first p parameters.
@@ -20,10 +21,19 @@ constexpr double kEstimatorLimitedRatio = 1.5;
 /// Whether the estimate is the estimator's and its errors are mostly the estimator's own, or not known to it.
 bool isEstimatorLimited(const InferredMeasurement& inferred);
 
-/// Names of all that is to be said against an estimate, the most severe first: what the trust model says,
-/// then "multimodal" where a mixture's components lie apart, "nonlinear" or "not_refined" where a refinement
-/// was tried and not accepted, then "estimator_limited". {"ok"} where nothing is; empty where nobody has
-/// judged.
+/// Whether the estimate is refined, and the intervals of the run's refined test samples held less than they
+/// say.
+bool isUncalibrated(const InferredMeasurement& inferred);
+
+/// Names of all that is to be said against an estimate, the most severe first: "not_simulated"; what the
+/// trust model says or, without one, "model_mismatch" (testResidual, below kMismatchLevel) and
+/// "uninformative"; "multimodal" where several values that lie apart fit; "nonlinear" or "not_refined" where
+/// a refinement was tried and not accepted; "unreliable" where the simulator's posterior was sampled and its
+/// draws do not stand for it; "uncalibrated"; "estimator_limited". Of the simulator's posterior neither what
+/// the estimator was trained on nor how a refinement ended is said. {"ok"} where nothing is; empty where
+/// nobody has judged.
 std::vector<std::string> listStatuses(const InferredMeasurement& inferred);
+
+std::string joinStatuses(const std::vector<std::string>& statuses, const char* separator);
 
 }  // namespace twinmap

@@ -3,11 +3,12 @@
 #include "framework/data/measurement/make_table.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/inference/inference_text.hpp"
+#include "framework/inference/text/inference_text.hpp"
 #include "framework/inference/known_value.hpp"
 #include "framework/inference/select_estimate.hpp"
 #include "framework/python/arrays.hpp"
 #include "framework/python/bindings.hpp"
+#include "framework/python/python_experiment.hpp"
 #include "framework/python/python_map.hpp"
 #include "framework/python/quantity.hpp"
 
@@ -29,9 +30,20 @@ Eigen::Map<const Eigen::VectorXd> viewVector(const Vector& values, const std::st
 struct InferRequest {
   Known known;
   std::optional<double> start;
-  std::optional<bool> refine;
-  int posterior_draws;
+  SessionOptions options;
 };
+
+/// posterior_from: "simulator", "surrogate" or "", which is neither.
+InferRequest makeRequest(Known known, std::optional<double> start, std::optional<bool> refine,
+                         int posterior_draws, const std::string& posterior_from) {
+  SessionOptions options{refine, posterior_draws, {}};
+  for (const PosteriorSource source : {PosteriorSource::kSurrogate, PosteriorSource::kSimulator}) {
+    if (posterior_from == toString(source)) {
+      options.posterior_from = source;
+    }
+  }
+  return {std::move(known), start, options};
+}
 
 /// What Python makes its Estimate of.
 struct InferredEstimate {
@@ -43,23 +55,21 @@ struct InferredEstimate {
 template <class Infer>
 InferredEstimate inferBy(PythonMap& map, const InferRequest& request, const Infer& infer) {
   const py::gil_scoped_release release;
-  const Inferrer& inferrer = map.getInferrer();
   std::vector<KnownValue> values;
   for (const auto& [name, value] : request.known) {
     values.push_back({name, value});
   }
-  const Eigen::VectorXd known = collectKnown(inferrer.getExperiment().model.inputs, values);
-  const PythonMap::Manner manner{request.refine, request.posterior_draws};
-  PythonMap::Session session = map.borrow(manner);
+  const Eigen::VectorXd known = collectKnown(map.getReader().getExperiment().model.inputs, values);
+  PythonMap::Session session = map.borrow(request.options);
   InferredMeasurement measurement = infer(*session, known);
-  map.giveBack(manner, std::move(session));
+  map.giveBack(request.options, std::move(session));
   Estimate estimate = selectEstimate(measurement);
   return {std::move(measurement), std::move(estimate)};
 }
 
 InferredEstimate inferFile(PythonMap& map, const std::string& path, const InferRequest& request) {
-  return inferBy(map, request, [&](MeasurementSession& session, const Eigen::VectorXd& known) {
-    return session.infer(readTable(path, map.getInferrer().getReader().listColumns()), request.start, known);
+  return inferBy(map, request, [&](MeasurementInference& session, const Eigen::VectorXd& known) {
+    return session.infer(readTable(path, map.getReader().listColumns()), request.start, known);
   });
 }
 
@@ -68,25 +78,25 @@ InferredEstimate inferColumns(PythonMap& map, const NamedVectors& columns, const
   for (const auto& [name, values] : columns) {
     named.push_back({name, viewVector(values, "column '" + name + "'")});
   }
-  return inferBy(map, request, [&](MeasurementSession& session, const Eigen::VectorXd& known) {
-    const Table table = makeTable("measurement", named, map.getInferrer().getReader().listColumns());
+  return inferBy(map, request, [&](MeasurementInference& session, const Eigen::VectorXd& known) {
+    const Table table = makeTable("measurement", named, map.getReader().listColumns());
     return session.infer(table, request.start, known);
   });
 }
 
 InferredEstimate inferFeatures(PythonMap& map, const Vector& features, const InferRequest& request) {
   const Eigen::VectorXd values = viewVector(features, "features");
-  const Eigen::Index count = map.getInferrer().getExtractor().getFeatureCount();
+  const Eigen::Index count = map.getReader().getExtractor().getFeatureCount();
   if (values.size() != count || !values.allFinite()) {
     throw MeasurementError("features: must be " + std::to_string(count) + " finite numbers");
   }
-  return inferBy(map, request, [&](MeasurementSession& session, const Eigen::VectorXd& known) {
+  return inferBy(map, request, [&](MeasurementInference& session, const Eigen::VectorXd& known) {
     return session.infer(values, known);
   });
 }
 
 py::tuple predict(const PythonMap& map, const Rows& features, const Rows& known, int threads) {
-  const Inferrer& inferrer = map.getInferrer();
+  const Inferrer& inferrer = map.getTrained();
   const auto inputs = static_cast<Eigen::Index>(inferrer.getExperiment().model.inputs.size());
   const auto columns = viewColumns(features, inferrer.getExtractor().getFeatureCount(), "X");
   const auto settings = viewColumns(known, inputs, "inputs");
@@ -102,32 +112,50 @@ std::unique_ptr<PythonMap> loadMap(const std::string& run_or_maps) {
   return std::make_unique<PythonMap>(run_or_maps);
 }
 
+std::unique_ptr<PythonMap> makeMap(const PythonExperiment& experiment) {
+  return std::make_unique<PythonMap>(experiment.getSpec());
+}
+
 const ModelSpec& getModel(const PythonMap& map) {
-  return map.getInferrer().getExperiment().model;
+  return map.getReader().getExperiment().model;
 }
 
 std::string writeJson(const PythonMap& map, const InferredEstimate& inferred) {
   return makeInferenceJson(inferred.measurement, getModel(map).parameters,
-                           map.getInferrer().getExtractor().getInfos());
+                           map.getReader().getExtractor().getInfos());
 }
 
 std::string writeText(const PythonMap& map, const InferredEstimate& inferred) {
   return makeInferenceTable(inferred.measurement, getModel(map).parameters,
-                            map.getInferrer().getExtractor().getInfos());
+                            map.getReader().getExtractor().getInfos());
 }
 
 void bindPosterior(py::module_& module) {
-  py::class_<SurrogatePosterior>(module, "SurrogatePosterior")
-      .def_property_readonly("mean", [](const SurrogatePosterior& s) { return copyVector(s.mean); })
-      .def_property_readonly("stddev", [](const SurrogatePosterior& s) { return copyVector(s.stddev); })
+  using Posterior = PosteriorEstimate;
+  py::class_<Posterior>(module, "Posterior")
+      .def_property_readonly("mean", [](const Posterior& s) { return copyVector(s.estimate.mean); })
+      .def_property_readonly("stddev", [](const Posterior& s) { return copyVector(s.estimate.stddev); })
+      .def_property_readonly("quantiles",
+                             [](const Posterior& s) { return moveToRows(calcQuantiles(s.estimate)); })
       .def_property_readonly(
-          "quantiles", [](const SurrogatePosterior& s) { return moveToRows(Eigen::MatrixXd(s.quantiles)); })
-      .def_property_readonly("draws",
-                             [](const SurrogatePosterior& s) { return moveToRows(Eigen::MatrixXd(s.draws)); })
-      .def_readonly("effective_sample_size", &SurrogatePosterior::effective_sample_size)
-      .def_readonly("pareto_shape", &SurrogatePosterior::pareto_shape)
-      .def_readonly("evaluations", &SurrogatePosterior::evaluations)
-      .def_readonly("message", &SurrogatePosterior::message);
+          "draws", [](const Posterior& s) { return moveToRows(Eigen::MatrixXd(s.estimate.draws.points)); })
+      .def_property_readonly("weights",
+                             [](const Posterior& s) { return copyVector(s.estimate.draws.weights); })
+      .def_property_readonly("source", [](const Posterior& s) { return toString(s.source); })
+      .def_readonly("effective_sample_size", &Posterior::effective_sample_size)
+      .def_readonly("pareto_shape", &Posterior::pareto_shape)
+      .def_readonly("evaluations", &Posterior::evaluations)
+      .def_readonly("message", &Posterior::message);
+}
+
+/// Of each component that may fit its weight, mean and standard deviation; none of an estimate that is one.
+py::list listComponents(const Mixture& mixture) {
+  py::list components;
+  for (Eigen::Index c = 0; c < mixture.countComponents(); ++c) {
+    components.append(py::make_tuple(mixture.weights[c], copyVector(Eigen::VectorXd(mixture.means.col(c))),
+                                     copyVector(Eigen::VectorXd(mixture.stddevs.col(c)))));
+  }
+  return components;
 }
 
 /// Of each parameter its intervals, lower and upper bound each.
@@ -150,12 +178,14 @@ void bindEstimate(py::module_& module) {
                              [](const Inferred& i) { return listIntervals(i.estimate, Coverage::k50); })
       .def_property_readonly("intervals95",
                              [](const Inferred& i) { return listIntervals(i.estimate, Coverage::k95); })
+      .def_property_readonly("components",
+                             [](const Inferred& i) { return listComponents(i.estimate.mixture); })
       .def_property_readonly("statuses", [](const Inferred& i) { return i.estimate.statuses; })
       .def_property_readonly("method", [](const Inferred& i) { return toString(i.estimate.method); })
       .def_property_readonly("posterior", [](const Inferred& i) { return i.measurement.posterior; });
   py::class_<InferRequest>(module, "InferRequest")
-      .def(py::init<Known, std::optional<double>, std::optional<bool>, int>(), py::arg("known"),
-           py::arg("start"), py::arg("refine"), py::arg("posterior_draws"));
+      .def(py::init(&makeRequest), py::arg("known"), py::arg("start"), py::arg("refine"),
+           py::arg("posterior_draws"), py::arg("posterior_from"));
 }
 
 }  // namespace
@@ -165,6 +195,7 @@ void bindMap(py::module_& module) {
   bindEstimate(module);
   py::class_<PythonMap>(module, "Map")
       .def_static("load", &loadMap, py::call_guard<py::gil_scoped_release>())
+      .def_static("of_experiment", &makeMap)
       .def("infer_file", &inferFile)
       .def("infer_columns", &inferColumns)
       .def("infer_features", &inferFeatures)
@@ -177,18 +208,18 @@ void bindMap(py::module_& module) {
                              [](const PythonMap& m) { return describe(collectUnknown(getModel(m))); })
       .def_property_readonly("inputs", [](const PythonMap& m) { return describe(getModel(m).inputs); })
       .def_property_readonly("outputs",
-                             [](const PythonMap& m) { return describeOutputs(m.getInferrer().getLayout()); })
+                             [](const PythonMap& m) { return describeOutputs(m.getReader().getLayout()); })
       .def_property_readonly(
-          "features", [](const PythonMap& m) { return describe(m.getInferrer().getExtractor().getInfos()); })
+          "features", [](const PythonMap& m) { return describe(m.getReader().getExtractor().getInfos()); })
       .def_property_readonly("name",
-                             [](const PythonMap& m) { return m.getInferrer().getExperiment().name.text; })
+                             [](const PythonMap& m) { return m.getReader().getExperiment().name.text; })
       .def_property_readonly(
           "residual_correlation",
           [](const PythonMap& m) {
-            return moveToRows(Eigen::MatrixXd(m.getInferrer().getMap().getResidualCorrelation()));
+            return moveToRows(Eigen::MatrixXd(m.getTrained().getMap().getResidualCorrelation()));
           })
       .def("write_experiment",
-           [](const PythonMap& m) { return writeExperiment(m.getInferrer().getExperiment()); });
+           [](const PythonMap& m) { return writeExperiment(m.getReader().getExperiment()); });
 }
 
 }  // namespace twinmap::python

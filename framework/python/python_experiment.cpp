@@ -2,6 +2,7 @@
 
 #include "framework/data/features/experiment_features.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"
+#include "framework/inference/tolerances/tolerances.hpp"
 #include "framework/models/make_simulator.hpp"
 
 namespace twinmap::python {
@@ -12,7 +13,7 @@ PythonExperiment::PythonExperiment(YamlNode tree)
 std::shared_ptr<const Simulator> PythonExperiment::getSimulator() const {
   const std::lock_guard<std::mutex> lock(making_);
   if (!simulator_) {
-    simulator_ = makeSimulator(spec_.model, layout_.times, layout_.modes);
+    simulator_ = makeSimulator(followNoise(spec_).model, layout_.times, layout_.modes);
   }
   return simulator_;
 }

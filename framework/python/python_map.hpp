@@ -7,32 +7,31 @@
 #include <optional>
 #include <vector>
 
-#include "framework/inference/inferrer.hpp"
-#include "framework/inference/measurement_session.hpp"
+#include "framework/inference/inference_source.hpp"
 
 namespace twinmap::python {
 
-/// A trained map as Python holds it, for any number of threads: each borrows a session.
+/// A trained map, or an experiment alone, as Python holds it, for any number of threads: each borrows a
+/// session.
 class PythonMap {
  public:
-  explicit PythonMap(const std::filesystem::path& run_or_maps) : inferrer_(run_or_maps) {}
+  explicit PythonMap(const std::filesystem::path& run_or_maps) : source_(run_or_maps) {}
+  explicit PythonMap(ExperimentSpec experiment) : source_(std::move(experiment)) {}
 
-  const Inferrer& getInferrer() const { return inferrer_; }
+  const MeasurementReader& getReader() const { return source_.getReader(); }
+  /// Throws std::logic_error of an experiment alone, which Python asks for none of its results.
+  const Inferrer& getTrained() const;
 
-  using Refine = std::optional<bool>;
-  using Session = std::unique_ptr<MeasurementSession>;
-
-  /// How a session infers (MeasurementSession).
-  using Manner = std::pair<Refine, int>;  ///< the draws of posteriors
+  using Session = std::unique_ptr<MeasurementInference>;
 
   /// A session that infers so, perhaps one that was given back. From any thread.
-  Session borrow(const Manner& manner);
-  void giveBack(const Manner& manner, Session session);
+  Session borrow(const SessionOptions& options);
+  void giveBack(const SessionOptions& options, Session session);
 
  private:
-  const Inferrer inferrer_;
+  const InferenceSource source_;
   std::mutex mutex_;
-  std::map<Manner, std::vector<Session>> idle_;
+  std::map<SessionOptions, std::vector<Session>> idle_;
 };
 
 }  // namespace twinmap::python

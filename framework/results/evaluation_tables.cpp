@@ -87,10 +87,10 @@ std::string makePosteriorCsv(const RunSummary& run) {
   for (const PosteriorComparison& row : run.evaluation.posteriors) {
     for (std::size_t p = 0; p < run.parameters.size(); ++p) {
       const auto j = static_cast<Index>(p);
-      rows.push_back({std::to_string(row.sample), run.parameters[p].name.text, toText(row.exact.mean[j]),
-                      toText(row.exact.stddev[j]), toText(row.map_mean[j]), toText(row.map_stddev[j]),
+      rows.push_back({std::to_string(row.sample), run.parameters[p].name.text, toText(row.mean[j]),
+                      toText(row.stddev[j]), toText(row.map_mean[j]), toText(row.map_stddev[j]),
                       row.limit_stddev.size() > 0 ? toText(row.limit_stddev[j]) : "",
-                      toText(row.exact.effective_sample_size), std::to_string(row.exact.simulations)});
+                      toText(row.effective_sample_size), std::to_string(row.simulations)});
     }
   }
   return makeCsv(rows);
@@ -148,7 +148,7 @@ std::string makeMapsCsv(const RunSummary& run) {
 
 std::string makeMethodsCsv(const RunSummary& run) {
   std::vector<CsvRow> rows{addFigureNames({"method", "parameter"})};
-  rows[0].insert(rows[0].end(), {"samples", "accepted", "median_simulations"});
+  rows[0].insert(rows[0].end(), {"samples", "accepted", "median_simulations", "apart_from_posterior"});
   for (const MethodSummary& method : run.evaluation.methods) {
     const double share = static_cast<double>(method.accepted) / static_cast<double>(method.samples);
     for (std::size_t p = 0; p < run.parameters.size(); ++p) {
@@ -157,7 +157,8 @@ std::string makeMethodsCsv(const RunSummary& run) {
         std::fill(row.begin() + 2, row.end(), "");
       }
       row.insert(row.end(),
-                 {std::to_string(method.samples), toText(share), std::to_string(method.median_simulations)});
+                 {std::to_string(method.samples), toText(share), std::to_string(method.median_simulations),
+                  method.apart_from_posterior ? toText(*method.apart_from_posterior) : ""});
       rows.push_back(std::move(row));
     }
   }

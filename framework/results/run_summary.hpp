@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "framework/analysis/exact_posterior.hpp"
 #include "framework/analysis/identifiability.hpp"
 #include "framework/analysis/joint_metrics.hpp"
 #include "framework/analysis/metrics.hpp"
@@ -94,8 +93,10 @@ struct FeatureRelevance {
 
 /// One test sample's exact posterior beside what the map says.
 struct PosteriorComparison {
-  int sample = 0;  ///< index in the test set
-  ExactPosterior exact;
+  int sample = 0;                ///< index in the test set
+  Eigen::VectorXd mean, stddev;  ///< p, of the posterior; NaN where it is not reliable
+  double effective_sample_size = 0.0;
+  int simulations = 0;
   Eigen::VectorXd map_mean, map_stddev, limit_stddev;  ///< p; no limit if it is switched off
 };
 
@@ -117,10 +118,13 @@ struct BaselineSummary {
 
 /// How well a method infers the test samples.
 struct MethodSummary {
-  std::string method;  ///< "gp", "surrogate", "network", "refined"
+  std::string method;  ///< "gp", "surrogate", "network", "refined", "posterior"
   Eigen::Index samples = 0, accepted = 0;
   int median_simulations = 0;             ///< of a measurement
   std::vector<ParameterMetrics> metrics;  ///< of the accepted
+  /// Of refined estimates, where exact posteriors are known: the share that differs from them by more than .3
+  /// of their standard deviations.
+  std::optional<double> apart_from_posterior{};
 };
 
 /// What one online update costs: the inference of all parameters from one feature vector.

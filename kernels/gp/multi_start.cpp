@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/gp/polish.hpp"
 #include "kernels/gp/starts.hpp"
 
 namespace twinmap::gp {
@@ -20,10 +21,33 @@ struct Task {
   std::size_t start;
 };
 
+// Where Newton's steps end early, L-BFGS goes on.
+SearchResult searchWarm(const TrainingSet& set, const TrainingOptions& options, const TargetSearches& target,
+                        LikelihoodWorkspace& workspace) {
+  const Objective objective = [&](const VectorXd& point, VectorXd& gradient) {
+    return evaluateLikelihoodGradient(set, target.values, fromLog(set.getStructure(), point), workspace,
+                                      gradient);
+  };
+  SearchLimits limits{options.max_evaluations, options.tolerance, nullptr, options.stop};
+  const SearchResult polished = polish(objective, target.starts[0], target.curvature, target.box, limits);
+  limits.max_evaluations -= polished.evaluations;
+  if (polished.converged || limits.max_evaluations < 1 || isStopRequested(options.stop)) {
+    return polished;
+  }
+  SearchResult result = minimize(objective, set.size(), polished.end, target.box, limits);
+  result.evaluations += polished.evaluations;
+  result.largest_jitter = std::max(result.largest_jitter, polished.largest_jitter);
+  return result;
+}
+
 // The starts after the first know its optimum, and stop once they have come near it.
 void runTask(const TrainingSet& set, const TrainingOptions& options, const Task& task,
              LikelihoodWorkspace& workspace) {
   TargetSearches& target = *task.target;
+  if (target.curvature.size() > 0) {
+    target.results[task.start] = searchWarm(set, options, target, workspace);
+    return;
+  }
   const SearchResult* known = task.start > 0 ? &target.results[0] : nullptr;
   target.results[task.start] =
       search(set, target.values, target.starts[task.start], target.box,
@@ -142,7 +166,8 @@ std::vector<TargetSearches> searchAllStarts(const TrainingSet& set, const Eigen:
   if (!options.warm_starts.empty()) {
     for (std::size_t t = 0; t < all.size(); ++t) {
       if (!all[t].constant) {
-        all[t].starts = {toLog(set.getStructure(), options.warm_starts[t])};
+        all[t].starts = {toLog(set.getStructure(), options.warm_starts[t].hyperparameters)};
+        all[t].curvature = options.warm_starts[t].curvature;
       }
     }
     runTasks(set, options, makeTasks(all, 0, 1));

@@ -15,6 +15,7 @@ struct TargetSearches {
   bool constant = false;  ///< varies by no more than rounding: not searched
   SearchBox box;
   std::vector<Eigen::VectorXd> starts;  ///< log-hyperparameters
+  Eigen::MatrixXd curvature;            ///< k x k, of a warm start, which is then the only one; else empty
   std::vector<SearchResult> results;    ///< one per start
   int warm_start_evaluations = 0;
 };

@@ -7,6 +7,7 @@
 
 #include "kernels/gp/fit.hpp"
 #include "kernels/gp/multi_start.hpp"
+#include "kernels/gp/polish.hpp"
 #include "kernels/gp/starts.hpp"
 #include "kernels/linalg/condition.hpp"
 
@@ -61,13 +62,18 @@ void checkTargets(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
 }
 
 void checkWarmStarts(Eigen::Index targets, const ModelStructure& structure,
-                     const std::vector<Hyperparameters>& warm_starts) {
+                     const std::vector<WarmStart>& warm_starts) {
   if (!warm_starts.empty() && static_cast<Eigen::Index>(warm_starts.size()) != targets) {
     throw std::invalid_argument("TrainingOptions: warm_starts has " + std::to_string(warm_starts.size()) +
                                 " entries for " + std::to_string(targets) + " targets");
   }
-  for (const Hyperparameters& start : warm_starts) {
-    checkHyperparameters(structure, start);
+  for (const WarmStart& start : warm_starts) {
+    checkHyperparameters(structure, start.hyperparameters);
+    const int count = HyperparameterLayout(structure).count;
+    if (start.curvature.rows() != count || start.curvature.cols() != count) {
+      throw std::invalid_argument("TrainingOptions: the curvature of a warm start must have " +
+                                  std::to_string(count) + " rows and columns");
+    }
   }
 }
 
@@ -154,7 +160,7 @@ void judge(TrainingResult& result) {
   setStatus(result, TrainingStatus::kConverged, best.stop_reason);
 }
 
-TrainingResult finish(const TrainingSet& set, const TargetSearches& searches,
+TrainingResult finish(const TrainingSet& set, const TargetSearches& searches, bool curvature,
                       LikelihoodWorkspace& workspace) {
   TrainingResult result;
   if (searches.constant) {
@@ -187,6 +193,10 @@ TrainingResult finish(const TrainingSet& set, const TargetSearches& searches,
   result.gp = makeGaussianProcess(set, report.starts[report.best_start].end, evaluation, workspace);
   report.condition = linalg::estimateCondition(linalg::viewOf(result.gp->getFactor()));
   judge(result);
+  if (curvature) {
+    result.curvature =
+        calcCurvature(set, searches.values, result.gp->getHyperparameters(), searches.box, workspace);
+  }
   return result;
 }
 
@@ -220,7 +230,7 @@ std::vector<TrainingResult> train(const Eigen::Ref<const Eigen::MatrixXd>& input
   std::vector<TrainingResult> results;
   for (const TargetSearches& target : searches) {
     throwIfStopped(options.stop);
-    results.push_back(finish(set, target, workspace));
+    results.push_back(finish(set, target, options.curvature, workspace));
   }
   return results;
 }

@@ -24,14 +24,22 @@ struct LengthScalePrior {
   double log_stddev = 2.0;  ///< 2: a factor of 7, weak enough to yield to a few dozen samples
 };
 
+/// Where one search begins, and how the NLML curves there in log-hyperparameters (TrainingResult::curvature).
+struct WarmStart {
+  Hyperparameters hyperparameters;
+  Eigen::MatrixXd curvature;
+};
+
 struct TrainingOptions {
   /// Local searches per target; the best NLML wins. 2: from the median distance with noise start_noise, and
   /// from far off it (with several groups: from the optimum of a shared length scale). They found the best of
   /// 8 starts on the two-beam targets of 20 seeds, and of seed 1 from 16 other first starts.
   int starts = 2;
-  /// One per target: a single search from here replaces the starts. For hyperparameters known from similar
-  /// data.
-  std::vector<Hyperparameters> warm_starts;
+  /// One per target: a single search from here (polish()) replaces the starts. For hyperparameters known from
+  /// similar data.
+  std::vector<WarmStart> warm_starts;
+  /// Whether the results have their curvature, for warm starts: k + 1 evaluations more a target.
+  bool curvature = false;
   /// NLML + gradient evaluations per start. A start takes some 20 to 40; 200 ends only the hopeless.
   int max_evaluations = 200;
   /// A start ends when a step gains less than this many nats. 1e-4 would change no prediction visibly; 1e-6
@@ -104,6 +112,7 @@ struct TrainingResult {
   std::string message;                        ///< for a person: what happened and why
   std::shared_ptr<const GaussianProcess> gp;  ///< null where the status says so
   TrainingReport report;
+  Eigen::MatrixXd curvature;  ///< of the NLML at the end (calcCurvature()); empty unless asked for
 };
 
 /// Trains one process per row of `targets` (t x n) on the same inputs (d x n): hyperparameters by least NLML,

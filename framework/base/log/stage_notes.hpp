@@ -20,9 +20,10 @@ struct StageNotes {
   std::vector<StageTime> times;
 
   void warn(Warning warning) { warnings.push_back(std::move(warning)); }
+  void warn(Severity severity, std::string text) { warn({severity, std::move(text)}); }
   void warn(Severity severity, const std::vector<std::string>& texts) {
     for (const std::string& text : texts) {
-      warn({severity, text});
+      warn(severity, text);
     }
   }
   void append(const StageNotes& later) {

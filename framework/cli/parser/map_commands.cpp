@@ -61,8 +61,14 @@ void addInfer(CLI::App& app) {
   addRefine(*command, arguments->refine);
   CLI::Option* posterior = command->add_flag(
       "--posterior{512}", arguments->posterior_draws,
-      "The posterior as well, without a normal approximation: quantiles, from so many draws weighted by a "
-      "surrogate's likelihood; --posterior=2000 for more than 512");
+      "The posterior as well, without a normal approximation: quantiles, from so many draws weighted by "
+      "their likelihood on the simulator, or a surrogate's where that takes long; --posterior=2000 for more "
+      "than 512");
+  command
+      ->add_option("--posterior-from", arguments->posterior_from,
+                   "What the posterior's likelihood is computed by: simulator or surrogate")
+      ->check(CLI::IsMember({"simulator", "surrogate"}))
+      ->type_name("SOURCE");
   command->add_option("--draws", arguments->draws, "File for the posterior's joint draws (CSV)")
       ->type_name("FILE")
       ->needs(posterior);

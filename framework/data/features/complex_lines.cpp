@@ -55,12 +55,13 @@ std::vector<FeatureInfo> makeInfos(const std::vector<ComplexLine>& lines, Comple
 
 class MagnitudePhaseBlock final : public FeatureBlock {
  public:
-  MagnitudePhaseBlock(std::vector<FeatureInfo> infos, const FeatureMatrix& matrix)
-      : FeatureBlock(std::move(infos)), matrix_(matrix) {}
+  /// parts: the real and imaginary parts that it is made of.
+  MagnitudePhaseBlock(std::vector<FeatureInfo> infos, std::shared_ptr<const LinearBlock> parts)
+      : FeatureBlock(std::move(infos)), parts_(std::move(parts)) {}
 
   void extract(const Eigen::Ref<const Eigen::MatrixXd>& responses,
                Eigen::Ref<Eigen::MatrixXd> features) const override {
-    const Eigen::MatrixXd parts = matrix_ * responses;
+    const Eigen::MatrixXd parts = *parts_->findMatrix() * responses;
     for (Index sample = 0; sample < parts.cols(); ++sample) {
       for (Index line = 0; 2 * line < parts.rows(); ++line) {
         const double real = parts(2 * line, sample), imaginary = parts(2 * line + 1, sample);
@@ -72,8 +73,18 @@ class MagnitudePhaseBlock final : public FeatureBlock {
     }
   }
 
+  std::shared_ptr<const FeatureBlock> findLinearForm() const override { return parts_; }
+
+  void convertToLinearForm(const Eigen::Ref<const Eigen::MatrixXd>& features,
+                           Eigen::Ref<Eigen::MatrixXd> linear) const override {
+    for (Index line = 0; 3 * line < features.rows(); ++line) {
+      linear.middleRows(2 * line, 2) = features.middleRows(3 * line + 1, 2).array().rowwise() *
+                                       features.row(3 * line).array();
+    }
+  }
+
  private:
-  FeatureMatrix matrix_;
+  std::shared_ptr<const LinearBlock> parts_;
 };
 
 }  // namespace
@@ -95,12 +106,12 @@ Eigen::VectorXcd calcLineWeights(const WindowSpec& window, const Frequency& freq
 
 std::shared_ptr<const FeatureBlock> makeComplexBlock(const std::vector<ComplexLine>& lines,
                                                      ComplexParts parts, Index rows) {
-  std::vector<FeatureInfo> infos = makeInfos(lines, parts);
-  FeatureMatrix matrix = makeMatrix(lines, rows);
+  auto linear = std::make_shared<const LinearBlock>(makeInfos(lines, ComplexParts::kRealImaginary),
+                                                    makeMatrix(lines, rows));
   if (parts == ComplexParts::kRealImaginary) {
-    return std::make_shared<LinearBlock>(std::move(infos), matrix);
+    return linear;
   }
-  return std::make_shared<MagnitudePhaseBlock>(std::move(infos), matrix);
+  return std::make_shared<MagnitudePhaseBlock>(makeInfos(lines, parts), std::move(linear));
 }
 
 }  // namespace twinmap

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,13 @@ class FeatureBlock {
 
   /// The matrix of features that are linear in the response, null of others.
   virtual const FeatureMatrix* findMatrix() const { return nullptr; }
+
+  /// Features linear in the response that stand for these one to one, as real and imaginary parts do for
+  /// magnitude and phase: their noise is normal and the same for every response. Null where there are none.
+  virtual std::shared_ptr<const FeatureBlock> findLinearForm() const { return nullptr; }
+  /// From features (infos x n) to those of the linear form (its infos x n), where there is one.
+  virtual void convertToLinearForm(const Eigen::Ref<const Eigen::MatrixXd>& /*features*/,
+                                   Eigen::Ref<Eigen::MatrixXd> /*linear*/) const {}
 
  protected:
   explicit FeatureBlock(std::vector<FeatureInfo> infos) : infos_(std::move(infos)) {}

@@ -66,19 +66,69 @@ bool needExcitation(const std::vector<FeatureSpec>& features) {
 
 FeatureExtractor::FeatureExtractor(const std::vector<FeatureSpec>& features, const ResponseLayout& layout,
                                    const InputSignals& inputs) {
+  Blocks all;
   for (const FeatureSpec& feature : features) {
     const Blocks blocks =
         std::visit([&](const auto& kind) { return makeBlocks(kind, layout, inputs); }, feature);
-    blocks_.insert(blocks_.end(), blocks.begin(), blocks.end());
+    all.insert(all.end(), blocks.begin(), blocks.end());
   }
-  for (const auto& block : blocks_) {
-    infos_.insert(infos_.end(), block->getInfos().begin(), block->getInfos().end());
-  }
+  *this = FeatureExtractor(std::move(all));
 }
 
 bool FeatureExtractor::isLinear() const {
   return std::all_of(blocks_.begin(), blocks_.end(),
                      [](const auto& block) { return block->findMatrix() != nullptr; });
+}
+
+FeatureExtractor::FeatureExtractor(Blocks blocks) : blocks_(std::move(blocks)) {
+  for (const auto& block : blocks_) {
+    infos_.insert(infos_.end(), block->getInfos().begin(), block->getInfos().end());
+  }
+}
+
+bool FeatureExtractor::hasLinearForm() const {
+  return std::any_of(blocks_.begin(), blocks_.end(),
+                     [](const auto& block) { return block->findLinearForm() != nullptr; });
+}
+
+FeatureExtractor FeatureExtractor::makeLinearForm() const {
+  Blocks blocks;
+  for (const auto& block : blocks_) {
+    const auto linear = block->findLinearForm();
+    blocks.push_back(linear ? linear : block);
+  }
+  return FeatureExtractor(std::move(blocks));
+}
+
+Eigen::MatrixXd FeatureExtractor::convertToLinearForm(const Eigen::MatrixXd& features) const {
+  Eigen::MatrixXd converted = features;
+  Eigen::Index from = 0, to = 0;
+  for (const auto& block : blocks_) {
+    const auto linear = block->findLinearForm();
+    const auto rows = static_cast<Eigen::Index>(block->getInfos().size());
+    const auto converted_rows = linear ? static_cast<Eigen::Index>(linear->getInfos().size()) : rows;
+    if (linear) {
+      block->convertToLinearForm(features.middleRows(from, rows), converted.middleRows(to, converted_rows));
+    } else {
+      converted.middleRows(to, rows) = features.middleRows(from, rows);
+    }
+    from += rows;
+    to += converted_rows;
+  }
+  return converted.topRows(to);
+}
+
+Eigen::VectorXd FeatureExtractor::placeLinearForm(const Eigen::VectorXd& linear) const {
+  Eigen::VectorXd placed = Eigen::VectorXd::Zero(getFeatureCount());
+  Eigen::Index from = 0, to = 0;
+  for (const auto& block : blocks_) {
+    const auto form = block->findLinearForm();
+    const auto rows = static_cast<Eigen::Index>((form ? form : block)->getInfos().size());
+    placed.segment(to, rows) = linear.segment(from, rows);
+    from += rows;
+    to += static_cast<Eigen::Index>(block->getInfos().size());
+  }
+  return placed;
 }
 
 Eigen::MatrixXd FeatureExtractor::extract(const Eigen::MatrixXd& responses) const {

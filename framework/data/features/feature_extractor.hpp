@@ -38,7 +38,18 @@ class FeatureExtractor {
   /// Responses (rows of the layout x n) -> features (d x n). A column of NaN stays one.
   Eigen::MatrixXd extract(const Eigen::MatrixXd& responses) const;
 
+  /// Whether some features have a linear form (FeatureBlock::findLinearForm).
+  bool hasLinearForm() const;
+  /// The same with these in their linear form, d' <= d.
+  FeatureExtractor makeLinearForm() const;
+  /// Features (d x n) -> those of the linear form (d' x n).
+  Eigen::MatrixXd convertToLinearForm(const Eigen::MatrixXd& features) const;
+  /// Numbers of the linear form's features (d') in the places (d) of those they stand for; 0 in those left.
+  Eigen::VectorXd placeLinearForm(const Eigen::VectorXd& linear) const;
+
  private:
+  explicit FeatureExtractor(std::vector<std::shared_ptr<const FeatureBlock>> blocks);
+
   std::vector<std::shared_ptr<const FeatureBlock>> blocks_;
   std::vector<FeatureInfo> infos_;
 };

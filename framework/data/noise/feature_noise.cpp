@@ -45,6 +45,14 @@ MatrixXd takeFiniteColumns(const MatrixXd& values) {
 
 }  // namespace
 
+struct FeatureNoise::LinearForm {
+  LinearForm(const FeatureExtractor& features, const ResponseNoise& noise, std::uint64_t seed)
+      : extractor(features.makeLinearForm()), noise(extractor, noise, seed) {}
+
+  FeatureExtractor extractor;
+  FeatureNoise noise;
+};
+
 FeatureNoise::FeatureNoise(const FeatureExtractor& extractor, const ResponseNoise& noise, std::uint64_t seed)
     : extractor_(extractor) {
   Index feature = 0;
@@ -56,9 +64,16 @@ FeatureNoise::FeatureNoise(const FeatureExtractor& extractor, const ResponseNois
   const Index rows = noise.getStddev().size();
   linear_covariance_ =
       noise.calcCovariance(stackMatrices(extractor, rows, static_cast<Index>(linear_.size())));
+  if (extractor.hasLinearForm()) {
+    linear_form_ = std::make_shared<const LinearForm>(extractor, noise, seed);
+  }
   if (!nonlinear_.empty()) {
     draws_ = addNoise(MatrixXd::Zero(rows, kDraws), noise, {seed, RandomPurpose::kNoiseCovariance});
   }
+}
+
+const FeatureNoise& FeatureNoise::getLinearForm() const {
+  return linear_form_ ? linear_form_->noise : *this;
 }
 
 MatrixXd FeatureNoise::calcCovariance(const VectorXd& response) const {

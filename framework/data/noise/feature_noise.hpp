@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 
 #include "framework/data/features/feature_extractor.hpp"
 #include "framework/data/noise/noise.hpp"
@@ -13,6 +14,12 @@ class FeatureNoise {
  public:
   /// `extractor` must outlive the object.
   FeatureNoise(const FeatureExtractor& extractor, const ResponseNoise& noise, std::uint64_t seed);
+
+  const FeatureExtractor& getExtractor() const { return extractor_; }
+
+  /// That of the features in their linear form (FeatureBlock::findLinearForm), with that extractor; itself
+  /// where none has one.
+  const FeatureNoise& getLinearForm() const;
 
   /// Whether the covariance is the same for every response: that of linear features.
   bool isConstant() const { return draws_.cols() == 0; }
@@ -30,7 +37,10 @@ class FeatureNoise {
  private:
   Eigen::MatrixXd calcSampledCovariance(const Eigen::VectorXd& response) const;
 
+  struct LinearForm;
+
   const FeatureExtractor& extractor_;
+  std::shared_ptr<const LinearForm> linear_form_;  // null where no feature has one
   std::vector<Eigen::Index> linear_, nonlinear_;  // features
   Eigen::MatrixXd linear_covariance_;
   Eigen::MatrixXd draws_;  // noise of the response, rows x draws; empty if all features are linear

@@ -98,23 +98,20 @@ void ResponseNoise::correlate(const NoiseCorrelationSpec& spec, const ResponseLa
 
 Eigen::MatrixXd ResponseNoise::add(const Eigen::MatrixXd& responses, const RandomStream& random,
                                    std::uint64_t replicate) const {
-  if (blocks_.empty()) {
-    return Eigen::MatrixXd::NullaryExpr(
-        responses.rows(), responses.cols(), [&](Eigen::Index row, Eigen::Index sample) {
-          return responses(row, sample) + stddev_[row] * random.calcNormal(sample, row, replicate);
-        });
-  }
-  Eigen::MatrixXd normal = Eigen::MatrixXd::NullaryExpr(
-      responses.rows(), responses.cols(),
-      [&](Eigen::Index row, Eigen::Index sample) { return random.calcNormal(sample, row, replicate); });
-  for (const Block& block : blocks_) {
-    // Column by column: the noise of a response does not depend on how many there are.
-    for (auto&& sample : normal.colwise()) {
-      const Eigen::VectorXd independent = sample(block.rows);
-      sample(block.rows) = block.factor.triangularView<Eigen::Lower>() * independent;
+  Eigen::MatrixXd noisy(responses.rows(), responses.cols());
+  Eigen::VectorXd normal(responses.rows());
+  for (Eigen::Index sample = 0; sample < responses.cols(); ++sample) {
+    random.drawNormals(static_cast<std::uint64_t>(sample), replicate, normal.data(),
+                       static_cast<std::size_t>(normal.size()));
+    for (const Block& block : blocks_) {
+      const Eigen::VectorXd independent = normal(block.rows);
+      normal(block.rows) = block.factor.triangularView<Eigen::Lower>() * independent;
+    }
+    for (Eigen::Index row = 0; row < normal.size(); ++row) {
+      noisy(row, sample) = std::fma(stddev_[row], normal[row], responses(row, sample));
     }
   }
-  return responses + stddev_.asDiagonal() * normal;
+  return noisy;
 }
 
 Eigen::MatrixXd ResponseNoise::calcCovariance(const FeatureMatrix& matrix) const {

@@ -59,19 +59,22 @@ void keepResults(const std::vector<Result>& results, const std::vector<std::stri
   }
 }
 
-/// The hyperparameters of each target on the first of the replicates; none if a target cannot be trained.
-std::vector<gp::Hyperparameters> findHyperparameters(const Eigen::MatrixXd& inputs,
-                                                     const Eigen::MatrixXd& targets, int replicates,
-                                                     const gp::ModelStructure& structure,
-                                                     const gp::TrainingOptions& options) {
+/// Where the search for each target begins: what is found on the first of the replicates, with the curvature
+/// that all of them give. Nothing if a target cannot be trained.
+std::vector<gp::WarmStart> findWarmStarts(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets,
+                                          int replicates, const gp::ModelStructure& structure,
+                                          gp::TrainingOptions options) {
+  constexpr double kTolerance = 1e-2;  // nats: the whole set's optimum lies further away than that
+  options.tolerance = kTolerance;
+  options.curvature = true;
   const Eigen::Index first = inputs.cols() / replicates;
-  std::vector<gp::Hyperparameters> found;
+  std::vector<gp::WarmStart> found;
   for (const gp::TrainingResult& result :
        gp::train(inputs.leftCols(first), targets.leftCols(first), structure, options)) {
     if (result.gp == nullptr) {
       return {};
     }
-    found.push_back(result.gp->getHyperparameters());
+    found.push_back({result.gp->getHyperparameters(), replicates * result.curvature});
   }
   return found;
 }
@@ -192,8 +195,7 @@ GpMapTraining trainGpMap(const GpMapSpec& spec, const std::vector<TransformStepS
   const int draws =
       sparse_map ? samples.replicates : countSearchedReplicates(data.inputs.cols(), samples.replicates);
   if (draws > 1) {
-    options.warm_starts =
-        findHyperparameters(data.inputs, data.targets, samples.replicates, structure, options);
+    options.warm_starts = findWarmStarts(data.inputs, data.targets, samples.replicates, structure, options);
   }
   if (sparse_map) {
     const gp::SparseOptions sparse{spec.inducing, spec.subset, spec.refine_evaluations};

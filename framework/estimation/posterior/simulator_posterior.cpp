@@ -162,8 +162,9 @@ std::vector<PosteriorMode> collectModes(const std::vector<Basin>& basins,
     const double weight = part.weights.sum();
     if (weight >= kMinWeight) {
       part.weights /= weight;
-      modes.push_back({weight, importance::calcMean(part),
-                       importance::calcCovariance(part).diagonal().cwiseSqrt(), basins[k].local.chi_square});
+      const MatrixXd covariance = importance::calcCovariance(part);
+      modes.push_back({weight, importance::calcMean(part), covariance.diagonal().cwiseSqrt(),
+                       basins[k].local.chi_square, covariance});
     }
   }
   std::stable_sort(modes.begin(), modes.end(),

@@ -11,10 +11,11 @@ namespace twinmap {
 
 /// A place where the posterior has some of its mass, apart from the others.
 struct PosteriorMode {
-  double weight = 0.0;      ///< share of the posterior
-  Eigen::VectorXd mean;     ///< u, in the parameters' units
-  Eigen::VectorXd stddev;   ///< u
-  double chi_square = 0.0;  ///< at its minimum
+  double weight = 0.0;           ///< share of the posterior
+  Eigen::VectorXd mean;          ///< u, in the parameters' units
+  Eigen::VectorXd stddev;        ///< u
+  double chi_square = 0.0;       ///< at its minimum
+  Eigen::MatrixXd covariance{};  ///< u x u
 };
 
 /// The posterior of unknown parameters given measurements, by simulation alone: normal noise, a prior within

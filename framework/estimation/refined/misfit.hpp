@@ -40,7 +40,7 @@ struct ProbedMisfit {
 /// How badly the simulator explains measured features, in units of their noise. One measurement, one thread.
 class Misfit {
  public:
-  /// All must outlive the object.
+  /// measured: the experiment's features. Simulator, model and box must outlive the object.
   Misfit(Simulator& simulator, const RefinementModel& model, const SearchBox& box,
          const Eigen::VectorXd& measured);
 
@@ -78,7 +78,7 @@ class Misfit {
   Simulator& simulator_;
   const RefinementModel& model_;
   const SearchBox& box_;
-  const Eigen::VectorXd& measured_;
+  const Eigen::VectorXd measured_;  // converted
   const GrowingWindow* window_;
   std::optional<NoiseWhitener> whitener_;  // where the noise depends on the response
   int simulations_ = 0;

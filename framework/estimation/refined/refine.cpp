@@ -133,7 +133,7 @@ class Refinement {
       found.point = box_.makePoint(end.local.at);
       found.chi_square = end.local.chi_square;
       found.degrees = end.local.calcDegrees();
-      found.residual = end.local.residual;
+      found.residual = model_.placeResidual(end.local.residual);
       found.explained = end.local.chi_square < calcChiSquareLimit(end.local);
       const VectorXd way = end.local.at - box_.normalize(task_.starts.front().point);
       found.distance = std::sqrt(way.dot(end.local.calcHessian() * way));

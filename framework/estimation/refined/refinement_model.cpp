@@ -34,8 +34,8 @@ double findLastTime(const std::vector<FeatureInfo>& infos) {
 
 RefinementModel::RefinementModel(std::vector<ParameterSpec> unknown, const FeatureExtractor& extractor,
                                  const FeatureNoise& noise)
-    : unknown_(std::move(unknown)), extractor_(extractor), noise_(noise) {
-  const std::vector<FeatureInfo>& infos = extractor.getInfos();
+    : unknown_(std::move(unknown)), features_(extractor), noise_(noise.getLinearForm()) {
+  const std::vector<FeatureInfo>& infos = getExtractor().getInfos();
   const double last = findLastTime(infos);
   for (const double fraction : {0.125, 0.25, 0.5}) {
     std::vector<Index> samples = findSamplesUntil(infos, fraction * last);
@@ -47,6 +47,10 @@ RefinementModel::RefinementModel(std::vector<ParameterSpec> unknown, const Featu
   std::vector<Index> all(infos.size());
   std::iota(all.begin(), all.end(), 0);
   addWindow(std::move(all));
+}
+
+VectorXd RefinementModel::placeResidual(const VectorXd& residual) const {
+  return residual.size() == getExtractor().getFeatureCount() ? features_.placeLinearForm(residual) : residual;
 }
 
 void RefinementModel::addWindow(std::vector<Index> features) {

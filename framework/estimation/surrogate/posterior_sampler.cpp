@@ -146,18 +146,15 @@ SurrogatePosterior PosteriorSampler::summarize(const importance::AdaptiveDraws& 
     return posterior;
   }
   const VectorXd center = model_.center.head(u), half_width = model_.half_width.head(u);
-  // not a Map: GCC 12 sees AVX-512 read beyond the five
-  const VectorXd probabilities =
-      VectorXd::NullaryExpr(static_cast<Index>(kPosteriorProbabilities.size()),
-                            [](Index i) { return kPosteriorProbabilities[static_cast<std::size_t>(i)]; });
+  const auto scale = [&](const MatrixXd& covariance) -> MatrixXd {
+    return (half_width.asDiagonal() * covariance * half_width.asDiagonal()).topLeftCorner(p, p);
+  };
   posterior.mean = (center + half_width.cwiseProduct(importance::calcMean(draws))).head(p);
-  posterior.stddev =
-      half_width.cwiseProduct(importance::calcCovariance(draws).diagonal().cwiseSqrt()).head(p);
-  const MatrixXd quantiles = importance::calcQuantiles(draws, probabilities).topRows(p);
-  posterior.quantiles = (half_width.head(p).asDiagonal() * quantiles).colwise() + center.head(p);
+  posterior.covariance = scale(importance::calcCovariance(draws));
+  posterior.stddev = posterior.covariance.diagonal().cwiseSqrt();
+  posterior.weighted = {(half_width.asDiagonal() * draws.points).colwise() + center, draws.weights};
   posterior.normal_mean = (center + half_width.cwiseProduct(normal.mean)).head(p);
-  posterior.normal_covariance =
-      (half_width.asDiagonal() * normal.covariance * half_width.asDiagonal()).topLeftCorner(p, p);
+  posterior.normal_covariance = scale(normal.covariance);
   const MatrixXd chosen = importance::resample(draws, drawUniforms(draws_, kDrawChannel, sample));
   posterior.draws = (half_width.asDiagonal() * chosen).colwise() + center;
   return posterior;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -28,15 +27,13 @@ struct PosteriorModel {
 /// it is: what was too wide is the normal distribution that a map answers with.
 PosteriorModel makePosteriorModel(const Surrogate& surrogate);
 
-/// Probabilities of SurrogatePosterior::quantiles; the outermost bound the 95 % interval.
-constexpr std::array<double, 5> kPosteriorProbabilities{0.025, 0.16, 0.5, 0.84, 0.975};
-
 /// The posterior of the parameters given one measurement, without a normal approximation; p parameters in
 /// their units. Only the diagnostics are there where it is not reliable.
 struct SurrogatePosterior {
   Eigen::VectorXd mean, stddev;        ///< p
-  Eigen::MatrixXd quantiles;           ///< p x kPosteriorProbabilities
-  Eigen::MatrixXd draws;               ///< u x n, of equal weight
+  Eigen::MatrixXd covariance;          ///< p x p
+  importance::WeightedDraws weighted;  ///< u x n, all that were drawn
+  Eigen::MatrixXd draws;               ///< u x n, of equal weight: resampled
   Eigen::VectorXd normal_mean;         ///< p: what ScoreInversion answers
   Eigen::MatrixXd normal_covariance;   ///< p x p
   double effective_sample_size = 0.0;  ///< importance::calcEffectiveSampleSize()
@@ -45,10 +42,6 @@ struct SurrogatePosterior {
   std::string message;                 ///< why it is not reliable; else empty
 
   bool isReliable() const { return message.empty(); }
-  const char* getStatus() const { return isReliable() ? "ok" : "unreliable"; }
-  /// Bounds of the 95 % intervals, p each.
-  Eigen::VectorXd getLower95() const { return quantiles.leftCols<1>(); }
-  Eigen::VectorXd getUpper95() const { return quantiles.rightCols<1>(); }
 };
 
 /// Importance sampling under a uniform prior in the box and the ScoreLikelihood, stretched about the nearest

@@ -88,9 +88,8 @@ ReferenceDistribution calcNoiseAnomalys(const std::vector<ResidualRun>& runs, In
     VectorXd noise(residuals);
     const Index first = static_cast<Index>(chunk) * kChunk;
     for (Index draw = first; draw < first + kChunk; ++draw) {
-      for (Index i = 0; i < residuals; ++i) {
-        noise[i] = random.calcNormal(static_cast<std::uint64_t>(draw), static_cast<std::uint64_t>(i));
-      }
+      random.drawNormals(static_cast<std::uint64_t>(draw), 0, noise.data(),
+                         static_cast<std::size_t>(residuals));
       anomalies.sorted[draw] = findAnomaly(noise, runs).score;
     }
   });

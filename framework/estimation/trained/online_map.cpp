@@ -90,6 +90,11 @@ const ScoreExplanation* OnlineMap::Workspace::findExplanation() const {
   return surrogate != nullptr ? surrogate->findExplanation() : nullptr;
 }
 
+MatrixXd OnlineMap::listBasins(const Workspace& workspace) const {
+  const auto* buffers = std::get_if<OnlineSurrogate::Workspace>(&workspace.kind);
+  return buffers != nullptr ? std::get<OnlineSurrogate>(kind_).listBasins(*buffers) : MatrixXd();
+}
+
 const MatrixXd& OnlineMap::getResidualCorrelation() const {
   return std::visit([](const auto& map) -> const MatrixXd& { return getCorrelation(map); }, kind_);
 }

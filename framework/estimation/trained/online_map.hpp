@@ -44,6 +44,11 @@ class OnlineMap {
     std::variant<OnlineProcesses::Workspace, OnlineSurrogate::Workspace, OnlineNetwork::Workspace> kind;
   };
 
+  /// Where the map is a surrogate, the separate places (u x n, in the parameters' units) that fit the last
+  /// measurement of the workspace, the likeliest first, those of less than a thousandth of the evidence left
+  /// out; else no column.
+  Eigen::MatrixXd listBasins(const Workspace& workspace) const;
+
   /// features: d, finite; known: the inputs of the set-up (q). The result lies in the workspace until its
   /// next use. Cost: some 10 us for the processes of four parameters, a ms by a surrogate, some us by a
   /// network.

@@ -19,6 +19,20 @@ const Estimate& OnlineSurrogate::infer(const Eigen::Ref<const VectorXd>& feature
   return estimate;
 }
 
+MatrixXd OnlineSurrogate::listBasins(const Workspace& workspace) const {
+  constexpr double kMinShare = 1e-3;  // 1000 to 1 is certain
+  const Index u = surrogate_->unknown;
+  MatrixXd basins(u, 0);
+  for (const ScoreMode& mode : workspace.inversion.getModes()) {
+    if (mode.share >= kMinShare) {
+      basins.conservativeResize(u, basins.cols() + 1);
+      basins.rightCols<1>() =
+          surrogate_->center.head(u) + surrogate_->half_width.head(u).cwiseProduct(mode.moments.mean.head(u));
+    }
+  }
+  return basins;
+}
+
 MatrixXd OnlineSurrogate::makeInputs(const MatrixXd& features, const MatrixXd& known) const {
   const Index q = known.rows();
   MatrixXd inputs(surrogate_->forward->getScoreCount() + q, features.cols());

@@ -38,6 +38,10 @@ class OnlineSurrogate {
   const Estimate& infer(const Eigen::Ref<const Eigen::VectorXd>& features,
                         const Eigen::Ref<const Eigen::VectorXd>& known, Workspace& workspace) const;
 
+  /// The minima of the last inference (u x n, in the parameters' units), the likeliest first, those of less
+  /// than a thousandth of the evidence left out.
+  Eigen::MatrixXd listBasins(const Workspace& workspace) const;
+
   /// What the inferences' inputs are for features (d x n) and known inputs (q x n).
   Eigen::MatrixXd makeInputs(const Eigen::MatrixXd& features, const Eigen::MatrixXd& known) const;
 

@@ -47,13 +47,13 @@ RefinementTask makeRefinementTask(const ModelSpec& model, const TrustModel* trus
   return task;
 }
 
-bool shouldRefine(RefineMode mode, const Simulator& simulator, const FeatureExtractor& extractor,
-                  const FeatureNoise& noise) {
+bool shouldRefine(RefineMode mode, const Simulator& simulator, const FeatureNoise& noise) {
   if (mode != RefineMode::kAutomatic) {
     return mode == RefineMode::kAlways;
   }
-  return simulator.hasDerivatives() && extractor.isLinear() &&
-         noise.calcCovariance({}).diagonal().minCoeff() > 0.0;
+  const FeatureNoise& fitted = noise.getLinearForm();
+  return simulator.hasDerivatives() && fitted.isConstant() &&
+         fitted.calcCovariance({}).diagonal().minCoeff() > 0.0;
 }
 
 }  // namespace twinmap

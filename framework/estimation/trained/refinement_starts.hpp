@@ -28,10 +28,9 @@ RefinementTask makeRefinementTask(const ModelSpec& model, const TrustModel* trus
                                   const Eigen::VectorXd& features, const InitialEstimate& initial);
 
 /// Whether an experiment's estimates are to be refined. Automatic: where the simulator gives exact
-/// derivatives (it runs in lanes), all features are linear in the response, so that their noise is known
-/// without sampling, and all have noise: a refinement is then possible and takes milliseconds. Measured times
-/// do not decide, so that results do not depend on them.
-bool shouldRefine(RefineMode mode, const Simulator& simulator, const FeatureExtractor& extractor,
-                  const FeatureNoise& noise);
+/// derivatives (it runs in lanes), all features are linear in the response or have a linear form, so that
+/// their noise is known without sampling, and all have noise: a refinement is then possible and takes
+/// milliseconds. Measured times do not decide, so that results do not depend on them.
+bool shouldRefine(RefineMode mode, const Simulator& simulator, const FeatureNoise& noise);
 
 }  // namespace twinmap

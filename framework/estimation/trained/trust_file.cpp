@@ -19,6 +19,15 @@ std::vector<std::int64_t> flatten(const std::vector<ResidualRun>& runs) {
   return flat;
 }
 
+void writeCoverage(Hdf5Writer& file, const std::string& group, const CoverageRecord& record) {
+  file.write(group + "/tested", static_cast<double>(record.tested));
+  file.write(group + "/share", record.share);
+}
+
+CoverageRecord readCoverage(const Hdf5Reader& file, const std::string& group) {
+  return {file.readCount(group + "/tested"), file.readVector(group + "/share")};
+}
+
 std::vector<ResidualRun> unflatten(const std::vector<std::int64_t>& flat) {
   std::vector<ResidualRun> runs;
   for (std::size_t i = 0; i + 1 < flat.size(); i += 2) {
@@ -69,6 +78,8 @@ void writeTrustModel(Hdf5Writer& file, const std::string& group, const TrustMode
   file.write(group + "/reference/noise_anomaly", trust.noise_anomaly.sorted);
   file.write(group + "/reference/refinement/tried", static_cast<double>(trust.refinement.tried));
   file.write(group + "/reference/refinement/unexplained", trust.refinement.unexplained);
+  writeCoverage(file, group + "/reference/coverage", trust.coverage);
+  writeCoverage(file, group + "/reference/refinement/coverage", trust.refined_coverage);
   file.writeSamples(group + "/cloud/inputs", trust.cloud.inputs);
   file.write(group + "/cloud/scale", trust.cloud.scale);
   file.write(group + "/cloud/reach", trust.cloud.reach);
@@ -93,6 +104,8 @@ TrustModel readTrustModel(const Hdf5Reader& file, const std::string& group,
   trust.noise_anomaly = {file.readVector(group + "/reference/noise_anomaly")};
   trust.refinement = {file.readCount(group + "/reference/refinement/tried"),
                       file.readVector(group + "/reference/refinement/unexplained")};
+  trust.coverage = readCoverage(file, group + "/reference/coverage");
+  trust.refined_coverage = readCoverage(file, group + "/reference/refinement/coverage");
   trust.cloud = {file.readSamples(group + "/cloud/inputs"), file.readVector(group + "/cloud/scale"),
                  file.readNumber(group + "/cloud/reach")};
   trust.center = file.readVector(group + "/box/center");

@@ -14,15 +14,12 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kFarAway = 1.5;  // times the reach of simulated measurements
-constexpr double kBeyondBoundsStddevs = 1.0;
+constexpr double kFarAway = 1.5;       // times the reach of simulated measurements
 constexpr double kShareOfPrior = 0.9;  // of the box's standard deviation
 
-bool liesBeyondBounds(const TrustModel& model, const VectorXd& mean, const VectorXd& stddev) {
+bool liesBeyondBounds(const TrustModel& model, const VectorXd& mean) {
   const Index p = mean.size();
-  const Eigen::ArrayXd beyond = (mean - model.center.head(p)).array().abs() -
-                                model.half_width.head(p).array() - kBeyondBoundsStddevs * stddev.array();
-  return beyond.maxCoeff() > 0.0;
+  return ((mean - model.center.head(p)).array().abs() > model.half_width.head(p).array()).any();
 }
 
 bool isUninformative(const TrustModel& model, const VectorXd& stddev) {
@@ -39,7 +36,7 @@ void setStatuses(const TrustModel& model, const VectorXd& mean, const VectorXd& 
   if (trust.distance > kFarAway) {
     trust.statuses.push_back(TrustStatus::kOutsideTraining);
   }
-  if (liesBeyondBounds(model, mean, stddev)) {
+  if (liesBeyondBounds(model, mean)) {
     trust.statuses.push_back(TrustStatus::kAtBounds);
   }
   if (isUninformative(model, stddev)) {
@@ -187,7 +184,7 @@ void compareWithSimulated(const TrustModel& model, const VectorXd& residual, Tru
 
 Trust judgeAnew(const TrustModel& model, const Trust& trust, const SimulatorResidual& found) {
   const UnexplainedShare share(model);
-  if (!found.explained && !share.isKnown()) {
+  if (found.residual.size() == 0 && !share.isKnown()) {
     return trust;
   }
   Trust anew = trust;
@@ -199,7 +196,7 @@ Trust judgeAnew(const TrustModel& model, const Trust& trust, const SimulatorResi
     anew.chi_square_p_value =
         boost::math::cdf(boost::math::complement(boost::math::chi_squared(found.degrees), anew.chi_square));
   }
-  if (found.explained) {
+  if (found.explained || !share.isKnown()) {
     combinePValues(anew);
     anew.p_value = std::min(1.0, anew.p_value * share.getFactorOfExplained());
   } else {

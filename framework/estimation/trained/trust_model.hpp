@@ -7,6 +7,7 @@
 
 #include "framework/estimation/surrogate/score_inversion.hpp"
 #include "framework/estimation/trained/anomaly.hpp"
+#include "framework/estimation/trained/coverage_record.hpp"
 #include "framework/estimation/trained/online_map.hpp"
 #include "framework/estimation/trained/residual_space.hpp"
 
@@ -69,6 +70,7 @@ struct TrustModel {
   ReferenceDistribution chi_square, anomaly;  ///< of simulated measurements, judged with the surrogate
   ReferenceDistribution noise_anomaly;        ///< of noise alone: of answers that the simulator explains
   RefinementReference refinement;
+  CoverageRecord coverage, refined_coverage;  ///< of the estimator's test samples, and of those refined
   TrainingCloud cloud;
   Eigen::VectorXd center, half_width;  ///< m, of the sampled box
   Eigen::Index unknown = 0;            ///< leading variables of a point that a measurement leaves open
@@ -116,8 +118,8 @@ struct SimulatorResidual {
 /// Judges a measurement anew by what the simulator leaves of it, which has no error of a surrogate: replaces
 /// residual, p-values and the statuses that follow. What it explains is tested against noise alone; what it
 /// does not explain is as suspicious as such measurements are rare among simulated ones
-/// (RefinementReference): their common level is TrustModel::level. Where too few were refined to tell, the
-/// surrogate's judgement of what is not explained stays.
+/// (RefinementReference): their common level is TrustModel::level. Where too few were refined to tell, its
+/// chi-square decides: what the surrogate lacks excuses nothing that the simulator was asked.
 Trust judgeAnew(const TrustModel& model, const Trust& trust, const SimulatorResidual& found);
 
 }  // namespace twinmap

@@ -39,16 +39,22 @@ Json makeSchema(const Bounds&) {
   return {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 2}, {"maxItems", 2}};
 }
 
+Json orAutomatic(const Json& number) {
+  return {{"oneOf", Json::array({number, Json{{"const", "automatic"}}})}};
+}
+
 Json makeCountOrAutomatic(const NumberRule& rule) {
-  const Json automatic{{"const", "automatic"}};
-  const Json number{{"type", "integer"}, {"minimum", rule.minimum}, {"maximum", rule.maximum}};
-  return {{"oneOf", Json::array({number, automatic})}};
+  return orAutomatic({{"type", "integer"}, {"minimum", rule.minimum}, {"maximum", rule.maximum}});
 }
 Json makeSchema(const ComponentCount&) {
   return makeCountOrAutomatic(kCount);
 }
 Json makeSchema(const SampleCount&) {
   return makeCountOrAutomatic(kSampleCount);
+}
+
+Json makeSchema(const Tolerance&) {
+  return {{"type", "number"}};
 }
 
 Json makeSchema(const ParameterWeights&) {
@@ -206,8 +212,14 @@ class FieldSchema {
   template <class T, class... Rule>
   Json& add(const char* key, const T& value, const char* what, const Rule&... rule) {
     Json schema = makeSchema(value);
-    schema["description"] = what;
-    (addRule(schema, rule), ...);
+    if constexpr (std::is_same_v<T, Tolerance>) {
+      (addRule(schema, rule), ...);
+      schema = orAutomatic(schema);
+      schema["description"] = what;
+    } else {
+      schema["description"] = what;
+      (addRule(schema, rule), ...);
+    }
     return properties_[key] = std::move(schema);
   }
   template <class Choice>

@@ -151,6 +151,14 @@ void readValue(const YamlNode& node, SampleCount& value) {
   }
 }
 
+void readValue(const YamlNode& node, Tolerance& value, const NumberRule& rule) {
+  value.automatic = isAutomatic(node);
+  value.where = node.where;
+  if (!value.automatic) {
+    readValue(node, value.value, rule);
+  }
+}
+
 void readValue(const YamlNode& node, ParameterWeights& value) {
   requireKind(node, YamlNode::Kind::kMap, "a map from parameters to weights");
   value.values.clear();

@@ -35,6 +35,8 @@ void readValue(const YamlNode& node, ColumnSpec& value);
 /// A whole number above 0, or automatic.
 void readValue(const YamlNode& node, ComponentCount& value);
 void readValue(const YamlNode& node, SampleCount& value);
+/// A number, or automatic.
+void readValue(const YamlNode& node, Tolerance& value, const NumberRule& rule);
 /// A map from parameters to weights above 0.
 void readValue(const YamlNode& node, ParameterWeights& value);
 /// A map from key paths to [lower, upper] or {each: [lower, upper]}.

@@ -29,6 +29,9 @@ YamlNode writeValue(const ComponentCount& value) {
 YamlNode writeValue(const SampleCount& value) {
   return value.automatic ? makeScalar("automatic") : writeValue(value.number);
 }
+YamlNode writeValue(const Tolerance& value) {
+  return value.automatic ? makeScalar("automatic") : writeValue(value.value);
+}
 YamlNode writeValue(const Bounds& value) {
   return writeSequence(std::array<double, 2>{value.lower, value.upper});
 }

@@ -23,6 +23,7 @@ YamlNode writeValue(const Expression& value);
 YamlNode writeValue(const Name& value);
 YamlNode writeValue(const ComponentCount& value);
 YamlNode writeValue(const SampleCount& value);
+YamlNode writeValue(const Tolerance& value);
 YamlNode writeValue(const Bounds& value);
 YamlNode writeValue(const ColumnSpec& value);
 YamlNode writeValue(const ParameterWeights& value);

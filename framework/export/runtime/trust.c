@@ -163,7 +163,7 @@ static double calc_cloud_distance(twinmap_state *state)
 
 static unsigned find_statuses(const twinmap_result *result)
 {
-  const double beyond_stddevs = 1.0, share_of_prior = 0.9, far_away = 1.5;
+  const double share_of_prior = 0.9, far_away = 1.5;
   unsigned statuses = 0;
   int p;
   if (result->p_value < trust_level) {
@@ -174,7 +174,7 @@ static unsigned find_statuses(const twinmap_result *result)
   }
   for (p = 0; p < TWINMAP_PARAMETERS; ++p) {
     const double half_width = box_half_width[p], sd = result->sd[p];
-    if (fabs(result->mean[p] - box_center[p]) - half_width - beyond_stddevs * sd > 0.0) {
+    if (fabs(result->mean[p] - box_center[p]) > half_width) {
       statuses |= TWINMAP_STATUS_AT_BOUNDS;
     }
     if (sd > share_of_prior * (2.0 * 0.28867513459481287 * half_width)) { /* a uniform distribution's sd */

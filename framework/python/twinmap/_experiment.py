@@ -7,8 +7,9 @@ import numpy as np
 import pandas as pd
 
 from . import _twinmap
-from ._arguments import PathLike, Points, choose_threads, list_overrides, make_points
+from ._arguments import PathLike, Points, choose_threads, list_known, list_overrides, make_points
 from ._errors import ExperimentError
+from ._map import Estimate, Measurement, infer
 from ._progress import ProgressChoice, ProgressReport
 from ._results import Results
 from ._twinmap import Quantity
@@ -73,6 +74,7 @@ class Experiment:
         self._experiment = experiment
         self._source = source  # the file's name, and the text where it is not a file
         self._overrides = overrides
+        self._inferring: Optional[_twinmap.Map] = None  # made when first needed
 
     @staticmethod
     def from_file(path: PathLike) -> "Experiment":
@@ -169,6 +171,24 @@ class Experiment:
     def extract(self, responses: Union[Responses, np.ndarray]) -> np.ndarray:
         """The features (n, d) of responses, which Map.predict() takes. NaN where a response has no such feature."""
         return self._experiment.extract(responses.rows if isinstance(responses, Responses) else responses)
+
+    def infer(
+        self,
+        measurement: Measurement,
+        *,
+        known: Optional[Mapping[str, float]] = None,
+        start: Optional[float] = None,
+        draws: int = 512,
+    ) -> Estimate:
+        """Infers the parameters of one measurement without a run: its posterior, sampled on the simulator
+        (docs/how-to/sample-the-posterior.md), by so many draws a round.
+
+        measurement, known, start: as Map.infer() takes them. Cost: some thousand simulations. Raises MeasurementError
+        for a measurement that cannot be used, ExperimentError where a feature has no noise.
+        """
+        if self._inferring is None:
+            self._inferring = _twinmap.Map.of_experiment(self._experiment)
+        return infer(self._inferring, measurement, _twinmap.InferRequest(list_known(known), start, None, draws, ""))
 
     def run(
         self,

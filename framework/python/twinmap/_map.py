@@ -2,6 +2,7 @@
 import functools
 import html
 import json
+import math
 import os
 from typing import Any, Dict, List, Mapping, Optional, Tuple, Union
 
@@ -22,11 +23,13 @@ class Posterior:
 
     `reliable`: whether its draws stand for the posterior; if not, `message` says why and there are no numbers but the
     diagnostics. `mean`, `stddev` (p): in the parameters' units. `quantiles`: a row for each of 0.025, 0.16, 0.5, 0.84
-    and 0.975, a column for each parameter. `draws`: joint draws of equal weight, a column for each parameter, the
-    nuisance parameters too. `effective_sample_size`, `pareto_shape`: of the weights.
+    and 0.975, a column for each parameter. `draws`: joint draws, a column for each parameter, the nuisance parameters
+    too; `weights` (n): theirs, with the sum 1. `effective_sample_size`, `pareto_shape`: of the weights. `source`: what
+    the likelihood is computed by, "simulator" or "surrogate".
     """
 
-    def __init__(self, sampled: _twinmap.SurrogatePosterior, names: List[str], unknown: List[str]) -> None:
+    def __init__(self, sampled: _twinmap.Posterior, names: List[str], unknown: List[str]) -> None:
+        self.source: str = sampled.source
         self.message = sampled.message
         self.reliable = not sampled.message
         self.effective_sample_size = sampled.effective_sample_size
@@ -38,32 +41,38 @@ class Posterior:
                 sampled.quantiles, columns=names, index=pd.Index(_PROBABILITIES, name="probability")
             )
             self.draws = pd.DataFrame(sampled.draws, columns=unknown)
+            self.weights: np.ndarray = sampled.weights
 
     @property
     def interval(self) -> np.ndarray:
-        """The 95 % intervals (p, 2): lower and upper bound."""
+        """Between the quantiles at 2.5 and 97.5 % (p, 2): lower and upper bound."""
         return self.quantiles.iloc[[0, -1]].to_numpy().T
 
 
 class Estimate:
-    """What is believed of p parameters after one measurement, and whether to trust it.
+    """What is believed of p parameters after one measurement, and whether to trust it. NaN where nothing is.
 
     `names`, `units`: of the parameters. `mean`, `stddev` (p): in those units. `covariance` (p, p). `intervals95`,
     `intervals50`: for each parameter a list of intervals (lower, upper), several of a mixture where they lie apart.
     `statuses`: ["ok"], or what is to be said against the estimate, the most severe first (docs/explanation/trust.md); empty where the
-    run has no trust model. `method`: "refined" where the estimate was refined on the simulator and accepted, else the kind
-    of the map: "gp", "surrogate" or "network". `posterior`: where it was asked for, else None.
+    run has no trust model. `components`: where values that lie apart may fit, the weight, mean (p) and stddev (p) of each.
+    `method`: "posterior" where it was sampled on the simulator, "refined" where the estimate was refined there and
+    accepted, else the kind of the map: "gp", "surrogate" or "network". `posterior`: where it was asked for, or sampled
+    because nothing less would do, else None.
     """
 
     def __init__(self, estimate: _twinmap.Estimate, map_: _twinmap.Map, parameters: List[Quantity]) -> None:
         self._estimate, self._map = estimate, map_
         self.names = [parameter.name for parameter in parameters]
         self.units = [parameter.unit for parameter in parameters]
-        self.mean: np.ndarray = estimate.mean
-        self.stddev: np.ndarray = estimate.stddev
-        self.covariance: np.ndarray = estimate.covariance
-        self.intervals95: List[List[Tuple[float, float]]] = estimate.intervals95
-        self.intervals50: List[List[Tuple[float, float]]] = estimate.intervals50
+        given, count = len(estimate.mean) > 0, len(parameters)
+        nothing = [[(math.nan, math.nan)]] * count
+        self.mean: np.ndarray = estimate.mean if given else np.full(count, math.nan)
+        self.stddev: np.ndarray = estimate.stddev if given else np.full(count, math.nan)
+        self.covariance: np.ndarray = estimate.covariance if given else np.full((count, count), math.nan)
+        self.intervals95: List[List[Tuple[float, float]]] = estimate.intervals95 if given else nothing
+        self.intervals50: List[List[Tuple[float, float]]] = estimate.intervals50 if given else nothing
+        self.components: List[Tuple[float, np.ndarray, np.ndarray]] = estimate.components
         self.statuses: List[str] = estimate.statuses
         self.method: str = estimate.method
         self.posterior: Optional[Posterior] = None
@@ -112,6 +121,17 @@ class Estimate:
     def _repr_html_(self) -> str:
         first_line = html.escape(repr(self).split("\n", 1)[0])
         return f"<p>{first_line}</p>{self.to_frame().to_html()}"
+
+
+def infer(map_: _twinmap.Map, measurement: Measurement, request: _twinmap.InferRequest) -> Estimate:
+    """By a map or an experiment alone (Map.infer)."""
+    if isinstance(measurement, (pd.DataFrame, Mapping)):
+        estimate = map_.infer_columns(list_columns(measurement), request)
+    elif isinstance(measurement, (str, os.PathLike)):
+        estimate = map_.infer_file(os.fspath(measurement), request)
+    else:
+        estimate = map_.infer_features(np.asarray(measurement, dtype=float), request)
+    return Estimate(estimate, map_, map_.parameters)
 
 
 class Map:
@@ -189,6 +209,7 @@ class Map:
         start: Optional[float] = None,
         refine: Optional[bool] = None,
         posterior: Union[bool, int] = False,
+        posterior_from: Optional[str] = None,
     ) -> Estimate:
         """Infers the parameters of one measurement and judges the estimate.
 
@@ -196,18 +217,14 @@ class Map:
         "enc1 [mm]"; a DataFrame's named index is a column as well); or an array (d) of features. known: values of the
         known inputs by name. start: the time in the measurement (s) that is the model's 0, instead of the
         experiment's. refine: on the simulator, or not; None: as the experiment says. posterior: the posterior as well;
-        a number of draws instead of True's 512. Raises MeasurementError for a
-        measurement that cannot be used.
+        a number of draws instead of True's 512. posterior_from: "simulator" or "surrogate"; None: the simulator where
+        that takes tenths of a second. Raises MeasurementError for a measurement that cannot be used.
         """
-        draws = _DRAWS if posterior is True else int(posterior)
-        request = _twinmap.InferRequest(list_known(known), start, refine, draws)
-        if isinstance(measurement, (pd.DataFrame, Mapping)):
-            estimate = self._map.infer_columns(list_columns(measurement), request)
-        elif isinstance(measurement, (str, os.PathLike)):
-            estimate = self._map.infer_file(os.fspath(measurement), request)
-        else:
-            estimate = self._map.infer_features(np.asarray(measurement, dtype=float), request)
-        return Estimate(estimate, self._map, self._parameters)
+        if posterior_from is not None and posterior_from not in ("simulator", "surrogate"):
+            raise ValueError(f"posterior_from: is 'simulator' or 'surrogate', not {posterior_from!r}")
+        draws = _DRAWS if posterior is True or (not posterior and posterior_from) else int(posterior)
+        request = _twinmap.InferRequest(list_known(known), start, refine, draws, posterior_from or "")
+        return infer(self._map, measurement, request)
 
     def __repr__(self) -> str:
         names = ", ".join(parameter.name for parameter in self._parameters)

@@ -106,4 +106,16 @@ MethodSummary summarizeRefined(const std::vector<ParameterSpec>& parameters, con
   return summary;
 }
 
+std::vector<MethodSummary> summarizeMethods(const std::string& name,
+                                            const std::vector<ParameterSpec>& parameters,
+                                            const MatrixXd& truth, const Estimates& by_estimator,
+                                            const std::vector<Refined>& refined,
+                                            const MatrixXd& limit_stddev) {
+  std::vector<MethodSummary> methods{summarizeMap(name, parameters, truth, by_estimator, limit_stddev)};
+  if (!refined.empty()) {
+    methods.push_back(summarizeRefined(parameters, truth, refined, limit_stddev));
+  }
+  return methods;
+}
+
 }  // namespace twinmap

@@ -27,6 +27,13 @@ MethodSummary summarizeMap(const std::string& name, const std::vector<ParameterS
 MethodSummary summarizeRefined(const std::vector<ParameterSpec>& parameters, const Eigen::MatrixXd& truth,
                                const std::vector<Refined>& refined, const Eigen::MatrixXd& limit_stddev);
 
+/// The rows of methods.csv: the estimator's, and, where samples were refined, that of the accepted ones.
+std::vector<MethodSummary> summarizeMethods(const std::string& name,
+                                            const std::vector<ParameterSpec>& parameters,
+                                            const Eigen::MatrixXd& truth, const Estimates& by_estimator,
+                                            const std::vector<Refined>& refined,
+                                            const Eigen::MatrixXd& limit_stddev);
+
 /// The samples whose refinement was accepted.
 std::vector<Eigen::Index> findAccepted(const std::vector<Refined>& refined);
 

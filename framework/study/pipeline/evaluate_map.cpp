@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 
 #include "framework/analysis/information_limit.hpp"
 #include "framework/base/log/notice.hpp"
@@ -13,6 +14,7 @@
 #include "framework/study/pipeline/baselines.hpp"
 #include "framework/study/pipeline/calibrate_posteriors.hpp"
 #include "framework/study/pipeline/evaluate_estimates.hpp"
+#include "framework/study/pipeline/exact_posteriors.hpp"
 #include "framework/study/pipeline/refine_test_samples.hpp"
 
 namespace twinmap {
@@ -40,44 +42,62 @@ std::optional<InformationLimit> findLimit(const Study& study, const PreparedData
   return std::nullopt;
 }
 
-/// The posterior of the first `count` parameters, those that are inferred.
-ExactPosterior takeUpdating(ExactPosterior posterior, Index count) {
-  posterior.mean.conservativeResize(count);
-  posterior.stddev.conservativeResize(count);
-  return posterior;
-}
-
-std::vector<ExactPosterior> calcPosteriors(const Study& study, const PreparedData& data, Index count,
-                                           StageNotes& notes) {
+/// The exact posteriors of the first test samples.
+std::vector<SimulatorPosterior> calcPosteriors(const Study& study, const LabelledFeatures& test,
+                                               StageNotes& notes) {
   const PosteriorSpec& spec = *study.experiment.evaluation.posterior;
-  const LabelledFeatures& test = data.labelled.test;
-  return timeStage(fmt::format("exact posterior of {} test samples", count), notes, [&] {
-    return calcExactPosteriors(
-        study.simulator, study.extractor, NoiseWhitener(test.noise_covariance),
-        collectUnknown(study.experiment.model),
-        {test.features.leftCols(count), test.collectUnknown().leftCols(count), test.inputs},
-        {spec.draws, study.experiment.seed, study.control.threads});
-  });
+  const Index count = std::min<Index>(spec.samples, test.features.cols());
+  return timeStage(fmt::format("exact posterior of {} test samples", count), notes,
+                   [&] { return sampleTestPosteriors(study, test, count, spec.draws); });
 }
 
-/// The exact posteriors of the first test samples beside what the map infers of them.
-std::vector<PosteriorComparison> comparePosteriors(const Study& study, const PreparedData& data,
+/// Exact posteriors beside what the map infers.
+std::vector<PosteriorComparison> comparePosteriors(const PreparedData& data,
+                                                   const std::vector<SimulatorPosterior>& exact,
                                                    const Estimates& predictions,
                                                    const Eigen::MatrixXd& limit_stddev, StageNotes& notes) {
-  const Index count =
-      std::min<Index>(study.experiment.evaluation.posterior->samples, data.labelled.test.features.cols());
-  const std::vector<ExactPosterior> exact = calcPosteriors(study, data, count, notes);
+  const Index p = predictions.mean.rows();
+  const VectorXd unknown = VectorXd::Constant(p, std::numeric_limits<double>::quiet_NaN());
   std::vector<PosteriorComparison> compared;
-  for (Index i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    const auto column = static_cast<Index>(i);
     const int sample = data.test_indices[i];
-    compared.push_back({sample, takeUpdating(exact[i], predictions.mean.rows()), predictions.mean.col(i),
-                        predictions.stddev.col(i),
-                        limit_stddev.cols() > 0 ? VectorXd(limit_stddev.col(i)) : VectorXd()});
-    if (!exact[i].warning.empty()) {
-      notes.warn(makeWarning(Notice::kExactPosterior, sample, exact[i].warning));
+    const bool reliable = exact[i].isReliable();
+    compared.push_back({sample, reliable ? VectorXd(exact[i].mean.head(p)) : unknown,
+                        reliable ? VectorXd(exact[i].stddev.head(p)) : unknown,
+                        exact[i].effective_sample_size, exact[i].simulations, predictions.mean.col(column),
+                        predictions.stddev.col(column),
+                        limit_stddev.cols() > 0 ? VectorXd(limit_stddev.col(column)) : VectorXd()});
+    if (!reliable) {
+      notes.warn(makeWarning(Notice::kExactPosterior, sample, exact[i].message));
     }
   }
   return compared;
+}
+
+/// The exact posteriors in the evaluation, beside the map's and the refined estimates, with a warning where
+/// these differ.
+void addPosteriors(const Study& study, const PreparedData& data, const Estimates& predictions,
+                   const Eigen::MatrixXd& limit_stddev, MapEvaluation& result) {
+  const LabelledFeatures& test = data.labelled.test;
+  const std::vector<SimulatorPosterior> exact = calcPosteriors(study, test, result.notes);
+  Evaluation& evaluation = result.evaluation;
+  evaluation.posteriors = comparePosteriors(data, exact, predictions, limit_stddev, result.notes);
+  const PosteriorDifference difference =
+      compareRefined(evaluation.refined, exact, static_cast<Index>(getParameters(study).size()));
+  if (difference.compared > 0) {
+    evaluation.methods.back().apart_from_posterior = difference.calcShare();
+  }
+  if (difference.compared > 0 && difference.isConspicuous()) {
+    result.notes.warn(
+        Severity::kMisleading,
+        std::vector<std::string>{fmt::format(
+            "{} of {} refined estimates differ from the exact posterior by more than 0.3 of its standard "
+            "deviations: it is not normal; `twinmap infer` with the experiment file gives the posterior",
+            difference.apart, difference.compared)});
+  }
+  evaluation.methods.push_back(
+      summarizePosteriors(getParameters(study), test.parameters, exact, limit_stddev));
 }
 
 BaselineSummary summarizeBaseline(const Study& study, const LabelledFeatures& test,
@@ -155,17 +175,14 @@ MapEvaluation evaluateMap(const Study& study, const PreparedData& data, const Tr
   result.evaluation =
       evaluateEstimates(parameters, test.parameters,
                         selectEstimates(predictions, map.residual_correlation, refined), limit_stddev);
-  result.evaluation.methods = {
-      summarizeMap(map.name, parameters, test.parameters, predictions, limit_stddev)};
-  if (!refined.empty()) {
-    result.evaluation.methods.push_back(summarizeRefined(parameters, test.parameters, refined, limit_stddev));
-    result.evaluation.refined = refined;
-  }
+  result.evaluation.methods =
+      summarizeMethods(map.name, parameters, test.parameters, predictions, refined, limit_stddev);
+  result.evaluation.refined = refined;
   if (limit) {
     addLimit(study, test, *limit, result);
   }
   if (study.experiment.evaluation.posterior) {
-    result.evaluation.posteriors = comparePosteriors(study, data, predictions, limit_stddev, result.notes);
+    addPosteriors(study, data, predictions, limit_stddev, result);
   }
   if (study.experiment.evaluation.calibration == PosteriorCalibrationMethod::kSimulationBased) {
     CalibratedPosteriors calibrated = calibratePosteriors(study, data, map);

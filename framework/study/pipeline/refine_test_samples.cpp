@@ -96,7 +96,7 @@ std::vector<Refined> refineAll(const Study& study, const PreparedData& data, con
 
 RefinedTests refineTestSamples(const Study& study, const PreparedData& data, const OnlineModel& online) {
   RefinedTests tests;
-  if (!shouldRefine(study.experiment.refine, study.simulator, study.extractor, study.noise)) {
+  if (!shouldRefine(study.experiment.refine, study.simulator, study.noise)) {
     return tests;
   }
   try {

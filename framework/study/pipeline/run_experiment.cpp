@@ -12,6 +12,7 @@
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/resolve_defaults.hpp"
+#include "framework/inference/tolerances/tolerances.hpp"
 #include "framework/models/make_simulator.hpp"
 #include "framework/report/report.hpp"
 #include "framework/results/result_files.hpp"
@@ -173,7 +174,7 @@ RunSummary runStages(const Study& study, SampleChoice choice) {
   ComparedMaps compared = compareMaps(study, data, evaluated.evaluation.limit_stddev);
   evaluated.evaluation.maps = std::move(compared.maps);
   evaluated.notes.append(compared.notes);
-  storeMap(study.folder / "maps.h5", study, evaluated.evaluation.refined, trained);
+  storeMap(study.folder / "maps.h5", study, evaluated.evaluation, trained);
   evaluated.notes.append(writeTrustPower(study, data, trained.online));
 
   summary.test_indices = data.test_indices;
@@ -203,12 +204,12 @@ std::vector<GateResult> writeFolder(const ExperimentSpec& experiment, const RunO
 
 }  // namespace
 
-RunSummary runExperiment(const ExperimentSpec& experiment, const RunOptions& options,
-                         const RunControl& control) {
+RunSummary runExperiment(const ExperimentSpec& given, const RunOptions& options, const RunControl& control) {
   makeFolders(options.folder);
   const FolderLock lock(options.folder);
-  beginFolder(experiment, options);
   const std::unique_ptr<RunLog> log = options.samples ? nullptr : std::make_unique<RunLog>(options.folder);
+  const ExperimentSpec experiment = options.samples ? given : followNoise(given);  // a sweep has done so
+  beginFolder(experiment, options);
 
   const std::unique_ptr<Simulator> made =
       makeSimulator(experiment.model, collectTimes(experiment.features), countModes(experiment.features));

@@ -7,7 +7,7 @@
 #include "framework/base/text/csv.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/base/text/text_tables.hpp"
-#include "framework/inference/inference_text.hpp"
+#include "framework/inference/text/inference_text.hpp"
 #include "framework/study/replay/replay_page.hpp"
 
 namespace twinmap {

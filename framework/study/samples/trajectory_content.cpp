@@ -42,7 +42,8 @@ void describe(Fields& f, SourceContent& s) {
   f.optional("excitation_interval", s.excitation_interval, "");
 }
 
-YamlNode writeSimulation(const SimulationSpec& simulation) {
+YamlNode writeSimulation(SimulationSpec simulation) {
+  simulation.relative_tolerance.automatic = simulation.absolute_tolerance.automatic = false;
   YamlNode map = writeValue(simulation);
   erase(map, "max_wall_time");
   erase(map, "allowed_failures");

@@ -7,6 +7,7 @@
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/base/json/json.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"
+#include "framework/inference/tolerances/tolerances.hpp"
 #include "framework/results/run_state.hpp"
 #include "framework/study/samples/model_store.hpp"
 #include "framework/study/sweep/run_sweep.hpp"
@@ -58,6 +59,7 @@ fs::path getClusterFolder(const fs::path& folder) {
 
 ExperimentSurvey surveyForShards(const YamlNode& root, const ResultPlace& place) {
   std::vector<SweepCase> cases = expandCasesWithSignals(root);
+  followNoise(cases);
   limitAutomaticSamples(cases);
   return surveyCases(std::move(cases), place);
 }
@@ -96,6 +98,7 @@ std::vector<SweepCase> expandPlannedCases(const YamlNode& root, const ShardPlan&
   for (std::size_t i = 0; i < cases.size(); ++i) {
     cases[i].experiment.design.train.samples.number = plan.train_samples[i];
   }
+  followNoise(cases);
   return cases;
 }
 

@@ -14,6 +14,7 @@
 #include "framework/data/sensitivity/stencil_simulator.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/inference/tolerances/tolerances.hpp"
 #include "framework/models/make_simulator.hpp"
 #include "framework/report/report.hpp"
 #include "framework/results/run_state.hpp"
@@ -251,6 +252,7 @@ SweepResult runSweep(const YamlNode& root, const SweepOptions& options, const Ru
   const RunLog log(options.folder);
   logInfo(options.command);
 
+  followNoise(cases);
   limitAutomaticSamples(cases);
   Sweep sweep(listSweptKeys(root), std::move(cases), {}, options, control);
   if (sweep.simulate()) {

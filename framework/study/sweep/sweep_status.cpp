@@ -7,6 +7,7 @@
 #include "framework/base/files/folder_lock.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"
 #include "framework/experiment/experiment_file.hpp"
+#include "framework/inference/tolerances/tolerances.hpp"
 #include "framework/results/run_state.hpp"
 #include "framework/study/sweep/sweep_folder.hpp"
 
@@ -28,7 +29,8 @@ SweepStatus readStatus(const fs::path& folder, const fs::path& store) {
   }
   const YamlNode root = loadYaml(resolved.string());
   const bool is_sweep = root.find("sweep") != nullptr;
-  const std::vector<SweepCase> cases = expandCasesWithSignals(root);
+  std::vector<SweepCase> cases = expandCasesWithSignals(root);
+  followNoise(cases);
   SweepStatus status;
   status.owner = findLockOwner(folder);
   status.cases = static_cast<int>(cases.size());

@@ -108,8 +108,13 @@ void checkMapAndTables(const Study& study, const PreparedData& data, const std::
   verification.check("maps.h5: fitted again", [&] {
     map = trainAgain(study, data, folder / "maps.h5");
     refined = refineTestSamples(study, data, map->online).refined;
+    const LabelledFeatures& test = data.labelled.test;
+    Evaluation evaluation;
+    evaluation.refined = refined;
+    evaluation.methods = summarizeMethods(map->name, study.experiment.model.parameters, test.parameters,
+                                          map->predict(test.features, test.inputs), refined, {});
     const TemporaryFolder temporary;
-    storeMap(temporary.getPath() / "maps.h5", study, refined, *map);
+    storeMap(temporary.getPath() / "maps.h5", study, evaluation, *map);
     std::string difference = findHdf5Difference(folder / "maps.h5", temporary.getPath() / "maps.h5");
     if (difference.empty()) {
       readSealedFile(folder / "maps.h5");  // or throws

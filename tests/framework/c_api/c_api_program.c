@@ -2,6 +2,7 @@
  *
  * c_api_program check MAPS MEASUREMENT     everything that can be told without another program
  * c_api_program json MAPS REFINE MEASUREMENT...   a line of JSON each, or "error: ..."
+ * c_api_program posterior EXPERIMENT MEASUREMENT   inference without a map
  * c_api_program threads MAPS MEASUREMENT   the same answer in four threads at once
  */
 #include <math.h>
@@ -288,7 +289,56 @@ static int infer_in_threads(const char* maps, const char* measurement) {
   return failures > 0;
 }
 
+/** An experiment alone: two parameters, the sign of the first is not seen. */
+static int check_posterior(const char* experiment, const char* measurement) {
+  static double values[2 * 5000], weights[5000];
+  double mean[2], lower[2], upper[2], weight = 0.0, sum = 0.0, of_draws = 0.0, middle[2] = {0.0, 0.0};
+  double component[2], stddev[2];
+  twinmap_map* map = NULL;
+  twinmap_inferrer* inferrer = NULL;
+  size_t i, draws;
+  EXPECT(twinmap_open(experiment, &map) == TWINMAP_OK);
+  EXPECT(twinmap_count_parameters(map) == 2);
+  EXPECT_WRONG(twinmap_predict(map, values, NULL, 1, 1, mean, stddev), "no map");
+  EXPECT_WRONG(twinmap_new_inferrer(map, TWINMAP_REFINE_ALWAYS, &inferrer), "nothing to refine");
+  EXPECT_WRONG(twinmap_new_posterior_inferrer(map, TWINMAP_REFINE_AS_EXPERIMENT, TWINMAP_POSTERIOR_SURROGATE, 0,
+                                              &inferrer), "no surrogate");
+  EXPECT_WRONG(twinmap_new_posterior_inferrer(map, TWINMAP_REFINE_AS_EXPERIMENT, TWINMAP_POSTERIOR_SIMULATOR, 10,
+                                              &inferrer), "at least 200 draws");
+  EXPECT(twinmap_new_inferrer(map, TWINMAP_REFINE_AS_EXPERIMENT, &inferrer) == TWINMAP_OK);
+  EXPECT(twinmap_count_draws(inferrer) == 0 && twinmap_count_components(inferrer) == 0);
+  EXPECT(twinmap_infer_file(inferrer, measurement) == TWINMAP_OK);
+  EXPECT(strcmp(twinmap_get_method(inferrer), "posterior") == 0 && !twinmap_is_refined(inferrer));
+  EXPECT(strcmp(twinmap_get_status(inferrer, 0), "multimodal") == 0);
+  EXPECT(twinmap_get_number(inferrer, TWINMAP_P_VALUE) > 0.01);
+  EXPECT(twinmap_count_components(inferrer) == 2);
+  EXPECT(twinmap_get_mean(inferrer, mean, 2) == TWINMAP_OK);
+  EXPECT(twinmap_get_interval(inferrer, lower, upper, 2) == TWINMAP_OK);
+  for (i = 0; i < 2; ++i) {
+    EXPECT(twinmap_get_component(inferrer, i, &weight, component, stddev, 2) == TWINMAP_OK);
+    EXPECT(weight > 0.3 && weight < 0.7 && fabs(fabs(component[0]) - 0.05) < 0.01 && stddev[0] < 0.01);
+    middle[0] += weight * component[0];
+  }
+  EXPECT(fabs(middle[0] - mean[0]) < 1e-6);
+  EXPECT_WRONG(twinmap_get_component(inferrer, 2, &weight, component, stddev, 2), "component 2: there are 2");
+  draws = twinmap_count_draws(inferrer);
+  EXPECT(draws >= 512 && draws <= 5000);
+  EXPECT(twinmap_get_draws(inferrer, values, weights, draws) == TWINMAP_OK);
+  for (i = 0; i < draws; ++i) {
+    sum += weights[i];
+    of_draws += weights[i] * values[2 * i + 1];
+  }
+  EXPECT(fabs(sum - 1.0) < 1e-9 && fabs(of_draws - mean[1]) < 1e-9 * mean[1]);
+  EXPECT(lower[1] < mean[1] && mean[1] < upper[1]);
+  twinmap_close_inferrer(inferrer);
+  twinmap_close(map);
+  return failures > 0;
+}
+
 int main(int count, char** arguments) {
+  if (count == 4 && strcmp(arguments[1], "posterior") == 0) {
+    return check_posterior(arguments[2], arguments[3]);
+  }
   if (count == 4 && strcmp(arguments[1], "check") == 0) {
     return check(arguments[2], arguments[3]);
   }

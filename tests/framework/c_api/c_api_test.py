@@ -7,7 +7,7 @@ import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "cli"))
-from support import TWINMAP, RunTestCase, call  # noqa: E402
+from support import MIRROR, TWINMAP, RunTestCase, call  # noqa: E402
 
 PROGRAM = os.environ["TWINMAP_C_PROGRAM"]
 NEVER, AS_EXPERIMENT, ALWAYS = "0", "1", "2"  # twinmap_refine
@@ -48,6 +48,16 @@ class Library(RunTestCase):
         lines = use("json", self.run_folder, NEVER, wrong, self.measurement).stdout.splitlines()
         self.assertRegex(lines[0], r"^error: .*wrong\.csv.*'theta'")
         self.assertEqual(json.loads(lines[1])["status"], "ok")
+
+    def test_infers_by_an_experiment_alone(self):
+        experiment, measurement = self.folder / "mirror.yaml", self.folder / "mirror.csv"
+        experiment.write_text(MIRROR)
+        result = call("simulate", experiment, "--noise", "--csv", measurement, "parameters.e=0.05", "parameters.k=4")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        result = use("posterior", experiment, measurement)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        expected = call("infer", experiment, measurement, "--json").stdout
+        self.assertEqual(use("json", experiment, AS_EXPERIMENT, measurement).stdout, expected)
 
     def test_may_be_used_by_several_threads(self):
         result = use("threads", self.run_folder, self.measurement)

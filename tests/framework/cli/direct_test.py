@@ -4,31 +4,11 @@ import unittest
 
 import numpy as np
 
-from support import EXPERIMENTS, FolderTestCase, call, read_csv, write_csv
+from support import EXPERIMENTS, MIRROR, FolderTestCase, call, read_csv, write_csv
 
 CART = EXPERIMENTS / "duffing/cart.yaml"
 TRUE = {"k": 95.0, "d": 1.2, "k3": 2500.0}
 POINT = [f"parameters.{name}={value}" for name, value in TRUE.items()]
-
-MIRROR = """
-name: mirror
-parameters:
-  e: {bounds: [-0.1, 0.1], unit: m, relative_to: range}
-  k: {bounds: [3, 6], unit: N m/rad}
-constants: {m: {value: 1.5, unit: kg}}
-system:
-  bodies:
-    table: {mass: 2, inertia: {moments: [0.01, 0.01, 0.01]}, joint: {type: pin, coordinates: [th]}}
-    load: {mass: m, joint: {type: weld, parent: table, in_parent: {point: [e, 0, 0]}}}
-  springs: [{coordinate: th, stiffness: k}]
-  dampers: [{coordinate: th, damping: 0.03}]
-  applied_moments: [{body: table, moment: [0, 0, T]}]
-excitation: {T: {unit: N m, pulses: [{amplitude: 1, start: 0.05, end: 0.2}]}}
-outputs: {th: {coordinate: th}}
-simulation: {duration: 3}
-features: [{samples: {outputs: [th], start: 0.03, interval: 0.03, count: 99}}]
-noise: {stddev: {th: 3e-3}}
-"""
 
 
 class Direct(FolderTestCase):
@@ -89,13 +69,37 @@ class Direct(FolderTestCase):
         measured = self.simulate(path, "mirror.csv", "parameters.e=0.05", "parameters.k=4")
         found = json.loads(self.infer(path, measured, "--json"))
         self.assertEqual(found["status"], "multimodal")
-        modes = sorted(mode["parameters"]["e"]["mean"] for mode in found["modes"])
+        modes = sorted(mode["parameters"]["e"]["mean"] for mode in found["components"])
         self.assertEqual(len(modes), 2)
         for mode, true in zip(modes, (-0.05, 0.05)):
             self.assertAlmostEqual(mode, true, delta=0.01)
-        for mode in found["modes"]:
+        for mode in found["components"]:
             self.assertAlmostEqual(mode["weight"], 0.5, delta=0.1)
-        self.assertIn("fits in separate places", self.infer(path, measured))
+        self.assertIn("multimodal, several parameter values may fit", self.infer(path, measured))
+        (self.folder / "mirror_found.csv").write_text(self.infer(path, measured, "--csv"))
+        row = read_csv(self.folder / "mirror_found.csv")[0]
+        self.assertEqual(row["status"], "multimodal")
+        self.assertEqual(
+            [float(part.split(":")[0]) for part in row["components"].split("; ")],
+            [mode["weight"] for mode in found["components"]],
+        )
+
+    def test_a_run_names_both_signs_too(self):
+        path = self.folder / "mirror_run.yaml"
+        path.write_text(MIRROR)
+        measured = self.simulate(path, "mirror_run.csv", "parameters.e=0.05", "parameters.k=4")
+        run = self.folder / "mirror_run"
+        result = call(
+            "run", path, "design.train.samples=60", "design.test.samples=60", "evaluation.limit=false", "--out", run
+        )
+        self.assertEqual(result.returncode, 0, result.stderr)
+        found = json.loads(self.infer(run, measured, "--json"))
+        self.assertEqual((found["status"], found["method"]), ("multimodal", "posterior"))
+        modes = sorted(mode["parameters"]["e"]["mean"] for mode in found["components"])
+        for mode, true in zip(modes, (-0.05, 0.05)):
+            self.assertAlmostEqual(mode, true, delta=0.01)
+        self.assertEqual(found["parameters"], found["posterior"]["parameters"])
+        self.assertIn("parameters", found["inverse_map"])
 
     def test_another_machine_is_a_mismatch(self):
         rows = read_csv(self.measured)

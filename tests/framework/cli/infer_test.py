@@ -139,17 +139,16 @@ class Infer(InferCase):
         self.assertNotIn("refined", by_map)
         self.assertEqual(by_map["parameters"], inferred["inverse_map"]["parameters"])
 
-    def test_what_is_not_accepted_leaves_the_answer_of_the_map(self):
+    def test_what_is_not_accepted_leaves_the_posterior_and_says_what_is_wrong(self):
         wrong = dict(self.columns)
         wrong["y"] = np.roll(wrong["y"], 7)
         path = self.folder / "wrong.csv"
         write_csv(path, ["t", "y", "theta"], [wrong[name] for name in ("t", "y", "theta")])
         inferred = self.infer_json(path)
-        self.assertIn("not_refined", inferred["statuses"])
-        self.assertEqual(inferred["method"], "gp")
-        self.assertEqual(inferred["parameters"], inferred["inverse_map"]["parameters"])
+        self.assertEqual((inferred["status"], inferred["method"]), ("model_mismatch", "posterior"))
+        self.assertEqual(inferred["parameters"], inferred["posterior"]["parameters"])
         self.assertNotIn("parameters", inferred["refined"])
-        self.assertIn("not refined", self.infer(path))
+        self.assertIn("sampled on the simulator", self.infer(path))
         row = next(csv.DictReader(io.StringIO(self.infer("--csv", path))))
         self.assertEqual((row["refined_mean"], row["refined_sd"]), ("", ""))
 

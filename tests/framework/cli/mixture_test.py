@@ -61,9 +61,15 @@ class Mixture(OwnFolderTestCase):
     def test_refining_from_one_answer_is_not_accepted(self):
         run, _ = run_once(ROTOR, *SMALL, QUICK)
         answer = json.loads(self.infer(run, "--refine", "--json"))
-        self.assertEqual(answer["method"], "network")
+        self.assertEqual(answer["method"], "posterior")
         self.assertEqual(answer["refined"]["status"], "multimodal")
-        self.assertIn("multimodal", answer["statuses"])
+        self.assertEqual(answer["statuses"], ["multimodal"])
+        self.assertEqual(len(answer["parameters"]["offset"]["intervals95"]), 2)
+        for component, truth in zip(
+            sorted(answer["components"], key=lambda one: one["parameters"]["offset"]["mean"]), (-OFFSET, OFFSET)
+        ):
+            found = component["parameters"]["offset"]
+            self.assertLess(abs(found["mean"] - truth), 4 * found["sd"])
         refined = self.folder / "refined"
         result = call("run", ROTOR, *SMALL, QUICK, "design.test.samples=60", "refine=always", "--out", refined)
         self.assertEqual(result.returncode, 0, result.stderr)

@@ -43,7 +43,9 @@ class Posterior(FolderTestCase):
         return result.stdout
 
     def test_stands_beside_the_normal_answer(self):
-        answer = json.loads(self.infer(self.measured, "--json", "--no-refine", "--posterior=1000"))
+        answer = json.loads(
+            self.infer(self.measured, "--json", "--no-refine", "--posterior=1000", "--posterior-from", "surrogate")
+        )
         posterior = answer["posterior"]
         self.assertEqual(posterior["status"], "ok")
         self.assertGreater(posterior["effective_sample_size"], 300)
@@ -56,17 +58,36 @@ class Posterior(FolderTestCase):
             np.testing.assert_allclose(probabilities, [0.025, 0.16, 0.5, 0.84, 0.975])
             self.assertTrue((np.diff(values) > 0).all())
             self.assertEqual([found["lower"], found["upper"]], [values[0], values[-1]])
+        self.assertEqual((posterior["from"], answer["method"]), ("surrogate", "surrogate"))
+
+    def test_of_the_simulator_is_the_estimate(self):
+        answer = json.loads(self.infer(self.measured, "--json", "--no-refine", "--posterior"))
+        self.assertEqual((answer["method"], answer["posterior"]["from"]), ("posterior", "simulator"))
+        self.assertEqual(answer["status"], "ok")
+        self.assertEqual(answer["parameters"], answer["posterior"]["parameters"])
+        by_surrogate = json.loads(self.infer(self.measured, "--json", "--no-refine", "--posterior-from", "surrogate"))[
+            "posterior"
+        ]["parameters"]
+        for name, true in TRUE.items():
+            found, other = answer["parameters"][name], by_surrogate[name]
+            self.assertLess(abs(found["mean"] - true), 4 * found["sd"], name)
+            self.assertLess(abs(found["mean"] - other["mean"]), 0.5 * found["sd"], name)
+            self.assertAlmostEqual(found["sd"] / other["sd"], 1, delta=0.25)
+        table = self.infer(self.measured, "--posterior")
+        self.assertIn("sampled on the simulator: best fit found by", table)
 
     def test_joint_draws_have_its_moments(self):
         file = self.folder / "draws.csv"
         posterior = json.loads(self.infer(self.measured, "--json", "--posterior=2000", "--draws", file))["posterior"]
         rows = read_csv(file)
-        self.assertEqual(len(rows), 2000)
+        self.assertEqual(len(rows), posterior["evaluations"])
+        weights = np.array([float(row["weight"]) for row in rows])
+        self.assertAlmostEqual(weights.sum(), 1, places=9)
         self.assertEqual({row["source"] for row in rows}, {str(self.measured)})
         for name in TRUE:
             values, found = np.array([float(row[name]) for row in rows]), posterior["parameters"][name]
-            self.assertLess(abs(values.mean() - found["mean"]), 0.1 * found["sd"])
-            self.assertAlmostEqual(values.std() / found["sd"], 1, delta=0.1)
+            self.assertLess(abs(weights @ values - found["mean"]), 1e-6 * found["sd"])
+            self.assertAlmostEqual((weights @ (values - found["mean"]) ** 2) ** 0.5 / found["sd"], 1, places=6)
 
     def test_is_the_same_in_every_format_and_whatever_came_before(self):
         alone = json.loads(self.infer(self.measured, "--json", "--posterior"))["posterior"]
@@ -81,11 +102,14 @@ class Posterior(FolderTestCase):
                 [float(row[f"posterior_q{q}"]) for q in ("2.5", "16", "50", "84", "97.5")],
                 [value for _, value in found["quantiles"]],
             )
-        self.assertIn("the posterior (effective sample size", self.infer(self.measured, "--posterior"))
+        text = self.infer(self.measured, "--posterior", "--posterior-from", "surrogate")
+        self.assertIn("the posterior (effective sample size", text)
 
     def test_other_maps_use_the_surrogate_that_judges(self):
         run = self.run_experiment("gp", "inverse_map=gp")
-        posterior = json.loads(self.infer(self.measured, "--json", "--posterior", run=run))["posterior"]
+        posterior = json.loads(
+            self.infer(self.measured, "--json", "--posterior", "--posterior-from", "surrogate", run=run)
+        )["posterior"]
         self.assertEqual(posterior["status"], "ok")
         for name, true in TRUE.items():
             found = posterior["parameters"][name]
@@ -94,7 +118,12 @@ class Posterior(FolderTestCase):
     def test_errors_say_what_to_do(self):
         silent = self.run_experiment("silent", "inverse_map=gp", "noise.stddev.y=0", "transform=[z_score]")
         for arguments, expected in (
-            ([silent, self.measured, "--posterior"], "give every output noise and train with 'inverse_map: surrogate'"),
+            (
+                [silent, self.measured, "--posterior-from", "surrogate"],
+                "give every output noise and train with 'inverse_map: surrogate'",
+            ),
+            ([silent, self.measured, "--posterior-from", "simulator"], "give every output that features read"),
+            ([self.run_folder, self.measured, "--posterior-from", "map"], "--posterior-from"),
             ([self.run_folder, self.measured, "--posterior=10"], "at least 200 draws, not 10"),
             ([self.run_folder, self.measured, "--draws", "d.csv"], "--draws requires --posterior"),
             ([self.run_folder, self.measured, "--posterior", "--draws", self.folder / "no/d.csv"], "cannot be written"),

@@ -15,6 +15,27 @@ EXPERIMENTS = Path(os.environ["TWINMAP_SOURCE_DIR"]) / "experiments"
 # A run of a few seconds that infers well: 60 simulations, no information limit.
 QUICK = ["design.train.samples=60", "design.test.samples=60", "evaluation.limit=false"]
 
+# The sign of e, how far the load is off the axis, is not seen.
+MIRROR = """
+name: mirror
+parameters:
+  e: {bounds: [-0.1, 0.1], unit: m, relative_to: range}
+  k: {bounds: [3, 6], unit: N m/rad}
+constants: {m: {value: 1.5, unit: kg}}
+system:
+  bodies:
+    table: {mass: 2, inertia: {moments: [0.01, 0.01, 0.01]}, joint: {type: pin, coordinates: [th]}}
+    load: {mass: m, joint: {type: weld, parent: table, in_parent: {point: [e, 0, 0]}}}
+  springs: [{coordinate: th, stiffness: k}]
+  dampers: [{coordinate: th, damping: 0.03}]
+  applied_moments: [{body: table, moment: [0, 0, T]}]
+excitation: {T: {unit: N m, pulses: [{amplitude: 1, start: 0.05, end: 0.2}]}}
+outputs: {th: {coordinate: th}}
+simulation: {duration: 3}
+features: [{samples: {outputs: [th], start: 0.03, interval: 0.03, count: 99}}]
+noise: {stddev: {th: 3e-3}}
+"""
+
 
 def call(*arguments, timeout=1500, **options):
     return subprocess.run([TWINMAP, *map(str, arguments)], capture_output=True, text=True, timeout=timeout, **options)

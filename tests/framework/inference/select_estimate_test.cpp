@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "framework/inference/inference_text.hpp"
+#include "framework/inference/text/inference_text.hpp"
 
 namespace twinmap {
 namespace {
@@ -118,6 +118,78 @@ TEST(SelectEstimate, NotRefinedIsTheMapsWithAllItsLimits) {
   EXPECT_EQ(listStatuses(inferred), (Statuses{"at_bounds", "not_refined", "estimator_limited"}));
   EXPECT_EQ(describeMapLimit(inferred, makeParameters()),
             "  estimator_limited: the sd of k is 2 times larger than the data would permit\n");
+}
+
+/// Two draws as good as each other, at 2 and 4 of the first parameter.
+PosteriorEstimate makeSimulated() {
+  PosteriorEstimate posterior;
+  posterior.source = PosteriorSource::kSimulator;
+  posterior.fit = SimulatorFit{};
+  posterior.fit->degrees = 10.0;
+  Estimate& estimate = posterior.estimate;
+  estimate.mean = Eigen::Vector2d(3.0, 5.0);
+  estimate.stddev = Eigen::Vector2d(1.0, 0.1);
+  estimate.correlation = Eigen::Matrix2d::Identity();
+  estimate.method = EstimationMethod::kPosterior;
+  estimate.draws = {(Eigen::Matrix2d() << 2.0, 4.0, 4.9, 5.1).finished(), Eigen::Vector2d(0.5, 0.5),
+                    Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(10.0, 10.0)};
+  return posterior;
+}
+
+TEST(SelectEstimate, TakesThePosteriorOfTheSimulatorBeforeWhatLeastSquaresFound) {
+  InferredMeasurement inferred = makeInferred();
+  inferred.refined = makeRefined(RefinementStatus::kAccepted);
+  inferred.posterior = makeSimulated();
+  inferred.coverage_is_short = true;
+  inferred.trust->statuses = {
+      TrustStatus::kOutsideTraining};  // of the training, which the simulator needs not
+  const Estimate estimate = selectEstimate(inferred);
+  EXPECT_EQ(estimate.method, EstimationMethod::kPosterior);
+  EXPECT_EQ(estimate.mean[0], 3.0);
+  EXPECT_EQ(estimate.statuses, Statuses{"ok"});
+  inferred.trust->statuses = {TrustStatus::kModelMismatch};
+  EXPECT_EQ(listStatuses(inferred), Statuses{"model_mismatch"});
+}
+
+TEST(SelectEstimate, OfSeparateModesIsMultimodal) {
+  InferredMeasurement inferred;
+  inferred.posterior = makeSimulated();
+  EXPECT_EQ(listStatuses(inferred), Statuses{"ok"});
+  inferred.posterior->estimate.mixture = {Eigen::Vector2d(0.99, 0.01),
+                                          Eigen::Matrix2d::Identity(),
+                                          Eigen::Matrix2d::Ones(),
+                                          {Eigen::Matrix2d::Identity(), Eigen::Matrix2d::Identity()}};
+  EXPECT_EQ(listStatuses(inferred), Statuses{"multimodal"});
+}
+
+TEST(SelectEstimate, IsUninformativeWhereThePosteriorIsAsWideAsTheBounds) {
+  InferredMeasurement inferred;
+  inferred.posterior = makeSimulated();
+  inferred.posterior->estimate.stddev[0] = 2.8;  // the bounds alone leave 2.89
+  EXPECT_EQ(listStatuses(inferred), Statuses{"uninformative"});
+}
+
+TEST(SelectEstimate, WithoutAReliablePosteriorIsNeverOk) {
+  InferredMeasurement inferred = makeInferred();
+  inferred.refined = makeRefined(RefinementStatus::kAccepted);
+  inferred.posterior = makeSimulated();
+  inferred.posterior->message = "too few draws bear the weight";
+  EXPECT_EQ(selectEstimate(inferred).method, EstimationMethod::kRefined);
+  EXPECT_EQ(listStatuses(inferred), Statuses{"unreliable"});
+  inferred.by_estimator = {};
+  inferred.refined.reset();
+  inferred.trust.reset();
+  EXPECT_FALSE(selectEstimate(inferred).isGiven());
+  EXPECT_EQ(listStatuses(inferred), Statuses{"unreliable"});
+  inferred.posterior->fit = SimulatorFit{};
+  EXPECT_EQ(listStatuses(inferred), Statuses{"not_simulated"});
+}
+
+TEST(SelectEstimate, OfARunWhoseIntervalsHeldTooLittleIsUncalibrated) {
+  InferredMeasurement inferred = makeInferred();
+  inferred.refined = makeRefined(RefinementStatus::kAccepted);
+  inferred.coverage_is_short = true;
+  EXPECT_EQ(listStatuses(inferred), Statuses{"uncalibrated"});
 }
 
 }  // namespace

@@ -59,6 +59,7 @@ KINDS = {
     "mixture": (SIGN, [NETWORK % (600, ", head: mixture"), "design.train.samples=600"], False, "network"),
     "not normal": (SPRINGS, [NETWORK % (300, ""), "design.train.samples=4000"], False, "network"),
     "refined": (CART, ["inverse_map=surrogate"], True, "refined"),
+    "posterior": (SIGN, ["inverse_map=surrogate"], True, "posterior"),  # both signs fit
 }
 DRIVER = r"""
 #include <stdio.h>
@@ -138,7 +139,7 @@ class Interfaces(FolderTestCase):
         folder = self.folder / kind.replace(" ", "_")
         folder.mkdir()
         measured = folder / "measured.csv"
-        at = ["parameters.d=1.4"] + (["parameters.e=0.6"] if kind == "mixture" else [])
+        at = ["parameters.d=1.4"] + (["parameters.e=0.6"] if kind in ("mixture", "posterior") else [])
         result = call("simulate", file, "--noise", "--csv", measured, *at)
         self.assertEqual(result.returncode, 0, result.stderr)
         return run, measured, json.loads(self.infer(run, measured, refine, "--json"))
@@ -177,11 +178,11 @@ class Interfaces(FolderTestCase):
                 (estimate["mean"] - estimate["lower"]) / estimate["sd"],
                 (estimate["upper"] - estimate["mean"]) / estimate["sd"],
             ]
-            if kind not in ("mixture", "not normal"):
+            if kind not in ("mixture", "not normal", "posterior"):
                 np.testing.assert_allclose(factors, 1.959963984540054, rtol=1e-9)
         if kind == "not normal":
             self.assertLess((parameters["k"]["upper"] - parameters["k"]["lower"]) / parameters["k"]["sd"], 3.8)
-        if kind == "mixture":
+        if kind in ("mixture", "posterior"):
             self.assertEqual(len(parameters["e"]["intervals95"]), 2)
 
     def check_csv_and_text(self, table, text, expected):

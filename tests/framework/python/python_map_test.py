@@ -96,14 +96,16 @@ class Inferring(TwoBeams):
     def test_samples_the_posterior_where_it_is_asked_for(self):
         frame = self.measurement.to_frame()
         self.assertIsNone(self.map.infer(frame).posterior)
-        answer = self.map.infer(frame, refine=False, posterior=1000)
+        answer = self.map.infer(frame, refine=False, posterior=1000, posterior_from="surrogate")
+        self.assertEqual((answer.method, answer.posterior.source), ("gp", "surrogate"))
         posterior = answer.posterior
         self.assertTrue(posterior.reliable)
         self.assertGreater(posterior.effective_sample_size, 100)
         self.assertLess(posterior.pareto_shape, 0.7)
         names = list(TRUE)
         self.assertEqual([list(posterior.draws.columns), list(posterior.quantiles.columns)], [names, names])
-        self.assertEqual(posterior.draws.shape, (1000, 4))
+        self.assertEqual(posterior.draws.shape, (len(posterior.weights), 4))
+        self.assertAlmostEqual(posterior.weights.sum(), 1)
         np.testing.assert_array_equal(posterior.interval, posterior.quantiles.loc[[0.025, 0.975]].to_numpy().T)
         told = answer.details["posterior"]["parameters"]
         np.testing.assert_array_equal(posterior.mean, [told[name]["mean"] for name in names])
@@ -111,6 +113,26 @@ class Inferring(TwoBeams):
         self.assertTrue((np.abs(posterior.mean - list(TRUE.values())) < 5 * posterior.stddev).all())
         with self.assertRaisesRegex(twinmap.ExperimentError, "at least 200 draws, not 10"):
             self.map.infer(frame, posterior=10)
+        with self.assertRaisesRegex(ValueError, "'simulator' or 'surrogate', not 'map'"):
+            self.map.infer(frame, posterior_from="map")
+
+    def test_an_experiment_and_its_run_sample_the_same_posterior_on_the_simulator(self):
+        frame = self.measurement.to_frame()
+        by_run = self.map.infer(frame, refine=False, posterior_from="simulator")
+        alone = twinmap.Experiment.from_yaml(self.map.to_yaml()).infer(frame)
+        for answer in (by_run, alone):
+            self.assertEqual((answer.status, answer.method, answer.posterior.source), ("ok", "posterior", "simulator"))
+            self.assertTrue((np.abs(answer.mean - list(TRUE.values())) < 5 * answer.stddev).all())
+            self.assertEqual(answer.components, [])
+            self.assertEqual(answer.details["parameters"], answer.details["posterior"]["parameters"])
+            np.testing.assert_allclose(np.sqrt(np.diag(answer.covariance)), answer.stddev)
+        self.assertTrue((np.abs(by_run.mean - alone.mean) < 0.3 * alone.stddev).all())
+        self.assertIn("sampled on the simulator", repr(alone))
+
+    def test_of_an_experiment_without_a_possible_simulation_nothing_is_believed(self):
+        experiment = twinmap.Experiment.from_yaml(self.map.to_yaml()).override("noise.stddev.y=0")
+        with self.assertRaisesRegex(twinmap.ExperimentError, "noise.stddev"):
+            experiment.infer(self.measurement.to_frame())
 
     def test_shows_itself(self):
         answer = self.map.infer(self.measurement.to_frame())

@@ -35,8 +35,9 @@ std::vector<std::string> nameMaps(const std::vector<InverseMapSpec>& maps) {
 }
 
 /// Writes the map; returns how many bytes that took.
-std::uintmax_t store(const fs::path& file, const Study& study, TrainedMap& map) {
-  storeMap(file, study, {}, map);
+std::uintmax_t store(const fs::path& file, const Study& study, const Evaluation& evaluation,
+                     TrainedMap& map) {
+  storeMap(file, study, evaluation, map);
   return fs::file_size(file);
 }
 
@@ -46,15 +47,17 @@ MapComparison compare(const std::string& name, const Study& study, const Prepare
   StageNotes notes;
   TrainedMap map = timeStage("train " + name, notes, [&] { return trainChosenMap(study, data); });
   const Estimates predictions = map.predict(test.features, test.inputs);
-  const Evaluation evaluation =
+  Evaluation evaluation =
       evaluateEstimates(study.experiment.model.parameters, test.parameters,
                         selectEstimates(predictions, map.residual_correlation, {}), limit_stddev);
+  evaluation.methods = summarizeMethods(map.name, study.experiment.model.parameters, test.parameters,
+                                        predictions, {}, limit_stddev);
   return {name,
           evaluation.metrics,
           evaluation.joint,
           notes.times.back().seconds,
           timeOnlineUpdates(map.online, test),
-          store(study.folder / "maps" / (name + ".h5"), study, map)};
+          store(study.folder / "maps" / (name + ".h5"), study, evaluation, map)};
 }
 
 /// Compares a map, or tells why it cannot be had.

@@ -1,6 +1,7 @@
 #include "framework/study/pipeline/training/fit_online.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "framework/base/log/notice.hpp"
@@ -27,10 +28,18 @@ std::vector<Index> findComplete(const MatrixXd& features) {
   return complete;
 }
 
-/// Test responses, each with several draws of the noise.
+/// How many test responses are judged: as many as place half of the level, which each of two tests has, to a
+/// third. More make no better reference, and each takes as long as an inference.
+std::size_t calcMostReferences(double level) {
+  constexpr double kBeyond = 10.0;
+  return static_cast<std::size_t>(std::ceil(std::min(kBeyond / (0.5 * level), 1e9)));
+}
+
+/// Test responses, each with several draws of the noise where they are few.
 void simulateMeasurements(const Study& study, const Trajectories& test, TrustTraining& training) {
   const ExperimentSpec& experiment = study.experiment;
-  const std::vector<int> samples = findSuccessful(test);
+  std::vector<int> samples = findSuccessful(test);
+  samples.resize(std::min(samples.size(), calcMostReferences(experiment.trust.level)));
   const MatrixXd responses = test.responses(Eigen::all, samples);
   const auto count = std::max(1, static_cast<int>(samples.size()));
   const int draws = std::max(1, countReferences(experiment.design.train.samples) / count);

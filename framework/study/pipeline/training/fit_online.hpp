@@ -18,9 +18,10 @@ int countReferences(int train_samples);
 
 /// Compresses a map of processes and fits its trust model: a forward surrogate to the clean responses of at
 /// most the first 500 training samples (its size and the time of a judgement grow with their number squared),
-/// the reference distributions to some 2000 simulated measurements (fewer below 200 training samples), the
-/// test responses with noise drawn for that alone. Does not depend on the threads. Cost: that of fitForward()
-/// and some 2000 inferences of some ms. Throws Interrupted.
+/// the reference distributions to 1000 simulated measurements (fewer below 100 training samples) or as many
+/// as there are test responses, up to 2000 at a level of 1 % of false alarms: test responses with noise drawn
+/// for that alone. Does not depend on the threads. Cost: that of fitForward() and some 2000 inferences of
+/// some ms. Throws Interrupted.
 OnlineFit fitOnline(const Study& study, const PreparedData& data, const GpMap& map);
 
 /// The same of a surrogate, which is its own trust model's.

@@ -17,6 +17,14 @@ ExperimentSpec nameEngine(ExperimentSpec experiment, const Simulator& simulator)
   return experiment;
 }
 
+CoverageRecord recordCoverage(const MethodSummary& method) {
+  CoverageRecord record{method.accepted, Eigen::VectorXd(static_cast<Eigen::Index>(method.metrics.size()))};
+  for (std::size_t p = 0; p < method.metrics.size(); ++p) {
+    record.share[static_cast<Eigen::Index>(p)] = method.metrics[p].coverage95;
+  }
+  return record;
+}
+
 }  // namespace
 
 RefinementReference collectReference(const std::vector<Refined>& refined) {
@@ -35,10 +43,15 @@ RefinementReference collectReference(const std::vector<Refined>& refined) {
   return reference;
 }
 
-void storeMap(const std::filesystem::path& file, const Study& study, const std::vector<Refined>& refined,
+void storeMap(const std::filesystem::path& file, const Study& study, const Evaluation& evaluation,
               TrainedMap& map) {
   if (map.online.trust) {
-    map.online.trust->refinement = collectReference(refined);
+    TrustModel& trust = *map.online.trust;
+    trust.refinement = collectReference(evaluation.refined);
+    for (const MethodSummary& method : evaluation.methods) {
+      (method.method == toString(EstimationMethod::kRefined) ? trust.refined_coverage : trust.coverage) =
+          recordCoverage(method);
+    }
   }
   const ExperimentSpec experiment = nameEngine(study.experiment, study.simulator);
   TrainedFile stored{

@@ -7,9 +7,8 @@
 
 namespace twinmap {
 
-/// Tells the map's trust model what the refinement of the test samples did (`refined`: one for each, or
-/// empty), and writes maps.h5.
-void storeMap(const std::filesystem::path& file, const Study& study, const std::vector<Refined>& refined,
+/// Tells the map's trust model what came of the test samples, and writes maps.h5.
+void storeMap(const std::filesystem::path& file, const Study& study, const Evaluation& evaluation,
               TrainedMap& map);
 
 /// What refined test samples tell a trust model: how many were not explained, and how badly.

@@ -35,9 +35,8 @@ MatrixXd drawNoise(const MatrixXd& factor, Index count, std::uint64_t seed) {
   const RandomStream random(seed, RandomPurpose::kTrustPower);
   MatrixXd white(factor.cols(), count);
   for (Index draw = 0; draw < count; ++draw) {
-    for (Index i = 0; i < white.rows(); ++i) {
-      white(i, draw) = random.calcNormal(static_cast<std::uint64_t>(draw), static_cast<std::uint64_t>(i));
-    }
+    random.drawNormals(static_cast<std::uint64_t>(draw), 0, white.col(draw).data(),
+                       static_cast<std::size_t>(white.rows()));
   }
   return factor * white;
 }

@@ -157,5 +157,39 @@ TEST(FrequencyResponse, NeedsEnergyInTheExcitation) {
   EXPECT_THROW(FeatureExtractor(features, layout), std::invalid_argument);
 }
 
+// Magnitude, cosine and sine say what real and imaginary part say, whose noise does not depend on the
+// response.
+TEST(Spectrum, OfMagnitudesAndPhasesHasALinearForm) {
+  const SamplesFeatureSpec samples{{{"y", {}}}, 0.3, 0.05, 3};
+  const std::vector<double> frequencies{1.5, 4};
+  const std::vector<FeatureSpec> shown{
+      samples, makeSpectrum(frequencies, WindowFunction::kHann, ComplexParts::kMagnitudePhase), samples};
+  const std::vector<FeatureSpec> parts{
+      samples, makeSpectrum(frequencies, WindowFunction::kHann, ComplexParts::kRealImaginary), samples};
+  const ResponseLayout layout = makeLayout(shown);
+  const FeatureExtractor extractor(shown, layout), expected(parts, layout);
+  ASSERT_TRUE(extractor.hasLinearForm());
+  EXPECT_FALSE(expected.hasLinearForm());
+  const FeatureExtractor linear = extractor.makeLinearForm();
+  EXPECT_TRUE(linear.isLinear());
+  const Eigen::MatrixXd responses = Eigen::MatrixXd::Random(layout.getRowCount(), 3);
+  const Eigen::MatrixXd found = extractor.convertToLinearForm(extractor.extract(responses));
+  EXPECT_LT((found - expected.extract(responses)).cwiseAbs().maxCoeff(), 1e-14);
+  EXPECT_EQ(linear.extract(responses), expected.extract(responses));
+
+  const FeatureNoise noise(extractor, Eigen::VectorXd::Constant(layout.getRowCount(), 0.1), 1);
+  const FeatureNoise of_parts(expected, Eigen::VectorXd::Constant(layout.getRowCount(), 0.1), 1);
+  EXPECT_FALSE(noise.isConstant());
+  EXPECT_TRUE(noise.getLinearForm().isConstant());
+  EXPECT_EQ(noise.getLinearForm().calcCovariance({}), of_parts.calcCovariance({}));
+  EXPECT_EQ(&of_parts.getLinearForm(), &of_parts);
+
+  Eigen::VectorXd numbers(10);
+  numbers << 1, 2, 3, 4, 5, 6, 7, 8, 9, 10;
+  Eigen::VectorXd placed(12);
+  placed << 1, 2, 3, 4, 5, 0, 6, 7, 0, 8, 9, 10;
+  EXPECT_EQ(extractor.placeLinearForm(numbers), placed);
+}
+
 }  // namespace
 }  // namespace twinmap

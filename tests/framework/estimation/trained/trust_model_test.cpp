@@ -159,7 +159,8 @@ TEST_F(TrustTest, SuspectsWhatTheSimulatorDoesNotExplainAsFarAsThatIsRare) {
   const auto judge_scaled = [&](double scale) {
     return isMismatch(judgeAnew(model, by_surrogate, makeResidual(1, scale, false)));
   };
-  EXPECT_FALSE(judge_scaled(30.0));  // nothing was ever refined: the surrogate's word stays
+  EXPECT_TRUE(judge_scaled(3.0));  // nothing was ever refined: chi-square decides
+  EXPECT_FALSE(judge_scaled(1.0));
   model.refinement.tried = 400;
   EXPECT_TRUE(judge_scaled(3.0));                                      // never seen
   model.refinement.unexplained = VectorXd::LinSpaced(12, 4.0, 400.0);  // 3 %: half of the level is 2 of 400

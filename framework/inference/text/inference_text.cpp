@@ -1,11 +1,11 @@
-#include "framework/inference/inference_text.hpp"
+#include "framework/inference/text/inference_text.hpp"
 
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "framework/base/log/notice.hpp"
-#include "framework/base/text/escape.hpp"
 #include "framework/base/text/nearest_name.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/base/text/text_tables.hpp"
@@ -17,14 +17,6 @@ namespace twinmap {
 namespace {
 
 using Eigen::Index;
-
-std::string joinStatuses(const std::vector<std::string>& statuses, const char* separator) {
-  std::string joined;
-  for (const std::string& status : statuses) {
-    joined += (joined.empty() ? "" : separator) + status;
-  }
-  return joined;
-}
 
 /// A status with what happened and what to do, a line each.
 template <class... Arguments>
@@ -43,7 +35,7 @@ std::string explainBriefly(Notice notice, const Arguments&... arguments) {
 
 std::string listBeyondBounds(const Estimate& estimate, const std::vector<ParameterSpec>& parameters) {
   std::vector<std::string> names;
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
+  for (std::size_t p = 0; p < parameters.size() && estimate.isGiven(); ++p) {
     const double mean = estimate.mean[static_cast<Index>(p)];
     if (mean <= parameters[p].bounds.lower || mean >= parameters[p].bounds.upper) {
       names.push_back(parameters[p].name.text);
@@ -56,7 +48,7 @@ std::string listBeyondBounds(const Estimate& estimate, const std::vector<Paramet
 std::string explainUninformative(const Estimate& estimate, const std::vector<ParameterSpec>& parameters) {
   constexpr double kUninformative = 0.9, kPercent = 100.0;  // of the standard deviation of the bounds
   std::string text;
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
+  for (std::size_t p = 0; p < parameters.size() && estimate.isGiven(); ++p) {
     const Bounds& bounds = parameters[p].bounds;
     const double left =
         estimate.stddev[static_cast<Index>(p)] / (kUniformStddev * (bounds.upper - bounds.lower));
@@ -159,7 +151,6 @@ std::string describeRefined(const Refined& refined) {
 /// The components of a mixture.
 std::string describeMixture(const Mixture& mixture, const std::vector<ParameterSpec>& parameters) {
   constexpr int kDigits = 5, kStddevDigits = 3;
-  constexpr double kMin = 0.01;  // a lighter one is not worth a line
   std::string text = "  multimodal, several parameter values may fit:\n";
   for (Index c = 0; c < mixture.countComponents(); ++c) {
     std::string values;
@@ -169,60 +160,100 @@ std::string describeMixture(const Mixture& mixture, const std::vector<ParameterS
                             toShortText(mixture.means(i, c), kDigits),
                             toShortText(mixture.stddevs(i, c), kStddevDigits));
     }
-    if (mixture.weights[c] > kMin) {
-      text += fmt::format("    {:3.0f} %: {}\n", 100.0 * mixture.weights[c], values);
-    }
+    text += fmt::format("    {:4.1f} %: {}\n", 100.0 * mixture.weights[c], values);
   }
   return text;
 }
 
-std::string describePosterior(const SurrogatePosterior& posterior,
-                              const std::vector<ParameterSpec>& parameters, bool is_refined) {
-  const std::string diagnostics =
-      fmt::format("effective sample size {:.0f} of {}, Pareto shape {:.2f}", posterior.effective_sample_size,
-                  posterior.evaluations, posterior.pareto_shape);
-  if (!posterior.isReliable()) {
-    return fmt::format("  no posterior: {} ({})\n", posterior.message, diagnostics);
-  }
-  std::vector<Row> rows;
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    const auto i = static_cast<Index>(p);
-    rows.push_back(makeRow(parameters[p], posterior.mean[i], posterior.stddev[i],
-                           {{posterior.getLower95()[i], posterior.getUpper95()[i]}}));
-  }
-  return fmt::format("  posterior under the surrogate ({}){}:\n", diagnostics,
-                     is_refined ? ", for its shape; the refined estimate is the more accurate one" : "") +
-         makeTable(std::move(rows));
+std::string describeDiagnostics(const PosteriorEstimate& posterior) {
+  return fmt::format("effective sample size {:.0f} of {}, Pareto shape {:.2f}",
+                     posterior.effective_sample_size, posterior.evaluations, posterior.pareto_shape);
 }
 
-/// Empty but for the diagnostics where it is not reliable.
-std::string makePosteriorCells(const SurrogatePosterior& posterior, Index parameter) {
-  std::string text = ",,";
-  if (posterior.isReliable()) {
-    text = "," + toText(posterior.mean[parameter]) + "," + toText(posterior.stddev[parameter]);
+/// How the simulator's posterior was found.
+std::string describeSearches(const PosteriorEstimate& posterior) {
+  const SimulatorFit& fit = *posterior.fit;
+  return fmt::format(
+      "  sampled on the simulator: best fit found by {} of {} searches, {} draws worth {:.0f} independent "
+      "ones, {} simulations\n",
+      fit.found_best, fit.searches, posterior.evaluations, posterior.effective_sample_size, fit.simulations);
+}
+
+/// The simulator's: how it was found, or why it is not the estimate. The surrogate's: its own table.
+std::string describePosterior(const PosteriorEstimate& posterior,
+                              const std::vector<ParameterSpec>& parameters) {
+  if (!posterior.isReliable()) {
+    const std::string advice = posterior.fit && posterior.fit->isSimulated()
+                                   ? "; give narrower bounds, or more draws (--posterior=2000)"
+                                   : "";
+    return fmt::format("  no posterior: {} ({}){}\n", posterior.message, describeDiagnostics(posterior),
+                       advice);
   }
-  for (Index k = 0; k < static_cast<Index>(kPosteriorProbabilities.size()); ++k) {
-    text += posterior.isReliable() ? "," + toText(posterior.quantiles(parameter, k)) : ",";
+  if (posterior.fit) {
+    return describeSearches(posterior);
   }
-  return text + "," + toText(posterior.effective_sample_size) + "," + toText(posterior.pareto_shape);
+  return fmt::format("  posterior under the surrogate ({}), for its shape:\n",
+                     describeDiagnostics(posterior)) +
+         makeTable(posterior.estimate, parameters);
+}
+
+/// What a mismatch shows itself by, and what to look at.
+std::string explainMismatch(const SimulatorFit& fit, const std::vector<FeatureInfo>& features) {
+  const ResidualTest& test = fit.test;
+  if (test.largest_p <= std::min(test.chi_square_p, test.whiteness_p)) {
+    return fmt::format(
+        "  No parameter values within the bounds fit {}: it is {:.3g} noise sd off. Is it a spike?\n",
+        features[static_cast<std::size_t>(test.largest)].name, std::abs(fit.residual[test.largest]));
+  }
+  if (test.whiteness_p < test.chi_square_p) {
+    return "  The residuals of neighbouring samples agree more than the stated noise allows: the noise is "
+           "coloured, or the model lacks something small.\n";
+  }
+  return "  No parameter values within the bounds fit the measurement: look at the residuals (a sensor "
+         "fault, a wrong trigger, larger noise, physics that the model lacks).\n";
+}
+
+/// Of what no trust model has judged.
+std::string describeUntrained(const InferredMeasurement& inferred, const std::string& statuses,
+                              const std::vector<FeatureInfo>& features) {
+  if (!inferred.posterior || !inferred.posterior->fit) {
+    return inferred.source + ": " + statuses + (statuses.empty() ? "" : "; ") +
+           "not judged (the run has no trust model)\n";
+  }
+  const SimulatorFit& fit = *inferred.posterior->fit;
+  if (!fit.isSimulated()) {
+    return fmt::format("{}: {}\n", inferred.source, statuses);
+  }
+  const double p_value = fit.test.calcPValue();
+  return fmt::format("{}: {} (p = {:.2g}, chi-square {:.4g} of {:.4g} degrees of freedom)\n", inferred.source,
+                     statuses, p_value, fit.chi_square, fit.degrees) +
+         (p_value < kMismatchLevel ? explainMismatch(fit, features) : "");
+}
+
+bool contains(const std::vector<std::string>& statuses, const std::string& status) {
+  return std::find(statuses.begin(), statuses.end(), status) != statuses.end();
 }
 
 }  // namespace
 
 std::string describeTrust(const InferredMeasurement& inferred, const std::vector<ParameterSpec>& parameters,
                           const std::vector<FeatureInfo>& features) {
+  const std::vector<std::string> statuses = listStatuses(inferred);
+  const std::string joined = joinStatuses(statuses, ", ");
   if (!inferred.trust) {
-    const std::string statuses = joinStatuses(listStatuses(inferred), ", ");
-    return inferred.source + ": " + statuses + (statuses.empty() ? "" : "; ") +
-           "not judged (the run has no trust model)\n";
+    return describeUntrained(inferred, joined, features);
   }
   const Trust& trust = *inferred.trust;
-  std::string text = fmt::format("{}: {} ({}, chi-square {:.1f} of {} residuals)\n", inferred.source,
-                                 joinStatuses(listStatuses(inferred), ", "), describePValue(trust),
-                                 trust.chi_square, trust.residuals);
+  std::string text = fmt::format("{}: {} ({}, chi-square {:.1f} of {} residuals)\n", inferred.source, joined,
+                                 describePValue(trust), trust.chi_square, trust.residuals);
   const Estimate estimate = selectEstimate(inferred);
   for (const TrustStatus status : trust.statuses) {
-    text += explainStatus(status, inferred, estimate, parameters, features);
+    if (contains(statuses, toString(status))) {
+      text += explainStatus(status, inferred, estimate, parameters, features);
+    }
+  }
+  if (isUncalibrated(inferred)) {
+    text += explain(Notice::kUncalibrated);
   }
   return text;
 }
@@ -268,76 +299,22 @@ std::string makeInferenceTable(const InferredMeasurement& inferred,
                                const std::vector<ParameterSpec>& parameters,
                                const std::vector<FeatureInfo>& features) {
   const Estimate estimate = selectEstimate(inferred);
+  const bool sampled = estimate.method == EstimationMethod::kPosterior;
   std::string text = describeTrust(inferred, parameters, features) + describeMapLimit(inferred, parameters);
-  if (inferred.refined) {
+  if (inferred.refined && !sampled) {
     text += describeRefined(*inferred.refined);
   }
-  text += makeTable(estimate, parameters);
-  if (estimate.isRefined()) {
-    text += "  starting estimate (quick, not refined):\n" + makeTable(inferred.by_estimator, parameters);
+  if (estimate.isGiven()) {
+    text += makeTable(estimate, parameters);
   }
-  if (isMultimodal(estimate.mixture)) {
+  if (estimate.isMultimodal()) {
     text += describeMixture(estimate.mixture, parameters);
   }
   if (inferred.posterior) {
-    text += describePosterior(*inferred.posterior, parameters, estimate.isRefined());
+    text += describePosterior(*inferred.posterior, parameters);
   }
-  return text;
-}
-
-std::string makeInferenceCsvHeader(bool refined, bool posterior) {
-  return std::string("source,start,parameter,unit,mean,sd,lower,upper,status,p_value,method") +
-         (refined ? ",refined_mean,refined_sd,map_mean,map_sd" : "") +
-         (posterior ? ",posterior_mean,posterior_sd,posterior_q2.5,posterior_q16,posterior_q50,posterior_q84,"
-                      "posterior_q97.5,effective_sample_size,pareto_shape"
-                    : "") +
-         "\n";
-}
-
-std::string makeDrawsCsvHeader(const std::vector<ParameterSpec>& unknown) {
-  std::string text = "source,start,draw";
-  for (const ParameterSpec& parameter : unknown) {
-    text += "," + escapeCsv(parameter.name.text);
-  }
-  return text + "\n";
-}
-
-std::string makeDrawsCsvRows(const InferredMeasurement& inferred) {
-  std::string text;
-  const Eigen::MatrixXd& draws = inferred.posterior->draws;
-  const std::string measurement = escapeCsv(inferred.source) + "," + toText(inferred.start);
-  for (Index i = 0; i < draws.cols(); ++i) {
-    text += measurement + "," + std::to_string(i);
-    for (const double value : draws.col(i)) {
-      text += "," + toText(value);
-    }
-    text += "\n";
-  }
-  return text;
-}
-
-std::string makeInferenceCsvRows(const InferredMeasurement& inferred,
-                                 const std::vector<ParameterSpec>& parameters) {
-  const Estimate estimate = selectEstimate(inferred);
-  const Bounds95 bounds = estimate.calcBounds95();
-  const Estimate& by_estimator = inferred.by_estimator;
-  std::string text;
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    const auto i = static_cast<Index>(p);
-    const double mean = estimate.mean[i], stddev = estimate.stddev[i];
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}", escapeCsv(inferred.source),
-                        toText(inferred.start), escapeCsv(parameters[p].name.text),
-                        escapeCsv(parameters[p].unit), toText(mean), toText(stddev), toText(bounds.lower[i]),
-                        toText(bounds.upper[i]), joinStatuses(estimate.statuses, " "),
-                        inferred.trust ? toText(inferred.trust->p_value) : "", toString(estimate.method));
-    if (inferred.refined) {
-      text += estimate.isRefined() ? fmt::format(",{},{}", toText(mean), toText(stddev)) : ",,";
-      text += fmt::format(",{},{}", toText(by_estimator.mean[i]), toText(by_estimator.stddev[i]));
-    }
-    if (inferred.posterior) {
-      text += makePosteriorCells(*inferred.posterior, i);
-    }
-    text += "\n";
+  if (inferred.by_estimator.isGiven() && (estimate.isRefined() || sampled)) {
+    text += "  starting estimate (quick, not refined):\n" + makeTable(inferred.by_estimator, parameters);
   }
   return text;
 }

@@ -2,8 +2,8 @@
 
 #include "framework/base/json/json.hpp"
 #include "framework/estimation/estimate.hpp"
-#include "framework/inference/inference_text.hpp"
 #include "framework/inference/select_estimate.hpp"
+#include "framework/inference/text/inference_text.hpp"
 
 namespace twinmap {
 namespace {
@@ -16,9 +16,20 @@ Json makeIntervals(const Intervals& intervals) {
   return list;
 }
 
-/// Name -> mean, sd, the outermost bounds of its 95 % intervals, unit, its intervals of 95 % and 50 %.
+/// Pairs of probability and value.
+Json makeQuantiles(const Eigen::MatrixXd& quantiles, Eigen::Index parameter) {
+  Json list = Json::array();
+  for (std::size_t k = 0; k < kQuantileProbabilities.size(); ++k) {
+    list.push_back({kQuantileProbabilities[k], quantiles(parameter, static_cast<Eigen::Index>(k))});
+  }
+  return list;
+}
+
+/// Name -> mean, sd, the outermost bounds of its 95 % intervals, unit, its intervals of 95 % and 50 %; of
+/// draws its quantiles.
 Json toJson(const Estimate& estimate, const std::vector<ParameterSpec>& parameters) {
   const Eigen::VectorXd ratio = estimate.calcRatioToLimit();
+  const Eigen::MatrixXd quantiles = estimate.draws.isGiven() ? calcQuantiles(estimate) : Eigen::MatrixXd();
   Json json = Json::object();
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const auto i = static_cast<Eigen::Index>(p);
@@ -31,11 +42,22 @@ Json toJson(const Estimate& estimate, const std::vector<ParameterSpec>& paramete
     one["unit"] = parameters[p].unit;
     one["intervals95"] = makeIntervals(of95);
     one["intervals50"] = makeIntervals(estimate.findIntervals(i, Coverage::k50));
+    if (quantiles.size() > 0) {
+      one["quantiles"] = makeQuantiles(quantiles, i);
+    }
     if (ratio.size() > 0) {
       one["ratio_to_limit"] = ratio[i];
     }
   }
   return json;
+}
+
+Json makeRows(const Eigen::MatrixXd& matrix) {
+  Json rows = Json::array();
+  for (const auto& row : matrix.rowwise()) {
+    rows.push_back(std::vector<double>(row.begin(), row.end()));
+  }
+  return rows;
 }
 
 /// The components, each with its weight.
@@ -78,32 +100,32 @@ Json toJson(const Refined& refined, const std::vector<ParameterSpec>& parameters
   return json;
 }
 
-Json makeQuantiles(const SurrogatePosterior& posterior, Eigen::Index parameter) {
-  Json quantiles = Json::array();
-  for (std::size_t k = 0; k < kPosteriorProbabilities.size(); ++k) {
-    quantiles.push_back(
-        {kPosteriorProbabilities[k], posterior.quantiles(parameter, static_cast<Eigen::Index>(k))});
-  }
-  return quantiles;
-}
-
-Json toJson(const SurrogatePosterior& posterior, const std::vector<ParameterSpec>& parameters) {
-  Json json{{"status", posterior.getStatus()}};
+Json toJson(const PosteriorEstimate& posterior, const std::vector<ParameterSpec>& parameters) {
+  Json json{{"status", posterior.getStatus()}, {"from", toString(posterior.source)}};
   if (posterior.isReliable()) {
-    for (std::size_t p = 0; p < parameters.size(); ++p) {
-      const auto i = static_cast<Eigen::Index>(p);
-      json["parameters"][parameters[p].name.text] = {
-          {"mean", posterior.mean[i]},          {"sd", posterior.stddev[i]},
-          {"lower", posterior.getLower95()[i]}, {"upper", posterior.getUpper95()[i]},
-          {"unit", parameters[p].unit},         {"quantiles", makeQuantiles(posterior, i)}};
-    }
+    json["parameters"] = toJson(posterior.estimate, parameters);
   } else {
     json["message"] = posterior.message;
   }
   json["effective_sample_size"] = posterior.effective_sample_size;
   json["pareto_shape"] = posterior.pareto_shape;
   json["evaluations"] = posterior.evaluations;
+  if (posterior.fit) {
+    json["searches"] = posterior.fit->searches;
+    json["found_best"] = posterior.fit->found_best;
+    json["simulations"] = posterior.fit->simulations;
+  }
   return json;
+}
+
+/// What the simulator leaves of a measurement, where no trust model judges it.
+Json toJson(const SimulatorFit& fit) {
+  return {{"p_value", fit.test.calcPValue()},
+          {"chi_square", fit.chi_square},
+          {"degrees", fit.degrees},
+          {"chi_square_p_value", fit.test.chi_square_p},
+          {"whiteness_p_value", fit.test.whiteness_p},
+          {"largest_p_value", fit.test.largest_p}};
 }
 
 }  // namespace
@@ -118,16 +140,26 @@ std::string makeInferenceJson(const InferredMeasurement& inferred,
     json["statuses"] = estimate.statuses;
   }
   json["method"] = toString(estimate.method);
-  json["parameters"] = toJson(estimate, parameters);
+  if (estimate.isGiven()) {
+    json["parameters"] = toJson(estimate, parameters);
+  }
+  if (estimate.correlation.size() > 0) {
+    json["covariance"] = makeRows(estimate.calcCovariance());
+  }
   if (estimate.mixture.isGiven()) {
     json["components"] = makeComponents(estimate.mixture, parameters);
   }
   if (inferred.trust) {
     json["fault"] = inferred.fault.empty() ? Json(nullptr) : Json(inferred.fault);
     json["trust"] = toJson(*inferred.trust, features);
+  } else if (inferred.posterior && inferred.posterior->fit) {
+    json["trust"] = toJson(*inferred.posterior->fit);
   }
   if (inferred.refined) {
     json["refined"] = toJson(*inferred.refined, parameters);
+  }
+  if (inferred.refined ||
+      (inferred.by_estimator.isGiven() && estimate.method != inferred.by_estimator.method)) {
     json["inverse_map"]["parameters"] = toJson(inferred.by_estimator, parameters);
   }
   if (inferred.posterior) {

@@ -17,16 +17,17 @@ std::string describeTrust(const InferredMeasurement& inferred, const std::vector
 std::string describeMapLimit(const InferredMeasurement& inferred,
                              const std::vector<ParameterSpec>& parameters);
 
-/// A human-readable table: the status with its numbers, then a row per parameter; where a refinement was
-/// accepted its estimate first, then the map's.
+/// A human-readable table: the status with its numbers, then a row per parameter; where the estimate is not
+/// the map's, the map's follows.
 std::string makeInferenceTable(const InferredMeasurement& inferred,
                                const std::vector<ParameterSpec>& parameters,
                                const std::vector<FeatureInfo>& features);
 
-/// CSV: a row per measurement and parameter; `refined`, `posterior`: with the columns of these.
-std::string makeInferenceCsvHeader(bool refined, bool posterior = false);
+/// CSV: a row per measurement and parameter; `refined`, `posterior`: with the columns of these, as
+/// MeasurementInference::refines() and samplesPosteriors() say.
+std::string makeInferenceCsvHeader(bool refined, bool posterior);
 std::string makeInferenceCsvRows(const InferredMeasurement& inferred,
-                                 const std::vector<ParameterSpec>& parameters);
+                                 const std::vector<ParameterSpec>& parameters, bool posterior);
 
 /// One line of JSON, without a line end (docs/how-to/estimate-from-measurements.md).
 std::string makeInferenceJson(const InferredMeasurement& inferred,
@@ -35,8 +36,8 @@ std::string makeInferenceJson(const InferredMeasurement& inferred,
 /// The same for a measurement that could not be used.
 std::string makeErrorJson(const std::string& source, double start, const std::string& error);
 
-/// CSV of the draws of posteriors, a row each: source, start, draw, then all unknown parameters; the row of
-/// names, and the rows of one measurement, none where its posterior is not reliable.
+/// CSV of the draws of posteriors, a row each: source, start, draw, weight, then all unknown parameters; the
+/// row of names, and the rows of one measurement, none where its posterior is not reliable.
 std::string makeDrawsCsvHeader(const std::vector<ParameterSpec>& unknown);
 std::string makeDrawsCsvRows(const InferredMeasurement& inferred);
 

@@ -5,6 +5,8 @@
 #include "framework/base/text/number_text.hpp"
 #include "framework/base/text/text_tables.hpp"
 #include "framework/inference/joint_inference.hpp"
+#include "framework/inference/select_estimate.hpp"
+#include "framework/inference/text/inference_text.hpp"
 
 namespace twinmap {
 
@@ -48,8 +50,8 @@ std::string describeContradictions(const JointInference& inferred,
     const SimulatorPosterior &first = inferred.alone[one.first].posterior,
                              &second = inferred.alone[one.second].posterior;
     text += fmt::format(
-        "  {} contradicts {} in {} by {:.3g} sd: {} +- {}, {} +- {} {}\n", inferred.labels[one.first],
-        inferred.labels[one.second], parameters[one.parameter].name.text, one.distance,
+        "  {} contradicts {} in {} by {:.3g} sd: {} +- {}, {} +- {} {}\n", inferred.alone[one.first].label,
+        inferred.alone[one.second].label, parameters[one.parameter].name.text, one.distance,
         toShortText(first.mean[i], kJointDigits), toShortText(first.stddev[i], kJointStddevDigits),
         toShortText(second.mean[i], kJointDigits), toShortText(second.stddev[i], kJointStddevDigits),
         parameters[one.parameter].unit);
@@ -92,8 +94,8 @@ std::string makeAloneTable(const JointInference& inferred, const std::vector<Par
     rows.front().push_back(parameter.name.text);
   }
   for (std::size_t k = 0; k < inferred.alone.size(); ++k) {
-    const DirectInference& one = inferred.alone[k];
-    rows.push_back({inferred.labels[k], listStatuses(one, parameters).front()});
+    const RecordingInference& one = inferred.alone[k];
+    rows.push_back({one.label, selectEstimate(one.inferred).statuses.front()});
     for (std::size_t p = 0; p < parameters.size(); ++p) {
       const auto i = static_cast<Index>(p);
       rows.back().push_back(one.posterior.isReliable()
@@ -140,9 +142,9 @@ Json makeJointCovariance(const JointInference& inferred, std::size_t count) {
 
 Json makeTrialsJson(const JointInference& inferred, const std::vector<ParameterSpec>& parameters) {
   Json trials = Json::array();
-  for (std::size_t k = 0; k < inferred.alone.size(); ++k) {
-    Json one = parseJson(makeDirectJson(inferred.alone[k], parameters));
-    one["label"] = inferred.labels[k];
+  for (const RecordingInference& recording : inferred.alone) {
+    Json one = parseJson(makeInferenceJson(recording.inferred, parameters, {}));
+    one["label"] = recording.label;
     trials.push_back(one);
   }
   return trials;
@@ -152,7 +154,7 @@ Json makeTrialsJson(const JointInference& inferred, const std::vector<ParameterS
 
 std::string makeJointTable(const JointInference& inferred, const std::vector<ParameterSpec>& parameters) {
   const std::string statuses = fmt::format("{}", fmt::join(listStatuses(inferred, parameters), ", "));
-  std::string text = fmt::format("{} recordings together: {}\n", inferred.labels.size(), statuses);
+  std::string text = fmt::format("{} recordings together: {}\n", inferred.alone.size(), statuses);
   if (!inferred.agreement) {
     return text + fmt::format("  No estimate: {}.\n", inferred.joint.message);
   }
@@ -168,8 +170,8 @@ std::string makeJointTable(const JointInference& inferred, const std::vector<Par
 
 std::string makeJointCsvRows(const JointInference& inferred, const std::vector<ParameterSpec>& parameters) {
   std::string text;
-  for (const DirectInference& one : inferred.alone) {
-    text += makeDirectCsvRows(one, parameters);
+  for (const RecordingInference& one : inferred.alone) {
+    text += makeInferenceCsvRows(one.inferred, parameters, false);
   }
   const std::string statuses = fmt::format("{}", fmt::join(listStatuses(inferred, parameters), " "));
   for (std::size_t p = 0; p < parameters.size(); ++p) {
@@ -205,8 +207,8 @@ std::string makeJointJson(const JointInference& inferred, const std::vector<Para
                          {"contradictions", Json::array()}};
     for (const Contradiction& one : inferred.contradictions) {
       json["agreement"]["contradictions"].push_back({{"parameter", parameters[one.parameter].name.text},
-                                                     {"first", inferred.labels[one.first]},
-                                                     {"second", inferred.labels[one.second]},
+                                                     {"first", inferred.alone[one.first].label},
+                                                     {"second", inferred.alone[one.second].label},
                                                      {"distance", one.distance}});
     }
   }

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "framework/inference/inferrer.hpp"
+#include "framework/inference/measurement_reader.hpp"
+
+namespace twinmap {
+
+/// Infers one measurement after another, by a trained run or by simulation alone; for one thread.
+class MeasurementInference {
+ public:
+  virtual ~MeasurementInference() = default;
+
+  virtual const MeasurementReader& getReader() const = 0;
+
+  /// Whether estimates are refined, and whether each is given a posterior because that was asked for.
+  virtual bool refines() const = 0;
+  virtual bool samplesPosteriors() const = 0;
+
+  /// From features (d, finite) that were extracted elsewhere. known: the inputs of the set-up (q).
+  virtual InferredMeasurement infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known) = 0;
+
+  /// The simple fault of a measured response (rows of the layout) that explains a gross misfit; "" of none.
+  virtual std::string findFault(const Eigen::VectorXd& /*response*/, const Eigen::VectorXd& /*known*/,
+                                const InferredMeasurement& /*inferred*/) {
+    return "";
+  }
+
+  /// From a table: throws MeasurementError where it cannot be used (MeasurementReader::readFeatures).
+  InferredMeasurement infer(const Table& table, std::optional<double> start, const Eigen::VectorXd& known);
+};
+
+}  // namespace twinmap

@@ -1,0 +1,123 @@
+#include "framework/inference/posterior_estimate.hpp"
+
+#include "framework/experiment/model/parameter_box.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+BoundedDraws makeDraws(const MatrixXd& points, const VectorXd& weights,
+                       const std::vector<ParameterSpec>& unknown) {
+  const auto u = static_cast<Index>(unknown.size());
+  BoundedDraws draws{points, weights, VectorXd(u), VectorXd(u)};
+  for (Index i = 0; i < u; ++i) {
+    const Bounds& bounds = unknown[static_cast<std::size_t>(i)].bounds;
+    draws.lower[i] = bounds.lower;
+    draws.upper[i] = bounds.upper;
+  }
+  return draws;
+}
+
+/// The modes as a mixture of normal distributions; none where there is one.
+Mixture makeMixture(const std::vector<PosteriorMode>& modes, Index p) {
+  if (modes.size() < 2) {
+    return {};
+  }
+  const auto count = static_cast<Index>(modes.size());
+  Mixture mixture{VectorXd(count), MatrixXd(p, count), MatrixXd(p, count), {}};
+  for (Index k = 0; k < count; ++k) {
+    const PosteriorMode& mode = modes[static_cast<std::size_t>(k)];
+    mixture.weights[k] = mode.weight;
+    mixture.means.col(k) = mode.mean.head(p);
+    mixture.stddevs.col(k) = mode.stddev.head(p);
+    mixture.correlations.push_back(calcCorrelation(mode.covariance.topLeftCorner(p, p)));
+  }
+  mixture.weights /= mixture.weights.sum();
+  return mixture;
+}
+
+/// Mean and covariance are those of the draws.
+Estimate makeEstimate(BoundedDraws draws, const VectorXd& mean, const MatrixXd& covariance) {
+  Estimate estimate{mean, covariance.diagonal().cwiseSqrt()};
+  estimate.correlation = calcCorrelation(covariance);
+  estimate.method = EstimationMethod::kPosterior;
+  estimate.draws = std::move(draws);
+  return estimate;
+}
+
+SimulatorFit makeFit(const SimulatorPosterior& posterior, const std::vector<FeatureInfo>& infos) {
+  SimulatorFit fit;
+  fit.searches = posterior.starts;
+  fit.found_best = posterior.found_best;
+  fit.simulations = posterior.simulations;
+  if (posterior.degrees > 0.0) {
+    fit.chi_square = posterior.chi_square;
+    fit.degrees = posterior.degrees;
+    fit.explained = posterior.isExplained();
+    fit.residual = posterior.residual;
+    fit.test = testResidual(posterior.residual, posterior.degrees, infos);
+  }
+  return fit;
+}
+
+}  // namespace
+
+const char* toString(PosteriorSource source) {
+  return source == PosteriorSource::kSimulator ? "simulator" : "surrogate";
+}
+
+PosteriorEstimate makePosteriorEstimate(const SurrogatePosterior& posterior,
+                                        const std::vector<ParameterSpec>& unknown) {
+  PosteriorEstimate made;
+  made.effective_sample_size = posterior.effective_sample_size;
+  made.pareto_shape = posterior.pareto_shape;
+  made.evaluations = posterior.evaluations;
+  made.message = posterior.message;
+  if (made.isReliable()) {
+    made.estimate = makeEstimate(makeDraws(posterior.weighted.points, posterior.weighted.weights, unknown),
+                                 posterior.mean, posterior.covariance);
+  }
+  return made;
+}
+
+PosteriorEstimate makePosteriorEstimate(const SimulatorPosterior& posterior,
+                                        const std::vector<ParameterSpec>& unknown, Index p,
+                                        const std::vector<FeatureInfo>& infos) {
+  PosteriorEstimate made;
+  made.source = PosteriorSource::kSimulator;
+  made.effective_sample_size = posterior.effective_sample_size;
+  made.pareto_shape = posterior.pareto_shape;
+  made.evaluations = static_cast<int>(posterior.weights.size());
+  made.message = posterior.message;
+  made.fit = makeFit(posterior, infos);
+  if (made.isReliable()) {
+    made.estimate = makeEstimate(makeDraws(posterior.draws, posterior.weights, unknown),
+                                 posterior.mean.head(p), posterior.covariance.topLeftCorner(p, p));
+    made.estimate.mixture = makeMixture(posterior.modes, p);
+  }
+  return made;
+}
+
+MatrixXd calcQuantiles(const Estimate& estimate) {
+  const VectorXd probabilities =  // not a Map: GCC 12 sees AVX-512 read beyond the five
+      VectorXd::NullaryExpr(static_cast<Index>(kQuantileProbabilities.size()),
+                            [](Index i) { return kQuantileProbabilities[static_cast<std::size_t>(i)]; });
+  MatrixXd quantiles(estimate.mean.size(), probabilities.size());
+  for (Index i = 0; i < quantiles.rows(); ++i) {
+    quantiles.row(i) = estimate.draws.calcQuantiles(i, probabilities).transpose();
+  }
+  return quantiles;
+}
+
+bool isUninformative(const Estimate& estimate) {
+  constexpr double kShare = 0.9;  // as trained estimators judge it
+  const Index p = estimate.stddev.size();
+  const VectorXd prior = kUniformStddev * (estimate.draws.upper - estimate.draws.lower).head(p);
+  return (estimate.stddev.array() > kShare * prior.array()).any();
+}
+
+}  // namespace twinmap

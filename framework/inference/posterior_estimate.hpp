@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/estimation/estimate.hpp"
+#include "framework/estimation/posterior/residual_test.hpp"
+#include "framework/estimation/posterior/simulator_posterior.hpp"
+#include "framework/estimation/surrogate/posterior_sampler.hpp"
+#include "framework/experiment/model/model_spec.hpp"
+
+namespace twinmap {
+
+/// What the likelihood of a posterior is computed by.
+enum class PosteriorSource { kSurrogate, kSimulator };
+
+/// "surrogate", "simulator".
+const char* toString(PosteriorSource source);
+
+/// How well the simulator explains a measurement at its best, and what it took to find that.
+struct SimulatorFit {
+  double chi_square = 0.0, degrees = 0.0;  ///< 0 degrees of freedom where nothing could be simulated
+  bool explained = false;                  ///< SimulatorPosterior::isExplained()
+  Eigen::VectorXd residual;                ///< whitened
+  ResidualTest test;
+  int searches = 0, found_best = 0, simulations = 0;
+
+  bool isSimulated() const { return degrees > 0.0; }
+};
+
+/// A posterior by draws, whoever drew them, as an estimate of the p parameters that are reported.
+struct PosteriorEstimate {
+  PosteriorSource source = PosteriorSource::kSurrogate;
+  Estimate estimate;  ///< with draws of all unknown parameters; not given unless it is reliable
+  double effective_sample_size = 0.0;
+  double pareto_shape = 0.0;
+  int evaluations = 0;              ///< draws of all rounds
+  std::string message;              ///< why it is not reliable; else empty
+  std::optional<SimulatorFit> fit;  ///< where it is the simulator's
+
+  bool isReliable() const { return message.empty(); }
+  const char* getStatus() const { return isReliable() ? "ok" : "unreliable"; }
+};
+
+/// unknown: all u parameters that were drawn.
+PosteriorEstimate makePosteriorEstimate(const SurrogatePosterior& posterior,
+                                        const std::vector<ParameterSpec>& unknown);
+/// p: how many of them are reported, the first ones; infos: of the features.
+PosteriorEstimate makePosteriorEstimate(const SimulatorPosterior& posterior,
+                                        const std::vector<ParameterSpec>& unknown, Eigen::Index p,
+                                        const std::vector<FeatureInfo>& infos);
+
+/// Probabilities of the quantiles that are printed of an estimate by draws.
+constexpr std::array<double, 5> kQuantileProbabilities{0.025, 0.16, 0.5, 0.84, 0.975};
+
+/// Of each parameter (p x kQuantileProbabilities) of an estimate by draws.
+Eigen::MatrixXd calcQuantiles(const Estimate& estimate);
+
+/// Whether the standard deviation of a parameter is above 0.9 of that which its bounds alone leave: the
+/// measurement says little about it. Of an estimate by draws.
+bool isUninformative(const Estimate& estimate);
+
+}  // namespace twinmap

@@ -1,0 +1,120 @@
+#include <fmt/core.h>
+
+#include "framework/base/text/escape.hpp"
+#include "framework/base/text/number_text.hpp"
+#include "framework/inference/select_estimate.hpp"
+#include "framework/inference/text/inference_text.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+/// "mean,sd,lower,upper"; empty cells where nothing is believed.
+std::string makeMoments(const Estimate& estimate, const Bounds95& bounds, Index parameter) {
+  return estimate.isGiven() ? fmt::format("{},{},{},{}", toText(estimate.mean[parameter]),
+                                          toText(estimate.stddev[parameter]), toText(bounds.lower[parameter]),
+                                          toText(bounds.upper[parameter]))
+                            : ",,,";
+}
+
+/// "0.52: 0.05 +- 0.001; 0.48: -0.05 +- 0.001", weight, mean and sd of each; "" of one.
+std::string makeComponents(const Mixture& mixture, Index parameter) {
+  std::string text;
+  for (Index c = 0; c < mixture.countComponents(); ++c) {
+    text += fmt::format("{}{}: {} +- {}", c == 0 ? "" : "; ", toText(mixture.weights[c]),
+                        toText(mixture.means(parameter, c)), toText(mixture.stddevs(parameter, c)));
+  }
+  return text;
+}
+
+/// Empty but for the diagnostics where it is not reliable.
+std::string makePosteriorCells(const PosteriorEstimate& posterior, Index parameter) {
+  const bool reliable = posterior.isReliable();
+  const MatrixXd quantiles = reliable ? calcQuantiles(posterior.estimate) : MatrixXd();
+  std::string text = reliable ? fmt::format(",{},{}", toText(posterior.estimate.mean[parameter]),
+                                            toText(posterior.estimate.stddev[parameter]))
+                              : ",,";
+  for (Index k = 0; k < static_cast<Index>(kQuantileProbabilities.size()); ++k) {
+    text += reliable ? "," + toText(quantiles(parameter, k)) : ",";
+  }
+  return text + "," + toText(posterior.effective_sample_size) + "," + toText(posterior.pareto_shape);
+}
+
+std::string makePValue(const InferredMeasurement& inferred) {
+  if (inferred.trust) {
+    return toText(inferred.trust->p_value);
+  }
+  const bool tested = inferred.posterior && inferred.posterior->fit && inferred.posterior->fit->isSimulated();
+  return tested ? toText(inferred.posterior->fit->test.calcPValue()) : "";
+}
+
+std::string makeRefinedCells(const InferredMeasurement& inferred, const Estimate& estimate, Index parameter) {
+  const Estimate& by_estimator = inferred.by_estimator;
+  const bool accepted = inferred.refined->isAccepted();
+  const Estimate refined = accepted ? makeEstimate(*inferred.refined, estimate.mean.size()) : Estimate{};
+  return (accepted ? fmt::format(",{},{}", toText(refined.mean[parameter]), toText(refined.stddev[parameter]))
+                   : ",,") +
+         fmt::format(",{},{}", toText(by_estimator.mean[parameter]), toText(by_estimator.stddev[parameter]));
+}
+
+}  // namespace
+
+std::string makeInferenceCsvHeader(bool refined, bool posterior) {
+  return std::string("source,start,parameter,unit,mean,sd,lower,upper,status,p_value,method") +
+         (refined ? ",refined_mean,refined_sd,map_mean,map_sd" : "") +
+         (posterior ? ",posterior_mean,posterior_sd,posterior_q2.5,posterior_q16,posterior_q50,posterior_q84,"
+                      "posterior_q97.5,effective_sample_size,pareto_shape"
+                    : "") +
+         ",components\n";
+}
+
+std::string makeInferenceCsvRows(const InferredMeasurement& inferred,
+                                 const std::vector<ParameterSpec>& parameters, bool posterior) {
+  const Estimate estimate = selectEstimate(inferred);
+  const Bounds95 bounds = estimate.calcBounds95();
+  std::string text;
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const auto i = static_cast<Index>(p);
+    text += fmt::format("{},{},{},{},{},{},{},{}", escapeCsv(inferred.source), toText(inferred.start),
+                        escapeCsv(parameters[p].name.text), escapeCsv(parameters[p].unit),
+                        makeMoments(estimate, bounds, i), joinStatuses(estimate.statuses, " "),
+                        makePValue(inferred), toString(estimate.method));
+    if (inferred.refined) {
+      text += makeRefinedCells(inferred, estimate, i);
+    }
+    if (posterior) {
+      text += makePosteriorCells(*inferred.posterior, i);
+    }
+    text += "," + makeComponents(estimate.mixture, i) + "\n";
+  }
+  return text;
+}
+
+std::string makeDrawsCsvHeader(const std::vector<ParameterSpec>& unknown) {
+  std::string text = "source,start,draw,weight";
+  for (const ParameterSpec& parameter : unknown) {
+    text += "," + escapeCsv(parameter.name.text);
+  }
+  return text + "\n";
+}
+
+std::string makeDrawsCsvRows(const InferredMeasurement& inferred) {
+  if (!inferred.posterior) {
+    return "";
+  }
+  const BoundedDraws& draws = inferred.posterior->estimate.draws;
+  const std::string measurement = escapeCsv(inferred.source) + "," + toText(inferred.start);
+  std::string text;
+  for (Index i = 0; i < draws.weights.size(); ++i) {
+    text += fmt::format("{},{},{}", measurement, i, toText(draws.weights[i]));
+    for (const double value : draws.points.col(i)) {
+      text += "," + toText(value);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace twinmap

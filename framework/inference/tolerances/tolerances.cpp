@@ -1,0 +1,177 @@
+#include "framework/inference/tolerances/tolerances.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "framework/base/log/log.hpp"
+#include "framework/base/text/number_text.hpp"
+#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/feature_spec.hpp"
+#include "framework/inference/tolerances/integration_errors.hpp"
+
+namespace twinmap {
+namespace {
+
+constexpr double kMinRelative = 1e-13, kMinAbsolute = 1e-18;  // that the experiment file accepts
+
+/// value / 10^decades to its digits, so that 3e-7 becomes 3e-8, not 3.0000000000000004e-8.
+double divide(double value, int decades) {
+  double divided = 0.0;
+  parseLiteral(fmt::format("{:.12g}", value / std::pow(10.0, decades)), divided);
+  return divided;
+}
+
+/// The tolerances of a simulation, those divided by powers of ten that may be.
+SimulationSpec tighten(SimulationSpec simulation, bool relative, bool absolute, int decades) {
+  if (relative) {
+    simulation.relative_tolerance = divide(simulation.relative_tolerance, decades);
+  }
+  if (absolute) {
+    simulation.absolute_tolerance = divide(simulation.absolute_tolerance, decades);
+  }
+  return simulation;
+}
+
+bool isAllowed(const SimulationSpec& simulation) {
+  return simulation.relative_tolerance >= kMinRelative && simulation.absolute_tolerance >= kMinAbsolute;
+}
+
+/// A simulation whose errors are negligible, or the best that was found, with its error.
+struct Tightened {
+  SimulationSpec simulation;
+  IntegrationError error;
+};
+
+/// Goes from one tolerance to the next by the powers of ten that the error is too large by, as errors fall
+/// about as the tolerance does; never beyond what is allowed or can still be simulated.
+Tightened search(IntegrationErrors& errors, const Tightened& from, bool relative, bool absolute) {
+  Tightened best = from;
+  if (!relative && !absolute) {
+    return best;
+  }
+  for (int decades = 0; !best.error.isNegligible();) {
+    decades += std::max(1, static_cast<int>(best.error.calcDecades()));
+    SimulationSpec next = tighten(from.simulation, relative, absolute, decades);
+    if (!isAllowed(next)) {
+      break;
+    }
+    const std::optional<IntegrationError> error = errors.calc(next);
+    if (!error || error->calcDecades() > best.error.calcDecades()) {
+      break;
+    }
+    best = {next, *error};
+  }
+  return best;
+}
+
+std::string describe(const SimulationSpec& simulation) {
+  return fmt::format("{} (absolute {})", toText(simulation.relative_tolerance),
+                     toText(simulation.absolute_tolerance));
+}
+
+/// "moves k3 by up to 12 of its standard deviations"
+std::string describe(const IntegrationError& error, const std::vector<ParameterSpec>& parameters) {
+  constexpr double kNegligible = 0.1;
+  if (error.shift <= kNegligible) {
+    return fmt::format("raises chi-square by up to {:.2g} of its standard deviations", error.rise);
+  }
+  return fmt::format("moves {} by up to {:.2g} of its standard deviations",
+                     parameters[static_cast<std::size_t>(error.parameter)].name.text, error.shift);
+}
+
+/// The values that the file gives, with their places: "exp.yaml:7:3: simulation.relative_tolerance: 1e-05".
+std::string nameGiven(const SimulationSpec& simulation) {
+  std::string named;
+  for (const Tolerance* given : {&simulation.relative_tolerance, &simulation.absolute_tolerance}) {
+    if (!given->automatic) {
+      named += fmt::format("{}{}: {}", named.empty() ? "" : ", ", toString(given->where), toText(*given));
+    }
+  }
+  return named;
+}
+
+void warnOfCoarse(const ModelSpec& model, const IntegrationError& error, const Tightened& enough) {
+  logWarning(
+      fmt::format("{}: too coarse for the noise: the error of the integration {}; "
+                  "relative_tolerance: {} and absolute_tolerance: {} {}, or leave both out",
+                  nameGiven(model.simulation), describe(error, model.parameters),
+                  toText(enough.simulation.relative_tolerance), toText(enough.simulation.absolute_tolerance),
+                  enough.error.isNegligible() ? "would do" : "are the best that can be had"));
+}
+
+/// One line: from what, to what, why; what is left where that is not negligible.
+void logTightened(const ModelSpec& model, const IntegrationError& error, const Tightened& taken) {
+  const std::string text =
+      fmt::format("tolerances of the integration: {} instead of {}, whose error {}",
+                  describe(taken.simulation), describe(model.simulation), describe(error, model.parameters));
+  if (taken.error.isNegligible()) {
+    logInfo(text);
+  } else {
+    logWarning(text + "; what is left " + describe(taken.error, model.parameters));
+  }
+}
+
+/// What is integrated with twinmap's own error control, and seen through noise.
+bool canFollow(const ExperimentSpec& experiment) {
+  const ModelSpec& model = experiment.model;
+  return !collectOutputs(experiment.features).empty() && experiment.noise.scale > 0.0 &&
+         !(model.source && model.source->program) && model.simulation.integrator == Integrator::kDopri5;
+}
+
+}  // namespace
+
+ExperimentSpec followNoise(ExperimentSpec experiment) {
+  SimulationSpec& simulation = experiment.model.simulation;
+  if (!canFollow(experiment)) {
+    simulation.relative_tolerance.automatic = simulation.absolute_tolerance.automatic = false;
+    return experiment;
+  }
+  const bool relative = simulation.relative_tolerance.automatic,
+             absolute = simulation.absolute_tolerance.automatic;
+  SimulationSpec fixed = simulation;
+  fixed.relative_tolerance.automatic = fixed.absolute_tolerance.automatic = false;
+  IntegrationErrors errors(experiment);
+  const std::optional<IntegrationError> error = errors.calc(simulation);
+  if (error && !error->isNegligible()) {
+    const Tightened found = search(errors, {fixed, *error}, relative, absolute);
+    if (found.error.isNegligible() || (relative && absolute)) {
+      logTightened(experiment.model, *error, found);
+      fixed = found.simulation;
+    } else {
+      warnOfCoarse(experiment.model, *error, search(errors, {fixed, *error}, true, true));
+    }
+  }
+  simulation = fixed;
+  return experiment;
+}
+
+void followNoise(std::vector<SweepCase>& cases) {
+  std::map<std::string, SimulationSpec> known;
+  std::map<std::tuple<int, double, double>, int> models;
+  for (SweepCase& one : cases) {
+    ExperimentSpec key;
+    key.model = one.experiment.model;
+    key.features = one.experiment.features;
+    key.noise = one.experiment.noise;
+    key.noise.replicates.reset();
+    const auto [entry, is_new] = known.emplace(writeExperiment(key), SimulationSpec{});
+    if (is_new) {
+      entry->second = followNoise(one.experiment).model.simulation;
+    }
+    SimulationSpec& simulation = one.experiment.model.simulation;
+    simulation.relative_tolerance = entry->second.relative_tolerance;
+    simulation.absolute_tolerance = entry->second.absolute_tolerance;
+    const auto index = static_cast<int>(&one - cases.data());
+    one.model = models
+                    .emplace(std::tuple(one.model, double(simulation.relative_tolerance),
+                                        double(simulation.absolute_tolerance)),
+                             index)
+                    .first->second;
+  }
+}
+
+}  // namespace twinmap

@@ -1,0 +1,90 @@
+#include "framework/inference/tolerances/tolerances.hpp"
+
+#include <gtest/gtest.h>
+
+#include "framework/experiment/experiment_file.hpp"
+#include "framework/inference/tolerances/integration_errors.hpp"
+#include "tests/framework/experiment/experiments.hpp"
+
+namespace twinmap {
+namespace {
+
+using Overrides = std::vector<std::string>;
+
+const std::string kPendulum =
+    std::string(TWINMAP_SOURCE_DIR) + "/experiments/mechanisms/double_pendulum_mild.yaml";
+
+SimulationSpec follow(const std::string& file, const Overrides& overrides = {}) {
+  return followNoise(loadExperiment(file, overrides)).model.simulation;
+}
+
+TEST(Tolerances, StayWhereTheNoiseIsFarAboveTheErrors) {
+  for (const std::string& file : {kTable1, kCart}) {
+    const SimulationSpec found = follow(file);
+    EXPECT_EQ(found.relative_tolerance, 3e-7) << file;
+    EXPECT_EQ(found.absolute_tolerance, 1e-9);
+    EXPECT_FALSE(found.relative_tolerance.automatic || found.absolute_tolerance.automatic);
+  }
+}
+
+// 1e-7 of the range of the response.
+TEST(Tolerances, AreTightenedUntilNoEstimateMoves) {
+  for (const auto& [file, scale] : {std::pair{kCart, 1e-4}, {kPendulum, 1e-3}}) {
+    const ExperimentSpec experiment = loadExperiment(file, {"noise.scale=" + std::to_string(scale)});
+    IntegrationErrors errors(experiment);
+    EXPECT_FALSE(errors.calc(experiment.model.simulation)->isNegligible());
+    const SimulationSpec found = followNoise(experiment).model.simulation;
+    EXPECT_LT(found.relative_tolerance, 3e-8);
+    EXPECT_NEAR(found.relative_tolerance / found.absolute_tolerance, 300.0, 1e-9);
+    EXPECT_TRUE(errors.calc(found)->isNegligible()) << file;
+  }
+}
+
+TEST(Tolerances, ThatAreGivenStay) {
+  const SimulationSpec found =
+      follow(kCart, {"simulation.relative_tolerance=1e-3", "simulation.absolute_tolerance=1e-4"});
+  EXPECT_EQ(found.relative_tolerance, 1e-3);
+  EXPECT_EQ(found.absolute_tolerance, 1e-4);
+  const SimulationSpec one = follow(kCart, {"simulation.relative_tolerance=1e-3"});
+  EXPECT_EQ(one.relative_tolerance, 1e-3);
+  EXPECT_EQ(one.absolute_tolerance, 1e-9);
+}
+
+TEST(Tolerances, DoNotFollowWhatIsNotThere) {
+  for (const Overrides& overrides : {Overrides{"noise.scale=0"}, Overrides{"noise.stddev.x=0"},
+                                     Overrides{"noise.scale=1e-4", "simulation.integrator=cpodes"}}) {
+    EXPECT_EQ(follow(kCart, overrides).relative_tolerance, 3e-7);
+  }
+}
+
+TEST(Tolerances, DoNotDependOnTheSeed) {
+  const Overrides low{"noise.scale=1e-4"}, other{"noise.scale=1e-4", "seed=5"};
+  EXPECT_EQ(follow(kCart, low).relative_tolerance, follow(kCart, other).relative_tolerance);
+}
+
+// So that they are read back from resolved.yaml and maps.h5.
+TEST(Tolerances, AreWrittenAsNumbers) {
+  const ExperimentSpec followed = followNoise(loadExperiment(kCart, {"noise.scale=1e-4"}));
+  const ExperimentSpec read = readResolved(writeExperiment(followed));
+  EXPECT_EQ(read.model.simulation.relative_tolerance, followed.model.simulation.relative_tolerance);
+  EXPECT_FALSE(read.model.simulation.relative_tolerance.automatic);
+  EXPECT_NE(writeExperiment(loadExperiment(kCart)).find("relative_tolerance: automatic"), std::string::npos);
+}
+
+TEST(Tolerances, AreFoundOnceForCasesThatShareThem) {
+  std::vector<SweepCase> cases(3);
+  for (SweepCase& one : cases) {
+    one.experiment = loadExperiment(kCart);
+  }
+  cases[1].experiment.seed = 7;
+  cases[2].experiment.noise.scale = 1e-4;
+  followNoise(cases);
+  EXPECT_EQ(cases[0].experiment.model.simulation.relative_tolerance, 3e-7);
+  EXPECT_EQ(cases[1].experiment.model.simulation.relative_tolerance, 3e-7);
+  EXPECT_LT(cases[2].experiment.model.simulation.relative_tolerance, 3e-8);
+  EXPECT_EQ(cases[1].model, cases[0].model);
+  EXPECT_NE(cases[2].model, cases[0].model);
+}
+
+}  // namespace
+}  // namespace twinmap
