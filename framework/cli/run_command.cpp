@@ -48,6 +48,12 @@ void runSingle(const ExperimentSpec& experiment, const RunArguments& arguments, 
   const RunSummary summary = runExperiment(experiment, options, makeControl(arguments, line));
   line.clear();
   std::cout << makeMarkdownTable(summary);
+  if (!arguments.quiet) {
+    std::cerr
+        << "Bias, sd and MARE: mean, standard deviation and mean absolute value of the relative errors of "
+           "the test samples.\ncov.: true values within the interval. limit: smallest sd that the noise "
+           "permits. (..): standard error of the last digits.\n";
+  }
   for (const std::string& warning : collectWarnings(summary)) {
     std::cerr << "twinmap: warning: " << warning << "\n";
   }

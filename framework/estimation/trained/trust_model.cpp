@@ -188,7 +188,8 @@ Trust judgeAnew(const TrustModel& model, const Trust& trust, const SimulatorResi
     return trust;
   }
   Trust anew = trust;
-  anew.smallest_p_value = found.explained ? 0.0 : share.calcPValue(std::numeric_limits<double>::infinity());
+  anew.smallest_p_value =
+      found.explained ? 0.0 : 2.0 * share.calcPValue(std::numeric_limits<double>::infinity());
   if (found.residual.size() > 0) {
     setResidual(model, found.residual, anew);
     anew.anomaly_p_value = model.noise_anomaly.calcPValue(anew.anomaly.score);

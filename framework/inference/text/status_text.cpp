@@ -19,7 +19,7 @@ namespace {
 
 std::string listBeyondBounds(const Estimate& estimate, const std::vector<ParameterSpec>& parameters) {
   std::vector<std::string> names;
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
+  for (std::size_t p = 0; p < parameters.size() && estimate.isGiven(); ++p) {
     const double mean = estimate.mean[static_cast<Index>(p)];
     if (mean <= parameters[p].bounds.lower || mean >= parameters[p].bounds.upper) {
       names.push_back(parameters[p].name.text);
@@ -32,7 +32,7 @@ std::string listBeyondBounds(const Estimate& estimate, const std::vector<Paramet
 std::string explainUninformative(const Estimate& estimate, const std::vector<ParameterSpec>& parameters) {
   constexpr double kUninformative = 0.9, kPercent = 100.0;  // of the standard deviation of the bounds
   std::string text;
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
+  for (std::size_t p = 0; p < parameters.size() && estimate.isGiven(); ++p) {
     const Bounds& bounds = parameters[p].bounds;
     const double left =
         estimate.stddev[static_cast<Index>(p)] / (kUniformStddev * (bounds.upper - bounds.lower));

@@ -142,7 +142,7 @@ ProbeTimes measure(const ExperimentSpec& experiment, double most_samples) {
   const double simulating = run.getStage("simulate ") + run.getStage("compute parameter sensitivities");
   const double limit = run.getStage("information limit");
   times.simulation = simulating / (kTrainSamples + kTestSamples);
-  const double stencils = run.getStage("stencils of ");
+  const double stencils = run.getStage("finite differences at ");
   times.limit = limit / kTestSamples;
   times.stencil = stencils / std::max<double>(listDerivativePoints(small).cols(), 1.0);
   const double refining = run.getStage("refine ");

@@ -107,6 +107,35 @@ class ExitCodes(TestCase):
         for arguments in (["--help"], ["--version"], ["run", "--help"], ["simulate", "--help"]):
             self.assertEqual(call(*arguments).returncode, 0)
 
+    def test_alone_it_lists_its_commands(self):
+        result = call()
+        self.assertEqual((result.returncode, result.stdout), (2, ""))
+        for line in ("From a model to an estimate:", "  infer ", "twinmap run experiments/duffing/cart.yaml"):
+            self.assertIn(line, result.stderr)
+
+    def test_check_abbreviates_long_tables_unless_asked_for_all(self):
+        times = [round(0.1 * i, 1) for i in range(40)]
+        table = f"excitation.F={{unit: N, tables: [{{times: {times}, values: {times}}}]}}"
+        short = call("check", CART, table)
+        self.assertIn("times: [40 values, 0 .. 3.9", short.stdout)
+        self.assertIn("check --full prints all values", short.stdout)
+        whole = self.folder / "whole.yaml"
+        whole.write_text(call("check", CART, table, "--full").stdout)
+        self.assertEqual(call("check", whole, "--full").returncode, 0)
+        self.assertNotIn("values, ", whole.read_text())
+
+    def test_a_force_that_jumps_is_named_as_the_reason_of_a_step_limit(self):
+        law = "system.force_laws[0].force=F - 5 * sign(x_dot)"
+        result = call("simulate", CART, law, "simulation.max_steps=200")
+        self.assertEqual(result.returncode, 1)
+        self.assertRegex(result.stderr, r"step limit of 200 .*force_laws\[0\].*sign\(x_dot\) jumps: write tanh")
+
+    def test_bounds_that_contain_0_give_errors_relative_to_the_range_and_a_remark(self):
+        few = ["design.train.samples=60", "design.test.samples=20", "evaluation.limit=false", "refine=never"]
+        result = call("run", CART, "parameters.d.bounds=[0, 2]", *few, "--out", self.folder / "run")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("the bounds of d contain 0: its errors are in % of its range", result.stderr)
+
     def test_a_model_that_cannot_exist_is_found_by_check_and_before_a_run(self):
         path = self.folder / "heavy.yaml"
         path.write_text(TABLE1.read_text().replace("value: 0.13,", "value: -0.13,"))
