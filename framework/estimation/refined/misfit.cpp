@@ -50,7 +50,11 @@ double LocalMisfit::calcDegrees() const {
 
 Misfit::Misfit(Simulator& simulator, const RefinementModel& model, const SearchBox& box,
                const VectorXd& measured)
-    : simulator_(simulator), model_(model), box_(box), measured_(model.convert(measured)), window_(&model.getWhole()) {}
+    : simulator_(simulator),
+      model_(model),
+      box_(box),
+      measured_(model.convert(measured)),
+      window_(&model.getWhole()) {}
 
 void Misfit::setWindow(const GrowingWindow& window) {
   window_ = &window;
