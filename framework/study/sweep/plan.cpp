@@ -221,8 +221,9 @@ std::string describePlan(const SweepPlan& plan, const PlanOptions& options) {
                      fmt::format("simulations: {} needed, {} stored, {} to do\n", samples.needed,
                                  samples.stored, samples.missing);
   if (stencils.needed > 0) {
-    text += fmt::format("limits:      finite differences at {} points needed, {} stored, {} to do: {} simulations\n",
-                        stencils.needed, stencils.stored, stencils.missing, stencils.simulations);
+    text += fmt::format(
+        "limits:      finite differences at {} points needed, {} stored, {} to do: {} simulations\n",
+        stencils.needed, stencils.stored, stencils.missing, stencils.simulations);
   }
   if (!plan.no_times.empty()) {
     text += "time:        not known: " + plan.no_times + "\n";
