@@ -9,9 +9,9 @@
 #include "framework/cli/commands.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/inference_source.hpp"
-#include "framework/inference/text/inference_text.hpp"
 #include "framework/inference/known_value.hpp"
 #include "framework/inference/measurement_stream.hpp"
+#include "framework/inference/text/inference_text.hpp"
 
 namespace twinmap::cli {
 namespace {

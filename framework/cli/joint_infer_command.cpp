@@ -7,8 +7,8 @@
 #include "framework/base/text/number_text.hpp"
 #include "framework/cli/commands.hpp"
 #include "framework/experiment/experiment_file.hpp"
-#include "framework/inference/text/inference_text.hpp"
 #include "framework/inference/joint_inference.hpp"
+#include "framework/inference/text/inference_text.hpp"
 
 namespace twinmap::cli {
 namespace {

@@ -78,8 +78,8 @@ class MagnitudePhaseBlock final : public FeatureBlock {
   void convertToLinearForm(const Eigen::Ref<const Eigen::MatrixXd>& features,
                            Eigen::Ref<Eigen::MatrixXd> linear) const override {
     for (Index line = 0; 3 * line < features.rows(); ++line) {
-      linear.middleRows(2 * line, 2) = features.middleRows(3 * line + 1, 2).array().rowwise() *
-                                       features.row(3 * line).array();
+      linear.middleRows(2 * line, 2) =
+          features.middleRows(3 * line + 1, 2).array().rowwise() * features.row(3 * line).array();
     }
   }
 

@@ -41,7 +41,7 @@ class FeatureNoise {
 
   const FeatureExtractor& extractor_;
   std::shared_ptr<const LinearForm> linear_form_;  // null where no feature has one
-  std::vector<Eigen::Index> linear_, nonlinear_;  // features
+  std::vector<Eigen::Index> linear_, nonlinear_;   // features
   Eigen::MatrixXd linear_covariance_;
   Eigen::MatrixXd draws_;  // noise of the response, rows x draws; empty if all features are linear
 };
