@@ -118,10 +118,11 @@ class Bench {
     return measured;
   }
 
-  Judged judge(const Measured& measured) {
+  /// With random numbers of its own: errors that all posteriors share would pass for miscalibration.
+  Judged judge(const Measured& measured, int test) {
     SimulatorPosteriorOptions options;
     options.draws = request_.draws;
-    options.seed = experiment_.seed;
+    options.seed = experiment_.seed + static_cast<std::uint64_t>(test);
     const std::clock_t begin = std::clock();
     const SimulatorPosterior posterior =
         samplePosterior(*simulator_, model_, experiment_.model.priors, measured.features, measured.truth,
@@ -140,7 +141,7 @@ class Bench {
     judged.ok = judged.status == "ok";
     judged.reliable = posterior.isReliable();
     if (judged.reliable) {
-      compare(posterior, measured, judged);
+      compare(posterior, measured, test, judged);
     }
     return judged;
   }
@@ -160,7 +161,8 @@ class Bench {
     return posterior.modes.size() > 1 ? "multimodal" : "ok";
   }
 
-  void compare(const SimulatorPosterior& posterior, const Measured& measured, Judged& judged) const {
+  void compare(const SimulatorPosterior& posterior, const Measured& measured, int test,
+               Judged& judged) const {
     const auto p = static_cast<Index>(getParameters().size());
     const VectorXd truth = measured.truth.head(p), widths = calcWidths(getParameters());
     const Eigen::ArrayXd error = posterior.mean.head(p) - truth;
@@ -170,7 +172,7 @@ class Bench {
     const auto hold = [&](double probability) { return findHeld(posterior, truth, probability); };
     judged.held95 = hold(0.95);
     judged.held50 = hold(0.5);
-    judged.ranks = rank(posterior, truth);
+    judged.ranks = rank(posterior, truth, test);
   }
 
   /// 1 where the truth (p) is in the shortest of three intervals: the one with equal tails and those that end
@@ -194,10 +196,11 @@ class Bench {
   }
 
   /// Among draws of equal weight; together by the distance from the best fit, in standard deviations.
-  Eigen::VectorXi rank(const SimulatorPosterior& posterior, const VectorXd& truth) const {
+  Eigen::VectorXi rank(const SimulatorPosterior& posterior, const VectorXd& truth, int test) const {
     const RandomStream random(request_.seed, RandomPurpose::kPosteriorResampling);
-    const VectorXd uniforms = VectorXd::NullaryExpr(
-        kRankDraws, [&](Index i) { return random.calcUniform(static_cast<std::uint64_t>(i), 0); });
+    const VectorXd uniforms = VectorXd::NullaryExpr(kRankDraws, [&](Index i) {
+      return random.calcUniform(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(test));
+    });
     const MatrixXd draws = importance::resample({posterior.draws, posterior.weights}, uniforms);
     const VectorXd center = posterior.best.head(truth.size());
     const MatrixXd metric = posterior.stddev.head(truth.size()).cwiseAbs2().asDiagonal();
@@ -307,7 +310,7 @@ int run(const Request& request) {
   std::vector<Judged> judged;
   for (int test = 0; test < request.tests; ++test) {
     if (const std::optional<Measured> measured = bench.measure(test)) {
-      judged.push_back(bench.judge(*measured));
+      judged.push_back(bench.judge(*measured, test));
       if (!judged.back().reliable || judged.back().missed) {
         fmt::print("    {}: {}\n", test, judged.back().describe());
       }
