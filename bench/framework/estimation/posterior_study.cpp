@@ -108,12 +108,13 @@ class Bench {
     const MatrixXd noisy =
         addNoise(local.response, response_noise_,
                  {request_.seed + 1000 * static_cast<std::uint64_t>(test), RandomPurpose::kTestNoise});
-    measured.features = extractor_.extract(noisy).col(0);
+    measured.features = model_.convert(extractor_.extract(noisy).col(0));
     if (!measured.features.allFinite()) {
       return std::nullopt;
     }
     const NoiseWhitener whitener = model_.makeWhitener(model_.getWhole(), local.response);
-    measured.chi_square = whitener.apply(VectorXd(measured.features - local.features)).squaredNorm();
+    const VectorXd clean = model_.convert(local.features);
+    measured.chi_square = whitener.apply(VectorXd(measured.features - clean)).squaredNorm();
     measured.limit = calcInformationLimit({local}, noise_, getParameters()).stddev.col(0);
     return measured;
   }
@@ -151,8 +152,8 @@ class Bench {
     if (!(posterior.degrees > 0.0)) {
       return "not_simulated";
     }
-    if (testResidual(posterior.residual, posterior.degrees, extractor_.getInfos()).calcPValue() <
-        kMismatchLevel) {
+    if (testResidual(model_.placeResidual(posterior.residual), posterior.degrees, extractor_.getInfos())
+            .calcPValue() < kMismatchLevel) {
       return "model_mismatch";
     }
     if (!posterior.isReliable()) {
