@@ -152,6 +152,7 @@ PosteriorEstimate makePosteriorEstimate(const SimulatorPosterior& posterior,
     made.estimate = makeEstimate(makeDraws(posterior.draws, posterior.weights, unknown),
                                  posterior.mean.head(p), posterior.covariance.topLeftCorner(p, p));
     made.estimate.mixture = makeMixture(posterior.modes, p);
+    made.estimate.prior_stddev = posterior.prior_stddev.head(p);
     made.shape = posterior.findShape(p);
   }
   return made;

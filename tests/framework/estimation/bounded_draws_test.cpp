@@ -90,8 +90,8 @@ TEST(BoundedDraws, KeepTheirIntervalWhereFrictionIsSeen) {
   const BoundedDraws draws = drawDampingAndFriction(1.0, 6.0, 1);
   const auto [lower, upper] = draws.findInterval(0, 0.95);
   const VectorXd quantiles = draws.calcQuantiles(0, Eigen::Vector2d(0.025, 0.975));
-  EXPECT_EQ(lower, quantiles[0]);
-  EXPECT_EQ(upper, quantiles[1]);
+  EXPECT_DOUBLE_EQ(lower, quantiles[0]);
+  EXPECT_DOUBLE_EQ(upper, quantiles[1]);
 }
 
 TEST(BoundedDraws, GiveAnEstimateItsIntervals) {
