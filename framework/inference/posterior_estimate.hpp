@@ -39,9 +39,9 @@ struct PosteriorEstimate {
   Estimate estimate;  ///< with draws of all unknown parameters; not given unless it is reliable
   double effective_sample_size = 0.0;
   double pareto_shape = 0.0;
-  int evaluations = 0;              ///< draws of all rounds
-  std::string message;              ///< why it is not reliable; else empty
-  std::optional<SimulatorFit> fit;  ///< where it is the simulator's
+  int evaluations = 0;                                  ///< draws of all rounds
+  std::string message;                                  ///< why it is not reliable; else empty
+  std::optional<SimulatorFit> fit;                      ///< where it is the simulator's
   PosteriorShape shape = PosteriorShape::kInformative;  ///< of the simulator's, where it is reliable
 
   bool isReliable() const { return message.empty(); }

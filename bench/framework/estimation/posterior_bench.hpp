@@ -10,7 +10,7 @@
 #include "framework/data/features/feature_extractor.hpp"
 #include "framework/data/noise/feature_noise.hpp"
 #include "framework/estimation/refined/refinement_model.hpp"
-#include "framework/inference/measurement_inference.hpp"
+#include "framework/inference/measurement/measurement_inference.hpp"
 #include "framework/simulation/simulator.hpp"
 
 namespace twinmap {
