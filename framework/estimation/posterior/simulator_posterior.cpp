@@ -214,6 +214,7 @@ class ProblemSurface {
 
   MisfitSurface& upd() { return surface_; }
   const LogCoordinates& getCoordinates() const { return coordinates_; }
+  const Prior& getPrior() const { return prior_; }
 
  private:
   struct Part {
@@ -304,6 +305,16 @@ bool SimulatorPosterior::isExplained() const {
   return degrees > 0.0 && chi_square < calcChiSquareLimit(degrees);
 }
 
+PosteriorShape SimulatorPosterior::findShape(Index p) const {
+  constexpr double kShare = 0.9;  // as trained estimators are judged
+  if (modes.size() > 1) {
+    return PosteriorShape::kMultimodal;
+  }
+  return (stddev.head(p).array() > kShare * prior_stddev.head(p).array()).any()
+             ? PosteriorShape::kUninformative
+             : PosteriorShape::kInformative;
+}
+
 MatrixXd SimulatorPosterior::calcQuantiles(const VectorXd& probabilities) const {
   return importance::calcQuantiles({draws, weights}, probabilities);
 }
@@ -337,6 +348,7 @@ SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Matrix
   if (posterior.isReliable()) {
     const std::vector<ParameterSpec> kept(problem.unknown.begin(), problem.unknown.begin() + problem.drawn);
     setDraws(drawn, projected, valleys, LogCoordinates(kept), posterior);
+    posterior.prior_stddev = whole.getPrior().calcStddevs().head(problem.drawn);
   }
   return posterior;
 }

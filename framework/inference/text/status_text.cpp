@@ -30,12 +30,14 @@ std::string listBeyondBounds(const Estimate& estimate, const std::vector<Paramet
 
 /// Names and, of the first, the reduction.
 std::string explainUninformative(const Estimate& estimate, const std::vector<ParameterSpec>& parameters) {
-  constexpr double kUninformative = 0.9, kPercent = 100.0;  // of the standard deviation of the bounds
+  constexpr double kUninformative = 0.9, kPercent = 100.0;  // of the standard deviation before
   std::string text;
   for (std::size_t p = 0; p < parameters.size() && estimate.isGiven(); ++p) {
     const Bounds& bounds = parameters[p].bounds;
-    const double left =
-        estimate.stddev[static_cast<Index>(p)] / (kUniformStddev * (bounds.upper - bounds.lower));
+    const auto i = static_cast<Index>(p);
+    const double before = estimate.prior_stddev.size() > 0 ? estimate.prior_stddev[i]
+                                                           : kUniformStddev * (bounds.upper - bounds.lower);
+    const double left = estimate.stddev[i] / before;
     if (left > kUninformative) {
       text += explainNotice(Notice::kUninformative, parameters[p].name.text,
                             fmt::format("{:.0f} %", kPercent * std::max(0.0, 1.0 - left)));
