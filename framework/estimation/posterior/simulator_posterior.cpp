@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numeric>
 
@@ -362,6 +363,17 @@ SimulatorPosterior samplePosterior(Simulator& simulator, const RefinementModel& 
   std::iota(all.begin(), all.end(), Index{0});
   problem.trials.push_back({&simulator, &model, features, held, std::move(all)});
   return samplePosterior(problem, given, options);
+}
+
+double findLeastChiSquare(const PosteriorProblem& problem, int searches) {
+  ProblemSurface whole(problem);
+  BasinSearchOptions options;
+  options.scouts = options.probes = searches;
+  options.confirmations = searches + 1;  // neither probes nor batches follow
+  options.max_batches = 0;
+  const BasinSearch found = findBasins(whole.upd(), MatrixXd(whole.upd().getDimensions(), 0), 1, options);
+  return found.basins.empty() ? std::numeric_limits<double>::infinity()
+                              : found.basins.front().local.chi_square;
 }
 
 }  // namespace twinmap

@@ -95,4 +95,8 @@ SimulatorPosterior samplePosterior(Simulator& simulator, const RefinementModel& 
                                    const Eigen::VectorXd& held, const Eigen::MatrixXd& given,
                                    const SimulatorPosteriorOptions& options);
 
+/// The least chi-square that so many searches from all over the bounds find; infinite where none of them
+/// could be simulated. Cost: some 10 simulations a search, 5 of them with derivatives.
+double findLeastChiSquare(const PosteriorProblem& problem, int searches);
+
 }  // namespace twinmap

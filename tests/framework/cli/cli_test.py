@@ -94,6 +94,7 @@ class ExitCodes(TestCase):
         self.assertIn(message, result.stderr + result.stdout)
 
     def test_wrong_usage_and_wrong_experiments_are_2(self):
+        self.assert_wrong_input("infre", message="no command is called 'infre'; did you mean 'infer'?")
         self.assert_wrong_input("run", message="FILE is required")
         self.assert_wrong_input("run", TABLE1, "--threads", "0", message="--threads")
         self.assert_wrong_input("check", TABLE1, "--bogus", message="--bogus")
