@@ -1,5 +1,8 @@
 #include "framework/models/mechanism/simbody/state_expressions.hpp"
 
+#include "framework/models/mechanism/equations/outputs.hpp"
+#include "framework/models/mechanism/system_names.hpp"
+
 namespace twinmap {
 namespace {
 
@@ -40,12 +43,47 @@ class VaryingFields {
 
 StateExpressions::StateExpressions(const ModelSpec& model, const NamedValues<double>& numbers) {
   defineNames(model, numbers);
+  defineStates(model);
+  for (const StateSpec& state : model.system.states) {
+    bound_.emplace(&state.derivative, values_.bind(state.derivative));
+  }
   VaryingFields fields(values_, bound_);
   const_cast<ForceElements<Expression>&>(model.system.elements).forEachList([&fields](auto& list) {
     for (auto& element : list) {
       describe(fields, element);  // which reads them only
     }
   });
+  bindOutputs(model);
+}
+
+void StateExpressions::defineStates(const ModelSpec& model) {
+  first_state_ = static_cast<int>(values_.getNames().size());
+  const SystemNames names(model.system);
+  for (const std::string& state : names.getStateNames()) {
+    defineName(values_, {state, {}});
+  }
+  first_named_ = static_cast<int>(values_.getNames().size());
+  for (const NamedExpression& named : model.system.expressions) {
+    named_.push_back(values_.bind(named.value));
+    defineName(values_, named.name);
+  }
+}
+
+void StateExpressions::bindOutputs(const ModelSpec& model) {
+  first_acceleration_ = static_cast<int>(values_.getNames().size());
+  if (!equations::hasExpression(model.outputs)) {
+    return;
+  }
+  for (const BodySpec& body : model.system.bodies) {
+    for (const Name& coordinate : body.joint.coordinates) {
+      defineName(values_, {coordinate.text + "_ddot", coordinate.where});
+    }
+  }
+  for (const OutputSpec& output : model.outputs) {
+    if (!output.expression.text.empty()) {
+      bound_.emplace(&output.expression, values_.bind(output.expression));
+    }
+  }
 }
 
 void StateExpressions::defineNames(const ModelSpec& model, const NamedValues<double>& numbers) {
@@ -85,7 +123,8 @@ void StateExpressions::setFrom(int first, const std::vector<double>& values) {
 }
 
 void StateExpressions::setState(double t, const std::vector<double>& coordinates,
-                                const std::vector<double>& rates, const std::vector<double>& signals) {
+                                const std::vector<double>& rates, const std::vector<double>& states,
+                                const std::vector<double>& signals) {
   if (bound_.empty()) {
     return;
   }
@@ -93,6 +132,14 @@ void StateExpressions::setState(double t, const std::vector<double>& coordinates
   setFrom(first_speed_, rates);
   setFrom(first_signal_, signals);
   values_.upd(time_) = t;
+  setFrom(first_state_, states);
+  for (std::size_t i = 0; i < named_.size(); ++i) {
+    values_.upd(first_named_ + static_cast<int>(i)) = values_.calc(named_[i]);
+  }
+}
+
+void StateExpressions::setAccelerations(const std::vector<double>& accelerations) {
+  setFrom(first_acceleration_, accelerations);
 }
 
 }  // namespace twinmap
