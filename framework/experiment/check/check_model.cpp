@@ -258,9 +258,24 @@ class ModelCheck {
       fields_.dynamics.define(signal.name, CheckScope::readUnit(signal.unit, signal.name.where), kSomeSignal);
     }
     fields_.dynamics.defineTime();
+    declareSignalRates();
     declareStates();
     for (const NamedExpression& named : model_.system.expressions) {
       fields_.dynamics.define(named.name, named.value);
+    }
+  }
+
+  /// <signal>_dot, unless something else has the name.
+  void declareSignalRates() {
+    constexpr double kSomeRate = 0.83;
+    for (const SignalSpec& signal : model_.excitation) {
+      const Name rate{signal.name.text + "_dot", signal.name.where};
+      const std::vector<std::string>& names = fields_.dynamics.getNames();
+      if (std::find(names.begin(), names.end(), rate.text) == names.end()) {
+        const std::string unit = makeRateUnit(signal.unit);
+        fields_.dynamics.define(rate, unit.empty() ? std::nullopt : std::make_optional(parseUnit(unit, {})),
+                                kSomeRate);
+      }
     }
   }
 

@@ -6,6 +6,7 @@
 #include "framework/experiment/model/model_spec.hpp"
 #include "framework/models/mechanism/equations/calc_system_values.hpp"
 #include "framework/models/mechanism/equations/force_sum.hpp"
+#include "framework/models/mechanism/varying_expressions.hpp"
 
 namespace twinmap::equations {
 
@@ -15,7 +16,8 @@ template <class S>
 struct ModelState {
   S time = 0.0;
   std::vector<S> coordinates, speeds, states;
-  std::vector<S> signals;  ///< of the excitation
+  std::vector<S> signals;       ///< of the excitation
+  std::vector<S> signal_rates;  ///< empty where no expression uses them
 };
 
 /// What follows from a state.
@@ -41,6 +43,12 @@ NamedValues<S> nameState(const ModelSpec& model, const SystemNames& system, cons
     names.set(model.excitation[i].name.text, state.signals[i]);
   }
   names.set("t", state.time);
+  for (std::size_t i = 0; i < state.signal_rates.size(); ++i) {
+    const std::string rate = nameRate(model.excitation[i]);
+    if (!names.contains(rate)) {
+      names.define(rate, state.signal_rates[i]);
+    }
+  }
   for (std::size_t i = 0; i < state.states.size(); ++i) {
     names.set(system.getStateNames()[i], state.states[i]);
   }

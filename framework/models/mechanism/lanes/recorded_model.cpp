@@ -28,7 +28,10 @@ NamedValues<Symbol> nameParameters(const ModelSpec& model, program::Recorder& re
 class ModelRecorder {
  public:
   ModelRecorder(const ModelSpec& model, const SystemNames& names)
-      : model_(model), names_(names), recorder_(std::make_unique<program::Recorder>()) {
+      : model_(model),
+        names_(names),
+        recorder_(std::make_unique<program::Recorder>()),
+        uses_rates_(usesSignalRates(model)) {
     values_ = nameParameters(model, *recorder_);
     system_ = equations::calcSystemValues(model.system, names, values_);
   }
@@ -63,8 +66,12 @@ class ModelRecorder {
   }
 
   void recordMotion(RecordedModel& recorded) {
-    const ModelState<Symbol> state{recorder_->time(), getCoordinates(), getSpeeds(), getFirstOrder(),
-                                   recorded.excitation.signals};
+    const ModelState<Symbol> state{recorder_->time(),
+                                   getCoordinates(),
+                                   getSpeeds(),
+                                   getFirstOrder(),
+                                   recorded.excitation.signals,
+                                   calcRates(recorded.excitation.signals)};
     const ModelMotion<Symbol> motion = calcMotion(state);
     recorded.derivatives = motion.rates;
     append(motion.accelerations, recorded.derivatives);
@@ -75,6 +82,11 @@ class ModelRecorder {
     for (const OutputSpec& output : model_.outputs) {
       recorded.outputs.push_back(equations::calcOutput(output, names_, named, system_, state, motion));
     }
+  }
+
+  /// Time derivatives of signals, where they are used.
+  Symbols calcRates(const Symbols& signals) {
+    return uses_rates_ ? program::calcTangents(signals, {{recorder_->time(), 1.0}}) : Symbols{};
   }
 
   /// What expressions of outputs may use.
@@ -88,8 +100,12 @@ class ModelRecorder {
   }
 
   ModelState<Symbol> makeQuietState(Symbols speeds) {
-    return {0.0, getCoordinates(), std::move(speeds), getFirstOrder(),
-            Symbols(model_.excitation.size(), Symbol(0.0))};
+    return {0.0,
+            getCoordinates(),
+            std::move(speeds),
+            getFirstOrder(),
+            Symbols(model_.excitation.size(), Symbol(0.0)),
+            Symbols(uses_rates_ ? model_.excitation.size() : 0, Symbol(0.0))};
   }
 
   void recordRest(RecordedModel& recorded) {
@@ -171,6 +187,7 @@ class ModelRecorder {
   std::unique_ptr<program::Recorder> recorder_;
   NamedValues<Symbol> values_;
   SystemValues<Symbol> system_;
+  const bool uses_rates_;
 };
 
 }  // namespace

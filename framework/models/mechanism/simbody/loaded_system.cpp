@@ -58,7 +58,8 @@ LoadedSystem::LoadedSystem(SimbodyContext& context, bool for_simbody)
       coordinates_(context.names.getCoordinateNames().size()),
       rates_(coordinates_.size()),
       states_(context.names.getStateNames().size()),
-      signals_(context.excitation.getSignalCount(), 0.0) {
+      signals_(context.excitation.getSignalCount(), 0.0),
+      signal_rates_(context.expressions.usesSignalRates() ? signals_.size() : 0) {
   context.expressions.setNumbers(context.numbers.getValues());
   context.excitation.update(context.numbers);
   if (for_simbody || countStates() > 0) {
@@ -98,7 +99,10 @@ void LoadedSystem::readMotion(const SimTK::State& state) {
 const SystemForces& LoadedSystem::calcForces(const SimTK::State& state, double t) {
   readMotion(state);
   context_.excitation.calcValues(t, signals_);
-  context_.expressions.setState(t, coordinates_, rates_, states_, signals_);
+  if (!signal_rates_.empty()) {
+    context_.excitation.calcRates(t, signal_rates_);
+  }
+  context_.expressions.setState(t, coordinates_, rates_, states_, signals_, signal_rates_);
   std::fill(loads_.on_bodies.begin(), loads_.on_bodies.end(), equations::Spatial<double>{});
   std::fill(loads_.on_speeds.begin(), loads_.on_speeds.end(), 0.0);
   equations::ForceSum<double, StateExpressions> sum(motions_, coordinates_, rates_, states_,

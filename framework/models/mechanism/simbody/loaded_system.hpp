@@ -60,7 +60,7 @@ class LoadedSystem {
   SimbodyContext& context_;
   BodyTree tree_;
   LoadNumbers numbers_;
-  std::vector<double> coordinates_, rates_, states_, signals_;
+  std::vector<double> coordinates_, rates_, states_, signals_, signal_rates_;
   std::vector<equations::BodyMotion<double>> motions_;  ///< ground first; without columns and bias
   equations::Loads<double> loads_;
   SystemForces forces_;

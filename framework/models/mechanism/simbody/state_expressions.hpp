@@ -8,8 +8,9 @@
 namespace twinmap {
 
 /// The expressions that vary, of force elements, states and outputs: of constants, parameters, coordinates,
-/// speeds (<coordinate>_dot), states of first order, excitation signals, the time t, and named expressions;
-/// those of outputs of accelerations too (<coordinate>_ddot). Parsed once, used for all parameter sets.
+/// speeds (<coordinate>_dot), states of first order, excitation signals and their rates, the time t, and
+/// named expressions; those of outputs of accelerations too (<coordinate>_ddot). Parsed once, used for all
+/// parameter sets.
 class StateExpressions {
  public:
   /// Throws ExperimentError for names that are taken and wrong expressions. `model` must
@@ -21,7 +22,9 @@ class StateExpressions {
 
   /// In the order of the file; `rates`: time derivatives of the coordinates.
   void setState(double t, const std::vector<double>& coordinates, const std::vector<double>& rates,
-                const std::vector<double>& states, const std::vector<double>& signals);
+                const std::vector<double>& states, const std::vector<double>& signals,
+                const std::vector<double>& signal_rates);
+  bool usesSignalRates() const { return !signal_rates_.empty(); }
   /// Of the coordinates, for expressions of outputs.
   void setAccelerations(const std::vector<double>& accelerations);
 
@@ -31,12 +34,13 @@ class StateExpressions {
  private:
   void defineNames(const ModelSpec& model, const NamedValues<double>& numbers);
   void defineStates(const ModelSpec& model);
-  void bindOutputs(const ModelSpec& model);
+  void defineAccelerations(const ModelSpec& model);
   void setFrom(int first, const std::vector<double>& values);
 
   NamedValues<double> values_;
   int first_coordinate_ = 0, first_speed_ = 0, first_signal_ = 0, time_ = 0, first_state_ = 0;
   int first_named_ = 0, first_acceleration_ = 0;
+  std::vector<int> signal_rates_;  ///< places
   std::vector<BoundExpression> named_;
   std::unordered_map<const Expression*, BoundExpression> bound_;
 };

@@ -319,6 +319,42 @@ TEST(Memory, IsPartOfTheModes) {
   }
 }
 
+TEST(Outputs, OfSignalsRatesAreTheirTimeDerivatives) {
+  ModelSpec model = makeModel(1.0);
+  addSlider(model, "q", "1");
+  SignalSpec sweep, tones, table;
+  sweep.name = name("sweep");
+  sweep.chirps = {{ex("2"), ex("1"), ex("5"), ex("0.1"), ex("0.9"), SweepKind::kLogarithmic},
+                  {ex("1"), ex("3"), ex("2"), ex("0"), ex("1"), SweepKind::kLinear}};
+  tones.name = name("tones");
+  tones.multisines.emplace_back();
+  tones.multisines[0].amplitude = ex("0.5");
+  tones.multisines[0].frequencies = {ex("1"), ex("3")};
+  table.name = name("table");
+  table.tables = {{{0.0, 0.2, 0.5, 0.7, 1.0}, {0.0, 1.0, -1.0, 0.5, 2.0}, TableInterpolation::kCubic},
+                  {{0.0, 0.45, 1.0}, {0.0, 1.0, -1.0}, TableInterpolation::kLinear}};
+  model.excitation = {sweep, tones, table};
+  model.system.elements.get<ForceLaw>().push_back(
+      law("q", "tones_dot"));  // so that the speed is tones - tones(0)
+  model.outputs = {expressionOutput("sweep"),
+                   expressionOutput("tones"),
+                   expressionOutput("table"),
+                   expressionOutput("sweep_dot"),
+                   expressionOutput("tones_dot"),
+                   expressionOutput("table_dot"),
+                   speedOutput("q")};
+  const double h = 1e-4;
+  VectorXd times(9);
+  times << 0.05, 0.05 + h, 0.05 + 2 * h, 0.4, 0.4 + h, 0.4 + 2 * h, 0.8, 0.8 + h, 0.8 + 2 * h;
+  model.simulation.engine = Engine::kLanes;  // an error unless both engines agree
+  const MatrixXd response = runModel(model, times);
+  for (int i = 0; i < 9; i += 3) {
+    const VectorXd slopes = (response.row(i + 2) - response.row(i)).head(3) / (2.0 * h);
+    EXPECT_LT((response.row(i + 1).segment(3, 3).transpose() - slopes).cwiseAbs().maxCoeff(), 1e-3);
+    EXPECT_NEAR(response(i, 6), response(i, 1) - 0.5 * std::sin(-EIGEN_PI), 1e-9);
+  }
+}
+
 TEST(Outputs, OfSensorsOnASwingingArmAreInItsFrame) {
   // a pendulum of length 0.4 m at angle q: along the arm it reads g cos q + l q'^2, across it l q'' + g sin q
   ModelSpec model = makeModel(1.0);
