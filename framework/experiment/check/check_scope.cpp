@@ -126,7 +126,7 @@ double CheckScope::check(const Expression& expression, const std::string& unit) 
   requireLikeTerms(expression);
   if (!std::isfinite(value) && (used.empty() || !changes_)) {
     throw ExperimentError(expression.where, expression.text,
-                          "is not a finite number at the centre of the parameter box");
+                          "is not a finite number at the centre of the bounds");
   }
   if (unit.empty() || used.empty() || !hasUnit(expression)) {
     return value;

@@ -24,7 +24,7 @@ class SimbodyModel {
  public:
   virtual ~SimbodyModel() = default;
 
-  // At the centre of the parameter box what cannot exist is wrong input: these two throw ExperimentError,
+  // At the centre of the bounds what cannot exist is wrong input: these two throw ExperimentError,
   // with the place of the number that is the cause where one is.
 
   /// The equilibrium (coordinates, then states of first order) that all samples start from; empty if the spec
@@ -45,7 +45,7 @@ class SimbodyModel {
                                 Eigen::Ref<Eigen::VectorXd> response, StepSequence& sequence) = 0;
 };
 
-/// Builds everything once at the centre of the parameter box, so that all expressions are compiled and all
+/// Builds everything once at the centre of the bounds, so that all expressions are compiled and all
 /// names are known. `model` must outlive what is returned. Throws ExperimentError for unknown or doubled
 /// names, expressions that do not compile, and a system that cannot exist there; std::runtime_error, with
 /// what to install, where the module or Simbody is missing.
