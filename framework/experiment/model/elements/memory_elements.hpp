@@ -72,10 +72,9 @@ struct EnumNames<FrictionModel> {
 };
 
 /// Friction on a coordinate, or between two, with g(v) the Coulomb or Stribeck level at the sliding speed v.
-///   lugre (Canudas de Wit et al., IEEE Trans. Automatic Control 40, 1995): dz/dt = v - s0 |v| z / g(v),
-///   force
-///     -(s0 z + s1 dz/dt + viscous v), s0 and s1 the bristle's stiffness and damping;
-///   regularised: force -(g(v) tanh(v / onset_speed) + viscous v), which creeps under any load.
+/// - lugre (IEEE Trans. Automatic Control 40, 1995, p. 419): dz/dt = v - s0 |v| z / g(v), force
+///   -(s0 z + s1 dz/dt + viscous v), with stiffness s0 and damping s1 of the bristle;
+/// - regularised: force -(g(v) tanh(v / onset_speed) + viscous v), which creeps under any load.
 template <class S>
 struct Friction {
   static constexpr ElementKind kKind{"friction", "friction", "friction on coordinates"};

@@ -24,7 +24,7 @@ class StateExpressions {
   void setState(double t, const std::vector<double>& coordinates, const std::vector<double>& rates,
                 const std::vector<double>& states, const std::vector<double>& signals,
                 const std::vector<double>& signal_rates);
-  bool usesSignalRates() const { return !signal_rates_.empty(); }
+  bool hasSignalRates() const { return !signal_rates_.empty(); }
   /// Of the coordinates, for expressions of outputs.
   void setAccelerations(const std::vector<double>& accelerations);
 
