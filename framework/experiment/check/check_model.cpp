@@ -56,6 +56,11 @@ std::vector<Coordinate> collectCoordinates(const SystemSpec& system) {
   return coordinates;
 }
 
+/// "" for "".
+std::string makeRateUnit(const std::string& unit) {
+  return unit.empty() ? "" : unit == "-" ? "1/s" : "(" + unit + ")/s";
+}
+
 /// "slider, pin, screw and cylinder"
 std::string listJointsWithAxis() {
   std::vector<std::string> names;
@@ -94,6 +99,14 @@ class FieldCheck {
       declare(field);
     }
   }
+  /// States, and named expressions, which are checked where they are declared.
+  void optionalMap(const char*, const std::vector<StateSpec>& states, const char*) {
+    for (const StateSpec& state : states) {
+      constants.check(state.initial, state.unit);
+      dynamics.check(state.derivative, makeRateUnit(state.unit));
+    }
+  }
+  void optionalMap(const char*, const std::vector<NamedExpression>&, const char*) {}
   template <class... Choices>
   void oneOf(const char*, Choices... choices) {
     (std::apply([&](const auto&... rule) { check(std::as_const(choices.value), rule...); }, choices.rules),
@@ -204,6 +217,7 @@ class ModelCheck {
     declareDynamics();
     checkJoints();
     fields_.checkAll(model_.system);
+    checkPairs();
     checkExcitation();
     checkInitial();
     checkOutputs();
@@ -230,7 +244,8 @@ class ModelCheck {
     }
   }
 
-  /// Force laws also know coordinates, speeds, signals and time. The reference values are arbitrary.
+  /// Force laws also know coordinates, speeds, signals, time, states and named expressions. The reference
+  /// values are arbitrary.
   void declareDynamics() {
     constexpr double kSomeCoordinate = 0.37, kSomeSpeed = 0.53, kSomeSignal = 0.71;
     fields_.dynamics = fields_.constants;
@@ -243,6 +258,54 @@ class ModelCheck {
       fields_.dynamics.define(signal.name, CheckScope::readUnit(signal.unit, signal.name.where), kSomeSignal);
     }
     fields_.dynamics.defineTime();
+    declareSignalRates();
+    declareStates();
+    for (const NamedExpression& named : model_.system.expressions) {
+      fields_.dynamics.define(named.name, named.value);
+    }
+  }
+
+  /// <signal>_dot, unless something else has the name.
+  void declareSignalRates() {
+    constexpr double kSomeRate = 0.83;
+    for (const SignalSpec& signal : model_.excitation) {
+      const Name rate{signal.name.text + "_dot", signal.name.where};
+      const std::vector<std::string>& names = fields_.dynamics.getNames();
+      if (std::find(names.begin(), names.end(), rate.text) == names.end()) {
+        const std::string unit = makeRateUnit(signal.unit);
+        fields_.dynamics.define(rate, unit.empty() ? std::nullopt : std::make_optional(parseUnit(unit, {})),
+                                kSomeRate);
+      }
+    }
+  }
+
+  void declareStates() {
+    constexpr double kSomeState = 0.47;
+    for (const StateSpec& state : model_.system.states) {
+      fields_.dynamics.define(state.name, CheckScope::readUnit(state.unit, state.name.where), kSomeState);
+    }
+    model_.system.elements.forEachList([&](const auto& list) {
+      for (const auto& element : list) {
+        forEachOwnState(element, [&](const auto& part, const Name& coordinate) {
+          if (part.state) {
+            const std::string unit = part.kInUnitOfCoordinate ? findUnit(coordinate) : "1";
+            fields_.dynamics.define(*part.state, parseUnit(unit, {}), kSomeState);
+          }
+        });
+      }
+    });
+  }
+
+  /// What slides against each other must move alike.
+  void checkPairs() const {
+    for (const auto& friction : model_.system.elements.get<Friction>()) {
+      if (friction.against && findUnit(*friction.against) != findUnit(friction.coordinate)) {
+        throw ExperimentError(friction.against->where, friction.against->text,
+                              "is in " + findUnit(*friction.against) + ", but '" + friction.coordinate.text +
+                                  "' in " + findUnit(friction.coordinate) +
+                                  ": friction acts between two lengths or two angles");
+      }
+    }
   }
 
   void checkJoints() const {
@@ -287,7 +350,15 @@ class ModelCheck {
     }
   }
 
+  /// Outputs also know accelerations.
   void checkOutputs() {
+    constexpr double kSomeAcceleration = 0.61;
+    const bool any = std::any_of(model_.outputs.begin(), model_.outputs.end(),
+                                 [](const OutputSpec& output) { return !output.expression.text.empty(); });
+    for (const Coordinate& coordinate : any ? fields_.coordinates : std::vector<Coordinate>{}) {
+      fields_.dynamics.define({coordinate.name.text + "_ddot", coordinate.name.where},
+                              parseUnit(coordinate.unit + "/s2", {}), kSomeAcceleration);
+    }
     for (const OutputSpec& output : model_.outputs) {
       fields_.own_unit = findOutputUnit(output, model_.system);
       fields_.checkAll(output);
@@ -323,7 +394,7 @@ class ModelCheck {
                               elsewhere ? "must give the variable of the model that it is"
                                         : "is a variable, which only an FMU or a program has");
       }
-      if (!elsewhere && !output.unit.empty()) {
+      if (!elsewhere && output.expression.text.empty() && !output.unit.empty()) {
         throw ExperimentError(output.name.where, output.name.text,
                               "has the unit of what it measures; state none");
       }

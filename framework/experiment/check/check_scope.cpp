@@ -39,9 +39,56 @@ bool hasFreeNumber(const std::string& text) {
   return false;
 }
 
+/// Whether both operands must be of one unit.
+bool needsLikeOperands(program::Operation operation) {
+  using program::Operation;
+  switch (operation) {
+    case Operation::kAdd:
+    case Operation::kSubtract:
+    case Operation::kMin:
+    case Operation::kMax:
+    case Operation::kLess:
+    case Operation::kLessOrEqual:
+    case Operation::kEqual:
+    case Operation::kNotEqual:
+      return true;
+    default:
+      return false;
+  }
+}
+
+/// A part of an expression, in two sets of base units. A number may carry any unit.
+struct ScaledTerm {
+  double value, scaled;
+  bool has_number;
+};
+
+bool areAlike(const ScaledTerm& a, const ScaledTerm& b) {
+  constexpr double kTolerance = 1e-9;  // as in CheckScope::check
+  const double first = a.scaled * b.value, second = b.scaled * a.value;
+  return a.has_number || b.has_number || !std::isfinite(first) || !std::isfinite(second) ||
+         std::abs(first - second) <= kTolerance * std::abs(first);
+}
+
 }  // namespace
 
 void CheckScope::define(const Name& name, const std::optional<Dimension>& dimension, double reference_value) {
+  std::optional<double> scaled;
+  if (dimension) {
+    scaled = calcUnitChange(*dimension) * reference_value;
+  }
+  add(name, {reference_value, scaled});
+}
+
+void CheckScope::define(const Name& name, const Expression& expression) {
+  Symbol symbol{check(expression, ""), {}};
+  if (hasUnit(expression)) {
+    symbol.scaled_value = calcScaled(expression, true);
+  }
+  add(name, symbol);
+}
+
+void CheckScope::add(const Name& name, const Symbol& symbol) {
   requireIdentifier(name);
   if (isReservedName(name.text)) {
     throw ExperimentError(name.where, name.text, "is reserved in expressions; choose another name");
@@ -49,18 +96,18 @@ void CheckScope::define(const Name& name, const std::optional<Dimension>& dimens
   if (std::find(names_.begin(), names_.end(), name.text) != names_.end()) {
     throw ExperimentError(
         name.where, name.text,
-        "is taken; parameters, nuisance, inputs, constants, coordinates, speeds (<coordinate>_dot) and "
-        "excitation signals share one name space");
+        "is taken; parameters, nuisance, inputs, constants, coordinates, speeds (<coordinate>_dot), states, "
+        "expressions and excitation signals share one name space");
   }
   names_.push_back(name.text);
-  symbols_.push_back({dimension, reference_value});
+  symbols_.push_back(symbol);
 }
 
 void CheckScope::defineTime() {
   constexpr double kSomeTime = 0.29;
   changes_ = true;
   names_.emplace_back("t");
-  symbols_.push_back({Dimension{{"s", 1}}, kSomeTime});
+  symbols_.push_back({kSomeTime, calcUnitChange({{"s", 1}}) * kSomeTime});
 }
 
 std::optional<Dimension> CheckScope::readUnit(const std::string& unit, const SourceLocation& where) {
@@ -76,11 +123,12 @@ double CheckScope::check(const Expression& expression, const std::string& unit) 
   }
   const double value = calcScaled(expression, false);
   const std::vector<std::string> used = getUsedNames(expression);
+  requireLikeTerms(expression);
   if (!std::isfinite(value) && (used.empty() || !changes_)) {
     throw ExperimentError(expression.where, expression.text,
                           "is not a finite number at the centre of the bounds");
   }
-  if (unit.empty() || used.empty() || !isUnitStated(used) || hasFreeNumber(expression.text)) {
+  if (unit.empty() || used.empty() || !hasUnit(expression)) {
     return value;
   }
   const double change = calcUnitChange(parseUnit(unit, expression.where));
@@ -100,18 +148,54 @@ void CheckScope::check(const Expression3& expressions, const std::string& unit) 
   }
 }
 
+bool CheckScope::hasUnit(const Expression& expression) const {
+  return isUnitStated(getUsedNames(expression)) && !hasFreeNumber(expression.text);
+}
+
+void CheckScope::requireLikeTerms(const Expression& expression) const {
+  const ExpressionTree tree = parseExpression(expression);
+  std::vector<ScaledTerm> terms;
+  for (const ExpressionTree::Node& node : tree.nodes) {
+    if (node.operation == program::Operation::kLiteral) {
+      terms.push_back({node.literal, node.literal, true});
+    } else if (node.operation == program::Operation::kParameter) {
+      const auto found = std::find(names_.begin(), names_.end(), tree.names[node.operands[0]]);
+      const Symbol& symbol = symbols_[found - names_.begin()];
+      terms.push_back({symbol.reference_value, symbol.scaled_value.value_or(symbol.reference_value),
+                       !symbol.scaled_value.has_value()});
+    } else {
+      const auto operand = [&](int k) {
+        return node.operands[k] < 0 ? ScaledTerm{0.0, 0.0, false} : terms[node.operands[k]];
+      };
+      const ScaledTerm a = operand(0), b = operand(1), c = operand(2);
+      const bool alike = needsLikeOperands(node.operation);
+      if (alike && !areAlike(a, b)) {
+        throw ExperimentError(expression.where, expression.text,
+                              "adds or compares quantities of different units, by the units stated");
+      }
+      // a number beside a quantity has its unit; an exponent has none
+      const bool has_number = alike ? a.has_number && b.has_number
+                              : node.operation == program::Operation::kPow
+                                  ? a.has_number
+                                  : a.has_number || b.has_number || c.has_number;
+      terms.push_back({program::apply(node.operation, a.value, b.value, c.value),
+                       program::apply(node.operation, a.scaled, b.scaled, c.scaled), has_number});
+    }
+  }
+}
+
 bool CheckScope::isUnitStated(const std::vector<std::string>& names) const {
   return std::all_of(names.begin(), names.end(), [this](const std::string& name) {
     const auto found = std::find(names_.begin(), names_.end(), name);
-    return found != names_.end() && symbols_[found - names_.begin()].dimension.has_value();
+    return found != names_.end() && symbols_[found - names_.begin()].scaled_value.has_value();
   });
 }
 
 double CheckScope::calcScaled(const Expression& expression, bool scaled) const {
   NamedValues<double> values;
   for (std::size_t i = 0; i < names_.size(); ++i) {
-    const double change = scaled && symbols_[i].dimension ? calcUnitChange(*symbols_[i].dimension) : 1.0;
-    values.define(names_[i], change * symbols_[i].reference_value);
+    const double value = symbols_[i].reference_value;
+    values.define(names_[i], scaled ? symbols_[i].scaled_value.value_or(value) : value);
   }
   return values.calc(expression);
 }

@@ -16,6 +16,10 @@ class CheckScope {
   /// Adds a name. Throws ExperimentError if it is taken, reserved, or a function of the expressions.
   void define(const Name& name, const std::optional<Dimension>& dimension, double reference_value);
 
+  /// Checks an expression and adds it as a name of its own, whose unit is what it comes out in; none where
+  /// check() could not know.
+  void define(const Name& name, const Expression& expression);
+
   /// Adds the time t in s, which only force laws know.
   void defineTime();
 
@@ -24,8 +28,8 @@ class CheckScope {
 
   /// Compiles `expression` and checks that it comes out in `unit`: a physical expression scales with the
   /// units of its names (dimensional homogeneity). Not checked where `unit` is "", where a name has no unit,
-  /// and where a number may carry one (all but exponents). Returns the value at the reference point. Throws
-  /// ExperimentError.
+  /// and where a number may carry one (all but exponents). What is added or compared within must have one
+  /// unit, whatever numbers stand beside. Returns the value at the reference point. Throws ExperimentError.
   double check(const Expression& expression, const std::string& unit) const;
   void check(const Expression3& expressions, const std::string& unit) const;
 
@@ -33,9 +37,12 @@ class CheckScope {
 
  private:
   struct Symbol {
-    std::optional<Dimension> dimension;
     double reference_value;
+    std::optional<double> scaled_value;  ///< in other base units; none where its unit is not known
   };
+  void add(const Name& name, const Symbol& symbol);
+  bool hasUnit(const Expression& expression) const;
+  void requireLikeTerms(const Expression& expression) const;
   bool isUnitStated(const std::vector<std::string>& names) const;
   double calcScaled(const Expression& expression, bool scaled) const;
 

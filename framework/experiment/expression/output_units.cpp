@@ -8,11 +8,11 @@ const char* getOutputUnit(const OutputSpec& output, CoordinateKind kind) {
   if (output.coordinate || output.speed) {
     return output.coordinate ? getUnit(kind) : getSpeedUnit(kind);
   }
-  return output.position ? "m" : output.velocity ? "m/s" : "m/s2";
+  return output.position ? "m" : output.velocity ? "m/s" : output.angular_velocity ? "rad/s" : "m/s2";
 }
 
 std::string findOutputUnit(const OutputSpec& output, const SystemSpec& system) {
-  if (output.variable) {
+  if (output.variable || !output.expression.text.empty()) {
     return output.unit;
   }
   if (!output.coordinate && !output.speed) {

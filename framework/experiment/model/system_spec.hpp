@@ -4,12 +4,16 @@
 
 #include "framework/experiment/model/body_spec.hpp"
 #include "framework/experiment/model/elements/force_elements.hpp"
+#include "framework/experiment/model/initial_spec.hpp"
+#include "framework/experiment/model/state_spec.hpp"
 
 namespace twinmap {
 
 struct SystemSpec {
   Expression3 gravity;  ///< m/s2, in the ground frame; zero by default
   std::vector<BodySpec> bodies;
+  std::vector<StateSpec> states;             ///< of first order
+  std::vector<NamedExpression> expressions;  ///< each may use those before it
   ForceElements<Expression> elements;
 
   // compiled once (experiment_spec.cpp)
@@ -29,6 +33,9 @@ template <class Fields>
 void describe(Fields& f, SystemSpec& s) {
   f.optional("gravity", s.gravity, "in the ground frame", Unit{"m/s2"});
   f.requiredMap("bodies", s.bodies, "each with its joint to a parent declared before");
+  f.optionalMap("states", s.states, "states of first order: currents, temperatures, filters");
+  f.optionalMap("expressions", s.expressions,
+                "named once, for all expressions that may use coordinates and states");
   describeElements(f, s.elements);
 }
 

@@ -64,14 +64,18 @@ class Comparison {
     const std::vector<double> event_times(events.begin(), events.end());
     const double begin = findPhase(event_times, time);
     const SimbodyMotion expected = simbody_.calcMotion(at, time, begin);
-    const Eigen::Index n = at.coordinates.size();
-    ProgramInputs inputs{point_, VectorXd(2 * n), VectorXd(model_.excitation.input_count), time};
-    inputs.states << at.coordinates, expected.speeds;
+    const Eigen::Index n = at.coordinates.size(), m = at.states.size();
+    ProgramInputs inputs{point_, VectorXd(2 * n + m), VectorXd(model_.excitation.input_count), time};
+    inputs.states << at.coordinates, expected.speeds, at.states;
     fillPhaseInputs(model_.excitation, event_times, begin, inputs.phase_inputs.data());
     const double size = expected.speeds.squaredNorm();
-    const std::string difference =
-        compare("acceleration of", context_.names.getCoordinateNames(),
-                derivative_.calc(inputs).segment(n, n), expected.accelerations, size);
+    const VectorXd derivatives = derivative_.calc(inputs);
+    std::string difference = compare("acceleration of", context_.names.getCoordinateNames(),
+                                     derivatives.segment(n, n), expected.accelerations, size);
+    if (difference.empty()) {
+      difference = compare("rate of", context_.names.getStateNames(), derivatives.segment(2 * n, m),
+                           expected.state_rates, size);
+    }
     return !difference.empty()
                ? difference
                : compare("output", getOutputNames(), output_.calc(inputs).head(expected.outputs.size()),
@@ -107,10 +111,13 @@ std::string compareAtPoint(ModelContext& context, SimbodyModel& simbody, const L
                            const VectorXd& point, Draws& draws) {
   context.numbers.update(point);
   Comparison comparison(context, simbody, model, point);
-  const VectorXd start = calcInitialValues(context).coordinates;
+  const InitialState initial = calcInitialValues(context);
+  const VectorXd& start = initial.coordinates;
   const VectorXd half = VectorXd::Constant(start.size(), 0.5), two = 4.0 * half;  // m or rad; and a second
+  const VectorXd around = VectorXd::Constant(initial.states.size(), 0.5);
   for (int i = 0; i < kStates; ++i) {
-    const InitialState at{draws.draw(start - half, start + half), draws.draw(-two, two)};
+    const VectorXd coordinates = draws.draw(start - half, start + half), speeds = draws.draw(-two, two);
+    const InitialState at{coordinates, speeds, draws.draw(initial.states - around, initial.states + around)};
     const std::string difference =
         comparison.compareAt(at, draws.draw(0.0, std::max(context.model.simulation.duration, 1e-3)));
     if (!difference.empty()) {

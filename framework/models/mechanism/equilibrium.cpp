@@ -61,8 +61,7 @@ class EquilibriumSolver {
       return q;
     }
     char text[120];
-    std::snprintf(text, sizeof text,
-                  "static equilibrium not found: largest acceleration left %.3g (m/s2 or rad/s2)",
+    std::snprintf(text, sizeof text, "static equilibrium not found: largest acceleration or rate left %.3g",
                   residual.lpNorm<Eigen::Infinity>());
     throw SimulationFailure(text);
   }
@@ -72,6 +71,22 @@ class EquilibriumSolver {
 };
 
 }  // namespace
+
+void holdIndifferentStates(const Eigen::VectorXd& rates, Eigen::Index coordinates,
+                           Eigen::MatrixXd& jacobian) {
+  for (Eigen::Index i = coordinates; i < rates.size(); ++i) {
+    if (rates[i] == 0.0 && (jacobian.row(i).array() == 0.0).all()) {
+      jacobian.col(i).setZero();
+    }
+  }
+}
+
+Eigen::VectorXd insertSpeeds(const Eigen::VectorXd& equilibrium, const Eigen::VectorXd& speeds) {
+  const Eigen::Index n = speeds.size(), m = equilibrium.size() - n;
+  Eigen::VectorXd all(2 * n + m);
+  all << equilibrium.head(n), speeds, equilibrium.tail(m);
+  return all;
+}
 
 Eigen::VectorXd solveEquilibrium(RestAccelerations& system, const Eigen::VectorXd& start) {
   return start.size() == 0 ? start : EquilibriumSolver(system).solve(start);

@@ -7,18 +7,27 @@ namespace twinmap {
 inline constexpr const char* kSingularMassMatrix =
     "the mass matrix is singular: a body without inertia can move freely";
 
-/// The accelerations of a system at rest, at t = 0 and without excitation, and their derivatives with respect
-/// to the coordinates. Throw SimulationFailure if the mass matrix is singular.
+/// The accelerations of a system at rest, at t = 0 and without excitation, then the rates of its states of
+/// first order, and their derivatives with respect to [coordinates; states]. Throw SimulationFailure if the
+/// mass matrix is singular.
 class RestAccelerations {
  public:
   virtual ~RestAccelerations() = default;
-  virtual Eigen::VectorXd calc(const Eigen::VectorXd& coordinates) = 0;
-  virtual Eigen::MatrixXd calcJacobian(const Eigen::VectorXd& coordinates) = 0;
+  virtual Eigen::VectorXd calc(const Eigen::VectorXd& at) = 0;
+  virtual Eigen::MatrixXd calcJacobian(const Eigen::VectorXd& at) = 0;
 };
 
-/// The coordinates at which all accelerations vanish: damped Newton from `start`. Directions that no force
-/// depends on keep their start. Throws SimulationFailure, with the residual, if it does not converge. Usually
-/// 4 to 6 iterations.
+/// Where a state of first order has no rate whatever the others are, as friction's at rest, it stays where it
+/// is: its column of `jacobian` becomes zero. `rates`: accelerations of `coordinates` coordinates, then those
+/// of the states.
+void holdIndifferentStates(const Eigen::VectorXd& rates, Eigen::Index coordinates, Eigen::MatrixXd& jacobian);
+
+/// [coordinates; speeds; states] from [coordinates; states].
+Eigen::VectorXd insertSpeeds(const Eigen::VectorXd& equilibrium, const Eigen::VectorXd& speeds);
+
+/// The coordinates, then the states of first order, at which all accelerations and rates vanish: damped
+/// Newton from `start`. Directions that no force depends on keep their start, as do indifferent states.
+/// Throws SimulationFailure, with the residual, if it does not converge. Usually 4 to 6 iterations.
 Eigen::VectorXd solveEquilibrium(RestAccelerations& system, const Eigen::VectorXd& start);
 
 }  // namespace twinmap

@@ -16,7 +16,9 @@ struct FiniteNumbers {
 
 LoadNumbers calcLoadNumbers(const SystemSpec& spec, const SystemNames& names, ModelNumbers& numbers) {
   const auto [x, y, z] = numbers.calc3(spec.gravity, {"system", "gravity", "m/s2"});
-  return {{x, y, z}, equations::calcElements<double>(spec.elements, names, FiniteNumbers{numbers})};
+  return {{x, y, z},
+          equations::calcElements<double>(spec.elements, names, FiniteNumbers{numbers},
+                                          static_cast<int>(spec.states.size()))};
 }
 
 }  // namespace twinmap

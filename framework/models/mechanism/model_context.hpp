@@ -18,9 +18,16 @@ struct ModelContext {
   Excitation excitation;
 };
 
-/// Coordinates and their time derivatives in the order of SystemNames.
+/// Coordinates, their time derivatives, and states of first order, in the order of SystemNames.
 struct InitialState {
-  Eigen::VectorXd coordinates, speeds;
+  Eigen::VectorXd coordinates, speeds, states;
+
+  /// [coordinates; states], as an equilibrium has them.
+  Eigen::VectorXd getEquilibrium() const {
+    Eigen::VectorXd both(coordinates.size() + states.size());
+    both << coordinates, states;
+    return both;
+  }
 };
 
 /// Values of the initial condition at the current parameter set, without any equilibrium. Throws

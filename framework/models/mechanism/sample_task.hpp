@@ -9,7 +9,7 @@ namespace twinmap {
 /// What every sample of a simulator is simulated with, besides its model. What it refers to must outlive it.
 struct SampleTask {
   const ResponseLayout& layout;
-  /// Coordinates of the equilibrium that all samples start from, or empty.
+  /// The equilibrium (coordinates, then states of first order) that all samples start from, or empty.
   const Eigen::VectorXd& box_center;
 };
 

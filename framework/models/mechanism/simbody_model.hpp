@@ -13,6 +13,7 @@ namespace twinmap {
 /// What follows from a state by Simbody, in the order of SystemNames.
 struct SimbodyMotion {
   Eigen::VectorXd speeds, accelerations;  ///< Simbody's u and u'
+  Eigen::VectorXd state_rates;            ///< of the states of first order
   Eigen::VectorXd outputs;
 };
 
@@ -26,7 +27,8 @@ class SimbodyModel {
   // At the centre of the bounds what cannot exist is wrong input: these two throw ExperimentError,
   // with the place of the number that is the cause where one is.
 
-  /// Coordinates of the equilibrium that all samples start from; empty if the spec does not ask for it.
+  /// The equilibrium (coordinates, then states of first order) that all samples start from; empty if the spec
+  /// does not ask for it.
   virtual Eigen::VectorXd solveBoxCenter() = 0;
   /// The initial state exists and its accelerations are finite. `box_center`: of solveBoxCenter().
   virtual void checkStart(const Eigen::VectorXd& box_center) = 0;

@@ -47,6 +47,7 @@ SystemNames::SystemNames(const SystemSpec& system) {
   for (const BodySpec& body : system.bodies) {
     addBody(body);
   }
+  addStates(system);
 }
 
 void SystemNames::addBody(const BodySpec& body) {
@@ -62,6 +63,21 @@ void SystemNames::addCoordinates(const JointSpec& joint, int body) {
     addOnce(coordinate_names_, joint.coordinates[i]);
     coordinates_.push_back({body, static_cast<int>(i), traits[i]});
   }
+}
+
+void SystemNames::addStates(const SystemSpec& system) {
+  for (const StateSpec& state : system.states) {
+    addOnce(state_names_, state.name);
+  }
+  system.elements.forEachList([this](const auto& list) {
+    for (const auto& element : list) {
+      forEachOwnState(element, [this](const auto& part, const Name& coordinate) {
+        const std::string unnamed =
+            fmt::format("state {} (on '{}')", state_names_.size() + 1, coordinate.text);
+        addOnce(state_names_, part.state.value_or(Name{unnamed, coordinate.where}));
+      });
+    }
+  });
 }
 
 int SystemNames::findBody(const Name& name) const {

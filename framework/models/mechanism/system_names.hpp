@@ -15,8 +15,8 @@ struct CoordinatePlace {
   JointCoordinate traits;
 };
 
-/// The bodies and coordinates of a system by name. All lookups throw ExperimentError, with the nearest name,
-/// for a name that does not exist.
+/// The bodies, coordinates and states of first order of a system by name. All lookups throw ExperimentError,
+/// with the nearest name, for a name that does not exist.
 class SystemNames {
  public:
   /// Throws ExperimentError for a name that is declared twice, a parent that is not declared before, and a
@@ -32,13 +32,17 @@ class SystemNames {
 
   const std::vector<std::string>& getCoordinateNames() const { return coordinate_names_; }
   const std::vector<CoordinatePlace>& getCoordinates() const { return coordinates_; }
+  /// The system's states, then those of its elements in the order of forEachType; those that the file does
+  /// not name by what no expression can use: "state 2 (on 'x')".
+  const std::vector<std::string>& getStateNames() const { return state_names_; }
 
  private:
   void addBody(const BodySpec& body);
+  void addStates(const SystemSpec& system);
   void addCoordinates(const JointSpec& joint, int body);
 
   std::vector<std::string> body_names_{"ground"};
-  std::vector<std::string> coordinate_names_;
+  std::vector<std::string> coordinate_names_, state_names_;
   std::vector<CoordinatePlace> coordinates_;
 };
 

@@ -49,7 +49,10 @@ void checkRange(const BodySpec& body, const std::string& owner, double mass, con
   }
 }
 
-const char* findUnit(const OutputSpec& output, const SystemNames& names) {
+std::string findUnit(const OutputSpec& output, const SystemNames& names) {
+  if (!output.expression.text.empty()) {
+    return output.unit;
+  }
   const std::optional<Name>& coordinate = output.coordinate ? output.coordinate : output.speed;
   return getOutputUnit(output, coordinate
                                    ? names.getCoordinates()[names.findCoordinate(*coordinate)].traits.kind
@@ -58,18 +61,21 @@ const char* findUnit(const OutputSpec& output, const SystemNames& names) {
 
 void checkOne(const OutputSpec& output) {
   const int count = output.coordinate.has_value() + output.speed.has_value() + output.position.has_value() +
-                    output.velocity.has_value() + output.acceleration.has_value();
+                    output.velocity.has_value() + output.acceleration.has_value() +
+                    output.specific_force.has_value() + output.angular_velocity.has_value() +
+                    (output.expression.text.empty() ? 0 : 1);
   if (count != 1) {
     throw ExperimentError(output.name.where, output.name.text,
-                          "must measure one of coordinate, speed, position, velocity, acceleration");
+                          "must measure one of coordinate, speed, position, velocity, acceleration, "
+                          "specific_force, angular_velocity, expression");
   }
 }
 
-Vector3d calcDirection(const StationOutputSpec& spec, ModelNumbers& numbers, const std::string& owner) {
-  const Vector3d direction = calcVector(numbers, spec.direction, {owner, "direction", ""});
+Vector3d calcDirection(const Expression3& given, ModelNumbers& numbers, const std::string& owner) {
+  const Vector3d direction = calcVector(numbers, given, {owner, "direction", ""});
   const double length = std::sqrt(direction.squaredNorm());
   if (length == 0.0) {
-    throw SimulationFailure(owner + ": direction must not be zero", spec.direction[0].where);
+    throw SimulationFailure(owner + ": direction must not be zero", given[0].where);
   }
   return direction / length;
 }
@@ -79,7 +85,16 @@ OutputNumbers calcQuantity(const OutputSpec& spec, const SystemNames& names, Mod
   if (spec.coordinate || spec.speed) {
     const Name& name = spec.coordinate ? *spec.coordinate : *spec.speed;
     const OutputKind kind = spec.coordinate ? OutputKind::kCoordinate : OutputKind::kSpeed;
-    return {kind, names.findCoordinate(name), {0, Vector3d::Zero()}, Vector3d::Zero(), {}};
+    return {kind, names.findCoordinate(name), {0, Vector3d::Zero()}, Vector3d::Zero(), nullptr, {}};
+  }
+  if (!spec.expression.text.empty()) {
+    return {OutputKind::kExpression, -1, {0, Vector3d::Zero()}, Vector3d::Zero(), &spec.expression, {}};
+  }
+  if (spec.specific_force || spec.angular_velocity) {
+    const BodySensorSpec& at = spec.specific_force ? *spec.specific_force : *spec.angular_velocity;
+    const OutputKind kind = spec.specific_force ? OutputKind::kSpecificForce : OutputKind::kAngularVelocity;
+    const BodyPoint point = calcBodyPoint(at.station, names, numbers, owner);
+    return {kind, -1, point, calcDirection(at.direction, numbers, owner), nullptr, {}};
   }
   const StationOutputSpec& at = spec.position   ? *spec.position
                                 : spec.velocity ? *spec.velocity
@@ -87,7 +102,8 @@ OutputNumbers calcQuantity(const OutputSpec& spec, const SystemNames& names, Mod
   const OutputKind kind = spec.position   ? OutputKind::kPosition
                           : spec.velocity ? OutputKind::kVelocity
                                           : OutputKind::kAcceleration;
-  return {kind, -1, calcBodyPoint(at.station, names, numbers, owner), calcDirection(at, numbers, owner), {}};
+  const BodyPoint station = calcBodyPoint(at.station, names, numbers, owner);
+  return {kind, -1, station, calcDirection(at.direction, numbers, owner), nullptr, {}};
 }
 
 Eigen::VectorXd calcNamed(const std::vector<NamedExpression>& values, const char* what,
@@ -98,6 +114,23 @@ Eigen::VectorXd calcNamed(const std::vector<NamedExpression>& values, const char
     result[context.names.findCoordinate(value.name)] = context.numbers.calc(value.value, {owner, what, ""});
   }
   return result;
+}
+
+/// Those of elements have their numbers checked with the elements'.
+Eigen::VectorXd calcInitialStates(ModelContext& context) {
+  std::vector<double> values;
+  for (const StateSpec& state : context.model.system.states) {
+    values.push_back(context.numbers.calc(state.initial, {"state '" + state.name.text + "'", "initial", ""}));
+  }
+  context.model.system.elements.forEachList([&](const auto& list) {
+    for (const auto& element : list) {
+      forEachOwnState(element, [&](const auto& part, const Name& coordinate) {
+        values.push_back(
+            context.numbers.calc(part.initial, {"state on '" + coordinate.text + "'", "initial", ""}));
+      });
+    }
+  });
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
 int findParameter(const ModelSpec& model, const Name& name) {
@@ -164,17 +197,19 @@ std::vector<std::string> getOutputUnits(const std::vector<OutputSpec>& outputs, 
 OutputNumbers calcOutputNumbers(const OutputSpec& spec, const SystemNames& names, ModelNumbers& numbers) {
   const std::string owner = "output '" + spec.name.text + "'";
   OutputNumbers output = calcQuantity(spec, names, numbers, owner);
+  const std::string unit = findUnit(spec, names);
   const bool has_gain = !spec.gain.text.empty(), has_offset = !spec.offset.text.empty();
   if (has_gain || has_offset) {
     output.sensor = {has_gain ? numbers.calc(spec.gain, {owner, "gain", ""}) : 1.0,
-                     has_offset ? numbers.calc(spec.offset, {owner, "offset", findUnit(spec, names)}) : 0.0};
+                     has_offset ? numbers.calc(spec.offset, {owner, "offset", unit.c_str()}) : 0.0};
   }
   return output;
 }
 
 InitialState calcInitialValues(ModelContext& context) {
   const InitialSpec& initial = context.model.initial;
-  return {calcNamed(initial.coordinates, "coordinate", context), calcNamed(initial.speeds, "speed", context)};
+  return {calcNamed(initial.coordinates, "coordinate", context), calcNamed(initial.speeds, "speed", context),
+          calcInitialStates(context)};
 }
 
 Eigen::VectorXd calcEquilibriumPoint(ModelContext& context) {

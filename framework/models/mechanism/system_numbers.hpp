@@ -35,7 +35,16 @@ struct BodyPoint {
   Eigen::Vector3d point;
 };
 
-enum class OutputKind { kCoordinate, kSpeed, kPosition, kVelocity, kAcceleration };
+enum class OutputKind {
+  kCoordinate,
+  kSpeed,
+  kPosition,
+  kVelocity,
+  kAcceleration,
+  kSpecificForce,
+  kAngularVelocity,
+  kExpression
+};
 
 struct OutputNumbers {
   struct Sensor {
@@ -44,7 +53,8 @@ struct OutputNumbers {
   OutputKind kind;
   int coordinate;             ///< of kCoordinate and kSpeed, else -1
   BodyPoint station;          ///< of the others
-  Eigen::Vector3d direction;  ///< a unit vector in ground axes
+  Eigen::Vector3d direction;  ///< a unit vector, in ground axes or the body's
+  const Expression* expression = nullptr;
   std::optional<Sensor> sensor;
 };
 
@@ -63,8 +73,8 @@ BodyPoint calcBodyPoint(const StationSpec& spec, const SystemNames& names, Model
 /// Throws SimulationFailure also for a direction of no length.
 OutputNumbers calcOutputNumbers(const OutputSpec& spec, const SystemNames& names, ModelNumbers& numbers);
 
-/// Units of all outputs: m, rad, m/s, rad/s or m/s2. Throws ExperimentError for unknown coordinates or bodies
-/// and for an output that measures nothing or several things.
+/// Units of all outputs: m, rad, m/s, rad/s or m/s2, or what expressions state. Throws ExperimentError for
+/// unknown coordinates or bodies and for an output that measures nothing or several things.
 std::vector<std::string> getOutputUnits(const std::vector<OutputSpec>& outputs, const SystemNames& names);
 
 }  // namespace twinmap

@@ -99,4 +99,10 @@ double CubicSpline::calc(double elapsed) const {
   return segment.value + s * (segment.slope + s * (segment.curvature + s * segment.third));
 }
 
+double CubicSpline::calcSlope(double elapsed) const {
+  const Segment& segment = segments_[findSegment(elapsed)];
+  const double s = elapsed - segment.begin;
+  return segment.slope + s * (2.0 * segment.curvature + 3.0 * s * segment.third);
+}
+
 }  // namespace twinmap

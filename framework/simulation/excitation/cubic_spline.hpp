@@ -16,6 +16,8 @@ class CubicSpline {
   /// that of one polynomial, for times that are equidistant or nearly so.
   double calc(double elapsed) const;
 
+  double calcSlope(double elapsed) const;
+
   struct Segment {
     double begin;                           ///< s after the first time
     double value, slope, curvature, third;  ///< of powers of the time since begin

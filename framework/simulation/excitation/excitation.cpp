@@ -134,6 +134,14 @@ void Excitation::calcValues(double t, std::vector<double>& values) const {
   }
 }
 
+void Excitation::calcRates(double t, std::vector<double>& rates) const {
+  std::fill(rates.begin(), rates.end(), 0.0);
+  for (const ExcitationTerm* term : active_) {
+    rates[term->signal] += std::visit(
+        [elapsed = t - term->begin](const auto& shape) { return shape.calcRate(elapsed); }, term->shape);
+  }
+}
+
 double calcTerm(const ExcitationTerm& term, double t) {
   return std::visit([elapsed = t - term.begin](const auto& shape) { return shape.calc(elapsed); },
                     term.shape);

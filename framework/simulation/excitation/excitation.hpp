@@ -17,12 +17,14 @@ struct LineShape {
   double value, slope;
 
   double calc(double elapsed) const { return value + slope * elapsed; }
+  double calcRate(double) const { return slope; }
 };
 
 struct SplineShape {
   const CubicSpline* spline;
 
   double calc(double elapsed) const { return spline->calc(elapsed); }
+  double calcRate(double elapsed) const { return spline->calcSlope(elapsed); }
 };
 
 /// A function, smooth enough to integrate across, that is switched on for begin <= t < end.
@@ -63,6 +65,8 @@ class Excitation {
 
   /// Value of every signal at time t in the current phase; `values` has getSignalCount() entries.
   void calcValues(double t, std::vector<double>& values) const;
+  /// The time derivatives likewise; a jump between two phases has none.
+  void calcRates(double t, std::vector<double>& rates) const;
 
  private:
   const std::vector<SignalSpec>& signals_;

@@ -8,7 +8,8 @@
 #include "framework/simulation/simulation_failure.hpp"
 #include "kernels/lanes/program/real.hpp"
 
-/// The terms of excitation signals at a time since their start, over a scalar S: double, or program::Symbol.
+/// The terms of excitation signals at a time since their start, over a scalar S: double, or program::Symbol;
+/// and their rates.
 namespace twinmap {
 
 inline constexpr double kRadiansPerCycle = 6.283185307179586;
@@ -18,6 +19,7 @@ struct PulseShape {
   S value;
 
   S calc(const S&) const { return value; }
+  S calcRate(const S&) const { return 0.0; }
 };
 
 /// amplitude * sum of weight * sin(omega * elapsed + phase)
@@ -38,6 +40,14 @@ struct ToneShape {
     }
     return amplitude * sum;
   }
+  S calcRate(const S& elapsed) const {
+    using namespace program::real;
+    S sum = 0.0;
+    for (const Tone& tone : tones) {
+      sum += tone.weight * tone.omega * cos(tone.omega * elapsed + tone.phase);
+    }
+    return amplitude * sum;
+  }
 };
 
 /// amplitude * sin(2 pi cycles) after s = elapsed; linear: f0 s + (f1 - f0) s^2 / (2 duration), logarithmic:
@@ -50,13 +60,24 @@ struct ChirpShape {
 
   S calc(const S& elapsed) const {
     using namespace program::real;
+    return amplitude * sin(kRadiansPerCycle * calcCycles(elapsed));
+  }
+  S calcRate(const S& elapsed) const {
+    using namespace program::real;
+    const S rising = first + (last - first) / duration * elapsed;
+    const S frequency =
+        sweep == SweepKind::kLogarithmic ? S(first * exp(log(last / first) / duration * elapsed)) : rising;
+    return amplitude * kRadiansPerCycle * frequency * cos(kRadiansPerCycle * calcCycles(elapsed));
+  }
+  S calcCycles(const S& elapsed) const {
+    using namespace program::real;
     S cycles = elapsed * (first + 0.5 * (last - first) / duration * elapsed);
     if (sweep == SweepKind::kLogarithmic) {
       const S rate = log(last / first) / duration, half = 0.5 * rate * elapsed;
       const S growth = 2.0 * sinh(half) * exp(half);  // exp(rate * elapsed) - 1, without cancellation
       cycles = select(notEqual(first, last), first * growth / rate, cycles);
     }
-    return amplitude * sin(kRadiansPerCycle * cycles);
+    return cycles;
   }
 };
 

@@ -65,6 +65,24 @@ TEST_F(CheckScopeTest, NumbersAndNamesWithoutUnitMayCarryAny) {
   EXPECT_NO_THROW(scope_.check(Expression{"3.3", {}}, "kg"));
 }
 
+TEST_F(CheckScopeTest, NamedExpressionsHaveTheUnitThatTheyComeOutIn) {
+  scope_.define({"force", {}}, Expression{"k * L", {}});
+  scope_.define({"half", {}}, Expression{"0.5 * force", {}});
+  EXPECT_NO_THROW(scope_.check(Expression{"force / m", {}}, "m/s2"));
+  EXPECT_THROW(scope_.check(Expression{"force / m", {}}, "m/s"), ExperimentError);
+  EXPECT_NO_THROW(scope_.check(Expression{"half", {}}, "kg"));  // its number may carry a unit
+  EXPECT_THROW(scope_.define({"sum", {}}, Expression{"force + L", {}}), ExperimentError);
+}
+
+TEST_F(CheckScopeTest, WhatIsAddedHasOneUnitWhateverNumberStandsBeside) {
+  for (const char* wrong : {"L - m", "1 * (L - m)", "(L - m) * 1", "2 * min(k, L) + 3", "L < m ? 1 : 2"}) {
+    EXPECT_THROW(scope_.check(Expression{wrong, {}}, ""), ExperimentError) << wrong;
+  }
+  for (const char* right : {"1 * (L - 2 * L)", "L - 0.5", "max(L, 1e-3) + x", "m + 2 * L", "(L / L)^2 + 1"}) {
+    EXPECT_NO_THROW(scope_.check(Expression{right, {}}, "")) << right;
+  }
+}
+
 TEST_F(CheckScopeTest, RefusesTakenReservedAndMalformedNames) {
   for (const char* name : {"k", "t", "pi", "sin", "2k", "a b", "a.b", "", "größe"}) {
     EXPECT_THROW(scope_.define({name, {}}, std::nullopt, 0.0), ExperimentError) << name;

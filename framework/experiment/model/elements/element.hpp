@@ -1,10 +1,12 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <type_traits>
 
 #include "framework/experiment/model/algebra.hpp"
 #include "framework/experiment/model/body_spec.hpp"
+#include "kernels/lanes/program/real.hpp"
 
 // What force elements are made of. An element is a template over its scalar S: over Expression it is what the
 // experiment file says; over double or program::Symbol it is the numbers of one parameter set. Beside the
@@ -29,6 +31,8 @@ using BodyOf = std::conditional_t<kIsFile<S>, Name, int>;  ///< 0 is the ground
 template <class S>
 using CoordinateOf = std::conditional_t<kIsFile<S>, Name, int>;
 template <class S>
+using OtherCoordinateOf = std::conditional_t<kIsFile<S>, std::optional<Name>, std::optional<int>>;
+template <class S>
 using VectorOf = std::conditional_t<kIsFile<S>, Expression3, algebra::Vec3<S>>;
 template <class S>
 using FrameOf = std::conditional_t<kIsFile<S>, FrameSpec, algebra::Transform<S>>;
@@ -44,12 +48,23 @@ using VaryingOf = std::conditional_t<kIsFile<S>, Expression, const Expression*>;
 template <class S>
 using VaryingVectorOf = std::conditional_t<kIsFile<S>, Expression3, const Expression3*>;
 
+/// A state that an element owns: its name, if it has one, or its place among all states.
+template <class S>
+using OwnStateOf = std::conditional_t<kIsFile<S>, std::optional<Name>, int>;
+
+/// Whether a struct is part of an element, with a description of its own.
+template <class T>
+inline constexpr bool kIsPart = false;
+
 /// A point fixed to a body.
 template <class S>
 struct Station {
   BodyOf<S> body{};
   VectorOf<S> point{};
 };
+
+template <class S>
+inline constexpr bool kIsPart<Station<S>> = true;
 
 template <class Fields, class S>
 void describe(Fields& f, Station<S>& s) {
@@ -65,6 +80,9 @@ struct AttachedFrame {
   BodyOf<S> body{};
   FrameOf<S> frame{};
 };
+
+template <class S>
+inline constexpr bool kIsPart<AttachedFrame<S>> = true;
 
 template <class Fields, class S>
 void describe(Fields& f, AttachedFrame<S>& s) {

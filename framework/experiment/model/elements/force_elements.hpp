@@ -5,6 +5,7 @@
 
 #include "framework/experiment/model/elements/coordinate_elements.hpp"
 #include "framework/experiment/model/elements/load_elements.hpp"
+#include "framework/experiment/model/elements/memory_elements.hpp"
 #include "framework/experiment/model/elements/two_point_elements.hpp"
 
 namespace twinmap {
@@ -67,7 +68,9 @@ using ForceElements = ElementLists<S,               //
                                    Bushing,         //
                                    AppliedForce,    //
                                    AppliedMoment,   //
-                                   ForceLaw>;
+                                   ForceLaw,        //
+                                   Friction,        //
+                                   Hysteresis>;
 
 template <class Fields>
 void describeElements(Fields& f, ForceElements<Expression>& elements) {

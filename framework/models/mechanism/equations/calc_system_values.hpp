@@ -81,7 +81,9 @@ SystemValues<S> calcSystemValues(const SystemSpec& spec, const SystemNames& syst
     values.bodies.back().first_speed = values.coordinate_count;
     values.coordinate_count += values.bodies.back().speed_count;
   }
-  values.elements = calcElements<S>(spec.elements, system, UncheckedNumbers<S>{names});
+  values.elements = calcElements<S>(spec.elements, system, UncheckedNumbers<S>{names},
+                                    static_cast<int>(spec.states.size()));
+  values.state_count = static_cast<int>(system.getStateNames().size());
   return values;
 }
 

@@ -11,12 +11,25 @@
 
 namespace twinmap::equations {
 
-/// The fields of an element as the file gives it, in the order of its description.
+/// The fields of an element as the file gives it, in the order of its description. Of a part that may be
+/// absent, first whether it is there.
 class ElementSources {
  public:
   template <class T, class... Rule>
+  void required(const char*, std::optional<T>& field, const char*, const Rule&...) {
+    if constexpr (kIsPart<T>) {
+      static constexpr bool kIsGiven[] = {false, true};
+      fields_.push_back(&kIsGiven[field ? 1 : 0]);
+      if (field) {
+        describe(*this, *field);
+      }
+    } else {
+      fields_.push_back(&field);
+    }
+  }
+  template <class T, class... Rule>
   void required(const char*, T& field, const char*, const Rule&...) {
-    if constexpr (std::is_same_v<T, StationSpec> || std::is_same_v<T, AttachedFrame<Expression>>) {
+    if constexpr (kIsPart<T>) {
       describe(*this, field);
     } else {
       fields_.push_back(&field);
@@ -79,6 +92,20 @@ class ElementFiller {
             : reference == Reference::kForcedCoordinate ? names_.findForcedCoordinate(name)
                                                         : names_.findCoordinate(name);
   }
+  void fill(const char*, std::optional<int>& field, Reference) {
+    const std::optional<Name>& name = sources_.take<std::optional<Name>>();
+    if (name) {
+      field = names_.findForcedCoordinate(*name);
+    }
+  }
+  /// The place of an element's own state follows when all elements are there.
+  void fill(const char*, int&) { sources_.take<std::optional<Name>>(); }
+  void fill(const char* key, std::optional<S>& field, const Unit& unit) {
+    const std::optional<Expression>& expression = sources_.take<std::optional<Expression>>();
+    if (expression) {
+      field = calc(*expression, prefix_ + key, unit.rotation == nullptr ? unit.text : "");
+    }
+  }
   void fill(const char* key, S& field, const Unit& unit) {
     field = calc(sources_.take<Expression>(), prefix_ + key, unit.rotation == nullptr ? unit.text : "");
   }
@@ -100,6 +127,12 @@ class ElementFiller {
   void fill(const char*, const Expression*& field, const Unit&) { field = &sources_.take<Expression>(); }
   void fill(const char*, const Expression3*& field, const Unit&) { field = &sources_.take<Expression3>(); }
   template <class T>
+  void fill(const char* key, std::optional<T>& field) {
+    if (sources_.take<bool>()) {
+      fill(key, field.emplace());
+    }
+  }
+  template <class T>
   void fill(const char* key, T& field) {
     if constexpr (std::is_enum_v<T>) {
       field = sources_.take<T>();
@@ -116,12 +149,23 @@ class ElementFiller {
   Numbers& numbers_;
 };
 
+/// Tells elements where their own states are: behind the `first` ones, in their order.
+template <class S>
+void placeOwnStates(ForceElements<S>& elements, int first) {
+  elements.forEachList([&first](auto& list) {
+    for (auto& element : list) {
+      forEachOwnState(element, [&first](auto& part, int) { part.state = first++; });
+    }
+  });
+}
+
 /// The numbers of all force elements. `numbers`: calc(expression, owner, key, unit) gives an S, or throws.
 /// The numbers refer to expressions of `spec`, which must outlive them. Throws ExperimentError for unknown
-/// names and for a force on a coordinate that takes none.
+/// names and for a force on a coordinate that takes none. `first_state`: how many states are not elements'
+/// own.
 template <class S, class Numbers>
 ForceElements<S> calcElements(const ForceElements<Expression>& spec, const SystemNames& names,
-                              Numbers&& numbers) {
+                              Numbers&& numbers, int first_state) {
   ForceElements<S> elements;
   ForceElements<S>::forEachType([&](auto type) {
     using Spec = typename decltype(type)::template Of<Expression>;
@@ -133,6 +177,7 @@ ForceElements<S> calcElements(const ForceElements<Expression>& spec, const Syste
       describe(filler, elements.getList(type).emplace_back(Value{}));
     }
   });
+  placeOwnStates(elements, first_state);
   return elements;
 }
 

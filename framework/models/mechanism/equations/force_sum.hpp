@@ -9,11 +9,12 @@ namespace twinmap::equations {
 /// Below this distance (m) two points have no direction between them, and exert no force on each other.
 constexpr double kCoincident = 1e-12;
 
-/// Forces on bodies (moment and force at their origins, in ground axes; ground first) and on speeds.
+/// Forces on bodies (moment and force at their origins, in ground axes; ground first) and on speeds, and the
+/// rates of the states of first order.
 template <class S>
 struct Loads {
   std::vector<Spatial<S>> on_bodies;
-  std::vector<S> on_speeds;
+  std::vector<S> on_speeds, state_rates;
 };
 
 /// A point of a body: from its origin in ground axes, and its place and velocity in ground.
@@ -40,13 +41,19 @@ Vec3<S> calcAngles(const Mat33<S>& r) {
 template <class S, class Named>
 class ForceSum {
  public:
-  /// All must outlive the sum. `rates`: time derivatives of the coordinates.
+  /// All must outlive the sum. `rates`: time derivatives of the coordinates; `states`: of first order.
   ForceSum(const std::vector<BodyMotion<S>>& motions, const std::vector<S>& coordinates,
-           const std::vector<S>& rates, const Named& named, Loads<S>& loads)
-      : motions_(motions), coordinates_(coordinates), rates_(rates), named_(named), loads_(loads) {}
+           const std::vector<S>& rates, const std::vector<S>& states, const Named& named, Loads<S>& loads)
+      : motions_(motions),
+        coordinates_(coordinates),
+        rates_(rates),
+        states_(states),
+        named_(named),
+        loads_(loads) {}
 
   const S& getCoordinate(int coordinate) const { return coordinates_[coordinate]; }
   const S& getRate(int coordinate) const { return rates_[coordinate]; }
+  const S& getState(int state) const { return states_[state]; }
   S calc(const Expression& expression) const { return named_.calc(expression); }
   /// Components in ground axes.
   Vec3<S> calcInGround(const Expression3& components, ForceFrame frame, int body) const {
@@ -67,6 +74,8 @@ class ForceSum {
   void addOnCoordinate(int coordinate, const S& force) {
     loads_.on_speeds[coordinate] = loads_.on_speeds[coordinate] + force;
   }
+
+  void setStateRate(int state, const S& rate) { loads_.state_rates[state] = rate; }
 
   void addGravity(int body, const Vec3<S>& gravity, const S& mass, const Vec3<S>& center) {
     addAt(body, motions_[body].pose.rotation * center, scale(mass, gravity));
@@ -120,7 +129,7 @@ class ForceSum {
 
  private:
   const std::vector<BodyMotion<S>>& motions_;
-  const std::vector<S>&coordinates_, &rates_;
+  const std::vector<S>&coordinates_, &rates_, &states_;
   const Named& named_;
   Loads<S>& loads_;
 };
@@ -133,6 +142,14 @@ void addElementForces(const ForceElements<S>& elements, ForceSum<S, Named>& sum)
       addForces(element, sum);
     }
   });
+}
+
+/// The rates of the states that are not elements' own.
+template <class S, class Named>
+void setStateRates(const std::vector<StateSpec>& states, const Named& named, Loads<S>& loads) {
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    loads.state_rates[i] = named.calc(states[i].derivative);
+  }
 }
 
 }  // namespace twinmap::equations

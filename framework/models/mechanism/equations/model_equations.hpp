@@ -6,15 +6,18 @@
 #include "framework/experiment/model/model_spec.hpp"
 #include "framework/models/mechanism/equations/calc_system_values.hpp"
 #include "framework/models/mechanism/equations/force_sum.hpp"
+#include "framework/models/mechanism/varying_expressions.hpp"
 
 namespace twinmap::equations {
 
-/// A model's state over a scalar, in the order of SystemNames: coordinates, and speeds as Simbody has them.
+/// A model's state over a scalar, in the order of SystemNames: coordinates, speeds as Simbody has them, and
+/// states of first order.
 template <class S>
 struct ModelState {
   S time = 0.0;
-  std::vector<S> coordinates, speeds;
-  std::vector<S> signals;  ///< of the excitation
+  std::vector<S> coordinates, speeds, states;
+  std::vector<S> signals;       ///< of the excitation
+  std::vector<S> signal_rates;  ///< empty where no expression uses them
 };
 
 /// What follows from a state.
@@ -22,11 +25,12 @@ template <class S>
 struct ModelMotion {
   std::vector<S> rates;          ///< time derivatives of the coordinates
   std::vector<S> accelerations;  ///< of the speeds
-  std::vector<S> pivots;         ///< all positive, or the mass matrix is singular
+  std::vector<S> state_rates;
+  std::vector<S> pivots;  ///< all positive, or the mass matrix is singular
   std::vector<BodyMotion<S>> bodies;
 };
 
-/// The values that forces by expression may use.
+/// The values that expressions of a state may use.
 template <class S>
 NamedValues<S> nameState(const ModelSpec& model, const SystemNames& system, const ModelState<S>& state,
                          const std::vector<S>& rates, NamedValues<S> names) {
@@ -39,18 +43,33 @@ NamedValues<S> nameState(const ModelSpec& model, const SystemNames& system, cons
     names.set(model.excitation[i].name.text, state.signals[i]);
   }
   names.set("t", state.time);
+  for (std::size_t i = 0; i < state.signal_rates.size(); ++i) {
+    const std::string rate = nameRate(model.excitation[i]);
+    if (!names.contains(rate)) {
+      names.define(rate, state.signal_rates[i]);
+    }
+  }
+  for (std::size_t i = 0; i < state.states.size(); ++i) {
+    names.set(system.getStateNames()[i], state.states[i]);
+  }
+  for (const NamedExpression& named : model.system.expressions) {
+    names.set(named.name.text, names.calc(named.value));
+  }
   return names;
 }
 
-/// Gravity and all force elements. `named`: parameters, constants and the state.
+/// Gravity and all force elements, and the rates of all states. `named`: parameters, constants and the state.
 template <class S, class Named>
-Loads<S> calcLoads(const SystemValues<S>& values, const std::vector<BodyMotion<S>>& motions,
-                   const std::vector<S>& coordinates, const std::vector<S>& rates, const Named& named) {
-  Loads<S> loads{std::vector<Spatial<S>>(motions.size()), std::vector<S>(coordinates.size(), S(0.0))};
-  ForceSum<S, Named> sum(motions, coordinates, rates, named, loads);
+Loads<S> calcLoads(const SystemSpec& spec, const SystemValues<S>& values,
+                   const std::vector<BodyMotion<S>>& motions, const ModelState<S>& state,
+                   const std::vector<S>& rates, const Named& named) {
+  Loads<S> loads{std::vector<Spatial<S>>(motions.size()), std::vector<S>(state.coordinates.size(), S(0.0)),
+                 std::vector<S>(state.states.size(), S(0.0))};
+  ForceSum<S, Named> sum(motions, state.coordinates, rates, state.states, named, loads);
   for (std::size_t i = 1; i < motions.size(); ++i) {
     sum.addGravity(static_cast<int>(i), values.gravity, values.bodies[i].mass, values.bodies[i].center);
   }
+  setStateRates(spec.states, named, loads);
   addElementForces(values.elements, sum);
   return loads;
 }
@@ -63,8 +82,9 @@ ModelMotion<S> calcModelMotion(const ModelSpec& model, const SystemNames& system
   ModelMotion<S> motion;
   motion.rates = calcRates(values, state.coordinates, state.speeds);
   motion.bodies = calcMotions(values, state.coordinates, state.speeds);
-  Loads<S> loads = calcLoads(values, motion.bodies, state.coordinates, motion.rates,
+  Loads<S> loads = calcLoads(model.system, values, motion.bodies, state, motion.rates,
                              nameState(model, system, state, motion.rates, names));
+  motion.state_rates = std::move(loads.state_rates);
   Solution<S> solution =
       solve(calcEquationsOfMotion(values, motion.bodies, loads.on_bodies, std::move(loads.on_speeds)));
   motion.accelerations = std::move(solution.values);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "framework/models/mechanism/equations/model_equations.hpp"
@@ -22,6 +23,31 @@ Spatial<S> calcBodyAcceleration(const SystemValues<S>& system, const ModelMotion
   return motion.bodies[body].bias + added;
 }
 
+/// Linear acceleration of a point of a body, in ground.
+template <class S>
+Vec3<S> calcPointAcceleration(const SystemValues<S>& system, const ModelMotion<S>& motion, int at,
+                              const PointMotion<S>& point) {
+  const Spatial<S> acceleration = calcBodyAcceleration(system, motion, at);
+  const Vec3<S>& spin = motion.bodies[at].velocity.angular;
+  return acceleration.linear + cross(acceleration.angular, point.arm) + cross(spin, cross(spin, point.arm));
+}
+
+/// What an accelerometer or a gyroscope on a body reads.
+template <class S>
+S calcBodySensor(const OutputSpec& spec, const SystemNames& names, const NamedValues<S>& values,
+                 const SystemValues<S>& system, const ModelMotion<S>& motion) {
+  const BodySensorSpec& at = spec.specific_force ? *spec.specific_force : *spec.angular_velocity;
+  const Station<S> station = calcStation(at.station, names, values);
+  const BodyMotion<S>& body = motion.bodies[station.body];
+  const Vec3<S> direction = body.pose.rotation * normalize(values.calc3(at.direction));
+  if (spec.angular_velocity) {
+    return dot(body.velocity.angular, direction);
+  }
+  const Vec3<S> acceleration =
+      calcPointAcceleration(system, motion, station.body, calcPoint(body, station.point));
+  return dot(acceleration - system.gravity, direction);
+}
+
 template <class S>
 S calcStationOutput(const OutputSpec& spec, const SystemNames& names, const NamedValues<S>& values,
                     const SystemValues<S>& system, const ModelMotion<S>& motion) {
@@ -35,20 +61,25 @@ S calcStationOutput(const OutputSpec& spec, const SystemNames& names, const Name
   if (!spec.acceleration) {
     return dot(spec.position ? point.place : point.velocity, direction);
   }
-  const Spatial<S> acceleration = calcBodyAcceleration(system, motion, station.body);
-  const Vec3<S>& spin = body.velocity.angular;
-  return dot(
-      acceleration.linear + cross(acceleration.angular, point.arm) + cross(spin, cross(spin, point.arm)),
-      direction);
+  return dot(calcPointAcceleration(system, motion, station.body, point), direction);
 }
 
-/// gain * quantity + offset. `values`: parameters and constants.
+/// Whether any output is an expression, which may use accelerations (<coordinate>_ddot).
+inline bool hasExpression(const std::vector<OutputSpec>& outputs) {
+  return std::any_of(outputs.begin(), outputs.end(),
+                     [](const OutputSpec& output) { return !output.expression.text.empty(); });
+}
+
+/// gain * quantity + offset. `values`: parameters, constants and what expressions of outputs may use.
 template <class S>
 S calcOutput(const OutputSpec& spec, const SystemNames& names, const NamedValues<S>& values,
              const SystemValues<S>& system, const ModelState<S>& state, const ModelMotion<S>& motion) {
+  const bool of_body = spec.specific_force || spec.angular_velocity;
   const S quantity = spec.coordinate ? state.coordinates[names.findCoordinate(*spec.coordinate)]
                      : spec.speed    ? motion.rates[names.findCoordinate(*spec.speed)]
-                                     : calcStationOutput(spec, names, values, system, motion);
+                     : of_body       ? calcBodySensor(spec, names, values, system, motion)
+                     : !spec.expression.text.empty() ? values.calc(spec.expression)
+                                                     : calcStationOutput(spec, names, values, system, motion);
   return values.calc(spec.gain, 1.0) * quantity + values.calc(spec.offset, 0.0);
 }
 

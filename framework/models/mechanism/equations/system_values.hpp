@@ -31,6 +31,7 @@ struct SystemValues {
   std::vector<BodyValues<S>> bodies;  ///< ground first
   ForceElements<S> elements;
   int coordinate_count = 0;
+  int state_count = 0;  ///< of first order
 };
 
 }  // namespace twinmap::equations

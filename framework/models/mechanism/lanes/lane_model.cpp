@@ -37,14 +37,21 @@ Symbols collectStart(const RecordedModel& recorded, const Symbols& parameters) {
   return outputs;
 }
 
+int countStates(const RecordedModel& recorded) {
+  return 2 * recorded.coordinate_count + recorded.state_count;
+}
+
 Symbols collectRest(const RecordedModel& recorded, const Symbols& parameters) {
-  Symbols outputs = recorded.rest_accelerations, variables;
+  Symbols outputs = recorded.rest_rates, variables;
   append(recorded.rest_pivots, outputs);
   for (int i = 0; i < recorded.coordinate_count; ++i) {
     variables.push_back(recorded.recorder->state(i));
   }
+  for (int i = 0; i < recorded.state_count; ++i) {
+    variables.push_back(recorded.recorder->state(2 * recorded.coordinate_count + i));
+  }
   append(parameters, variables);
-  appendJacobian(recorded.rest_accelerations, variables, outputs);
+  appendJacobian(recorded.rest_rates, variables, outputs);
   return outputs;
 }
 
@@ -54,7 +61,8 @@ LaneModel compileModel(const RecordedModel& recorded, bool with_derivatives) {
   program::Recorder& recorder = *recorded.recorder;
   const Symbols parameters = getParameters(recorded, with_derivatives);
   LaneModel model;
-  model.counts = {2 * recorded.coordinate_count, recorded.parameter_count, recorded.excitation.input_count};
+  model.coordinate_count = recorded.coordinate_count;
+  model.counts = {countStates(recorded), recorded.parameter_count, recorded.excitation.input_count};
   model.excitation = recorded.excitation;
   model.directions = static_cast<int>(parameters.size());
   std::vector<int> directions(parameters.size());
@@ -63,12 +71,12 @@ LaneModel compileModel(const RecordedModel& recorded, bool with_derivatives) {
       recorder, {model.counts, recorded.derivatives, recorded.pivots, recorded.outputs}, directions);
   model.start = program::compile(recorder, collectStart(recorded, parameters), model.counts);
   model.rest = program::compile(recorder, collectRest(recorded, parameters), model.counts);
-  model.linearization = program::compile(recorder, recorded.stiffness_and_damping, model.counts);
+  model.linearization = program::compile(recorder, recorded.linearization, model.counts);
   return model;
 }
 
 program::Program compileJacobian(const RecordedModel& recorded) {
-  const program::InputCounts counts{2 * recorded.coordinate_count, recorded.parameter_count,
+  const program::InputCounts counts{countStates(recorded), recorded.parameter_count,
                                     recorded.excitation.input_count};
   Symbols states, jacobian;
   for (int i = 0; i < counts.states; ++i) {

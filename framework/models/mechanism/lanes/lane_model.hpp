@@ -10,13 +10,16 @@ namespace twinmap {
 /// The programs of a model that all threads share; immutable. Symbols: see RecordedModel.
 struct LaneModel {
   program::InputCounts counts;
+  int coordinate_count = 0;
   RecordedExcitation excitation;  ///< its symbols are not to be used
   lanes::Problem problem;         ///< the motion and its outputs
   program::Program start;  ///< initial states, then events; with directions their derivatives, one by one
-  program::Program rest;   ///< rest_accelerations, rest_pivots, d accelerations / d coordinates by columns;
-                           ///< with directions also d accelerations / d parameters by columns
+  program::Program rest;   ///< rest_rates, rest_pivots, d rest_rates / d [coordinates; states of first order]
+                           ///< by columns; with directions also d rest_rates / d parameters by columns
   program::Program linearization;
   int directions = 0;  ///< 0, or all parameters
+
+  int getFirstOrderCount() const { return counts.states - 2 * coordinate_count; }
 };
 
 /// Compiles a recorded model, for its values alone or also for the derivatives with respect to all

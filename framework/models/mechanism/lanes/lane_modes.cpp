@@ -1,21 +1,21 @@
 #include "framework/models/mechanism/lanes/lane_modes.hpp"
 
+#include "framework/models/mechanism/equilibrium.hpp"
+
 namespace twinmap {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-LaneModes::LaneModes(const LaneModel& model)
-    : coordinate_count_(model.counts.states / 2), program_(model.linearization) {}
+LaneModes::LaneModes(const LaneModel& model) : model_(model), program_(model.linearization) {}
 
-VectorXd LaneModes::calc(const Eigen::Ref<const VectorXd>& parameters, const VectorXd& coordinates,
+VectorXd LaneModes::calc(const Eigen::Ref<const VectorXd>& parameters, const VectorXd& equilibrium,
                          int count) {
-  const Eigen::Index n = coordinate_count_;
-  VectorXd states = VectorXd::Zero(2 * n);
-  states.head(n) = coordinates;
-  MatrixXd matrix = MatrixXd::Zero(2 * n, 2 * n);
-  matrix.topRightCorner(n, n).setIdentity();
-  matrix.bottomRows(n) = program_.calc({parameters, states}).reshaped(n, 2 * n);
+  const Eigen::Index n = model_.coordinate_count, all = model_.counts.states;
+  const VectorXd states = insertSpeeds(equilibrium, VectorXd::Zero(n));
+  MatrixXd matrix = MatrixXd::Zero(all, all);
+  matrix.block(0, n, n, n).setIdentity();
+  matrix.bottomRows(all - n) = program_.calc({parameters, states}).reshaped(all - n, all);
   return collectLowestModes(matrix, count);
 }
 

@@ -10,13 +10,13 @@ class LaneModes {
  public:
   explicit LaneModes(const LaneModel& model);
 
-  /// The `count` lowest frequencies (Hz), then their damping ratios, at an equilibrium. Throws
+  /// The `count` lowest frequencies (Hz), then their damping ratios, at an equilibrium (LaneStart's). Throws
   /// SimulationFailure if fewer oscillate.
   Eigen::VectorXd calc(const Eigen::Ref<const Eigen::VectorXd>& parameters,
-                       const Eigen::VectorXd& coordinates, int count);
+                       const Eigen::VectorXd& equilibrium, int count);
 
  private:
-  Eigen::Index coordinate_count_;
+  const LaneModel& model_;
   SingleProgram program_;
 };
 

@@ -1,5 +1,6 @@
 #include "framework/models/mechanism/lanes/lane_runner.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 
@@ -18,25 +19,34 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Parameters = Eigen::Ref<const VectorXd>;
 
-lanes::Options makeOptions(const ModelSpec& spec) {
+/// Where the rate of a state, such as a stiff bristle's, forces more steps than these, Radau IIA takes fewer
+/// and longer ones in less time.
+constexpr int kExplicitSteps = 20000;
+
+int getMaxSteps(const ModelSpec& spec, const LaneModel& model) {
+  const int given = spec.simulation.max_steps;
+  return model.getFirstOrderCount() > 0 ? std::min(given, kExplicitSteps) : given;
+}
+
+lanes::Options makeOptions(const ModelSpec& spec, const LaneModel& model) {
   lanes::Options options;
   options.relative_tolerance = spec.simulation.relative_tolerance;
   options.absolute_tolerance = spec.simulation.absolute_tolerance;
-  options.max_steps = spec.simulation.max_steps;
+  options.max_steps = getMaxSteps(spec, model);
   options.max_wall_time = spec.simulation.max_wall_time;
   const VectorXd widths = calcWidths(collectSampled(spec));
   options.parameter_scales.assign(widths.begin(), widths.end());
   return options;
 }
 
-std::string describeOutcome(const lanes::Result& result, const SimulationSpec& simulation) {
+std::string describeOutcome(const lanes::Result& result, const ModelSpec& spec, const LaneModel& model) {
   switch (result.outcome) {
     case lanes::Outcome::kDone:
       return "";
     case lanes::Outcome::kStepLimit:
-      return describeStepLimit(simulation.max_steps, result.time);
+      return describeStepLimit(getMaxSteps(spec, model), result.time);
     case lanes::Outcome::kWallTime:
-      return describeWallTime(simulation.max_wall_time, result.time);
+      return describeWallTime(spec.simulation.max_wall_time, result.time);
     case lanes::Outcome::kNonFinite:
       return describeAt("state became non-finite", result.time);
     case lanes::Outcome::kStepTooSmall:
@@ -89,7 +99,7 @@ class LaneRunner::Impl : public lanes::SampleStream {
     if (result.outcome == lanes::Outcome::kStepLimit) {
       step_limits_.push_back(sample.index);
     }
-    conclude(sample.index, describeOutcome(result, spec_.simulation));
+    conclude(sample.index, describeOutcome(result, spec_, model_));
   }
 
  private:
@@ -98,8 +108,8 @@ class LaneRunner::Impl : public lanes::SampleStream {
     const lanes::StepEngine& suitable = lanes::chooseEngine(samples);
     if (engine_ != &suitable) {
       const VectorXd& times = task_.layout.times;
-      integrator_.emplace(model_.problem, std::vector<double>(times.begin(), times.end()), makeOptions(spec_),
-                          suitable);
+      integrator_.emplace(model_.problem, std::vector<double>(times.begin(), times.end()),
+                          makeOptions(spec_, model_), suitable);
       engine_ = &suitable;
     }
     return *integrator_;

@@ -1,6 +1,7 @@
 #include "framework/models/mechanism/lanes/lane_start.hpp"
 
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/models/mechanism/equilibrium.hpp"
 
 namespace twinmap {
 
@@ -24,20 +25,30 @@ void LaneStart::fill(const Parameters& parameters, lanes::Sample& sample) {
 }
 
 void LaneStart::fillInitial(const Parameters& parameters, MatrixXd states, lanes::Sample& sample) {
-  const Index n = model_.counts.states / 2;
+  const VectorXd none = VectorXd::Zero(model_.coordinate_count);
   if (box_center_.size() > 0) {
     states.setZero();
-    states.col(0).head(n) = box_center_;
-  } else if (spec_.initial.equilibrium && n > 0) {
+    states.col(0) = insertSpeeds(box_center_, none);
+  } else if (spec_.initial.equilibrium) {
     rest_.setParameters(parameters);
-    const VectorXd coordinates = twinmap::solveEquilibrium(rest_, states.col(0).head(n));
+    const MatrixXd start = takeEquilibrium(states);
+    const VectorXd equilibrium = twinmap::solveEquilibrium(rest_, start.col(0));
     if (model_.directions > 0) {
-      states.rightCols(model_.directions).topRows(n) =
-          rest_.calcSlopes(coordinates, states.rightCols(model_.directions).topRows(n));
+      const MatrixXd slopes = rest_.calcSlopes(equilibrium, start.rightCols(model_.directions));
+      for (int k = 0; k < model_.directions; ++k) {
+        states.col(1 + k) = insertSpeeds(slopes.col(k), none);
+      }
     }
-    states.col(0).head(n) = coordinates;
+    states.col(0) = insertSpeeds(equilibrium, none);
   }
   sample.initial.assign(states.data(), states.data() + states.size());
+}
+
+MatrixXd LaneStart::takeEquilibrium(const MatrixXd& states) const {
+  const Index n = model_.coordinate_count, m = model_.getFirstOrderCount();
+  MatrixXd rows(n + m, states.cols());
+  rows << states.topRows(n), states.bottomRows(m);
+  return rows;
 }
 
 void LaneStart::fillPhases(const MatrixXd& events, lanes::Sample& sample) const {
@@ -57,10 +68,11 @@ void LaneStart::fillPhases(const MatrixXd& events, lanes::Sample& sample) const 
 }
 
 VectorXd LaneStart::solveEquilibrium(const Parameters& parameters) {
-  const Index n = model_.counts.states / 2;
   rest_.setParameters(parameters);
   return twinmap::solveEquilibrium(
-      rest_, box_center_.size() > 0 ? box_center_ : VectorXd(start_.calc({parameters}).head(n)));
+      rest_, box_center_.size() > 0
+                 ? box_center_
+                 : VectorXd(takeEquilibrium(start_.calc({parameters}).head(model_.counts.states))));
 }
 
 VectorXd solveBoxCenter(ModelContext& context, const LaneModel& model) {

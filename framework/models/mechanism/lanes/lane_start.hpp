@@ -9,7 +9,7 @@ namespace twinmap {
 /// Where the samples of a model start, and when their phases begin.
 class LaneStart {
  public:
-  /// `box_center`: coordinates of the equilibrium that all samples start from, or empty. All must outlive the
+  /// `box_center`: the equilibrium that all samples start from, or empty. All must outlive the
   /// object.
   LaneStart(const ModelSpec& spec, const LaneModel& model, const Eigen::VectorXd& box_center);
 
@@ -17,12 +17,14 @@ class LaneStart {
   /// equilibrium that is not found.
   void fill(const Eigen::Ref<const Eigen::VectorXd>& parameters, lanes::Sample& sample);
 
-  /// Coordinates of the sample's own equilibrium.
+  /// Coordinates, then states of first order, of the sample's own equilibrium.
   Eigen::VectorXd solveEquilibrium(const Eigen::Ref<const Eigen::VectorXd>& parameters);
 
  private:
   void fillInitial(const Eigen::Ref<const Eigen::VectorXd>& parameters, Eigen::MatrixXd states,
                    lanes::Sample& sample);
+  /// Rows [coordinates; states of first order] of all states.
+  Eigen::MatrixXd takeEquilibrium(const Eigen::MatrixXd& states) const;
   void fillPhases(const Eigen::MatrixXd& events, lanes::Sample& sample) const;
 
   const ModelSpec& spec_;
@@ -32,8 +34,8 @@ class LaneStart {
   RestProgram rest_;
 };
 
-/// Coordinates of the equilibrium at the box centre that all samples start from; empty if the spec does not
-/// ask for it. Throws SimulationFailure if it is not found.
+/// The equilibrium (coordinates, then states of first order) at the box centre that all samples start from;
+/// empty if the spec does not ask for it. Throws SimulationFailure if it is not found.
 Eigen::VectorXd solveBoxCenter(ModelContext& context, const LaneModel& model);
 
 }  // namespace twinmap

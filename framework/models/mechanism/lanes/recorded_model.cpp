@@ -28,7 +28,10 @@ NamedValues<Symbol> nameParameters(const ModelSpec& model, program::Recorder& re
 class ModelRecorder {
  public:
   ModelRecorder(const ModelSpec& model, const SystemNames& names)
-      : model_(model), names_(names), recorder_(std::make_unique<program::Recorder>()) {
+      : model_(model),
+        names_(names),
+        recorder_(std::make_unique<program::Recorder>()),
+        uses_rates_(usesSignalRates(model)) {
     values_ = nameParameters(model, *recorder_);
     system_ = equations::calcSystemValues(model.system, names, values_);
   }
@@ -37,6 +40,7 @@ class ModelRecorder {
     RecordedModel recorded;
     recorded.parameter_count = static_cast<int>(countSampled(model_));
     recorded.coordinate_count = system_.coordinate_count;
+    recorded.state_count = system_.state_count;
     recorded.excitation = recordExcitation(model_.excitation, *recorder_, values_);
     recordMotion(recorded);
     recordRest(recorded);
@@ -46,53 +50,87 @@ class ModelRecorder {
   }
 
  private:
-  Symbols getStates(int first) {
+  Symbols getStates(int first, int count) {
     Symbols states;
-    for (int i = 0; i < system_.coordinate_count; ++i) {
+    for (int i = 0; i < count; ++i) {
       states.push_back(recorder_->state(first + i));
     }
     return states;
   }
+  Symbols getCoordinates() { return getStates(0, system_.coordinate_count); }
+  Symbols getSpeeds() { return getStates(system_.coordinate_count, system_.coordinate_count); }
+  Symbols getFirstOrder() { return getStates(2 * system_.coordinate_count, system_.state_count); }
 
   ModelMotion<Symbol> calcMotion(const ModelState<Symbol>& state) {
     return equations::calcModelMotion(model_, names_, values_, system_, state);
   }
 
   void recordMotion(RecordedModel& recorded) {
-    const ModelState<Symbol> state{recorder_->time(), getStates(0), getStates(system_.coordinate_count),
-                                   recorded.excitation.signals};
+    const ModelState<Symbol> state{recorder_->time(),
+                                   getCoordinates(),
+                                   getSpeeds(),
+                                   getFirstOrder(),
+                                   recorded.excitation.signals,
+                                   calcRates(recorded.excitation.signals)};
     const ModelMotion<Symbol> motion = calcMotion(state);
     recorded.derivatives = motion.rates;
-    recorded.derivatives.insert(recorded.derivatives.end(), motion.accelerations.begin(),
-                                motion.accelerations.end());
+    append(motion.accelerations, recorded.derivatives);
+    append(motion.state_rates, recorded.derivatives);
     recorded.pivots = motion.pivots;
+    const NamedValues<Symbol> named =
+        equations::hasExpression(model_.outputs) ? nameAll(state, motion) : values_;
     for (const OutputSpec& output : model_.outputs) {
-      recorded.outputs.push_back(equations::calcOutput(output, names_, values_, system_, state, motion));
+      recorded.outputs.push_back(equations::calcOutput(output, names_, named, system_, state, motion));
     }
   }
 
+  /// Time derivatives of signals, where they are used.
+  Symbols calcRates(const Symbols& signals) {
+    return uses_rates_ ? program::calcTangents(signals, {{recorder_->time(), 1.0}}) : Symbols{};
+  }
+
+  /// What expressions of outputs may use.
+  NamedValues<Symbol> nameAll(const ModelState<Symbol>& state, const ModelMotion<Symbol>& motion) {
+    NamedValues<Symbol> named = equations::nameState(model_, names_, state, motion.rates, values_);
+    const Symbols second = calcSecondDerivatives(state, motion);
+    for (std::size_t i = 0; i < second.size(); ++i) {
+      named.set(names_.getCoordinateNames()[i] + "_ddot", second[i]);
+    }
+    return named;
+  }
+
   ModelState<Symbol> makeQuietState(Symbols speeds) {
-    return {0.0, getStates(0), std::move(speeds), Symbols(model_.excitation.size(), Symbol(0.0))};
+    return {0.0,
+            getCoordinates(),
+            std::move(speeds),
+            getFirstOrder(),
+            Symbols(model_.excitation.size(), Symbol(0.0)),
+            Symbols(uses_rates_ ? model_.excitation.size() : 0, Symbol(0.0))};
   }
 
   void recordRest(RecordedModel& recorded) {
     const int n = system_.coordinate_count;
     const ModelMotion<Symbol> rest = calcMotion(makeQuietState(Symbols(n, Symbol(0.0))));
-    recorded.rest_accelerations = rest.accelerations;
+    recorded.rest_rates = rest.accelerations;
+    append(rest.state_rates, recorded.rest_rates);
     recorded.rest_pivots = rest.pivots;
-    const ModelState<Symbol> moving = makeQuietState(getStates(n));
+    const ModelState<Symbol> moving = makeQuietState(getSpeeds());
     const ModelMotion<Symbol> motion = calcMotion(moving);
-    const Symbols second = calcSecondDerivatives(moving, motion);
+    Symbols changes = calcSecondDerivatives(moving, motion);
+    append(motion.state_rates, changes);
     for (int i = 0; i < n; ++i) {
-      append(program::calcTangents(second, {{moving.coordinates[i], 1.0}}), recorded);
+      append(program::calcTangents(changes, {{moving.coordinates[i], 1.0}}), recorded.linearization);
     }
     for (int i = 0; i < n; ++i) {
-      append(program::calcTangents(second, makeRateSeeds(moving, i)), recorded);
+      append(program::calcTangents(changes, makeRateSeeds(moving, i)), recorded.linearization);
+    }
+    for (const Symbol& state : moving.states) {
+      append(program::calcTangents(changes, {{state, 1.0}}), recorded.linearization);
     }
   }
 
-  static void append(const Symbols& column, RecordedModel& recorded) {
-    recorded.stiffness_and_damping.insert(recorded.stiffness_and_damping.end(), column.begin(), column.end());
+  static void append(const Symbols& more, Symbols& symbols) {
+    symbols.insert(symbols.end(), more.begin(), more.end());
   }
 
   /// Second time derivatives of the coordinates.
@@ -132,7 +170,15 @@ class ModelRecorder {
       rates.assign(rates.size(), Symbol(0.0));
     }
     const Symbols speeds = equations::calcSpeeds(system_, coordinates, rates);
-    coordinates.insert(coordinates.end(), speeds.begin(), speeds.end());
+    append(speeds, coordinates);
+    for (const StateSpec& state : model_.system.states) {
+      coordinates.push_back(values_.calc(state.initial));
+    }
+    system_.elements.forEachList([&](const auto& list) {
+      for (const auto& element : list) {
+        forEachOwnState(element, [&](const auto& part, int) { coordinates.push_back(part.initial); });
+      }
+    });
     return coordinates;
   }
 
@@ -141,6 +187,7 @@ class ModelRecorder {
   std::unique_ptr<program::Recorder> recorder_;
   NamedValues<Symbol> values_;
   SystemValues<Symbol> system_;
+  const bool uses_rates_;
 };
 
 }  // namespace

@@ -12,22 +12,25 @@
 namespace twinmap {
 
 /// A model written down once for all parameter sets. Parameters are those of collectSampled(); states the
-/// coordinates in the order of SystemNames, then their speeds (Simbody's: see equations::JointMotion).
+/// coordinates in the order of SystemNames, then their speeds (Simbody's: see equations::JointMotion), then
+/// the states of first order.
 struct RecordedModel {
   using Symbols = std::vector<program::Symbol>;
 
   std::unique_ptr<program::Recorder> recorder;
   int parameter_count = 0, coordinate_count = 0;
+  int state_count = 0;  ///< of first order
   RecordedExcitation excitation;
   Symbols derivatives;  ///< of the states with respect to time
   Symbols pivots;       ///< not positive where the mass matrix is singular
   Symbols outputs;
-  Symbols initial;             ///< states at t = 0; of parameters alone; without equilibrium
-  Symbols rest_accelerations;  ///< at rest and t = 0 without excitation, of the coordinates
+  Symbols initial;     ///< states at t = 0; of parameters alone; without equilibrium
+  Symbols rest_rates;  ///< at rest and t = 0 without excitation: accelerations, then rates of the states of
+                       ///< first order
   Symbols rest_pivots;
-  /// d/dt of [coordinates; their rates] linearised around rest, at t = 0 without excitation: entry (row,
-  /// column) of the lower half, column by column (coordinates x 2 coordinates), at speeds 0.
-  Symbols stiffness_and_damping;
+  /// d/dt of [coordinates; their rates; states of first order] linearised around rest, at t = 0 without
+  /// excitation: all rows but those of the coordinates, column by column, at speeds 0.
+  Symbols linearization;
 };
 
 /// Writes a model down. Cost: some milliseconds.

@@ -9,30 +9,38 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 RestProgram::RestProgram(const LaneModel& model)
-    : count_(model.counts.states / 2), directions_(model.directions), program_(model.rest) {}
+    : coordinates_(model.coordinate_count),
+      count_(model.coordinate_count + model.getFirstOrderCount()),
+      directions_(model.directions),
+      program_(model.rest) {}
 
-VectorXd RestProgram::calcAll(const VectorXd& coordinates) {
-  const VectorXd all = program_.calc({parameters_, coordinates});
-  if ((all.segment(count_, count_).array() <= 0.0)
+VectorXd RestProgram::calcAll(const VectorXd& equilibrium) {
+  const VectorXd all = program_.calc({parameters_, insertSpeeds(equilibrium, VectorXd::Zero(coordinates_))});
+  if ((all.segment(count_, coordinates_).array() <= 0.0)
           .any()) {  // false for NaN, which is not an equilibrium anyway
     throw SimulationFailure(kSingularMassMatrix);
   }
   return all;
 }
 
-VectorXd RestProgram::calc(const VectorXd& coordinates) {
-  return calcAll(coordinates).head(count_);
+VectorXd RestProgram::calc(const VectorXd& equilibrium) {
+  return calcAll(equilibrium).head(count_);
 }
 
-MatrixXd RestProgram::calcJacobian(const VectorXd& coordinates) {
-  return calcAll(coordinates).segment(2 * count_, count_ * count_).reshaped(count_, count_);
+MatrixXd RestProgram::calcJacobian(const VectorXd& equilibrium) {
+  const VectorXd all = calcAll(equilibrium);
+  MatrixXd jacobian = all.segment(count_ + coordinates_, count_ * count_).reshaped(count_, count_);
+  holdIndifferentStates(all.head(count_), coordinates_, jacobian);
+  return jacobian;
 }
 
-MatrixXd RestProgram::calcSlopes(const VectorXd& coordinates, const MatrixXd& start_slopes) {
-  const VectorXd all = calcAll(coordinates);
-  const MatrixXd jacobian = all.segment(2 * count_, count_ * count_).reshaped(count_, count_);
+MatrixXd RestProgram::calcSlopes(const VectorXd& equilibrium, const MatrixXd& start_slopes) {
+  const VectorXd all = calcAll(equilibrium);
+  MatrixXd jacobian = all.segment(count_ + coordinates_, count_ * count_).reshaped(count_, count_);
   const MatrixXd forced = all.tail(count_ * directions_).reshaped(count_, directions_);
-  return start_slopes - linalg::fitLinear(jacobian, forced + jacobian * start_slopes).coefficients;
+  const MatrixXd changes = forced + jacobian * start_slopes;
+  holdIndifferentStates(all.head(count_), coordinates_, jacobian);
+  return start_slopes - linalg::fitLinear(jacobian, changes).coefficients;
 }
 
 }  // namespace twinmap

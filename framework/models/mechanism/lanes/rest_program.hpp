@@ -6,23 +6,23 @@
 
 namespace twinmap {
 
-/// The accelerations at rest by the recorded program, with exact derivatives.
+/// The accelerations and rates at rest by the recorded program, with exact derivatives.
 class RestProgram : public RestAccelerations {
  public:
   explicit RestProgram(const LaneModel& model);
 
   void setParameters(const Eigen::Ref<const Eigen::VectorXd>& parameters) { parameters_ = parameters; }
-  Eigen::VectorXd calc(const Eigen::VectorXd& coordinates) override;
-  Eigen::MatrixXd calcJacobian(const Eigen::VectorXd& coordinates) override;
+  Eigen::VectorXd calc(const Eigen::VectorXd& equilibrium) override;
+  Eigen::MatrixXd calcJacobian(const Eigen::VectorXd& equilibrium) override;
 
-  /// How the equilibrium at `coordinates`, found from `start`, changes with each parameter (coordinates x
-  /// parameters): -J^+ da/dp, and the start's own change along directions that no force depends on.
-  Eigen::MatrixXd calcSlopes(const Eigen::VectorXd& coordinates, const Eigen::MatrixXd& start_slopes);
+  /// How the equilibrium, found from `start`, changes with each parameter (its size x parameters):
+  /// -J^+ da/dp, and the start's own change along directions that no force depends on.
+  Eigen::MatrixXd calcSlopes(const Eigen::VectorXd& equilibrium, const Eigen::MatrixXd& start_slopes);
 
  private:
-  Eigen::VectorXd calcAll(const Eigen::VectorXd& coordinates);
+  Eigen::VectorXd calcAll(const Eigen::VectorXd& equilibrium);
 
-  Eigen::Index count_, directions_;
+  Eigen::Index coordinates_, count_, directions_;  ///< count_: with the states of first order
   Eigen::VectorXd parameters_;
   SingleProgram program_;
 };

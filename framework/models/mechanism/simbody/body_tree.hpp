@@ -2,6 +2,7 @@
 
 #include <Simbody.h>
 
+#include <optional>
 #include <vector>
 
 #include "framework/models/mechanism/system_names.hpp"
@@ -22,7 +23,7 @@ class BodyTree {
   BodyTree(const SystemSpec& spec, const SystemNames& names, ModelNumbers& numbers);
 
   /// Where forces are put that Simbody's own integrators are to see; call once, before realize().
-  SimTK::GeneralForceSubsystem addForceSubsystem() { return SimTK::GeneralForceSubsystem(system_); }
+  SimTK::GeneralForceSubsystem& addForceSubsystem() { return forces_.emplace(system_); }
 
   /// Completes the system; the state is then ready to take coordinates.
   void realize();
@@ -43,6 +44,7 @@ class BodyTree {
   const SystemNames& names_;
   SimTK::MultibodySystem system_;
   SimTK::SimbodyMatterSubsystem matter_{system_};
+  std::optional<SimTK::GeneralForceSubsystem> forces_;
   SimTK::State state_;
   std::vector<Slot> slots_;
 };

@@ -1,6 +1,7 @@
 #include "framework/models/mechanism/simbody/box_center.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "framework/experiment/check/check_experiment.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
@@ -40,10 +41,14 @@ void checkInitialState(SimbodyContext& context, const Eigen::VectorXd& box_cente
   SimTK::State state = system.getTree().getDefaultState();
   setState(system, calcInitialState(context, system, box_center), state);
   context.excitation.beginPhase(0.0);
-  const bool finite = system.calcUDot(state, 0.0).allFinite();
+  bool finite = system.calcUDot(state, 0.0).allFinite();
+  for (const double rate : system.getStateRates()) {
+    finite = finite && std::isfinite(rate);
+  }
   context.excitation.mute();
   if (!finite) {
-    throw SimulationFailure("the accelerations of the initial state are not finite");
+    throw SimulationFailure(
+        "the accelerations of the initial state are not finite, or the rates of its states");
   }
 }
 
@@ -64,7 +69,7 @@ Eigen::VectorXd solveBoxCenter(SimbodyContext& context) {
     atBoxCenter(context, [&] {
       context.numbers.update(calcEquilibriumPoint(context));
       LoadedSystem system(context, false);
-      coordinates = solveEquilibrium(system, calcInitialValues(context).coordinates);
+      coordinates = solveEquilibrium(system, calcInitialValues(context).getEquilibrium());
     });
   }
   return coordinates;

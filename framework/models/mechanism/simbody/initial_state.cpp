@@ -10,8 +10,12 @@ class LoadedSystemAtRest : public RestAccelerations {
       : system_(system), state_(system.getTree().getDefaultState()) {}
 
   Eigen::VectorXd calc(const Eigen::VectorXd& q) override {
-    setState(system_, {q, Eigen::VectorXd::Zero(q.size())}, state_);
-    return system_.calcUDot(state_, 0.0);
+    const Eigen::Index n = countCoordinates();
+    setState(system_, {q.head(n), Eigen::VectorXd::Zero(n), q.tail(q.size() - n)}, state_);
+    Eigen::VectorXd rates(q.size());
+    rates.head(n) = system_.calcUDot(state_, 0.0);
+    std::copy(system_.getStateRates().begin(), system_.getStateRates().end(), rates.begin() + n);
+    return rates;
   }
 
   Eigen::MatrixXd calcJacobian(const Eigen::VectorXd& q) override {
@@ -23,10 +27,17 @@ class LoadedSystemAtRest : public RestAccelerations {
       backward[i] -= h;
       jacobian.col(i) = (calc(forward) - calc(backward)) / (forward[i] - backward[i]);
     }
+    if (system_.countStates() > 0) {
+      holdIndifferentStates(calc(q), countCoordinates(), jacobian);
+    }
     return jacobian;
   }
 
  private:
+  Eigen::Index countCoordinates() const {
+    return static_cast<Eigen::Index>(system_.getTree().getSlots().size());
+  }
+
   LoadedSystem& system_;
   SimTK::State state_;
 };
@@ -41,15 +52,15 @@ Eigen::VectorXd solveEquilibrium(LoadedSystem& system, const Eigen::VectorXd& st
 InitialState calcInitialState(ModelContext& context, LoadedSystem& system,
                               const Eigen::VectorXd& box_center) {
   const std::optional<EquilibriumSpec>& equilibrium = context.model.initial.equilibrium;
-  InitialState initial = calcInitialValues(context);
+  const InitialState initial = calcInitialValues(context);
   if (!equilibrium) {
     return initial;
   }
-  initial.speeds.setZero();
-  initial.coordinates = equilibrium->at == EquilibriumAt::kBoxCenter
-                            ? box_center
-                            : solveEquilibrium(system, initial.coordinates);
-  return initial;
+  const Eigen::VectorXd solved = equilibrium->at == EquilibriumAt::kBoxCenter
+                                     ? box_center
+                                     : solveEquilibrium(system, initial.getEquilibrium());
+  const Eigen::Index n = initial.coordinates.size();
+  return {solved.head(n), Eigen::VectorXd::Zero(n), solved.tail(solved.size() - n)};
 }
 
 void setState(const LoadedSystem& system, const InitialState& initial, SimTK::State& state) {
@@ -64,6 +75,9 @@ void setState(const LoadedSystem& system, const InitialState& initial, SimTK::St
   SimTK::Vector u(state.getNU());
   tree.getMatter().multiplyByNInv(state, false, qdot, u);
   state.updU() = u;
+  for (Eigen::Index i = 0; i < initial.states.size(); ++i) {
+    state.updZ()[static_cast<int>(i)] = initial.states[i];
+  }
   tree.getSystem().realize(state, SimTK::Stage::Velocity);
 }
 

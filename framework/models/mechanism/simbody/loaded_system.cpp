@@ -12,10 +12,18 @@ SimTK::Vec3 toVec3(const algebra::Vec3<double>& v) {
   return SimTK::Vec3(v.x, v.y, v.z);
 }
 
-/// Shows the forces of a loaded system to Simbody's own integrators.
+/// Shows the forces of a loaded system to Simbody's own integrators, and keeps its states of first order in
+/// Simbody's z.
 class ForceAdapter : public SimTK::Force::Custom::Implementation {
  public:
-  explicit ForceAdapter(LoadedSystem& system) : system_(system) {}
+  ForceAdapter(LoadedSystem& system, const SimTK::GeneralForceSubsystem& subsystem)
+      : system_(system), subsystem_(subsystem) {}
+
+  void realizeTopology(SimTK::State& state) const override {
+    if (system_.countStates() > 0) {
+      subsystem_.allocateZ(state, SimTK::Vector(system_.countStates(), 0.0));
+    }
+  }
 
   void calcForce(const SimTK::State& state, SimTK::Vector_<SimTK::SpatialVec>& body_forces,
                  SimTK::Vector_<SimTK::Vec3>&, SimTK::Vector& mobility_forces) const override {
@@ -27,10 +35,18 @@ class ForceAdapter : public SimTK::Force::Custom::Implementation {
       mobility_forces[static_cast<int>(i)] += forces.on_speeds[i];
     }
   }
+  void realizeAcceleration(const SimTK::State& state) const override {
+    if (system_.countStates() > 0) {
+      system_.calcForces(state, state.getTime());
+      std::copy(system_.getStateRates().begin(), system_.getStateRates().end(),
+                state.updZDot().updContiguousScalarData());
+    }
+  }
   SimTK::Real calcPotentialEnergy(const SimTK::State&) const override { return 0.0; }
 
  private:
   LoadedSystem& system_;
+  const SimTK::GeneralForceSubsystem& subsystem_;
 };
 
 }  // namespace
@@ -41,17 +57,20 @@ LoadedSystem::LoadedSystem(SimbodyContext& context, bool for_simbody)
       numbers_(calcLoadNumbers(context.model.system, context.names, context.numbers)),
       coordinates_(context.names.getCoordinateNames().size()),
       rates_(coordinates_.size()),
-      signals_(context.excitation.getSignalCount(), 0.0) {
+      states_(context.names.getStateNames().size()),
+      signals_(context.excitation.getSignalCount(), 0.0),
+      signal_rates_(context.expressions.hasSignalRates() ? signals_.size() : 0) {
   context.expressions.setNumbers(context.numbers.getValues());
   context.excitation.update(context.numbers);
-  if (for_simbody) {
-    SimTK::GeneralForceSubsystem subsystem = tree_.addForceSubsystem();
-    SimTK::Force::Custom(subsystem, new ForceAdapter(*this));
+  if (for_simbody || countStates() > 0) {
+    SimTK::GeneralForceSubsystem& subsystem = tree_.addForceSubsystem();
+    SimTK::Force::Custom(subsystem, new ForceAdapter(*this, subsystem));
   }
   tree_.realize();
   motions_.resize(tree_.getMatter().getNumBodies());
   loads_.on_bodies.resize(motions_.size());
   loads_.on_speeds.resize(coordinates_.size());
+  loads_.state_rates.resize(states_.size());
   forces_.on_bodies.resize(tree_.getMatter().getNumBodies());
   forces_.on_speeds.resize(tree_.getDefaultState().getNU());
   dynamics_.emplace(tree_);
@@ -67,6 +86,9 @@ void LoadedSystem::readMotion(const SimTK::State& state) {
     motions_[i].velocity = {toVector(body.getBodyAngularVelocity(state)),
                             toVector(body.getBodyOriginVelocity(state))};
   }
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    states_[i] = state.getZ()[static_cast<int>(i)];
+  }
   const SimTK::Vector &q = state.getQ(), &rates = tree_.getMatter().getQDot(state);
   for (std::size_t i = 0; i < coordinates_.size(); ++i) {
     coordinates_[i] = q[tree_.getSlots()[i].q];
@@ -77,17 +99,21 @@ void LoadedSystem::readMotion(const SimTK::State& state) {
 const SystemForces& LoadedSystem::calcForces(const SimTK::State& state, double t) {
   readMotion(state);
   context_.excitation.calcValues(t, signals_);
-  context_.expressions.setState(t, coordinates_, rates_, signals_);
+  if (!signal_rates_.empty()) {
+    context_.excitation.calcRates(t, signal_rates_);
+  }
+  context_.expressions.setState(t, coordinates_, rates_, states_, signals_, signal_rates_);
   std::fill(loads_.on_bodies.begin(), loads_.on_bodies.end(), equations::Spatial<double>{});
   std::fill(loads_.on_speeds.begin(), loads_.on_speeds.end(), 0.0);
-  equations::ForceSum<double, StateExpressions> sum(motions_, coordinates_, rates_, context_.expressions,
-                                                    loads_);
+  equations::ForceSum<double, StateExpressions> sum(motions_, coordinates_, rates_, states_,
+                                                    context_.expressions, loads_);
   for (std::size_t i = 1; i < motions_.size(); ++i) {
     const SimTK::SpatialInertia& inertia =
         tree_.getBody(static_cast<int>(i)).getBodySpatialInertiaInGround(state);
     sum.addAt(static_cast<int>(i), toVector(inertia.getMassCenter()),
               algebra::scale(inertia.getMass(), numbers_.gravity));
   }
+  equations::setStateRates(context_.model.system.states, context_.expressions, loads_);
   equations::addElementForces(numbers_.elements, sum);
   for (std::size_t i = 0; i < motions_.size(); ++i) {
     forces_.on_bodies[i] =
@@ -97,6 +123,16 @@ const SystemForces& LoadedSystem::calcForces(const SimTK::State& state, double t
     forces_.on_speeds[tree_.getSlots()[i].u] = loads_.on_speeds[i];
   }
   return forces_;
+}
+
+void LoadedSystem::nameAccelerations(const SimTK::State& state, const SimTK::Vector& udot) {
+  SimTK::Vector second;
+  tree_.getMatter().calcQDotDot(state, udot, second);
+  std::vector<double> accelerations;
+  for (const BodyTree::Slot& slot : tree_.getSlots()) {
+    accelerations.push_back(second[slot.q]);
+  }
+  context_.expressions.setAccelerations(accelerations);
 }
 
 const Eigen::VectorXd& LoadedSystem::calcUDot(const SimTK::State& state, double t) {

@@ -28,19 +28,31 @@ inline constexpr double kDifferenceStep = 6e-6;
 class LoadedSystem {
  public:
   /// Builds the system for the current values of the context's numbers, with muted excitation.
-  /// `for_simbody`: make the forces visible to Simbody's own integrators. Throws SimulationFailure.
+  /// `for_simbody`: make the forces visible to Simbody's own integrators; where there are states of first
+  /// order they are. Throws SimulationFailure.
   LoadedSystem(SimbodyContext& context, bool for_simbody);
   LoadedSystem(const LoadedSystem&) = delete;
   LoadedSystem& operator=(const LoadedSystem&) = delete;
 
   const BodyTree& getTree() const { return tree_; }
 
-  /// Sums all forces at time t and a state that is realized to Velocity. Valid until the next call.
+  /// Sums all forces at time t and a state that is realized to Velocity. Valid until the next call, as are
+  /// the rates of the states of first order and what expressions of the context give.
   const SystemForces& calcForces(const SimTK::State& state, double t);
+  const std::vector<double>& getStateRates() const { return loads_.state_rates; }
+  int countStates() const { return static_cast<int>(states_.size()); }
 
   /// u' at time t and a state that is realized to Velocity. Valid until the next call. Throws
   /// SimulationFailure if the mass matrix is singular.
   const Eigen::VectorXd& calcUDot(const SimTK::State& state, double t);
+
+  /// At the state of the last call of calcForces() or calcUDot(). `expression`: an output's, by its address;
+  /// nameAccelerations() comes first.
+  double calcExpression(const Expression& expression) const { return context_.expressions.calc(expression); }
+  void nameAccelerations(const SimTK::State& state, const SimTK::Vector& udot);
+  SimTK::Vec3 getGravity() const {
+    return SimTK::Vec3(numbers_.gravity.x, numbers_.gravity.y, numbers_.gravity.z);
+  }
 
  private:
   void readMotion(const SimTK::State& state);
@@ -48,7 +60,7 @@ class LoadedSystem {
   SimbodyContext& context_;
   BodyTree tree_;
   LoadNumbers numbers_;
-  std::vector<double> coordinates_, rates_, signals_;
+  std::vector<double> coordinates_, rates_, states_, signals_, signal_rates_;
   std::vector<equations::BodyMotion<double>> motions_;  ///< ground first; without columns and bias
   equations::Loads<double> loads_;
   SystemForces forces_;

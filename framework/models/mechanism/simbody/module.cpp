@@ -53,6 +53,9 @@ class LoadedModel final : public SimbodyModel {
           VectorXd::NullaryExpr(n, [&](Eigen::Index i) { return state.getU()[tree.getSlots()[i].u]; });
       motion.accelerations =
           VectorXd::NullaryExpr(n, [&](Eigen::Index i) { return state.getUDot()[tree.getSlots()[i].u]; });
+      system_->calcForces(state, t);
+      const std::vector<double>& rates = system_->getStateRates();
+      motion.state_rates = Eigen::Map<const VectorXd>(rates.data(), static_cast<Eigen::Index>(rates.size()));
       motion.outputs.resize(static_cast<Eigen::Index>(context_.model.outputs.size()));
       outputs_->calc(*system_, state, t, motion.outputs.data(), 1);
       return motion;

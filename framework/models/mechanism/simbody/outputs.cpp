@@ -9,7 +9,11 @@ using SimTK::Vec3;
 Outputs::Outputs(const std::vector<OutputSpec>& outputs, const SystemNames& names, ModelNumbers& numbers) {
   for (const OutputSpec& spec : outputs) {
     const OutputNumbers output = calcOutputNumbers(spec, names, numbers);
-    needs_accelerations_ = needs_accelerations_ || output.kind == OutputKind::kAcceleration;
+    const bool of_expression = output.kind == OutputKind::kExpression;
+    has_expressions_ = has_expressions_ || of_expression;
+    needs_accelerations_ = needs_accelerations_ || of_expression ||
+                           output.kind == OutputKind::kAcceleration ||
+                           output.kind == OutputKind::kSpecificForce;
     const bool position = output.kind == OutputKind::kPosition;
     const Stage needed = output.kind == OutputKind::kCoordinate ? Stage::Time
                          : position                             ? Stage::Position
@@ -26,12 +30,16 @@ void Outputs::calc(LoadedSystem& system, const SimTK::State& state, double t, do
     const Eigen::VectorXd& udot = system.calcUDot(state, t);
     const SimTK::Vector view(static_cast<int>(udot.size()), udot.data(), true);
     system.getTree().getMatter().calcBodyAccelerationFromUDot(state, view, accelerations);
+    if (has_expressions_) {
+      system.nameAccelerations(state, view);
+    }
   }
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     const OutputNumbers& output = outputs_[i];
-    const double quantity = output.kind == OutputKind::kAcceleration
-                                ? calcAcceleration(output, system, state, accelerations)
-                                : calcQuantity(output, system, state);
+    const bool of_acceleration =
+        output.kind == OutputKind::kAcceleration || output.kind == OutputKind::kSpecificForce;
+    const double quantity = of_acceleration ? calcAcceleration(output, system, state, accelerations)
+                                            : calcQuantity(output, system, state);
     values[static_cast<std::ptrdiff_t>(i) * stride] =
         output.sensor ? output.sensor->gain * quantity + output.sensor->offset : quantity;
   }
@@ -49,6 +57,13 @@ double Outputs::calcQuantity(const OutputNumbers& output, const LoadedSystem& sy
       return SimTK::dot(
           tree.getBody(output.station.body).findStationLocationInGround(state, toVec3(output.station.point)),
           toVec3(output.direction));
+    case OutputKind::kExpression:
+      return system.calcExpression(*output.expression);
+    case OutputKind::kAngularVelocity: {
+      const SimTK::MobilizedBody& body = tree.getBody(output.station.body);
+      return SimTK::dot(body.getBodyAngularVelocity(state),
+                        body.expressVectorInGroundFrame(state, toVec3(output.direction)));
+    }
     default:
       return SimTK::dot(
           tree.getBody(output.station.body).findStationVelocityInGround(state, toVec3(output.station.point)),
@@ -56,7 +71,8 @@ double Outputs::calcQuantity(const OutputNumbers& output, const LoadedSystem& sy
   }
 }
 
-/// a + b x r + w x (w x r), with b and a the angular and linear acceleration of the body at its origin.
+/// a + b x r + w x (w x r), with b and a the angular and linear acceleration of the body at its origin; of a
+/// specific force less gravity, and along the body's own direction.
 double Outputs::calcAcceleration(const OutputNumbers& output, const LoadedSystem& system,
                                  const SimTK::State& state,
                                  const SimTK::Vector_<SimTK::SpatialVec>& accelerations) const {
@@ -66,7 +82,11 @@ double Outputs::calcAcceleration(const OutputNumbers& output, const LoadedSystem
   const Vec3& spin = body.getBodyAngularVelocity(state);
   const Vec3 acceleration =
       at_origin[1] + SimTK::cross(at_origin[0], arm) + SimTK::cross(spin, SimTK::cross(spin, arm));
-  return SimTK::dot(acceleration, toVec3(output.direction));
+  const Vec3 direction = toVec3(output.direction);
+  return output.kind == OutputKind::kAcceleration
+             ? SimTK::dot(acceleration, direction)
+             : SimTK::dot(acceleration - system.getGravity(),
+                          body.expressVectorInGroundFrame(state, direction));
 }
 
 }  // namespace twinmap

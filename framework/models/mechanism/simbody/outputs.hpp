@@ -28,7 +28,7 @@ class Outputs {
 
   std::vector<OutputNumbers> outputs_;
   SimTK::Stage stage_ = SimTK::Stage::Time;
-  bool needs_accelerations_ = false;
+  bool needs_accelerations_ = false, has_expressions_ = false;
 };
 
 }  // namespace twinmap

@@ -7,7 +7,7 @@
 namespace twinmap {
 namespace {
 
-/// x = [q; u] in Simbody's order.
+/// x = [q; u; z] in Simbody's order.
 class MultibodyOde : public OdeProblem {
  public:
   MultibodyOde(const SampleRun& run, SimTK::State& state)
@@ -28,6 +28,8 @@ class MultibodyOde : public OdeProblem {
     const SimTK::Vector& qdot = tree_.getMatter().getQDot(state_);
     std::copy_n(qdot.getContiguousScalarData(), qdot.size(), dxdt.begin());
     std::copy_n(udot.data(), udot.size(), dxdt.begin() + qdot.size());
+    const std::vector<double>& rates = run_.system.getStateRates();
+    std::copy(rates.begin(), rates.end(), dxdt.begin() + qdot.size() + udot.size());
   }
 
   void recordOutput(int index, double t, const State& x) override {
@@ -42,6 +44,9 @@ class MultibodyOde : public OdeProblem {
     std::copy_n(x.begin(), q.size(), q.updContiguousScalarData());
     SimTK::Vector& u = state_.updU();
     std::copy_n(x.begin() + q.size(), u.size(), u.updContiguousScalarData());
+    if (const int states = run_.system.countStates(); states > 0) {
+      std::copy_n(x.end() - states, states, state_.updZ().updContiguousScalarData());
+    }
   }
 
   const SampleRun& run_;
@@ -56,6 +61,9 @@ OdeProblem::State getValues(const SimTK::State& state) {
   }
   for (int i = 0; i < state.getNU(); ++i) {
     x.push_back(state.getU()[i]);
+  }
+  for (int i = 0; i < state.getNZ(); ++i) {
+    x.push_back(state.getZ()[i]);
   }
   return x;
 }

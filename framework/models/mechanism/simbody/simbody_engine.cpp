@@ -53,7 +53,7 @@ void SimbodyEngine::fillModes(LoadedSystem& system, Eigen::Ref<Eigen::VectorXd> 
     return;
   }
   const Eigen::VectorXd start =
-      task_.box_center.size() > 0 ? task_.box_center : calcInitialValues(context_).coordinates;
+      task_.box_center.size() > 0 ? task_.box_center : calcInitialValues(context_).getEquilibrium();
   response.tail(2 * task_.layout.modes) =
       collectLowestModes(calcStateMatrix(system, solveEquilibrium(system, start)), task_.layout.modes);
 }

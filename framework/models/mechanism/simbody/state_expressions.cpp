@@ -1,51 +1,49 @@
 #include "framework/models/mechanism/simbody/state_expressions.hpp"
 
+#include "framework/models/mechanism/equations/outputs.hpp"
+#include "framework/models/mechanism/system_names.hpp"
+#include "framework/models/mechanism/varying_expressions.hpp"
+
 namespace twinmap {
 namespace {
 
-/// Binds the fields of a description that vary (fields/fields.hpp).
-class VaryingFields {
- public:
-  VaryingFields(NamedValues<double>& values, std::unordered_map<const Expression*, BoundExpression>& bound)
-      : values_(values), bound_(bound) {}
-
-  template <class T, class... Rule>
-  void required(const char*, T&, const char*, const Rule&...) {}
-  void required(const char*, Expression& field, const char*, const Unit& unit) {
-    if (unit.varies) {
-      bind(field);
-    }
-  }
-  void required(const char*, Expression3& field, const char*, const Unit& unit) {
-    for (const Expression& component : field) {
-      if (unit.varies) {
-        bind(component);
-      }
-    }
-  }
-  template <class T, class... Rule>
-  void optional(const char* key, T& field, const char* what, const Rule&... rule) {
-    required(key, field, what, rule...);
-  }
-  void rule(bool, const char*) const {}
-
- private:
-  void bind(const Expression& expression) { bound_.emplace(&expression, values_.bind(expression)); }
-
-  NamedValues<double>& values_;
-  std::unordered_map<const Expression*, BoundExpression>& bound_;
-};
+constexpr int kTaken = -1;  ///< another value has the name
 
 }  // namespace
 
 StateExpressions::StateExpressions(const ModelSpec& model, const NamedValues<double>& numbers) {
   defineNames(model, numbers);
-  VaryingFields fields(values_, bound_);
-  const_cast<ForceElements<Expression>&>(model.system.elements).forEachList([&fields](auto& list) {
-    for (auto& element : list) {
-      describe(fields, element);  // which reads them only
+  defineStates(model);
+  const ExpressionAction bind = [this](const Expression& expression) {
+    bound_.emplace(&expression, values_.bind(expression));
+  };
+  forEachForceExpression(model.system, bind);
+  first_acceleration_ = static_cast<int>(values_.getNames().size());
+  if (equations::hasExpression(model.outputs)) {
+    defineAccelerations(model);
+    forEachOutputExpression(model.outputs, bind);
+  }
+}
+
+void StateExpressions::defineStates(const ModelSpec& model) {
+  first_state_ = static_cast<int>(values_.getNames().size());
+  const SystemNames names(model.system);
+  for (const std::string& state : names.getStateNames()) {
+    defineName(values_, {state, {}});
+  }
+  first_named_ = static_cast<int>(values_.getNames().size());
+  for (const NamedExpression& named : model.system.expressions) {
+    named_.push_back(values_.bind(named.value));
+    defineName(values_, named.name);
+  }
+}
+
+void StateExpressions::defineAccelerations(const ModelSpec& model) {
+  for (const BodySpec& body : model.system.bodies) {
+    for (const Name& coordinate : body.joint.coordinates) {
+      defineName(values_, {coordinate.text + "_ddot", coordinate.where});
     }
-  });
+  }
 }
 
 void StateExpressions::defineNames(const ModelSpec& model, const NamedValues<double>& numbers) {
@@ -70,6 +68,10 @@ void StateExpressions::defineNames(const ModelSpec& model, const NamedValues<dou
     defineName(values_, signal.name);
   }
   time_ = values_.define("t");
+  for (const SignalSpec& signal : usesSignalRates(model) ? model.excitation : std::vector<SignalSpec>{}) {
+    const std::string rate = nameRate(signal);
+    signal_rates_.push_back(values_.contains(rate) ? kTaken : values_.define(rate));
+  }
 }
 
 void StateExpressions::setNumbers(const NamedValues<double>& values) {
@@ -85,7 +87,8 @@ void StateExpressions::setFrom(int first, const std::vector<double>& values) {
 }
 
 void StateExpressions::setState(double t, const std::vector<double>& coordinates,
-                                const std::vector<double>& rates, const std::vector<double>& signals) {
+                                const std::vector<double>& rates, const std::vector<double>& states,
+                                const std::vector<double>& signals, const std::vector<double>& signal_rates) {
   if (bound_.empty()) {
     return;
   }
@@ -93,6 +96,19 @@ void StateExpressions::setState(double t, const std::vector<double>& coordinates
   setFrom(first_speed_, rates);
   setFrom(first_signal_, signals);
   values_.upd(time_) = t;
+  for (std::size_t i = 0; i < signal_rates_.size(); ++i) {
+    if (signal_rates_[i] != kTaken) {
+      values_.upd(signal_rates_[i]) = signal_rates[i];
+    }
+  }
+  setFrom(first_state_, states);
+  for (std::size_t i = 0; i < named_.size(); ++i) {
+    values_.upd(first_named_ + static_cast<int>(i)) = values_.calc(named_[i]);
+  }
+}
+
+void StateExpressions::setAccelerations(const std::vector<double>& accelerations) {
+  setFrom(first_acceleration_, accelerations);
 }
 
 }  // namespace twinmap

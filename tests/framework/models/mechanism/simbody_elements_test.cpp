@@ -53,7 +53,7 @@ class ThreeWays {
     context_.numbers.update(Eigen::VectorXd());
     engine_.emplace(context_, false);
     own_.emplace(model.system, context_.names, context_.numbers);
-    forces_.reset(new SimTK::GeneralForceSubsystem(own_->addForceSubsystem()));
+    forces_ = &own_->addForceSubsystem();
     add(OwnForces{*forces_, *own_});
     own_->realize();
     values_ = equations::calcSystemValues(model.system, context_.names, names_);
@@ -97,7 +97,7 @@ class ThreeWays {
   equations::SystemValues<double> values_;
   std::optional<LoadedSystem> engine_;
   std::optional<BodyTree> own_;
-  std::unique_ptr<SimTK::GeneralForceSubsystem> forces_;  ///< the forces refer to this handle
+  SimTK::GeneralForceSubsystem* forces_;
   SimTK::State state_;
   InitialState random_;
 };

@@ -1,0 +1,220 @@
+#pragma once
+
+#include <optional>
+
+#include "framework/experiment/model/elements/element.hpp"
+
+// Elements whose force depends on what happened before: each has a state of its own, whose rate its law
+// gives.
+
+namespace twinmap {
+
+/// `value` over any scalar; over expressions its `text`.
+template <class S>
+S makeDefault(double value, const char* text) {
+  if constexpr (kIsFile<S>) {
+    return {text, {}};
+  } else {
+    return S(value);
+  }
+}
+
+/// magnitude^exponent for a magnitude of at least 0, with derivatives that are finite at 0 too.
+template <class S>
+S calcPower(const S& magnitude, const S& exponent) {
+  using namespace program::real;
+  constexpr double kSmallest = 1e-300;  // its logarithm is finite, and it vanishes beside all that counts
+  return pow(max(magnitude, S(kSmallest)), exponent);
+}
+
+/// The bristle of LuGre friction: its deflection is a state.
+template <class S>
+struct Bristle {
+  static constexpr bool kInUnitOfCoordinate = true;
+  OwnStateOf<S> state{};
+  S stiffness{}, damping{}, initial{};
+};
+
+template <class S>
+inline constexpr bool kIsPart<Bristle<S>> = true;
+
+template <class Fields, class S>
+void describe(Fields& f, Bristle<S>& s) {
+  f.optional("state", s.state, "a name for its deflection, which expressions may then use");
+  f.required("stiffness", s.stiffness, "", Unit{"N/m", "N m/rad"});
+  f.optional("damping", s.damping, "of the bristle itself", Unit{"N s/m", "N m s/rad"});
+  f.optional("initial", s.initial, "deflection at the start", Unit{"m", "rad"});
+}
+
+/// Friction that falls from `level` at rest to the Coulomb level: Fc + (level - Fc) exp(-(|v| /
+/// speed)^exponent).
+template <class S>
+struct Stribeck {
+  S level{}, speed{}, exponent = makeDefault<S>(2.0, "2");
+};
+
+template <class S>
+inline constexpr bool kIsPart<Stribeck<S>> = true;
+
+template <class Fields, class S>
+void describe(Fields& f, Stribeck<S>& s) {
+  f.required("level", s.level, "of friction at rest", Unit{"N", "N m"});
+  f.required("speed", s.speed, "over which it falls to the Coulomb level", Unit{"m/s", "rad/s"});
+  f.optional("exponent", s.exponent, "of the speed", Unit{"1"});
+}
+
+enum class FrictionModel { kLugre, kRegularised };
+
+template <>
+struct EnumNames<FrictionModel> {
+  static constexpr EnumName<FrictionModel> values[] = {{"lugre", FrictionModel::kLugre},
+                                                       {"regularised", FrictionModel::kRegularised}};
+};
+
+/// Friction on a coordinate, or between two, with g(v) the Coulomb or Stribeck level at the sliding speed v.
+/// - lugre (IEEE Trans. Automatic Control 40, 1995, p. 419): dz/dt = v - s0 |v| z / g(v), force
+///   -(s0 z + s1 dz/dt + viscous v), with stiffness s0 and damping s1 of the bristle;
+/// - regularised: force -(g(v) tanh(v / onset_speed) + viscous v), which creeps under any load.
+template <class S>
+struct Friction {
+  static constexpr ElementKind kKind{"friction", "friction", "friction on coordinates"};
+  CoordinateOf<S> coordinate{};
+  OtherCoordinateOf<S> against{};
+  FrictionModel model = FrictionModel::kLugre;
+  S coulomb{}, viscous{};
+  std::optional<Stribeck<S>> stribeck{};
+  std::optional<Bristle<S>> bristle{};
+  std::optional<S> onset_speed{};
+};
+
+template <class Fields, class S>
+void describe(Fields& f, Friction<S>& s) {
+  f.required("coordinate", s.coordinate, "the coordinate that slides", Reference::kForcedCoordinate);
+  f.optional("against", s.against, "the coordinate that it slides against; default: what does not move",
+             Reference::kForcedCoordinate);
+  f.required("model", s.model, "lugre: a bristle that sticks and slips; regularised: tanh");
+  f.required("coulomb", s.coulomb, "level of friction while sliding", Unit{"N", "N m"});
+  f.optional("viscous", s.viscous, "force for each unit of speed", Unit{"N s/m", "N m s/rad"});
+  f.optional("stribeck", s.stribeck, "a higher level at rest");
+  f.optional("bristle", s.bristle, "of lugre");
+  f.optional("onset_speed", s.onset_speed, "of regularised: tanh(v / onset_speed)", Unit{"m/s", "rad/s"});
+  f.rule((s.model == FrictionModel::kLugre) == s.bristle.has_value(),
+         "must give 'bristle' with 'model: lugre', and only there");
+  f.rule((s.model == FrictionModel::kRegularised) == s.onset_speed.has_value(),
+         "must give 'onset_speed' with 'model: regularised', and only there");
+}
+
+/// g(v) of Friction.
+template <class S>
+S calcSlidingLevel(const Friction<S>& s, const S& speed) {
+  using namespace program::real;
+  if (!s.stribeck) {
+    return s.coulomb;
+  }
+  const S fall = exp(-calcPower(S(speed / s.stribeck->speed), s.stribeck->exponent));
+  return s.coulomb + (s.stribeck->level - s.coulomb) * fall;
+}
+
+template <class S, class Sum>
+void addForces(const Friction<S>& s, Sum& sum) {
+  using namespace program::real;
+  const S v = s.against ? S(sum.getRate(s.coordinate) - sum.getRate(*s.against)) : sum.getRate(s.coordinate);
+  const S speed = abs(v), level = calcSlidingLevel(s, speed);
+  S friction = s.viscous * v;
+  if (s.bristle) {
+    const S& deflection = sum.getState(s.bristle->state);
+    const S rate = v - s.bristle->stiffness * speed * deflection / level;
+    sum.setStateRate(s.bristle->state, rate);
+    friction = s.bristle->stiffness * deflection + s.bristle->damping * rate + friction;
+  } else {
+    friction = level * tanh(v / *s.onset_speed) + friction;
+  }
+  sum.addOnCoordinate(s.coordinate, -friction);
+  if (s.against) {
+    sum.addOnCoordinate(*s.against, friction);
+  }
+}
+
+/// A spring of which part yields (Bouc 1967, Wen 1976), on a coordinate q. The state z has no unit:
+///   dz/dt = v / yield (A - |z|^exponent (beta sign(v z) + gamma)), v = q',
+///   force -(elastic_share stiffness q + (1 - elastic_share) stiffness yield z).
+template <class S>
+struct BoucWen {
+  static constexpr bool kInUnitOfCoordinate = false;
+  OwnStateOf<S> state{};
+  S stiffness{}, elastic_share{}, yield{};
+  S amplitude = makeDefault<S>(1.0, "1"), beta = makeDefault<S>(0.5, "0.5"),
+    gamma = makeDefault<S>(0.5, "0.5"), exponent = makeDefault<S>(1.0, "1");
+  S initial{};
+};
+
+template <class S>
+inline constexpr bool kIsPart<BoucWen<S>> = true;
+
+template <class Fields, class S>
+void describe(Fields& f, BoucWen<S>& s) {
+  f.optional("state", s.state, "a name for its state z, which expressions may then use");
+  f.required("stiffness", s.stiffness, "before it yields", Unit{"N/m", "N m/rad"});
+  f.required("elastic_share", s.elastic_share, "of the stiffness, left after it has yielded", Unit{"1"});
+  f.required("yield", s.yield, "displacement at which it yields", Unit{"m", "rad"});
+  f.optional("amplitude", s.amplitude, "A", Unit{"1"});
+  f.optional("beta", s.beta,
+             "shape of the loop; with gamma and A, |z| ends at (A / (beta + gamma))^(1/exponent)", Unit{"1"});
+  f.optional("gamma", s.gamma, "shape of the loop", Unit{"1"});
+  f.optional("exponent", s.exponent, "how sharply it yields", Unit{"1"});
+  f.optional("initial", s.initial, "z at the start", Unit{"1"});
+}
+
+template <class S>
+struct Hysteresis {
+  static constexpr ElementKind kKind{"hysteresis", "hysteresis", "springs that yield, on coordinates"};
+  CoordinateOf<S> coordinate{};
+  BoucWen<S> bouc_wen{};
+};
+
+template <class Fields, class S>
+void describe(Fields& f, Hysteresis<S>& s) {
+  f.required("coordinate", s.coordinate, "the coordinate it acts on", Reference::kForcedCoordinate);
+  f.required("bouc_wen", s.bouc_wen, "the model of Bouc and Wen");
+}
+
+template <class S, class Sum>
+void addForces(const Hysteresis<S>& s, Sum& sum) {
+  using namespace program::real;
+  const BoucWen<S>& law = s.bouc_wen;
+  const S& v = sum.getRate(s.coordinate);
+  const S& z = sum.getState(law.state);
+  const S power = calcPower(S(abs(z)), law.exponent);
+  const S side = sign(z) * abs(v);  // v sign(v z)
+  sum.setStateRate(law.state, (law.amplitude * v - power * (law.beta * side + law.gamma * v)) / law.yield);
+  const S elastic = law.elastic_share * law.stiffness * sum.getCoordinate(s.coordinate);
+  const S yielding = (S(1.0) - law.elastic_share) * law.stiffness * law.yield * z;
+  sum.addOnCoordinate(s.coordinate, -(elastic + yielding));
+}
+
+/// action(part, coordinate) of each state that an element owns: `part` has its name or place (`state`) and
+/// its `initial` value. Most elements have none.
+template <class Element, class Action>
+void forEachOwnState(Element&, Action) {}
+template <class S, class Action>
+void forEachOwnState(Friction<S>& s, Action action) {
+  if (s.bristle) {
+    action(*s.bristle, s.coordinate);
+  }
+}
+template <class S, class Action>
+void forEachOwnState(const Friction<S>& s, Action action) {
+  if (s.bristle) {
+    action(*s.bristle, s.coordinate);
+  }
+}
+template <class S, class Action>
+void forEachOwnState(Hysteresis<S>& s, Action action) {
+  action(s.bouc_wen, s.coordinate);
+}
+template <class S, class Action>
+void forEachOwnState(const Hysteresis<S>& s, Action action) {
+  action(s.bouc_wen, s.coordinate);
+}
+
+}  // namespace twinmap
