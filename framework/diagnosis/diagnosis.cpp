@@ -9,6 +9,7 @@
 #include "framework/diagnosis/scored_candidates.hpp"
 #include "framework/diagnosis/second_test.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "kernels/sampling/weighted_draws.hpp"
 
 namespace twinmap {
 
@@ -62,6 +63,13 @@ double calcShare(double before, double after, double degrees) {
   return before > degrees ? std::clamp((before - after) / (before - degrees), 0.0, 1.0) : 0.0;
 }
 
+/// log of what the sign of a coefficient has for it: friction that drives is rare. With even odds for the
+/// others, 0.
+double calcLogSignEvidence(const TermCandidate& candidate, double estimate) {
+  constexpr double kDriving = 0.05;  // the prior's share of negative coefficients of what dissipates
+  return candidate.dissipates ? std::log(2.0 * (estimate < 0.0 ? kDriving : 1.0 - kDriving)) : 0.0;
+}
+
 TermFinding makeFinding(const ScoredCandidates& scored, std::size_t i, const CurrentFit& current, Index p) {
   TermFinding finding{scored.candidates[i]};
   const TermScore& score = scored.scores[i];
@@ -69,7 +77,8 @@ TermFinding makeFinding(const ScoredCandidates& scored, std::size_t i, const Cur
   finding.stddev = score.stddev;
   finding.z = score.z;
   finding.p_value = calcPValue(score.z, scored.tested);
-  finding.log_evidence = calcLogEvidence(score.z * score.z, score.stddev, finding.candidate.size);
+  finding.log_evidence = calcLogEvidence(score.z * score.z, score.stddev, finding.candidate.size) +
+                         calcLogSignEvidence(finding.candidate, score.estimate);
   finding.chi_square = current.chi_square - score.z * score.z;
   finding.share = calcShare(current.chi_square, finding.chi_square, current.degrees);
   finding.shifts = score.shifts.head(p).cwiseQuotient(scored.stddevs.head(p));
@@ -103,6 +112,26 @@ std::vector<RankedTerm> rankTerms(const ScoredCandidates& scored, const CurrentF
   }
   std::stable_sort(ranked.begin(), ranked.end(), hasMoreEvidence);
   return ranked;
+}
+
+/// The first p parameters of several posteriors with weights; nothing where one is not reliable.
+AveragedEstimate mix(const std::vector<SimulatorPosterior>& posteriors, const std::vector<double>& weights,
+                     Index p) {
+  AveragedEstimate mixed;
+  for (std::size_t i = 0; i < posteriors.size(); ++i) {
+    if (!posteriors[i].isReliable()) {
+      return {};
+    }
+    const Index before = mixed.weights.size(), count = posteriors[i].weights.size();
+    mixed.draws.conservativeResize(p, before + count);
+    mixed.draws.rightCols(count) = posteriors[i].draws.topRows(p);
+    mixed.weights.conservativeResize(before + count);
+    mixed.weights.tail(count) = weights[i] * posteriors[i].weights;
+  }
+  mixed.weights /= mixed.weights.sum();
+  mixed.mean = importance::calcMean({mixed.draws, mixed.weights});
+  mixed.stddev = importance::calcCovariance({mixed.draws, mixed.weights}).diagonal().cwiseSqrt();
+  return mixed;
 }
 
 /// One diagnosis on its way.
@@ -159,6 +188,7 @@ class Diagnoser {
       const FittedTerm& best = ranked.front().fitted;
       fits_.push_back({best.augmented.experiment, best.point, best.chi_square,
                        std::max(1.0, current.degrees - static_cast<double>(best.augmented.added))});
+      tied_.emplace_back(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(step.tied));
     }
     return step;
   }
@@ -206,7 +236,8 @@ class Diagnoser {
     finding.share = calcShare(current.chi_square, fitted.chi_square, current.degrees);
     finding.log_evidence = calcLogEvidence(current.chi_square - fitted.chi_square, fitted.stddev,
                                            std::max(finding.candidate.size, std::abs(fitted.estimate))) +
-                           fitted.log_evidence_of_scale;
+                           fitted.log_evidence_of_scale +
+                           calcLogSignEvidence(finding.candidate, fitted.estimate);
     finding.shifts = (fitted.point.head(shared_) - current.point.head(shared_)).cwiseQuotient(stddevs);
     finding.holds_cautiously =
         calcPValue(fitted.estimate / fitted.cautious_stddev, scored.tested) < options_.level;
@@ -229,18 +260,36 @@ class Diagnoser {
     }
   }
 
+  /// Of a posterior whose search begins where a term was fitted.
+  SimulatorPosteriorOptions makeFittedOptions() const {
+    constexpr int kOwnStarts = 8;
+    SimulatorPosteriorOptions options = options_.posterior;
+    options.search.scouts = kOwnStarts;
+    options.search.starts = 2 * kOwnStarts;
+    options.search.max_batches = 1;
+    return options;
+  }
+
+  /// The shared parameters over all terms tied with the last one found.
+  void average(Diagnosis& diagnosis) const {
+    std::vector<SimulatorPosterior> posteriors{diagnosis.after.posterior};
+    std::vector<double> evidence{1.0};
+    for (std::size_t i = 1; diagnosis.found > 0 && i < tied_[diagnosis.found - 1].size(); ++i) {
+      const std::vector<RankedTerm>& tied = tied_[diagnosis.found - 1];
+      const RecordingsProblem problem(tied[i].fitted.augmented.experiment, recordings_);
+      posteriors.push_back(samplePosterior(problem.get(), tied[i].fitted.point, makeFittedOptions()));
+      evidence.push_back(std::exp(tied[i].finding.log_evidence - tied.front().finding.log_evidence));
+    }
+    diagnosis.averaged = mix(posteriors, evidence, shared_);
+  }
+
   /// Takes the last terms back that stand in for something else, then infers with those that are left.
   void finish(Diagnosis& diagnosis) {
     diagnosis.after = diagnosis.before;
     while (diagnosis.found > 0) {
       const CurrentFit& last = fits_[diagnosis.found];
       const RecordingsProblem problem(last.experiment, recordings_);
-      SimulatorPosteriorOptions options = options_.posterior;
-      constexpr int kOwnStarts = 8;  // the search begins where the term was fitted
-      options.search.scouts = kOwnStarts;
-      options.search.starts = 2 * kOwnStarts;
-      options.search.max_batches = 1;
-      diagnosis.after = explain(problem, last.point, options);
+      diagnosis.after = explain(problem, last.point, makeFittedOptions());
       DiagnosisStep& step = diagnosis.steps[diagnosis.found - 1];
       if (!options_.accepted.empty() || diagnosis.after.isExplained() ||
           step.ranked.front().holds_cautiously) {
@@ -251,15 +300,21 @@ class Diagnoser {
       diagnosis.after = diagnosis.before;
     }
     diagnosis.corrected = fits_[diagnosis.found].experiment;
+    average(diagnosis);
   }
 
   const RecordedFeatures& recordings_;
   const DiagnosisOptions& options_;
-  std::vector<CurrentFit> fits_;  // without a term, then with one more each
-  Index shared_ = 0;              // parameters of the machine, before any term
+  std::vector<CurrentFit> fits_;               // without a term, then with one more each
+  std::vector<std::vector<RankedTerm>> tied_;  // of each step that found one, that one first
+  Index shared_ = 0;                           // parameters of the machine, before any term
 };
 
 }  // namespace
+
+MatrixXd AveragedEstimate::calcQuantiles(const VectorXd& probabilities) const {
+  return importance::calcQuantiles({draws, weights}, probabilities);
+}
 
 Diagnosis diagnose(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                    const DiagnosisOptions& options) {

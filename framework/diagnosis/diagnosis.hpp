@@ -52,15 +52,28 @@ struct ExplainedFit {
   bool isExplained() const { return test.calcPValue() >= kMismatchLevel; }
 };
 
+/// The machine's parameters where terms are tied: the posteriors with each of them, weighted by their
+/// evidence (Bayesian model averaging), as one says one thing of a parameter and one another.
+struct AveragedEstimate {
+  Eigen::VectorXd mean, stddev;  ///< p; empty where a posterior is not reliable
+  Eigen::MatrixXd draws;         ///< p x n
+  Eigen::VectorXd weights;       ///< n
+
+  bool isGiven() const { return mean.size() > 0; }
+  /// p x k, at probabilities (k).
+  Eigen::MatrixXd calcQuantiles(const Eigen::VectorXd& probabilities) const;
+};
+
 struct Diagnosis {
   double level = 0.01;     ///< DiagnosisOptions::level
   std::size_t shared = 0;  ///< parameters of the machine before any term, the first of `corrected`
   ExplainedFit before;
   std::vector<DiagnosisStep>
-      steps;                 ///< those that found a term, then the one that found none, if it was made
-  std::size_t found = 0;     ///< of the steps, the first ones: terms of `corrected`
-  ExperimentSpec corrected;  ///< with them, as further parameters
-  ExplainedFit after;        ///< that of `corrected`; `before` where nothing was found
+      steps;                  ///< those that found a term, then the one that found none, if it was made
+  std::size_t found = 0;      ///< of the steps, the first ones: terms of `corrected`
+  ExperimentSpec corrected;   ///< with them, as further parameters
+  AveragedEstimate averaged;  ///< over the terms that are tied with the last one found, it among them
+  ExplainedFit after;         ///< that of `corrected`; `before` where nothing was found
 };
 
 /// Terms whose evidences differ by less are tied: 20 to 1.

@@ -88,6 +88,17 @@ std::string makeDiagnosisJson(const Diagnosis& diagnosis, const std::string& sou
             {"before", makeFitJson(diagnosis.before, parameters, diagnosis.shared)},
             {"after", makeFitJson(diagnosis.after, parameters, parameters.size())},
             {"steps", Json::array()}};
+  if (diagnosis.averaged.isGiven()) {
+    const Eigen::MatrixXd quantiles = diagnosis.averaged.calcQuantiles(Eigen::Vector2d(0.025, 0.975));
+    for (std::size_t p = 0; p < diagnosis.shared; ++p) {
+      const auto i = static_cast<Index>(p);
+      json["parameters"][parameters[p].name.text] = {{"mean", diagnosis.averaged.mean[i]},
+                                                     {"sd", diagnosis.averaged.stddev[i]},
+                                                     {"lower", quantiles(i, 0)},
+                                                     {"upper", quantiles(i, 1)},
+                                                     {"unit", parameters[p].unit}};
+    }
+  }
   for (const DiagnosisStep& step : diagnosis.steps) {
     if (step.found) {
       json["found"].push_back(step.ranked.front().candidate.term);

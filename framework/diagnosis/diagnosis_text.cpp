@@ -86,19 +86,22 @@ std::string describeStep(const DiagnosisStep& step, std::size_t number,
 /// The parameters before and after, and those of the terms.
 std::string makeParameterRows(const Diagnosis& diagnosis) {
   const SimulatorPosterior &before = diagnosis.before.posterior, &after = diagnosis.after.posterior;
+  const AveragedEstimate& averaged = diagnosis.averaged;
   std::vector<std::vector<std::string>> rows{{"parameter", "unit", "before", "sd", "after", "sd"}};
-  const auto write = [](const SimulatorPosterior& posterior, Index i, std::vector<std::string>& row) {
-    const bool is_there = posterior.isReliable() && i < posterior.mean.size();
-    row.push_back(is_there ? toShortText(posterior.mean[i], kEstimateDigits) : "-");
-    row.push_back(is_there ? toShortText(posterior.stddev[i], kStddevFigures + 1) : "-");
+  const auto write = [](const VectorXd& mean, const VectorXd& stddev, Index i,
+                        std::vector<std::string>& row) {
+    row.push_back(i < mean.size() ? toShortText(mean[i], kEstimateDigits) : "-");
+    row.push_back(i < mean.size() ? toShortText(stddev[i], kStddevFigures + 1) : "-");
   };
   const std::vector<ParameterSpec>& parameters = diagnosis.corrected.model.parameters;
   const auto shared = static_cast<Index>(diagnosis.shared);
   for (Index i = 0; i < static_cast<Index>(parameters.size()); ++i) {
     const ParameterSpec& parameter = parameters[static_cast<std::size_t>(i)];
     rows.push_back({parameter.name.text, parameter.unit});
-    write(before, i < shared ? i : before.mean.size(), rows.back());
-    write(after, i, rows.back());
+    write(before.mean, before.stddev, i < shared ? i : before.mean.size(), rows.back());
+    const bool is_averaged = i < shared && averaged.isGiven();
+    write(is_averaged ? averaged.mean : after.mean, is_averaged ? averaged.stddev : after.stddev, i,
+          rows.back());
   }
   return alignRows(rows, 2, "  ");
 }
@@ -120,6 +123,11 @@ std::string makeDiagnosisTable(const Diagnosis& diagnosis, const std::string& so
       text += fmt::format("  No estimate: {}.\n", diagnosis.after.posterior.message);
     }
     text += makeParameterRows(diagnosis);
+    if (diagnosis.steps[diagnosis.found - 1].tied > 1 && diagnosis.averaged.isGiven()) {
+      text +=
+          "  The parameters are those with each of the terms that are not told apart, weighted by "
+          "evidence.\n";
+    }
   }
   if (!diagnosis.after.isExplained()) {
     text +=

@@ -156,15 +156,18 @@ class Study {
                         ? 1
                         : 0;
     }
-    compare(before, truth, tally.held_before, tally.counted_before, tally.worst_before);
-    compare(diagnosis.after.posterior, truth, tally.held_after, tally.counted_after, tally.worst_after);
+    if (before.isReliable()) {
+      compare({before.mean.head(shared_), before.stddev.head(shared_), before.draws.topRows(shared_),
+               before.weights},
+              truth, tally.held_before, tally.counted_before, tally.worst_before);
+    }
+    if (diagnosis.averaged.isGiven()) {
+      compare(diagnosis.averaged, truth, tally.held_after, tally.counted_after, tally.worst_after);
+    }
   }
 
-  void compare(const SimulatorPosterior& posterior, const VectorXd& truth, VectorXd& held, int& counted,
+  void compare(const AveragedEstimate& posterior, const VectorXd& truth, VectorXd& held, int& counted,
                double& worst) const {
-    if (!posterior.isReliable()) {
-      return;
-    }
     ++counted;
     const MatrixXd quantiles = posterior.calcQuantiles(Eigen::Vector2d(0.025, 0.975));
     for (Index j = 0; j < shared_; ++j) {

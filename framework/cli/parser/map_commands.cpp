@@ -77,10 +77,10 @@ void addInfer(CLI::App& app) {
 
 void addDiagnose(CLI::App& app) {
   const auto arguments = std::make_shared<DiagnoseArguments>();
-  CLI::App* command = app.add_subcommand(
-      "diagnose",
-      "Say which terms a model lacks that is to explain measurements: friction, springs, masses, offsets, "
-      "gains, delays; without measurements, which of them would go unnoticed");
+  CLI::App* command = app.add_subcommand("diagnose", "Say what a model lacks to explain measurements");
+  command->footer(
+      "Tests friction, springs, masses, offsets, gains and delays, and fits the best. Without measurements "
+      "it prints which of them would go unnoticed.");
   command
       ->add_option("RUN", arguments->run,
                    "Folder of a finished run, its maps.h5, or an experiment file (YAML)")

@@ -3,11 +3,11 @@
 #include <iostream>
 
 #include "framework/base/files/atomic_file.hpp"
-#include "framework/cli/commands.hpp"
+#include "framework/cli/commands/commands.hpp"
 #include "framework/diagnosis/diagnosis_text.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/inference/inference_source.hpp"
-#include "framework/inference/known_value.hpp"
+#include "framework/inference/measurement/known_value.hpp"
 
 namespace twinmap::cli {
 namespace {
