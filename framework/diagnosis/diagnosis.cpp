@@ -37,18 +37,6 @@ struct RankedTerm {
   FittedTerm fitted;
 };
 
-void requireSystem(const ExperimentSpec& experiment) {
-  if (!isGiven(experiment.model.system)) {
-    throw ExperimentError(experiment.name.where, experiment.name.text,
-                          "is a model from elsewhere, whose terms twinmap does not know; diagnose needs a "
-                          "'system' of bodies");
-  }
-  if (!(experiment.model.simulation.duration > 0.0)) {
-    throw ExperimentError(experiment.name.where, experiment.name.text,
-                          "is not simulated in time; diagnose needs a 'simulation.duration'");
-  }
-}
-
 ExplainedFit explain(const RecordingsProblem& problem, const MatrixXd& given,
                      const SimulatorPosteriorOptions& options) {
   ExplainedFit fit{samplePosterior(problem.get(), given, options), {}};
@@ -214,7 +202,7 @@ class Diagnoser {
     }
     throw ExperimentError(
         "'" + term +
-        "' is no term that these recordings can tell from the parameters; leave --accept out "
+        "' is not a term that these recordings can tell from the parameters; leave --accept out "
         "for a list of those that they can" +
         suggestName(term, names));
   }
@@ -320,27 +308,6 @@ Diagnosis diagnose(const ExperimentSpec& experiment, const RecordedFeatures& rec
                    const DiagnosisOptions& options) {
   requireSystem(experiment);
   return Diagnoser(recordings, options).run(experiment);
-}
-
-std::vector<BlindSpot> calcBlindSpots(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
-                                      double level) {
-  requireSystem(experiment);
-  const VectorXd center = calcBoxCenter(collectUnknown(experiment.model));
-  const ScoredCandidates scored = scoreCandidates(experiment, recordings, center);
-  const double needed = calcCriticalZ(level, scored.tested) + calcCriticalZ(0.1, 1);  // 95 %, one-sided
-  const auto p = static_cast<Index>(experiment.model.parameters.size());
-  std::vector<BlindSpot> spots;
-  for (std::size_t i = 0; i < scored.candidates.size(); ++i) {
-    BlindSpot spot{scored.candidates[i], kInfinity, VectorXd::Zero(p)};
-    if (scored.scores[i].visible) {
-      spot.noticed = needed * scored.scores[i].stddev;
-      spot.shifts = scored.test->calcShifts(static_cast<Index>(i), spot.noticed)
-                        .head(p)
-                        .cwiseQuotient(scored.stddevs.head(p));
-    }
-    spots.push_back(std::move(spot));
-  }
-  return spots;
 }
 
 }  // namespace twinmap

@@ -83,21 +83,10 @@ constexpr double kTiedEvidence = 3.0;
 /// with exact derivatives at the fit, fits the best ones, ranks them by their evidence, takes the first and
 /// begins again with it. Ends where none is significant, after options.max_terms, or after those accepted.
 /// Terms behind which something unexplained remains are kept only where they stand out of that, too. Throws
-/// ExperimentError for a model that is no system of bodies and for an accepted term that is no candidate or
-/// that the parameters take up, std::runtime_error where nothing can be simulated. Cost: two posteriors; a
-/// simulation with derivatives for all candidates a step, and some 40 for the fits.
+/// ExperimentError as scoreCandidates() does and for an accepted term that is not a candidate or that the
+/// parameters take up, std::runtime_error where nothing can be simulated. Cost: two posteriors and one for
+/// each tied term; a simulation with derivatives for all candidates a step, and some 40 for the fits.
 Diagnosis diagnose(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                    const DiagnosisOptions& options);
-
-/// How blind a test is to a term before any measurement.
-struct BlindSpot {
-  TermCandidate candidate;
-  double noticed = 0.0;      ///< size that is found in 95 % of measurements; infinite where it never is
-  Eigen::VectorXd shifts{};  ///< p: how far the parameters have moved by then, in sds
-};
-
-/// Of all candidates at the centre of the box; by the linear model.
-std::vector<BlindSpot> calcBlindSpots(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
-                                      double level);
 
 }  // namespace twinmap

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/diagnosis/blind_spots.hpp"
 #include "framework/diagnosis/diagnosis.hpp"
 
 namespace twinmap {

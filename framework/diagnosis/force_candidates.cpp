@@ -105,7 +105,7 @@ TermCandidate makeForceCandidate(const ForceTerm& term, const CoordinateSizes& c
   candidate.meaning = fmt::format("{}: force {} on {}", term.noun, makeLaw(term, name, "c", "s"), name);
   candidate.dissipates = term.dissipates;
   candidate.unit = makeUnit(term, coordinate.is_angle);
-  const int position = term.length + term.time;  // what is no power of speed is one of position
+  const int position = term.length + term.time;  // powers that are not of speed are of position
   candidate.size = coordinate.force / (std::pow(coordinate.speed, -term.time) *
                                        std::pow(coordinate.reach, static_cast<double>(position)));
   candidate.add = [term, name](ModelSpec& model, const std::string& coefficient, const std::string& scale) {

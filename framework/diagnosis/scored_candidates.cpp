@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "framework/base/text/source_location.hpp"
 #include "framework/diagnosis/term_candidates.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -81,8 +82,21 @@ void setTermStddevs(const LinearizedRecordings& linear, Index first, double own_
 
 }  // namespace
 
+void requireSystem(const ExperimentSpec& experiment) {
+  if (!isGiven(experiment.model.system)) {
+    throw ExperimentError(experiment.name.where, experiment.name.text,
+                          "is a model from elsewhere, whose terms twinmap does not know; diagnose needs a "
+                          "'system' of bodies");
+  }
+  if (!(experiment.model.simulation.duration > 0.0)) {
+    throw ExperimentError(experiment.name.where, experiment.name.text,
+                          "is not simulated in time; diagnose needs a 'simulation.duration'");
+  }
+}
+
 ScoredCandidates scoreCandidates(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                                  const VectorXd& point) {
+  requireSystem(experiment);
   ScoredCandidates scored;
   scored.candidates = listCandidates(
       experiment.model, calcModelSizes(experiment.model, makeSampledPoint(experiment, recordings, point)));

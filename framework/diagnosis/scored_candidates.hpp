@@ -18,8 +18,12 @@ struct ScoredCandidates {
   int tested = 0;           ///< those visible
 };
 
-/// point: u, of the unknown parameters (RecordingsProblem). Throws std::runtime_error where it cannot be
-/// simulated. Cost: one simulation, one with derivatives a recording.
+/// Throws ExperimentError for a model that is not a system of bodies, or is not simulated in time.
+void requireSystem(const ExperimentSpec& experiment);
+
+/// point: u, of the unknown parameters (RecordingsProblem). Throws ExperimentError as requireSystem() does,
+/// std::runtime_error where the point cannot be simulated. Cost: one simulation, one with derivatives a
+/// recording.
 ScoredCandidates scoreCandidates(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                                  const Eigen::VectorXd& point);
 
