@@ -166,6 +166,9 @@ class Diagnoser {
     std::stable_sort(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(fitted), hasMoreEvidence);
     step.found = fitted > 0 && ranked.front().finding.fitted &&
                  (is_given || ranked.front().finding.log_evidence > 0.0);
+    if (is_given && !step.found) {
+      throw std::runtime_error(options_.accepted[number] + ": no fit with this term succeeded");
+    }
     for (const RankedTerm& one : ranked) {
       step.ranked.push_back(one.finding);
     }
@@ -213,7 +216,8 @@ class Diagnoser {
         fitTerm(current.experiment, recordings_, ranked.finding.candidate, ranked.score, current.point);
     const FittedTerm& fitted = ranked.fitted;
     TermFinding& finding = ranked.finding;
-    if (fitted.point.size() == 0 || !(fitted.chi_square < current.chi_square)) {
+    constexpr double kWorse = 1e-6;  // of chi-square: a term of size 0 fits as well as none, up to rounding
+    if (fitted.point.size() == 0 || !(fitted.chi_square <= (1.0 + kWorse) * current.chi_square)) {
       finding.log_evidence = -kInfinity;
       return;
     }
@@ -222,10 +226,10 @@ class Diagnoser {
     finding.estimate = fitted.estimate;
     finding.stddev = fitted.stddev;
     finding.share = calcShare(current.chi_square, fitted.chi_square, current.degrees);
-    finding.log_evidence = calcLogEvidence(current.chi_square - fitted.chi_square, fitted.stddev,
-                                           std::max(finding.candidate.size, std::abs(fitted.estimate))) +
-                           fitted.log_evidence_of_scale +
-                           calcLogSignEvidence(finding.candidate, fitted.estimate);
+    finding.log_evidence =
+        calcLogEvidence(std::max(0.0, current.chi_square - fitted.chi_square), fitted.stddev,
+                        std::max(finding.candidate.size, std::abs(fitted.estimate))) +
+        fitted.log_evidence_of_scale + calcLogSignEvidence(finding.candidate, fitted.estimate);
     finding.shifts = (fitted.point.head(shared_) - current.point.head(shared_)).cwiseQuotient(stddevs);
     finding.holds_cautiously =
         calcPValue(fitted.estimate / fitted.cautious_stddev, scored.tested) < options_.level;
