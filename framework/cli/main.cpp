@@ -40,7 +40,7 @@ std::string joinArguments(int count, char** arguments) {
 /// Headings of the help, in the order in which a user comes to them.
 void groupCommands(CLI::App& app) {
   const std::pair<const char*, std::vector<const char*>> groups[] = {
-      {"From a model to an estimate", {"check", "simulate", "run", "infer", "replay"}},
+      {"From a model to an estimate", {"check", "simulate", "run", "infer", "diagnose", "replay"}},
       {"Improve the experiment", {"noise", "design"}},
       {"Look after runs", {"plan", "status", "report", "compare", "verify", "store"}},
       {"Take the estimator elsewhere", {"export"}},

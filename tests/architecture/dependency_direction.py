@@ -20,6 +20,7 @@ ALLOWED = {
     "analysis": {"base", "experiment", "simulation", "data", "estimation", "kernels"},
     "store": {"base", "experiment", "simulation", "data", "estimation", "kernels"},
     "inference": {"base", "experiment", "simulation", "models", "data", "estimation", "store"},
+    "diagnosis": {"base", "experiment", "simulation", "models", "data", "estimation", "inference", "kernels"},
     "results": {"base", "experiment", "simulation", "data", "estimation", "analysis", "store"},
     "report": {"base", "experiment", "simulation", "analysis", "store", "results"},
     "study": {
@@ -60,6 +61,7 @@ ALLOWED = {
         "report",
         "study",
         "inference",
+        "diagnosis",
         "optimal_design",
         "export",
     },

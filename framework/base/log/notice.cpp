@@ -13,7 +13,7 @@ const std::vector<NoticeText> kStatuses{
     {Notice::kOk, "ok", true, kInfo, "the model explains the measurement", "", "No test found a fault."},
     {Notice::kModelMismatch, "model_mismatch", true, kMisleading,
      "no parameter values within the bounds fit the measurement; {0}",
-     "Replay the measurement and look at its residuals: twinmap replay RUN FILE.",
+     "Ask what the model lacks: twinmap diagnose RUN FILE.",
      "The model lacks something, a sensor, sign, unit or trigger is wrong, or the noise is larger than "
      "stated."},
     {Notice::kOutsideTraining, "outside_training", true, kMisleading,

@@ -114,6 +114,16 @@ struct InferArguments {
   std::string draws;                ///< file for them; "": none
 };
 
+struct DiagnoseArguments {
+  std::string run;                    ///< as of infer
+  std::vector<std::string> files;     ///< measurements of one machine; empty: what a test is blind to
+  std::vector<std::string> known;     ///< "NAME=VALUE" of the inputs
+  std::vector<double> starts;         ///< times in each file that are 0 of the model; empty: the experiment's
+  std::vector<std::string> accepted;  ///< terms to take; empty: those that are found
+  std::string out;                    ///< file for the corrected experiment; "": none
+  bool json = false, csv = false;     ///< at most one; neither: a table for people
+};
+
 struct ExportArguments {
   std::string run;                 ///< folder of a run
   std::string c_folder;            ///< "": no C
@@ -223,6 +233,10 @@ void compare(const CompareArguments& arguments);
 void infer(const InferArguments& arguments);
 /// Of several recordings together: where trials, windows or joint are given.
 void inferJointly(const InferArguments& arguments);
+
+/// Says which terms a model lacks that is to explain measurements, and writes the corrected experiment; or,
+/// without measurements, what they would not notice.
+void diagnose(const DiagnoseArguments& arguments);
 
 /// Writes a trained map for other programs. Throws ExperimentError for a run that cannot be exported.
 void exportMap(const ExportArguments& arguments);

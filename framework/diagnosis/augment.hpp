@@ -1,0 +1,29 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "framework/diagnosis/term_candidate.hpp"
+#include "framework/experiment/experiment_spec.hpp"
+
+namespace twinmap {
+
+/// An experiment with terms whose coefficients are further parameters, the last ones. Their bounds lie about
+/// 0, so that the centre of the box, where an equilibrium may be sought, stays where it was.
+struct AugmentedExperiment {
+  ExperimentSpec experiment;
+  Eigen::Index added = 0;  ///< parameters behind those that were there
+};
+
+/// All candidates at once, for their derivatives at coefficients of 0: own scales are numbers.
+AugmentedExperiment addAll(const ExperimentSpec& experiment, const std::vector<TermCandidate>& candidates);
+
+/// One term, its own scale a parameter as well. largest: of its coefficient, on either side. The parameters
+/// have the names of makeParameterName().
+AugmentedExperiment addTerm(const ExperimentSpec& experiment, const TermCandidate& candidate, double largest);
+
+/// "drag_x" of "drag.x", or with digits behind it where that is taken.
+std::string makeParameterName(const ModelSpec& model, const std::string& term);
+
+}  // namespace twinmap

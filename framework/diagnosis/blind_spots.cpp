@@ -1,0 +1,31 @@
+#include "framework/diagnosis/blind_spots.hpp"
+
+#include "framework/diagnosis/scored_candidates.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+std::vector<BlindSpot> calcBlindSpots(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
+                                      double level) {
+  const VectorXd center = calcBoxCenter(collectUnknown(experiment.model));
+  const ScoredCandidates scored = scoreCandidates(experiment, recordings, center);
+  const double needed = calcCriticalZ(level, scored.tested) + calcCriticalZ(0.1, 1);  // 95 %, one-sided
+  const auto p = static_cast<Index>(experiment.model.parameters.size());
+  std::vector<BlindSpot> spots;
+  for (std::size_t i = 0; i < scored.candidates.size(); ++i) {
+    BlindSpot spot{scored.candidates[i], kInfinity, VectorXd::Zero(p)};
+    if (scored.scores[i].visible) {
+      spot.noticed = needed * scored.scores[i].stddev;
+      spot.shifts = scored.test->calcShifts(static_cast<Index>(i), spot.noticed)
+                        .head(p)
+                        .cwiseQuotient(scored.stddevs.head(p));
+    }
+    spots.push_back(std::move(spot));
+  }
+  return spots;
+}
+
+}  // namespace twinmap

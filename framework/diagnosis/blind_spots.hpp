@@ -1,0 +1,22 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "framework/diagnosis/recorded_problem.hpp"
+#include "framework/diagnosis/term_candidate.hpp"
+
+namespace twinmap {
+
+/// How blind a test is to a term before any measurement.
+struct BlindSpot {
+  TermCandidate candidate;
+  double noticed = 0.0;      ///< size that is found in 95 % of measurements; infinite where it never is
+  Eigen::VectorXd shifts{};  ///< p: how far the parameters have moved by then, in sds
+};
+
+/// Of all candidates at the centre of the box; by the linear model.
+std::vector<BlindSpot> calcBlindSpots(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
+                                      double level);
+
+}  // namespace twinmap

@@ -1,0 +1,173 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "framework/base/json/json.hpp"
+#include "framework/base/text/csv.hpp"
+#include "framework/base/text/number_text.hpp"
+#include "framework/diagnosis/diagnosis_text.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+Json nameShifts(const VectorXd& shifts, const std::vector<ParameterSpec>& parameters) {
+  Json json = Json::object();
+  for (Index i = 0; i < shifts.size(); ++i) {
+    json[parameters[static_cast<std::size_t>(i)].name.text] = shifts[i];
+  }
+  return json;
+}
+
+Json makeFindingJson(const TermFinding& finding, const std::vector<ParameterSpec>& parameters) {
+  Json json{{"term", finding.candidate.term}, {"meaning", finding.candidate.meaning},
+            {"size", finding.estimate},       {"sd", finding.stddev},
+            {"unit", finding.candidate.unit}, {"z", finding.z},
+            {"p_value", finding.p_value},     {"log_evidence", finding.log_evidence},
+            {"share", finding.share},         {"chi_square", finding.chi_square},
+            {"fitted", finding.fitted},       {"shifts", nameShifts(finding.shifts, parameters)}};
+  if (!std::isfinite(finding.log_evidence)) {
+    json["log_evidence"] = nullptr;  // the fit with it failed
+  }
+  if (finding.candidate.own_scale) {
+    const OwnScale& own = *finding.candidate.own_scale;
+    json["own_scale"] = {{"meaning", own.meaning}, {"value", own.value}, {"unit", own.unit}};
+  }
+  return json;
+}
+
+Json makeStepJson(const DiagnosisStep& step, const std::vector<ParameterSpec>& parameters) {
+  Json json{{"chi_square", step.chi_square},
+            {"degrees", step.degrees},
+            {"tested", step.tested},
+            {"found", step.found},
+            {"tied", step.found ? step.tied : 0},
+            {"candidates", Json::array()}};
+  if (!step.advice.empty()) {
+    json["advice"] = step.advice;
+  }
+  for (const TermFinding& finding : step.ranked) {
+    json["candidates"].push_back(makeFindingJson(finding, parameters));
+  }
+  return json;
+}
+
+Json makeFitJson(const ExplainedFit& fit, const std::vector<ParameterSpec>& parameters, std::size_t count) {
+  const SimulatorPosterior& posterior = fit.posterior;
+  Json json{{"chi_square", posterior.chi_square},
+            {"degrees", posterior.degrees},
+            {"p_value", fit.test.calcPValue()},
+            {"explained", fit.isExplained()}};
+  if (!posterior.isReliable()) {
+    json["message"] = posterior.message;
+    return json;
+  }
+  const Eigen::MatrixXd quantiles = posterior.calcQuantiles(Eigen::Vector2d(0.025, 0.975));
+  for (std::size_t p = 0; p < count; ++p) {
+    const auto i = static_cast<Index>(p);
+    json["parameters"][parameters[p].name.text] = {{"mean", posterior.mean[i]},
+                                                   {"sd", posterior.stddev[i]},
+                                                   {"lower", quantiles(i, 0)},
+                                                   {"upper", quantiles(i, 1)},
+                                                   {"unit", parameters[p].unit}};
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string makeDiagnosisJson(const Diagnosis& diagnosis, const std::string& source) {
+  const std::vector<ParameterSpec>& parameters = diagnosis.corrected.model.parameters;
+  Json json{{"source", source},
+            {"level", diagnosis.level},
+            {"found", Json::array()},
+            {"complete", diagnosis.after.isExplained()},
+            {"before", makeFitJson(diagnosis.before, parameters, diagnosis.shared)},
+            {"after", makeFitJson(diagnosis.after, parameters, parameters.size())},
+            {"steps", Json::array()}};
+  if (diagnosis.averaged.isGiven()) {
+    const Eigen::MatrixXd quantiles = diagnosis.averaged.calcQuantiles(Eigen::Vector2d(0.025, 0.975));
+    for (std::size_t p = 0; p < diagnosis.shared; ++p) {
+      const auto i = static_cast<Index>(p);
+      json["parameters"][parameters[p].name.text] = {{"mean", diagnosis.averaged.mean[i]},
+                                                     {"sd", diagnosis.averaged.stddev[i]},
+                                                     {"lower", quantiles(i, 0)},
+                                                     {"upper", quantiles(i, 1)},
+                                                     {"unit", parameters[p].unit}};
+    }
+  }
+  for (const DiagnosisStep& step : diagnosis.steps) {
+    if (step.found) {
+      json["found"].push_back(step.ranked.front().candidate.term);
+    }
+    json["steps"].push_back(makeStepJson(step, parameters));
+  }
+  return formatJson(json);
+}
+
+std::string makeDiagnosisCsv(const Diagnosis& diagnosis, const std::string& source) {
+  std::vector<CsvRow> rows{{"source", "step", "rank", "term", "size", "sd", "unit", "own_scale",
+                            "own_scale_unit", "z", "p_value", "share", "log_evidence", "fitted", "status"}};
+  for (std::size_t s = 0; s < diagnosis.steps.size(); ++s) {
+    const DiagnosisStep& step = diagnosis.steps[s];
+    for (std::size_t i = 0; i < step.ranked.size(); ++i) {
+      const TermFinding& one = step.ranked[i];
+      const bool has_scale = one.candidate.own_scale.has_value();
+      rows.push_back({source, std::to_string(s + 1), std::to_string(i + 1), one.candidate.term,
+                      toText(one.estimate), toText(one.stddev), one.candidate.unit,
+                      has_scale ? toText(one.candidate.own_scale->value) : "",
+                      has_scale ? one.candidate.own_scale->unit : "", toText(one.z), toText(one.p_value),
+                      toText(one.share), toText(one.log_evidence), one.fitted ? "yes" : "no",
+                      !step.found     ? ""
+                      : i == 0        ? "found"
+                      : i < step.tied ? "tied"
+                                      : ""});
+    }
+  }
+  return makeCsv(rows);
+}
+
+std::string makeBlindSpotCsv(const std::vector<BlindSpot>& spots,
+                             const std::vector<ParameterSpec>& parameters) {
+  CsvRow header{"term", "own_scale", "own_scale_unit", "noticed_from", "unit"};
+  for (const ParameterSpec& parameter : parameters) {
+    header.push_back("shift_" + parameter.name.text);
+  }
+  std::vector<CsvRow> rows{header};
+  for (const BlindSpot& spot : spots) {
+    const bool has_scale = spot.candidate.own_scale.has_value(), is_seen = std::isfinite(spot.noticed);
+    rows.push_back({spot.candidate.term, has_scale ? toText(spot.candidate.own_scale->value) : "",
+                    has_scale ? spot.candidate.own_scale->unit : "", is_seen ? toText(spot.noticed) : "",
+                    spot.candidate.unit});
+    for (const double shift : spot.shifts) {
+      rows.back().push_back(is_seen ? toText(shift) : "");
+    }
+  }
+  return makeCsv(rows);
+}
+
+std::string makeBlindSpotJson(const std::vector<BlindSpot>& spots,
+                              const std::vector<ParameterSpec>& parameters) {
+  Json json{{"blind_spots", Json::array()}};
+  for (const BlindSpot& spot : spots) {
+    Json one{{"term", spot.candidate.term},
+             {"meaning", spot.candidate.meaning},
+             {"unit", spot.candidate.unit},
+             {"noticed_from", nullptr}};
+    if (spot.candidate.own_scale) {
+      one["own_scale"] = {{"value", spot.candidate.own_scale->value},
+                          {"unit", spot.candidate.own_scale->unit}};
+    }
+    if (std::isfinite(spot.noticed)) {
+      one["noticed_from"] = spot.noticed;
+      one["shifts"] = nameShifts(spot.shifts, parameters);
+    }
+    json["blind_spots"].push_back(one);
+  }
+  return formatJson(json);
+}
+
+}  // namespace twinmap

@@ -1,0 +1,156 @@
+#include "framework/diagnosis/diagnosis_text.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "framework/base/text/number_text.hpp"
+#include "framework/base/text/text_tables.hpp"
+#include "framework/diagnosis/score_test.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr int kFigureDigits = 4, kStddevFigures = 2, kEstimateDigits = 6;
+/// Candidates that a table shows beside those that are tied.
+constexpr std::size_t kShownRivals = 4;
+
+std::string describeFit(const ExplainedFit& fit) {
+  return fmt::format("chi-square {} of {:.0f} degrees of freedom, {}",
+                     toShortText(fit.posterior.chi_square, kFigureDigits), fit.posterior.degrees,
+                     fit.isExplained() ? "explained by the noise" : "model_mismatch");
+}
+
+/// "k -3.2, d +41": the parameters that move by more than half a standard deviation, or "none".
+std::string describeShifts(const VectorXd& shifts, const std::vector<ParameterSpec>& parameters) {
+  constexpr double kNoticeable = 0.5;
+  std::string text;
+  for (Index i = 0; i < shifts.size(); ++i) {
+    if (std::abs(shifts[i]) > kNoticeable) {
+      text += fmt::format("{}{} {:+.2g}", text.empty() ? "" : ", ",
+                          parameters[static_cast<std::size_t>(i)].name.text, shifts[i]);
+    }
+  }
+  return text.empty() ? "none" : text;
+}
+
+std::string describeOwnScale(const TermCandidate& candidate) {
+  return candidate.own_scale
+             ? fmt::format("; {} s = {} {}", candidate.own_scale->meaning,
+                           toShortText(candidate.own_scale->value, 3), candidate.own_scale->unit)
+             : "";
+}
+
+/// A row for each of the terms that are tied, and some of those behind them.
+std::string makeTermRows(const DiagnosisStep& step, const std::vector<ParameterSpec>& parameters) {
+  std::vector<std::vector<std::string>> rows{
+      {"term", "size", "sd", "unit", "z", "explains", "log evidence", "parameters move (sd)"}};
+  const std::size_t shown = std::min(step.ranked.size(), step.tied + kShownRivals);
+  for (std::size_t i = 0; i < shown; ++i) {
+    const TermFinding& one = step.ranked[i];
+    rows.push_back({one.candidate.term, toShortText(one.estimate, kFigureDigits),
+                    toShortText(one.stddev, kStddevFigures), one.candidate.unit,
+                    fmt::format("{:+.1f}", one.z), fmt::format("{:.0f} %", 100.0 * one.share),
+                    fmt::format("{:.1f}", one.log_evidence), describeShifts(one.shifts, parameters)});
+  }
+  return alignRows(rows, 1, "    ");
+}
+
+std::string describeStep(const DiagnosisStep& step, std::size_t number,
+                         const std::vector<ParameterSpec>& parameters, double level) {
+  const TermFinding& best = step.ranked.front();
+  std::string text;
+  if (step.found) {
+    text = fmt::format("{}. missing: {}\n  {}{}\n", number, best.candidate.term, best.candidate.meaning,
+                       describeOwnScale(best.candidate));
+    for (std::size_t i = 1; i < step.tied; ++i) {
+      text += fmt::format("  or: {}\n  {}{}\n", step.ranked[i].candidate.term,
+                          step.ranked[i].candidate.meaning, describeOwnScale(step.ranked[i].candidate));
+    }
+    if (step.tied > 1) {
+      text += fmt::format("  These recordings do not tell them apart; {}.\n", step.advice);
+    }
+  } else {
+    text =
+        fmt::format("{} of {} candidates found (|z| above {:.2f} would be, by chance in {:g} % of models)\n",
+                    best.p_value < level ? "None that stands out of what remains" : "None", step.tested,
+                    calcCriticalZ(level, step.tested), 100.0 * level);
+  }
+  return text + makeTermRows(step, parameters);
+}
+
+/// The parameters before and after, and those of the terms.
+std::string makeParameterRows(const Diagnosis& diagnosis) {
+  const SimulatorPosterior &before = diagnosis.before.posterior, &after = diagnosis.after.posterior;
+  const AveragedEstimate& averaged = diagnosis.averaged;
+  std::vector<std::vector<std::string>> rows{{"parameter", "unit", "before", "sd", "after", "sd"}};
+  const auto write = [](const VectorXd& mean, const VectorXd& stddev, Index i,
+                        std::vector<std::string>& row) {
+    row.push_back(i < mean.size() ? toShortText(mean[i], kEstimateDigits) : "-");
+    row.push_back(i < mean.size() ? toShortText(stddev[i], kStddevFigures + 1) : "-");
+  };
+  const std::vector<ParameterSpec>& parameters = diagnosis.corrected.model.parameters;
+  const auto shared = static_cast<Index>(diagnosis.shared);
+  for (Index i = 0; i < static_cast<Index>(parameters.size()); ++i) {
+    const ParameterSpec& parameter = parameters[static_cast<std::size_t>(i)];
+    rows.push_back({parameter.name.text, parameter.unit});
+    write(before.mean, before.stddev, i < shared ? i : before.mean.size(), rows.back());
+    const bool is_averaged = i < shared && averaged.isGiven();
+    write(is_averaged ? averaged.mean : after.mean, is_averaged ? averaged.stddev : after.stddev, i,
+          rows.back());
+  }
+  return alignRows(rows, 2, "  ");
+}
+
+}  // namespace
+
+std::string makeDiagnosisTable(const Diagnosis& diagnosis, const std::string& source) {
+  const std::vector<ParameterSpec>& parameters = diagnosis.corrected.model.parameters;
+  std::string text = fmt::format("{}: {}\n", source, describeFit(diagnosis.before));
+  for (std::size_t i = 0; i < diagnosis.steps.size(); ++i) {
+    if (!diagnosis.steps[i].ranked.empty()) {
+      text += describeStep(diagnosis.steps[i], i + 1, parameters, diagnosis.level);
+    }
+  }
+  if (diagnosis.found > 0) {
+    text += fmt::format("With {}: {}\n", diagnosis.found > 1 ? "these terms" : "this term",
+                        describeFit(diagnosis.after));
+    if (!diagnosis.after.posterior.isReliable()) {
+      text += fmt::format("  No estimate: {}.\n", diagnosis.after.posterior.message);
+    }
+    text += makeParameterRows(diagnosis);
+    if (diagnosis.steps[diagnosis.found - 1].tied > 1 && diagnosis.averaged.isGiven()) {
+      text +=
+          "  The parameters are those with each of the terms that are not told apart, weighted by "
+          "evidence.\n";
+    }
+  }
+  if (!diagnosis.after.isExplained()) {
+    text +=
+        "The model is incomplete: no candidate explains what remains. The standard deviations hold for the "
+        "noise alone.\n";
+  }
+  return text;
+}
+
+std::string makeBlindSpotTable(const std::vector<BlindSpot>& spots,
+                               const std::vector<ParameterSpec>& parameters) {
+  std::vector<std::vector<std::string>> rows{{"term", "noticed from", "unit", "parameters by then (sd)"}};
+  for (const BlindSpot& spot : spots) {
+    const bool is_seen = std::isfinite(spot.noticed);
+    const std::string scale =
+        spot.candidate.own_scale
+            ? fmt::format(" (s = {} {})", toShortText(spot.candidate.own_scale->value, 3),
+                          spot.candidate.own_scale->unit)
+            : "";
+    rows.push_back({spot.candidate.term + scale, is_seen ? toShortText(spot.noticed, 3) : "never",
+                    spot.candidate.unit, is_seen ? describeShifts(spot.shifts, parameters) : "-"});
+  }
+  return alignRows(rows, 1);
+}
+
+}  // namespace twinmap

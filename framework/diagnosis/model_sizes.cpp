@@ -1,0 +1,132 @@
+#include "framework/diagnosis/model_sizes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "framework/experiment/expression/named_values.hpp"
+#include "framework/experiment/model/joint_type.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
+#include "framework/models/make_simulator.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+/// Samples of the simulation: some tens in the shortest period that matters.
+constexpr Index kSizeSamples = 1001;
+
+std::vector<CoordinateSizes> listForcedCoordinates(const SystemSpec& system) {
+  std::vector<CoordinateSizes> coordinates;
+  for (const BodySpec& body : system.bodies) {
+    const JointCoordinates& joint = getJointCoordinates(body.joint.type);
+    for (std::size_t i = 0; i < joint.size(); ++i) {
+      if (joint[i].takes_forces) {
+        coordinates.push_back({body.joint.coordinates[i].text, joint[i].kind == CoordinateKind::kRotation});
+      }
+    }
+  }
+  return coordinates;
+}
+
+/// The model with each coordinate and its speed as outputs, then those of its own.
+ModelSpec observeCoordinates(const ModelSpec& model, const std::vector<CoordinateSizes>& coordinates) {
+  ModelSpec observed = model;
+  observed.outputs.clear();
+  for (const CoordinateSizes& coordinate : coordinates) {
+    OutputSpec output;
+    output.name = {"coordinate of " + coordinate.name, {}};
+    output.coordinate = Name{coordinate.name, {}};
+    observed.outputs.push_back(output);
+    output.name = {"speed of " + coordinate.name, {}};
+    output.speed = output.coordinate;
+    output.coordinate.reset();
+    observed.outputs.push_back(output);
+  }
+  observed.outputs.insert(observed.outputs.end(), model.outputs.begin(), model.outputs.end());
+  return observed;
+}
+
+/// Outputs at kSizeSamples times (samples x outputs).
+MatrixXd simulateOutputs(const ModelSpec& model, const VectorXd& point) {
+  const VectorXd times = VectorXd::LinSpaced(kSizeSamples, 0.0, model.simulation.duration);
+  const std::unique_ptr<Simulator> simulator = makeTrustedSimulator(model, times);
+  MatrixXd response(simulator->getLayout().getRowCount(), 1);
+  SampleStatus status;
+  simulator->simulate(point, response, &status);
+  if (!status.ok) {
+    throw std::runtime_error("the best fit cannot be simulated again: " + status.reason);
+  }
+  return response.reshaped(kSizeSamples, static_cast<Index>(model.outputs.size()));
+}
+
+NamedValues<double> nameValues(const ModelSpec& model, const VectorXd& point) {
+  NamedValues<double> names;
+  const std::vector<ParameterSpec> sampled = collectSampled(model);
+  for (std::size_t i = 0; i < sampled.size(); ++i) {
+    names.set(sampled[i].name.text, point[static_cast<Index>(i)]);
+  }
+  for (const ConstantSpec& constant : model.constants) {
+    names.set(constant.name.text, names.calc(constant.value));
+  }
+  return names;
+}
+
+double calcLargest(const NamedValues<double>& names, const Expression3& expressions) {
+  double largest = 0.0;
+  for (const Expression& expression : expressions) {
+    largest = std::max(largest, std::abs(names.calc(expression)));
+  }
+  return largest;
+}
+
+void setBodySizes(const ModelSpec& model, const NamedValues<double>& names, ModelSizes& sizes) {
+  for (const BodySpec& body : model.system.bodies) {
+    const double mass = names.calc(body.mass), moment = calcLargest(names, body.inertia.moments);
+    const double gyradius = mass > 0.0 ? std::sqrt(moment / mass) : 0.0;
+    sizes.masses.push_back(mass);
+    sizes.moments.push_back(moment);
+    sizes.lengths.push_back(std::max(calcLargest(names, body.center_of_mass), gyradius));
+  }
+  for (int i = 0; i < 3; ++i) {
+    sizes.gravity[i] = names.calc(model.system.gravity[static_cast<std::size_t>(i)]);
+  }
+}
+
+}  // namespace
+
+ModelSizes calcModelSizes(const ModelSpec& model, const VectorXd& point) {
+  ModelSizes sizes;
+  setBodySizes(model, nameValues(model, point), sizes);
+  double mass = 0.0, moment = 0.0;
+  for (std::size_t i = 0; i < sizes.masses.size(); ++i) {
+    mass += sizes.masses[i];
+    moment += sizes.moments[i] + sizes.masses[i] * sizes.lengths[i] * sizes.lengths[i];
+  }
+  const std::vector<CoordinateSizes> forced = listForcedCoordinates(model.system);
+  const MatrixXd outputs = simulateOutputs(observeCoordinates(model, forced), point);
+  const double interval = model.simulation.duration / static_cast<double>(kSizeSamples - 1);
+  for (std::size_t i = 0; i < forced.size(); ++i) {
+    CoordinateSizes coordinate = forced[i];
+    const auto column = static_cast<Index>(2 * i);
+    const VectorXd speed = outputs.col(column + 1);
+    const VectorXd acceleration = (speed.tail(kSizeSamples - 1) - speed.head(kSizeSamples - 1)) / interval;
+    coordinate.reach = outputs.col(column).cwiseAbs().maxCoeff();
+    coordinate.speed = speed.cwiseAbs().maxCoeff();
+    coordinate.force = (coordinate.is_angle ? moment : mass) * acceleration.norm() /
+                       std::sqrt(static_cast<double>(kSizeSamples - 1));
+    if (coordinate.reach > 0.0 && coordinate.speed > 0.0 && coordinate.force > 0.0) {
+      sizes.coordinates.push_back(coordinate);
+    }
+  }
+  for (std::size_t o = 0; o < model.outputs.size(); ++o) {
+    sizes.outputs.push_back(outputs.col(static_cast<Index>(2 * forced.size() + o)).cwiseAbs().maxCoeff());
+  }
+  return sizes;
+}
+
+}  // namespace twinmap

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "framework/experiment/model/model_spec.hpp"
+
+namespace twinmap {
+
+/// How far and how fast a coordinate moves on which forces may act, and what forces move it.
+struct CoordinateSizes {
+  std::string name;
+  bool is_angle = false;
+  double reach = 0.0;  ///< max |q|, m or rad
+  double speed = 0.0;  ///< max |q'|
+  double force = 0.0;  ///< of the size of inertia times rms q'', N or N m
+};
+
+/// The sizes of a model at a point: how large a term must be to matter.
+struct ModelSizes {
+  std::vector<CoordinateSizes> coordinates;  ///< those that move
+  std::vector<double> masses;                ///< of the bodies, kg
+  std::vector<double> lengths;  ///< of a body: its centre of mass from its frame, or its gyradius, m
+  std::vector<double> moments;  ///< of a body: its largest moment of inertia, kg m2
+  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();
+  std::vector<double> outputs;  ///< max |output|
+};
+
+/// From one simulation at a point of the sampled box. Throws std::runtime_error where that fails.
+ModelSizes calcModelSizes(const ModelSpec& model, const Eigen::VectorXd& point);
+
+}  // namespace twinmap

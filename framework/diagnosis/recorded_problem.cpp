@@ -1,0 +1,143 @@
+#include "framework/diagnosis/recorded_problem.hpp"
+
+#include <numeric>
+#include <stdexcept>
+
+#include "framework/estimation/posterior/search_team.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+/// With more unknown parameters than these, those of single recordings are integrated out (JointInferrer).
+constexpr Index kMaxDrawnParameters = 8;
+
+/// A trial with what simulates it around a point.
+struct TrialMisfit {
+  TrialMisfit(const MeasuredTrial& trial)
+      : box(trial.model->getUnknown(), {0, static_cast<Index>(trial.model->getUnknown().size())}, trial.held),
+        misfit(*trial.simulator, *trial.model, box, trial.features) {}
+
+  const SearchBox box;
+  Misfit misfit;
+};
+
+/// Where residuals are no neighbours in time of those before them.
+void addStarts(const RefinementModel& model, Index first, std::vector<Index>& starts) {
+  const std::vector<FeatureInfo>& infos = model.getExtractor().getInfos();
+  const std::vector<Index>& features = model.getWhole().features;
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    const FeatureInfo& info = infos[static_cast<std::size_t>(features[i])];
+    const FeatureInfo* before = i > 0 ? &infos[static_cast<std::size_t>(features[i - 1])] : nullptr;
+    if (before == nullptr || before->output != info.output || before->time >= info.time) {
+      starts.push_back(first + static_cast<Index>(i));
+    }
+  }
+}
+
+PosteriorProblem makeRecordedProblem(const SimulatorRefiner& simulator, const ExperimentSpec& experiment,
+                                     const RecordedFeatures& recordings) {
+  PosteriorProblem problem;
+  problem.unknown = experiment.model.parameters;
+  problem.priors = experiment.model.priors;
+  const std::vector<ParameterSpec>& own = simulator.getUnknown();
+  const std::size_t shared = problem.unknown.size();
+  for (std::size_t k = 0; k < recordings.features.size(); ++k) {
+    MeasuredTrial trial = simulator.makeTrial(recordings.features[k], recordings.known);
+    for (std::size_t j = shared; j < own.size(); ++j) {
+      trial.unknown[j] = static_cast<Index>(problem.unknown.size());
+      problem.unknown.push_back(own[j]);
+      if (recordings.features.size() > 1) {
+        problem.unknown.back().name.text += "[" + std::to_string(k + 1) + "]";
+      }
+    }
+    problem.trials.push_back(std::move(trial));
+  }
+  const auto all = static_cast<Index>(problem.unknown.size());
+  problem.drawn =
+      recordings.features.size() == 1 || all <= kMaxDrawnParameters ? all : static_cast<Index>(shared);
+  return problem;
+}
+
+}  // namespace
+
+RecordingsProblem::RecordingsProblem(const ExperimentSpec& experiment, const RecordedFeatures& recordings)
+    : simulator_(experiment, recordings.layout) {
+  simulator_.requireNoise();
+  problem_ = makeRecordedProblem(simulator_, experiment, recordings);
+}
+
+std::vector<FeatureInfo> RecordingsProblem::listInfos() const {
+  std::vector<FeatureInfo> infos;
+  const int outputs = static_cast<int>(simulator_.getSimulator().getLayout().getOutputCount());
+  for (std::size_t k = 0; k < problem_.trials.size(); ++k) {
+    const RefinementModel& model = *problem_.trials[k].model;
+    for (const Index i : model.getWhole().features) {
+      infos.push_back(model.getExtractor().getInfos()[static_cast<std::size_t>(i)]);
+      if (infos.back().output >= 0) {
+        infos.back().output += static_cast<int>(k) * outputs;
+      }
+    }
+  }
+  return infos;
+}
+
+LinearizedRecordings RecordingsProblem::linearize(const VectorXd& point) const {
+  LinearizedRecordings all;
+  const auto u = static_cast<Index>(getUnknown().size());
+  for (const MeasuredTrial& trial : problem_.trials) {
+    TrialMisfit own(trial);
+    const VectorXd at = own.box.normalize(point(trial.unknown));
+    const LocalMisfit local = own.misfit.linearize(at);
+    if (!local.status.ok) {
+      throw std::runtime_error("the best fit cannot be simulated with its derivatives: " +
+                               local.status.reason);
+    }
+    const Index before = all.residual.size(), count = local.residual.size();
+    all.residual.conservativeResize(before + count);
+    all.residual.tail(count) = local.residual;
+    all.jacobian.conservativeResize(before + count, u);
+    all.jacobian.bottomRows(count).setZero();
+    all.jacobian.bottomRows(count)(Eigen::all, trial.unknown) =
+        local.jacobian * own.box.getHalfWidths().cwiseInverse().asDiagonal();
+    addStarts(*trial.model, before, all.starts);
+  }
+  return all;
+}
+
+RecordingFit RecordingsProblem::fit(const MatrixXd& starts) const {
+  const LogCoordinates coordinates(getUnknown());
+  const Prior prior(getUnknown(), problem_.priors);
+  std::vector<std::unique_ptr<TrialMisfit>> own;
+  std::vector<MeasuredPart> parts;
+  for (const MeasuredTrial& trial : problem_.trials) {
+    own.push_back(std::make_unique<TrialMisfit>(trial));
+    parts.push_back({&own.back()->misfit, trial.model, trial.unknown, trial.loss});
+  }
+  MisfitSurface surface(std::move(parts), coordinates, prior);
+  MatrixXd from(starts.rows(), starts.cols());
+  for (Index i = 0; i < starts.cols(); ++i) {
+    from.col(i) = coordinates.fromParameters(starts.col(i));
+  }
+  SearchTeam team(surface, from);
+  team.run(BasinSearchOptions{}.max_iterations);
+  RecordingFit best;
+  for (const LocalSurface& end : team.listEnds()) {
+    if (best.point.size() == 0 || end.chi_square < best.chi_square) {
+      best = {coordinates.toParameters(end.at), end.chi_square};
+    }
+  }
+  return best;
+}
+
+VectorXd insertAdded(const VectorXd& point, Index p, const VectorXd& added) {
+  VectorXd whole(point.size() + added.size());
+  whole << point.head(p), added, point.tail(point.size() - p);
+  return whole;
+}
+
+}  // namespace twinmap

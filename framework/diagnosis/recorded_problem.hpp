@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "framework/inference/refiner.hpp"
+
+namespace twinmap {
+
+/// Recordings of one machine, as features of an experiment.
+struct RecordedFeatures {
+  ResponseLayout layout;
+  std::vector<Eigen::VectorXd> features;  ///< of each recording, NaN where missing
+  Eigen::VectorXd known;                  ///< of the inputs
+};
+
+/// A linear model of all recordings at a point: residual(at + step) ~ residual - jacobian step.
+struct LinearizedRecordings {
+  Eigen::VectorXd residual;          ///< n, in noise standard deviations
+  Eigen::MatrixXd jacobian;          ///< n x u, per unit of the parameters
+  std::vector<Eigen::Index> starts;  ///< first residual of each sequence of neighbours in time, ascending
+};
+
+/// A point where a misfit is least, and the misfit there.
+struct RecordingFit {
+  Eigen::VectorXd point;  ///< u, in the parameters' units; empty where nothing could be simulated
+  double chi_square = 0.0;
+};
+
+/// An experiment that is to explain recordings: the parameters are those of the machine, then those that each
+/// recording leaves unknown besides. For one thread.
+class RecordingsProblem {
+ public:
+  /// `recordings` must outlive the object. Throws ExperimentError where a feature has no noise.
+  RecordingsProblem(const ExperimentSpec& experiment, const RecordedFeatures& recordings);
+  RecordingsProblem(const RecordingsProblem&) = delete;
+  RecordingsProblem& operator=(const RecordingsProblem&) = delete;
+
+  const std::vector<ParameterSpec>& getUnknown() const { return problem_.unknown; }
+  const PosteriorProblem& get() const { return problem_; }
+  const SimulatorRefiner& getSimulator() const { return simulator_; }
+
+  /// Of all residuals, for testResidual(): each recording's outputs have numbers of their own.
+  std::vector<FeatureInfo> listInfos() const;
+
+  /// Throws std::runtime_error where the point cannot be simulated. Cost: one simulation with derivatives a
+  /// recording.
+  LinearizedRecordings linearize(const Eigen::VectorXd& point) const;
+
+  /// Searches side by side from points (u x n), the best of which is kept.
+  RecordingFit fit(const Eigen::MatrixXd& starts) const;
+
+ private:
+  SimulatorRefiner simulator_;
+  PosteriorProblem problem_;
+};
+
+/// A point of an experiment's unknown parameters with `added` (k) behind the first p, where addAll() and
+/// addTerm() put theirs.
+Eigen::VectorXd insertAdded(const Eigen::VectorXd& point, Eigen::Index p, const Eigen::VectorXd& added);
+
+}  // namespace twinmap

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "framework/diagnosis/augment.hpp"
+#include "framework/diagnosis/recorded_problem.hpp"
+#include "framework/diagnosis/score_test.hpp"
+
+namespace twinmap {
+
+/// All candidates of an experiment with their scores at a point.
+struct ScoredCandidates {
+  std::vector<TermCandidate> candidates;
+  std::vector<TermScore> scores;  ///< one each
+  std::unique_ptr<ScoreTest> test;
+  Eigen::VectorXd stddevs;  ///< u: of the unknown parameters, by the linear model and their bounds
+  int tested = 0;           ///< those visible
+};
+
+/// Throws ExperimentError for a model that is not a system of bodies, or is not simulated in time.
+void requireSystem(const ExperimentSpec& experiment);
+
+/// point: u, of the unknown parameters (RecordingsProblem). Throws ExperimentError as requireSystem() does,
+/// std::runtime_error where the point cannot be simulated. Cost: one simulation, one with derivatives a
+/// recording.
+ScoredCandidates scoreCandidates(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
+                                 const Eigen::VectorXd& point);
+
+/// A model with the term at its best fit.
+struct FittedTerm {
+  AugmentedExperiment augmented;
+  Eigen::VectorXd point;  ///< of its unknown parameters; empty where it cannot be simulated
+  double chi_square = 0.0;
+  double estimate = 0.0, stddev = 0.0;  ///< of the coefficient
+  double cautious_stddev = 0.0;         ///< ScoreTest::calcCautiousStddev
+  double log_evidence_of_scale = 0.0;   ///< what the freedom of an own scale costs, at most 0
+};
+
+/// Searches from `point` (u) without the term and with its score's estimate.
+FittedTerm fitTerm(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
+                   const TermCandidate& candidate, const TermScore& score, const Eigen::VectorXd& point);
+
+}  // namespace twinmap

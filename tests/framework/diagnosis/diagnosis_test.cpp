@@ -1,0 +1,110 @@
+#include "framework/diagnosis/diagnosis.hpp"
+
+#include <gtest/gtest.h>
+
+#include "framework/base/text/source_location.hpp"
+#include "framework/data/features/experiment_features.hpp"
+#include "framework/data/noise/noise.hpp"
+#include "framework/diagnosis/diagnosis_text.hpp"
+#include "framework/experiment/experiment_file.hpp"
+#include "framework/models/make_simulator.hpp"
+#include "tests/framework/experiment/experiments.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+const VectorXd kTruth = Eigen::Vector3d(95.0, 1.2, 2500.0);
+
+/// The cart with another force law, measured.
+VectorXd measure(const std::string& force, int repeat = 0) {
+  const ExperimentSpec machine = loadExperiment(kCart, {"system.force_laws[0].force=" + force});
+  const ResponseLayout layout = makeLayout(machine);
+  MatrixXd response(layout.getRowCount(), 1);
+  SampleStatus status;
+  makeTrustedSimulator(machine.model, layout.times)->simulate(kTruth, response, &status);
+  const MatrixXd noisy = addNoise(response, ResponseNoise(machine.noise, layout),
+                                  {static_cast<std::uint64_t>(7 + repeat), RandomPurpose::kTestNoise});
+  return makeExtractor(machine, layout).extract(noisy).col(0);
+}
+
+Diagnosis diagnoseCart(const std::vector<VectorXd>& features, const std::vector<std::string>& accepted = {}) {
+  const ExperimentSpec experiment = loadExperiment(kCart);
+  const RecordedFeatures recordings{makeLayout(experiment), features, {}};
+  DiagnosisOptions options;
+  options.accepted = accepted;
+  return diagnose(experiment, recordings, options);
+}
+
+const char* const kSound = "F - k3*x^3";
+const char* const kWithFriction = "F - k3*x^3 - 0.03*tanh(x_dot/0.01)";
+
+TEST(Diagnosis, FindsNothingWhereNothingIsMissing) {
+  const Diagnosis diagnosis = diagnoseCart({measure(kSound)});
+  EXPECT_EQ(diagnosis.found, 0U);
+  EXPECT_TRUE(diagnosis.after.isExplained());
+  ASSERT_EQ(diagnosis.steps.size(), 1U);
+  EXPECT_FALSE(diagnosis.steps[0].found);
+  EXPECT_NE(makeDiagnosisTable(diagnosis, "m.csv").find("None of"), std::string::npos);
+}
+
+TEST(Diagnosis, FindsDryFriction) {
+  const Diagnosis diagnosis = diagnoseCart({measure(kWithFriction)});
+  EXPECT_FALSE(diagnosis.before.isExplained());
+  ASSERT_EQ(diagnosis.found, 1U);
+  EXPECT_EQ(diagnosis.steps[0].ranked[0].candidate.term, "coulomb.x");
+  EXPECT_TRUE(diagnosis.after.isExplained());
+  const TermFinding& friction = diagnosis.steps[0].ranked[0];
+  EXPECT_NEAR(friction.estimate, 0.03, 4.0 * friction.stddev);
+  EXPECT_GT(friction.share, 0.9);
+  // the damping had taken up the friction
+  EXPECT_GT(diagnosis.before.posterior.mean[1] - kTruth[1], 5.0 * diagnosis.before.posterior.stddev[1]);
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    EXPECT_NEAR(diagnosis.averaged.mean[i], kTruth[i], 4.0 * diagnosis.averaged.stddev[i]);
+  }
+}
+
+TEST(Diagnosis, ExplainsRecordingsTogether) {
+  const Diagnosis one = diagnoseCart({measure(kWithFriction)});
+  const Diagnosis two = diagnoseCart({measure(kWithFriction), measure(kWithFriction, 1)});
+  ASSERT_EQ(two.found, 1U);
+  EXPECT_NEAR(two.steps[0].ranked[0].stddev / one.steps[0].ranked[0].stddev, std::sqrt(0.5), 0.1);
+}
+
+TEST(Diagnosis, WritesTheCorrectedExperiment) {
+  const Diagnosis diagnosis = diagnoseCart({measure(kWithFriction)}, {"coulomb.x"});
+  const ExperimentSpec read =
+      readExperiment(parseExperimentTree(writeExperiment(diagnosis.corrected), "corrected.yaml"));
+  ASSERT_EQ(read.model.parameters.size(), 5U);
+  EXPECT_EQ(read.model.parameters[3].name.text, "coulomb_x");
+  EXPECT_EQ(read.model.parameters[4].name.text, "coulomb_x_scale");
+}
+
+TEST(Diagnosis, RefusesTermsThatTheParametersTakeUp) {
+  for (const char* term : {"damping.x", "nonsense.x"}) {
+    EXPECT_THROW(diagnoseCart({measure(kSound)}, {term}), ExperimentError) << term;
+  }
+}
+
+// Drag of the size that is noticed: z is then 1.645 above the critical one, by the linear model.
+TEST(BlindSpots, SayWhatIsNoticed) {
+  const ExperimentSpec experiment = loadExperiment(kCart);
+  const ResponseLayout layout = makeLayout(experiment);
+  const VectorXd none = VectorXd::Zero(makeExtractor(experiment, layout).getFeatureCount());
+  const std::vector<BlindSpot> spots = calcBlindSpots(experiment, {layout, {none}, {}}, 0.01);
+  for (const BlindSpot& spot : spots) {
+    if (spot.candidate.term == "damping.x") {
+      EXPECT_TRUE(std::isinf(spot.noticed));
+    }
+    if (spot.candidate.term == "drag.x") {
+      EXPECT_GT(spot.noticed, 0.0);
+      EXPECT_LT(spot.shifts[1], -3.0);  // the damping hides it: it has moved far before
+    }
+  }
+  EXPECT_NE(makeBlindSpotTable(spots, experiment.model.parameters).find("never"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace twinmap

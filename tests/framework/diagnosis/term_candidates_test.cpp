@@ -1,0 +1,109 @@
+#include "framework/diagnosis/term_candidates.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "framework/data/features/experiment_features.hpp"
+#include "framework/diagnosis/augment.hpp"
+#include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
+#include "framework/models/make_simulator.hpp"
+#include "tests/framework/experiment/experiments.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+std::string findMechanism(const std::string& name) {
+  return std::string(TWINMAP_SOURCE_DIR) + "/experiments/mechanisms/" + name + ".yaml";
+}
+
+std::vector<TermCandidate> listAtCenter(const ExperimentSpec& experiment) {
+  return listCandidates(experiment.model,
+                        calcModelSizes(experiment.model, calcBoxCenter(collectSampled(experiment.model))));
+}
+
+const TermCandidate& find(const std::vector<TermCandidate>& candidates, const std::string& term) {
+  const auto found = std::find_if(candidates.begin(), candidates.end(),
+                                  [&](const TermCandidate& one) { return one.term == term; });
+  EXPECT_NE(found, candidates.end()) << term;
+  return *found;
+}
+
+TEST(ReplaceName, ReplacesWholeWords) {
+  EXPECT_EQ(replaceName("F - k*F2 + dF*F_x/F", "F", "(2*F)"), "(2*F) - k*F2 + dF*F_x/(2*F)");
+  EXPECT_EQ(replaceName("1e3*e3", "e3", "x"), "1e3*x");
+}
+
+// Units, names and references of each are right, alone and all together.
+TEST(Candidates, MakeExperimentsThatPassTheChecks) {
+  for (const std::string& file : {kCart, kTable1, findMechanism("double_pendulum_mild"),
+                                  findMechanism("spatial_arm"), findMechanism("released_pendulum")}) {
+    const ExperimentSpec experiment = loadExperiment(file);
+    const std::vector<TermCandidate> candidates = listAtCenter(experiment);
+    EXPECT_GT(candidates.size(), 20U);
+    EXPECT_NO_THROW(checkExperiment(addAll(experiment, candidates).experiment)) << file;
+    for (const TermCandidate& candidate : candidates) {
+      const ExperimentSpec augmented = addTerm(experiment, candidate, candidate.size).experiment;
+      EXPECT_NO_THROW(checkExperiment(augmented)) << file << " " << candidate.term;
+    }
+  }
+}
+
+TEST(Candidates, CoverCoordinatesBodiesSensorsAndSignals) {
+  const std::vector<TermCandidate> candidates = listAtCenter(loadExperiment(kTable1));
+  for (const char* term : {"drag.y", "coulomb.theta", "stop.y", "mass.beam2", "center_y.beam2", "tilt.x",
+                           "offset.theta", "gain.y", "gain.F", "delay.M"}) {
+    find(candidates, term);
+  }
+}
+
+/// The response of the cart with a term of some size, its own scale as it is scanned.
+VectorXd simulateWith(const ExperimentSpec& experiment, const TermCandidate& candidate, double size) {
+  const AugmentedExperiment augmented = addTerm(experiment, candidate, 1e3 * candidate.size);
+  const ResponseLayout layout = makeLayout(experiment);
+  VectorXd point(augmented.experiment.model.parameters.size());
+  point.head(static_cast<Index>(experiment.model.parameters.size())) =
+      calcBoxCenter(experiment.model.parameters);
+  const auto p = static_cast<Index>(experiment.model.parameters.size());
+  point[p] = size;
+  if (candidate.own_scale) {
+    point[p + 1] = candidate.own_scale->value;
+  }
+  MatrixXd response(layout.getRowCount(), 1);
+  SampleStatus status;
+  makeTrustedSimulator(augmented.experiment.model, layout.times)->simulate(point, response, &status);
+  EXPECT_TRUE(status.ok) << status.reason;
+  return response.col(0);
+}
+
+// Exact derivatives at 0 against differences of simulations, each with the term alone.
+TEST(Candidates, HaveExactDerivatives) {
+  const ExperimentSpec experiment =
+      loadExperiment(kCart, {"simulation.relative_tolerance=1e-10", "simulation.absolute_tolerance=1e-13"});
+  const std::vector<TermCandidate> candidates = listAtCenter(experiment);
+  const AugmentedExperiment all = addAll(experiment, candidates);
+  const ResponseLayout layout = makeLayout(experiment);
+  MatrixXd response(layout.getRowCount(), 1), derivatives;
+  SampleStatus status;
+  makeTrustedSimulator(all.experiment.model, layout.times)
+      ->simulateWithDerivatives(calcBoxCenter(all.experiment.model.parameters), response, derivatives,
+                                &status);
+  ASSERT_TRUE(status.ok) << status.reason;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const VectorXd exact = derivatives.col(3 + static_cast<Index>(i));
+    const double step = 1e-4 * candidates[i].size;
+    const VectorXd differences =
+        (simulateWith(experiment, candidates[i], step) - simulateWith(experiment, candidates[i], -step)) /
+        (2.0 * step);
+    EXPECT_LT((exact - differences).norm(), 1e-4 * exact.norm() + 1e-9) << candidates[i].term;
+  }
+}
+
+}  // namespace
+}  // namespace twinmap
