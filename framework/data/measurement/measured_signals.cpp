@@ -43,8 +43,7 @@ void requireExcerpt(const std::string& source, const VectorXd& times, double sta
   for (Index i = 0; i + 1 < times.size(); ++i) {
     if (times[i + 1] - times[i] > kLongest * step) {
       throw MeasurementError(source + ": has a gap of " + describeTime(times[i + 1] - times[i], 0.0) +
-                             " after row " + std::to_string(i + 1) +
-                             " (t = " + describeTime(times[i], start) + ") in a signal that is needed");
+                             " after t = " + describeTime(times[i], start) + " in a signal that is needed");
     }
   }
 }

@@ -79,9 +79,8 @@ class Interpolation {
     constexpr double kLongest = 1.5;
     for (Index i = first; i + 1 < first + kPoints; ++i) {
       if (times_[i + 1] - times_[i] > kLongest * step_) {
-        fail("has a gap of " + toSeconds(times_[i + 1] - times_[i]) + " after row " + std::to_string(i + 1) +
-             " (t = " + toSeconds(times_[i]) + "), where samples are needed; the median step is " +
-             toSeconds(step_));
+        fail("has a gap of " + toSeconds(times_[i + 1] - times_[i]) + " after t = " + toSeconds(times_[i]) +
+             ", where samples are needed; the median step is " + toSeconds(step_));
       }
     }
   }

@@ -165,7 +165,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"DerivedTakenName", "derived={k_y: {value: 2 * d_y}}", {"derived.k_y", "'k_y' is taken"}},
         Mistake{"DerivedNowhere",
                 "derived={a: {value: sqrt(-k_y)}}",
-                {"derived.a", "is not a finite number at the centre of the parameter box"}},
+                {"derived.a", "is not a finite number at the centre of the bounds"}},
         Mistake{"TakenByInput", "inputs.m1={bounds: [1, 2]}", {"constants.m1", "'m1' is taken"}},
         Mistake{"GainWithUnit", "outputs.y.gain=k_y", {"outputs.y.gain", "does not come out in 1"}},
         Mistake{"OffsetInAnotherUnit", "outputs.y.offset=k_y", {"outputs.y.offset", "come out in m"}},

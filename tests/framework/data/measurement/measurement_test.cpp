@@ -135,7 +135,7 @@ TEST(Measurement, ErrorsOfTimes) {
             "a.csv: has 1 samples; must have at least 2");
   EXPECT_EQ(
       getResamplingError(without(makeCubicTable(makeTimes(200, 0.01)), 50), layout),
-      "a.csv: has a gap of 0.02 s after row 50 (t = 0.49 s), where samples are needed; the median step is "
+      "a.csv: has a gap of 0.02 s after t = 0.49 s, where samples are needed; the median step is "
       "0.01 s");
   EXPECT_EQ(getResamplingError(without(makeCubicTable(makeTimes(200, 0.01)), 150), layout),
             "no error");  // where none is needed
