@@ -4,7 +4,6 @@
 
 #include "framework/analysis/calibration.hpp"
 #include "framework/analysis/sample_terms.hpp"
-#include "framework/data/sensitivity/fisher_information.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 
 namespace twinmap {
@@ -88,11 +87,11 @@ MatrixXd calcDerivedLimit(const DerivedQuantities& quantities, const std::vector
     return stddev;  // names of nothing have no places for parameters
   }
   for (Index i = 0; i < points.cols(); ++i) {
-    const MatrixXd& information = limit.information[static_cast<std::size_t>(i)];
-    if (information.size() > 0) {
+    const auto sample = static_cast<std::size_t>(i);
+    if (limit.information[sample].size() > 0) {
       const MatrixXd gradients = quantities.calcGradients(points.col(i)) * widths.asDiagonal();
       stddev.col(i) =
-          (gradients * calcLimitCovariance(information) * gradients.transpose()).diagonal().cwiseSqrt();
+          (gradients * limit.calcCovariance(sample) * gradients.transpose()).diagonal().cwiseSqrt();
     }
   }
   return stddev;

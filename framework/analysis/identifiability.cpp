@@ -14,8 +14,9 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
-constexpr double kUndetermined = 0.5;  // of the box's own standard deviation
+constexpr double kUndetermined = 0.5;  // of the prior's own standard deviation
 
 MatrixXd fixSigns(MatrixXd vectors) {
   for (Index k = 0; k < vectors.cols(); ++k) {
@@ -24,6 +25,21 @@ MatrixXd fixSigns(MatrixXd vectors) {
     vectors.col(k) *= vectors(largest, k) < 0.0 ? -1.0 : 1.0;
   }
   return vectors;
+}
+
+/// The limit of the mean information, the prior's covariance being its mean.
+MatrixXd calcMeanLimit(const InformationLimit& limit) {
+  if (limit.prior.empty()) {
+    return calcLimitCovariance(limit.mean_information);
+  }
+  const MatrixXd none = MatrixXd::Zero(limit.mean_information.rows(), limit.mean_information.cols());
+  return calcLimitCovariance(limit.mean_information, calcLimitCovariance(none, limit.calcPriorCovariance()));
+}
+
+/// Root mean square over the samples (p), in widths.
+VectorXd calcPriorStddev(const InformationLimit& limit) {
+  return limit.prior.empty() ? VectorXd::Constant(limit.mean_information.rows(), kUniformStddev)
+                             : VectorXd(limit.calcPriorCovariance().diagonal().cwiseSqrt());
 }
 
 std::string toPercent(double fraction) {
@@ -52,8 +68,8 @@ std::string explain(Index parameter, double remaining, const InformationLimit& l
                     const std::vector<ParameterSpec>& parameters) {
   const std::string& name = parameters[parameter].name.text;
   const std::string reduction = toPercent(1.0 - remaining);
-  const double alone =
-      std::sqrt(kUniformInformation / (limit.mean_information(parameter, parameter) + kUniformInformation));
+  const double prior = 1.0 / limit.calcPriorCovariance()(parameter, parameter);
+  const double alone = std::sqrt(prior / (limit.mean_information(parameter, parameter) + prior));
   if (alone > kUndetermined) {
     return describeNotice(Notice::kNotDetermined, name, toPercent(1.0 - alone));
   }
@@ -67,11 +83,11 @@ std::string explain(Index parameter, double remaining, const InformationLimit& l
 Identifiability calcIdentifiability(const InformationLimit& limit,
                                     const std::vector<ParameterSpec>& parameters) {
   Identifiability result;
-  result.correlation = calcCorrelation(calcLimitCovariance(limit.mean_information));
+  result.correlation = calcCorrelation(calcMeanLimit(limit));
   const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(limit.mean_information);
   result.eigenvalues = eigen.values;
   result.eigenvectors = fixSigns(eigen.vectors);
-  result.remaining = limit.mean_covariance.diagonal().cwiseSqrt() / kUniformStddev;
+  result.remaining = limit.mean_covariance.diagonal().cwiseSqrt().cwiseQuotient(calcPriorStddev(limit));
   for (Index j = 0; j < result.remaining.size(); ++j) {
     if (result.isUndetermined(j)) {
       result.warnings.push_back(explain(j, result.remaining[j], limit, parameters));

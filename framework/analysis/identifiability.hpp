@@ -11,13 +11,13 @@ namespace twinmap {
 
 /// Which parameters, and which combinations of them, the data determine.
 struct Identifiability {
-  Eigen::MatrixXd correlation;   ///< p x p, of the inverse of the mean Fisher information with the box
+  Eigen::MatrixXd correlation;   ///< p x p, of the inverse of the mean Fisher information with the prior
   Eigen::VectorXd eigenvalues;   ///< p, of the mean Fisher information, ascending; per width^2
   Eigen::MatrixXd eigenvectors;  ///< p x p, columns, in widths; the largest entry of each is positive
-  Eigen::VectorXd remaining;     ///< p: root mean square limit over the box's own standard deviation, (0, 1]
+  Eigen::VectorXd remaining;  ///< p: root mean square limit over the prior's own standard deviation, (0, 1]
   std::vector<std::string> warnings;  ///< one for each parameter that stays undetermined, with the reason
 
-  /// Whether even the limit leaves more than half of the standard deviation that the bounds alone give.
+  /// Whether even the limit leaves more than half of the standard deviation that the prior alone gives.
   bool isUndetermined(Eigen::Index parameter) const { return remaining[parameter] > 0.5; }
 };
 

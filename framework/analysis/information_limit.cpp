@@ -37,8 +37,26 @@ class NoiseOfSamples {
 
 }  // namespace
 
+MatrixXd InformationLimit::calcCovariance(std::size_t sample) const {
+  return prior.empty() ? calcLimitCovariance(information[sample])
+                       : calcLimitCovariance(information[sample], prior[sample]);
+}
+
+MatrixXd InformationLimit::calcPriorCovariance() const {
+  const Index p = mean_information.rows();
+  if (prior.empty()) {
+    return kUniformStddev * kUniformStddev * MatrixXd::Identity(p, p);
+  }
+  MatrixXd sum = MatrixXd::Zero(p, p);
+  for (const MatrixXd& one : prior) {
+    sum += one.size() > 0 ? calcLimitCovariance(MatrixXd::Zero(p, p), one) : MatrixXd::Zero(p, p);
+  }
+  return sum / static_cast<double>(static_cast<int>(prior.size()) - failures);
+}
+
 InformationLimit calcInformationLimit(const std::vector<LocalModel>& models, const FeatureNoise& noise,
-                                      const std::vector<ParameterSpec>& parameters) {
+                                      const std::vector<ParameterSpec>& parameters,
+                                      const std::vector<MatrixXd>& prior) {
   const VectorXd widths = calcWidths(parameters);
   const Index p = widths.size(), n = static_cast<Index>(models.size());
   InformationLimit limit;
@@ -46,6 +64,7 @@ InformationLimit calcInformationLimit(const std::vector<LocalModel>& models, con
   limit.mean_information.setZero(p, p);
   limit.mean_covariance.setZero(p, p);
   limit.information.resize(models.size());
+  limit.prior.resize(prior.size());
   NoiseOfSamples noise_of_samples(noise);
   for (Index i = 0; i < n; ++i) {
     const LocalModel& model = models[i];
@@ -54,13 +73,18 @@ InformationLimit calcInformationLimit(const std::vector<LocalModel>& models, con
       continue;
     }
     noise_of_samples.update(model.response);
-    const MatrixXd information = calcMarginalInformation(
-        calcFisherInformation(noise_of_samples.getWhitener(), model.sensitivities), p);
-    const MatrixXd covariance = calcLimitCovariance(information);
+    const auto sample = static_cast<std::size_t>(i);
+    const MatrixXd whole = calcFisherInformation(noise_of_samples.getWhitener(), model.sensitivities);
+    if (!prior.empty()) {
+      limit.prior[sample] = calcMarginalPrior(prior[sample], p);
+    }
+    limit.information[sample] =
+        prior.empty() ? calcMarginalInformation(whole, p) : calcMarginalInformation(whole, p, prior[sample]);
+    const MatrixXd& information = limit.information[sample];
+    const MatrixXd covariance = limit.calcCovariance(sample);
     limit.stddev.col(i) = covariance.diagonal().cwiseSqrt().cwiseProduct(widths);
     limit.mean_information += information;
     limit.mean_covariance += covariance;
-    limit.information[static_cast<std::size_t>(i)] = information;
     const MatrixXd relevance =
         (model.sensitivities.leftCols(p).array().colwise() / noise_of_samples.getStddev().array()).square();
     limit.relevance = limit.relevance.size() == 0 ? relevance : MatrixXd(limit.relevance + relevance);

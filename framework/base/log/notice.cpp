@@ -202,8 +202,8 @@ const std::vector<NoticeText> kTraining{
      "wrong "
      "width."},
     {Notice::kNoCalibration, "no_calibration", false, kInfo, "posteriors are not calibrated: {0}",
-     "Leave out evaluation.calibration, or train a surrogate.",
-     "Simulation-based calibration needs a surrogate and enough reliable posteriors."}};
+     "Leave out evaluation.calibration, or set 'inverse_map: surrogate' or 'none'.",
+     "Simulation-based calibration needs a surrogate, or no map at all, and enough reliable posteriors."}};
 
 const std::vector<NoticeText> kFiles{
     {Notice::kRelativeToRange, "relative_to_range", false, kInfo,

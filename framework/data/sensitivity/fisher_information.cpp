@@ -7,29 +7,57 @@
 
 namespace twinmap {
 
+using Eigen::Index;
 using Eigen::MatrixXd;
+
+namespace {
+
+/// C' O^-1 C.
+MatrixXd calcExplained(const MatrixXd& of_others, const MatrixXd& coupling) {
+  return coupling.transpose() * linalg::solveCholesky(linalg::calcCholesky(of_others).lower, coupling);
+}
+
+}  // namespace
 
 MatrixXd calcFisherInformation(const NoiseWhitener& noise, const MatrixXd& sensitivities) {
   const MatrixXd whitened = noise.apply(sensitivities);
   return whitened.transpose() * whitened;
 }
 
-MatrixXd calcMarginalInformation(const MatrixXd& information, Eigen::Index count) {
-  const Eigen::Index others = information.rows() - count;
+MatrixXd makeUniformInformation(Index parameters) {
+  return kUniformInformation * MatrixXd::Identity(parameters, parameters);
+}
+
+MatrixXd calcMarginalInformation(const MatrixXd& information, Index count, const MatrixXd& prior) {
+  const Index others = information.rows() - count;
   if (others == 0) {
     return information;
   }
-  MatrixXd of_others = information.bottomRightCorner(others, others);
-  of_others.diagonal().array() += kUniformInformation;
-  const MatrixXd coupling = information.bottomLeftCorner(others, count);
-  const MatrixXd solved = linalg::solveCholesky(linalg::calcCholesky(of_others).lower, coupling);
-  return information.topLeftCorner(count, count) - coupling.transpose() * solved;
+  const MatrixXd whole = information + prior;
+  const MatrixXd of_itself = prior.topLeftCorner(count, count) - calcMarginalPrior(prior, count);
+  return (information.topLeftCorner(count, count) + of_itself) -
+         calcExplained(whole.bottomRightCorner(others, others), whole.bottomLeftCorner(others, count));
+}
+
+MatrixXd calcMarginalInformation(const MatrixXd& information, Index count) {
+  return calcMarginalInformation(information, count, makeUniformInformation(information.rows()));
+}
+
+MatrixXd calcMarginalPrior(const MatrixXd& prior, Index count) {
+  const Index others = prior.rows() - count;
+  return others == 0 ? prior
+                     : MatrixXd(prior.topLeftCorner(count, count) -
+                                calcExplained(prior.bottomRightCorner(others, others),
+                                              prior.bottomLeftCorner(others, count)));
+}
+
+MatrixXd calcLimitCovariance(const MatrixXd& information, const MatrixXd& prior) {
+  return linalg::solveCholesky(linalg::calcCholesky(information + prior).lower,
+                               MatrixXd::Identity(information.rows(), information.cols()));
 }
 
 MatrixXd calcLimitCovariance(const MatrixXd& information) {
-  const MatrixXd identity = MatrixXd::Identity(information.rows(), information.cols());
-  return linalg::solveCholesky(linalg::calcCholesky(information + kUniformInformation * identity).lower,
-                               identity);
+  return calcLimitCovariance(information, makeUniformInformation(information.rows()));
 }
 
 bool asksForInformationLimit(const ExperimentSpec& experiment) {

@@ -320,6 +320,10 @@ MatrixXd SimulatorPosterior::calcQuantiles(const VectorXd& probabilities) const 
   return importance::calcQuantiles({draws, weights}, probabilities);
 }
 
+MatrixXd SimulatorPosterior::resample(const VectorXd& uniforms) const {
+  return importance::resample({draws, weights}, uniforms);
+}
+
 SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const MatrixXd& given,
                                    const SimulatorPosteriorOptions& options) {
   ProblemSurface whole(problem);

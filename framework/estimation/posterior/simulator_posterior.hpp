@@ -53,6 +53,8 @@ struct SimulatorPosterior {
   PosteriorShape findShape(Eigen::Index p) const;
   /// Quantiles (u x k) at probabilities (k). Only where it is reliable.
   Eigen::MatrixXd calcQuantiles(const Eigen::VectorXd& probabilities) const;
+  /// Draws of equal weight (u x n), one for each of the uniforms (n) in (0, 1). Only where it is reliable.
+  Eigen::MatrixXd resample(const Eigen::VectorXd& uniforms) const;
 };
 
 /// One measurement, and what simulates its trial.

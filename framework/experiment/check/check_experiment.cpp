@@ -98,13 +98,11 @@ void checkGates(const ExperimentSpec& experiment) {
 /// Without a map there is nothing to compare with: all answers are exact posteriors.
 void checkEvaluation(const ExperimentSpec& experiment) {
   const EvaluationSpec& evaluation = experiment.evaluation;
-  const bool compares = evaluation.posterior || !evaluation.baselines.empty() || !evaluation.maps.empty() ||
-                        evaluation.calibration != PosteriorCalibrationMethod::kNone;
+  const bool compares = evaluation.posterior || !evaluation.baselines.empty() || !evaluation.maps.empty();
   if (experiment.inverse_map.isNone() && compares) {
-    throw ExperimentError(
-        {experiment.name.where.file, 0, 0, "evaluation"}, "",
-        "must ask for no posterior, calibration, baselines or maps with 'inverse_map: none': "
-        "every test sample is answered by its exact posterior");
+    throw ExperimentError({experiment.name.where.file, 0, 0, "evaluation"}, "",
+                          "must ask for no posterior, baselines or maps with 'inverse_map: none': "
+                          "every test sample is answered by its exact posterior");
   }
 }
 

@@ -10,7 +10,9 @@ namespace twinmap {
 /// map.
 Eigen::MatrixXd sampleTrainPoints(const ExperimentSpec& experiment);
 
-/// The test points, likewise.
+/// The test points, likewise: scaled to the bounds, or, where there are priors, their points at those of the
+/// unit cube (Prior::calcPoint). Where bounds cut off a part of correlated priors, some points are replaced
+/// by uniform ones, so that all are draws of the prior.
 Eigen::MatrixXd sampleTestPoints(const ExperimentSpec& experiment);
 
 }  // namespace twinmap

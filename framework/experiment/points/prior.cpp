@@ -41,6 +41,20 @@ double calcTruncatedQuantile(const Distribution& distribution, double lower, dou
   return share > 0.0 ? std::clamp(boost::math::quantile(distribution, share), lower, upper) : lower;
 }
 
+/// How much of a standard normal distribution lies between.
+double calcNormalShare(double lower, double upper) {
+  const boost::math::normal_distribution<> standard;
+  return lower > 0.0 ? boost::math::cdf(boost::math::complement(standard, lower)) -
+                           boost::math::cdf(boost::math::complement(standard, upper))
+                     : boost::math::cdf(standard, upper) - boost::math::cdf(standard, lower);
+}
+
+/// Of values in columns, each row by itself.
+VectorXd calcRowStddevs(const MatrixXd& values) {
+  const VectorXd mean = values.rowwise().mean();
+  return ((values.colwise() - mean).rowwise().squaredNorm() / static_cast<double>(values.cols())).cwiseSqrt();
+}
+
 /// misfit, half its negative slope, half its curvature where that is positive.
 struct MarginalMisfit {
   double misfit, descent, information;
@@ -207,6 +221,25 @@ PriorMisfit Prior::calcMisfit(const VectorXd& x) const {
   return prior;
 }
 
+Prior::Conditional Prior::condition(Index k, const VectorXd& independent) const {
+  const Normal& normal = normals_[static_cast<std::size_t>(k)];
+  const Bounds& bounds = bounds_[static_cast<std::size_t>(normal.parameter)];
+  const double mean = lower_.row(k).head(k).dot(independent.head(k)), spread = lower_(k, k);
+  return {(normal.standardize(bounds.lower) - mean) / spread,
+          (normal.standardize(bounds.upper) - mean) / spread, mean, spread};
+}
+
+VectorXd Prior::drawIndependent(const VectorXd& unit) const {
+  const boost::math::normal_distribution<> standard;
+  VectorXd independent(static_cast<Index>(normals_.size()));
+  for (Index k = 0; k < independent.size(); ++k) {
+    const Conditional given = condition(k, independent);
+    independent[k] = calcTruncatedQuantile(standard, given.lower, given.upper,
+                                           unit[normals_[static_cast<std::size_t>(k)].parameter]);
+  }
+  return independent;
+}
+
 VectorXd Prior::calcPoint(const VectorXd& unit) const {
   VectorXd x(unit.size());
   for (Index j = 0; j < unit.size(); ++j) {
@@ -217,25 +250,32 @@ VectorXd Prior::calcPoint(const VectorXd& unit) const {
     x[other.parameter] = calcMarginalQuantile(other.prior, bounds_[static_cast<std::size_t>(other.parameter)],
                                               unit[other.parameter]);
   }
-  const boost::math::normal_distribution<> standard;
-  VectorXd independent(static_cast<Index>(normals_.size()));
+  const VectorXd independent = drawIndependent(unit);
   for (Index k = 0; k < independent.size(); ++k) {
     const Normal& normal = normals_[static_cast<std::size_t>(k)];
     const Bounds& bounds = bounds_[static_cast<std::size_t>(normal.parameter)];
-    const double mean = lower_.row(k).head(k).dot(independent.head(k)), spread = lower_(k, k);
-    independent[k] =
-        calcTruncatedQuantile(standard, (normal.standardize(bounds.lower) - mean) / spread,
-                              (normal.standardize(bounds.upper) - mean) / spread, unit[normal.parameter]);
-    const double value = normal.mean + normal.stddev * (mean + spread * independent[k]);
+    const Conditional given = condition(k, independent);
+    const double value = normal.mean + normal.stddev * (given.mean + given.spread * independent[k]);
     x[normal.parameter] =
         std::clamp(normal.of_logarithm ? std::exp(value) : value, bounds.lower, bounds.upper);
   }
   return x;
 }
 
-VectorXd Prior::calcStddevs() const {
-  constexpr Index kPoints =
-      512;  // equally likely ones; those of a normal distribution have 0.2 % less spread
+double Prior::calcShareWithin(const VectorXd& unit) const {
+  const VectorXd independent = drawIndependent(unit);
+  double share = 1.0;
+  for (Index k = 0; k < independent.size(); ++k) {
+    if (lower_.row(k).head(k).any()) {
+      const Conditional given = condition(k, independent);
+      share *= calcNormalShare(given.lower, given.upper);
+    }
+  }
+  return share;
+}
+
+MatrixXd Prior::listQuantiles() const {
+  constexpr Index kPoints = 512;  // those of a normal distribution have 0.2 % less spread
   Prior alone = *this;
   alone.lower_.setIdentity();
   MatrixXd points(static_cast<Index>(bounds_.size()), kPoints);
@@ -243,8 +283,58 @@ VectorXd Prior::calcStddevs() const {
     points.col(i) =
         alone.calcPoint(VectorXd::Constant(points.rows(), (static_cast<double>(i) + 0.5) / kPoints));
   }
-  const VectorXd mean = points.rowwise().mean();
-  return ((points.colwise() - mean).rowwise().squaredNorm() / static_cast<double>(kPoints)).cwiseSqrt();
+  return points;
+}
+
+VectorXd Prior::calcStddevs() const {
+  return calcRowStddevs(listQuantiles());
+}
+
+bool Prior::isOfLogarithm(Index parameter) const {
+  const auto is_normal = [&](const Normal& one) { return one.parameter == parameter && one.of_logarithm; };
+  const auto is_other = [&](const Other& one) {
+    return one.parameter == parameter && std::holds_alternative<LogUniformPrior>(one.prior.kind);
+  };
+  return std::any_of(normals_.begin(), normals_.end(), is_normal) ||
+         std::any_of(others_.begin(), others_.end(), is_other);
+}
+
+std::vector<MatrixXd> Prior::calcInformation(const MatrixXd& points) const {
+  std::vector<MatrixXd> informations;
+  if (isUniform()) {
+    return informations;
+  }
+  constexpr double kUniform = 12.0;  // 1 / variance over a unit width
+  const Index u = points.rows(), n = static_cast<Index>(normals_.size());
+  Eigen::Array<bool, Eigen::Dynamic, 1> of_logarithm(u);
+  MatrixXd quantiles = listQuantiles();
+  VectorXd widths(u);
+  for (Index j = 0; j < u; ++j) {
+    const Bounds& bounds = bounds_[static_cast<std::size_t>(j)];
+    widths[j] = bounds.upper - bounds.lower;
+    of_logarithm[j] = isOfLogarithm(j);
+    if (of_logarithm[j]) {
+      quantiles.row(j) = quantiles.row(j).array().log();
+    }
+  }
+  const VectorXd scales = widths.cwiseQuotient(calcRowStddevs(quantiles));
+  const MatrixXd inverse = linalg::solveCholesky(lower_, MatrixXd::Identity(n, n));
+  for (const auto& x : points.colwise()) {
+    const VectorXd slopes = of_logarithm.select(scales.array() / x.array(), scales.array());
+    MatrixXd information = kUniform * MatrixXd::Identity(u, u);
+    for (Index k = 0; k < n; ++k) {
+      const Index a = normals_[static_cast<std::size_t>(k)].parameter;
+      for (Index l = 0; l < n; ++l) {
+        const Index b = normals_[static_cast<std::size_t>(l)].parameter;
+        information(a, b) = slopes[a] * inverse(k, l) * slopes[b];
+      }
+    }
+    for (const Other& other : others_) {
+      information(other.parameter, other.parameter) = slopes[other.parameter] * slopes[other.parameter];
+    }
+    informations.push_back(std::move(information));
+  }
+  return informations;
 }
 
 Bounds calcPriorRange(const PriorSpec& prior) {

@@ -36,12 +36,23 @@ class Prior {
   PriorMisfit calcMisfit(const Eigen::VectorXd& x) const;
 
   /// The point of the prior (u) at a point of the unit cube (u): the quantiles of each parameter, one after
-  /// the other given those before it where they are correlated. Uniform points give draws of the prior;
-  /// correlated ones only about where bounds cut off a part of them.
+  /// the other given those before it where they are correlated. Uniform points give draws of the prior; where
+  /// bounds cut off a part of correlated ones, if each is kept with the probability calcShareWithin().
   Eigen::VectorXd calcPoint(const Eigen::VectorXd& unit) const;
+
+  /// The product over the correlated parameters of how much of each, given those before it at
+  /// calcPoint(unit), lies within its bounds: the density of the prior is in proportion to that of
+  /// calcPoint() times it. 1 but for rounding where bounds cut off nothing.
+  double calcShareWithin(const Eigen::VectorXd& unit) const;
 
   /// Standard deviation of each parameter (u) within its bounds.
   Eigen::VectorXd calcStddevs() const;
+
+  /// The prior as information beside that of a measurement, at each of the points (u x n; u x u each, per
+  /// width of the bounds): that of a normal distribution of the same variance, which is the logarithm's for
+  /// lognormal and log-uniform priors, and of the same correlation; 12 for a uniform parameter. Empty where
+  /// all are uniform, so that it is 12 everywhere.
+  std::vector<Eigen::MatrixXd> calcInformation(const Eigen::MatrixXd& points) const;
 
  private:
   /// Normal, or of a normal logarithm.
@@ -58,6 +69,16 @@ class Prior {
     PriorSpec prior;
   };
 
+  /// Equally likely points of each parameter by itself (u x n).
+  Eigen::MatrixXd listQuantiles() const;
+  bool isOfLogarithm(Eigen::Index parameter) const;
+  /// A normal parameter at the place u in (0, 1) of what its bounds leave of it, given those before it.
+  struct Conditional {
+    double lower, upper;  ///< the bounds, standardized
+    double mean, spread;
+  };
+  Conditional condition(Eigen::Index k, const Eigen::VectorXd& independent) const;
+  Eigen::VectorXd drawIndependent(const Eigen::VectorXd& unit) const;
   void addMarginal(Eigen::Index parameter, const std::optional<PriorSpec>& prior);
   void join(const std::vector<ParameterSpec>& unknown, const PriorGroupSpec& group);
   Eigen::VectorXd standardize(const Eigen::VectorXd& x) const;

@@ -5,13 +5,17 @@
 #include "framework/base/log/notice.hpp"
 #include "framework/base/log/run_control.hpp"
 #include "framework/base/log/stage_timer.hpp"
+#include "framework/estimation/posterior/log_coordinates.hpp"
 #include "framework/estimation/run_tasks.hpp"
 #include "framework/estimation/trained/posterior_model.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
 
 namespace twinmap {
 namespace {
 
 using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
 /// Ranks of the measurements whose posterior is reliable, in their order.
 struct RankedMeasurements {
@@ -36,6 +40,44 @@ std::vector<Eigen::VectorXi> rankAll(const Study& study, const PreparedData& dat
                            {posterior.normal_mean, posterior.normal_covariance});
     }
   });
+  return ranks;
+}
+
+/// Independent draws of the weighted ones (u x kRankDraws), others of each measurement.
+MatrixXd drawEqually(const SimulatorPosterior& posterior, std::uint64_t seed, std::uint64_t sample) {
+  const RandomStream random(seed, RandomPurpose::kPosteriorResampling);
+  const VectorXd uniforms = VectorXd::NullaryExpr(
+      kRankDraws, [&](Index i) { return random.calcUniform(sample, static_cast<std::uint64_t>(i)); });
+  return posterior.resample(uniforms);
+}
+
+/// The ranks of a truth (p) among them. Distances are taken in the coordinates and the linear model of the
+/// best point, which no draw has part in.
+Eigen::VectorXi rankExact(const SimulatorPosterior& posterior, const LogCoordinates& coordinates,
+                          const VectorXd& truth, const MatrixXd& draws) {
+  const Index p = truth.size();
+  const MatrixXd covariance = calcBasinCovariance(posterior.information).topLeftCorner(p, p);
+  VectorXd point = posterior.best;
+  const VectorXd center = coordinates.fromParameters(point).head(p);
+  point.head(p) = truth;
+  const VectorXd at = coordinates.fromParameters(point).head(p);
+  MatrixXd points(p, draws.cols());
+  for (Index i = 0; i < draws.cols(); ++i) {
+    points.col(i) = coordinates.fromParameters(draws.col(i)).head(p);
+  }
+  return calcRanks(at, points, {center, covariance});
+}
+
+std::vector<Eigen::VectorXi> rankAllExact(const Study& study, const LabelledFeatures& test,
+                                          const std::vector<SimulatorPosterior>& posteriors) {
+  const LogCoordinates coordinates(collectUnknown(study.experiment.model));
+  std::vector<Eigen::VectorXi> ranks(posteriors.size());
+  for (std::size_t i = 0; i < posteriors.size(); ++i) {
+    if (posteriors[i].isReliable()) {
+      ranks[i] = rankExact(posteriors[i], coordinates, test.parameters.col(static_cast<Index>(i)),
+                           drawEqually(posteriors[i], study.experiment.seed, i));
+    }
+  }
   return ranks;
 }
 
@@ -72,6 +114,20 @@ void warn(const PosteriorCalibration& calibration, const std::vector<ParameterSp
   }
 }
 
+/// Histograms and tests of the ranks, or why there are none.
+void calibrate(const RankedMeasurements& ranked, const std::vector<ParameterSpec>& parameters,
+               CalibratedPosteriors& result) {
+  const auto reliable = static_cast<int>(ranked.ranks.cols());
+  if (reliable < kMinRanks) {
+    result.notes.warn(makeWarning(
+        Notice::kNoCalibration, fmt::format("{} of {} test samples have a reliable posterior, {} are needed",
+                                            reliable, reliable + ranked.unreliable, kMinRanks)));
+    return;
+  }
+  result.calibration = PosteriorCalibration{reliable, ranked.unreliable, calcRankCalibration(ranked.ranks)};
+  warn(*result.calibration, parameters, result.notes);
+}
+
 }  // namespace
 
 CalibratedPosteriors calibratePosteriors(const Study& study, const PreparedData& data,
@@ -82,20 +138,18 @@ CalibratedPosteriors calibratePosteriors(const Study& study, const PreparedData&
     result.notes.warn(makeWarning(Notice::kNoCalibration, "the run has no surrogate"));
     return result;
   }
-  const Index quantities = model->parameters + 1;
   const RankedMeasurements ranked = timeStage("calibration of posteriors", result.notes, [&] {
-    return collect(rankAll(study, data, *model), quantities);
+    return collect(rankAll(study, data, *model), model->parameters + 1);
   });
-  if (ranked.ranks.cols() < kMinRanks) {
-    result.notes.warn(
-        makeWarning(Notice::kNoCalibration,
-                    fmt::format("{} of {} test samples have a reliable posterior, {} are needed",
-                                ranked.ranks.cols(), ranked.ranks.cols() + ranked.unreliable, kMinRanks)));
-    return result;
-  }
-  result.calibration = PosteriorCalibration{static_cast<int>(ranked.ranks.cols()), ranked.unreliable,
-                                            calcRankCalibration(ranked.ranks)};
-  warn(*result.calibration, study.experiment.model.parameters, result.notes);
+  calibrate(ranked, study.experiment.model.parameters, result);
+  return result;
+}
+
+CalibratedPosteriors calibratePosteriors(const Study& study, const LabelledFeatures& test,
+                                         const std::vector<SimulatorPosterior>& posteriors) {
+  CalibratedPosteriors result;
+  calibrate(collect(rankAllExact(study, test, posteriors), test.parameters.rows() + 1),
+            study.experiment.model.parameters, result);
   return result;
 }
 

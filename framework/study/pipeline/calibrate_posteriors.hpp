@@ -1,6 +1,7 @@
 #pragma once
 
 #include "framework/study/pipeline/evaluate_map.hpp"
+#include "framework/study/pipeline/exact_posteriors.hpp"
 
 namespace twinmap {
 
@@ -15,5 +16,9 @@ struct CalibratedPosteriors {
 /// `infer --posterior` samples it. The result does not depend on the number of threads. Cost: one posterior a
 /// test sample. Throws Interrupted.
 CalibratedPosteriors calibratePosteriors(const Study& study, const PreparedData& data, const TrainedMap& map);
+
+/// The same of posteriors on the simulator (sampleTestPosteriors) of all columns of `test`.
+CalibratedPosteriors calibratePosteriors(const Study& study, const LabelledFeatures& test,
+                                         const std::vector<SimulatorPosterior>& posteriors);
 
 }  // namespace twinmap

@@ -11,6 +11,7 @@
 #include "framework/base/log/stage_timer.hpp"
 #include "framework/data/sensitivity/fisher_information.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/experiment/points/prior.hpp"
 #include "framework/study/pipeline/baselines.hpp"
 #include "framework/study/pipeline/calibrate_posteriors.hpp"
 #include "framework/study/pipeline/evaluate_estimates.hpp"
@@ -32,8 +33,9 @@ std::optional<InformationLimit> findLimit(const Study& study, const PreparedData
   const LabelledFeatures& test = data.labelled.test;
   if (hasInformationLimit(study.experiment, test)) {
     return timeStage(fmt::format("information limit of {} test samples", test.parameters.cols()), notes, [&] {
+      const Prior prior(collectUnknown(study.experiment.model), study.experiment.model.priors);
       return calcInformationLimit(calcLocalModels(study, test.collectPoints()), study.noise,
-                                  getParameters(study));
+                                  getParameters(study), prior.calcInformation(test.collectUnknown()));
     });
   }
   if (study.experiment.evaluation.limit) {
@@ -252,6 +254,11 @@ PosteriorEvaluation evaluatePosteriors(const Study& study, PreparedData& data) {
   evaluation.methods = {summarizePosteriors(parameters, test.parameters, exact, limit_stddev)};
   if (limit) {
     addLimit(study, test, *limit, result.evaluated);
+  }
+  if (study.experiment.evaluation.calibration == PosteriorCalibrationMethod::kSimulationBased) {
+    CalibratedPosteriors calibrated = calibratePosteriors(study, test, exact);
+    evaluation.calibration = std::move(calibrated.calibration);
+    notes.append(calibrated.notes);
   }
   std::vector<int> kept;
   for (const Index i : reliable.samples) {

@@ -11,8 +11,11 @@ namespace twinmap {
 
 namespace {
 
-/// Maps, surrogates and the information limit know uniform priors alone.
-void requireUniformPriors(const ExperimentSpec& experiment) {
+/// Estimators that are trained know uniform priors alone; posteriors of the simulator know all.
+void requireKnownPriors(const ExperimentSpec& experiment) {
+  if (experiment.inverse_map.isNone()) {
+    return;
+  }
   const std::vector<ParameterSpec> unknown = collectUnknown(experiment.model);
   const auto stated = std::find_if(unknown.begin(), unknown.end(), [](const ParameterSpec& parameter) {
     return parameter.prior.has_value();
@@ -20,16 +23,17 @@ void requireUniformPriors(const ExperimentSpec& experiment) {
   if (stated != unknown.end() || !experiment.model.priors.empty()) {
     const SourceLocation& where =
         stated != unknown.end() ? stated->name.where : experiment.model.priors.front().where;
-    throw ExperimentError(where, stated != unknown.end() ? stated->name.text : "priors",
-                          "has a prior, which training does not know: infer measurements from the experiment "
-                          "file itself (twinmap infer FILE.yaml m.csv), or leave the prior out");
+    throw ExperimentError(
+        where, stated != unknown.end() ? stated->name.text : "priors",
+        "has a prior, which trained estimators do not know: set 'inverse_map: none', or leave "
+        "the prior out");
   }
 }
 
 }  // namespace
 
 void requireModel(const ExperimentSpec& experiment) {
-  requireUniformPriors(experiment);
+  requireKnownPriors(experiment);
   makeSimulator(experiment.model, collectTimes(experiment.features), countModes(experiment.features))
       ->checkStart();
 }

@@ -88,6 +88,29 @@ TEST(InformationLimit, OfTheParametersIsTheirBlockOfTheCovarianceOfAllUnknown) {
   EXPECT_LT((limit.mean_covariance * kWidth * kWidth - expected).norm(), 1e-8);
 }
 
+TEST(InformationLimit, WithPriorsIsThatOfTheirInformation) {
+  MatrixXd matrix(1, 2);  // the sum alone is measured
+  matrix << 1, 1;
+  const LinearSimulator simulator(matrix);
+  const FeatureExtractor extractor(makeAllFeatures(simulator), simulator.getLayout());
+  const auto parameters = makeParameters(2, kLower, kUpper);
+  const FeatureNoise noise(extractor, VectorXd::Constant(1, kNoise), 1);
+  MatrixXd prior(2, 2);  // per width: of the first, a standard deviation of .02 widths
+  prior << 2500, 0, 0, 12;
+  const InformationLimit limit =
+      calcInformationLimit(calcLocalModels(simulator, extractor, parameters, makePoints(2, 3), 1), noise,
+                           parameters, {prior, prior, prior});
+  const MatrixXd information = kWidth * kWidth * matrix.transpose() * matrix / (kNoise * kNoise);
+  const VectorXd expected = kWidth * test::calcInverse(information + prior).diagonal().cwiseSqrt();
+  EXPECT_LT((limit.stddev.col(2) - expected).norm(), 1e-8);
+  EXPECT_LT((limit.calcPriorCovariance() - test::calcInverse(prior)).norm(), 1e-12);
+  const Identifiability found = calcIdentifiability(limit, parameters);
+  EXPECT_GT(found.remaining[0], 0.8);  // nearly all of .02 widths: the data say little of it
+  EXPECT_LT(found.remaining[1], 0.25);
+  ASSERT_EQ(found.warnings.size(), 1U);
+  EXPECT_NE(found.warnings[0].find("parameter 'a'"), std::string::npos);
+}
+
 TEST(InformationLimit, LeavesOutFailedSamplesAndCountsThem) {
   MatrixXd points = makePoints(2, 3);
   points(0, 1) = 2.9;

@@ -200,6 +200,36 @@ class Direct(FolderTestCase):
         self.assertEqual(result.returncode, 2)
         self.assertIn("every test sample is answered by its exact posterior", result.stderr)
 
+    def test_a_run_without_a_map_takes_priors(self):
+        run = self.folder / "priors"
+        priors = [
+            "parameters.k.prior={normal: {mean: 95, stddev: 1}}",
+            "parameters.d.prior={lognormal: {median: 1.1, factor: 1.15}}",
+            "priors=[{correlated: {names: [k, d], correlation: -0.5}}]",
+            "noise.scale=20",
+        ]
+        chosen = ["inverse_map=none", "design.test.samples=60", "evaluation.calibration=sbc"]
+        result = call("run", CART, *priors, *chosen, "--out", run)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        rows = read_csv(run / "predictions.csv")
+        truth = np.array([[float(row[f"{name}_true"]) for row in rows] for name in TRUE])
+        correlation = np.corrcoef(truth[0], np.log(truth[1]))[0, 1]
+        self.assertTrue(94.3 < truth[0].mean() < 95.7 and 0.6 < truth[0].std() < 1.4)  # errors of .13 and .09
+        self.assertTrue(-0.8 < correlation < -0.1, correlation)
+        for row in read_csv(run / "metrics.csv"):
+            self.assertGreater(float(row["coverage95"]), 0.85)
+            self.assertTrue(0.6 < float(row["ratio_to_limit"]) < 1.4, row)
+        for row in rows:  # the prior counts: less than its own standard deviation is left
+            self.assertLess(float(row["k_limit_stddev"]), 1.0)
+        ranks = read_csv(run / "sbc.csv")
+        self.assertEqual([row["quantity"] for row in ranks[::10]], [*TRUE, "joint"])
+        for row in ranks:
+            self.assertGreater(float(row["p_value"]), 1e-4, row)
+        self.assertEqual(call("verify", run).returncode, 0)
+        result = call("run", CART, *priors, "--out", self.folder / "trained")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("set 'inverse_map: none'", result.stderr)
+
     def test_without_a_map_sweeps_and_plans_work(self):
         sweep = self.folder / "sweep"
         overrides = ["inverse_map=none", "design.test.samples=10", "noise.scale=1,2"]

@@ -5,6 +5,8 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "framework/experiment/points/experiment_points.hpp"
+#include "framework/experiment/points/point_set.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -128,6 +130,104 @@ TEST(Prior, RefusesGroupsThatItCannotJoin) {
   EXPECT_THROW(Prior(unknown, {{CorrelatedPriors{{{"a", {}}, {"b", {}}}, 0.5}, {}}}), ExperimentError);
   EXPECT_THROW(Prior(unknown, {{JointNormalPrior{{{"c", {}}}, {0.0}, {1.0}}, {}}}), ExperimentError);
   EXPECT_THROW(Prior(unknown, {{JointNormalPrior{{{"a", {}}}, {0.0}, {-1.0}}, {}}}), ExperimentError);
+}
+
+/// Per width of bounds (u): the information of independent parameters.
+VectorXd calcScaledInformation(const std::vector<ParameterSpec>& unknown, const VectorXd& x) {
+  return Prior(unknown, {}).calcInformation(x).front().diagonal();
+}
+
+TEST(Prior, InformationIsThatOfTheVarianceWithinTheBounds) {
+  const std::vector<ParameterSpec> unknown{makeParameter("normal", 0.0, 20.0, {NormalPrior{10.0, 0.5}}),
+                                           makeParameter("lognormal", 0.1, 40.0, {LognormalPrior{2.0, 1.5}}),
+                                           makeUniform("uniform", 0.0, 7.0),
+                                           makeParameter("beta", 1.0, 3.0, {BetaPrior{2.0, 5.0}}),
+                                           makeParameter("level", 2.0, 3.0, {NormalPrior{0.0, 300.0}}),
+                                           makeParameter("log_uniform", 0.1, 10.0, {LogUniformPrior{}})};
+  VectorXd x(6);
+  x << 9.7, 3.0, 1.0, 1.5, 2.2, 4.0;
+  const VectorXd found = calcScaledInformation(unknown, x);
+  const double decades = std::log(100.0);
+  VectorXd expected(6);
+  expected << std::pow(20.0 / 0.5, 2), std::pow(39.9 / (3.0 * std::log(1.5)), 2), 12.0,
+      std::pow(7.0, 2) * 8.0 / 10.0, 12.0, 12.0 * std::pow(9.9 / (4.0 * decades), 2);
+  for (Index j = 0; j < 6; ++j) {
+    EXPECT_NEAR(found[j] / expected[j], 1.0, 6e-3) << unknown[static_cast<std::size_t>(j)].name.text;
+  }
+  EXPECT_EQ(found[2], 12.0);
+  EXPECT_TRUE(Prior({makeUniform("a", 0.0, 1.0)}, {}).calcInformation(takeOne(0.5)).empty());
+}
+
+TEST(Prior, InformationOfCorrelatedParametersIsTheInverseOfTheirCovariance) {
+  const std::vector<ParameterSpec> unknown{makeUniform("a", -9.0, 9.0), makeUniform("free", 0.0, 1.0),
+                                           makeUniform("b", -9.0, 9.0)};
+  const JointNormalPrior joint{{{"b", {}}, {"a", {}}}, {1.0, 2.0}, {0.5, 0.3, 0.3, 0.4}};
+  Eigen::Matrix2d covariance;
+  covariance << 0.4, 0.3, 0.3, 0.5;
+  const MatrixXd found =
+      Prior(unknown, {{joint, {}}}).calcInformation(Eigen::Vector3d(2.0, 0.5, 1.0)).front();
+  const Eigen::Matrix2d expected = 18.0 * 18.0 * covariance.inverse();
+  EXPECT_LT((MatrixXd(found({0, 2}, {0, 2})) - expected).norm(), 6e-3 * expected.norm());
+  EXPECT_EQ(found(1, 1), 12.0);
+  EXPECT_EQ(found(0, 1), 0.0);
+}
+
+/// Moments of the first two parameters of test points.
+struct PointMoments {
+  Eigen::Vector2d mean;
+  Eigen::Matrix2d covariance;
+};
+
+PointMoments drawTestPoints(const std::vector<ParameterSpec>& unknown,
+                            const std::vector<PriorGroupSpec>& groups, int count) {
+  ExperimentSpec experiment;
+  experiment.model.parameters = unknown;
+  experiment.model.priors = groups;
+  experiment.design.test.method = DesignMethod::kUniform;
+  experiment.design.test.samples = count;
+  const MatrixXd points = sampleTestPoints(experiment).topRows(2);
+  const Eigen::Vector2d mean = points.rowwise().mean();
+  const MatrixXd apart = points.colwise() - mean;
+  return {mean, apart * apart.transpose() / count};
+}
+
+// a and b with correlation .8, of which the bounds leave a corner: moments by quadrature over the density
+TEST(Prior, TestPointsAreDrawsWhereBoundsCutOffCorrelatedPriors) {
+  const std::vector<ParameterSpec> unknown{makeParameter("a", -0.5, 3.0, {NormalPrior{0.0, 1.0}}),
+                                           makeParameter("b", -3.0, -0.2, {NormalPrior{0.0, 1.0}})};
+  const std::vector<PriorGroupSpec> groups{{CorrelatedPriors{{{"a", {}}, {"b", {}}}, 0.8}, {}}};
+  const Prior prior(unknown, groups);
+  constexpr int kCells = 300;
+  double sum = 0.0;
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d square = Eigen::Matrix2d::Zero();
+  for (int i = 0; i < kCells; ++i) {
+    for (int k = 0; k < kCells; ++k) {
+      const Eigen::Vector2d x(-0.5 + 3.5 * (i + 0.5) / kCells, -3.0 + 2.8 * (k + 0.5) / kCells);
+      const double density = std::exp(prior.calcLogDensity(x));
+      sum += density;
+      mean += density * x;
+      square += density * x * x.transpose();
+    }
+  }
+  mean /= sum;
+  const Eigen::Matrix2d covariance = square / sum - mean * mean.transpose();
+  constexpr int kDraws = 20000;
+  const PointMoments found = drawTestPoints(unknown, groups, kDraws);
+  for (Index j = 0; j < 2; ++j) {
+    EXPECT_NEAR(found.mean[j], mean[j], 4.0 * std::sqrt(covariance(j, j) / kDraws));
+  }
+  EXPECT_LT((found.covariance - covariance).norm(), 0.05 * covariance.norm());
+}
+
+TEST(Prior, TestPointsOfUniformParametersKeepTheirBits) {
+  const std::vector<ParameterSpec> unknown{makeUniform("a", -0.1, 3.0), makeUniform("b", 5.0, 7.0)};
+  ExperimentSpec experiment;
+  experiment.model.parameters = unknown;
+  experiment.design.test.method = DesignMethod::kUniform;
+  experiment.design.test.samples = 40;
+  EXPECT_EQ(sampleTestPoints(experiment),
+            samplePoints(experiment.design.test, unknown, experiment.seed, RandomPurpose::kTestDesign));
 }
 
 TEST(Prior, RangeHoldsAllButATenThousandth) {

@@ -63,5 +63,24 @@ TEST(NoiseWhitener, MakesUnitNoise) {
   EXPECT_THROW(NoiseWhitener(MatrixXd::Zero(2, 2)), std::invalid_argument);
 }
 
+TEST(FisherInformation, WithCorrelatedPriorsLeavesTheBlockOfTheWholeCovariance) {
+  MatrixXd information(3, 3), prior(3, 3);
+  information << 9, 2, 4, 2, 5, -1, 4, -1, 7;
+  prior << 20, 6, 3, 6, 15, 5, 3, 5, 30;
+  const MatrixXd expected = test::calcInverse(information + prior).topLeftCorner(2, 2);
+  const MatrixXd of_two = calcMarginalPrior(prior, 2);
+  EXPECT_LT((of_two - test::calcInverse(test::calcInverse(prior).topLeftCorner(2, 2))).norm(), 1e-12);
+  EXPECT_LT((calcLimitCovariance(calcMarginalInformation(information, 2, prior), of_two) - expected).norm(),
+            1e-14);
+}
+
+TEST(FisherInformation, OfUniformPriorsIsThatOfTheBox) {
+  MatrixXd information(3, 3);
+  information << 9, 2, 4, 2, 5, -1, 4, -1, 7;
+  EXPECT_EQ(calcMarginalInformation(information, 1, makeUniformInformation(3)),
+            calcMarginalInformation(information, 1));
+  EXPECT_EQ(calcLimitCovariance(information, makeUniformInformation(3)), calcLimitCovariance(information));
+}
+
 }  // namespace
 }  // namespace twinmap
