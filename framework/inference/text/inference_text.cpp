@@ -12,6 +12,7 @@
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/derived_values.hpp"
 #include "framework/inference/select_estimate.hpp"
+#include "kernels/linalg/autocorrelation.hpp"
 
 namespace twinmap {
 namespace {
@@ -178,6 +179,36 @@ std::string describeUntrained(const InferredMeasurement& inferred, const std::st
          (p_value < kMismatchLevel ? explainMismatch(fit, features) : "");
 }
 
+/// "  The noise of x is 0.0015 m, 3 times what the file states."
+std::string describeFound(const NoiseReport& report) {
+  constexpr int kDigits = 3;
+  const std::string unit = report.unit.empty() ? "" : " " + report.unit;
+  const FoundNoise& found = report.found;
+  std::string text;
+  if (report.differs() || !report.isStated()) {
+    text = fmt::format("  The noise of {} is {}{}", report.output, toShortText(report.stddev, kDigits), unit);
+    text += report.isStated()
+                ? fmt::format(
+                      ", {:.3g} times what the file states. The intervals are those of the noise found.\n",
+                      found.factor)
+                : ". As it is inferred, the size of the residual is not tested.\n";
+  }
+  if (found.autoregression.size() > 0) {
+    text += fmt::format(
+        "  The noise of {} is coloured: neighbouring samples have a correlation of {:.2f}. The intervals "
+        "follow it.\n",
+        report.output,
+        calcAutocorrelation(std::vector<double>(found.autoregression.begin(), found.autoregression.end()),
+                            1)[1]);
+  }
+  if (found.has_offset) {
+    text += fmt::format("  {} has an offset of {}{} (sd {}{}), which is left out of the estimate.\n",
+                        report.output, toShortText(found.offset, kDigits), unit,
+                        toShortText(found.offset_stddev, kDigits), unit);
+  }
+  return text;
+}
+
 /// What the recording has other than the stated noise.
 std::string describeNoise(const SimulatorFit& fit) {
   constexpr std::size_t kShown = 8;
@@ -189,10 +220,8 @@ std::string describeNoise(const SimulatorFit& fit) {
     text = fmt::format("  {} samples are not noise and are left out: {}{}\n", fit.outliers.size(), text,
                        fit.outliers.size() > kShown ? " ..." : "");
   }
-  if (fit.noise_factor != 1.0) {
-    text += fmt::format(
-        "  The noise is {:.3g} times what the file states. The intervals are those of the noise found.\n",
-        fit.noise_factor);
+  for (const NoiseReport& report : fit.noise) {
+    text += describeFound(report);
   }
   return text;
 }
