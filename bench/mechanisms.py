@@ -172,7 +172,7 @@ HEAD = """# Mechanisms of many kinds
 
 Written by `bench/mechanisms.py TWINMAP`: {count} mechanisms, each with its own experiment file, 250 training samples, {tests} test
 samples, the default map (a surrogate) and defaults otherwise, {threads}. Ratio: standard deviation of the errors
-over the information limit ([the experiment file](../reference/experiment-file.md#evaluation)), smallest and largest over the parameters. Predicted: the same as the map predicts it
+over the information limit ([the experiment file](../reference/experiment-file/evaluation.md)), smallest and largest over the parameters. Predicted: the same as the map predicts it
 without the simulator. Coverage: share of true values within the 95 % intervals. Accepted: share of the test samples whose
 refinement on the simulator passed its test ([refinement](../explanation/refinement.md)); ratio and coverage are of these. Simulations: median of a
 refinement. Time: of a processor, for the whole run.

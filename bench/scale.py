@@ -35,7 +35,7 @@ PLANS = {
     ],
 }
 SPARSE = ["refine=never", "inverse_map.gp.approximation=sgpr"]
-STAGES = {"simulate": "simulate", "train": "train", "prepare": "prepare for"}
+STAGES = {"simulate": "simulate", "train": "train", "prepare": "calibrate the goodness-of-fit test"}
 
 
 def measure(command):

@@ -25,6 +25,17 @@ if(NOT TWINMAP_SANITIZE)
   install(DIRECTORY "${TWINMAP_SHARE}/man/" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" FILES_MATCHING PATTERN "*.1")
   install(FILES "${TWINMAP_SHARE}/experiment.schema.json" DESTINATION "${CMAKE_INSTALL_DATADIR}/twinmap")
 endif()
+# The documents as a site with search, where MkDocs is.
+find_program(MKDOCS mkdocs)
+if(MKDOCS AND NOT TWINMAP_SANITIZE)
+  file(GLOB_RECURSE pages CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/docs/*.md" "${PROJECT_SOURCE_DIR}/docs/images/*")
+  add_custom_command(OUTPUT "${TWINMAP_SHARE}/html/index.html"
+    COMMAND /usr/bin/python3 "${PROJECT_SOURCE_DIR}/scripts/docs" "${TWINMAP_SHARE}/html"
+    DEPENDS ${pages} "${PROJECT_SOURCE_DIR}/scripts/docs" "${PROJECT_SOURCE_DIR}/scripts/mkdocs.yml"
+    COMMENT "Documents as a site" VERBATIM)
+  add_custom_target(twinmap_site ALL DEPENDS "${TWINMAP_SHARE}/html/index.html")
+  install(DIRECTORY "${TWINMAP_SHARE}/html/" DESTINATION "${CMAKE_INSTALL_DOCDIR}/html")
+endif()
 install(DIRECTORY experiments/ DESTINATION "${CMAKE_INSTALL_DOCDIR}/examples/experiments"
   PATTERN "*.fmu" EXCLUDE PATTERN "__pycache__" EXCLUDE)
 install(FILES README.md CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "framework/base/log/notice.hpp"
 #include "framework/data/sensitivity/fisher_information.hpp"
 #include "framework/estimation/estimate.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
@@ -49,17 +50,16 @@ std::string listPartners(const MatrixXd& correlation, Index parameter,
 
 std::string explain(Index parameter, double remaining, const InformationLimit& limit,
                     const std::vector<ParameterSpec>& parameters) {
-  const std::string begin = "parameter '" + parameters[parameter].name.text +
-                            "' is not determined by the features: at best they leave " +
-                            toPercent(remaining) + " of the standard deviation that its bounds allow, ";
+  const std::string& name = parameters[parameter].name.text;
+  const std::string reduction = toPercent(1.0 - remaining);
   const double alone =
       std::sqrt(kUniformInformation / (limit.mean_information(parameter, parameter) + kUniformInformation));
   if (alone > kUndetermined) {
-    return begin + "and " + toPercent(alone) + " even if all others were known: no feature follows it enough";
+    return describeNotice(Notice::kNotDetermined, name, toPercent(1.0 - alone));
   }
   const std::string partners = listPartners(calcCorrelation(limit.mean_covariance), parameter, parameters);
-  return begin + "because a change of it looks like a change of " +
-         (partners.empty() ? "several others together" : partners);
+  return describeNotice(Notice::kConfounded, name, reduction,
+                        partners.empty() ? "several others together" : partners);
 }
 
 }  // namespace

@@ -75,7 +75,7 @@ ArrayXd toNormal(const std::vector<IntervalFactor>& factors, ArrayXd depths) {
 }
 
 ArrayXd calcScale(const ParameterSpec& parameter, const ArrayXd& truth) {
-  if (parameter.relative_to == RelativeTo::kRange) {
+  if (isRelativeToRange(parameter)) {
     return ArrayXd::Constant(truth.size(), parameter.bounds.upper - parameter.bounds.lower);
   }
   return truth;

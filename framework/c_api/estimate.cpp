@@ -130,7 +130,7 @@ twinmap_result twinmap_get_draws(const twinmap_inferrer* inferrer, double* value
   return guard([&] {
     const twinmap::Estimate& estimate = getEstimate(inferrer);
     if (!estimate.draws.isGiven()) {
-      throw WrongArgument("the estimate has no draws: it is not a posterior");
+      throw WrongArgument("the estimate has no draws, as it is not a posterior");
     }
     copy(estimate.draws.weights, weights, draws, "weights");
     const Eigen::MatrixXd points = estimate.draws.points.topRows(estimate.mean.size());

@@ -4,10 +4,12 @@
 #include <string>
 #include <thread>
 #include <twinmap/build_info.hpp>
+#include <utility>
+#include <vector>
 
 #include "framework/base/log/interrupted.hpp"
 #include "framework/base/text/source_location.hpp"
-#include "framework/cli/commands.hpp"
+#include "framework/cli/commands/commands.hpp"
 #include "framework/cli/log.hpp"
 #include "framework/cli/parser/command_groups.hpp"
 #include "framework/cli/signals.hpp"
@@ -32,17 +34,29 @@ std::string joinArguments(int count, char** arguments) {
   return line;
 }
 
+/// Headings of the help, in the order in which a user comes to them.
+void groupCommands(CLI::App& app) {
+  const std::pair<const char*, std::vector<const char*>> groups[] = {
+      {"From a model to an estimate", {"check", "simulate", "run", "infer", "replay"}},
+      {"Improve the experiment", {"noise", "design"}},
+      {"Look after runs", {"plan", "status", "report", "compare", "verify", "store"}},
+      {"Take the estimator elsewhere", {"export"}},
+      {"On a cluster", {"submit", "shard", "cancel"}},
+      {"Reference", {"explain", "schema", "variables", "completion"}}};
+  for (const auto& [title, names] : groups) {
+    for (const char* name : names) {
+      app.get_subcommand(name)->group(title);
+    }
+  }
+}
+
 int runCommand(int count, char** arguments) {
   CLI::App app(
-      "twinmap keeps digital twins true: it simulates a model for many parameter sets, trains maps "
-      "from features of the response to the parameters, and infers parameters with their standard "
-      "deviation.");
+      "twinmap estimates the physical parameters of a simulation model from measured responses, with "
+      "calibrated uncertainty.");
   app.name("twinmap");  // in the help, wherever the program lies
   app.set_version_flag("--version", std::string("twinmap ") + twinmap::kVersion);
   app.require_subcommand(1);
-  app.footer(
-      "Exit codes: 0 done, 1 failed, 2 wrong usage or wrong experiment file, 3 a gate failed and "
-      "--fail-on-gates was given, 130 and 143 interrupted by Ctrl-C or SIGTERM.");
   const cli::Invocation invocation{joinArguments(count, arguments),
                                    static_cast<int>(std::max(1U, std::thread::hardware_concurrency()))};
   cli::addExperimentCommands(app, invocation);
@@ -50,6 +64,18 @@ int runCommand(int count, char** arguments) {
   cli::addResultCommands(app, invocation);
   cli::addClusterCommands(app, invocation);
   cli::addReferenceCommands(app);
+  groupCommands(app);
+  app.footer(
+      "A first twin, in four commands:\n"
+      "  twinmap check experiments/duffing/cart.yaml\n"
+      "  twinmap run experiments/duffing/cart.yaml\n"
+      "  twinmap simulate experiments/duffing/cart.yaml --noise --csv cart.csv parameters.k=95\n"
+      "  twinmap infer results/cart cart.csv\n\n"
+      "twinmap COMMAND --help says what a command takes.");
+  if (count == 1) {
+    std::cerr << app.help();
+    return kWrongInput;
+  }
   try {
     app.parse(count, arguments);
   } catch (const CLI::ParseError& error) {

@@ -46,7 +46,7 @@ struct PointSetSpec {
 
 template <class Fields>
 void describe(Fields& f, PointSetSpec& s) {
-  f.optional("method", s.method, "how the parameter box is sampled");
+  f.optional("method", s.method, "how the samples are spread within the bounds");
   f.optional("samples", s.samples, "number of points, or automatic: as many as are worth their time");
   f.optional("smallest", s.smallest,
              "nested_latin_hypercube: a Latin hypercube at this size and 2, 4, 8 ... times it (default 1)",

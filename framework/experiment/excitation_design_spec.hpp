@@ -19,7 +19,7 @@ struct FreeValues {
   std::vector<FreeValue> values;
 };
 
-/// What a design must not exceed: an output in every simulation of the box, or a signal.
+/// What a design must not exceed: an output in every simulation within the bounds, or a signal.
 struct DesignLimitSpec {
   std::optional<Name> output, signal;
   std::optional<double> max_abs;   ///< in its unit
@@ -31,7 +31,7 @@ struct DesignLimitSpec {
 template <class Fields>
 void describe(Fields& f, DesignLimitSpec& s) {
   f.location(s.where);
-  f.oneOf("must give exactly one of", choice("output", s.output, "in every simulation of the box"),
+  f.oneOf("must give exactly one of", choice("output", s.output, "in every simulation within the bounds"),
           choice("signal", s.signal, "of the excitation"));
   f.optional("max_abs", s.max_abs, "largest absolute value", kPositive);
   f.optional("max_rate", s.max_rate, "of a signal: largest change per second; jumps exceed every rate",
@@ -55,7 +55,7 @@ void describe(Fields& f, ExcitationDesignSpec& s) {
   f.required("free", s.free, "values below excitation, by key path, with their bounds");
   f.optional("criterion", s.criterion, "what a design is judged by");
   f.optional("limits", s.limits, "what outputs and signals must not exceed");
-  f.optional("average_over", s.average_over, "points of the box that the criterion is averaged over",
+  f.optional("average_over", s.average_over, "points within the bounds that the criterion is averaged over",
              kThousand);
   f.optional("budget", s.budget, "designs that are tried", kHundredThousand);
 }

@@ -71,9 +71,9 @@ struct ExperimentSpec {
 template <class Fields>
 void describe(Fields& f, ExperimentSpec& s) {
   f.required("name", s.name, "letters, digits, '_', '-' and '.'; names the run's folder");
-  f.optional("description", s.description, "for people");
+  f.optional("description", s.description, "human-readable");
   f.optional("seed", s.seed, "all randomness follows from it");
-  f.requiredMap("parameters", s.model.parameters, "the updating parameters");
+  f.requiredMap("parameters", s.model.parameters, "the parameters to estimate");
   f.optionalMap("nuisance", s.model.nuisance, "unknown parameters that are sampled, but not inferred");
   f.optionalMap("inputs", s.model.inputs, "known settings, sampled in training, given with a measurement");
   f.optional("priors", s.model.priors, "what is known of several parameters together");
@@ -88,13 +88,13 @@ void describe(Fields& f, ExperimentSpec& s) {
   f.required("features", s.features, "what the inverse map sees of the response");
   f.optional("transform", s.transform, "steps from features to the inputs of the inverse map", kNotEmpty);
   f.required("noise", s.noise, "measurement noise, on training and test features");
-  f.optional("design", s.design, "where the parameter box is sampled");
+  f.optional("design", s.design, "where the training and test samples lie");
   f.optional("inverse_map", s.inverse_map, "from features to parameters");
   f.optional("evaluation", s.evaluation, "what is found out about the map besides its errors");
   f.optional("refine", s.refine,
              "whether answers are refined on the simulator; automatic: where that is cheap");
   f.optional("trust", s.trust, "how inferences from measurements are judged");
-  f.optional("gates", s.gates, "conditions on the metrics; the report says which passed");
+  f.optional("gates", s.gates, "acceptance criteria on the metrics; the report says which passed");
   f.optional("measurement", s.measurement, "how files of measurements are read");
   f.optional("report", s.report, "what the report shows");
   f.rule(!s.features.empty(), "must list at least one of features");

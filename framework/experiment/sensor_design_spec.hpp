@@ -34,7 +34,7 @@ template <class Fields>
 void describe(Fields& f, SensorDesignSpec& s) {
   f.required("candidates", s.candidates, "what may be measured");
   f.optional("criterion", s.criterion, "what a choice is judged by");
-  f.optional("average_over", s.average_over, "points of the box that the criterion is averaged over",
+  f.optional("average_over", s.average_over, "points within the bounds that the criterion is averaged over",
              kThousand);
 }
 

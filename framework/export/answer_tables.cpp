@@ -18,7 +18,7 @@ void addTrust(const TrustModel& trust, CTables& tables, CSizes& sizes) {
   if (space.unmodelled.cols() > 0) {
     tables.addReal("unmodelled_directions", flattenColumns(space.unmodelled),
                    "Directions of what else moves with the parameters, one after another.");
-    tables.addWide("unmodelled_stddev", space.unmodelled_stddev, "Its standard deviations over the box.");
+    tables.addWide("unmodelled_stddev", space.unmodelled_stddev, "Its standard deviations over the bounds.");
   }
   std::vector<int> runs;
   for (const ResidualRun& run : trust.runs) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "framework/inference/measurement_inference.hpp"
+#include "framework/inference/measurement/measurement_inference.hpp"
 #include "framework/inference/refiner.hpp"
 
 namespace twinmap {

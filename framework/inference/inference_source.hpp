@@ -6,7 +6,7 @@
 #include <string>
 
 #include "framework/inference/inferrer.hpp"
-#include "framework/inference/measurement_session.hpp"
+#include "framework/inference/measurement/measurement_session.hpp"
 
 namespace twinmap {
 

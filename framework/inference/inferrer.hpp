@@ -10,7 +10,7 @@
 #include "framework/estimation/ridges/identified_combinations.hpp"
 #include "framework/estimation/trained/online_map.hpp"
 #include "framework/estimation/trained/online_model.hpp"
-#include "framework/inference/measurement_reader.hpp"
+#include "framework/inference/measurement/measurement_reader.hpp"
 #include "framework/inference/posterior_estimate.hpp"
 #include "framework/store/trained_file.hpp"
 
@@ -29,6 +29,7 @@ struct InferredMeasurement {
   /// u x n: the separate places that fit by the estimator, in the parameters' units, the likeliest first;
   /// one, or none where the estimator does not look for them.
   Eigen::MatrixXd basins{};
+  std::string fault{};  ///< of the measurement, that explains a gross misfit (explainByFault()); "" of none
   bool coverage_is_short = false;  ///< of the run's refined test samples, where the refinement was accepted
   std::optional<Refined> refined;  ///< on the simulator, where that was tried; accepted or not
   std::optional<PosteriorEstimate> posterior{};  ///< where it was asked for, or taken; reliable or not

@@ -25,7 +25,7 @@ HtmlCell makeCell(double value) {
   return makeNumberCell(std::isfinite(value) ? toText(value) : "");
 }
 
-/// Mean and worst limit sd over the box of two excitations, and their ratios.
+/// Mean and worst limit sd over the bounds of two excitations, and their ratios.
 Cells makeLimitRow(const ParameterSpec& parameter, const VectorXd& before, const VectorXd& after) {
   return {makeTextCell(parameter.name.text),
           makeTextCell(parameter.unit),
@@ -65,10 +65,11 @@ std::string makeMeasureTable(const ExcitationDesign& design) {
                     makeCell(reached(design.before)), makeCell(after),
                     makeCell(100.0 * (1.0 - after / limit.most)), makeCell(reached(design.nominal))});
   }
-  return makeHtmlTable(
-      "limits-table",
-      fmt::format("Largest values at {} points of the box, random ones and corners.", design.check_points),
-      {"measure", "unit", "limit", "before", "after", "margin %", "designed for the centre"}, rows);
+  return makeHtmlTable("limits-table",
+                       fmt::format("Largest values at {} points within the bounds, random ones and corners.",
+                                   design.check_points),
+                       {"measure", "unit", "limit", "before", "after", "margin %", "designed for the centre"},
+                       rows);
 }
 
 std::string makeSignalTable(const ExcitationEvaluator& evaluator, const ExcitationDesign& design) {
@@ -81,7 +82,7 @@ std::string makeSignalTable(const ExcitationEvaluator& evaluator, const Excitati
                       makeCell(measure.rms), makeCell(measure.crest_factor()), makeCell(measure.max_rate)});
     }
   }
-  return makeHtmlTable("signals-table", "Signals at the centre of the box.",
+  return makeHtmlTable("signals-table", "Signals at the centre of the bounds.",
                        {"signal", "", "largest", "rms", "crest factor", "largest rate"}, rows);
 }
 
@@ -162,19 +163,20 @@ Section makeBrings(const ExcitationDesign& design) {
   Section section{"brings", "What it brings", "", {}};
   section.html = makeLimitTable(
       "parameters-table",
-      "The least standard deviation that any estimator can have (information limit), over the box.", design,
-      {"before", &design.before}, {"after", &design.after});
+      "The least standard deviation that any estimator can have (information limit), over the bounds.",
+      design, {"before", &design.before}, {"after", &design.after});
   section.html += makeMeasureTable(design) + makeWarningList(design.warnings);
   return section;
 }
 
 Section makeRobustness(const ExcitationDesign& design) {
   Section section{"robustness", "What robustness costs and brings", "", {}};
-  section.html = makeParagraph(fmt::format(
-      "The design that is best at the centre of the box alone, judged on the whole box like the one averaged "
-      "over it. Mean criterion over the box: {:.4f} averaged, {:.4f} for the centre.",
-      design.after.limit.score.cost, design.nominal.limit.score.cost));
-  section.html += makeLimitTable("robustness-table", "Limits over the box of both designs.", design,
+  section.html = makeParagraph(
+      fmt::format("The design that is best at the centre of the bounds alone, judged on all of the bounds "
+                  "like the one averaged "
+                  "over it. Mean criterion over the bounds: {:.4f} averaged, {:.4f} for the centre.",
+                  design.after.limit.score.cost, design.nominal.limit.score.cost));
+  section.html += makeLimitTable("robustness-table", "Limits over the bounds of both designs.", design,
                                  {"for the centre", &design.nominal}, {"averaged", &design.after});
   return section;
 }
@@ -192,7 +194,7 @@ std::string makeDesignPage(const ExcitationEvaluator& evaluator, const Excitatio
   page.tables["correlations"] = makeCorrelations(design);
   addFigure({"correlations",
              "Correlations of the errors after the design",
-             "Of the mean covariance of the limit over the box.",
+             "Of the mean covariance of the limit over the bounds.",
              "correlations",
              {{"correlations", {}, {{"height", calcHeatHeight(design.parameters.size())}}}},
              {},

@@ -110,7 +110,7 @@ class ExcitationDesigner {
                       : most[i];
       }
       search.refine(most, std::max(20, budget / 10));
-      requireAllowed(search, found, " at random points of the box");
+      requireAllowed(search, found, " at random points within the bounds");
     }
     tightened_ = most.cwiseQuotient(most_);
   }

@@ -69,7 +69,7 @@ void addCurve(const std::string& table, const std::string& caption, const std::s
   page.tables[table] = makeCurve(design, choices);
   addFigure({table,
              caption,
-             "The information limit, mean over the box, in % of the width of each parameter's bounds.",
+             "The information limit, mean over the bounds, in % of the width of each parameter's bounds.",
              table,
              {{"sensor-curve", {{"table", table}, {"what", what}}, {{"parameters", names}}}},
              {},

@@ -72,7 +72,7 @@ CandidateFeatures calcFeatures(const ExperimentSpec& experiment, const RunContro
   CandidateFeatures features;
   for (const LocalModel& model : models) {
     if (!model.status.ok) {
-      throw std::runtime_error("a point of the box could not be simulated: " + model.status.reason);
+      throw std::runtime_error("a point within the bounds could not be simulated: " + model.status.reason);
     }
     features.sensitivities.push_back(model.sensitivities);
   }

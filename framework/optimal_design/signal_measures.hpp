@@ -14,7 +14,7 @@ struct SignalMeasure {
   double crest_factor() const { return rms > 0.0 ? max_abs / rms : 0.0; }
 };
 
-/// Of every signal, at the centre of the parameter box; before t = 0 signals are 0. Between two events (jumps
+/// Of every signal, at the centre of the bounds; before t = 0 signals are 0. Between two events (jumps
 /// and bends) a signal is sampled at 9 points or more, 2000 in the whole simulation, and its square
 /// integrated by Simpson's rule. Throws SimulationFailure for numbers that no signal can have.
 std::vector<SignalMeasure> calcSignalMeasures(const ModelSpec& model);

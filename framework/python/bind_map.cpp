@@ -3,7 +3,7 @@
 #include "framework/data/measurement/make_table.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/inference/known_value.hpp"
+#include "framework/inference/measurement/known_value.hpp"
 #include "framework/inference/select_estimate.hpp"
 #include "framework/inference/text/inference_text.hpp"
 #include "framework/python/arrays.hpp"

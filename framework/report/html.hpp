@@ -19,6 +19,11 @@ inline std::string makeParagraph(const std::string& text, const std::string& att
   return makeElement("p", escapeHtml(text), attributes) + "\n";
 }
 
+/// What the page shows when its summary is pressed, and in print; both are HTML.
+inline std::string makeFolded(const std::string& summary, const std::string& content) {
+  return makeElement("details", makeElement("summary", summary) + "\n" + content) + "\n";
+}
+
 /// A cell of a table: what is shown, and the exact value by which it is sorted and copied.
 struct HtmlCell {
   std::string shown;  ///< HTML

@@ -21,13 +21,13 @@ void addSampleChapters(const RunFolder& run, Page& page) {
   if (!run.predictions.empty()) {
     page.tables["samples"] = makeSamplesTable(run);
   }
+  addParameters(run, page);
   addInferred(run, page);
-  addStddevOverBox(run, page);
   addCalibration(run, page);
+  addStddevOverBox(run, page);
 }
 
 void addModelChapters(const RunFolder& run, Page& page) {
-  addResponses(run, page);
   addFeatures(run, page);
   addTraining(run, page);
   addCost(run, page);
@@ -47,10 +47,11 @@ Report makeRunReport(const fs::path& folder) {
   Page page;
   page.title = run.experiment.name.text;
   addVerdict(run, gates, page);
+  addResponses(run, page);
+  addSampleChapters(run, page);
   addMetrics(run, page);
   addMethods(run, page);
   addComparedMaps(run, page);
-  addSampleChapters(run, page);
   addModelChapters(run, page);
   return finish(page, gates);
 }
@@ -86,8 +87,9 @@ Report makeSweepReport(const fs::path& folder) {
     addSweep(sweep, page);
     return finish(page, gates);
   }
-  addSampleChapters(*shown, page);
   addSweep(sweep, page);
+  addResponses(*shown, page);
+  addSampleChapters(*shown, page);
   addModelChapters(*shown, page);
   return finish(page, gates);
 }

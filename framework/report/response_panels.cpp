@@ -8,6 +8,7 @@ Texts makeTexts(const ResponseData& data) {
           {"output", data.output},
           {"label", makeLabel(data.output, data.unit)},
           {"case", data.which},
+          {"measured", data.measured},
           {"of_case", data.which.empty() ? "" : ", " + data.which + " case"}};
 }
 

@@ -14,6 +14,7 @@ struct ResponseData {
   std::string output, unit;
   std::string which =
       {};  ///< of the table's cases: "best"; "" if the table holds one response, of one output
+  std::string measured = "measured";  ///< what the points are called
 };
 
 struct ResponseLook {

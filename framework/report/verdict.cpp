@@ -44,17 +44,17 @@ double calcMean(const CsvTable& metrics, const std::string& column) {
 
 std::string makeLead(const RunFolder& run) {
   const ExperimentSpec& experiment = run.experiment;
-  std::string text = joinNames(collectNames(experiment.model.parameters)) + " inferred from " +
-                     joinNames(collectNames(experiment.model.outputs));
+  const std::string what = joinNames(collectNames(experiment.model.parameters)) + " from " +
+                           joinNames(collectNames(experiment.model.outputs));
   if (run.metrics.empty()) {
-    return text + ".";
+    return "Estimates " + what + ".";
   }
-  text += ": sd of the relative error " + describeErrors(run.metrics) + "; the 95 % intervals hold " +
-          toShortText(100.0 * calcMean(run.metrics, "coverage95"), 3) + " % of the true values";
   const double ratio = calcMean(run.metrics, "ratio_to_limit");
-  return text + (std::isfinite(ratio)
-                     ? "; on average " + toShortText(ratio, 3) + " times the information limit."
-                     : ".");
+  return "Estimates " + what + " with an error (sd) of " + describeErrors(run.metrics) +
+         (std::isfinite(ratio) ? ", " + toShortText(ratio, 3) + " times the smallest that the noise permits"
+                               : "") +
+         "; " + toShortText(100.0 * calcMean(run.metrics, "coverage95"), 3) +
+         " % of the true values lie in the 95 % intervals.";
 }
 
 constexpr const char* kNotRecorded = "not recorded";
@@ -94,7 +94,7 @@ std::string makeFacts(const std::vector<std::pair<std::string, std::string>>& fa
 
 std::string makeGateList(const std::vector<GateResult>& gates) {
   if (gates.empty()) {
-    return makeParagraph("No gates are set. 'gates:' in the experiment file states what a run must reach.",
+    return makeParagraph("No acceptance criteria are set ('gates:' in the experiment file).",
                          "class=\"quiet\"");
   }
   std::string items;
@@ -107,13 +107,13 @@ std::string makeGateList(const std::vector<GateResult>& gates) {
                          std::string("class=\"") + (gate.passed ? "passed" : "failed") + "\"") +
              "\n";
   }
-  return makeElement("h3", "Gates") + "\n" + makeElement("ul", items, "class=\"gates\"") + "\n";
+  return makeElement("h3", "Acceptance criteria") + "\n" + makeElement("ul", items, "class=\"gates\"") + "\n";
 }
 
 std::string makeWarningList(const std::vector<std::string>& warnings) {
   std::string items;
   for (const std::string& warning : warnings) {
-    const std::string mark = makeElement("span", "! warning", "class=\"mark\"");
+    const std::string mark = makeElement("span", "\u26a0 warning", "class=\"mark\"");
     items += makeElement("li", mark + " " + makeElement("span", escapeHtml(warning))) + "\n";
   }
   return warnings.empty()
@@ -131,8 +131,9 @@ std::string describeCount(const SampleCount& samples) {
 void addVerdict(const RunFolder& run, const std::vector<GateResult>& gates, Page& page) {
   const ExperimentSpec& experiment = run.experiment;
   Section section{"verdict", "Verdict", "", {}};
-  section.html += experiment.description.empty() ? "" : makeParagraph(experiment.description);
   section.html += makeParagraph(makeLead(run), "class=\"lead\"");
+  section.html +=
+      experiment.description.empty() ? "" : makeParagraph(experiment.description, "class=\"quiet\"");
   section.html += makeFacts({{"date", makeDate(run)},
                              {"training samples", describeCount(experiment.design.train.samples)},
                              {"test samples", std::to_string(experiment.design.test.samples)},

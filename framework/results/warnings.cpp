@@ -6,6 +6,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "framework/base/log/notice.hpp"
 #include "framework/base/text/nearest_name.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
@@ -15,7 +16,7 @@ namespace {
 
 using Eigen::Index;
 
-/// "k (0.71), c (0.8)" of the parameters for which number(p) is to be told; "" of none.
+/// "k (0.71), c (0.8)" of the parameters for which number(p) is to be given; "" of none.
 template <class Number, class IsTold>
 std::string listParameters(const RunSummary& run, const Number& number, const IsTold& is_told) {
   constexpr int kDigits = 2;
@@ -26,6 +27,35 @@ std::string listParameters(const RunSummary& run, const Number& number, const Is
     }
   }
   return listNames(told);
+}
+
+/// Parameters whose errors are in % of their range, because their bounds contain 0.
+void appendRelativeToRange(const RunSummary& run, std::vector<Warning>& warnings) {
+  std::vector<std::string> names;
+  for (const ParameterSpec& parameter : run.parameters) {
+    if (parameter.relative_to == RelativeTo::kAutomatic && isRelativeToRange(parameter)) {
+      names.push_back(parameter.name.text);
+    }
+  }
+  if (!names.empty()) {
+    warnings.push_back(makeWarning(Notice::kRelativeToRange, listNames(names)));
+  }
+}
+
+/// Whether the estimates are those of the simulator, of which the estimator's are only the start.
+bool areRefined(const RunSummary& run) {
+  constexpr double kNearlyAll = 0.9;
+  return std::any_of(run.evaluation.methods.begin(), run.evaluation.methods.end(),
+                     [](const MethodSummary& summary) {
+                       return summary.method == "refined" &&
+                              double(summary.accepted) >= kNearlyAll * double(summary.samples);
+                     });
+}
+
+/// The one thing to do about errors that are larger than they need be.
+std::string adviseOnAccuracy(const RunSummary& run) {
+  return areRefined(run) ? "Compare with the sampled posterior of a measurement: twinmap infer --posterior."
+                         : "Refine the estimates on the simulator: refine=always.";
 }
 
 /// 95 % intervals that hold too few or too many true values: further from 0.95 than three standard errors.
@@ -40,14 +70,10 @@ void appendCoverage(const RunSummary& run, std::vector<Warning>& warnings) {
   const std::string wide =
       listParameters(run, coverage, [&](std::size_t p) { return coverage(p) > kNominal + band(p); });
   if (!narrow.empty()) {
-    warnings.push_back({Severity::kMisleading,
-                        "the 95 % intervals hold too few of the true values, the standard deviations are too "
-                        "small: " +
-                            narrow + ". Refine the answers on the simulator, or train on more samples"});
+    warnings.push_back(makeWarning(Notice::kIntervalsTooNarrow, narrow, adviseOnAccuracy(run)));
   }
   if (!wide.empty()) {
-    warnings.push_back({Severity::kInfo, "the 95 % intervals hold more of the true values than they claim: " +
-                                             wide + ". More training samples make them narrower"});
+    warnings.push_back(makeWarning(Notice::kIntervalsTooWide, wide));
   }
 }
 
@@ -73,10 +99,7 @@ void appendSeveral(const RunSummary& run, std::vector<Warning>& warnings) {
   const auto share = [&](std::size_t p) { return calcSeveralShare(run, p); };
   const std::string listed = listParameters(run, share, [&](std::size_t p) { return isMultimodal(run, p); });
   if (!listed.empty()) {
-    warnings.push_back(
-        {Severity::kInfo, "multimodal estimates, in these fractions of the test samples: " + listed +
-                              ". Errors and standard deviations are those of all modes together; measure "
-                              "another output to separate them"});
+    warnings.push_back(makeWarning(Notice::kMultimodalTests, listed));
   }
 }
 
@@ -86,20 +109,8 @@ void appendLimit(const RunSummary& run, std::vector<Warning>& warnings) {
   const std::string far =
       listParameters(run, ratio, [&](std::size_t p) { return ratio(p) > kFar && !isMultimodal(run, p); });
   if (!far.empty()) {
-    warnings.push_back(
-        {Severity::kDegraded, "the estimation error exceeds the information limit, by these factors: " + far +
-                                  ". Refine them on the simulator, or add simulations"});
+    warnings.push_back(makeWarning(Notice::kAboveLimit, far, adviseOnAccuracy(run)));
   }
-}
-
-/// Whether the answers are those of the simulator, of which the map is only the start.
-bool areRefined(const RunSummary& run) {
-  constexpr double kNearlyAll = 0.9;
-  return std::any_of(run.evaluation.methods.begin(), run.evaluation.methods.end(),
-                     [](const MethodSummary& summary) {
-                       return summary.method == "refined" &&
-                              double(summary.accepted) >= kNearlyAll * double(summary.samples);
-                     });
 }
 
 /// Whether errors would fall with more simulations, where the answers are a map's and not near the limit: as
@@ -119,11 +130,7 @@ void appendGain(const RunSummary& run, std::vector<Warning>& warnings) {
     }
   }
   if (!told.empty()) {
-    warnings.push_back(
-        {Severity::kInfo,
-         fmt::format("more simulations will hardly help the map: from {} to {} its errors fell "
-                     "by less than 30 % for {}",
-                     found.half, found.all, listNames(told))});
+    warnings.push_back(makeWarning(Notice::kMoreSamplesHardlyHelp, found.half, found.all, listNames(told)));
   }
 }
 
@@ -134,21 +141,22 @@ bool isUndetermined(const RunSummary& run, std::size_t p) {
 
 /// Inferred standard deviations close to that of the box: nothing was learnt.
 void appendUninformed(const RunSummary& run, std::vector<Warning>& warnings) {
-  constexpr double kUninformed = 0.7;
+  constexpr double kUninformed = 0.7, kPercent = 100.0;
   const auto share = [&](std::size_t p) {
     const auto stddev = run.evaluation.predictions.stddev.row(Index(p));
     const Bounds& bounds = run.parameters[p].bounds;
     return std::sqrt(stddev.squaredNorm() / double(stddev.size())) /
            (kUniformStddev * (bounds.upper - bounds.lower));
   };
-  const std::string uninformed = listParameters(run, share, [&](std::size_t p) {
-    return share(p) > kUninformed && !isUndetermined(run, p) && !isMultimodal(run, p);
-  });
+  std::vector<std::string> uninformed;
+  for (std::size_t p = 0; p < run.parameters.size(); ++p) {
+    if (share(p) > kUninformed && !isUndetermined(run, p) && !isMultimodal(run, p)) {
+      uninformed.push_back(fmt::format("{} ({:.0f} %)", run.parameters[p].name.text,
+                                       kPercent * std::max(0.0, 1.0 - share(p))));
+    }
+  }
   if (!uninformed.empty()) {
-    warnings.push_back(
-        {Severity::kDegraded,
-         "the measurement is uninformative, ratio of estimated to prior standard deviation: " + uninformed +
-             ". Measure another output, excite differently, or do not infer them"});
+    warnings.push_back(makeWarning(Notice::kDataUninformative, listNames(uninformed)));
   }
 }
 
@@ -170,20 +178,14 @@ void appendCorrelations(const RunSummary& run, std::vector<Warning>& warnings) {
     }
   }
   if (!pairs.empty()) {
-    warnings.push_back(
-        {Severity::kDegraded, "parameters are strongly correlated: " + listNames(pairs) +
-                                  ". Measure another output or excite differently to separate them"});
+    warnings.push_back(makeWarning(Notice::kCorrelated, listNames(pairs)));
   }
 }
 
 void appendFailures(const RunSummary& run, std::vector<Warning>& warnings) {
   const std::size_t failed = run.failures.size();
   if (failed > 0) {
-    warnings.push_back(
-        {Severity::kMisleading,
-         fmt::format("{} {} could not be simulated, and the map was neither trained nor tested there: see "
-                     "failures.csv",
-                     failed, failed == 1 ? "sample" : "samples")});
+    warnings.push_back(makeWarning(Notice::kSamplesFailed, failed));
   }
 }
 
@@ -211,8 +213,7 @@ void appendTraining(const RunSummary& run, std::vector<Warning>& warnings) {
     }
   }
   if (!at_bound.empty()) {
-    warnings.push_back({Severity::kInfo, "hyperparameters ended at a bound: " + listNames(at_bound) +
-                                             ". Widen inverse_map.gp.bounds"});
+    warnings.push_back(makeWarning(Notice::kHyperparametersAtBound, listNames(at_bound)));
   }
 }
 
@@ -229,6 +230,7 @@ std::vector<std::string> collectWarnings(const RunSummary& run) {
   appendCorrelations(run, warnings);
   appendTraining(run, warnings);
   appendGain(run, warnings);
+  appendRelativeToRange(run, warnings);
   return listTexts(std::move(warnings));
 }
 

@@ -18,6 +18,11 @@ const std::string& Simulator::getEngine() const {
   return kUnnamed;
 }
 
+std::string Simulator::describeEngine() const {
+  const std::string& engine = getEngine();
+  return engine == "lanes" ? "vectorised (built-in)" : engine;
+}
+
 void checkSampleTimes(const Eigen::VectorXd& times, double duration) {
   for (Eigen::Index i = 0; i < times.size(); ++i) {
     const bool inside = times[i] >= 0.0 && times[i] <= duration;

@@ -61,11 +61,14 @@ class Simulator {
   /// What simulates, for the log: "lanes", "fmu crane.fmu (FMI 2.0, co_simulation)".
   virtual const std::string& getEngine() const;
 
+  /// What simulates, in words: "vectorised solver (built-in)".
+  std::string describeEngine() const;
+
   /// How noisy the responses are and what differences of them are taken over, for the log; "" where they are
   /// smooth for a known reason. Measures the noise if that has not been done yet.
   virtual std::string describeDifferences() { return ""; }
 
-  /// Throws ExperimentError unless a simulation at the centre of the parameter box could begin. Cheap beside
+  /// Throws ExperimentError unless a simulation at the centre of the bounds could begin. Cheap beside
   /// many simulations.
   virtual void checkStart() {}
 

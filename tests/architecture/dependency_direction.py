@@ -21,7 +21,7 @@ ALLOWED = {
     "store": {"base", "experiment", "simulation", "data", "estimation", "kernels"},
     "inference": {"base", "experiment", "simulation", "models", "data", "estimation", "store"},
     "results": {"base", "experiment", "simulation", "data", "estimation", "analysis", "store"},
-    "report": {"base", "experiment", "analysis", "store", "results"},
+    "report": {"base", "experiment", "simulation", "analysis", "store", "results"},
     "study": {
         "base",
         "experiment",

@@ -19,10 +19,10 @@ struct StageNotes {
   std::vector<Warning> warnings;
   std::vector<StageTime> times;
 
-  void warn(Severity gravity, std::string text) { warnings.push_back({gravity, std::move(text)}); }
-  void warn(Severity gravity, const std::vector<std::string>& texts) {
+  void warn(Warning warning) { warnings.push_back(std::move(warning)); }
+  void warn(Severity severity, const std::vector<std::string>& texts) {
     for (const std::string& text : texts) {
-      warn(gravity, text);
+      warn({severity, text});
     }
   }
   void append(const StageNotes& later) {

@@ -13,16 +13,16 @@ enum class Severity {
   kInfo         ///< something to know
 };
 
-/// For people; told once for all parameters that it concerns.
+/// Human-readable; given once for all parameters that it concerns.
 struct Warning {
-  Severity gravity = Severity::kInfo;
+  Severity severity = Severity::kInfo;
   std::string text;
 };
 
-/// The texts, the most severe first; of the same gravity in the order given.
+/// The texts, the most severe first; of the same severity in the order given.
 inline std::vector<std::string> listTexts(std::vector<Warning> warnings) {
   std::stable_sort(warnings.begin(), warnings.end(),
-                   [](const Warning& a, const Warning& b) { return a.gravity < b.gravity; });
+                   [](const Warning& a, const Warning& b) { return a.severity < b.severity; });
   std::vector<std::string> texts;
   for (Warning& warning : warnings) {
     texts.push_back(std::move(warning.text));

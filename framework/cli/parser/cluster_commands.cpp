@@ -2,7 +2,7 @@
 #include <memory>
 #include <string>
 
-#include "framework/cli/commands.hpp"
+#include "framework/cli/commands/commands.hpp"
 #include "framework/cli/parser/command_groups.hpp"
 #include "framework/cli/parser/shared_options.hpp"
 
@@ -11,10 +11,8 @@ namespace {
 
 void addSubmit(CLI::App& app, const Invocation& invocation) {
   const auto arguments = std::make_shared<SubmitArguments>();
-  CLI::App* command = app.add_subcommand(
-      "submit",
-      "Submit what run would do to a cluster, as jobs that each do a shard of it; or print the commands "
-      "(--on local); submitted again, what is missing");
+  CLI::App* command = app.add_subcommand("submit", "Submit a run to a cluster, as jobs");
+  command->footer("Submitted again, what is missing. --on local prints the commands instead.");
   addWhereAndHow(*command, arguments->run, invocation);
   addOn(*command, *arguments)->required();
   addJobs(*command, *arguments);
@@ -39,8 +37,7 @@ void addShard(CLI::App& app, const Invocation& invocation) {
   const auto arguments = std::make_shared<ShardArguments>();
   arguments->threads = invocation.threads;
   arguments->command_line = invocation.line;
-  CLI::App* command = app.add_subcommand(
-      "shard", "Do one shard of what was submitted: simulate samples, train cases, or write tables");
+  CLI::App* command = app.add_subcommand("shard", "Do one job of what was submitted");
   command->add_option("DIR", arguments->folder, "Folder of the results")->required()->option_text(" ");
   command->add_option("N", arguments->shard, "Number of the shard")->required()->option_text(" ");
   addThreads(*command, arguments->threads);

@@ -25,7 +25,7 @@ void addResultCommands(CLI::App& app, const Invocation& invocation);
 /// submit, shard, cancel.
 void addClusterCommands(CLI::App& app, const Invocation& invocation);
 
-/// schema, variables, completion.
+/// explain, schema, variables, completion.
 void addReferenceCommands(CLI::App& app);
 
 }  // namespace twinmap::cli

@@ -1,7 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "framework/cli/commands.hpp"
+#include "framework/cli/commands/commands.hpp"
 #include "framework/cli/parser/command_groups.hpp"
 #include "framework/cli/parser/shared_options.hpp"
 
@@ -9,20 +9,23 @@ namespace twinmap::cli {
 namespace {
 
 void addCheck(CLI::App& app) {
-  const auto arguments = std::make_shared<ExperimentArguments>();
-  CLI::App* command = app.add_subcommand("check",
-                                         "Validate an experiment, build its model at the centre of the "
-                                         "bounds, and print all with defaults; simulate nothing");
-  addExperiment(*command, *arguments);
+  const auto arguments = std::make_shared<CheckArguments>();
+  CLI::App* command =
+      app.add_subcommand("check", "Check an experiment file and print it with all its defaults");
+  command->footer(
+      "Reads the file, builds the model at the centre of the bounds with its initial state, and simulates "
+      "nothing.");
+  addExperiment(*command, arguments->experiment);
+  command->add_flag("--full", arguments->full, "Print long tables with all their values");
   command->callback([arguments] { check(*arguments); });
 }
 
 void addSimulate(CLI::App& app) {
   const auto arguments = std::make_shared<SimulateArguments>();
-  CLI::App* command = app.add_subcommand(
-      "simulate",
-      "Simulate once and write the outputs at the features' times, and modes, as CSV. The parameters are at "
-      "the centre of their bounds, unless given as parameters.NAME=VALUE (nuisance.NAME, inputs.NAME)");
+  CLI::App* command = app.add_subcommand("simulate", "Simulate one sample and print its outputs");
+  command->footer(
+      "Prints the outputs at the times of the features, and the modes, as CSV. Parameters are at the centre "
+      "of their bounds unless given: parameters.NAME=VALUE, nuisance.NAME=VALUE, inputs.NAME=VALUE.");
   addExperiment(*command, arguments->experiment);
   command->add_option("--csv", arguments->csv, "Write to this file instead of the standard output")
       ->type_name("OUT");
@@ -32,8 +35,11 @@ void addSimulate(CLI::App& app) {
 
 void addRun(CLI::App& app, const Invocation& invocation) {
   const auto arguments = std::make_shared<RunArguments>();
-  CLI::App* command =
-      app.add_subcommand("run", "Simulate, train, infer, and write tables, maps and the report");
+  CLI::App* command = app.add_subcommand("run", "Simulate, train an estimator, test it and report");
+  command->footer(
+      "Leaves tables, the trained estimator (maps.h5) and report.html in the folder. Stopped by Ctrl-C, the "
+      "same command continues.\n\nExit codes: 0 done, 1 failed, 2 wrong usage or experiment file, 3 a gate "
+      "failed and --fail-on-gates was given, 130 and 143 stopped by Ctrl-C or SIGTERM.");
   addWhereAndHow(*command, *arguments, invocation);
   CLI::Option* fail_fast = command->add_flag("--fail-fast", arguments->fail_fast,
                                              "Of a sweep: begin no case after one has failed");
@@ -50,9 +56,8 @@ void addRun(CLI::App& app, const Invocation& invocation) {
 
 void addPlan(CLI::App& app, const Invocation& invocation) {
   const auto arguments = std::make_shared<SubmitArguments>();
-  CLI::App* command = app.add_subcommand(
-      "plan",
-      "Print what run would do: cases, simulations, time, memory, disk; simulate and train only a little");
+  CLI::App* command =
+      app.add_subcommand("plan", "Print what run would take: simulations, time, memory, disk");
   addWhereAndHow(*command, arguments->run, invocation);
   CLI::Option* on = addOn(*command, *arguments);
   on->description("Print the shards as well that submit would make: " + on->get_description());
@@ -64,12 +69,12 @@ void addDesign(CLI::App& app, const Invocation& invocation) {
   const auto arguments = std::make_shared<DesignArguments>();
   arguments->threads = invocation.threads;
   arguments->command_line = invocation.line;
-  CLI::App* command = app.add_subcommand(
-      "design",
-      "Choose an experiment that tells most about the parameters, by the information limit. excitation: the "
-      "free values of its signals (design.excitation) within limits. sensors: which outputs to measure, and "
-      "when "
-      "(design.sensors). Writes designed.yaml, tables, the signals as CSV, and a page of what it brings");
+  CLI::App* command =
+      app.add_subcommand("design", "Find the excitation or sensors that determine the parameters best");
+  command->footer(
+      "excitation: chooses the free values of the signals (design.excitation) within limits. sensors: "
+      "chooses which outputs to measure, and when (design.sensors). Writes designed.yaml, tables, the "
+      "signals as CSV and a page of what is gained.");
   command->add_option("WHAT", arguments->what, "excitation or sensors")
       ->required()
       ->check(CLI::IsMember({"excitation", "sensors"}))

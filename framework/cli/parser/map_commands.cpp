@@ -1,7 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "framework/cli/commands.hpp"
+#include "framework/cli/commands/commands.hpp"
 #include "framework/cli/parser/command_groups.hpp"
 #include "framework/cli/parser/shared_options.hpp"
 
@@ -28,10 +28,11 @@ void addJointInference(CLI::App& command, InferArguments& arguments) {
 
 void addInfer(CLI::App& app) {
   const auto arguments = std::make_shared<InferArguments>();
-  CLI::App* command = app.add_subcommand("infer",
-                                         "Infer the parameters of measured responses, with a trained run or "
-                                         "from an experiment file alone: mean, sd and 95 % interval of each, "
-                                         "and whether to trust them");
+  CLI::App* command = app.add_subcommand("infer", "Estimate the parameters from measurements");
+  command->footer(
+      "With a run, the trained estimator gives the estimate, refined on the simulator where that is cheap. "
+      "With an experiment file alone, the posterior is sampled on the simulator. Prints mean, sd and 95 % "
+      "interval of each parameter, and whether the model fits.");
   command
       ->add_option("RUN", arguments->run,
                    "Folder of a finished run, its maps.h5, or an experiment file (YAML): without a run the "
@@ -78,11 +79,10 @@ void addReplay(CLI::App& app, const Invocation& invocation) {
   const auto arguments = std::make_shared<ReplayArguments>();
   arguments->threads = invocation.threads;
   constexpr int kMinDraws = 2, kMaxDraws = 10000;
-  CLI::App* command =
-      app.add_subcommand("replay",
-                         "Infer the parameters of a measured response, simulate the updated model next to "
-                         "it, and report how well "
-                         "it follows: tables and a page with the measured, nominal and updated responses");
+  CLI::App* command = app.add_subcommand("replay", "Simulate the updated model beside a measurement");
+  command->footer(
+      "Estimates the parameters, simulates the updated model, and writes tables and a page with the "
+      "measured, nominal and updated responses and their residuals.");
   command->add_option("RUN", arguments->run, "Folder of a finished run, or its maps.h5")
       ->required()
       ->option_text(" ");
@@ -114,9 +114,7 @@ void addReplay(CLI::App& app, const Invocation& invocation) {
 
 void addExport(CLI::App& app) {
   const auto arguments = std::make_shared<ExportArguments>();
-  CLI::App* command = app.add_subcommand("export",
-                                         "Write a trained map for other programs: C99 without heap or "
-                                         "libraries, an FMU, or its numbers as JSON");
+  CLI::App* command = app.add_subcommand("export", "Write the trained estimator as C99, FMU or JSON");
   command->add_option("RUN", arguments->run, "Folder of a finished run")->required()->option_text(" ");
   command->add_option("--c", arguments->c_folder, "Folder for C sources with a self-test and README.md")
       ->type_name("DIR");
@@ -140,10 +138,10 @@ void addExport(CLI::App& app) {
 
 void addNoise(CLI::App& app) {
   const auto arguments = std::make_shared<NoiseArguments>();
-  CLI::App* command = app.add_subcommand(
-      "noise",
-      "Estimate the noise of a measurement while nothing moves (or of residuals): standard deviation and "
-      "autoregressive model of each column, and the same as YAML for an experiment file");
+  CLI::App* command = app.add_subcommand("noise", "Estimate the noise of a measurement");
+  command->footer(
+      "Takes a measurement while nothing moves, or residuals. Prints standard deviation and autoregressive "
+      "model of each column, and the same as YAML for an experiment file.");
   command->add_option("MEASUREMENT", arguments->measurement, "CSV, MATLAB or HDF5 file")
       ->required()
       ->option_text(" ");

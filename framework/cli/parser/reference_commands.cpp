@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/cli/commands.hpp"
+#include "framework/cli/commands/commands.hpp"
 #include "framework/cli/completion.hpp"
 #include "framework/cli/parser/command_groups.hpp"
 
@@ -15,16 +15,22 @@ namespace {
 
 void addVariables(CLI::App& app) {
   const auto file = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand(
-      "variables",
-      "Print the variables of an FMU, which an experiment can name: causality, type, unit, start value");
+  CLI::App* command = app.add_subcommand("variables", "Print the variables of an FMU");
   command->add_option("FMU", *file, "File of FMI 2.0 or 3.0")->required()->option_text(" ");
   command->callback([file] { printVariables(*file); });
 }
 
+void addExplain(CLI::App& app) {
+  const auto arguments = std::make_shared<ExplainArguments>();
+  CLI::App* command = app.add_subcommand("explain", "Explain a status or warning");
+  command->add_option("NAME", arguments->name, "Status or warning, as model_mismatch; all without")
+      ->option_text(" ");
+  command->add_flag("--json", arguments->json, "Print JSON");
+  command->callback([arguments] { explain(*arguments); });
+}
+
 void addSchema(CLI::App& app) {
-  CLI::App* command = app.add_subcommand(
-      "schema", "Print the JSON schema of experiment files, with which editors complete and explain keys");
+  CLI::App* command = app.add_subcommand("schema", "Print the JSON schema of experiment files, for editors");
   command->callback([] { printSchema(); });
 }
 
@@ -71,10 +77,8 @@ std::vector<CommandDescription> describe(const CLI::App& app) {
 
 void addCompletion(CLI::App& app) {
   const auto shell = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand(
-      "completion",
-      "Print a script that completes command lines: source it, or install it where the shell "
-      "looks for such scripts");
+  CLI::App* command = app.add_subcommand("completion", "Print a script that completes command lines");
+  command->footer("Source it, or install it where the shell looks for such scripts.");
   command->add_option("SHELL", *shell, "bash, zsh or fish")
       ->required()
       ->check(CLI::IsMember({"bash", "zsh", "fish"}))
@@ -85,6 +89,7 @@ void addCompletion(CLI::App& app) {
 }  // namespace
 
 void addReferenceCommands(CLI::App& app) {
+  addExplain(app);
   addSchema(app);
   addVariables(app);
   addCompletion(app);

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/cli/commands.hpp"
+#include "framework/cli/commands/commands.hpp"
 #include "framework/cli/parser/command_groups.hpp"
 #include "framework/cli/parser/shared_options.hpp"
 
@@ -13,7 +13,7 @@ namespace {
 
 void addStatus(CLI::App& app) {
   const auto arguments = std::make_shared<StatusArguments>();
-  CLI::App* command = app.add_subcommand("status", "Print how far a sweep or a run is");
+  CLI::App* command = app.add_subcommand("status", "Print how far a run or sweep is");
   command->add_option("DIR", arguments->folder, "Folder of the results")->required()->option_text(" ");
   command->add_option("--store", arguments->store, "As given to run")->type_name("DIR");
   command->callback([arguments] { status(*arguments); });
@@ -21,10 +21,9 @@ void addStatus(CLI::App& app) {
 
 void addCompare(CLI::App& app) {
   const auto arguments = std::make_shared<CompareArguments>();
-  CLI::App* command = app.add_subcommand(
-      "compare",
-      "Print the same parameters of two runs side by side, with confidence intervals of the differences, and "
-      "which keys of their experiments differ");
+  CLI::App* command = app.add_subcommand("compare", "Compare two runs, parameter by parameter");
+  command->footer(
+      "Prints differences with their confidence intervals, and which keys of the experiments differ.");
   command->add_option("A", arguments->folder_a, "Folder of a run")->required()->option_text(" ");
   command->add_option("B", arguments->folder_b, "Folder of another run")->required()->option_text(" ");
   CLI::Option* csv = command->add_flag("--csv", arguments->csv, "Print CSV instead of a table");
@@ -34,8 +33,7 @@ void addCompare(CLI::App& app) {
 
 void addReport(CLI::App& app) {
   const auto arguments = std::make_shared<ReportArguments>();
-  CLI::App* command = app.add_subcommand(
-      "report", "Write report.html again from a run's or a sweep's folder, or compare several runs");
+  CLI::App* command = app.add_subcommand("report", "Write report.html again, or one of several runs");
   command->add_option("DIR", arguments->folders, "Folders of runs")->required()->option_text(" ");
   command
       ->add_option("--out", arguments->out,
@@ -49,11 +47,10 @@ void addVerify(CLI::App& app, const Invocation& invocation) {
   const auto arguments = std::make_shared<VerifyArguments>();
   arguments->seed = std::random_device()();
   arguments->threads = invocation.threads;
-  CLI::App* command = app.add_subcommand(
-      "verify",
-      "Recompute a random part of a run from its resolved.yaml and compare bit for bit: some samples are "
-      "simulated again, everything that follows from samples and hyperparameters is computed again. Of a "
-      "sweep, three of its cases. Exit code 1 where something differs");
+  CLI::App* command = app.add_subcommand("verify", "Compute part of a run again and compare bit for bit");
+  command->footer(
+      "Simulates some samples again and computes all that follows from samples and hyperparameters. Of a "
+      "sweep, three cases. Exit code 1 where something differs.");
   command->add_option("DIR", arguments->folder, "Folder of a run or a sweep")->required()->option_text(" ");
   command->add_option("--samples", arguments->samples, "Samples of each set to simulate again (default: 5)")
       ->type_name("N")
@@ -86,11 +83,11 @@ void runStoreAction(const StoreArguments& arguments) {
 
 void addStore(CLI::App& app) {
   const auto arguments = std::make_shared<StoreArguments>();
-  CLI::App* command = app.add_subcommand(
-      "store",
-      "Look after a folder of simulated samples (run --store). list: the models, their samples and what "
-      "computed them; verify: the same after comparing every byte with its checksum; merge: copy the samples "
-      "of other folders into it; prune: remove what is damaged, left by interrupted writes, or stored twice");
+  CLI::App* command = app.add_subcommand("store", "List, check, merge or clean up simulated samples");
+  command->footer(
+      "list: models, their samples and what computed them. verify: the same after comparing every byte with "
+      "its checksum. merge: copies the samples of other folders. prune: removes what is damaged, unfinished "
+      "or stored twice.");
   command->add_option("ACTION", arguments->action, "list, verify, merge or prune")
       ->required()
       ->check(CLI::IsMember({"list", "verify", "merge", "prune"}))

@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <optional>
 
-#include "framework/cli/commands.hpp"
+#include "framework/cli/commands/commands.hpp"
 #include "framework/cli/parser/command_groups.hpp"
 
 namespace twinmap::cli {

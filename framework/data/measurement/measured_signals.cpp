@@ -42,8 +42,8 @@ void requireExcerpt(const std::string& source, const VectorXd& times, double sta
   }
   for (Index i = 0; i + 1 < times.size(); ++i) {
     if (times[i + 1] - times[i] > kLongest * step) {
-      throw MeasurementError(source + ": has a gap from " + describeTime(times[i], start) + " to " +
-                             describeTime(times[i + 1], start) + " in a signal that is needed");
+      throw MeasurementError(source + ": has a gap of " + describeTime(times[i + 1] - times[i], 0.0) +
+                             " after t = " + describeTime(times[i], start) + " in a signal that is needed");
     }
   }
 }

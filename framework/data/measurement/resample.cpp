@@ -79,7 +79,7 @@ class Interpolation {
     constexpr double kLongest = 1.5;
     for (Index i = first; i + 1 < first + kPoints; ++i) {
       if (times_[i + 1] - times_[i] > kLongest * step_) {
-        fail("has a gap from " + toSeconds(times_[i]) + " to " + toSeconds(times_[i + 1]) +
+        fail("has a gap of " + toSeconds(times_[i + 1] - times_[i]) + " after t = " + toSeconds(times_[i]) +
              ", where samples are needed; the median step is " + toSeconds(step_));
       }
     }
@@ -101,8 +101,8 @@ void requireAlive(const Measurement& measurement, Index output, const RowRange& 
   if (range.count >= kMin && (values.array() == values[0]).all()) {
     throw MeasurementError(
         measurement.source + ": column '" + measurement.column_names[output] + "' is " + toText(values[0]) +
-        " at all needed times, " + toSeconds(measurement.times[range.first]) + " to " +
-        toSeconds(measurement.times[range.first + range.count - 1]) + "; is the sensor dead?");
+        " (constant signal) from " + toSeconds(measurement.times[range.first]) + " to " +
+        toSeconds(measurement.times[range.first + range.count - 1]) + "; check the sensor and its cable");
   }
 }
 

@@ -43,8 +43,9 @@ double calcStep(const Table& table, const VectorXd& times) {
   const double step = calcMedianStep(times);
   for (Index i = 0; i + 1 < times.size(); ++i) {
     if (times[i + 1] - times[i] > kLongest * step) {
-      throw MeasurementError(table.source + ": has a gap from " + toText(times[i]) + " s to " +
-                             toText(times[i + 1]) + " s; choose a window without");
+      throw MeasurementError(table.source + ": has a gap of " + toShortText(times[i + 1] - times[i], 4) +
+                             " s after row " + std::to_string(i + 1) + " (t = " + toText(times[i]) +
+                             " s); choose a window without");
     }
   }
   return step;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/base/log/notice.hpp"
+
 namespace twinmap {
 
 using Eigen::Index;
@@ -14,26 +16,19 @@ namespace {
 /// Why answers are not of the kind that a network gives: of a few large errors among small ones, 50 % sets
 /// hold more than that, and 95 % sets fewer.
 std::string describeShape(double probability, double share, Index components) {
-  constexpr Index kMaxComponents = 4;
   const bool heavy_tails = (share > probability) == (probability < 0.9);
   if (components == 1) {
-    return heavy_tails
-               ? "normal distributions: a few of its errors are much larger than the others"
-               : "normal distributions: the estimates are multimodal, which 'head: mixture' describes, or "
-                 "they lie at the bounds";
+    return heavy_tails ? "normally distributed: a few errors are much larger than the others"
+                       : "normally distributed: they are multimodal, or lie at the bounds";
   }
-  return fmt::format("mixtures of {} normal distributions{}", components,
-                     components < kMaxComponents ? "; 'components: 4' may serve better" : "");
+  return fmt::format("mixtures of {} normal distributions", components);
 }
 
 }  // namespace
 
 void warnOfRestarts(int restarts, std::vector<std::string>& warnings) {
   if (restarts > 0) {
-    warnings.push_back(
-        fmt::format("the network's training went back to its best checkpoint {} times; a lower learning_rate "
-                    "would be steadier",
-                    restarts));
+    warnings.push_back(describeNotice(Notice::kRestarts, restarts));
   }
 }
 
@@ -46,10 +41,7 @@ void warnOfChains(const WeightChains& chains, std::vector<std::string>& warnings
   }
   const double divergent = static_cast<double>(chains.divergences) / (chains.chains * chains.draws);
   if (r_hat > kLargestRHat || draws < kMinDraws || divergent > kMaxDivergences) {
-    warnings.push_back(fmt::format(
-        "the chains of the network's weights have not converged: R-hat {:.3f} of its worst mean, {:.0f} "
-        "effective draws, {:.1f} % divergent trajectories; take more draws or fewer hidden units",
-        r_hat, draws, 100.0 * divergent));
+    warnings.push_back(describeNotice(Notice::kChains, r_hat, draws, 100.0 * divergent));
   }
 }
 
@@ -67,13 +59,9 @@ void warnOfShape(const std::vector<ParameterSpec>& parameters, NetworkMapTrainin
     for (const auto& [probability, quantile, small] : kLevels) {
       const double share = (depths < quantile).cast<double>().mean();
       if (std::abs(share - probability) > small + 2.0 * calcProportionError(probability, simulations)) {
-        training.warnings.push_back(fmt::format(
-            "{}: {:.0f} % intervals of the network would hold {:.0f} % of the samples held out, so that its "
-            "answers are not {}{}",
-            parameters[static_cast<std::size_t>(p)].name.text, 100.0 * probability, 100.0 * share,
-            describeShape(probability, share, training.map.countComponents()),
-            training.held_out.interval_factors.isGiven() ? ". Intervals reach as far as those samples' errors"
-                                                         : ""));
+        training.warnings.push_back(describeNotice(
+            Notice::kShape, parameters[static_cast<std::size_t>(p)].name.text, 100.0 * probability,
+            100.0 * share, describeShape(probability, share, training.map.countComponents())));
         break;
       }
     }

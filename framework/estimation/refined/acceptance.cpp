@@ -47,7 +47,7 @@ bool isExplained(const LocalMisfit& minimum) {
 }
 
 Acceptance refuseMisfit(const LocalMisfit& minimum) {
-  return {RefinementStatus::kMisfit, fmt::format("chi-square is {:.4g}; at most {:.4g} can be noise",
+  return {RefinementStatus::kMisfit, fmt::format("chi-square {:.4g} exceeds the 99.9 % limit of {:.4g}",
                                                  minimum.chi_square, calcChiSquareLimit(minimum))};
 }
 

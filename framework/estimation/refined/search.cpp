@@ -140,7 +140,7 @@ SearchEnd search(Misfit& misfit, const VectorXd& start, int max_iterations) {
   if (end.converged) {
     end.rest = newton.step;
   } else if (at_rest) {
-    end.message = "the search ended at a limit of the box, and the minimum lies beyond";
+    end.message = "the search ended at the bounds, and the minimum lies beyond";
   } else {
     end.message = damping < kMaxDamping
                       ? fmt::format("the search did not converge in {} iterations", max_iterations)

@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "framework/base/log/notice.hpp"
 #include "framework/base/text/nearest_name.hpp"
 #include "framework/estimation/surrogate/cross_validation.hpp"
 #include "framework/estimation/surrogate/fit_forward.hpp"
@@ -45,21 +46,16 @@ std::vector<std::string> listWarnings(const ModelSpec& model, const SurrogateVal
   std::vector<std::string> warnings, told;
   for (Index k = 0; k < validation.coverage95.size(); ++k) {
     if (validation.coverage95(k) < kCalibrated) {
-      told.push_back(fmt::format("{} ({:.2f}, {:.2f})",
+      told.push_back(fmt::format("{} ({:.0f} % contained, sd enlarged by {:.2f})",
                                  model.parameters[static_cast<std::size_t>(k)].name.text,
-                                 validation.coverage95(k), validation.stddev_scale(k)));
+                                 100.0 * validation.coverage95(k), validation.stddev_scale(k)));
     }
   }
   if (!told.empty()) {
-    warnings.push_back(
-        "cross-validation: the surrogate's own 95 % intervals contained the truth too rarely; its standard "
-        "deviations are multiplied (fraction contained, factor): " +
-        listNames(told));
+    warnings.push_back(describeNotice(Notice::kSurrogateRescaled, listNames(told)));
   }
   if (validation.status == SurrogateStatus::kEstimatorLimited) {
-    warnings.emplace_back(
-        "estimator_limited: the surrogate's standard deviations are not calibrated; refine the estimates on "
-        "the simulator, or add simulations");
+    warnings.push_back(describeNotice(Notice::kSurrogateUncalibrated));
   }
   return warnings;
 }

@@ -179,6 +179,7 @@ void compareWithSimulated(const TrustModel& model, const VectorXd& residual, Tru
   trust.chi_square_p_value = model.chi_square.calcPValue(trust.chi_square);
   trust.anomaly_p_value = model.anomaly.calcPValue(trust.anomaly.score);
   combinePValues(trust);
+  trust.smallest_p_value = 2.0 / (static_cast<double>(model.chi_square.sorted.size()) + 1.0);
 }
 
 Trust judgeAnew(const TrustModel& model, const Trust& trust, const SimulatorResidual& found) {
@@ -187,6 +188,8 @@ Trust judgeAnew(const TrustModel& model, const Trust& trust, const SimulatorResi
     return trust;
   }
   Trust anew = trust;
+  anew.smallest_p_value =
+      found.explained ? 0.0 : 2.0 * share.calcPValue(std::numeric_limits<double>::infinity());
   if (found.residual.size() > 0) {
     setResidual(model, found.residual, anew);
     anew.anomaly_p_value = model.noise_anomaly.calcPValue(anew.anomaly.score);

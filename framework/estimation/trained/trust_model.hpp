@@ -34,6 +34,7 @@ struct Trust {
   Anomaly anomaly;                    ///< the most conspicuous stretch of residuals
   double anomaly_p_value = 1.0, chi_square_p_value = 1.0;  ///< each test's own
   double distance = 0.0;  ///< to the nearest training sample, 1: the farthest of simulated measurements
+  double smallest_p_value = 0.0;  ///< that simulated measurements can show; p_value claims no less
 };
 
 /// A statistic of simulated measurements, sorted: what a measured one is compared with.

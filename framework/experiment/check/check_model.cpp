@@ -22,10 +22,10 @@ struct Coordinate {
 
 void checkRelativeTo(const ParameterSpec& parameter) {
   const Bounds& bounds = parameter.bounds;
-  if (parameter.relative_to == RelativeTo::kValue && bounds.lower <= 0.0 && bounds.upper >= 0.0) {
-    throw ExperimentError(
-        bounds.where, parameter.name.text,
-        "has bounds that contain 0, where a relative error is undefined; give 'relative_to: range'");
+  if (parameter.relative_to == RelativeTo::kValue && containsZero(bounds)) {
+    throw ExperimentError(bounds.where, parameter.name.text,
+                          "has bounds that contain 0, where an error relative to the value is undefined; "
+                          "leave out 'relative_to'");
   }
 }
 

@@ -78,7 +78,7 @@ double CheckScope::check(const Expression& expression, const std::string& unit) 
   const std::vector<std::string> used = getUsedNames(expression);
   if (!std::isfinite(value) && (used.empty() || !changes_)) {
     throw ExperimentError(expression.where, expression.text,
-                          "is not a finite number at the centre of the parameter box");
+                          "is not a finite number at the centre of the bounds");
   }
   if (unit.empty() || used.empty() || !isUnitStated(used) || hasFreeNumber(expression.text)) {
     return value;

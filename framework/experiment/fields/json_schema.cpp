@@ -149,6 +149,21 @@ void addRule(Json& schema, const Unit& unit) {
 
 void addRule(Json&, const Reference&) {}
 
+/// The default of an optional key, where it can be said in one word.
+template <class T>
+void addDefault(Json& schema, const T& value) {
+  if constexpr (std::is_enum_v<T>) {
+    schema["default"] = getEnumText(value);
+  } else if constexpr (std::is_arithmetic_v<T>) {
+    schema["default"] = value;
+  } else if constexpr (std::is_same_v<T, Expression>) {
+    schema["default"] = value.text;
+  }
+  if (schema.value("default", Json()) == "") {
+    schema.erase("default");
+  }
+}
+
 /// Whether a map without keys is valid.
 bool acceptsNoKeys(const Json& schema) {
   return !schema.contains("required") && !schema.contains("oneOf");
@@ -160,20 +175,11 @@ class FieldSchema {
   template <class T, class... Rule>
   void required(const char* key, const T& value, const char* what, const Rule&... rule) {
     required_.push_back(key);
-    optional(key, value, what, rule...);
+    add(key, value, what, rule...);
   }
   template <class T, class... Rule>
   void optional(const char* key, const T& value, const char* what, const Rule&... rule) {
-    Json schema = makeSchema(value);
-    if constexpr (std::is_same_v<T, Tolerance>) {
-      (addRule(schema, rule), ...);
-      schema = orAutomatic(schema);
-      schema["description"] = what;
-    } else {
-      schema["description"] = what;
-      (addRule(schema, rule), ...);
-    }
-    properties_[key] = std::move(schema);
+    addDefault(add(key, value, what, rule...), value);
   }
   template <class T>
   void requiredMap(const char* key, const std::vector<T>& values, const char* what) {
@@ -207,9 +213,22 @@ class FieldSchema {
   }
 
  private:
+  template <class T, class... Rule>
+  Json& add(const char* key, const T& value, const char* what, const Rule&... rule) {
+    Json schema = makeSchema(value);
+    if constexpr (std::is_same_v<T, Tolerance>) {
+      (addRule(schema, rule), ...);
+      schema = orAutomatic(schema);
+      schema["description"] = what;
+    } else {
+      schema["description"] = what;
+      (addRule(schema, rule), ...);
+    }
+    return properties_[key] = std::move(schema);
+  }
   template <class Choice>
   void addChoice(const Choice& choice) {
-    std::apply([&](const auto&... rule) { optional(choice.key, choice.value, choice.what, rule...); },
+    std::apply([&](const auto&... rule) { add(choice.key, choice.value, choice.what, rule...); },
                choice.rules);
     choices_.push_back(Json{{"required", Json::array({choice.key})}});
   }

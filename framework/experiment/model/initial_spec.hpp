@@ -35,7 +35,7 @@ struct EquilibriumSpec {
 
 template <class Fields>
 void describe(Fields& f, EquilibriumSpec& s) {
-  f.optional("at", s.at, "one equilibrium at the centre of the parameter box, or each sample's own");
+  f.optional("at", s.at, "one equilibrium at the centre of the bounds, or each sample's own");
   f.optionalMap("parameters", s.parameters, "values that replace the centre's");
   f.rule(s.at == EquilibriumAt::kBoxCenter || s.parameters.empty(),
          "must not give parameters together with 'at: sample'");

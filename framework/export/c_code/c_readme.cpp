@@ -123,7 +123,7 @@ std::string describeOperations(const ExportedModel& model) {
 constexpr const char* kStatuses =
     "| status | bit | meaning |\n|---|---|---|\n"
     "| ok | 0 | nothing is said against the answer |\n"
-    "| model_mismatch | 1 | no point of the box explains the features within their noise |\n"
+    "| model_mismatch | 1 | no parameter values within the bounds fit the measurement within its noise |\n"
     "| outside_training | 2 | the features are far from all the map was trained on |\n"
     "| at_bounds | 4 | a parameter lies beyond its bounds |\n"
     "| uninformative | 8 | a parameter's sd is close to that of its bounds |\n"

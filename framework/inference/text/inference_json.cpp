@@ -214,6 +214,7 @@ std::string makeInferenceJson(const InferredMeasurement& inferred,
     json["components"] = makeComponents(estimate.mixture, parameters);
   }
   if (inferred.trust) {
+    json["fault"] = inferred.fault.empty() ? Json(nullptr) : Json(inferred.fault);
     json["trust"] = toJson(*inferred.trust, features);
   } else if (inferred.posterior && inferred.posterior->fit) {
     json["trust"] = toJson(*inferred.posterior->fit);

@@ -7,8 +7,10 @@
 
 namespace twinmap {
 
-/// The status with its numbers, and a line for each thing that is wrong.
-std::string describeTrust(const InferredMeasurement& inferred, const std::vector<FeatureInfo>& features);
+/// The status with its numbers, then for each thing that is wrong a line that says what, and one that says
+/// what to do.
+std::string describeTrust(const InferredMeasurement& inferred, const std::vector<ParameterSpec>& parameters,
+                          const std::vector<FeatureInfo>& features);
 
 /// How far the map's estimate is from what the measurement allows, where it is estimator_limited; a line
 /// each, or "".
@@ -39,7 +41,7 @@ std::string makeErrorJson(const std::string& source, double start, const std::st
 std::string makeDrawsCsvHeader(const std::vector<ParameterSpec>& unknown);
 std::string makeDrawsCsvRows(const InferredMeasurement& inferred);
 
-/// "the largest residuals: y(0.1 s) to y(0.4 s)"; "" without a trust model.
+/// "the largest misfit is in y between 0.1 s and 0.4 s"; "" without a trust model.
 std::string describeAnomaly(const Trust& trust, const std::vector<FeatureInfo>& features);
 
 }  // namespace twinmap

@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
 #include "framework/base/json/json.hpp"
+#include "framework/base/log/notice.hpp"
 #include "framework/base/text/escape.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/base/text/text_tables.hpp"
 #include "framework/inference/joint_inference.hpp"
 #include "framework/inference/select_estimate.hpp"
+#include "framework/inference/text/explain_notice.hpp"
 #include "framework/inference/text/inference_text.hpp"
 
 namespace twinmap {
@@ -65,14 +67,9 @@ std::string describeAgreement(const JointInference& inferred, const std::vector<
   if (!inferred.disagrees()) {
     return fmt::format("  The {} recordings agree ({}).\n", count, describeLevel(agreement));
   }
-  return fmt::format(
-             "  The {} recordings disagree ({}): together they fit worse than each alone, by {:.4g} of "
-             "chi-square.\n",
-             count, describeLevel(agreement), agreement.excess) +
+  return explainNotice(Notice::kTrialsDisagree, count, describeLevel(agreement), agreement.excess) +
          describeContradictions(inferred, parameters) +
-         "  The model lacks something that the parameters take up in each recording. The intervals below "
-         "cover "
-         "the scatter between recordings.\n";
+         "  The intervals below cover the scatter between recordings.\n";
 }
 
 std::string makeEstimateTable(const JointInference& inferred, const std::vector<ParameterSpec>& parameters) {
@@ -156,13 +153,13 @@ std::string makeJointTable(const JointInference& inferred, const std::vector<Par
   const std::string statuses = fmt::format("{}", fmt::join(listStatuses(inferred, parameters), ", "));
   std::string text = fmt::format("{} recordings together: {}\n", inferred.alone.size(), statuses);
   if (!inferred.agreement) {
-    return text + fmt::format("  No estimate: {}.\n", inferred.joint.message);
+    return text + explainNotice(Notice::kNotSimulated);
   }
   text += describeAgreement(inferred, parameters);
   if (isStated(inferred)) {
     text += makeEstimateTable(inferred, parameters);
   } else {
-    text += fmt::format("  No joint estimate: {}.\n", inferred.joint.message);
+    text += explainNotice(Notice::kUnreliable, inferred.joint.message);
   }
   return text + makeAloneTable(inferred, parameters) +
          fmt::format("  sampled on the simulator: {} simulations\n", inferred.simulations);

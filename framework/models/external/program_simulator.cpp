@@ -63,7 +63,7 @@ class ProgramSimulator::Sampler {
       usual_ = calcTable();
     } catch (const SimulationFailure& failure) {
       throw ExperimentError(toString(failure.getWhere()) +
-                            ": at the centre of the parameter box: " + failure.what());
+                            ": at the centre of the bounds: " + failure.what());
     }
   }
 
@@ -223,7 +223,7 @@ void ProgramSimulator::checkStart() {
   SampleStatus status;
   simulate(center, response, &status);
   if (!status.ok) {
-    throw ExperimentError("model.program: cannot simulate the centre of the parameter box: " + status.reason);
+    throw ExperimentError("model.program: cannot simulate the centre of the bounds: " + status.reason);
   }
 }
 

@@ -208,7 +208,7 @@ void FmuSimulator::checkStart() {
   if (!status.ok) {
     const Name& file = shared_->getModel().source->fmu->file;
     throw ExperimentError(file.where, file.text,
-                          "cannot be simulated at the centre of the parameter box: " + status.reason);
+                          "cannot be simulated at the centre of the bounds: " + status.reason);
   }
 }
 

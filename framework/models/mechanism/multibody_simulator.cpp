@@ -1,9 +1,12 @@
 #include "framework/models/mechanism/multibody_simulator.hpp"
 
+#include <fmt/core.h>
+
 #include <cmath>
 #include <mutex>
 #include <stdexcept>
 
+#include "framework/experiment/expression/jumps.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/models/mechanism/lanes/lane_engine.hpp"
 #include "framework/models/mechanism/simbody_model.hpp"
@@ -26,6 +29,7 @@ struct SharedModel {
   Eigen::VectorXd box_center;           ///< coordinates of the equilibrium that all start from
   std::unique_ptr<LanePrograms> lanes;  ///< null where Simbody simulates
   std::string engine;
+  std::string jump;  ///< findJump()
   std::mutex making_precise{};
   std::unique_ptr<MultibodySimulator> precise{};  ///< made when first used
 };
@@ -53,6 +57,26 @@ void checkShapes(const SharedModel& shared, const Eigen::Ref<const Eigen::Matrix
   if (parameters.rows() != countSampled(shared.model) || responses.rows() != shared.layout.getRowCount() ||
       responses.cols() != parameters.cols()) {
     throw std::invalid_argument("MultibodySimulator::simulate: a matrix has the wrong shape");
+  }
+}
+
+/// "force_laws[0].force: sign(x_dot) jumps: ..." of the first force that makes the steps small; "" of none.
+std::string findJump(const SystemSpec& system) {
+  const std::vector<ForceLaw<Expression>>& laws = system.elements.get<ForceLaw>();
+  for (std::size_t i = 0; i < laws.size(); ++i) {
+    if (const std::string jump = describeJump(laws[i].force); !jump.empty()) {
+      return fmt::format("system.force_laws[{}].force: {}", i, jump);
+    }
+  }
+  return "";
+}
+
+/// Names the force that made the steps so small that their limit was reached.
+void explainStepLimits(const std::string& jump, Eigen::Index count, SampleStatus* statuses) {
+  for (Eigen::Index i = 0; i < count && !jump.empty(); ++i) {
+    if (!statuses[i].ok && statuses[i].reason.rfind("step limit", 0) == 0) {
+      statuses[i].reason += "; " + jump;
+    }
   }
 }
 
@@ -103,6 +127,7 @@ class MultibodySimulator::Impl {
     for (const OutputSpec& output : shared_->model.outputs) {
       shared_->layout.output_names.push_back(output.name.text);
     }
+    shared_->jump = findJump(shared_->model.system);
     chooseEngine(context_, check == ModelCheck::kBySimbody ? &updSimbody() : nullptr, *shared_);
     shared_->box_center = check == ModelCheck::kTrusted && shared_->lanes
                               ? solveBoxCenter(context_, shared_->lanes->getValues())
@@ -201,12 +226,14 @@ void MultibodySimulator::simulate(const Eigen::Ref<const Eigen::MatrixXd>& param
                                   Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
   checkShapes(*impl_->getShared(), parameters, responses);
   impl_->simulate(parameters, responses, statuses);
+  explainStepLimits(impl_->getShared()->jump, parameters.cols(), statuses);
 }
 
 void MultibodySimulator::simulateAround(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
                                         Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
   checkShapes(*impl_->getShared(), parameters, responses);
   impl_->simulateAround(parameters, responses, statuses);
+  explainStepLimits(impl_->getShared()->jump, parameters.cols(), statuses);
 }
 
 bool MultibodySimulator::hasDerivatives() const {
@@ -218,6 +245,7 @@ void MultibodySimulator::simulateWithDerivatives(const Eigen::Ref<const Eigen::M
                                                  Eigen::MatrixXd& derivatives, SampleStatus* statuses) {
   checkShapes(*impl_->getShared(), parameters, responses);
   impl_->updLanes().simulateWithDerivatives(parameters, responses, derivatives, statuses);
+  explainStepLimits(impl_->getShared()->jump, parameters.cols(), statuses);
 }
 
 std::unique_ptr<Simulator> MultibodySimulator::clonePrecisely() const {

@@ -20,7 +20,7 @@ class MultibodySimulator final : public Simulator {
   /// `times`: where the outputs are sampled, s, strictly increasing within [0, duration]; nothing is
   /// integrated where there are none. `modes`: how many of the lowest modes of the system linearised at each
   /// sample's own static equilibrium, without excitation; a sample with fewer oscillating ones fails.
-  /// The model is built once at the centre of the parameter box, with the equilibrium if it is asked for
+  /// The model is built once at the centre of the bounds, with the equilibrium if it is asked for
   /// there. Throws ExperimentError for anything wrong with the model that no parameter set can cure: unknown
   /// or doubled names, expressions that do not compile, springs, dampers or force laws on coordinates that
   /// take none, times out of range; and for a system that cannot exist at the box centre, with the place of

@@ -23,7 +23,7 @@ class SimbodyModel {
  public:
   virtual ~SimbodyModel() = default;
 
-  // At the centre of the parameter box what cannot exist is wrong input: these two throw ExperimentError,
+  // At the centre of the bounds what cannot exist is wrong input: these two throw ExperimentError,
   // with the place of the number that is the cause where one is.
 
   /// Coordinates of the equilibrium that all samples start from; empty if the spec does not ask for it.
@@ -43,7 +43,7 @@ class SimbodyModel {
                                 Eigen::Ref<Eigen::VectorXd> response, StepSequence& sequence) = 0;
 };
 
-/// Builds everything once at the centre of the parameter box, so that all expressions are compiled and all
+/// Builds everything once at the centre of the bounds, so that all expressions are compiled and all
 /// names are known. `model` must outlive what is returned. Throws ExperimentError for unknown or doubled
 /// names, expressions that do not compile, and a system that cannot exist there; std::runtime_error, with
 /// what to install, where the module or Simbody is missing.

@@ -37,7 +37,7 @@ Figure makePit(const std::vector<std::string>& names, int n) {
   Figure figure{
       "pit",
       "PIT histogram",
-      "The probability that the map gave to values below the true one: flat within the grey band where "
+      "The probability that the estimate gave to values below the true one: flat within the grey band where "
       "calibrated, a U where the sd is too small, a hump where it is too large.",
       "samples",
       {},
@@ -53,7 +53,7 @@ Figure makeQuantiles(const std::vector<std::string>& names) {
   Figure figure{"z-scores",
                 "z-scores against the normal distribution",
                 "Points on the dashed line and within the grey band (95 % for each point) are as a normal "
-                "distribution with the inferred sd says; steeper means overconfident, an offset means bias.",
+                "distribution with the estimated sd says; steeper means overconfident, an offset means bias.",
                 "z-scores",
                 {},
                 {},

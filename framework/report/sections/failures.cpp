@@ -89,7 +89,7 @@ void addFailures(const RunFolder& run, Section& section, Page& page) {
   const std::size_t last = parameters.size() - 1;
   Figure figure{
       "failures",
-      "Failures: where in the box",
+      "Failures: where within the bounds",
       "Crosses are the samples that could not be simulated, training and test; dots are test samples that "
       "could. Crosses along an edge ask for tighter bounds there.",
       "failures",

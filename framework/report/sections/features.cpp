@@ -153,13 +153,14 @@ void addLoadings(const RunFolder& run, const std::vector<FeaturePlace>& places, 
   page.tables["loadings"] = table.make("component", "loading");
   const std::vector<std::string> outputs = collectOutputs(places);
   if (!outputs.empty()) {
-    addFigure(makeSeriesFigure(
-                  "loadings", "Loadings of the components",
-                  fmt::format("What the map sees of a response: each component is the sum of the scaled "
-                              "features weighted by these loadings ({} of {} components are drawn).",
-                              shown, projection->rows()),
-                  outputs, "components", names),
-              section);
+    addFigure(
+        makeSeriesFigure(
+            "loadings", "Loadings of the components",
+            fmt::format("What the estimator sees of a response: each component is the sum of the scaled "
+                        "features weighted by these loadings ({} of {} components are drawn).",
+                        shown, projection->rows()),
+            outputs, "components", names),
+        section);
   }
 }
 
@@ -174,7 +175,6 @@ void addFeatures(const RunFolder& run, Page& page) {
   addSensitivities(run, places, section, page);
   addLoadings(run, places, section, page);
   addRelevance(run, section, page);
-  addCorrelations(run, section, page);
   addCombinations(run, section, page);
   page.sections.push_back(std::move(section));
 }

@@ -23,7 +23,7 @@ Panel makeInferredPanel(const RunFolder& run, std::size_t p, bool of_error) {
   const ParameterSpec& parameter = parameters[p];
   const std::string& name = parameter.name.text;
   const Bounds& bounds = parameter.bounds;
-  const std::string title = (of_error ? "error of " : "inferred ") + makeLabel(parameter);
+  const std::string title = (of_error ? "error of " : "estimated ") + makeLabel(parameter);
   const Texts texts{{"name", name},
                     {"label", makeLabel(parameter)},
                     {"title", title},
@@ -43,12 +43,12 @@ Figure makeFigure(const RunFolder& run, bool of_error) {
   Figure figure;
   figure.name = of_error ? "errors" : "inferred";
   figure.table = "samples";
-  figure.title = of_error ? "Error against the true value" : "Inferred against true";
+  figure.title = of_error ? "Error against the true value" : "Estimated against true";
   figure.help = of_error
-                    ? "Each bar spans \u00b12 sd around the error (inferred \u2212 true); where the map is "
+                    ? "Each bar spans \u00b12 sd around the error (estimated \u2212 true); where they are "
                       "calibrated, about 95 % of the bars cross the dashed line at 0."
                     : describeDrawnSamples(run) +
-                          "Points on the dashed line are inferred exactly; bars span \u00b12 sd. Drag over "
+                          "Points on the dashed line are exact; bars span \u00b12 sd. Drag over "
                           "points, or press one, to highlight the same samples in every figure.";
   figure.columns = count > 1 ? static_cast<int>(std::min<std::size_t>(count, 4)) : 0;
   figure.columns = count == 4 ? 2 : std::min(figure.columns, 3);
@@ -102,10 +102,10 @@ Figure makeComponentsFigure(const RunFolder& run) {
   Figure figure;
   figure.name = kComponents;
   figure.table = kComponents;
-  figure.title = "Answers against true";
+  figure.title = "Estimates against true";
   figure.help =
       describeDrawnSamples(run) +
-      "Each sample has as many answers as its mixture has components, the darker the likelier; bars span "
+      "Each sample has as many estimates as its mixture has components, the darker the likelier; bars span "
       "\u00b12 sd. Where several fit, one of them lies on the dashed line.";
   figure.columns = static_cast<int>(std::min<std::size_t>(parameters.size(), 3));
   for (std::size_t p = 0; p < parameters.size(); ++p) {
@@ -123,7 +123,7 @@ void addInferred(const RunFolder& run, Page& page) {
   if (run.predictions.empty()) {
     return;
   }
-  Section section{"inferred", "True against inferred", "", {}};
+  Section section{"inferred", "Estimated against true", "", {}};
   if (run.mixtures.empty()) {
     addFigure(makeFigure(run, false), section);
     addFigure(makeFigure(run, true), section);

@@ -61,7 +61,7 @@ void addMethods(const RunFolder& run, Page& page) {
   addSection({run.methods,
               "method",
               "methods",
-              "From the map to the answer",
+              "Before and after refinement",
               {{"accepted", "share accepted"}, {"median_simulations", "simulations, median"}}},
              "The figures of a method are those of the measurements that it accepted; the table above has "
              "what is answered by default.",

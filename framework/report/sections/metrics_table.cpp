@@ -34,9 +34,10 @@ std::string makeJoint(const CsvTable& joint) {
   CsvTable named = joint;
   std::replace(named.columns.begin(), named.columns.end(), std::string("se"), std::string("value_se"));
   return makeElement("h3", "All parameters together") + "\n" +
-         makeHtmlTable("joint-table",
-                       "Coverage of the inferred ellipsoids, and the NLPD of the parameters as a vector.",
-                       named, {{"metric", "metric"}, {"value", "value"}});
+         makeHtmlTable(
+             "joint-table",
+             "Coverage of the joint confidence ellipsoids, and the NLPD of the parameters as a vector.",
+             named, {{"metric", "metric"}, {"value", "value"}});
 }
 
 std::string makeBaselines(const CsvTable& baselines) {
@@ -64,15 +65,27 @@ void addMetrics(const RunFolder& run, Page& page) {
                           makeMarkdownRows(makeTextRows(metrics, columns, escapeMarkdown), kTextColumns));
   page.texts.emplace_back("metrics-latex",
                           makeLatexRows(makeTextRows(metrics, columns, escapeLatex), kTextColumns));
-  Section section{"metrics", "The table", "", {}};
-  section.html =
+  Section section{"metrics", "Errors of the estimates", "", {}};
+  section.html = makeHtmlTable("errors-table",
+                               "Standard deviation of the relative error of the test samples, the smallest "
+                               "that the noise permits, and the share of true values in the 95 % intervals.",
+                               metrics,
+                               {{"parameter", "parameter"},
+                                {"unit", "unit"},
+                                {"lower", "lower"},
+                                {"upper", "upper"},
+                                {"sd_pct", "sd %"},
+                                {"limit_pct", "limit %"},
+                                {"ratio_to_limit", "ratio"},
+                                {"coverage95", "coverage 95 %"}});
+  const std::string all =
       makeHtmlTable("metrics-table", "Press a heading to sort.", metrics, columns) +
       makeCopyButtons(
           {{"metrics-csv", "CSV"}, {"metrics-markdown", "Markdown"}, {"metrics-latex", "LaTeX"}}) +
       makeParagraph(
           "Bias, sd and MARE are the mean, standard deviation and mean absolute value of the relative error "
           "over "
-          "the test samples; coverage is the fraction of true values within the inferred interval. " +
+          "the test samples; coverage is the fraction of true values within the interval. " +
               std::string(metrics.hasColumn("limit_pct")
                               ? "The limit is the smallest sd that the noise of the data allows any method. "
                               : "") +
@@ -81,6 +94,7 @@ void addMetrics(const RunFolder& run, Page& page) {
                    : ""),
           "class=\"quiet\"") +
       makeJoint(run.joint) + makeBaselines(run.baselines);
+  section.html += makeFolded("All figures: bias, MARE, NLPD, coverage, joint figures, other methods", all);
   page.sections.push_back(std::move(section));
 }
 

@@ -47,7 +47,7 @@ void addPosterior(const RunFolder& run, Section& section, Page& page) {
   Figure figure{
       kPosterior,
       "Beside the exact posterior",
-      "Circles: what the map infers; crosses: the information limit. On the dashed line both agree with the "
+      "Circles: the estimator; crosses: the information limit. On the dashed line both agree with the "
       "posterior, which was sampled by simulation for these test samples.",
       kPosterior,
       {},

@@ -5,6 +5,7 @@
 #include "framework/report/html.hpp"
 #include "framework/report/response_panels.hpp"
 #include "framework/report/sections/sections.hpp"
+#include "framework/simulation/excitation/calc_input_signals.hpp"
 #include "framework/store/samples_file.hpp"
 
 namespace twinmap {
@@ -43,7 +44,30 @@ DataTable makeResponseTable(const CsvTable& responses) {
 }
 
 ResponseData describeResponse(const RunFolder& run, const std::string& which, const std::string& output) {
-  return {kResponses, output, findUnit(run, output), which};
+  return {kResponses, output, findUnit(run, output), which, "test sample"};
+}
+
+/// The excitation signals over the time that is simulated; nothing of a model without.
+void addExcitation(const RunFolder& run, Page& page, Section& section) {
+  constexpr Eigen::Index kTimes = 1001;
+  const ModelSpec& model = run.experiment.model;
+  if (model.excitation.empty() || !(model.simulation.duration > 0.0)) {
+    return;
+  }
+  const Eigen::VectorXd times = Eigen::VectorXd::LinSpaced(kTimes, 0.0, model.simulation.duration);
+  const InputSignals signals = calcInputSignals(model, times);
+  DataTable& table = page.tables["excitation"];
+  table.add("time", std::vector<double>(times.begin(), times.end()));
+  Figure figure{"excitation", "Excitation", "At the centre of the bounds.", "excitation", {}, {}, 0};
+  for (std::size_t s = 0; s < signals.names.size(); ++s) {
+    const auto values = signals.values.col(static_cast<Eigen::Index>(s));
+    table.add("signal_" + signals.names[s], std::vector<double>(values.begin(), values.end()));
+    figure.panels.push_back({"signal",
+                             {{"table", "excitation"},
+                              {"column", "signal_" + signals.names[s]},
+                              {"label", makeLabel(signals.names[s], signals.units[s])}}});
+  }
+  addFigure(std::move(figure), section);
 }
 
 }  // namespace
@@ -55,27 +79,29 @@ void addResponses(const RunFolder& run, Page& page) {
   }
   page.tables[kResponses] = makeResponseTable(responses);
   const std::vector<std::string> outputs = responses.listDistinct("output");
-  Section section{"responses", "Responses", "", {}};
-  section.html = makeParagraph(
-      "Three test samples, by their error (each parameter's in units of its root mean square over the test "
-      "set).",
+  Section section{"responses", "Excitation and responses", "", {}};
+  addExcitation(run, page, section);
+  section.html += makeParagraph(
+      "Three simulated test measurements: those with the smallest, the median and the largest error.",
       "class=\"quiet\"");
   for (const std::string& which : responses.listDistinct("case")) {
     Figure figure{
         fmt::format("response-{}", section.figures.size()),
         "The " + which + " case, test sample " + findSample(responses, which),
-        "Points: the measured response; dashed: the model at the centre of the box; solid: the model at "
-        "the inferred parameters. Where the updated model is right, 95 % of the residuals lie in the grey "
-        "band of \u00b12 noise sd.",
+        "Points: the simulated measurement; dashed: the model at the centre of the bounds; solid: the model "
+        "at "
+        "the estimated parameters. Where the updated model is right, 95 % of the residuals lie in the grey "
+        "band of \u00b12 noise sd. Drag and scroll to move and zoom the axis of time.",
         kResponses,
         {},
         {},
-        static_cast<int>(std::min<std::size_t>(outputs.size(), 3))};
+        static_cast<int>(std::min<std::size_t>(outputs.size(), 2))};
+    constexpr ResponseLook kLook{false, true};
     for (const std::string& output : outputs) {
-      figure.panels.push_back(makeResponsePanel(describeResponse(run, which, output)));
+      figure.panels.push_back(makeResponsePanel(describeResponse(run, which, output), kLook));
     }
     for (const std::string& output : outputs) {
-      figure.panels.push_back(makeResidualPanel(describeResponse(run, which, output)));
+      figure.panels.push_back(makeResidualPanel(describeResponse(run, which, output), kLook));
     }
     addFigure(std::move(figure), section);
   }

@@ -17,6 +17,8 @@ void addMetrics(const RunFolder& run, Page& page);
 void addMethods(const RunFolder& run, Page& page);
 /// Several maps on the same samples, where the experiment asks for them.
 void addComparedMaps(const RunFolder& run, Page& page);
+/// A typical estimate beside its bounds, and which parameters are correlated.
+void addParameters(const RunFolder& run, Page& page);
 void addInferred(const RunFolder& run, Page& page);
 void addStddevOverBox(const RunFolder& run, Page& page);
 void addCalibration(const RunFolder& run, Page& page);

@@ -43,25 +43,25 @@ void addStddevOverBox(const RunFolder& run, Page& page) {
   Figure figure;
   figure.name = "stddev";
   figure.table = "samples";
-  figure.title = "How sure is the map, and where?";
+  figure.title = "Where within the bounds are the estimates uncertain?";
   figure.help = std::string(
                     "One point per test sample at its true parameters: where the points of the first "
-                    "panel are dark, the map is sure; the error beside it should be large only where the "
-                    "inferred sd is") +
+                    "panel are dark, the sd is small; the error beside it should be large only where the "
+                    "stated sd is") +
                 (has_limits ? ", and the limit shows what no method can beat." : ".");
   figure.choices = {makeParameterChoice("p", "of", parameters, 0),
                     makeParameterChoice("x", "across", parameters,
                                         chooseParameter(parameters, report, 0, parameters.size() - 2)),
                     makeParameterChoice("y", "up", parameters,
                                         chooseParameter(parameters, report, 1, parameters.size() - 1))};
-  figure.panels = {makeBoxPanel(getStddevColumn("{p}"), "Inferred sd of {p.label}", "inferred sd"),
+  figure.panels = {makeBoxPanel(getStddevColumn("{p}"), "Stated sd of {p.label}", "stated sd"),
                    makeBoxPanel(getErrorColumn("{p}"), "Absolute error of {p.label}", "absolute error")};
   if (has_limits) {
     figure.panels.push_back(
         makeBoxPanel(getLimitColumn("{p}"), "Information limit (sd) of {p.label}", "limit"));
   }
   figure.columns = static_cast<int>(figure.panels.size());
-  Section section{"stddev-over-box", "Standard deviation over the box", "", {}};
+  Section section{"stddev-over-box", "Standard deviation over the bounds", "", {}};
   addFigure(std::move(figure), section);
   page.sections.push_back(std::move(section));
 }

@@ -172,8 +172,8 @@ std::string makeLeaveOneOut(CsvTable metrics, std::size_t parameters) {
   return makeElement("h3", "Leave-one-out beside test") + "\n" +
          makeHtmlTable(
              "loo-table",
-             "Each training sample inferred from the others, without a test set: where both columns agree, "
-             "training alone tells how good the map is.",
+             "Each training sample estimated from the others, without a test set: where both columns agree, "
+             "training alone shows how good the estimator is.",
              metrics, columns);
 }
 

@@ -372,6 +372,7 @@
   setUpControls();
   setUpSelection();
   showResponses();
+  addEventListener('beforeprint', () => document.querySelectorAll('details').forEach(folded => { folded.open = true; }));
   addEventListener('beforeprint', drawForPrint);
   drawAll();
 })();

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "framework/base/log/notice.hpp"
 #include "framework/base/log/run_control.hpp"
 #include "framework/base/log/stage_timer.hpp"
 #include "framework/estimation/run_tasks.hpp"
@@ -56,8 +57,7 @@ void warn(const PosteriorCalibration& calibration, const std::vector<ParameterSp
           StageNotes& notes) {
   constexpr double kMany = 0.05;  // of the measurements
   if (calibration.unreliable > kMany * (calibration.measurements + calibration.unreliable)) {
-    notes.warn(Severity::kDegraded,
-               fmt::format("calibration of posteriors: {} of {} are unreliable", calibration.unreliable,
+    notes.warn(makeWarning(Notice::kPosteriorsUnreliable, calibration.unreliable,
                            calibration.measurements + calibration.unreliable));
   }
   std::string named;
@@ -68,9 +68,7 @@ void warn(const PosteriorCalibration& calibration, const std::vector<ParameterSp
                          calibration.ranks.p_value[q]);
   }
   if (!named.empty()) {
-    notes.warn(Severity::kDegraded,
-               "posteriors are not calibrated: ranks of the true values are not uniform for " + named +
-                   "; see sbc.csv");
+    notes.warn(makeWarning(Notice::kPosteriorsUncalibrated, named));
   }
 }
 
@@ -81,7 +79,7 @@ CalibratedPosteriors calibratePosteriors(const Study& study, const PreparedData&
   CalibratedPosteriors result;
   const std::optional<PosteriorModel> model = findPosteriorModel(OnlineMap(map.online.map), map.online.trust);
   if (!model) {
-    result.notes.warn(Severity::kInfo, "no calibration of posteriors: the run has no surrogate");
+    result.notes.warn(makeWarning(Notice::kNoCalibration, "the run has no surrogate"));
     return result;
   }
   const Index quantities = model->parameters + 1;
@@ -89,10 +87,10 @@ CalibratedPosteriors calibratePosteriors(const Study& study, const PreparedData&
     return collect(rankAll(study, data, *model), quantities);
   });
   if (ranked.ranks.cols() < kMinRanks) {
-    result.notes.warn(Severity::kDegraded,
-                      fmt::format("no calibration of posteriors: only {} of {} test samples have a reliable "
-                                  "one, and it needs {}",
-                                  ranked.ranks.cols(), ranked.ranks.cols() + ranked.unreliable, kMinRanks));
+    result.notes.warn(
+        makeWarning(Notice::kNoCalibration,
+                    fmt::format("{} of {} test samples have a reliable posterior, {} are needed",
+                                ranked.ranks.cols(), ranked.ranks.cols() + ranked.unreliable, kMinRanks)));
     return result;
   }
   result.calibration = PosteriorCalibration{static_cast<int>(ranked.ranks.cols()), ranked.unreliable,

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "framework/analysis/information_limit.hpp"
+#include "framework/base/log/notice.hpp"
 #include "framework/base/log/stage_timer.hpp"
 #include "framework/data/sensitivity/fisher_information.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
@@ -36,7 +37,7 @@ std::optional<InformationLimit> findLimit(const Study& study, const PreparedData
     });
   }
   if (study.experiment.evaluation.limit) {
-    notes.warn(Severity::kInfo, "no information limit: the noise of a feature is 0");
+    notes.warn(makeWarning(Notice::kNoLimit));
   }
   return std::nullopt;
 }
@@ -68,8 +69,7 @@ std::vector<PosteriorComparison> comparePosteriors(const PreparedData& data,
                         predictions.stddev.col(column),
                         limit_stddev.cols() > 0 ? VectorXd(limit_stddev.col(column)) : VectorXd()});
     if (!reliable) {
-      notes.warn(Severity::kInfo, std::vector<std::string>{fmt::format(
-                                      "exact posterior of test sample {}: {}", sample, exact[i].message)});
+      notes.warn(makeWarning(Notice::kExactPosterior, sample, exact[i].message));
     }
   }
   return compared;
@@ -89,12 +89,7 @@ void addPosteriors(const Study& study, const PreparedData& data, const Estimates
     evaluation.methods.back().apart_from_posterior = difference.calcShare();
   }
   if (difference.compared > 0 && difference.isConspicuous()) {
-    result.notes.warn(
-        Severity::kMisleading,
-        std::vector<std::string>{fmt::format(
-            "{} of {} refined estimates differ from the exact posterior by more than 0.3 of its standard "
-            "deviations: it is not normal; `twinmap infer` with the experiment file gives the posterior",
-            difference.apart, difference.compared)});
+    result.notes.warn(makeWarning(Notice::kPosteriorDiffers, difference.apart, difference.compared));
   }
   evaluation.methods.push_back(
       summarizePosteriors(getParameters(study), test.parameters, exact, limit_stddev));
@@ -127,8 +122,7 @@ BaselineResult timeBaseline(const BaselineSpec& spec, const Study& study, const 
       timeStage("baseline", notes, [&] { return runBaseline(spec, study, samples, transform); });
   notes.times.back().stage = "baseline " + result.method;
   if (result.unconverged > 0) {
-    notes.warn(Severity::kInfo, fmt::format("baseline {}: {} of {} searches did not converge", result.method,
-                                            result.unconverged, result.samples));
+    notes.warn(makeWarning(Notice::kUnconverged, result.unconverged, result.samples, result.method));
   }
   return result;
 }
@@ -172,9 +166,7 @@ void addLimit(const Study& study, const LabelledFeatures& test, const Informatio
   result.notes.warn(Severity::kDegraded,
                     adviseOnRidges(result.evaluation.ridges, study.experiment.model.parameters));
   if (limit.failures > 0) {
-    result.notes.warn(
-        Severity::kInfo,
-        fmt::format("the information limit of {} test samples could not be computed", limit.failures));
+    result.notes.warn(makeWarning(Notice::kLimitFailed, limit.failures));
   }
 }
 

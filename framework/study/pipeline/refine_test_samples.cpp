@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "framework/base/log/log.hpp"
+#include "framework/base/log/notice.hpp"
 #include "framework/base/log/run_control.hpp"
 #include "framework/base/log/stage_timer.hpp"
 #include "framework/estimation/refined/refine.hpp"
@@ -72,9 +73,7 @@ void warnOfFew(const std::vector<Refined>& refined, const std::string& outcome, 
   constexpr double kMin = 0.9;
   const std::size_t accepted = findAccepted(refined).size();
   if (static_cast<double>(accepted) < kMin * static_cast<double>(refined.size())) {
-    notes.warn(Severity::kDegraded, fmt::format("refinement: {} of {} test samples were accepted ({}); "
-                                                "estimates of the others are the map's alone",
-                                                accepted, refined.size(), outcome));
+    notes.warn(makeWarning(Notice::kFewRefined, accepted, refined.size(), outcome));
   }
 }
 
@@ -107,7 +106,7 @@ RefinedTests refineTestSamples(const Study& study, const PreparedData& data, con
     logInfo(fmt::format("refined: {}", outcome));
     warnOfFew(tests.refined, outcome, tests.notes);
   } catch (const std::invalid_argument& error) {
-    tests.notes.warn(Severity::kDegraded, std::string("test samples cannot be refined: ") + error.what());
+    tests.notes.warn(makeWarning(Notice::kCannotRefine, error.what()));
   }
   return tests;
 }

@@ -4,7 +4,7 @@
 
 namespace twinmap {
 
-/// Builds the model at the centre of the parameter box (Simulator::checkStart). Throws ExperimentError if it
+/// Builds the model at the centre of the bounds (Simulator::checkStart). Throws ExperimentError if it
 /// cannot exist there.
 void requireModel(const ExperimentSpec& experiment);
 

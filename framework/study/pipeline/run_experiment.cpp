@@ -117,7 +117,7 @@ StageNotes writeTrustPower(const Study& study, const PreparedData& data, const O
   }
   const auto changes =
       timeStage("power of the trust status", notes, [&] { return calcTrustPower(study, data, online); });
-  notes.warn(Severity::kDegraded, listPowerWarnings(changes));
+  notes.warn(Severity::kInfo, listPowerWarnings(changes));
   writeTextFile(study.folder / "trust_power.csv", makeTrustPowerCsv(changes));
   return notes;
 }
@@ -242,7 +242,7 @@ RunSummary runExperiment(const ExperimentSpec& given, const RunOptions& options,
   const std::unique_ptr<Simulator> made =
       makeSimulator(experiment.model, collectTimes(experiment.features), countModes(experiment.features));
   const Simulator& simulator = *made;
-  logInfo(fmt::format("simulated by: {}", simulator.getEngine()));
+  logInfo("solver: " + simulator.describeEngine());
   if (options.samples == nullptr) {
     warnOfIneffective(experiment.model, simulator);
     logFiniteDifferenceSteps(experiment, *made);

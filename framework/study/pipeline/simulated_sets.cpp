@@ -7,6 +7,7 @@
 
 #include "framework/base/log/interrupted.hpp"
 #include "framework/base/log/log.hpp"
+#include "framework/base/log/notice.hpp"
 #include "framework/base/log/stage_timer.hpp"
 #include "framework/experiment/points/experiment_points.hpp"
 #include "framework/study/samples/simulate_missing.hpp"
@@ -49,13 +50,11 @@ StoredTrajectories simulateSet(const std::string& set, const Eigen::MatrixXd& po
                                   stored.counts.reused + stored.counts.simulated, points.cols(), set));
   }
   if (const int given_up = stored.counts.given_up; given_up > 0) {
-    logWarning(fmt::format("the first {} {} simulations all failed; the other {} are not run",
-                           points.cols() - given_up, set, given_up));
+    throw std::runtime_error(describeNotice(Notice::kAllFailed, points.cols() - given_up, set,
+                                            stored.trajectories.statuses.front().reason));
   }
   if (stored.counts.implicit > 0) {
-    logWarning(fmt::format(
-        "{} of the {} samples reached the step limit and were simulated by an implicit method instead",
-        stored.counts.implicit, set));
+    logWarning(describeNotice(Notice::kStiff, stored.counts.implicit, set));
   }
   if (stored.counts.reused > 0) {
     logInfo(fmt::format("{} of the {} samples had been simulated before", stored.counts.reused, set));

@@ -3,17 +3,22 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <optional>
 #include <sstream>
 
+#include "framework/base/log/notice.hpp"
 #include "framework/base/text/csv.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/inference/select_estimate.hpp"
 #include "framework/inference/text/inference_text.hpp"
+#include "framework/report/estimate_panel.hpp"
 #include "framework/report/figure.hpp"
 #include "framework/report/html.hpp"
 #include "framework/report/response_panels.hpp"
 #include "framework/report/verdict.hpp"
 #include "framework/study/replay/replay_files.hpp"
+#include "framework/study/replay/residual_spectrum.hpp"
 
 namespace twinmap {
 namespace {
@@ -50,8 +55,7 @@ std::vector<std::string> collectWarnings(const Replay& replay) {
   std::vector<std::string> warnings;
   for (const auto& [name, model] : {std::pair("nominal", &replay.nominal), {"updated", &replay.updated}}) {
     if (!model->nuisance_converged) {
-      warnings.push_back(
-          fmt::format("the search for the nuisance parameters of the {} model did not converge", name));
+      warnings.push_back(describeNotice(Notice::kNuisanceSearch, name));
     }
   }
   if (replay.inferred.refined && !replay.inferred.refined->isAccepted()) {
@@ -62,8 +66,9 @@ std::vector<std::string> collectWarnings(const Replay& replay) {
 
 Section makeVerdict(const Inferrer& inferrer, const Replay& replay) {
   Section section{"verdict", "Verdict", "", {}};
-  std::istringstream trust(describeTrust(replay.inferred, inferrer.getExtractor().getInfos()) +
-                           describeMapLimit(replay.inferred, inferrer.getExperiment().model.parameters));
+  const std::vector<ParameterSpec>& parameters = inferrer.getExperiment().model.parameters;
+  std::istringstream trust(describeTrust(replay.inferred, parameters, inferrer.getExtractor().getInfos()) +
+                           describeMapLimit(replay.inferred, parameters));
   for (std::string line; std::getline(trust, line);) {
     section.html += makeParagraph(line, "class=\"lead\"");
   }
@@ -71,7 +76,7 @@ Section makeVerdict(const Inferrer& inferrer, const Replay& replay) {
   const std::vector<ParameterSpec>& inputs = inferrer.getExperiment().model.inputs;
   std::vector<std::pair<std::string, std::string>> facts{
       {"measurement", describeWindow(replay.options.measurement)},
-      {"parameters inferred from", describeWindow(replay.options.from)},
+      {"parameters estimated from", describeWindow(replay.options.from)},
       {"experiment", inferrer.getExperiment().name.text},
       {"draws of the band", std::to_string(replay.options.draws)}};
   for (std::size_t i = 0; i < inputs.size(); ++i) {
@@ -90,7 +95,7 @@ std::string makeParameterTable(const Inferrer& inferrer, const Replay& replay) {
   const bool refined = replay.inferred.refined && replay.inferred.refined->isAccepted();
   const Estimate& by_estimator = replay.inferred.by_estimator;
   const Bounds95 bounds = by_estimator.calcBounds95();
-  std::vector<std::string> headings{"parameter", "unit", "inferred", "sd", "95 % from", "to"};
+  std::vector<std::string> headings{"parameter", "unit", "estimated", "sd", "95 % from", "to"};
   if (refined) {
     headings.insert(headings.end(), {"refined", "its sd"});
   }
@@ -108,8 +113,8 @@ std::string makeParameterTable(const Inferrer& inferrer, const Replay& replay) {
     rows.back().push_back(makeShownCell(replay.nominal.point[i]));
   }
   return makeHtmlTable("parameters-table",
-                       std::string("Updating parameters. The updated model is simulated at the ") +
-                           (refined ? "refined" : "inferred") +
+                       std::string("Parameters to estimate. The updated model is simulated at the ") +
+                           (refined ? "refined" : "estimated") +
                            " values, moved to the bounds where they lie beyond.",
                        headings, rows);
 }
@@ -171,7 +176,8 @@ DataTable makeTable(const Replay& replay, Index output) {
 
 std::string makeHelp(const Replay& replay) {
   std::string help =
-      "Points: measured; dashed: the nominal model, at the centre of the box; solid: the updated model, with "
+      "Points: measured; dashed: the nominal model, at the centre of the bounds; solid: the updated model, "
+      "with "
       "the "
       "95 % band that the uncertainty of the parameters leaves. Below: measured minus updated; where the "
       "updated model is right, 95 % lie in the grey band of \u00b12 noise sd. Drag and scroll to move and "
@@ -193,24 +199,65 @@ Figure makeFigure(const Replay& replay, Index output) {
           1};
 }
 
+/// The spectrum of an output's residual; none where it has no noise or too few times.
+std::optional<Figure> makeSpectrum(const Replay& replay, Index output, Page& page) {
+  constexpr Index kMin = 16;
+  const Index times = replay.layout.times.size(), first = replay.layout.getRow(output, 0);
+  const VectorXd residual = (replay.measured - replay.updated.response)
+                                .segment(first, times)
+                                .cwiseQuotient(replay.noise_stddev.segment(first, times));
+  if (times < kMin || !residual.allFinite()) {
+    return std::nullopt;
+  }
+  const ResidualSpectrum spectrum = calcResidualSpectrum(replay.layout.times, residual);
+  const std::string name = "spectrum-" + std::to_string(output);
+  DataTable& table = page.tables[name];
+  table.add("frequency", std::vector<double>(spectrum.frequency.begin(), spectrum.frequency.end()));
+  table.add("power", std::vector<double>(spectrum.power.begin(), spectrum.power.end()));
+  const std::string& label = replay.layout.output_names[static_cast<std::size_t>(output)];
+  return Figure{name,
+                label + ": spectrum of the residual",
+                "Where the updated model is right, the residual is noise and its power about 1 at all "
+                "frequencies (dashed). A peak is a vibration that the model lacks.",
+                name,
+                {{"spectrum", {{"table", name}, {"output", label}}}},
+                {},
+                1};
+}
+
+/// What was estimated beside the bounds, and the tables of all numbers.
+Section makeParameters(const Inferrer& inferrer, const Replay& replay, Page& page) {
+  const ModelSpec& model = inferrer.getExperiment().model;
+  Section section{"parameters", "Parameters", "", {}};
+  const Estimate estimate = selectEstimate(replay.inferred);
+  const Bounds95 bounds = estimate.calcBounds95();
+  std::vector<ShownEstimate> shown;
+  for (Index p = 0; p < estimate.mean.size(); ++p) {
+    shown.push_back({estimate.mean[p], estimate.stddev[p], bounds.lower[p], bounds.upper[p]});
+  }
+  addFigure(makeEstimateFigure("intervals", "Estimates within their bounds", model.parameters, shown, page),
+            section);
+  section.html += makeParameterTable(inferrer, replay) + makeNuisanceTable(model, replay);
+  return section;
+}
+
 }  // namespace
 
 std::string makeReplayPage(const Inferrer& inferrer, const Replay& replay) {
-  const ModelSpec& model = inferrer.getExperiment().model;
   Page page;
   page.title = "Replay of " + replay.options.measurement.file.filename().string();
   page.sections.push_back(makeVerdict(inferrer, replay));
-  page.sections.push_back({"parameters",
-                           "Parameters",
-                           makeParameterTable(inferrer, replay) + makeNuisanceTable(model, replay),
-                           {}});
-  page.sections.push_back({"fit", "Fit", makeFitHtml(replay), {}});
   Section responses{"responses", "Responses", "", {}};
   for (Index output = 0; output < replay.layout.getOutputCount(); ++output) {
     page.tables["replay-" + std::to_string(output)] = makeTable(replay, output);
     addFigure(makeFigure(replay, output), responses);
+    if (std::optional<Figure> spectrum = makeSpectrum(replay, output, page)) {
+      addFigure(std::move(*spectrum), responses);
+    }
   }
   page.sections.push_back(std::move(responses));
+  page.sections.push_back(makeParameters(inferrer, replay, page));
+  page.sections.push_back({"fit", "Fit", makeFitHtml(replay), {}});
   return makePage(page);
 }
 

@@ -1,5 +1,6 @@
 #include "framework/study/samples/ineffective_parameters.hpp"
 
+#include "framework/base/log/notice.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 
 namespace twinmap {
@@ -48,10 +49,7 @@ std::string describeIneffective(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     list += (list.empty() ? "" : ", ") + name;
   }
-  return names.empty()
-             ? ""
-             : (names.size() > 1 ? "the parameters " + list + " have" : "the parameter " + list + " has") +
-                   " no effect on any output at three points of the box; is the name in the model right?";
+  return names.empty() ? "" : describeNotice(Notice::kNoEffect, list);
 }
 
 }  // namespace twinmap

@@ -5,6 +5,7 @@
 
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/base/log/log.hpp"
+#include "framework/base/log/notice.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/simulation/solver_revision.hpp"
 #include "framework/study/samples/trajectory_content.hpp"
@@ -43,10 +44,7 @@ void warnAboutOtherBuilds(const TrajectoryStore& store, const std::string& conte
     const std::string other = readBytes(file);
     if (other != content && takeModel(other) == takeModel(content) &&
         other.find("stencils:\n") == std::string::npos) {
-      logWarning(fmt::format(
-          "{}: has samples of the same model that another build or machine computed; they are not mixed "
-          "with this one's, so that samples are simulated again",
-          entry.path().string()));
+      logWarning(describeNotice(Notice::kOtherBuild, entry.path().string()));
     }
   }
 }
@@ -81,8 +79,7 @@ std::unique_ptr<TrajectoryStore> openStore(const ModelSpec& model, const Respons
 void logSetAside(const TrajectoryStore& store, std::size_t known) {
   const std::vector<SetAsideChunk>& chunks = store.getSetAside();
   for (std::size_t i = known; i < chunks.size(); ++i) {
-    logWarning(fmt::format("{}: set aside: {}; its samples are simulated again", chunks[i].file.string(),
-                           chunks[i].reason));
+    logWarning(describeNotice(Notice::kSetAside, chunks[i].file.string(), chunks[i].reason));
   }
 }
 

@@ -109,7 +109,7 @@ StageNotes simulateStencils(const ExperimentSpec& experiment, const SampleSource
   const MissingOptions missing = makeMissingOptions(kStencilStage, countNeighbours(unknown.size()), control);
   StageNotes notes;
   const SimulationProgress counts =
-      timeStage(fmt::format("stencils of {} points", points.cols()), notes,
+      timeStage(fmt::format("finite differences at {} points", points.cols()), notes,
                 [&] { return storeMissing(*source.stencils, simulator, points, missing); });
   if (counts.simulated < counts.total) {
     throw Interrupted(fmt::format("interrupted: {} of {} stencils are simulated and kept",

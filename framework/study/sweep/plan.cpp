@@ -6,6 +6,7 @@
 #include <numeric>
 #include <set>
 
+#include "framework/base/log/notice.hpp"
 #include "framework/data/features/feature_extractor.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/results/run_state.hpp"
@@ -117,10 +118,7 @@ void warnAboutPlainDesigns(const std::vector<SweepCase>& cases, SweepPlan& plan)
   }
   for (const auto& [set, sizes] : {std::pair("train", train), {"test", test}}) {
     if (sizes.size() > 1) {
-      plan.warnings.push_back(
-          fmt::format("design.{}.method is latin_hypercube: each of its {} sizes is simulated anew; with "
-                      "nested_latin_hypercube or sobol the larger ones contain the smaller",
-                      set, sizes.size()));
+      plan.warnings.push_back(describeNotice(Notice::kPlainSweep, set, sizes.size()));
     }
   }
 }
@@ -228,8 +226,9 @@ std::string describePlan(const SweepPlan& plan, const PlanOptions& options) {
                      fmt::format("simulations: {} needed, {} stored, {} to do\n", samples.needed,
                                  samples.stored, samples.missing);
   if (stencils.needed > 0) {
-    text += fmt::format("limits:      stencils of {} points needed, {} stored, {} to do: {} simulations\n",
-                        stencils.needed, stencils.stored, stencils.missing, stencils.simulations);
+    text += fmt::format(
+        "limits:      finite differences at {} points needed, {} stored, {} to do: {} simulations\n",
+        stencils.needed, stencils.stored, stencils.missing, stencils.simulations);
   }
   if (!plan.no_times.empty()) {
     text += "time:        not known: " + plan.no_times + "\n";

@@ -140,14 +140,15 @@ ProbeTimes measure(const ExperimentSpec& experiment, double most_samples) {
   const TimedRun run = timeRun(small, "small", folder.getPath());
   const bool has_map = !experiment.inverse_map.isNone();
   ProbeTimes times;
-  const double simulating = run.getStage("simulate "), limit = run.getStage("information limit");
+  const double simulating = run.getStage("simulate ") + run.getStage("compute parameter sensitivities");
+  const double limit = run.getStage("information limit");
   times.simulation = simulating / ((has_map ? kTrainSamples : 0) + kTestSamples);
-  const double stencils = run.getStage("stencils of ");
+  const double stencils = run.getStage("finite differences at ");
   times.limit = limit / kTestSamples;
   times.stencil = stencils / std::max<double>(listDerivativePoints(small).cols(), 1.0);
   const double refining = run.getStage("refine ") + (has_map ? 0.0 : run.getStage("exact posterior"));
   times.refinement = refining / kTestSamples;
-  const double preparing = run.getStage("prepare for ");
+  const double preparing = run.getStage("calibrate the goodness-of-fit test");
   times.preparation = preparing / (double(kTrainSamples) * countReferences(small));
   times.overhead =
       std::max(run.seconds - simulating - stencils - limit - refining - run.getTraining() - preparing, 0.0);

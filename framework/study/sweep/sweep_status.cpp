@@ -50,7 +50,7 @@ std::string describeStatus(const SweepStatus& status) {
   return fmt::format("cases:   {} of {} complete, {} failed, {} missing\n", status.complete, status.cases,
                      status.failed, missing) +
          describeStored("samples:", status.stored.samples) +
-         describeStored("limits:  stencils of test points:", status.stored.stencils) +
+         describeStored("limits:  differences at test points:", status.stored.stencils) +
          (status.owner.empty() ? "not running\n" : "running: " + status.owner + "\n");
 }
 

@@ -46,7 +46,7 @@ TEST(Crps, EqualsItsDefinition) {
 // At z = 0: (sqrt(2) - 1) / sqrt(pi), 0.2337 of the stddev; far out: |error| less stddev / sqrt(pi).
 TEST(Crps, IsRelativeToTheParameterInTheMetrics) {
   ParameterSpec parameter;
-  parameter.bounds = {-8, 8, {}};
+  parameter.bounds = {-8, -2, {}};
   const Eigen::RowVector2d truth(-4, -4);
   const Estimates exact{truth, Eigen::RowVector2d(0.1, 0.1)};
   const double crps = 0.1 * (std::sqrt(2.0) - 1) / std::sqrt(M_PI);

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from support import TWINMAP, call
 
-COMMANDS = re.findall(r"^  ([a-z]+)  ", call("--help").stdout.split("Subcommands:")[1], re.MULTILINE)
+COMMANDS = re.findall(r"^  ([a-z]+)  ", call("--help").stdout, re.MULTILINE)
 
 
 def list_options(command):

@@ -169,7 +169,7 @@ class Direct(FolderTestCase):
         found = json.loads(self.infer(CART, wrong, "--json"))
         self.assertEqual(found["status"], "model_mismatch")
         self.assertLess(found["trust"]["p_value"], 1e-6)
-        self.assertIn("No parameter values within the bounds fit", self.infer(CART, wrong))
+        self.assertIn("no parameter values within the bounds fit", self.infer(CART, wrong))
 
     def test_a_run_without_a_map_answers_as_its_file(self):
         run = self.folder / "run"

@@ -55,6 +55,29 @@ class Infer(InferCase):
                 estimate["upper"] - estimate["lower"], 3.92 * estimate["sd"], delta=1e-3 * estimate["sd"]
             )
 
+    def test_simple_faults_of_a_measurement_are_named(self):
+        y, theta = self.columns["y"], self.columns["theta"]
+        for name, columns, said in (
+            ("deg.csv", {"theta": np.rad2deg(theta)}, "theta is 57.3 times too large, as deg in the place of rad"),
+            ("mm.csv", {"y": 1000 * y}, "y is 1000 times too large, as mm in the place of m"),
+            ("sign.csv", {"theta": -theta}, "theta is of the other sign"),
+            ("offset.csv", {"y": y + 0.5}, "y has an offset of 0.5"),
+            ("swapped.csv", {"y": theta, "theta": y}, "the columns of y and theta are swapped"),
+        ):
+            with self.subTest(name):
+                path = self.write(name, **columns)
+                text = self.infer(path)
+                self.assertIn(
+                    f"model_mismatch: no parameter values within the bounds fit the measurement; {said}", text
+                )
+                self.assertNotIn("larger than the data would permit", text)
+                self.assertIn(said, self.infer_json(path)["fault"])
+        self.assertIsNone(self.infer_json(self.measurement)["fault"])
+
+    def test_a_simulated_p_value_claims_no_more_than_its_simulations_show(self):
+        text = self.infer(self.write("far.csv", y=self.columns["y"] + 0.01))
+        self.assertRegex(text, r"model_mismatch.* \(p < 0\.0\d+, chi-square")
+
     def test_finds_what_its_power_says_it_finds(self):
         rows = read_csv(self.run_folder / "trust_power.csv")
         power = {row["name"]: float(row["smallest_change"]) for row in rows if row["smallest_change"]}
@@ -104,7 +127,7 @@ class Infer(InferCase):
         for name, true in TRUE.items():
             estimate = refined["parameters"][name]
             self.assertLess(abs(estimate["mean"] - true), 4 * estimate["sd"], name)
-        self.assertIn("refined by", self.infer(self.measurement, "--refine"))
+        self.assertIn("refined in", self.infer(self.measurement, "--refine"))
 
     def test_the_answer_is_the_refined_one_where_it_is_accepted(self):
         inferred = self.infer_json(self.measurement)
@@ -302,7 +325,7 @@ class Trust(InferCase):
         inferred = self.infer_json(other)
         self.assertEqual(inferred["status"], "model_mismatch")
         self.assertLess(inferred["trust"]["p_value"], 0.01)
-        self.assertIn("No parameter values within the bounds fit", self.infer(other))
+        self.assertIn("no parameter values within the bounds fit", self.infer(other))
 
 
 class WrongUsage(InferCase):

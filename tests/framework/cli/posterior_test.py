@@ -103,7 +103,7 @@ class Posterior(FolderTestCase):
                 [value for _, value in found["quantiles"]],
             )
         text = self.infer(self.measured, "--posterior", "--posterior-from", "surrogate")
-        self.assertIn("the posterior (effective sample size", text)
+        self.assertIn("posterior under the surrogate (effective sample size", text)
 
     def test_other_maps_use_the_surrogate_that_judges(self):
         run = self.run_experiment("gp", "inverse_map=gp")

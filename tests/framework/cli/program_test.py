@@ -71,7 +71,7 @@ class ProgramTest(OwnFolderTestCase):
         ):
             result = call(*arguments)
             self.assertEqual(result.returncode, 0, f"{arguments}: {result.stdout}{result.stderr}")
-        self.assertIn("# simulated by: program /usr/bin/python3 plant.py", call("check", PLANT).stdout)
+        self.assertIn("# solver: program /usr/bin/python3 plant.py", call("check", PLANT).stdout)
 
     def test_a_run_killed_in_the_middle_and_again_gives_the_same_bits_and_names_failures(self):
         file = self.write_faulty(
@@ -129,4 +129,4 @@ class ProgramTest(OwnFolderTestCase):
 
     def test_a_parameter_without_effect_is_a_warning_at_the_start(self):
         result = call("run", self.write_faulty("[0, 0.5]"), *QUICK, "--out", self.folder / "run")
-        self.assertIn("the parameter mode has no effect on any output", result.stdout + result.stderr)
+        self.assertIn("mode has no effect on any output", result.stdout + result.stderr)

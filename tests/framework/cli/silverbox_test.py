@@ -1,4 +1,4 @@
-"""The Silverbox benchmark, measured by others: its data are not part of the project (docs/how-to/estimate-from-measurements.md)."""
+"""The Silverbox benchmark, measured by others: its data are not part of the project (docs/tutorials/a-real-recording.md)."""
 import csv
 import json
 import os
@@ -32,7 +32,7 @@ def read_signals():
 
 @unittest.skipIf(
     DATA is None,
-    f"{NAME} of the Silverbox benchmark is not here: docs/how-to/estimate-from-measurements.md says how to get it; "
+    f"{NAME} of the Silverbox benchmark is not here: docs/tutorials/a-real-recording.md says how to get it; "
     "TWINMAP_SILVERBOX may say where it is",
 )
 class Silverbox(FolderTestCase):

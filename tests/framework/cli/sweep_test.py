@@ -151,7 +151,7 @@ class Simulations(SweepTestCase):
         ]
         self.run_sweep("run", sweep=sweep)
         self.assertEqual(list(map(len, self.get_all_stored("run"))), [16 + 8, 8])
-        self.assertIn("stencils of test points: 8 of 8 stored", call("status", self.folder / "run").stdout)
+        self.assertIn("differences at test points: 8 of 8 stored", call("status", self.folder / "run").stdout)
         self.run_sweep(
             "alone",
             sweep=[
@@ -360,7 +360,7 @@ class Continuing(SweepTestCase):
         self.run_sweep("run", "--store", self.folder / "store", sweep=[*LIMITS, "design.train.samples=8,16"])
         self.assertFalse((self.folder / "run/chunks").exists())
         status = call("status", self.folder / "run").stdout
-        self.assertIn("samples: 24 of 24 stored\nlimits:  stencils of test points: 8 of 8 stored", status)
+        self.assertIn("samples: 24 of 24 stored\nlimits:  differences at test points: 8 of 8 stored", status)
         verified = call("verify", self.folder / "run")
         self.assertEqual(verified.returncode, 0, verified.stdout)
         self.assertIn("responses of the 24 samples that chunks hold", verified.stdout)
@@ -499,11 +499,11 @@ class Plan(SweepTestCase):
         self.run_sweep("run", sweep=[*SMALL, DIFFERENCES, "design.train.samples=8"])
         plan = self.plan(*LIMITS, "design.train.samples=8,24", "--store", self.folder / "run/chunks")
         self.assertIn("simulations: 32 needed, 16 stored, 16 to do", plan)
-        self.assertIn(f"stencils of 8 points needed, 0 stored, 8 to do: {8 * (2 * 3 + 1)} simulations", plan)
+        self.assertIn(f"finite differences at 8 points needed, 0 stored, 8 to do: {8 * (2 * 3 + 1)} simulations", plan)
         store = ["--store", self.folder / "run/chunks"]
         self.run_sweep("limits", *store, sweep=[*LIMITS, "design.train.samples=8,24"])
         self.assertIn(
-            "stencils of 8 points needed, 8 stored, 0 to do: 0 simulations",
+            "finite differences at 8 points needed, 8 stored, 0 to do: 0 simulations",
             self.plan(*LIMITS, "design.train.samples=8,24,30", *store),
         )
 

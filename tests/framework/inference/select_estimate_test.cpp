@@ -82,7 +82,8 @@ TEST(SelectEstimate, OfAMapFarAboveWhatTheMeasurementAllowsIsEstimatorLimited) {
   const InferredMeasurement inferred = makeInferred();
   EXPECT_EQ(listStatuses(inferred), Statuses{"estimator_limited"});
   EXPECT_EQ(describeMapLimit(inferred, makeParameters()),
-            "  k is 2 times above what the measurement allows: refine, or add simulations.\n");
+            "  estimator_limited: the sd of k is 2 times larger than the data would permit\n"
+            "    Refine the estimate: --refine.\n");
 }
 
 TEST(SelectEstimate, OfAMapNearTheLimitIsOk) {
@@ -117,7 +118,7 @@ TEST(SelectEstimate, NotRefinedIsTheMapsWithAllItsLimits) {
   inferred.refined = makeRefined(RefinementStatus::kMisfit);
   EXPECT_EQ(listStatuses(inferred), (Statuses{"at_bounds", "not_refined", "estimator_limited"}));
   EXPECT_EQ(describeMapLimit(inferred, makeParameters()),
-            "  k is 2 times above what the measurement allows: add simulations.\n");
+            "  estimator_limited: the sd of k is 2 times larger than the data would permit\n");
 }
 
 /// Two draws as good as each other, at 2 and 4 of the first parameter.

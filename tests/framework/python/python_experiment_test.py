@@ -261,7 +261,7 @@ class Running(FolderTestCase):
         self.assertEqual(len(results), 4)
         self.assertEqual(len({float(r.metrics.sd_pct[0]) for r in results}), 4)
         for result in results:  # no line of another run in the log
-            self.assertEqual((result.folder / "run.log").read_text().count("simulated by"), 1)
+            self.assertEqual((result.folder / "run.log").read_text().count("solver: "), 1)
 
     def test_sweep_gives_a_frame(self):
         frame = twinmap.sweep(TABLE_1, QUICK, "design.train.samples=40,60", out=self.folder / "sweep")

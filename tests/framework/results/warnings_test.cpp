@@ -13,7 +13,7 @@ RunSummary makeGoodRun() {
   for (const char* name : {"k", "d", "m"}) {
     ParameterSpec parameter;
     parameter.name.text = name;
-    parameter.bounds = {0.0, 1.0, {}};
+    parameter.bounds = {1.0, 2.0, {}};
     run.parameters.push_back(parameter);
     ParameterMetrics metrics;
     metrics.coverage95 = 0.95;
@@ -58,8 +58,8 @@ TEST(Warnings, TellWhereMoreSimulationsHardlyHelpAMapFarFromTheLimit) {
   const std::vector<std::string> warnings = collectWarnings(run);
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_EQ(warnings[0],
-            "more simulations will hardly help the map: from 125 to 250 its errors fell by less than 30 % "
-            "for k (8 %)");
+            "from 125 to 250 training samples the errors fell by less than 30 %: k (8 %)\n"
+            "  Refine the estimates instead of adding samples: refine=always.");
   run.evaluation.methods = {{"gp", 400, 400, 0, {}}, {"refined", 400, 398, 16, {}}};
   EXPECT_TRUE(collectWarnings(run).empty());  // what is answered is not the map's
   run.evaluation.methods.clear();
@@ -67,15 +67,15 @@ TEST(Warnings, TellWhereMoreSimulationsHardlyHelpAMapFarFromTheLimit) {
   EXPECT_TRUE(collectWarnings(run).empty());
 }
 
-TEST(Warnings, TheGravestComesFirst) {
+TEST(Warnings, TheMostSevereComesFirst) {
   RunSummary run = makeGoodRun();
-  run.notes.warn(Severity::kInfo, "a remark");
-  run.notes.warn(Severity::kMisleading, "misleading");
+  run.notes.warn({Severity::kInfo, "a remark"});
+  run.notes.warn({Severity::kMisleading, "misleading"});
   run.evaluation.metrics[1].ratio_to_limit = 5.2;
   run.failures = {{"test", 1, Eigen::Vector3d(0, 0, 0), "step limit"}};
   const std::vector<std::string> warnings = collectWarnings(run);
   ASSERT_EQ(warnings.size(), 4U);
-  EXPECT_NE(warnings[0].find("1 sample could not be simulated"), std::string::npos);
+  EXPECT_NE(warnings[0].find("1 of the samples could not be simulated"), std::string::npos);
   EXPECT_EQ(warnings[1], "misleading");
   EXPECT_NE(warnings[2].find("d (5.2)"), std::string::npos);
   EXPECT_EQ(warnings[3], "a remark");
@@ -86,7 +86,7 @@ TEST(Warnings, NameWhatTheResponseSaysLittleOf) {
   run.evaluation.predictions.stddev.row(1).setConstant(0.25);  // that of the bounds is 0.289
   const std::vector<std::string> warnings = collectWarnings(run);
   ASSERT_EQ(warnings.size(), 1U);
-  EXPECT_NE(warnings[0].find("d (0.87)"), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[0].find("d (13 %)"), std::string::npos) << warnings[0];
 }
 
 TEST(Warnings, ParametersThatCannotBeToldApartAreNamedUnlessUndetermined) {
@@ -100,6 +100,36 @@ TEST(Warnings, ParametersThatCannotBeToldApartAreNamedUnlessUndetermined) {
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_NE(warnings[0].find("k and d (-0.97)"), std::string::npos) << warnings[0];
   run.evaluation.identifiability->remaining[0] = 0.9;  // told by the stage that found it
+  EXPECT_TRUE(collectWarnings(run).empty());
+}
+
+TEST(Warnings, AdviceNeverContradictsItself) {
+  RunSummary run = makeGoodRun();
+  run.evaluation.metrics[0].coverage95 = 0.7;
+  run.evaluation.metrics[1].ratio_to_limit = 5.2;
+  CrossValidation& found = run.training.cross_validation.emplace();
+  found.half = 125;
+  found.all = 250;
+  found.limit_ratio = Eigen::Vector3d(2.0, 2.0, 1.05);
+  found.error_ratio = Eigen::Vector3d(0.92, 0.5, 1.0);
+  for (const std::string& warning : collectWarnings(run)) {  // samples do not help: nothing says that they do
+    EXPECT_EQ(warning.find("design.train.samples"), std::string::npos) << warning;
+    EXPECT_NE(warning.find("refine=always"), std::string::npos) << warning;
+  }
+  run.evaluation.methods = {{"gp", 400, 400, 0, {}}, {"refined", 400, 398, 16, {}}};
+  for (const std::string& warning : collectWarnings(run)) {  // they are refined already
+    EXPECT_EQ(warning.find("refine=always"), std::string::npos) << warning;
+  }
+}
+
+TEST(Warnings, BoundsThatContainZeroGiveARemark) {
+  RunSummary run = makeGoodRun();
+  run.parameters[1].bounds = {-1.0, 1.0, {}};
+  run.evaluation.predictions.stddev.row(1).setConstant(0.02);
+  const std::vector<std::string> warnings = collectWarnings(run);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("the bounds of d contain 0"), std::string::npos) << warnings[0];
+  run.parameters[1].relative_to = RelativeTo::kRange;
   EXPECT_TRUE(collectWarnings(run).empty());
 }
 

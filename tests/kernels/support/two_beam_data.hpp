@@ -56,7 +56,7 @@ inline TwoBeamState twoBeamStep(const TwoBeamState& x, const TwoBeamParameters& 
   return next;
 }
 
-/// theta at rest for the centre of the parameter box.
+/// theta at rest for the centre of the bounds.
 inline double twoBeamEquilibrium() {
   double theta = 0.0;
   for (int i = 0; i < 20; ++i) {

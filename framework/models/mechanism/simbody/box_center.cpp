@@ -17,8 +17,7 @@ ExperimentError makeCenterError(const ModelSpec& model, SourceLocation where, co
     where.key_path = where.file.empty() ? "" : "system";
   }
   const std::string place = toString(where);
-  return ExperimentError((place.empty() ? "" : place + ": ") +
-                         "at the centre of the parameter box: " + reason);
+  return ExperimentError((place.empty() ? "" : place + ": ") + "at the centre of the bounds: " + reason);
 }
 
 /// With the context's numbers at the box centre. What fails in `action` is wrong input.

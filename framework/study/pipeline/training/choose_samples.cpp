@@ -52,7 +52,7 @@ bool promisesMore(const CrossValidation& found) {
 /// Why no more than `samples` are taken; empty where more are.
 std::string findReason(int samples, int most, double seconds, const SurrogateMapTraining& training) {
   if (!promisesMore(*training.summary.cross_validation)) {
-    return "the map is near the limit, or its errors hardly fall any more";
+    return "the estimator is near the information limit, or its errors hardly fall any more";
   }
   if (2 * samples > most) {
     return fmt::format("at most {} are taken", most);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "framework/base/log/interrupted.hpp"
+#include "framework/base/log/notice.hpp"
 #include "framework/base/log/stage_timer.hpp"
 #include "framework/study/pipeline/evaluate_estimates.hpp"
 #include "framework/study/pipeline/online_timing.hpp"
@@ -67,7 +68,7 @@ void tryMap(const std::string& name, const Study& study, const PreparedData& dat
   } catch (const Interrupted&) {
     throw;
   } catch (const std::exception& error) {
-    compared.notes.warn(Severity::kInfo, fmt::format("map {} is not compared: {}", name, error.what()));
+    compared.notes.warn(makeWarning(Notice::kNotCompared, name, error.what()));
   }
 }
 

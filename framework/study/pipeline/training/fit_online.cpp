@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "framework/base/log/notice.hpp"
 #include "framework/data/noise/noise.hpp"
 #include "framework/estimation/surrogate/fit_forward.hpp"
 #include "framework/estimation/trained/fit_trust.hpp"
@@ -108,8 +109,7 @@ OnlineFit fitTrust(const Study& study, const PreparedData& data, AnyMap map,
                            study.getTrainingControl());
     });
   } catch (const std::invalid_argument& error) {
-    fit.notes.warn(Severity::kMisleading,
-                   std::string("measurements cannot be judged (no trust model): ") + error.what());
+    fit.notes.warn(makeWarning(Notice::kNoTrustModel, error.what()));
   }
   return fit;
 }

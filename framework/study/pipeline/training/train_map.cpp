@@ -1,5 +1,6 @@
 #include "framework/study/pipeline/training/train_map.hpp"
 
+#include "framework/base/log/notice.hpp"
 #include "framework/base/log/stage_timer.hpp"
 #include "framework/experiment/check/check_experiment.hpp"
 #include "framework/study/pipeline/training/train_interruptibly.hpp"
@@ -47,7 +48,9 @@ Training makeTraining(const ExperimentSpec& experiment, const LabelledFeatures& 
                       GpMapTraining trained) {
   const std::vector<std::string> names = collectNames(experiment.model.parameters);
   Training training;
-  training.notes.warn(Severity::kInfo, trained.warnings);
+  for (const std::string& warning : trained.warnings) {
+    training.notes.warn(makeWarning(Notice::kUnfinishedTraining, warning));
+  }
   training.summary.leave_one_out = calcMetrics(experiment.model.parameters, samples.parameters,
                                                trained.leave_one_out, {}, samples.replicates);
   training.summary.starts = summarizeTraining(names, trained.reports);

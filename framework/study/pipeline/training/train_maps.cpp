@@ -18,7 +18,7 @@ template <class... Map>
 OnlineFit prepareOnline(const Study& study, const PreparedData& data, const Map&... map) {
   StageNotes notes;
   OnlineFit online =
-      timeStage("prepare for measurements", notes, [&] { return fitOnline(study, data, map...); });
+      timeStage("calibrate the goodness-of-fit test", notes, [&] { return fitOnline(study, data, map...); });
   notes.append(online.notes);
   online.notes = notes;
   return online;

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "framework/base/log/log.hpp"
+#include "framework/base/log/notice.hpp"
 #include "framework/base/log/stage_timer.hpp"
 #include "framework/data/noise/noise.hpp"
 #include "framework/estimation/calibration_factor.hpp"
@@ -76,12 +77,7 @@ void suggestSimulations(const Surrogate& teacher, const Study& study, StageNotes
   constexpr int kMany = 10000;
   const double ratio = teacher.validation.limit_ratio.maxCoeff();
   if (ratio > kFar && study.simulator.getEngine() == "lanes") {
-    notes.warn(
-        Severity::kInfo,
-        fmt::format("the surrogate that the network learns from promises {:.1f} times what measurements "
-                    "allow; in lanes simulations take little: from design.train.samples={} a network may "
-                    "learn more, in some minutes",
-                    ratio, kMany));
+    notes.warn(makeWarning(Notice::kTeacherFar, ratio, kMany));
   }
 }
 
@@ -94,11 +90,8 @@ Eigen::VectorXd calcExcess(const NetworkMapTraining& trained, const SurrogateMap
 void remarkOnStudent(const Eigen::VectorXd& excess, const ModelSpec& model, StageNotes& notes) {
   Index worst = 0;
   if (excess.maxCoeff(&worst) > kMuchExcess) {
-    notes.warn(
-        Severity::kInfo,
-        fmt::format("{}: the network's standard deviations are {:.1f} times those of the surrogate that "
-                    "it learnt from, which 'inverse_map: surrogate' gives in milliseconds",
-                    model.parameters[static_cast<std::size_t>(worst)].name.text, excess[worst]));
+    notes.warn(makeWarning(Notice::kStudentFar, model.parameters[static_cast<std::size_t>(worst)].name.text,
+                           excess[worst]));
   }
 }
 

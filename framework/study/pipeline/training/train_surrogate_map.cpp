@@ -50,7 +50,7 @@ SurrogateMapTraining trainSurrogateMap(const Study& study, const PreparedData& d
                              samples.noise_covariance, samples.features};
   SurrogateMapTraining training;
   if (study.simulator.hasDerivatives()) {
-    simulated.slopes = timeStage("simulate slopes of the training samples", training.notes,
+    simulated.slopes = timeStage("compute parameter sensitivities of the training samples", training.notes,
                                  [&] { return simulateSlopes(study, simulated.points); });
   }
   SurrogateTraining trained = timeStage("train the surrogate", training.notes, [&] {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 
+#include "framework/base/log/notice.hpp"
 #include "framework/base/random/random.hpp"
 #include "framework/base/text/csv.hpp"
 #include "framework/base/text/number_text.hpp"
@@ -161,20 +162,27 @@ std::string makeTrustPowerCsv(const std::vector<DetectableChange>& changes) {
   return makeCsv(rows);
 }
 
+namespace {
+
+/// "a 50 % error in ds", "an offset of y by its whole range".
+std::string describe(const DetectableChange& change) {
+  return change.kind == "constant" ? "a 50 % error in " + change.name
+                                   : "an offset of " + change.name + " by its whole range";
+}
+
+}  // namespace
+
 std::vector<std::string> listPowerWarnings(const std::vector<DetectableChange>& changes) {
   std::string names;
   for (const DetectableChange& change : changes) {
     if (change.found < kHardlyFound) {
-      names += (names.empty() ? "" : ", ") + change.kind + " '" + change.name + "'";
+      names += (names.empty() ? "" : ", ") + describe(change);
     }
   }
   if (names.empty()) {
     return {};
   }
-  return {
-      "no power: measurements of a machine that differs by half in a constant, or by its range in the offset "
-      "of an output, would mostly not be called a model_mismatch: " +
-      names};
+  return {describeNotice(Notice::kBlindSpots, names)};
 }
 
 }  // namespace twinmap

@@ -133,8 +133,10 @@ TEST(Measurement, ErrorsOfTimes) {
             "a.csv: has a sample each 0.06 s (median); at least one each 0.05 s is needed");
   EXPECT_EQ(getResamplingError(makeCubicTable(makeTimes(1, 0.06)), layout),
             "a.csv: has 1 samples; must have at least 2");
-  EXPECT_EQ(getResamplingError(without(makeCubicTable(makeTimes(200, 0.01)), 50), layout),
-            "a.csv: has a gap from 0.49 s to 0.51 s, where samples are needed; the median step is 0.01 s");
+  EXPECT_EQ(
+      getResamplingError(without(makeCubicTable(makeTimes(200, 0.01)), 50), layout),
+      "a.csv: has a gap of 0.02 s after t = 0.49 s, where samples are needed; the median step is "
+      "0.01 s");
   EXPECT_EQ(getResamplingError(without(makeCubicTable(makeTimes(200, 0.01)), 150), layout),
             "no error");  // where none is needed
   EXPECT_EQ(getResamplingError(makeCubicTable(makeTimes(200, 0.0503)), layout), "no error");  // below 1 %
@@ -160,8 +162,9 @@ TEST(Measurement, ErrorsOfADeadSensorAndOfModes) {
   Table table = makeCubicTable(makeTimes(200, 0.01));
   table.columns[2].values.head(150).setConstant(0.25);
   const ResponseLayout layout = makeLayout(makeTimes(20, 0.05, 0.05));
-  EXPECT_EQ(getResamplingError(table, layout),
-            "a.csv: column 'theta' is 0.25 at all needed times, 0.05 s to 1 s; is the sensor dead?");
+  EXPECT_EQ(
+      getResamplingError(table, layout),
+      "a.csv: column 'theta' is 0.25 (constant signal) from 0.05 s to 1 s; check the sensor and its cable");
   ResponseLayout modes = layout;
   modes.modes = 2;
   EXPECT_EQ(getResamplingError(table, modes), "a.csv: holds no modes, of which features are made");

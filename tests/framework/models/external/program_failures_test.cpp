@@ -122,7 +122,7 @@ std::string getStartError(const std::string& script) {
 }
 
 TEST(ProgramSimulator, SaysAtTheStartWhatItWaitedForAndWhatItGot) {
-  const std::string centre = "model.program: cannot simulate the centre of the parameter box: ";
+  const std::string centre = "model.program: cannot simulate the centre of the bounds: ";
   EXPECT_EQ(getStartError("echo licence expired; exit 4"),
             "model.program: before its first answer, {\"twinmap\": 1}, the program ended with exit code 4; "
             "it said: "

@@ -218,8 +218,7 @@ TEST(WrongInput, NamesAreUniqueAndCountsMatch) {
 TEST(WrongInput, SystemThatCannotExistAtTheBoxCenterIsRefused) {
   ModelSpec model = makeOscillator();
   model.parameters[0] = parameter("m", -2.0, 1.0);
-  EXPECT_EQ(getError(model),
-            "at the centre of the parameter box: body 'block': mass = -0.5 kg must be positive");
+  EXPECT_EQ(getError(model), "at the centre of the bounds: body 'block': mass = -0.5 kg must be positive");
 }
 
 /// As read from a file.
@@ -228,7 +227,7 @@ SourceLocation at(int line, const std::string& key) {
 }
 
 TEST(WrongInput, WhatCannotExistAtTheBoxCenterIsNamedWithItsPlace) {
-  const std::string centre = ": at the centre of the parameter box: ";
+  const std::string centre = ": at the centre of the bounds: ";
   ModelSpec model = makeOscillator();
   model.system.bodies[0].name.where = at(5, "system.bodies.block");
   model.system.bodies[0].mass = {"-m", at(6, "system.bodies.block.mass")};
@@ -256,7 +255,7 @@ std::string getStartError(const ModelSpec& model) {
 }
 
 TEST(WrongInput, AnInitialStateThatFailsAtTheBoxCenterIsRefused) {
-  const std::string centre = "cart.yaml:5:12: system: at the centre of the parameter box: ";
+  const std::string centre = "cart.yaml:5:12: system: at the centre of the bounds: ";
   ModelSpec model = makeOscillator();
   EXPECT_EQ(getStartError(model), "");
   model.system.bodies[0].name.where = at(5, "system.bodies.block");
@@ -273,7 +272,7 @@ TEST(WrongInput, AnInitialStateThatFailsAtTheBoxCenterIsRefused) {
   model.system.bodies.push_back(
       body("pointer", "1", kOrigin, kOrigin, joint(JointType::kPin, {"turn"}, "block")));
   EXPECT_EQ(getStartError(model),
-            "at the centre of the parameter box: the mass matrix is singular: a body without "
+            "at the centre of the bounds: the mass matrix is singular: a body without "
             "inertia can move freely");
 }
 

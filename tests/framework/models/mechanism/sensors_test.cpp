@@ -48,7 +48,7 @@ TEST(Sensors, AreIdealUnlessGiven) {
 TEST(Sensors, WithoutAFiniteNumberFailTheSample) {
   ModelSpec model = makeFlight();
   model.outputs[0].gain = ex("1 / bias");
-  EXPECT_EQ(getError(model), "at the centre of the parameter box: output 'y': gain = inf must be finite");
+  EXPECT_EQ(getError(model), "at the centre of the bounds: output 'y': gain = inf must be finite");
 }
 
 TEST(Roles, TheEquilibriumOfTheBoxCentreIsThatOfAllSampledParameters) {

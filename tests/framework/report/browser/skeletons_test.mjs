@@ -24,7 +24,7 @@ function makeLogger(complaints) {
 const countMarks = item => (item.items || []).reduce((sum, child) => sum + countMarks(child),
                                                      item.role === 'mark' ? item.items.length : 0);
 
-const files = readdirSync(kFolder);
+const files = readdirSync(kFolder, {recursive: true}).filter(file => file.endsWith('.json'));
 assert.ok(files.length > 0);
 for (const file of files) {
   test(`${file} draws its examples`, async () => {

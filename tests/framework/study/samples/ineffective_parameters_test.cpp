@@ -48,8 +48,8 @@ TEST(IneffectiveParameters, AreNotThoseWhoseProbesAllFailed) {
 
 TEST(IneffectiveParameters, AreNamedInOneSentence) {
   EXPECT_EQ(describeIneffective({}), "");
-  EXPECT_EQ(describeIneffective({"k"}).rfind("the parameter k has no effect", 0), 0u);
-  EXPECT_EQ(describeIneffective({"k", "d"}).rfind("the parameters k, d have no effect", 0), 0u);
+  EXPECT_EQ(describeIneffective({"k"}).rfind("k has no effect", 0), 0u);
+  EXPECT_EQ(describeIneffective({"k", "d"}).rfind("k, d has no effect", 0), 0u);
 }
 
 }  // namespace

@@ -1,0 +1,200 @@
+#include <fmt/core.h>
+#include <malloc.h>
+#include <sys/mman.h>
+
+#include <cstdint>
+#include <cstdlib>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+#include <stdexcept>
+
+#include "framework/cli/commands/commands.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
+#include "framework/inference/inference_source.hpp"
+#include "framework/inference/measurement/known_value.hpp"
+#include "framework/inference/measurement/measurement_stream.hpp"
+#include "framework/inference/text/inference_text.hpp"
+
+namespace twinmap::cli {
+namespace {
+
+enum class Format { kTable, kCsv, kJson };
+
+Format chooseFormat(const InferArguments& arguments) {
+  return arguments.json || arguments.follow ? Format::kJson : arguments.csv ? Format::kCsv : Format::kTable;
+}
+
+SessionOptions makeOptions(const InferArguments& arguments) {
+  SessionOptions options{arguments.refine, arguments.posterior_draws, {}};
+  if (!arguments.posterior_from.empty()) {
+    options.posterior_from = arguments.posterior_from == toString(PosteriorSource::kSurrogate)
+                                 ? PosteriorSource::kSurrogate
+                                 : PosteriorSource::kSimulator;
+    options.posterior_draws = options.posterior_draws != 0 ? options.posterior_draws : kDefaultPosteriorDraws;
+  }
+  return options;
+}
+
+/// Infers one measurement after another and prints what comes out. A measurement that cannot be used is an
+/// error of its own.
+class InferCommand {
+ public:
+  explicit InferCommand(const InferArguments& arguments)
+      : source_(arguments.run),
+        session_(source_.makeSession(makeOptions(arguments))),
+        known_(collectKnown(getModel().inputs, parseKnownValues(arguments.known))),
+        format_(chooseFormat(arguments)),
+        starts_(arguments.starts.begin(), arguments.starts.end()) {
+    if (starts_.empty()) {
+      starts_.emplace_back(std::nullopt);
+    }
+    if (format_ == Format::kCsv) {
+      std::cout << makeInferenceCsvHeader(session_->refines(), session_->samplesPosteriors());
+    }
+    if (!arguments.draws.empty()) {
+      draws_file_ = arguments.draws;
+      draws_.emplace(draws_file_);
+      *draws_ << makeDrawsCsvHeader(collectUnknown(getModel()));
+      requireDraws();
+    }
+  }
+
+  void inferFile(const std::string& file) {
+    try {
+      inferTable(readTable(file, source_.getReader().listColumns(), getMissingCells()));
+    } catch (const std::exception& error) {
+      reportError(file, source_.getReader().getStart(starts_.front()), error.what());
+    }
+  }
+
+  void inferStream(std::istream& stream) {
+    MeasurementStream measurements(stream);
+    std::string text;
+    for (int i = 1; measurements.next(text); ++i) {
+      const std::string source = "measurement " + std::to_string(i);
+      try {
+        std::istringstream table(text);
+        inferTable(readCsv(table, source, source_.getReader().listColumns(), getMissingCells()));
+      } catch (const std::exception& error) {
+        reportError(source, source_.getReader().getStart(starts_.front()), error.what());
+      }
+      std::cout.flush();
+    }
+  }
+
+  /// Throws std::runtime_error if a measurement could not be used.
+  void finish() {
+    std::cout.flush();
+    if (draws_) {
+      draws_->flush();
+      requireDraws();
+    }
+    if (errors_ > 0) {
+      throw std::runtime_error(fmt::format("{} of {} measurements could not be used", errors_, count_));
+    }
+  }
+
+ private:
+  void inferTable(const Table& table) {
+    for (const std::optional<double>& start : starts_) {
+      try {
+        print(session_->infer(table, start, known_));
+        ++count_;
+      } catch (const std::exception& error) {
+        reportError(table.source, source_.getReader().getStart(start), error.what());
+      }
+    }
+  }
+
+  void requireDraws() const {
+    if (!*draws_) {
+      throw std::runtime_error(draws_file_ + ": cannot be written");
+    }
+  }
+
+  const ModelSpec& getModel() const { return source_.getExperiment().model; }
+  /// A trained estimator needs every feature.
+  MissingCells getMissingCells() const {
+    return source_.findTrained() != nullptr ? MissingCells::kRefuse : MissingCells::kKeep;
+  }
+
+  void print(const InferredMeasurement& inferred) {
+    const std::vector<ParameterSpec>& parameters = getModel().parameters;
+    const std::vector<FeatureInfo>& features = source_.getReader().getExtractor().getInfos();
+    if (draws_) {
+      *draws_ << makeDrawsCsvRows(inferred);
+    }
+    switch (format_) {
+      case Format::kTable:
+        std::cout << (count_ > 0 ? "\n" : "") << makeInferenceTable(inferred, parameters, features);
+        break;
+      case Format::kCsv:
+        std::cout << makeInferenceCsvRows(inferred, parameters, session_->samplesPosteriors());
+        break;
+      case Format::kJson:
+        std::cout << makeInferenceJson(inferred, parameters, features) << '\n';
+        break;
+    }
+  }
+
+  void reportError(const std::string& source, double start, const std::string& error) {
+    ++errors_;
+    ++count_;
+    if (format_ == Format::kJson) {
+      std::cout << makeErrorJson(source, start, error) << '\n';
+    }
+    std::cout.flush();
+    std::cerr << "twinmap: error: " << error << "\n";
+  }
+
+  const InferenceSource source_;
+  const std::unique_ptr<MeasurementInference> session_;
+  const Eigen::VectorXd known_;
+  const Format format_;
+  std::vector<std::optional<double>> starts_;
+  std::string draws_file_;
+  std::optional<std::ofstream> draws_;
+  int count_ = 0, errors_ = 0;
+};
+
+/// The arrays of a map are read, packed and freed: to give each back to the system, and to get the next one
+/// from it, takes a page fault for each 4 kB, a third of the time of one inference. So freed memory is kept,
+/// and comes in huge pages where the system has some.
+void keepFreedMemory() {
+  constexpr std::size_t kMegabyte = 1 << 20, kHugePage = 2 * kMegabyte, kSize = 24 * kMegabyte;
+  mallopt(M_MMAP_THRESHOLD, 64 * kMegabyte);
+  mallopt(M_TRIM_THRESHOLD, 256 * kMegabyte);
+  if (void* heap = std::malloc(kSize)) {
+    const std::uintptr_t begin =
+        (reinterpret_cast<std::uintptr_t>(heap) + kHugePage - 1) / kHugePage * kHugePage;
+    madvise(reinterpret_cast<void*>(begin), kSize - kHugePage, MADV_HUGEPAGE);  // else as it was
+    std::free(heap);
+  }
+}
+
+}  // namespace
+
+void infer(const InferArguments& arguments) {
+  keepFreedMemory();
+  if (!arguments.trials.empty() || arguments.joint || arguments.windows) {
+    inferJointly(arguments);
+    return;
+  }
+  if (arguments.follow == !arguments.files.empty()) {
+    throw ExperimentError(arguments.follow
+                              ? "--follow reads measurements from the standard input; give no files"
+                              : "give files of measurements, or --follow");
+  }
+  std::ios::sync_with_stdio(false);
+  InferCommand command(arguments);
+  if (arguments.follow) {
+    command.inferStream(std::cin);
+  }
+  for (const std::string& file : arguments.files) {
+    command.inferFile(file);
+  }
+  command.finish();
+}
+
+}  // namespace twinmap::cli

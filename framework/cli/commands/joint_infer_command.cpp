@@ -1,0 +1,124 @@
+#include <fmt/core.h>
+
+#include <deque>
+#include <iostream>
+#include <set>
+
+#include "framework/base/text/number_text.hpp"
+#include "framework/cli/commands/commands.hpp"
+#include "framework/experiment/experiment_file.hpp"
+#include "framework/inference/joint_inference.hpp"
+#include "framework/inference/text/inference_text.hpp"
+
+namespace twinmap::cli {
+namespace {
+
+/// A file, and the trial that it records.
+struct RecordedFile {
+  std::string trial, file;
+};
+
+std::vector<RecordedFile> listFiles(const InferArguments& arguments, const JointInferrer& inferrer) {
+  std::vector<RecordedFile> files;
+  for (const std::string& text : arguments.trials) {
+    const std::size_t equals = text.find('=');
+    if (equals == 0 || equals == std::string::npos || equals + 1 == text.size()) {
+      throw ExperimentError("--trial " + text + ": must be NAME=FILE, the name of a trial and its recording");
+    }
+    files.push_back({text.substr(0, equals), text.substr(equals + 1)});
+    inferrer.getReader(files.back().trial);
+  }
+  for (const std::string& file : arguments.files) {
+    if (inferrer.listTrials().size() > 1) {
+      throw ExperimentError(file + ": which trial does it record? Give --trial NAME=" + file);
+    }
+    files.push_back({inferrer.listTrials().front(), file});
+  }
+  return files;
+}
+
+/// Recordings with their tables, and labels that tell them apart.
+class RecordingList {
+ public:
+  RecordingList(const InferArguments& arguments, const JointInferrer& inferrer) {
+    for (const RecordedFile& one : listFiles(arguments, inferrer)) {
+      const MeasurementReader& reader = inferrer.getReader(one.trial);
+      tables_.push_back(readTable(one.file, reader.listColumns(), MissingCells::kKeep));
+      for (const std::optional<double>& start : listStarts(arguments, reader, tables_.back())) {
+        add(one, start, arguments);
+      }
+    }
+  }
+
+  const std::vector<Recording>& get() const { return recordings_; }
+
+ private:
+  static std::vector<std::optional<double>> listStarts(const InferArguments& arguments,
+                                                       const MeasurementReader& reader, const Table& table) {
+    if (arguments.windows) {
+      const std::optional<double> first =
+          arguments.starts.empty() ? std::nullopt : std::optional<double>(arguments.starts.front());
+      const std::vector<double> starts = reader.listWindows(table, first, *arguments.windows);
+      return {starts.begin(), starts.end()};
+    }
+    if (arguments.starts.empty()) {
+      return {std::nullopt};
+    }
+    return {arguments.starts.begin(), arguments.starts.end()};
+  }
+
+  void add(const RecordedFile& file, std::optional<double> start, const InferArguments& arguments) {
+    std::string label = file.trial.empty() ? file.file : file.trial;
+    if (start && (arguments.windows || arguments.starts.size() > 1)) {
+      label += "@" + toShortText(*start, 6) + "s";
+    }
+    std::string unique = label;
+    for (int repeat = 2; !labels_.insert(unique).second; ++repeat) {
+      unique = fmt::format("{}[{}]", label, repeat);
+    }
+    recordings_.push_back({unique, file.trial, &tables_.back(), start});
+  }
+
+  std::deque<Table> tables_;  // whose addresses stay
+  std::vector<Recording> recordings_;
+  std::set<std::string> labels_;
+};
+
+void requireJointArguments(const InferArguments& arguments) {
+  if (arguments.follow) {
+    throw ExperimentError(
+        "--follow infers one measurement after another; leave --joint, --trial and --windows out");
+  }
+  if (arguments.refine) {
+    throw ExperimentError(
+        "several recordings are inferred by simulation alone: there is nothing to refine; leave --refine and "
+        "--no-refine out");
+  }
+  if (!arguments.draws.empty()) {
+    throw ExperimentError("--draws are of one measurement; leave it out, or --joint, --trial and --windows");
+  }
+}
+
+}  // namespace
+
+void inferJointly(const InferArguments& arguments) {
+  requireJointArguments(arguments);
+  const int draws =
+      arguments.posterior_draws > 0 ? arguments.posterior_draws : SimulatorPosteriorOptions{}.draws;
+  const JointInferrer inferrer(loadExperimentTree(arguments.run), arguments.known, draws);
+  const RecordingList recordings(arguments, inferrer);
+  if (recordings.get().size() < 2) {
+    throw ExperimentError(
+        "one recording alone is not inferred jointly; give several files, starts or windows");
+  }
+  const JointInference inferred = inferrer.infer(recordings.get());
+  if (arguments.json) {
+    std::cout << makeJointJson(inferred, inferrer.getParameters()) << "\n";
+  } else if (arguments.csv) {
+    std::cout << makeInferenceCsvHeader(false, false) << makeJointCsvRows(inferred, inferrer.getParameters());
+  } else {
+    std::cout << makeJointTable(inferred, inferrer.getParameters());
+  }
+}
+
+}  // namespace twinmap::cli

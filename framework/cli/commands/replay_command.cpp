@@ -1,0 +1,62 @@
+#include <iostream>
+#include <stdexcept>
+
+#include "framework/cli/commands/commands.hpp"
+#include "framework/inference/measurement/known_value.hpp"
+#include "framework/inference/text/inference_text.hpp"
+#include "framework/study/replay/replay_files.hpp"
+
+namespace twinmap::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+ReplayOptions chooseOptions(const ReplayArguments& arguments, const ExperimentSpec& experiment) {
+  ReplayOptions options;
+  options.measurement = {arguments.file, arguments.start.value_or(experiment.measurement.start)};
+  options.from = options.measurement;
+  if (!arguments.from.empty()) {
+    options.from = {arguments.from, experiment.measurement.start};
+  }
+  options.from.start = arguments.from_start.value_or(options.from.start);
+  options.known = collectKnown(experiment.model.inputs, parseKnownValues(arguments.known));
+  options.refine = arguments.refine;
+  options.draws = arguments.draws;
+  options.threads = arguments.threads;
+  return options;
+}
+
+fs::path chooseFolder(const ReplayArguments& arguments) {
+  if (!arguments.out.empty()) {
+    return arguments.out;
+  }
+  const fs::path run =
+      fs::is_directory(arguments.run) ? fs::path(arguments.run) : fs::path(arguments.run).parent_path();
+  return run / "replay" / fs::path(arguments.file).stem();
+}
+
+Replay replayMeasurement(const Inferrer& inferrer, const ReplayOptions& options) {
+  try {
+    return twinmap::replay(inferrer, options);
+  } catch (const MeasurementError& error) {
+    throw std::runtime_error(error.what());
+  }
+}
+
+}  // namespace
+
+void replay(const ReplayArguments& arguments) {
+  const Inferrer inferrer(arguments.run);
+  const Replay replay = replayMeasurement(inferrer, chooseOptions(arguments, inferrer.getExperiment()));
+  const fs::path folder = chooseFolder(arguments);
+  writeReplay(folder, inferrer, replay);
+  std::cout << describeTrust(replay.inferred, inferrer.getExperiment().model.parameters,
+                             inferrer.getExtractor().getInfos())
+            << describeMapLimit(replay.inferred, inferrer.getExperiment().model.parameters) << "\n"
+            << makeFitTable(replay);
+  std::cout.flush();
+  std::cerr << "Report: " << (folder / "report.html").string()
+            << "\nBeside it: replay.csv, residuals.csv, fit.csv, inference.json\n";
+}
+
+}  // namespace twinmap::cli

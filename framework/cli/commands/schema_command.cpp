@@ -1,0 +1,12 @@
+#include <iostream>
+
+#include "framework/cli/commands/commands.hpp"
+#include "framework/experiment/fields/json_schema.hpp"
+
+namespace twinmap::cli {
+
+void printSchema() {
+  std::cout << makeJsonSchema();
+}
+
+}  // namespace twinmap::cli

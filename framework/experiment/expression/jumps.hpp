@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "framework/experiment/expression/expression.hpp"
+
+namespace twinmap {
+
+/// Why an expression of a force makes an integrator take very small steps, and what to write instead:
+/// "sign(x_dot) jumps: write tanh(x_dot / eps), eps a small value of x_dot"; "" where it has neither sign(),
+/// abs() nor floor() or rint(). The first of several.
+std::string describeJump(const Expression& force);
+
+}  // namespace twinmap

@@ -1,0 +1,22 @@
+#include "framework/inference/measurement/measurement_inference.hpp"
+
+namespace twinmap {
+
+InferredMeasurement MeasurementInference::infer(const Table& table, std::optional<double> start,
+                                                const Eigen::VectorXd& known) {
+  const MeasurementReader& reader = getReader();
+  reader.requireExcitation(table, start);
+  const Eigen::VectorXd response = reader.readResponse(table, start);
+  InferredMeasurement inferred = infer(extractFeatures(reader.getExtractor(), response, table.source), known);
+  inferred.fault = findFault(response, known, inferred);
+  inferred.source = table.source;
+  inferred.start = reader.getStart(start);
+  return inferred;
+}
+
+std::string MeasurementInference::findFault(const Eigen::VectorXd&, const Eigen::VectorXd&,
+                                            const InferredMeasurement&) {
+  return "";
+}
+
+}  // namespace twinmap

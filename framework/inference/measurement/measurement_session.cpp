@@ -1,0 +1,111 @@
+#include "framework/inference/measurement/measurement_session.hpp"
+
+#include <limits>
+
+#include "framework/base/text/source_location.hpp"
+#include "framework/estimation/trained/posterior_model.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
+#include "framework/inference/measurement/measurement_faults.hpp"
+#include "framework/inference/select_estimate.hpp"
+
+namespace twinmap {
+namespace {
+
+PosteriorSampler makeSampler(const Inferrer& inferrer, const SimulatorPosteriorOptions& options) {
+  std::optional<PosteriorModel> model = findPosteriorModel(inferrer.getMap(), inferrer.getTrustModel());
+  if (!model) {
+    throw ExperimentError(
+        "this run has no surrogate to compute posteriors from, for a feature has no noise or the simulations "
+        "are too few: give every output noise and train with 'inverse_map: surrogate'");
+  }
+  return {std::move(*model), options.draws, options.seed};
+}
+
+/// Whether a 95 % interval of a normal distribution ends outside the bounds: it is not the posterior's then.
+bool crossesBounds(const Estimate& estimate, const std::vector<ParameterSpec>& parameters) {
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const auto i = static_cast<Eigen::Index>(p);
+    const double reach = kNormal95 * estimate.stddev[i];
+    if (estimate.mean[i] - reach < parameters[p].bounds.lower ||
+        estimate.mean[i] + reach > parameters[p].bounds.upper) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+MeasurementSession::MeasurementSession(const Inferrer& inferrer, const SessionOptions& options)
+    : inferrer_(inferrer),
+      workspace_(inferrer),
+      posterior_options_(makePosteriorOptions(
+          inferrer.getExperiment(),
+          options.posterior_draws != 0 ? options.posterior_draws : SimulatorPosteriorOptions{}.draws)) {
+  const ExperimentSpec& experiment = inferrer.getExperiment();
+  const bool may_refine = options.refine.value_or(experiment.refine != RefineMode::kNever);
+  if (may_refine || options.posterior_draws != 0) {
+    simulator_.emplace(experiment, inferrer.getLayout());
+    refines_ = may_refine && (options.refine || simulator_->isWanted());
+  }
+  samples_where_needed_ =
+      refines_ && simulator_->samplesFast() && options.posterior_from != PosteriorSource::kSurrogate;
+  if (options.posterior_draws != 0) {
+    choosePosterior(options);
+  }
+  if (!refines_ && !samples_always_) {
+    simulator_.reset();
+  }
+}
+
+void MeasurementSession::choosePosterior(const SessionOptions& options) {
+  samples_always_ = options.posterior_from ? *options.posterior_from == PosteriorSource::kSimulator
+                                           : simulator_->samplesFast();
+  if (samples_always_) {
+    simulator_->requireNoise();
+  } else {
+    sampler_.emplace(makeSampler(inferrer_, posterior_options_));
+  }
+}
+
+bool MeasurementSession::needsPosterior(const InferredMeasurement& inferred) const {
+  if (samples_always_) {
+    return true;
+  }
+  return samples_where_needed_ &&
+         (!inferred.refined->isAccepted() || inferred.basins.cols() > 1 || inferred.coverage_is_short ||
+          crossesBounds(selectEstimate(inferred), inferrer_.getExperiment().model.parameters));
+}
+
+InferredMeasurement MeasurementSession::infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known) {
+  InferredMeasurement inferred = inferrer_.infer(features, known, workspace_);
+  const TrustModel* trust = inferrer_.getTrustModel() ? &*inferrer_.getTrustModel() : nullptr;
+  if (refines_) {
+    simulator_->refineAndJudge(features, known, trust, inferred);
+  }
+  if (needsPosterior(inferred)) {
+    simulator_->sampleAndJudge(features, known, trust, posterior_options_, inferred);
+  }
+  if (sampler_) {
+    inferred.posterior = makePosteriorEstimate(sampler_->sampleFeatures(features, known),
+                                               collectUnknown(inferrer_.getExperiment().model));
+  }
+  return inferred;
+}
+
+std::string MeasurementSession::findFault(const Eigen::VectorXd& response, const Eigen::VectorXd& known,
+                                          const InferredMeasurement& inferred) {
+  if (!inferred.trust || inferred.trust->statuses.front() != TrustStatus::kModelMismatch) {
+    return "";
+  }
+  // what the surrogate leaves, also where a refinement has judged the measurement anew
+  const auto calcMisfit = [&](const Eigen::VectorXd& corrected) {
+    const Eigen::VectorXd features = inferrer_.getExtractor().extract(corrected);
+    return features.allFinite() ? inferrer_.infer(features, known, workspace_).trust->chi_square
+                                : std::numeric_limits<double>::infinity();
+  };
+  return explainByFault(response, inferrer_.getLayout(), calcMisfit(response), inferred.trust->residuals,
+                        calcMisfit);
+}
+
+}  // namespace twinmap

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <optional>
+#include <tuple>
+
+#include "framework/estimation/surrogate/posterior_sampler.hpp"
+#include "framework/inference/measurement/measurement_inference.hpp"
+#include "framework/inference/refiner.hpp"
+
+namespace twinmap {
+
+/// How measurements are inferred.
+struct SessionOptions {
+  /// Whether estimates are refined on the simulator; none: as the experiment's `refine` says.
+  std::optional<bool> refine{};
+  /// Of the posterior that each measurement is given; 0: only where nothing less will do.
+  int posterior_draws = 0;
+  /// Whose posterior; none: the simulator's where it takes tenths of a second
+  /// (SimulatorRefiner::samplesFast), else the surrogate's.
+  std::optional<PosteriorSource> posterior_from{};
+
+  friend bool operator<(const SessionOptions& a, const SessionOptions& b) {
+    return std::tie(a.refine, a.posterior_draws, a.posterior_from) <
+           std::tie(b.refine, b.posterior_draws, b.posterior_from);
+  }
+};
+
+/// Infers one measurement after another by a run, refined or not. The inferrer must outlive it.
+///
+/// Where estimates are refined, the simulator is fast and the surrogate's posterior was not asked for, its
+/// own takes the place of the refined estimate where least squares may mislead: the refinement was not
+/// accepted, the estimator knows of other basins, an interval crosses a bound, or the refined test samples of
+/// the run had intervals that held less than they say.
+class MeasurementSession final : public MeasurementInference {
+ public:
+  /// Throws ExperimentError where the simulator cannot be made, or the posterior that is asked for cannot be
+  /// had.
+  MeasurementSession(const Inferrer& inferrer, const SessionOptions& options);
+
+  const MeasurementReader& getReader() const override { return inferrer_.getReader(); }
+  bool refines() const override { return refines_; }
+  bool samplesPosteriors() const override { return sampler_.has_value() || samples_always_; }
+
+  using MeasurementInference::infer;
+  /// Cost: that of Inferrer::infer() (of a table with a gross misfit 17 an output more),
+  /// SimulatorRefiner::refineAndJudge(), sampleAndJudge() and PosteriorSampler::sample().
+  InferredMeasurement infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known) override;
+
+ private:
+  void choosePosterior(const SessionOptions& options);
+  bool needsPosterior(const InferredMeasurement& inferred) const;
+  /// explainByFault() of a measurement that is a model_mismatch.
+  std::string findFault(const Eigen::VectorXd& response, const Eigen::VectorXd& known,
+                        const InferredMeasurement& inferred) override;
+
+  const Inferrer& inferrer_;
+  Inferrer::Workspace workspace_;
+  std::optional<SimulatorRefiner> simulator_;  // where it may be asked
+  std::optional<PosteriorSampler> sampler_;    // where the surrogate's posterior was asked for
+  SimulatorPosteriorOptions posterior_options_;
+  bool refines_ = false;
+  bool samples_always_ = false, samples_where_needed_ = false;  // posteriors on the simulator
+};
+
+}  // namespace twinmap

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <string>
+
+#include "framework/base/log/notice.hpp"
+
+namespace twinmap {
+
+/// "  NAME: what happened\n    what to do\n" of a status, its places filled with the arguments, as it stands
+/// below the line of a measurement.
+template <class... Arguments>
+std::string explainNotice(Notice notice, const Arguments&... arguments) {
+  std::string text = describeNotice(notice, arguments...);
+  text.insert(std::min(text.find('\n') + 1, text.size()), text.find('\n') == std::string::npos ? "" : "  ");
+  return fmt::format("  {}: {}\n", getNotice(notice).name, text);
+}
+
+/// Its first line alone, where its remedy has been tried or is another.
+template <class... Arguments>
+std::string explainBriefly(Notice notice, const Arguments&... arguments) {
+  const std::string text = describeNotice(notice, arguments...);
+  return fmt::format("  {}: {}\n", getNotice(notice).name, text.substr(0, text.find('\n')));
+}
+
+}  // namespace twinmap

@@ -1,0 +1,223 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "framework/base/log/notice.hpp"
+#include "framework/base/text/nearest_name.hpp"
+#include "framework/estimation/estimate.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
+#include "framework/inference/select_estimate.hpp"
+#include "framework/inference/text/explain_notice.hpp"
+#include "framework/inference/text/inference_text.hpp"
+#include "kernels/linalg/autocorrelation.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+
+namespace {
+
+std::string listBeyondBounds(const Estimate& estimate, const std::vector<ParameterSpec>& parameters) {
+  std::vector<std::string> names;
+  for (std::size_t p = 0; p < parameters.size() && estimate.isGiven(); ++p) {
+    const double mean = estimate.mean[static_cast<Index>(p)];
+    if (mean <= parameters[p].bounds.lower || mean >= parameters[p].bounds.upper) {
+      names.push_back(parameters[p].name.text);
+    }
+  }
+  return names.empty() ? "a nuisance parameter" : listNames(names);
+}
+
+/// Names and, of the first, the reduction.
+std::string explainUninformative(const Estimate& estimate, const std::vector<ParameterSpec>& parameters) {
+  constexpr double kUninformative = 0.9, kPercent = 100.0;  // of the standard deviation of the bounds
+  std::string text;
+  for (std::size_t p = 0; p < parameters.size() && estimate.isGiven(); ++p) {
+    const Bounds& bounds = parameters[p].bounds;
+    const double left =
+        estimate.stddev[static_cast<Index>(p)] / (kUniformStddev * (bounds.upper - bounds.lower));
+    if (left > kUninformative) {
+      text += explainNotice(Notice::kUninformative, parameters[p].name.text,
+                            fmt::format("{:.0f} %", kPercent * std::max(0.0, 1.0 - left)));
+    }
+  }
+  return text;
+}
+
+/// "y(0.1 s)", "y between 0.1 s and 0.4 s", "y(0.1 s) to theta(0.2 s)".
+std::string describeStretch(const std::string& first, const std::string& last) {
+  const std::size_t open = first.find('(');
+  if (first == last) {
+    return first;
+  }
+  if (open == std::string::npos || last.compare(0, open + 1, first, 0, open + 1) != 0) {
+    return first + " to " + last;
+  }
+  const auto take = [open](const std::string& name) { return name.substr(open + 1, name.size() - open - 2); };
+  return first.substr(0, open) + " between " + take(first) + " and " + take(last);
+}
+
+/// "p = 0.61", or "p < 0.002" where simulated measurements can tell no more.
+std::string describePValue(const Trust& trust) {
+  return trust.p_value <= trust.smallest_p_value ? fmt::format("p < {:.2g}", trust.smallest_p_value)
+                                                 : fmt::format("p = {:.2g}", trust.p_value);
+}
+
+/// Where the simulator's best point leaves more than noise, or how much.
+std::string describeResidual(const SimulatorFit& fit, const std::vector<FeatureInfo>& features) {
+  const ResidualTest& test = fit.test;
+  if (test.largest_p <= std::min(test.chi_square_p, test.whiteness_p)) {
+    return fmt::format("{} is {:.3g} noise sd off, perhaps a spike",
+                       features[static_cast<std::size_t>(test.largest)].name,
+                       std::abs(fit.residual[test.largest]));
+  }
+  if (test.whiteness_p < test.chi_square_p) {
+    return "the residuals of neighbouring samples agree more than the stated noise allows: it is coloured, "
+           "or "
+           "the model lacks something small";
+  }
+  return fmt::format("chi-square is {:.2g} times what the stated noise leaves", fit.chi_square / fit.degrees);
+}
+
+std::string explainMismatch(const InferredMeasurement& inferred, const std::vector<FeatureInfo>& features) {
+  if (!inferred.fault.empty()) {
+    return explainBriefly(Notice::kModelMismatch, inferred.fault + " (this explains 99 % of the misfit)");
+  }
+  return explainNotice(Notice::kModelMismatch, inferred.trust
+                                                   ? describeAnomaly(*inferred.trust, features)
+                                                   : describeResidual(*inferred.posterior->fit, features));
+}
+
+/// The samples that are left out, the first of them by name.
+std::string explainOutliers(const std::vector<std::string>& outliers) {
+  constexpr std::size_t kShown = 8;
+  const std::size_t shown = std::min(kShown, outliers.size());
+  return explainNotice(
+      Notice::kOutliers, outliers.size(),
+      fmt::format("{}{}", fmt::join(outliers.begin(), outliers.begin() + static_cast<Index>(shown), ", "),
+                  outliers.size() > kShown ? " ..." : ""));
+}
+
+/// Of each output whose noise is coloured, or has an offset.
+std::string explainNoise(const std::vector<NoiseReport>& noise, bool offsets) {
+  constexpr int kDigits = 3;
+  std::string text;
+  for (const NoiseReport& report : noise) {
+    const FoundNoise& found = report.found;
+    const std::string unit = report.unit.empty() ? "" : " " + report.unit;
+    if (offsets && found.has_offset) {
+      text += explainNotice(Notice::kSensorOffset, report.output, toShortText(found.offset, kDigits) + unit,
+                            toShortText(found.offset_stddev, kDigits) + unit);
+    }
+    if (!offsets && found.autoregression.size() > 0) {
+      text += explainNotice(
+          Notice::kNoiseColoured, report.output,
+          calcAutocorrelation(std::vector<double>(found.autoregression.begin(), found.autoregression.end()),
+                              1)[1]);
+    }
+  }
+  return text;
+}
+
+/// "" of those that are explained with the numbers they concern: makeInferenceTable().
+std::string explainStatus(const std::string& status, const InferredMeasurement& inferred,
+                          const Estimate& estimate, const std::vector<ParameterSpec>& parameters,
+                          const std::vector<FeatureInfo>& features) {
+  const auto is = [&](Notice notice) { return status == getNotice(notice).name; };
+  if (is(Notice::kModelMismatch)) {
+    return explainMismatch(inferred, features);
+  }
+  if (is(Notice::kOutsideTraining)) {
+    return explainNotice(Notice::kOutsideTraining, inferred.trust->distance);
+  }
+  if (is(Notice::kAtBounds)) {
+    return explainNotice(Notice::kAtBounds, listBeyondBounds(estimate, parameters));
+  }
+  if (is(Notice::kUninformative)) {
+    return explainUninformative(estimate, parameters);
+  }
+  if (is(Notice::kOutliers)) {
+    return explainOutliers(inferred.posterior->fit->outliers);
+  }
+  for (const Notice notice : {Notice::kNoiseLarger, Notice::kNoiseSmaller}) {
+    if (is(notice)) {
+      return explainNotice(notice, inferred.posterior->fit->getNoiseFactor());
+    }
+  }
+  if (is(Notice::kNoiseColoured) || is(Notice::kSensorOffset)) {
+    return explainNoise(inferred.posterior->fit->noise, is(Notice::kSensorOffset));
+  }
+  if (is(Notice::kUncalibrated)) {
+    return explainNotice(Notice::kUncalibrated);
+  }
+  return is(Notice::kNotSimulated) ? explainNotice(Notice::kNotSimulated) : "";
+}
+
+/// The statuses with the numbers that they follow from.
+std::string describeJudgement(const InferredMeasurement& inferred, const std::string& statuses) {
+  if (inferred.trust) {
+    const Trust& trust = *inferred.trust;
+    return fmt::format("{} ({}, chi-square {:.1f} of {} residuals)", statuses, describePValue(trust),
+                       trust.chi_square, trust.residuals);
+  }
+  if (!inferred.posterior || !inferred.posterior->fit) {
+    return statuses + (statuses.empty() ? "" : "; ") + "not judged (the run has no trust model)";
+  }
+  const SimulatorFit& fit = *inferred.posterior->fit;
+  return fit.isSimulated() ? fmt::format("{} (p = {:.2g}, chi-square {:.4g} of {:.4g} degrees of freedom)",
+                                         statuses, fit.test.calcPValue(), fit.chi_square, fit.degrees)
+                           : statuses;
+}
+
+}  // namespace
+
+std::string describeTrust(const InferredMeasurement& inferred, const std::vector<ParameterSpec>& parameters,
+                          const std::vector<FeatureInfo>& features) {
+  const Estimate estimate = selectEstimate(inferred);
+  std::string text =
+      inferred.source + ": " + describeJudgement(inferred, joinStatuses(estimate.statuses, ", ")) + "\n";
+  for (const std::string& status : estimate.statuses) {
+    text += explainStatus(status, inferred, estimate, parameters, features);
+  }
+  return text;
+}
+
+std::string describeAnomaly(const Trust& trust, const std::vector<FeatureInfo>& features) {
+  const Anomaly& anomaly = trust.anomaly;
+  if (anomaly.first + anomaly.count > static_cast<Index>(features.size())) {
+    return "";
+  }
+  const std::string& first = features[static_cast<std::size_t>(anomaly.first)].name;
+  const std::string& last = features[static_cast<std::size_t>(anomaly.first + anomaly.count - 1)].name;
+  return "the largest misfit is in " + describeStretch(first, last);
+}
+
+std::string describeMapLimit(const InferredMeasurement& inferred,
+                             const std::vector<ParameterSpec>& parameters) {
+  if (!isEstimatorLimited(inferred)) {
+    return "";
+  }
+  const bool misfits = inferred.trust && inferred.trust->statuses.front() == TrustStatus::kModelMismatch;
+  if (misfits) {
+    return "";  // no standard deviation means anything then
+  }
+  const Eigen::VectorXd ratio = inferred.by_estimator.calcRatioToLimit();
+  std::vector<std::string> far;
+  for (Index p = 0; p < ratio.size(); ++p) {
+    if (ratio[p] > kEstimatorLimitedRatio) {
+      far.push_back(
+          fmt::format("{} is {:.2g} times", parameters[static_cast<std::size_t>(p)].name.text, ratio[p]));
+    }
+  }
+  if (!far.empty()) {
+    return inferred.refined ? explainBriefly(Notice::kEstimatorLimited, listNames(far))
+                            : explainNotice(Notice::kEstimatorLimited, listNames(far));
+  }
+  return fmt::format(
+      "  estimator_limited: the error estimate of the fast model is unreliable "
+      "(cross-validation)\n{}",
+      inferred.refined ? "" : "    Refine the estimate: --refine.\n");
+}
+
+}  // namespace twinmap

@@ -1,0 +1,29 @@
+#include "framework/experiment/expression/jumps.hpp"
+
+#include <gtest/gtest.h>
+
+namespace twinmap {
+namespace {
+
+std::string describe(const char* force) {
+  return describeJump(Expression{force, {}});
+}
+
+TEST(Jumps, AreNamedWithTheirSmoothForm) {
+  EXPECT_EQ(describe("F - mu * sign(x_dot)"),
+            "sign(x_dot) jumps: write tanh((x_dot) / eps), eps a small value of x_dot");
+  EXPECT_EQ(
+      describe("-c * v * abs (v - (1 + 2) * w)"),
+      "abs(v - (1 + 2) * w) has a kink: write sqrt((v - (1 + 2) * w)^2 + eps^2), eps a small value of v - "
+      "(1 + 2) * w");
+  EXPECT_EQ(describe("floor(x / pitch)"), "floor(x / pitch) jumps: write the force without it");
+}
+
+TEST(Jumps, AreNotSeenInNamesOrSmoothForces) {
+  EXPECT_EQ(describe("F - mu * tanh(x_dot / v0)"), "");
+  EXPECT_EQ(describe("design(3) + signal * x + absolute"), "");
+  EXPECT_EQ(describe("sign(x"), "");
+}
+
+}  // namespace
+}  // namespace twinmap

@@ -1,0 +1,73 @@
+// A linear model y = k sin(t), theta = d cos(t), of which the misfit of a response is a closed form.
+#include "framework/inference/measurement/measurement_faults.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr Index kTimes = 100;
+constexpr double kNoise = 1e-3;
+
+ResponseLayout makeLayout() {
+  return {{"y", "theta"}, {"m", "rad"}, VectorXd::LinSpaced(kTimes, 0.0, 6.0), 0};
+}
+
+VectorXd makeResponse(double k, double d) {
+  const VectorXd t = makeLayout().times;
+  VectorXd response(2 * kTimes);
+  response << k * t.array().sin().matrix(), d * t.array().cos().matrix();
+  return response;
+}
+
+/// Chi-square beside the best k and d within [0.5, 2]; noise is left out, its chi-square is that of one each.
+double calcMisfit(const VectorXd& response) {
+  double chi_square = static_cast<double>(response.size());
+  const VectorXd shape = makeResponse(1.0, 1.0);
+  for (const Index first : {Index{0}, kTimes}) {
+    const auto measured = response.segment(first, kTimes), mode = shape.segment(first, kTimes);
+    const double best = std::clamp(measured.dot(mode) / mode.squaredNorm(), 0.5, 2.0);
+    chi_square += (measured - best * mode).squaredNorm() / (kNoise * kNoise);
+  }
+  return chi_square;
+}
+
+std::string explain(const VectorXd& response) {
+  return explainByFault(response, makeLayout(), calcMisfit(response), response.size(), calcMisfit);
+}
+
+TEST(MeasurementFaults, AUnitIsNamedWithItsOutput) {
+  VectorXd response = makeResponse(1.0, 1.2);
+  response.tail(kTimes) *= 57.29577951308232;
+  EXPECT_EQ(explain(response),
+            "theta is 57.3 times too large, as deg in the place of rad: divide it by 57.3");
+  response = makeResponse(1.0, 1.2);
+  response.head(kTimes) *= 1000.0;
+  EXPECT_EQ(explain(response), "y is 1000 times too large, as mm in the place of m: divide it by 1000");
+}
+
+TEST(MeasurementFaults, ASignAnOffsetAndSwappedColumnsAreNamed) {
+  VectorXd response = makeResponse(1.0, 1.2);
+  response.head(kTimes) *= -1.0;
+  EXPECT_EQ(explain(response), "y is of the other sign: turn its sign");
+  response = makeResponse(1.0, 1.2);
+  response.tail(kTimes).array() += 0.25;
+  EXPECT_EQ(explain(response), "theta has an offset of 0.25: subtract it");
+  response << makeResponse(1.0, 1.2).tail(kTimes), makeResponse(1.0, 1.2).head(kTimes);
+  EXPECT_EQ(explain(response), "the columns of y and theta are swapped");
+}
+
+TEST(MeasurementFaults, NothingIsSaidOfAMisfitThatNoneOfThemExplains) {
+  VectorXd response = makeResponse(1.0, 1.2);
+  response += 0.3 * makeLayout().times.array().square().sin().matrix().replicate(2, 1);
+  EXPECT_EQ(explain(response), "");
+  EXPECT_EQ(explain(makeResponse(1.0, 1.2)), "");
+}
+
+}  // namespace
+}  // namespace twinmap
