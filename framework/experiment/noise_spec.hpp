@@ -9,9 +9,19 @@
 
 namespace twinmap {
 
+/// The size of an output's noise, in the output's unit: a number, or unknown.
+struct NoiseStddev {
+  NoiseStddev(double given = 0.0) : value(given) {}  // NOLINT(google-explicit-constructor)
+  operator double() const { return value; }          // NOLINT(google-explicit-constructor)
+
+  double value;          ///< 1 where it is unknown: a unit in which residuals are counted
+  bool unknown = false;  ///< inferred with the parameters, and integrated out
+  SourceLocation where{};
+};
+
 struct OutputNoiseSpec {
-  Name name;            ///< an output
-  double stddev = 0.0;  ///< in the output's unit
+  Name name;  ///< an output
+  NoiseStddev stddev;
 };
 
 template <class Fields>
@@ -64,7 +74,8 @@ void describe(Fields& f, NoiseSpec& s) {
   f.optional("scale", s.scale, "multiplies every stddev", kNonNegative);
   f.optional("replicates", s.replicates,
              "noise draws per training simulation (default: 4, fewer for more than 750 samples)", kThousand);
-  f.optionalMap("stddev", s.stddev, "standard deviation of each output's noise, in the output's unit");
+  f.optionalMap("stddev", s.stddev,
+                "standard deviation of each output's noise, in the output's unit; unknown: inferred");
   f.optionalMap("correlation", s.correlation, "of outputs whose noise is not white");
   f.optional("modes", s.modes, "of natural frequencies and damping ratios, where modes are features");
 }

@@ -8,17 +8,6 @@
 
 namespace twinmap {
 
-namespace {
-
-/// Whether nothing speaks against the stated noise: neither a test of what is too much, nor a sum of squares
-/// that is too small, in one of a thousand good measurements.
-bool isPlausible(const SimulatorFit& fit) {
-  constexpr double kTooSmallLevel = 1e-3;
-  return fit.test.calcPValue() >= kMismatchLevel && 1.0 - fit.test.chi_square_p >= kTooSmallLevel;
-}
-
-}  // namespace
-
 DirectInference::DirectInference(const MeasurementReader& reader, int draws)
     : reader_(reader),
       simulator_(reader.getExperiment(), reader.getLayout(), SimulatorRefiner::Model::kToBeChecked),
@@ -30,7 +19,7 @@ DirectInference::DirectInference(const MeasurementReader& reader, int draws)
 InferredMeasurement DirectInference::infer(const Table& table, std::optional<double> start,
                                            const Eigen::VectorXd& known) {
   const AvailableFeatures found = reader_.readAvailableFeatures(table, start);
-  InferredMeasurement inferred = infer(found.features, known);
+  InferredMeasurement inferred = infer(found.features, known, found.clipped);
   inferred.source = table.source;
   inferred.start = reader_.getStart(start);
   inferred.left_out = found.remarks;
@@ -53,27 +42,15 @@ std::string DirectInference::findFault(const AvailableFeatures& found, const Eig
   return explainByFault(found.response, reader_.getLayout(), fit.chi_square, fit.residual.size(), calcMisfit);
 }
 
-PosteriorEstimate DirectInference::sample(const Eigen::VectorXd& features,
-                                          const Eigen::VectorXd& known) const {
-  PosteriorEstimate plain = simulator_.samplePosterior(features, known, {}, options_);
-  if (!plain.fit->isSimulated() || isPlausible(*plain.fit)) {
-    return plain;
-  }
-  for (const LossKind loss : {LossKind::kOutliers, LossKind::kUnknownNoise}) {
-    PosteriorEstimate other = simulator_.samplePosterior(features, known, {}, options_, loss);
-    constexpr double kMaxOutliers = 0.05;  // of the samples: more are no longer exceptions
-    const auto outliers = static_cast<double>(other.fit->outliers.size());
-    if (other.isReliable() && isPlausible(*other.fit) &&
-        outliers <= kMaxOutliers * static_cast<double>(plain.fit->residual.size())) {
-      return other;
-    }
-  }
-  return plain;
+InferredMeasurement DirectInference::infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known) {
+  return infer(features, known, std::vector<ClippedSample>{});
 }
 
-InferredMeasurement DirectInference::infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known) {
+InferredMeasurement DirectInference::infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
+                                           const std::vector<ClippedSample>& clipped) const {
   InferredMeasurement inferred;
-  inferred.posterior = sample(features, known);
+  inferred.posterior =
+      simulator_.samplePosterior(features, known, simulator_.describeNoise(clipped), {}, options_);
   inferred.ridges = simulator_.findRidges(inferred.posterior->estimate.draws, known);
   inferred.quantities = quantities_;
   return inferred;

@@ -24,9 +24,8 @@ class DirectInference final : public MeasurementInference {
   InferredMeasurement infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known) override;
 
  private:
-  /// As noise of the stated size explains the measurement; where it does not, but a few samples left out do,
-  /// or noise of another size, then so.
-  PosteriorEstimate sample(const Eigen::VectorXd& features, const Eigen::VectorXd& known) const;
+  InferredMeasurement infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
+                            const std::vector<ClippedSample>& clipped) const;
 
   /// The simple fault of the recording that explains a gross misfit, or "".
   std::string findFault(const AvailableFeatures& found, const Eigen::VectorXd& known,

@@ -213,8 +213,10 @@ const JointInferrer::Member& JointInferrer::find(const std::string& trial) const
 
 MeasuredTrial JointInferrer::makeTrial(const Recording& recording) const {
   const Member& member = find(recording.trial);
-  return member.simulator->makeTrial(
-      member.reader->readAvailableFeatures(*recording.table, recording.start).features, member.known);
+  const AvailableFeatures found = member.reader->readAvailableFeatures(*recording.table, recording.start);
+  MeasuredTrial trial = member.simulator->makeTrial(found.features, member.known);
+  trial.noise = member.simulator->describeNoise(found.clipped);
+  return trial;
 }
 
 RecordingInference JointInferrer::inferAlone(const Recording& recording) const {

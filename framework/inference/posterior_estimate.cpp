@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/estimation/posterior/noise_candidates.hpp"
 #include "framework/estimation/refined/acceptance.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 
@@ -68,28 +69,30 @@ struct TestedResidual {
 /// Without the outliers, which are named.
 TestedResidual takeInliers(const SimulatorPosterior& posterior, const std::vector<FeatureInfo>& infos,
                            std::vector<std::string>& outliers) {
-  TestedResidual tested{{}, {}, posterior.degrees};
+  const VectorXd& residual = posterior.standardized.residual;
+  TestedResidual tested{residual, infos, posterior.standardized.degrees};
+  const bool has_weights = posterior.residual_weights.size() == residual.size();
+  if (!residual.hasNaN() && !(has_weights && posterior.residual_weights.minCoeff() < kOutlierWeight)) {
+    return tested;
+  }
   std::vector<Index> inliers;
-  for (Index i = 0; i < posterior.residual.size(); ++i) {
+  tested.infos.clear();
+  for (Index i = 0; i < residual.size(); ++i) {
     const FeatureInfo& info = infos[static_cast<std::size_t>(i)];
-    if (posterior.residual_weights[i] < kOutlierWeight) {
-      outliers.push_back(fmt::format("{} ({:.3g} sd)", info.name, std::abs(posterior.residual[i])));
+    if (std::isnan(residual[i])) {
+      continue;  // beyond what its sensor shows, as it should be
+    }
+    if (has_weights && posterior.residual_weights[i] < kOutlierWeight) {
+      outliers.push_back(fmt::format("{} ({:.3g} sd)", info.name, std::abs(residual[i])));
       tested.degrees -= 1.0;
     } else {
       inliers.push_back(i);
       tested.infos.push_back(info);
     }
   }
-  tested.residual = posterior.residual(inliers);
+  tested.residual = residual(inliers);
   tested.degrees = std::max(tested.degrees, 1.0);
   return tested;
-}
-
-/// As many standard deviations of the noise that was found, with as many degrees of freedom as it has.
-TestedResidual scaleToNoise(const SimulatorPosterior& posterior, const std::vector<FeatureInfo>& infos,
-                            double& noise_factor) {
-  noise_factor = std::sqrt(posterior.residual.squaredNorm() / posterior.degrees);
-  return {posterior.residual / noise_factor, infos, posterior.degrees};
 }
 
 SimulatorFit makeFit(const SimulatorPosterior& posterior, const std::vector<FeatureInfo>& infos) {
@@ -98,27 +101,48 @@ SimulatorFit makeFit(const SimulatorPosterior& posterior, const std::vector<Feat
   fit.found_best = posterior.found_best;
   fit.simulations = posterior.simulations;
   if (posterior.degrees > 0.0) {
-    fit.chi_square = posterior.chi_square;
-    fit.degrees = posterior.degrees;
-    fit.explained = posterior.isExplained();
-    fit.residual = posterior.residual;
-    const TestedResidual tested = posterior.loss == LossKind::kOutliers
-                                      ? takeInliers(posterior, infos, fit.outliers)
-                                  : posterior.loss == LossKind::kUnknownNoise
-                                      ? scaleToNoise(posterior, infos, fit.noise_factor)
-                                      : TestedResidual{posterior.residual, infos, posterior.degrees};
-    if (posterior.loss != LossKind::kPlain) {
-      fit.residual = tested.residual;
-      fit.chi_square = tested.residual.squaredNorm();
-      fit.degrees = tested.degrees;
-      fit.explained = fit.chi_square < calcChiSquareLimit(fit.degrees);
-    }
+    const TestedResidual tested = takeInliers(posterior, infos, fit.outliers);
+    fit.best = posterior.best;
+    fit.residual = tested.residual;
+    fit.chi_square = tested.residual.squaredNorm();
+    fit.degrees = tested.degrees;
+    fit.explained = fit.chi_square < calcChiSquareLimit(fit.degrees);
     fit.test = testResidual(tested.residual, tested.degrees, tested.infos);
+    for (const FoundNoise& found : posterior.standardized.noise) {
+      fit.noise.push_back({{}, {}, 0.0, 0.0, found});
+    }
   }
   return fit;
 }
 
 }  // namespace
+
+bool NoiseReport::differs() const {
+  constexpr double kSignificant = 3.3;  // once in a thousand
+  return isStated() && found.size_was_inferred && std::abs(calcSizeDeviation(found)) > kSignificant;
+}
+
+double SimulatorFit::getNoiseFactor() const {
+  double factor = 1.0, largest = 0.0;
+  for (const NoiseReport& report : noise) {
+    if (const double deviation = std::abs(calcSizeDeviation(report.found));
+        report.differs() && deviation > largest) {
+      largest = deviation;
+      factor = report.found.factor;
+    }
+  }
+  return factor;
+}
+
+bool SimulatorFit::isColoured() const {
+  return std::any_of(noise.begin(), noise.end(),
+                     [](const NoiseReport& report) { return report.found.autoregression.size() > 0; });
+}
+
+bool SimulatorFit::hasOffset() const {
+  return std::any_of(noise.begin(), noise.end(),
+                     [](const NoiseReport& report) { return report.found.has_offset; });
+}
 
 const char* toString(PosteriorSource source) {
   return source == PosteriorSource::kSimulator ? "simulator" : "surrogate";

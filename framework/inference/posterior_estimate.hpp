@@ -19,6 +19,18 @@ enum class PosteriorSource { kSurrogate, kSimulator };
 /// "surrogate", "simulator".
 const char* toString(PosteriorSource source);
 
+/// What was found of an output's noise, by name.
+struct NoiseReport {
+  std::string output, unit;
+  double stated = 0.0;  ///< standard deviation, in the output's unit; 0 where it is stated to be unknown
+  double stddev = 0.0;  ///< found
+  FoundNoise found;
+
+  bool isStated() const { return stated > 0.0; }
+  /// Whether it has significantly another size than stated.
+  bool differs() const;
+};
+
 /// How well the simulator explains a measurement at its best, and what it took to find that.
 struct SimulatorFit {
   double chi_square = 0.0, degrees = 0.0;  ///< 0 degrees of freedom where nothing could be simulated
@@ -26,11 +38,16 @@ struct SimulatorFit {
   Eigen::VectorXd residual;                ///< whitened
   ResidualTest test;
   std::vector<std::string>
-      outliers{};             ///< features that are not noise and count for nothing, with their size
-  double noise_factor = 1.0;  ///< of the noise found over that stated, where it was inferred
+      outliers{};                    ///< features that are not noise and count for nothing, with their size
+  std::vector<NoiseReport> noise{};  ///< of the outputs of which something was inferred
+  Eigen::VectorXd best{};            ///< the unknown parameters (u)
   int searches = 0, found_best = 0, simulations = 0;
 
   bool isSimulated() const { return degrees > 0.0; }
+  /// Of the noise over that stated, of the output where it differs most; 1 where it does nowhere.
+  double getNoiseFactor() const;
+  bool isColoured() const;
+  bool hasOffset() const;
 };
 
 /// A posterior by draws, whoever drew them, as an estimate of the p parameters that are reported.
@@ -51,9 +68,9 @@ struct PosteriorEstimate {
 /// unknown: all u parameters that were drawn.
 PosteriorEstimate makePosteriorEstimate(const SurrogatePosterior& posterior,
                                         const std::vector<ParameterSpec>& unknown);
-/// p: how many of them are reported, the first ones; infos: of the residuals, which are tested as their
-/// weights say (SimulatorPosterior::residual_weights): outliers not at all, noise of unknown size by its
-/// shape alone.
+/// p: how many of them are reported, the first ones; infos: of the residuals, which are tested as they should
+/// be independent and of unit variance (SimulatorPosterior::standardized): outliers not at all, noise of
+/// unknown size by its shape alone. The reports of the noise have no names yet.
 PosteriorEstimate makePosteriorEstimate(const SimulatorPosterior& posterior,
                                         const std::vector<ParameterSpec>& unknown, Eigen::Index p,
                                         const std::vector<FeatureInfo>& infos);

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
@@ -9,6 +10,7 @@
 #include "framework/base/text/source_location.hpp"
 #include "framework/data/features/experiment_features.hpp"
 #include "framework/data/noise/noise.hpp"
+#include "framework/estimation/posterior/noise_candidates.hpp"
 #include "framework/estimation/ridges/simulated_ridges.hpp"
 #include "framework/estimation/trained/refinement_starts.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
@@ -36,6 +38,35 @@ std::vector<Index> chooseDraws(const VectorXd& weights) {
   return chosen;
 }
 
+/// Whether nothing speaks against the noise as it is supposed: neither a test of what is too much, nor a sum
+/// of squares that is too small, in one of a thousand good measurements.
+bool isPlausible(const SimulatorFit& fit) {
+  constexpr double kTooSmallLevel = 1e-3;
+  return fit.test.calcPValue() >= kMismatchLevel && 1.0 - fit.test.chi_square_p >= kTooSmallLevel;
+}
+
+/// Whether a fit under another hypothesis of the noise explains a measurement.
+bool explains(const SimulatorFit& fit, Index residuals) {
+  constexpr double kMaxOutliers = 0.05;  // of the samples
+  const bool is_physics = std::any_of(fit.noise.begin(), fit.noise.end(), [](const NoiseReport& report) {
+    return report.isStated() && report.found.autoregression.size() > 0 && isLargerThanStated(report.found);
+  });
+  return isPlausible(fit) && !is_physics &&
+         static_cast<double>(fit.outliers.size()) <= kMaxOutliers * static_cast<double>(residuals);
+}
+
+NoiseHypothesis findUnknownNoise(const NoiseSpec& noise, const ResponseLayout& layout) {
+  NoiseHypothesis hypothesis;
+  for (const OutputNoiseSpec& spec : noise.stddev) {
+    const auto& names = layout.output_names;
+    const auto found = std::find(names.begin(), names.end(), spec.name.text);
+    if (spec.stddev.unknown && found != names.end()) {
+      hypothesis.outputs.push_back({static_cast<int>(found - names.begin()), std::nullopt});
+    }
+  }
+  return hypothesis;
+}
+
 }  // namespace
 
 SimulatorPosteriorOptions makePosteriorOptions(const ExperimentSpec& experiment, int draws) {
@@ -52,10 +83,13 @@ SimulatorPosteriorOptions makePosteriorOptions(const ExperimentSpec& experiment,
 SimulatorRefiner::SimulatorRefiner(const ExperimentSpec& experiment, const ResponseLayout& layout,
                                    Model model)
     : model_(experiment.model),
+      output_noise_(experiment.noise.stddev),
+      noise_scale_(experiment.noise.scale),
       extractor_(makeExtractor(experiment, layout)),
       simulator_(model == Model::kTrusted ? makeTrustedSimulator(experiment.model, layout.times, layout.modes)
                                           : makeSimulator(experiment.model, layout.times, layout.modes)),
       noise_(extractor_, ResponseNoise(experiment.noise, layout), experiment.seed),
+      stated_noise_(findUnknownNoise(experiment.noise, layout)),
       wanted_(shouldRefine(experiment.refine, *simulator_, noise_)),
       own_(simulator_->clone()) {}
 
@@ -119,13 +153,12 @@ bool SimulatorRefiner::samplesFast() const {
   return shouldRefine(RefineMode::kAutomatic, *simulator_, noise_);
 }
 
-PosteriorEstimate SimulatorRefiner::samplePosterior(const VectorXd& features, const VectorXd& known,
-                                                    const MatrixXd& given,
-                                                    const SimulatorPosteriorOptions& options,
-                                                    LossKind loss) const {
+PosteriorEstimate SimulatorRefiner::sampleUnder(const NoiseHypothesis& noise, const VectorXd& features,
+                                                const VectorXd& known, const MatrixXd& given,
+                                                const SimulatorPosteriorOptions& options) const {
   const auto u = static_cast<Index>(getUnknown().size());
   PosteriorProblem problem{getUnknown(), model_.priors, {makeTrial(features, known)}, u};
-  problem.trials.front().loss = loss;
+  problem.trials.front().noise = noise;
   return makeEstimate(problem.trials.front(), twinmap::samplePosterior(problem, given, options));
 }
 
@@ -134,6 +167,28 @@ double SimulatorRefiner::findLeastChiSquare(const VectorXd& features, const Vect
   return twinmap::findLeastChiSquare(
       {getUnknown(), model_.priors, {makeTrial(features, known)}, static_cast<Index>(getUnknown().size())},
       kSearches);
+}
+
+PosteriorEstimate SimulatorRefiner::samplePosterior(const VectorXd& features, const VectorXd& known,
+                                                    const NoiseHypothesis& stated, const MatrixXd& given,
+                                                    const SimulatorPosteriorOptions& options) const {
+  const bool is_known = stated.outputs.empty();
+  PosteriorEstimate sampled =
+      sampleUnder(is_known ? stated : guessSizes(stated, *makeTrial(features, known).model, features),
+                  features, known, given, options);
+  if (!is_known && sampled.fit->isSimulated()) {
+    sampled = sampleUnder(stated, features, known, sampled.fit->best, options);
+  }
+  if (!sampled.fit->isSimulated() || isPlausible(*sampled.fit)) {
+    return sampled;
+  }
+  for (const NoiseHypothesis& noise : listNoise(stated, features, known, sampled.fit->best)) {
+    PosteriorEstimate other = sampleUnder(noise, features, known, sampled.fit->best, options);
+    if (other.isReliable() && explains(*other.fit, sampled.fit->residual.size())) {
+      return other;
+    }
+  }
+  return sampled;
 }
 
 PosteriorEstimate SimulatorRefiner::makeEstimate(const MeasuredTrial& trial,
@@ -145,9 +200,52 @@ PosteriorEstimate SimulatorRefiner::makeEstimate(const MeasuredTrial& trial,
       infos.push_back(trial.own_model->getExtractor().getInfos()[static_cast<std::size_t>(i)]);
     }
   } else if (posterior.degrees > 0.0) {
-    posterior.residual = getModel().placeResidual(posterior.residual);
+    posterior.standardized.residual = getModel().placeResidual(posterior.standardized.residual);
   }
-  return makePosteriorEstimate(posterior, getUnknown(), static_cast<Index>(model_.parameters.size()), infos);
+  PosteriorEstimate made =
+      makePosteriorEstimate(posterior, getUnknown(), static_cast<Index>(model_.parameters.size()), infos);
+  nameNoise(*made.fit);
+  return made;
+}
+
+void SimulatorRefiner::nameNoise(SimulatorFit& fit) const {
+  const ResponseLayout& layout = simulator_->getLayout();
+  for (NoiseReport& report : fit.noise) {
+    const auto output = static_cast<std::size_t>(report.found.output);
+    report.output = layout.output_names[output];
+    report.unit = layout.output_units[output];
+    const auto stated =
+        std::find_if(output_noise_.begin(), output_noise_.end(),
+                     [&](const OutputNoiseSpec& spec) { return spec.name.text == report.output; });
+    const double stddev = noise_scale_ * stated->stddev;
+    report.stated = stated->stddev.unknown ? 0.0 : stddev;
+    report.stddev = report.found.factor * stddev;
+  }
+}
+
+NoiseHypothesis SimulatorRefiner::describeNoise(const std::vector<ClippedSample>& clipped) const {
+  NoiseHypothesis noise = stated_noise_;
+  for (const ClippedSample& sample : clipped) {
+    noise.censored.push_back({sample.row, sample.side});
+  }
+  std::sort(noise.censored.begin(), noise.censored.end(),
+            [](const CensoredFeature& a, const CensoredFeature& b) { return a.feature < b.feature; });
+  return noise;
+}
+
+std::vector<NoiseHypothesis> SimulatorRefiner::listNoise(const NoiseHypothesis& stated,
+                                                         const VectorXd& features, const VectorXd& known,
+                                                         const VectorXd& best) const {
+  const MeasuredTrial trial = makeTrial(features, known);
+  const SearchBox box(getUnknown(), {0, static_cast<Index>(getUnknown().size())}, trial.held);
+  Misfit misfit(*own_, *trial.model, box, features);
+  VectorXd point = trial.held;
+  point.head(best.size()) = best;
+  const LocalMisfit local = misfit.linearize(box.normalize(point));
+  if (!local.status.ok) {
+    return {};
+  }
+  return listNoiseHypotheses(stated, {trial.model, local.residual, local.jacobian});
 }
 
 std::vector<Ridge> SimulatorRefiner::findRidges(const BoundedDraws& draws, const VectorXd& known) const {
@@ -168,6 +266,7 @@ MeasuredTrial SimulatorRefiner::makeTrial(const VectorXd& features, const Vector
   std::vector<Index> all(unknown.size());
   std::iota(all.begin(), all.end(), Index{0});
   MeasuredTrial trial{own_.get(), &getModel(), features, held, std::move(all)};
+  trial.noise = stated_noise_;
   if (features.hasNaN()) {
     const VectorXd fitted = getModel().convert(features);
     std::vector<Index> available;
@@ -211,7 +310,7 @@ void SimulatorRefiner::sampleAndJudge(const VectorXd& features, const VectorXd& 
                                       const TrustModel* trust, const SimulatorPosteriorOptions& options,
                                       InferredMeasurement& inferred) const {
   inferred.posterior =
-      samplePosterior(features, known, listStarts(inferred, features, known, trust), options);
+      sampleUnder(describeNoise({}), features, known, listStarts(inferred, features, known, trust), options);
   const SimulatorFit& fit = *inferred.posterior->fit;
   if (trust != nullptr && fit.isSimulated()) {
     const Estimate& estimate = inferred.posterior->estimate;

@@ -46,6 +46,10 @@ class SimulatorRefiner {
   /// std::invalid_argument for a feature without noise.
   MeasuredTrial makeTrial(const Eigen::VectorXd& features, const Eigen::VectorXd& known) const;
 
+  /// What the experiment and a measurement say of its noise: sizes that are unknown, features that a sensor's
+  /// range cut off (their numbers are those of the experiment's features).
+  NoiseHypothesis describeNoise(const std::vector<ClippedSample>& clipped) const;
+
   /// The ridges along which draws of a posterior lie; none where derivatives are not exact. Cost: 32
   /// simulations with derivatives.
   std::vector<Ridge> findRidges(const BoundedDraws& draws, const Eigen::VectorXd& known) const;
@@ -54,18 +58,27 @@ class SimulatorRefiner {
   /// there.
   PosteriorEstimate makeEstimate(const MeasuredTrial& trial, SimulatorPosterior posterior) const;
 
-  /// The posterior of all unknown parameters (samplePosterior). given: points to search from as well (u x n).
-  /// known: q. Throws std::invalid_argument for a feature without noise.
-  PosteriorEstimate samplePosterior(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
-                                    const Eigen::MatrixXd& given, const SimulatorPosteriorOptions& options,
-                                    LossKind loss = LossKind::kPlain) const;
+  /// The posterior of all unknown parameters under a hypothesis of the noise (samplePosterior). given: points
+  /// to search from as well (u x n). known: q. Throws std::invalid_argument for a feature without noise.
+  PosteriorEstimate sampleUnder(const NoiseHypothesis& noise, const Eigen::VectorXd& features,
+                                const Eigen::VectorXd& known, const Eigen::MatrixXd& given,
+                                const SimulatorPosteriorOptions& options) const;
 
   /// The least chi-square that 16 searches from all over the bounds find (findLeastChiSquare).
   double findLeastChiSquare(const Eigen::VectorXd& features, const Eigen::VectorXd& known) const;
 
-  /// The posterior, searched from all that is known of the measurement too: the estimator's basins, the
-  /// training simulations of the most similar features, the refined estimate; and what follows for its trust
-  /// (judgeAnew): sets both.
+  /// The same under the stated noise (describeNoise) or, where that does not explain the measurement, under
+  /// the first of other hypotheses that does (listNoiseHypotheses): a few samples left out, noise of another
+  /// size, an offset, coloured noise. What is coloured and larger than stated may as well be physics that the
+  /// model lacks, and more than one sample in twenty is no exception: then the stated one's it is. Cost: some
+  /// more posteriors where the stated noise does not explain the measurement.
+  PosteriorEstimate samplePosterior(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
+                                    const NoiseHypothesis& stated, const Eigen::MatrixXd& given,
+                                    const SimulatorPosteriorOptions& options) const;
+
+  /// Under the stated noise, searched from all that is known of the measurement too: the estimator's basins,
+  /// the training simulations of the most similar features, the refined estimate; and what follows for its
+  /// trust (judgeAnew): sets both.
   void sampleAndJudge(const Eigen::VectorXd& features, const Eigen::VectorXd& known, const TrustModel* trust,
                       const SimulatorPosteriorOptions& options, InferredMeasurement& inferred) const;
 
@@ -90,10 +103,17 @@ class SimulatorRefiner {
   Eigen::MatrixXd listStarts(const InferredMeasurement& inferred, const Eigen::VectorXd& features,
                              const Eigen::VectorXd& known, const TrustModel* trust) const;
 
+  void nameNoise(SimulatorFit& fit) const;
+  std::vector<NoiseHypothesis> listNoise(const NoiseHypothesis& stated, const Eigen::VectorXd& features,
+                                         const Eigen::VectorXd& known, const Eigen::VectorXd& best) const;
+
   const ModelSpec model_;
+  const std::vector<OutputNoiseSpec> output_noise_;
+  const double noise_scale_;
   const FeatureExtractor extractor_;
   const std::unique_ptr<Simulator> simulator_;
   const FeatureNoise noise_;  // of extractor_
+  const NoiseHypothesis stated_noise_;
   const bool wanted_;
   const std::unique_ptr<Simulator> own_;           // a clone, which simulates
   mutable std::optional<RefinementModel> shared_;  // made when first used

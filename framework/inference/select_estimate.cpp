@@ -32,6 +32,19 @@ bool isMismatch(const InferredMeasurement& inferred) {
          posterior->fit->test.calcPValue() < kMismatchLevel;
 }
 
+/// What the noise has that was not stated.
+void addNoise(const SimulatorFit& fit, Statuses& statuses) {
+  if (const double factor = fit.getNoiseFactor(); factor != 1.0) {
+    statuses.emplace_back(factor > 1.0 ? "noise_larger" : "noise_smaller");
+  }
+  if (fit.isColoured()) {
+    statuses.emplace_back("noise_coloured");
+  }
+  if (fit.hasOffset()) {
+    statuses.emplace_back("sensor_offset");
+  }
+}
+
 Statuses listOfSampled(const InferredMeasurement& inferred) {
   Statuses statuses;
   if (isMismatch(inferred)) {
@@ -40,8 +53,8 @@ Statuses listOfSampled(const InferredMeasurement& inferred) {
   if (inferred.posterior->fit && !inferred.posterior->fit->outliers.empty()) {
     statuses.emplace_back("outliers");
   }
-  if (inferred.posterior->fit && inferred.posterior->fit->noise_factor != 1.0) {
-    statuses.emplace_back(inferred.posterior->fit->noise_factor > 1.0 ? "noise_larger" : "noise_smaller");
+  if (inferred.posterior->fit) {
+    addNoise(*inferred.posterior->fit, statuses);
   }
   addStatus(inferred.posterior->shape, statuses);
   return statuses;

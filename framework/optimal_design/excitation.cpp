@@ -11,6 +11,7 @@
 #include "framework/base/text/csv.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"
+#include "framework/experiment/check/check_noise.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/points/point_set.hpp"
 #include "framework/optimal_design/design_page.hpp"
@@ -231,6 +232,7 @@ void writeAll(const fs::path& folder, const ExcitationEvaluator& evaluator, cons
 ExcitationDesign designExcitation(const YamlNode& tree, const fs::path& folder, const RunControl& control) {
   YamlNode complete = tree;
   const ExperimentSpec experiment = readExperimentWithSignals(tree);
+  requireStatedNoise(experiment);
   if (!experiment.design.excitation) {
     throw ExperimentError(experiment.name.where, "",
                           "needs the key 'design.excitation' to design an excitation");

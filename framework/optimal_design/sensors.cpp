@@ -12,6 +12,7 @@
 #include "framework/data/noise/feature_noise.hpp"
 #include "framework/data/sensitivity/feature_sensitivities.hpp"
 #include "framework/data/sensitivity/fisher_information.hpp"
+#include "framework/experiment/check/check_noise.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/points/point_set.hpp"
 #include "framework/models/make_simulator.hpp"
@@ -230,6 +231,7 @@ class SensorDesigner {
 SensorDesign designSensors(const YamlNode& tree, const std::filesystem::path& folder,
                            const RunControl& control) {
   const ExperimentSpec experiment = readExperimentWithSignals(tree);
+  requireStatedNoise(experiment);
   if (!experiment.design.sensors) {
     throw ExperimentError(experiment.name.where, "", "needs the key 'design.sensors' to choose sensors");
   }

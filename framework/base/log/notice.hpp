@@ -21,6 +21,8 @@ enum class Notice {
   kOutliers,
   kNoiseLarger,
   kNoiseSmaller,
+  kNoiseColoured,
+  kSensorOffset,
   kMultimodal,
   kTrialsDisagree,
   kUncalibrated,

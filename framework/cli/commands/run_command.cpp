@@ -9,6 +9,7 @@
 #include "framework/cli/progress_line.hpp"
 #include "framework/cli/signals.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"
+#include "framework/experiment/check/check_noise.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/results/tables.hpp"
 #include "framework/results/warnings.hpp"
@@ -116,6 +117,7 @@ double chooseMemory(const RunArguments& arguments) {
 void run(const RunArguments& arguments) {
   const YamlNode tree = loadExperimentTree(arguments.experiment.file, arguments.experiment.overrides);
   const ExperimentSpec experiment = readExperimentWithSignals(tree);
+  requireStatedNoise(experiment);
   const fs::path folder = chooseFolder(arguments, experiment);
   if (arguments.quiet) {
     showWarningsOnly();

@@ -10,6 +10,7 @@
 #include "framework/data/measurement/table.hpp"
 #include "framework/data/noise/noise.hpp"
 #include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/check/check_noise.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/tolerances/tolerances.hpp"
@@ -113,6 +114,7 @@ void simulate(const SimulateArguments& arguments) {
     throw std::runtime_error("the simulation failed: " + status.reason);
   }
   if (arguments.noise) {
+    requireStatedNoise(experiment);
     response = addNoise(response, ResponseNoise(experiment.noise, simulator.getLayout()),
                         RandomStream(experiment.seed, RandomPurpose::kSingleNoise));
   }

@@ -81,10 +81,17 @@ Samples takeSamples(const VectorXd& times, const VectorXd& values) {
   return {times(there), values(there)};
 }
 
-/// A column's value at a needed time, or NaN.
+/// What a column says at a needed time.
+struct FoundSample {
+  double value = kMissing;
+  double side = 0.0;  ///< of the range's limit where it is clipped
+};
+
+/// Finds a column's samples at needed times.
 class SampleFinder {
  public:
-  SampleFinder(const Samples& samples, double interval) : samples_(samples) {
+  SampleFinder(const Samples& samples, double interval, const std::optional<Bounds>& range)
+      : samples_(samples), range_(range) {
     constexpr double kSlack = 1.01;
     if (samples.times.size() > 1) {
       step_ = calcMedianStep(samples.times);
@@ -92,23 +99,40 @@ class SampleFinder {
     interpolates_ = samples.times.size() >= InterpolationWeights::kPoints && step_ <= kSlack * interval;
   }
 
-  double find(double t) const {
+  FoundSample find(double t) const {
     const VectorXd& times = samples_.times;
     const double tolerance = 1e-6 * step_;
     const double* begin = times.data();
     const Index next = std::lower_bound(begin, begin + times.size(), t - tolerance) - begin;
     if (next < times.size() && std::abs(times[next] - t) <= tolerance) {
-      return samples_.values[next];
+      const double value = samples_.values[next], side = findSide(range_, value);
+      return {side == 0.0 ? value : kMissing, side};
     }
     if (!interpolates_ || next == 0 || next == times.size()) {
-      return kMissing;
+      return {};
     }
     constexpr int kPoints = InterpolationWeights::kPoints;
     const Index first = std::clamp<Index>(next - kPoints / 2, 0, times.size() - kPoints);
-    return hasGap(first) ? kMissing : apply(makeLagrange(times, first, kPoints, t), samples_.values);
+    if (hasGap(first)) {
+      return {};
+    }
+    if (isNearLimit(first)) {
+      const double before = findSide(range_, samples_.values[next - 1]);
+      return {kMissing, before == findSide(range_, samples_.values[next]) ? before : 0.0};
+    }
+    return {apply(makeLagrange(times, first, kPoints, t), samples_.values), 0.0};
   }
 
  private:
+  bool isNearLimit(Index first) const {
+    for (Index i = first; i < first + InterpolationWeights::kPoints; ++i) {
+      if (findSide(range_, samples_.values[i]) != 0.0) {
+        return true;
+      }
+    }
+    return false;
+  }
+
   bool hasGap(Index first) const {
     constexpr double kLongest = 1.5;
     for (Index i = first; i + 1 < first + InterpolationWeights::kPoints; ++i) {
@@ -120,6 +144,7 @@ class SampleFinder {
   }
 
   const Samples& samples_;
+  const std::optional<Bounds> range_;
   double step_ = 0.0;
   bool interpolates_ = false;
 };
@@ -167,6 +192,36 @@ double calcSmallestStep(const VectorXd& times) {
                           : (times.tail(times.size() - 1) - times.head(times.size() - 1)).minCoeff();
 }
 
+/// Finds the samples of an output: in its rows of the response.
+void addOutput(const Table& table, const std::string& column, const SampleFinder& finder,
+               const std::optional<Bounds>& range, const ResponseLayout& layout, Index output,
+               AvailableResponse& available) {
+  const VectorXd& needed = layout.times;
+  VectorXd found(needed.size()), known(needed.size());
+  Index clipped = 0;
+  for (Index i = 0; i < needed.size(); ++i) {
+    const FoundSample sample = finder.find(needed[i]);
+    const Index row = layout.getRow(output, i);
+    available.response[row] = found[i] = sample.value;
+    known[i] = sample.side == 0.0 ? sample.value : 0.0;
+    if (sample.side != 0.0) {
+      ++clipped;
+      available.clipped.push_back({row, sample.side > 0.0 ? range->upper : range->lower, sample.side});
+    }
+  }
+  requireUsable(table, column, needed, found);
+  if (clipped > 0) {
+    available.remarks.push_back(fmt::format(
+        "{} of {} samples of {} are at a limit of its range: what they say is that the response is "
+        "there or beyond",
+        clipped, needed.size(), column));
+  }
+  if (known.hasNaN()) {
+    available.remarks.push_back(describeMissing(column, needed, known));
+    available.missing += known.array().isNaN().count();
+  }
+}
+
 }  // namespace
 
 AvailableResponse readAvailable(const Table& table, const MeasurementSpec& spec, const ResponseLayout& layout,
@@ -174,7 +229,7 @@ AvailableResponse readAvailable(const Table& table, const MeasurementSpec& spec,
   if (layout.modes > 0) {
     throw MeasurementError(table.source + ": holds no modes, of which features are made");
   }
-  AvailableResponse available{VectorXd::Constant(layout.getRowCount(), kMissing), 0, {}};
+  AvailableResponse available{VectorXd::Constant(layout.getRowCount(), kMissing), {}, 0, {}};
   if (layout.getRowCount() == 0) {
     return available;
   }
@@ -191,19 +246,9 @@ AvailableResponse readAvailable(const Table& table, const MeasurementSpec& spec,
     const auto o = static_cast<std::size_t>(output);
     const ColumnSpec column = findColumnSpec(spec, layout.output_names[o]);
     requireLength(sorted, getColumn(sorted, column.name), times.size());
-    const Samples samples =
-        takeSamples(times, readValues(sorted, column, layout.output_units[o], 0, times.size()));
-    const SampleFinder finder(samples, spacing);
-    VectorXd found(needed.size());
-    for (Index i = 0; i < needed.size(); ++i) {
-      found[i] = finder.find(needed[i]);
-      available.response[layout.getRow(output, i)] = found[i];
-    }
-    requireUsable(sorted, column.name, needed, found);
-    if (found.hasNaN()) {
-      available.remarks.push_back(describeMissing(column.name, needed, found));
-      available.missing += found.array().isNaN().count();
-    }
+    const Samples samples = takeSamples(times, readOutput(sorted, spec, layout, o, times, 0));
+    const std::optional<Bounds> range = findRange(spec, layout.output_names[o]);
+    addOutput(sorted, column.name, SampleFinder(samples, spacing, range), range, layout, output, available);
   }
   return available;
 }

@@ -10,9 +10,17 @@
 
 namespace twinmap {
 
+/// A sample at a limit of its sensor's range: the response is there or beyond.
+struct ClippedSample {
+  Eigen::Index row = 0;  ///< of the layout, or a feature
+  double limit = 0.0;
+  double side = 1.0;  ///< 1: the upper limit, -1: the lower
+};
+
 /// A measured response of which some samples may be missing.
 struct AvailableResponse {
-  Eigen::VectorXd response;          ///< rows of the layout; NaN where missing
+  Eigen::VectorXd response;  ///< rows of the layout; NaN where missing or clipped
+  std::vector<ClippedSample> clipped;
   Eigen::Index missing = 0;          ///< rows
   std::vector<std::string> remarks;  ///< what is missing and why, a phrase each; rows that were put in order
 };
@@ -23,6 +31,8 @@ struct AvailableResponse {
 /// within 1e-6 of its median step; else it is interpolated (cubic through the four nearest samples) where the
 /// column's median step is at most `interval`, the smallest at which features sample the outputs (default:
 /// that of the layout's times), and no step about it is longer than 1.5 median steps; else it is missing.
+/// Where the measurement states a range, a sample at one of its limits (within 1e-6 of the range) is clipped,
+/// and one that would be interpolated between two that are; one beside such a sample is missing.
 /// Throws MeasurementError for an output without any needed sample, one that is the same at all of them (a
 /// dead sensor), and where no time series can be meant (a layout with modes).
 AvailableResponse readAvailable(const Table& table, const MeasurementSpec& spec, const ResponseLayout& layout,

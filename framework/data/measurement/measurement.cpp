@@ -1,13 +1,19 @@
 #include "framework/data/measurement/measurement.hpp"
 
-#include <algorithm>
+#include <fmt/core.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "framework/base/text/number_text.hpp"
 #include "framework/data/measurement/time_series.hpp"
+#include "framework/experiment/expression/units.hpp"
 
 namespace twinmap {
 namespace {
 
 using Eigen::Index;
+using Eigen::VectorXd;
 
 TimeBase makeTimeBase(const MeasurementSpec& spec) {
   return {spec.time, spec.sample_rate, spec.start};
@@ -24,12 +30,59 @@ ColumnSpec findColumnSpec(const MeasurementSpec& spec, const std::string& output
   return {output, {}, {}};
 }
 
+bool isUnwrapped(const MeasurementSpec& spec, const std::string& output) {
+  return std::any_of(spec.unwrap.begin(), spec.unwrap.end(),
+                     [&](const Name& name) { return name.text == output; });
+}
+
+std::optional<double> findTurn(const MeasurementSpec& spec, const std::string& output,
+                               const std::string& unit) {
+  for (const MeasuredRangeSpec& range : spec.ranges) {
+    if (range.name.text == output && isUnwrapped(spec, output)) {
+      return range.range.upper - range.range.lower;
+    }
+  }
+  return findWholeTurn(unit);
+}
+
+std::vector<std::string> describeJumps(const Table& table, const MeasurementSpec& spec,
+                                       const ResponseLayout& layout) {
+  std::vector<std::string> described;
+  for (std::size_t o = 0; o < layout.output_names.size(); ++o) {
+    const std::string &output = layout.output_names[o], &unit = layout.output_units[o];
+    const ColumnSpec column = findColumnSpec(spec, output);
+    const std::optional<double> turn = findTurn(spec, output, unit);
+    if (!turn || isUnwrapped(spec, output) || findColumn(table, column.name) == nullptr) {
+      continue;
+    }
+    const Index rows = getColumn(table, column.name).values.size();
+    const std::vector<Index> jumps = findTurnJumps(readValues(table, column, unit, 0, rows), *turn);
+    if (!jumps.empty()) {
+      described.push_back(fmt::format(
+          "{}: column '{}' jumps by a whole turn ({} {}) before row {}, {} times in all; if it is an angle "
+          "that "
+          "wraps, give measurement.unwrap: [{}]",
+          table.source, column.name, toShortText(*turn, 4), unit, jumps.front() + 1, jumps.size(), output));
+    }
+  }
+  return described;
+}
+
 std::vector<std::string> listColumns(const MeasurementSpec& spec, const std::vector<std::string>& outputs) {
   std::vector<std::string> names = listTimeColumns(makeTimeBase(spec));
   for (const std::string& output : outputs) {
     names.push_back(findColumnSpec(spec, output).name);
   }
   return names;
+}
+
+VectorXd readOutput(const Table& table, const MeasurementSpec& spec, const ResponseLayout& layout,
+                    std::size_t output, const VectorXd& times, Index first) {
+  const std::string& name = layout.output_names[output];
+  const VectorXd values =
+      readValues(table, findColumnSpec(spec, name), layout.output_units[output], first, times.size());
+  return isUnwrapped(spec, name) ? unwrap(times, values, *findTurn(spec, name, layout.output_units[output]))
+                                 : values;
 }
 
 Measurement readMeasurement(const Table& table, const MeasurementSpec& spec, const ResponseLayout& layout) {
@@ -52,9 +105,50 @@ Measurement readMeasurement(const Table& table, const MeasurementSpec& spec, con
     requireLength(table, getColumn(table, columns[i].name), times.size());
     measurement.column_names.push_back(columns[i].name);
     measurement.values.col(static_cast<Index>(i)) =
-        readValues(table, columns[i], layout.output_units[i], range.first, range.count);
+        readOutput(table, spec, layout, i, measurement.times, range.first);
   }
   return measurement;
+}
+
+double findSide(const std::optional<Bounds>& range, double value) {
+  constexpr double kSame = 1e-6;
+  if (!range) {
+    return 0.0;
+  }
+  const double slack = kSame * (range->upper - range->lower);
+  return value >= range->upper - slack ? 1.0 : value <= range->lower + slack ? -1.0 : 0.0;
+}
+
+std::optional<Bounds> findRange(const MeasurementSpec& spec, const std::string& output) {
+  for (const MeasuredRangeSpec& range : spec.ranges) {
+    if (range.name.text == output && !isUnwrapped(spec, output)) {
+      return range.range;
+    }
+  }
+  return std::nullopt;
+}
+
+void requireUnclipped(const Measurement& measurement, const MeasurementSpec& spec,
+                      const ResponseLayout& layout) {
+  if (layout.times.size() == 0) {
+    return;
+  }
+  const RowRange needed =
+      findRows(measurement.times, layout.times[0], layout.times[layout.times.size() - 1], 0);
+  for (std::size_t o = 0; o < layout.output_names.size(); ++o) {
+    const std::optional<Bounds> range = findRange(spec, layout.output_names[o]);
+    for (Index i = needed.first; i < needed.first + needed.count; ++i) {
+      const double value = measurement.values(i, static_cast<Index>(o));
+      if (findSide(range, value) != 0.0) {
+        throw MeasurementError(fmt::format(
+            "{}: column '{}' is {} at {} s, a limit of measurement.range.{}; a trained map cannot use "
+            "clipped "
+            "samples, inference from the experiment file can (twinmap infer FILE.yaml MEASUREMENT)",
+            measurement.source, measurement.column_names[o], toText(value),
+            toShortText(measurement.times[i], 6), layout.output_names[o]));
+      }
+    }
+  }
 }
 
 }  // namespace twinmap

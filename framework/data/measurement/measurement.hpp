@@ -17,14 +17,39 @@ struct Measurement {
 /// Where an output stands: as listed, or in a column of its own name.
 ColumnSpec findColumnSpec(const MeasurementSpec& spec, const std::string& output);
 
+/// A whole turn of an output in its unit, where the measurement says that it wraps or its unit is one of
+/// angles: that of its `range`, else of its unit; none of others.
+std::optional<double> findTurn(const MeasurementSpec& spec, const std::string& output,
+                               const std::string& unit);
+/// The range of a sensor that clips; none of an output that wraps.
+std::optional<Bounds> findRange(const MeasurementSpec& spec, const std::string& output);
+/// 1 for a value at the upper limit of a range, within 1e-6 of its width, -1 at the lower one, else 0.
+double findSide(const std::optional<Bounds>& range, double value);
+bool isUnwrapped(const MeasurementSpec& spec, const std::string& output);
+
+/// Outputs of a table that jump by a whole turn though the measurement does not say that they wrap
+/// (findTurnJumps), a sentence each that says what to do. Of columns that the table has.
+std::vector<std::string> describeJumps(const Table& table, const MeasurementSpec& spec,
+                                       const ResponseLayout& layout);
+
 /// The names of all columns that are read for these outputs, for readTable().
 std::vector<std::string> listColumns(const MeasurementSpec& spec, const std::vector<std::string>& outputs);
 
+/// An output in its unit at rows from `first` on, whose times these are, continued where it wraps. Throws
+/// MeasurementError as readValues() does.
+Eigen::VectorXd readOutput(const Table& table, const MeasurementSpec& spec, const ResponseLayout& layout,
+                           std::size_t output, const Eigen::VectorXd& times, Eigen::Index first);
+
 /// The outputs of the layout from the columns of a table, converted to the layout's units; only the rows that
-/// its times need, and a few beside. Throws MeasurementError for a missing column, columns of different
-/// length, a unit that does not convert, times that do not increase. O(rows of the table) for the times,
-/// O(rows needed) for the outputs.
+/// its times need, and a few beside; outputs that wrap continued over turns (unwrap). Throws MeasurementError
+/// for a missing column, columns of different length, a unit that does not convert, times that do not
+/// increase. O(rows of the table) for the times, O(rows needed) for the outputs.
 Measurement readMeasurement(const Table& table, const MeasurementSpec& spec, const ResponseLayout& layout);
+
+/// Throws MeasurementError for a sample between the layout's first and last time at a limit of its sensor's
+/// range: for what cannot use clipped samples.
+void requireUnclipped(const Measurement& measurement, const MeasurementSpec& spec,
+                      const ResponseLayout& layout);
 
 /// A response at the times of the layout (its rows), as features are extracted from: a measured value where
 /// the times agree within 1e-6 of the median step, else the cubic through the four nearest samples (Lagrange;

@@ -1,6 +1,7 @@
 #include "framework/data/measurement/time_series.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "framework/base/text/number_text.hpp"
 #include "framework/experiment/expression/units.hpp"
@@ -100,6 +101,57 @@ RowRange findRows(const VectorXd& times, double from, double to, Index margin) {
   const Index first = std::upper_bound(begin, end, from) - begin - 1 - margin;
   const Index kept = std::clamp<Index>(first, 0, times.size());
   return {kept, std::max<Index>(0, std::min<Index>(last, times.size()) - kept)};
+}
+
+VectorXd unwrap(const VectorXd& times, const VectorXd& values, double turn) {
+  VectorXd unwrapped = values;
+  Index before = -1, last = -1;
+  for (Index i = 0; i < values.size(); ++i) {
+    if (!std::isfinite(values[i])) {
+      continue;
+    }
+    if (last >= 0) {
+      const double slope =
+          before < 0 ? 0.0 : (unwrapped[last] - unwrapped[before]) / (times[last] - times[before]);
+      const double expected = unwrapped[last] + slope * (times[i] - times[last]);
+      unwrapped[i] += turn * std::round((expected - values[i]) / turn);
+    }
+    before = last;
+    last = i;
+  }
+  for (Index i = 0; i < values.size(); ++i) {
+    if (std::isfinite(values[i]) && (times[i] >= 0.0 || i == last)) {
+      return unwrapped.array() - turn * std::round((unwrapped[i] - values[i]) / turn);
+    }
+  }
+  return unwrapped;
+}
+
+std::vector<Index> findTurnJumps(const VectorXd& values, double turn) {
+  constexpr double kSmall = 0.05;  // of a turn
+  constexpr double kUsual = 0.9;   // of the changes
+  std::vector<Index> there, jumps;
+  for (Index i = 0; i < values.size(); ++i) {
+    if (std::isfinite(values[i])) {
+      there.push_back(i);
+    }
+  }
+  const VectorXd known = values(there);
+  const Index steps = known.size() - 1;
+  if (steps < 2) {
+    return jumps;
+  }
+  const VectorXd changes = known.tail(steps) - known.head(steps);
+  const auto is_jump = [&](Index i) { return std::abs(std::abs(changes[i]) - turn) < kSmall * turn; };
+  const auto small = (changes.array().abs() < kSmall * turn).count();
+  for (Index i = 0; i < steps && static_cast<double>(small) >= kUsual * static_cast<double>(steps); ++i) {
+    const bool goes_back = i + 1 < steps && is_jump(i + 1) && changes[i] * changes[i + 1] < 0.0;
+    const bool came_back = i > 0 && is_jump(i - 1) && changes[i] * changes[i - 1] < 0.0;
+    if (is_jump(i) && !goes_back && !came_back) {
+      jumps.push_back(there[static_cast<std::size_t>(i + 1)]);
+    }
+  }
+  return jumps;
 }
 
 double calcMedianStep(const VectorXd& times) {

@@ -29,6 +29,17 @@ Eigen::VectorXd readUnorderedTimes(const Table& table, const TimeBase& base, Eig
 Eigen::VectorXd readValues(const Table& table, const ColumnSpec& wanted, const std::string& unit,
                            Eigen::Index first, Eigen::Index count);
 
+/// Values that a sensor shows within one turn, as they go on: each of those that are finite is moved by whole
+/// turns to the nearest of where the two before it lead (in a straight line), or of the one before. The value
+/// at the first time from 0 on stays. `times`: increasing. Right where the speed changes by less than half a
+/// turn per sample within a sample.
+Eigen::VectorXd unwrap(const Eigen::VectorXd& times, const Eigen::VectorXd& values, double turn);
+
+/// Rows (the second of two neighbours) between which values change by a whole turn, within a twentieth, while
+/// nine of ten changes are below a twentieth of it, and where the next value does not jump back, as it does
+/// at a spike.
+std::vector<Eigen::Index> findTurnJumps(const Eigen::VectorXd& values, double turn);
+
 /// Throws MeasurementError unless the column has as many numbers as there are times.
 void requireLength(const Table& table, const Column& column, Eigen::Index times);
 

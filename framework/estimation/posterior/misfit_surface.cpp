@@ -26,7 +26,7 @@ void addPart(const LocalMisfit& local, const MeasuredPart& part, LocalSurface& s
   surface.residual.tail(local.residual.size()) = local.residual;
   surface.weights.conservativeResize(surface.residual.size());
   auto weights = surface.weights.tail(local.residual.size());
-  if (part.loss == LossKind::kPlain) {
+  if (part.losses.empty()) {
     weights.setOnes();
     surface.chi_square += local.chi_square;
     surface.loss += local.chi_square;
@@ -34,12 +34,12 @@ void addPart(const LocalMisfit& local, const MeasuredPart& part, LocalSurface& s
     surface.descent(part.unknown) += local.descent + kHalfWidthInformation * local.at;
     return;
   }
-  weights = calcLossWeights(part.loss, local.residual);
-  surface.chi_square += weights.dot(local.residual.cwiseAbs2());
-  surface.loss += calcLoss(part.loss, local.residual);
-  const MatrixXd weighted = weights.asDiagonal() * local.jacobian;
-  surface.information(part.unknown, part.unknown) += local.jacobian.transpose() * weighted;
-  surface.descent(part.unknown) += weighted.transpose() * local.residual;
+  const LinearLoss linear = part.losses[part.window].linearize(local.residual, local.jacobian);
+  weights = linear.weights;
+  surface.chi_square += linear.chi_square;
+  surface.loss += linear.loss;
+  surface.information(part.unknown, part.unknown) += linear.information;
+  surface.descent(part.unknown) += linear.descent;
 }
 
 /// Residuals less the parameters that they, not the box, determine: trace of I (I + prior)^-1.
@@ -71,9 +71,10 @@ std::size_t MisfitSurface::countWindows() const {
 }
 
 void MisfitSurface::setWindow(std::size_t window) {
-  for (const MeasuredPart& part : parts_) {
+  for (MeasuredPart& part : parts_) {
     const std::vector<GrowingWindow>& windows = part.model->getWindows();
-    part.misfit->setWindow(windows[std::min(window, windows.size() - 1)]);
+    part.window = std::min(window, windows.size() - 1);
+    part.misfit->setWindow(windows[part.window]);
   }
 }
 
@@ -131,14 +132,14 @@ VectorXd MisfitSurface::calcLosses(const MatrixXd& points) {
   VectorXd sums = VectorXd::Zero(points.cols());
   for (const MeasuredPart& part : parts_) {
     const MatrixXd own = box(part.unknown, Eigen::all);
-    if (part.loss == LossKind::kPlain) {
+    if (part.losses.empty()) {
       sums += part.misfit->evaluate(own) - kHalfWidthInformation * own.colwise().squaredNorm().transpose();
       continue;
     }
     std::vector<SampleStatus> statuses;
     const MatrixXd residuals = part.misfit->simulateResiduals(own, statuses);
     for (Index i = 0; i < points.cols(); ++i) {
-      sums[i] += statuses[static_cast<std::size_t>(i)].ok ? calcLoss(part.loss, residuals.col(i))
+      sums[i] += statuses[static_cast<std::size_t>(i)].ok ? part.losses[part.window].calc(residuals.col(i))
                                                           : std::numeric_limits<double>::infinity();
     }
   }

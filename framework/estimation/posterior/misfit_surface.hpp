@@ -23,7 +23,7 @@ struct LocalSurface {
   Eigen::MatrixXd information;
   Eigen::VectorXd descent;
   Eigen::VectorXd residual;  ///< whitened; of one measurement after the other
-  Eigen::VectorXd weights;   ///< of their squares in chi-square: 1 but for unknown noise and outliers
+  Eigen::VectorXd weights;   ///< 1 but for outliers (LinearLoss::weights)
 };
 
 /// One measurement of those that a surface explains together.
@@ -31,7 +31,9 @@ struct MeasuredPart {
   Misfit* misfit;                     ///< of all unknown parameters of its trial
   const RefinementModel* model;       ///< of its trial
   std::vector<Eigen::Index> unknown;  ///< which of all unknown parameters these are
-  LossKind loss = LossKind::kPlain;
+  /// Of each of the model's windows; empty: a sum of squares.
+  std::vector<ResidualLoss> losses{};
+  std::size_t window = 0;  ///< at which it looks, where it has losses
 };
 
 /// How well simulators explain one or several measurements of one machine, over the box of all unknown
@@ -40,7 +42,11 @@ class MisfitSurface {
  public:
   /// Coordinates and prior, of all unknown parameters, and what the parts point to must outlive the object.
   MisfitSurface(std::vector<MeasuredPart> parts, const LogCoordinates& coordinates, const Prior& prior)
-      : parts_(std::move(parts)), coordinates_(coordinates), prior_(prior) {}
+      : parts_(std::move(parts)), coordinates_(coordinates), prior_(prior) {
+    for (MeasuredPart& part : parts_) {
+      part.window = part.losses.empty() ? 0 : part.losses.size() - 1;
+    }
+  }
 
   Eigen::Index getDimensions() const { return coordinates_.getCount(); }
   int getSimulations() const;

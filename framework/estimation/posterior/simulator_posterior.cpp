@@ -71,8 +71,8 @@ VectorXd calcShares(const std::vector<Basin>& basins, const MisfitSurface& surfa
   for (Index k = 0; k < count; ++k) {
     const Basin& basin = basins[static_cast<std::size_t>(k)];
     const MatrixXd lower = linalg::calcCholesky(basin.covariance).lower;
-    logs[k] = -0.5 * basin.local.chi_square + lower.diagonal().array().log().sum() +
-              surface.calcLogPrior(basin.local.at);
+    logs[k] =
+        -0.5 * basin.local.loss + lower.diagonal().array().log().sum() + surface.calcLogPrior(basin.local.at);
   }
   const VectorXd weights = (logs.array() - logs.maxCoeff()).exp();
   return (0.5 * weights / weights.sum()).array() + 0.5 / static_cast<double>(count);
@@ -205,6 +205,16 @@ MatrixXd toParameters(const LogCoordinates& coordinates, const MatrixXd& at) {
   return points;
 }
 
+std::vector<ResidualLoss> makeLosses(const MeasuredTrial& trial) {
+  std::vector<ResidualLoss> losses;
+  if (!trial.noise.isPlain()) {
+    for (const GrowingWindow& window : trial.model->getWindows()) {
+      losses.emplace_back(trial.noise, *trial.model, window);
+    }
+  }
+  return losses;
+}
+
 /// The misfits of all measurements, and the surface that they make.
 class ProblemSurface {
  public:
@@ -232,7 +242,7 @@ class ProblemSurface {
     std::vector<MeasuredPart> parts;
     for (const MeasuredTrial& trial : problem.trials) {
       parts_.push_back(std::make_unique<Part>(trial));
-      parts.push_back({&parts_.back()->misfit, trial.model, trial.unknown, trial.loss});
+      parts.push_back({&parts_.back()->misfit, trial.model, trial.unknown, makeLosses(trial)});
     }
     return parts;
   }
@@ -253,6 +263,18 @@ void setBest(const BasinSearch& found, const LogCoordinates& coordinates, Simula
   posterior.residual_weights = best.local.weights;
   posterior.degrees = best.local.degrees;
   posterior.found_best = best.searches;
+}
+
+/// Of a single measurement, the residual as its hypothesis of the noise explains it.
+ResidualLoss::Standardized standardize(MisfitSurface& surface, const MeasuredTrial& trial,
+                                       const LocalSurface& best) {
+  MatrixXd jacobian(best.residual.size(), 0);
+  if (!trial.noise.outputs.empty()) {
+    const VectorXd box = surface.getCoordinates().toBox(best.at);
+    jacobian = surface.getParts().front().misfit->linearize(box(trial.unknown)).jacobian;
+  }
+  return ResidualLoss(trial.noise, *trial.model, trial.model->getWhole())
+      .standardize(best.residual, jacobian, best.degrees);
 }
 
 /// The basins as they are seen in the first `drawn` coordinates alone.
@@ -339,7 +361,9 @@ SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Matrix
     return posterior;
   }
   setBest(found, coordinates, posterior);
-  posterior.loss = problem.trials.front().loss;
+  if (problem.trials.size() == 1) {
+    posterior.standardized = standardize(surface, problem.trials.front(), found.basins.front().local);
+  }
   const Valleys valleys = followValleys(surface, found.basins);
   std::vector<Basin> places = found.basins;
   places.insert(places.end(), valleys.floors.begin(), valleys.floors.end());

@@ -35,8 +35,9 @@ struct SimulatorPosterior {
   double misfit = 0.0;               ///< there: chi-square and that of the prior
   Eigen::MatrixXd information;       ///< there, of all unknown, in LogCoordinates
   Eigen::VectorXd residual;          ///< there, whitened; of one measurement after the other
-  Eigen::VectorXd residual_weights;  ///< of its squares (LocalSurface::weights)
-  LossKind loss = LossKind::kPlain;  ///< of its measurement, where that is one
+  Eigen::VectorXd residual_weights;  ///< about 0 of outliers (LocalSurface::weights)
+  /// Of a single measurement, as they are independent and of unit variance if its hypothesis is true.
+  ResidualLoss::Standardized standardized;
   double chi_square = 0.0, degrees = 0.0;  ///< of the best point; 0 degrees where nothing could be simulated
   double effective_sample_size = 0.0;
   double pareto_shape = 0.0;
@@ -64,7 +65,7 @@ struct MeasuredTrial {
   Eigen::VectorXd features;           ///< d, finite where the model looks at them
   Eigen::VectorXd held;               ///< a point of the trial's sampled box, whose known inputs are kept
   std::vector<Eigen::Index> unknown;  ///< which of all unknown parameters the trial's are, in its order
-  LossKind loss = LossKind::kPlain;
+  NoiseHypothesis noise{};
   std::shared_ptr<const RefinementModel> own_model{};  ///< `model`, where it is of this measurement alone
 };
 

@@ -15,17 +15,41 @@ void checkUnit(const ColumnSpec& column, const std::string& needed) {
   }
 }
 
+std::string getUnit(const Name& output, const ModelSpec& model) {
+  const std::vector<std::string> outputs = collectNames(model.outputs);
+  requireKnown(output, outputs, "an output");
+  const auto index = std::find(outputs.begin(), outputs.end(), output.text) - outputs.begin();
+  return findOutputUnit(model.outputs[static_cast<std::size_t>(index)], model.system);
+}
+
+/// What wraps has a turn: that of its unit, or of the range that it counts in.
+void checkUnwrap(const Name& output, const MeasurementSpec& measurement, const ModelSpec& model) {
+  const std::string unit = getUnit(output, model);
+  const bool counts =
+      std::any_of(measurement.ranges.begin(), measurement.ranges.end(),
+                  [&](const MeasuredRangeSpec& range) { return range.name.text == output.text; });
+  if (!counts && !findWholeTurn(unit)) {
+    throw ExperimentError(output.where, output.text,
+                          "is in '" + unit +
+                              "', which is no angle: give the numbers that it counts between as "
+                              "measurement.range, such as [0, 4096]");
+  }
+}
+
 }  // namespace
 
 void checkMeasurement(const MeasurementSpec& measurement, const ModelSpec& model) {
   if (measurement.time) {
     checkUnit(*measurement.time, "s");
   }
-  const std::vector<std::string> outputs = collectNames(model.outputs);
   for (const MeasuredColumnSpec& measured : measurement.columns) {
-    requireKnown(measured.name, outputs, "an output");
-    const auto index = std::find(outputs.begin(), outputs.end(), measured.name.text) - outputs.begin();
-    checkUnit(measured.column, findOutputUnit(model.outputs[index], model.system));
+    checkUnit(measured.column, getUnit(measured.name, model));
+  }
+  for (const MeasuredRangeSpec& range : measurement.ranges) {
+    getUnit(range.name, model);
+  }
+  for (const Name& output : measurement.unwrap) {
+    checkUnwrap(output, measurement, model);
   }
 }
 

@@ -47,7 +47,31 @@ void checkCorrelation(const NoiseCorrelationSpec& correlation, const std::vector
   }
 }
 
+/// Residuals of samples show their noise; a peak's or a spectrum's noise follows from a stated one.
+void checkUnknown(const OutputNoiseSpec& spec, const std::vector<FeatureSpec>& features) {
+  for (const FeatureSpec& feature : features) {
+    const std::vector<Name> outputs = getOutputs(feature);
+    const bool uses = std::any_of(outputs.begin(), outputs.end(),
+                                  [&](const Name& output) { return output.text == spec.name.text; });
+    if (uses && !std::holds_alternative<SamplesFeatureSpec>(feature)) {
+      throw ExperimentError(spec.stddev.where, "unknown",
+                            "can be inferred where all features of '" + spec.name.text +
+                                "' are samples; give a number, or samples alone");
+    }
+  }
+}
+
 }  // namespace
+
+void requireStatedNoise(const ExperimentSpec& experiment) {
+  for (const OutputNoiseSpec& spec : experiment.noise.stddev) {
+    if (spec.stddev.unknown) {
+      throw ExperimentError(spec.stddev.where, "unknown",
+                            "is for `twinmap infer FILE.yaml MEASUREMENT`, which infers it; give a number "
+                            "(`twinmap noise` finds it in a recording at rest)");
+    }
+  }
+}
 
 void checkNoise(const ExperimentSpec& experiment) {
   const NoiseSpec& noise = experiment.noise;
@@ -55,6 +79,9 @@ void checkNoise(const ExperimentSpec& experiment) {
   const std::vector<std::string> outputs = collectNames(model.outputs);
   for (const OutputNoiseSpec& stddev : noise.stddev) {
     requireKnown(stddev.name, outputs, "an output");
+    if (stddev.stddev.unknown) {
+      checkUnknown(stddev, experiment.features);
+    }
   }
   checkModesNoise(experiment);
   for (const NoiseCorrelationSpec& correlation : noise.correlation) {

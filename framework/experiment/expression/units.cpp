@@ -119,4 +119,15 @@ UnitConversion calcUnitConversion(const std::string& from, const std::string& to
   return {cv_convert_double(converter.get(), 1.0) - offset, offset};
 }
 
+std::optional<double> findWholeTurn(const std::string& unit) {
+  if (unit.empty() || unit == "1" || unit == "-" || unit == "%") {
+    return std::nullopt;  // of the dimension of an angle, but no angle
+  }
+  try {
+    return calcUnitConversion("rad", unit, {}).apply(2.0 * std::acos(-1.0));
+  } catch (const ExperimentError&) {
+    return std::nullopt;
+  }
+}
+
 }  // namespace twinmap

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 
 #include "framework/base/text/source_location.hpp"
@@ -26,5 +27,8 @@ struct UnitConversion {
 /// Throws ExperimentError for an unknown unit and for one of another dimension.
 UnitConversion calcUnitConversion(const std::string& from, const std::string& to,
                                   const SourceLocation& where);
+
+/// A whole turn in a unit of angles ("rad", "deg", "mrad"); none of others, pure numbers among them.
+std::optional<double> findWholeTurn(const std::string& unit);
 
 }  // namespace twinmap

@@ -57,6 +57,10 @@ Json makeSchema(const Tolerance&) {
   return {{"type", "number"}};
 }
 
+Json makeSchema(const NoiseStddev&) {
+  return {{"oneOf", Json::array({Json{{"type", "number"}, {"minimum", 0}}, Json{{"const", "unknown"}}})}};
+}
+
 Json makeSchema(const ParameterWeights&) {
   return {{"type", "object"},
           {"additionalProperties", {{"type", "number"}, {"exclusiveMinimum", 0}}},

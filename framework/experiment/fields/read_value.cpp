@@ -159,6 +159,18 @@ void readValue(const YamlNode& node, Tolerance& value, const NumberRule& rule) {
   }
 }
 
+void readValue(const YamlNode& node, NoiseStddev& value, const NumberRule& rule) {
+  value.unknown = node.kind == YamlNode::Kind::kScalar && !node.quoted && node.scalar == "unknown";
+  value.where = node.where;
+  if (value.unknown) {
+    value.value = 1.0;
+  } else {
+    const NumberRule or_unknown{rule.minimum, rule.maximum, rule.minimum_allowed,
+                                "must be a number, 0 or above, or unknown"};
+    readValue(node, value.value, or_unknown);
+  }
+}
+
 void readValue(const YamlNode& node, ParameterWeights& value) {
   requireKind(node, YamlNode::Kind::kMap, "a map from parameters to weights");
   value.values.clear();

@@ -37,6 +37,8 @@ void readValue(const YamlNode& node, ComponentCount& value);
 void readValue(const YamlNode& node, SampleCount& value);
 /// A number, or automatic.
 void readValue(const YamlNode& node, Tolerance& value, const NumberRule& rule);
+/// A number, or unknown.
+void readValue(const YamlNode& node, NoiseStddev& value, const NumberRule& rule);
 /// A map from parameters to weights above 0.
 void readValue(const YamlNode& node, ParameterWeights& value);
 /// A map from key paths to [lower, upper] or {each: [lower, upper]}.

@@ -32,6 +32,9 @@ YamlNode writeValue(const SampleCount& value) {
 YamlNode writeValue(const Tolerance& value) {
   return value.automatic ? makeScalar("automatic") : writeValue(value.value);
 }
+YamlNode writeValue(const NoiseStddev& value) {
+  return value.unknown ? makeScalar("unknown") : writeValue(value.value);
+}
 YamlNode writeValue(const Bounds& value) {
   return writeSequence(std::array<double, 2>{value.lower, value.upper});
 }

@@ -24,6 +24,7 @@ YamlNode writeValue(const Name& value);
 YamlNode writeValue(const ComponentCount& value);
 YamlNode writeValue(const SampleCount& value);
 YamlNode writeValue(const Tolerance& value);
+YamlNode writeValue(const NoiseStddev& value);
 YamlNode writeValue(const Bounds& value);
 YamlNode writeValue(const ColumnSpec& value);
 YamlNode writeValue(const ParameterWeights& value);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "framework/base/log/log.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/data/features/experiment_features.hpp"
 #include "framework/data/measurement/measurement.hpp"
@@ -11,6 +12,28 @@
 #include "framework/data/measurement/trained_excitation.hpp"
 
 namespace twinmap {
+
+namespace {
+
+/// The features that are this row of a response and are fitted as they are.
+std::vector<Eigen::Index> findFeaturesOf(const FeatureExtractor& extractor, Eigen::Index row) {
+  std::vector<Eigen::Index> found;
+  if (extractor.hasLinearForm()) {
+    return found;
+  }
+  Eigen::Index feature = 0;
+  for (const auto& block : extractor.getBlocks()) {
+    const FeatureMatrix* matrix = block->findMatrix();
+    for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(block->getInfos().size()); ++i, ++feature) {
+      if (matrix != nullptr && matrix->row(i).nonZeros() == 1 && matrix->coeff(i, row) == 1.0) {
+        found.push_back(feature);
+      }
+    }
+  }
+  return found;
+}
+
+}  // namespace
 
 MeasurementReader::MeasurementReader(ExperimentSpec experiment)
     : experiment_(std::move(experiment)),
@@ -56,21 +79,37 @@ void MeasurementReader::requireExcitation(const Table& table, std::optional<doub
   requireTrainedExcitation(experiment_, table, getStart(start));
 }
 
+void MeasurementReader::warnOfJumps(const Table& table) const {
+  for (const std::string& jumps : describeJumps(table, experiment_.measurement, layout_)) {
+    logWarning(jumps);
+  }
+}
+
 Eigen::VectorXd MeasurementReader::readResponse(const Table& table, std::optional<double> start) const {
+  warnOfJumps(table);
   MeasurementSpec spec = experiment_.measurement;
   spec.start = getStart(start);
-  return resample(readMeasurement(table, spec, layout_), layout_, sample_interval_);
+  const Measurement measurement = readMeasurement(table, spec, layout_);
+  requireUnclipped(measurement, spec, layout_);
+  return resample(measurement, layout_, sample_interval_);
 }
 
 AvailableFeatures MeasurementReader::readAvailableFeatures(const Table& table,
                                                            std::optional<double> start) const {
   requireExcitation(table, start);
+  warnOfJumps(table);
   MeasurementSpec spec = experiment_.measurement;
   spec.start = getStart(start);
   AvailableResponse response = readAvailable(table, spec, layout_, sample_interval_);
   AvailableFeatures found{
-      extractor_.extract(response.response), {}, std::move(response.remarks), response.response};
-  const Eigen::Index missing_samples = response.missing;
+      extractor_.extract(response.response), {}, {}, std::move(response.remarks), response.response};
+  for (const ClippedSample& sample : response.clipped) {
+    for (const Eigen::Index feature : findFeaturesOf(extractor_, sample.row)) {
+      found.features[feature] = sample.limit;
+      found.clipped.push_back({feature, sample.limit, sample.side});
+    }
+  }
+  const Eigen::Index missing_samples = response.missing + static_cast<Eigen::Index>(response.clipped.size());
   for (Eigen::Index i = 0; i < found.features.size(); ++i) {
     if (std::isfinite(found.features[i])) {
       found.available.push_back(i);

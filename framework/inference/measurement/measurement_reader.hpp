@@ -20,8 +20,9 @@ Eigen::VectorXd extractFeatures(const FeatureExtractor& extractor, const Eigen::
 
 /// Features of which some may be missing.
 struct AvailableFeatures {
-  Eigen::VectorXd features;             ///< d, NaN where missing
+  Eigen::VectorXd features;             ///< d, NaN where missing, the limit where clipped
   std::vector<Eigen::Index> available;  ///< the others, ascending
+  std::vector<ClippedSample> clipped;   ///< features, of value `limit`
   std::vector<std::string> remarks;     ///< what is missing and why, a phrase each
   Eigen::VectorXd response;             ///< rows of the layout, NaN where missing
 };
@@ -59,6 +60,8 @@ class MeasurementReader {
   Eigen::VectorXd readFeatures(const Table& table, std::optional<double> start) const;
 
  private:
+  void warnOfJumps(const Table& table) const;
+
   ExperimentSpec experiment_;
   ResponseLayout layout_;
   std::optional<double> sample_interval_;

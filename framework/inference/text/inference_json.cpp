@@ -149,6 +149,22 @@ Json toJson(const SimulatorFit& fit) {
           {"largest_p_value", fit.test.largest_p}};
 }
 
+Json toJson(const NoiseReport& report) {
+  Json json{{"stddev", report.stddev}, {"unit", report.unit}};
+  if (report.isStated()) {
+    json["factor"] = report.found.factor;
+  }
+  if (report.found.autoregression.size() > 0) {
+    json["autoregression"] =
+        std::vector<double>(report.found.autoregression.begin(), report.found.autoregression.end());
+  }
+  if (report.found.has_offset) {
+    json["offset"] = report.found.offset;
+    json["offset_stddev"] = report.found.offset_stddev;
+  }
+  return json;
+}
+
 /// What the recording lacks, and what it has other than the stated noise.
 void addRecording(const InferredMeasurement& inferred, Json& json) {
   if (!inferred.left_out.empty()) {
@@ -161,8 +177,11 @@ void addRecording(const InferredMeasurement& inferred, Json& json) {
   if (!fit.outliers.empty()) {
     json["outliers"] = fit.outliers;
   }
-  if (fit.noise_factor != 1.0) {
-    json["noise_factor"] = fit.noise_factor;
+  if (const double factor = fit.getNoiseFactor(); factor != 1.0) {
+    json["noise_factor"] = factor;
+  }
+  for (const NoiseReport& report : fit.noise) {
+    json["noise"][report.output] = toJson(report);
   }
 }
 

@@ -133,6 +133,20 @@ std::string describePosterior(const PosteriorEstimate& posterior,
          makeTable(posterior.estimate, parameters, quantities);
 }
 
+/// The noise of outputs of which the file says that it is unknown.
+std::string describeInferredNoise(const SimulatorFit& fit) {
+  constexpr int kDigits = 3;
+  std::string text;
+  for (const NoiseReport& report : fit.noise) {
+    if (!report.isStated()) {
+      text += fmt::format("  noise of {}: {}{}, inferred; the size of its residual is not tested\n",
+                          report.output, toShortText(report.stddev, kDigits),
+                          report.unit.empty() ? "" : " " + report.unit);
+    }
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string makeInferenceTable(const InferredMeasurement& inferred,
@@ -142,6 +156,9 @@ std::string makeInferenceTable(const InferredMeasurement& inferred,
   const bool sampled = estimate.method == EstimationMethod::kPosterior;
   const DerivedQuantities* quantities = inferred.quantities.get();
   std::string text = describeTrust(inferred, parameters, features) + describeMapLimit(inferred, parameters);
+  if (inferred.posterior && inferred.posterior->fit) {
+    text += describeInferredNoise(*inferred.posterior->fit);
+  }
   for (const std::string& missing : inferred.left_out) {
     text += "  left out: " + missing + "\n";
   }

@@ -11,6 +11,7 @@
 #include "framework/inference/select_estimate.hpp"
 #include "framework/inference/text/explain_notice.hpp"
 #include "framework/inference/text/inference_text.hpp"
+#include "kernels/linalg/autocorrelation.hpp"
 
 namespace twinmap {
 
@@ -129,6 +130,27 @@ std::string explainOutliers(const std::vector<std::string>& outliers) {
                   outliers.size() > kShown ? " ..." : ""));
 }
 
+/// Of each output whose noise is coloured, or has an offset.
+std::string explainNoise(const std::vector<NoiseReport>& noise, bool offsets) {
+  constexpr int kDigits = 3;
+  std::string text;
+  for (const NoiseReport& report : noise) {
+    const FoundNoise& found = report.found;
+    const std::string unit = report.unit.empty() ? "" : " " + report.unit;
+    if (offsets && found.has_offset) {
+      text += explainNotice(Notice::kSensorOffset, report.output, toShortText(found.offset, kDigits) + unit,
+                            toShortText(found.offset_stddev, kDigits) + unit);
+    }
+    if (!offsets && found.autoregression.size() > 0) {
+      text += explainNotice(
+          Notice::kNoiseColoured, report.output,
+          calcAutocorrelation(std::vector<double>(found.autoregression.begin(), found.autoregression.end()),
+                              1)[1]);
+    }
+  }
+  return text;
+}
+
 /// "" of those that are explained with the numbers they concern: makeInferenceTable().
 std::string explainStatus(const std::string& status, const InferredMeasurement& inferred,
                           const Estimate& estimate, const std::vector<ParameterSpec>& parameters,
@@ -151,8 +173,11 @@ std::string explainStatus(const std::string& status, const InferredMeasurement& 
   }
   for (const Notice notice : {Notice::kNoiseLarger, Notice::kNoiseSmaller}) {
     if (is(notice)) {
-      return explainNotice(notice, inferred.posterior->fit->noise_factor);
+      return explainNotice(notice, inferred.posterior->fit->getNoiseFactor());
     }
+  }
+  if (is(Notice::kNoiseColoured) || is(Notice::kSensorOffset)) {
+    return explainNoise(inferred.posterior->fit->noise, is(Notice::kSensorOffset));
   }
   if (is(Notice::kUncalibrated)) {
     return explainNotice(Notice::kUncalibrated);

@@ -11,6 +11,7 @@
 #include "framework/base/log/stage_timer.hpp"
 #include "framework/data/features/experiment_features.hpp"
 #include "framework/data/reduction/selections.hpp"
+#include "framework/experiment/check/check_noise.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/resolve_defaults.hpp"
@@ -231,6 +232,7 @@ std::vector<GateResult> writeFolder(const ExperimentSpec& experiment, const RunO
 }  // namespace
 
 RunSummary runExperiment(const ExperimentSpec& given, const RunOptions& options, const RunControl& control) {
+  requireStatedNoise(given);
   makeFolders(options.folder);
   const FolderLock lock(options.folder);
   const std::unique_ptr<RunLog> log = options.samples ? nullptr : std::make_unique<RunLog>(options.folder);
