@@ -116,7 +116,7 @@ RecordingFit RecordingsProblem::fit(const MatrixXd& starts) const {
   std::vector<MeasuredPart> parts;
   for (const MeasuredTrial& trial : problem_.trials) {
     own.push_back(std::make_unique<TrialMisfit>(trial));
-    parts.push_back({&own.back()->misfit, trial.model, trial.unknown, trial.loss});
+    parts.push_back({&own.back()->misfit, trial.model, trial.unknown});
   }
   MisfitSurface surface(std::move(parts), coordinates, prior);
   MatrixXd from(starts.rows(), starts.cols());

@@ -30,7 +30,7 @@ InferredMeasurement DirectInference::infer(const Table& table, std::optional<dou
 std::string DirectInference::findFault(const AvailableFeatures& found, const Eigen::VectorXd& known,
                                        const PosteriorEstimate& posterior) const {
   const SimulatorFit& fit = *posterior.fit;
-  if (!fit.isSimulated() || isPlausible(fit)) {
+  if (!fit.isSimulated() || fit.isPlausible()) {
     return "";
   }
   const auto calcMisfit = [&](const Eigen::VectorXd& corrected) {

@@ -122,6 +122,11 @@ bool NoiseReport::differs() const {
   return isStated() && found.size_was_inferred && std::abs(calcSizeDeviation(found)) > kSignificant;
 }
 
+bool SimulatorFit::isPlausible() const {
+  constexpr double kTooSmallLevel = 1e-3;
+  return test.calcPValue() >= kMismatchLevel && 1.0 - test.chi_square_p >= kTooSmallLevel;
+}
+
 double SimulatorFit::getNoiseFactor() const {
   double factor = 1.0, largest = 0.0;
   for (const NoiseReport& report : noise) {

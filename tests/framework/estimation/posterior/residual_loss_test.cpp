@@ -21,13 +21,13 @@ using testing::makeMatrix;
 using testing::makeVector;
 using testing::Problem;
 
-constexpr double kNoise = 0.05;
+constexpr double kSampleNoise = 0.05;
 
 /// A straight line's two coefficients from samples.
 Problem makeLine(const MatrixXd& matrix) {
   return Problem(
       static_cast<int>(matrix.rows()), [matrix](const VectorXd& x) -> VectorXd { return matrix * x; },
-      testing::makeParameters(2, -1.0, 1.0), kNoise);
+      testing::makeParameters(2, -1.0, 1.0), kSampleNoise);
 }
 
 NoiseHypothesis makeOutliers() {
@@ -106,7 +106,7 @@ TEST(ResidualLoss, ColouredLossIsThatOfTheCorrelationMatrix) {
 TEST(ResidualLoss, UnknownNoiseGivesStudentsDistribution) {
   const MatrixXd matrix = makeMatrix(12, 2);
   Problem problem = makeLine(matrix);
-  const VectorXd features = problem.measure(makeVector({0.1, -0.2}), 3.0 * kNoise);
+  const VectorXd features = problem.measure(makeVector({0.1, -0.2}), 3.0 * kSampleNoise);
   const SimulatorPosterior posterior = sampleWith(problem, features, makeNoise({}, false));
   ASSERT_TRUE(posterior.isReliable()) << posterior.message;
   const Eigen::Matrix2d inverse = Eigen::Matrix2d(matrix.transpose() * matrix).inverse();
@@ -119,13 +119,13 @@ TEST(ResidualLoss, UnknownNoiseGivesStudentsDistribution) {
     EXPECT_NEAR(posterior.stddev[j] / stddev, 1.0, 0.06);
   }
   ASSERT_EQ(posterior.standardized.noise.size(), 1u);
-  EXPECT_NEAR(posterior.standardized.noise[0].factor, std::sqrt(squares / 10.0) / kNoise, 0.02);
+  EXPECT_NEAR(posterior.standardized.noise[0].factor, std::sqrt(squares / 10.0) / kSampleNoise, 0.02);
 }
 
 TEST(ResidualLoss, AnOffsetIsAFurtherCoefficient) {
   const MatrixXd matrix = makeMatrix(30, 2);
   Problem problem = makeLine(matrix);
-  const VectorXd features = problem.measure(makeVector({0.1, -0.2}), kNoise).array() + 0.3;
+  const VectorXd features = problem.measure(makeVector({0.1, -0.2}), kSampleNoise).array() + 0.3;
   const SimulatorPosterior posterior = sampleWith(problem, features, makeNoise(1.0, true));
   ASSERT_TRUE(posterior.isReliable()) << posterior.message;
   MatrixXd with_constant(30, 3);
@@ -133,19 +133,19 @@ TEST(ResidualLoss, AnOffsetIsAFurtherCoefficient) {
   const Eigen::Matrix3d inverse = Eigen::Matrix3d(with_constant.transpose() * with_constant).inverse();
   const VectorXd mean = inverse * with_constant.transpose() * features;
   for (Index j = 0; j < 2; ++j) {
-    const double stddev = kNoise * std::sqrt(inverse(j, j));
+    const double stddev = kSampleNoise * std::sqrt(inverse(j, j));
     EXPECT_NEAR(posterior.mean[j], mean[j], 0.08 * stddev);
     EXPECT_NEAR(posterior.stddev[j] / stddev, 1.0, 0.06);
   }
   const FoundNoise& found = posterior.standardized.noise.at(0);
-  EXPECT_NEAR(found.offset, mean[2], 0.1 * kNoise);
-  EXPECT_NEAR(found.offset_stddev / (kNoise * std::sqrt(inverse(2, 2))), 1.0, 0.01);
+  EXPECT_NEAR(found.offset, mean[2], 0.1 * kSampleNoise);
+  EXPECT_NEAR(found.offset_stddev / (kSampleNoise * std::sqrt(inverse(2, 2))), 1.0, 0.01);
 }
 
 TEST(ResidualLoss, SpikesCountForNothing) {
   const MatrixXd matrix = makeMatrix(40, 2);
   Problem problem = makeLine(matrix);
-  const VectorXd clean = problem.measure(makeVector({0.1, -0.2}), kNoise);
+  const VectorXd clean = problem.measure(makeVector({0.1, -0.2}), kSampleNoise);
   VectorXd spiked = clean;
   spiked[7] += 5.0;
   spiked[22] -= 20.0;
@@ -161,7 +161,7 @@ TEST(ResidualLoss, SpikesCountForNothing) {
 /// A line through 60 samples whose noise has an autocorrelation of rho^k.
 VectorXd measureColoured(Problem& problem, const MatrixXd& matrix, double rho, std::uint64_t seed) {
   const VectorXd line = matrix * makeVector({0.1, -0.2});
-  const VectorXd white = problem.measure(makeVector({0.1, -0.2}), kNoise, seed) - line;
+  const VectorXd white = problem.measure(makeVector({0.1, -0.2}), kSampleNoise, seed) - line;
   return line + makeCorrelation({rho}, line.size()).llt().matrixL() * white;
 }
 
@@ -171,9 +171,9 @@ TEST(ResidualLoss, ColouredPosteriorIsThatOfADenseGrid) {
   matrix << VectorXd::Ones(kCount), VectorXd::LinSpaced(kCount, -1.0, 1.0);
   Problem problem = makeLine(matrix);
   const VectorXd features = measureColoured(problem, matrix, 0.7, 3);
-  const VectorXd residual = (features - matrix * makeVector({0.1, -0.2})) / kNoise;
+  const VectorXd residual = (features - matrix * makeVector({0.1, -0.2})) / kSampleNoise;
   const std::vector<NoiseHypothesis> listed =
-      listNoiseHypotheses({}, {&problem.model, residual, matrix / kNoise});
+      listNoiseHypotheses({}, {&problem.model, residual, matrix / kSampleNoise});
   const NoiseHypothesis& coloured = listed.back();
   ASSERT_FALSE(coloured.outputs.at(0).colours.empty());
   ASSERT_EQ(coloured.outputs[0].colours[0].autoregression.size(), 1);
@@ -214,9 +214,9 @@ TEST(ResidualLoss, ClippedSamplesSayThatTheResponseIsBeyond) {
   const MatrixXd matrix = makeMatrix(20, 1).cwiseAbs();
   Problem problem(
       20, [matrix](const VectorXd& x) -> VectorXd { return matrix * x; },
-      testing::makeParameters(1, 0.5, 1.5), kNoise);
+      testing::makeParameters(1, 0.5, 1.5), kSampleNoise);
   constexpr double kLimit = 0.8;
-  VectorXd features = problem.measure(makeVector({1.0}), kNoise);
+  VectorXd features = problem.measure(makeVector({1.0}), kSampleNoise);
   NoiseHypothesis noise;
   for (Index i = 0; i < features.size(); ++i) {
     if (features[i] >= kLimit) {
@@ -235,7 +235,7 @@ TEST(ResidualLoss, ClippedSamplesSayThatTheResponseIsBeyond) {
   for (double x = 0.5; x <= 1.5; x += 1e-4) {
     double log_likelihood = 0.0;
     for (Index i = 0; i < features.size(); ++i) {
-      const double z = (features[i] - matrix(i, 0) * x) / kNoise;
+      const double z = (features[i] - matrix(i, 0) * x) / kSampleNoise;
       log_likelihood += features[i] >= kLimit ? std::log(0.5 * std::erfc(z / std::sqrt(2.0))) : -0.5 * z * z;
     }
     const double weight = std::exp(log_likelihood);
