@@ -69,15 +69,23 @@ AutoregressiveWhitener::AutoregressiveWhitener(const VectorXd& autoregression, c
 }
 
 void AutoregressiveWhitener::apply(MatrixXd& series) const {
-  MatrixXd state = MatrixXd::Zero(a_.size(), series.rows());
+  const Index p = a_.size();
+  MatrixXd state = MatrixXd::Zero(series.rows(), p);  // the last p values, the newest first
+  VectorXd next(series.rows());
   for (Index i = 0; i < series.cols(); ++i) {
     const auto k = static_cast<std::size_t>(i);
     for (long step = i == 0 ? 0 : lags_[k] - lags_[k - 1]; step > 0; --step) {
-      predict(a_, state);
+      next.noalias() = state.lazyProduct(a_);
+      for (Index lag = p - 1; lag > 0; --lag) {
+        state.col(lag) = state.col(lag - 1);
+      }
+      state.col(0) = next;
     }
-    const Eigen::RowVectorXd surprise = series.col(i).transpose() - state.row(0);
-    state += gains_.col(i) * surprise;
-    series.col(i) = inverse_stddev_[i] * surprise.transpose();
+    series.col(i) -= state.col(0);
+    for (Index lag = 0; lag < p; ++lag) {
+      state.col(lag) += gains_(lag, i) * series.col(i);
+    }
+    series.col(i) *= inverse_stddev_[i];
   }
 }
 

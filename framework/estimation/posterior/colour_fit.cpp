@@ -103,46 +103,67 @@ MatrixXd calcHessian(const std::function<double(const VectorXd&)>& calc, const V
   return hessian;
 }
 
-/// Nodes and weights of Gauss and Hermite for a standard normal density (Abramowitz and Stegun, table 25.10,
-/// times sqrt 2 and over sqrt pi).
+/// Nodes for a nearly normal density of unit width and their weights over that density: equidistant ones,
+/// whose sum converges fastest there; of three coefficients Gauss's and Hermite's three, as their number is
+/// cubed.
 struct Quadrature {
-  std::vector<double> nodes, weights;
+  std::vector<double> nodes, log_weights;
 };
 
 Quadrature makeQuadrature(Index order) {
-  if (order == 1) {
-    return {{-3.7504397177257425, -2.3667594107345415, -1.1544053947399682, 0.0, 1.1544053947399682,
-             2.3667594107345415, 3.7504397177257425},
-            {0.000548268855972219, 0.0307571239675865, 0.2401231786050127, 0.4571428571428571,
-             0.2401231786050127, 0.0307571239675865, 0.000548268855972219}};
+  if (order > 2) {
+    const double far = std::sqrt(3.0);
+    return {{-far, 0.0, far}, {std::log(1.0 / 6.0) + 1.5, std::log(2.0 / 3.0), std::log(1.0 / 6.0) + 1.5}};
   }
-  if (order == 2) {
-    return {
-        {-2.8569700138728056, -1.3556261799742659, 0.0, 1.3556261799742659, 2.8569700138728056},
-        {0.0112574113277207, 0.2220759220056126, 0.5333333333333333, 0.2220759220056126, 0.0112574113277207}};
+  const int each_side = order == 1 ? 5 : 3;
+  constexpr double kFarthest = 3.75;
+  Quadrature quadrature;
+  for (int i = -each_side; i <= each_side; ++i) {
+    quadrature.nodes.push_back(kFarthest * i / each_side);
+    quadrature.log_weights.push_back(0.0);
   }
-  return {{-1.7320508075688772, 0.0, 1.7320508075688772}, {1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0}};
+  return quadrature;
 }
 
-std::vector<NoiseColour> makeNodes(const VectorXd& at, const MatrixXd& hessian) {
+/// How far the misfit's minimum reaches along a direction, in standard deviations of a normal density that is
+/// as low there: towards an autocorrelation of 1 it is wider than its curvature says.
+double calcReach(const std::function<double(const VectorXd&)>& calc, const VectorXd& at, const VectorXd& way,
+                 double stddev) {
+  constexpr double kDeviations = 2.5, kStep = 1.25, kLongest = 6.0;
+  const double limit = calc(at) + 0.5 * kDeviations * kDeviations;
+  double reach = kDeviations / kStep;
+  while (reach < kDeviations * kLongest && calc(at + kStep * reach * stddev * way) < limit) {
+    reach *= kStep;
+  }
+  return stddev * reach / kDeviations;
+}
+
+/// Nodes along the principal directions of a normal density, each side with a width of its own.
+std::vector<NoiseColour> makeNodes(const std::function<double(const VectorXd&)>& calc, const VectorXd& at,
+                                   const MatrixXd& hessian) {
   const Index p = at.size();
   const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(hessian);
   constexpr double kWidest = 0.5;  // where the likelihood is flat, towards 1
-  const VectorXd spread =
-      eigen.values.unaryExpr([](double value) { return value > 0.0 ? 1.0 / std::sqrt(value) : kWidest; })
-          .cwiseMin(kWidest);
+  MatrixXd reaches(p, 2);
+  for (Index j = 0; j < p; ++j) {
+    const double value = eigen.values[j];
+    const double stddev = value > 0.0 ? std::min(1.0 / std::sqrt(value), kWidest) : kWidest;
+    reaches(j, 0) = calcReach(calc, at, -eigen.vectors.col(j), stddev);
+    reaches(j, 1) = calcReach(calc, at, eigen.vectors.col(j), stddev);
+  }
   const Quadrature one = makeQuadrature(p);
   const auto count = static_cast<Index>(one.nodes.size());
   std::vector<NoiseColour> colours;
   for (Index node = 0; node < static_cast<Index>(std::lround(std::pow(count, p))); ++node) {
-    VectorXd z(p);
+    VectorXd point = at;
     double log_weight = 0.0;
     for (Index j = 0, rest = node; j < p; ++j, rest /= count) {
       const auto k = static_cast<std::size_t>(rest % count);
-      z[j] = one.nodes[k];
-      log_weight += std::log(one.weights[k]) + 0.5 * z[j] * z[j];
+      const double z = one.nodes[k];
+      const double reach = z == 0.0 ? reaches.row(j).mean() : reaches(j, z > 0.0 ? 1 : 0);
+      point += z * reach * eigen.vectors.col(j);
+      log_weight += one.log_weights[k] + std::log(reach);
     }
-    const VectorXd point = at + eigen.vectors * spread.cwiseProduct(z);
     if (point.cwiseAbs().maxCoeff() <= kLargestTangent) {
       colours.push_back({toAutoregression(point), log_weight - 2.0 * point.array().cosh().log().sum()});
     }
@@ -171,7 +192,7 @@ std::vector<NoiseColour> fitColours(const ResidualSeries& series) {
       best = from;
     }
   }
-  return best.size() == 0 ? std::vector<NoiseColour>{} : makeNodes(best, calcHessian(calc, best, n));
+  return best.size() == 0 ? std::vector<NoiseColour>{} : makeNodes(calc, best, calcHessian(calc, best, n));
 }
 
 }  // namespace twinmap

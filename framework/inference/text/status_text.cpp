@@ -6,6 +6,7 @@
 
 #include "framework/base/log/notice.hpp"
 #include "framework/base/text/nearest_name.hpp"
+#include "framework/base/text/number_text.hpp"
 #include "framework/estimation/estimate.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/select_estimate.hpp"

@@ -89,6 +89,52 @@ class Direct(FolderTestCase):
             self.assertLess(abs(estimate["mean"] - true), 4 * estimate["sd"], name)
             self.assertGreater(estimate["sd"], 2 * stated["parameters"][name]["sd"])
 
+    def expect_true(self, found):
+        for name, true in TRUE.items():
+            estimate = found["parameters"][name]
+            self.assertLess(abs(estimate["mean"] - true), 4 * estimate["sd"], name)
+
+    def test_coloured_noise_is_named_and_widens_the_intervals(self):
+        coloured = "noise.correlation={x: {autoregression: [0.8]}}"
+        noisy = self.simulate(CART, "coloured.csv", coloured, *POINT)
+        found = json.loads(self.infer(CART, noisy, "--json"))
+        self.assertEqual(found["statuses"], ["noise_coloured"])
+        self.expect_true(found)
+        self.assertIn("autoregression", found["noise"]["x"])
+        stated = json.loads(self.infer(CART, self.measured, "--json"))
+        ratios = [found["parameters"][n]["sd"] / stated["parameters"][n]["sd"] for n in TRUE]
+        self.assertGreater(max(ratios), 1.2)
+        self.assertIn("noise_coloured: the noise of x is coloured", self.infer(CART, noisy))
+
+    def test_an_offset_of_a_sensor_is_found(self):
+        found = json.loads(self.infer(CART, self.change("offset.csv", lambda i, x: x + 5e-4), "--json"))
+        self.assertEqual(found["statuses"], ["sensor_offset"])
+        self.expect_true(found)
+        noise = found["noise"]["x"]
+        self.assertLess(abs(noise["offset"] - 5e-4), 4 * noise["offset_stddev"])
+
+    def test_noise_that_is_unknown_is_inferred(self):
+        path = self.folder / "unknown.yaml"
+        path.write_text(CART.read_text().replace("stddev: {x: 1e-4}", "stddev: {x: unknown}"))
+        found = json.loads(self.infer(path, self.measured, "--json"))
+        self.assertEqual(found["statuses"], ["ok"])
+        self.expect_true(found)
+        self.assertAlmostEqual(found["noise"]["x"]["stddev"], 1e-4, delta=3e-5)
+        refused = call("run", path)
+        self.assertEqual(refused.returncode, 1)
+        self.assertIn("noise.stddev.x: 'unknown' is for `twinmap infer FILE.yaml", refused.stderr)
+
+    def test_clipped_samples_say_that_the_response_is_beyond(self):
+        values = [float(line.split(",")[1]) for line in self.measured.read_text().splitlines()[1:]]
+        limit = 0.8 * max(abs(value) for value in values)
+        clipped = self.change("clipped.csv", lambda i, x: max(-limit, min(limit, x)))
+        path = self.folder / "clips.yaml"
+        path.write_text(CART.read_text() + f"\nmeasurement: {{range: {{x: [{-limit!r}, {limit!r}]}}}}\n")
+        found = json.loads(self.infer(path, clipped, "--json"))
+        self.assertEqual(found["statuses"], ["ok"])
+        self.expect_true(found)
+        self.assertIn("at a limit of its range", found["left_out"][0])
+
     def infer_json(self):
         return json.loads(self.infer(CART, self.measured, "--json"))
 

@@ -6,6 +6,8 @@
 #include <limits>
 #include <sstream>
 
+#include "framework/data/measurement/measurement.hpp"
+
 namespace twinmap {
 namespace {
 
@@ -124,6 +126,82 @@ TEST(MissingCells, AreReadAsNaNOnRequest) {
   EXPECT_EQ(table.columns[1].values[4], 2.0);
   EXPECT_THROW(readCsv(strict, "m.csv", {"t", "a"}), MeasurementError);
   EXPECT_THROW(readCsv(wrong, "m.csv", {"t", "a"}, MissingCells::kKeep), MeasurementError);
+}
+
+/// One angle in rad at .1, .2, ... 2 s, which the table shows between -pi and pi, and the truth.
+const ResponseLayout kAngle{{"q"}, {"rad"}, VectorXd::LinSpaced(20, 0.1, 2.0)};
+
+double calcAngle(double t) {
+  return 8.0 * t + 0.3 * std::sin(5.0 * t);
+}
+
+Table recordAngle() {
+  const VectorXd times = VectorXd::LinSpaced(45, 0.0, 2.2);
+  return {"m.csv",
+          {{"t", {}, times}, {"q", {}, times.unaryExpr([](double t) {
+                                return std::remainder(calcAngle(t), 2.0 * std::acos(-1.0));
+                              })}},
+          {}};
+}
+
+TEST(AvailableResponse, AnglesThatWrapAreContinued) {
+  MeasurementSpec spec;
+  spec.unwrap = {{"q", {}}};
+  Table table = recordAngle();
+  table.columns[1].values[11] = kNone;
+  const AvailableResponse available = readAvailable(table, spec, kAngle);
+  for (Index i = 0; i < 20; ++i) {
+    if (std::isfinite(available.response[i])) {
+      EXPECT_NEAR(available.response[i], calcAngle(kAngle.times[i]), 1e-2) << i;  // of a cubic
+    }
+  }
+  EXPECT_TRUE(describeJumps(table, spec, kAngle).empty());
+}
+
+TEST(AvailableResponse, JumpsByAWholeTurnAreNamed) {
+  const std::vector<std::string> jumps = describeJumps(recordAngle(), {}, kAngle);
+  ASSERT_EQ(jumps.size(), 1u);
+  EXPECT_NE(jumps[0].find("measurement.unwrap: [q]"), std::string::npos) << jumps[0];
+  Table spiked = record(0.05);
+  spiked.columns[1].values[7] += 2.0 * std::acos(-1.0);
+  EXPECT_TRUE(describeJumps(spiked, {}, {{"a"}, {"rad"}, kAngle.times}).empty());  // it jumps back
+  EXPECT_TRUE(describeJumps(record(0.05), {}, makeTwoOutputs()).empty());
+}
+
+TEST(AvailableResponse, ACounterTurnsWithinItsRange) {
+  MeasurementSpec spec;
+  spec.unwrap = {{"n", {}}};
+  spec.ranges = {{{"n", {}}, {0.0, 4096.0, {}}}};
+  const VectorXd times = VectorXd::LinSpaced(45, 0.0, 2.2);
+  const Table table{
+      "m.csv",
+      {{"t", {}, times},
+       {"n", {}, times.unaryExpr([](double t) { return std::fmod(4000.0 + 3000.0 * t, 4096.0); })}},
+      {}};
+  const AvailableResponse available = readAvailable(table, spec, {{"n"}, {""}, kAngle.times});
+  for (Index i = 0; i < 20; ++i) {
+    EXPECT_NEAR(available.response[i], 4000.0 + 3000.0 * kAngle.times[i], 1e-6);
+  }
+}
+
+TEST(AvailableResponse, SamplesAtALimitAreClipped) {
+  MeasurementSpec spec;
+  spec.ranges = {{{"a", {}}, {-0.8, 0.8, {}}}};
+  Table table = record(0.05);
+  table.columns[1].values = table.columns[1].values.cwiseMin(0.8).cwiseMax(-0.8);
+  const AvailableResponse available = readAvailable(table, spec, makeTwoOutputs());
+  Index clipped = 0;
+  for (Index i = 0; i < 20; ++i) {
+    clipped += std::abs(calcA(0.1 + 0.1 * static_cast<double>(i))) >= 0.8;
+  }
+  ASSERT_EQ(static_cast<Index>(available.clipped.size()), clipped);
+  EXPECT_EQ(available.missing, 0);
+  for (const ClippedSample& sample : available.clipped) {
+    EXPECT_TRUE(std::isnan(available.response[sample.row]));
+    EXPECT_EQ(sample.limit, 0.8 * sample.side);
+  }
+  const Measurement measurement = readMeasurement(table, spec, makeTwoOutputs());
+  EXPECT_THROW(requireUnclipped(measurement, spec, makeTwoOutputs()), MeasurementError);
 }
 
 }  // namespace

@@ -50,9 +50,10 @@ MatrixXd makeCorrelation(const std::vector<double>& autoregression, Index n) {
   return MatrixXd::NullaryExpr(n, n, [&](Index i, Index j) { return rho[std::abs(i - j)]; });
 }
 
-SimulatorPosterior sampleWith(Problem& problem, const VectorXd& features, const NoiseHypothesis& noise) {
+SimulatorPosterior sampleWith(Problem& problem, const VectorXd& features, const NoiseHypothesis& noise,
+                              int draws = 4000) {
   SimulatorPosteriorOptions options;
-  options.draws = 4000;
+  options.draws = draws;
   PosteriorProblem posed{problem.model.getUnknown(), {}, {}, 2};
   posed.trials.push_back({&problem.simulator, &problem.model, features, VectorXd::Zero(2), {0, 1}, noise});
   return samplePosterior(posed, MatrixXd(2, 0), options);
@@ -158,7 +159,7 @@ TEST(ResidualLoss, SpikesCountForNothing) {
   }
 }
 
-/// A line through 60 samples whose noise has an autocorrelation of rho^k.
+/// A line through samples whose noise has an autocorrelation of rho^k.
 VectorXd measureColoured(Problem& problem, const MatrixXd& matrix, double rho, std::uint64_t seed) {
   const VectorXd line = matrix * makeVector({0.1, -0.2});
   const VectorXd white = problem.measure(makeVector({0.1, -0.2}), kSampleNoise, seed) - line;
@@ -166,9 +167,10 @@ VectorXd measureColoured(Problem& problem, const MatrixXd& matrix, double rho, s
 }
 
 TEST(ResidualLoss, ColouredPosteriorIsThatOfADenseGrid) {
-  constexpr Index kCount = 60;
+  constexpr Index kCount = 80;
   MatrixXd matrix(kCount, 2);
-  matrix << VectorXd::Ones(kCount), VectorXd::LinSpaced(kCount, -1.0, 1.0);
+  const VectorXd times = VectorXd::LinSpaced(kCount, -1.0, 1.0);
+  matrix << times, (8.0 * times.array()).sin().matrix();
   Problem problem = makeLine(matrix);
   const VectorXd features = measureColoured(problem, matrix, 0.7, 3);
   const VectorXd residual = (features - matrix * makeVector({0.1, -0.2})) / kSampleNoise;
@@ -177,7 +179,7 @@ TEST(ResidualLoss, ColouredPosteriorIsThatOfADenseGrid) {
   const NoiseHypothesis& coloured = listed.back();
   ASSERT_FALSE(coloured.outputs.at(0).colours.empty());
   ASSERT_EQ(coloured.outputs[0].colours[0].autoregression.size(), 1);
-  const SimulatorPosterior posterior = sampleWith(problem, features, coloured);
+  const SimulatorPosterior posterior = sampleWith(problem, features, coloured, 1500);
   ASSERT_TRUE(posterior.isReliable()) << posterior.message;
 
   // given rho: Student's with n - 2 degrees of freedom; rho: its restricted likelihood, uniform
@@ -205,8 +207,8 @@ TEST(ResidualLoss, ColouredPosteriorIsThatOfADenseGrid) {
   mean /= sum;
   for (Index j = 0; j < 2; ++j) {
     const double stddev = std::sqrt(square[j] / sum - mean[j] * mean[j]);
-    EXPECT_NEAR(posterior.mean[j], mean[j], 0.1 * stddev);
-    EXPECT_NEAR(posterior.stddev[j] / stddev, 1.0, 0.08);
+    EXPECT_NEAR(posterior.mean[j], mean[j], 0.12 * stddev);
+    EXPECT_NEAR(posterior.stddev[j] / stddev, 1.0, 0.1);
   }
 }
 
