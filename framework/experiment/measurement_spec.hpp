@@ -6,6 +6,7 @@
 #include "framework/experiment/column_spec.hpp"
 #include "framework/experiment/expression/expression.hpp"
 #include "framework/experiment/fields/fields.hpp"
+#include "framework/experiment/model/bounds_spec.hpp"
 
 namespace twinmap {
 

@@ -129,7 +129,7 @@ TEST(MissingCells, AreReadAsNaNOnRequest) {
 }
 
 /// One angle in rad at .1, .2, ... 2 s, which the table shows between -pi and pi, and the truth.
-const ResponseLayout kAngle{{"q"}, {"rad"}, VectorXd::LinSpaced(20, 0.1, 2.0)};
+const ResponseLayout kAngleLayout{{"q"}, {"rad"}, VectorXd::LinSpaced(20, 0.1, 2.0)};
 
 double calcAngle(double t) {
   return 8.0 * t + 0.3 * std::sin(5.0 * t);
@@ -149,22 +149,22 @@ TEST(AvailableResponse, AnglesThatWrapAreContinued) {
   spec.unwrap = {{"q", {}}};
   Table table = recordAngle();
   table.columns[1].values[11] = kNone;
-  const AvailableResponse available = readAvailable(table, spec, kAngle);
+  const AvailableResponse available = readAvailable(table, spec, kAngleLayout);
   for (Index i = 0; i < 20; ++i) {
     if (std::isfinite(available.response[i])) {
-      EXPECT_NEAR(available.response[i], calcAngle(kAngle.times[i]), 1e-2) << i;  // of a cubic
+      EXPECT_NEAR(available.response[i], calcAngle(kAngleLayout.times[i]), 1e-2) << i;  // of a cubic
     }
   }
-  EXPECT_TRUE(describeJumps(table, spec, kAngle).empty());
+  EXPECT_TRUE(describeJumps(table, spec, kAngleLayout).empty());
 }
 
 TEST(AvailableResponse, JumpsByAWholeTurnAreNamed) {
-  const std::vector<std::string> jumps = describeJumps(recordAngle(), {}, kAngle);
+  const std::vector<std::string> jumps = describeJumps(recordAngle(), {}, kAngleLayout);
   ASSERT_EQ(jumps.size(), 1u);
   EXPECT_NE(jumps[0].find("measurement.unwrap: [q]"), std::string::npos) << jumps[0];
   Table spiked = record(0.05);
   spiked.columns[1].values[7] += 2.0 * std::acos(-1.0);
-  EXPECT_TRUE(describeJumps(spiked, {}, {{"a"}, {"rad"}, kAngle.times}).empty());  // it jumps back
+  EXPECT_TRUE(describeJumps(spiked, {}, {{"a"}, {"rad"}, kAngleLayout.times}).empty());  // it jumps back
   EXPECT_TRUE(describeJumps(record(0.05), {}, makeTwoOutputs()).empty());
 }
 
@@ -178,9 +178,9 @@ TEST(AvailableResponse, ACounterTurnsWithinItsRange) {
       {{"t", {}, times},
        {"n", {}, times.unaryExpr([](double t) { return std::fmod(4000.0 + 3000.0 * t, 4096.0); })}},
       {}};
-  const AvailableResponse available = readAvailable(table, spec, {{"n"}, {""}, kAngle.times});
+  const AvailableResponse available = readAvailable(table, spec, {{"n"}, {""}, kAngleLayout.times});
   for (Index i = 0; i < 20; ++i) {
-    EXPECT_NEAR(available.response[i], 4000.0 + 3000.0 * kAngle.times[i], 1e-6);
+    EXPECT_NEAR(available.response[i], 4000.0 + 3000.0 * kAngleLayout.times[i], 1e-6);
   }
 }
 
