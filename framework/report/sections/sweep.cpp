@@ -51,19 +51,30 @@ DataTable makeGroupData(const CsvTable& groups) {
   return table;
 }
 
+/// Without the columns that say nothing: of variants where there is one, of limits where none was computed.
 std::string makeGroupTable(const CsvTable& groups) {
+  const auto is_empty = [&](const char* column) {
+    const std::vector<std::string> texts = groups.listTexts(column);
+    return std::all_of(texts.begin(), texts.end(),
+                       [](const std::string& text) { return text.empty() || text == "nan"; });
+  };
+  std::vector<ShownColumn> columns{{"parameter", "parameter"}};
+  if (!is_empty("variant")) {
+    columns.push_back({"variant", "variant"});
+  }
+  columns.insert(columns.end(), {{"size", "training samples", 6},
+                                 {"noise", "noise scale", 6},
+                                 {"seeds", "seeds"},
+                                 {"sd_pct", "sd %"},
+                                 {"lowest", "lowest %"},
+                                 {"highest", "highest %"}});
+  if (!is_empty("limit_pct")) {
+    columns.push_back({"limit_pct", "limit %"});
+  }
+  columns.push_back({"coverage95", "cov. 95 %", 3});
   return makeHtmlTable("sweep-table",
                        "Means over the seeds; press a heading to sort. Every case is in sweep.csv.", groups,
-                       {{"parameter", "parameter"},
-                        {"variant", "variant"},
-                        {"size", "training samples", 6},
-                        {"noise", "noise scale", 6},
-                        {"seeds", "seeds"},
-                        {"sd_pct", "sd %"},
-                        {"lowest", "lowest %"},
-                        {"highest", "highest %"},
-                        {"limit_pct", "limit %"},
-                        {"coverage95", "cov. 95 %", 3}});
+                       columns);
 }
 
 std::size_t countCases(const CsvTable& sweep) {

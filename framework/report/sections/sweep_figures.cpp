@@ -74,8 +74,9 @@ Figure makeCurveFigure(const SweepAxes& axes, bool over_size) {
   const CurveAxes curves = makeCurveAxes(axes, over_size);
   Figure figure = makeSweepFigure(
       "error-over-" + curves.x, "Error against " + curves.x_title,
-      "Each line is the mean over the seeds, its band reaches from the lowest to the highest seed; dotted: "
-      "the information limit, below which no map can come.");
+      std::string(
+          "Each line is the mean over the seeds, its band reaches from the lowest to the highest seed") +
+          (axes.has_limits ? "; dotted: the information limit, below which no estimator can come." : "."));
   for (const std::string& parameter : axes.parameters) {
     figure.panels.push_back(makeCurves(axes, curves, parameter));
   }
