@@ -1,6 +1,7 @@
 #include "framework/models/mechanism/lanes/lane_runner.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -20,12 +21,16 @@ using Eigen::VectorXd;
 using Parameters = Eigen::Ref<const VectorXd>;
 
 /// Where the rate of a state, such as a stiff bristle's, forces more steps than these, Radau IIA takes fewer
-/// and longer ones in less time.
-constexpr int kExplicitSteps = 20000;
+/// and longer ones in less time. Where accuracy decides, a method of order 5 takes tolerance^(-1/5) as many.
+constexpr double kExplicitSteps = 20000.0, kUsualTolerance = 3e-7;
 
 int getMaxSteps(const ModelSpec& spec, const LaneModel& model) {
   const int given = spec.simulation.max_steps;
-  return model.getFirstOrderCount() > 0 ? std::min(given, kExplicitSteps) : given;
+  if (model.getFirstOrderCount() == 0) {
+    return given;
+  }
+  const double finer = std::max(1.0, kUsualTolerance / spec.simulation.relative_tolerance);
+  return static_cast<int>(std::min<double>(given, kExplicitSteps * std::pow(finer, 0.2)));
 }
 
 lanes::Options makeOptions(const ModelSpec& spec, const LaneModel& model) {
