@@ -67,7 +67,7 @@ class SimulatorRefiner {
   /// The same under the stated noise (describeNoise) or, where that does not explain the measurement, under
   /// the first of other hypotheses that does (listNoiseHypotheses): a few samples left out, noise of another
   /// size, an offset, coloured noise. What is coloured and larger than stated may as well be physics that the
-  /// model lacks, and more than one sample in twenty is no exception: then the stated one's it is. Cost: some
+  /// model lacks, and more than one sample in twenty are not exceptions: then the stated one's it is. Cost: some
   /// more posteriors where the stated noise does not explain the measurement.
   PosteriorEstimate samplePosterior(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
                                     const NoiseHypothesis& stated, const Eigen::MatrixXd& given,
