@@ -27,6 +27,10 @@ class DirectInference final : public MeasurementInference {
   InferredMeasurement infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
                             const std::vector<ClippedSample>& clipped) const;
 
+  /// The simple fault of the recording that explains a gross misfit, or "".
+  std::string findFault(const AvailableFeatures& found, const Eigen::VectorXd& known,
+                        const PosteriorEstimate& posterior) const;
+
   const MeasurementReader& reader_;
   const SimulatorRefiner simulator_;
   SimulatorPosteriorOptions options_;

@@ -38,20 +38,13 @@ std::vector<Index> chooseDraws(const VectorXd& weights) {
   return chosen;
 }
 
-/// Whether nothing speaks against the noise as it is supposed: neither a test of what is too much, nor a sum
-/// of squares that is too small, in one of a thousand good measurements.
-bool isPlausible(const SimulatorFit& fit) {
-  constexpr double kTooSmallLevel = 1e-3;
-  return fit.test.calcPValue() >= kMismatchLevel && 1.0 - fit.test.chi_square_p >= kTooSmallLevel;
-}
-
 /// Whether a fit under another hypothesis of the noise explains a measurement.
 bool explains(const SimulatorFit& fit, Index residuals) {
   constexpr double kMaxOutliers = 0.05;  // of the samples
   const bool is_physics = std::any_of(fit.noise.begin(), fit.noise.end(), [](const NoiseReport& report) {
     return report.isStated() && report.found.autoregression.size() > 0 && isLargerThanStated(report.found);
   });
-  return isPlausible(fit) && !is_physics &&
+  return fit.isPlausible() && !is_physics &&
          static_cast<double>(fit.outliers.size()) <= kMaxOutliers * static_cast<double>(residuals);
 }
 
@@ -172,7 +165,7 @@ PosteriorEstimate SimulatorRefiner::samplePosterior(const VectorXd& features, co
   if (!is_known && sampled.fit->isSimulated()) {
     sampled = sampleUnder(stated, features, known, sampled.fit->best, options);
   }
-  if (!sampled.fit->isSimulated() || isPlausible(*sampled.fit)) {
+  if (!sampled.fit->isSimulated() || sampled.fit->isPlausible()) {
     return sampled;
   }
   for (const NoiseHypothesis& noise : listNoise(stated, features, known, sampled.fit->best)) {
@@ -182,6 +175,13 @@ PosteriorEstimate SimulatorRefiner::samplePosterior(const VectorXd& features, co
     }
   }
   return sampled;
+}
+
+double SimulatorRefiner::findLeastChiSquare(const VectorXd& features, const VectorXd& known) const {
+  constexpr int kSearches = 16;
+  return twinmap::findLeastChiSquare(
+      {getUnknown(), model_.priors, {makeTrial(features, known)}, static_cast<Index>(getUnknown().size())},
+      kSearches);
 }
 
 PosteriorEstimate SimulatorRefiner::makeEstimate(const MeasuredTrial& trial,

@@ -56,12 +56,7 @@ Statuses listOfSampled(const InferredMeasurement& inferred) {
   if (inferred.posterior->fit) {
     addNoise(*inferred.posterior->fit, statuses);
   }
-  if (inferred.posterior->estimate.isMultimodal()) {
-    statuses.emplace_back(toString(RefinementStatus::kMultimodal));
-  }
-  if (isUninformative(inferred.posterior->estimate) && !inferred.posterior->estimate.isMultimodal()) {
-    statuses.emplace_back(toString(TrustStatus::kUninformative));
-  }
+  addStatus(inferred.posterior->shape, statuses);
   return statuses;
 }
 

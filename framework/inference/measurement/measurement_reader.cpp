@@ -101,7 +101,8 @@ AvailableFeatures MeasurementReader::readAvailableFeatures(const Table& table,
   MeasurementSpec spec = experiment_.measurement;
   spec.start = getStart(start);
   AvailableResponse response = readAvailable(table, spec, layout_, sample_interval_);
-  AvailableFeatures found{extractor_.extract(response.response), {}, {}, std::move(response.remarks)};
+  AvailableFeatures found{
+      extractor_.extract(response.response), {}, {}, std::move(response.remarks), response.response};
   for (const ClippedSample& sample : response.clipped) {
     for (const Eigen::Index feature : findFeaturesOf(extractor_, sample.row)) {
       found.features[feature] = sample.limit;

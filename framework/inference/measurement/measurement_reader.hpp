@@ -24,6 +24,7 @@ struct AvailableFeatures {
   std::vector<Eigen::Index> available;  ///< the others, ascending
   std::vector<ClippedSample> clipped;   ///< features, of value `limit`
   std::vector<std::string> remarks;     ///< what is missing and why, a phrase each
+  Eigen::VectorXd response;             ///< rows of the layout, NaN where missing
 };
 
 /// From tables of measurements to the features of an experiment. Immutable.
