@@ -155,13 +155,6 @@ PosteriorEstimate SimulatorRefiner::sampleUnder(const NoiseHypothesis& noise, co
   return makeEstimate(problem.trials.front(), twinmap::samplePosterior(problem, given, options));
 }
 
-double SimulatorRefiner::findLeastChiSquare(const VectorXd& features, const VectorXd& known) const {
-  constexpr int kSearches = 16;
-  return twinmap::findLeastChiSquare(
-      {getUnknown(), model_.priors, {makeTrial(features, known)}, static_cast<Index>(getUnknown().size())},
-      kSearches);
-}
-
 PosteriorEstimate SimulatorRefiner::samplePosterior(const VectorXd& features, const VectorXd& known,
                                                     const NoiseHypothesis& stated, const MatrixXd& given,
                                                     const SimulatorPosteriorOptions& options) const {
@@ -182,6 +175,13 @@ PosteriorEstimate SimulatorRefiner::samplePosterior(const VectorXd& features, co
     }
   }
   return sampled;
+}
+
+double SimulatorRefiner::findLeastChiSquare(const VectorXd& features, const VectorXd& known) const {
+  constexpr int kSearches = 16;
+  return twinmap::findLeastChiSquare(
+      {getUnknown(), model_.priors, {makeTrial(features, known)}, static_cast<Index>(getUnknown().size())},
+      kSearches);
 }
 
 PosteriorEstimate SimulatorRefiner::makeEstimate(const MeasuredTrial& trial,

@@ -64,17 +64,17 @@ class SimulatorRefiner {
                                 const Eigen::VectorXd& known, const Eigen::MatrixXd& given,
                                 const SimulatorPosteriorOptions& options) const;
 
-  /// The least chi-square that 16 searches from all over the bounds find (findLeastChiSquare).
-  double findLeastChiSquare(const Eigen::VectorXd& features, const Eigen::VectorXd& known) const;
-
   /// The same under the stated noise (describeNoise) or, where that does not explain the measurement, under
   /// the first of other hypotheses that does (listNoiseHypotheses): a few samples left out, noise of another
   /// size, an offset, coloured noise. What is coloured and larger than stated may as well be physics that the
-  /// model lacks, and more than one sample in twenty is not an exception: then the stated one's it is. Cost: some
-  /// more posteriors where the stated noise does not explain the measurement.
+  /// model lacks, and more than one sample in twenty are not exceptions: then the stated one's it is. Cost:
+  /// some more posteriors where the stated noise does not explain the measurement.
   PosteriorEstimate samplePosterior(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
                                     const NoiseHypothesis& stated, const Eigen::MatrixXd& given,
                                     const SimulatorPosteriorOptions& options) const;
+
+  /// The least chi-square that 16 searches from all over the bounds find (findLeastChiSquare).
+  double findLeastChiSquare(const Eigen::VectorXd& features, const Eigen::VectorXd& known) const;
 
   /// Under the stated noise, searched from all that is known of the measurement too: the estimator's basins,
   /// the training simulations of the most similar features, the refined estimate; and what follows for its

@@ -141,7 +141,8 @@ std::vector<PartInformation> linearizeParts(const PosteriorProblem& problem, con
     Misfit misfit(*trial.simulator, *trial.model, box, trial.features);
     std::vector<Index> own(unknown.size());
     std::iota(own.begin(), own.end(), Index{0});
-    MisfitSurface surface({{&misfit, trial.model, own}}, coordinates, uniform);
+    MisfitSurface surface({{&misfit, trial.model, own, makeLosses(trial.noise, *trial.model)}}, coordinates,
+                          uniform);
     const LocalSurface local = surface.linearize(coordinates.fromParameters(best(trial.unknown))).front();
     if (!local.simulated) {
       throw std::runtime_error("the joint estimate cannot be simulated");

@@ -4,11 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "framework/experiment/model/parameter_box.hpp"
-#include "kernels/linalg/autocorrelation.hpp"
-#include "kernels/linalg/autoregressive_whitener.hpp"
-#include "kernels/linalg/decompositions.hpp"
-
 namespace twinmap {
 
 using Eigen::Index;
@@ -19,7 +14,6 @@ namespace {
 
 constexpr double kOutlierShare = 0.01;  // of samples, before they are seen
 constexpr double kOutlierScale = 10.0;  // in noise standard deviations
-constexpr double kLeast = std::numeric_limits<double>::min();
 
 /// Likelihoods of a residual, relative to that of noise at 0.
 struct Likelihoods {
@@ -40,20 +34,6 @@ double calcOutlierWeight(double residual) {
   return is_noise + (1.0 - is_noise) * 2.0 / (kOutlierScale * kOutlierScale + residual * residual);
 }
 
-/// n over the sum of squared autocorrelations: independent samples that would know a variance as well.
-double countEffective(const VectorXd& autoregression, Index n) {
-  if (autoregression.size() == 0) {
-    return static_cast<double>(n);
-  }
-  const VectorXd rho =
-      calcAutocorrelation(std::vector<double>(autoregression.begin(), autoregression.end()), n - 1);
-  double sum = 1.0;
-  for (Index k = 1; k < n; ++k) {
-    sum += 2.0 * (1.0 - static_cast<double>(k) / static_cast<double>(n)) * rho[k] * rho[k];
-  }
-  return static_cast<double>(n) / sum;
-}
-
 /// The normal density over its distribution function, at z.
 double calcMillsRatio(double z) {
   constexpr double kFar = -25.0;  // beyond, the distribution function is of tiny numbers
@@ -72,205 +52,6 @@ double calcCensoredLoss(double z) {
 }
 
 }  // namespace
-
-/// The loss of one output's samples.
-class ResidualLoss::Output {
- public:
-  Output(OutputNoise noise, OutputSamples samples, VectorXd offset)
-      : noise_(std::move(noise)), samples_(std::move(samples)), offset_(std::move(offset)) {
-    for (const NoiseColour& colour : noise_.colours) {
-      whiteners_.emplace_back(colour.autoregression, samples_.lags);
-    }
-  }
-
-  const std::vector<Index>& getRows() const { return samples_.rows; }
-
-  double calc(const VectorXd& residual) const {
-    return calcMixture(project(residual, MatrixXd(residual.size(), 0))).loss;
-  }
-
-  void addTo(const VectorXd& residual, const MatrixXd& jacobian, LinearLoss& sum) const {
-    const std::vector<Projected> all = project(residual, jacobian);
-    const VectorXd shares = calcMixture(all).shares;
-    const Index u = jacobian.cols();
-    for (std::size_t m = 0; m < all.size(); ++m) {
-      const double precision = shares[static_cast<Index>(m)] * calcPrecision(all[m]);
-      const auto derivatives = all[m].series.bottomRows(u);
-      sum.information += precision * derivatives * derivatives.transpose();
-      sum.descent += precision * derivatives * all[m].series.row(0).transpose();
-      sum.chi_square += precision * all[m].squares;
-    }
-  }
-
-  /// scale: of the squares, for the degrees of freedom that parameters take.
-  FoundNoise standardize(VectorXd& residual, const MatrixXd& jacobian, double scale) const {
-    const std::vector<Projected> all = project(residual, MatrixXd(residual.size(), 0));
-    const VectorXd shares = calcMixture(all).shares;
-    FoundNoise found;
-    found.output = noise_.output;
-    found.size_was_inferred = !noise_.factor;
-    found.has_offset = noise_.has_offset;
-    if (!whiteners_.empty()) {
-      found.autoregression = VectorXd::Zero(noise_.colours.front().autoregression.size());
-      for (std::size_t m = 0; m < all.size(); ++m) {
-        found.autoregression += shares[static_cast<Index>(m)] * noise_.colours[m].autoregression;
-      }
-    }
-    Projected at = makeProjected(residual, jacobian);
-    if (found.autoregression.size() > 0) {
-      whiten(AutoregressiveWhitener(found.autoregression, samples_.lags), at);
-    }
-    const MatrixXd whitened = at.series;
-    projectOffset(at);
-    const double variance =
-        noise_.factor ? *noise_.factor * *noise_.factor : at.squares / (scale * at.degrees);
-    VectorXd plain = residual(samples_.rows);
-    if (noise_.has_offset) {
-      found.offset = at.offset;
-      found.offset_stddev = std::sqrt(variance / calcOffsetInformation(whitened, variance));
-      plain -= at.offset * offset_;
-    }
-    residual(samples_.rows) = at.series.row(0).transpose() / std::sqrt(variance);
-    found.factor = noise_.factor ? *noise_.factor : std::sqrt(plain.squaredNorm() / (scale * at.degrees));
-    found.effective_samples = countEffective(found.autoregression, plain.size());
-    return found;
-  }
-
-  double countTaken() const {
-    return (noise_.has_offset ? 1.0 : 0.0) +
-           (whiteners_.empty() ? 0.0 : static_cast<double>(noise_.colours.front().autoregression.size()));
-  }
-
- private:
-  /// What is left of it where the parameters are not known: Schur's complement, with their bounds.
-  static double calcOffsetInformation(const MatrixXd& series, double variance) {
-    const Index u = series.rows() - 2;
-    const auto derivatives = series.bottomRows(u);
-    const VectorXd shared = derivatives * series.row(1).transpose();
-    const MatrixXd information =
-        derivatives * derivatives.transpose() + kHalfWidthInformation * variance * MatrixXd::Identity(u, u);
-    return series.row(1).squaredNorm() -
-           linalg::solveLower(linalg::calcCholesky(information).lower, shared).squaredNorm();
-  }
-
-  /// Whitened residual (row 0), its derivatives and the offset (last row), the offset projected out.
-  struct Projected {
-    MatrixXd series;
-    double squares = 0.0, degrees = 0.0, log_determinant = 0.0;
-    double offset = 0.0, offset_information = 0.0;
-  };
-
-  Projected makeProjected(const VectorXd& residual, const MatrixXd& jacobian) const {
-    const Index n = static_cast<Index>(samples_.rows.size()), u = jacobian.cols();
-    Projected made;
-    made.series.resize(u + 2, n);
-    made.series.row(0) = residual(samples_.rows).transpose();
-    made.series.row(1) = offset_.transpose();
-    made.series.bottomRows(u) = jacobian(samples_.rows, Eigen::all).transpose();
-    made.degrees = static_cast<double>(n);
-    return made;
-  }
-
-  static void whiten(const AutoregressiveWhitener& whitener, Projected& projected) {
-    whitener.apply(projected.series);
-    projected.log_determinant = whitener.getLogDeterminant();
-  }
-
-  void projectOffset(Projected& projected) const {
-    MatrixXd& series = projected.series;
-    if (noise_.has_offset) {
-      const Eigen::RowVectorXd own = series.row(1);
-      projected.offset_information = own.squaredNorm();
-      const VectorXd fitted = series * own.transpose() / projected.offset_information;
-      projected.offset = fitted[0];
-      series.row(0) -= fitted[0] * own;
-      series.bottomRows(series.rows() - 2) -= fitted.tail(series.rows() - 2) * own;
-      projected.log_determinant += std::log(projected.offset_information);
-      projected.degrees -= 1.0;
-    }
-    projected.squares = std::max(series.row(0).squaredNorm(), kLeast);
-  }
-
-  std::vector<Projected> project(const VectorXd& residual, const MatrixXd& jacobian) const {
-    const Projected plain = makeProjected(residual, jacobian);
-    std::vector<Projected> all(std::max<std::size_t>(1, whiteners_.size()), plain);
-    for (std::size_t m = 0; m < all.size(); ++m) {
-      if (!whiteners_.empty()) {
-        whiten(whiteners_[m], all[m]);
-      }
-      projectOffset(all[m]);
-    }
-    return all;
-  }
-
-  double calcPrecision(const Projected& one) const {
-    return noise_.factor ? 1.0 / (*noise_.factor * *noise_.factor) : one.degrees / one.squares;
-  }
-
-  struct ColourMixture {
-    double loss;      // -2 log of the likelihood
-    VectorXd shares;  // of the colours in it
-  };
-
-  ColourMixture calcMixture(const std::vector<Projected>& all) const {
-    VectorXd logs(static_cast<Index>(all.size()));
-    for (std::size_t m = 0; m < all.size(); ++m) {
-      const Projected& one = all[m];
-      const double squares = noise_.factor ? one.squares * calcPrecision(one)
-                                           : one.degrees * std::log(one.squares / one.degrees);
-      logs[static_cast<Index>(m)] =
-          -0.5 * (one.log_determinant + squares) + (whiteners_.empty() ? 0.0 : noise_.colours[m].log_weight);
-    }
-    const double largest = logs.maxCoeff();
-    const VectorXd shares = (logs.array() - largest).exp();
-    return {-2.0 * (largest + std::log(shares.sum())), shares / shares.sum()};
-  }
-
-  const OutputNoise noise_;
-  const OutputSamples samples_;
-  const VectorXd offset_;
-  std::vector<AutoregressiveWhitener> whiteners_;
-};
-
-OutputSamples findSamples(const RefinementModel& model, const GrowingWindow& window, int output,
-                          const std::vector<CensoredFeature>& censored) {
-  constexpr double kSame = 1e-6;  // of the smallest difference, as grids are found
-  const std::vector<FeatureInfo>& infos = model.getExtractor().getInfos();
-  OutputSamples samples;
-  for (std::size_t i = 0; i < window.features.size(); ++i) {
-    const FeatureInfo& info = infos[static_cast<std::size_t>(window.features[i])];
-    const bool is_censored = std::any_of(censored.begin(), censored.end(), [&](const CensoredFeature& one) {
-      return one.feature == window.features[i];
-    });
-    if (info.output == output && info.time > 0.0 && !is_censored) {
-      samples.rows.push_back(static_cast<Index>(i));
-    }
-  }
-  const auto get_time = [&](Index row) {
-    return infos[static_cast<std::size_t>(window.features[static_cast<std::size_t>(row)])].time;
-  };
-  std::stable_sort(samples.rows.begin(), samples.rows.end(),
-                   [&](Index a, Index b) { return get_time(a) < get_time(b); });
-  std::vector<double> times;
-  double smallest = std::numeric_limits<double>::infinity();
-  for (const Index row : samples.rows) {
-    if (!times.empty()) {
-      smallest = std::min(smallest, get_time(row) - times.back());
-    }
-    times.push_back(get_time(row));
-  }
-  if (times.size() > 1 && smallest > kSame * times.back() / static_cast<double>(times.size())) {
-    samples.lags = findLags(times, smallest);
-  }
-  return samples;
-}
-
-VectorXd makeOffset(const GrowingWindow& window, const OutputSamples& samples) {
-  VectorXd constant = VectorXd::Zero(static_cast<Index>(window.features.size()));
-  constant(samples.rows).setOnes();
-  const VectorXd whitened = window.whitener->apply(constant).col(0);
-  return whitened(samples.rows);
-}
 
 ResidualLoss::ResidualLoss(const NoiseHypothesis& hypothesis, const RefinementModel& model,
                            const GrowingWindow& window)
@@ -296,7 +77,7 @@ ResidualLoss::ResidualLoss(const NoiseHypothesis& hypothesis, const RefinementMo
     scale_(findSamples(model, window, noise.output).rows).setZero();
     VectorXd offset = makeOffset(window, samples);
     outputs_.push_back(
-        std::make_shared<const Output>(std::move(possible), std::move(samples), std::move(offset)));
+        std::make_shared<const OutputLoss>(std::move(possible), std::move(samples), std::move(offset)));
   }
   for (const CensoredFeature& one : hypothesis.censored) {
     const auto found = std::lower_bound(window.features.begin(), window.features.end(), one.feature);
@@ -376,6 +157,16 @@ ResidualLoss::Standardized ResidualLoss::standardize(const VectorXd& residual, c
   }
   standardized.degrees = std::max(standardized.degrees, 1.0);
   return standardized;
+}
+
+std::vector<ResidualLoss> makeLosses(const NoiseHypothesis& hypothesis, const RefinementModel& model) {
+  std::vector<ResidualLoss> losses;
+  if (!hypothesis.isPlain()) {
+    for (const GrowingWindow& window : model.getWindows()) {
+      losses.emplace_back(hypothesis, model, window);
+    }
+  }
+  return losses;
 }
 
 }  // namespace twinmap

@@ -4,27 +4,15 @@
 #include <memory>
 #include <vector>
 
-#include "framework/estimation/posterior/noise_hypothesis.hpp"
-#include "framework/estimation/refined/refinement_model.hpp"
+#include "framework/estimation/posterior/output_loss.hpp"
 
 namespace twinmap {
-
-/// A loss and its linear model: with the residual r and its derivatives -J,
-///   loss(step) ~ loss - 2 step' descent + step' information step.
-struct LinearLoss {
-  double loss = 0.0;
-  double chi_square = 0.0;  ///< a sum of squares of what is noise, that of unknown size in its own units
-  Eigen::MatrixXd information;
-  Eigen::VectorXd descent;
-  Eigen::VectorXd weights;  ///< k: of residuals among outliers, about 0 of an outlier; else 1
-};
 
 /// -2 log likelihood, but for a summand, of whitened residuals (k) under a hypothesis of their noise.
 /// - Outliers have a Cauchy distribution of ten noise standard deviations, so that spikes of 20 and of 500
 ///   are nothing unusual.
-/// - Of an output with n samples r, correlation R and unknown size, n log(r' R^-1 r / n) + log |R|. A
-/// constant
-///   offset c is projected out, which leaves n - 1 for n, and adds log(c' R^-1 c).
+/// - Of an output with n samples r, correlation R and unknown size, n log(r' R^-1 r / n) + log |R|. An offset
+///   c is projected out, which leaves n - 1 for n, and adds log(c' R^-1 c).
 /// - Over the colours that R may have it is the mixture of likelihoods.
 /// - Of a censored feature the likelihood is the probability of noise that brings the response beyond.
 /// Immutable.
@@ -50,7 +38,6 @@ class ResidualLoss {
                            double degrees) const;
 
  private:
-  class Output;
   /// A row that is censored.
   struct Censored {
     Eigen::Index row;
@@ -62,20 +49,10 @@ class ResidualLoss {
   Eigen::VectorXd scale_;  // k: of residuals that count one by one; 0 of the others; empty: 1 of all
   bool has_outliers_;
   std::vector<Censored> censored_;
-  std::vector<std::shared_ptr<const Output>> outputs_;
+  std::vector<std::shared_ptr<const OutputLoss>> outputs_;
 };
 
-/// The samples of an output in time among the features of a window.
-struct OutputSamples {
-  std::vector<Eigen::Index> rows;  ///< of the window's features, in the order of time
-  std::vector<long> lags;  ///< in the smallest of their differences; empty where they are on no such grid
-};
-/// Without those that are censored.
-OutputSamples findSamples(const RefinementModel& model, const GrowingWindow& window, int output,
-                          const std::vector<CensoredFeature>& censored = {});
-
-/// What one more of an output, in its unit, is in its samples, whitened (n, in the order of `samples`). Only
-/// where the noise is the same for every response.
-Eigen::VectorXd makeOffset(const GrowingWindow& window, const OutputSamples& samples);
+/// Of each window of a model; empty where the hypothesis is that the noise is as it is stated.
+std::vector<ResidualLoss> makeLosses(const NoiseHypothesis& hypothesis, const RefinementModel& model);
 
 }  // namespace twinmap

@@ -205,16 +205,6 @@ MatrixXd toParameters(const LogCoordinates& coordinates, const MatrixXd& at) {
   return points;
 }
 
-std::vector<ResidualLoss> makeLosses(const MeasuredTrial& trial) {
-  std::vector<ResidualLoss> losses;
-  if (!trial.noise.isPlain()) {
-    for (const GrowingWindow& window : trial.model->getWindows()) {
-      losses.emplace_back(trial.noise, *trial.model, window);
-    }
-  }
-  return losses;
-}
-
 /// The misfits of all measurements, and the surface that they make.
 class ProblemSurface {
  public:
@@ -242,7 +232,8 @@ class ProblemSurface {
     std::vector<MeasuredPart> parts;
     for (const MeasuredTrial& trial : problem.trials) {
       parts_.push_back(std::make_unique<Part>(trial));
-      parts.push_back({&parts_.back()->misfit, trial.model, trial.unknown, makeLosses(trial)});
+      parts.push_back(
+          {&parts_.back()->misfit, trial.model, trial.unknown, makeLosses(trial.noise, *trial.model)});
     }
     return parts;
   }

@@ -31,7 +31,7 @@ void checkUnwrap(const Name& output, const MeasurementSpec& measurement, const M
   if (!counts && !findWholeTurn(unit)) {
     throw ExperimentError(output.where, output.text,
                           "is in '" + unit +
-                              "', which is not an angle: give the numbers that it counts between as "
+                              "', which is not a unit of angles: give the numbers that it counts between as "
                               "measurement.range, such as [0, 4096]");
   }
 }
