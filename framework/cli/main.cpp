@@ -1,3 +1,5 @@
+#include <fmt/core.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
@@ -8,6 +10,7 @@
 #include <vector>
 
 #include "framework/base/log/interrupted.hpp"
+#include "framework/base/text/nearest_name.hpp"
 #include "framework/base/text/source_location.hpp"
 #include "framework/cli/commands/commands.hpp"
 #include "framework/cli/log.hpp"
@@ -50,6 +53,27 @@ void groupCommands(CLI::App& app) {
   }
 }
 
+/// What is wrong with the command line, and where to look.
+std::string describeParseError(const CLI::App* app, const CLI::Error& error) {
+  const std::vector<CLI::App*> parsed = app->get_subcommands();
+  const std::string command = parsed.empty() ? "" : " " + parsed.front()->get_name();
+  return fmt::format("twinmap: error: {}\n  'twinmap{} --help' says what can be given.\n", error.what(),
+                     command);
+}
+
+/// CLI11 says "A subcommand is required" of a misspelt one.
+void throwIfUnknown(const CLI::App& app, const std::string& word) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    names.push_back(command->get_name());
+  }
+  if (word.empty() || word.front() == '-' || std::find(names.begin(), names.end(), word) != names.end()) {
+    return;
+  }
+  throw twinmap::ExperimentError(fmt::format("no command is called '{}'{}; 'twinmap --help' lists them", word,
+                                             twinmap::suggestName(word, names)));
+}
+
 int runCommand(int count, char** arguments) {
   CLI::App app(
       "twinmap estimates the physical parameters of a simulation model from measured responses, with "
@@ -70,12 +94,14 @@ int runCommand(int count, char** arguments) {
       "  twinmap check experiments/duffing/cart.yaml\n"
       "  twinmap run experiments/duffing/cart.yaml\n"
       "  twinmap simulate experiments/duffing/cart.yaml --noise --csv cart.csv parameters.k=95\n"
-      "  twinmap infer results/cart cart.csv\n\n"
+      "  twinmap infer results/duffing_cart cart.csv\n\n"
       "twinmap COMMAND --help says what a command takes.");
   if (count == 1) {
     std::cerr << app.help();
     return kWrongInput;
   }
+  throwIfUnknown(app, arguments[1]);
+  app.failure_message(describeParseError);
   try {
     app.parse(count, arguments);
   } catch (const CLI::ParseError& error) {

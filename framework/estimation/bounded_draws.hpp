@@ -20,6 +20,9 @@ struct BoundedDraws {
   /// Where the density at one bound is at least that at the end of the interval that begins there, it is that
   /// one: a friction that may well be 0 is below a limit, not between two. The truth at a bound, where no
   /// interval with two sides would ever hold it, is then held as often as others.
+  /// Where other parameters may well be 0, as their 95 % intervals end at a bound of 0, it reaches as far as
+  /// it would without them: friction that is absent leaves its share of the losses to damping, and the
+  /// posterior, which gives it none, would hold the damping of such a machine .81 of the time.
   std::pair<double, double> findInterval(Eigen::Index parameter, double probability) const;
 };
 

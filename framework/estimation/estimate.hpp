@@ -31,6 +31,8 @@ struct Estimate {
   Eigen::VectorXd mean{}, stddev{};  ///< p; empty where nothing is believed
   /// p, what the measurement allows as the estimator predicts it; empty where it cannot.
   Eigen::VectorXd limit_stddev{};
+  /// p, what was known before the measurement; empty where that is the bounds alone.
+  Eigen::VectorXd prior_stddev{};
   Eigen::MatrixXd correlation{};  ///< p x p, of the errors
   Mixture mixture{};              ///< where it is one, whose mean and stddev are above
   BoundedDraws draws{};           ///< where it is known by draws; a mixture then has their separate modes

@@ -1,7 +1,10 @@
 #include "framework/inference/direct_inference.hpp"
 
+#include <limits>
+
 #include "framework/base/text/source_location.hpp"
 #include "framework/inference/derived_values.hpp"
+#include "framework/inference/measurement/measurement_faults.hpp"
 
 namespace twinmap {
 
@@ -31,7 +34,23 @@ InferredMeasurement DirectInference::infer(const Table& table, std::optional<dou
   inferred.source = table.source;
   inferred.start = reader_.getStart(start);
   inferred.left_out = found.remarks;
+  inferred.fault = findFault(found, known, *inferred.posterior);
   return inferred;
+}
+
+std::string DirectInference::findFault(const AvailableFeatures& found, const Eigen::VectorXd& known,
+                                       const PosteriorEstimate& posterior) const {
+  const SimulatorFit& fit = *posterior.fit;
+  if (!fit.isSimulated() || isPlausible(fit)) {
+    return "";
+  }
+  const auto calcMisfit = [&](const Eigen::VectorXd& corrected) {
+    const Eigen::VectorXd features = simulator_.getExtractor().extract(corrected);
+    return features.array().isFinite().count() == static_cast<Eigen::Index>(found.available.size())
+               ? simulator_.findLeastChiSquare(features, known)
+               : std::numeric_limits<double>::infinity();
+  };
+  return explainByFault(found.response, reader_.getLayout(), fit.chi_square, fit.residual.size(), calcMisfit);
 }
 
 PosteriorEstimate DirectInference::sample(const Eigen::VectorXd& features,

@@ -28,6 +28,10 @@ class DirectInference final : public MeasurementInference {
   /// or noise of another size, then so.
   PosteriorEstimate sample(const Eigen::VectorXd& features, const Eigen::VectorXd& known) const;
 
+  /// The simple fault of the recording that explains a gross misfit, or "".
+  std::string findFault(const AvailableFeatures& found, const Eigen::VectorXd& known,
+                        const PosteriorEstimate& posterior) const;
+
   const MeasurementReader& reader_;
   const SimulatorRefiner simulator_;
   SimulatorPosteriorOptions options_;

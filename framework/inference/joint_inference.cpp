@@ -148,8 +148,7 @@ ScatterEstimate combineScattered(const VectorXd& values, const VectorXd& stddevs
   return estimate;
 }
 
-std::vector<std::string> listStatuses(const JointInference& inferred,
-                                      const std::vector<ParameterSpec>& parameters) {
+std::vector<std::string> listStatuses(const JointInference& inferred, Index parameters) {
   if (!inferred.agreement) {
     return {"not_simulated"};
   }
@@ -167,14 +166,7 @@ std::vector<std::string> listStatuses(const JointInference& inferred,
   if (!inferred.joint.isReliable()) {
     statuses.emplace_back("unreliable");
   } else {
-    if (inferred.joint.modes.size() > 1) {
-      statuses.emplace_back("multimodal");
-    }
-    constexpr double kShare = 0.9;  // as of a single measurement
-    const VectorXd prior = Prior(parameters, {}).calcStddevs();
-    if ((inferred.joint.stddev.head(prior.size()).array() > kShare * prior.array()).any()) {
-      statuses.emplace_back("uninformative");
-    }
+    addStatus(inferred.joint.findShape(parameters), statuses);
   }
   return statuses.empty() ? std::vector<std::string>{"ok"} : statuses;
 }

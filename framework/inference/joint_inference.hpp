@@ -54,9 +54,8 @@ struct JointInference {
 
 /// Names of all that is to be said against the joint estimate, the most severe first: "not_simulated",
 /// "model_mismatch" (of a recording alone), "trials_disagree" (below kAgreementLevel), "unreliable",
-/// "multimodal", "uninformative"; {"ok"} where nothing is.
-std::vector<std::string> listStatuses(const JointInference& inferred,
-                                      const std::vector<ParameterSpec>& parameters);
+/// "multimodal", "uninformative"; {"ok"} where nothing is. Of the first `parameters`, the machine's.
+std::vector<std::string> listStatuses(const JointInference& inferred, Eigen::Index parameters);
 
 /// The mean of values with standard deviations that scatter more than these say: variance between them by
 /// DerSimonian and Laird (1986), interval by Hartung and Knapp (2001), which holds for few values as well.

@@ -152,6 +152,8 @@ PosteriorEstimate makePosteriorEstimate(const SimulatorPosterior& posterior,
     made.estimate = makeEstimate(makeDraws(posterior.draws, posterior.weights, unknown),
                                  posterior.mean.head(p), posterior.covariance.topLeftCorner(p, p));
     made.estimate.mixture = makeMixture(posterior.modes, p);
+    made.estimate.prior_stddev = posterior.prior_stddev.head(p);
+    made.shape = posterior.findShape(p);
   }
   return made;
 }
@@ -167,11 +169,12 @@ MatrixXd calcQuantiles(const Estimate& estimate) {
   return quantiles;
 }
 
-bool isUninformative(const Estimate& estimate) {
-  constexpr double kShare = 0.9;  // as trained estimators judge it
-  const Index p = estimate.stddev.size();
-  const VectorXd prior = kUniformStddev * (estimate.draws.upper - estimate.draws.lower).head(p);
-  return (estimate.stddev.array() > kShare * prior.array()).any();
+void addStatus(PosteriorShape shape, std::vector<std::string>& statuses) {
+  if (shape == PosteriorShape::kMultimodal) {
+    statuses.emplace_back("multimodal");
+  } else if (shape == PosteriorShape::kUninformative) {
+    statuses.emplace_back("uninformative");
+  }
 }
 
 }  // namespace twinmap

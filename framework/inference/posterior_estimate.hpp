@@ -39,9 +39,10 @@ struct PosteriorEstimate {
   Estimate estimate;  ///< with draws of all unknown parameters; not given unless it is reliable
   double effective_sample_size = 0.0;
   double pareto_shape = 0.0;
-  int evaluations = 0;              ///< draws of all rounds
-  std::string message;              ///< why it is not reliable; else empty
-  std::optional<SimulatorFit> fit;  ///< where it is the simulator's
+  int evaluations = 0;                                  ///< draws of all rounds
+  std::string message;                                  ///< why it is not reliable; else empty
+  std::optional<SimulatorFit> fit;                      ///< where it is the simulator's
+  PosteriorShape shape = PosteriorShape::kInformative;  ///< of the simulator's, where it is reliable
 
   bool isReliable() const { return message.empty(); }
   const char* getStatus() const { return isReliable() ? "ok" : "unreliable"; }
@@ -63,8 +64,7 @@ constexpr std::array<double, 5> kQuantileProbabilities{0.025, 0.16, 0.5, 0.84, 0
 /// Of each parameter (p x kQuantileProbabilities) of an estimate by draws.
 Eigen::MatrixXd calcQuantiles(const Estimate& estimate);
 
-/// Whether the standard deviation of a parameter is above 0.9 of that which its bounds alone leave: the
-/// measurement says little about it. Of an estimate by draws.
-bool isUninformative(const Estimate& estimate);
+/// Adds what a posterior's shape says against it, "multimodal" or "uninformative", to a list of statuses.
+void addStatus(PosteriorShape shape, std::vector<std::string>& statuses);
 
 }  // namespace twinmap

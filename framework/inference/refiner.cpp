@@ -129,6 +129,13 @@ PosteriorEstimate SimulatorRefiner::samplePosterior(const VectorXd& features, co
   return makeEstimate(problem.trials.front(), twinmap::samplePosterior(problem, given, options));
 }
 
+double SimulatorRefiner::findLeastChiSquare(const VectorXd& features, const VectorXd& known) const {
+  constexpr int kSearches = 16;
+  return twinmap::findLeastChiSquare(
+      {getUnknown(), model_.priors, {makeTrial(features, known)}, static_cast<Index>(getUnknown().size())},
+      kSearches);
+}
+
 PosteriorEstimate SimulatorRefiner::makeEstimate(const MeasuredTrial& trial,
                                                  SimulatorPosterior posterior) const {
   std::vector<FeatureInfo> infos = extractor_.getInfos();

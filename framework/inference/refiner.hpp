@@ -60,8 +60,11 @@ class SimulatorRefiner {
                                     const Eigen::MatrixXd& given, const SimulatorPosteriorOptions& options,
                                     LossKind loss = LossKind::kPlain) const;
 
-  /// The same, searched from all that is known of the measurement too: the estimator's basins, the training
-  /// simulations of the most similar features, the refined estimate; and what follows for its trust
+  /// The least chi-square that 16 searches from all over the bounds find (findLeastChiSquare).
+  double findLeastChiSquare(const Eigen::VectorXd& features, const Eigen::VectorXd& known) const;
+
+  /// The posterior, searched from all that is known of the measurement too: the estimator's basins, the
+  /// training simulations of the most similar features, the refined estimate; and what follows for its trust
   /// (judgeAnew): sets both.
   void sampleAndJudge(const Eigen::VectorXd& features, const Eigen::VectorXd& known, const TrustModel* trust,
                       const SimulatorPosteriorOptions& options, InferredMeasurement& inferred) const;

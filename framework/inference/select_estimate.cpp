@@ -43,12 +43,7 @@ Statuses listOfSampled(const InferredMeasurement& inferred) {
   if (inferred.posterior->fit && inferred.posterior->fit->noise_factor != 1.0) {
     statuses.emplace_back(inferred.posterior->fit->noise_factor > 1.0 ? "noise_larger" : "noise_smaller");
   }
-  if (inferred.posterior->estimate.isMultimodal()) {
-    statuses.emplace_back(toString(RefinementStatus::kMultimodal));
-  }
-  if (isUninformative(inferred.posterior->estimate) && !inferred.posterior->estimate.isMultimodal()) {
-    statuses.emplace_back(toString(TrustStatus::kUninformative));
-  }
+  addStatus(inferred.posterior->shape, statuses);
   return statuses;
 }
 

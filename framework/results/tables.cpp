@@ -66,7 +66,7 @@ std::vector<Row> makeRows(const RunSummary& run, std::string (*escape)(const std
   return rows;
 }
 
-/// How many of the answers are refined, where any was to be.
+/// How many of the estimates are refined, where any was to be.
 std::string makeRefinementLegend(const RunSummary& run) {
   const std::vector<Refined>& refined = run.evaluation.refined;
   if (refined.empty()) {
@@ -74,7 +74,7 @@ std::string makeRefinementLegend(const RunSummary& run) {
   }
   const auto accepted =
       std::count_if(refined.begin(), refined.end(), [](const Refined& one) { return one.isAccepted(); });
-  return fmt::format("Refined on the simulator: {} of {} answers; methods.csv has those of the map alone.\n",
+  return fmt::format("Refined on the simulator: {} of {} estimates; methods.csv has the quick ones too.\n",
                      accepted, refined.size());
 }
 

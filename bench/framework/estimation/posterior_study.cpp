@@ -1,283 +1,135 @@
-// How right the simulator's posterior is on a mechanism:
+// How right inference without a run is on a mechanism:
 //   posterior_study FILE.yaml [tests] [draws] [seed] [NAME=VALUE ...]
 // simulates measurements of machines drawn from the bounds (with the parameters named held at their values),
-// infers each without a run and prints what the statuses were, how often the intervals hold, the errors
-// against the information limit, and simulation-based calibration.
+// infers each as `infer FILE.yaml m.csv` does and prints what the statuses were, how often the intervals
+// hold, the errors against the information limit, simulation-based calibration, the combinations that were
+// named, and last a row of the table in docs/benchmarks/posterior.md.
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
-#include <map>
-#include <optional>
-#include <string>
+#include <filesystem>
 
-#include "framework/analysis/information_limit.hpp"
+#include "bench/framework/estimation/posterior_bench.hpp"
 #include "framework/analysis/rank_calibration.hpp"
-#include "framework/base/random/random.hpp"
-#include "framework/data/features/experiment_features.hpp"
-#include "framework/data/noise/noise.hpp"
-#include "framework/data/sensitivity/stencil_simulator.hpp"
-#include "framework/estimation/posterior/residual_test.hpp"
-#include "framework/estimation/posterior/simulator_posterior.hpp"
-#include "framework/experiment/experiment_file.hpp"
-#include "framework/experiment/model/parameter_box.hpp"
-#include "framework/models/make_simulator.hpp"
-#include "kernels/sampling/weighted_draws.hpp"
 
 namespace twinmap {
 namespace {
 
 using Eigen::Index;
-using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-struct Request {
-  std::string file;
-  int tests = 60, draws = SimulatorPosteriorOptions{}.draws;
-  std::uint64_t seed = 1;
-  std::map<std::string, double> held;  ///< truths that are not drawn
-};
-
-/// A measurement of a machine that is known.
-struct Measured {
-  VectorXd truth;  ///< of the sampled box
-  VectorXd features;
-  double chi_square = 0.0;  ///< of the truth
-  VectorXd limit;           ///< u: standard deviations
-};
-
-/// What the posterior said of it.
-struct Judged {
-  bool reliable = false, ok = false, missed = false;
-  std::string status;
-  VectorXd z, held95, held50;  ///< p; 1 where the interval holds
-  VectorXd error, limit;       ///< p, in widths
-  Eigen::VectorXi ranks;       ///< p + 1
-  double seconds = 0.0, simulations = 0.0, size = 0.0, pareto_shape = 0.0;
-  double chi_square = 0.0, excess = 0.0;  ///< of the best fit; above that of the truth
-  int found_best = 0, starts = 0;
-
-  std::string describe() const {
-    return fmt::format(
-        "{}{} (effective {:.0f}, Pareto {:.2f}, chi-square {:.1f}, {:+.1f} to the truth's, found "
-        "{} of {}, {:.2f} s)",
-        missed ? "MISSED, " : "", status, size, pareto_shape, chi_square, excess, found_best, starts,
-        seconds);
-  }
-};
-
-class Bench {
- public:
-  explicit Bench(const Request& request)
-      : request_(request),
-        experiment_(loadExperiment(request.file)),
-        layout_(makeLayout(experiment_)),
-        extractor_(makeExtractor(experiment_, layout_)),
-        response_noise_(experiment_.noise, layout_),
-        noise_(extractor_, response_noise_, experiment_.seed),
-        simulator_(makeSimulator(experiment_.model, layout_.times, layout_.modes)),
-        unknown_(collectUnknown(experiment_.model)),
-        sampled_(collectSampled(experiment_.model)),
-        model_(unknown_, extractor_, noise_) {}
-
-  const std::vector<ParameterSpec>& getParameters() const { return experiment_.model.parameters; }
-
-  /// Nothing where the machine cannot be simulated.
-  std::optional<Measured> measure(int test) {
-    const RandomStream random(request_.seed, RandomPurpose::kTestDesign);
-    Measured measured;
-    measured.truth.resize(static_cast<Index>(sampled_.size()));
-    for (Index j = 0; j < measured.truth.size(); ++j) {
-      const ParameterSpec& parameter = sampled_[static_cast<std::size_t>(j)];
-      const auto held = request_.held.find(parameter.name.text);
-      const double uniform =
-          random.calcUniform(static_cast<std::uint64_t>(test), static_cast<std::uint64_t>(j));
-      measured.truth[j] =
-          held != request_.held.end()
-              ? held->second
-              : parameter.bounds.lower + (parameter.bounds.upper - parameter.bounds.lower) * uniform;
-    }
-    MatrixXd stencil(layout_.getRowCount() * countNeighbours(unknown_.size()), 1);
-    SampleStatus status;
-    simulateStencils(*simulator_, unknown_, measured.truth, stencil, &status);
-    if (!status.ok) {
-      return std::nullopt;
-    }
-    const LocalModel local = makeLocalModel(extractor_, unknown_, measured.truth, stencil, status);
-    const MatrixXd noisy =
-        addNoise(local.response, response_noise_,
-                 {request_.seed + 1000 * static_cast<std::uint64_t>(test), RandomPurpose::kTestNoise});
-    measured.features = extractor_.extract(noisy).col(0);
-    if (!measured.features.allFinite()) {
-      return std::nullopt;
-    }
-    const NoiseWhitener whitener = model_.makeWhitener(model_.getWhole(), local.response);
-    measured.chi_square = whitener.apply(VectorXd(measured.features - local.features)).squaredNorm();
-    measured.limit = calcInformationLimit({local}, noise_, getParameters()).stddev.col(0);
-    return measured;
-  }
-
-  Judged judge(const Measured& measured) {
-    SimulatorPosteriorOptions options;
-    options.draws = request_.draws;
-    options.seed = experiment_.seed;
-    const std::clock_t begin = std::clock();
-    const SimulatorPosterior posterior =
-        samplePosterior(*simulator_, model_, experiment_.model.priors, measured.features, measured.truth,
-                        MatrixXd(static_cast<Index>(unknown_.size()), 0), options);
-    Judged judged;
-    judged.seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-    judged.simulations = posterior.simulations;
-    judged.size = posterior.effective_sample_size;
-    judged.pareto_shape = posterior.pareto_shape;
-    judged.chi_square = posterior.chi_square;
-    judged.excess = posterior.chi_square - measured.chi_square;
-    judged.missed = !(judged.excess < 2.0);
-    judged.found_best = posterior.found_best;
-    judged.starts = posterior.starts;
-    judged.status = findStatus(posterior);
-    judged.ok = judged.status == "ok";
-    judged.reliable = posterior.isReliable();
-    if (judged.reliable) {
-      compare(posterior, measured, judged);
-    }
-    return judged;
-  }
-
- private:
-  std::string findStatus(const SimulatorPosterior& posterior) const {
-    if (!(posterior.degrees > 0.0)) {
-      return "not_simulated";
-    }
-    if (testResidual(posterior.residual, posterior.degrees, extractor_.getInfos()).calcPValue() <
-        kMismatchLevel) {
-      return "model_mismatch";
-    }
-    if (!posterior.isReliable()) {
-      return "unreliable: " + posterior.message;
-    }
-    return posterior.modes.size() > 1 ? "multimodal" : "ok";
-  }
-
-  void compare(const SimulatorPosterior& posterior, const Measured& measured, Judged& judged) const {
-    const auto p = static_cast<Index>(getParameters().size());
-    const VectorXd truth = measured.truth.head(p), widths = calcWidths(getParameters());
-    const Eigen::ArrayXd error = posterior.mean.head(p) - truth;
-    judged.z = error / posterior.stddev.head(p).array();
-    judged.error = error / widths.array();
-    judged.limit = measured.limit.head(p).cwiseQuotient(widths);
-    const auto hold = [&](double probability) { return findHeld(posterior, truth, probability); };
-    judged.held95 = hold(0.95);
-    judged.held50 = hold(0.5);
-    judged.ranks = rank(posterior, truth);
-  }
-
-  /// 1 where the truth (p) is in the shortest of three intervals: the one with equal tails and those that end
-  /// at a bound.
-  VectorXd findHeld(const SimulatorPosterior& posterior, const VectorXd& truth, double probability) const {
-    const double outside = 1.0 - probability;
-    VectorXd probabilities(4);
-    probabilities << 0.5 * outside, outside, probability, 1.0 - 0.5 * outside;
-    const MatrixXd quantiles = posterior.calcQuantiles(probabilities);
-    VectorXd held(truth.size());
-    for (Index j = 0; j < held.size(); ++j) {
-      const Bounds& bounds = unknown_[static_cast<std::size_t>(j)].bounds;
-      Eigen::Matrix<double, 2, 3> intervals;
-      intervals << quantiles(j, 0), bounds.lower, quantiles(j, 1),  //
-          quantiles(j, 3), quantiles(j, 2), bounds.upper;
-      Index shortest = 0;
-      (intervals.row(1) - intervals.row(0)).minCoeff(&shortest);
-      held[j] = intervals(0, shortest) <= truth[j] && truth[j] <= intervals(1, shortest) ? 1.0 : 0.0;
-    }
-    return held;
-  }
-
-  /// Among draws of equal weight; together by the distance from the best fit, in standard deviations.
-  Eigen::VectorXi rank(const SimulatorPosterior& posterior, const VectorXd& truth) const {
-    const RandomStream random(request_.seed, RandomPurpose::kPosteriorResampling);
-    const VectorXd uniforms = VectorXd::NullaryExpr(
-        kRankDraws, [&](Index i) { return random.calcUniform(static_cast<std::uint64_t>(i), 0); });
-    const MatrixXd draws = importance::resample({posterior.draws, posterior.weights}, uniforms);
-    const VectorXd center = posterior.best.head(truth.size());
-    const MatrixXd metric = posterior.stddev.head(truth.size()).cwiseAbs2().asDiagonal();
-    return calcRanks(truth, draws.topRows(truth.size()), {center, metric});
-  }
-
-  const Request request_;
-  const ExperimentSpec experiment_;
-  const ResponseLayout layout_;
-  const FeatureExtractor extractor_;
-  const ResponseNoise response_noise_;
-  const FeatureNoise noise_;
-  const std::unique_ptr<Simulator> simulator_;
-  const std::vector<ParameterSpec> unknown_, sampled_;
-  const RefinementModel model_;
-};
 
 double calcMedian(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   return values.empty() ? 0.0 : values[values.size() / 2];
 }
 
-void printStatuses(const std::vector<Judged>& judged) {
-  std::map<std::string, int> counts;
-  int reliable = 0, missed = 0, wrong = 0;
+/// Counts over measurements, and medians of what they cost.
+struct Totals {
+  std::map<std::string, int> statuses, ridges;
+  int reliable = 0, ok = 0, missed = 0, wrong = 0;
   std::vector<double> seconds, simulations, sizes;
+};
+
+Totals count(const std::vector<Judged>& judged) {
+  Totals totals;
   for (const Judged& one : judged) {
-    ++counts[one.status];
-    reliable += one.reliable;
-    missed += one.missed;
-    wrong += one.ok && one.z.cwiseAbs().maxCoeff() > 6.0;
-    seconds.push_back(one.seconds);
-    simulations.push_back(one.simulations);
-    sizes.push_back(one.size);
+    ++totals.statuses[one.status];
+    ++totals.ridges[one.ridges];
+    totals.reliable += one.reliable;
+    totals.ok += one.ok;
+    totals.missed += one.missed;
+    totals.wrong += one.ok && one.z.cwiseAbs().maxCoeff() > 6.0;
+    totals.seconds.push_back(one.seconds);
+    totals.simulations.push_back(one.simulations);
+    totals.sizes.push_back(one.size);
   }
+  return totals;
+}
+
+void printTotals(const Totals& totals) {
   fmt::print(
       "  {} measurements, {} with a reliable posterior; best basin missed {}, ok and more than 6 sd off {}\n"
       "  median {:.3f} s of a processor (largest {:.2f}), {:.0f} simulations, effective sample size {:.0f}\n",
-      judged.size(), reliable, missed, wrong, calcMedian(seconds),
-      *std::max_element(seconds.begin(), seconds.end()), calcMedian(simulations), calcMedian(sizes));
-  for (const auto& [status, count] : counts) {
-    fmt::print("  {:5d} {}\n", count, status);
+      totals.seconds.size(), totals.reliable, totals.missed, totals.wrong, calcMedian(totals.seconds),
+      *std::max_element(totals.seconds.begin(), totals.seconds.end()), calcMedian(totals.simulations),
+      calcMedian(totals.sizes));
+  for (const auto& [status, number] : totals.statuses) {
+    fmt::print("  {:5d} {}\n", number, status);
   }
-}
-
-/// Of reliable posteriors; ratio: of the errors to the information limit.
-void printParameters(const std::vector<Judged>& judged, const std::vector<ParameterSpec>& parameters) {
-  std::vector<const Judged*> good;
-  for (const Judged& one : judged) {
-    if (one.reliable) {
-      good.push_back(&one);
+  for (const auto& [ridges, number] : totals.ridges) {
+    if (!ridges.empty()) {
+      fmt::print("  {:5d} name {}\n", number, ridges);
     }
   }
-  const auto n = static_cast<Index>(good.size()), p = static_cast<Index>(parameters.size());
-  if (n == 0) {
-    return;
-  }
-  VectorXd held95 = VectorXd::Zero(p), held50 = held95, errors = held95, limits = held95, worst = held95;
-  Eigen::MatrixXi ranks(p + 1, n);
-  for (Index i = 0; i < n; ++i) {
-    const Judged& one = *good[static_cast<std::size_t>(i)];
-    held95 += one.held95 / static_cast<double>(n);
-    held50 += one.held50 / static_cast<double>(n);
-    errors += one.error.cwiseAbs2();
-    limits += one.limit.cwiseAbs2();
-    worst = worst.cwiseMax(one.z.cwiseAbs());
-    ranks.col(i) = one.ranks;
-  }
-  const VectorXd uniformity =
-      n >= kMinRanks ? calcRankCalibration(ranks).p_value : VectorXd::Constant(p + 1, std::nan(""));
-  for (Index j = 0; j < p; ++j) {
-    fmt::print("  {:>10}  coverage95 {:.3f}  coverage50 {:.3f}  ratio {:.3f}  worst z {:.1f}  SBC p {:.3f}\n",
-               parameters[static_cast<std::size_t>(j)].name.text, held95[j], held50[j],
-               std::sqrt(errors[j] / limits[j]), worst[j], uniformity[j]);
-  }
-  fmt::print("  {:>10}  SBC p {:.3f}\n", "together", uniformity[p]);
 }
 
-Request readRequest(int argc, char** argv) {
-  Request request;
+/// Of reliable posteriors, p each; ratio: of the errors to the information limit.
+struct Figures {
+  VectorXd coverage95, coverage50, ratio, worst;
+  VectorXd uniformity;  ///< p + 1, of the ranks; the last of all together
+};
+
+Figures summarize(const std::vector<Judged>& judged, Index p) {
+  Figures figures{VectorXd::Zero(p), VectorXd::Zero(p), {}, VectorXd::Zero(p), {}};
+  VectorXd errors = VectorXd::Zero(p), limits = VectorXd::Zero(p);
+  Eigen::MatrixXi ranks(p + 1, static_cast<Index>(judged.size()));
+  Index n = 0;
+  for (const Judged& one : judged) {
+    if (one.reliable) {
+      figures.coverage95 += one.held95;
+      figures.coverage50 += one.held50;
+      figures.worst = figures.worst.cwiseMax(one.z.cwiseAbs());
+      errors += one.error.cwiseAbs2();
+      limits += one.limit.cwiseAbs2();
+      ranks.col(n++) = one.ranks;
+    }
+  }
+  figures.coverage95 /= static_cast<double>(n);
+  figures.coverage50 /= static_cast<double>(n);
+  figures.ratio = errors.cwiseQuotient(limits).cwiseSqrt();
+  figures.uniformity = n >= kMinRanks ? calcRankCalibration(ranks.leftCols(n)).p_value
+                                      : VectorXd::Constant(p + 1, std::nan(""));
+  return figures;
+}
+
+void printFigures(const Figures& figures, const std::vector<ParameterSpec>& parameters) {
+  const auto p = static_cast<Index>(parameters.size());
+  for (Index j = 0; j < p; ++j) {
+    fmt::print("  {:>10}  coverage95 {:.3f}  coverage50 {:.3f}  ratio {:.3f}  worst z {:.1f}  SBC p {:.3f}\n",
+               parameters[static_cast<std::size_t>(j)].name.text, figures.coverage95[j],
+               figures.coverage50[j], figures.ratio[j], figures.worst[j], figures.uniformity[j]);
+  }
+  fmt::print("  {:>10}  SBC p {:.3f}\n", "together", figures.uniformity[p]);
+}
+
+std::string makeRange(const VectorXd& values) {
+  const double least = values.minCoeff(), most = values.maxCoeff();
+  return fmt::format("{:.2f}", least) == fmt::format("{:.2f}", most)
+             ? fmt::format("{:.2f}", most)
+             : fmt::format("{:.2f} - {:.2f}", least, most);
+}
+
+/// The mechanism is called by its file, or by its folder where the file is called as all others are.
+std::string findName(const std::filesystem::path& file) {
+  const std::string stem = file.stem().string();
+  return stem == "experiment" || stem == "best" ? file.parent_path().filename().string() : stem;
+}
+
+void printRow(const StudyRequest& request, const Totals& totals, const Figures& figures) {
+  std::string name = findName(request.file);
+  for (const auto& [parameter, value] : request.held) {
+    name += fmt::format(", {} = {}", parameter, value);
+  }
+  const auto tests = static_cast<double>(totals.seconds.size());
+  fmt::print("| {} | {:.0f} | {} | {} | {} | {:.1f} | {:.3f} | {:.2f} s | {:.1f} % |\n", name, tests,
+             makeRange(figures.coverage95), makeRange(figures.coverage50), makeRange(figures.ratio),
+             figures.worst.maxCoeff(), figures.uniformity.minCoeff(), calcMedian(totals.seconds),
+             100.0 * totals.ok / tests);
+}
+
+StudyRequest readRequest(int argc, char** argv) {
+  StudyRequest request;
   int position = 0;
   for (int i = 1; i < argc; ++i) {
     const std::string text = argv[i];
@@ -302,21 +154,28 @@ Request readRequest(int argc, char** argv) {
   return request;
 }
 
-int run(const Request& request) {
-  Bench bench(request);
+int run(const StudyRequest& request) {
+  const PosteriorBench bench(request);
   std::vector<Judged> judged;
   for (int test = 0; test < request.tests; ++test) {
     if (const std::optional<Measured> measured = bench.measure(test)) {
-      judged.push_back(bench.judge(*measured));
-      if (!judged.back().reliable || judged.back().missed) {
-        fmt::print("    {}: {}\n", test, judged.back().describe());
+      judged.push_back(bench.judge(*measured, test));
+      const Judged& last = judged.back();
+      if (!last.reliable || last.missed || last.z.cwiseAbs().maxCoeff() > 4.0) {
+        fmt::print("    {}: {}\n", test, last.describe());
       }
     }
   }
   fmt::print("{}\n", request.file);
-  if (!judged.empty()) {
-    printStatuses(judged);
-    printParameters(judged, bench.getParameters());
+  if (judged.empty()) {
+    return 0;
+  }
+  const Totals totals = count(judged);
+  printTotals(totals);
+  if (totals.reliable > 0) {
+    const Figures figures = summarize(judged, static_cast<Index>(bench.getParameters().size()));
+    printFigures(figures, bench.getParameters());
+    printRow(request, totals, figures);
   }
   return 0;
 }
@@ -325,7 +184,7 @@ int run(const Request& request) {
 }  // namespace twinmap
 
 int main(int argc, char** argv) {
-  const twinmap::Request request = twinmap::readRequest(argc, argv);
+  const twinmap::StudyRequest request = twinmap::readRequest(argc, argv);
   if (request.file.empty()) {
     fmt::print(stderr, "usage: posterior_study FILE.yaml [tests] [draws] [seed] [NAME=VALUE ...]\n");
     return 2;

@@ -27,7 +27,7 @@ const std::vector<NoticeText> kStatuses{
      "the measurement reduces the uncertainty of {0} by only {1}",
      "Measure another output or excite {0} more (twinmap design).",
      "The response hardly depends on the parameter, or other parameters make up for its changes."},
-    {Notice::kOutliers, "outliers", true, kInfo, "{0} samples are not noise and are left out: {1}",
+    {Notice::kOutliers, "outliers", true, kInfo, "{0} not noise and left out: {1}",
      "Look at these samples of the recording; the estimate does not rest on them.",
      "A spike of a sensor or a lost packet; without these few samples the model explains the recording."},
     {Notice::kNoiseLarger, "noise_larger", true, kDegraded,

@@ -36,7 +36,8 @@ std::string suggestName(const std::string& name, const std::vector<std::string>&
     return "";
   }
   std::string best;
-  std::size_t smallest = name.size() / 3 + 2;
+  // of a name of one letter, any other letter would be near
+  std::size_t smallest = std::min(name.size() / 3 + 2, std::max<std::size_t>(name.size(), 1));
   for (const std::string& candidate : candidates) {
     const std::size_t distance = calcEditDistance(toLower(name), toLower(candidate));
     if (distance < smallest) {

@@ -13,19 +13,28 @@
 namespace twinmap::cli {
 namespace {
 
-/// A line "key: [v, v, ...]" of a longer list of numbers as "key: [4000 values, 0 .. 7.985]"; others as they
-/// are.
+/// "[0, 0.1, 0.2, ...]" as "[4000 values, 0 .. 7.985]" where it is longer than a reader takes in.
+std::string abbreviateList(const std::string& list) {
+  constexpr auto kMax = 20;
+  const auto count = std::count(list.begin(), list.end(), ',') + 1;
+  const std::size_t last = list.rfind(' ') + 1;
+  return count <= kMax ? list
+                       : fmt::format("[{} values, {} .. {}]", count, list.substr(1, list.find(',') - 1),
+                                     list.substr(last, list.size() - last - 1));
+}
+
+/// A line with each list of numbers in it abbreviated.
 std::string abbreviate(const std::string& line) {
-  constexpr auto kMax = 20;  // values that a reader takes in
-  const std::size_t begin = line.find(": ["), end = line.rfind(']');
-  const auto count = std::count(line.begin(), line.end(), ',') + 1;
-  if (begin == std::string::npos || end != line.size() - 1 || count <= kMax ||
-      line.find_first_not_of("0123456789+-.e, ", begin + 3) != end) {
-    return line;
+  std::string shown;
+  std::size_t copied = 0;
+  for (std::size_t begin = line.find('['); begin != std::string::npos; begin = line.find('[', begin + 1)) {
+    const std::size_t end = line.find_first_not_of("0123456789+-.e, ", begin + 1);
+    if (end != std::string::npos && line[end] == ']') {
+      shown += line.substr(copied, begin - copied) + abbreviateList(line.substr(begin, end + 1 - begin));
+      copied = end + 1;
+    }
   }
-  const std::size_t first = begin + 3, last = line.rfind(' ', end) + 1;
-  return fmt::format("{}[{} values, {} .. {}]", line.substr(0, begin + 2), count,
-                     line.substr(first, line.find(',', first) - first), line.substr(last, end - last));
+  return shown + line.substr(copied);
 }
 
 std::string abbreviateTables(const std::string& text) {

@@ -1,6 +1,9 @@
 #include <fmt/core.h>
 
 #include <iostream>
+#include <regex>
+#include <string>
+#include <vector>
 
 #include "framework/base/json/json.hpp"
 #include "framework/base/log/notice.hpp"
@@ -21,11 +24,17 @@ const char* describeKind(const NoticeText& text) {
   return text.is_status ? "status" : "warning";
 }
 
+/// With "..." for the numbers and names that a message gets.
+std::string hidePlaceholders(const char* text) {
+  static const std::regex kPlaceholder(R"(\{[^}]*\})");
+  return std::regex_replace(text, kPlaceholder, "...");
+}
+
 void print(const NoticeText& text) {
   std::cout << fmt::format("{} ({}, {})\n  says:   {}\n  cause:  {}\n", text.name, describeKind(text),
-                           toString(text.severity), text.happened, text.cause);
+                           toString(text.severity), hidePlaceholders(text.happened), text.cause);
   if (*text.remedy != '\0') {
-    std::cout << fmt::format("  remedy: {}\n", text.remedy);
+    std::cout << fmt::format("  remedy: {}\n", hidePlaceholders(text.remedy));
   }
 }
 
@@ -63,7 +72,8 @@ void explain(const ExplainArguments& arguments) {
     print(find(arguments.name));
   } else {
     for (const NoticeText& text : listNotices()) {
-      std::cout << fmt::format("{:<26}{:<9}{}\n", text.name, describeKind(text), text.happened);
+      std::cout << fmt::format("{:<26}{:<9}{}\n", text.name, describeKind(text),
+                               hidePlaceholders(text.happened));
     }
   }
 }

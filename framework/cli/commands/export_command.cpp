@@ -33,7 +33,7 @@ void exportMap(const ExportArguments& arguments) {
   }
   if (!arguments.json.empty()) {
     writeTextFile(arguments.json, makeMapJson(loadExportedModel(arguments.run)));
-    std::cout << fmt::format("{}: all numbers of the map\n", arguments.json);
+    std::cout << fmt::format("{}: all numbers of the estimator\n", arguments.json);
   }
 }
 

@@ -102,7 +102,7 @@ void addReplay(CLI::App& app, const Invocation& invocation) {
   addRefine(*command, arguments->refine);
   command
       ->add_option("--draws", arguments->draws,
-                   "Simulations with parameters drawn from what was inferred, for the band (default: 50)")
+                   "Simulations with parameters drawn from the estimate, for the band (default: 50)")
       ->type_name("N")
       ->check(CLI::Range(kMinDraws, kMaxDraws));
   addThreads(*command, arguments->threads);

@@ -64,11 +64,11 @@ CLI::Option* addOn(CLI::App& command, SubmitArguments& arguments) {
 void addRefine(CLI::App& command, std::optional<bool>& refine) {
   CLI::Option* on = command.add_flag_callback(
       "--refine", [&refine] { refine = true; },
-      "Refine what was inferred by least squares on the simulator, accepted by a test (default: as the "
+      "Refine the estimate by least squares on the simulator, accepted by a test (default: as the "
       "experiment's 'refine' says)");
   command
       .add_flag_callback(
-          "--no-refine", [&refine] { refine = false; }, "Leave it as the map infers it")
+          "--no-refine", [&refine] { refine = false; }, "Keep the quick estimate")
       ->excludes(on);
 }
 

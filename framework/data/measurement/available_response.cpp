@@ -149,14 +149,16 @@ void requireUsable(const Table& table, const std::string& column, const VectorXd
   constexpr Index kMin = 4;
   const Samples there = takeSamples(needed, found);
   if (there.values.size() == 0) {
-    throw MeasurementError(fmt::format("{}: column '{}' has no sample at any needed time, {} to {}",
-                                       table.source, column, describeTime(needed[0]),
-                                       describeTime(needed[needed.size() - 1])));
+    throw MeasurementError(fmt::format(
+        "{}: column '{}' has no sample at any needed time, {} to {}; give the time in the file that is the "
+        "model's 0 (--start), or the unit of its times, as 't [ms]'",
+        table.source, column, describeTime(needed[0]), describeTime(needed[needed.size() - 1])));
   }
   if (there.values.size() >= kMin && (there.values.array() == there.values[0]).all()) {
     throw MeasurementError(table.source + ": column '" + column + "' is " + toText(there.values[0]) +
                            " at all needed times, " + describeTime(there.times[0]) + " to " +
-                           describeTime(there.times[there.times.size() - 1]) + "; is the sensor dead?");
+                           describeTime(there.times[there.times.size() - 1]) +
+                           " (constant signal); check the sensor and its cable");
   }
 }
 

@@ -14,9 +14,13 @@ using Eigen::VectorXd;
 
 constexpr int kPoints = InterpolationWeights::kPoints;
 
+/// What to do where the file and the window have no time in common.
+constexpr const char* kElsewhere =
+    "; give the time in the file that is the model's 0 (--start), or the unit of its times, as 't [ms]'";
+
 std::string toSeconds(double t) {
-  constexpr int kDigits = 6;
-  return toShortText(t, kDigits) + " s";
+  constexpr int kDigits = 6, kDigitsOfStamps = 13;  // of a time since 1970, down to milliseconds
+  return toShortText(t, std::abs(t) < 1e5 ? kDigits : kDigitsOfStamps) + " s";
 }
 
 double calcSmallestDifference(const VectorXd& times) {
@@ -45,11 +49,13 @@ class Interpolation {
 
   void requireCovered(double from, double to) const {
     if (times_[0] > from + getTolerance()) {
-      fail("begins at " + toSeconds(times_[0]) + ", but is needed from " + toSeconds(from) + " on");
+      fail("begins at " + toSeconds(times_[0]) + ", but is needed from " + toSeconds(from) + " on" +
+           (times_[0] > to ? kElsewhere : ""));
     }
     const double end = times_[times_.size() - 1];
     if (end < to - getTolerance()) {
-      fail("ends at " + toSeconds(end) + ", but is needed until " + toSeconds(to));
+      fail("ends at " + toSeconds(end) + ", but is needed until " + toSeconds(to) +
+           (end < from ? kElsewhere : ""));
     }
   }
 

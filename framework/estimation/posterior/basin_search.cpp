@@ -155,17 +155,15 @@ class BasinHunt {
 
   void searchWindows(const MatrixXd& starts) {
     add(searchGrowing(surface_, starts, options_.max_iterations));
+    found_.starts += static_cast<int>(starts.cols());
   }
 
   /// Instead of searches from the next starts, where chi-square rises towards them all the way.
   void probe() {
     const MatrixXd starts = takeStarts(options_.probes);
     const MatrixXd falls = findFalls(surface_, found_.basins, starts);
-    found_.starts += static_cast<int>(starts.cols());
     if (falls.cols() > 0) {
-      SearchTeam team(surface_, falls.leftCols(std::min<Index>(falls.cols(), options_.starts)));
-      team.run(options_.max_iterations);
-      add(team.listEnds());
+      search(falls.leftCols(std::min<Index>(falls.cols(), options_.starts)));
     }
   }
 

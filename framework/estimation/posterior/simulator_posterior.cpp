@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numeric>
 
@@ -214,6 +215,7 @@ class ProblemSurface {
 
   MisfitSurface& upd() { return surface_; }
   const LogCoordinates& getCoordinates() const { return coordinates_; }
+  const Prior& getPrior() const { return prior_; }
 
  private:
   struct Part {
@@ -304,6 +306,16 @@ bool SimulatorPosterior::isExplained() const {
   return degrees > 0.0 && chi_square < calcChiSquareLimit(degrees);
 }
 
+PosteriorShape SimulatorPosterior::findShape(Index p) const {
+  constexpr double kShare = 0.9;  // as trained estimators are judged
+  if (modes.size() > 1) {
+    return PosteriorShape::kMultimodal;
+  }
+  return (stddev.head(p).array() > kShare * prior_stddev.head(p).array()).any()
+             ? PosteriorShape::kUninformative
+             : PosteriorShape::kInformative;
+}
+
 MatrixXd SimulatorPosterior::calcQuantiles(const VectorXd& probabilities) const {
   return importance::calcQuantiles({draws, weights}, probabilities);
 }
@@ -341,6 +353,7 @@ SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Matrix
   if (posterior.isReliable()) {
     const std::vector<ParameterSpec> kept(problem.unknown.begin(), problem.unknown.begin() + problem.drawn);
     setDraws(drawn, projected, valleys, LogCoordinates(kept), posterior);
+    posterior.prior_stddev = whole.getPrior().calcStddevs().head(problem.drawn);
   }
   return posterior;
 }
@@ -354,6 +367,17 @@ SimulatorPosterior samplePosterior(Simulator& simulator, const RefinementModel& 
   std::iota(all.begin(), all.end(), Index{0});
   problem.trials.push_back({&simulator, &model, features, held, std::move(all)});
   return samplePosterior(problem, given, options);
+}
+
+double findLeastChiSquare(const PosteriorProblem& problem, int searches) {
+  ProblemSurface whole(problem);
+  BasinSearchOptions options;
+  options.scouts = options.probes = searches;
+  options.confirmations = searches + 1;  // neither probes nor batches follow
+  options.max_batches = 0;
+  const BasinSearch found = findBasins(whole.upd(), MatrixXd(whole.upd().getDimensions(), 0), 1, options);
+  return found.basins.empty() ? std::numeric_limits<double>::infinity()
+                              : found.basins.front().local.chi_square;
 }
 
 }  // namespace twinmap

@@ -19,10 +19,14 @@ struct PosteriorMode {
   Eigen::MatrixXd covariance{};  ///< u x u
 };
 
+/// What the shape of a posterior says against it.
+enum class PosteriorShape { kInformative, kUninformative, kMultimodal };
+
 /// The posterior of unknown parameters given measurements, by simulation alone: normal noise, a prior within
 /// the bounds. u parameters in their units. Moments, quantiles and draws are there only where it is reliable.
 struct SimulatorPosterior {
   Eigen::VectorXd mean, stddev;      ///< u
+  Eigen::VectorXd prior_stddev;      ///< u
   Eigen::MatrixXd covariance;        ///< u x u
   Eigen::MatrixXd draws;             ///< u x n, weighted by `weights`
   Eigen::VectorXd weights;           ///< n, sum 1
@@ -44,6 +48,9 @@ struct SimulatorPosterior {
   bool isReliable() const { return message.empty(); }
   /// Whether noise explains the best point (calcChiSquareLimit).
   bool isExplained() const;
+  /// Whether several values that lie apart fit, or else one of the first p parameters is hardly better known
+  /// than before: its standard deviation is above .9 of the prior's. Only where it is reliable.
+  PosteriorShape findShape(Eigen::Index p) const;
   /// Quantiles (u x k) at probabilities (k). Only where it is reliable.
   Eigen::MatrixXd calcQuantiles(const Eigen::VectorXd& probabilities) const;
   /// Draws of equal weight (u x n), one for each of the uniforms (n) in (0, 1). Only where it is reliable.
@@ -89,5 +96,9 @@ SimulatorPosterior samplePosterior(Simulator& simulator, const RefinementModel& 
                                    const std::vector<PriorGroupSpec>& priors, const Eigen::VectorXd& features,
                                    const Eigen::VectorXd& held, const Eigen::MatrixXd& given,
                                    const SimulatorPosteriorOptions& options);
+
+/// The least chi-square that so many searches from all over the bounds find; infinite where none of them
+/// could be simulated. Cost: some 10 simulations a search, 5 of them with derivatives.
+double findLeastChiSquare(const PosteriorProblem& problem, int searches);
 
 }  // namespace twinmap

@@ -61,6 +61,11 @@ class Parser {
     if (peek() == '=') {
       throw ExperimentError(expression_.where, text_, "must not assign; write '==' to compare");
     }
+    const bool follows_digit = at_ > 0 && std::isdigit(static_cast<unsigned char>(text_[at_ - 1])) != 0;
+    if (follows_digit && at_ + 1 < text_.size() && text_[at_] == ',' &&
+        std::isdigit(static_cast<unsigned char>(text_[at_ + 1])) != 0) {
+      fail("a decimal point is '.', not ','");
+    }
     if (peek() != '\0') {
       fail("an operator is missing");
     }

@@ -3,6 +3,22 @@
 #include <algorithm>
 
 namespace twinmap {
+namespace {
+
+/// "[4, 16]" of a short list of values, else "a list".
+std::string describeList(const YamlNode& node) {
+  constexpr std::size_t kMost = 6;
+  std::string text;
+  for (const YamlNode& item : node.items) {
+    if (item.kind != YamlNode::Kind::kScalar || node.items.size() > kMost) {
+      return "a list";
+    }
+    text += (text.empty() ? "" : ", ") + item.scalar;
+  }
+  return "[" + text + "]";
+}
+
+}  // namespace
 
 YamlNode::YamlNode() = default;
 YamlNode::YamlNode(const YamlNode&) = default;
@@ -46,7 +62,7 @@ std::string describeValue(const YamlNode& node) {
     case YamlNode::Kind::kNull:
       return "nothing";
     case YamlNode::Kind::kSequence:
-      return "a list";
+      return describeList(node);
     case YamlNode::Kind::kMap:
       return "a map";
     case YamlNode::Kind::kScalar:

@@ -41,7 +41,8 @@ YamlNode makeScalar(std::string text, bool quoted = false);
 YamlNode makeMap();
 YamlNode makeSequence();
 
-/// "a list", "a map", "nothing" or the scalar's own text: what a message shows as the value found.
+/// A short list as it stands, "a list", "a map", "nothing" or the scalar's own text: what a message shows as
+/// the value found.
 std::string describeValue(const YamlNode& node);
 
 /// Parses one YAML document. Throws ExperimentError for a syntax error, a duplicate key, a merge key, a tag,

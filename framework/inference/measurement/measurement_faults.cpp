@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
 #include <limits>
 
 namespace twinmap {
@@ -10,36 +11,41 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
+/// `example` is given where the output's unit contains `unit`.
 struct UnitFactor {
   double factor;
-  const char* said;
+  const char *said, *example, *unit, *remedy;
 };
 
 constexpr UnitFactor kFactors[] = {
-    {1000.0, "1000 times too large, as mm in the place of m: divide it by 1000"},
-    {1e-3, "1000 times too small: multiply it by 1000"},
-    {57.29577951308232, "57.3 times too large, as deg in the place of rad: divide it by 57.3"},
-    {1.0 / 57.29577951308232, "57.3 times too small, as rad in the place of deg: multiply it by 57.3"},
-    {9.81, "9.81 times too large, as m/s2 in the place of g: divide it by 9.81"},
-    {1.0 / 9.81, "9.81 times too small, as g in the place of m/s2: multiply it by 9.81"},
-    {-1.0, "of the other sign: turn its sign"}};
+    {1000.0, "1000 times too large", ", as mm in the place of m", "m", "divide it by 1000"},
+    {1e-3, "1000 times too small", "", "", "multiply it by 1000"},
+    {57.29577951308232, "57.3 times too large", ", as deg in the place of rad", "rad", "divide it by 57.3"},
+    {1.0 / 57.29577951308232, "57.3 times too small", "", "", "multiply it by 57.3"},
+    {9.81, "9.81 times too large", ", as m/s2 in the place of g", "", "divide it by 9.81"},
+    {1.0 / 9.81, "9.81 times too small", ", as g in the place of m/s2", "", "multiply it by 9.81"},
+    {-1.0, "of the other sign", "", "", "turn its sign"}};
 
-/// The measurement without an offset of one output.
-VectorXd subtract(VectorXd measured, Index first, Index times, double offset) {
-  measured.segment(first, times).array() -= offset;
+std::string describe(const UnitFactor& factor, const std::string& output, const std::string& unit) {
+  const bool applies = unit.find(factor.unit) != std::string::npos;
+  return fmt::format("{} is {}{}: {}", output, factor.said, applies ? factor.example : "", factor.remedy);
+}
+
+/// The measurement without an offset of some rows.
+VectorXd subtract(VectorXd measured, Index first, Index count, double offset) {
+  measured.segment(first, count).array() -= offset;
   return measured;
 }
 
-/// The offset that leaves the least misfit, by parabolas through three of them: chi-square is quadratic in it
-/// where the features are linear, and nearly so elsewhere.
-double findOffset(const VectorXd& measured, Index first, Index times, const MisfitOfResponse& calcMisfit) {
+/// The offset of some rows that leaves the least misfit, by parabolas through three of them, from `offset`
+/// on: chi-square is quadratic in it where the features are linear, and nearly so elsewhere.
+double findOffset(const VectorXd& measured, Index first, Index count, double offset, double step,
+                  const MisfitOfResponse& calcMisfit) {
   constexpr int kParabolas = 3;
-  const auto values = measured.segment(first, times).array();
-  double offset = 0.0, step = (values - values.mean()).abs().maxCoeff();
   for (int i = 0; i < kParabolas && step > 0.0; ++i) {
-    const double below = calcMisfit(subtract(measured, first, times, offset - step));
-    const double at = calcMisfit(subtract(measured, first, times, offset));
-    const double above = calcMisfit(subtract(measured, first, times, offset + step));
+    const double below = calcMisfit(subtract(measured, first, count, offset - step));
+    const double at = calcMisfit(subtract(measured, first, count, offset));
+    const double above = calcMisfit(subtract(measured, first, count, offset + step));
     const double bend = below - 2.0 * at + above;
     if (!(bend > 0.0)) {
       break;
@@ -55,12 +61,15 @@ class Search {
  public:
   Search(double most, const MisfitOfResponse& calcMisfit) : least_(most), calcMisfit_(calcMisfit) {}
 
-  void tryOut(const VectorXd& corrected, const std::string& said) {
+  /// Whether it is the best one so far.
+  bool tryOut(const VectorXd& corrected, const std::string& said) {
     const double chi_square = calcMisfit_(corrected);
-    if (chi_square < least_) {
+    const bool better = chi_square < least_;
+    if (better) {
       least_ = chi_square;
       said_ = said;
     }
+    return better;
   }
   const std::string& getSaid() const { return said_; }
 
@@ -69,6 +78,46 @@ class Search {
   const MisfitOfResponse& calcMisfit_;
   std::string said_;
 };
+
+struct Spike {
+  Index sample = 0;
+  double height = 0.0;  ///< above the cubic through the four neighbours
+};
+
+/// The sample of evenly spaced ones that is farthest off the cubic through its neighbours.
+Spike findSpike(const Eigen::Ref<const VectorXd>& samples) {
+  Spike spike;
+  for (Index i = 2; i + 2 < samples.size(); ++i) {
+    const double cubic = (4.0 * (samples[i - 1] + samples[i + 1]) - samples[i - 2] - samples[i + 2]) / 6.0;
+    if (std::abs(samples[i] - cubic) > std::abs(spike.height)) {
+      spike = {i, samples[i] - cubic};
+    }
+  }
+  return spike;
+}
+
+/// One to three samples of an output that alone are wrong.
+void trySpikes(const VectorXd& measured, const ResponseLayout& layout, Index output,
+               const MisfitOfResponse& calcMisfit, Search& search) {
+  constexpr int kMost = 3;
+  constexpr double kStep = 0.1;  // of the height, which the cubic overestimates little
+  const Index times = layout.times.size(), first = layout.getRow(output, 0);
+  VectorXd corrected = measured;
+  std::string places;
+  for (int i = 0; i < kMost; ++i) {
+    const auto [sample, height] = findSpike(corrected.segment(first, times));
+    const double offset =
+        findOffset(corrected, first + sample, 1, height, kStep * std::abs(height), calcMisfit);
+    corrected = subtract(corrected, first + sample, 1, offset);
+    places += fmt::format("{}{:.4g} s", places.empty() ? "" : ", ", layout.times[sample]);
+    if (search.tryOut(corrected,
+                      fmt::format("{} has a spike at {}: repair it, or infer with the experiment file, which "
+                                  "leaves spikes out",
+                                  layout.output_names[static_cast<std::size_t>(output)], places))) {
+      return;
+    }
+  }
+}
 
 }  // namespace
 
@@ -85,12 +134,15 @@ std::string explainByFault(const VectorXd& measured, const ResponseLayout& layou
   for (Index output = 0; output < layout.getOutputCount(); ++output) {
     const std::string& name = layout.output_names[static_cast<std::size_t>(output)];
     const Index first = layout.getRow(output, 0);
-    for (const auto& [factor, said] : kFactors) {
+    for (const UnitFactor& unit : kFactors) {
       VectorXd corrected = measured;
-      corrected.segment(first, times) /= factor;
-      search.tryOut(corrected, name + " is " + said);
+      corrected.segment(first, times) /= unit.factor;
+      search.tryOut(corrected, describe(unit, name, layout.output_units[static_cast<std::size_t>(output)]));
     }
-    const double offset = findOffset(measured, first, times, calcMisfit);
+    trySpikes(measured, layout, output, calcMisfit, search);
+    const auto values = measured.segment(first, times).array();
+    const double offset =
+        findOffset(measured, first, times, 0.0, (values - values.mean()).abs().maxCoeff(), calcMisfit);
     search.tryOut(subtract(measured, first, times, offset),
                   fmt::format("{} has an offset of {:.4g}: subtract it", name, offset));
     for (Index other = 0; other < output; ++other) {

@@ -68,7 +68,8 @@ AvailableFeatures MeasurementReader::readAvailableFeatures(const Table& table,
   MeasurementSpec spec = experiment_.measurement;
   spec.start = getStart(start);
   AvailableResponse response = readAvailable(table, spec, layout_, sample_interval_);
-  AvailableFeatures found{extractor_.extract(response.response), {}, std::move(response.remarks)};
+  AvailableFeatures found{
+      extractor_.extract(response.response), {}, std::move(response.remarks), response.response};
   const Eigen::Index missing_samples = response.missing;
   for (Eigen::Index i = 0; i < found.features.size(); ++i) {
     if (std::isfinite(found.features[i])) {

@@ -23,6 +23,7 @@ struct AvailableFeatures {
   Eigen::VectorXd features;             ///< d, NaN where missing
   std::vector<Eigen::Index> available;  ///< the others, ascending
   std::vector<std::string> remarks;     ///< what is missing and why, a phrase each
+  Eigen::VectorXd response;             ///< rows of the layout, NaN where missing
 };
 
 /// From tables of measurements to the features of an experiment. Immutable.

@@ -97,8 +97,9 @@ std::string describeMixture(const Mixture& mixture, const std::vector<ParameterS
 }
 
 std::string describeDiagnostics(const PosteriorEstimate& posterior) {
-  return fmt::format("effective sample size {:.0f} of {}, Pareto shape {:.2f}",
-                     posterior.effective_sample_size, posterior.evaluations, posterior.pareto_shape);
+  return fmt::format("effective sample size {:.0f}{}, Pareto shape {:.2f}", posterior.effective_sample_size,
+                     posterior.evaluations > 0 ? fmt::format(" of {}", posterior.evaluations) : "",
+                     posterior.pareto_shape);
 }
 
 /// How the simulator's posterior was found.
@@ -113,12 +114,13 @@ std::string describeSearches(const PosteriorEstimate& posterior) {
 /// The simulator's: how it was found, or why it is not the estimate. The surrogate's: its own table.
 std::string describePosterior(const PosteriorEstimate& posterior,
                               const std::vector<ParameterSpec>& parameters,
-                              const DerivedQuantities* quantities, bool is_refined) {
+                              const DerivedQuantities* quantities, bool is_refined, bool misfits) {
   const std::string diagnostics = describeDiagnostics(posterior);
   if (!posterior.isReliable() && posterior.fit) {
-    return posterior.fit->isSimulated()
-               ? explainNotice(Notice::kUnreliable, posterior.message + " (" + diagnostics + ")")
-               : "";  // not_simulated says it
+    const std::string why = posterior.message + " (" + diagnostics + ")";
+    return !posterior.fit->isSimulated() ? ""  // not_simulated says it
+           : misfits                     ? explainBriefly(Notice::kUnreliable, why)
+                                         : explainNotice(Notice::kUnreliable, why);
   }
   if (!posterior.isReliable()) {
     return fmt::format("  no posterior: {} ({})\n", posterior.message, diagnostics);
@@ -160,7 +162,8 @@ std::string makeInferenceTable(const InferredMeasurement& inferred,
             makeTable(inferred.by_estimator, parameters, quantities);
   }
   if (inferred.posterior) {
-    text += describePosterior(*inferred.posterior, parameters, quantities, estimate.isRefined());
+    text += describePosterior(*inferred.posterior, parameters, quantities, estimate.isRefined(),
+                              isMismatch(estimate.statuses));
   }
   return text;
 }

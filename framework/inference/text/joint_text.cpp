@@ -150,7 +150,8 @@ Json makeTrialsJson(const JointInference& inferred, const std::vector<ParameterS
 }  // namespace
 
 std::string makeJointTable(const JointInference& inferred, const std::vector<ParameterSpec>& parameters) {
-  const std::string statuses = fmt::format("{}", fmt::join(listStatuses(inferred, parameters), ", "));
+  const std::string statuses =
+      fmt::format("{}", fmt::join(listStatuses(inferred, static_cast<Index>(parameters.size())), ", "));
   std::string text = fmt::format("{} recordings together: {}\n", inferred.alone.size(), statuses);
   if (!inferred.agreement) {
     return text + explainNotice(Notice::kNotSimulated);
@@ -170,7 +171,8 @@ std::string makeJointCsvRows(const JointInference& inferred, const std::vector<P
   for (const RecordingInference& one : inferred.alone) {
     text += makeInferenceCsvRows(one.inferred, parameters, false);
   }
-  const std::string statuses = fmt::format("{}", fmt::join(listStatuses(inferred, parameters), " "));
+  const std::string statuses =
+      fmt::format("{}", fmt::join(listStatuses(inferred, static_cast<Index>(parameters.size())), " "));
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     std::string numbers = ",,,";
     if (isStated(inferred)) {
@@ -186,7 +188,7 @@ std::string makeJointCsvRows(const JointInference& inferred, const std::vector<P
 }
 
 std::string makeJointJson(const JointInference& inferred, const std::vector<ParameterSpec>& parameters) {
-  const std::vector<std::string> statuses = listStatuses(inferred, parameters);
+  const std::vector<std::string> statuses = listStatuses(inferred, static_cast<Index>(parameters.size()));
   Json json{{"source", "joint"},
             {"status", statuses.front()},
             {"statuses", statuses},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "framework/base/log/notice.hpp"
 #include "framework/base/text/nearest_name.hpp"
@@ -30,12 +31,14 @@ std::string listBeyondBounds(const Estimate& estimate, const std::vector<Paramet
 
 /// Names and, of the first, the reduction.
 std::string explainUninformative(const Estimate& estimate, const std::vector<ParameterSpec>& parameters) {
-  constexpr double kUninformative = 0.9, kPercent = 100.0;  // of the standard deviation of the bounds
+  constexpr double kUninformative = 0.9, kPercent = 100.0;  // of the standard deviation before
   std::string text;
   for (std::size_t p = 0; p < parameters.size() && estimate.isGiven(); ++p) {
     const Bounds& bounds = parameters[p].bounds;
-    const double left =
-        estimate.stddev[static_cast<Index>(p)] / (kUniformStddev * (bounds.upper - bounds.lower));
+    const auto i = static_cast<Index>(p);
+    const double before = estimate.prior_stddev.size() > 0 ? estimate.prior_stddev[i]
+                                                           : kUniformStddev * (bounds.upper - bounds.lower);
+    const double left = estimate.stddev[i] / before;
     if (left > kUninformative) {
       text += explainNotice(Notice::kUninformative, parameters[p].name.text,
                             fmt::format("{:.0f} %", kPercent * std::max(0.0, 1.0 - left)));
@@ -66,10 +69,16 @@ std::string describePValue(const Trust& trust) {
 /// Where the simulator's best point leaves more than noise, or how much.
 std::string describeResidual(const SimulatorFit& fit, const std::vector<FeatureInfo>& features) {
   const ResidualTest& test = fit.test;
-  if (test.largest_p <= std::min(test.chi_square_p, test.whiteness_p)) {
-    return fmt::format("{} is {:.3g} noise sd off, perhaps a spike",
-                       features[static_cast<std::size_t>(test.largest)].name,
-                       std::abs(fit.residual[test.largest]));
+  const double largest = std::abs(fit.residual[test.largest]);
+  const std::string& where = features[static_cast<std::size_t>(test.largest)].name;
+  constexpr double kMost = 0.5;  // of chi-square: one sample alone, beside which all others fit better
+  if (test.largest_p <= std::min(test.chi_square_p, test.whiteness_p) &&
+      largest * largest > kMost * fit.chi_square) {
+    return fmt::format("{} is {:.3g} noise sd off, perhaps a spike", where, largest);
+  }
+  constexpr double kGross = 10.0;  // noise is not stated so wrong, and neighbours of a misfit always agree
+  if (fit.chi_square > kGross * fit.degrees) {
+    return fmt::format("the largest misfit is {:.3g} noise sd, in {}", largest, where);
   }
   if (test.whiteness_p < test.chi_square_p) {
     return "the residuals of neighbouring samples agree more than the stated noise allows: it is coloured, "
@@ -79,9 +88,30 @@ std::string describeResidual(const SimulatorFit& fit, const std::vector<FeatureI
   return fmt::format("chi-square is {:.2g} times what the stated noise leaves", fit.chi_square / fit.degrees);
 }
 
+/// How many times larger than stated the noise is, where the simulator's residuals look like noise; else 0.
+double findNoiseFactor(const InferredMeasurement& inferred) {
+  constexpr double kWhite = 0.01, kLargest = 5.0;  // of thousands of normal numbers none is beyond 5
+  constexpr Index kFewest = 20;
+  if (!inferred.posterior || !inferred.posterior->fit || inferred.posterior->fit->residual.size() < kFewest) {
+    return 0.0;
+  }
+  const SimulatorFit& fit = *inferred.posterior->fit;
+  const double factor = std::sqrt(fit.residual.squaredNorm() / fit.degrees);
+  const bool is_noise =
+      fit.test.whiteness_p > kWhite && fit.residual.lpNorm<Eigen::Infinity>() < kLargest * factor;
+  return is_noise && factor > 1.0 ? factor : 0.0;
+}
+
 std::string explainMismatch(const InferredMeasurement& inferred, const std::vector<FeatureInfo>& features) {
   if (!inferred.fault.empty()) {
     return explainBriefly(Notice::kModelMismatch, inferred.fault + " (this explains 99 % of the misfit)");
+  }
+  if (const double factor = findNoiseFactor(inferred); factor > 0.0) {
+    return explainBriefly(
+        Notice::kModelMismatch,
+        fmt::format(
+            "the residuals look like noise {:.3g} times as large as stated: measure it (twinmap noise)",
+            factor));
   }
   return explainNotice(Notice::kModelMismatch, inferred.trust
                                                    ? describeAnomaly(*inferred.trust, features)
@@ -93,7 +123,8 @@ std::string explainOutliers(const std::vector<std::string>& outliers) {
   constexpr std::size_t kShown = 8;
   const std::size_t shown = std::min(kShown, outliers.size());
   return explainNotice(
-      Notice::kOutliers, outliers.size(),
+      Notice::kOutliers,
+      outliers.size() == 1 ? "1 sample is" : fmt::format("{} samples are", outliers.size()),
       fmt::format("{}{}", fmt::join(outliers.begin(), outliers.begin() + static_cast<Index>(shown), ", "),
                   outliers.size() > kShown ? " ..." : ""));
 }
@@ -129,31 +160,57 @@ std::string explainStatus(const std::string& status, const InferredMeasurement& 
   return is(Notice::kNotSimulated) ? explainNotice(Notice::kNotSimulated) : "";
 }
 
+/// The lines that say what happened alone: what follows from a misfit is not mended by itself.
+std::string dropRemedies(const std::string& explained) {
+  std::istringstream lines(explained);
+  std::string text;
+  for (std::string line; std::getline(lines, line);) {
+    text += line.rfind("    ", 0) == 0 ? "" : line + "\n";
+  }
+  return text;
+}
+
 /// The statuses with the numbers that they follow from.
 std::string describeJudgement(const InferredMeasurement& inferred, const std::string& statuses) {
   if (inferred.trust) {
     const Trust& trust = *inferred.trust;
-    return fmt::format("{} ({}, chi-square {:.1f} of {} residuals)", statuses, describePValue(trust),
-                       trust.chi_square, trust.residuals);
+    constexpr double kLarge = 1e5;
+    return fmt::format("{} ({}, chi-square {} of {} residuals)", statuses, describePValue(trust),
+                       trust.chi_square < kLarge ? fmt::format("{:.1f}", trust.chi_square)
+                                                 : fmt::format("{:.2g}", trust.chi_square),
+                       trust.residuals);
   }
   if (!inferred.posterior || !inferred.posterior->fit) {
     return statuses + (statuses.empty() ? "" : "; ") + "not judged (the run has no trust model)";
   }
   const SimulatorFit& fit = *inferred.posterior->fit;
-  return fit.isSimulated() ? fmt::format("{} (p = {:.2g}, chi-square {:.4g} of {:.4g} degrees of freedom)",
-                                         statuses, fit.test.calcPValue(), fit.chi_square, fit.degrees)
+  constexpr double kSmall = 1e-4;  // no reader needs to know more, and small ones underflow
+  const double p = fit.test.calcPValue();
+  return fit.isSimulated() ? fmt::format("{} ({}, chi-square {:.4g} of {:.4g} degrees of freedom)", statuses,
+                                         p < kSmall ? "p < 0.0001" : fmt::format("p = {:.2g}", p),
+                                         fit.chi_square, fit.degrees)
                            : statuses;
 }
 
 }  // namespace
+
+bool isMismatch(const std::vector<std::string>& statuses) {
+  return !statuses.empty() && statuses.front() == getNotice(Notice::kModelMismatch).name;
+}
 
 std::string describeTrust(const InferredMeasurement& inferred, const std::vector<ParameterSpec>& parameters,
                           const std::vector<FeatureInfo>& features) {
   const Estimate estimate = selectEstimate(inferred);
   std::string text =
       inferred.source + ": " + describeJudgement(inferred, joinStatuses(estimate.statuses, ", ")) + "\n";
+  const bool misfits = isMismatch(estimate.statuses);
   for (const std::string& status : estimate.statuses) {
-    text += explainStatus(status, inferred, estimate, parameters, features);
+    const std::string explained = explainStatus(status, inferred, estimate, parameters, features);
+    if (!misfits || status == getNotice(Notice::kModelMismatch).name) {
+      text += explained;
+    } else if (inferred.fault.empty()) {
+      text += dropRemedies(explained);
+    }
   }
   return text;
 }

@@ -72,14 +72,14 @@ void addComparedMaps(const RunFolder& run, Page& page) {
   addSection({run.compared_maps,
               "map",
               "compared-maps",
-              "Which map",
+              "Which estimator",
               {{"joint_coverage95", "joint cov. 95 %"},
                {"joint_nlpd", "joint NLPD"},
                {"training_seconds", "training, s"},
                {"online_us", "a measurement, us"},
                {"bytes", "bytes"}}},
-             "Each map alone, without refinement, on the same samples. Training includes what its answers "
-             "are judged by; the smallest joint nlpd is the best density of all parameters.",
+             "Each estimator alone, without refinement, on the same samples. Training includes the "
+             "goodness-of-fit test; the smallest joint NLPD is the best density of all parameters.",
              page);
 }
 

@@ -84,13 +84,14 @@ void addResponses(const RunFolder& run, Page& page) {
   section.html += makeParagraph(
       "Three simulated test measurements: those with the smallest, the median and the largest error.",
       "class=\"quiet\"");
+  int index = 0;
   for (const std::string& which : responses.listDistinct("case")) {
     Figure figure{
-        fmt::format("response-{}", section.figures.size()),
+        fmt::format("response-{}", index++),
         "The " + which + " case, test sample " + findSample(responses, which),
         "Points: the simulated measurement; dashed: the model at the centre of the bounds; solid: the model "
-        "at "
-        "the estimated parameters. Where the updated model is right, 95 % of the residuals lie in the grey "
+        "at the estimated parameters. Where the updated model is right, 95 % of the residuals lie in the "
+        "grey "
         "band of \u00b12 noise sd. Drag and scroll to move and zoom the axis of time.",
         kResponses,
         {},

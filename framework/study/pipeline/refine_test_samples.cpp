@@ -55,11 +55,12 @@ RefinementTasks makeTasks(const Study& study, const PreparedData& data, const On
   return all;
 }
 
-/// "121 accepted from inverse_map, 5 nonlinear"
+/// "121 accepted, 3 accepted from surrogate, 5 nonlinear"
 std::string describe(const std::vector<Refined>& refined) {
   std::map<std::string, int> counts;
   for (const Refined& one : refined) {
-    ++counts[one.isAccepted() ? "accepted from " + one.start : toString(one.status)];
+    const std::string start = one.start == "inverse_map" ? "" : " from " + one.start;
+    ++counts[one.isAccepted() ? "accepted" + start : toString(one.status)];
   }
   std::string text;
   for (const auto& [name, count] : counts) {

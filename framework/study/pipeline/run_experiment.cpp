@@ -114,8 +114,8 @@ StageNotes writeTrustPower(const Study& study, const PreparedData& data, const O
   if (!online.trust) {
     return notes;
   }
-  const auto changes =
-      timeStage("power of the trust status", notes, [&] { return calcTrustPower(study, data, online); });
+  const auto changes = timeStage("what the goodness-of-fit test would find", notes,
+                                 [&] { return calcTrustPower(study, data, online); });
   notes.warn(Severity::kInfo, listPowerWarnings(changes));
   writeTextFile(study.folder / "trust_power.csv", makeTrustPowerCsv(changes));
   return notes;

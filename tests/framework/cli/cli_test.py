@@ -94,7 +94,7 @@ class ExitCodes(TestCase):
         self.assertIn(message, result.stderr + result.stdout)
 
     def test_wrong_usage_and_wrong_experiments_are_2(self):
-        self.assert_wrong_input(message="subcommand is required")
+        self.assert_wrong_input("infre", message="no command is called 'infre'; did you mean 'infer'?")
         self.assert_wrong_input("run", message="FILE is required")
         self.assert_wrong_input("run", TABLE1, "--threads", "0", message="--threads")
         self.assert_wrong_input("check", TABLE1, "--bogus", message="--bogus")
@@ -117,7 +117,7 @@ class ExitCodes(TestCase):
         times = [round(0.1 * i, 1) for i in range(40)]
         table = f"excitation.F={{unit: N, tables: [{{times: {times}, values: {times}}}]}}"
         short = call("check", CART, table)
-        self.assertIn("times: [40 values, 0 .. 3.9", short.stdout)
+        self.assertIn("times: [40 values, 0 .. 3.9], values: [40 values, 0 .. 3.9]", short.stdout)
         self.assertIn("check --full prints all values", short.stdout)
         whole = self.folder / "whole.yaml"
         whole.write_text(call("check", CART, table, "--full").stdout)
@@ -463,7 +463,7 @@ class Run(TestCase):
         for row in read_csv(self.folder / "run/predictions.csv"):
             if row["parameter"] == "m":
                 self.assertEqual(float(row["true"]), true_mass[int(row["sample"])])
-        self.assertIn(f"{len(failures)} samples could not be simulated", (self.folder / "run/report.html").read_text())
+        self.assertIn(f"{len(failures)} of the samples could not be simulated", (self.folder / "run/report.html").read_text())
         self.assertEqual(json.loads((self.folder / "run/provenance.json").read_text())["failed_samples"], len(failures))
 
     def test_samples_that_lack_a_feature_fail_with_a_reason(self):

@@ -76,7 +76,7 @@ class Direct(FolderTestCase):
         for name, true in TRUE.items():
             estimate = found["parameters"][name]
             self.assertLess(abs(estimate["mean"] - true), 4 * estimate["sd"], name)
-        self.assertIn("2 samples are not noise and are left out", self.infer(CART, spiked))
+        self.assertIn("2 samples are not noise and left out", self.infer(CART, spiked))
 
     def test_noise_of_another_size_is_found(self):
         noisy = self.simulate(CART, "noisy.csv", "noise.scale=3", *POINT)
@@ -157,6 +157,15 @@ class Direct(FolderTestCase):
             self.assertAlmostEqual(mode, true, delta=0.01)
         self.assertEqual(found["parameters"], found["posterior"]["parameters"])
         self.assertIn("parameters", found["inverse_map"])
+
+    def test_a_unit_is_named_as_the_cause(self):
+        scaled = self.change("scaled.csv", lambda i, x: 1000 * x)
+        found = json.loads(self.infer(CART, scaled, "--json"))
+        self.assertEqual(found["status"], "model_mismatch")
+        self.assertEqual(found["fault"], "x is 1000 times too large: divide it by 1000")
+        text = self.infer(CART, scaled)
+        self.assertIn(found["fault"], text)
+        self.assertNotIn("Take more draws", text)
 
     def test_another_machine_is_a_mismatch(self):
         rows = read_csv(self.measured)

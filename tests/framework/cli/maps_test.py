@@ -62,7 +62,7 @@ class Maps(FolderTestCase):
 
     def test_the_report_shows_them(self):
         report = (self.run_folder / "report.html").read_text()
-        self.assertIn("Which map", report)
+        self.assertIn("Which estimator", report)
         self.assertIn("network_2", report)
 
     def test_what_cannot_be_trained_is_named_and_left_out(self):

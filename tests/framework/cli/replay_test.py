@@ -169,8 +169,10 @@ class Replay(ReplayCase):
         folder = self.replay("page", self.measurement)
         page = (folder / "report.html").read_text()
         data = json.loads(re.search(r'id="page-data">(.*?)</script>', page, re.DOTALL).group(1))
-        self.assertEqual([figure["name"] for figure in data["figures"]], ["replay-0", "replay-1"])
-        for figure, columns in zip(data["figures"], self.read_replay(folder).values()):
+        figures = {figure["name"]: figure for figure in data["figures"]}
+        self.assertEqual(list(figures), ["replay-0", "spectrum-0", "replay-1", "spectrum-1", "intervals"])
+        for name, columns in zip(("replay-0", "replay-1"), self.read_replay(folder).values()):
+            figure = figures[name]
             self.assertEqual(len(figure["panels"]), 2)
             table = data["tables"][figure["table"]]
             for name in ("measured", "nominal", "updated", "lower", "upper"):

@@ -58,6 +58,42 @@ TEST(BoundedDraws, HoldATruthAtTheBoundAsOftenAsTheySay) {
   EXPECT_NEAR(held / double{kMeasurements}, 0.95, 0.04);
 }
 
+/// The posterior of damping and friction (at least 0), normal but for that, with correlation -.8.
+BoundedDraws drawDampingAndFriction(double damping, double friction, std::uint64_t sample) {
+  constexpr double kCorrelation = -0.8;
+  const BoundedDraws alone = drawWithin(friction, 0.0, 50.0, sample, 400);
+  const RandomStream random(5, RandomPurpose::kPosterior);
+  BoundedDraws draws{Eigen::MatrixXd(2, alone.points.cols()), alone.weights, Eigen::Vector2d(-50.0, 0.0),
+                     Eigen::Vector2d(50.0, 50.0)};
+  draws.points.row(1) = alone.points;
+  for (Index i = 0; i < alone.points.cols(); ++i) {
+    draws.points(0, i) = damping + kCorrelation * (alone.points(0, i) - friction) +
+                         0.6 * random.calcNormal(static_cast<std::uint64_t>(i), 0, sample);
+  }
+  return draws;
+}
+
+TEST(BoundedDraws, HoldADampingWhoseMachineHasNoFriction) {
+  constexpr int kMeasurements = 400;
+  const RandomStream random(6, RandomPurpose::kTestNoise);
+  int held = 0;
+  for (std::uint64_t i = 0; i < kMeasurements; ++i) {  // truths of 0 measured with noise of that correlation
+    const double friction = random.calcNormal(i, 0);
+    const double damping = -0.8 * friction + 0.6 * random.calcNormal(i, 1);
+    const auto [lower, upper] = drawDampingAndFriction(damping, friction, i + 1).findInterval(0, 0.95);
+    held += lower <= 0.0 && 0.0 <= upper ? 1 : 0;
+  }
+  EXPECT_NEAR(held / double{kMeasurements}, 0.95, 0.03);
+}
+
+TEST(BoundedDraws, KeepTheirIntervalWhereFrictionIsSeen) {
+  const BoundedDraws draws = drawDampingAndFriction(1.0, 6.0, 1);
+  const auto [lower, upper] = draws.findInterval(0, 0.95);
+  const VectorXd quantiles = draws.calcQuantiles(0, Eigen::Vector2d(0.025, 0.975));
+  EXPECT_DOUBLE_EQ(lower, quantiles[0]);
+  EXPECT_DOUBLE_EQ(upper, quantiles[1]);
+}
+
 TEST(BoundedDraws, GiveAnEstimateItsIntervals) {
   Estimate estimate{VectorXd::Constant(1, 0.8), VectorXd::Constant(1, 0.6)};
   estimate.draws = drawWithin(0.0, 0.0, 50.0);

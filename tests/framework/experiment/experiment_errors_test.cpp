@@ -97,7 +97,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"FractionalCount", "design.train.samples=1.5", {"design.train.samples", "whole number"}},
         Mistake{"HugeCount", "design.train.samples=1e30", {"design.train.samples", "'1e30'"}},
         Mistake{"YesForTrue", "inverse_map.gp.linear_term=yes", {"'yes' must be true or false"}},
-        Mistake{"ListForNumber", "noise.scale=[1, 2]", {"noise.scale", "'a list'"}},
+        Mistake{"ListForNumber", "noise.scale=[1, 2]", {"noise.scale", "'[1, 2]'"}},
         Mistake{"NothingForMap", "noise=", {"noise", "'nothing'", "must be a map"}},
         Mistake{"UnknownEnum",
                 "inverse_map.gp.length_scales=per_feat",

@@ -62,6 +62,25 @@ TEST(MeasurementFaults, ASignAnOffsetAndSwappedColumnsAreNamed) {
   EXPECT_EQ(explain(response), "the columns of y and theta are swapped");
 }
 
+TEST(MeasurementFaults, SpikesAreNamedWithTheirTimes) {
+  const VectorXd times = makeLayout().times;
+  VectorXd response = makeResponse(1.0, 1.2);
+  response[40] += 0.4;
+  EXPECT_EQ(explain(response),
+            "y has a spike at 2.424 s: repair it, or infer with the experiment file, which "
+            "leaves spikes out");
+  response[43] -= 0.3;
+  response[80] += 0.7;
+  EXPECT_EQ(explain(response).rfind("y has a spike at 4.848 s, 2.424 s, 2.606 s: repair it", 0), 0u);
+  EXPECT_NEAR(times[43], 2.606, 1e-3);
+}
+
+TEST(MeasurementFaults, DegreesAreNotNamedOfAMetre) {
+  VectorXd response = makeResponse(1.0, 1.2);
+  response.head(kTimes) *= 57.29577951308232;
+  EXPECT_EQ(explain(response), "y is 57.3 times too large: divide it by 57.3");
+}
+
 TEST(MeasurementFaults, NothingIsSaidOfAMisfitThatNoneOfThemExplains) {
   VectorXd response = makeResponse(1.0, 1.2);
   response += 0.3 * makeLayout().times.array().square().sin().matrix().replicate(2, 1);

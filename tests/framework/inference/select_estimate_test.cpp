@@ -156,17 +156,14 @@ TEST(SelectEstimate, OfSeparateModesIsMultimodal) {
   InferredMeasurement inferred;
   inferred.posterior = makeSimulated();
   EXPECT_EQ(listStatuses(inferred), Statuses{"ok"});
-  inferred.posterior->estimate.mixture = {Eigen::Vector2d(0.99, 0.01),
-                                          Eigen::Matrix2d::Identity(),
-                                          Eigen::Matrix2d::Ones(),
-                                          {Eigen::Matrix2d::Identity(), Eigen::Matrix2d::Identity()}};
+  inferred.posterior->shape = PosteriorShape::kMultimodal;
   EXPECT_EQ(listStatuses(inferred), Statuses{"multimodal"});
 }
 
-TEST(SelectEstimate, IsUninformativeWhereThePosteriorIsAsWideAsTheBounds) {
+TEST(SelectEstimate, IsUninformativeWhereThePosteriorIsAsWideAsThePrior) {
   InferredMeasurement inferred;
   inferred.posterior = makeSimulated();
-  inferred.posterior->estimate.stddev[0] = 2.8;  // the bounds alone leave 2.89
+  inferred.posterior->shape = PosteriorShape::kUninformative;
   EXPECT_EQ(listStatuses(inferred), Statuses{"uninformative"});
 }
 

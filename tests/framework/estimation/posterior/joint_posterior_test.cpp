@@ -97,5 +97,17 @@ TEST_F(JointPosterior, APriorIsAMeasurementMore) {
               0.1 * stddev);
 }
 
+TEST_F(JointPosterior, IsUninformativeWhereItIsAsWideAsThePrior) {
+  problem_.drawn = 2;
+  problem_.unknown[0].prior = PriorSpec{NormalPrior{0.2, 1e-3}};  // the measurements allow some .02
+  const SimulatorPosterior posterior = samplePosterior(problem_, MatrixXd(4, 0), options_);
+  ASSERT_TRUE(posterior.isReliable());
+  EXPECT_NEAR(posterior.prior_stddev[0], 1e-3, 1e-5);
+  EXPECT_NEAR(posterior.prior_stddev[1], 2.0 / std::sqrt(12.0), 1e-3);
+  EXPECT_EQ(posterior.findShape(2), PosteriorShape::kUninformative);
+  problem_.unknown[0].prior.reset();
+  EXPECT_EQ(samplePosterior(problem_, MatrixXd(4, 0), options_).findShape(2), PosteriorShape::kInformative);
+}
+
 }  // namespace
 }  // namespace twinmap

@@ -32,17 +32,16 @@ struct Moments {
 
 /// Those of a posterior of two parameters within the bounds by the midpoint rule: the oracle.
 Moments integrate(const Response& response, const std::vector<ParameterSpec>& unknown,
-                  const VectorXd& measured, double noise_stddev) {
-  constexpr int kCells = 1200;
+                  const VectorXd& measured, double noise_stddev, int cells = 1200) {
   VectorXd sum = VectorXd::Zero(2), squares = VectorXd::Zero(2);
   double mass = 0.0, reference = -1.0;
   for (int pass = 0; pass < 2; ++pass) {  // the least chi-square first, so that exponentials do not vanish
-    for (int i = 0; i < kCells; ++i) {
-      for (int j = 0; j < kCells; ++j) {
+    for (int i = 0; i < cells; ++i) {
+      for (int j = 0; j < cells; ++j) {
         VectorXd x(2);
         for (int k = 0; k < 2; ++k) {
           const Bounds& bounds = unknown[static_cast<std::size_t>(k)].bounds;
-          x[k] = bounds.lower + (bounds.upper - bounds.lower) * ((k == 0 ? i : j) + 0.5) / kCells;
+          x[k] = bounds.lower + (bounds.upper - bounds.lower) * ((k == 0 ? i : j) + 0.5) / cells;
         }
         const double chi_square = (measured - response(x)).squaredNorm() / (noise_stddev * noise_stddev);
         if (pass == 0) {
@@ -101,6 +100,32 @@ TEST(SimulatorPosterior, IsThatOfQuadratureWithHeavyTails) {
         return makeVector({std::atan(4.0 * x[0]), std::atan(4.0 * x[1])});
       },
       testing::makeParameters(2, -1.0, 1.0), 0.3, 2, makeVector({0.3, -0.5}));
+}
+
+TEST(SimulatorPosterior, IsThatOfQuadratureOfEightParameters) {
+  // four bananas, each more bent than the one before, that know nothing of each other
+  const auto banana = [](const VectorXd& x, int k) {
+    return makeVector({x[0], 2.0 * (x[1] - 0.3 * k * x[0] * x[0])});
+  };
+  const auto response = [&](const VectorXd& x) {
+    VectorXd all(8);
+    for (int k = 0; k < 4; ++k) {
+      all.segment(2 * k, 2) = banana(x.segment(2 * k, 2), k);
+    }
+    return all;
+  };
+  constexpr double kNoise = 0.2;
+  Problem problem(8, response, testing::makeParameters(8, -1.0, 1.0), kNoise);
+  const VectorXd features = problem.measure(makeVector({0.2, 0.1, -0.3, 0.4, 0.8, -0.2, 0.5, 0.3}), kNoise);
+  Moments expected{VectorXd(8), VectorXd(8)};
+  for (int k = 0; k < 4; ++k) {
+    const Moments pair =
+        integrate([&](const VectorXd& x) { return banana(x, k); }, testing::makeParameters(2, -1.0, 1.0),
+                  features.segment(2 * k, 2), kNoise, 300);
+    expected.mean.segment(2 * k, 2) = pair.mean;
+    expected.stddev.segment(2 * k, 2) = pair.stddev;
+  }
+  expectMoments(sample(problem, features, 10000), expected);
 }
 
 TEST(SimulatorPosterior, HasBothModesWhereASignIsNotSeen) {

@@ -150,6 +150,7 @@ test('the table says what metrics.csv says, sorts, and copies', async () => {
       assert.ok(Math.abs(shown - metric[column]) <= rounding, `${shown} for ${metric[column]}`);
     }
   }
+  await page.evaluate(() => document.querySelectorAll('details').forEach(folded => { folded.open = true; }));
   const index = headings.indexOf('sd %');
   const button = page.locator('#metrics-table th button').nth(index);
   const readColumn = () => page.locator(`#metrics-table tbody td:nth-child(${index + 1})`)
@@ -298,9 +299,9 @@ test('a sample is highlighted by its number, and its response is that of samples
 
 test('the reader chooses parameters and axes', async () => {
   const page = await open('run/report.html');
-  assert.match(await page.locator('#stddev-0').textContent(), /Inferred sd of d_y \[N s\/m\]/);
+  assert.match(await page.locator('#stddev-0').textContent(), /Stated sd of d_y \[N s\/m\]/);
   await page.locator('select[data-figure=stddev][data-choice=p]').selectOption({label: 'k_theta [N m/rad]'});
-  await page.waitForFunction(() => /Inferred sd of k_theta/.test(document.querySelector('#stddev-0').textContent));
+  await page.waitForFunction(() => /Stated sd of k_theta/.test(document.querySelector('#stddev-0').textContent));
   assert.equal(await countMarks(page, 'stddev-0', 'symbol'), kTestSamples);
   await close(page);
 });
