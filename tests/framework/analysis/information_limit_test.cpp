@@ -108,7 +108,7 @@ TEST(InformationLimit, WithPriorsIsThatOfTheirInformation) {
   EXPECT_GT(found.remaining[0], 0.8);  // nearly all of .02 widths: the data say little of it
   EXPECT_LT(found.remaining[1], 0.25);
   ASSERT_EQ(found.warnings.size(), 1U);
-  EXPECT_NE(found.warnings[0].find("parameter 'a'"), std::string::npos);
+  EXPECT_NE(found.warnings[0].find("the uncertainty of a by only"), std::string::npos);
 }
 
 TEST(InformationLimit, LeavesOutFailedSamplesAndCountsThem) {
