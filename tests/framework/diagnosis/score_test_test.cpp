@@ -76,9 +76,9 @@ TEST_F(Scores, AreNoMoreCertainThanWhatRemains) {
   const double stated = white.calcScore(0, 1.0).stddev;
   EXPECT_NEAR(white.calcCautiousStddev(0, {0}), stated, 0.3 * stated);
   EXPECT_NEAR(ScoreTest(0.1 * residual_, jacobian_, terms_).calcCautiousStddev(0, {0}), stated, 1e-12);
-  EXPECT_NEAR(ScoreTest(10.0 * residual_, jacobian_, terms_).calcCautiousStddev(0, {0}) /
-                  white.calcCautiousStddev(0, {0}),
-              10.0, 1e-9);
+  EXPECT_NEAR(ScoreTest(20.0 * residual_, jacobian_, terms_).calcCautiousStddev(0, {0}) /
+                  ScoreTest(10.0 * residual_, jacobian_, terms_).calcCautiousStddev(0, {0}),
+              2.0, 1e-9);
 }
 
 // A slow term in slow noise of correlation rho: its sd is larger by about sqrt((1 + rho) / (1 - rho)).

@@ -48,7 +48,7 @@ void checkInitialState(SimbodyContext& context, const Eigen::VectorXd& box_cente
   context.excitation.mute();
   if (!finite) {
     throw SimulationFailure(
-        "the accelerations of the initial state are not finite, or the rates of its states");
+        "the accelerations or the rates of the initial state are not finite");
   }
 }
 
