@@ -463,7 +463,9 @@ class Run(TestCase):
         for row in read_csv(self.folder / "run/predictions.csv"):
             if row["parameter"] == "m":
                 self.assertEqual(float(row["true"]), true_mass[int(row["sample"])])
-        self.assertIn(f"{len(failures)} of the samples could not be simulated", (self.folder / "run/report.html").read_text())
+        self.assertIn(
+            f"{len(failures)} of the samples could not be simulated", (self.folder / "run/report.html").read_text()
+        )
         self.assertEqual(json.loads((self.folder / "run/provenance.json").read_text())["failed_samples"], len(failures))
 
     def test_samples_that_lack_a_feature_fail_with_a_reason(self):
