@@ -61,8 +61,10 @@ class EquilibriumSolver {
       return q;
     }
     char text[120];
-    std::snprintf(text, sizeof text, "static equilibrium not found: largest acceleration or rate left %.3g",
-                  residual.lpNorm<Eigen::Infinity>());
+    std::snprintf(
+        text, sizeof text,
+        "static equilibrium not found: largest acceleration, or rate of a state, left %.3g (SI units)",
+        residual.lpNorm<Eigen::Infinity>());
     throw SimulationFailure(text);
   }
 

@@ -20,7 +20,7 @@ struct ModelContext {
 
 /// Coordinates, their time derivatives, and states of first order, in the order of SystemNames.
 struct InitialState {
-  Eigen::VectorXd coordinates, speeds, states;
+  Eigen::VectorXd coordinates, speeds, states{};
 
   /// [coordinates; states], as an equilibrium has them.
   Eigen::VectorXd getEquilibrium() const {

@@ -105,7 +105,7 @@ ModelSpec makeFallingBlock(EquilibriumAt at) {
 
 TEST(Equilibrium, ThatDoesNotExistIsAFailureWithItsResidual) {
   EXPECT_EQ(getReason(makeFallingBlock(EquilibriumAt::kSample)),
-            "static equilibrium not found: largest acceleration or rate left 9.81");
+            "static equilibrium not found: largest acceleration, or rate of a state, left 9.81 (SI units)");
 }
 
 TEST(Equilibrium, ThatDoesNotExistAtTheBoxCenterIsWrongInput) {
