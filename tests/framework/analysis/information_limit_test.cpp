@@ -145,7 +145,8 @@ TEST(Identifiability, NamesThoseThatLookAlike) {
       calcIdentifiability(calcLimit(matrix, makePoints(3, 4)), makeParameters(3, kLower, kUpper));
   ASSERT_EQ(result.warnings.size(), 2U);
   EXPECT_NE(result.warnings[0].find("the uncertainty of a by only"), std::string::npos);
-  EXPECT_NE(result.warnings[0].find("its effect looks like that of 'b' (correlation 0.97)"), std::string::npos)
+  EXPECT_NE(result.warnings[0].find("its effect looks like that of 'b' (correlation 0.97)"),
+            std::string::npos)
       << result.warnings[0];
   EXPECT_GT(result.correlation(0, 1), 0.97);
   EXPECT_NEAR(result.eigenvalues[0], 0.0, 1e-6);
