@@ -23,11 +23,11 @@ InferredMeasurement DirectInference::infer(const Table& table, std::optional<dou
   inferred.source = table.source;
   inferred.start = reader_.getStart(start);
   inferred.left_out = found.remarks;
-  inferred.fault = findFault(found, known, *inferred.posterior);
+  inferred.fault = explainMisfit(found, known, *inferred.posterior);
   return inferred;
 }
 
-std::string DirectInference::findFault(const AvailableFeatures& found, const Eigen::VectorXd& known,
+std::string DirectInference::explainMisfit(const AvailableFeatures& found, const Eigen::VectorXd& known,
                                        const PosteriorEstimate& posterior) const {
   const SimulatorFit& fit = *posterior.fit;
   if (!fit.isSimulated() || fit.isPlausible()) {

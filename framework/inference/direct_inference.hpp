@@ -28,7 +28,7 @@ class DirectInference final : public MeasurementInference {
                             const std::vector<ClippedSample>& clipped) const;
 
   /// The simple fault of the recording that explains a gross misfit, or "".
-  std::string findFault(const AvailableFeatures& found, const Eigen::VectorXd& known,
+  std::string explainMisfit(const AvailableFeatures& found, const Eigen::VectorXd& known,
                         const PosteriorEstimate& posterior) const;
 
   const MeasurementReader& reader_;

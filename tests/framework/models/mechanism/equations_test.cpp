@@ -141,7 +141,7 @@ TEST(Equations, GiveCoincidentPointsNoForce) {
   SimbodyContext context(model);
   const NamedValues<double> none;
   const SystemValues<double> values = equations::calcSystemValues(model.system, context.names, none);
-  const ModelState<double> rest{0.0, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {}};
+  const ModelState<double> rest{0.0, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {}, {}, {}};
   EXPECT_EQ(equations::calcModelMotion(model, context.names, none, values, rest).accelerations,
             std::vector<double>(3, 0.0));
 }
@@ -153,7 +153,7 @@ TEST(Equations, SeeASingularMassMatrix) {
   SimbodyContext context(model);
   const NamedValues<double> none;
   const SystemValues<double> values = equations::calcSystemValues(model.system, context.names, none);
-  const ModelState<double> rest{0.0, {0.3}, {0.0}, {}};
+  const ModelState<double> rest{0.0, {0.3}, {0.0}, {}, {}, {}};
   EXPECT_FALSE(equations::calcModelMotion(model, context.names, none, values, rest).pivots[0] > 0.0);
 }
 
