@@ -15,9 +15,9 @@ namespace twinmap::equations {
 template <class S>
 struct ModelState {
   S time = 0.0;
-  std::vector<S> coordinates, speeds, states;
-  std::vector<S> signals;       ///< of the excitation
-  std::vector<S> signal_rates;  ///< empty where no expression uses them
+  std::vector<S> coordinates, speeds, states{};
+  std::vector<S> signals{};       ///< of the excitation
+  std::vector<S> signal_rates{};  ///< empty where no expression uses them
 };
 
 /// What follows from a state.
