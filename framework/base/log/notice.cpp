@@ -39,7 +39,8 @@ const std::vector<NoticeText> kStatuses{
      "State the noise that was found: noise.stddev.",
      "The residuals are as independent as noise, but smaller than stated."},
     {Notice::kNoiseColoured, "noise_coloured", true, kInfo,
-     "the noise of {0} is coloured, neighbouring samples have a correlation of {1:.2f}; the intervals follow it",
+     "the noise of {0} is coloured, neighbouring samples have a correlation of {1:.2f}; the intervals follow "
+     "it",
      "State it: noise.correlation; or look whether the model lacks something small.",
      "Neighbouring residuals agree, and are no larger than the stated noise."},
     {Notice::kSensorOffset, "sensor_offset", true, kInfo,

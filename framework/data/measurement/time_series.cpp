@@ -128,7 +128,7 @@ VectorXd unwrap(const VectorXd& times, const VectorXd& values, double turn) {
 }
 
 std::vector<Index> findTurnJumps(const VectorXd& values, double turn) {
-  constexpr double kSmall = 0.1;   // of a turn: ten samples a revolution
+  constexpr double kSmall = 0.15;  // of a turn
   constexpr double kUsual = 0.9;   // of the changes
   std::vector<Index> there, jumps;
   for (Index i = 0; i < values.size(); ++i) {

@@ -35,9 +35,9 @@ Eigen::VectorXd readValues(const Table& table, const ColumnSpec& wanted, const s
 /// turn per sample within a sample.
 Eigen::VectorXd unwrap(const Eigen::VectorXd& times, const Eigen::VectorXd& values, double turn);
 
-/// Rows (the second of two neighbours) between which values change by a whole turn, within a tenth, while
-/// nine of ten changes are below a tenth of it, and where the next value does not jump back, as it does
-/// at a spike.
+/// Rows (the second of two neighbours) between which values change by a whole turn, within 0.15 of it, while
+/// nine of ten changes are below 0.15 of it, and where the next value does not jump back, as it does at a
+/// spike.
 std::vector<Eigen::Index> findTurnJumps(const Eigen::VectorXd& values, double turn);
 
 /// Throws MeasurementError unless the column has as many numbers as there are times.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
 #include "kernels/linalg/autocorrelation.hpp"
@@ -17,7 +18,9 @@ using Eigen::VectorXd;
 const std::vector<long> kLags{0, 1, 2, 3, 7, 8, 20, 21, 22};  // samples are missing
 
 VectorXd makeCoefficients(std::initializer_list<double> values) {
-  return Eigen::Map<const VectorXd>(values.begin(), static_cast<Index>(values.size()));
+  VectorXd made(static_cast<Index>(values.size()));
+  std::copy(values.begin(), values.end(), made.begin());
+  return made;
 }
 
 MatrixXd makeCorrelation(const VectorXd& a) {
