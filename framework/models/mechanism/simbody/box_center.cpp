@@ -41,14 +41,15 @@ void checkInitialState(SimbodyContext& context, const Eigen::VectorXd& box_cente
   SimTK::State state = system.getTree().getDefaultState();
   setState(system, calcInitialState(context, system, box_center), state);
   context.excitation.beginPhase(0.0);
-  bool finite = system.calcUDot(state, 0.0).allFinite();
-  for (const double rate : system.getStateRates()) {
-    finite = finite && std::isfinite(rate);
-  }
+  const bool finite = system.calcUDot(state, 0.0).allFinite();
+  const std::vector<double>& rates = system.getStateRates();
+  const auto isFinite = [](double rate) { return std::isfinite(rate); };
   context.excitation.mute();
   if (!finite) {
-    throw SimulationFailure(
-        "the accelerations or the rates of the initial state are not finite");
+    throw SimulationFailure("the accelerations of the initial state are not finite");
+  }
+  if (!std::all_of(rates.begin(), rates.end(), isFinite)) {
+    throw SimulationFailure("the rates of the states of first order are not finite at the start");
   }
 }
 
