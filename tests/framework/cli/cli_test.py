@@ -160,7 +160,7 @@ class ExitCodes(TestCase):
             "check",
             CART,
             "system.force_laws[0].force=F + sqrt(x - 1)",
-            message="the accelerations or the rates of the initial state are not finite",
+            message="the accelerations of the initial state are not finite",
         )
         for at in ("box_center", "sample"):
             self.assert_wrong_input(

@@ -260,7 +260,7 @@ TEST(WrongInput, AnInitialStateThatFailsAtTheBoxCenterIsRefused) {
   EXPECT_EQ(getStartError(model), "");
   model.system.bodies[0].name.where = at(5, "system.bodies.block");
   model.system.elements.get<ForceLaw>() = {law("x", "sqrt(x - 2)")};  // x = 1
-  EXPECT_EQ(getStartError(model), centre + "the accelerations or the rates of the initial state are not finite");
+  EXPECT_EQ(getStartError(model), centre + "the accelerations of the initial state are not finite");
   model.system.elements.get<ForceLaw>() = {
       law("x", "-50 - k * x^2")};  // none: 10 x + 10 x^2 + 50 has no root
   for (const EquilibriumAt place : {EquilibriumAt::kBoxCenter, EquilibriumAt::kSample}) {
