@@ -213,10 +213,13 @@ std::string makeInferenceJson(const InferredMeasurement& inferred,
   if (estimate.mixture.isGiven()) {
     json["components"] = makeComponents(estimate.mixture, parameters);
   }
-  if (inferred.trust) {
+  const bool was_simulated = inferred.posterior && inferred.posterior->fit;
+  if (inferred.trust || was_simulated) {
     json["fault"] = inferred.fault.empty() ? Json(nullptr) : Json(inferred.fault);
+  }
+  if (inferred.trust) {
     json["trust"] = toJson(*inferred.trust, features);
-  } else if (inferred.posterior && inferred.posterior->fit) {
+  } else if (was_simulated) {
     json["trust"] = toJson(*inferred.posterior->fit);
   }
   if (inferred.refined) {

@@ -121,7 +121,7 @@ class Direct(FolderTestCase):
         self.expect_true(found)
         self.assertAlmostEqual(found["noise"]["x"]["stddev"], 1e-4, delta=3e-5)
         refused = call("run", path)
-        self.assertEqual(refused.returncode, 1)
+        self.assertEqual(refused.returncode, 2)
         self.assertIn("noise.stddev.x: 'unknown' is for `twinmap infer FILE.yaml", refused.stderr)
 
     def test_clipped_samples_say_that_the_response_is_beyond(self):
@@ -208,7 +208,7 @@ class Direct(FolderTestCase):
         scaled = self.change("scaled.csv", lambda i, x: 1000 * x)
         found = json.loads(self.infer(CART, scaled, "--json"))
         self.assertEqual(found["status"], "model_mismatch")
-        self.assertEqual(found["fault"], "x is 1000 times too large: divide it by 1000")
+        self.assertEqual(found["fault"], "x is 1000 times too large, as mm in the place of m: divide it by 1000")
         text = self.infer(CART, scaled)
         self.assertIn(found["fault"], text)
         self.assertNotIn("Take more draws", text)
