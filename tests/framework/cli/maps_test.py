@@ -72,7 +72,7 @@ class Maps(FolderTestCase):
         )
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn(
-            "map network is not compared: the network cannot be trained: a network needs at least 50 training samples",
+            "the estimator network is not compared: the network cannot be trained: a network needs at least 50 training samples",
             (run / "run.log").read_text() + result.stderr + (run / "provenance.json").read_text(),
         )
         self.assertEqual({row["map"] for row in read_csv(run / "maps.csv")}, {"gp"})

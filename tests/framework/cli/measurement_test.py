@@ -131,10 +131,10 @@ class MeasuredExcitation(TestCase):
 
     def test_the_resolved_experiment_needs_the_file_no_more(self):
         path = self.write("e.yaml", yaml.safe_dump(self.experiment))
-        resolved = call("check", path)
+        resolved = call("check", path, "--full")
         self.assertEqual(resolved.returncode, 0, resolved.stderr)
         os.remove(self.folder / "force.csv")
-        self.assertEqual(call("check", self.write("resolved.yaml", resolved.stdout)).stdout, resolved.stdout)
+        self.assertEqual(call("check", self.write("resolved.yaml", resolved.stdout), "--full").stdout, resolved.stdout)
         result = call("check", path)
         self.assertEqual(result.returncode, 2)
         self.assertIn("excitation.F.tables[0].measured.file", result.stderr)

@@ -48,7 +48,7 @@ class Reading(unittest.TestCase):
         self.assertEqual(
             experiment.to_yaml(),
             "".join(
-                line for line in call("check", TABLE_1).stdout.splitlines(True) if not line.startswith("# simulated")
+                line for line in call("check", TABLE_1).stdout.splitlines(True) if not line.startswith("# solver")
             ),
         )
         self.assertIn("k_theta", experiment._repr_html_())
