@@ -26,7 +26,7 @@ class Mixture(OwnFolderTestCase):
 
     def test_intervals_are_calibrated_and_the_run_warns_of_multimodal_estimates(self):
         run, result = run_once(ROTOR, *SMALL, QUICK)
-        self.assertIn("multimodal estimates, in these fractions of the test samples: offset", result.stderr)
+        self.assertIn("fraction of the test samples with several separate estimates: offset", result.stderr)
         self.assertNotIn("say little more than the bounds do", result.stderr)
         for row in read_csv(run / "metrics.csv"):
             self.assertGreater(float(row["coverage95"]), 0.91, row["parameter"])
@@ -87,7 +87,7 @@ class Mixture(OwnFolderTestCase):
 
     def test_the_report_draws_each_answer_and_runs_are_compared_by_them(self):
         run, _ = run_once(ROTOR, *SMALL, QUICK)
-        self.assertIn("Answers against true", (run / "report.html").read_text())
+        self.assertIn("Estimates against true", (run / "report.html").read_text())
         copy = self.folder / "copy"
         shutil.copytree(run, copy)
         (copy / "components.csv").unlink()

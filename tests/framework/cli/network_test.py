@@ -55,7 +55,7 @@ class Undetermined(FolderTestCase):
         cls.factors = {row["parameter"]: row for row in read_csv(cls.trained / "cross_validation.csv")}
 
     def test_intervals_hold_what_they_say(self):
-        self.assertIn("Intervals reach as far as those samples' errors", self.result.stderr)
+        self.assertIn("of the left-out samples; the estimates are not", self.result.stderr)
         rows = read_csv(self.trained / "predictions.csv")
         for row in read_csv(self.trained / "metrics.csv"):
             name = row["parameter"]

@@ -165,10 +165,10 @@ class Calibration(FolderTestCase):
 
     def test_says_why_there_is_none(self):
         result, run = self.run_calibrated("few", "design.test.samples=40")
-        self.assertIn("only 40 of 40 test samples have a reliable one, and it needs 50", result.stderr + result.stdout)
+        self.assertIn("40 of 40 test samples have a reliable posterior, 50 are needed", result.stderr + result.stdout)
         self.assertFalse((run / "sbc.csv").exists())
         result, run = self.run_calibrated("silent", "inverse_map=gp", "noise.stddev.y=0", "transform=[z_score]")
         self.assertIn(
-            "no calibration of posteriors: the run has no surrogate",
+            "posteriors are not calibrated: the run has no surrogate",
             result.stderr + result.stdout + (run / "run.log").read_text(),
         )
