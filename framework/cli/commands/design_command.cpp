@@ -6,6 +6,7 @@
 #include "framework/cli/commands/commands.hpp"
 #include "framework/cli/progress_line.hpp"
 #include "framework/cli/signals.hpp"
+#include "framework/experiment/check/uniform_priors.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/optimal_design/excitation.hpp"
 #include "framework/optimal_design/excitation_files.hpp"
@@ -29,9 +30,10 @@ struct Designed {
 template <class Design>
 void runDesign(const DesignArguments& arguments, const Design& design) {
   const YamlNode tree = loadExperimentTree(arguments.experiment.file, arguments.experiment.overrides);
-  const fs::path folder = arguments.folder.empty()
-                              ? fs::path("results/" + readExperiment(tree).name.text + "_design")
-                              : fs::path(arguments.folder);
+  const ExperimentSpec experiment = readExperiment(tree);
+  requireUniformPriors(experiment.model, "has a prior, which designs do not know yet: leave it out");
+  const fs::path folder = arguments.folder.empty() ? fs::path("results/" + experiment.name.text + "_design")
+                                                   : fs::path(arguments.folder);
   showWarningsOnly();
   ProgressLine line;
   const StopFlags flags = catchSignals();

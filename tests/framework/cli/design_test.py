@@ -100,6 +100,7 @@ class Design(FolderTestCase):
             ("design.excitation.criterion={parameter: k_z}", "is not a parameter"),
             ("design.excitation.limits=[{signal: N, rms: 1}]", "is not a signal"),
             ("design.excitation.limits=[{output: y, rms: 1}]", "of a signal only"),
+            ("parameters.k_y.prior={normal: {mean: 10, stddev: 1}}", "has a prior, which designs do not know yet"),
         ):
             result = call("design", "excitation", FILE, override, "--out", self.folder / "wrong")
             self.assertEqual(result.returncode, 2, override)
