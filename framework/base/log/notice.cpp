@@ -189,7 +189,7 @@ const std::vector<NoticeText> kTraining{
      "Take more draws: inverse_map.network.draws.", "The posterior of the weights is hard to explore."},
     {Notice::kShape, "shape", false, kDegraded,
      "{0}: {1:.0f} % intervals contain {2:.0f} % of the left-out samples; the estimates are not {3}",
-     "Describe them by a mixture: inverse_map.network.head=mixture, components=4.",
+     "Describe them by a mixture: inverse_map.network.head=mixture, components={4}.",
      "The errors of the network have another distribution than the one that it states."},
     {Notice::kTeacherFar, "teacher_far", false, kInfo,
      "the surrogate that trains the network is {0:.1f} times above the information limit",
