@@ -28,7 +28,7 @@ InferredMeasurement DirectInference::infer(const Table& table, std::optional<dou
 }
 
 std::string DirectInference::explainMisfit(const AvailableFeatures& found, const Eigen::VectorXd& known,
-                                       const PosteriorEstimate& posterior) const {
+                                           const PosteriorEstimate& posterior) const {
   const SimulatorFit& fit = *posterior.fit;
   if (!fit.isSimulated() || fit.isPlausible()) {
     return "";

@@ -29,7 +29,7 @@ class DirectInference final : public MeasurementInference {
 
   /// The simple fault of the recording that explains a gross misfit, or "".
   std::string explainMisfit(const AvailableFeatures& found, const Eigen::VectorXd& known,
-                        const PosteriorEstimate& posterior) const;
+                            const PosteriorEstimate& posterior) const;
 
   const MeasurementReader& reader_;
   const SimulatorRefiner simulator_;

@@ -133,10 +133,9 @@ TEST(Measurement, ErrorsOfTimes) {
             "a.csv: has a sample each 0.06 s (median); at least one each 0.05 s is needed");
   EXPECT_EQ(getResamplingError(makeCubicTable(makeTimes(1, 0.06)), layout),
             "a.csv: has 1 samples; must have at least 2");
-  EXPECT_EQ(
-      getResamplingError(without(makeCubicTable(makeTimes(200, 0.01)), 50), layout),
-      "a.csv: has a gap of 0.02 s after t = 0.49 s, where samples are needed; the median step is "
-      "0.01 s");
+  EXPECT_EQ(getResamplingError(without(makeCubicTable(makeTimes(200, 0.01)), 50), layout),
+            "a.csv: has a gap of 0.02 s after t = 0.49 s, where samples are needed; the median step is "
+            "0.01 s");
   EXPECT_EQ(getResamplingError(without(makeCubicTable(makeTimes(200, 0.01)), 150), layout),
             "no error");  // where none is needed
   EXPECT_EQ(getResamplingError(makeCubicTable(makeTimes(200, 0.0503)), layout), "no error");  // below 1 %
