@@ -166,8 +166,8 @@ test('the table says what metrics.csv says, sorts, and copies', async () => {
     window.copied = [];
     Object.defineProperty(navigator, 'clipboard', {value: {writeText: async text => { window.copied.push(text); }}});
   });
-  for (const format of ['CSV', 'Markdown', 'LaTeX']) {
-    await page.getByRole('button', {name: format, exact: true}).first().click();
+  for (const format of ['csv', 'markdown', 'latex']) {
+    await page.locator(`[data-copy=metrics-${format}]`).click();
   }
   await page.waitForFunction(() => window.copied.length === 3);
   const [csv, markdown, latex] = await page.evaluate(() => window.copied);
