@@ -19,11 +19,11 @@ struct ResidualSeries {
 ///
 /// The restricted likelihood (the regressors' coefficients and the size integrated out: Patterson and
 /// Thompson 1971), which has not the bias of a residual's autocorrelation towards 0, times a density that is
-/// uniform in the partial autocorrelations, is approximated by a normal distribution in their inverse
-/// hyperbolic tangents about its maximum; the nodes are those of Gauss and Hermite there, seven of one
-/// coefficient, 25 of two, 27 of three. Their log_weight makes a sum over them an integral. The order, up to
-/// three, is that of the least -2 log likelihood + p log n (BIC); empty where that is 0. Cost: some 200
-/// evaluations of n p u + n u^2 each order.
+/// uniform in the partial autocorrelations, is integrated over their inverse hyperbolic tangents
+/// about its maximum, along its principal directions, each side with a width of its own: by 11 equidistant
+/// nodes of one coefficient, 49 of two, Gauss's and Hermite's 27 of three. Their log_weight makes a sum over
+/// them an integral. The order, up to three, is that of the least -2 log likelihood + p log n (BIC); empty
+/// where that is 0. Cost: some 200 evaluations of n p u + n u^2 each order.
 std::vector<NoiseColour> fitColours(const ResidualSeries& series);
 
 }  // namespace twinmap
