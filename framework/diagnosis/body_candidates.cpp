@@ -14,46 +14,54 @@ Expression addTo(const Expression& expression, const std::string& term) {
   return {"(" + expression.text + ") + " + term, expression.where};
 }
 
+/// The expression of a body that a coefficient is added to.
+using BodyExpression = std::function<Expression&(BodySpec&)>;
+
+/// Nothing of size 0 is a candidate: a body without mass has none to correct.
+void addCorrection(TermCandidate candidate, std::size_t index, const BodyExpression& get,
+                   std::vector<TermCandidate>& candidates) {
+  if (!(candidate.size > 0.0)) {
+    return;
+  }
+  candidate.add = [index, get](ModelSpec& model, const std::string& coefficient, const std::string&) {
+    Expression& changed = get(model.system.bodies[index]);
+    changed = addTo(changed, coefficient);
+  };
+  candidates.push_back(std::move(candidate));
+}
+
 void addBody(const BodySpec& body, std::size_t index, const ModelSizes& sizes,
              std::vector<TermCandidate>& candidates) {
   const std::string& name = body.name.text;
-  TermCandidate mass;
-  mass.term = "mass." + name;
-  mass.meaning = fmt::format("another mass of {}, by c", name);
-  mass.unit = "kg";
-  mass.size = kMuch * sizes.masses[index];
-  mass.add = [index](ModelSpec& model, const std::string& coefficient, const std::string&) {
-    Expression& changed = model.system.bodies[index].mass;
-    changed = addTo(changed, coefficient);
-  };
-  if (mass.size > 0.0) {
-    candidates.push_back(mass);
-  }
+  addCorrection(
+      {"mass." + name,
+       fmt::format("another mass of {}, by c", name),
+       "kg",
+       kMuch * sizes.masses[index],
+       false,
+       {},
+       {}},
+      index, [](BodySpec& changed) -> Expression& { return changed.mass; }, candidates);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    TermCandidate center;
-    center.term = fmt::format("center_{}.{}", kAxes[axis], name);
-    center.meaning = fmt::format("another centre of mass of {}, by c along its {}", name, kAxes[axis]);
-    center.unit = "m";
-    center.size = kMuch * sizes.lengths[index];
-    center.add = [index, axis](ModelSpec& model, const std::string& coefficient, const std::string&) {
-      Expression& changed = model.system.bodies[index].center_of_mass[axis];
-      changed = addTo(changed, coefficient);
-    };
-    if (center.size > 0.0) {
-      candidates.push_back(center);
-    }
-    TermCandidate moment;
-    moment.term = fmt::format("inertia_{}.{}", kAxes[axis], name);
-    moment.meaning = fmt::format("another moment of inertia of {} about its {}, by c", name, kAxes[axis]);
-    moment.unit = "kg m2";
-    moment.size = kMuch * sizes.moments[index];
-    moment.add = [index, axis](ModelSpec& model, const std::string& coefficient, const std::string&) {
-      Expression& changed = model.system.bodies[index].inertia.moments[axis];
-      changed = addTo(changed, coefficient);
-    };
-    if (moment.size > 0.0) {
-      candidates.push_back(moment);
-    }
+    addCorrection(
+        {fmt::format("center_{}.{}", kAxes[axis], name),
+         fmt::format("another centre of mass of {}, by c along its {}", name, kAxes[axis]),
+         "m",
+         kMuch * sizes.lengths[index],
+         false,
+         {},
+         {}},
+        index, [axis](BodySpec& changed) -> Expression& { return changed.center_of_mass[axis]; }, candidates);
+    addCorrection(
+        {fmt::format("inertia_{}.{}", kAxes[axis], name),
+         fmt::format("another moment of inertia of {} about its {}, by c", name, kAxes[axis]),
+         "kg m2",
+         kMuch * sizes.moments[index],
+         false,
+         {},
+         {}},
+        index, [axis](BodySpec& changed) -> Expression& { return changed.inertia.moments[axis]; },
+        candidates);
   }
 }
 
