@@ -70,6 +70,14 @@ bool areAlike(const ScaledTerm& a, const ScaledTerm& b) {
          std::abs(first - second) <= kTolerance * std::abs(first);
 }
 
+/// A number beside a quantity, in that one's unit.
+ScaledTerm takeUnit(const ScaledTerm& term, const ScaledTerm& beside) {
+  const double change = beside.scaled / beside.value;
+  return term.has_number && !beside.has_number && std::isfinite(change)
+             ? ScaledTerm{term.value, change * term.value, true}
+             : term;
+}
+
 }  // namespace
 
 void CheckScope::define(const Name& name, const std::optional<Dimension>& dimension, double reference_value) {
@@ -167,8 +175,10 @@ void CheckScope::requireLikeTerms(const Expression& expression) const {
       const auto operand = [&](int k) {
         return node.operands[k] < 0 ? ScaledTerm{0.0, 0.0, false} : terms[node.operands[k]];
       };
-      const ScaledTerm a = operand(0), b = operand(1), c = operand(2);
       const bool alike = needsLikeOperands(node.operation);
+      const ScaledTerm a = alike ? takeUnit(operand(0), operand(1)) : operand(0);
+      const ScaledTerm b = alike ? takeUnit(operand(1), operand(0)) : operand(1);
+      const ScaledTerm c = operand(2);
       if (alike && !areAlike(a, b)) {
         throw ExperimentError(expression.where, expression.text,
                               "adds or compares quantities of different units, by the units stated");

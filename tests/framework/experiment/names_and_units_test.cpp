@@ -83,6 +83,13 @@ TEST_F(CheckScopeTest, WhatIsAddedHasOneUnitWhateverNumberStandsBeside) {
   }
 }
 
+TEST_F(CheckScopeTest, ANumberBesideAQuantityHasItsUnitFromThereOn) {
+  EXPECT_NO_THROW(scope_.check(Expression{"(k * L + 24) - k * L", {}}, ""));
+  EXPECT_NO_THROW(scope_.check(Expression{"min(24, k * L) / L + k", {}}, ""));
+  EXPECT_THROW(scope_.check(Expression{"(k * L + 24) + m", {}}, ""), ExperimentError);
+  EXPECT_THROW(scope_.check(Expression{"min(24, k * L) + k", {}}, ""), ExperimentError);
+}
+
 TEST_F(CheckScopeTest, RefusesTakenReservedAndMalformedNames) {
   for (const char* name : {"k", "t", "pi", "sin", "2k", "a b", "a.b", "", "größe"}) {
     EXPECT_THROW(scope_.define({name, {}}, std::nullopt, 0.0), ExperimentError) << name;
