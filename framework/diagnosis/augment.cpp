@@ -29,7 +29,7 @@ bool isTaken(const ModelSpec& model, const std::string& name) {
                        [&](const Name& one) { return one.text == name || one.text + "_dot" == name; });
   };
   return isReservedName(name) || has(collectSampled(model)) || has(model.constants) ||
-         has(model.excitation) ||
+         has(model.excitation) || has(model.system.states) || has(model.system.expressions) ||
          std::any_of(model.system.bodies.begin(), model.system.bodies.end(), is_coordinate);
 }
 

@@ -41,7 +41,7 @@ std::vector<TermCandidate> listOutputCandidates(const ModelSpec& model, const Mo
   return candidates;
 }
 
-/// Puts `replacement` in the place of a signal, wherever forces use it.
+/// Puts `replacement` in the place of a signal, wherever forces, states and named expressions use it.
 void replaceSignal(ModelSpec& model, const std::string& signal, const std::string& replacement) {
   const auto replace = [&](Expression& expression) {
     expression.text = replaceName(expression.text, signal, replacement);
@@ -54,6 +54,12 @@ void replaceSignal(ModelSpec& model, const std::string& signal, const std::strin
   }
   for (AppliedMoment<Expression>& moment : model.system.elements.get<AppliedMoment>()) {
     std::for_each(moment.moment.begin(), moment.moment.end(), replace);
+  }
+  for (StateSpec& state : model.system.states) {
+    replace(state.derivative);
+  }
+  for (NamedExpression& named : model.system.expressions) {
+    replace(named.value);
   }
 }
 
@@ -124,7 +130,7 @@ std::vector<TermCandidate> listExcitationCandidates(const ModelSpec& model) {
     gain.meaning = fmt::format("signal {}, larger by the factor 1 + c", name);
     gain.size = kLargeGain;
     gain.add = [name](ModelSpec& changed, const std::string& coefficient, const std::string&) {
-      replaceSignal(changed, name, fmt::format("({}*(1 + {}))", name, coefficient));
+      replaceSignal(changed, name, fmt::format("({0} + {1}*{0})", name, coefficient));
     };
     candidates.push_back(gain);
     if (canBeDelayed(model.excitation[i])) {

@@ -42,8 +42,9 @@ TEST(ReplaceName, ReplacesWholeWords) {
 
 // Units, names and references of each are right, alone and all together.
 TEST(Candidates, MakeExperimentsThatPassTheChecks) {
-  for (const std::string& file : {kCart, kTable1, findMechanism("double_pendulum_mild"),
-                                  findMechanism("spatial_arm"), findMechanism("released_pendulum")}) {
+  for (const std::string& file :
+       {kCart, kTable1, findMechanism("double_pendulum_mild"), findMechanism("spatial_arm"),
+        findMechanism("released_pendulum"), findMechanism("servo_axis"), findMechanism("stick_slip")}) {
     const ExperimentSpec experiment = loadExperiment(file);
     const std::vector<TermCandidate> candidates = listAtCenter(experiment);
     EXPECT_GT(candidates.size(), 20U);
@@ -61,6 +62,15 @@ TEST(Candidates, CoverCoordinatesBodiesSensorsAndSignals) {
                            "offset.theta", "gain.y", "gain.F", "delay.M"}) {
     find(candidates, term);
   }
+}
+
+// The reference of a servo stands in a named expression alone.
+TEST(Candidates, ChangeSignalsInNamedExpressionsToo) {
+  const ExperimentSpec servo = loadExperiment(findMechanism("servo_axis"));
+  const std::vector<TermCandidate> candidates = listAtCenter(servo);
+  const ExperimentSpec changed = addTerm(servo, find(candidates, "gain.r"), 0.1).experiment;
+  EXPECT_NE(changed.model.system.expressions.front().value.text,
+            servo.model.system.expressions.front().value.text);
 }
 
 /// The response of the cart with a term of some size, its own scale as it is scanned.
