@@ -35,6 +35,7 @@ enum class RandomPurpose : std::uint64_t {
   kBasinStarts = 29,     // where searches of a measurement's basins begin
   kAgreement = 30,       // errors that the disagreement of measurements is compared with
   kPriorPoints = 31,     // test points in place of those that bounds cut off
+  kCourse = 32,          // errors that a change over measurements is compared with
 };
 
 /// Counter-based random numbers (Philox 4x64-10, Salmon et al. 2011): a number depends on

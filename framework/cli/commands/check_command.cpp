@@ -7,6 +7,7 @@
 #include "framework/cli/commands/commands.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"
 #include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/expression/jumps.hpp"
 #include "framework/models/make_simulator.hpp"
 #include "framework/study/sweep/model_groups.hpp"
 
@@ -53,14 +54,20 @@ std::string abbreviateTables(const std::string& text) {
 
 void check(const CheckArguments& arguments) {
   const YamlNode tree = loadExperimentTree(arguments.experiment.file, arguments.experiment.overrides);
-  std::set<std::string> engines;
+  std::set<std::string> engines, jumps;
   for (const ModelGroup& group : groupByModel(expandCasesWithSignals(tree))) {  // what is wrong in any case
     const std::unique_ptr<Simulator> simulator = makeSimulator(group.model, group.times, group.modes);
     simulator->checkStart();
     engines.insert(simulator->describeEngine());
+    for (const std::string& jump : listJumps(group.model.system)) {
+      jumps.insert(jump);
+    }
   }
   for (const std::string& engine : engines) {
     std::cout << "# solver: " << engine << '\n';
+  }
+  for (const std::string& jump : jumps) {
+    std::cout << "# steps become small: " << jump << '\n';
   }
   if (readExperiment(tree).inverse_map.isNone()) {
     std::cout << "# no inverse map: measurements are inferred by their posterior on the simulator\n";

@@ -112,6 +112,7 @@ struct InferArguments {
   int posterior_draws = 0;          ///< of each measurement's posterior; 0: none
   std::string posterior_from;       ///< "simulator", "surrogate"; "": the simulator where that is fast
   std::string draws;                ///< file for them; "": none
+  std::string page;                 ///< file for the parameters over the measurements; "": none
 };
 
 struct DiagnoseArguments {

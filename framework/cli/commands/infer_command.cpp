@@ -9,12 +9,15 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "framework/base/files/atomic_file.hpp"
 #include "framework/cli/commands/commands.hpp"
+#include "framework/cli/commands/infer_history.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/inference_source.hpp"
 #include "framework/inference/measurement/known_value.hpp"
 #include "framework/inference/measurement/measurement_stream.hpp"
 #include "framework/inference/text/inference_text.hpp"
+#include "framework/report/history/history_page.hpp"
 
 namespace twinmap::cli {
 namespace {
@@ -45,6 +48,8 @@ class InferCommand {
         session_(source_.makeSession(makeOptions(arguments))),
         known_(collectKnown(getModel().inputs, parseKnownValues(arguments.known))),
         format_(chooseFormat(arguments)),
+        history_(getModel().parameters),
+        page_(arguments.page),
         starts_(arguments.starts.begin(), arguments.starts.end()) {
     if (starts_.empty()) {
       starts_.emplace_back(std::nullopt);
@@ -85,13 +90,23 @@ class InferCommand {
 
   /// Throws std::runtime_error if a measurement could not be used.
   void finish() {
+    if (const std::string courses = describeCourses(history_.get());
+        format_ == Format::kTable && !courses.empty()) {
+      std::cout << "\n" << courses;
+    }
     std::cout.flush();
+    if (!page_.empty()) {
+      writeTextFile(page_, makeHistoryPage(source_.getExperiment().name.text, history_.get()));
+      std::cerr << "Page: " << page_ << "\n";
+    }
     if (draws_) {
       draws_->flush();
       requireDraws();
     }
     if (errors_ > 0) {
-      throw std::runtime_error(fmt::format("{} of {} measurements could not be used", errors_, count_));
+      throw std::runtime_error(count_ == 1
+                                   ? "the measurement could not be used"
+                                   : fmt::format("{} of {} measurements could not be used", errors_, count_));
     }
   }
 
@@ -122,6 +137,7 @@ class InferCommand {
   void print(const InferredMeasurement& inferred) {
     const std::vector<ParameterSpec>& parameters = getModel().parameters;
     const std::vector<FeatureInfo>& features = source_.getReader().getExtractor().getInfos();
+    history_.add(inferred);
     if (draws_) {
       *draws_ << makeDrawsCsvRows(inferred);
     }
@@ -152,6 +168,8 @@ class InferCommand {
   const std::unique_ptr<MeasurementInference> session_;
   const Eigen::VectorXd known_;
   const Format format_;
+  InferHistory history_;
+  const std::string page_;
   std::vector<std::optional<double>> starts_;
   std::string draws_file_;
   std::optional<std::ofstream> draws_;

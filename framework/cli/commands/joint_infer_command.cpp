@@ -94,6 +94,10 @@ void requireJointArguments(const InferArguments& arguments) {
         "several recordings are inferred by simulation alone: there is nothing to refine; leave --refine and "
         "--no-refine out");
   }
+  if (!arguments.page.empty()) {
+    throw ExperimentError(
+        "--page draws estimates of one measurement after another; leave --joint, --trial and --windows out");
+  }
   if (!arguments.draws.empty()) {
     throw ExperimentError("--draws are of one measurement; leave it out, or --joint, --trial and --windows");
   }

@@ -58,7 +58,7 @@ void noise(const NoiseArguments& arguments) {
   if (!arguments.window.empty()) {
     question.window = {arguments.window[0], arguments.window[1]};
   }
-  const Table table = readTable(arguments.measurement, listNeeded(question));
+  const Table table = readTable(arguments.measurement, listNeeded(question), MissingCells::kKeep);
   const std::vector<SignalNoise> signals = estimateNoise(table, question);
   std::cout << (arguments.json ? makeNoiseJson(signals, table.source)
                                : makeNoiseTable(signals) + "\n" + makeNoiseYaml(signals));

@@ -72,6 +72,10 @@ void addInfer(CLI::App& app) {
   command->add_option("--draws", arguments->draws, "File for the posterior's joint draws (CSV)")
       ->type_name("FILE")
       ->needs(posterior);
+  command
+      ->add_option("--page", arguments->page,
+                   "File for a page (HTML) that draws the parameters over the measurements and names changes")
+      ->type_name("FILE");
   command->callback([arguments] { infer(*arguments); });
 }
 

@@ -1,6 +1,7 @@
 #include "framework/data/noise/signal_noise.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "framework/base/text/number_text.hpp"
@@ -37,6 +38,19 @@ RowRange findWindow(const Table& table, const NoiseQuestion& question, const std
   return {first, std::max<Index>(0, std::upper_bound(begin, end, (*question.window)[1]) - begin - first)};
 }
 
+/// The longest stretch of a window in which no value is missing.
+RowRange findLongestStretch(const VectorXd& values, const RowRange& window) {
+  RowRange longest{window.first, 0};
+  Index first = window.first;
+  for (Index i = window.first; i < window.first + window.count; ++i) {
+    first = std::isfinite(values[i]) ? first : i + 1;
+    if (i + 1 - first > longest.count) {
+      longest = {first, i + 1 - first};
+    }
+  }
+  return longest;
+}
+
 /// The step of the times, which are nearly equidistant.
 double calcStep(const Table& table, const VectorXd& times) {
   constexpr double kLongest = 1.5;
@@ -68,7 +82,8 @@ SignalNoise estimateOne(const Table& table, const NoiseQuestion& question, const
   if (times) {
     requireLength(table, column, times->size());
   }
-  const RowRange rows = findWindow(table, question, times, column.values.size());
+  const RowRange rows =
+      findLongestStretch(column.values, findWindow(table, question, times, column.values.size()));
   const std::string unit = wanted.unit.empty() ? column.unit.value_or("") : wanted.unit;
   SignalNoise signal{wanted.name, unit, rows.count, {}, {}};
   const VectorXd values = readValues(table, wanted.column, wanted.unit, rows.first, rows.count);

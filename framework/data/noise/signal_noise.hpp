@@ -33,9 +33,10 @@ struct NoiseQuestion {
   std::vector<NoiseColumn> columns;             ///< empty: all but that of the times
 };
 
-/// The noise of columns within a window. Where all columns are asked for, those that have no noise (constant,
-/// a straight line) or are no numbers are left out, unless none remains. Throws MeasurementError for a
-/// missing column, a window without times, fewer than 20 samples, steps that differ by more than 50 %.
+/// The noise of columns within a window: of its longest stretch where cells (NaN) are missing. Where all
+/// columns are asked for, those that have no noise (constant, a straight line) or are no numbers are left
+/// out, unless none remains. Throws MeasurementError for a missing column, a window without times, fewer than
+/// 20 samples, steps that differ by more than 50 %.
 std::vector<SignalNoise> estimateNoise(const Table& table, const NoiseQuestion& question);
 
 /// For people; for programs; and as the key `noise` of an experiment file.

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cctype>
 
 namespace twinmap {
@@ -34,14 +35,21 @@ std::string findCall(const std::string& text, const std::string& function) {
   return "";
 }
 
+/// As an operand: a name as it is, all else in parentheses.
+std::string makeOperand(const std::string& argument) {
+  return std::all_of(argument.begin(), argument.end(), isPartOfName) ? argument : "(" + argument + ")";
+}
+
 }  // namespace
 
 std::string describeJump(const Expression& force) {
   if (const std::string of = findCall(force.text, "sign"); !of.empty()) {
-    return fmt::format("sign({0}) jumps: write tanh(({0}) / eps), eps a small value of {0}", of);
+    return fmt::format("sign({0}) jumps: write tanh({1} / eps), eps a small value of {0}", of,
+                       makeOperand(of));
   }
   if (const std::string of = findCall(force.text, "abs"); !of.empty()) {
-    return fmt::format("abs({0}) has a kink: write sqrt(({0})^2 + eps^2), eps a small value of {0}", of);
+    return fmt::format("abs({0}) has a kink: write sqrt({1}^2 + eps^2), eps a small value of {0}", of,
+                       makeOperand(of));
   }
   for (const char* stepped : {"floor", "rint"}) {
     if (const std::string of = findCall(force.text, stepped); !of.empty()) {
@@ -49,6 +57,17 @@ std::string describeJump(const Expression& force) {
     }
   }
   return "";
+}
+
+std::vector<std::string> listJumps(const SystemSpec& system) {
+  std::vector<std::string> jumps;
+  const std::vector<ForceLaw<Expression>>& laws = system.elements.get<ForceLaw>();
+  for (std::size_t i = 0; i < laws.size(); ++i) {
+    if (const std::string jump = describeJump(laws[i].force); !jump.empty()) {
+      jumps.push_back(fmt::format("system.force_laws[{}].force: {}", i, jump));
+    }
+  }
+  return jumps;
 }
 
 }  // namespace twinmap

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "framework/experiment/expression/expression.hpp"
+#include "framework/experiment/model/system_spec.hpp"
 
 namespace twinmap {
 
@@ -10,5 +12,8 @@ namespace twinmap {
 /// "sign(x_dot) jumps: write tanh(x_dot / eps), eps a small value of x_dot"; "" where it has neither sign(),
 /// abs() nor floor() or rint(). The first of several.
 std::string describeJump(const Expression& force);
+
+/// "system.force_laws[0].force: sign(x_dot) jumps: ..." of each such force of a system.
+std::vector<std::string> listJumps(const SystemSpec& system);
 
 }  // namespace twinmap

@@ -87,6 +87,10 @@ std::string describeResidual(const SimulatorFit& fit, const std::vector<FeatureI
            "or "
            "the model lacks something small";
   }
+  if (test.largest_p < test.chi_square_p) {
+    return fmt::format("{} is {:.3g} noise sd off, more than any of {} samples of noise would be", where,
+                       largest, fit.residual.size());
+  }
   return fmt::format("chi-square is {:.2g} times what the stated noise leaves", fit.chi_square / fit.degrees);
 }
 

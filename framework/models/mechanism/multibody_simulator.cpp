@@ -29,7 +29,7 @@ struct SharedModel {
   Eigen::VectorXd box_center;           ///< coordinates of the equilibrium that all start from
   std::unique_ptr<LanePrograms> lanes;  ///< null where Simbody simulates
   std::string engine;
-  std::string jump;  ///< findJump()
+  std::vector<std::string> jumps;  ///< listJumps()
   std::mutex making_precise{};
   std::unique_ptr<MultibodySimulator> precise{};  ///< made when first used
 };
@@ -60,22 +60,11 @@ void checkShapes(const SharedModel& shared, const Eigen::Ref<const Eigen::Matrix
   }
 }
 
-/// "force_laws[0].force: sign(x_dot) jumps: ..." of the first force that makes the steps small; "" of none.
-std::string findJump(const SystemSpec& system) {
-  const std::vector<ForceLaw<Expression>>& laws = system.elements.get<ForceLaw>();
-  for (std::size_t i = 0; i < laws.size(); ++i) {
-    if (const std::string jump = describeJump(laws[i].force); !jump.empty()) {
-      return fmt::format("system.force_laws[{}].force: {}", i, jump);
-    }
-  }
-  return "";
-}
-
 /// Names the force that made the steps so small that their limit was reached.
-void explainStepLimits(const std::string& jump, Eigen::Index count, SampleStatus* statuses) {
-  for (Eigen::Index i = 0; i < count && !jump.empty(); ++i) {
+void explainStepLimits(const std::vector<std::string>& jumps, Eigen::Index count, SampleStatus* statuses) {
+  for (Eigen::Index i = 0; i < count && !jumps.empty(); ++i) {
     if (!statuses[i].ok && statuses[i].reason.rfind("step limit", 0) == 0) {
-      statuses[i].reason += "; " + jump;
+      statuses[i].reason += "; " + jumps.front();
     }
   }
 }
@@ -127,7 +116,7 @@ class MultibodySimulator::Impl {
     for (const OutputSpec& output : shared_->model.outputs) {
       shared_->layout.output_names.push_back(output.name.text);
     }
-    shared_->jump = findJump(shared_->model.system);
+    shared_->jumps = listJumps(shared_->model.system);
     chooseEngine(context_, check == ModelCheck::kBySimbody ? &updSimbody() : nullptr, *shared_);
     shared_->box_center = check == ModelCheck::kTrusted && shared_->lanes
                               ? solveBoxCenter(context_, shared_->lanes->getValues())
@@ -226,14 +215,14 @@ void MultibodySimulator::simulate(const Eigen::Ref<const Eigen::MatrixXd>& param
                                   Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
   checkShapes(*impl_->getShared(), parameters, responses);
   impl_->simulate(parameters, responses, statuses);
-  explainStepLimits(impl_->getShared()->jump, parameters.cols(), statuses);
+  explainStepLimits(impl_->getShared()->jumps, parameters.cols(), statuses);
 }
 
 void MultibodySimulator::simulateAround(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
                                         Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
   checkShapes(*impl_->getShared(), parameters, responses);
   impl_->simulateAround(parameters, responses, statuses);
-  explainStepLimits(impl_->getShared()->jump, parameters.cols(), statuses);
+  explainStepLimits(impl_->getShared()->jumps, parameters.cols(), statuses);
 }
 
 bool MultibodySimulator::hasDerivatives() const {
@@ -245,7 +234,7 @@ void MultibodySimulator::simulateWithDerivatives(const Eigen::Ref<const Eigen::M
                                                  Eigen::MatrixXd& derivatives, SampleStatus* statuses) {
   checkShapes(*impl_->getShared(), parameters, responses);
   impl_->updLanes().simulateWithDerivatives(parameters, responses, derivatives, statuses);
-  explainStepLimits(impl_->getShared()->jump, parameters.cols(), statuses);
+  explainStepLimits(impl_->getShared()->jumps, parameters.cols(), statuses);
 }
 
 std::unique_ptr<Simulator> MultibodySimulator::clonePrecisely() const {

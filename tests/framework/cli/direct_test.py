@@ -143,6 +143,21 @@ class Direct(FolderTestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         return result.stdout
 
+    def test_changes_over_measurements_are_named_and_drawn(self):
+        files = [
+            self.simulate(CART, f"in_order_{i}.csv", *POINT, f"seed={i}", f"parameters.k={95 if i < 4 else 94.5}")
+            for i in range(8)
+        ]
+        page = self.folder / "over_time.html"
+        text = self.infer(CART, *files, "--page", page)
+        courses = text[text.index("Over 8 of 8 measurements") :]
+        self.assertRegex(courses, r"\n  k fell by 0\.[45]\d* N/m \(0\.5\d? %, sd 0\.0\d+\) at once, at measurement 5\n")
+        self.assertRegex(courses, r"\n  d is constant, 1\.[12]\d* N s/m \(sd ")
+        self.assertIn("k fell by", page.read_text())
+        refused = call("infer", CART, *files, "--joint", "--page", page)
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("--page draws estimates of one measurement after another", refused.stderr)
+
     def test_table_and_csv_say_the_same(self):
         found = json.loads(self.infer(CART, self.measured, "--json"))
         table = self.infer(CART, self.measured)

@@ -11,7 +11,7 @@ std::string describe(const char* force) {
 
 TEST(Jumps, AreNamedWithTheirSmoothForm) {
   EXPECT_EQ(describe("F - mu * sign(x_dot)"),
-            "sign(x_dot) jumps: write tanh((x_dot) / eps), eps a small value of x_dot");
+            "sign(x_dot) jumps: write tanh(x_dot / eps), eps a small value of x_dot");
   EXPECT_EQ(
       describe("-c * v * abs (v - (1 + 2) * w)"),
       "abs(v - (1 + 2) * w) has a kink: write sqrt((v - (1 + 2) * w)^2 + eps^2), eps a small value of v - "

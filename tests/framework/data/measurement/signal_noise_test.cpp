@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <random>
 
 namespace twinmap {
@@ -53,6 +54,19 @@ TEST(SignalNoise, OfAllColumnsLeavesOutTimesAndConstants) {
   ASSERT_EQ(signals.size(), 1U);
   EXPECT_EQ(signals[0].name, "y");
   EXPECT_EQ(signals[0].unit, "mm");
+}
+
+TEST(SignalNoise, IsThatOfTheLongestStretchWithoutMissingCells) {
+  Table table = makeNoisyTable();
+  for (const Index missing : {100, 400, 700}) {
+    table.columns[1].values[missing] = std::numeric_limits<double>::quiet_NaN();
+  }
+  EXPECT_EQ(estimateNoise(table, {})[0].samples, 299);
+  NoiseQuestion question;
+  question.window = {0.0, 3.49};
+  const std::vector<SignalNoise> signals = estimateNoise(table, question);
+  EXPECT_EQ(signals[0].samples, 249);
+  EXPECT_NEAR(signals[0].noise.stddev, 1.0, 4 * signals[0].noise.stddev_error);
 }
 
 TEST(SignalNoise, ErrorsNameFileColumnAndRule) {

@@ -114,6 +114,17 @@ export function makeRunWithFailures(folder) {
       'simulation.allowed_failures=0.5', 'evaluation.limit=false', '--out', folder);
 }
 
+/** The page of eight measurements of a cart whose spring yields before the fifth. */
+export function makeHistory(folder, page) {
+  const cart = join(kSource, 'experiments/duffing/cart.yaml');
+  const files = [...Array(8).keys()].map(i => {
+    const file = join(folder, `history_${i}.csv`);
+    callTwinmap('simulate', cart, '--noise', '--csv', file, `seed=${i}`, `parameters.k=${i < 4 ? 95 : 94.5}`);
+    return file;
+  });
+  callTwinmap('infer', cart, ...files, '--page', join(folder, page));
+}
+
 /** An experiment on a cart between springs, simulated in a moment. */
 function makeCartYaml({name, parameters, stiffness, damping, output, more}) {
   return `name: ${name}

@@ -5,8 +5,8 @@ import {mkdtempSync, mkdirSync, readFileSync, rmSync, statSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {after, before, test} from 'node:test';
-import {kNames, kSweep, kTestSamples, makeRun, makeRunWithFailures, makeRunWithLongNames, makeRunWithSprings, makeSweep,
-        callTwinmap, readCsv} from './fixtures.mjs';
+import {kNames, kSweep, kTestSamples, makeHistory, makeRun, makeRunWithFailures, makeRunWithLongNames, makeRunWithSprings,
+        makeSweep, callTwinmap, readCsv} from './fixtures.mjs';
 import {launchBrowser, openPage} from './launch.mjs';
 
 const kScreenshots = process.env.TWINMAP_SCREENSHOTS;
@@ -384,6 +384,17 @@ test('several runs stand side by side', async () => {
   const page = await open('both/report.html');
   await assertEverythingDrawn(page);
   assert.equal(await countMarks(page, 'errors-side-by-side-0', 'symbol'), 2);
+  await close(page);
+});
+
+test('parameters over measurements are drawn with intervals and their course', async () => {
+  makeHistory(folder, 'history.html');
+  const page = await open('history.html', {viewport: {width: 1280, height: 900}});
+  await assertEverythingDrawn(page);
+  assert.equal(await countMarks(page, 'history-0', 'symbol'), 8);
+  assert.equal(await countMarks(page, 'history-0', 'line'), 1);
+  assert.match(await page.locator('p.lead').first().textContent(), /^k fell by .* at measurement 5\.$/);
+  await screenshot(page, 'history-1280');
   await close(page);
 });
 

@@ -1,0 +1,31 @@
+#include "framework/cli/commands/infer_history.hpp"
+
+#include <algorithm>
+
+#include "framework/base/log/notice.hpp"
+#include "framework/inference/select_estimate.hpp"
+
+namespace twinmap::cli {
+namespace {
+
+bool misleads(const std::string& status) {
+  const std::vector<NoticeText>& notices = listNotices();
+  return std::any_of(notices.begin(), notices.end(), [&](const NoticeText& notice) {
+    return notice.is_status && notice.severity == Severity::kMisleading && status == notice.name;
+  });
+}
+
+}  // namespace
+
+void InferHistory::add(const InferredMeasurement& inferred) {
+  const Estimate estimate = selectEstimate(inferred);
+  if (!estimate.isGiven()) {
+    return;
+  }
+  const Bounds95 bounds = estimate.calcBounds95();
+  history_.points.push_back({inferred.source, inferred.start, joinStatuses(estimate.statuses, ", "),
+                             std::none_of(estimate.statuses.begin(), estimate.statuses.end(), misleads),
+                             estimate.mean, estimate.stddev, bounds.lower, bounds.upper});
+}
+
+}  // namespace twinmap::cli
