@@ -74,7 +74,9 @@ bool addDimension(const VectorXi& exponents, const std::vector<ParameterSpec>& p
 std::string makeUnit(const Dimension& dimension) {
   std::string above, below;
   for (const auto& [base, power] : dimension) {
-    const std::string text = base + (std::abs(power) > 1 ? std::to_string(std::abs(power)) : "");
+    const double size = std::abs(power);
+    const bool is_whole = size == std::floor(size);  // "m2", but "m^1.5"
+    const std::string text = base + (size == 1.0 ? "" : (is_whole ? "" : "^") + toText(size));
     if (power > 0) {
       above += (above.empty() ? "" : " ") + text;
     } else if (power < 0) {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "framework/experiment/check/check_experiment.hpp"
@@ -137,10 +138,12 @@ class FieldCheck {
   void check(const Expression& expression, const Unit& unit, bool on_angle) {
     if (!expression.text.empty()) {
       const CheckScope& scope = unit.varies ? dynamics : constants;
-      scope.check(expression, unit.own                               ? own_unit
-                              : on_angle && unit.rotation != nullptr ? unit.rotation
-                                                                     : unit.text);
+      scope.check(expression, unit.own ? own_unit : makeUnit(unit, on_angle));
     }
+  }
+  static std::string makeUnit(const Unit& unit, bool on_angle) {
+    const std::string text = on_angle && unit.rotation != nullptr ? unit.rotation : unit.text;
+    return unit.power == 1.0 ? text : std::isnan(unit.power) ? "" : text + "^" + toText(unit.power);
   }
   void check(const SixOf<Expression>& expressions, const Unit& unit) {
     constexpr std::size_t kRotations = 3;

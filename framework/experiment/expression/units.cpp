@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <mutex>
+#include <regex>
 
 namespace twinmap {
 namespace {
@@ -88,18 +89,38 @@ ut_status visitLogarithm(const ut_unit*, double, const ut_unit*, void*) {
   return UT_BAD_ARG;
 }
 
-}  // namespace
-
-Dimension parseUnit(const std::string& unit, const SourceLocation& where) {
+/// Of a unit with whole powers. Call with `udunits` locked. `unit`: as the file has it, for messages.
+Dimension parseWholePowers(const std::string& text, const std::string& unit, const SourceLocation& where) {
   Dimension dimension;
-  if (unit.empty() || unit == "-") {
-    return dimension;
-  }
-  const std::lock_guard<std::mutex> guard(udunits);
-  const UnitHandle parsed = parse(unit, where);
+  const UnitHandle parsed = parse(text, where);
   const ut_visitor visitor{visitBase, visitProduct, visitScaled, visitTimestamp, visitLogarithm};
   if (ut_accept_visitor(parsed.get(), &visitor, &dimension) != UT_SUCCESS) {
     throw ExperimentError(where, unit, "is not a coherent SI unit; give the value in m, kg, s, N, rad ...");
+  }
+  return dimension;
+}
+
+}  // namespace
+
+Dimension parseUnit(const std::string& unit, const SourceLocation& where) {
+  if (unit.empty() || unit == "-") {
+    return {};
+  }
+  static const std::regex kBrokenPower(R"((/\s*)?([A-Za-z]+)\^(-?\d*\.\d+))");  // which UDUNITS lacks
+  const std::lock_guard<std::mutex> guard(udunits);
+  Dimension broken;
+  for (std::sregex_iterator found(unit.begin(), unit.end(), kBrokenPower), end; found != end; ++found) {
+    const double power = std::stod((*found)[3].str()) * ((*found)[1].matched ? -1.0 : 1.0);
+    for (const auto& [base, of_one] : parseWholePowers((*found)[2].str(), unit, where)) {
+      broken[base] += power * of_one;
+    }
+  }
+  Dimension dimension = parseWholePowers(std::regex_replace(unit, kBrokenPower, "$011"), unit, where);
+  for (const auto& [base, power] : broken) {
+    dimension[base] += power;
+    if (dimension[base] == 0.0) {
+      dimension.erase(base);
+    }
   }
   return dimension;
 }

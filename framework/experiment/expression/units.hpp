@@ -8,11 +8,12 @@
 
 namespace twinmap {
 
-/// A physical dimension as powers of base units: {kg: 1, s: -2} for N/m. Radians have none.
-using Dimension = std::map<std::string, int>;
+/// A physical dimension as powers of base units: {kg: 1, s: -2} for N/m. Radians have none. A contact's
+/// stiffness has broken powers: N/m^1.5.
+using Dimension = std::map<std::string, double>;
 
-/// The dimension of a unit such as "N s/m", "kg m^2" or "m/s2" (UDUNITS-2 grammar; "" and "-" are 1).
-/// Throws ExperimentError for an unknown unit and for one that is not coherent SI (mm, deg, kN): values are
+/// The dimension of a unit such as "N s/m", "kg m^2" or "m/s2" (UDUNITS-2 grammar; "" and "-" are 1),
+/// which may have broken powers such as m^1.5. Throws ExperimentError for an unknown unit and for one that is not coherent SI (mm, deg, kN): values are
 /// used as they stand, so N/mm would be a silent factor of 1000.
 Dimension parseUnit(const std::string& unit, const SourceLocation& where);
 

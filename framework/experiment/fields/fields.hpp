@@ -41,6 +41,7 @@ struct Unit {
       nullptr;          ///< on a coordinate that is an angle, and in the first three of six directions
   bool varies = false;  ///< may use coordinates, speeds, signals and the time
   bool own = false;     ///< the unit that is stated beside: of a signal, of an output
+  double power = 1.0;   ///< of its last factor, m in N/m; NaN where it is not known, which checks nothing
 };
 
 inline constexpr Unit kNoUnit{""};

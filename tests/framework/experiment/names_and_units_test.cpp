@@ -24,6 +24,9 @@ TEST(Units, DimensionsFollowFromTheUnit) {
   EXPECT_EQ(parseUnit("kg m^2", {}), parseUnit("kg m2", {}));
   EXPECT_EQ(parseUnit("N m/rad", {}), parseUnit("J", {}));
   EXPECT_EQ(parseUnit("Hz", {}), (Dimension{{"s", -1}}));
+  EXPECT_EQ(parseUnit("N/m^1.5", {}), (Dimension{{"kg", 1}, {"m", -0.5}, {"s", -2}}));
+  EXPECT_EQ(parseUnit("N m^-1.0", {}), (Dimension{{"kg", 1}, {"s", -2}}));
+  EXPECT_THROW(parseUnit("N/mm^1.5", {}), ExperimentError);
   EXPECT_TRUE(parseUnit("rad", {}).empty());
   EXPECT_TRUE(parseUnit("-", {}).empty());
   EXPECT_TRUE(parseUnit("1", {}).empty());

@@ -3,6 +3,7 @@
 #include <tuple>
 #include <vector>
 
+#include "framework/experiment/model/elements/contact_elements.hpp"
 #include "framework/experiment/model/elements/coordinate_elements.hpp"
 #include "framework/experiment/model/elements/load_elements.hpp"
 #include "framework/experiment/model/elements/memory_elements.hpp"
@@ -70,7 +71,10 @@ using ForceElements = ElementLists<S,               //
                                    AppliedMoment,   //
                                    ForceLaw,        //
                                    Friction,        //
-                                   Hysteresis>;
+                                   Hysteresis,      //
+                                   Contact,         //
+                                   Stop,            //
+                                   Backlash>;
 
 template <class Fields>
 void describeElements(Fields& f, ForceElements<Expression>& elements) {

@@ -100,6 +100,24 @@ class ForceSum {
     addAt(to.body, second.arm, -pull);
   }
 
+  /// Presses a station off a plane by `law(depth, rate, slip)`: the force along the normal, and in the plane.
+  /// `slip`: the velocity of the station in the plane, as its body sees it.
+  template <class Law>
+  void addOnPlane(const Station<S>& station, const Plane<S>& plane, Law law) {
+    using namespace program::real;
+    const PointMotion<S> point = calcPoint(motions_[station.body], station.point);
+    const BodyMotion<S>& base = motions_[plane.body];
+    const S length = sqrt(dot(plane.normal, plane.normal));
+    const Vec3<S> normal = base.pose.rotation * scale(S(S(1.0) / length), plane.normal);
+    const Vec3<S> arm = point.place - base.pose.origin;
+    const Vec3<S> velocity = point.velocity - base.velocity.linear - cross(base.velocity.angular, arm);
+    const S depth = dot(normal, base.pose.rotation * plane.point - arm), rate = -dot(normal, velocity);
+    const auto [pressure, in_plane] = law(depth, rate, velocity + scale(rate, normal));
+    const Vec3<S> force = scale(pressure, normal) + in_plane;
+    addAt(station.body, point.arm, force);
+    addAt(plane.body, arm, -force);
+  }
+
   /// Acts on `to`, and against it on `from`, by `law(direction, q, q')` along each of the relative
   /// coordinates of `to` in `from`: body-fixed x-y-z angles (directions 0 to 2), then translations (3 to 5).
   template <class Law>

@@ -1,0 +1,181 @@
+#pragma once
+
+#include <cstdlib>
+#include <limits>
+#include <optional>
+
+#include "framework/experiment/model/elements/element.hpp"
+#include "framework/experiment/model/elements/memory_elements.hpp"
+
+// Elements that push while something is pressed in, and never pull. Their forces have no jump, so that
+// derivatives of the response are exact without events: what loses energy is in proportion to the depth (Hunt
+// and Crossley, J. Applied Mechanics 42, 1975, p. 440), not a damper that acts from the first touch on.
+
+namespace twinmap {
+
+/// The power of a length that stands in the unit of a stiffness: the exponent, where that is a number; NaN
+/// where it is an expression; 1 without one.
+template <class S>
+double readLengthPower(const std::optional<S>& exponent) {
+  if constexpr (kIsFile<S>) {
+    if (exponent) {
+      char* end = nullptr;
+      const double power = std::strtod(exponent->text.c_str(), &end);
+      return *end == '\0' ? power : std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  return 1.0;
+}
+
+/// Force at a depth d that grows at the rate d': stiffness d^exponent (1 + dissipation d'), at least 0.
+template <class S>
+struct ContactLaw {
+  S stiffness{}, dissipation{};
+  std::optional<S> exponent{};
+};
+
+template <class Fields, class S>
+void describe(Fields& f, ContactLaw<S>& s) {
+  f.required("stiffness", s.stiffness, "force for each unit of depth to the power `exponent`",
+             Unit{"N/m", "N m/rad", false, false, readLengthPower(s.exponent)});
+  f.optional("exponent", s.exponent, "of the depth; 1.5 for spheres (Hertz); default 1", Unit{"1"});
+  f.optional("dissipation", s.dissipation, "share of the force for each unit of speed", Unit{"s/m", "s/rad"});
+}
+
+template <class S>
+S calcContactForce(const ContactLaw<S>& law, const S& depth, const S& rate) {
+  using namespace program::real;
+  const S zero = 0.0, one = 1.0, pressed = max(depth, zero);
+  const S elastic = law.stiffness * (law.exponent ? calcPower(pressed, *law.exponent) : pressed);
+  return elastic * max(one + law.dissipation * rate, zero);
+}
+
+/// A one-sided stop of a coordinate, which pushes it back from beyond `above` or `below`.
+template <class S>
+struct Stop {
+  static constexpr ElementKind kKind{"stops", "stop", "elastic one-sided stops of coordinates"};
+  CoordinateOf<S> coordinate{};
+  std::optional<S> above{}, below{};
+  ContactLaw<S> law{};
+};
+
+template <class Fields, class S>
+void describe(Fields& f, Stop<S>& s) {
+  f.required("coordinate", s.coordinate, "the coordinate that is stopped", Reference::kForcedCoordinate);
+  f.optional("above", s.above, "where it begins, towards larger values", Unit{"m", "rad"});
+  f.optional("below", s.below, "where it begins, towards smaller values", Unit{"m", "rad"});
+  describe(f, s.law);
+  f.rule(s.above.has_value() != s.below.has_value(), "must give either 'above' or 'below'");
+}
+
+template <class S, class Sum>
+void addForces(const Stop<S>& s, Sum& sum) {
+  const S& q = sum.getCoordinate(s.coordinate);
+  const S& rate = sum.getRate(s.coordinate);
+  if (s.above) {
+    sum.addOnCoordinate(s.coordinate, -calcContactForce(s.law, S(q - *s.above), rate));
+  } else {
+    sum.addOnCoordinate(s.coordinate, calcContactForce(s.law, S(*s.below - q), S(-rate)));
+  }
+}
+
+/// Play of a coordinate: no force over the width `gap`, whose middle is at 0, a spring on either side.
+template <class S>
+struct Backlash {
+  static constexpr ElementKind kKind{"backlash", "backlash", "springs with play, on coordinates"};
+  CoordinateOf<S> coordinate{};
+  OtherCoordinateOf<S> against{};
+  S gap{};
+  ContactLaw<S> law{};
+};
+
+template <class Fields, class S>
+void describe(Fields& f, Backlash<S>& s) {
+  f.required("coordinate", s.coordinate, "the coordinate that has play", Reference::kForcedCoordinate);
+  f.optional("against", s.against, "the coordinate that it drives: the play is of their difference",
+             Reference::kForcedCoordinate);
+  f.required("gap", s.gap, "the whole play", Unit{"m", "rad"});
+  describe(f, s.law);
+}
+
+template <class S, class Sum>
+void addForces(const Backlash<S>& s, Sum& sum) {
+  S apart = sum.getCoordinate(s.coordinate), rate = sum.getRate(s.coordinate);
+  if (s.against) {
+    apart = apart - sum.getCoordinate(*s.against);
+    rate = rate - sum.getRate(*s.against);
+  }
+  const S half = S(0.5) * s.gap;
+  const S force =
+      calcContactForce(s.law, S(-apart - half), S(-rate)) - calcContactForce(s.law, S(apart - half), rate);
+  sum.addOnCoordinate(s.coordinate, force);
+  if (s.against) {
+    sum.addOnCoordinate(*s.against, -force);
+  }
+}
+
+/// A plane fixed to a body; `normal` points to the side that is free.
+template <class S>
+struct Plane {
+  BodyOf<S> body = makeGround();
+  VectorOf<S> point{}, normal{};
+
+ private:
+  static BodyOf<S> makeGround() {
+    if constexpr (kIsFile<S>) {
+      return {"ground", {}};
+    } else {
+      return 0;
+    }
+  }
+};
+
+template <class S>
+inline constexpr bool kIsPart<Plane<S>> = true;
+
+template <class Fields, class S>
+void describe(Fields& f, Plane<S>& s) {
+  f.optional("body", s.body, "the body that has the plane; default: ground", Reference::kBody);
+  f.optional("point", s.point, "of the plane, in its body's frame", Unit{"m"});
+  f.required("normal", s.normal, "towards the free side, of any length", kNoUnit);
+}
+
+/// A point of a body against a plane of another, with friction mu N tanh(v / onset_speed) against the
+/// sliding speed v.
+template <class S>
+struct Contact {
+  static constexpr ElementKind kKind{"contacts", "contact", "points of bodies against planes"};
+  Station<S> station;
+  Plane<S> plane;
+  ContactLaw<S> law{};
+  std::optional<S> friction{}, onset_speed{};
+};
+
+template <class Fields, class S>
+void describe(Fields& f, Contact<S>& s) {
+  f.required("body", s.station.body, "the body that touches", Reference::kBody);
+  f.optional("point", s.station.point, "of it, in its frame", Unit{"m"});
+  f.required("plane", s.plane, "what it touches");
+  describe(f, s.law);
+  f.optional("friction", s.friction, "coefficient of friction mu", Unit{"1"});
+  f.optional("onset_speed", s.onset_speed, "of friction: mu N tanh(v / onset_speed)", Unit{"m/s"});
+  f.rule(s.friction.has_value() == s.onset_speed.has_value(),
+         "must give 'friction' and 'onset_speed' together");
+}
+
+template <class S, class Sum>
+void addForces(const Contact<S>& s, Sum& sum) {
+  using namespace program::real;
+  sum.addOnPlane(s.station, s.plane, [&s](const S& depth, const S& rate, const algebra::Vec3<S>& slip) {
+    const S pressure = calcContactForce(s.law, depth, rate);
+    if (!s.friction) {
+      return std::pair(pressure, algebra::Vec3<S>{S(0.0), S(0.0), S(0.0)});
+    }
+    constexpr double kAtRest = 1e-12;  // m/s: a speed whose root has a derivative, far below any onset
+    const S speed = sqrt(dot(slip, slip) + S(kAtRest * kAtRest));
+    return std::pair(pressure,
+                     scale(S(-*s.friction * pressure * tanh(speed / *s.onset_speed) / speed), slip));
+  });
+}
+
+}  // namespace twinmap
