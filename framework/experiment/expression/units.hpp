@@ -13,8 +13,8 @@ namespace twinmap {
 using Dimension = std::map<std::string, double>;
 
 /// The dimension of a unit such as "N s/m", "kg m^2" or "m/s2" (UDUNITS-2 grammar; "" and "-" are 1),
-/// which may have broken powers such as m^1.5. Throws ExperimentError for an unknown unit and for one that is not coherent SI (mm, deg, kN): values are
-/// used as they stand, so N/mm would be a silent factor of 1000.
+/// which may have broken powers such as m^1.5. Throws ExperimentError for an unknown unit and for one that is
+/// not coherent SI (mm, deg, kN): values are used as they stand, so N/mm would be a silent factor of 1000.
 Dimension parseUnit(const std::string& unit, const SourceLocation& where);
 
 /// value [to] = factor * value [from] + offset.
