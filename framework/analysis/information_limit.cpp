@@ -21,7 +21,7 @@ class NoiseOfSamples {
 
   void update(const VectorXd& response) {
     if (!whitener_ || !noise_.isConstant()) {
-      const MatrixXd covariance = noise_.calcCovariance(response);
+      const NoiseCovariance covariance = noise_.calcCovariance(response);
       stddev_ = covariance.diagonal().cwiseSqrt();
       whitener_.emplace(covariance);
     }

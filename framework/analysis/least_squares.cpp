@@ -112,7 +112,7 @@ LeastSquaresFit fitLeastSquares(Simulator& simulator, const LeastSquaresProblem&
                                 const VectorXd& start, int max_simulations) {
   Residuals residuals(simulator, problem, max_simulations);
   const linalg::ResidualFunction function{
-      problem.noise.getMatrix().rows(), [&](const VectorXd& x, VectorXd& r) { return residuals.calc(x, r); },
+      problem.noise.countDirections(), [&](const VectorXd& x, VectorXd& r) { return residuals.calc(x, r); },
       [&](const VectorXd& x, MatrixXd& j) { return residuals.derive(x, j); }};
   VectorXd x = residuals.getVariables().toVariables(start);
   const bool converged = linalg::minimizeSquares(function, {}, x);

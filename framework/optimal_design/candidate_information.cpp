@@ -14,14 +14,17 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 
 /// Whether noise goes along between features of different candidates.
-bool isCoupled(const MatrixXd& covariance, const std::vector<std::vector<Index>>& groups) {
-  std::vector<Index> candidate(static_cast<std::size_t>(covariance.rows()), -1);
+bool isCoupled(const NoiseCovariance& covariance, const std::vector<std::vector<Index>>& groups) {
+  if (covariance.isDiagonal()) {
+    return false;
+  }
+  std::vector<Index> candidate(static_cast<std::size_t>(covariance.size()), -1);
   for (std::size_t g = 0; g < groups.size(); ++g) {
     for (const Index row : groups[g]) {
       candidate[static_cast<std::size_t>(row)] = static_cast<Index>(g);
     }
   }
-  for (Index j = 0; j < covariance.cols(); ++j) {
+  for (Index j = 0; j < covariance.size(); ++j) {
     for (Index i = 0; i < j; ++i) {
       if (covariance(i, j) != 0.0 &&
           candidate[static_cast<std::size_t>(i)] != candidate[static_cast<std::size_t>(j)]) {
@@ -33,7 +36,7 @@ bool isCoupled(const MatrixXd& covariance, const std::vector<std::vector<Index>>
 }
 
 std::vector<MatrixXd> calcOf(const CandidateFeatures& features, const std::vector<Index>& rows) {
-  const NoiseWhitener whitener(features.noise_covariance(rows, rows));
+  const NoiseWhitener whitener(features.noise_covariance.take(rows));
   std::vector<MatrixXd> informations;
   for (const MatrixXd& sensitivities : features.sensitivities) {
     informations.push_back(calcFisherInformation(whitener, sensitivities(rows, Eigen::all)));

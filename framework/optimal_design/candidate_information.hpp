@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "framework/data/features/noise_covariance.hpp"
 #include "framework/optimal_design/criterion.hpp"
 
 namespace twinmap::experiment_design {
@@ -14,7 +15,7 @@ using Subset = std::vector<Eigen::Index>;
 /// What noisy features say at points of the box.
 struct CandidateFeatures {
   std::vector<Eigen::MatrixXd> sensitivities;  ///< of each point: d x u, per width of the bounds
-  Eigen::MatrixXd noise_covariance;            ///< d x d
+  NoiseCovariance noise_covariance;            ///< d x d
 };
 
 /// The information of subsets of candidates, each some of the features. Where the noise of no two candidates

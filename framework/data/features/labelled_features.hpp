@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "framework/data/features/feature_block.hpp"
+#include "framework/data/features/noise_covariance.hpp"
 
 namespace twinmap {
 
@@ -24,7 +25,7 @@ struct LabelledFeatures {
   std::vector<FeatureInfo> infos;    ///< d
   Eigen::MatrixXd features;          ///< d x n, noisy
   Eigen::MatrixXd parameters;        ///< p x n, updating
-  Eigen::MatrixXd noise_covariance;  ///< d x d, of the features; where it differs among samples, its mean
+  NoiseCovariance noise_covariance;  ///< d x d, of the features; where it differs among samples, its mean
   int replicates = 1;
   /// Sensitivities of the features to the unknown parameters (d x u each: updating, then nuisance) at some
   /// points of the box, in features per width of the parameters' bounds; only where a selection by

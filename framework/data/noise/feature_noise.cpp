@@ -76,8 +76,8 @@ const FeatureNoise& FeatureNoise::getLinearForm() const {
   return linear_form_ ? linear_form_->noise : *this;
 }
 
-MatrixXd FeatureNoise::calcCovariance(const VectorXd& response) const {
-  return isConstant() ? linear_covariance_ : calcSampledCovariance(response);
+NoiseCovariance FeatureNoise::calcCovariance(const VectorXd& response) const {
+  return isConstant() ? linear_covariance_ : NoiseCovariance(calcSampledCovariance(response));
 }
 
 MatrixXd FeatureNoise::calcSampledCovariance(const VectorXd& response) const {
@@ -91,17 +91,17 @@ MatrixXd FeatureNoise::calcSampledCovariance(const VectorXd& response) const {
   const MatrixXd slopes =
       linalg::solveSemidefinite(linear * linear.transpose(), linear * others.transpose()).transpose();
   const MatrixXd rest = others - slopes * linear;
-  const MatrixXd cross = slopes * linear_covariance_;
+  const MatrixXd cross = (linear_covariance_ * slopes.transpose()).transpose();  // C = C'
 
   MatrixXd covariance(features.rows(), features.rows());
-  covariance(linear_, linear_) = linear_covariance_;
+  covariance(linear_, linear_) = linear_covariance_.toMatrix();
   covariance(nonlinear_, linear_) = cross;
   covariance(linear_, nonlinear_) = cross.transpose();
   covariance(nonlinear_, nonlinear_) = cross * slopes.transpose() + rest * rest.transpose() / degrees;
   return covariance;
 }
 
-MatrixXd FeatureNoise::calcMeanCovariance(const MatrixXd& responses) const {
+NoiseCovariance FeatureNoise::calcMeanCovariance(const MatrixXd& responses) const {
   if (isConstant()) {
     return linear_covariance_;
   }
@@ -110,9 +110,9 @@ MatrixXd FeatureNoise::calcMeanCovariance(const MatrixXd& responses) const {
   const Index count = std::min(clean.cols(), kResponses);
   MatrixXd sum = MatrixXd::Zero(extractor_.getFeatureCount(), extractor_.getFeatureCount());
   for (Index i = 0; i < count; ++i) {
-    sum += calcCovariance(clean.col(i));
+    sum += calcSampledCovariance(clean.col(i));
   }
-  return sum / static_cast<double>(count);
+  return MatrixXd(sum / static_cast<double>(count));
 }
 
 }  // namespace twinmap

@@ -29,10 +29,10 @@ class FeatureNoise {
   /// every response: their regression on the noise of the linear ones, plus the covariance of what that
   /// leaves, so that the whole stays positive semi-definite and its linear part exact. Features that noise
   /// makes NaN in some draws use the others.
-  Eigen::MatrixXd calcCovariance(const Eigen::VectorXd& response) const;
+  NoiseCovariance calcCovariance(const Eigen::VectorXd& response) const;
 
   /// The mean over (at most 32 of) the columns of clean responses without NaN.
-  Eigen::MatrixXd calcMeanCovariance(const Eigen::MatrixXd& responses) const;
+  NoiseCovariance calcMeanCovariance(const Eigen::MatrixXd& responses) const;
 
  private:
   Eigen::MatrixXd calcSampledCovariance(const Eigen::VectorXd& response) const;
@@ -42,7 +42,7 @@ class FeatureNoise {
   const FeatureExtractor& extractor_;
   std::shared_ptr<const LinearForm> linear_form_;  // null where no feature has one
   std::vector<Eigen::Index> linear_, nonlinear_;   // features
-  Eigen::MatrixXd linear_covariance_;
+  NoiseCovariance linear_covariance_;
   Eigen::MatrixXd draws_;  // noise of the response, rows x draws; empty if all features are linear
 };
 

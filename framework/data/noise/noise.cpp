@@ -45,6 +45,17 @@ Eigen::MatrixXd makeCorrelation(const Eigen::VectorXd& rho, const std::vector<lo
       count, count, [&](Eigen::Index i, Eigen::Index j) { return rho[std::abs(steps[i] - steps[j])]; });
 }
 
+bool isDiagonal(const FeatureMatrix& matrix) {
+  for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
+    for (FeatureMatrix::InnerIterator entry(matrix, row); entry; ++entry) {
+      if (entry.col() != row && entry.value() != 0.0) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 Eigen::VectorXd calcNoiseStddev(const NoiseSpec& noise, const ResponseLayout& layout) {
@@ -114,10 +125,12 @@ Eigen::MatrixXd ResponseNoise::add(const Eigen::MatrixXd& responses, const Rando
   return noisy;
 }
 
-Eigen::MatrixXd ResponseNoise::calcCovariance(const FeatureMatrix& matrix) const {
+NoiseCovariance ResponseNoise::calcCovariance(const FeatureMatrix& matrix) const {
   const FeatureMatrix scaled = matrix * stddev_.asDiagonal();
   if (blocks_.empty()) {
-    return scaled * scaled.transpose();
+    const FeatureMatrix product = scaled * scaled.transpose();
+    return isDiagonal(product) ? NoiseCovariance::makeIndependent(product.diagonal())
+                               : NoiseCovariance(Eigen::MatrixXd(product));
   }
   Eigen::MatrixXd factor = scaled;
   for (const Block& block : blocks_) {
@@ -125,7 +138,7 @@ Eigen::MatrixXd ResponseNoise::calcCovariance(const FeatureMatrix& matrix) const
         factor(Eigen::all, block.rows) * block.factor.triangularView<Eigen::Lower>();
     factor(Eigen::all, block.rows) = correlated;
   }
-  return factor * factor.transpose();
+  return Eigen::MatrixXd(factor * factor.transpose());
 }
 
 Eigen::MatrixXd addNoise(const Eigen::MatrixXd& responses, const ResponseNoise& noise,

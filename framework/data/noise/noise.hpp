@@ -6,6 +6,7 @@
 
 #include "framework/base/random/random.hpp"
 #include "framework/data/features/feature_block.hpp"
+#include "framework/data/features/noise_covariance.hpp"
 #include "framework/experiment/experiment_spec.hpp"
 #include "framework/simulation/response_layout.hpp"
 
@@ -34,8 +35,9 @@ class ResponseNoise {
   Eigen::MatrixXd add(const Eigen::MatrixXd& responses, const RandomStream& random, std::uint64_t replicate,
                       Eigen::Index first = 0) const;
 
-  /// The covariance M C M' (d x d) of features = M * response.
-  Eigen::MatrixXd calcCovariance(const FeatureMatrix& matrix) const;
+  /// The covariance M C M' (d x d) of features = M * response; of independent rows linear in d where no two
+  /// features use the same row.
+  NoiseCovariance calcCovariance(const FeatureMatrix& matrix) const;
 
  private:
   /// Correlated rows: their noise is stddev * (factor * independent standard normal numbers).

@@ -18,8 +18,15 @@ MatrixXd AffineStep::applyLinear(const MatrixXd& differences) const {
   return projection * scaled;
 }
 
-MatrixXd AffineStep::applyToCovariance(const MatrixXd& covariance) const {
-  return applyLinear(applyLinear(covariance).transpose());
+NoiseCovariance AffineStep::applyToCovariance(const NoiseCovariance& covariance) const {
+  if (!covariance.isDiagonal()) {
+    return applyLinear(applyLinear(covariance.toMatrix()).transpose());
+  }
+  const VectorXd scaled = covariance.diagonal().cwiseQuotient(scale);
+  if (projection.size() == 0) {
+    return NoiseCovariance::makeIndependent(scaled.cwiseQuotient(scale));
+  }
+  return applyLinear(scaled.asDiagonal() * projection.transpose());
 }
 
 AffineStep makeProjection(const VectorXd& offset, const MatrixXd& projection) {

@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "framework/data/features/noise_covariance.hpp"
+
 namespace twinmap {
 
 /// x -> P (x - offset) / scale, the division element by element; without P where it is empty.
@@ -21,7 +23,7 @@ struct AffineStep {
   Eigen::MatrixXd applyLinear(const Eigen::MatrixXd& differences) const;
 
   /// Covariance of features (d x d) -> of inputs (k x k).
-  Eigen::MatrixXd applyToCovariance(const Eigen::MatrixXd& covariance) const;
+  NoiseCovariance applyToCovariance(const NoiseCovariance& covariance) const;
 };
 
 /// x -> P (x - offset).

@@ -60,19 +60,25 @@ MatrixXd FeatureTransform::apply(const MatrixXd& features) const {
 }
 
 MatrixXd FeatureTransform::calcMatrix() const {
-  const Eigen::Index inputs = steps.back().countInputs();
-  MatrixXd matrix = MatrixXd::Identity(inputs, inputs);
+  MatrixXd matrix;  // of the steps behind; none yet
+  Eigen::VectorXd scale =
+      Eigen::VectorXd::Ones(steps.back().countInputs());  // from its left, while there is none
   for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
     if (step->projection.size() > 0) {
-      matrix = matrix * step->projection;
+      matrix =
+          matrix.size() == 0 ? MatrixXd(scale.asDiagonal() * step->projection) : matrix * step->projection;
     }
-    matrix = matrix * step->scale.cwiseInverse().asDiagonal();
+    if (matrix.size() == 0) {
+      scale = scale.cwiseQuotient(step->scale);
+    } else {
+      matrix = matrix * step->scale.cwiseInverse().asDiagonal();
+    }
   }
-  return matrix;
+  return matrix.size() == 0 ? MatrixXd(scale.asDiagonal()) : matrix;
 }
 
-MatrixXd FeatureTransform::applyToCovariance(const MatrixXd& covariance) const {
-  MatrixXd of_inputs = covariance;
+NoiseCovariance FeatureTransform::applyToCovariance(const NoiseCovariance& covariance) const {
+  NoiseCovariance of_inputs = covariance;
   for (const AffineStep& step : steps) {
     of_inputs = step.applyToCovariance(of_inputs);
   }

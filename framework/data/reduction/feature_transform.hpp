@@ -21,7 +21,7 @@ struct FeatureTransform {
   Eigen::MatrixXd calcMatrix() const;
 
   /// Covariance of features (d x d) -> of inputs (k x k).
-  Eigen::MatrixXd applyToCovariance(const Eigen::MatrixXd& covariance) const;
+  NoiseCovariance applyToCovariance(const NoiseCovariance& covariance) const;
 };
 
 /// Fits the steps to training samples (n >= 2), one after another: a step sees what those before it made of

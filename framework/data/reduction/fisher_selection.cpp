@@ -19,8 +19,8 @@ using Eigen::VectorXd;
 /// features' noise predicts, updated like the columns of a pivoted Cholesky factor.
 class GreedySelection {
  public:
-  GreedySelection(const MatrixXd& covariance, const std::vector<MatrixXd>& sensitivities, Index most)
-      : covariance_(covariance), variance_(covariance.diagonal()), factor_(covariance.rows(), most) {
+  GreedySelection(const NoiseCovariance& covariance, const std::vector<MatrixXd>& sensitivities, Index most)
+      : covariance_(covariance), variance_(covariance.diagonal()), factor_(covariance.size(), most) {
     for (const MatrixXd& sensitivity : sensitivities) {
       const MatrixXd prior = MatrixXd::Identity(sensitivity.cols(), sensitivity.cols());
       points_.push_back({sensitivity, kUniformInformation * prior});
@@ -63,7 +63,7 @@ class GreedySelection {
     MatrixXd sensitivities, information;
   };
 
-  const MatrixXd& covariance_;
+  const NoiseCovariance& covariance_;
   VectorXd variance_;
   MatrixXd factor_;
   std::vector<Point> points_;
@@ -73,7 +73,7 @@ class GreedySelection {
 }  // namespace
 
 std::vector<Index> selectByFisherInformation(const FisherInformationSpec& spec,
-                                             const MatrixXd& noise_covariance,
+                                             const NoiseCovariance& noise_covariance,
                                              const std::vector<MatrixXd>& sensitivities) {
   if (sensitivities.empty() || !(noise_covariance.diagonal().minCoeff() > 0.0)) {
     throw std::invalid_argument(

@@ -19,16 +19,16 @@ AffineStep fitZScore(const MatrixXd& features) {
   return {mean, (stddev.array() > smallest).select(stddev, 1.0), {}};
 }
 
-AffineStep fitWhiten(const WhitenSpec& spec, const MatrixXd& noise_covariance) {
-  const VectorXd noise_variance = noise_covariance.diagonal();
+AffineStep fitWhiten(const WhitenSpec& spec, const NoiseCovariance& noise_covariance) {
+  const VectorXd& noise_variance = noise_covariance.diagonal();
   if (!(noise_variance.minCoeff() > 0.0)) {
     throw std::invalid_argument("whiten: the noise of a feature is 0");
   }
   const VectorXd zero = VectorXd::Zero(noise_variance.size());
-  if (spec.by == WhitenBy::kStddev || noise_covariance.isDiagonal(0.0)) {
+  if (spec.by == WhitenBy::kStddev || noise_covariance.isDiagonal()) {
     return {zero, noise_variance.cwiseSqrt(), {}};
   }
-  return makeProjection(zero, NoiseWhitener(noise_covariance).getMatrix());
+  return makeProjection(zero, NoiseWhitener(noise_covariance).makeMatrix());
 }
 
 }  // namespace twinmap

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "framework/data/features/noise_covariance.hpp"
 #include "framework/data/reduction/affine_step.hpp"
 #include "framework/experiment/experiment_spec.hpp"
 
@@ -14,6 +15,6 @@ AffineStep fitZScore(const Eigen::MatrixXd& features);
 /// Makes noise of covariance C (d x d) unit noise. By stddev: scale is the noise's standard deviation. By
 /// covariance: W with W C W' = 1 (NoiseWhitener), which is the same where the noise is independent. Throws
 /// std::invalid_argument for a feature without noise.
-AffineStep fitWhiten(const WhitenSpec& spec, const Eigen::MatrixXd& noise_covariance);
+AffineStep fitWhiten(const WhitenSpec& spec, const NoiseCovariance& noise_covariance);
 
 }  // namespace twinmap

@@ -27,7 +27,7 @@ std::vector<Eigen::Index> selectByMutualInformation(const MutualInformationSpec&
 /// that of those selected are passed over. Throws std::invalid_argument where no more can be selected, for a
 /// feature without noise, and without sensitivities. Cost: count d (count + m p^2) flops for m points.
 std::vector<Eigen::Index> selectByFisherInformation(const FisherInformationSpec& spec,
-                                                    const Eigen::MatrixXd& noise_covariance,
+                                                    const NoiseCovariance& noise_covariance,
                                                     const std::vector<Eigen::MatrixXd>& sensitivities);
 
 /// What only the list of features shows, before anything is simulated: throws ExperimentError for selected

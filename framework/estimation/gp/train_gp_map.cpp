@@ -166,8 +166,9 @@ void finish(const GpMapSpec& spec, const TrainingData& data, const LabelledFeatu
             const TrainingControl& control, GpMapTraining& training) {
   GpMap& map = training.map;
   if (spec.noise == GpNoise::kFollowsSlope) {
-    map.noise = fitNoiseProfile(map.processes, map.transform.applyToCovariance(samples.noise_covariance),
-                                data.inputs.leftCols(data.inputs.cols() / samples.replicates));
+    map.noise =
+        fitNoiseProfile(map.processes, map.transform.applyToCovariance(samples.noise_covariance).toMatrix(),
+                        data.inputs.leftCols(data.inputs.cols() / samples.replicates));
   }
   training.leave_one_out =
       predictLeftOut(training.map, data.inputs, data.targets, samples.replicates, control);

@@ -236,7 +236,7 @@ std::unique_ptr<NoisySamples> makeSamples(const NetworkSimulations& simulations,
   }
   return std::make_unique<NormalSamples>(NormalInputs{
       inputs.apply(simulations.extractor.extract(simulations.responses), known),
-      calcFactor(inputs.projection * simulations.noise_covariance * inputs.projection.transpose()),
+      calcFactor(inputs.projection * (simulations.noise_covariance * inputs.projection.transpose())),
       {},
       {},
       {}});

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/data/features/noise_covariance.hpp"
 #include "framework/data/reduction/feature_transform.hpp"
 #include "framework/estimation/network/fit_network.hpp"
 #include "framework/estimation/network/network_map.hpp"
@@ -37,7 +38,7 @@ struct NetworkSimulations {
   const ResponseNoise& noise;
   const FeatureTransform& transform;        ///< from features to what the network sees, but for its scale
   bool constant_noise = true;               ///< the features' noise is normal, of noise_covariance
-  const Eigen::MatrixXd& noise_covariance;  ///< d x d
+  const NoiseCovariance& noise_covariance;  ///< d x d
 };
 
 /// How often trainNetworkMap() trains a network on so many simulations: once, and as often again to tell how

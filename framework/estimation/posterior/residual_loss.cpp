@@ -57,7 +57,7 @@ ResidualLoss::ResidualLoss(const NoiseHypothesis& hypothesis, const RefinementMo
                            const GrowingWindow& window)
     : has_outliers_(hypothesis.has_outliers) {
   const auto size = static_cast<Index>(window.features.size());
-  if (!window.whitener || window.whitener->getMatrix().rows() != size) {
+  if (!window.whitener || window.whitener->countDirections() != size) {
     return;
   }
   scale_.setOnes(size);

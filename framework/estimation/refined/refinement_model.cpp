@@ -74,8 +74,7 @@ void RefinementModel::addWindow(std::vector<Index> features) {
 }
 
 NoiseWhitener RefinementModel::makeWhitener(const GrowingWindow& window, const VectorXd& response) const {
-  const MatrixXd covariance = noise_.calcCovariance(response);
-  return NoiseWhitener(covariance(window.features, window.features));
+  return NoiseWhitener(noise_.calcCovariance(response).take(window.features));
 }
 
 }  // namespace twinmap

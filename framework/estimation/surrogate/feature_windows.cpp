@@ -11,6 +11,8 @@ namespace {
 using Eigen::Index;
 
 constexpr Index kTimesPerWindow = 8, kFeaturesPerWindow = 16;
+/// Of long responses: each window is a search of its own, and 200 scores are kept of all together.
+constexpr Index kMostTimeWindows = 64;
 
 /// Whether each feature is the only one of its output at its time, so that the time orders them.
 std::vector<bool> findTimed(const std::vector<FeatureInfo>& infos) {
@@ -34,7 +36,7 @@ std::vector<FeatureWindow> makeTimeWindows(const std::vector<FeatureInfo>& infos
     }
   }
   const auto count = static_cast<Index>(times.size());
-  const Index windows = (count + kTimesPerWindow - 1) / kTimesPerWindow;
+  const Index windows = std::min(kMostTimeWindows, (count + kTimesPerWindow - 1) / kTimesPerWindow);
   std::vector<FeatureWindow> found(static_cast<std::size_t>(windows));
   for (std::size_t i = 0; i < infos.size(); ++i) {
     if (timed[i]) {

@@ -86,13 +86,13 @@ MatrixXd calcShrunkCorrelation(const MatrixXd& standardised) {
 
 /// Puts the chosen scores of all windows together.
 void assemble(std::vector<WindowFit>& windows, const std::vector<std::vector<Index>>& chosen,
-              const MatrixXd& whitener, ForwardSurrogate& surrogate) {
+              const NoiseWhitener& whitener, ForwardSurrogate& surrogate) {
   Index count = 0;
   for (const auto& indices : chosen) {
     count += static_cast<Index>(indices.size());
   }
   const Index n = surrogate.points.cols();
-  surrogate.projection.resize(count, whitener.cols());
+  surrogate.projection.resize(count, whitener.getScale().size());
   surrogate.scores.resize(count, n);
   surrogate.error_variance.resize(count);
   MatrixXd standardised(n, count);
@@ -106,7 +106,7 @@ void assemble(std::vector<WindowFit>& windows, const std::vector<std::vector<Ind
     process.select(chosen[w]);
     const gp::LeftOut& left_out = process.getLeftOut();
     surrogate.projection.middleRows(first, size) =
-        windows[w].directions(Eigen::all, chosen[w]).transpose() * whitener;
+        whitener.applyTransposed(windows[w].directions(Eigen::all, chosen[w])).transpose();
     surrogate.scores.middleRows(first, size) = windows[w].scores(Eigen::all, chosen[w]).transpose();
     surrogate.error_variance.segment(first, size) = calcErrorVariance(process);
     standardised.middleCols(first, size) =
@@ -178,7 +178,7 @@ ForwardFit fitForward(const ForwardSamples& samples, const ForwardChoices& simil
   for (const WindowFit& window : windows) {
     fit.choices.processes.push_back(window.choice);
   }
-  assemble(windows, chooseScores(windows, samples.points.cols()), noise.getMatrix(), fit.surrogate);
+  assemble(windows, chooseScores(windows, samples.points.cols()), noise, fit.surrogate);
   return fit;
 }
 

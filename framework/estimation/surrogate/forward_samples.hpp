@@ -14,7 +14,7 @@ struct ForwardSamples {
   std::vector<FeatureInfo> infos;    ///< d
   Eigen::MatrixXd points;            ///< m x n, normalised
   Eigen::MatrixXd clean_features;    ///< d x n
-  Eigen::MatrixXd noise_covariance;  ///< d x d
+  NoiseCovariance noise_covariance;  ///< d x d
   /// n, or none: derivatives of the features (d x u) with respect to the first u variables, normalised; empty
   /// where a simulation has none.
   std::vector<Eigen::MatrixXd> slopes{};

@@ -63,7 +63,7 @@ std::vector<std::string> listWarnings(const ModelSpec& model, const SurrogateVal
 }  // namespace
 
 std::string findSurrogateObstacle(const ModelSpec& model, Index simulations,
-                                  const MatrixXd& noise_covariance) {
+                                  const NoiseCovariance& noise_covariance) {
   constexpr Index kMin = 20;  // five folds of which are a cross-validation
   if (simulations < kMin + 2 * static_cast<Index>(collectSampled(model).size())) {
     return "a surrogate needs at least 20 training samples, and two a parameter more";

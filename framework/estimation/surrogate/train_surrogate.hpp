@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "framework/data/features/feature_block.hpp"
+#include "framework/data/features/noise_covariance.hpp"
 #include "framework/estimation/surrogate/simulation_gain.hpp"
 #include "framework/estimation/surrogate/surrogate.hpp"
 #include "framework/estimation/training_control.hpp"
@@ -17,7 +18,7 @@ struct SurrogateSamples {
   std::vector<FeatureInfo> infos;    ///< d
   Eigen::MatrixXd points;            ///< m x n: updating, nuisance, known inputs, in their units
   Eigen::MatrixXd clean_features;    ///< d x n
-  Eigen::MatrixXd noise_covariance;  ///< d x d
+  NoiseCovariance noise_covariance;  ///< d x d
   Eigen::MatrixXd measured;          ///< d x n draws, with noise: column j + i n is draw i of simulation j
   /// n, or none: derivatives of the clean features (d x u) with respect to the unknowns, the first u
   /// variables, per width of their bounds; empty where a simulation has none.
@@ -37,7 +38,7 @@ struct SurrogateTraining {
 
 /// Why a surrogate cannot be trained on so many simulations with such noise; empty if it can.
 std::string findSurrogateObstacle(const ModelSpec& model, Eigen::Index simulations,
-                                  const Eigen::MatrixXd& noise_covariance);
+                                  const NoiseCovariance& noise_covariance);
 
 /// Trains a surrogate on simulations of a model, and scales its standard deviations by what a five-fold
 /// cross-validation of everything, on the measured features, finds. At most the first 2000 simulations are

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "framework/data/features/feature_block.hpp"
+#include "framework/data/features/noise_covariance.hpp"
 #include "framework/estimation/trained/trust_model.hpp"
 #include "framework/estimation/training_control.hpp"
 #include "framework/experiment/model/model_spec.hpp"
@@ -19,7 +20,7 @@ struct TrustTraining {
   std::vector<FeatureInfo> infos;      ///< d
   Eigen::MatrixXd points;              ///< m x n, of the training simulations
   Eigen::MatrixXd clean_features;      ///< d x n
-  Eigen::MatrixXd noise_covariance;    ///< d x d, of the features
+  NoiseCovariance noise_covariance;    ///< d x d, of the features
   Eigen::MatrixXd measured;            ///< d x s, simulated measurements, other than the training's
   Eigen::MatrixXd known;               ///< q x s, their known inputs
   std::uint64_t seed = 0;              ///< of the noise that refined answers are compared with

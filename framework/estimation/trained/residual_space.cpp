@@ -43,14 +43,12 @@ void ResidualSpace::calcResidual(const VectorXd& centered, const VectorXd& innov
 }
 
 ResidualSpace fitResidualSpace(const std::vector<FeatureInfo>& infos, const MatrixXd& clean_features,
-                               const MatrixXd& noise_covariance, const ForwardSurrogate& surrogate) {
+                               const NoiseCovariance& noise_covariance, const ForwardSurrogate& surrogate) {
   const NoiseWhitener noise(noise_covariance);
-  const MatrixXd& whitener = noise.getMatrix();
-  const bool diagonal = noise_covariance.isDiagonal(0.0);
   ResidualSpace space;
-  space.whitener = diagonal ? MatrixXd(whitener.diagonal()) : whitener;
+  space.whitener = noise.isDiagonal() ? MatrixXd(noise.getScale()) : noise.makeMatrix();
   // projection = V' W and W C W' = 1
-  space.directions = whitener * (noise_covariance * surrogate.projection.transpose());
+  space.directions = noise.apply(noise_covariance * surrogate.projection.transpose());
   const MatrixXd whitened = noise.apply(clean_features.colwise() - surrogate.center);
   const MatrixXd rest = whitened - space.directions * (space.directions.transpose() * whitened);
   space.unmodelled.resize(whitened.rows(), 0);

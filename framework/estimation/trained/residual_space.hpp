@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "framework/data/features/feature_block.hpp"
+#include "framework/data/features/noise_covariance.hpp"
 #include "framework/estimation/surrogate/forward_surrogate.hpp"
 
 namespace twinmap {
@@ -31,6 +32,6 @@ struct ResidualSpace {
 /// simulations and the covariance of their noise (d x d). The unmodelled part of each window of features is
 /// found as its components are (fitForward). Throws std::invalid_argument for a feature without noise.
 ResidualSpace fitResidualSpace(const std::vector<FeatureInfo>& infos, const Eigen::MatrixXd& clean_features,
-                               const Eigen::MatrixXd& noise_covariance, const ForwardSurrogate& surrogate);
+                               const NoiseCovariance& noise_covariance, const ForwardSurrogate& surrogate);
 
 }  // namespace twinmap

@@ -40,7 +40,7 @@ void IntegrationErrors::whiten(const MatrixXd& responses) {
   for (std::size_t i = 0; i < whiteners_.size(); ++i) {
     const auto column = static_cast<Index>(i);
     if (getNoise().isConstant() || features.col(column).allFinite()) {
-      const MatrixXd covariance = getNoise().calcCovariance(responses.col(column));
+      const NoiseCovariance covariance = getNoise().calcCovariance(responses.col(column));
       if (covariance.diagonal().minCoeff() > 0.0) {
         whiteners_[i].emplace(covariance);
       }

@@ -74,7 +74,7 @@ TEST(NoiseProfile, MakesCoverageRightWhereTheMapIsSteepAndWhereItIsFlat) {
 
 TEST(NoiseProfile, WithoutNoiseItIsConstant) {
   LabelledFeatures samples = makeSquares(50, 1);
-  samples.noise_covariance.setZero();
+  samples.noise_covariance = MatrixXd::Zero(samples.noise_covariance.size(), samples.noise_covariance.size());
   GpMapSpec spec;
   const GpMap map = trainGpMap(spec, {}, {"p"}, samples, {1}).map;
   EXPECT_EQ(map.noise.calcFactors(map.processes[0], 0, samples.features).matrix(),

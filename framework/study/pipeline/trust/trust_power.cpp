@@ -30,15 +30,16 @@ struct PowerCases {
   double level = 0.0;
 };
 
-/// Noise of the covariance factor factor', d x count.
-MatrixXd drawNoise(const MatrixXd& factor, Index count, std::uint64_t seed) {
+/// Noise of a covariance C = F F', d x count; F = C W', since W C W' = 1.
+MatrixXd drawNoise(const NoiseCovariance& covariance, const NoiseWhitener& noise, Index count,
+                   std::uint64_t seed) {
   const RandomStream random(seed, RandomPurpose::kTrustPower);
-  MatrixXd white(factor.cols(), count);
+  MatrixXd white(noise.countDirections(), count);
   for (Index draw = 0; draw < count; ++draw) {
     random.drawNormals(static_cast<std::uint64_t>(draw), 0, white.col(draw).data(),
                        static_cast<std::size_t>(white.rows()));
   }
-  return factor * white;
+  return covariance * noise.applyTransposed(white);
 }
 
 /// The share of cases found where stencil i is moved by size * directions[i].
@@ -99,7 +100,7 @@ bool areUsable(const std::vector<VectorXd>& directions) {
 }
 
 PowerCases makeCases(const Study& study, const OnlineModel& online, const NoiseWhitener& noise,
-                     const MatrixXd& noise_covariance, const std::vector<Stencil>& around) {
+                     const NoiseCovariance& noise_covariance, const std::vector<Stencil>& around) {
   const TrustModel& trust = *online.trust;
   const OnlineMap map(online.map);
   PowerCases cases;
@@ -107,10 +108,9 @@ PowerCases makeCases(const Study& study, const OnlineModel& online, const NoiseW
   for (const Stencil& at : around) {
     cases.judges.push_back(makePowerJudge(map, trust, noise, at));
   }
-  const MatrixXd factor = noise_covariance * noise.getMatrix().transpose();  // W C W' = 1
   const auto points = static_cast<Index>(around.size());
   cases.draws = kDraws / points;
-  cases.noise = drawNoise(factor, cases.draws * points, study.experiment.seed);
+  cases.noise = drawNoise(noise_covariance, noise, cases.draws * points, study.experiment.seed);
   return cases;
 }
 
@@ -124,7 +124,7 @@ std::vector<DetectableChange> calcTrustPower(const Study& study, const PreparedD
   if (around.empty()) {
     return changes;
   }
-  const MatrixXd& covariance = data.labelled.train.noise_covariance;
+  const NoiseCovariance& covariance = data.labelled.train.noise_covariance;
   const NoiseWhitener noise(covariance);
   const PowerCases cases = makeCases(study, online, noise, covariance, around);
   const auto add = [&](DetectableChange change, const std::vector<VectorXd>& directions) {

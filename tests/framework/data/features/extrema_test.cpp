@@ -155,7 +155,7 @@ TEST(Extrema, HaveTheNoiseOfTheirParabola) {
   const Eigen::VectorXd response =
       layout.times.unaryExpr([](double t) { return 5.0 - 0.5 * kCurvature * (t - 4.0) * (t - 4.0); });
   const FeatureNoise noise(extractor, Eigen::VectorXd::Constant(9, kStddev), 1);
-  const Eigen::MatrixXd covariance = noise.calcCovariance(response);
+  const Eigen::MatrixXd covariance = noise.calcCovariance(response).toMatrix();
   constexpr double kSquares = 10.0, kFourths = 34.0, kRelative = 4 * 0.032;
   const double of_value = kStddev * kStddev * kFourths / (5 * kFourths - kSquares * kSquares);
   const double of_time = kStddev * kStddev / (kSquares * kCurvature * kCurvature);

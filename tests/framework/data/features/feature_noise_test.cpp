@@ -31,7 +31,7 @@ ResponseLayout makeSecondsLayout(int count) {
 Eigen::MatrixXd calcCovariance(const std::vector<FeatureSpec>& features, const Eigen::VectorXd& response) {
   const FeatureExtractor extractor(features, makeSecondsLayout(static_cast<int>(response.size())));
   const FeatureNoise noise(extractor, Eigen::VectorXd::Constant(response.size(), kNoiseStddev), 1);
-  return noise.calcCovariance(response);
+  return noise.calcCovariance(response).toMatrix();
 }
 
 TEST(FeatureNoise, OfLinearFeaturesIsExact) {
@@ -42,8 +42,8 @@ TEST(FeatureNoise, OfLinearFeaturesIsExact) {
   Eigen::Matrix3d expected;  // samples 1 and 2, and the mean of samples 0 to 3
   expected << 0.04, 0, 0.01, 0, 0.09, 0.0225, 0.01, 0.0225, 0.3 / 16;
   EXPECT_TRUE(noise.isConstant());
-  EXPECT_LT((noise.calcCovariance(Eigen::Vector4d::Random()) - expected).norm(), 1e-16);
-  EXPECT_LT((noise.calcMeanCovariance(Eigen::MatrixXd::Random(4, 3)) - expected).norm(), 1e-16);
+  EXPECT_LT((noise.calcCovariance(Eigen::Vector4d::Random()).toMatrix() - expected).norm(), 1e-16);
+  EXPECT_LT((noise.calcMeanCovariance(Eigen::MatrixXd::Random(4, 3)).toMatrix() - expected).norm(), 1e-16);
 }
 
 TEST(FeatureNoise, OfTheRootMeanSquareOfNoiseIsThatOfTheChiDistribution) {
@@ -101,9 +101,9 @@ TEST(FeatureNoise, MeanCovarianceLeavesOutFailedSamples) {
   const FeatureNoise noise(extractor, Eigen::VectorXd::Constant(3, kNoiseStddev), 1);
   Eigen::MatrixXd responses(3, 3);
   responses << 1, std::nan(""), 0, 2, std::nan(""), 0, 9, std::nan(""), 0;
-  const Eigen::MatrixXd expected =
-      0.5 * (noise.calcCovariance(responses.col(0)) + noise.calcCovariance(responses.col(2)));
-  EXPECT_LT((noise.calcMeanCovariance(responses) - expected).norm(), 1e-16);
+  const Eigen::MatrixXd expected = 0.5 * (noise.calcCovariance(responses.col(0)).toMatrix() +
+                                          noise.calcCovariance(responses.col(2)).toMatrix());
+  EXPECT_LT((noise.calcMeanCovariance(responses).toMatrix() - expected).norm(), 1e-16);
 }
 
 }  // namespace

@@ -115,13 +115,15 @@ TEST(FeatureTransform, WhitenByCovarianceMakesNoiseIndependentAlsoBehindAProject
   const TransformStepSpec whiten = makeWhiten(WhitenBy::kCovariance);
   for (const std::vector<TransformStepSpec>& steps :
        {std::vector{whiten}, {makeZScore(), whiten}, {makePrincipalComponents(3), whiten}}) {
-    MatrixXd noise = samples.noise_covariance;
+    NoiseCovariance noise = samples.noise_covariance;
     for (const AffineStep& step : fitTransform(steps, samples).steps) {
       noise = step.applyToCovariance(noise);
     }
-    EXPECT_LT((noise - MatrixXd::Identity(noise.rows(), noise.cols())).norm(), 1e-11);
+    EXPECT_LT((noise.toMatrix() - MatrixXd::Identity(noise.size(), noise.size())).norm(), 1e-11);
   }
-  samples.noise_covariance(2, 2) = 0.0;
+  MatrixXd silent = samples.noise_covariance.toMatrix();
+  silent(2, 2) = 0.0;
+  samples.noise_covariance = silent;
   EXPECT_THROW(fitTransform({whiten}, samples), std::invalid_argument);
 }
 

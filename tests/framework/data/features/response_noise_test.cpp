@@ -49,8 +49,9 @@ TEST(ResponseNoise, DrawsFollowTheAutoregression) {
 TEST(ResponseNoise, OfFeaturesHasTheCovarianceOfTheAutoregression) {
   const FeatureSpec feature = SamplesFeatureSpec{{{"y", {}}, {"z", {}}}, 0.1, 0.2, 3};
   const FeatureExtractor extractor({feature}, makeTwoOutputs());
-  const MatrixXd covariance =
-      FeatureNoise(extractor, ResponseNoise(makeTwoNoises(), makeTwoOutputs()), 1).calcCovariance({});
+  const MatrixXd covariance = FeatureNoise(extractor, ResponseNoise(makeTwoNoises(), makeTwoOutputs()), 1)
+                                  .calcCovariance({})
+                                  .toMatrix();
   MatrixXd expected = MatrixXd::Zero(6, 6);
   expected.diagonal().head(3).setConstant(9.0);
   for (Index i = 0; i < 3; ++i) {
@@ -67,7 +68,7 @@ TEST(ResponseNoise, OfTimesOffTheGridIsIndependentOfThoseOnIt) {
   const VectorXd stddev = calcNoiseStddev(makeTwoNoises(), layout);
   FeatureMatrix identity(stddev.size(), stddev.size());
   identity.setIdentity();
-  const MatrixXd covariance = ResponseNoise(makeTwoNoises(), layout).calcCovariance(identity);
+  const MatrixXd covariance = ResponseNoise(makeTwoNoises(), layout).calcCovariance(identity).toMatrix();
   EXPECT_EQ(covariance.row(kTimes + 3).cwiseAbs().sum(), covariance(kTimes + 3, kTimes + 3));
   EXPECT_NEAR(covariance(kTimes + 2, kTimes + 4), 0.04 * kA * kA, 1e-15);
 }

@@ -87,7 +87,8 @@ TEST(Spectrum, NoiseIsTwoOverTheCountOnEveryLine) {
   const FeatureExtractor extractor(features, layout);
   const FeatureNoise noise(extractor, Eigen::VectorXd::Constant(layout.times.size(), 0.2), 1);
   const Eigen::MatrixXd expected = 0.2 * 0.2 * 2.0 / kWindow.count * Eigen::MatrixXd::Identity(4, 4);
-  EXPECT_LT((noise.calcCovariance(Eigen::VectorXd::Zero(layout.times.size())) - expected).norm(), 1e-17);
+  EXPECT_LT((noise.calcCovariance(Eigen::VectorXd::Zero(layout.times.size())).toMatrix() - expected).norm(),
+            1e-17);
 }
 
 TEST(Spectrum, NoiseOfMagnitudeIsRayleighWithoutASignalAndNormalWithALargeOne) {
@@ -103,7 +104,8 @@ TEST(Spectrum, NoiseOfMagnitudeIsRayleighWithoutASignalAndNormalWithALargeOne) {
               kRelative * rayleigh);
   // phase pi/4 off: cosine and sine are turned alike by the noise of the phase, variance / A^2
   constexpr double kAmplitude = 100.0;
-  const Eigen::MatrixXd large = noise.calcCovariance(calcSine(layout.times, kAmplitude, 3.0, 0.125 * kTwoPi));
+  const Eigen::MatrixXd large =
+      noise.calcCovariance(calcSine(layout.times, kAmplitude, 3.0, 0.125 * kTwoPi)).toMatrix();
   EXPECT_NEAR(large(0, 0), variance, kRelative * variance);
   const double of_cosine = 0.5 * variance / (kAmplitude * kAmplitude);
   EXPECT_NEAR(large(1, 1), of_cosine, kRelative * of_cosine);
@@ -136,7 +138,7 @@ TEST(FrequencyResponse, IsTheRatioOfOutputToExcitation) {
   const FeatureNoise noise(linear, Eigen::VectorXd::Constant(layout.times.size(), 0.2), 1);
   const double of_line = 0.2 * 0.2 * 2.0 / kWindow.count;
   const Eigen::Vector4d expected(of_line / 9, of_line / 9, of_line * 4, of_line * 4);
-  const Eigen::MatrixXd covariance = noise.calcCovariance(response);
+  const Eigen::MatrixXd covariance = noise.calcCovariance(response).toMatrix();
   EXPECT_LT((covariance - Eigen::MatrixXd(expected.asDiagonal())).norm(), 1e-16);
 }
 
@@ -181,7 +183,7 @@ TEST(Spectrum, OfMagnitudesAndPhasesHasALinearForm) {
   const FeatureNoise of_parts(expected, Eigen::VectorXd::Constant(layout.getRowCount(), 0.1), 1);
   EXPECT_FALSE(noise.isConstant());
   EXPECT_TRUE(noise.getLinearForm().isConstant());
-  EXPECT_EQ(noise.getLinearForm().calcCovariance({}), of_parts.calcCovariance({}));
+  EXPECT_EQ(noise.getLinearForm().calcCovariance({}).toMatrix(), of_parts.calcCovariance({}).toMatrix());
   EXPECT_EQ(&of_parts.getLinearForm(), &of_parts);
 
   Eigen::VectorXd numbers(10);

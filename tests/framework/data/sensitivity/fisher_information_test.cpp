@@ -40,7 +40,7 @@ TEST(FisherInformation, AFeatureGivenTwiceSaysNothingNew) {
   const MatrixXd sensitivities = MatrixXd::Random(3, 2);
   const MatrixXd once = calcFisherInformation(NoiseWhitener(makeCovariance()), sensitivities);
   const NoiseWhitener noise(repeat * makeCovariance() * repeat.transpose());
-  EXPECT_EQ(noise.getMatrix().rows(), 3);
+  EXPECT_EQ(noise.countDirections(), 3);
   EXPECT_LT((calcFisherInformation(noise, repeat * sensitivities) - once).norm(), 1e-9 * once.norm());
 }
 
@@ -58,9 +58,9 @@ TEST(FisherInformation, WithMuchDataTheLimitIsCramersAndRaos) {
 }
 
 TEST(NoiseWhitener, MakesUnitNoise) {
-  const MatrixXd whitening = NoiseWhitener(makeCovariance()).getMatrix();
+  const MatrixXd whitening = NoiseWhitener(makeCovariance()).makeMatrix();
   EXPECT_LT((whitening * makeCovariance() * whitening.transpose() - MatrixXd::Identity(3, 3)).norm(), 1e-14);
-  EXPECT_THROW(NoiseWhitener(MatrixXd::Zero(2, 2)), std::invalid_argument);
+  EXPECT_THROW(NoiseWhitener(NoiseCovariance(MatrixXd::Zero(2, 2))), std::invalid_argument);
 }
 
 TEST(FisherInformation, WithCorrelatedPriorsLeavesTheBlockOfTheWholeCovariance) {

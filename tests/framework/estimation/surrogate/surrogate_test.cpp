@@ -225,7 +225,9 @@ TEST(Surrogate, RefusesFeaturesWithoutNoiseTooFewSamplesAndMissingInputs) {
   EXPECT_THROW((void)trained.surrogate.predict(samples.measured), std::invalid_argument);
   EXPECT_THROW((void)trained.surrogate.predict(samples.measured.topRows(3), samples.points.bottomRows(1)),
                std::invalid_argument);
-  samples.noise_covariance(3, 3) = 0.0;
+  MatrixXd silent = samples.noise_covariance.toMatrix();
+  silent(3, 3) = 0.0;
+  samples.noise_covariance = silent;
   EXPECT_THROW((void)trainSurrogate(model, samples, {}), std::invalid_argument);
   EXPECT_THROW((void)trainOn(model, calcOscillation, 20), std::invalid_argument);
 }
@@ -315,7 +317,8 @@ TEST(SimulationGain, IsNoneOfALinearModelAndMuchOfAnOscillationFromFewSimulation
   const ModelSpec model = makeOscillationModel();
   const MatrixXd points = samplePoints(listBox(model), 60, 1);
   SurrogateSamples silent = makeSamples(points, calcOscillation);
-  silent.noise_covariance *= 1e-6;  // a thousandth of the noise: all errors are the surrogate's
+  silent.noise_covariance =
+      1e-6 * silent.noise_covariance.toMatrix();  // a thousandth of the noise: all errors are the surrogate's
   silent.measured = silent.clean_features;
   EXPECT_LT(trainSurrogate(model, silent, {2}).gain.error_ratio.maxCoeff(), 0.7);
 }
