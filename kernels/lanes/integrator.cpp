@@ -17,6 +17,19 @@ const StepEngine& chooseEngine(int samples) {
   return kSteps8Of4;
 }
 
+const StepEngine& chooseEngine(int samples, const Problem& problem) {
+  const int slots = std::max(problem.derivative.slot_count, problem.output.slot_count);
+  const auto fits = [&](const StepEngine& engine) {
+    return slots <= program::Interpreter::countReachable(engine.program);
+  };
+  const StepEngine& suitable = chooseEngine(samples);
+  if (fits(suitable)) {
+    return suitable;
+  }
+  const StepEngine& eight = chooseEngine(8);
+  return fits(eight) ? eight : kSteps4;
+}
+
 std::vector<const StepEngine*> getEngines() {
   std::vector<const StepEngine*> engines{&kSteps4, &kSteps8, &kSteps8Of4, &kSteps16};
   engines.erase(std::remove_if(engines.begin(), engines.end(),

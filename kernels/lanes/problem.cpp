@@ -1,5 +1,7 @@
 #include "kernels/lanes/problem.hpp"
 
+#include <algorithm>
+
 #include "kernels/lanes/program/differentiate.hpp"
 #include "kernels/lanes/program/recorder.hpp"
 
@@ -25,6 +27,58 @@ void append(const std::vector<Symbol>& more, std::vector<Symbol>& symbols) {
   symbols.insert(symbols.end(), more.begin(), more.end());
 }
 
+/// How values change with the states and with each direction's parameter, written down once: the change along
+/// a direction is then (df/dy) s + df/dp.
+class Linearization {
+ public:
+  Linearization(Recorder& recorder, const std::vector<Symbol>& values, int states)
+      : recorder_(recorder), values_(values), states_(states) {
+    for (int i = 0; i < states; ++i) {
+      by_state_.push_back(calcTangents(values, {{recorder.state(i), 1.0}}));
+    }
+  }
+
+  std::vector<Symbol> calcChanges(int parameter, int j) {
+    std::vector<Symbol> changes = calcTangents(values_, {{recorder_.parameter(parameter), 1.0}});
+    for (int i = 0; i < states_; ++i) {
+      const Symbol sensitivity = recorder_.state(states_ * (1 + j) + i);
+      for (std::size_t row = 0; row < changes.size(); ++row) {
+        changes[row] += by_state_[static_cast<std::size_t>(i)][row] * sensitivity;
+      }
+    }
+    return changes;
+  }
+
+ private:
+  Recorder& recorder_;
+  const std::vector<Symbol>& values_;
+  const int states_;
+  std::vector<std::vector<Symbol>> by_state_;  ///< derivatives of the values, by state
+};
+
+/// With fewer directions than this for each state, one forward pass a direction takes fewer operations than
+/// the derivatives by all states and their products.
+constexpr std::size_t kFewDirections = 16, kDirectionsPerState = 2;
+
+void appendSensitivities(Recorder& recorder, const Equations& equations, const std::vector<int>& directions,
+                         std::vector<Symbol>& rows, std::vector<Symbol>& outputs) {
+  const auto states = static_cast<std::size_t>(equations.counts.states);
+  if (directions.size() > std::max(kFewDirections, kDirectionsPerState * states)) {
+    Linearization motion(recorder, equations.derivatives, equations.counts.states);
+    Linearization seen(recorder, equations.outputs, equations.counts.states);
+    for (int j = 0; j < static_cast<int>(directions.size()); ++j) {
+      append(motion.calcChanges(directions[j], j), rows);
+      append(seen.calcChanges(directions[j], j), outputs);
+    }
+    return;
+  }
+  for (int j = 0; j < static_cast<int>(directions.size()); ++j) {
+    const std::vector<Seed> seeds = makeSeeds(recorder, equations, directions, j);
+    append(calcTangents(equations.derivatives, seeds), rows);
+    append(calcTangents(equations.outputs, seeds), outputs);
+  }
+}
+
 }  // namespace
 
 Problem makeProblem(Recorder& recorder, const Equations& equations, const std::vector<int>& directions) {
@@ -34,11 +88,7 @@ Problem makeProblem(Recorder& recorder, const Equations& equations, const std::v
   problem.pivot_count = static_cast<int>(equations.pivots.size());
   problem.output_count = static_cast<int>(equations.outputs.size());
   std::vector<Symbol> rows = equations.derivatives, outputs = equations.outputs;
-  for (int j = 0; j < static_cast<int>(directions.size()); ++j) {
-    const std::vector<Seed> seeds = makeSeeds(recorder, equations, directions, j);
-    append(calcTangents(equations.derivatives, seeds), rows);
-    append(calcTangents(equations.outputs, seeds), outputs);
-  }
+  appendSensitivities(recorder, equations, directions, rows, outputs);
   append(equations.pivots, rows);
   program::InputCounts counts = equations.counts;
   counts.states = problem.getRowCount();

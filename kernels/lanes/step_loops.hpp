@@ -117,19 +117,19 @@ class StepLoops {
   static void store(double* target, P value) { program::store<P>(target, value); }
   static P broadcast(double value) { return program::broadcast<P>(value); }
 
+  /// All slopes are taken before any state is written: where a state's rate is another state, the program
+  /// leaves it in that state's own place.
   template <int stage>
   static void prepare(const StepArrays& a) {
     if (stage > 2) {
       takePivots(a, stage == 3);
+      takeSlopes(a, a.slopes[stage - 1]);
     }
     for (int k = 0; k < kLanes; k += kWidth) {
       const P step = load(a.step + k);
       store(a.stage_time + k, program::fma(step, broadcast(kTimes[stage]), load(a.time + k)));
       for (int row = 0; row < a.rows; ++row) {
         const int at = row * kLanes + k;
-        if (stage > 2) {
-          store(a.slopes[stage - 1] + at, load(a.derivatives[row] + k));
-        }
         P sum = load(a.slopes[1] + at) * kWeights[stage][1];
         for (int j = 2; j < stage; ++j) {
           if (kWeights[stage][j] != 0.0) {
@@ -137,6 +137,14 @@ class StepLoops {
           }
         }
         store(a.stage_state + at, program::fma(step, sum, load(a.state + at)));
+      }
+    }
+  }
+
+  static void takeSlopes(const StepArrays& a, double* slopes) {
+    for (int row = 0; row < a.rows; ++row) {
+      for (int k = 0; k < kLanes; k += kWidth) {
+        store(slopes + row * kLanes + k, load(a.derivatives[row] + k));
       }
     }
   }

@@ -22,9 +22,10 @@ Interpreter::Interpreter(const Program& program, const Engine& engine)
       phase_(place(program.phase)),
       evaluation_(place(program.evaluation)),
       slots_(static_cast<std::size_t>(program.slot_count) * engine.lanes) {
-  if (program.slot_count > kLargestSlotCount) {
-    throw std::length_error("a program needs more than " + std::to_string(kLargestSlotCount) +
-                            " values at a time");
+  if (program.slot_count > countReachable(engine)) {
+    throw std::length_error("a program needs " + std::to_string(program.slot_count) +
+                            " values at a time; with " + std::to_string(engine.lanes) +
+                            " lanes it may have " + std::to_string(countReachable(engine)));
   }
   for (const int slot : program.outputs) {
     outputs_.push_back(static_cast<std::size_t>(slot) * engine.lanes);

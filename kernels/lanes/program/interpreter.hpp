@@ -16,9 +16,10 @@ std::vector<const Engine*> getEngines();
 /// multiple of 32 bytes, and stay where they are. No lane's values depend on another lane's.
 class Interpreter {
  public:
-  static constexpr int kLargestSlotCount = 0x10000 * kPlace / 16;  ///< that 16 bits reach in 16 lanes
+  /// Slots that the 16 bits of a place reach with an engine: 16384 with 16 lanes, 65536 with 4.
+  static int countReachable(const Engine& engine) { return 0x10000 * kPlace / engine.lanes; }
 
-  /// Throws std::length_error for a program of more than kLargestSlotCount slots.
+  /// Throws std::length_error for a program of more than countReachable() slots.
   explicit Interpreter(const Program& program, const Engine& engine = kEngine4);
 
   int getLanes() const { return engine_->lanes; }

@@ -56,8 +56,8 @@ void fuseProducts(std::vector<Node>& nodes, const std::vector<int>& uses) {
   }
 }
 
-/// The cosine of each sine's argument where both are needed, else -1; by sine.
-std::vector<int> pairSines(std::vector<Node>& nodes, const std::vector<int>& uses) {
+/// The cosine of each needed sine's argument and the sine of each needed cosine's, where both are; else -1.
+std::vector<int> pairSines(const std::vector<Node>& nodes, const std::vector<int>& uses) {
   std::vector<int> cosines(nodes.size(), -1), partners(nodes.size(), -1);
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (uses[i] > 0 && nodes[i].operation == Operation::kCos) {
@@ -65,11 +65,21 @@ std::vector<int> pairSines(std::vector<Node>& nodes, const std::vector<int>& use
     }
   }
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if (uses[i] > 0 && nodes[i].operation == Operation::kSin) {
+    if (uses[i] > 0 && nodes[i].operation == Operation::kSin && cosines[nodes[i].a] >= 0) {
       partners[i] = cosines[nodes[i].a];
+      partners[partners[i]] = static_cast<int>(i);
     }
   }
   return partners;
+}
+
+Step makeStep(const std::vector<Node>& nodes, int node, int partner) {
+  const Node& n = nodes[node];
+  const bool is_cosine = n.operation == Operation::kCos;
+  if (partner < 0) {
+    return {n.operation, {node, -1}, {n.a, n.b, n.c}};
+  }
+  return {Operation::kSinCos, {is_cosine ? partner : node, is_cosine ? node : partner}, {n.a, n.b, n.c}};
 }
 
 }  // namespace
@@ -79,19 +89,11 @@ Steps lower(const Recorder& recorder, const std::vector<int>& wanted) {
   fuseProducts(nodes, countUses(nodes, wanted));
   const std::vector<int> uses = countUses(nodes, wanted);
   const std::vector<int> partners = pairSines(nodes, uses);
-  std::vector<char> done(nodes.size(), false);
-  for (const int cosine : partners) {
-    if (cosine >= 0) {
-      done[cosine] = true;
-    }
-  }
   Steps steps;
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const Node& n = nodes[i];
-    if (uses[i] > 0 && !done[i] && countOperands(n.operation) > 0) {
-      const Operation operation = partners[i] >= 0 ? Operation::kSinCos : n.operation;
-      steps.levels[static_cast<int>(n.level)].push_back(
-          {operation, {static_cast<int>(i), partners[i]}, {n.a, n.b, n.c}});
+  for (int i = 0; i < static_cast<int>(nodes.size()); ++i) {
+    const bool is_made = partners[i] >= 0 && partners[i] < i;  // together with the other of its pair
+    if (uses[i] > 0 && !is_made && countOperands(nodes[i].operation) > 0) {
+      steps.levels[static_cast<int>(nodes[i].level)].push_back(makeStep(nodes, i, partners[i]));
     }
   }
   return steps;

@@ -114,7 +114,15 @@ class Scheduler {
 }  // namespace
 
 std::vector<Step> schedule(const std::vector<Step>& steps) {
-  return Scheduler(steps).run();
+  std::vector<Step> order;
+  for (std::size_t begin = 0; begin < steps.size(); begin += kLargestPiece) {
+    const std::size_t end = std::min(steps.size(), begin + kLargestPiece);
+    const std::vector<Step> piece(steps.begin() + static_cast<std::ptrdiff_t>(begin),
+                                  steps.begin() + static_cast<std::ptrdiff_t>(end));
+    const std::vector<Step> ordered = Scheduler(piece).run();
+    order.insert(order.end(), ordered.begin(), ordered.end());
+  }
+  return order;
 }
 
 }  // namespace twinmap::program

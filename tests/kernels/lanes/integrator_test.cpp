@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "kernels/lanes/program/interpreter.hpp"
 #include "tests/kernels/lanes/batch.hpp"
 #include "tests/kernels/lanes/oracle.hpp"
 #include "tests/kernels/lanes/pendulum.hpp"
@@ -235,6 +237,76 @@ TEST(Lanes, SystemAtRestAndAnIntegratorUsedTwice) {
     EXPECT_EQ(batch.outputs[3], 5.0);
   }
   EXPECT_EQ(integrate(integrator, {}).size(), 0u);
+}
+
+/// y' = -K y and z' = y of 40 rates with weights 1 ... 40, K their sum: far more directions than states.
+TEST(Lanes, SensitivitiesOfManyParametersAreThoseOfTheClosedForm) {
+  constexpr int kRates = 40;
+  Recorder r;
+  Symbol sum = 0.0;
+  for (int j = 0; j < kRates; ++j) {
+    sum += (1.0 + j) * r.parameter(j);
+  }
+  Equations equations;
+  equations.counts = {2, kRates, 0};
+  equations.derivatives = {-sum * r.state(0), r.state(0)};
+  equations.outputs = {r.state(1) * r.state(1)};
+  std::vector<int> directions(kRates);
+  std::iota(directions.begin(), directions.end(), 0);
+  const std::vector<double> times{0.5, 1.0, 2.0};
+  Integrator integrator(makeProblem(r, equations, directions), times, {}, chooseEngine(8));
+  const double rate = 1.2 / (kRates * (kRates + 1) / 2.0), total = 1.2;
+  Sample sample;
+  sample.parameters.assign(kRates, rate);
+  sample.initial.assign(2 * (1 + kRates), 0.0);
+  sample.initial[0] = 1.0;
+  sample.phases = {{0.0, {}}};
+  sample.end = 2.0;
+  Batch batch;
+  batch.add(sample, 3, kRates);
+  batch.run(integrator);
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const double t = times[i], left = std::exp(-total * t), z = (1.0 - left) / total;
+    const double slope = (t * left - z) / total;  // dz / dK
+    EXPECT_NEAR(batch.outputs[i], z * z, 1e-6);
+    for (int j = 0; j < kRates; ++j) {
+      const double expected = 2.0 * z * slope * (1.0 + j);
+      EXPECT_NEAR(batch.derivatives[3 * static_cast<std::size_t>(j) + i], expected, 1e-5 * kRates);
+    }
+  }
+}
+
+/// z' = y after y' = -y: the rate is a state that stands before it.
+TEST(Lanes, RatesMayBeEarlierStates) {
+  Recorder r;
+  Equations equations;
+  equations.counts = {2, 0, 0};
+  equations.derivatives = {-r.state(0), r.state(0)};
+  equations.outputs = {r.state(1)};
+  Integrator integrator(makeProblem(r, equations), {1.0, 2.0}, {}, chooseEngine(8));
+  Sample sample;
+  sample.initial = {1.0, 0.0};
+  sample.phases = {{0.0, {}}};
+  sample.end = 2.0;
+  Batch batch;
+  batch.add(sample, 2, 0);
+  batch.run(integrator);
+  EXPECT_NEAR(batch.outputs[0], 1.0 - std::exp(-1.0), 1e-6);
+  EXPECT_NEAR(batch.outputs[1], 1.0 - std::exp(-2.0), 1e-6);
+}
+
+TEST(Lanes, LargeProblemsHaveFewerLanes) {
+  Problem problem;
+  for (const int slots : {1000, 10000, 20000, 40000}) {
+    problem.derivative.slot_count = slots;
+    for (const int samples : {1, 6, 12, 100}) {
+      const program::Engine& engine = chooseEngine(samples, problem).program;
+      EXPECT_LE(slots, program::Interpreter::countReachable(engine));
+      EXPECT_LE(engine.lanes, chooseEngine(samples).program.lanes);
+    }
+  }
+  problem.derivative.slot_count = 1000;
+  EXPECT_EQ(&chooseEngine(100, problem), &chooseEngine(100));
 }
 
 }  // namespace

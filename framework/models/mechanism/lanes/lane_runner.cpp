@@ -110,7 +110,7 @@ class LaneRunner::Impl : public lanes::SampleStream {
  private:
   /// With as many lanes as suit so many samples.
   lanes::Integrator& updIntegrator(int samples) {
-    const lanes::StepEngine& suitable = lanes::chooseEngine(samples);
+    const lanes::StepEngine& suitable = lanes::chooseEngine(samples, model_.problem);
     if (engine_ != &suitable) {
       const VectorXd& times = task_.layout.times;
       integrator_.emplace(model_.problem, std::vector<double>(times.begin(), times.end()),

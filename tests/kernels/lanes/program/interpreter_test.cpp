@@ -6,6 +6,7 @@
 #include <random>
 
 #include "kernels/lanes/program/recorder.hpp"
+#include "kernels/lanes/program/schedule.hpp"
 #include "tests/kernels/lanes/program/walk.hpp"
 
 namespace twinmap::program {
@@ -211,6 +212,43 @@ TEST(Interpreter, OneLanesNanStaysThere) {
       }
     }
   }
+}
+
+/// The cosine is used long before the sine of the same argument, which is made with it.
+TEST(Interpreter, ProgramsOfSeveralPiecesAreWhatWasWrittenDown) {
+  Recorder r;
+  const Symbol x = r.state(0), p = r.parameter(0);
+  Symbol sum = cos(x) * p, product = 1.0;
+  for (int i = 0; i < static_cast<int>(kLargestPiece); ++i) {
+    const Symbol weight = 1.0 + 1e-4 * i;
+    sum += exp(-weight * x) * cos(weight * p * x);
+    product *= 1.0 + 1e-4 * cos(sum);
+  }
+  const std::vector<Symbol> outputs{sum, product, sin(x) * sum};
+  const Program program = compile(r, outputs, {1, 1, 0});
+  ASSERT_GT(program.evaluation.instructions.size(), 2 * kLargestPiece);
+  const std::vector<double> expected = walk(r, outputs, {0.0, {0.7}, {1.3}, {}});
+  for (const Engine* engine : getEngines()) {
+    Interpreter interpreter(program, *engine);
+    interpreter.updState(0)[1] = 0.7;
+    interpreter.updParameter(0)[1] = 1.3;
+    interpreter.calcParameters();
+    interpreter.calcPhase();
+    interpreter.calcOutputs();
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_NEAR(interpreter.getOutput(i)[1] / expected[i], 1.0, 1e-9);
+    }
+  }
+}
+
+TEST(Interpreter, FewLanesReachMoreSlots) {
+  Recorder r;
+  const Program program = compile(r, {r.state(29999) * 2.0}, {30000, 0, 0});
+  Interpreter interpreter(program, kEngine4);
+  interpreter.updState(29999)[3] = 4.0;
+  interpreter.calcOutputs();
+  EXPECT_EQ(interpreter.getOutput(0)[3], 8.0);
+  EXPECT_THROW(Interpreter(program, kEngine16), std::length_error);
 }
 
 }  // namespace
