@@ -24,30 +24,6 @@ bool liesIn(const Basin& basin, const VectorXd& at) {
   return apart.dot(linalg::solvePositiveDefinite(basin.covariance, apart)) < kReach * kReach;
 }
 
-/// The ends that may bear some of the posterior, each basin once. An end 25 above the best bears a share of
-/// 4e-6 for the same volume.
-std::vector<Basin> collectBasins(std::vector<LocalSurface> ends) {
-  constexpr double kAbove = 25.0;
-  constexpr std::size_t kMax = 12;
-  std::stable_sort(ends.begin(), ends.end(),
-                   [](const LocalSurface& a, const LocalSurface& b) { return a.misfit < b.misfit; });
-  std::vector<Basin> basins;
-  for (LocalSurface& end : ends) {
-    if (end.misfit > ends.front().misfit + kAbove) {
-      break;
-    }
-    const auto known =
-        std::find_if(basins.begin(), basins.end(), [&](const Basin& basin) { return liesIn(basin, end.at); });
-    if (known != basins.end()) {
-      ++known->searches;
-    } else if (basins.size() < kMax) {
-      MatrixXd covariance = calcBasinCovariance(end.information);
-      basins.push_back({end, std::move(covariance), 1});
-    }
-  }
-  return basins;
-}
-
 bool isExplained(const std::vector<Basin>& basins) {
   return !basins.empty() &&
          basins.front().local.chi_square < calcChiSquareLimit(basins.front().local.degrees);
@@ -188,6 +164,28 @@ MatrixXd calcBasinCovariance(const MatrixXd& information) {
   return linalg::solveCholesky(
       linalg::calcCholesky(information + kHalfWidthInformation * MatrixXd::Identity(u, u)).lower,
       MatrixXd::Identity(u, u));
+}
+
+std::vector<Basin> collectBasins(std::vector<LocalSurface> ends) {
+  constexpr double kAbove = 25.0;  // bears a share of 4e-6 for the same volume
+  constexpr std::size_t kMax = 12;
+  std::stable_sort(ends.begin(), ends.end(),
+                   [](const LocalSurface& a, const LocalSurface& b) { return a.misfit < b.misfit; });
+  std::vector<Basin> basins;
+  for (LocalSurface& end : ends) {
+    if (end.misfit > ends.front().misfit + kAbove) {
+      break;
+    }
+    const auto known =
+        std::find_if(basins.begin(), basins.end(), [&](const Basin& basin) { return liesIn(basin, end.at); });
+    if (known != basins.end()) {
+      ++known->searches;
+    } else if (basins.size() < kMax) {
+      MatrixXd covariance = calcBasinCovariance(end.information);
+      basins.push_back({end, std::move(covariance), 1});
+    }
+  }
+  return basins;
 }
 
 BasinSearch findBasins(MisfitSurface& surface, const MatrixXd& given, std::uint64_t seed,

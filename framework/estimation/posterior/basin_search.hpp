@@ -17,6 +17,10 @@ struct Basin {
 /// (information + that of the box as a normal distribution)^-1, u x u.
 Eigen::MatrixXd calcBasinCovariance(const Eigen::MatrixXd& information);
 
+/// The ends of searches that may bear some of the posterior, at most 25 above the best and 12 of them, each
+/// basin once: an end within three standard deviations of a better one is in its basin.
+std::vector<Basin> collectBasins(std::vector<LocalSurface> ends);
+
 /// What searches from all over the box found.
 struct BasinSearch {
   std::vector<Basin> basins;  ///< the least chi-square first; empty where no start could be simulated

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "framework/estimation/posterior/log_coordinates.hpp"
+#include "framework/estimation/log_coordinates.hpp"
 #include "framework/estimation/posterior/residual_loss.hpp"
 #include "framework/estimation/refined/misfit.hpp"
 #include "framework/experiment/points/prior.hpp"

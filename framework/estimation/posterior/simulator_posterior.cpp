@@ -6,8 +6,9 @@
 #include <memory>
 #include <numeric>
 
+#include "framework/estimation/informativeness.hpp"
 #include "framework/estimation/posterior/marginal_surface.hpp"
-#include "framework/estimation/posterior/valley.hpp"
+#include "framework/estimation/posterior/straight_ridge.hpp"
 #include "framework/estimation/refined/acceptance.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -78,8 +79,8 @@ VectorXd calcShares(const std::vector<Basin>& basins, const MisfitSurface& surfa
   return (0.5 * weights / weights.sum()).array() + 0.5 / static_cast<double>(count);
 }
 
-/// Most draws as far from a basin's minimum as its linear model says, some twice and few four times as far,
-/// and few anywhere.
+/// Most draws as far from a basin's centre as its covariance says, some twice and few four times as far, and
+/// few anywhere.
 BoxMixture proposeFirst(const std::vector<Basin>& basins, const VectorXd& shares) {
   constexpr double kNear = 0.7, kFar = 0.2, kFarthest = 0.05;
   std::vector<importance::NormalPart> parts;
@@ -91,102 +92,6 @@ BoxMixture proposeFirst(const std::vector<Basin>& basins, const VectorXd& shares
     parts.push_back({kFarthest * share, basins[k].local.at, 4.0 * lower});
   }
   return BoxMixture(std::move(parts));
-}
-
-/// Basin of each draw: the nearest in its own metric.
-std::vector<std::size_t> assign(const MatrixXd& points, const std::vector<Basin>& basins) {
-  std::vector<std::size_t> nearest(static_cast<std::size_t>(points.cols()), 0);
-  VectorXd least = VectorXd::Constant(points.cols(), std::numeric_limits<double>::infinity());
-  for (std::size_t k = 0; basins.size() > 1 && k < basins.size(); ++k) {
-    const MatrixXd lower = linalg::calcCholesky(basins[k].covariance).lower;
-    const MatrixXd apart = linalg::solveLower(lower, points.colwise() - basins[k].local.at);
-    for (Index i = 0; i < points.cols(); ++i) {
-      if (const double distance = apart.col(i).squaredNorm(); distance < least[i]) {
-        least[i] = distance;
-        nearest[static_cast<std::size_t>(i)] = k;
-      }
-    }
-  }
-  return nearest;
-}
-
-/// The part of weighted draws that belongs to one group of basins.
-importance::WeightedDraws takePart(const MatrixXd& points, const VectorXd& weights,
-                                   const std::vector<std::size_t>& group_of_draw, std::size_t group) {
-  VectorXd own = weights;
-  for (Index i = 0; i < own.size(); ++i) {
-    own[i] *= group_of_draw[static_cast<std::size_t>(i)] == group ? 1.0 : 0.0;
-  }
-  return {points, own};
-}
-
-/// Whether two parts of a distribution have a gap between them: seen along the line through their means,
-/// these are more than twice the sum of the standard deviations apart. Two halves of a uniform distribution
-/// are 1.7 times it apart, of a normal one 1.3 times.
-bool areApart(const importance::WeightedDraws& a, const importance::WeightedDraws& b) {
-  constexpr double kApart = 2.0;
-  const auto normalize = [](const importance::WeightedDraws& part) {
-    return importance::WeightedDraws{part.points, part.weights / part.weights.sum()};
-  };
-  const importance::WeightedDraws first = normalize(a), second = normalize(b);
-  const VectorXd way = importance::calcMean(second) - importance::calcMean(first);
-  const double length = way.norm();
-  const auto spread = [&](const importance::WeightedDraws& part) {
-    return std::sqrt(way.dot(importance::calcCovariance(part) * way)) / length;
-  };
-  return length > kApart * (spread(first) + spread(second));
-}
-
-/// The nearest basin of each draw, with those taken together that a valley connects or that have no gap
-/// between them: they are a ridge, or one basin found twice.
-std::vector<std::size_t> groupDraws(const MatrixXd& points, const VectorXd& weights,
-                                    const std::vector<Basin>& basins, const Valleys& valleys) {
-  std::vector<std::size_t> group_of_draw = assign(points, basins);
-  const auto unite = [&](std::size_t kept, std::size_t other) {
-    std::replace(group_of_draw.begin(), group_of_draw.end(), other, kept);
-  };
-  std::vector<std::size_t> group_of_basin(basins.size());
-  std::iota(group_of_basin.begin(), group_of_basin.end(), std::size_t{0});
-  for (const auto& [from, to] : valleys.connected) {
-    const std::size_t kept = group_of_basin[from], other = group_of_basin[to];
-    std::replace(group_of_basin.begin(), group_of_basin.end(), other, kept);
-    if (kept != other) {
-      unite(kept, other);
-    }
-  }
-  for (std::size_t a = 0; a < basins.size(); ++a) {
-    for (std::size_t b = a + 1; b < basins.size(); ++b) {
-      const importance::WeightedDraws first = takePart(points, weights, group_of_draw, a),
-                                      second = takePart(points, weights, group_of_draw, b);
-      if (first.weights.sum() > 0.0 && second.weights.sum() > 0.0 && !areApart(first, second)) {
-        unite(a, b);
-        b = a;  // the group has grown: it may touch others now
-      }
-    }
-  }
-  return group_of_draw;
-}
-
-/// The groups' parts of the draws (in the parameters' units), the heaviest first; those of hardly any weight
-/// are left out.
-std::vector<PosteriorMode> collectModes(const std::vector<Basin>& basins,
-                                        const std::vector<std::size_t>& group_of_draw, const MatrixXd& draws,
-                                        const VectorXd& weights) {
-  constexpr double kMinWeight = 1e-3;  // 1000 to 1 is certain
-  std::vector<PosteriorMode> modes;
-  for (std::size_t k = 0; k < basins.size(); ++k) {
-    importance::WeightedDraws part = takePart(draws, weights, group_of_draw, k);
-    const double weight = part.weights.sum();
-    if (weight >= kMinWeight) {
-      part.weights /= weight;
-      const MatrixXd covariance = importance::calcCovariance(part);
-      modes.push_back({weight, importance::calcMean(part), covariance.diagonal().cwiseSqrt(),
-                       basins[k].local.chi_square, covariance});
-    }
-  }
-  std::stable_sort(modes.begin(), modes.end(),
-                   [](const PosteriorMode& a, const PosteriorMode& b) { return a.weight > b.weight; });
-  return modes;
 }
 
 MatrixXd toCoordinates(const LogCoordinates& coordinates, const MatrixXd& points) {
@@ -205,11 +110,11 @@ MatrixXd toParameters(const LogCoordinates& coordinates, const MatrixXd& at) {
   return points;
 }
 
-/// The misfits of all measurements, and the surface that they make.
+/// The misfits of all measurements, and the surface that they make. plain: of LogCoordinates.
 class ProblemSurface {
  public:
-  explicit ProblemSurface(const PosteriorProblem& problem)
-      : coordinates_(problem.unknown),
+  explicit ProblemSurface(const PosteriorProblem& problem, const std::vector<Index>& plain = {})
+      : coordinates_(problem.unknown, plain),
         prior_(problem.unknown, problem.priors),
         surface_(makeParts(problem), coordinates_, prior_) {}
 
@@ -244,6 +149,22 @@ class ProblemSurface {
   MisfitSurface surface_;
 };
 
+/// The same basins in the coordinates of another surface of the same problem: those that are one there,
+/// because a ridge is straight, once.
+std::vector<Basin> convertBasins(const std::vector<Basin>& basins, const LogCoordinates& coordinates,
+                                 MisfitSurface& surface) {
+  MatrixXd points(coordinates.getCount(), static_cast<Index>(basins.size()));
+  for (std::size_t k = 0; k < basins.size(); ++k) {
+    points.col(static_cast<Index>(k)) =
+        surface.getCoordinates().fromParameters(coordinates.toParameters(basins[k].local.at));
+  }
+  std::vector<LocalSurface> ends = surface.linearize(points);
+  const auto failed =
+      std::remove_if(ends.begin(), ends.end(), [](const LocalSurface& end) { return !end.simulated; });
+  ends.erase(failed, ends.end());
+  return collectBasins(std::move(ends));
+}
+
 void setBest(const BasinSearch& found, const LogCoordinates& coordinates, SimulatorPosterior& posterior) {
   const Basin& best = found.basins.front();
   posterior.best = coordinates.toParameters(best.local.at);
@@ -277,10 +198,27 @@ std::vector<Basin> projectBasins(std::vector<Basin> basins, Index drawn) {
   return basins;
 }
 
-AdaptiveDraws drawFrom(MisfitSurface& surface, const std::vector<Basin>& places,
-                       const std::vector<Basin>& basins, const std::vector<Basin>& projected,
+/// Basins and the valleys between them, in the coordinates in which they are sampled.
+struct Landscape {
+  std::vector<Basin> basins;
+  Valleys valleys;
+  bool is_straight = true;  // RidgeShape
+};
+
+/// Where the draws of the first round go: basins and floors of valleys, by the shares of their masses.
+BoxMixture propose(const MisfitSurface& surface, const Landscape& landscape, Index drawn) {
+  std::vector<Basin> places = landscape.basins;
+  const std::vector<Basin>& floors = landscape.valleys.floors;
+  places.insert(places.end(), floors.begin(), floors.end());
+  const VectorXd shares = calcShares(places, surface);
+  if (landscape.is_straight) {
+    std::transform(landscape.basins.begin(), landscape.basins.end(), places.begin(), levelBasin);
+  }
+  return proposeFirst(projectBasins(std::move(places), drawn), shares);
+}
+
+AdaptiveDraws drawFrom(MisfitSurface& surface, const Landscape& landscape, Index drawn,
                        const SimulatorPosteriorOptions& options) {
-  const Index drawn = projected.front().local.at.size();
   Numbers numbers(drawn, options);
   importance::AdaptiveOptions adaptive;
   adaptive.max_rounds = kMaxRounds;
@@ -289,28 +227,27 @@ AdaptiveDraws drawFrom(MisfitSurface& surface, const std::vector<Basin>& places,
   std::iota(kept.begin(), kept.end(), Index{0});
   std::optional<MarginalSurface> marginal;
   if (drawn < surface.getDimensions()) {
-    marginal.emplace(surface, kept, basins);
+    marginal.emplace(surface, kept, landscape.basins);
   }
   return importance::sampleAdaptively(
       [&](const MatrixXd& points) {
         return marginal ? marginal->calcLogPosteriors(points) : surface.calcLogPosteriors(points);
       },
-      proposeFirst(projected, calcShares(places, surface)),
+      propose(surface, landscape, drawn),
       [&](int round) -> const RoundNumbers& { return numbers.get(round); }, adaptive);
 }
 
-/// Moments, draws and modes, of the first parameters, as many as `projected` has coordinates.
-void setDraws(const AdaptiveDraws& drawn, const std::vector<Basin>& projected, const Valleys& valleys,
-              const LogCoordinates& coordinates, SimulatorPosterior& posterior) {
+/// Moments, draws and modes, of the first parameters, as many as `coordinates` has.
+void setDraws(const AdaptiveDraws& drawn, const Landscape& landscape, const LogCoordinates& coordinates,
+              SimulatorPosterior& posterior) {
   posterior.weights = drawn.draws.weights;
   posterior.draws = toParameters(coordinates, drawn.draws.points);
   const importance::WeightedDraws draws{posterior.draws, posterior.weights};
   posterior.mean = importance::calcMean(draws);
   posterior.covariance = importance::calcCovariance(draws);
   posterior.stddev = posterior.covariance.diagonal().cwiseSqrt();
-  const std::vector<std::size_t> groups =
-      groupDraws(drawn.draws.points, posterior.weights, projected, valleys);
-  posterior.modes = collectModes(projected, groups, posterior.draws, posterior.weights);
+  posterior.modes = findModes(drawn.draws.points, posterior.draws, posterior.weights,
+                              projectBasins(landscape.basins, coordinates.getCount()), landscape.valleys);
 }
 
 }  // namespace
@@ -320,13 +257,11 @@ bool SimulatorPosterior::isExplained() const {
 }
 
 PosteriorShape SimulatorPosterior::findShape(Index p) const {
-  constexpr double kShare = 0.9;  // as trained estimators are judged
   if (modes.size() > 1) {
     return PosteriorShape::kMultimodal;
   }
-  return (stddev.head(p).array() > kShare * prior_stddev.head(p).array()).any()
-             ? PosteriorShape::kUninformative
-             : PosteriorShape::kInformative;
+  return isUninformative(stddev.head(p), prior_stddev.head(p)) ? PosteriorShape::kUninformative
+                                                               : PosteriorShape::kInformative;
 }
 
 MatrixXd SimulatorPosterior::calcQuantiles(const VectorXd& probabilities) const {
@@ -355,19 +290,23 @@ SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Matrix
   if (problem.trials.size() == 1) {
     posterior.standardized = standardize(surface, problem.trials.front(), found.basins.front().local);
   }
-  const Valleys valleys = followValleys(surface, found.basins);
-  std::vector<Basin> places = found.basins;
-  places.insert(places.end(), valleys.floors.begin(), valleys.floors.end());
-  const std::vector<Basin> projected = projectBasins(found.basins, problem.drawn);
-  const AdaptiveDraws drawn =
-      drawFrom(surface, places, found.basins, projectBasins(places, problem.drawn), options);
-  posterior.simulations = surface.getSimulations();
+  const RidgeShape shape = findRidgeShape(surface, found.basins.front());
+  Landscape landscape{found.basins, {}, shape.is_straight};
+  std::unique_ptr<ProblemSurface> straight;
+  if (!shape.plain.empty()) {
+    straight = std::make_unique<ProblemSurface>(problem, shape.plain);
+    landscape.basins = convertBasins(found.basins, coordinates, straight->upd());
+  }
+  MisfitSurface& sampled = straight ? straight->upd() : surface;
+  landscape.valleys = followValleys(sampled, landscape.basins);
+  const AdaptiveDraws drawn = drawFrom(sampled, landscape, problem.drawn, options);
+  posterior.simulations = surface.getSimulations() + (straight ? sampled.getSimulations() : 0);
   posterior.effective_sample_size = drawn.effective_sample_size;
   posterior.pareto_shape = drawn.pareto_shape;
   posterior.message = drawn.findObstacle();
   if (posterior.isReliable()) {
     const std::vector<ParameterSpec> kept(problem.unknown.begin(), problem.unknown.begin() + problem.drawn);
-    setDraws(drawn, projected, valleys, LogCoordinates(kept), posterior);
+    setDraws(drawn, landscape, LogCoordinates(kept, shape.plain), posterior);
     posterior.prior_stddev = whole.getPrior().calcStddevs().head(problem.drawn);
   }
   return posterior;

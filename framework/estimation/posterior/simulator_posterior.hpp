@@ -7,17 +7,9 @@
 #include <vector>
 
 #include "framework/estimation/posterior/basin_search.hpp"
+#include "framework/estimation/posterior/posterior_modes.hpp"
 
 namespace twinmap {
-
-/// A place where the posterior has some of its mass, apart from the others.
-struct PosteriorMode {
-  double weight = 0.0;           ///< share of the posterior
-  Eigen::VectorXd mean;          ///< u, in the parameters' units
-  Eigen::VectorXd stddev;        ///< u
-  double chi_square = 0.0;       ///< at its minimum
-  Eigen::MatrixXd covariance{};  ///< u x u
-};
 
 /// What the shape of a posterior says against it.
 enum class PosteriorShape { kInformative, kUninformative, kMultimodal };
@@ -50,7 +42,7 @@ struct SimulatorPosterior {
   /// Whether noise explains the best point (calcChiSquareLimit).
   bool isExplained() const;
   /// Whether several values that lie apart fit, or else one of the first p parameters is hardly better known
-  /// than before: its standard deviation is above .9 of the prior's. Only where it is reliable.
+  /// than before (isUninformative). Only where it is reliable.
   PosteriorShape findShape(Eigen::Index p) const;
   /// Quantiles (u x k) at probabilities (k). Only where it is reliable.
   Eigen::MatrixXd calcQuantiles(const Eigen::VectorXd& probabilities) const;
@@ -86,7 +78,8 @@ struct SimulatorPosteriorOptions {
 };
 
 /// Finds every basin (findBasins), then samples all of them together (importance::sampleAdaptively) in
-/// LogCoordinates, from a mixture of what the linear models in the basins say. Without a map or a surrogate.
+/// LogCoordinates, with sums in the parameters themselves (findRidgeShape), from a mixture of what the linear
+/// models in the basins say. Without a map or a surrogate.
 /// given: points of the unknown parameters (u x n) to search from as well. The result depends on neither
 /// threads nor other measurements. Cost: some 2000 simulations for the basins and `draws` a round.
 SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Eigen::MatrixXd& given,

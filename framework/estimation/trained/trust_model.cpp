@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "framework/estimation/informativeness.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 
 namespace twinmap {
@@ -14,17 +15,15 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kFarAway = 1.5;       // times the reach of simulated measurements
-constexpr double kShareOfPrior = 0.9;  // of the box's standard deviation
+constexpr double kFarAway = 1.5;  // times the reach of simulated measurements
 
 bool liesBeyondBounds(const TrustModel& model, const VectorXd& mean) {
   const Index p = mean.size();
   return ((mean - model.center.head(p)).array().abs() > model.half_width.head(p).array()).any();
 }
 
-bool isUninformative(const TrustModel& model, const VectorXd& stddev) {
-  const Eigen::ArrayXd prior = 2.0 * kUniformStddev * model.half_width.head(stddev.size()).array();
-  return (stddev.array() > kShareOfPrior * prior).any();
+VectorXd calcPriorStddev(const TrustModel& model, Index p) {
+  return 2.0 * kUniformStddev * model.half_width.head(p);
 }
 
 /// All that apply to an estimate, by the p-value and the distance found.
@@ -39,7 +38,7 @@ void setStatuses(const TrustModel& model, const VectorXd& mean, const VectorXd& 
   if (liesBeyondBounds(model, mean)) {
     trust.statuses.push_back(TrustStatus::kAtBounds);
   }
-  if (isUninformative(model, stddev)) {
+  if (isUninformative(stddev, calcPriorStddev(model, stddev.size()))) {
     trust.statuses.push_back(TrustStatus::kUninformative);
   }
   if (trust.statuses.empty()) {

@@ -8,6 +8,7 @@
 #include "framework/base/text/nearest_name.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/estimation/estimate.hpp"
+#include "framework/estimation/informativeness.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/select_estimate.hpp"
 #include "framework/inference/text/explain_notice.hpp"
@@ -33,7 +34,7 @@ std::string listBeyondBounds(const Estimate& estimate, const std::vector<Paramet
 
 /// Names and, of the first, the reduction.
 std::string explainUninformative(const Estimate& estimate, const std::vector<ParameterSpec>& parameters) {
-  constexpr double kUninformative = 0.9, kPercent = 100.0;  // of the standard deviation before
+  constexpr double kPercent = 100.0;
   std::string text;
   for (std::size_t p = 0; p < parameters.size() && estimate.isGiven(); ++p) {
     const Bounds& bounds = parameters[p].bounds;
@@ -41,7 +42,7 @@ std::string explainUninformative(const Estimate& estimate, const std::vector<Par
     const double before = estimate.prior_stddev.size() > 0 ? estimate.prior_stddev[i]
                                                            : kUniformStddev * (bounds.upper - bounds.lower);
     const double left = estimate.stddev[i] / before;
-    if (left > kUninformative) {
+    if (left > kUninformativeShare) {
       text += explainNotice(Notice::kUninformative, parameters[p].name.text,
                             fmt::format("{:.0f} %", kPercent * std::max(0.0, 1.0 - left)));
     }

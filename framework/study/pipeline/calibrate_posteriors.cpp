@@ -5,7 +5,7 @@
 #include "framework/base/log/notice.hpp"
 #include "framework/base/log/run_control.hpp"
 #include "framework/base/log/stage_timer.hpp"
-#include "framework/estimation/posterior/log_coordinates.hpp"
+#include "framework/estimation/log_coordinates.hpp"
 #include "framework/estimation/run_tasks.hpp"
 #include "framework/estimation/trained/posterior_model.hpp"
 #include "framework/experiment/model/parameter_box.hpp"

@@ -1,4 +1,4 @@
-#include "framework/estimation/posterior/log_coordinates.hpp"
+#include "framework/estimation/log_coordinates.hpp"
 
 #include <gtest/gtest.h>
 

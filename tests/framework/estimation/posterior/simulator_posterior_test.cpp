@@ -88,6 +88,28 @@ TEST(SimulatorPosterior, IsThatOfQuadratureWhereOnlyAProductIsSeen) {
                    testing::makeParameters(2, 0.5, 5.0), 0.3, 20, makeVector({1.5, 2.0}));
 }
 
+TEST(SimulatorPosterior, ReachesTheEndsOfASumWithTheDrawsThatInferTakes) {
+  // a ridge far thinner than it is long, which logarithms bend: where on it the search ends depends on the
+  // seed
+  const auto response = [](const VectorXd& x) -> VectorXd { return VectorXd::Constant(20, x[0] + x[1]); };
+  const std::vector<ParameterSpec> unknown = testing::makeParameters(2, 0.5, 5.0);
+  constexpr double kNoise = 0.05;
+  Problem problem(20, response, unknown, kNoise);
+  for (const double second : {0.6, 2.0, 4.5}) {
+    const VectorXd features = problem.measure(makeVector({1.0, second}), kNoise);
+    const Moments expected = integrate(response, unknown, features, kNoise, 600);
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+      SimulatorPosteriorOptions options;
+      options.seed = seed;
+      const SimulatorPosterior posterior = samplePosterior(problem.simulator, problem.model, {}, features,
+                                                           VectorXd::Zero(2), MatrixXd(2, 0), options);
+      ASSERT_TRUE(posterior.isReliable()) << posterior.message;
+      EXPECT_NEAR(posterior.mean[0], expected.mean[0], 0.2 * expected.stddev[0]);
+      EXPECT_NEAR(posterior.stddev[0] / expected.stddev[0], 1.0, 0.1);
+    }
+  }
+}
+
 TEST(SimulatorPosterior, IsThatOfQuadratureAtABound) {
   const MatrixXd matrix = makeMatrix(10, 2);
   expectQuadrature([=](const VectorXd& x) -> VectorXd { return matrix * x; },

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/estimation/posterior/search_team.hpp"
-#include "tests/framework/estimation/refined/problem.hpp"
+#include "tests/framework/estimation/posterior/surface.hpp"
 
 namespace twinmap {
 namespace {
@@ -12,40 +12,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using testing::makeVector;
-using testing::Problem;
-using testing::Response;
-
-/// A noiseless measurement and its misfit, of two parameters within [-1, 1].
-struct Surface {
-  Surface(int times, Response response, double noise_stddev, const VectorXd& truth)
-      : unknown(testing::makeParameters(2, -1.0, 1.0)),
-        problem(times, response, unknown, noise_stddev),
-        features(response(truth)),
-        coordinates(unknown),
-        box(unknown, {0, 2}, VectorXd::Zero(2)),
-        misfit(problem.simulator, problem.model, box, features),
-        prior(unknown, {}),
-        surface({{&misfit, &problem.model, {0, 1}}}, coordinates, prior) {}
-
-  /// Minima that are known.
-  std::vector<Basin> makeBasins(const MatrixXd& points) {
-    std::vector<Basin> basins;
-    for (LocalSurface& local : surface.linearize(points)) {
-      MatrixXd covariance = calcBasinCovariance(local.information);
-      basins.push_back({std::move(local), std::move(covariance), 3});
-    }
-    return basins;
-  }
-
-  const std::vector<ParameterSpec> unknown;
-  Problem problem;
-  const VectorXd features;
-  const LogCoordinates coordinates;
-  const SearchBox box;
-  Misfit misfit;
-  const Prior prior;
-  MisfitSurface surface;
-};
+using testing::Surface;
 
 Surface makeBanana(double noise_stddev = 0.1) {
   return Surface(
@@ -53,7 +20,7 @@ Surface makeBanana(double noise_stddev = 0.1) {
       [](const VectorXd& x) {
         return makeVector({0.05 * x[0], 8.0 * (x[1] - x[0] * x[0])});
       },
-      noise_stddev, makeVector({0.1, 0.01}));
+      testing::makeParameters(2, -1.0, 1.0), noise_stddev, makeVector({0.1, 0.01}));
 }
 
 TEST(Valley, FollowsTheBentFloorOfOneBasin) {
@@ -83,7 +50,7 @@ TEST(Valley, LeavesModesApartThatABarrierSeparates) {
       [](const VectorXd& x) {
         return makeVector({x[0] * x[0], x[1]});
       },
-      0.02, makeVector({0.6, 0.2}));
+      testing::makeParameters(2, -1.0, 1.0), 0.02, makeVector({0.6, 0.2}));
   MatrixXd modes(2, 2);
   modes << 0.6, -0.6,  //
       0.2, 0.2;
@@ -92,7 +59,8 @@ TEST(Valley, LeavesModesApartThatABarrierSeparates) {
 
 TEST(Valley, LeavesAStraightOneToTheBasin) {
   Surface straight(
-      2, [](const VectorXd& x) { return VectorXd(x); }, 0.05, makeVector({0.2, 0.3}));
+      2, [](const VectorXd& x) { return VectorXd(x); }, testing::makeParameters(2, -1.0, 1.0), 0.05,
+      makeVector({0.2, 0.3}));
   const Valleys valleys = followValleys(straight.surface, straight.makeBasins(makeVector({0.2, 0.3})));
   EXPECT_TRUE(valleys.floors.empty());
 }
@@ -108,7 +76,8 @@ TEST(SearchTeam, StaysWhereItIsHeld) {
 
 TEST(SearchTeam, StopsAtABoundWhereDescentLeadsOut) {
   Surface outside(
-      2, [](const VectorXd& x) { return VectorXd(x); }, 0.05, makeVector({1.4, 0.3}));
+      2, [](const VectorXd& x) { return VectorXd(x); }, testing::makeParameters(2, -1.0, 1.0), 0.05,
+      makeVector({1.4, 0.3}));
   SearchTeam team(outside.surface, makeVector({0.0, 0.0}));
   team.run(20);
   EXPECT_EQ(team.getLocal(0).at[0], 1.0);

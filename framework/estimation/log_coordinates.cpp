@@ -1,5 +1,6 @@
-#include "framework/estimation/posterior/log_coordinates.hpp"
+#include "framework/estimation/log_coordinates.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace twinmap {
@@ -8,7 +9,7 @@ using Eigen::Index;
 using Eigen::Ref;
 using Eigen::VectorXd;
 
-LogCoordinates::LogCoordinates(const std::vector<ParameterSpec>& unknown)
+LogCoordinates::LogCoordinates(const std::vector<ParameterSpec>& unknown, const std::vector<Index>& plain)
     : is_log_(static_cast<Index>(unknown.size())),
       center_(is_log_.size()),
       half_width_(is_log_.size()),
@@ -19,7 +20,8 @@ LogCoordinates::LogCoordinates(const std::vector<ParameterSpec>& unknown)
     const Bounds& bounds = unknown[static_cast<std::size_t>(j)].bounds;
     center_[j] = 0.5 * (bounds.lower + bounds.upper);
     half_width_[j] = 0.5 * (bounds.upper - bounds.lower);
-    is_log_[j] = bounds.lower > 0.0 || bounds.upper < 0.0;
+    is_log_[j] =
+        (bounds.lower > 0.0 || bounds.upper < 0.0) && std::find(plain.begin(), plain.end(), j) == plain.end();
     if (is_log_[j]) {
       const double lower = std::log(std::abs(bounds.lower)), upper = std::log(std::abs(bounds.upper));
       sign_[j] = bounds.lower > 0.0 ? 1.0 : -1.0;

@@ -13,10 +13,13 @@ namespace twinmap {
 /// u in [-1, 1] is the parameter in half-widths of its bounds, as everywhere. Immutable.
 class LogCoordinates {
  public:
-  /// Of u parameters, those that are unknown.
-  explicit LogCoordinates(const std::vector<ParameterSpec>& unknown);
+  /// Of u parameters, those that are unknown. plain: places of parameters that are taken as they are whatever
+  /// their bounds, as a sum wants it (findPlainParameters).
+  explicit LogCoordinates(const std::vector<ParameterSpec>& unknown,
+                          const std::vector<Eigen::Index>& plain = {});
 
   Eigen::Index getCount() const { return is_log_.size(); }
+  bool isLog(Eigen::Index j) const { return is_log_[j]; }
 
   Eigen::VectorXd toBox(const Eigen::Ref<const Eigen::VectorXd>& v) const;    ///< v -> u
   Eigen::VectorXd fromBox(const Eigen::Ref<const Eigen::VectorXd>& u) const;  ///< u -> v; u within the bounds

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "framework/estimation/posterior/basin_search.hpp"
+#include "tests/framework/estimation/refined/problem.hpp"
+
+namespace twinmap::testing {
+
+/// A noiseless measurement and its misfit, and the basins of points that are known to be minima.
+struct Surface {
+  Surface(int times, Response response, std::vector<ParameterSpec> parameters, double noise_stddev,
+          const Eigen::VectorXd& truth)
+      : unknown(std::move(parameters)),
+        problem(times, response, unknown, noise_stddev),
+        features(response(truth)),
+        coordinates(unknown),
+        box(unknown, {0, truth.size()}, Eigen::VectorXd::Zero(truth.size())),
+        misfit(problem.simulator, problem.model, box, features),
+        prior(unknown, {}),
+        surface({{&misfit, &problem.model, listAll(truth.size())}}, coordinates, prior) {}
+
+  static std::vector<Eigen::Index> listAll(Eigen::Index count) {
+    std::vector<Eigen::Index> all(static_cast<std::size_t>(count));
+    std::iota(all.begin(), all.end(), Eigen::Index{0});
+    return all;
+  }
+
+  std::vector<Basin> makeBasins(const Eigen::MatrixXd& points) {
+    std::vector<Basin> basins;
+    for (LocalSurface& local : surface.linearize(points)) {
+      Eigen::MatrixXd covariance = calcBasinCovariance(local.information);
+      basins.push_back({std::move(local), std::move(covariance), 3});
+    }
+    return basins;
+  }
+
+  const std::vector<ParameterSpec> unknown;
+  Problem problem;
+  const Eigen::VectorXd features;
+  const LogCoordinates coordinates;
+  const SearchBox box;
+  Misfit misfit;
+  const Prior prior;
+  MisfitSurface surface;
+};
+
+}  // namespace twinmap::testing
