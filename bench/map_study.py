@@ -16,6 +16,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+from vega import draw
+
 ROOT = Path(__file__).parents[1]
 FOUR = ["two_beam/best", "crane/crane", "mechanisms/double_pendulum", "mechanisms/spatial_arm"]
 SIX = FOUR[:2] + ["mechanisms/double_pendulum_mild"] + FOUR[2:] + ["mechanisms/cubic_chain"]
@@ -265,24 +267,6 @@ def make_figure(points, value, title):
     }
 
 
-RENDER = """
-import {readFileSync, writeFileSync} from 'node:fs';
-import {createRequire} from 'node:module';
-const [web, figure, image] = process.argv.slice(2);
-const load = createRequire(`${web}/package.json`);
-const {vega, vegaLite} = {vega: load('vega'), vegaLite: load('vega-lite')};
-const {spec} = vegaLite.compile(JSON.parse(readFileSync(figure, 'utf8')));
-writeFileSync(image, await new vega.View(vega.parse(spec), {renderer: 'none'}).toSVG());
-"""
-
-
-def draw(arguments, figure, image):
-    script, specification = (arguments.results / name for name in ("render.mjs", "figure.json"))
-    script.write_text(RENDER)
-    specification.write_text(json.dumps(figure))
-    subprocess.run(["node", script, arguments.web.resolve(), specification, image], check=True)
-
-
 def span(pair):
     low, high = (f"{value:.2f}" for value in pair)
     return low if low == high else f"{low} - {high}"
@@ -352,8 +336,8 @@ def write_page(arguments, found):
         writer.writeheader()
         writer.writerows(rows)
     arguments.results.mkdir(parents=True, exist_ok=True)
-    draw(arguments, make_figure(points, "ratio", "errors over the limit"), ROOT / "docs/images/map-study-ratio.svg")
-    draw(arguments, make_figure(points, "nats", "nats above the limit"), ROOT / "docs/images/map-study-nats.svg")
+    draw(arguments.web, make_figure(points, "ratio", "errors over the limit"), ROOT / "docs/images/map-study-ratio.svg")
+    draw(arguments.web, make_figure(points, "nats", "nats above the limit"), ROOT / "docs/images/map-study-nats.svg")
     page = ROOT / "docs/benchmarks/map-study.md"
     experiments = list(dict.fromkeys(point["experiment"] for point in points))
     text = HEAD.format(count=len(experiments), tests=arguments.tests, findings=read_findings(page))

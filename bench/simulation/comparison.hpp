@@ -4,7 +4,6 @@
 
 #include "bench/simulation/lane_profile.hpp"
 #include "bench/simulation/mechanism.hpp"
-#include "framework/experiment/experiment_spec.hpp"
 
 namespace twinmap::bench {
 
@@ -24,9 +23,6 @@ struct Comparison {
   /// By the method's order, error ~ step^4.
   double calcMujocoTimeAtEqualError() const;
 };
-
-/// The experiment of a mechanism with as many points, uniform in the box, for sampleTestPoints().
-ExperimentSpec loadMechanism(const Mechanism& mechanism, int points);
 
 /// Simulates by MuJoCo's Runge-Kutta method with the largest step whose error is not above that of the lanes,
 /// in lanes and by Simbody, one thread, in `rounds` rounds in alternation; processor time. Throws

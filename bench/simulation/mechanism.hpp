@@ -14,7 +14,8 @@ using Point = Eigen::Ref<const Eigen::VectorXd>;
 /// MuJoCo would write around it. Coordinates and outputs are the joints of the MJCF, in their order.
 struct Mechanism {
   std::string name;
-  std::string experiment, mjcf;  ///< files
+  std::string experiment, mjcf;        ///< files
+  std::vector<std::string> overrides;  ///< of the experiment, so that its outputs are the coordinates
 
   /// Writes a parameter set into the model.
   void (*update)(const Point& parameters, mjModel& model);
@@ -26,5 +27,8 @@ struct Mechanism {
 
 /// Two beams, six pins, crane, gantry.
 std::vector<Mechanism> makeMechanisms();
+
+/// Two beams, double pendulum on a cart, four masses in a chain, spatial arm.
+std::vector<Mechanism> makeCurveMechanisms();
 
 }  // namespace twinmap::bench

@@ -10,6 +10,7 @@
 #include <exception>
 #include <vector>
 
+#include "bench/simulation/compared_case.hpp"
 #include "bench/simulation/measure.hpp"
 #include "bench/simulation/report.hpp"
 #include "framework/data/features/feature_extractor.hpp"
