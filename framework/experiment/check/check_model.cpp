@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/check/check_sampled.hpp"
 #include "framework/experiment/check/check_scope.hpp"
 #include "framework/experiment/expression/output_units.hpp"
 #include "framework/experiment/model/joint_type.hpp"
@@ -107,6 +108,8 @@ class FieldCheck {
     }
   }
   void optionalMap(const char*, const std::vector<NamedExpression>&, const char*) {}
+  /// checkSampled() does.
+  void optionalMap(const char*, const std::vector<ControllerSpec>&, const char*) {}
   template <class... Choices>
   void oneOf(const char*, Choices... choices) {
     (std::apply([&](const auto&... rule) { check(std::as_const(choices.value), rule...); }, choices.rules),
@@ -133,6 +136,7 @@ class FieldCheck {
   }
 
  private:
+  void check(const Bounds&) {}
   void check(const Expression& expression, const Unit& unit) { check(expression, unit, on_angle_); }
   void check(const Expression& expression, const Unit& unit, bool on_angle) {
     if (!expression.text.empty()) {
@@ -222,6 +226,7 @@ class ModelCheck {
     checkInitial();
     checkOutputs();
     checkVariables();
+    checkSampled(model_, fields_.constants);
   }
 
  private:
@@ -284,6 +289,7 @@ class ModelCheck {
     for (const StateSpec& state : model_.system.states) {
       fields_.dynamics.define(state.name, CheckScope::readUnit(state.unit, state.name.where), kSomeState);
     }
+    defineHeld(model_.system.controllers, fields_.dynamics);
     model_.system.elements.forEachList([&](const auto& list) {
       for (const auto& element : list) {
         forEachOwnState(element, [&](const auto& part, const Name& coordinate) {
