@@ -60,6 +60,12 @@ void describe(Fields& f, ModesNoiseSpec& s) {
   f.required("damping_ratio", s.damping_ratio, "standard deviation of every damping ratio", kNonNegative);
 }
 
+/// An output whose readings are rounded to multiples of `quantum`, in its unit.
+struct RoundedOutput {
+  std::string name;
+  double quantum;
+};
+
 /// Normal noise on every sample of every output, independent unless correlated, in training and test alike.
 struct NoiseSpec {
   double scale = 1.0;             ///< multiplies every stddev
@@ -67,6 +73,7 @@ struct NoiseSpec {
   std::vector<OutputNoiseSpec> stddev;
   std::optional<ModesNoiseSpec> modes;
   std::vector<NoiseCorrelationSpec> correlation{};  ///< of the outputs whose noise is not white
+  std::vector<RoundedOutput> rounded{};             ///< by their sensors (resolveDefaults)
 };
 
 template <class Fields>

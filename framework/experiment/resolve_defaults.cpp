@@ -36,6 +36,15 @@ void resolveTransform(ExperimentSpec& experiment) {
   }
 }
 
+void resolveRounding(const std::vector<OutputSpec>& outputs, NoiseSpec& noise) {
+  noise.rounded.clear();
+  for (const OutputSpec& output : outputs) {
+    if (output.sensor && output.sensor->quantum) {
+      noise.rounded.push_back({output.name.text, *output.sensor->quantum});
+    }
+  }
+}
+
 /// 8 standard deviations of the noise: independent noise alone exceeds that between two of 1000 samples in
 /// less than 1 % of windows (1000^2 pairs, each with the probability Q(8 / sqrt 2) = 7.7e-9).
 void resolveProminence(const NoiseSpec& noise, ExtremaFeatureSpec& extrema) {
@@ -107,6 +116,7 @@ void resolveDefaults(ExperimentSpec& experiment) {
   resolveReport(experiment.model.parameters, experiment.report);
   resolveTransform(experiment);
   resolveNoiseCorrelation(experiment);
+  resolveRounding(experiment.model.outputs, experiment.noise);
   for (FeatureSpec& feature : experiment.features) {
     if (auto* extrema = std::get_if<ExtremaFeatureSpec>(&feature)) {
       resolveProminence(experiment.noise, *extrema);

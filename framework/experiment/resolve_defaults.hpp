@@ -5,8 +5,8 @@
 namespace twinmap {
 
 /// Fills in the defaults that depend on other values: axes of the report, transform, sample_time of
-/// correlated noise, prominence of peaks, an automatic number of training samples, replicates of the noise
-/// where that number is known.
+/// correlated noise, rounding by sensors, prominence of peaks, an automatic number of training samples,
+/// replicates of the noise where that number is known.
 void resolveDefaults(ExperimentSpec& experiment);
 
 /// A resolved experiment with so many training samples instead of an automatic number of them, and the

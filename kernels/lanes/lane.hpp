@@ -2,6 +2,7 @@
 
 #include <chrono>
 
+#include "kernels/lanes/output_recorder.hpp"
 #include "kernels/lanes/sample.hpp"
 
 namespace twinmap::lanes {
@@ -11,6 +12,7 @@ enum class Mode {
   kIdle,
   kBegin,    ///< a step of size 0, whose last slopes are those at the phase's begin
   kRestart,  ///< once more, since the sensitivities have jumped there
+  kJump,     ///< nothing yet: the states jump before (LanePacket::doJumps)
   kStep,
 };
 
@@ -21,7 +23,8 @@ struct Lane {
   Sample sample;
   Result result;
   int phase = 0;
-  int next_output = 0;  ///< first time not yet kept
+  std::vector<OutputRecorder::KeptTime> kept;  ///< in their order
+  int next_output = 0;                         ///< first of them not yet kept
   std::chrono::steady_clock::time_point start{};
 
   const Phase& getPhase() const { return sample.phases[phase]; }

@@ -27,6 +27,9 @@ LanePacket::LanePacket(const Problem& problem, const std::vector<double>& times,
       outputs_(problem, times, engine.program),
       buffer_(static_cast<std::size_t>(9 * problem.getRowCount() + kSingleRows) * count_),
       lanes_(count_) {
+  if (!problem.jump.outputs.empty()) {
+    jumps_.emplace(problem.jump, engine.program);
+  }
   makeTolerances(problem);
   placeArrays(problem);
 }
@@ -108,6 +111,9 @@ bool LanePacket::load(int lane, SampleStream& stream) {
   l.result = {};
   l.start = std::chrono::steady_clock::now();
   arrays_.next_check[lane] = 0.0;
+  if (l.kept.empty() || !l.sample.delays.empty()) {
+    l.kept = outputs_.listKeptTimes(l.sample);
+  }
   setNextOutput(lane, 0);
   beginPhase(lane, 0);
   return true;
@@ -135,7 +141,8 @@ void LanePacket::release(int lane, SampleStream& stream) {
 void LanePacket::beginPhase(int lane, int phase) {
   Lane& l = lanes_[lane];
   l.phase = phase;
-  l.mode = Mode::kBegin;
+  l.mode = l.getPhase().jumps ? Mode::kJump : Mode::kBegin;
+  jumping_ |= l.getPhase().jumps ? 1u << lane : 0u;
   for (int i = 0; i < phase_inputs_; ++i) {
     interpreter_.updPhaseInput(i)[lane] = l.getPhase().inputs[i];
   }
@@ -144,12 +151,15 @@ void LanePacket::beginPhase(int lane, int phase) {
          l.getPhase().begin < l.getPhaseEnd());
   arrays_.time[lane] = l.getPhase().begin;
   arrays_.phase_end[lane] = l.getPhaseEnd();
-  arrays_.proposed[lane] = 0.0;
+  if (l.mode == Mode::kBegin) {
+    arrays_.proposed[lane] = 0.0;
+  }
 }
 
 void LanePacket::setNextOutput(int lane, int index) {
   lanes_[lane].next_output = index;
-  arrays_.next_output[lane] = index < static_cast<int>(times_.size()) ? times_[index] : kInfinity;
+  const std::vector<OutputRecorder::KeptTime>& kept = lanes_[lane].kept;
+  arrays_.next_output[lane] = index < static_cast<int>(kept.size()) ? kept[index].time : kInfinity;
 }
 
 }  // namespace twinmap::lanes

@@ -1,11 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "kernels/lanes/integrator.hpp"
 #include "kernels/lanes/lane.hpp"
-#include "kernels/lanes/output_recorder.hpp"
 #include "kernels/lanes/program/aligned_buffer.hpp"
 
 namespace twinmap::lanes {
@@ -31,6 +31,12 @@ class LanePacket {
   unsigned doStep();
   void judge(int lane);
   void jump(int lane);
+  void doJumps();
+  void prepareJump(int lane);
+  void takeJump(int lane);
+  void evaluateAt(unsigned lanes);
+  void beginAfterJump(int lane);
+  void moveBack(int lane);
   void keepOutputs(unsigned lanes);
   void advance(int lane);
   void beginSteps(int lane);
@@ -55,6 +61,8 @@ class LanePacket {
   const int states_, parameters_, phase_inputs_, directions_;
   program::Interpreter interpreter_;
   OutputRecorder outputs_;
+  std::optional<program::Interpreter> jumps_;
+  unsigned jumping_ = 0;  ///< lanes whose states jump before the next step
   std::vector<const double*> derivatives_, pivots_;
   std::vector<double> absolute_, relative_;
   program::AlignedBuffer buffer_;

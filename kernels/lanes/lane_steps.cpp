@@ -14,6 +14,9 @@ constexpr int kStepsBetweenClocks = 64;  // reading the clock costs as much as s
 }  // namespace
 
 void LanePacket::doRound() {
+  if (jumping_ != 0) {
+    doJumps();
+  }
   const unsigned attention = doStep();
   forEach(attention, [this](int lane) { judge(lane); });
   keepOutputs(attention);
@@ -79,7 +82,8 @@ void LanePacket::keepOutputs(unsigned lanes) {
     }
     engine_.interpolate(a);
     forEach(pending, [this](int lane) {
-      outputs_.keep(lane, lanes_[lane].next_output, lanes_[lane].phase, arrays_.interpolated);
+      const Lane& l = lanes_[lane];
+      outputs_.keep(lane, l.kept[l.next_output].place, l.phase, arrays_.interpolated);
       setNextOutput(lane, lanes_[lane].next_output + 1);
     });
   }
@@ -134,8 +138,8 @@ void LanePacket::endPhase(int lane) {
     beginPhase(lane, l.phase + 1);
     return;
   }
-  for (; l.next_output < static_cast<int>(times_.size()); ++l.next_output) {
-    outputs_.keep(lane, l.next_output, l.phase, arrays_.state);
+  for (; l.next_output < static_cast<int>(l.kept.size()); ++l.next_output) {
+    outputs_.keep(lane, l.kept[l.next_output].place, l.phase, arrays_.state);
   }
   outputs_.write(lane, l.sample);
   l.mode = Mode::kIdle;

@@ -7,37 +7,67 @@ namespace twinmap::lanes {
 OutputRecorder::OutputRecorder(const Problem& problem, const std::vector<double>& times,
                                const program::Engine& engine)
     : times_(times),
+      output_delays_(problem.output_delays),
+      delay_count_(problem.delay_count),
       counts_(problem.counts),
       rows_(problem.getRowCount()),
       lanes_(engine.lanes),
       value_count_(problem.output_count),
       derivative_count_(problem.output_count * static_cast<int>(problem.directions.size())),
       interpreter_(problem.output, engine),
-      states_(times.size() * rows_ * lanes_),
-      phases_(times.size() * lanes_) {}
+      states_((1 + delay_count_) * times.size() * rows_ * lanes_),
+      phases_((1 + delay_count_) * times.size() * lanes_) {}
 
-void OutputRecorder::keep(int lane, int time, int phase, const double* states) {
-  const std::size_t count = times_.size();
-  phases_[lane * count + time] = phase;
-  double* target = states_.data() + lane * rows_ * count + time;
+std::vector<OutputRecorder::KeptTime> OutputRecorder::listKeptTimes(const Sample& sample) const {
+  const int count = static_cast<int>(times_.size());
+  std::vector<KeptTime> kept;
+  for (int delay = -1; delay < delay_count_; ++delay) {
+    for (int i = 0; i < count; ++i) {
+      kept.push_back({calcTime(sample, delay, i), (1 + delay) * count + i});
+    }
+  }
+  std::stable_sort(kept.begin(), kept.end(),
+                   [](const KeptTime& a, const KeptTime& b) { return a.time < b.time; });
+  return kept;
+}
+
+double OutputRecorder::calcTime(const Sample& sample, int delay, int time) const {
+  return delay < 0 ? times_[time] : std::max(times_[time] - sample.delays[delay], sample.phases[0].begin);
+}
+
+void OutputRecorder::keep(int lane, int place, int phase, const double* states) {
+  const std::size_t count = (1 + delay_count_) * times_.size();
+  phases_[lane * count + place] = phase;
+  double* target = states_.data() + lane * rows_ * count + place;
   for (int row = 0; row < rows_; ++row, target += count) {
     *target = states[row * lanes_ + lane];
   }
 }
 
 void OutputRecorder::write(int lane, const Sample& sample) {
-  const int count = static_cast<int>(times_.size());
   setSample(sample);
+  for (int delay = -1; delay < delay_count_; ++delay) {
+    writeDelayed(lane, delay, sample);
+  }
+}
+
+/// The outputs of this delay.
+void OutputRecorder::writeDelayed(int lane, int delay, const Sample& sample) {
+  const int count = static_cast<int>(times_.size());
   for (int first = 0; first < count; first += lanes_) {
-    setTimes(lane, first, sample);
+    setTimes(lane, delay, first, sample);
     interpreter_.calcPhase();
     interpreter_.calcOutputs();
     const int here = std::min(lanes_, count - first);
     for (int i = 0; i < value_count_; ++i) {
-      std::copy_n(interpreter_.getOutput(i), here, sample.outputs + i * count + first);
+      if (has(i, delay)) {
+        std::copy_n(interpreter_.getOutput(i), here, sample.outputs + i * count + first);
+      }
     }
     for (int i = 0; i < derivative_count_; ++i) {
-      std::copy_n(interpreter_.getOutput(value_count_ + i), here, sample.derivatives + i * count + first);
+      if (has(i % value_count_, delay)) {
+        std::copy_n(interpreter_.getOutput(value_count_ + i), here, sample.derivatives + i * count + first);
+      }
     }
   }
 }
@@ -50,12 +80,13 @@ void OutputRecorder::setSample(const Sample& sample) {
 }
 
 /// The last time again where there are not enough.
-void OutputRecorder::setTimes(int lane, int first, const Sample& sample) {
-  const int count = static_cast<int>(times_.size());
+void OutputRecorder::setTimes(int lane, int delay, int first, const Sample& sample) {
+  const int count = static_cast<int>(times_.size()), places = (1 + delay_count_) * count;
+  const int before = (1 + delay) * count;
   for (int k = 0; k < lanes_; ++k) {
     const int time = std::min(first + k, count - 1);
-    interpreter_.updTime()[k] = times_[time];
-    const Phase& phase = sample.phases[phases_[lane * count + time]];
+    interpreter_.updTime()[k] = calcTime(sample, delay, time);
+    const Phase& phase = sample.phases[phases_[lane * places + before + time]];
     for (int i = 0; i < counts_.phase_inputs; ++i) {
       interpreter_.updPhaseInput(i)[k] = phase.inputs[i];
     }
@@ -63,7 +94,7 @@ void OutputRecorder::setTimes(int lane, int first, const Sample& sample) {
   const int here = std::min(lanes_, count - first);
   for (int row = 0; row < rows_; ++row) {
     const double* const source =
-        states_.data() + (lane * rows_ + row) * static_cast<std::size_t>(count) + first;
+        states_.data() + (lane * rows_ + row) * static_cast<std::size_t>(places) + before + first;
     double* const target = interpreter_.updState(row);
     std::copy_n(source, here, target);
     std::fill(target + here, target + lanes_, source[here - 1]);

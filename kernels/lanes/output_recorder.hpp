@@ -14,20 +14,36 @@ class OutputRecorder {
  public:
   OutputRecorder(const Problem& problem, const std::vector<double>& times, const program::Engine& engine);
 
+  /// A time at which a lane's states are kept, and the place that they take: that of the i-th output time is
+  /// i, before delay d that plus (1 + d) times their number.
+  struct KeptTime {
+    double time;
+    int place;
+  };
+  /// In their order, of a sample; outputs without delays have the same for all.
+  std::vector<KeptTime> listKeptTimes(const Sample& sample) const;
+
   /// Row r of lane `lane` is states[r * lanes + lane].
-  void keep(int lane, int time, int phase, const double* states);
+  void keep(int lane, int place, int phase, const double* states);
   /// Writes the outputs of a lane whose states are all kept.
   void write(int lane, const Sample& sample);
 
  private:
   void setSample(const Sample& sample);
-  void setTimes(int lane, int first, const Sample& sample);
+  void setTimes(int lane, int delay, int first, const Sample& sample);
+  double calcTime(const Sample& sample, int delay, int time) const;
+  void writeDelayed(int lane, int delay, const Sample& sample);
+  bool has(int output, int delay) const {
+    return output_delays_.empty() ? delay < 0 : output_delays_[output] == delay;
+  }
 
   const std::vector<double> times_;
+  const std::vector<int> output_delays_;
+  const int delay_count_;
   program::InputCounts counts_;
   int rows_, lanes_, value_count_, derivative_count_;
   program::Interpreter interpreter_;
-  std::vector<double> states_;  ///< lane by lane, row by row, all times of a row together
+  std::vector<double> states_;  ///< lane by lane, row by row, all places of a row together
   std::vector<int> phases_;     ///< lane by lane
 };
 

@@ -23,8 +23,38 @@ std::vector<Seed> makeSeeds(Recorder& recorder, const Equations& equations,
   return seeds;
 }
 
+/// The same for what was there a delay ago: that time moves against the delay, unless it is the begin.
+std::vector<Seed> makeDelayedSeeds(Recorder& recorder, const Equations& equations,
+                                   const std::vector<int>& directions, int j, Symbol delay) {
+  std::vector<Seed> seeds = makeSeeds(recorder, equations, directions, j);
+  const Symbol change = program::calcTangents({delay}, {{recorder.parameter(directions[j]), 1.0}})[0];
+  if (change.isLiteral(0.0)) {
+    return seeds;
+  }
+  const Symbol moves = select(less(Symbol(0.0), recorder.time()), -change, Symbol(0.0));
+  for (int i = 0; i < equations.counts.states; ++i) {
+    seeds[1 + i].tangent += equations.derivatives[i] * moves;
+  }
+  seeds.push_back({recorder.time(), moves});
+  return seeds;
+}
+
 void append(const std::vector<Symbol>& more, std::vector<Symbol>& symbols) {
   symbols.insert(symbols.end(), more.begin(), more.end());
+}
+
+/// The derivatives of the outputs in direction j.
+std::vector<Symbol> calcOutputTangents(Recorder& recorder, const Equations& equations,
+                                       const std::vector<int>& directions, int j) {
+  std::vector<Symbol> tangents =
+      calcTangents(equations.outputs, makeSeeds(recorder, equations, directions, j));
+  for (std::size_t i = 0; i < equations.output_delays.size(); ++i) {
+    if (const int delay = equations.output_delays[i]; delay >= 0) {
+      tangents[i] = calcTangents({equations.outputs[i]}, makeDelayedSeeds(recorder, equations, directions, j,
+                                                                          equations.delays[delay]))[0];
+    }
+  }
+  return tangents;
 }
 
 /// How values change with the states and with each direction's parameter, written down once: the change along
@@ -63,20 +93,41 @@ constexpr std::size_t kFewDirections = 16, kDirectionsPerState = 2;
 void appendSensitivities(Recorder& recorder, const Equations& equations, const std::vector<int>& directions,
                          std::vector<Symbol>& rows, std::vector<Symbol>& outputs) {
   const auto states = static_cast<std::size_t>(equations.counts.states);
+  const bool is_delayed = !equations.delays.empty();  // an output of another time has derivatives of its own
   if (directions.size() > std::max(kFewDirections, kDirectionsPerState * states)) {
     Linearization motion(recorder, equations.derivatives, equations.counts.states);
     Linearization seen(recorder, equations.outputs, equations.counts.states);
     for (int j = 0; j < static_cast<int>(directions.size()); ++j) {
       append(motion.calcChanges(directions[j], j), rows);
-      append(seen.calcChanges(directions[j], j), outputs);
+      append(is_delayed ? calcOutputTangents(recorder, equations, directions, j)
+                        : seen.calcChanges(directions[j], j),
+             outputs);
     }
     return;
   }
   for (int j = 0; j < static_cast<int>(directions.size()); ++j) {
     const std::vector<Seed> seeds = makeSeeds(recorder, equations, directions, j);
     append(calcTangents(equations.derivatives, seeds), rows);
-    append(calcTangents(equations.outputs, seeds), outputs);
+    append(calcOutputTangents(recorder, equations, directions, j), outputs);
   }
+}
+
+program::Program compileJump(Recorder& recorder, const Equations& equations,
+                             const std::vector<int>& directions, program::InputCounts counts) {
+  std::vector<Symbol> rows = equations.jumps;
+  if (rows.empty()) {
+    return {};
+  }
+  for (int j = 0; j < static_cast<int>(directions.size()); ++j) {
+    std::vector<Seed> seeds = makeSeeds(recorder, equations, directions, j);
+    seeds.push_back({recorder.time(), recorder.phaseInput(counts.phase_inputs + j)});
+    for (const Passed& passed : equations.passed) {
+      seeds.push_back({passed.value, calcTangents({passed.as}, seeds)[0]});
+    }
+    append(calcTangents(equations.jumps, seeds), rows);
+  }
+  counts.phase_inputs += static_cast<int>(directions.size());
+  return compile(recorder, rows, counts);
 }
 
 }  // namespace
@@ -94,6 +145,9 @@ Problem makeProblem(Recorder& recorder, const Equations& equations, const std::v
   counts.states = problem.getRowCount();
   problem.derivative = compile(recorder, rows, counts);
   problem.output = compile(recorder, outputs, counts);
+  problem.output_delays = equations.output_delays;
+  problem.delay_count = static_cast<int>(equations.delays.size());
+  problem.jump = compileJump(recorder, equations, directions, counts);
   return problem;
 }
 

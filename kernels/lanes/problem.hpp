@@ -7,13 +7,26 @@
 
 namespace twinmap::lanes {
 
+/// A value that has the derivatives of another.
+struct Passed {
+  program::Symbol value, as;
+};
+
 /// Differential equations y' = f(t, y; p, u) with parameters p and phase inputs u, and what is wanted of
 /// their solution, as recorded symbols. Only the counts' states, parameters and phase inputs may be used.
+/// An output with a delay is that of the time before, and of the first phase's begin where that is earlier;
+/// it must begin at 0 then.
 struct Equations {
   program::InputCounts counts;
   std::vector<program::Symbol> derivatives;  ///< one a state
   std::vector<program::Symbol> pivots;       ///< must stay positive wherever f is evaluated
   std::vector<program::Symbol> outputs;      ///< of t, y, p and u
+  std::vector<program::Symbol> delays{};     ///< s; of p alone
+  std::vector<int> output_delays{};          ///< of each output its delay, -1: none; empty: none has any
+  std::vector<program::Symbol> jumps{};      ///< y behind the begin of a phase that jumps, of t, y, p and u
+  /// Values within the jumps that change as others do, which come before them: what a quantiser makes of
+  /// them.
+  std::vector<Passed> passed{};
 };
 
 /// What is integrated: the states and, behind them, their derivatives with respect to each direction (a
@@ -23,8 +36,13 @@ struct Problem {
   std::vector<int> directions;  ///< parameters
   int pivot_count = 0;
   int output_count = 0;
-  program::Program derivative;  ///< derivatives of all rows, then pivots
-  program::Program output;      ///< outputs, then their derivatives, direction by direction
+  program::Program derivative;       ///< derivatives of all rows, then pivots
+  program::Program output;           ///< outputs, then their derivatives, direction by direction
+  std::vector<int> output_delays{};  ///< as Equations has them
+  int delay_count = 0;
+  /// All rows behind a jump; behind the phase inputs it reads by how much its time moves with each direction.
+  /// Without outputs: none.
+  program::Program jump{};
 
   int getRowCount() const { return counts.states * (1 + static_cast<int>(directions.size())); }
 };

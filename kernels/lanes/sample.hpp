@@ -9,6 +9,7 @@ struct Phase {
   double begin = 0.0;                  ///< s
   std::vector<double> inputs;          ///< phase inputs
   std::vector<double> begin_slopes{};  ///< d begin / d parameter of each direction; empty: none moves it
+  bool jumps = false;                  ///< the states jump here, by Equations::jumps
 };
 
 /// One solution to find, and where its outputs go.
@@ -18,6 +19,7 @@ struct Sample {
   std::vector<double> initial;    ///< states, then their sensitivities direction by direction
   std::vector<Phase> phases;      ///< one or more, their begins strictly increasing
   double end = 0.0;               ///< s; of the last phase
+  std::vector<double> delays{};   ///< s, >= 0; values of Equations::delays
   double* outputs = nullptr;      ///< output by output, each at all times
   double* derivatives = nullptr;  ///< direction by direction, each as `outputs`; null if there are none
 };

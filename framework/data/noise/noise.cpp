@@ -56,9 +56,8 @@ bool isDiagonal(const FeatureMatrix& matrix) {
   return true;
 }
 
-}  // namespace
-
-Eigen::VectorXd calcNoiseStddev(const NoiseSpec& noise, const ResponseLayout& layout) {
+/// Without rounding.
+Eigen::VectorXd calcDrawnStddev(const NoiseSpec& noise, const ResponseLayout& layout) {
   Eigen::VectorXd stddev(layout.getRowCount());
   if (layout.modes > 0) {
     if (!noise.modes) {
@@ -80,8 +79,34 @@ Eigen::VectorXd calcNoiseStddev(const NoiseSpec& noise, const ResponseLayout& la
   return stddev;
 }
 
+/// Of every row, 0 where readings are not rounded; empty if none are.
+Eigen::VectorXd collectQuanta(const NoiseSpec& noise, const ResponseLayout& layout) {
+  Eigen::VectorXd quanta = Eigen::VectorXd::Zero(layout.getRowCount());
+  for (const RoundedOutput& rounded : noise.rounded) {
+    const auto& names = layout.output_names;
+    const auto found = std::find(names.begin(), names.end(), rounded.name);
+    if (found != names.end() && layout.times.size() > 0) {
+      quanta.segment(layout.getRow(found - names.begin(), 0), layout.times.size())
+          .setConstant(rounded.quantum);
+    }
+  }
+  return (quanta.array() > 0.0).any() ? quanta : Eigen::VectorXd{};
+}
+
+Eigen::VectorXd addRounding(const Eigen::VectorXd& drawn, const Eigen::VectorXd& quanta) {
+  return quanta.size() == 0 ? drawn
+                            : (drawn.array().square() + quanta.array().square() / 12.0).sqrt().matrix();
+}
+
+}  // namespace
+
+Eigen::VectorXd calcNoiseStddev(const NoiseSpec& noise, const ResponseLayout& layout) {
+  return addRounding(calcDrawnStddev(noise, layout), collectQuanta(noise, layout));
+}
+
 ResponseNoise::ResponseNoise(const NoiseSpec& noise, const ResponseLayout& layout)
-    : stddev_(calcNoiseStddev(noise, layout)) {
+    : drawn_(calcDrawnStddev(noise, layout)), quanta_(collectQuanta(noise, layout)) {
+  stddev_ = addRounding(drawn_, quanta_);
   for (const NoiseCorrelationSpec& spec : noise.correlation) {
     correlate(spec, layout);
   }
@@ -119,26 +144,36 @@ Eigen::MatrixXd ResponseNoise::add(const Eigen::MatrixXd& responses, const Rando
       normal(block.rows) = block.factor.triangularView<Eigen::Lower>() * independent;
     }
     for (Eigen::Index row = 0; row < normal.size(); ++row) {
-      noisy(row, sample) = std::fma(stddev_[row], normal[row], responses(row, sample));
+      noisy(row, sample) = std::fma(drawn_[row], normal[row], responses(row, sample));
+    }
+    for (Eigen::Index row = 0; row < quanta_.size(); ++row) {
+      if (quanta_[row] > 0.0) {
+        noisy(row, sample) = std::nearbyint(noisy(row, sample) / quanta_[row]) * quanta_[row];
+      }
     }
   }
   return noisy;
 }
 
 NoiseCovariance ResponseNoise::calcCovariance(const FeatureMatrix& matrix) const {
-  const FeatureMatrix scaled = matrix * stddev_.asDiagonal();
   if (blocks_.empty()) {
+    const FeatureMatrix scaled = matrix * stddev_.asDiagonal();
     const FeatureMatrix product = scaled * scaled.transpose();
     return isDiagonal(product) ? NoiseCovariance::makeIndependent(product.diagonal())
                                : NoiseCovariance(Eigen::MatrixXd(product));
   }
-  Eigen::MatrixXd factor = scaled;
+  Eigen::MatrixXd factor = matrix * drawn_.asDiagonal();
   for (const Block& block : blocks_) {
     const Eigen::MatrixXd correlated =
         factor(Eigen::all, block.rows) * block.factor.triangularView<Eigen::Lower>();
     factor(Eigen::all, block.rows) = correlated;
   }
-  return Eigen::MatrixXd(factor * factor.transpose());
+  Eigen::MatrixXd covariance = factor * factor.transpose();
+  if (quanta_.size() > 0) {
+    const FeatureMatrix rounding = matrix * (quanta_ / std::sqrt(12.0)).asDiagonal();
+    covariance += rounding * rounding.transpose();
+  }
+  return covariance;
 }
 
 Eigen::MatrixXd addNoise(const Eigen::MatrixXd& responses, const ResponseNoise& noise,

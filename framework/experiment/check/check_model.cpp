@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/check/check_sampled.hpp"
 #include "framework/experiment/check/check_scope.hpp"
 #include "framework/experiment/expression/output_units.hpp"
 #include "framework/experiment/model/joint_type.hpp"
@@ -108,6 +109,8 @@ class FieldCheck {
     }
   }
   void optionalMap(const char*, const std::vector<NamedExpression>&, const char*) {}
+  /// checkSampled() does.
+  void optionalMap(const char*, const std::vector<ControllerSpec>&, const char*) {}
   template <class... Choices>
   void oneOf(const char*, Choices... choices) {
     (std::apply([&](const auto&... rule) { check(std::as_const(choices.value), rule...); }, choices.rules),
@@ -134,6 +137,7 @@ class FieldCheck {
   }
 
  private:
+  void check(const Bounds&) {}
   void check(const Expression& expression, const Unit& unit) { check(expression, unit, on_angle_); }
   void check(const Expression& expression, const Unit& unit, bool on_angle) {
     if (!expression.text.empty()) {
@@ -225,6 +229,7 @@ class ModelCheck {
     checkInitial();
     checkOutputs();
     checkVariables();
+    checkSampled(model_, fields_.constants);
   }
 
  private:
@@ -287,6 +292,7 @@ class ModelCheck {
     for (const StateSpec& state : model_.system.states) {
       fields_.dynamics.define(state.name, CheckScope::readUnit(state.unit, state.name.where), kSomeState);
     }
+    defineHeld(model_.system.controllers, fields_.dynamics);
     model_.system.elements.forEachList([&](const auto& list) {
       for (const auto& element : list) {
         forEachOwnState(element, [&](const auto& part, const Name& coordinate) {

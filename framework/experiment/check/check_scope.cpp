@@ -96,6 +96,16 @@ void CheckScope::define(const Name& name, const Expression& expression) {
   add(name, symbol);
 }
 
+void CheckScope::defineDifference(const Name& name, const Expression& expression) {
+  constexpr double kSomeDuration = 0.67;
+  Symbol symbol{check(expression, "") / kSomeDuration, {}};
+  if (hasUnit(expression)) {
+    symbol.scaled_value = calcScaled(expression, true) / (calcUnitChange({{"s", 1}}) * kSomeDuration);
+  }
+  names_.push_back(name.text);
+  symbols_.push_back(symbol);
+}
+
 void CheckScope::add(const Name& name, const Symbol& symbol) {
   requireIdentifier(name);
   if (isReservedName(name.text)) {

@@ -20,6 +20,9 @@ class CheckScope {
   /// check() could not know.
   void define(const Name& name, const Expression& expression);
 
+  /// The same for its rate of change, under a name that cannot be taken: difference(<expression>).
+  void defineDifference(const Name& name, const Expression& expression);
+
   /// Adds the time t in s, which only force laws know.
   void defineTime();
 

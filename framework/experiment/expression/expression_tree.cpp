@@ -206,7 +206,9 @@ class Parser {
 
   int parseCall(const std::string& name, std::size_t begin) {
     std::vector<int> operands;
+    const std::size_t before = tree_.nodes.size();
     expect("(");
+    const std::size_t inside = at_;
     do {
       operands.push_back(parseChoice());
     } while (accept(","));
@@ -217,6 +219,13 @@ class Parser {
     }
     if (name == "atan2" && operands.size() == 2) {
       return add(Operation::kAtan2, operands[0], operands[1]);
+    }
+    if (name == "clamp" && operands.size() == 3) {
+      return add(Operation::kMax, add(Operation::kMin, operands[0], operands[2]), operands[1]);
+    }
+    if (name == "difference" && operands.size() == 1) {  // a name, which those that sample give a value
+      tree_.nodes.resize(before);
+      return addName("difference(" + text_.substr(inside, at_ - 1 - inside) + ")");
     }
     if (const auto fold = kFolds.find(name); fold != kFolds.end()) {
       return addFold(name, fold->second, operands);
@@ -258,8 +267,8 @@ std::vector<std::string> getUsedNames(const Expression& expression) {
 }
 
 bool isReservedName(const std::string& name) {
-  return name == "t" || name == "atan2" || kConstants.count(name) > 0 || kUnaryFunctions.count(name) > 0 ||
-         kFolds.count(name) > 0;
+  return name == "t" || name == "atan2" || name == "clamp" || name == "difference" ||
+         kConstants.count(name) > 0 || kUnaryFunctions.count(name) > 0 || kFolds.count(name) > 0;
 }
 
 }  // namespace twinmap

@@ -4,6 +4,7 @@
 
 #include "framework/experiment/fields/one_of.hpp"
 #include "framework/experiment/model/elements/element.hpp"
+#include "framework/experiment/model/sensor_spec.hpp"
 
 namespace twinmap {
 
@@ -49,6 +50,7 @@ struct OutputSpec {
   std::string unit;           ///< of a variable or an expression
   Expression gain{"", {}};    ///< of the sensor, dimensionless; 1 if not given
   Expression offset{"", {}};  ///< of the sensor, in the quantity's unit; 0 if not given
+  std::optional<SensorSpec> sensor;
 };
 
 template <class Fields>
@@ -71,6 +73,7 @@ void describe(Fields& f, OutputSpec& s) {
   f.optional("unit", s.unit, "coherent SI unit of a variable or an expression");
   f.optional("gain", s.gain, "of the sensor, which measures gain * quantity + offset; default 1", Unit{"1"});
   f.optional("offset", s.offset, "of the sensor, in the quantity's unit; default 0", kOwnUnit);
+  f.optional("sensor", s.sensor, "that lags, filters, averages, delays, clips or rounds");
   f.rule(s.expression.text.empty() || !s.unit.empty(),
          "must give the unit of the expression in 'unit' (1 where it has none)");
 }

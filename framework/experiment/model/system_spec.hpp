@@ -3,8 +3,10 @@
 #include <vector>
 
 #include "framework/experiment/model/body_spec.hpp"
+#include "framework/experiment/model/controller_spec.hpp"
 #include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/experiment/model/initial_spec.hpp"
+#include "framework/experiment/model/motion_spec.hpp"
 #include "framework/experiment/model/state_spec.hpp"
 
 namespace twinmap {
@@ -14,6 +16,8 @@ struct SystemSpec {
   std::vector<BodySpec> bodies;
   std::vector<StateSpec> states;             ///< of first order
   std::vector<NamedExpression> expressions;  ///< each may use those before it
+  std::vector<MotionSpec> motions;           ///< prescribed ones
+  std::vector<ControllerSpec> controllers;   ///< sampled ones
   ForceElements<Expression> elements;
 
   // compiled once (experiment_spec.cpp)
@@ -36,6 +40,8 @@ void describe(Fields& f, SystemSpec& s) {
   f.optionalMap("states", s.states, "states of first order: currents, temperatures, filters");
   f.optionalMap("expressions", s.expressions,
                 "named once, for all expressions that may use coordinates and states");
+  f.optional("motions", s.motions, "coordinates that move as a signal says");
+  f.optionalMap("controllers", s.controllers, "sampled controllers, which read, compute and hold");
   describeElements(f, s.elements);
 }
 

@@ -9,6 +9,7 @@
 #include "framework/experiment/expression/jumps.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/models/mechanism/lanes/lane_engine.hpp"
+#include "framework/models/mechanism/sampled_keys.hpp"
 #include "framework/models/mechanism/simbody_model.hpp"
 #include "framework/models/mechanism/system_numbers.hpp"
 
@@ -21,9 +22,12 @@ std::recursive_mutex building;
 /// What all clones share.
 struct SharedModel {
   SharedModel(ModelSpec of, ResponseLayout rows, ModelCheck how)
-      : model(std::move(of)), layout(std::move(rows)), check(how) {}
+      : model(addControllerStates(std::move(of))),
+        known_to_simbody(removeSampled(model)),
+        layout(std::move(rows)),
+        check(how) {}
 
-  ModelSpec model;
+  ModelSpec model, known_to_simbody;
   ResponseLayout layout;
   ModelCheck check;
   Eigen::VectorXd box_center;           ///< coordinates of the equilibrium that all start from
@@ -91,6 +95,9 @@ void chooseEngine(ModelContext& context, SimbodyModel* simbody, SharedModel& sha
   if (!obstacle.empty() && shared.model.simulation.engine == Engine::kLanes) {
     throw ExperimentError("simulation.engine: lanes cannot simulate this model: " + obstacle);
   }
+  if (const std::string key = findSampledKey(shared.model); !obstacle.empty() && !key.empty()) {
+    throw ExperimentError(key + " is simulated in lanes only, which cannot simulate this model: " + obstacle);
+  }
   if (shared.model.simulation.portable && !kHasCommonVectors) {
     requirePortable(shared, obstacle);
   }
@@ -118,9 +125,9 @@ class MultibodySimulator::Impl {
     }
     shared_->jumps = listJumps(shared_->model.system);
     chooseEngine(context_, check == ModelCheck::kBySimbody ? &updSimbody() : nullptr, *shared_);
-    shared_->box_center = check == ModelCheck::kTrusted && shared_->lanes
-                              ? solveBoxCenter(context_, shared_->lanes->getValues())
-                              : updSimbody().solveBoxCenter();
+    const bool in_lanes = check == ModelCheck::kTrusted || !shared_->model.system.motions.empty();
+    shared_->box_center = in_lanes && shared_->lanes ? solveBoxCenter(context_, shared_->lanes->getValues())
+                                                     : updSimbody().solveBoxCenter();
     makeLanes();
   }
 
@@ -169,7 +176,7 @@ class MultibodySimulator::Impl {
   SimbodyModel& updSimbody() {
     if (!simbody_) {
       const std::lock_guard<std::recursive_mutex> guard(building);
-      simbody_ = makeSimbodyModel(shared_->model);
+      simbody_ = makeSimbodyModel(shared_->known_to_simbody);
     }
     return *simbody_;
   }

@@ -133,6 +133,39 @@ Eigen::VectorXd calcInitialStates(ModelContext& context) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
+double calcNonNegative(const Expression& expression, const Quantity& quantity, ModelNumbers& numbers) {
+  const double value = expression.text.empty() ? 0.0 : numbers.calc(expression, quantity);
+  if (value < 0.0) {
+    throwUnusable(quantity, value, "must not be negative", expression.where);
+  }
+  return value;
+}
+
+void checkSensor(const SensorSpec& sensor, const std::string& owner, ModelNumbers& numbers) {
+  if (!sensor.lag.text.empty()) {
+    numbers.calcPositive(sensor.lag, {owner, "sensor.lag", "s"});
+  }
+  if (!sensor.average.text.empty()) {
+    numbers.calcPositive(sensor.average, {owner, "sensor.average", "s"});
+  }
+  if (sensor.filter) {
+    numbers.calcPositive(sensor.filter->cutoff, {owner, "sensor.filter.cutoff", "Hz"});
+  }
+  calcNonNegative(sensor.delay, {owner, "sensor.delay", "s"}, numbers);
+}
+
+void checkSampledNumbers(const ModelSpec& model, ModelNumbers& numbers) {
+  for (const OutputSpec& output : model.outputs) {
+    if (output.sensor) {
+      checkSensor(*output.sensor, "output '" + output.name.text + "'", numbers);
+    }
+  }
+  for (const ControllerSpec& controller : model.system.controllers) {
+    const std::string owner = "controller '" + controller.name.text + "'";
+    calcNonNegative(controller.delay, {owner, "delay", "s"}, numbers);
+  }
+}
+
 int findParameter(const ModelSpec& model, const Name& name) {
   const std::vector<std::string> names = collectNames(collectSampled(model));
   requireKnown(name, names, "a parameter");
@@ -234,6 +267,7 @@ void checkNumbers(ModelContext& context) {
   for (const OutputSpec& output : context.model.outputs) {
     calcOutputNumbers(output, context.names, numbers);
   }
+  checkSampledNumbers(context.model, numbers);
   calcInitialValues(context);
 }
 

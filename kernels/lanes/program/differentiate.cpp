@@ -55,18 +55,23 @@ class ForwardMode {
  public:
   ForwardMode(Recorder& recorder, const std::vector<Seed>& seeds) : recorder_(recorder) {
     for (const Seed& seed : seeds) {
-      assert(countOperands(recorder.getNode(seed.variable).operation) == 0);
+      if (seed.variable.isLiteral()) {
+        continue;
+      }
       const std::size_t node = seed.variable.getNode();
       tangents_.resize(std::max(tangents_.size(), node + 1));
       tangents_[node] = seed.tangent;
+      seeded_.resize(std::max(seeded_.size(), node + 1));
+      seeded_[node] = true;
     }
   }
 
-  /// Inputs keep their seed or 0.
+  /// Inputs and seeded values keep their seed or 0.
   void run(const std::vector<char>& needed) {
     tangents_.resize(std::max(tangents_.size(), needed.size()));
     for (std::size_t node = 0; node < needed.size(); ++node) {
-      if (needed[node] && countOperands(recorder_.getNodes()[node].operation) > 0) {
+      const bool seeded = node < seeded_.size() && seeded_[node];
+      if (needed[node] && !seeded && countOperands(recorder_.getNodes()[node].operation) > 0) {
         tangents_[node] = calcTangent(static_cast<int>(node));
       }
     }
@@ -96,6 +101,7 @@ class ForwardMode {
 
   Recorder& recorder_;
   std::vector<Symbol> tangents_;
+  std::vector<bool> seeded_;
 };
 
 Recorder* findRecorder(const std::vector<Symbol>& values) {

@@ -10,6 +10,13 @@
 
 namespace twinmap::equations {
 
+/// A coordinate whose acceleration is known.
+template <class S>
+struct Prescribed {
+  int coordinate;
+  S acceleration;
+};
+
 /// A model's state over a scalar, in the order of SystemNames: coordinates, speeds as Simbody has them, and
 /// states of first order.
 template <class S>
@@ -18,6 +25,7 @@ struct ModelState {
   std::vector<S> coordinates, speeds, states{};
   std::vector<S> signals{};       ///< of the excitation
   std::vector<S> signal_rates{};  ///< empty where no expression uses them
+  std::vector<Prescribed<S>> prescribed{};
 };
 
 /// What follows from a state.
@@ -74,6 +82,22 @@ Loads<S> calcLoads(const SystemSpec& spec, const SystemValues<S>& values,
   return loads;
 }
 
+/// Takes known accelerations out of the equations, whose matrix has its lower triangle alone: what they
+/// exert on the other rows goes to the right, and their own rows say what they are.
+template <class S>
+void prescribe(const std::vector<Prescribed<S>>& known, LinearSystem<S>& equations) {
+  const int n = static_cast<int>(equations.right.size());
+  for (const Prescribed<S>& one : known) {
+    const int p = one.coordinate;
+    for (int i = 0; i < n; ++i) {
+      S& coupling = i < p ? equations.matrix[p][i] : equations.matrix[i][p];
+      equations.right[i] = equations.right[i] - coupling * one.acceleration;
+      coupling = S(i == p ? 1.0 : 0.0);
+    }
+    equations.right[p] = one.acceleration;
+  }
+}
+
 /// The equations of motion of a model. `names`: its parameters and constants, `values`: calcSystemValues of
 /// them.
 template <class S>
@@ -85,8 +109,10 @@ ModelMotion<S> calcModelMotion(const ModelSpec& model, const SystemNames& system
   Loads<S> loads = calcLoads(model.system, values, motion.bodies, state, motion.rates,
                              nameState(model, system, state, motion.rates, names));
   motion.state_rates = std::move(loads.state_rates);
-  Solution<S> solution =
-      solve(calcEquationsOfMotion(values, motion.bodies, loads.on_bodies, std::move(loads.on_speeds)));
+  LinearSystem<S> equations =
+      calcEquationsOfMotion(values, motion.bodies, loads.on_bodies, std::move(loads.on_speeds));
+  prescribe(state.prescribed, equations);
+  Solution<S> solution = solve(std::move(equations));
   motion.accelerations = std::move(solution.values);
   motion.pivots = std::move(solution.pivots);
   return motion;

@@ -10,7 +10,7 @@ void LaneEngine::simulate(const Eigen::Ref<const MatrixXd>& parameters, Eigen::R
   if (!runner_) {
     runner_.emplace(programs_.getValues(), task_, context_.model);
   }
-  for (const Index i : runner_->run(context_, parameters, responses, nullptr, statuses)) {
+  for (const Index i : keepRetried(runner_->run(context_, parameters, responses, nullptr, statuses))) {
     updStiffRetry().simulate(parameters.col(i), responses.col(i), statuses[i]);
   }
 }
@@ -22,10 +22,16 @@ void LaneEngine::simulateWithDerivatives(const Eigen::Ref<const MatrixXd>& param
     derivative_runner_.emplace(programs_.getDerivatives(context_.names), task_, context_.model);
   }
   const Index p = parameters.rows();
-  for (const Index i : derivative_runner_->run(context_, parameters, responses, &derivatives, statuses)) {
+  for (const Index i :
+       keepRetried(derivative_runner_->run(context_, parameters, responses, &derivatives, statuses))) {
     updStiffRetry().simulateWithDerivatives(parameters.col(i), responses.col(i),
                                             derivatives.middleCols(i * p, p), statuses[i]);
   }
+}
+
+/// None where outputs are of the past, which the implicit method does not keep.
+std::vector<Index> LaneEngine::keepRetried(std::vector<Index> columns) const {
+  return programs_.getValues().sampling.output_delays.empty() ? std::move(columns) : std::vector<Index>{};
 }
 
 StiffRetry& LaneEngine::updStiffRetry() {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <vector>
 
 #include "framework/models/mechanism/lanes/lane_programs.hpp"
 #include "framework/models/mechanism/lanes/lane_runner.hpp"
@@ -27,6 +28,7 @@ class LaneEngine {
                                SampleStatus* statuses);
 
  private:
+  std::vector<Eigen::Index> keepRetried(std::vector<Eigen::Index> columns) const;
   StiffRetry& updStiffRetry();
 
   LanePrograms& programs_;

@@ -32,13 +32,14 @@ Symbols getParameters(const RecordedModel& recorded, bool with_derivatives) {
 Symbols collectStart(const RecordedModel& recorded, const Symbols& parameters) {
   Symbols values = recorded.initial;
   append(recorded.excitation.events, values);
+  append(recorded.sampling.delays, values);
   Symbols outputs = values;
   appendJacobian(values, parameters, outputs);
   return outputs;
 }
 
 int countStates(const RecordedModel& recorded) {
-  return 2 * recorded.coordinate_count + recorded.state_count;
+  return static_cast<int>(recorded.derivatives.size());
 }
 
 Symbols collectRest(const RecordedModel& recorded, const Symbols& parameters) {
@@ -62,13 +63,19 @@ LaneModel compileModel(const RecordedModel& recorded, bool with_derivatives) {
   const Symbols parameters = getParameters(recorded, with_derivatives);
   LaneModel model;
   model.coordinate_count = recorded.coordinate_count;
-  model.counts = {countStates(recorded), recorded.parameter_count, recorded.excitation.input_count};
+  model.hidden_count = static_cast<int>(recorded.sampling.hidden_rates.size());
+  model.counts = {countStates(recorded), recorded.parameter_count, recorded.sampling.input_count};
   model.excitation = recorded.excitation;
+  model.sampling = recorded.sampling;
   model.directions = static_cast<int>(parameters.size());
   std::vector<int> directions(parameters.size());
   std::iota(directions.begin(), directions.end(), 0);
-  model.problem = lanes::makeProblem(
-      recorder, {model.counts, recorded.derivatives, recorded.pivots, recorded.outputs}, directions);
+  const RecordedSampling& sampling = recorded.sampling;
+  const Symbols output_delays(sampling.delays.begin(), sampling.delays.begin() + sampling.output_delay_count);
+  model.problem = lanes::makeProblem(recorder,
+                                     {model.counts, recorded.derivatives, recorded.pivots, sampling.outputs,
+                                      output_delays, sampling.output_delays, sampling.jumps, sampling.passed},
+                                     directions);
   model.start = program::compile(recorder, collectStart(recorded, parameters), model.counts);
   model.rest = program::compile(recorder, collectRest(recorded, parameters), model.counts);
   model.linearization = program::compile(recorder, recorded.linearization, model.counts);
@@ -77,7 +84,7 @@ LaneModel compileModel(const RecordedModel& recorded, bool with_derivatives) {
 
 program::Program compileJacobian(const RecordedModel& recorded) {
   const program::InputCounts counts{countStates(recorded), recorded.parameter_count,
-                                    recorded.excitation.input_count};
+                                    recorded.sampling.input_count};
   Symbols states, jacobian;
   for (int i = 0; i < counts.states; ++i) {
     states.push_back(recorded.recorder->state(i));

@@ -11,15 +11,17 @@ namespace twinmap {
 struct LaneModel {
   program::InputCounts counts;
   int coordinate_count = 0;
+  int hidden_count = 0;           ///< states of sensors and controllers
   RecordedExcitation excitation;  ///< its symbols are not to be used
+  RecordedSampling sampling;      ///< likewise
   lanes::Problem problem;         ///< the motion and its outputs
-  program::Program start;  ///< initial states, then events; with directions their derivatives, one by one
+  program::Program start;  ///< initial states, events, delays; with directions their derivatives, one by one
   program::Program rest;   ///< rest_rates, rest_pivots, d rest_rates / d [coordinates; states of first order]
                            ///< by columns; with directions also d rest_rates / d parameters by columns
   program::Program linearization;
   int directions = 0;  ///< 0, or all parameters
 
-  int getFirstOrderCount() const { return counts.states - 2 * coordinate_count; }
+  int getFirstOrderCount() const { return counts.states - 2 * coordinate_count - hidden_count; }
 };
 
 /// Compiles a recorded model, for its values alone or also for the derivatives with respect to all

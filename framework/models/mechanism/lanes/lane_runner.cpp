@@ -9,6 +9,7 @@
 #include "framework/models/mechanism/equilibrium.hpp"
 #include "framework/models/mechanism/lanes/lane_modes.hpp"
 #include "framework/models/mechanism/lanes/lane_start.hpp"
+#include "framework/models/mechanism/readings.hpp"
 #include "framework/simulation/integration/integration.hpp"
 #include "kernels/lanes/integrator.hpp"
 
@@ -23,14 +24,21 @@ using Parameters = Eigen::Ref<const VectorXd>;
 /// Where the rate of a state, such as a stiff bristle's, forces more steps than these, Radau IIA takes fewer
 /// and longer ones in less time. Where accuracy decides, a method of order 5 takes tolerance^(-1/5) as many.
 constexpr double kExplicitSteps = 20000.0, kUsualTolerance = 3e-7;
+/// A controller that samples asks for steps that say nothing of stiffness.
+constexpr double kStepsOfInstant = 10.0;
 
 int getMaxSteps(const ModelSpec& spec, const LaneModel& model) {
   const int given = spec.simulation.max_steps;
   if (model.getFirstOrderCount() == 0) {
     return given;
   }
+  double instants = 0.0;
+  for (const RecordedClock& clock : model.sampling.clocks) {
+    instants += spec.simulation.duration / clock.period;
+  }
   const double finer = std::max(1.0, kUsualTolerance / spec.simulation.relative_tolerance);
-  return static_cast<int>(std::min<double>(given, kExplicitSteps * std::pow(finer, 0.2)));
+  const double longest = kExplicitSteps * std::pow(finer, 0.2);
+  return static_cast<int>(std::min(1e9, std::min<double>(given, longest) + kStepsOfInstant * instants));
 }
 
 lanes::Options makeOptions(const ModelSpec& spec, const LaneModel& model) {
@@ -68,7 +76,11 @@ std::string describeOutcome(const lanes::Result& result, const ModelSpec& spec, 
 class LaneRunner::Impl : public lanes::SampleStream {
  public:
   Impl(const LaneModel& model, const SampleTask& task, const ModelSpec& spec)
-      : model_(model), task_(task), spec_(spec), start_(spec, model, task.box_center), modes_(model) {}
+      : model_(model),
+        task_(task),
+        spec_(spec),
+        start_(spec, model, task.box_center, task.layout.times),
+        modes_(model) {}
 
   std::vector<Index> run(ModelContext& context, const Eigen::Ref<const MatrixXd>& parameters,
                          Eigen::Ref<MatrixXd> responses, MatrixXd* derivatives, SampleStatus* statuses) {
@@ -80,9 +92,12 @@ class LaneRunner::Impl : public lanes::SampleStream {
     step_limits_.clear();
     if (derivatives != nullptr) {
       derivatives->resize(responses.rows(), parameters.cols() * model_.directions);
-      output_derivatives_.resize(getOutputRows() * model_.directions, parameters.cols());
+      output_derivatives_.resize(getRecordedRows() * model_.directions, parameters.cols());
     }
     derivatives_ = derivatives;
+    if (getRecordedRows() > getOutputRows()) {
+      recorded_.resize(getRecordedRows(), parameters.cols());
+    }
     updIntegrator(static_cast<int>(parameters.cols())).run(*this);
     return std::move(step_limits_);
   }
@@ -121,6 +136,8 @@ class LaneRunner::Impl : public lanes::SampleStream {
   }
 
   Index getOutputRows() const { return task_.layout.getOutputCount() * task_.layout.times.size(); }
+  /// With what is subtracted.
+  Index getRecordedRows() const { return model_.problem.output_count * task_.layout.times.size(); }
 
   /// The reason why the sample cannot be simulated, or "".
   std::string prepare(Index column, lanes::Sample& sample) {
@@ -135,7 +152,7 @@ class LaneRunner::Impl : public lanes::SampleStream {
       return failure.what();
     }
     sample.index = static_cast<int>(column);
-    sample.outputs = responses_->col(column).data();
+    sample.outputs = recorded_.size() > 0 ? recorded_.col(column).data() : responses_->col(column).data();
     sample.derivatives = derivatives_ == nullptr ? nullptr : output_derivatives_.col(column).data();
     return "";
   }
@@ -166,6 +183,9 @@ class LaneRunner::Impl : public lanes::SampleStream {
   void conclude(Index column, const std::string& failure) {
     SampleStatus& status = statuses_[column];
     status.reason = failure;
+    if (failure.empty()) {
+      takeReadings(column);
+    }
     if (failure.empty() && !responses_->col(column).allFinite()) {
       status.reason = "an output became non-finite";
     }
@@ -180,9 +200,38 @@ class LaneRunner::Impl : public lanes::SampleStream {
 
   void takeDerivatives(Index column, SampleStatus& status) {
     const Index p = model_.directions, rows = getOutputRows();
-    derivatives_->middleCols(column * p, p).topRows(rows) = output_derivatives_.col(column).reshaped(rows, p);
+    const MatrixXd recorded = output_derivatives_.col(column).reshaped(getRecordedRows(), p);
+    auto derivatives = derivatives_->middleCols(column * p, p);
+    derivatives.topRows(rows) = recorded.topRows(rows);
+    subtractFrom(recorded, derivatives);
+    for (Index row = 0; row < rows; ++row) {
+      const Bounds* range = findRange(spec_, task_.layout, row);
+      if (range != nullptr && isClipped(*range, (*responses_)(row, column))) {
+        derivatives.row(row).setZero();
+      }
+    }
     if (!derivatives_->middleCols(column * p, p).allFinite()) {
       status.reason = "a derivative of an output became non-finite";
+    }
+  }
+
+  /// What sensors show of the recorded outputs, but for rounding, which counts as noise.
+  void takeReadings(Index column) {
+    auto response = responses_->col(column);
+    if (recorded_.size() > 0) {
+      response.head(getOutputRows()) = recorded_.col(column).head(getOutputRows());
+      subtractFrom(recorded_.col(column), response);
+    }
+    clipReadings(spec_, task_.layout, response);
+  }
+
+  template <class Recorded, class Rows>
+  void subtractFrom(const Recorded& recorded, Rows&& rows) const {
+    const Index times = task_.layout.times.size();
+    for (std::size_t i = 0; i < model_.sampling.subtracted.size(); ++i) {
+      if (const int place = model_.sampling.subtracted[i]; place >= 0) {
+        rows.middleRows(static_cast<Index>(i) * times, times) -= recorded.middleRows(place * times, times);
+      }
     }
   }
 
@@ -197,6 +246,7 @@ class LaneRunner::Impl : public lanes::SampleStream {
   const Eigen::Ref<const MatrixXd>* parameters_ = nullptr;
   Eigen::Ref<MatrixXd>* responses_ = nullptr;
   MatrixXd* derivatives_ = nullptr;
+  MatrixXd recorded_;            ///< outputs of a sample; empty where they are the response
   MatrixXd output_derivatives_;  ///< of a sample all directions, one after the other
   SampleStatus* statuses_ = nullptr;
   Index next_ = 0;

@@ -10,8 +10,14 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Parameters = Eigen::Ref<const VectorXd>;
 
-LaneStart::LaneStart(const ModelSpec& spec, const LaneModel& model, const VectorXd& box_center)
-    : spec_(spec), model_(model), box_center_(box_center), start_(model.start), rest_(model) {}
+LaneStart::LaneStart(const ModelSpec& spec, const LaneModel& model, const VectorXd& box_center,
+                     const VectorXd& output_times)
+    : spec_(spec),
+      model_(model),
+      box_center_(box_center),
+      output_times_(output_times),
+      start_(model.start),
+      rest_(model) {}
 
 void LaneStart::fill(const Parameters& parameters, lanes::Sample& sample) {
   // the values, then their derivatives with respect to each parameter
@@ -19,16 +25,30 @@ void LaneStart::fill(const Parameters& parameters, lanes::Sample& sample) {
       start_.calc({parameters})
           .reshaped(model_.start.outputs.size() / (1 + model_.directions), 1 + model_.directions);
   sample.parameters.assign(parameters.begin(), parameters.end());
-  sample.end = spec_.simulation.duration;
   fillInitial(parameters, all.topRows(model_.counts.states), sample);
-  fillPhases(all.bottomRows(all.rows() - model_.counts.states), sample);
+  const Index delays = static_cast<Index>(model_.sampling.delays.size());
+  const Index events = all.rows() - model_.counts.states - delays;
+  fillTimes({all.middleRows(model_.counts.states, events), all.bottomRows(delays)}, sample);
+}
+
+/// Thousands of instants are the same for most samples.
+void LaneStart::fillTimes(const SampleTimes& times, lanes::Sample& sample) {
+  const bool same = !last_sample_.phases.empty() && times.events == last_times_.events &&
+                    times.delays == last_times_.delays;
+  if (!same) {
+    last_sample_.phases.clear();  // where this fails nothing is kept
+    fillPhases(model_, times, spec_.simulation.duration, output_times_, last_sample_);
+    last_times_ = times;
+  }
+  sample.phases = last_sample_.phases;
+  sample.end = last_sample_.end;
+  sample.delays = last_sample_.delays;
 }
 
 void LaneStart::fillInitial(const Parameters& parameters, MatrixXd states, lanes::Sample& sample) {
-  const VectorXd none = VectorXd::Zero(model_.coordinate_count);
   if (box_center_.size() > 0) {
     states.setZero();
-    states.col(0) = insertSpeeds(box_center_, none);
+    states.col(0) = complete(box_center_);
   } else if (spec_.initial.equilibrium) {
     rest_.setParameters(parameters);
     const MatrixXd start = takeEquilibrium(states);
@@ -36,35 +56,26 @@ void LaneStart::fillInitial(const Parameters& parameters, MatrixXd states, lanes
     if (model_.directions > 0) {
       const MatrixXd slopes = rest_.calcSlopes(equilibrium, start.rightCols(model_.directions));
       for (int k = 0; k < model_.directions; ++k) {
-        states.col(1 + k) = insertSpeeds(slopes.col(k), none);
+        states.col(1 + k) = complete(slopes.col(k));
       }
     }
-    states.col(0) = insertSpeeds(equilibrium, none);
+    states.col(0) = complete(equilibrium);
   }
   sample.initial.assign(states.data(), states.data() + states.size());
+}
+
+VectorXd LaneStart::complete(const VectorXd& equilibrium) const {
+  VectorXd states = VectorXd::Zero(model_.counts.states);
+  const Index known = model_.counts.states - model_.hidden_count;
+  states.head(known) = insertSpeeds(equilibrium, VectorXd::Zero(model_.coordinate_count));
+  return states;
 }
 
 MatrixXd LaneStart::takeEquilibrium(const MatrixXd& states) const {
   const Index n = model_.coordinate_count, m = model_.getFirstOrderCount();
   MatrixXd rows(n + m, states.cols());
-  rows << states.topRows(n), states.bottomRows(m);
+  rows << states.topRows(n), states.middleRows(2 * n, m);
   return rows;
-}
-
-void LaneStart::fillPhases(const MatrixXd& events, lanes::Sample& sample) const {
-  const RecordedExcitation& excitation = model_.excitation;
-  const std::vector<double> times(events.col(0).begin(), events.col(0).end());
-  const std::vector<Boundary> boundaries = calcBoundaries(excitation, times, spec_.simulation.duration);
-  sample.phases.clear();
-  for (std::size_t i = 0; i + 1 < boundaries.size(); ++i) {
-    sample.phases.push_back({boundaries[i].time, std::vector<double>(excitation.input_count), {}});
-    lanes::Phase& phase = sample.phases.back();
-    fillPhaseInputs(excitation, times, phase.begin, phase.inputs.data());
-    if (boundaries[i].event >= 0 && model_.directions > 0) {
-      const VectorXd slopes = events.row(boundaries[i].event).tail(model_.directions);
-      phase.begin_slopes.assign(slopes.begin(), slopes.end());
-    }
-  }
 }
 
 VectorXd LaneStart::solveEquilibrium(const Parameters& parameters) {
@@ -82,7 +93,7 @@ VectorXd solveBoxCenter(ModelContext& context, const LaneModel& model) {
   }
   context.numbers.update(calcBoxCenter(collectSampled(context.model)));
   const VectorXd none;
-  return LaneStart(context.model, model, none).solveEquilibrium(calcEquilibriumPoint(context));
+  return LaneStart(context.model, model, none, none).solveEquilibrium(calcEquilibriumPoint(context));
 }
 
 }  // namespace twinmap

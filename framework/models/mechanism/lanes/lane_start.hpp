@@ -1,5 +1,6 @@
 #pragma once
 
+#include "framework/models/mechanism/lanes/phases.hpp"
 #include "framework/models/mechanism/lanes/rest_program.hpp"
 #include "framework/models/mechanism/model_context.hpp"
 #include "kernels/lanes/sample.hpp"
@@ -9,9 +10,10 @@ namespace twinmap {
 /// Where the samples of a model start, and when their phases begin.
 class LaneStart {
  public:
-  /// `box_center`: the equilibrium that all samples start from, or empty. All must outlive the
-  /// object.
-  LaneStart(const ModelSpec& spec, const LaneModel& model, const Eigen::VectorXd& box_center);
+  /// `box_center`: the equilibrium that all samples start from, or empty; `output_times`: s. All must outlive
+  /// the object.
+  LaneStart(const ModelSpec& spec, const LaneModel& model, const Eigen::VectorXd& box_center,
+            const Eigen::VectorXd& output_times);
 
   /// Fills in parameters, initial states, phases and end of a sample. Throws SimulationFailure for an
   /// equilibrium that is not found.
@@ -25,12 +27,16 @@ class LaneStart {
                    lanes::Sample& sample);
   /// Rows [coordinates; states of first order] of all states.
   Eigen::MatrixXd takeEquilibrium(const Eigen::MatrixXd& states) const;
-  void fillPhases(const Eigen::MatrixXd& events, lanes::Sample& sample) const;
+  void fillTimes(const SampleTimes& times, lanes::Sample& sample);
+  /// [coordinates; speeds; states of first order] with the hidden states.
+  Eigen::VectorXd complete(const Eigen::VectorXd& equilibrium) const;
 
   const ModelSpec& spec_;
   const LaneModel& model_;
-  const Eigen::VectorXd& box_center_;
+  const Eigen::VectorXd &box_center_, &output_times_;
   SingleProgram start_;
+  SampleTimes last_times_;     ///< of the sample before
+  lanes::Sample last_sample_;  ///< its phases, end and delays
   RestProgram rest_;
 };
 

@@ -2,6 +2,7 @@
 
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/models/mechanism/equations/outputs.hpp"
+#include "framework/models/mechanism/sampled_keys.hpp"
 #include "kernels/lanes/program/differentiate.hpp"
 
 namespace twinmap {
@@ -42,9 +43,13 @@ class ModelRecorder {
     recorded.coordinate_count = system_.coordinate_count;
     recorded.state_count = system_.state_count;
     recorded.excitation = recordExcitation(model_.excitation, *recorder_, values_);
+    signals_ = recorded.excitation.signals;
+    signal_rates_ = calcRates(signals_);
     recordMotion(recorded);
+    recordOutputs(recorded);
     recordRest(recorded);
     recorded.initial = recordInitial();
+    recorded.initial.resize(recorded.initial.size() + recorded.sampling.hidden_rates.size(), Symbol(0.0));
     recorded.recorder = std::move(recorder_);
     return recorded;
   }
@@ -66,22 +71,57 @@ class ModelRecorder {
   }
 
   void recordMotion(RecordedModel& recorded) {
-    const ModelState<Symbol> state{recorder_->time(),
-                                   getCoordinates(),
-                                   getSpeeds(),
-                                   getFirstOrder(),
-                                   recorded.excitation.signals,
-                                   calcRates(recorded.excitation.signals)};
-    const ModelMotion<Symbol> motion = calcMotion(state);
+    const ModelMotion<Symbol> motion = calcMotion(makeState(getFirstOrder()));
     recorded.derivatives = motion.rates;
     append(motion.accelerations, recorded.derivatives);
     append(motion.state_rates, recorded.derivatives);
+    for (const int i : findPrescribed()) {  // what the signals say is not integrated
+      recorded.derivatives[i] = recorded.derivatives[system_.coordinate_count + i] = 0.0;
+    }
     recorded.pivots = motion.pivots;
+  }
+
+  void recordOutputs(RecordedModel& recorded) {
+    const int known = 2 * system_.coordinate_count + system_.state_count;
+    recorded.sampling = recordSampling(
+        {model_, names_, values_, *recorder_, getStates(0, known), makeState(getFirstOrder()).coordinates,
+         signals_, recorded.excitation.input_count,
+         [this](const Symbols& first_order) { return calcQuantities(makeState(first_order)); }});
+    append(recorded.sampling.hidden_rates, recorded.derivatives);
+  }
+
+  Symbols calcQuantities(const ModelState<Symbol>& state) {
+    const ModelMotion<Symbol> motion = calcMotion(state);
     const NamedValues<Symbol> named =
         equations::hasExpression(model_.outputs) ? nameAll(state, motion) : values_;
+    Symbols quantities;
     for (const OutputSpec& output : model_.outputs) {
-      recorded.outputs.push_back(equations::calcOutput(output, names_, named, system_, state, motion));
+      quantities.push_back(equations::calcOutput(output, names_, named, system_, state, motion));
     }
+    return quantities;
+  }
+
+  std::vector<int> findPrescribed() const {
+    std::vector<int> coordinates;
+    for (const MotionSpec& motion : model_.system.motions) {
+      coordinates.push_back(names_.findCoordinate(motion.coordinate));
+    }
+    return coordinates;
+  }
+
+  /// In motion, with prescribed coordinates as their signals say.
+  ModelState<Symbol> makeState(Symbols first_order) {
+    ModelState<Symbol> state{recorder_->time(),      getCoordinates(), getSpeeds(),
+                             std::move(first_order), signals_,         signal_rates_};
+    for (const MotionSpec& motion : model_.system.motions) {
+      const int i = names_.findCoordinate(motion.coordinate);
+      const Symbol& signal = signals_[findSignal(model_, motion.follows)];
+      const std::vector<program::Seed> in_time{{recorder_->time(), 1.0}};
+      state.coordinates[i] = signal;
+      state.speeds[i] = program::calcTangents({signal}, in_time)[0];
+      state.prescribed.push_back({i, program::calcTangents({state.speeds[i]}, in_time)[0]});
+    }
+    return state;
   }
 
   /// Time derivatives of signals, where they are used.
@@ -100,12 +140,16 @@ class ModelRecorder {
   }
 
   ModelState<Symbol> makeQuietState(Symbols speeds) {
-    return {0.0,
-            getCoordinates(),
-            std::move(speeds),
-            getFirstOrder(),
-            Symbols(model_.excitation.size(), Symbol(0.0)),
-            Symbols(uses_rates_ ? model_.excitation.size() : 0, Symbol(0.0))};
+    ModelState<Symbol> state{0.0,
+                             getCoordinates(),
+                             std::move(speeds),
+                             getFirstOrder(),
+                             Symbols(model_.excitation.size(), Symbol(0.0)),
+                             Symbols(uses_rates_ ? model_.excitation.size() : 0, Symbol(0.0))};
+    for (const int i : findPrescribed()) {
+      state.prescribed.push_back({i, 0.0});
+    }
+    return state;
   }
 
   void recordRest(RecordedModel& recorded) {
@@ -187,6 +231,7 @@ class ModelRecorder {
   std::unique_ptr<program::Recorder> recorder_;
   NamedValues<Symbol> values_;
   SystemValues<Symbol> system_;
+  Symbols signals_, signal_rates_;
   const bool uses_rates_;
 };
 

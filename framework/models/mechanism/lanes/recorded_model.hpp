@@ -6,6 +6,7 @@
 
 #include "framework/models/mechanism/equations/model_equations.hpp"
 #include "framework/models/mechanism/lanes/recorded_excitation.hpp"
+#include "framework/models/mechanism/lanes/recorded_sampling.hpp"
 #include "framework/models/mechanism/system_names.hpp"
 #include "kernels/lanes/program/recorder.hpp"
 
@@ -13,18 +14,18 @@ namespace twinmap {
 
 /// A model written down once for all parameter sets. Parameters are those of collectSampled(); states the
 /// coordinates in the order of SystemNames, then their speeds (Simbody's: see equations::JointMotion), then
-/// the states of first order.
+/// the states of first order, and last those of sensors and controllers that no expression sees.
 struct RecordedModel {
   using Symbols = std::vector<program::Symbol>;
 
   std::unique_ptr<program::Recorder> recorder;
   int parameter_count = 0, coordinate_count = 0;
-  int state_count = 0;  ///< of first order
+  int state_count = 0;  ///< of first order, without the hidden ones
   RecordedExcitation excitation;
-  Symbols derivatives;  ///< of the states with respect to time
-  Symbols pivots;       ///< not positive where the mass matrix is singular
-  Symbols outputs;
-  Symbols initial;     ///< states at t = 0; of parameters alone; without equilibrium
+  Symbols derivatives;        ///< of the states with respect to time
+  Symbols pivots;             ///< not positive where the mass matrix is singular
+  RecordedSampling sampling;  ///< with the outputs; only the rates of its states are also in `derivatives`
+  Symbols initial;            ///< states at t = 0; of parameters alone; without equilibrium
   Symbols rest_rates;  ///< at rest and t = 0 without excitation: accelerations, then rates of the states of
                        ///< first order
   Symbols rest_pivots;

@@ -5,6 +5,7 @@
 
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/models/mechanism/equilibrium.hpp"
+#include "framework/models/mechanism/readings.hpp"
 #include "framework/simulation/stencil.hpp"
 
 namespace twinmap {
@@ -16,12 +17,18 @@ using Eigen::VectorXd;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// The recorded equations of one sample as a problem of the integrators; nothing happens between its phases.
+/// The recorded equations of one sample as a problem of the integrators; nothing happens between its phases,
+/// and where they begin the states may jump.
 class RecordedProblem final : public HybridProblem {
  public:
   RecordedProblem(const lanes::Sample& sample, Index times, SingleProgram& derivative, SingleProgram& output,
-                  SingleProgram& jacobian)
-      : sample_(sample), times_(times), derivative_(derivative), output_(output), jacobian_(jacobian) {}
+                  SingleProgram& jacobian, SingleProgram* jump)
+      : sample_(sample),
+        times_(times),
+        derivative_(derivative),
+        output_(output),
+        jacobian_(jacobian),
+        jump_(jump) {}
 
   std::vector<double> getBoundaries() const {
     std::vector<double> boundaries;
@@ -32,12 +39,19 @@ class RecordedProblem final : public HybridProblem {
     return boundaries;
   }
 
-  void enterPhase(double begin, State&) override {
+  void enterPhase(double begin, State& x) override {
     const lanes::Phase& phase =
         *std::find_if(sample_.phases.begin(), sample_.phases.end(),
                       [begin](const lanes::Phase& one) { return one.begin == begin; });
     for (SingleProgram* program : {&derivative_, &output_, &jacobian_}) {
       program->enterPhase(sample_.parameters, phase.inputs);
+    }
+    if (phase.jumps) {
+      jump_->enterPhase(sample_.parameters, phase.inputs);
+      jump_->calcAt(begin, x);
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        x[i] = jump_->getOutput(static_cast<int>(i));
+      }
     }
   }
 
@@ -80,6 +94,7 @@ class RecordedProblem final : public HybridProblem {
   const lanes::Sample& sample_;
   Index times_;
   SingleProgram &derivative_, &output_, &jacobian_;
+  SingleProgram* jump_;  ///< null where nothing jumps
 };
 
 SampleStatus makeSecondStatus(const SampleStatus& first, SampleStatus second) {
@@ -96,11 +111,15 @@ StiffRetry::StiffRetry(const ModelSpec& spec, const LaneModel& model, const prog
                        const SampleTask& task)
     : spec_(spec),
       task_(task),
-      start_(spec, model, task.box_center),
+      start_(spec, model, task.box_center, task.layout.times),
       modes_(model),
       derivative_(model.problem.derivative),
       output_(model.problem.output),
-      jacobian_(jacobian) {}
+      jacobian_(jacobian) {
+  if (!model.problem.jump.outputs.empty()) {
+    jump_.emplace(model.problem.jump);
+  }
+}
 
 void StiffRetry::simulate(const Eigen::Ref<const VectorXd>& parameters, Eigen::Ref<VectorXd> response,
                           SampleStatus& status) {
@@ -143,10 +162,12 @@ SampleStatus StiffRetry::run(const Eigen::Ref<const VectorXd>& parameters, Eigen
     lanes::Sample sample;
     start_.fill(parameters, sample);
     sample.outputs = response.data();
-    RecordedProblem problem(sample, task_.layout.times.size(), derivative_, output_, jacobian_);
+    RecordedProblem problem(sample, task_.layout.times.size(), derivative_, output_, jacobian_,
+                            jump_ ? &*jump_ : nullptr);
     HybridReport report =
         integrateHybrid(problem, sample.initial, problem.getBoundaries(), task_.layout.times, options,
                         sequence.empty() ? nullptr : &sequence, HybridMethod::kImplicit);
+    clipReadings(spec_, task_.layout, response);
     status.reason =
         report.failure.empty() && !response.allFinite() ? "an output became non-finite" : report.failure;
     if (status.reason.empty() && sequence.empty()) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "framework/models/mechanism/lanes/lane_modes.hpp"
 #include "framework/models/mechanism/sample_task.hpp"
 #include "framework/simulation/integration/hybrid_integration.hpp"
@@ -36,6 +38,7 @@ class StiffRetry {
   LaneStart start_;
   LaneModes modes_;
   SingleProgram derivative_, output_, jacobian_;
+  std::optional<SingleProgram> jump_;
 };
 
 }  // namespace twinmap

@@ -46,6 +46,26 @@ TEST(ResponseNoise, DrawsFollowTheAutoregression) {
   EXPECT_EQ(addNoise(clean.leftCols(1), noise, stream, 2), draws.leftCols(1));
 }
 
+TEST(ResponseNoise, OfRoundedReadingsHasTheirVarianceAndTheirSteps) {
+  constexpr double kQuantum = 0.5;
+  NoiseSpec spec = makeTwoNoises();
+  spec.rounded = {{"z", kQuantum}};
+  const ResponseNoise noise(spec, makeTwoOutputs());
+  EXPECT_DOUBLE_EQ(noise.getStddev()[kTimes], std::sqrt(0.04 + kQuantum * kQuantum / 12.0));
+  EXPECT_EQ(noise.getStddev()[0], 3.0);
+  const FeatureMatrix all = MatrixXd::Identity(2 * kTimes + 2, 2 * kTimes + 2).sparseView();
+  const MatrixXd more =
+      noise.calcCovariance(all) - ResponseNoise(makeTwoNoises(), makeTwoOutputs()).calcCovariance(all);
+  VectorXd expected = VectorXd::Zero(2 * kTimes + 2);
+  expected.segment(kTimes, kTimes).setConstant(kQuantum * kQuantum / 12.0);
+  EXPECT_LT((more - MatrixXd(expected.asDiagonal())).norm(), 1e-14);
+  const MatrixXd clean = MatrixXd::Constant(2 * kTimes + 2, 3, 0.1);
+  const RandomStream stream(1, RandomPurpose::kTrainNoise);
+  const MatrixXd readings = addNoise(clean, noise, stream).middleRows(kTimes, kTimes);
+  const MatrixXd steps = readings / kQuantum;
+  EXPECT_EQ(steps, steps.array().round().matrix());
+}
+
 TEST(ResponseNoise, OfFeaturesHasTheCovarianceOfTheAutoregression) {
   const FeatureSpec feature = SamplesFeatureSpec{{{"y", {}}, {"z", {}}}, 0.1, 0.2, 3};
   const FeatureExtractor extractor({feature}, makeTwoOutputs());

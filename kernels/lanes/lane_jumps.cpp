@@ -1,0 +1,112 @@
+// States that jump where a phase begins.
+#include <cmath>
+
+#include "kernels/lanes/lane_packet.hpp"
+
+namespace twinmap::lanes {
+
+/// Where the jump's time moves with a parameter the states before it go on by f- dt, and those behind it came
+/// by f+ dt less (saltation): s+ = dh/dy (s- + f- dt) + dh/dt dt + dh/dp - f+ dt. Unlike the begin of other
+/// phases it costs one evaluation of f, two where it moves, and the steps keep their size.
+void LanePacket::doJumps() {
+  const unsigned lanes = std::exchange(jumping_, 0u);
+  forEach(lanes, [this](int lane) { prepareJump(lane); });
+  jumps_->calcParameters();
+  jumps_->calcPhase();
+  jumps_->calcOutputs();
+  forEach(lanes, [this](int lane) { takeJump(lane); });
+  evaluateAt(lanes);
+  unsigned moving = 0;
+  forEach(lanes, [&](int lane) { moving |= lanes_[lane].hasJump() && directions_ > 0 ? 1u << lane : 0u; });
+  if (moving != 0) {
+    forEach(moving, [this](int lane) { moveBack(lane); });
+    evaluateAt(moving);
+  }
+  forEach(lanes, [this](int lane) { beginAfterJump(lane); });
+}
+
+void LanePacket::prepareJump(int lane) {
+  const Lane& l = lanes_[lane];
+  const std::vector<double>& inputs = l.getPhase().inputs;
+  const std::vector<double>& slopes = l.getPhase().begin_slopes;
+  jumps_->updTime()[lane] = arrays_.time[lane];
+  for (int i = 0; i < parameters_; ++i) {
+    jumps_->updParameter(i)[lane] = l.sample.parameters[i];
+  }
+  for (int i = 0; i < phase_inputs_; ++i) {
+    jumps_->updPhaseInput(i)[lane] = inputs[i];
+  }
+  for (int row = 0; row < arrays_.rows; ++row) {
+    jumps_->updState(row)[lane] = arrays_.state[row * count_ + lane];
+  }
+  for (int j = 0; j < directions_; ++j) {
+    const double slope = l.hasJump() ? slopes[j] : 0.0;
+    jumps_->updPhaseInput(phase_inputs_ + j)[lane] = slope;
+    for (int i = 0; i < states_ && slope != 0.0; ++i) {
+      jumps_->updState((1 + j) * states_ + i)[lane] += slope * arrays_.slopes[1][i * count_ + lane];
+    }
+  }
+}
+
+void LanePacket::takeJump(int lane) {
+  for (int row = 0; row < arrays_.rows; ++row) {
+    arrays_.state[row * count_ + lane] = jumps_->getOutput(row)[lane];
+  }
+}
+
+/// The slopes of some lanes at their states.
+void LanePacket::evaluateAt(unsigned lanes) {
+  forEach(lanes, [this](int lane) {
+    arrays_.stage_time[lane] = arrays_.time[lane];
+    for (int row = 0; row < arrays_.rows; ++row) {
+      arrays_.stage_state[row * count_ + lane] = arrays_.state[row * count_ + lane];
+    }
+  });
+  if (parameters_changed_) {
+    interpreter_.calcParameters();
+  }
+  if (parameters_changed_ || phase_changed_) {
+    interpreter_.calcPhase();
+  }
+  parameters_changed_ = phase_changed_ = false;
+  interpreter_.calcOutputs();
+  forEach(lanes, [this](int lane) {
+    for (int row = 0; row < arrays_.rows; ++row) {
+      arrays_.slopes[1][row * count_ + lane] = arrays_.derivatives[row][lane];
+    }
+  });
+}
+
+void LanePacket::moveBack(int lane) {
+  const std::vector<double>& slopes = lanes_[lane].getPhase().begin_slopes;
+  for (int j = 0; j < directions_; ++j) {
+    for (int i = 0; i < states_; ++i) {
+      const int at = i * count_ + lane;
+      arrays_.state[(1 + j) * states_ * count_ + at] -= slopes[j] * arrays_.slopes[1][at];
+    }
+  }
+}
+
+void LanePacket::beginAfterJump(int lane) {
+  Lane& l = lanes_[lane];
+  double sum = 0.0;
+  for (int row = 0; row < arrays_.rows; ++row) {
+    const double state = arrays_.state[row * count_ + lane], slope = arrays_.slopes[1][row * count_ + lane];
+    sum += (state - state) + (slope - slope);  // 0 or NaN
+  }
+  for (int i = 0; i < arrays_.pivots; ++i) {
+    if (arrays_.pivot_values[i][lane] <= 0.0) {
+      return l.fail(Outcome::kSingular);
+    }
+  }
+  if (std::isnan(sum)) {
+    return l.fail(Outcome::kNonFinite);
+  }
+  if (arrays_.proposed[lane] > 0.0 && l.phase > 0) {
+    l.mode = Mode::kStep;
+  } else {
+    beginSteps(lane);
+  }
+}
+
+}  // namespace twinmap::lanes

@@ -1,0 +1,307 @@
+// Sensors that remember, clip and round, prescribed motions and sampled controllers. Against closed forms,
+// scipy and finite differences.
+
+#include <cmath>
+
+#include "framework/experiment/model/parameter_box.hpp"
+#include "tests/framework/models/mechanism/run_model.hpp"
+#include "tests/framework/models/mechanism/sampled_golden.hpp"
+
+namespace twinmap::testing {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kHalfTurn = 3.141592653589793;
+const VectorXd kSampledTimes = VectorXd::LinSpaced(8, 0.25, 2.0);
+const Expression3 kRail = ex3("1", "0", "0");
+
+SignalSpec wave(const std::string& text, const std::string& amplitude, const std::string& frequency) {
+  SignalSpec spec;
+  spec.name = name(text);
+  spec.sines.push_back({ex(amplitude), ex(frequency), ex("0"), ex("0"), {"", {}}});
+  return spec;
+}
+
+OutputSpec sensedOutput(const std::string& text, const std::string& expression, const SensorSpec& sensor) {
+  OutputSpec spec;
+  spec.name = name(text);
+  spec.expression = ex(expression);
+  spec.unit = "1";
+  spec.sensor = sensor;
+  return spec;
+}
+
+SensorSpec sensor(const std::string& lag, const std::string& average, const std::string& delay) {
+  SensorSpec spec;
+  spec.lag = {lag, {}};
+  spec.average = {average, {}};
+  spec.delay = {delay, {}};
+  return spec;
+}
+
+void addCart(ModelSpec& model, const std::string& coordinate, const std::string& mass,
+             const std::string& parent = "ground") {
+  model.system.bodies.push_back(body("on " + coordinate, mass, kOrigin, kOrigin,
+                                     joint(JointType::kSlider, kRail, {coordinate}, parent)));
+}
+
+/// A free cart, and a sine z of 3 sin(3 pi t) that sensors look at.
+ModelSpec makeWatcher(std::vector<SensorSpec> sensors) {
+  ModelSpec model = makeModel(2.0);
+  addCart(model, "q", "1");
+  model.excitation = {wave("z", "3", "1.5")};
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    model.outputs.push_back(sensedOutput("y" + std::to_string(i), "z", sensors[i]));
+  }
+  return model;
+}
+
+/// The largest difference between derivatives and central differences over the bounds' width, of each
+/// output's largest or its range. A step of 1e-4 widths leaves some 1e-8 of truncation, and 1e-6 of the
+/// integration's error.
+double compareDerivatives(const ModelSpec& model, double step = 1e-4) {
+  MultibodySimulator simulator(model, kSampledTimes);
+  const std::vector<ParameterSpec> sampled = collectSampled(model);
+  const VectorXd center = calcBoxCenter(sampled), widths = calcWidths(sampled);
+  const Eigen::Index rows = simulator.getLayout().getRowCount(), p = center.size();
+  MatrixXd response(rows, 1), derivatives, both(rows, 2), points(p, 2);
+  SampleStatus status, statuses[2];
+  simulator.simulateWithDerivatives(center, response, derivatives, &status);
+  EXPECT_TRUE(status.ok) << status.reason;
+  double largest = 0.0;
+  for (Eigen::Index k = 0; k < p; ++k) {
+    points << center, center;
+    points(k, 0) += step * widths[k];
+    points(k, 1) -= step * widths[k];
+    simulator.simulate(points, both, statuses);
+    const VectorXd expected = (both.col(0) - both.col(1)) / (points(k, 0) - points(k, 1));
+    for (std::size_t o = 0; o < model.outputs.size(); ++o) {
+      const auto n = kSampledTimes.size();
+      const VectorXd error = (derivatives.col(k) - expected).segment(static_cast<Eigen::Index>(o) * n, n);
+      const double scale = expected.segment(static_cast<Eigen::Index>(o) * n, n).cwiseAbs().maxCoeff();
+      const auto values = response.col(0).segment(static_cast<Eigen::Index>(o) * n, n);
+      const double range = (values.maxCoeff() - values.minCoeff()) / widths[k];
+      largest = std::max(largest, error.cwiseAbs().maxCoeff() / std::max(scale, range));
+    }
+  }
+  return largest;
+}
+
+TEST(Sensor, ThatLagsAveragesOrDelaysASineShowsItsClosedForm) {
+  const double rate = 3.0 * kHalfTurn, lag = 0.05, window = 0.13, delay = 0.4;
+  const ModelSpec model = makeWatcher(
+      {sensor("0.05", "", ""), sensor("", "0.13", ""), sensor("", "", "0.4"), sensor("", "0.13", "0.4")});
+  const MatrixXd y = runModel(model, kSampledTimes);
+  const auto average = [&](double t) {
+    const double begin = std::max(t - window, 0.0);
+    return t < 0.0 ? 0.0 : 3.0 / (rate * window) * (std::cos(rate * begin) - std::cos(rate * t));
+  };
+  for (Eigen::Index i = 0; i < kSampledTimes.size(); ++i) {
+    const double t = kSampledTimes[i];
+    const double lagged =
+        3.0 / (1.0 + std::pow(rate * lag, 2)) *
+        (std::sin(rate * t) - rate * lag * std::cos(rate * t) + rate * lag * std::exp(-t / lag));
+    EXPECT_NEAR(y(i, 0), lagged, 6e-6);
+    EXPECT_NEAR(y(i, 1), average(t), 6e-6);
+    EXPECT_NEAR(y(i, 2), t < delay ? 0.0 : 3.0 * std::sin(rate * (t - delay)), 6e-6);
+    EXPECT_NEAR(y(i, 3), average(t - delay), 6e-6);
+  }
+}
+
+TEST(Sensor, WithAButterworthFilterIsScipys) {
+  SensorSpec filtered;
+  filtered.filter = FilterSpec{3, ex("4")};
+  ModelSpec model = makeWatcher({filtered});
+  model.excitation = {wave("z", "1", "1.5")};
+  const VectorXd expected = Eigen::Map<const VectorXd>(golden::kButterworth[0], 8);
+  EXPECT_LT((runModel(model, kSampledTimes).col(0) - expected).cwiseAbs().maxCoeff(), 2e-6);
+}
+
+TEST(Sensor, ThatLagsAveragesAndDelaysSettlesAtTheStart) {
+  SensorSpec all = sensor("0.1", "0.2", "0.3");
+  all.filter = FilterSpec{4, ex("2")};
+  ModelSpec model = makeWatcher({all});
+  model.outputs[0].expression = ex("5");
+  EXPECT_LT((runModel(model, kSampledTimes).array() - 5.0).abs().maxCoeff(), 1e-9);
+}
+
+/// A cart on a spring, driven, whose sensors' times are parameters.
+ModelSpec makeSensedCart() {
+  ModelSpec model = makeModel(2.0);
+  model.parameters = {parameter("k", 20.0, 40.0), parameter("lag", 0.02, 0.06),
+                      parameter("window", 0.05, 0.15), parameter("delay", 0.01, 0.3),
+                      parameter("cutoff", 3.0, 5.0)};
+  addCart(model, "q", "1");
+  model.system.elements.get<ForceLaw>().push_back(law("q", "F - k * q - 0.4 * q_dot"));
+  model.excitation = {wave("F", "4", "0.7")};
+  model.initial.coordinates.push_back(value("q", "0.01 * k"));
+  SensorSpec filtered = sensor("", "", "delay");
+  filtered.filter = FilterSpec{2, ex("cutoff")};
+  model.outputs = {sensedOutput("lagged", "q", sensor("lag", "", "delay")),
+                   sensedOutput("averaged", "q_dot", sensor("", "window", "delay / 2")),
+                   sensedOutput("filtered", "q_ddot", filtered)};
+  return model;
+}
+
+TEST(Sensor, HasExactDerivativesWithRespectToItsTimesToo) {
+  EXPECT_LT(compareDerivatives(makeSensedCart()), 1e-5);
+}
+
+TEST(Sensor, ClipsWithoutADerivativeBeyondItsRange) {
+  ModelSpec model = makeSensedCart();
+  const MatrixXd free = runModel(model, kSampledTimes, calcBoxCenter(collectSampled(model)));
+  model.outputs[0].sensor->range = Bounds{-0.05, 0.1, {}};
+  const MatrixXd clipped = runModel(model, kSampledTimes, calcBoxCenter(collectSampled(model)));
+  EXPECT_EQ(clipped.col(0), free.col(0).cwiseMin(0.1).cwiseMax(-0.05).eval());
+  EXPECT_GT((clipped.col(0) - free.col(0)).cwiseAbs().maxCoeff(), 0.01);
+  EXPECT_LT(compareDerivatives(model), 1e-5);
+}
+
+/// A mass on a table: relative to it, with the table prescribed; or on the ground, pulled by the signal.
+ModelSpec makeShaker(bool prescribed) {
+  ModelSpec model = makeModel(2.0);
+  model.parameters = {parameter("k", 150.0, 250.0), parameter("d", 0.5, 3.0), parameter("A", 0.01, 0.03)};
+  model.excitation = {wave("z", "A", "1.2")};
+  if (prescribed) {
+    addCart(model, "table", "7");
+    addCart(model, "rel", "2", "on table");
+    model.system.elements.get<ForceLaw>() = {law("rel", "-k * rel - d * rel_dot"), law("table", "100")};
+    model.system.motions = {{name("table"), name("z")}};
+    start(model, "rel", "0", "-A * 2.4 * pi");  // at rest, where the table begins with a speed
+  } else {
+    addCart(model, "x", "2");
+    model.system.elements.get<ForceLaw>() = {law("x", "k * (z - x) + d * (z_dot - x_dot)")};
+  }
+  const std::string x = prescribed ? "table + rel" : "x";
+  model.outputs = {sensedOutput("x", x, {}),
+                   sensedOutput("a", prescribed ? "table_ddot + rel_ddot" : "x_ddot", {})};
+  return model;
+}
+
+TEST(Motion, ThatIsPrescribedMovesWhatHangsOnItByItsSpeedAndAcceleration) {
+  const ModelSpec model = makeShaker(true);
+  const VectorXd center = calcBoxCenter(collectSampled(model));
+  const MatrixXd expected = runModel(makeShaker(false), kSampledTimes, center);
+  const MatrixXd response = runModel(model, kSampledTimes, center);
+  EXPECT_LT((response - expected).col(0).cwiseAbs().maxCoeff(), 1e-8 * expected.col(0).cwiseAbs().maxCoeff());
+  EXPECT_LT((response - expected).col(1).cwiseAbs().maxCoeff(), 1e-8 * expected.col(1).cwiseAbs().maxCoeff());
+}
+
+TEST(Motion, HasExactDerivatives) {
+  EXPECT_LT(compareDerivatives(makeShaker(true)), 1e-5);
+}
+
+/// make_sampled_golden.py: motor and its PID.
+ModelSpec makeSampledMotor(double sample_time, const std::string& delay, const SensorSpec& encoder) {
+  ModelSpec model = makeModel(2.0);
+  model.system.bodies.push_back(
+      body("rotor", "1", kOrigin, ex3("2e-3", "2e-3", "2e-3"), joint(JointType::kPin, {"angle"})));
+  StateSpec current;
+  current.name = name("i");
+  current.derivative = ex("(u - 1.2 * i - 0.05 * angle_dot) / 3e-3");
+  model.system.states = {current};
+  model.system.elements.get<ForceLaw>().push_back(law("angle", "0.05 * i - 1e-3 * angle_dot"));
+  ControllerSpec pid;
+  pid.name = name("pid");
+  pid.sample_time = sample_time;
+  pid.delay = ex(delay);
+  pid.reads = {{name("q"), name("encoder")}};
+  pid.states = {{name("integral"), ex("integral + " + std::to_string(sample_time) + " * (r - q)"), {}, ""}};
+  pid.writes = {
+      {name("u"), ex("clamp(20 * (r - q) + 30 * integral - 0.4 * difference(q), -24, 24)"), {}, ""}};
+  model.system.controllers = {pid};
+  model.excitation = {wave("r", "1", "0.5")};
+  model.outputs = {coordinateOutput("angle"), sensedOutput("current", "i", {}),
+                   sensedOutput("voltage", "u", {}), sensedOutput("encoder", "angle", encoder)};
+  return model;
+}
+
+template <std::size_t N>
+void expectSampled(const ModelSpec& model, const double (&expected)[N][8]) {
+  const MatrixXd response = runModel(model, kSampledTimes);
+  for (std::size_t o = 0; o < N; ++o) {
+    const VectorXd values = Eigen::Map<const VectorXd>(expected[o], 8);
+    EXPECT_LT((response.col(static_cast<Eigen::Index>(o)) - values).cwiseAbs().maxCoeff(),
+              1e-6 * (values.maxCoeff() - values.minCoeff()))
+        << o;
+  }
+}
+
+TEST(Controller, AtOneKilohertzWithADelayAboveItsSampleTimeIsScipys) {
+  expectSampled(makeSampledMotor(1e-3, "1.5e-3", {}), golden::kPid);
+}
+
+TEST(Controller, ReadsAnEncoderThatLagsAndRounds) {
+  SensorSpec encoder = sensor("", "", "0.7e-3");
+  encoder.quantum = 1e-3;
+  expectSampled(makeSampledMotor(2e-3, "0.4e-3", encoder), golden::kEncoder);
+}
+
+TEST(Controller, HasExactDerivativesThroughItsDelaysAndSensors) {
+  ModelSpec model = makeSampledMotor(0.02, "delay", sensor("lag", "window", "late"));
+  model.parameters = {parameter("delay", 0.011, 0.027), parameter("lag", 2e-3, 6e-3),
+                      parameter("late", 1e-3, 8e-3),    parameter("window", 0.01, 0.03),
+                      parameter("b", 1e-3, 3e-3),       parameter("kp", 0.5, 1.0)};
+  model.system.elements.get<ForceLaw>() = {law("angle", "0.05 * i - b * angle_dot")};
+  model.system.controllers[0].writes[0].value =
+      ex("kp * (r - q) + 0.2 * integral - 0.01 * difference(r - q)");
+  EXPECT_LT(compareDerivatives(model), 1e-5);
+}
+
+TEST(Controller, PassesAQuantiserInItsDerivatives) {
+  ModelSpec model = makeSampledMotor(0.02, "0", {});
+  model.parameters = {parameter("kp", 0.5, 1.0)};
+  model.system.controllers[0].writes[0].value = ex("kp * (r - q)");
+  MatrixXd exact, rounded, response(kSampledTimes.size() * 4, 1);
+  SampleStatus status;
+  const VectorXd center = calcBoxCenter(collectSampled(model));
+  MultibodySimulator(model, kSampledTimes).simulateWithDerivatives(center, response, exact, &status);
+  model.outputs[3].sensor->quantum = 1e-6;
+  MultibodySimulator(model, kSampledTimes).simulateWithDerivatives(center, response, rounded, &status);
+  EXPECT_LT((rounded - exact).cwiseAbs().maxCoeff(), 1e-4 * exact.cwiseAbs().maxCoeff());
+}
+
+TEST(Controller, WithoutADelayCascadesWithinAnInstant) {
+  ModelSpec model = makeModel(2.0);
+  addCart(model, "x", "1");
+  ControllerSpec outer, inner;
+  outer.name = name("outer");
+  outer.sample_time = inner.sample_time = 0.25;
+  outer.writes = {{name("a"), ex("t + 1"), ex("-1"), ""}};
+  inner.name = name("inner");
+  inner.writes = {{name("b"), ex("2 * a"), {}, ""}};
+  model.system.controllers = {outer, inner};
+  model.outputs = {sensedOutput("A", "a", {}), sensedOutput("B", "b", {})};
+  const MatrixXd held = runModel(model, kSampledTimes);
+  EXPECT_EQ(held.col(0), (kSampledTimes.array() + 1.0).matrix());
+  EXPECT_EQ(held.col(1), 2.0 * held.col(0));
+}
+
+TEST(Controller, ShowsItsInitialValueBeforeItsFirstWrite) {
+  ModelSpec model = makeModel(2.0);
+  addCart(model, "x", "1");
+  ControllerSpec late;
+  late.name = name("late");
+  late.sample_time = 0.1;
+  late.delay = ex("0.6");
+  late.writes = {{name("a"), ex("t + 1"), ex("-1"), ""}};
+  model.system.controllers = {late};
+  model.outputs = {sensedOutput("A", "a", {})};
+  const MatrixXd held = runModel(model, kSampledTimes);
+  EXPECT_EQ(held(0, 0), -1.0);
+  EXPECT_EQ(held(1, 0), -1.0);
+  EXPECT_NEAR(held(2, 0), 1.1, 1e-12);  // at .75 s shows what was read at .1 s
+  EXPECT_NEAR(held(7, 0), 2.4, 1e-12);
+}
+
+TEST(Controller, IsRefusedBySimbodysEngineByItsKey) {
+  ModelSpec model = makeSampledMotor(1e-3, "0", {});
+  model.simulation.engine = Engine::kSimbody;
+  EXPECT_NE(getError(model).find("system.controllers.pid is simulated in lanes only"), std::string::npos)
+      << getError(model);
+}
+
+}  // namespace
+}  // namespace twinmap::testing
