@@ -48,7 +48,7 @@ CandidateFeatures makeFeatures(Index candidates) {
 // J' C^-1 J of what is chosen, the last unknown marginalised as a nuisance parameter of variance 1 / 12.
 MatrixXd calcExpected(const CandidateFeatures& features, const std::vector<Index>& rows, std::size_t point) {
   const MatrixXd j = features.sensitivities[point](rows, Eigen::all);
-  const MatrixXd c = features.noise_covariance(rows, rows);
+  const MatrixXd c = features.noise_covariance.take(rows).toMatrix();
   MatrixXd whole = j.transpose() * test::calcInverse(c) * j;
   return whole.topLeftCorner(3, 3) -
          whole.topRightCorner(3, 1) * whole.bottomLeftCorner(1, 3) / (whole(3, 3) + 12.0);
@@ -57,9 +57,11 @@ MatrixXd calcExpected(const CandidateFeatures& features, const std::vector<Index
 TEST(CandidateInformation, IsThatOfTheChosenFeaturesWhetherNoiseIsCorrelatedOrNot) {
   for (const double correlation : {0.0, 0.4}) {
     CandidateFeatures features = makeFeatures(5);
-    for (Index i = 0; i + 1 < features.noise_covariance.rows(); ++i) {
-      features.noise_covariance(i, i + 1) = features.noise_covariance(i + 1, i) = correlation * 0.5;
+    MatrixXd covariance = features.noise_covariance.toMatrix();
+    for (Index i = 0; i + 1 < covariance.rows(); ++i) {
+      covariance(i, i + 1) = covariance(i + 1, i) = correlation * 0.5;
     }
+    features.noise_covariance = covariance;
     const CandidateInformation candidates(features, makeGroups(5, 2), 3);
     for (std::size_t point = 0; point < 3; ++point) {
       const MatrixXd expected = calcExpected(features, {2, 3, 8, 9}, point);

@@ -54,8 +54,8 @@ TEST(ResponseNoise, OfRoundedReadingsHasTheirVarianceAndTheirSteps) {
   EXPECT_DOUBLE_EQ(noise.getStddev()[kTimes], std::sqrt(0.04 + kQuantum * kQuantum / 12.0));
   EXPECT_EQ(noise.getStddev()[0], 3.0);
   const FeatureMatrix all = MatrixXd::Identity(2 * kTimes + 2, 2 * kTimes + 2).sparseView();
-  const MatrixXd more =
-      noise.calcCovariance(all) - ResponseNoise(makeTwoNoises(), makeTwoOutputs()).calcCovariance(all);
+  const MatrixXd more = noise.calcCovariance(all).toMatrix() -
+                        ResponseNoise(makeTwoNoises(), makeTwoOutputs()).calcCovariance(all).toMatrix();
   VectorXd expected = VectorXd::Zero(2 * kTimes + 2);
   expected.segment(kTimes, kTimes).setConstant(kQuantum * kQuantum / 12.0);
   EXPECT_LT((more - MatrixXd(expected.asDiagonal())).norm(), 1e-14);

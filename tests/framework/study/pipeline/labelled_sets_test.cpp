@@ -56,7 +56,7 @@ TEST(LabelledSets, SamplesThatLackAFeatureFailWithTheReasonAndKeepTheirPlace) {
   const FeatureNoise noise(extractor, Eigen::VectorXd::Constant(9, 0.3), 1);
   const LabelledSets labelled = makeLabelledSets(experiment, sets, extractor, noise);
   EXPECT_TRUE(labelled.train.features.allFinite());
-  EXPECT_TRUE(labelled.train.noise_covariance.allFinite());
+  EXPECT_TRUE(labelled.train.noise_covariance.toMatrix().allFinite());
   EXPECT_EQ(labelled.train.features.cols(), 20);
   EXPECT_EQ(labelled.train.parameters, Eigen::MatrixXd::Constant(1, 20, 20.0));
   EXPECT_EQ(labelled.test.parameters, Eigen::RowVector2d(20.0, 30.0));
