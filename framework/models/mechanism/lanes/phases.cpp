@@ -60,6 +60,9 @@ class PhaseMaker {
     for (const Mark& mark : marks_) {
       addMark(mark, sample);
     }
+    if (sample.phases.empty()) {
+      return;  // nothing is integrated: modes alone
+    }
     if (const int start = model_.sampling.start_input; start >= 0) {
       sample.phases.front().inputs[start] = 1.0;
       sample.phases.front().jumps = true;
