@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -7,6 +8,7 @@
 #include "kernels/lanes/lane.hpp"
 #include "kernels/lanes/output_recorder.hpp"
 #include "kernels/lanes/program/aligned_buffer.hpp"
+#include "kernels/lanes/state_projection.hpp"
 
 namespace twinmap::lanes {
 
@@ -55,6 +57,7 @@ class LanePacket {
   const int states_, parameters_, phase_inputs_, directions_;
   program::Interpreter interpreter_;
   OutputRecorder outputs_;
+  std::optional<StateProjection> projection_;
   std::vector<const double*> derivatives_, pivots_;
   std::vector<double> absolute_, relative_;
   program::AlignedBuffer buffer_;

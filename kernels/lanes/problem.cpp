@@ -33,17 +33,20 @@ Problem makeProblem(Recorder& recorder, const Equations& equations, const std::v
   problem.directions = directions;
   problem.pivot_count = static_cast<int>(equations.pivots.size());
   problem.output_count = static_cast<int>(equations.outputs.size());
-  std::vector<Symbol> rows = equations.derivatives, outputs = equations.outputs;
+  std::vector<Symbol> rows = equations.derivatives, outputs = equations.outputs,
+                      projection = equations.projection;
   for (int j = 0; j < static_cast<int>(directions.size()); ++j) {
     const std::vector<Seed> seeds = makeSeeds(recorder, equations, directions, j);
     append(calcTangents(equations.derivatives, seeds), rows);
     append(calcTangents(equations.outputs, seeds), outputs);
+    append(calcTangents(equations.projection, seeds), projection);
   }
   append(equations.pivots, rows);
   program::InputCounts counts = equations.counts;
   counts.states = problem.getRowCount();
   problem.derivative = compile(recorder, rows, counts);
   problem.output = compile(recorder, outputs, counts);
+  problem.projection = compile(recorder, projection, counts);
   return problem;
 }
 

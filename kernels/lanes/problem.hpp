@@ -14,6 +14,9 @@ struct Equations {
   std::vector<program::Symbol> derivatives;  ///< one a state
   std::vector<program::Symbol> pivots;       ///< must stay positive wherever f is evaluated
   std::vector<program::Symbol> outputs;      ///< of t, y, p and u
+  /// Where solutions satisfy conditions that steps leave by their error: the states near y that satisfy them,
+  /// one a state. Empty: there are none.
+  std::vector<program::Symbol> projection{};
 };
 
 /// What is integrated: the states and, behind them, their derivatives with respect to each direction (a
@@ -25,6 +28,7 @@ struct Problem {
   int output_count = 0;
   program::Program derivative;  ///< derivatives of all rows, then pivots
   program::Program output;      ///< outputs, then their derivatives, direction by direction
+  program::Program projection;  ///< of all rows; without outputs where there is none
 
   int getRowCount() const { return counts.states * (1 + static_cast<int>(directions.size())); }
 };

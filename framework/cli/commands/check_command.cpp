@@ -54,13 +54,18 @@ std::string abbreviateTables(const std::string& text) {
 void check(const CheckArguments& arguments) {
   const YamlNode tree = loadExperimentTree(arguments.experiment.file, arguments.experiment.overrides);
   std::set<std::string> engines;
+  std::vector<std::string> machine;  // of the first model: those of a sweep are alike
   for (const ModelGroup& group : groupByModel(expandCasesWithSignals(tree))) {  // what is wrong in any case
     const std::unique_ptr<Simulator> simulator = makeSimulator(group.model, group.times, group.modes);
     simulator->checkStart();
     engines.insert(simulator->describeEngine());
+    machine = machine.empty() ? simulator->describeModel() : machine;
   }
   for (const std::string& engine : engines) {
     std::cout << "# solver: " << engine << '\n';
+  }
+  for (const std::string& line : machine) {
+    std::cout << "#   " << line << '\n';
   }
   if (readExperiment(tree).inverse_map.isNone()) {
     std::cout << "# no inverse map: measurements are inferred by their posterior on the simulator\n";

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "framework/experiment/model/body_spec.hpp"
+#include "framework/experiment/model/constraint_spec.hpp"
 #include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/experiment/model/initial_spec.hpp"
 #include "framework/experiment/model/state_spec.hpp"
@@ -15,6 +16,7 @@ struct SystemSpec {
   std::vector<StateSpec> states;             ///< of first order
   std::vector<NamedExpression> expressions;  ///< each may use those before it
   ForceElements<Expression> elements;
+  std::vector<ConstraintSpec> constraints;  ///< beside those of the joints: loops, rods, gears
 
   // compiled once (experiment_spec.cpp)
   SystemSpec();
@@ -37,6 +39,8 @@ void describe(Fields& f, SystemSpec& s) {
   f.optionalMap("expressions", s.expressions,
                 "named once, for all expressions that may use coordinates and states");
   describeElements(f, s.elements);
+  f.optional("constraints", s.constraints,
+             "closed loops, rods, gears: what bodies satisfy beside their joints");
 }
 
 }  // namespace twinmap

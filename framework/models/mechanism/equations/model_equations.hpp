@@ -5,7 +5,7 @@
 
 #include "framework/experiment/model/model_spec.hpp"
 #include "framework/models/mechanism/equations/calc_system_values.hpp"
-#include "framework/models/mechanism/equations/force_sum.hpp"
+#include "framework/models/mechanism/equations/constrained_motion.hpp"
 #include "framework/models/mechanism/varying_expressions.hpp"
 
 namespace twinmap::equations {
@@ -26,7 +26,7 @@ struct ModelMotion {
   std::vector<S> rates;          ///< time derivatives of the coordinates
   std::vector<S> accelerations;  ///< of the speeds
   std::vector<S> state_rates;
-  std::vector<S> pivots;  ///< all positive, or the mass matrix is singular
+  std::vector<S> pivots;  ///< all positive, or the mass matrix or a loop is singular
   std::vector<BodyMotion<S>> bodies;
 };
 
@@ -85,9 +85,10 @@ ModelMotion<S> calcModelMotion(const ModelSpec& model, const SystemNames& system
   Loads<S> loads = calcLoads(model.system, values, motion.bodies, state, motion.rates,
                              nameState(model, system, state, motion.rates, names));
   motion.state_rates = std::move(loads.state_rates);
-  Solution<S> solution =
-      solve(calcEquationsOfMotion(values, motion.bodies, loads.on_bodies, std::move(loads.on_speeds)));
-  motion.accelerations = std::move(solution.values);
+  ConstrainedMotion<S> solution = solveConstrained(
+      calcEquationsOfMotion(values, motion.bodies, loads.on_bodies, std::move(loads.on_speeds)),
+      calcClosureTerms(values, motion.bodies, state.coordinates));
+  motion.accelerations = std::move(solution.accelerations);
   motion.pivots = std::move(solution.pivots);
   return motion;
 }

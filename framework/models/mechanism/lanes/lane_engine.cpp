@@ -30,7 +30,7 @@ void LaneEngine::simulateWithDerivatives(const Eigen::Ref<const MatrixXd>& param
 
 StiffRetry& LaneEngine::updStiffRetry() {
   if (!stiff_retry_) {
-    stiff_retry_.emplace(context_.model, programs_.getValues(), programs_.getJacobian(context_.names), task_);
+    stiff_retry_.emplace(context_.model, programs_.getValues(), programs_.getStiff(context_.names), task_);
   }
   return *stiff_retry_;
 }

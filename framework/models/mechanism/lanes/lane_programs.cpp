@@ -28,22 +28,22 @@ LanePrograms::LanePrograms(ModelContext& context, SimbodyModel* simbody)
 const LaneModel& LanePrograms::getDerivatives(const SystemNames& names) {
   const std::lock_guard<std::mutex> guard(compiling_);
   if (!derivatives_) {
-    derivatives_ = compileModel(recordModel(model_, names), true);
+    derivatives_ = compileModel(recordModel(model_, names, values_->loops), true);
   }
   return *derivatives_;
 }
 
-const program::Program& LanePrograms::getJacobian(const SystemNames& names) {
+const StiffPrograms& LanePrograms::getStiff(const SystemNames& names) {
   const std::lock_guard<std::mutex> guard(compiling_);
-  if (!jacobian_) {
-    jacobian_ = compileJacobian(recordModel(model_, names));
+  if (!stiff_) {
+    stiff_ = compileStiff(recordModel(model_, names, values_->loops));
   }
-  return *jacobian_;
+  return *stiff_;
 }
 
 /// Returns what prevents it, or "".
 std::string LanePrograms::compile(ModelContext& context, SimbodyModel* simbody) {
-  values_ = compileModel(recordModel(model_, context.names), false);
+  values_ = compileModel(recordModel(model_, context.names, makeLoopModel(context)), false);
   return simbody == nullptr ? "" : compareWithSimbody(context, *simbody, *values_);
 }
 

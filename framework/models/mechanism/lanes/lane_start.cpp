@@ -11,7 +11,11 @@ using Eigen::VectorXd;
 using Parameters = Eigen::Ref<const VectorXd>;
 
 LaneStart::LaneStart(const ModelSpec& spec, const LaneModel& model, const VectorXd& box_center)
-    : spec_(spec), model_(model), box_center_(box_center), start_(model.start), rest_(model) {}
+    : spec_(spec), model_(model), box_center_(box_center), start_(model.start), rest_(model) {
+  if (model.loops) {
+    assembly_.emplace(*model.loops);
+  }
+}
 
 void LaneStart::fill(const Parameters& parameters, lanes::Sample& sample) {
   // the values, then their derivatives with respect to each parameter
@@ -29,8 +33,10 @@ void LaneStart::fillInitial(const Parameters& parameters, MatrixXd states, lanes
   if (box_center_.size() > 0) {
     states.setZero();
     states.col(0) = insertSpeeds(box_center_, none);
+    assemble(parameters, states);
   } else if (spec_.initial.equilibrium) {
     rest_.setParameters(parameters);
+    assemble(parameters, states);
     const MatrixXd start = takeEquilibrium(states);
     const VectorXd equilibrium = twinmap::solveEquilibrium(rest_, start.col(0));
     if (model_.directions > 0) {
@@ -40,8 +46,19 @@ void LaneStart::fillInitial(const Parameters& parameters, MatrixXd states, lanes
       }
     }
     states.col(0) = insertSpeeds(equilibrium, none);
+    if (assembly_) {
+      assembly_->requireClosed(parameters, equilibrium.head(model_.coordinate_count));
+    }
+  } else {
+    assemble(parameters, states);
   }
   sample.initial.assign(states.data(), states.data() + states.size());
+}
+
+void LaneStart::assemble(const Parameters& parameters, MatrixXd& states) {
+  if (assembly_) {
+    assembly_->assemble(parameters, states);
+  }
 }
 
 MatrixXd LaneStart::takeEquilibrium(const MatrixXd& states) const {
@@ -69,10 +86,12 @@ void LaneStart::fillPhases(const MatrixXd& events, lanes::Sample& sample) const 
 
 VectorXd LaneStart::solveEquilibrium(const Parameters& parameters) {
   rest_.setParameters(parameters);
-  return twinmap::solveEquilibrium(
-      rest_, box_center_.size() > 0
-                 ? box_center_
-                 : VectorXd(takeEquilibrium(start_.calc({parameters}).head(model_.counts.states))));
+  MatrixXd states = start_.calc({parameters}).head(model_.counts.states);
+  if (box_center_.size() > 0) {
+    states = insertSpeeds(box_center_, VectorXd::Zero(model_.coordinate_count));
+  }
+  assemble(parameters, states);
+  return twinmap::solveEquilibrium(rest_, takeEquilibrium(states));
 }
 
 VectorXd solveBoxCenter(ModelContext& context, const LaneModel& model) {

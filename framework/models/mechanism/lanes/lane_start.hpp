@@ -1,6 +1,9 @@
 #pragma once
 
+#include <optional>
+
 #include "framework/models/mechanism/lanes/rest_program.hpp"
+#include "framework/models/mechanism/loops/assembly.hpp"
 #include "framework/models/mechanism/model_context.hpp"
 #include "kernels/lanes/sample.hpp"
 
@@ -23,6 +26,8 @@ class LaneStart {
  private:
   void fillInitial(const Eigen::Ref<const Eigen::VectorXd>& parameters, Eigen::MatrixXd states,
                    lanes::Sample& sample);
+  /// Where the file's initial coordinates leave loops open, closes them; and rates become speeds.
+  void assemble(const Eigen::Ref<const Eigen::VectorXd>& parameters, Eigen::MatrixXd& states);
   /// Rows [coordinates; states of first order] of all states.
   Eigen::MatrixXd takeEquilibrium(const Eigen::MatrixXd& states) const;
   void fillPhases(const Eigen::MatrixXd& events, lanes::Sample& sample) const;
@@ -32,6 +37,7 @@ class LaneStart {
   const Eigen::VectorXd& box_center_;
   SingleProgram start_;
   RestProgram rest_;
+  std::optional<Assembly> assembly_;  ///< with loops
 };
 
 /// The equilibrium (coordinates, then states of first order) at the box centre that all samples start from;

@@ -19,9 +19,14 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// The recorded equations of one sample as a problem of the integrators; nothing happens between its phases.
 class RecordedProblem final : public HybridProblem {
  public:
-  RecordedProblem(const lanes::Sample& sample, Index times, SingleProgram& derivative, SingleProgram& output,
-                  SingleProgram& jacobian)
-      : sample_(sample), times_(times), derivative_(derivative), output_(output), jacobian_(jacobian) {}
+  RecordedProblem(const lanes::Sample& sample, Index times, const char* singular, SingleProgram& derivative,
+                  SingleProgram& output, SingleProgram& jacobian)
+      : sample_(sample),
+        times_(times),
+        singular_(singular),
+        derivative_(derivative),
+        output_(output),
+        jacobian_(jacobian) {}
 
   std::vector<double> getBoundaries() const {
     std::vector<double> boundaries;
@@ -49,7 +54,7 @@ class RecordedProblem final : public HybridProblem {
     }
     for (int i = n; i < derivative_.getOutputCount(); ++i) {
       if (!(derivative_.getOutput(i) > 0.0)) {  // a pivot
-        throw SimulationFailure(kSingularMassMatrix);
+        throw SimulationFailure(singular_);
       }
     }
   }
@@ -79,6 +84,7 @@ class RecordedProblem final : public HybridProblem {
  private:
   const lanes::Sample& sample_;
   Index times_;
+  const char* singular_;
   SingleProgram &derivative_, &output_, &jacobian_;
 };
 
@@ -92,15 +98,16 @@ SampleStatus makeSecondStatus(const SampleStatus& first, SampleStatus second) {
 
 }  // namespace
 
-StiffRetry::StiffRetry(const ModelSpec& spec, const LaneModel& model, const program::Program& jacobian,
+StiffRetry::StiffRetry(const ModelSpec& spec, const LaneModel& model, const StiffPrograms& programs,
                        const SampleTask& task)
     : spec_(spec),
+      model_(model),
       task_(task),
       start_(spec, model, task.box_center),
       modes_(model),
-      derivative_(model.problem.derivative),
+      derivative_(programs.derivative),
       output_(model.problem.output),
-      jacobian_(jacobian) {}
+      jacobian_(programs.jacobian) {}
 
 void StiffRetry::simulate(const Eigen::Ref<const VectorXd>& parameters, Eigen::Ref<VectorXd> response,
                           SampleStatus& status) {
@@ -143,7 +150,8 @@ SampleStatus StiffRetry::run(const Eigen::Ref<const VectorXd>& parameters, Eigen
     lanes::Sample sample;
     start_.fill(parameters, sample);
     sample.outputs = response.data();
-    RecordedProblem problem(sample, task_.layout.times.size(), derivative_, output_, jacobian_);
+    RecordedProblem problem(sample, task_.layout.times.size(), getSingularReason(model_), derivative_,
+                            output_, jacobian_);
     HybridReport report =
         integrateHybrid(problem, sample.initial, problem.getBoundaries(), task_.layout.times, options,
                         sequence.empty() ? nullptr : &sequence, HybridMethod::kImplicit);
