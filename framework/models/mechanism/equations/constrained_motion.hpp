@@ -39,7 +39,8 @@ ClosureResponse<S> calcClosureResponse(const Factors<S>& mass, const std::vector
       schur.back().push_back(dotRow(closures[k].row, response.columns[j]));
     }
   }
-  response.schur = factorize(std::move(schur), kSingularClosure);
+  std::vector<S> none;
+  response.schur = factorize(std::move(schur), kSingularClosure, none);
   return response;
 }
 
@@ -66,8 +67,8 @@ struct ConstrainedMotion {
 template <class S>
 ConstrainedMotion<S> solveConstrained(LinearSystem<S> equations,
                                       const std::vector<ClosureTerms<S>>& closures) {
-  const Factors<S> mass = factorize(std::move(equations.matrix), kSingularPivot);
-  std::vector<S> free = solve(mass, std::move(equations.right));
+  const Factors<S> mass = factorize(std::move(equations.matrix), kSingularPivot, equations.right);
+  std::vector<S> free = substitute(mass, std::move(equations.right));
   if (closures.empty()) {
     return {std::move(free), {}, mass.pivots};
   }
@@ -93,9 +94,10 @@ std::pair<std::vector<S>, std::vector<S>> project(const SystemValues<S>& system,
                                                   int rounds) {
   std::vector<BodyMotion<S>> motions = calcMotions(system, coordinates, speeds);
   const std::vector<ClosureTerms<S>> first = calcClosureTerms(system, motions, coordinates);
-  const LinearSystem<S> equations = calcEquationsOfMotion(
-      system, motions, std::vector<Spatial<S>>(motions.size()), std::vector<S>(coordinates.size(), S(0.0)));
-  const ClosureResponse<S> response = calcClosureResponse(factorize(equations.matrix, kSingularPivot), first);
+  LinearSystem<S> equations = calcEquationsOfMotion(system, motions, std::vector<Spatial<S>>(motions.size()),
+                                                    std::vector<S>(coordinates.size(), S(0.0)));
+  const Factors<S> mass = factorize(std::move(equations.matrix), kSingularPivot, equations.right);
+  const ClosureResponse<S> response = calcClosureResponse(mass, first);
   std::vector<ClosureTerms<S>> terms = first;
   std::vector<S> closed = coordinates;
   for (int round = 0; round < rounds; ++round) {

@@ -166,9 +166,9 @@ struct Factors {
 };
 
 /// `matrix`: its lower triangle, row by row. `smallest`: the part of its diagonal entry that a pivot must
-/// exceed.
+/// exceed. `right`: empty, or a right side that is eliminated along the way, for substitute().
 template <class S>
-Factors<S> factorize(std::vector<std::vector<S>> matrix, double smallest) {
+Factors<S> factorize(std::vector<std::vector<S>> matrix, double smallest, std::vector<S>& right) {
   const int n = static_cast<int>(matrix.size());
   Factors<S> factors{{}, std::vector<S>(n, S(0.0)), std::vector<S>(n, S(0.0))};
   std::vector<S> diagonal;
@@ -186,6 +186,9 @@ Factors<S> factorize(std::vector<std::vector<S>> matrix, double smallest) {
       for (int j = 0; j <= i; ++j) {
         matrix[i][j] = matrix[i][j] - row[i] * matrix[k][j];
       }
+      if (!right.empty()) {
+        right[i] = right[i] - row[i] * right[k];
+      }
     }
     matrix[k] = std::move(row);
   }
@@ -193,23 +196,28 @@ Factors<S> factorize(std::vector<std::vector<S>> matrix, double smallest) {
   return factors;
 }
 
-/// The solution for a right side.
+/// The solution from a right side that is eliminated.
 template <class S>
-std::vector<S> solve(const Factors<S>& factors, std::vector<S> right) {
-  const int n = static_cast<int>(right.size());
-  for (int k = n - 1; k >= 0; --k) {
-    for (int i = 0; i < k; ++i) {
-      right[i] = right[i] - factors.rows[k][i] * right[k];
-    }
-  }
-  for (int k = 0; k < n; ++k) {
+std::vector<S> substitute(const Factors<S>& factors, std::vector<S> right) {
+  for (std::size_t k = 0; k < right.size(); ++k) {
     S value = right[k] * factors.inverse[k];
-    for (int i = 0; i < k; ++i) {
+    for (std::size_t i = 0; i < k; ++i) {
       value = value - factors.rows[k][i] * right[i];
     }
     right[k] = value;
   }
   return right;
+}
+
+/// The solution for a right side.
+template <class S>
+std::vector<S> solve(const Factors<S>& factors, std::vector<S> right) {
+  for (std::size_t k = right.size(); k-- > 0;) {
+    for (std::size_t i = 0; i < k; ++i) {
+      right[i] = right[i] - factors.rows[k][i] * right[k];
+    }
+  }
+  return substitute(factors, std::move(right));
 }
 
 }  // namespace twinmap::equations

@@ -4,6 +4,7 @@
 
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/models/mechanism/equations/outputs.hpp"
+#include "framework/models/mechanism/equilibrium.hpp"
 #include "framework/models/mechanism/lanes/recorded_parameters.hpp"
 #include "kernels/lanes/program/differentiate.hpp"
 
