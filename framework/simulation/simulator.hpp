@@ -64,6 +64,10 @@ class Simulator {
   /// What simulates, in words: "vectorised solver (built-in)".
   std::string describeEngine() const;
 
+  /// The machine in a few lines "name    value" for the eye: what moves, loops, equilibrium, modes. Empty
+  /// where nothing is known of it. Some milliseconds.
+  virtual std::vector<std::string> describeModel() { return {}; }
+
   /// How noisy the responses are and what differences of them are taken over, for the log; "" where they are
   /// smooth for a known reason. Measures the noise if that has not been done yet.
   virtual std::string describeDifferences() { return ""; }

@@ -30,6 +30,9 @@ LanePacket::LanePacket(const Problem& problem, const std::vector<double>& times,
   if (!problem.jump.outputs.empty()) {
     jumps_.emplace(problem.jump, engine.program);
   }
+  if (!problem.projection.outputs.empty()) {
+    projection_.emplace(problem, engine.program);
+  }
   makeTolerances(problem);
   placeArrays(problem);
 }
@@ -108,6 +111,9 @@ bool LanePacket::load(int lane, SampleStream& stream) {
     interpreter_.updParameter(i)[lane] = l.sample.parameters[i];
   }
   parameters_changed_ = true;
+  if (projection_) {
+    projection_->setSample(lane, l.sample);
+  }
   l.result = {};
   l.start = std::chrono::steady_clock::now();
   arrays_.next_check[lane] = 0.0;
@@ -147,6 +153,9 @@ void LanePacket::beginPhase(int lane, int phase) {
     interpreter_.updPhaseInput(i)[lane] = l.getPhase().inputs[i];
   }
   phase_changed_ = true;
+  if (projection_) {
+    projection_->setPhase(lane, l.getPhase());
+  }
   assert(static_cast<int>(l.getPhase().inputs.size()) == phase_inputs_ &&
          l.getPhase().begin < l.getPhaseEnd());
   arrays_.time[lane] = l.getPhase().begin;

@@ -7,6 +7,7 @@
 #include "kernels/lanes/integrator.hpp"
 #include "kernels/lanes/lane.hpp"
 #include "kernels/lanes/program/aligned_buffer.hpp"
+#include "kernels/lanes/state_projection.hpp"
 
 namespace twinmap::lanes {
 
@@ -63,6 +64,7 @@ class LanePacket {
   OutputRecorder outputs_;
   std::optional<program::Interpreter> jumps_;
   unsigned jumping_ = 0;  ///< lanes whose states jump before the next step
+  std::optional<StateProjection> projection_;
   std::vector<const double*> derivatives_, pivots_;
   std::vector<double> absolute_, relative_;
   program::AlignedBuffer buffer_;

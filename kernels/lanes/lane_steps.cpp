@@ -20,6 +20,11 @@ void LanePacket::doRound() {
   const unsigned attention = doStep();
   forEach(attention, [this](int lane) { judge(lane); });
   keepOutputs(attention);
+  if (projection_) {
+    // the slopes stay those of the state before, which is as near as the step's error: they enter the next
+    // step as if that had begun with this error
+    projection_->apply(arrays_.end, arrays_.accepted, arrays_.stage_state);
+  }
   engine_.accept(arrays_);
   forEach(attention, [this](int lane) { advance(lane); });
 }

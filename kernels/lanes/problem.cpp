@@ -138,8 +138,12 @@ Problem makeProblem(Recorder& recorder, const Equations& equations, const std::v
   problem.directions = directions;
   problem.pivot_count = static_cast<int>(equations.pivots.size());
   problem.output_count = static_cast<int>(equations.outputs.size());
-  std::vector<Symbol> rows = equations.derivatives, outputs = equations.outputs;
+  std::vector<Symbol> rows = equations.derivatives, outputs = equations.outputs,
+                      projection = equations.projection;
   appendSensitivities(recorder, equations, directions, rows, outputs);
+  for (int j = 0; j < static_cast<int>(directions.size()); ++j) {
+    append(calcTangents(equations.projection, makeSeeds(recorder, equations, directions, j)), projection);
+  }
   append(equations.pivots, rows);
   program::InputCounts counts = equations.counts;
   counts.states = problem.getRowCount();
@@ -148,6 +152,7 @@ Problem makeProblem(Recorder& recorder, const Equations& equations, const std::v
   problem.output_delays = equations.output_delays;
   problem.delay_count = static_cast<int>(equations.delays.size());
   problem.jump = compileJump(recorder, equations, directions, counts);
+  problem.projection = compile(recorder, projection, counts);
   return problem;
 }
 

@@ -27,6 +27,9 @@ struct Equations {
   /// Values within the jumps that change as others do, which come before them: what a quantiser makes of
   /// them.
   std::vector<Passed> passed{};
+  /// Where solutions satisfy conditions that steps leave by their error: the states near y that satisfy them,
+  /// one a state. Empty: there are none.
+  std::vector<program::Symbol> projection{};
 };
 
 /// What is integrated: the states and, behind them, their derivatives with respect to each direction (a
@@ -43,6 +46,7 @@ struct Problem {
   /// All rows behind a jump; behind the phase inputs it reads by how much its time moves with each direction.
   /// Without outputs: none.
   program::Program jump{};
+  program::Program projection{};  ///< of all rows; without outputs where there is none
 
   int getRowCount() const { return counts.states * (1 + static_cast<int>(directions.size())); }
 };

@@ -55,6 +55,7 @@ std::string abbreviateTables(const std::string& text) {
 void check(const CheckArguments& arguments) {
   const YamlNode tree = loadExperimentTree(arguments.experiment.file, arguments.experiment.overrides);
   std::set<std::string> engines, jumps;
+  std::vector<std::string> machine;  // of the first model: those of a sweep are alike
   for (const ModelGroup& group : groupByModel(expandCasesWithSignals(tree))) {  // what is wrong in any case
     const std::unique_ptr<Simulator> simulator = makeSimulator(group.model, group.times, group.modes);
     simulator->checkStart();
@@ -62,9 +63,13 @@ void check(const CheckArguments& arguments) {
     for (const std::string& jump : listJumps(group.model.system)) {
       jumps.insert(jump);
     }
+    machine = machine.empty() ? simulator->describeModel() : machine;
   }
   for (const std::string& engine : engines) {
     std::cout << "# solver: " << engine << '\n';
+  }
+  for (const std::string& line : machine) {
+    std::cout << "#   " << line << '\n';
   }
   for (const std::string& jump : jumps) {
     std::cout << "# steps become small: " << jump << '\n';

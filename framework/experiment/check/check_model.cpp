@@ -117,6 +117,7 @@ class FieldCheck {
      ...);
   }
   void rule(bool, const char*) const {}
+  void location(const SourceLocation&) const {}
 
   /// All fields of a struct, which are read only.
   template <class T>
@@ -225,6 +226,7 @@ class ModelCheck {
     checkJoints();
     fields_.checkAll(model_.system);
     checkPairs();
+    checkConstraints();
     checkExcitation();
     checkInitial();
     checkOutputs();
@@ -314,6 +316,35 @@ class ModelCheck {
                                   "' in " + findUnit(friction.coordinate) +
                                   ": friction acts between two lengths or two angles");
       }
+    }
+  }
+
+  void checkConstraints() const {
+    for (const ConstraintSpec& constraint : model_.system.constraints) {
+      if (constraint.gear) {
+        checkGear(*constraint.gear);
+      } else {
+        const bool in_plane = constraint.point_in_plane.has_value();
+        const Name& from = in_plane                ? constraint.point_in_plane->plane.station.body
+                           : constraint.coincident ? constraint.coincident->from.body
+                                                   : constraint.rod->from.body;
+        const Name& to = in_plane                ? constraint.point_in_plane->station.body
+                         : constraint.coincident ? constraint.coincident->to.body
+                                                 : constraint.rod->to.body;
+        if (from.text == to.text) {
+          throw ExperimentError(to.where, to.text, "must not be constrained against itself; name two bodies");
+        }
+      }
+    }
+  }
+
+  /// A ratio is a length per angle, or the other way round, where the coordinates differ.
+  void checkGear(const GearSpec& gear) const {
+    const std::string unit = findUnit(gear.coordinate), per = findUnit(gear.driver);
+    fields_.constants.check(gear.ratio, unit == per ? "1" : unit + "/" + per);
+    if (gear.coordinate.text == gear.driver.text) {
+      throw ExperimentError(gear.coordinate.where, gear.coordinate.text,
+                            "must not drive itself; name another coordinate as 'driver'");
     }
   }
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "framework/experiment/model/body_spec.hpp"
+#include "framework/experiment/model/constraint_spec.hpp"
 #include "framework/experiment/model/controller_spec.hpp"
 #include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/experiment/model/initial_spec.hpp"
@@ -19,6 +20,7 @@ struct SystemSpec {
   std::vector<MotionSpec> motions;           ///< prescribed ones
   std::vector<ControllerSpec> controllers;   ///< sampled ones
   ForceElements<Expression> elements;
+  std::vector<ConstraintSpec> constraints;  ///< beside those of the joints: loops, rods, gears
 
   // compiled once (experiment_spec.cpp)
   SystemSpec();
@@ -43,6 +45,8 @@ void describe(Fields& f, SystemSpec& s) {
   f.optional("motions", s.motions, "coordinates that move as a signal says");
   f.optionalMap("controllers", s.controllers, "sampled controllers, which read, compute and hold");
   describeElements(f, s.elements);
+  f.optional("constraints", s.constraints,
+             "closed loops, rods, gears: what bodies satisfy beside their joints");
 }
 
 }  // namespace twinmap

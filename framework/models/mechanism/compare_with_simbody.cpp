@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <optional>
 #include <random>
 
 #include "framework/experiment/model/parameter_box.hpp"
@@ -56,9 +57,15 @@ class Comparison {
         start_(model.start),
         point_(point) {
     simbody.setParameters(point);
+    if (model.loops) {
+      assembly_.emplace(*model.loops);
+    }
   }
 
-  std::string compareAt(const InitialState& at, double time) {
+  std::string compareAt(InitialState at, double time) {
+    if (assembly_ && !assemble(at)) {
+      return "";
+    }
     const VectorXd events =
         start_.calc({point_}).segment(model_.counts.states, model_.excitation.events.size());
     const std::vector<double> event_times(events.begin(), events.end());
@@ -83,6 +90,17 @@ class Comparison {
   }
 
  private:
+  /// Whether the loops can be closed from there.
+  bool assemble(InitialState& at) {
+    try {
+      at.coordinates = assembly_->close(point_, at.coordinates);
+      at.speeds = assembly_->calcRates(point_, at.coordinates, at.speeds);
+    } catch (const SimulationFailure&) {
+      return false;
+    }
+    return true;
+  }
+
   double findPhase(const std::vector<double>& events, double time) {
     double begin = 0.0;
     for (const Boundary& boundary :
@@ -105,6 +123,7 @@ class Comparison {
   const LaneModel& model_;
   SingleProgram derivative_, output_, start_;
   VectorXd point_;
+  std::optional<Assembly> assembly_;  ///< with loops
 };
 
 std::string compareAtPoint(ModelContext& context, SimbodyModel& simbody, const LaneModel& model,

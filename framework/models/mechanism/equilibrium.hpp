@@ -7,9 +7,13 @@ namespace twinmap {
 inline constexpr const char* kSingularMassMatrix =
     "the mass matrix is singular: a body without inertia can move freely";
 
+/// How far a condition of a loop that is open counts as an acceleration where equilibria are solved for, in
+/// 1/s2: 1e-11 m then count as the 1e-9 m/s2 that are taken for rounding.
+inline constexpr double kClosureWeight = 100.0;
+
 /// The accelerations of a system at rest, at t = 0 and without excitation, then the rates of its states of
-/// first order, and their derivatives with respect to [coordinates; states]. Throw SimulationFailure if the
-/// mass matrix is singular.
+/// first order, and what loops are open by, which must vanish too; and their derivatives with respect to
+/// [coordinates; states]. Throw SimulationFailure if the mass matrix or a loop is singular.
 class RestAccelerations {
  public:
   virtual ~RestAccelerations() = default;

@@ -35,6 +35,17 @@ std::vector<Mode> calcModes(const MatrixXd& state_matrix) {
   return modes;
 }
 
+MatrixXd reduceToFreedoms(const MatrixXd& state_matrix, const MatrixXd& slopes) {
+  const Eigen::Index n = slopes.cols(), free = n - slopes.rows(), states = state_matrix.rows() - 2 * n;
+  // eigenvalues increase: those of the null space come first
+  const MatrixXd basis = linalg::calcSymmetricEigen(slopes.transpose() * slopes).vectors.leftCols(free);
+  MatrixXd expand = MatrixXd::Zero(2 * n + states, 2 * free + states);
+  expand.topLeftCorner(n, free) = basis;
+  expand.block(n, free, n, free) = basis;
+  expand.bottomRightCorner(states, states).setIdentity();
+  return expand.transpose() * state_matrix * expand;
+}
+
 VectorXd collectLowestModes(const MatrixXd& state_matrix, int count) {
   const std::vector<Mode> modes = calcModes(state_matrix);
   if (static_cast<int>(modes.size()) < count) {

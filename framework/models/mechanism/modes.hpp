@@ -17,6 +17,11 @@ struct Mode {
 /// that is not finite.
 std::vector<Mode> calcModes(const Eigen::MatrixXd& state_matrix);
 
+/// The matrix A of x' = A x for x = [coordinates; their time derivatives; states] in the directions that the
+/// conditions of loops leave free: of x = [z; z'; states], coordinates = T z with orthonormal columns T that
+/// span the null space of `slopes` (conditions x coordinates, of full rank).
+Eigen::MatrixXd reduceToFreedoms(const Eigen::MatrixXd& state_matrix, const Eigen::MatrixXd& slopes);
+
 /// The `count` lowest frequencies (Hz), then their damping ratios. Throws SimulationFailure as calcModes
 /// does, and if fewer oscillate.
 Eigen::VectorXd collectLowestModes(const Eigen::MatrixXd& state_matrix, int count);

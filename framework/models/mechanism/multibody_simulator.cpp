@@ -8,6 +8,7 @@
 
 #include "framework/experiment/expression/jumps.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/models/mechanism/describe_model.hpp"
 #include "framework/models/mechanism/lanes/lane_engine.hpp"
 #include "framework/models/mechanism/sampled_keys.hpp"
 #include "framework/models/mechanism/simbody_model.hpp"
@@ -161,6 +162,11 @@ class MultibodySimulator::Impl {
     }
   }
 
+  std::vector<std::string> describeModel() {
+    return twinmap::describeModel(context_, shared_->lanes ? &shared_->lanes->getValues() : nullptr,
+                                  shared_->box_center);
+  }
+
   LaneEngine& updLanes() { return lanes_.value(); }
   const std::shared_ptr<SharedModel>& getShared() const { return shared_; }
 
@@ -208,6 +214,10 @@ const ResponseLayout& MultibodySimulator::getLayout() const {
 void MultibodySimulator::checkStart() {
   const std::lock_guard<std::recursive_mutex> guard(building);
   impl_->checkStart();
+}
+
+std::vector<std::string> MultibodySimulator::describeModel() {
+  return impl_->describeModel();
 }
 
 const std::string& MultibodySimulator::getEngine() const {

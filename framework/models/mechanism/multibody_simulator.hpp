@@ -39,6 +39,8 @@ class MultibodySimulator final : public Simulator {
   /// equilibrium is found if it has one, and its accelerations are finite. Nothing is integrated; a few ms.
   void checkStart() override;
 
+  /// At the centre of the bounds; equilibrium and modes where lanes simulate.
+  std::vector<std::string> describeModel() override;
   /// As Simulator::simulate; throws std::invalid_argument for matrices of the wrong shape. Cost for the
   /// two-beam case: 0.05 ms a sample of 5 s in lanes, 5 ms by Simbody.
   void simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters, Eigen::Ref<Eigen::MatrixXd> responses,

@@ -5,6 +5,7 @@
 #include "framework/experiment/check/check_experiment.hpp"
 #include "framework/experiment/expression/output_units.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/models/mechanism/constraint_numbers.hpp"
 #include "framework/models/mechanism/load_numbers.hpp"
 #include "framework/models/mechanism/model_context.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -263,6 +264,7 @@ void checkNumbers(ModelContext& context) {
     calcJointNumbers(body, numbers);
   }
   calcLoadNumbers(system, context.names, numbers);
+  calcConstraintNumbers(system, context.names, numbers);
   context.excitation.update(numbers);
   for (const OutputSpec& output : context.model.outputs) {
     calcOutputNumbers(output, context.names, numbers);

@@ -309,5 +309,48 @@ TEST(Lanes, LargeProblemsHaveFewerLanes) {
   EXPECT_EQ(&chooseEngine(100, problem), &chooseEngine(100));
 }
 
+/// A point on a circle, whose radius the steps would leave.
+TEST(Lanes, ProjectionKeepsWhatSolutionsSatisfyWithItsDerivatives) {
+  Recorder r;
+  const Symbol x = r.state(0), y = r.state(1), speed = r.parameter(0), radius = r.parameter(1);
+  const Symbol length = sqrt(x * x + y * y);
+  Equations equations;
+  equations.counts = {2, 2, 0};
+  equations.derivatives = {-speed * y, speed * x};
+  equations.outputs = {length};
+  Options options;
+  options.relative_tolerance = options.absolute_tolerance = 1e-3;
+  double drift[2] = {};
+  for (const bool projected : {false, true}) {
+    if (projected) {
+      equations.projection = {radius * x / length, radius * y / length};
+    }
+    const Problem problem = makeProblem(r, equations, {0, 1});
+    std::vector<double> first;
+    for (const StepEngine* engine : getEngines()) {
+      Integrator integrator(problem, {20.0}, options, *engine);
+      Batch batch;
+      for (int j = 0; j < 9; ++j) {
+        Sample sample;
+        sample.parameters = {1.0 + 0.1 * j, 0.5 + j};
+        sample.initial = {0.5 + j, 0.0, 0.0, 0.0, 1.0, 0.0};
+        sample.phases = {{0.0, {}}};
+        sample.end = 20.0;
+        batch.add(sample, 1, 2);
+      }
+      batch.run(integrator);
+      for (int j = 0; j < 9; ++j) {
+        drift[projected] = std::max({drift[projected], std::abs(batch.outputs[j] / (0.5 + j) - 1.0),
+                                     std::abs(batch.derivatives[2 * j]) / (0.5 + j),
+                                     std::abs(batch.derivatives[2 * j + 1] - 1.0)});
+      }
+      first = first.empty() ? batch.outputs : first;
+      EXPECT_EQ(batch.outputs, first);
+    }
+  }
+  EXPECT_GT(drift[0], 1e-4);
+  EXPECT_LT(drift[1], 1e-13);
+}
+
 }  // namespace
 }  // namespace twinmap::lanes

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <utility>
+
 #include "framework/experiment/expression/named_values.hpp"
 #include "framework/models/mechanism/equations/element_values.hpp"
 #include "framework/models/mechanism/equations/system_values.hpp"
@@ -60,6 +62,44 @@ Station<S> calcStation(const StationSpec& spec, const SystemNames& system, const
   return {system.findBody(spec.body), names.calc3(spec.point)};
 }
 
+/// The conditions of a constraint. Those of coincident points are along the axes of a body that moves with
+/// the loop: which of them are redundant in a planar loop then stays so while the loop as a whole turns.
+template <class S>
+void addClosures(const ConstraintSpec& spec, const SystemNames& system, const NamedValues<S>& names,
+                 std::vector<Closure<S>>& closures) {
+  Closure<S> closure;
+  if (spec.coincident) {
+    closure.kind = ClosureKind::kPlane;
+    closure.from = calcStation(spec.coincident->from, system, names);
+    closure.to = calcStation(spec.coincident->to, system, names);
+    if (closure.from.body == 0) {
+      std::swap(closure.from, closure.to);
+    }
+    for (const Vec3<S>& axis : {Vec3<S>{1.0, 0.0, 0.0}, Vec3<S>{0.0, 1.0, 0.0}, Vec3<S>{0.0, 0.0, 1.0}}) {
+      closure.normal = axis;
+      closures.push_back(closure);
+    }
+    return;
+  }
+  if (spec.rod) {
+    closure.kind = ClosureKind::kRod;
+    closure.from = calcStation(spec.rod->from, system, names);
+    closure.to = calcStation(spec.rod->to, system, names);
+    closure.length = names.calc(spec.rod->length);
+  } else if (spec.point_in_plane) {
+    closure.kind = ClosureKind::kPlane;
+    closure.from = calcStation(spec.point_in_plane->plane.station, system, names);
+    closure.to = calcStation(spec.point_in_plane->station, system, names);
+    closure.normal = normalize(names.calc3(spec.point_in_plane->plane.normal));
+  } else {
+    closure.coordinate = system.findForcedCoordinate(spec.gear->coordinate);
+    closure.driver = system.findForcedCoordinate(spec.gear->driver);
+    closure.ratio = names.calc(spec.gear->ratio);
+    closure.offset = names.calc(spec.gear->offset);
+  }
+  closures.push_back(closure);
+}
+
 /// Numbers without checks: those of a recorded program are symbols.
 template <class S>
 struct UncheckedNumbers {
@@ -69,7 +109,8 @@ struct UncheckedNumbers {
   }
 };
 
-/// Evaluates all numbers of a system. `names`: parameters and constants.
+/// Evaluates all numbers of a system, with all conditions of its constraints, redundant ones too. `names`:
+/// parameters and constants.
 template <class S>
 SystemValues<S> calcSystemValues(const SystemSpec& spec, const SystemNames& system,
                                  const NamedValues<S>& names) {
@@ -83,6 +124,9 @@ SystemValues<S> calcSystemValues(const SystemSpec& spec, const SystemNames& syst
   }
   values.elements = calcElements<S>(spec.elements, system, UncheckedNumbers<S>{names},
                                     static_cast<int>(spec.states.size()));
+  for (const ConstraintSpec& constraint : spec.constraints) {
+    addClosures(constraint, system, names, values.closures);
+  }
   values.state_count = static_cast<int>(system.getStateNames().size());
   return values;
 }

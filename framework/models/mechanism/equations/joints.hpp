@@ -177,4 +177,21 @@ std::vector<S> calcSpeeds(const SystemValues<S>& system, const std::vector<S>& q
   return convertAngles(system, q, rates, [](const Vec3<S>& angles) { return calcAngularVelocities(angles); });
 }
 
+/// Second time derivatives of the coordinates from their first ones and the accelerations of the speeds: with
+/// w = E(angles) angles', angles'' = E^-1 (w' - E' angles').
+template <class S>
+std::vector<S> calcSecondRates(const SystemValues<S>& system, const std::vector<S>& q,
+                               const std::vector<S>& rates, std::vector<S> accelerations) {
+  for (const BodyValues<S>& body : system.bodies) {
+    if (hasAngularVelocity(body.type)) {
+      const int i = body.first_speed;
+      const Vec3<S> bias = calcAngleBias(calcAngleColumns(Vec3<S>{q[i], q[i + 1], q[i + 2]}), &rates[i]);
+      accelerations[i] = accelerations[i] - bias.x;
+      accelerations[i + 1] = accelerations[i + 1] - bias.y;
+      accelerations[i + 2] = accelerations[i + 2] - bias.z;
+    }
+  }
+  return calcRates(system, q, accelerations);
+}
+
 }  // namespace twinmap::equations

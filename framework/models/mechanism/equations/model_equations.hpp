@@ -5,7 +5,7 @@
 
 #include "framework/experiment/model/model_spec.hpp"
 #include "framework/models/mechanism/equations/calc_system_values.hpp"
-#include "framework/models/mechanism/equations/force_sum.hpp"
+#include "framework/models/mechanism/equations/constrained_motion.hpp"
 #include "framework/models/mechanism/varying_expressions.hpp"
 
 namespace twinmap::equations {
@@ -34,7 +34,7 @@ struct ModelMotion {
   std::vector<S> rates;          ///< time derivatives of the coordinates
   std::vector<S> accelerations;  ///< of the speeds
   std::vector<S> state_rates;
-  std::vector<S> pivots;  ///< all positive, or the mass matrix is singular
+  std::vector<S> pivots;  ///< all positive, or the mass matrix or a loop is singular
   std::vector<BodyMotion<S>> bodies;
 };
 
@@ -112,8 +112,9 @@ ModelMotion<S> calcModelMotion(const ModelSpec& model, const SystemNames& system
   LinearSystem<S> equations =
       calcEquationsOfMotion(values, motion.bodies, loads.on_bodies, std::move(loads.on_speeds));
   prescribe(state.prescribed, equations);
-  Solution<S> solution = solve(std::move(equations));
-  motion.accelerations = std::move(solution.values);
+  ConstrainedMotion<S> solution =
+      solveConstrained(std::move(equations), calcClosureTerms(values, motion.bodies, state.coordinates));
+  motion.accelerations = std::move(solution.accelerations);
   motion.pivots = std::move(solution.pivots);
   return motion;
 }

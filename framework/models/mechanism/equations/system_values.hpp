@@ -25,11 +25,25 @@ struct BodyValues {
   int speed_count = 0;
 };
 
+enum class ClosureKind { kPlane, kRod, kGear };
+
+/// One condition c(q) = 0 of a constraint; those of coincident points are three planes.
+template <class S>
+struct Closure {
+  ClosureKind kind = ClosureKind::kGear;
+  Station<S> from{}, to{};           ///< kPlane: a point of the plane, and the point that stays in it
+  Vec3<S> normal{};                  ///< of the plane, a unit vector in the frame of from's body
+  S length = 1.0;                    ///< of a rod
+  int coordinate = -1, driver = -1;  ///< kGear: coordinate = ratio * driver + offset
+  S ratio = 0.0, offset = 0.0;
+};
+
 template <class S>
 struct SystemValues {
   Vec3<S> gravity;
   std::vector<BodyValues<S>> bodies;  ///< ground first
   ForceElements<S> elements;
+  std::vector<Closure<S>> closures;  ///< independent of each other
   int coordinate_count = 0;
   int state_count = 0;  ///< of first order
 };

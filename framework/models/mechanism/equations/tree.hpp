@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "framework/models/mechanism/equations/joints.hpp"
@@ -154,48 +155,69 @@ LinearSystem<S> calcEquationsOfMotion(const SystemValues<S>& system,
 /// A pivot below this part of its diagonal entry makes the mass matrix singular.
 constexpr double kSingularPivot = 1e-13;
 
-/// The solution, and for each pivot what must be positive for it to exist: pivot - kSingularPivot * diagonal
-/// entry.
+/// A symmetric matrix as L D L', eliminated from the last row to the first, so that zeros between branches of
+/// a tree stay literally zeros (Featherstone 2008, 6.5: every row's nonzero columns are its ancestors, and
+/// elimination from the leaves fills nothing).
 template <class S>
-struct Solution {
-  std::vector<S> values, pivots;
+struct Factors {
+  std::vector<std::vector<S>> rows;  ///< of L, without its diagonal of ones
+  std::vector<S> inverse;            ///< of D
+  std::vector<S> pivots;             ///< positive where the matrix is regular: D - smallest * diagonal entry
 };
 
-/// Solves by L D L' from the last row to the first, so that zeros between branches stay literally zeros
-/// (Featherstone 2008, 6.5: every row's nonzero columns are its ancestors, and elimination from the leaves
-/// fills nothing).
+/// `matrix`: its lower triangle, row by row. `smallest`: the part of its diagonal entry that a pivot must
+/// exceed. `right`: empty, or a right side that is eliminated along the way, for substitute().
 template <class S>
-Solution<S> solve(LinearSystem<S> equations) {
-  const int n = static_cast<int>(equations.right.size());
-  Solution<S> solution{std::move(equations.right), std::vector<S>(n, S(0.0))};
-  std::vector<std::vector<S>>& m = equations.matrix;
-  std::vector<S> diagonal, inverse(n, S(0.0));
+Factors<S> factorize(std::vector<std::vector<S>> matrix, double smallest, std::vector<S>& right) {
+  const int n = static_cast<int>(matrix.size());
+  Factors<S> factors{{}, std::vector<S>(n, S(0.0)), std::vector<S>(n, S(0.0))};
+  std::vector<S> diagonal;
   for (int i = 0; i < n; ++i) {
-    diagonal.push_back(m[i][i]);
+    diagonal.push_back(matrix[i][i]);
   }
   for (int k = n - 1; k >= 0; --k) {
-    solution.pivots[k] = m[k][k] - S(kSingularPivot) * diagonal[k];
-    inverse[k] = S(1.0) / m[k][k];
+    factors.pivots[k] = matrix[k][k] - S(smallest) * diagonal[k];
+    factors.inverse[k] = S(1.0) / matrix[k][k];
     std::vector<S> row;
     for (int i = 0; i < k; ++i) {
-      row.push_back(m[k][i] * inverse[k]);
+      row.push_back(matrix[k][i] * factors.inverse[k]);
     }
     for (int i = 0; i < k; ++i) {
       for (int j = 0; j <= i; ++j) {
-        m[i][j] = m[i][j] - row[i] * m[k][j];
+        matrix[i][j] = matrix[i][j] - row[i] * matrix[k][j];
       }
-      solution.values[i] = solution.values[i] - row[i] * solution.values[k];
+      if (!right.empty()) {
+        right[i] = right[i] - row[i] * right[k];
+      }
     }
-    m[k].assign(row.begin(), row.end());
+    matrix[k] = std::move(row);
   }
-  for (int k = 0; k < n; ++k) {
-    S value = solution.values[k] * inverse[k];
-    for (int i = 0; i < k; ++i) {
-      value = value - m[k][i] * solution.values[i];
+  factors.rows = std::move(matrix);
+  return factors;
+}
+
+/// The solution from a right side that is eliminated.
+template <class S>
+std::vector<S> substitute(const Factors<S>& factors, std::vector<S> right) {
+  for (std::size_t k = 0; k < right.size(); ++k) {
+    S value = right[k] * factors.inverse[k];
+    for (std::size_t i = 0; i < k; ++i) {
+      value = value - factors.rows[k][i] * right[i];
     }
-    solution.values[k] = value;
+    right[k] = value;
   }
-  return solution;
+  return right;
+}
+
+/// The solution for a right side.
+template <class S>
+std::vector<S> solve(const Factors<S>& factors, std::vector<S> right) {
+  for (std::size_t k = right.size(); k-- > 0;) {
+    for (std::size_t i = 0; i < k; ++i) {
+      right[i] = right[i] - factors.rows[k][i] * right[k];
+    }
+  }
+  return substitute(factors, std::move(right));
 }
 
 }  // namespace twinmap::equations

@@ -36,7 +36,7 @@ std::vector<Index> LaneEngine::keepRetried(std::vector<Index> columns) const {
 
 StiffRetry& LaneEngine::updStiffRetry() {
   if (!stiff_retry_) {
-    stiff_retry_.emplace(context_.model, programs_.getValues(), programs_.getJacobian(context_.names), task_);
+    stiff_retry_.emplace(context_.model, programs_.getValues(), programs_.getStiff(context_.names), task_);
   }
   return *stiff_retry_;
 }

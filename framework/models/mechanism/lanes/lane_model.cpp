@@ -43,7 +43,9 @@ int countStates(const RecordedModel& recorded) {
 }
 
 Symbols collectRest(const RecordedModel& recorded, const Symbols& parameters) {
-  Symbols outputs = recorded.rest_rates, variables;
+  Symbols residuals = recorded.rest_rates, variables;
+  append(recorded.rest_closures, residuals);
+  Symbols outputs = residuals;
   append(recorded.rest_pivots, outputs);
   for (int i = 0; i < recorded.coordinate_count; ++i) {
     variables.push_back(recorded.recorder->state(i));
@@ -52,7 +54,7 @@ Symbols collectRest(const RecordedModel& recorded, const Symbols& parameters) {
     variables.push_back(recorded.recorder->state(2 * recorded.coordinate_count + i));
   }
   append(parameters, variables);
-  appendJacobian(recorded.rest_rates, variables, outputs);
+  appendJacobian(residuals, variables, outputs);
   return outputs;
 }
 
@@ -72,25 +74,31 @@ LaneModel compileModel(const RecordedModel& recorded, bool with_derivatives) {
   std::iota(directions.begin(), directions.end(), 0);
   const RecordedSampling& sampling = recorded.sampling;
   const Symbols output_delays(sampling.delays.begin(), sampling.delays.begin() + sampling.output_delay_count);
-  model.problem = lanes::makeProblem(recorder,
-                                     {model.counts, recorded.derivatives, recorded.pivots, sampling.outputs,
-                                      output_delays, sampling.output_delays, sampling.jumps, sampling.passed},
-                                     directions);
+  model.loops = recorded.loops;
+  model.pivot_count = static_cast<int>(recorded.rest_pivots.size());
+  model.problem = lanes::makeProblem(
+      recorder,
+      {model.counts, recorded.derivatives, recorded.pivots, sampling.outputs, output_delays,
+       sampling.output_delays, sampling.jumps, sampling.passed, recorded.projected},
+      directions);
   model.start = program::compile(recorder, collectStart(recorded, parameters), model.counts);
   model.rest = program::compile(recorder, collectRest(recorded, parameters), model.counts);
   model.linearization = program::compile(recorder, recorded.linearization, model.counts);
   return model;
 }
 
-program::Program compileJacobian(const RecordedModel& recorded) {
+StiffPrograms compileStiff(const RecordedModel& recorded) {
   const program::InputCounts counts{countStates(recorded), recorded.parameter_count,
                                     recorded.sampling.input_count};
-  Symbols states, jacobian;
+  const Symbols& derivatives = recorded.relaxed.empty() ? recorded.derivatives : recorded.relaxed;
+  Symbols states, rows = derivatives, jacobian;
+  append(recorded.pivots, rows);
   for (int i = 0; i < counts.states; ++i) {
     states.push_back(recorded.recorder->state(i));
   }
-  appendJacobian(recorded.derivatives, states, jacobian);
-  return program::compile(*recorded.recorder, jacobian, counts);
+  appendJacobian(derivatives, states, jacobian);
+  return {program::compile(*recorded.recorder, rows, counts),
+          program::compile(*recorded.recorder, jacobian, counts)};
 }
 
 }  // namespace twinmap

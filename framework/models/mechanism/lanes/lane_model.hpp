@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "framework/models/mechanism/equilibrium.hpp"
 #include "framework/models/mechanism/lanes/recorded_model.hpp"
 #include "kernels/lanes/problem.hpp"
 
@@ -16,12 +17,30 @@ struct LaneModel {
   RecordedSampling sampling;      ///< likewise
   lanes::Problem problem;         ///< the motion and its outputs
   program::Program start;  ///< initial states, events, delays; with directions their derivatives, one by one
-  program::Program rest;   ///< rest_rates, rest_pivots, d rest_rates / d [coordinates; states of first order]
-                           ///< by columns; with directions also d rest_rates / d parameters by columns
+  program::Program rest;   ///< residuals [rest_rates; rest_closures], rest_pivots, d residuals / d
+                           ///< [coordinates; states of first order] by columns; with directions also d
+                           ///< residuals / d parameters by columns
   program::Program linearization;
-  int directions = 0;  ///< 0, or all parameters
+  int directions = 0;                      ///< 0, or all parameters
+  int pivot_count = 0;                     ///< of rest_pivots
+  std::shared_ptr<const LoopModel> loops;  ///< null: none
 
   int getFirstOrderCount() const { return counts.states - 2 * coordinate_count - hidden_count; }
+  int getClosureCount() const { return loops ? static_cast<int>(loops->plan.rows.size()) : 0; }
+};
+
+/// Why a pivot is not positive.
+inline const char* getSingularReason(const LaneModel& model) {
+  return model.loops ? "a loop is in a singular configuration (links that are aligned), or a body without "
+                       "inertia can move freely"
+                     : kSingularMassMatrix;
+}
+
+/// What implicit integration evaluates.
+struct StiffPrograms {
+  program::Program
+      derivative;             ///< of the states, which it leads back to the conditions of loops; then pivots
+  program::Program jacobian;  ///< d derivative / d states, column by column
 };
 
 /// Compiles a recorded model, for its values alone or also for the derivatives with respect to all
@@ -29,8 +48,7 @@ struct LaneModel {
 /// parameters.
 LaneModel compileModel(const RecordedModel& recorded, bool with_derivatives);
 
-/// The derivatives of the states' derivatives with respect to the states, column by column. Appends to the
-/// recorder.
-program::Program compileJacobian(const RecordedModel& recorded);
+/// Appends to the recorder.
+StiffPrograms compileStiff(const RecordedModel& recorded);
 
 }  // namespace twinmap

@@ -7,16 +7,25 @@ namespace twinmap {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-LaneModes::LaneModes(const LaneModel& model) : model_(model), program_(model.linearization) {}
+LaneModes::LaneModes(const LaneModel& model) : model_(model), program_(model.linearization) {
+  if (model.loops) {
+    assembly_.emplace(*model.loops);
+  }
+}
 
-VectorXd LaneModes::calc(const Eigen::Ref<const VectorXd>& parameters, const VectorXd& equilibrium,
-                         int count) {
+MatrixXd LaneModes::calcMatrix(const Eigen::Ref<const VectorXd>& parameters, const VectorXd& equilibrium) {
   const Eigen::Index n = model_.coordinate_count, all = model_.counts.states;
   const VectorXd states = insertSpeeds(equilibrium, VectorXd::Zero(n));
   MatrixXd matrix = MatrixXd::Zero(all, all);
   matrix.block(0, n, n, n).setIdentity();
   matrix.bottomRows(all - n) = program_.calc({parameters, states}).reshaped(all - n, all);
-  return collectLowestModes(matrix, count);
+  return assembly_ ? reduceToFreedoms(matrix, assembly_->calcSlopes(parameters, equilibrium.head(n)))
+                   : matrix;
+}
+
+VectorXd LaneModes::calc(const Eigen::Ref<const VectorXd>& parameters, const VectorXd& equilibrium,
+                         int count) {
+  return collectLowestModes(calcMatrix(parameters, equilibrium), count);
 }
 
 }  // namespace twinmap

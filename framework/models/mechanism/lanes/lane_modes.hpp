@@ -10,6 +10,10 @@ class LaneModes {
  public:
   explicit LaneModes(const LaneModel& model);
 
+  /// The matrix of x' = A x at an equilibrium (LaneStart's), of the degrees of freedom that loops leave.
+  Eigen::MatrixXd calcMatrix(const Eigen::Ref<const Eigen::VectorXd>& parameters,
+                             const Eigen::VectorXd& equilibrium);
+
   /// The `count` lowest frequencies (Hz), then their damping ratios, at an equilibrium (LaneStart's). Throws
   /// SimulationFailure if fewer oscillate.
   Eigen::VectorXd calc(const Eigen::Ref<const Eigen::VectorXd>& parameters,
@@ -18,6 +22,7 @@ class LaneModes {
  private:
   const LaneModel& model_;
   SingleProgram program_;
+  std::optional<Assembly> assembly_;  ///< with loops
 };
 
 }  // namespace twinmap

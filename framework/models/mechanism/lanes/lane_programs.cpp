@@ -29,22 +29,22 @@ LanePrograms::LanePrograms(ModelContext& context, SimbodyModel* simbody)
 const LaneModel& LanePrograms::getDerivatives(const SystemNames& names) {
   const std::lock_guard<std::mutex> guard(compiling_);
   if (!derivatives_) {
-    derivatives_ = compileModel(recordModel(model_, names), true);
+    derivatives_ = compileModel(recordModel(model_, names, values_->loops), true);
   }
   return *derivatives_;
 }
 
-const program::Program& LanePrograms::getJacobian(const SystemNames& names) {
+const StiffPrograms& LanePrograms::getStiff(const SystemNames& names) {
   const std::lock_guard<std::mutex> guard(compiling_);
-  if (!jacobian_) {
-    jacobian_ = compileJacobian(recordModel(model_, names));
+  if (!stiff_) {
+    stiff_ = compileStiff(recordModel(model_, names, values_->loops));
   }
-  return *jacobian_;
+  return *stiff_;
 }
 
 /// Returns what prevents it, or "".
 std::string LanePrograms::compile(ModelContext& context, SimbodyModel* simbody) {
-  values_ = compileModel(recordModel(model_, context.names), false);
+  values_ = compileModel(recordModel(model_, context.names, makeLoopModel(context)), false);
   if (simbody == nullptr) {
     return "";
   }
@@ -52,7 +52,8 @@ std::string LanePrograms::compile(ModelContext& context, SimbodyModel* simbody) 
     return compareWithSimbody(context, *simbody, *values_);
   }
   const ModelSpec known = removeSampled(model_);  // what Simbody knows
-  return compareWithSimbody(context, *simbody, compileModel(recordModel(known, context.names), false));
+  return compareWithSimbody(context, *simbody,
+                            compileModel(recordModel(known, context.names, values_->loops), false));
 }
 
 }  // namespace twinmap

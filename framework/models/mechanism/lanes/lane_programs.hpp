@@ -24,15 +24,15 @@ class LanePrograms {
   /// With the derivatives with respect to all parameters; compiled when first asked for, by any thread.
   const LaneModel& getDerivatives(const SystemNames& names);
 
-  /// Of compileJacobian(); likewise.
-  const program::Program& getJacobian(const SystemNames& names);
+  /// Of compileStiff(); likewise.
+  const StiffPrograms& getStiff(const SystemNames& names);
 
  private:
   std::string compile(ModelContext& context, SimbodyModel* simbody);
 
   const ModelSpec& model_;
   std::optional<LaneModel> values_, derivatives_;
-  std::optional<program::Program> jacobian_;
+  std::optional<StiffPrograms> stiff_;
   std::string obstacle_;
   std::mutex compiling_;
 };

@@ -65,7 +65,7 @@ std::string describeOutcome(const lanes::Result& result, const ModelSpec& spec, 
     case lanes::Outcome::kStepTooSmall:
       return describeAt("step size became too small", result.time);
     case lanes::Outcome::kSingular:
-      return kSingularMassMatrix;
+      return model.loops ? describeAt(getSingularReason(model), result.time) : getSingularReason(model);
   }
   return "";
 }

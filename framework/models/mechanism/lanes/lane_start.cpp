@@ -17,7 +17,11 @@ LaneStart::LaneStart(const ModelSpec& spec, const LaneModel& model, const Vector
       box_center_(box_center),
       output_times_(output_times),
       start_(model.start),
-      rest_(model) {}
+      rest_(model) {
+  if (model.loops) {
+    assembly_.emplace(*model.loops);
+  }
+}
 
 void LaneStart::fill(const Parameters& parameters, lanes::Sample& sample) {
   // the values, then their derivatives with respect to each parameter
@@ -49,8 +53,10 @@ void LaneStart::fillInitial(const Parameters& parameters, MatrixXd states, lanes
   if (box_center_.size() > 0) {
     states.setZero();
     states.col(0) = complete(box_center_);
+    assemble(parameters, states);
   } else if (spec_.initial.equilibrium) {
     rest_.setParameters(parameters);
+    assemble(parameters, states);
     const MatrixXd start = takeEquilibrium(states);
     const VectorXd equilibrium = twinmap::solveEquilibrium(rest_, start.col(0));
     if (model_.directions > 0) {
@@ -60,6 +66,11 @@ void LaneStart::fillInitial(const Parameters& parameters, MatrixXd states, lanes
       }
     }
     states.col(0) = complete(equilibrium);
+    if (assembly_) {
+      assembly_->requireClosed(parameters, equilibrium.head(model_.coordinate_count));
+    }
+  } else {
+    assemble(parameters, states);
   }
   sample.initial.assign(states.data(), states.data() + states.size());
 }
@@ -71,6 +82,12 @@ VectorXd LaneStart::complete(const VectorXd& equilibrium) const {
   return states;
 }
 
+void LaneStart::assemble(const Parameters& parameters, MatrixXd& states) {
+  if (assembly_) {
+    assembly_->assemble(parameters, states);
+  }
+}
+
 MatrixXd LaneStart::takeEquilibrium(const MatrixXd& states) const {
   const Index n = model_.coordinate_count, m = model_.getFirstOrderCount();
   MatrixXd rows(n + m, states.cols());
@@ -80,10 +97,12 @@ MatrixXd LaneStart::takeEquilibrium(const MatrixXd& states) const {
 
 VectorXd LaneStart::solveEquilibrium(const Parameters& parameters) {
   rest_.setParameters(parameters);
-  return twinmap::solveEquilibrium(
-      rest_, box_center_.size() > 0
-                 ? box_center_
-                 : VectorXd(takeEquilibrium(start_.calc({parameters}).head(model_.counts.states))));
+  MatrixXd states = start_.calc({parameters}).head(model_.counts.states);
+  if (box_center_.size() > 0) {
+    states = insertSpeeds(box_center_, VectorXd::Zero(model_.coordinate_count));
+  }
+  assemble(parameters, states);
+  return twinmap::solveEquilibrium(rest_, takeEquilibrium(states));
 }
 
 VectorXd solveBoxCenter(ModelContext& context, const LaneModel& model) {

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <optional>
+
 #include "framework/models/mechanism/lanes/phases.hpp"
 #include "framework/models/mechanism/lanes/rest_program.hpp"
+#include "framework/models/mechanism/loops/assembly.hpp"
 #include "framework/models/mechanism/model_context.hpp"
 #include "kernels/lanes/sample.hpp"
 
@@ -25,6 +28,8 @@ class LaneStart {
  private:
   void fillInitial(const Eigen::Ref<const Eigen::VectorXd>& parameters, Eigen::MatrixXd states,
                    lanes::Sample& sample);
+  /// Where the file's initial coordinates leave loops open, closes them; and rates become speeds.
+  void assemble(const Eigen::Ref<const Eigen::VectorXd>& parameters, Eigen::MatrixXd& states);
   /// Rows [coordinates; states of first order] of all states.
   Eigen::MatrixXd takeEquilibrium(const Eigen::MatrixXd& states) const;
   void fillTimes(const SampleTimes& times, lanes::Sample& sample);
@@ -38,6 +43,7 @@ class LaneStart {
   SampleTimes last_times_;     ///< of the sample before
   lanes::Sample last_sample_;  ///< its phases, end and delays
   RestProgram rest_;
+  std::optional<Assembly> assembly_;  ///< with loops
 };
 
 /// The equilibrium (coordinates, then states of first order) at the box centre that all samples start from;

@@ -1,7 +1,11 @@
 #include "framework/models/mechanism/lanes/recorded_model.hpp"
 
+#include <utility>
+
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/models/mechanism/equations/outputs.hpp"
+#include "framework/models/mechanism/equilibrium.hpp"
+#include "framework/models/mechanism/lanes/recorded_parameters.hpp"
 #include "framework/models/mechanism/sampled_keys.hpp"
 #include "kernels/lanes/program/differentiate.hpp"
 
@@ -14,27 +18,24 @@ using equations::SystemValues;
 using program::Symbol;
 using Symbols = RecordedModel::Symbols;
 
-NamedValues<Symbol> nameParameters(const ModelSpec& model, program::Recorder& recorder) {
-  NamedValues<Symbol> names;
-  const std::vector<ParameterSpec> sampled = collectSampled(model);
-  for (std::size_t i = 0; i < sampled.size(); ++i) {
-    names.set(sampled[i].name.text, recorder.parameter(static_cast<int>(i)));
-  }
-  for (const ConstantSpec& constant : model.constants) {
-    names.set(constant.name.text, names.calc(constant.value));
-  }
-  return names;
-}
+/// Of Newton's method towards the conditions: where outputs are taken, interpolation leaves larger distances
+/// than a step does.
+constexpr int kStepRounds = 1, kOutputRounds = 2;
+
+/// Where states leave the conditions in implicit integration, they are led back so many times a duration.
+constexpr double kRelaxations = 1e4;
 
 class ModelRecorder {
  public:
-  ModelRecorder(const ModelSpec& model, const SystemNames& names)
+  ModelRecorder(const ModelSpec& model, const SystemNames& names, std::shared_ptr<const LoopModel> loops)
       : model_(model),
         names_(names),
+        loops_(std::move(loops)),
         recorder_(std::make_unique<program::Recorder>()),
         uses_rates_(usesSignalRates(model)) {
-    values_ = nameParameters(model, *recorder_);
+    values_ = recordParameters(model, *recorder_);
     system_ = equations::calcSystemValues(model.system, names, values_);
+    keepIndependent();
   }
 
   RecordedModel record() {
@@ -50,6 +51,7 @@ class ModelRecorder {
     recordRest(recorded);
     recorded.initial = recordInitial();
     recorded.initial.resize(recorded.initial.size() + recorded.sampling.hidden_rates.size(), Symbol(0.0));
+    recorded.loops = loops_;
     recorded.recorder = std::move(recorder_);
     return recorded;
   }
@@ -70,6 +72,17 @@ class ModelRecorder {
     return equations::calcModelMotion(model_, names_, values_, system_, state);
   }
 
+  /// Of the conditions of constraints; all where nothing is known.
+  void keepIndependent() {
+    if (loops_) {
+      std::vector<equations::Closure<Symbol>> kept;
+      for (const int row : loops_->plan.rows) {
+        kept.push_back(system_.closures[row]);
+      }
+      system_.closures = std::move(kept);
+    }
+  }
+
   void recordMotion(RecordedModel& recorded) {
     const ModelMotion<Symbol> motion = calcMotion(makeState(getFirstOrder()));
     recorded.derivatives = motion.rates;
@@ -79,18 +92,57 @@ class ModelRecorder {
       recorded.derivatives[i] = recorded.derivatives[system_.coordinate_count + i] = 0.0;
     }
     recorded.pivots = motion.pivots;
+    if (!system_.closures.empty()) {
+      recordProjected(recorded);
+    }
   }
 
+  /// What is wanted of states that have left the conditions of loops a little.
+  void recordProjected(RecordedModel& recorded) {
+    const ModelState<Symbol> state = makeState(getFirstOrder());
+    const ModelState<Symbol> projected = project(state, kStepRounds);
+    recorded.projected = joinStates(projected);
+    const ModelMotion<Symbol> motion = calcMotion(projected);
+    recorded.relaxed = motion.rates;
+    append(motion.accelerations, recorded.relaxed);
+    append(motion.state_rates, recorded.relaxed);
+    const Symbols given = joinStates(state);
+    for (std::size_t i = 0; i < given.size(); ++i) {
+      recorded.relaxed[i] += kRelaxations / model_.simulation.duration * (recorded.projected[i] - given[i]);
+    }
+  }
+
+  ModelState<Symbol> project(ModelState<Symbol> state, int rounds) {
+    auto [coordinates, speeds] = equations::project(system_, state.coordinates, state.speeds, rounds);
+    state.coordinates = std::move(coordinates);
+    state.speeds = std::move(speeds);
+    return state;
+  }
+
+  static Symbols joinStates(const ModelState<Symbol>& state) {
+    Symbols all = state.coordinates;
+    append(state.speeds, all);
+    append(state.states, all);
+    return all;
+  }
+
+  /// The hidden states of sensors and controllers stand behind all others, and no condition concerns them.
   void recordOutputs(RecordedModel& recorded) {
     const int known = 2 * system_.coordinate_count + system_.state_count;
     recorded.sampling = recordSampling(
         {model_, names_, values_, *recorder_, getStates(0, known), makeState(getFirstOrder()).coordinates,
          signals_, recorded.excitation.input_count,
          [this](const Symbols& first_order) { return calcQuantities(makeState(first_order)); }});
-    append(recorded.sampling.hidden_rates, recorded.derivatives);
+    const Symbols& hidden_rates = recorded.sampling.hidden_rates;
+    append(hidden_rates, recorded.derivatives);
+    if (!recorded.projected.empty()) {
+      append(getStates(known, static_cast<int>(hidden_rates.size())), recorded.projected);
+      append(hidden_rates, recorded.relaxed);
+    }
   }
 
-  Symbols calcQuantities(const ModelState<Symbol>& state) {
+  Symbols calcQuantities(const ModelState<Symbol>& given) {
+    const ModelState<Symbol> state = system_.closures.empty() ? given : project(given, kOutputRounds);
     const ModelMotion<Symbol> motion = calcMotion(state);
     const NamedValues<Symbol> named =
         equations::hasExpression(model_.outputs) ? nameAll(state, motion) : values_;
@@ -132,7 +184,10 @@ class ModelRecorder {
   /// What expressions of outputs may use.
   NamedValues<Symbol> nameAll(const ModelState<Symbol>& state, const ModelMotion<Symbol>& motion) {
     NamedValues<Symbol> named = equations::nameState(model_, names_, state, motion.rates, values_);
-    const Symbols second = calcSecondDerivatives(state, motion);
+    const Symbols second =
+        system_.closures.empty()
+            ? calcSecondDerivatives(state, motion)
+            : equations::calcSecondRates(system_, state.coordinates, motion.rates, motion.accelerations);
     for (std::size_t i = 0; i < second.size(); ++i) {
       named.set(names_.getCoordinateNames()[i] + "_ddot", second[i]);
     }
@@ -158,6 +213,9 @@ class ModelRecorder {
     recorded.rest_rates = rest.accelerations;
     append(rest.state_rates, recorded.rest_rates);
     recorded.rest_pivots = rest.pivots;
+    for (const auto& terms : equations::calcClosureTerms(system_, rest.bodies, getCoordinates())) {
+      recorded.rest_closures.push_back(kClosureWeight * terms.value);
+    }
     const ModelState<Symbol> moving = makeQuietState(getSpeeds());
     const ModelMotion<Symbol> motion = calcMotion(moving);
     Symbols changes = calcSecondDerivatives(moving, motion);
@@ -177,7 +235,7 @@ class ModelRecorder {
     symbols.insert(symbols.end(), more.begin(), more.end());
   }
 
-  /// Second time derivatives of the coordinates.
+  /// Second time derivatives of the coordinates; the state must be the recorder's.
   static Symbols calcSecondDerivatives(const ModelState<Symbol>& state, const ModelMotion<Symbol>& motion) {
     std::vector<program::Seed> seeds;
     for (std::size_t i = 0; i < state.coordinates.size(); ++i) {
@@ -213,8 +271,7 @@ class ModelRecorder {
     if (model_.initial.equilibrium) {
       rates.assign(rates.size(), Symbol(0.0));
     }
-    const Symbols speeds = equations::calcSpeeds(system_, coordinates, rates);
-    append(speeds, coordinates);
+    append(loops_ ? rates : equations::calcSpeeds(system_, coordinates, rates), coordinates);
     for (const StateSpec& state : model_.system.states) {
       coordinates.push_back(values_.calc(state.initial));
     }
@@ -228,6 +285,7 @@ class ModelRecorder {
 
   const ModelSpec& model_;
   const SystemNames& names_;
+  std::shared_ptr<const LoopModel> loops_;
   std::unique_ptr<program::Recorder> recorder_;
   NamedValues<Symbol> values_;
   SystemValues<Symbol> system_;
@@ -237,8 +295,9 @@ class ModelRecorder {
 
 }  // namespace
 
-RecordedModel recordModel(const ModelSpec& model, const SystemNames& names) {
-  return ModelRecorder(model, names).record();
+RecordedModel recordModel(const ModelSpec& model, const SystemNames& names,
+                          std::shared_ptr<const LoopModel> loops) {
+  return ModelRecorder(model, names, std::move(loops)).record();
 }
 
 }  // namespace twinmap

@@ -7,6 +7,7 @@
 #include "framework/models/mechanism/equations/model_equations.hpp"
 #include "framework/models/mechanism/lanes/recorded_excitation.hpp"
 #include "framework/models/mechanism/lanes/recorded_sampling.hpp"
+#include "framework/models/mechanism/loops/loop_model.hpp"
 #include "framework/models/mechanism/system_names.hpp"
 #include "kernels/lanes/program/recorder.hpp"
 
@@ -23,18 +24,25 @@ struct RecordedModel {
   int state_count = 0;  ///< of first order, without the hidden ones
   RecordedExcitation excitation;
   Symbols derivatives;        ///< of the states with respect to time
-  Symbols pivots;             ///< not positive where the mass matrix is singular
+  Symbols pivots;             ///< not positive where the mass matrix or a loop is singular
   RecordedSampling sampling;  ///< with the outputs; only the rates of its states are also in `derivatives`
-  Symbols initial;            ///< states at t = 0; of parameters alone; without equilibrium
+  Symbols initial;     ///< states at t = 0; of parameters alone; without equilibrium. With loops as the
+                       ///< file gives them, and rates of coordinates in the place of speeds: Assembly's
   Symbols rest_rates;  ///< at rest and t = 0 without excitation: accelerations, then rates of the states of
                        ///< first order
+  Symbols rest_closures;  ///< distances from the independent conditions of loops, as accelerations
   Symbols rest_pivots;
   /// d/dt of [coordinates; their rates; states of first order] linearised around rest, at t = 0 without
   /// excitation: all rows but those of the coordinates, column by column, at speeds 0.
   Symbols linearization;
+  std::shared_ptr<const LoopModel> loops;  ///< null: none
+  Symbols projected;                       ///< with loops: the states nearest that meet the conditions
+  Symbols relaxed;  ///< with loops: derivatives that lead to the conditions, for implicit integration
 };
 
-/// Writes a model down. Cost: some milliseconds.
-RecordedModel recordModel(const ModelSpec& model, const SystemNames& names);
+/// Writes a model down. `loops`: makeLoopModel() of the model, or null where it has no constraints. Cost:
+/// some milliseconds.
+RecordedModel recordModel(const ModelSpec& model, const SystemNames& names,
+                          std::shared_ptr<const LoopModel> loops = nullptr);
 
 }  // namespace twinmap

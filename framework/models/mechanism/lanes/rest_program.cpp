@@ -11,33 +11,36 @@ using Eigen::VectorXd;
 RestProgram::RestProgram(const LaneModel& model)
     : coordinates_(model.coordinate_count),
       count_(model.coordinate_count + model.getFirstOrderCount()),
+      residuals_(count_ + model.getClosureCount()),
+      pivots_(model.pivot_count),
       directions_(model.directions),
+      singular_(getSingularReason(model)),
       program_(model.rest) {}
 
 VectorXd RestProgram::calcAll(const VectorXd& equilibrium) {
   const VectorXd all = program_.calc({parameters_, insertSpeeds(equilibrium, VectorXd::Zero(coordinates_))});
-  if ((all.segment(count_, coordinates_).array() <= 0.0)
+  if ((all.segment(residuals_, pivots_).array() <= 0.0)
           .any()) {  // false for NaN, which is not an equilibrium anyway
-    throw SimulationFailure(kSingularMassMatrix);
+    throw SimulationFailure(singular_);
   }
   return all;
 }
 
 VectorXd RestProgram::calc(const VectorXd& equilibrium) {
-  return calcAll(equilibrium).head(count_);
+  return calcAll(equilibrium).head(residuals_);
 }
 
 MatrixXd RestProgram::calcJacobian(const VectorXd& equilibrium) {
   const VectorXd all = calcAll(equilibrium);
-  MatrixXd jacobian = all.segment(count_ + coordinates_, count_ * count_).reshaped(count_, count_);
+  MatrixXd jacobian = all.segment(residuals_ + pivots_, residuals_ * count_).reshaped(residuals_, count_);
   holdIndifferentStates(all.head(count_), coordinates_, jacobian);
   return jacobian;
 }
 
 MatrixXd RestProgram::calcSlopes(const VectorXd& equilibrium, const MatrixXd& start_slopes) {
   const VectorXd all = calcAll(equilibrium);
-  MatrixXd jacobian = all.segment(count_ + coordinates_, count_ * count_).reshaped(count_, count_);
-  const MatrixXd forced = all.tail(count_ * directions_).reshaped(count_, directions_);
+  MatrixXd jacobian = all.segment(residuals_ + pivots_, residuals_ * count_).reshaped(residuals_, count_);
+  const MatrixXd forced = all.tail(residuals_ * directions_).reshaped(residuals_, directions_);
   const MatrixXd changes = forced + jacobian * start_slopes;
   holdIndifferentStates(all.head(count_), coordinates_, jacobian);
   return start_slopes - linalg::fitLinear(jacobian, changes).coefficients;

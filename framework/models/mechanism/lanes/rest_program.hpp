@@ -6,7 +6,8 @@
 
 namespace twinmap {
 
-/// The accelerations and rates at rest by the recorded program, with exact derivatives.
+/// The accelerations and rates at rest, and what loops are open by, by the recorded program, with exact
+/// derivatives.
 class RestProgram : public RestAccelerations {
  public:
   explicit RestProgram(const LaneModel& model);
@@ -22,7 +23,10 @@ class RestProgram : public RestAccelerations {
  private:
   Eigen::VectorXd calcAll(const Eigen::VectorXd& equilibrium);
 
-  Eigen::Index coordinates_, count_, directions_;  ///< count_: with the states of first order
+  Eigen::Index coordinates_, count_;  ///< count_: with the states of first order
+  Eigen::Index residuals_;            ///< with the conditions of loops
+  Eigen::Index pivots_, directions_;
+  const char* singular_;
   Eigen::VectorXd parameters_;
   SingleProgram program_;
 };

@@ -21,10 +21,11 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// and where they begin the states may jump.
 class RecordedProblem final : public HybridProblem {
  public:
-  RecordedProblem(const lanes::Sample& sample, Index times, SingleProgram& derivative, SingleProgram& output,
-                  SingleProgram& jacobian, SingleProgram* jump)
+  RecordedProblem(const lanes::Sample& sample, Index times, const char* singular, SingleProgram& derivative,
+                  SingleProgram& output, SingleProgram& jacobian, SingleProgram* jump)
       : sample_(sample),
         times_(times),
+        singular_(singular),
         derivative_(derivative),
         output_(output),
         jacobian_(jacobian),
@@ -63,7 +64,7 @@ class RecordedProblem final : public HybridProblem {
     }
     for (int i = n; i < derivative_.getOutputCount(); ++i) {
       if (!(derivative_.getOutput(i) > 0.0)) {  // a pivot
-        throw SimulationFailure(kSingularMassMatrix);
+        throw SimulationFailure(singular_);
       }
     }
   }
@@ -93,6 +94,7 @@ class RecordedProblem final : public HybridProblem {
  private:
   const lanes::Sample& sample_;
   Index times_;
+  const char* singular_;
   SingleProgram &derivative_, &output_, &jacobian_;
   SingleProgram* jump_;  ///< null where nothing jumps
 };
@@ -107,15 +109,16 @@ SampleStatus makeSecondStatus(const SampleStatus& first, SampleStatus second) {
 
 }  // namespace
 
-StiffRetry::StiffRetry(const ModelSpec& spec, const LaneModel& model, const program::Program& jacobian,
+StiffRetry::StiffRetry(const ModelSpec& spec, const LaneModel& model, const StiffPrograms& programs,
                        const SampleTask& task)
     : spec_(spec),
+      model_(model),
       task_(task),
       start_(spec, model, task.box_center, task.layout.times),
       modes_(model),
-      derivative_(model.problem.derivative),
+      derivative_(programs.derivative),
       output_(model.problem.output),
-      jacobian_(jacobian) {
+      jacobian_(programs.jacobian) {
   if (!model.problem.jump.outputs.empty()) {
     jump_.emplace(model.problem.jump);
   }
@@ -162,8 +165,8 @@ SampleStatus StiffRetry::run(const Eigen::Ref<const VectorXd>& parameters, Eigen
     lanes::Sample sample;
     start_.fill(parameters, sample);
     sample.outputs = response.data();
-    RecordedProblem problem(sample, task_.layout.times.size(), derivative_, output_, jacobian_,
-                            jump_ ? &*jump_ : nullptr);
+    RecordedProblem problem(sample, task_.layout.times.size(), getSingularReason(model_), derivative_,
+                            output_, jacobian_, jump_ ? &*jump_ : nullptr);
     HybridReport report =
         integrateHybrid(problem, sample.initial, problem.getBoundaries(), task_.layout.times, options,
                         sequence.empty() ? nullptr : &sequence, HybridMethod::kImplicit);

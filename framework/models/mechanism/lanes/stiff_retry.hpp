@@ -13,8 +13,8 @@ namespace twinmap {
 /// (radau_stepper.hpp) on the recorded equations, with their exact Jacobian. Not thread safe.
 class StiffRetry {
  public:
-  /// `jacobian`: of compileJacobian(). All must outlive this.
-  StiffRetry(const ModelSpec& spec, const LaneModel& model, const program::Program& jacobian,
+  /// All must outlive this.
+  StiffRetry(const ModelSpec& spec, const LaneModel& model, const StiffPrograms& programs,
              const SampleTask& task);
 
   /// One column; `status`: of the first try, becomes that of the second.
@@ -34,6 +34,7 @@ class StiffRetry {
                    StepSequence& sequence);
 
   const ModelSpec& spec_;
+  const LaneModel& model_;
   const SampleTask task_;
   LaneStart start_;
   LaneModes modes_;

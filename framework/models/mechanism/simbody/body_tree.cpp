@@ -1,5 +1,6 @@
 #include "framework/models/mechanism/simbody/body_tree.hpp"
 
+#include "framework/models/mechanism/simbody/constraints.hpp"
 #include "framework/models/mechanism/simbody/joints.hpp"
 #include "framework/models/mechanism/simbody/mass_properties.hpp"
 
@@ -12,6 +13,7 @@ BodyTree::BodyTree(const SystemSpec& spec, const SystemNames& names, ModelNumber
     const SimTK::MobilizedBodyIndex parent(names.findBody(body.joint.parent));
     addMobilizer(matter_.updMobilizedBody(parent), rigid, body, numbers);
   }
+  addConstraints(matter_, spec, names, numbers);
 }
 
 void BodyTree::realize() {

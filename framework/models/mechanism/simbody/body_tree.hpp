@@ -10,8 +10,8 @@
 
 namespace twinmap {
 
-/// Simbody's system of one parameter set: its bodies and joints, with Euler angles for all orientations.
-/// Built anew for every sample, which costs 1 % of its simulation.
+/// Simbody's system of one parameter set: its bodies, joints and constraints, with Euler angles for all
+/// orientations. Built anew for every sample, which costs 1 % of its simulation.
 class BodyTree {
  public:
   /// Where Simbody keeps a coordinate and its speed.
@@ -32,6 +32,7 @@ class BodyTree {
   /// over all of them costs another fifth of an evaluation of the accelerations.
   void realizeVelocity(const SimTK::State& state) const;
 
+  bool hasConstraints() const { return matter_.getNumConstraints() > 0; }
   const SimTK::MultibodySystem& getSystem() const { return system_; }
   const SimTK::SimbodyMatterSubsystem& getMatter() const { return matter_; }
   const SimTK::MobilizedBody& getBody(int index) const {

@@ -70,7 +70,7 @@ Eigen::VectorXd solveBoxCenter(SimbodyContext& context) {
     atBoxCenter(context, [&] {
       context.numbers.update(calcEquilibriumPoint(context));
       LoadedSystem system(context, false);
-      coordinates = solveEquilibrium(system, calcInitialValues(context).getEquilibrium());
+      coordinates = solveEquilibrium(system, assemble(context, calcInitialValues(context)).getEquilibrium());
     });
   }
   return coordinates;

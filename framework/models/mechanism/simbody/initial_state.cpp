@@ -12,14 +12,20 @@ class LoadedSystemAtRest : public RestAccelerations {
   Eigen::VectorXd calc(const Eigen::VectorXd& q) override {
     const Eigen::Index n = countCoordinates();
     setState(system_, {q.head(n), Eigen::VectorXd::Zero(n), q.tail(q.size() - n)}, state_);
-    Eigen::VectorXd rates(q.size());
+    SimbodyContext& context = system_.getContext();
+    const Eigen::VectorXd open = context.assembly
+                                     ? context.assembly->calcDistances(getParameters(context), q.head(n))
+                                     : Eigen::VectorXd();
+    Eigen::VectorXd rates(q.size() + open.size());
     rates.head(n) = system_.calcUDot(state_, 0.0);
     std::copy(system_.getStateRates().begin(), system_.getStateRates().end(), rates.begin() + n);
+    rates.tail(open.size()) = kClosureWeight * open;
     return rates;
   }
 
   Eigen::MatrixXd calcJacobian(const Eigen::VectorXd& q) override {
-    Eigen::MatrixXd jacobian(q.size(), q.size());
+    const Eigen::VectorXd center = calc(q);
+    Eigen::MatrixXd jacobian(center.size(), q.size());
     for (Eigen::Index i = 0; i < q.size(); ++i) {
       const double h = kDifferenceStep * (1.0 + std::abs(q[i]));
       Eigen::VectorXd forward = q, backward = q;
@@ -28,7 +34,7 @@ class LoadedSystemAtRest : public RestAccelerations {
       jacobian.col(i) = (calc(forward) - calc(backward)) / (forward[i] - backward[i]);
     }
     if (system_.countStates() > 0) {
-      holdIndifferentStates(calc(q), countCoordinates(), jacobian);
+      holdIndifferentStates(center.head(q.size()), countCoordinates(), jacobian);
     }
     return jacobian;
   }
@@ -44,15 +50,24 @@ class LoadedSystemAtRest : public RestAccelerations {
 
 }  // namespace
 
+InitialState assemble(SimbodyContext& context, InitialState initial) {
+  if (context.assembly) {
+    const Eigen::VectorXd parameters = getParameters(context);
+    initial.coordinates = context.assembly->close(parameters, initial.coordinates);
+    initial.speeds = context.assembly->calcRates(parameters, initial.coordinates, initial.speeds);
+  }
+  return initial;
+}
+
 Eigen::VectorXd solveEquilibrium(LoadedSystem& system, const Eigen::VectorXd& start) {
   LoadedSystemAtRest at_rest(system);
   return solveEquilibrium(at_rest, start);
 }
 
-InitialState calcInitialState(ModelContext& context, LoadedSystem& system,
+InitialState calcInitialState(SimbodyContext& context, LoadedSystem& system,
                               const Eigen::VectorXd& box_center) {
   const std::optional<EquilibriumSpec>& equilibrium = context.model.initial.equilibrium;
-  const InitialState initial = calcInitialValues(context);
+  const InitialState initial = assemble(context, calcInitialValues(context));
   if (!equilibrium) {
     return initial;
   }
@@ -60,7 +75,7 @@ InitialState calcInitialState(ModelContext& context, LoadedSystem& system,
                                      ? box_center
                                      : solveEquilibrium(system, initial.getEquilibrium());
   const Eigen::Index n = initial.coordinates.size();
-  return {solved.head(n), Eigen::VectorXd::Zero(n), solved.tail(solved.size() - n)};
+  return assemble(context, {solved.head(n), Eigen::VectorXd::Zero(n), solved.tail(solved.size() - n)});
 }
 
 void setState(const LoadedSystem& system, const InitialState& initial, SimTK::State& state) {

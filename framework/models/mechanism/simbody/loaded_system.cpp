@@ -62,7 +62,7 @@ LoadedSystem::LoadedSystem(SimbodyContext& context, bool for_simbody)
       signal_rates_(context.expressions.hasSignalRates() ? signals_.size() : 0) {
   context.expressions.setNumbers(context.numbers.getValues());
   context.excitation.update(context.numbers);
-  if (for_simbody || countStates() > 0) {
+  if (for_simbody || countStates() > 0 || !context.model.system.constraints.empty()) {
     SimTK::GeneralForceSubsystem& subsystem = tree_.addForceSubsystem();
     SimTK::Force::Custom(subsystem, new ForceAdapter(*this, subsystem));
   }
@@ -136,7 +136,14 @@ void LoadedSystem::nameAccelerations(const SimTK::State& state, const SimTK::Vec
 }
 
 const Eigen::VectorXd& LoadedSystem::calcUDot(const SimTK::State& state, double t) {
-  return dynamics_->calcUDot(state, calcForces(state, t));
+  if (!tree_.hasConstraints()) {
+    return dynamics_->calcUDot(state, calcForces(state, t));
+  }
+  tree_.getSystem().realize(state, SimTK::Stage::Acceleration);
+  calcForces(state, t);  // for the rates of states
+  const SimTK::Vector& udot = state.getUDot();
+  udot_ = Eigen::Map<const Eigen::VectorXd>(udot.getContiguousScalarData(), udot.size());
+  return udot_;
 }
 
 }  // namespace twinmap

@@ -6,6 +6,7 @@
 
 #include "framework/models/mechanism/equations/force_sum.hpp"
 #include "framework/models/mechanism/load_numbers.hpp"
+#include "framework/models/mechanism/loops/assembly.hpp"
 #include "framework/models/mechanism/model_context.hpp"
 #include "framework/models/mechanism/simbody/body_tree.hpp"
 #include "framework/models/mechanism/simbody/state_expressions.hpp"
@@ -19,6 +20,8 @@ struct SimbodyContext : ModelContext {
   explicit SimbodyContext(const ModelSpec& of) : ModelContext(of), expressions(of, numbers.getValues()) {}
 
   StateExpressions expressions;
+  std::shared_ptr<const LoopModel> loops = makeLoopModel(*this);  ///< null: none
+  std::optional<Assembly> assembly = loops ? std::make_optional<Assembly>(*loops) : std::optional<Assembly>();
 };
 
 /// Of central differences of a system's accelerations: the cube root of the rounding unit.
@@ -35,6 +38,7 @@ class LoadedSystem {
   LoadedSystem& operator=(const LoadedSystem&) = delete;
 
   const BodyTree& getTree() const { return tree_; }
+  SimbodyContext& getContext() const { return context_; }
 
   /// Sums all forces at time t and a state that is realized to Velocity. Valid until the next call, as are
   /// the rates of the states of first order and what expressions of the context give.
@@ -65,6 +69,7 @@ class LoadedSystem {
   equations::Loads<double> loads_;
   SystemForces forces_;
   std::optional<TreeDynamics> dynamics_;
+  Eigen::VectorXd udot_;  ///< by Simbody, where there are constraints
 };
 
 }  // namespace twinmap

@@ -3,8 +3,6 @@
 #include "framework/models/mechanism/simbody/mass_properties.hpp"
 
 namespace twinmap {
-using SimTK::Stage;
-using SimTK::Vec3;
 
 Outputs::Outputs(const std::vector<OutputSpec>& outputs, const SystemNames& names, ModelNumbers& numbers) {
   for (const OutputSpec& spec : outputs) {
@@ -15,9 +13,9 @@ Outputs::Outputs(const std::vector<OutputSpec>& outputs, const SystemNames& name
                            output.kind == OutputKind::kAcceleration ||
                            output.kind == OutputKind::kSpecificForce;
     const bool position = output.kind == OutputKind::kPosition;
-    const Stage needed = output.kind == OutputKind::kCoordinate ? Stage::Time
-                         : position                             ? Stage::Position
-                                                                : Stage::Velocity;
+    const SimTK::Stage needed = output.kind == OutputKind::kCoordinate ? SimTK::Stage::Time
+                                : position                             ? SimTK::Stage::Position
+                                                                       : SimTK::Stage::Velocity;
     stage_ = std::max(stage_, needed);
     outputs_.push_back(output);
   }
@@ -78,11 +76,11 @@ double Outputs::calcAcceleration(const OutputNumbers& output, const LoadedSystem
                                  const SimTK::Vector_<SimTK::SpatialVec>& accelerations) const {
   const SimTK::MobilizedBody& body = system.getTree().getBody(output.station.body);
   const SimTK::SpatialVec& at_origin = accelerations[output.station.body];
-  const Vec3 arm = body.expressVectorInGroundFrame(state, toVec3(output.station.point));
-  const Vec3& spin = body.getBodyAngularVelocity(state);
-  const Vec3 acceleration =
+  const SimTK::Vec3 arm = body.expressVectorInGroundFrame(state, toVec3(output.station.point));
+  const SimTK::Vec3& spin = body.getBodyAngularVelocity(state);
+  const SimTK::Vec3 acceleration =
       at_origin[1] + SimTK::cross(at_origin[0], arm) + SimTK::cross(spin, SimTK::cross(spin, arm));
-  const Vec3 direction = toVec3(output.direction);
+  const SimTK::Vec3 direction = toVec3(output.direction);
   return output.kind == OutputKind::kAcceleration
              ? SimTK::dot(acceleration, direction)
              : SimTK::dot(acceleration - system.getGravity(),

@@ -41,6 +41,10 @@ class SimbodyRun {
     run_.excitation.beginPhase(begin);
     const std::unique_ptr<SimTK::Integrator> integrator = makeIntegrator(run_);
     integrator->setAccuracy(run_.simulation.relative_tolerance);
+    if (run_.system.getTree().hasConstraints()) {
+      constexpr double kOfLength = 1e-10;  // loops stay closed to 1e-9
+      integrator->setConstraintTolerance(kOfLength);
+    }
     integrator->setFinalTime(end);
     integrator->setReturnEveryInternalStep(true);  // so that the limits can be checked
     state_.setTime(begin);

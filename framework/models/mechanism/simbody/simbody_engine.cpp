@@ -34,7 +34,8 @@ SampleStatus SimbodyEngine::simulate(const Eigen::Ref<const Eigen::VectorXd>& pa
 std::string SimbodyEngine::run(const Eigen::Ref<const Eigen::VectorXd>& parameters,
                                Eigen::Ref<Eigen::VectorXd> response, StepSequence& sequence) {
   const SimulationSpec& simulation = context_.model.simulation;
-  const bool own = simulation.integrator == Integrator::kDopri5;
+  // whose steps know no constraints; Simbody's own integrators project
+  const bool own = simulation.integrator == Integrator::kDopri5 && !context_.loops;
   context_.numbers.update(parameters);
   LoadedSystem system(context_, !own);
   fillModes(system, response);  // before the integration, which switches the excitation on
@@ -52,10 +53,17 @@ void SimbodyEngine::fillModes(LoadedSystem& system, Eigen::Ref<Eigen::VectorXd> 
   if (task_.layout.modes == 0) {
     return;
   }
-  const Eigen::VectorXd start =
-      task_.box_center.size() > 0 ? task_.box_center : calcInitialValues(context_).getEquilibrium();
-  response.tail(2 * task_.layout.modes) =
-      collectLowestModes(calcStateMatrix(system, solveEquilibrium(system, start)), task_.layout.modes);
+  const Eigen::VectorXd start = task_.box_center.size() > 0
+                                    ? task_.box_center
+                                    : assemble(context_, calcInitialValues(context_)).getEquilibrium();
+  const Eigen::VectorXd equilibrium = solveEquilibrium(system, start);
+  Eigen::MatrixXd matrix = calcStateMatrix(system, equilibrium);
+  if (context_.assembly) {
+    const Eigen::VectorXd parameters = getParameters(context_);
+    const Eigen::VectorXd coordinates = equilibrium.head(context_.loops->coordinates);
+    matrix = reduceToFreedoms(matrix, context_.assembly->calcSlopes(parameters, coordinates));
+  }
+  response.tail(2 * task_.layout.modes) = collectLowestModes(matrix, task_.layout.modes);
 }
 
 }  // namespace twinmap

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <optional>
+
+#include "framework/experiment/fields/one_of.hpp"
+#include "framework/experiment/model/elements/element.hpp"
+
+namespace twinmap {
+
+/// Two points of bodies that are one: closes a loop.
+struct CoincidentSpec {
+  StationSpec from, to;
+};
+
+template <class Fields>
+void describe(Fields& f, CoincidentSpec& s) {
+  f.required("from", s.from, "a point of one body");
+  f.required("to", s.to, "the same point of the other");
+}
+
+/// Two points at a constant distance: a rod without mass, hinged at both ends.
+struct RodSpec {
+  StationSpec from, to;
+  Expression length;
+};
+
+template <class Fields>
+void describe(Fields& f, RodSpec& s) {
+  f.required("from", s.from, "one end");
+  f.required("to", s.to, "other end");
+  f.required("length", s.length, "above 0", Unit{"m"});
+}
+
+/// A plane fixed to a body.
+struct PlaneSpec {
+  StationSpec station;
+  Expression3 normal;
+};
+
+template <class Fields>
+void describe(Fields& f, PlaneSpec& s) {
+  f.required("body", s.station.body, "a body, or ground", Reference::kBody);
+  f.optional("point", s.station.point, "a point of the plane, in the body's frame", Unit{"m"});
+  f.required("normal", s.normal, "in the body's frame; normalised", kNoUnit);
+}
+
+/// A point of a body that stays in a plane of another: a pin in a slot.
+struct PointInPlaneSpec {
+  StationSpec station;
+  PlaneSpec plane;
+};
+
+template <class Fields>
+void describe(Fields& f, PointInPlaneSpec& s) {
+  f.required("body", s.station.body, "the body whose point stays in the plane", Reference::kBody);
+  f.optional("point", s.station.point, "in the body's frame", Unit{"m"});
+  f.required("plane", s.plane, "of another body, or of ground");
+}
+
+/// coordinate = ratio * driver + offset: gears, a belt, a rack and its pinion, a lead screw.
+struct GearSpec {
+  Name coordinate, driver;
+  Expression ratio, offset;
+};
+
+template <class Fields>
+void describe(Fields& f, GearSpec& s) {
+  f.required("driver", s.driver, "coordinate = ratio * driver + offset", Reference::kForcedCoordinate);
+  f.required("coordinate", s.coordinate, "the coordinate that follows", Reference::kForcedCoordinate);
+  f.required("ratio", s.ratio, "unit of the coordinate per unit of the driver", kNoUnit);
+  f.optional("offset", s.offset, "the coordinate where the driver is 0", Unit{"m", "rad"});
+}
+
+/// What bodies must satisfy beside their joints; exactly one of the optional kinds is set.
+struct ConstraintSpec {
+  SourceLocation where;
+  std::optional<Name> name;
+  std::optional<CoincidentSpec> coincident;
+  std::optional<RodSpec> rod;
+  std::optional<PointInPlaneSpec> point_in_plane;
+  std::optional<GearSpec> gear;
+};
+
+template <class Fields>
+void describe(Fields& f, ConstraintSpec& s) {
+  f.location(s.where);
+  f.optional("name", s.name, "for messages");
+  f.oneOf("must give exactly one of",  //
+          choice("coincident", s.coincident, "two points of bodies are one"),
+          choice("rod", s.rod, "two points keep their distance"),
+          choice("point_in_plane", s.point_in_plane, "a point stays in a plane of another body"),
+          choice("gear", s.gear, "two coordinates move in a ratio: gears, belts, racks"));
+}
+
+}  // namespace twinmap

@@ -1,0 +1,19 @@
+#include "framework/models/mechanism/lanes/recorded_parameters.hpp"
+
+#include "framework/experiment/model/parameter_box.hpp"
+
+namespace twinmap {
+
+NamedValues<program::Symbol> recordParameters(const ModelSpec& model, program::Recorder& recorder) {
+  NamedValues<program::Symbol> names;
+  const std::vector<ParameterSpec> sampled = collectSampled(model);
+  for (std::size_t i = 0; i < sampled.size(); ++i) {
+    names.set(sampled[i].name.text, recorder.parameter(static_cast<int>(i)));
+  }
+  for (const ConstantSpec& constant : model.constants) {
+    names.set(constant.name.text, names.calc(constant.value));
+  }
+  return names;
+}
+
+}  // namespace twinmap

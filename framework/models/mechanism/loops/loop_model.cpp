@@ -1,0 +1,178 @@
+#include "framework/models/mechanism/loops/loop_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "framework/experiment/model/parameter_box.hpp"
+#include "framework/models/mechanism/loops/closure_program.hpp"
+#include "kernels/linalg/decompositions.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// A vector is independent of others where more than this part of it is: links aligned to 1e-6 rad are.
+constexpr double kIndependentPart = 1e-6;
+
+std::vector<int> listAll(Index count) {
+  std::vector<int> all(count);
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+/// Columns of `vectors` that are independent, tried in the given order, by Gram and Schmidt's method; with
+/// `largest` the one with the largest independent part first.
+std::vector<int> pickIndependent(MatrixXd vectors, std::vector<int> order, bool largest) {
+  const VectorXd lengths = vectors.colwise().norm();
+  const double smallest = kIndependentPart * kIndependentPart * lengths.maxCoeff();
+  const auto calcPart = [&](int i) {
+    return lengths[i] > smallest ? vectors.col(i).norm() / lengths[i] : 0.0;
+  };
+  std::vector<int> picked;
+  while (!order.empty() && static_cast<Index>(picked.size()) < vectors.rows()) {
+    const auto next = largest ? std::max_element(order.begin(), order.end(),
+                                                 [&](int a, int b) { return calcPart(a) < calcPart(b); })
+                              : order.begin();
+    const int one = *next;
+    order.erase(next);
+    if (calcPart(one) > kIndependentPart) {
+      const VectorXd direction = vectors.col(one).normalized();
+      vectors -= direction * (direction.transpose() * vectors);
+      picked.push_back(one);
+    } else if (largest) {
+      break;
+    }
+  }
+  std::sort(picked.begin(), picked.end());
+  return picked;
+}
+
+/// Plans at one parameter set.
+class LoopPlanner {
+ public:
+  LoopPlanner(const ModelContext& context, const LoopModel& model, const VectorXd& parameters)
+      : context_(context),
+        model_(model),
+        program_(model),
+        parameters_(parameters),
+        rows_(listAll(static_cast<Index>(model.labels.size()))),
+        coordinates_(listAll(model.coordinates)) {}
+
+  LoopPlan plan(const VectorXd& guess) {
+    const InitialSpec& initial = context_.model.initial;
+    const std::vector<int> released = listReleased({&initial.coordinates});
+    const VectorXd closed = assemble(guess, released);
+    const MatrixXd slopes = program_.calc(parameters_, closed).slopes;
+    LoopPlan plan;
+    plan.rows = pickIndependent(slopes.transpose(), rows_, true);
+    requireRegular(closed, plan.rows);
+    const MatrixXd kept = slopes(plan.rows, coordinates_);
+    plan.dependent = pickIndependent(kept, released, false);
+    plan.dependent_rates =
+        pickIndependent(kept, listReleased({&initial.speeds, &initial.coordinates}), false);
+    return plan;
+  }
+
+ private:
+  /// Coordinates in the order in which they are let go: those not given, then those given last.
+  std::vector<int> listReleased(const std::vector<const std::vector<NamedExpression>*>& given) const {
+    std::vector<int> held;
+    for (const std::vector<NamedExpression>* values : given) {
+      for (const NamedExpression& value : *values) {
+        held.push_back(context_.names.findCoordinate(value.name));
+      }
+    }
+    std::vector<int> released = coordinates_;
+    for (auto one = held.rbegin(); one != held.rend(); ++one) {
+      released.erase(std::find(released.begin(), released.end(), *one));
+      released.push_back(*one);
+    }
+    return released;
+  }
+
+  VectorXd assemble(const VectorXd& guess, const std::vector<int>& released) {
+    const MatrixXd slopes = program_.calc(parameters_, guess).slopes;
+    const VectorXd closed =
+        closeLoops(program_, parameters_, guess, rows_, pickIndependent(slopes, released, false));
+    const ClosureValues at = program_.calc(parameters_, closed);
+    const std::string open = describeOpenLoops(model_, at);
+    if (!open.empty()) {
+      const VectorXd free = closeLoops(program_, parameters_, guess, rows_, coordinates_);
+      const std::string still_open = describeOpenLoops(model_, program_.calc(parameters_, free));
+      throw SimulationFailure(
+          still_open.empty()
+              ? "the loops cannot be closed with the initial coordinates that are held: " + open +
+                    "; give values within reach, or fewer of them"
+              : "the constraints contradict each other, or are out of reach from the initial coordinates: " +
+                    still_open,
+          findOpen(at).where);
+    }
+    return closed;
+  }
+
+  const ClosureLabel& findOpen(const ClosureValues& at) const {
+    Index worst = 0;
+    at.distances.cwiseAbs().maxCoeff(&worst);
+    return model_.labels[worst];
+  }
+
+  /// Conditions that are redundant here must be so a little further along the motion; where a configuration
+  /// is singular, they become independent there.
+  void requireRegular(const VectorXd& closed, const std::vector<int>& rows) {
+    constexpr double kMove = 1e-3;  // rad or m: a singular one is then open by some 1e-6 of its lengths
+    if (rows.size() == rows_.size()) {
+      return;
+    }
+    const MatrixXd slopes = program_.calc(parameters_, closed).slopes;
+    const VectorXd some =
+        VectorXd::NullaryExpr(closed.size(), [](Index i) { return std::cos(1.0 + static_cast<double>(i)); });
+    const VectorXd free = some - linalg::solveMinimumNorm(slopes, slopes * some);
+    if (free.norm() <= kIndependentPart * some.norm()) {
+      return;  // nothing can move
+    }
+    const VectorXd moved =
+        closeLoops(program_, parameters_, closed + kMove * free.normalized(), rows, coordinates_);
+    const ClosureValues at = program_.calc(parameters_, moved);
+    const std::string open = describeOpenLoops(model_, at);
+    if (!open.empty() || pickIndependent(at.slopes.transpose(), rows_, true).size() > rows.size()) {
+      throw SimulationFailure(
+          "the machine starts in a singular configuration, in which a loop could go on in several ways "
+          "(links "
+          "that are aligned); start elsewhere" +
+              (open.empty() ? "" : " (a little further on, " + open + ")"),
+          findOpen(at).where);
+    }
+  }
+
+  const ModelContext& context_;
+  const LoopModel& model_;
+  ClosureProgram program_;
+  const VectorXd parameters_;
+  const std::vector<int> rows_, coordinates_;  ///< all of them
+};
+
+}  // namespace
+
+std::shared_ptr<const LoopModel> makeLoopModel(ModelContext& context) {
+  if (context.model.system.constraints.empty()) {
+    return nullptr;
+  }
+  const VectorXd center = calcBoxCenter(collectSampled(context.model));
+  try {
+    context.numbers.update(center);
+    checkNumbers(context);
+    auto loops = std::make_shared<LoopModel>(recordLoops(context.model, context.names));
+    loops->plan = LoopPlanner(context, *loops, center).plan(calcInitialValues(context).coordinates);
+    return loops;
+  } catch (const SimulationFailure& failure) {
+    const std::string place = toString(failure.getWhere());
+    throw ExperimentError((place.empty() ? "" : place + ": ") +
+                          "at the centre of the bounds: " + failure.what());
+  }
+}
+
+}  // namespace twinmap

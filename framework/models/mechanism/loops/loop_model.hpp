@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "framework/models/mechanism/model_context.hpp"
+#include "kernels/lanes/program/program.hpp"
+
+namespace twinmap {
+
+/// How loops are closed. Decided once, at the centre of the bounds, so that all samples are assembled alike.
+struct LoopPlan {
+  std::vector<int> rows;             ///< conditions that are independent; the others follow from them
+  std::vector<int> dependent;        ///< coordinates that are solved for, as many as rows
+  std::vector<int> dependent_rates;  ///< rates of coordinates that are solved for
+};
+
+/// Where a condition comes from, for messages.
+struct ClosureLabel {
+  std::string text;  ///< "constraint 'loop'", "system.constraints[2] (rod)"
+  std::string unit;
+  SourceLocation where;
+};
+
+/// The conditions c(q, p) = 0 of a model's constraints, recorded, and how they are met. Immutable; shared by
+/// threads.
+struct LoopModel {
+  Eigen::Index coordinates = 0, parameters = 0;
+  std::vector<ClosureLabel> labels;  ///< one a condition
+  program::Program program;          ///< reads ClosureProgram
+  LoopPlan plan;
+};
+
+/// Null where the model has no constraints. The context's numbers are those of the centre of the bounds
+/// afterwards. Throws ExperimentError for loops that cannot be closed there, by how much and which, and for a
+/// start in a singular configuration. Cost: some milliseconds.
+std::shared_ptr<const LoopModel> makeLoopModel(ModelContext& context);
+
+}  // namespace twinmap
