@@ -69,7 +69,9 @@ void appendRest(ModelContext& context, const LaneModel& lanes, const VectorXd& b
   const VectorXd center = calcBoxCenter(collectSampled(context.model));
   context.numbers.update(center);
   try {
-    const VectorXd equilibrium = LaneStart(context.model, lanes, box_center).solveEquilibrium(center);
+    const VectorXd no_times;
+    const VectorXd equilibrium =
+        LaneStart(context.model, lanes, box_center, no_times).solveEquilibrium(center);
     const Eigen::MatrixXd matrix = LaneModes(lanes).calcMatrix(center, equilibrium);
     lines.push_back(describeLine("equilibrium", describeEquilibrium(context.names, equilibrium) +
                                                     (isUnstable(matrix) ? " (unstable)" : "")));
