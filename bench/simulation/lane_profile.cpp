@@ -115,7 +115,7 @@ LaneProfile measureLanes(const ModelSpec& model, const Eigen::VectorXd& times,
                          const Eigen::MatrixXd& points) {
   const Eigen::VectorXd box_center = makeSimbodyModel(model)->solveBoxCenter();
   const LaneModel lane_model = compileModel(recordModel(model, SystemNames(model.system)), false);
-  LaneStart start(model, lane_model, box_center);
+  LaneStart start(model, lane_model, box_center, times);
   const int count = static_cast<int>(points.cols());
   Eigen::MatrixXd outputs(static_cast<Eigen::Index>(model.outputs.size()) * times.size(), count);
   std::vector<lanes::Sample> samples(count);
