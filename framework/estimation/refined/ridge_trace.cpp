@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "framework/estimation/derived/value_distribution.hpp"
@@ -48,10 +49,13 @@ class RidgeWalk {
 
   /// Whether it reached the ends.
   bool run(const LocalMisfit& minimum) {
-    if (!(step_ > 0.0) || !settle(minimum)) {
+    if (!(step_ > 0.0)) {
       return false;
     }
-    if (pieces_.empty()) {
+    const AcrossStep step = calcStep(minimum);
+    const std::optional<LocalMisfit> middle =
+        step.isSettled() ? std::optional(minimum) : settleAll(step.end).front();
+    if (!middle || !add(*middle)) {
       return false;  // the minimum lies beyond the bounds
     }
     return walk(step_) && walk(-step_);
@@ -60,49 +64,97 @@ class RidgeWalk {
   const std::vector<RidgePiece>& getPieces() const { return pieces_; }
 
  private:
+  /// A Gauss-Newton step across the ridge.
+  struct AcrossStep {
+    VectorXd end;   ///< where it leads to
+    double length;  ///< standard deviations
+
+    bool isSettled() const {
+      constexpr double kSettled = 0.1;  // adds 1 % to chi-square of a degree
+      return length < kSettled;
+    }
+  };
+
+  /// Piece by piece from the first, several at a time, all on the tangent of the last: samples that are
+  /// simulated together cost little more than one. Where the ridge bends too much for that, the next ones
+  /// start from the last that settled.
   bool walk(double step) {
-    constexpr std::size_t kMost = 200;
+    constexpr std::size_t kMost = 192;  // and those under way
     constexpr double kNegligible = 18.0;  // exp(-18) of the weight
     RidgePiece last = pieces_.front();
-    for (std::size_t before = pieces_.size(); pieces_.size() < kMost; before = pieces_.size()) {
-      const VectorXd next = misfit_.getBox().clamp(last.local.at + step * last.tangent);
-      if ((next - last.local.at).dot(along_) / step < 0.5) {
+    while (pieces_.size() < kMost) {
+      const MatrixXd ahead = lookAhead(last, step);
+      if (ahead.cols() == 0) {
         return true;  // the limits of the search stop it
       }
-      const LocalMisfit local = misfit_.linearize(next);
-      if (!local.status.ok || !settle(local)) {
-        return next.cwiseAbs().maxCoeff() > 1.0;  // beyond the bounds it need not go on
+      const std::vector<std::optional<LocalMisfit>> settled = settleAll(ahead);
+      if (!settled.front()) {
+        return ahead.col(0).cwiseAbs().maxCoeff() > 1.0;  // beyond the bounds it need not go on
       }
-      if (pieces_.size() == before || pieces_.back().log_weight < pieces_.front().log_weight - kNegligible) {
-        return true;
+      for (std::size_t i = 0; i < settled.size() && settled[i]; ++i) {
+        if (!add(*settled[i]) || pieces_.back().log_weight < pieces_.front().log_weight - kNegligible) {
+          return true;
+        }
       }
       last = pieces_.back();
     }
     return false;
   }
 
-  /// Gauss-Newton steps across the ridge from a point; adds the piece there if any of it is within the box.
-  bool settle(LocalMisfit local) {
-    constexpr int kMostSteps = 6;
-    constexpr double kSettled = 0.1;  // standard deviations: adds 1 % to chi-square of a degree
-    for (int k = 0; k < kMostSteps; ++k) {
-      const MatrixXd information = across_.transpose() * local.information * across_;
-      const VectorXd descent =
-          across_.transpose() * (local.descent + kHalfWidthInformation * local.at);  // of chi-square alone
-      const VectorXd step = linalg::solvePositiveDefinite(information, descent);
-      if (std::sqrt(step.dot(information * step)) < kSettled) {
-        add(local, information);
-        return true;
+  /// Points of the next pieces, as many as the limits of the search leave.
+  MatrixXd lookAhead(const RidgePiece& last, double step) const {
+    constexpr Index kAhead = 8;  // half of the ridge; and as many lanes
+    MatrixXd points(last.tangent.size(), kAhead);
+    VectorXd before = last.local.at;
+    Index count = 0;
+    for (; count < kAhead; ++count) {
+      const VectorXd next = misfit_.getBox().clamp(before + step * last.tangent);
+      if ((next - before).dot(along_) / step < 0.5) {
+        break;
       }
-      local = misfit_.linearize(misfit_.getBox().clamp(local.at + across_ * step));
-      if (!local.status.ok) {
-        return false;
-      }
+      points.col(count) = before = next;
     }
-    return false;
+    return points.leftCols(count);
   }
 
-  void add(const LocalMisfit& local, const MatrixXd& information) {
+  AcrossStep calcStep(const LocalMisfit& local) const {
+    const MatrixXd information = across_.transpose() * local.information * across_;
+    const VectorXd descent =
+        across_.transpose() * (local.descent + kHalfWidthInformation * local.at);  // of chi-square alone
+    const VectorXd step = linalg::solvePositiveDefinite(information, descent);
+    return {misfit_.getBox().clamp(local.at + across_ * step), std::sqrt(step.dot(information * step))};
+  }
+
+  /// Steps across the ridge from each point until they are small; nothing where they do not become so or a
+  /// simulation fails.
+  std::vector<std::optional<LocalMisfit>> settleAll(MatrixXd points) {
+    constexpr int kMostSteps = 6;
+    std::vector<std::optional<LocalMisfit>> settled(static_cast<std::size_t>(points.cols()));
+    std::vector<Index> open(settled.size());
+    std::iota(open.begin(), open.end(), Index{0});
+    for (int k = 0; k < kMostSteps && !open.empty(); ++k) {
+      const std::vector<LocalMisfit> found = misfit_.linearizeAll(points(Eigen::all, open));
+      std::vector<Index> left;
+      for (std::size_t i = 0; i < open.size(); ++i) {
+        if (!found[i].status.ok) {
+          continue;
+        }
+        const AcrossStep step = calcStep(found[i]);
+        if (step.isSettled()) {
+          settled[static_cast<std::size_t>(open[i])] = found[i];
+        } else {
+          points.col(open[i]) = step.end;
+          left.push_back(open[i]);
+        }
+      }
+      open = std::move(left);
+    }
+    return settled;
+  }
+
+  /// Whether any of the piece there is within the box.
+  bool add(const LocalMisfit& local) {
+    const MatrixXd information = across_.transpose() * local.information * across_;
     const linalg::Cholesky factor = linalg::calcCholesky(information);
     const VectorXd coupling = across_.transpose() * local.information * along_;
     RidgePiece piece{local, along_ - across_ * linalg::solveCholesky(factor.lower, coupling), {}, 0.0, 0.0,
@@ -111,11 +163,12 @@ class RidgeWalk {
         across_ * linalg::solveCholesky(factor.lower, MatrixXd::Identity(coupling.size(), coupling.size())) *
         across_.transpose();
     if (!cutAtBounds(piece)) {
-      return;
+      return false;
     }
     piece.log_weight = -0.5 * local.chi_square - factor.lower.diagonal().array().log().sum() +
                        std::log(piece.to - piece.from) + calcLogWithin(piece);
     pieces_.push_back(piece);
+    return true;
   }
 
   /// The part of half a step on both sides that may be within the bounds, given the standard deviations

@@ -26,7 +26,7 @@ bool hasFlatDirection(const LocalMisfit& minimum);
 /// likelihood is. Its weight is exp(-chi-square / 2) over the square root of the determinant of the
 /// information across: Laplace's approximation across, quadrature along, with the box as a uniform prior.
 /// Nothing where there is no flat direction or more than one, and where a simulation fails or the steps do
-/// not converge. Cost: two or three linearisations a piece, some 16 pieces.
+/// not converge. Cost: two or three linearisations a piece, some 16 pieces, eight at a time.
 std::optional<RidgeTrace> traceRidge(Misfit& misfit, const LocalMisfit& minimum);
 
 }  // namespace twinmap
