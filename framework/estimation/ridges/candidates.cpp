@@ -263,7 +263,8 @@ std::vector<Candidate> findSums(const FlatDirections& flat, const std::vector<Pa
 
 std::vector<Candidate> findBaseParameters(const FlatDirections& flat,
                                           const std::vector<ParameterSpec>& parameters, double largest) {
-  constexpr double kMatters = 1e-3;  // of scaled terms
+  constexpr double kMatters = 1e-3;      // of scaled terms
+  constexpr std::size_t kMostTerms = 3;  // longer ones fit any smooth function: they name nothing
   const TermGradients gradients = calcTermGradients(flat, parameters);
   std::vector<Index> independent;
   std::vector<Candidate> found;
@@ -285,6 +286,9 @@ std::vector<Candidate> findBaseParameters(const FlatDirections& flat,
     }
     sum.terms.push_back(gradients.terms[static_cast<std::size_t>(k)]);
     sum.coefficients.push_back(1.0 / gradients.scale[k]);
+    if (sum.terms.size() > kMostTerms) {
+      continue;
+    }
     divideByFirst(sum);
     roundCoefficients(sum, flat, parameters);
     if (sum.residual <= largest) {

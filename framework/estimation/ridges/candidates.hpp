@@ -25,7 +25,7 @@ std::vector<Candidate> findSums(const FlatDirections& flat, const std::vector<Pa
 /// Base parameters, as identification of robots finds them by a rank-revealing factorisation of the regressor
 /// (Gautier, 1991), here of the terms' derivatives along the flat directions: from the simplest term on, each
 /// whose derivatives are a linear combination of those of independent terms before it makes, less that
-/// combination, a sum that is identified.
+/// combination, a sum that is identified. Of at most three terms.
 std::vector<Candidate> findBaseParameters(const FlatDirections& flat,
                                           const std::vector<ParameterSpec>& parameters, double largest);
 

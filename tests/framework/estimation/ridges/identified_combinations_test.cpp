@@ -179,6 +179,17 @@ TEST(IdentifiedCombinations, SayNothingWhereAllIsDeterminedOrAParameterAloneIsNo
       findIn(parameters, [](const VectorXd& x) { return VectorXd::Constant(1, x[0]).eval(); }).empty());
 }
 
+TEST(IdentifiedCombinations, HaveAtMostThreeTerms) {
+  const std::vector<ParameterSpec> parameters{makeParameter("a", "", 0.5, 3), makeParameter("b", "", 0.5, 3)};
+  const auto ridges = findIn(parameters, [](const VectorXd& x) {
+    return VectorXd::Constant(1, x[0] + x[1] + 0.3 * x[0] * x[0] + x[0] * x[1] - 0.2 * x[1] * x[1]).eval();
+  });
+  ASSERT_EQ(ridges.size(), 1U);
+  for (const Combination& combination : ridges[0].combinations) {
+    EXPECT_LE(combination.terms.size(), 3U);
+  }
+}
+
 TEST(IdentifiedCombinations, AdmitWhereNothingSimpleFits) {
   const std::vector<ParameterSpec> parameters{makeParameter("a", "", 0.5, 3), makeParameter("b", "", 0.5, 3)};
   const auto ridges = findIn(parameters, [](const VectorXd& x) {
