@@ -99,7 +99,7 @@ VectorXd LaneStart::solveEquilibrium(const Parameters& parameters) {
   rest_.setParameters(parameters);
   MatrixXd states = start_.calc({parameters}).head(model_.counts.states);
   if (box_center_.size() > 0) {
-    states = insertSpeeds(box_center_, VectorXd::Zero(model_.coordinate_count));
+    states = complete(box_center_);
   }
   assemble(parameters, states);
   return twinmap::solveEquilibrium(rest_, takeEquilibrium(states));
