@@ -16,8 +16,8 @@ struct LaneModel {
   lanes::Problem problem;         ///< the motion and its outputs
   program::Program start;  ///< initial states, then events; with directions their derivatives, one by one
   program::Program rest;   ///< residuals [rest_rates; rest_closures], rest_pivots, d residuals / d
-                          ///< [coordinates; states of first order] by columns; with directions also d
-                          ///< residuals / d parameters by columns
+                           ///< [coordinates; states of first order] by columns; with directions also d
+                           ///< residuals / d parameters by columns
   program::Program linearization;
   int directions = 0;                      ///< 0, or all parameters
   int pivot_count = 0;                     ///< of rest_pivots
