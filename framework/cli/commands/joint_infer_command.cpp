@@ -1,13 +1,16 @@
 #include <fmt/core.h>
 
 #include <deque>
+#include <filesystem>
 #include <iostream>
 #include <set>
 
 #include "framework/base/text/number_text.hpp"
 #include "framework/cli/commands/commands.hpp"
 #include "framework/experiment/experiment_file.hpp"
+#include "framework/inference/direct_inference.hpp"
 #include "framework/inference/joint_inference.hpp"
+#include "framework/inference/measurement/known_value.hpp"
 #include "framework/inference/text/inference_text.hpp"
 
 namespace twinmap::cli {
@@ -103,14 +106,43 @@ void requireJointArguments(const InferArguments& arguments) {
   }
 }
 
+/// The experiment's file; of a run that it keeps.
+std::string findExperimentFile(const std::string& run) {
+  const std::filesystem::path resolved = std::filesystem::path(run) / "resolved.yaml";
+  return std::filesystem::is_directory(run) && std::filesystem::exists(resolved) ? resolved.string() : run;
+}
+
+/// The only recording of a trial: as its own experiment file would infer it.
+void inferTrial(const InferArguments& arguments, const MeasurementReader& reader, const Recording& recording,
+                int draws) {
+  const ModelSpec& model = reader.getExperiment().model;
+  const Eigen::VectorXd known = collectKnown(model.inputs, parseKnownValues(arguments.known));
+  const InferredMeasurement inferred =
+      DirectInference(reader, draws).infer(*recording.table, recording.start, known);
+  const std::vector<FeatureInfo>& features = reader.getExtractor().getInfos();
+  if (arguments.json) {
+    std::cout << makeInferenceJson(inferred, model.parameters, features) << "\n";
+  } else if (arguments.csv) {
+    std::cout << makeInferenceCsvHeader(false, false)
+              << makeInferenceCsvRows(inferred, model.parameters, false);
+  } else {
+    std::cout << makeInferenceTable(inferred, model.parameters, features);
+  }
+}
+
 }  // namespace
 
 void inferJointly(const InferArguments& arguments) {
   requireJointArguments(arguments);
   const int draws =
       arguments.posterior_draws > 0 ? arguments.posterior_draws : SimulatorPosteriorOptions{}.draws;
-  const JointInferrer inferrer(loadExperimentTree(arguments.run), arguments.known, draws);
+  const JointInferrer inferrer(loadExperimentTree(findExperimentFile(arguments.run)), arguments.known, draws);
   const RecordingList recordings(arguments, inferrer);
+  if (recordings.get().size() == 1 && !arguments.trials.empty()) {
+    const Recording& only = recordings.get().front();
+    inferTrial(arguments, inferrer.getReader(only.trial), only, draws);
+    return;
+  }
   if (recordings.get().size() < 2) {
     throw ExperimentError(
         "one recording alone is not inferred jointly; give several files, starts or windows");

@@ -136,6 +136,33 @@ class Joint(FolderTestCase):
             self.assertLess(joint[name]["sd"], 1.05 * min(free[name]["sd"], step[name]["sd"]))
         self.assertGreater(free["k"]["sd"], 5 * joint["k"]["sd"])
 
+    def test_one_trial_alone_is_inferred_as_its_own_file_would_be(self):
+        weighed, step, recording = (self.folder / name for name in ("one.yaml", "step.yaml", "one.csv"))
+        weighed.write_text(WEIGHED)
+        own = "excitation: {F: {unit: N, pulses: [{amplitude: 4, start: 0, end: 9}]}}\n"
+        step.write_text(WEIGHED[: WEIGHED.index("excitation:")] + own)
+        result = call("simulate", weighed, "--noise", "--csv", recording, "trial=step")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        alone = json.loads(self.infer(weighed, "--trial", f"step={recording}", "--json"))
+        expected = json.loads(self.infer(step, recording, "--json"))
+        self.assertEqual(alone.keys(), expected.keys())
+        for name, one in expected["parameters"].items():
+            self.assertAlmostEqual(alone["parameters"][name]["mean"], one["mean"], delta=1e-6 * one["sd"])
+        rows = self.infer(weighed, "--trial", f"step={recording}", "--csv").splitlines()
+        self.assertEqual(rows, self.infer(step, recording, "--csv").splitlines())
+
+    def test_a_run_is_inferred_jointly_by_its_experiment(self):
+        run = self.folder / "run"
+        experiment = self.folder / "of_run.yaml"
+        experiment.write_text(OSCILLATOR + "inverse_map: none\ndesign: {test: {method: uniform, samples: 4}}\n")
+        result = call("run", experiment, "--out", run)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        found = json.loads(self.infer(run, self.a, self.b, "--joint", "--json"))
+        expected = json.loads(self.infer(self.experiment, self.a, self.b, "--joint", "--json"))
+        self.assertEqual(found["parameters"].keys(), expected["parameters"].keys())
+        for name, one in expected["parameters"].items():
+            self.assertAlmostEqual(found["parameters"][name]["mean"], one["mean"], delta=1e-3 * one["sd"])
+
     def test_errors_say_what_to_do(self):
         one = call("infer", self.experiment, self.a, "--joint")
         self.assertIn("give several files, starts or windows", one.stderr)
