@@ -4,7 +4,7 @@
 
 #include "bench/simulation/measure.hpp"
 #include "framework/models/mechanism/lanes/lane_start.hpp"
-#include "framework/models/mechanism/lanes/recorded_model.hpp"
+#include "framework/models/mechanism/lanes/recording/recorded_model.hpp"
 #include "framework/models/mechanism/simbody_model.hpp"
 #include "kernels/lanes/integrator.hpp"
 #include "kernels/lanes/program/real.hpp"

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "framework/models/mechanism/equilibrium.hpp"
-#include "framework/models/mechanism/lanes/recorded_model.hpp"
+#include "framework/models/mechanism/lanes/recording/recorded_model.hpp"
 #include "kernels/lanes/problem.hpp"
 
 namespace twinmap {

@@ -1,6 +1,6 @@
-#include "framework/models/mechanism/lanes/recorded_sampling.hpp"
+#include "framework/models/mechanism/lanes/recording/recorded_sampling.hpp"
 
-#include "framework/models/mechanism/lanes/recorded_controller.hpp"
+#include "framework/models/mechanism/lanes/recording/recorded_controller.hpp"
 
 namespace twinmap {
 namespace {

@@ -1,4 +1,4 @@
-#include "framework/models/mechanism/lanes/recorded_excitation.hpp"
+#include "framework/models/mechanism/lanes/recording/recorded_excitation.hpp"
 
 #include <algorithm>
 

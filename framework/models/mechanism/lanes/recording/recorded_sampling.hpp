@@ -5,7 +5,7 @@
 
 #include "framework/experiment/expression/named_values.hpp"
 #include "framework/experiment/model/model_spec.hpp"
-#include "framework/models/mechanism/lanes/recorded_sensor.hpp"
+#include "framework/models/mechanism/lanes/recording/recorded_sensor.hpp"
 #include "framework/models/mechanism/system_names.hpp"
 #include "kernels/lanes/problem.hpp"
 #include "kernels/lanes/program/recorder.hpp"

@@ -1,4 +1,4 @@
-#include "framework/models/mechanism/lanes/recorded_parameters.hpp"
+#include "framework/models/mechanism/lanes/recording/recorded_parameters.hpp"
 
 #include "framework/experiment/model/parameter_box.hpp"
 

@@ -1,4 +1,4 @@
-#include "framework/models/mechanism/lanes/recorded_controller.hpp"
+#include "framework/models/mechanism/lanes/recording/recorded_controller.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "framework/models/mechanism/lanes/recorded_sensor.hpp"
+#include "framework/models/mechanism/lanes/recording/recorded_sensor.hpp"
 
 #include <boost/math/constants/constants.hpp>
 #include <cmath>

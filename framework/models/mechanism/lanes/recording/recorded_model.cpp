@@ -1,11 +1,11 @@
-#include "framework/models/mechanism/lanes/recorded_model.hpp"
+#include "framework/models/mechanism/lanes/recording/recorded_model.hpp"
 
 #include <utility>
 
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/models/mechanism/equations/outputs.hpp"
 #include "framework/models/mechanism/equilibrium.hpp"
-#include "framework/models/mechanism/lanes/recorded_parameters.hpp"
+#include "framework/models/mechanism/lanes/recording/recorded_parameters.hpp"
 #include "framework/models/mechanism/sampled_keys.hpp"
 #include "kernels/lanes/program/differentiate.hpp"
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "framework/models/mechanism/equations/model_equations.hpp"
-#include "framework/models/mechanism/lanes/recorded_excitation.hpp"
-#include "framework/models/mechanism/lanes/recorded_sampling.hpp"
+#include "framework/models/mechanism/lanes/recording/recorded_excitation.hpp"
+#include "framework/models/mechanism/lanes/recording/recorded_sampling.hpp"
 #include "framework/models/mechanism/loops/loop_model.hpp"
 #include "framework/models/mechanism/system_names.hpp"
 #include "kernels/lanes/program/recorder.hpp"
