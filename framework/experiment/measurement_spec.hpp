@@ -84,9 +84,10 @@ void describe(Fields& f, MeasurementSpec& s) {
   f.optionalMap("range", s.ranges,
                 "[lowest, highest] of each sensor that clips, in its output's unit: samples at these say no "
                 "more than that the response is beyond");
-  f.optional("modes", s.modes,
-             "file with a table of modes, in the folder of the measurement (default: the measurement, where no "
-             "feature has times)");
+  f.optional(
+      "modes", s.modes,
+      "file with a table of modes, in the folder of the measurement (default: the measurement, where no "
+      "feature has times)");
   f.rule(!s.time || !s.sample_rate, "must give time or sample_rate, not both");
 }
 

@@ -21,7 +21,8 @@ InferredMeasurement DirectInference::infer(const Table& table, std::optional<dou
   const AvailableFeatures found = reader_.readAvailableFeatures(table, start);
   std::optional<SimulatorRefiner> own;  // with the noise that the measurement states
   if (found.stddev.size() > 0) {
-    own.emplace(reader_.getExperiment(), reader_.getLayout(), SimulatorRefiner::Model::kTrusted, found.stddev);
+    own.emplace(reader_.getExperiment(), reader_.getLayout(), SimulatorRefiner::Model::kTrusted,
+                found.stddev);
   }
   const SimulatorRefiner& simulator = own ? *own : simulator_;
   InferredMeasurement inferred = infer(simulator, found.features, known, found.clipped);
@@ -52,8 +53,8 @@ InferredMeasurement DirectInference::infer(const Eigen::VectorXd& features, cons
   return infer(simulator_, features, known, {});
 }
 
-InferredMeasurement DirectInference::infer(const SimulatorRefiner& simulator,
-                                           const Eigen::VectorXd& features, const Eigen::VectorXd& known,
+InferredMeasurement DirectInference::infer(const SimulatorRefiner& simulator, const Eigen::VectorXd& features,
+                                           const Eigen::VectorXd& known,
                                            const std::vector<ClippedSample>& clipped) const {
   InferredMeasurement inferred;
   inferred.posterior =

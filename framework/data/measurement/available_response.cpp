@@ -272,15 +272,17 @@ void addModes(const Table& table, const MeasurementSpec& spec, const ResponseLay
                            ": is a recording in time, but features are made of modes too; give the file of a "
                            "table of modes as measurement.modes");
   }
-  const Table own = spec.modes ? readTable(std::filesystem::path(table.source).parent_path() / spec.modes->text,
-                                           listModeColumns(), MissingCells::kKeep)
-                               : Table();
+  const Table own = spec.modes
+                        ? readTable(std::filesystem::path(table.source).parent_path() / spec.modes->text,
+                                    listModeColumns(), MissingCells::kKeep)
+                        : Table();
   const MeasuredModes modes = readModes(spec.modes ? own : table, layout);
   const auto frequencies = Eigen::seqN(layout.getFrequencyRow(0), layout.modes);
   const auto damping_ratios = Eigen::seqN(layout.getDampingRow(0), layout.modes);
   available.response(frequencies) = modes.frequencies;
   available.response(damping_ratios) = modes.damping_ratios;
-  available.missing += modes.frequencies.array().isNaN().count() + modes.damping_ratios.array().isNaN().count();
+  available.missing +=
+      modes.frequencies.array().isNaN().count() + modes.damping_ratios.array().isNaN().count();
   available.remarks.insert(available.remarks.end(), modes.remarks.begin(), modes.remarks.end());
   if (!modes.frequency_stddevs.array().isNaN().all() || !modes.damping_ratio_stddevs.array().isNaN().all()) {
     available.stddev = VectorXd::Constant(layout.getRowCount(), kMissing);

@@ -23,7 +23,7 @@ struct AvailableResponse {
   std::vector<ClippedSample> clipped;
   Eigen::Index missing = 0;          ///< rows
   std::vector<std::string> remarks;  ///< what is missing and why, a phrase each; rows that were put in order
-  Eigen::VectorXd stddev{};          ///< of rows, where the measurement states it; NaN of others; empty: of none
+  Eigen::VectorXd stddev{};  ///< of rows, where the measurement states it; NaN of others; empty: of none
 };
 
 /// The outputs of a layout at its times, `start` (s) being the time of the measurement that is the model's 0,
@@ -35,9 +35,9 @@ struct AvailableResponse {
 /// outputs (default: that of the layout's times), and no step about it is longer than 1.5 median steps; else
 /// it is missing. Where the measurement states a range, a sample at one of its limits (within 1e-6 of the
 /// range) is clipped, and one that would be interpolated between two that are; one beside such a sample is
-/// missing. Modes are read from a table of their own (readModes), or from the table itself where the layout has
-/// no times. Throws MeasurementError for an output without any needed sample and one that is the same at all of
-/// them (a dead sensor).
+/// missing. Modes are read from a table of their own (readModes), or from the table itself where the layout
+/// has no times. Throws MeasurementError for an output without any needed sample and one that is the same at
+/// all of them (a dead sensor).
 AvailableResponse readAvailable(const Table& table, const MeasurementSpec& spec, const ResponseLayout& layout,
                                 double start, std::optional<double> interval = {});
 

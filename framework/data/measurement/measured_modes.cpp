@@ -38,8 +38,9 @@ std::vector<Index> findModeRows(const Table& table, Index rows, Index modes) {
   for (Index row = 0; row < rows; ++row) {
     const double number = numbers != nullptr ? numbers->values[row] : static_cast<double>(row + 1);
     if (!(number >= 1.0) || number != std::round(number)) {
-      throw MeasurementError(fmt::format("{}: column '{}' has {} in row {}; must be 1, 2, ... from the lowest mode",
-                                         table.source, kMode, toText(number), row + 1));
+      throw MeasurementError(
+          fmt::format("{}: column '{}' has {} in row {}; must be 1, 2, ... from the lowest mode",
+                      table.source, kMode, toText(number), row + 1));
     }
     if (number > static_cast<double>(modes)) {
       continue;
@@ -70,8 +71,9 @@ VectorXd takeModes(const Table& table, const std::vector<Index>& rows, const Mod
     }
     const double value = values[rows[i]];
     if (value < quantity.least || value > quantity.most) {
-      throw MeasurementError(fmt::format("{}: column '{}' has {} in row {}; {}", table.source, quantity.column,
-                                         toText(column->values[rows[i]]), rows[i] + 1, quantity.rule));
+      throw MeasurementError(fmt::format("{}: column '{}' has {} in row {}; {}", table.source,
+                                         quantity.column, toText(column->values[rows[i]]), rows[i] + 1,
+                                         quantity.rule));
     }
     taken[static_cast<Index>(i)] = value;
   }
@@ -93,8 +95,8 @@ std::vector<std::string> listModeColumns() {
 MeasuredModes readModes(const Table& table, const ResponseLayout& layout) {
   const Column *frequency = findColumn(table, kFrequency), *damping = findColumn(table, kDampingRatio);
   if (frequency == nullptr && damping == nullptr) {
-    throw MeasurementError(table.source +
-                           ": has no column 'frequency' or 'damping_ratio'; a table of modes has a row for each");
+    throw MeasurementError(
+        table.source + ": has no column 'frequency' or 'damping_ratio'; a table of modes has a row for each");
   }
   const Index count = (frequency != nullptr ? frequency : damping)->values.size();
   for (const std::string& name : listModeColumns()) {

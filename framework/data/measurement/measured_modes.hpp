@@ -19,11 +19,11 @@ struct MeasuredModes {
 /// The columns of a table of modes, for readTable().
 std::vector<std::string> listModeColumns();
 
-/// Modes from a table with a row each: columns `frequency` and `damping_ratio`, at least one of them, in Hz and 1
-/// or the units that the table states; their standard deviations `frequency_sd` and `damping_ratio_sd` in the
-/// same units unless the table states others; `mode`, a number from 1 on, where rows are not in the order of the
-/// model's modes or some are missing. Rows beyond the layout's modes are not used. Throws MeasurementError for a
-/// table without such columns, numbers that no mode can have and a mode given twice.
+/// Modes from a table with a row each: columns `frequency` and `damping_ratio`, at least one of them, in Hz
+/// and 1 or the units that the table states; their standard deviations `frequency_sd` and `damping_ratio_sd`
+/// in the same units unless the table states others; `mode`, a number from 1 on, where rows are not in the
+/// order of the model's modes or some are missing. Rows beyond the layout's modes are not used. Throws
+/// MeasurementError for a table without such columns, numbers that no mode can have and a mode given twice.
 MeasuredModes readModes(const Table& table, const ResponseLayout& layout);
 
 }  // namespace twinmap

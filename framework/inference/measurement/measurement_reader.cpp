@@ -39,9 +39,10 @@ std::vector<Eigen::Index> findFeaturesOf(const FeatureExtractor& extractor, Eige
 
 void requireStatedNoise(const Eigen::VectorXd& stddev, const std::string& source) {
   if (stddev.size() > 0) {
-    throw MeasurementError(source +
-                           ": states standard deviations of its own, which only inference of one measurement from "
-                           "the experiment file can use; leave these columns out for those of noise.modes");
+    throw MeasurementError(
+        source +
+        ": states standard deviations of its own, which only inference of one measurement from "
+        "the experiment file can use; leave these columns out for those of noise.modes");
   }
 }
 
@@ -134,8 +135,12 @@ AvailableFeatures MeasurementReader::readAvailableFeatures(const Table& table,
   warnOfJumps(table);
   AvailableResponse response =
       readAvailable(table, experiment_.measurement, layout_, getStart(table, start), sample_interval_);
-  AvailableFeatures found{
-      extractor_.extract(response.response), {}, {}, std::move(response.remarks), response.response, response.stddev};
+  AvailableFeatures found{extractor_.extract(response.response),
+                          {},
+                          {},
+                          std::move(response.remarks),
+                          response.response,
+                          response.stddev};
   for (const ClippedSample& sample : response.clipped) {
     for (const Eigen::Index feature : findFeaturesOf(extractor_, sample.row)) {
       found.features[feature] = sample.limit;

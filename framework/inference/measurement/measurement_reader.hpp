@@ -25,7 +25,7 @@ struct AvailableFeatures {
   std::vector<ClippedSample> clipped;   ///< features, of value `limit`
   std::vector<std::string> remarks;     ///< what is missing and why, a phrase each
   Eigen::VectorXd response;             ///< rows of the layout, NaN where missing
-  Eigen::VectorXd stddev{};             ///< of rows, where the measurement states it; NaN of others; empty: of none
+  Eigen::VectorXd stddev{};  ///< of rows, where the measurement states it; NaN of others; empty: of none
 };
 
 /// Throws MeasurementError where a measurement states standard deviations: for what uses the experiment's.
