@@ -82,6 +82,7 @@ TableSpec differentiate(const TableSpec& table) {
   TableSpec slope;
   slope.interpolation = TableInterpolation::kHold;
   slope.times = table.times;
+  slope.measured = table.measured;  // its clock; times and values are those above
   for (std::size_t i = 0; i + 1 < table.times.size(); ++i) {
     slope.values.push_back((table.values[i + 1] - table.values[i]) / (table.times[i + 1] - table.times[i]));
   }

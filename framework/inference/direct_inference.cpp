@@ -19,39 +19,47 @@ DirectInference::DirectInference(const MeasurementReader& reader, int draws)
 InferredMeasurement DirectInference::infer(const Table& table, std::optional<double> start,
                                            const Eigen::VectorXd& known) {
   const AvailableFeatures found = reader_.readAvailableFeatures(table, start);
-  InferredMeasurement inferred = infer(found.features, known, found.clipped);
+  std::optional<SimulatorRefiner> own;  // with the noise that the measurement states
+  if (found.stddev.size() > 0) {
+    own.emplace(reader_.getExperiment(), reader_.getLayout(), SimulatorRefiner::Model::kTrusted,
+                found.stddev);
+  }
+  const SimulatorRefiner& simulator = own ? *own : simulator_;
+  InferredMeasurement inferred = infer(simulator, found.features, known, found.clipped);
   inferred.source = table.source;
-  inferred.start = reader_.getStart(start);
+  inferred.start = reader_.getStart(table, start);
   inferred.left_out = found.remarks;
-  inferred.fault = explainMisfit(found, known, *inferred.posterior);
+  inferred.fault = explainMisfit(simulator, found, known, *inferred.posterior);
   return inferred;
 }
 
-std::string DirectInference::explainMisfit(const AvailableFeatures& found, const Eigen::VectorXd& known,
+std::string DirectInference::explainMisfit(const SimulatorRefiner& simulator, const AvailableFeatures& found,
+                                           const Eigen::VectorXd& known,
                                            const PosteriorEstimate& posterior) const {
   const SimulatorFit& fit = *posterior.fit;
   if (!fit.isSimulated() || fit.isPlausible()) {
     return "";
   }
   const auto calcMisfit = [&](const Eigen::VectorXd& corrected) {
-    const Eigen::VectorXd features = simulator_.getExtractor().extract(corrected);
+    const Eigen::VectorXd features = simulator.getExtractor().extract(corrected);
     return features.array().isFinite().count() == static_cast<Eigen::Index>(found.available.size())
-               ? simulator_.findLeastChiSquare(features, known)
+               ? simulator.findLeastChiSquare(features, known)
                : std::numeric_limits<double>::infinity();
   };
   return explainByFault(found.response, reader_.getLayout(), fit.chi_square, fit.residual.size(), calcMisfit);
 }
 
 InferredMeasurement DirectInference::infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known) {
-  return infer(features, known, std::vector<ClippedSample>{});
+  return infer(simulator_, features, known, {});
 }
 
-InferredMeasurement DirectInference::infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
+InferredMeasurement DirectInference::infer(const SimulatorRefiner& simulator, const Eigen::VectorXd& features,
+                                           const Eigen::VectorXd& known,
                                            const std::vector<ClippedSample>& clipped) const {
   InferredMeasurement inferred;
   inferred.posterior =
-      simulator_.samplePosterior(features, known, simulator_.describeNoise(clipped), {}, options_);
-  inferred.ridges = simulator_.findRidges(inferred.posterior->estimate.draws, known);
+      simulator.samplePosterior(features, known, simulator.describeNoise(clipped), {}, options_);
+  inferred.ridges = simulator.findRidges(inferred.posterior->estimate.draws, known);
   inferred.quantities = quantities_;
   return inferred;
 }

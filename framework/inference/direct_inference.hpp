@@ -17,19 +17,20 @@ class DirectInference final : public MeasurementInference {
   bool refines() const override { return false; }
   bool samplesPosteriors() const override { return false; }
 
-  /// Samples that the table lacks are left out of the likelihood (MeasurementReader::readAvailableFeatures).
+  /// Samples that the table lacks are left out of the likelihood (MeasurementReader::readAvailableFeatures);
+  /// standard deviations that it states go before the experiment's.
   InferredMeasurement infer(const Table& table, std::optional<double> start,
                             const Eigen::VectorXd& known) override;
   /// Cost: that of samplePosterior().
   InferredMeasurement infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known) override;
 
  private:
-  InferredMeasurement infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
-                            const std::vector<ClippedSample>& clipped) const;
+  InferredMeasurement infer(const SimulatorRefiner& simulator, const Eigen::VectorXd& features,
+                            const Eigen::VectorXd& known, const std::vector<ClippedSample>& clipped) const;
 
   /// The simple fault of the recording that explains a gross misfit, or "".
-  std::string explainMisfit(const AvailableFeatures& found, const Eigen::VectorXd& known,
-                            const PosteriorEstimate& posterior) const;
+  std::string explainMisfit(const SimulatorRefiner& simulator, const AvailableFeatures& found,
+                            const Eigen::VectorXd& known, const PosteriorEstimate& posterior) const;
 
   const MeasurementReader& reader_;
   const SimulatorRefiner simulator_;

@@ -214,6 +214,7 @@ const JointInferrer::Member& JointInferrer::find(const std::string& trial) const
 MeasuredTrial JointInferrer::makeTrial(const Recording& recording) const {
   const Member& member = find(recording.trial);
   const AvailableFeatures found = member.reader->readAvailableFeatures(*recording.table, recording.start);
+  requireStatedNoise(found.stddev, recording.table->source);
   MeasuredTrial trial = member.simulator->makeTrial(found.features, member.known);
   trial.noise = member.simulator->describeNoise(found.clipped);
   return trial;
@@ -225,7 +226,7 @@ RecordingInference JointInferrer::inferAlone(const Recording& recording) const {
   const auto u = static_cast<Index>(unknown.size());
   RecordingInference alone{recording.label, {}, {}};
   alone.inferred.source = recording.table->source;
-  alone.inferred.start = member.reader->getStart(recording.start);
+  alone.inferred.start = member.reader->getStart(*recording.table, recording.start);
   const PosteriorProblem problem{
       unknown, member.reader->getExperiment().model.priors, {makeTrial(recording)}, u};
   alone.posterior = samplePosterior(problem, MatrixXd(u, 0), options_);

@@ -48,6 +48,12 @@ bool explains(const SimulatorFit& fit, Index residuals) {
          static_cast<double>(fit.outliers.size()) <= kMaxOutliers * static_cast<double>(residuals);
 }
 
+ResponseNoise makeNoise(const NoiseSpec& spec, const ResponseLayout& layout, const VectorXd& stddev) {
+  ResponseNoise noise(spec, layout);
+  noise.replace(stddev);
+  return noise;
+}
+
 NoiseHypothesis findUnknownNoise(const NoiseSpec& noise, const ResponseLayout& layout) {
   NoiseHypothesis hypothesis;
   for (const OutputNoiseSpec& spec : noise.stddev) {
@@ -74,14 +80,14 @@ SimulatorPosteriorOptions makePosteriorOptions(const ExperimentSpec& experiment,
 }
 
 SimulatorRefiner::SimulatorRefiner(const ExperimentSpec& experiment, const ResponseLayout& layout,
-                                   Model model)
+                                   Model model, const VectorXd& stddev)
     : model_(experiment.model),
       output_noise_(experiment.noise.stddev),
       noise_scale_(experiment.noise.scale),
       extractor_(makeExtractor(experiment, layout)),
       simulator_(model == Model::kTrusted ? makeTrustedSimulator(experiment.model, layout.times, layout.modes)
                                           : makeSimulator(experiment.model, layout.times, layout.modes)),
-      noise_(extractor_, ResponseNoise(experiment.noise, layout), experiment.seed),
+      noise_(extractor_, makeNoise(experiment.noise, layout, stddev), experiment.seed),
       stated_noise_(findUnknownNoise(experiment.noise, layout)),
       wanted_(shouldRefine(experiment.refine, *simulator_, noise_)),
       own_(simulator_->clone()) {}

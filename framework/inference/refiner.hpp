@@ -20,9 +20,10 @@ class SimulatorRefiner {
   /// Whether a run has checked the model by Simbody (makeTrustedSimulator), or this is to (makeSimulator).
   enum class Model { kTrusted, kToBeChecked };
 
-  /// `experiment`: that of the run, with the excitation of the measurement where it is measured.
+  /// `experiment`: that of the run, with the excitation of the measurement where it is measured. stddev: of
+  /// the noise of rows of the response, where a measurement states it (ResponseNoise::replace).
   SimulatorRefiner(const ExperimentSpec& experiment, const ResponseLayout& layout,
-                   Model model = Model::kTrusted);
+                   Model model = Model::kTrusted, const Eigen::VectorXd& stddev = {});
   SimulatorRefiner(const SimulatorRefiner&) = delete;
   SimulatorRefiner& operator=(const SimulatorRefiner&) = delete;
 

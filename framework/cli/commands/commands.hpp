@@ -90,6 +90,13 @@ struct NoiseArguments {
   bool json = false;
 };
 
+struct LookArguments {
+  std::string measurement;   ///< a file
+  std::string time;          ///< a column; "": t, time, or the first that increases
+  double sample_rate = 0.0;  ///< Hz; 0: by the column
+  bool json = false;
+};
+
 struct VerifyArguments {
   std::string folder;
   int samples = 5;
@@ -255,6 +262,9 @@ void requireGates(const std::vector<GateResult>& gates, bool fail);
 
 /// Prints the noise of a measurement's columns.
 void noise(const NoiseArguments& arguments);
+
+/// Prints what the columns of a measurement look like (look).
+void look(const LookArguments& arguments);
 
 /// Recomputes a part of a run, or all of it, and prints what differs; throws std::runtime_error if anything
 /// does.

@@ -22,7 +22,9 @@ RecordedFeatures readRecordings(const DiagnoseArguments& arguments, const Measur
   for (const std::string& file : arguments.files) {
     const Table table = readTable(file, reader.listColumns(), MissingCells::kKeep);
     for (const std::optional<double>& start : starts) {
-      recordings.features.push_back(reader.readAvailableFeatures(table, start).features);
+      AvailableFeatures found = reader.readAvailableFeatures(table, start);
+      requireStatedNoise(found.stddev, table.source);
+      recordings.features.push_back(std::move(found.features));
     }
   }
   return recordings;

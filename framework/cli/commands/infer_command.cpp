@@ -69,7 +69,7 @@ class InferCommand {
     try {
       inferTable(readTable(file, source_.getReader().listColumns(), getMissingCells()));
     } catch (const std::exception& error) {
-      reportError(file, source_.getReader().getStart(starts_.front()), error.what());
+      reportError(file, source_.getReader().getStatedStart(starts_.front()), error.what());
     }
   }
 
@@ -82,7 +82,7 @@ class InferCommand {
         std::istringstream table(text);
         inferTable(readCsv(table, source, source_.getReader().listColumns(), getMissingCells()));
       } catch (const std::exception& error) {
-        reportError(source, source_.getReader().getStart(starts_.front()), error.what());
+        reportError(source, source_.getReader().getStatedStart(starts_.front()), error.what());
       }
       std::cout.flush();
     }
@@ -117,7 +117,7 @@ class InferCommand {
         print(session_->infer(table, start, known_));
         ++count_;
       } catch (const std::exception& error) {
-        reportError(table.source, source_.getReader().getStart(start), error.what());
+        reportError(table.source, source_.getReader().getStatedStart(start), error.what());
       }
     }
   }

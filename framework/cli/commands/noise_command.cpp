@@ -15,7 +15,7 @@ namespace {
 NoiseQuestion askForOutputs(const ExperimentSpec& experiment, const std::vector<std::string>& wanted) {
   const MeasurementSpec& spec = experiment.measurement;
   const ModelSpec& model = experiment.model;
-  NoiseQuestion question{{spec.time, spec.sample_rate, spec.start}, {}, {}};
+  NoiseQuestion question{makeTimeBase(spec, spec.start.time), {}, {}};
   for (const std::string& name : wanted) {
     requireKnown({name, {"--columns", 0, 0, ""}}, collectNames(model.outputs), "an output");
   }

@@ -11,12 +11,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-ReplayOptions chooseOptions(const ReplayArguments& arguments, const ExperimentSpec& experiment) {
+double findStart(const MeasurementReader& reader, const std::string& file, std::optional<double> start) {
+  return start || !reader.getExperiment().measurement.start.when
+             ? reader.getStatedStart(start)
+             : reader.getStart(readTable(file, reader.listColumns()), start);
+}
+
+ReplayOptions chooseOptions(const ReplayArguments& arguments, const Inferrer& inferrer) {
+  const ExperimentSpec& experiment = inferrer.getExperiment();
   ReplayOptions options;
-  options.measurement = {arguments.file, arguments.start.value_or(experiment.measurement.start)};
+  options.measurement = {arguments.file, findStart(inferrer.getReader(), arguments.file, arguments.start)};
   options.from = options.measurement;
   if (!arguments.from.empty()) {
-    options.from = {arguments.from, experiment.measurement.start};
+    options.from = {arguments.from, findStart(inferrer.getReader(), arguments.from, arguments.from_start)};
   }
   options.from.start = arguments.from_start.value_or(options.from.start);
   options.known = collectKnown(experiment.model.inputs, parseKnownValues(arguments.known));
@@ -47,7 +54,7 @@ Replay replayMeasurement(const Inferrer& inferrer, const ReplayOptions& options)
 
 void replay(const ReplayArguments& arguments) {
   const Inferrer inferrer(arguments.run);
-  const Replay replay = replayMeasurement(inferrer, chooseOptions(arguments, inferrer.getExperiment()));
+  const Replay replay = replayMeasurement(inferrer, chooseOptions(arguments, inferrer));
   const fs::path folder = chooseFolder(arguments);
   writeReplay(folder, inferrer, replay);
   std::cout << describeTrust(replay.inferred, inferrer.getExperiment().model.parameters,

@@ -202,6 +202,27 @@ void addNoise(CLI::App& app) {
   command->callback([arguments] { noise(*arguments); });
 }
 
+void addLook(CLI::App& app) {
+  const auto arguments = std::make_shared<LookArguments>();
+  CLI::App* command = app.add_subcommand("look", "Look at a recording before it is used");
+  command->footer(
+      "Prints of each column its unit, rate, range and noise, and what stands out: missing cells, gaps, "
+      "jitter, "
+      "spikes, clipping, angles that wrap.");
+  command->add_option("MEASUREMENT", arguments->measurement, "CSV, MATLAB or HDF5 file")
+      ->required()
+      ->option_text(" ");
+  CLI::Option* time =
+      command->add_option("--time", arguments->time, "Column of times, such as 't [ms]' (default: t or time)")
+          ->type_name("COLUMN");
+  command->add_option("--rate", arguments->sample_rate, "Rate of the rows instead of a column of times; Hz")
+      ->type_name("HZ")
+      ->check(CLI::PositiveNumber)
+      ->excludes(time);
+  command->add_flag("--json", arguments->json, "Print JSON");
+  command->callback([arguments] { look(*arguments); });
+}
+
 }  // namespace
 
 void addMapCommands(CLI::App& app, const Invocation& invocation) {
@@ -210,6 +231,7 @@ void addMapCommands(CLI::App& app, const Invocation& invocation) {
   addReplay(app, invocation);
   addExport(app);
   addNoise(app);
+  addLook(app);
 }
 
 }  // namespace twinmap::cli

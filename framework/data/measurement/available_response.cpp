@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <list>
 
 #include "framework/base/text/number_text.hpp"
 #include "framework/data/measurement/lagrange.hpp"
+#include "framework/data/measurement/measured_modes.hpp"
 #include "framework/data/measurement/measurement.hpp"
+#include "framework/data/measurement/row_order.hpp"
 #include "framework/data/measurement/time_series.hpp"
 
 namespace twinmap {
@@ -25,36 +27,6 @@ std::string describeTime(double t) {
   return toShortText(t, kDigits) + " s";
 }
 
-/// Rows in the order of their times.
-struct RowOrder {
-  std::vector<Index> rows;
-  std::vector<std::string> remarks;
-};
-
-RowOrder sortRows(const VectorXd& times) {
-  RowOrder order;
-  for (Index i = 0; i < times.size(); ++i) {
-    if (std::isfinite(times[i])) {
-      order.rows.push_back(i);
-    }
-  }
-  if (const auto without = times.size() - static_cast<Index>(order.rows.size()); without > 0) {
-    order.remarks.push_back(fmt::format("{} rows without a time", without));
-  }
-  const auto before = [&](Index a, Index b) { return times[a] < times[b]; };
-  if (!std::is_sorted(order.rows.begin(), order.rows.end(), before)) {
-    std::stable_sort(order.rows.begin(), order.rows.end(), before);
-    order.remarks.emplace_back("rows are not in the order of their times: sorted");
-  }
-  const auto same = [&](Index a, Index b) { return times[a] == times[b]; };
-  const auto end = std::unique(order.rows.begin(), order.rows.end(), same);
-  if (const auto doubled = order.rows.end() - end; doubled > 0) {
-    order.remarks.push_back(fmt::format("{} rows with the time of another: the first is taken", doubled));
-  }
-  order.rows.erase(end, order.rows.end());
-  return order;
-}
-
 /// The table's rows in that order; columns of other lengths stay as they are, which is found later.
 Table takeRows(const Table& table, Index count, const std::vector<Index>& rows) {
   Table taken = table;
@@ -65,6 +37,75 @@ Table takeRows(const Table& table, Index count, const std::vector<Index>& rows) 
   }
   return taken;
 }
+
+/// Rows of one clock, in the order of their times.
+struct ClockedRows {
+  std::string file, clock;  ///< what tells them from others
+  double start = 0.0;       ///< s; its time that is the model's 0
+  Table rows;
+  VectorXd times;  ///< s; 0 is the model's
+};
+
+std::string describeClock(const TimeBase& base) {
+  return fmt::format("{} {} {}", base.time ? toText(*base.time) : "", base.sample_rate.value_or(0.0),
+                     toText(base.start));
+}
+
+/// A recording of one file or several, each column in the rows of its clock.
+class Recording {
+ public:
+  Recording(const Table& table, const MeasurementSpec& spec, double start)
+      : table_(table), spec_(spec), start_(start) {}
+
+  const ClockedRows& getRows(const std::string& output) {
+    const std::optional<std::filesystem::path> file = findOwnFile(spec_, output, table_.source);
+    const TimeBase base = makeTimeBase(spec_, output, start_);
+    const std::string name = file ? file->string() : "", clock = describeClock(base);
+    for (const ClockedRows& known : known_) {
+      if (known.file == name && known.clock == clock && hasColumn(known.rows, output)) {
+        return known;
+      }
+    }
+    const ColumnSpec column = findColumnSpec(spec_, output);
+    const Table own = file ? readTable(*file, listOwnColumns(column, base), MissingCells::kKeep) : Table();
+    known_.push_back(sort(file ? own : table_, base, column.name));
+    known_.back().file = name;
+    known_.back().clock = clock;
+    return known_.back();
+  }
+
+  std::vector<std::string> takeRemarks() { return std::move(remarks_); }
+
+ private:
+  bool hasColumn(const Table& rows, const std::string& output) const {
+    return findColumn(rows, findColumnSpec(spec_, output).name) != nullptr;
+  }
+
+  static std::vector<std::string> listOwnColumns(const ColumnSpec& column, const TimeBase& base) {
+    std::vector<std::string> names = listTimeColumns(base);
+    names.push_back(column.name);
+    return names;
+  }
+
+  ClockedRows sort(const Table& table, const TimeBase& base, const std::string& column) {
+    const Index rows = getColumn(table, column).values.size();
+    RowOrder order = sortRows(readUnorderedTimes(table, base, rows));
+    for (std::string& remark : order.remarks) {
+      if (std::find(remarks_.begin(), remarks_.end(), remark) == remarks_.end()) {
+        remarks_.push_back(std::move(remark));
+      }
+    }
+    ClockedRows sorted{"", "", base.start, takeRows(table, rows, order.rows), {}};
+    sorted.times = readUnorderedTimes(sorted.rows, base, static_cast<Index>(order.rows.size()));
+    return sorted;
+  }
+
+  const Table& table_;
+  const MeasurementSpec& spec_;
+  const double start_;
+  std::list<ClockedRows> known_;  // whose addresses stay
+  std::vector<std::string> remarks_;
+};
 
 /// The samples of one column, those that are there.
 struct Samples {
@@ -90,21 +131,22 @@ struct FoundSample {
 /// Finds a column's samples at needed times.
 class SampleFinder {
  public:
-  SampleFinder(const Samples& samples, double interval, const std::optional<Bounds>& range)
+  /// start: added to the times in the file, which may be seconds since 1970 and rounded accordingly.
+  SampleFinder(const Samples& samples, double start, double interval, const std::optional<Bounds>& range)
       : samples_(samples), range_(range) {
-    constexpr double kSlack = 1.01;
+    constexpr double kSlack = 1.01, kSameTime = 1e-6, kRounding = 4e-16;
     if (samples.times.size() > 1) {
       step_ = calcMedianStep(samples.times);
+      tolerance_ = std::max(kSameTime * step_, kRounding * std::abs(start));
     }
     interpolates_ = samples.times.size() >= InterpolationWeights::kPoints && step_ <= kSlack * interval;
   }
 
   FoundSample find(double t) const {
     const VectorXd& times = samples_.times;
-    const double tolerance = 1e-6 * step_;
     const double* begin = times.data();
-    const Index next = std::lower_bound(begin, begin + times.size(), t - tolerance) - begin;
-    if (next < times.size() && std::abs(times[next] - t) <= tolerance) {
+    const Index next = std::lower_bound(begin, begin + times.size(), t - tolerance_) - begin;
+    if (next < times.size() && std::abs(times[next] - t) <= tolerance_) {
       const double value = samples_.values[next], side = findSide(range_, value);
       return {side == 0.0 ? value : kMissing, side};
     }
@@ -145,7 +187,7 @@ class SampleFinder {
 
   const Samples& samples_;
   const std::optional<Bounds> range_;
-  double step_ = 0.0;
+  double step_ = 0.0, tolerance_ = 0.0;
   bool interpolates_ = false;
 };
 
@@ -222,34 +264,60 @@ void addOutput(const Table& table, const std::string& column, const SampleFinder
   }
 }
 
+/// Modes, in their rows of the response.
+void addModes(const Table& table, const MeasurementSpec& spec, const ResponseLayout& layout,
+              AvailableResponse& available) {
+  if (!spec.modes && layout.times.size() > 0) {
+    throw MeasurementError(table.source +
+                           ": is a recording in time, but features are made of modes too; give the file of a "
+                           "table of modes as measurement.modes");
+  }
+  const Table own = spec.modes
+                        ? readTable(std::filesystem::path(table.source).parent_path() / spec.modes->text,
+                                    listModeColumns(), MissingCells::kKeep)
+                        : Table();
+  const MeasuredModes modes = readModes(spec.modes ? own : table, layout);
+  const auto frequencies = Eigen::seqN(layout.getFrequencyRow(0), layout.modes);
+  const auto damping_ratios = Eigen::seqN(layout.getDampingRow(0), layout.modes);
+  available.response(frequencies) = modes.frequencies;
+  available.response(damping_ratios) = modes.damping_ratios;
+  available.missing +=
+      modes.frequencies.array().isNaN().count() + modes.damping_ratios.array().isNaN().count();
+  available.remarks.insert(available.remarks.end(), modes.remarks.begin(), modes.remarks.end());
+  if (!modes.frequency_stddevs.array().isNaN().all() || !modes.damping_ratio_stddevs.array().isNaN().all()) {
+    available.stddev = VectorXd::Constant(layout.getRowCount(), kMissing);
+    available.stddev(frequencies) = modes.frequency_stddevs;
+    available.stddev(damping_ratios) = modes.damping_ratio_stddevs;
+  }
+}
+
 }  // namespace
 
 AvailableResponse readAvailable(const Table& table, const MeasurementSpec& spec, const ResponseLayout& layout,
-                                std::optional<double> interval) {
-  if (layout.modes > 0) {
-    throw MeasurementError(table.source + ": holds no modes, of which features are made");
-  }
+                                double start, std::optional<double> interval) {
   AvailableResponse available{VectorXd::Constant(layout.getRowCount(), kMissing), {}, 0, {}};
-  if (layout.getRowCount() == 0) {
+  if (layout.modes > 0) {
+    addModes(table, spec, layout, available);
+  }
+  if (layout.times.size() == 0) {
     return available;
   }
-  const std::string& first = findColumnSpec(spec, layout.output_names.front()).name;
-  const Index rows = getColumn(table, first).values.size();
-  const TimeBase base{spec.time, spec.sample_rate, spec.start};
-  RowOrder order = sortRows(readUnorderedTimes(table, base, rows));
-  available.remarks = std::move(order.remarks);
-  const Table sorted = takeRows(table, rows, order.rows);
-  const VectorXd times = readUnorderedTimes(sorted, base, static_cast<Index>(order.rows.size()));
-  const VectorXd& needed = layout.times;
-  const double spacing = interval.value_or(calcSmallestStep(needed));
+  Recording recording(table, spec, start);
+  const double spacing = interval.value_or(calcSmallestStep(layout.times));
   for (Index output = 0; output < layout.getOutputCount(); ++output) {
     const auto o = static_cast<std::size_t>(output);
-    const ColumnSpec column = findColumnSpec(spec, layout.output_names[o]);
-    requireLength(sorted, getColumn(sorted, column.name), times.size());
-    const Samples samples = takeSamples(times, readOutput(sorted, spec, layout, o, times, 0));
-    const std::optional<Bounds> range = findRange(spec, layout.output_names[o]);
-    addOutput(sorted, column.name, SampleFinder(samples, spacing, range), range, layout, output, available);
+    const std::string& name = layout.output_names[o];
+    const std::string column = findColumnSpec(spec, name).name;
+    const ClockedRows& clocked = recording.getRows(name);
+    requireLength(clocked.rows, getColumn(clocked.rows, column), clocked.times.size());
+    const Samples samples =
+        takeSamples(clocked.times, readOutput(clocked.rows, spec, layout, o, clocked.times, 0));
+    const std::optional<Bounds> range = findRange(spec, name);
+    addOutput(clocked.rows, column, SampleFinder(samples, clocked.start, spacing, range), range, layout,
+              output, available);
   }
+  std::vector<std::string> remarks = recording.takeRemarks();
+  available.remarks.insert(available.remarks.begin(), remarks.begin(), remarks.end());
   return available;
 }
 

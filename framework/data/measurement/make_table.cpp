@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "framework/data/measurement/table_builder.hpp"
+#include "framework/data/measurement/files/table_builder.hpp"
 #include "framework/experiment/column_spec.hpp"
 
 namespace twinmap {

@@ -4,6 +4,8 @@
 
 #include "framework/base/text/number_text.hpp"
 #include "framework/data/measurement/time_series.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
+#include "framework/simulation/model_numbers.hpp"
 
 namespace twinmap {
 namespace {
@@ -27,18 +29,46 @@ std::string describeTime(double t, double start) {
   return toShortText(t + start, kDigits) + " s";
 }
 
-/// That the times cover the excerpt, from 0 to `end`, without a gap.
-void requireExcerpt(const std::string& source, const VectorXd& times, double start, double end) {
+/// The delays of a table within the bounds of the parameters: by changing one of them after the other, which
+/// is exact for sums of parameters.
+Bounds calcDelays(const ModelSpec& model, const TableSpec& table) {
+  const Expression* delay = table.findDelay();
+  if (delay == nullptr) {
+    return {0.0, 0.0};
+  }
+  const std::vector<ParameterSpec> sampled = collectSampled(model);
+  ModelNumbers numbers(model);
+  const auto calc = [&](const VectorXd& point) {
+    numbers.update(point);
+    return numbers.calc(*delay, {"measured", "delay", "s"});
+  };
+  const VectorXd center = calcBoxCenter(sampled);
+  const double middle = calc(center);
+  Bounds delays{middle, middle};
+  for (std::size_t i = 0; i < sampled.size(); ++i) {
+    VectorXd below = center, above = center;
+    below[static_cast<Index>(i)] = sampled[i].bounds.lower;
+    above[static_cast<Index>(i)] = sampled[i].bounds.upper;
+    const double first = calc(below) - middle, last = calc(above) - middle;
+    delays.lower += std::min({0.0, first, last});
+    delays.upper += std::max({0.0, first, last});
+  }
+  return delays;
+}
+
+/// That the times cover the excerpt, from `begin` to `end`, without a gap.
+void requireExcerpt(const std::string& source, const VectorXd& times, double start, double begin,
+                    double end) {
   constexpr double kSlack = 1e-6, kLongest = 1.5;
   if (times.size() < 2) {
     throw MeasurementError(source + ": has " + std::to_string(times.size()) +
                            " samples; must have at least 2");
   }
   const double step = calcMedianStep(times);
-  if (times[0] > kSlack * step || times[times.size() - 1] < end - kSlack * step) {
+  if (times[0] > begin + kSlack * step || times[times.size() - 1] < end - kSlack * step) {
     throw MeasurementError(source + ": covers " + describeTime(times[0], start) + " to " +
                            describeTime(times[times.size() - 1], start) + ", but " +
-                           describeTime(0.0, start) + " to " + describeTime(end, start) + " is needed");
+                           describeTime(begin, start) + " to " + describeTime(end, start) + " is needed");
   }
   for (Index i = 0; i + 1 < times.size(); ++i) {
     if (times[i + 1] - times[i] > kLongest * step) {
@@ -48,7 +78,9 @@ void requireExcerpt(const std::string& source, const VectorXd& times, double sta
   }
 }
 
-void fill(TableSpec& target, const Table& table, const std::string& unit, double start, double duration) {
+/// delays: of the table's clock, so that it is needed from the earliest time to the latest.
+void fill(TableSpec& target, const Table& table, const std::string& unit, double start, double duration,
+          const Bounds& delays) {
   constexpr Index kMaxSamples = 400'000;  // resolved experiments hold them, and at most a million values
   constexpr Index kMargin = 4;            // samples beside, for interpolation that looks at neighbours
   const ColumnSpec column = parseColumn(target.measured->column.text, target.measured->column.where);
@@ -56,10 +88,11 @@ void fill(TableSpec& target, const Table& table, const std::string& unit, double
   const VectorXd times = readTimes(table, makeTimeBase(*target.measured, start), found.values.size());
   requireLength(table, found, times.size());
   const bool excerpt = target.measured->duration && *target.measured->duration < duration;
-  const double end = excerpt ? *target.measured->duration : duration;
-  const RowRange range = findRows(times, 0.0, end, kMargin);
+  const double begin = excerpt ? 0.0 : delays.lower;
+  const double end = excerpt ? *target.measured->duration : duration + delays.upper;
+  const RowRange range = findRows(times, begin, end, kMargin);
   const VectorXd kept = times.segment(range.first, range.count);
-  requireExcerpt(table.source, kept, start, end);
+  requireExcerpt(table.source, kept, start, begin, end);
   const VectorXd values = readValues(table, column, unit, range.first, range.count);
   if (values.size() > kMaxSamples) {
     throw MeasurementError(table.source + ": has more than 400000 samples in the time that is simulated; " +
@@ -91,7 +124,7 @@ void loadMeasuredSignals(ExperimentSpec& experiment) {
     const MeasuredSignalSpec& spec = *target.measured;
     try {
       fill(target, readTable(spec.file.text, listColumns(spec)), signal.unit, spec.start,
-           experiment.model.simulation.duration);
+           experiment.model.simulation.duration, calcDelays(experiment.model, target));
     } catch (const MeasurementError& error) {
       throw MeasurementError(toString(spec.file.where) + ": " + error.what());
     }
@@ -100,7 +133,8 @@ void loadMeasuredSignals(ExperimentSpec& experiment) {
 
 void replaceMeasuredSignals(ExperimentSpec& experiment, const Table& table, double start) {
   visitMeasured(experiment, [&](const SignalSpec& signal, TableSpec& target) {
-    fill(target, table, signal.unit, start, experiment.model.simulation.duration);
+    fill(target, table, signal.unit, start, experiment.model.simulation.duration,
+         calcDelays(experiment.model, target));
   });
 }
 

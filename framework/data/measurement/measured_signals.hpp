@@ -6,9 +6,9 @@
 namespace twinmap {
 
 /// Fills those tables of the excitation that are given as `measured` and have no values yet: from t = 0 to
-/// the end of the simulation (or of the excerpt, if that is earlier) and a few samples beside, converted to
-/// the signal's unit. Files are found as their names are written. Throws MeasurementError, naming the YAML
-/// key, the file and what is wrong with it.
+/// the end of the simulation (or of the excerpt, if that is earlier), both moved by the delays within the
+/// parameters' bounds, and a few samples beside, converted to the signal's unit. Files are found as their
+/// names are written. Throws MeasurementError, naming the YAML key, the file and what is wrong with it.
 void loadMeasuredSignals(ExperimentSpec& experiment);
 
 /// Replaces the values of the same tables by those of another measurement, whose time `start` (s) is t = 0:

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "framework/base/text/number_text.hpp"
-#include "framework/data/measurement/time_series.hpp"
+#include "framework/data/measurement/measurement_start.hpp"
 #include "framework/experiment/expression/units.hpp"
 
 namespace twinmap {
@@ -15,19 +15,53 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-TimeBase makeTimeBase(const MeasurementSpec& spec) {
-  return {spec.time, spec.sample_rate, spec.start};
+const MeasuredColumnSpec* findListed(const MeasurementSpec& spec, const std::string& output) {
+  const auto found =
+      std::find_if(spec.columns.begin(), spec.columns.end(),
+                   [&](const MeasuredColumnSpec& measured) { return measured.name.text == output; });
+  return found == spec.columns.end() ? nullptr : &*found;
+}
+
+double getDelay(const MeasuredColumnSpec& measured) {
+  double delay = 0.0;
+  parseLiteral(measured.delay.text, delay);
+  return delay;
 }
 
 }  // namespace
 
 ColumnSpec findColumnSpec(const MeasurementSpec& spec, const std::string& output) {
-  for (const MeasuredColumnSpec& measured : spec.columns) {
-    if (measured.name.text == output) {
-      return measured.column;
-    }
+  const MeasuredColumnSpec* listed = findListed(spec, output);
+  return listed != nullptr && listed->column ? *listed->column : ColumnSpec{output, {}, {}};
+}
+
+TimeBase makeTimeBase(const MeasurementSpec& spec, double start) {
+  return {spec.time, spec.sample_rate, start};
+}
+
+TimeBase makeTimeBase(const MeasurementSpec& spec, const std::string& output, double start) {
+  const MeasuredColumnSpec* listed = findListed(spec, output);
+  if (listed == nullptr) {
+    return makeTimeBase(spec, start);
   }
-  return {output, {}, {}};
+  const double zero = start + getDelay(*listed);
+  return listed->time || listed->sample_rate ? TimeBase{listed->time, listed->sample_rate, zero}
+                                             : makeTimeBase(spec, zero);
+}
+
+std::optional<std::filesystem::path> findOwnFile(const MeasurementSpec& spec, const std::string& output,
+                                                 const std::string& source) {
+  const MeasuredColumnSpec* listed = findListed(spec, output);
+  if (listed == nullptr || !listed->file) {
+    return std::nullopt;
+  }
+  return std::filesystem::path(source).parent_path() / listed->file->text;
+}
+
+bool hasOwnClocks(const MeasurementSpec& spec) {
+  return std::any_of(spec.columns.begin(), spec.columns.end(), [](const MeasuredColumnSpec& measured) {
+    return measured.file || measured.time || measured.sample_rate || getDelay(measured) != 0.0;
+  });
 }
 
 bool isUnwrapped(const MeasurementSpec& spec, const std::string& output) {
@@ -69,9 +103,20 @@ std::vector<std::string> describeJumps(const Table& table, const MeasurementSpec
 }
 
 std::vector<std::string> listColumns(const MeasurementSpec& spec, const std::vector<std::string>& outputs) {
-  std::vector<std::string> names = listTimeColumns(makeTimeBase(spec));
+  std::vector<std::string> names = listTimeColumns(makeTimeBase(spec, 0.0));
+  const auto add = [&](const std::string& name) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) {
+      names.push_back(name);
+    }
+  };
   for (const std::string& output : outputs) {
-    names.push_back(findColumnSpec(spec, output).name);
+    add(findColumnSpec(spec, output).name);
+    for (const std::string& time : listTimeColumns(makeTimeBase(spec, output, 0.0))) {
+      add(time);
+    }
+  }
+  if (const std::optional<Trigger> trigger = findTrigger(spec.start)) {
+    add(trigger->column);
   }
   return names;
 }
@@ -85,14 +130,15 @@ VectorXd readOutput(const Table& table, const MeasurementSpec& spec, const Respo
                                  : values;
 }
 
-Measurement readMeasurement(const Table& table, const MeasurementSpec& spec, const ResponseLayout& layout) {
+Measurement readMeasurement(const Table& table, const MeasurementSpec& spec, const ResponseLayout& layout,
+                            double start) {
   constexpr Index kMargin = 3;  // samples for the cubic beside the first and the last needed time
   std::vector<ColumnSpec> columns;
   for (const std::string& output : layout.output_names) {
     columns.push_back(findColumnSpec(spec, output));
   }
   const Index rows = columns.empty() ? 0 : getColumn(table, columns.front().name).values.size();
-  const Eigen::VectorXd times = readTimes(table, makeTimeBase(spec), rows);
+  const Eigen::VectorXd times = readTimes(table, makeTimeBase(spec, start), rows);
   const bool any = layout.times.size() > 0;
   const RowRange range =
       any ? findRows(times, layout.times[0], layout.times[layout.times.size() - 1], kMargin)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "framework/data/measurement/table.hpp"
+#include "framework/data/measurement/time_series.hpp"
 #include "framework/experiment/measurement_spec.hpp"
 #include "framework/simulation/response_layout.hpp"
 
@@ -17,6 +18,19 @@ struct Measurement {
 /// Where an output stands: as listed, or in a column of its own name.
 ColumnSpec findColumnSpec(const MeasurementSpec& spec, const std::string& output);
 
+/// The clock of an output's column: its own, or that of the measurement; `start`: the time in the table (s)
+/// at which the model's time is 0, a delay of the column's clock not counted.
+TimeBase makeTimeBase(const MeasurementSpec& spec, const std::string& output, double start);
+/// That of the measurement.
+TimeBase makeTimeBase(const MeasurementSpec& spec, double start);
+
+/// The file that holds an output's column, beside the measurement `source`; none where that does.
+std::optional<std::filesystem::path> findOwnFile(const MeasurementSpec& spec, const std::string& output,
+                                                 const std::string& source);
+
+/// Whether any column has a file, times or a delay of its own.
+bool hasOwnClocks(const MeasurementSpec& spec);
+
 /// A whole turn of an output in its unit, where the measurement says that it wraps or its unit is one of
 /// angles: that of its `range`, else of its unit; none of others.
 std::optional<double> findTurn(const MeasurementSpec& spec, const std::string& output,
@@ -32,7 +46,7 @@ bool isUnwrapped(const MeasurementSpec& spec, const std::string& output);
 std::vector<std::string> describeJumps(const Table& table, const MeasurementSpec& spec,
                                        const ResponseLayout& layout);
 
-/// The names of all columns that are read for these outputs, for readTable().
+/// The names of all columns that are read for these outputs and for the start, for readTable().
 std::vector<std::string> listColumns(const MeasurementSpec& spec, const std::vector<std::string>& outputs);
 
 /// An output in its unit at rows from `first` on, whose times these are, continued where it wraps. Throws
@@ -40,11 +54,13 @@ std::vector<std::string> listColumns(const MeasurementSpec& spec, const std::vec
 Eigen::VectorXd readOutput(const Table& table, const MeasurementSpec& spec, const ResponseLayout& layout,
                            std::size_t output, const Eigen::VectorXd& times, Eigen::Index first);
 
-/// The outputs of the layout from the columns of a table, converted to the layout's units; only the rows that
-/// its times need, and a few beside; outputs that wrap continued over turns (unwrap). Throws MeasurementError
-/// for a missing column, columns of different length, a unit that does not convert, times that do not
-/// increase. O(rows of the table) for the times, O(rows needed) for the outputs.
-Measurement readMeasurement(const Table& table, const MeasurementSpec& spec, const ResponseLayout& layout);
+/// The outputs of the layout from the columns of a table with one clock, whose time `start` (s) is the
+/// model's 0, converted to the layout's units; only the rows that its times need, and a few beside; outputs
+/// that wrap continued over turns (unwrap). Throws MeasurementError for a missing column, columns of
+/// different length, a unit that does not convert, times that do not increase. O(rows of the table) for the
+/// times, O(rows needed) for the outputs.
+Measurement readMeasurement(const Table& table, const MeasurementSpec& spec, const ResponseLayout& layout,
+                            double start);
 
 /// Throws MeasurementError for a sample between the layout's first and last time at a limit of its sensor's
 /// range: for what cannot use clipped samples.

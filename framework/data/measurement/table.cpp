@@ -6,8 +6,8 @@
 
 #include "framework/base/text/nearest_name.hpp"
 #include "framework/base/text/number_text.hpp"
-#include "framework/data/measurement/read_hdf5_table.hpp"
-#include "framework/data/measurement/read_mat_table.hpp"
+#include "framework/data/measurement/files/read_hdf5_table.hpp"
+#include "framework/data/measurement/files/read_mat_table.hpp"
 #include "framework/experiment/column_spec.hpp"
 
 namespace twinmap {

@@ -58,10 +58,12 @@ constexpr std::size_t kMaxNumbers = 100'000'000;
 Table readTable(const std::filesystem::path& path, const std::vector<std::string>& wanted = {},
                 MissingCells missing = MissingCells::kRefuse);
 
-/// Reads a text table in one pass, memory for the wanted columns only. Its first line that is neither empty
-/// nor a comment (#) names the columns, "enc1" or "enc1 [mm]", perhaps in quotes; cells are separated by
-/// commas, semicolons or tabs, whichever the header has most. Columns without a name are ignored, empty lines
-/// and comments as well. Numbers have a decimal point. UTF-8, with or without byte-order mark.
+/// Reads a text table in one pass, memory for the wanted columns only. Lines that are empty or comments (#)
+/// are left out. The first line names the columns, "enc1" or "enc1 [mm]", perhaps in quotes, or one below a
+/// block of remarks; a line of units may follow (findCsvLayout, which also finds what separates cells).
+/// Columns without a name are ignored. Numbers have a decimal point, or all a decimal comma where cells are
+/// not separated by commas; a date and time is the seconds since 1970 (parseTimeStamp). UTF-8, with or
+/// without byte-order mark.
 Table readCsv(std::istream& stream, const std::string& source, const std::vector<std::string>& wanted = {},
               MissingCells missing = MissingCells::kRefuse);
 

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "framework/data/measurement/lagrange.hpp"
+#include "framework/data/measurement/measurement.hpp"
+#include "framework/data/measurement/row_order.hpp"
 #include "framework/data/measurement/time_series.hpp"
 
 namespace twinmap {
@@ -77,9 +79,13 @@ SampledSignal takeTrained(const TableSpec& table, double duration) {
 SampledSignal readMeasured(const Table& table, const ColumnSpec& column, const MeasurementSpec& spec,
                            const std::string& unit, double start) {
   const Column& found = getColumn(table, column.name);
-  const VectorXd times = readTimes(table, {spec.time, spec.sample_rate, start}, found.values.size());
+  const VectorXd times = readUnorderedTimes(table, makeTimeBase(spec, start), found.values.size());
   requireLength(table, found, times.size());
-  return {times, readValues(table, column, unit, 0, times.size())};
+  const VectorXd values = readValues(table, column, unit, 0, times.size());
+  std::vector<Index> rows = sortRows(times).rows;
+  rows.erase(std::remove_if(rows.begin(), rows.end(), [&](Index row) { return std::isnan(values[row]); }),
+             rows.end());
+  return {times(rows), values(rows)};
 }
 
 /// Whether the table is all that the signal consists of.
@@ -157,7 +163,7 @@ std::vector<std::string> listExcitationColumns(const ExperimentSpec& experiment)
 void requireTrainedExcitation(const ExperimentSpec& experiment, const Table& table, double start) {
   for (const SignalSpec& signal : experiment.model.excitation) {
     for (const TableSpec& trained : signal.tables) {
-      if (trained.measured) {
+      if (trained.measured && trained.findDelay() == nullptr) {
         compare(experiment, signal, trained, table, start);
       }
     }

@@ -132,6 +132,20 @@ void ResponseNoise::correlate(const NoiseCorrelationSpec& spec, const ResponseLa
   }
 }
 
+void ResponseNoise::replace(const Eigen::VectorXd& row_stddev) {
+  for (const Block& block : blocks_) {
+    for (const Eigen::Index row : block.rows) {
+      if (row_stddev.size() > 0 && !std::isnan(row_stddev[row])) {
+        throw std::invalid_argument("a row whose noise is correlated with others has none of its own");
+      }
+    }
+  }
+  for (Eigen::Index row = 0; row < row_stddev.size(); ++row) {
+    drawn_[row] = std::isnan(row_stddev[row]) ? drawn_[row] : row_stddev[row];
+  }
+  stddev_ = addRounding(drawn_, quanta_);
+}
+
 Eigen::MatrixXd ResponseNoise::add(const Eigen::MatrixXd& responses, const RandomStream& random,
                                    std::uint64_t replicate, Eigen::Index first) const {
   Eigen::MatrixXd noisy(responses.rows(), responses.cols());

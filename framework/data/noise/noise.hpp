@@ -29,6 +29,10 @@ class ResponseNoise {
   /// the rows is not positive definite. Cost: t^3 / 3 for an output of t correlated times.
   ResponseNoise(const NoiseSpec& noise, const ResponseLayout& layout);
 
+  /// Independent noise of these standard deviations in the places of some rows; NaN: as it is. Empty: all.
+  /// Throws std::invalid_argument for a row whose noise is correlated with others.
+  void replace(const Eigen::VectorXd& row_stddev);
+
   /// That of rounding included.
   const Eigen::VectorXd& getStddev() const { return stddev_; }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "framework/base/text/number_text.hpp"
 #include "framework/experiment/check/check_experiment.hpp"
 #include "framework/experiment/expression/output_units.hpp"
 #include "framework/experiment/expression/units.hpp"
@@ -20,6 +21,22 @@ std::string getUnit(const Name& output, const ModelSpec& model) {
   requireKnown(output, outputs, "an output");
   const auto index = std::find(outputs.begin(), outputs.end(), output.text) - outputs.begin();
   return findOutputUnit(model.outputs[static_cast<std::size_t>(index)], model.system);
+}
+
+void checkColumn(const MeasuredColumnSpec& measured, const std::string& unit) {
+  if (measured.column) {
+    checkUnit(*measured.column, unit);
+  }
+  if (measured.time) {
+    checkUnit(*measured.time, "s");
+  }
+  double number = 0.0;
+  if (!parseLiteral(measured.delay.text, number)) {
+    throw ExperimentError(
+        measured.delay.where, measured.delay.text,
+        "must be a number of seconds; a delay that nobody knows is one of a measured excitation "
+        "(excitation.NAME.tables[].measured.delay)");
+  }
 }
 
 /// What wraps has a turn: that of its unit, or of the range that it counts in.
@@ -43,7 +60,7 @@ void checkMeasurement(const MeasurementSpec& measurement, const ModelSpec& model
     checkUnit(*measurement.time, "s");
   }
   for (const MeasuredColumnSpec& measured : measurement.columns) {
-    checkUnit(measured.column, getUnit(measured.name, model));
+    checkColumn(measured, getUnit(measured.name, model));
   }
   for (const MeasuredRangeSpec& range : measurement.ranges) {
     getUnit(range.name, model);

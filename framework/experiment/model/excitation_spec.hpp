@@ -103,6 +103,7 @@ struct MeasuredSignalSpec {
   std::optional<double> sample_rate;  ///< Hz
   double start = 0.0;                 ///< s; the time in the file that becomes t = 0 of the simulation
   std::optional<double> duration;     ///< s, of the excerpt; default: to the end of the file
+  Expression delay{};                 ///< s, of the recorder's clock: file time = start + t + delay
 };
 
 template <class Fields>
@@ -113,6 +114,9 @@ void describe(Fields& f, MeasuredSignalSpec& s) {
           choice("sample_rate", s.sample_rate, "instead of a column of times; Hz", kPositive));
   f.optional("start", s.start, "the time in the file that becomes t = 0 of the simulation; s");
   f.optional("duration", s.duration, "how much of it; default: to the end of the file; s", kPositive);
+  f.optional("delay", s.delay,
+             "by which the file's clock is late: its time is start + t + delay; perhaps a nuisance",
+             Unit{"s"});
 }
 
 /// A table; 0 before the first and after the last time (hold: the last value ends there).
@@ -120,6 +124,11 @@ struct TableSpec {
   std::vector<double> times, values;  ///< empty until what was measured is read
   TableInterpolation interpolation = TableInterpolation::kLinear;
   std::optional<MeasuredSignalSpec> measured{};  ///< where times and values come from
+
+  /// Of the recorder's clock, s; nullptr where there is none.
+  const Expression* findDelay() const {
+    return measured && measured->delay.text != Expression{}.text ? &measured->delay : nullptr;
+  }
 };
 
 inline bool isStrictlyIncreasing(const std::vector<double>& values) {

@@ -10,7 +10,7 @@ InferredMeasurement MeasurementInference::infer(const Table& table, std::optiona
   InferredMeasurement inferred = infer(extractFeatures(reader.getExtractor(), response, table.source), known);
   inferred.fault = findFault(response, known, inferred);
   inferred.source = table.source;
-  inferred.start = reader.getStart(start);
+  inferred.start = reader.getStart(table, start);
   return inferred;
 }
 

@@ -1,13 +1,15 @@
 #include "framework/inference/measurement/measurement_reader.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <cmath>
 
 #include "framework/base/log/log.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/data/features/experiment_features.hpp"
+#include "framework/data/measurement/measured_modes.hpp"
 #include "framework/data/measurement/measurement.hpp"
+#include "framework/data/measurement/measurement_start.hpp"
 #include "framework/data/measurement/time_series.hpp"
 #include "framework/data/measurement/trained_excitation.hpp"
 
@@ -35,6 +37,15 @@ std::vector<Eigen::Index> findFeaturesOf(const FeatureExtractor& extractor, Eige
 
 }  // namespace
 
+void requireStatedNoise(const Eigen::VectorXd& stddev, const std::string& source) {
+  if (stddev.size() > 0) {
+    throw MeasurementError(
+        source +
+        ": states standard deviations of its own, which only inference of one measurement from "
+        "the experiment file can use; leave these columns out for those of noise.modes");
+  }
+}
+
 MeasurementReader::MeasurementReader(ExperimentSpec experiment)
     : experiment_(std::move(experiment)),
       layout_(makeLayout(experiment_)),
@@ -45,22 +56,29 @@ std::vector<std::string> MeasurementReader::listColumns() const {
   std::vector<std::string> names = twinmap::listColumns(experiment_.measurement, layout_.output_names);
   const std::vector<std::string> excitation = listExcitationColumns(experiment_);
   names.insert(names.end(), excitation.begin(), excitation.end());
+  if (layout_.modes > 0 && layout_.times.size() == 0) {
+    const std::vector<std::string> modes = listModeColumns();
+    names.insert(names.end(), modes.begin(), modes.end());
+  }
   return names;
 }
 
-double MeasurementReader::getStart(std::optional<double> start) const {
-  return start.value_or(experiment_.measurement.start);
+double MeasurementReader::getStart(const Table& table, std::optional<double> start) const {
+  return start ? *start : findStart(table, experiment_.measurement);
+}
+
+double MeasurementReader::getStatedStart(std::optional<double> start) const {
+  return start.value_or(experiment_.measurement.start.time);
 }
 
 std::vector<double> MeasurementReader::listWindows(const Table& table, std::optional<double> start,
                                                    double length) const {
-  const MeasurementSpec& spec = experiment_.measurement;
   const Eigen::Index rows = table.columns.empty() ? 0 : table.columns.front().values.size();
-  double last = getStart(start);
-  for (const double time : readUnorderedTimes(table, {spec.time, spec.sample_rate, 0.0}, rows)) {
+  const double first = getStart(table, start);
+  double last = first;
+  for (const double time : readUnorderedTimes(table, makeTimeBase(experiment_.measurement, 0.0), rows)) {
     last = std::isfinite(time) ? std::max(last, time) : last;
   }
-  const double first = getStart(start);
   const double duration = layout_.times.size() > 0 ? layout_.times[layout_.times.size() - 1] : 0.0;
   const double slack = 1e-6 * length;  // as times are compared when they are read
   std::vector<double> starts;
@@ -76,7 +94,7 @@ std::vector<double> MeasurementReader::listWindows(const Table& table, std::opti
 }
 
 void MeasurementReader::requireExcitation(const Table& table, std::optional<double> start) const {
-  requireTrainedExcitation(experiment_, table, getStart(start));
+  requireTrainedExcitation(experiment_, table, getStart(table, start));
 }
 
 void MeasurementReader::warnOfJumps(const Table& table) const {
@@ -87,22 +105,42 @@ void MeasurementReader::warnOfJumps(const Table& table) const {
 
 Eigen::VectorXd MeasurementReader::readResponse(const Table& table, std::optional<double> start) const {
   warnOfJumps(table);
-  MeasurementSpec spec = experiment_.measurement;
-  spec.start = getStart(start);
-  const Measurement measurement = readMeasurement(table, spec, layout_);
+  const MeasurementSpec& spec = experiment_.measurement;
+  const double zero = getStart(table, start);
+  if (hasOwnClocks(spec) || layout_.modes > 0) {
+    return readWhole(table, zero);
+  }
+  const Measurement measurement = readMeasurement(table, spec, layout_, zero);
   requireUnclipped(measurement, spec, layout_);
   return resample(measurement, layout_, sample_interval_);
+}
+
+Eigen::VectorXd MeasurementReader::readWhole(const Table& table, double start) const {
+  const AvailableResponse available =
+      readAvailable(table, experiment_.measurement, layout_, start, sample_interval_);
+  if (!available.response.allFinite()) {
+    throw MeasurementError(
+        fmt::format("{}: a trained map needs every sample; missing or clipped: {}; inference from the "
+                    "experiment file can do "
+                    "without (twinmap infer FILE.yaml MEASUREMENT)",
+                    table.source, fmt::join(available.remarks, "; ")));
+  }
+  requireStatedNoise(available.stddev, table.source);
+  return available.response;
 }
 
 AvailableFeatures MeasurementReader::readAvailableFeatures(const Table& table,
                                                            std::optional<double> start) const {
   requireExcitation(table, start);
   warnOfJumps(table);
-  MeasurementSpec spec = experiment_.measurement;
-  spec.start = getStart(start);
-  AvailableResponse response = readAvailable(table, spec, layout_, sample_interval_);
-  AvailableFeatures found{
-      extractor_.extract(response.response), {}, {}, std::move(response.remarks), response.response};
+  AvailableResponse response =
+      readAvailable(table, experiment_.measurement, layout_, getStart(table, start), sample_interval_);
+  AvailableFeatures found{extractor_.extract(response.response),
+                          {},
+                          {},
+                          std::move(response.remarks),
+                          response.response,
+                          response.stddev};
   for (const ClippedSample& sample : response.clipped) {
     for (const Eigen::Index feature : findFeaturesOf(extractor_, sample.row)) {
       found.features[feature] = sample.limit;

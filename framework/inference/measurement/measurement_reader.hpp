@@ -25,7 +25,11 @@ struct AvailableFeatures {
   std::vector<ClippedSample> clipped;   ///< features, of value `limit`
   std::vector<std::string> remarks;     ///< what is missing and why, a phrase each
   Eigen::VectorXd response;             ///< rows of the layout, NaN where missing
+  Eigen::VectorXd stddev{};  ///< of rows, where the measurement states it; NaN of others; empty: of none
 };
+
+/// Throws MeasurementError where a measurement states standard deviations: for what uses the experiment's.
+void requireStatedNoise(const Eigen::VectorXd& stddev, const std::string& source);
 
 /// From tables of measurements to the features of an experiment. Immutable.
 class MeasurementReader {
@@ -38,10 +42,13 @@ class MeasurementReader {
 
   /// The columns that a table of a measurement must have, and those that it may have, for readTable().
   std::vector<std::string> listColumns() const;
-  /// The time in a table that is the model's 0: `start`, or that of the experiment's `measurement:`.
-  double getStart(std::optional<double> start) const;
+  /// The time in a table that is the model's 0: `start`, or that of the experiment's `measurement:`
+  /// (findStart).
+  double getStart(const Table& table, std::optional<double> start) const;
+  /// The same without a table: a trigger counts as 0.
+  double getStatedStart(std::optional<double> start) const;
 
-  /// The starts of windows every `length` s that the table covers, from getStart(start) on. At least one;
+  /// The starts of windows every `length` s that the table covers, from getStart() on. At least one;
   /// throws MeasurementError where it covers none.
   std::vector<double> listWindows(const Table& table, std::optional<double> start, double length) const;
 
@@ -61,6 +68,8 @@ class MeasurementReader {
 
  private:
   void warnOfJumps(const Table& table) const;
+  /// A response of columns with clocks of their own, none missing.
+  Eigen::VectorXd readWhole(const Table& table, double start) const;
 
   ExperimentSpec experiment_;
   ResponseLayout layout_;

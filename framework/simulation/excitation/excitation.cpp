@@ -23,7 +23,7 @@ void checkTables(const SignalSpec& signal) {
 }
 
 /// Evaluates the terms of a signal at a parameter set. A table is one line an interval, a cubic one its
-/// spline.
+/// spline; both begin earlier by the delay of its clock.
 class TermWriter {
  public:
   TermWriter(const SignalSpec& spec, int signal, ModelNumbers& numbers, std::vector<ExcitationTerm>& terms)
@@ -37,12 +37,16 @@ class TermWriter {
   }
 
   void addTable(const TableSpec& table, const TableSplines& splines) {
+    const Expression* delay = table.findDelay();
+    const double zero = delay != nullptr ? -shapes_.calcTime(*delay, "delay") : 0.0;
     if (table.interpolation == TableInterpolation::kCubic) {
-      terms_.push_back({signal_, table.times.front(), table.times.back(), SplineShape{&splines.at(&table)}});
+      terms_.push_back(
+          {signal_, zero + table.times.front(), zero + table.times.back(), SplineShape{&splines.at(&table)}});
       return;
     }
     for (const TablePiece& piece : calcTablePieces(table)) {
-      terms_.push_back({signal_, piece.begin, piece.end, LineShape{piece.values[0], piece.values[1]}});
+      terms_.push_back(
+          {signal_, zero + piece.begin, zero + piece.end, LineShape{piece.values[0], piece.values[1]}});
     }
   }
 

@@ -66,11 +66,15 @@ std::vector<ConstantSpec> withoutTexts(std::vector<ConstantSpec> constants) {
   return withoutUnits(std::move(constants));
 }
 
-/// A table's values count, not where they come from.
+/// A table's values and the delay of its clock count, not where they come from.
 std::vector<SignalSpec> withoutSources(std::vector<SignalSpec> signals) {
   for (SignalSpec& signal : signals) {
     for (TableSpec& table : signal.tables) {
-      table.measured.reset();
+      std::optional<MeasuredSignalSpec> delayed;
+      if (const Expression* delay = table.findDelay()) {
+        delayed.emplace().delay = *delay;
+      }
+      table.measured = std::move(delayed);
     }
   }
   return withoutUnits(std::move(signals));

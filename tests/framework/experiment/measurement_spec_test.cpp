@@ -34,11 +34,11 @@ TEST(MeasurementSpec, IsReadAndWritten) {
   const ExperimentSpec again = readExperiment(parseYaml(writeExperiment(experiment), "resolved.yaml"));
   for (const MeasurementSpec& measurement : {experiment.measurement, again.measurement}) {
     EXPECT_EQ(toText(*measurement.time), "t [ms]");
-    EXPECT_EQ(measurement.start, 0.25);
+    EXPECT_EQ(measurement.start.time, 0.25);
     ASSERT_EQ(measurement.columns.size(), 2U);
     EXPECT_EQ(measurement.columns[0].name.text, "y");
-    EXPECT_EQ(toText(measurement.columns[0].column), "enc1 [mm]");
-    EXPECT_EQ(toText(measurement.columns[1].column), "enc2");
+    EXPECT_EQ(toText(*measurement.columns[0].column), "enc1 [mm]");
+    EXPECT_EQ(toText(*measurement.columns[1].column), "enc2");
   }
   EXPECT_EQ(*loadExperiment(kTable1, {"measurement.sample_rate=610.35"}).measurement.sample_rate, 610.35);
 }

@@ -6,7 +6,10 @@
 #include <limits>
 #include <sstream>
 
+#include "framework/data/measurement/files/time_stamp.hpp"
 #include "framework/data/measurement/measurement.hpp"
+#include "framework/data/measurement/measurement_start.hpp"
+#include "tests/framework/test_folder.hpp"
 
 namespace twinmap {
 namespace {
@@ -56,20 +59,20 @@ Index expectRight(const AvailableResponse& available, double tolerance) {
 }
 
 TEST(AvailableResponse, IsWholeWhereNothingIsMissing) {
-  const AvailableResponse available = readAvailable(record(0.05), {}, makeTwoOutputs());
+  const AvailableResponse available = readAvailable(record(0.05), {}, makeTwoOutputs(), 0.0);
   EXPECT_EQ(expectRight(available, 1e-12), 0);
   EXPECT_TRUE(available.remarks.empty());
 }
 
 TEST(AvailableResponse, InterpolatesBetweenSamplesOfAFastColumn) {
-  EXPECT_EQ(expectRight(readAvailable(record(0.04), {}, makeTwoOutputs()), 1e-4), 0);
+  EXPECT_EQ(expectRight(readAvailable(record(0.04), {}, makeTwoOutputs(), 0.0), 1e-4), 0);
 }
 
 TEST(AvailableResponse, LeavesOutEmptyCellsAndSaysWhich) {
   Table table = record(0.1);
   table.columns[1].values[3] = kNone;
   table.columns[1].values.segment(7, 4).setConstant(kNone);
-  const AvailableResponse available = readAvailable(table, {}, makeTwoOutputs());
+  const AvailableResponse available = readAvailable(table, {}, makeTwoOutputs(), 0.0);
   EXPECT_EQ(expectRight(available, 1e-12), 5);
   ASSERT_EQ(available.remarks.size(), 1u);
   EXPECT_EQ(available.remarks[0], "5 of 20 samples of a, the longest gap 4 at 0.7 s to 1 s");
@@ -80,7 +83,7 @@ TEST(AvailableResponse, TakesAColumnAtALowerRateWhereItHasSamples) {
   for (Index i = 0; i < table.columns[2].values.size(); ++i) {
     table.columns[2].values[i] = i % 6 == 0 ? table.columns[2].values[i] : kNone;  // each .3 s
   }
-  EXPECT_EQ(expectRight(readAvailable(table, {}, makeTwoOutputs()), 1e-12), 14);
+  EXPECT_EQ(expectRight(readAvailable(table, {}, makeTwoOutputs(), 0.0), 1e-12), 14);
 }
 
 TEST(AvailableResponse, DoesNotInterpolateOverLostRows) {
@@ -91,7 +94,7 @@ TEST(AvailableResponse, DoesNotInterpolateOverLostRows) {
     left << column.values.head(20), column.values.tail(rows - 30);
     column.values = left;
   }
-  const Index missing = expectRight(readAvailable(table, {}, makeTwoOutputs()), 1e-4);
+  const Index missing = expectRight(readAvailable(table, {}, makeTwoOutputs(), 0.0), 1e-4);
   EXPECT_GE(missing, 2 * 4);
   EXPECT_LE(missing, 2 * 6);
 }
@@ -103,7 +106,7 @@ TEST(AvailableResponse, PutsRowsInOrderAndTakesTheFirstOfDoubles) {
     column.values.conservativeResize(column.values.size() + 1);
     column.values.tail(1)[0] = column.name == "t" ? 0.5 : 77.0;
   }
-  const AvailableResponse available = readAvailable(table, {}, makeTwoOutputs());
+  const AvailableResponse available = readAvailable(table, {}, makeTwoOutputs(), 0.0);
   EXPECT_EQ(expectRight(available, 1e-12), 0);
   ASSERT_EQ(available.remarks.size(), 2u);
   EXPECT_EQ(available.remarks[0], "rows are not in the order of their times: sorted");
@@ -114,8 +117,8 @@ TEST(AvailableResponse, RefusesAnOutputThatIsAbsentOrDead) {
   Table absent = record(0.1), dead = record(0.1);
   absent.columns[1].values.setConstant(kNone);
   dead.columns[2].values.setConstant(3.0);
-  EXPECT_THROW(readAvailable(absent, {}, makeTwoOutputs()), MeasurementError);
-  EXPECT_THROW(readAvailable(dead, {}, makeTwoOutputs()), MeasurementError);
+  EXPECT_THROW(readAvailable(absent, {}, makeTwoOutputs(), 0.0), MeasurementError);
+  EXPECT_THROW(readAvailable(dead, {}, makeTwoOutputs(), 0.0), MeasurementError);
 }
 
 TEST(MissingCells, AreReadAsNaNOnRequest) {
@@ -149,7 +152,7 @@ TEST(AvailableResponse, AnglesThatWrapAreContinued) {
   spec.unwrap = {{"q", {}}};
   Table table = recordAngle();
   table.columns[1].values[11] = kNone;
-  const AvailableResponse available = readAvailable(table, spec, kAngleLayout);
+  const AvailableResponse available = readAvailable(table, spec, kAngleLayout, 0.0);
   for (Index i = 0; i < 20; ++i) {
     if (std::isfinite(available.response[i])) {
       EXPECT_NEAR(available.response[i], calcAngle(kAngleLayout.times[i]), 1e-2) << i;  // of a cubic
@@ -178,7 +181,7 @@ TEST(AvailableResponse, ACounterTurnsWithinItsRange) {
       {{"t", {}, times},
        {"n", {}, times.unaryExpr([](double t) { return std::fmod(4000.0 + 3000.0 * t, 4096.0); })}},
       {}};
-  const AvailableResponse available = readAvailable(table, spec, {{"n"}, {""}, kAngleLayout.times});
+  const AvailableResponse available = readAvailable(table, spec, {{"n"}, {""}, kAngleLayout.times}, 0.0);
   for (Index i = 0; i < 20; ++i) {
     EXPECT_NEAR(available.response[i], 4000.0 + 3000.0 * kAngleLayout.times[i], 1e-6);
   }
@@ -189,7 +192,7 @@ TEST(AvailableResponse, SamplesAtALimitAreClipped) {
   spec.ranges = {{{"a", {}}, {-0.8, 0.8, {}}}};
   Table table = record(0.05);
   table.columns[1].values = table.columns[1].values.cwiseMin(0.8).cwiseMax(-0.8);
-  const AvailableResponse available = readAvailable(table, spec, makeTwoOutputs());
+  const AvailableResponse available = readAvailable(table, spec, makeTwoOutputs(), 0.0);
   Index clipped = 0;
   for (Index i = 0; i < 20; ++i) {
     clipped += std::abs(calcA(0.1 + 0.1 * static_cast<double>(i))) >= 0.8;
@@ -200,8 +203,98 @@ TEST(AvailableResponse, SamplesAtALimitAreClipped) {
     EXPECT_TRUE(std::isnan(available.response[sample.row]));
     EXPECT_EQ(sample.limit, 0.8 * sample.side);
   }
-  const Measurement measurement = readMeasurement(table, spec, makeTwoOutputs());
+  const Measurement measurement = readMeasurement(table, spec, makeTwoOutputs(), 0.0);
   EXPECT_THROW(requireUnclipped(measurement, spec, makeTwoOutputs()), MeasurementError);
+}
+
+/// a as in record(), b faster and with times of its own, in ms, which begin 5 s earlier.
+Table recordByTwoClocks() {
+  Table table = record(0.1);
+  const VectorXd fast = VectorXd::NullaryExpr(450, [](Index i) { return 0.005 * static_cast<double>(i); });
+  table.columns[2].values = fast.unaryExpr(&calcB);
+  table.columns.push_back({"t_fast", "ms", 1e3 * (fast.array() + 5.0)});
+  return table;
+}
+
+TEST(AvailableResponse, HasAClockForEachColumn) {
+  MeasurementSpec spec;
+  spec.columns.push_back({{"b", {}}, {}});
+  spec.columns[0].time = ColumnSpec{"t_fast", {}, {}};
+  spec.columns[0].delay.text = "5";
+  EXPECT_TRUE(hasOwnClocks(spec));
+  EXPECT_EQ(listColumns(spec, {"a", "b"}), (std::vector<std::string>{"t", "time", "a", "b", "t_fast"}));
+  EXPECT_EQ(expectRight(readAvailable(recordByTwoClocks(), spec, makeTwoOutputs(), 0.0), 1e-9), 0);
+  spec.columns[0].time.reset();
+  spec.columns[0].sample_rate = 200.0;
+  spec.columns[0].delay.text = "0";
+  EXPECT_EQ(expectRight(readAvailable(recordByTwoClocks(), spec, makeTwoOutputs(), 0.0), 1e-9), 0);
+}
+
+TEST(AvailableResponse, TakesAColumnFromAFileBesideTheMeasurement) {
+  const TestFolder folder;
+  Table table = recordByTwoClocks();
+  writeTable(folder / "fast.csv", {table.columns[3], {"acc", "mm", 1e3 * table.columns[2].values}});
+  table.columns.resize(2);
+  table.source = (folder / "m.csv").string();
+  MeasurementSpec spec;
+  spec.columns.push_back({{"b", {}}, ColumnSpec{"acc", {}, {}}, Name{"fast.csv", {}}});
+  spec.columns[0].time = ColumnSpec{"t_fast", {}, {}};
+  spec.columns[0].delay.text = "5";
+  EXPECT_EQ(expectRight(readAvailable(table, spec, makeTwoOutputs(), 0.0), 1e-9), 0);
+  spec.columns[0].file->text = "none.csv";
+  EXPECT_THROW(readAvailable(table, spec, makeTwoOutputs(), 0.0), MeasurementError);
+}
+
+TEST(AvailableResponse, MeetsTimesSince1970WithinTheirRounding) {
+  Table table = record(0.05);
+  table.columns[0].values.array() += 1795687200.25;
+  EXPECT_EQ(expectRight(readAvailable(table, {}, makeTwoOutputs(), 1795687200.25), 1e-5), 0);
+}
+
+MeasurementSpec startWhen(const std::string& when, double time = 0.0) {
+  MeasurementSpec spec;
+  spec.start = {time, Name{when, {"e.yaml", 3, 5, "measurement.start.when"}}};
+  return spec;
+}
+
+TEST(MeasurementStart, IsTheFirstRowADateOrATrigger) {
+  const Table table = record(0.05);
+  EXPECT_EQ(findStart(table, {}), 0.0);
+  EXPECT_EQ(findStart(table, startWhen("first", 0.25)), 0.25);
+  EXPECT_EQ(findStart(table, startWhen("2026-11-26T10:00:00.25Z")), 1795687200.25);
+  EXPECT_DOUBLE_EQ(findStart(table, startWhen("a > 0.5")), 0.2);          // sin 3t: at .1745 s
+  EXPECT_DOUBLE_EQ(findStart(table, startWhen("b < -0.5", -0.1)), 0.95);  // cos 2t: at 1.0472 s
+}
+
+TEST(MeasurementStart, ErrorsSayWhatIsWrong) {
+  const auto getError = [](const std::string& when) -> std::string {
+    try {
+      findStart(record(0.05), startWhen(when));
+    } catch (const ExperimentError& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  EXPECT_NE(getError("a > 2").find("m.csv: column 'a' is never above 2"), std::string::npos);
+  EXPECT_NE(getError("b > 0.5").find("m.csv: column 'b' is from its first row on above 0.5"),
+            std::string::npos);
+  EXPECT_NE(getError("c > 0.5").find("m.csv: has no column 'c'"), std::string::npos);
+  EXPECT_NE(getError("a is large").find("e.yaml:3:5: measurement.start.when: 'a is large' must be 'first'"),
+            std::string::npos);
+}
+
+TEST(TimeStamps, AreSecondsSince1970) {  // by Python's datetime
+  double seconds = 0.0;
+  const auto read = [&](const char* text) { return parseTimeStamp(text, seconds) ? seconds : NAN; };
+  EXPECT_EQ(read("2026-11-26T10:00:00.25Z"), 1795687200.25);
+  EXPECT_EQ(read("2026-11-26 10:00:00,25"), 1795687200.25);
+  EXPECT_EQ(read("2000-02-29T23:59:59+05:30"), 951848999.0);
+  EXPECT_EQ(read("1969-12-31T00:00Z"), -86400.0);
+  EXPECT_EQ(read("1900/03/01 00:00:00"), -2203891200.0);
+  for (const char* text :
+       {"", "2026", "2026-13-01T00:00", "2026-11-26", "2026-11-26T10:00:00Zx", "1-2-3", "12.5"}) {
+    EXPECT_FALSE(parseTimeStamp(text, seconds)) << text;
+  }
 }
 
 }  // namespace

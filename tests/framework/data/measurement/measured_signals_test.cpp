@@ -75,6 +75,18 @@ TEST_F(MeasuredSignals, AnExcerptEndsBeforeTheSimulation) {
   EXPECT_NEAR(updTable().times.back(), 0.5, 1e-9);
 }
 
+TEST_F(MeasuredSignals, CoverEveryDelayWithinTheBounds) {
+  experiment_.model.nuisance = {{{"late", {}}, {-1.5, 2.0, {}}, "s", "", RelativeTo::kAutomatic, {}}};
+  updTable().measured->delay.text = "0.5 + late";
+  loadMeasuredSignals(experiment_);
+  EXPECT_LE(updTable().times.front(), -1.0);
+  EXPECT_GE(updTable().times.back(), 3.5);
+  updTable().times.clear();
+  updTable().measured->start = 0.5;
+  EXPECT_EQ(getError(), "e.yaml:7:3: excitation.F: " + (folder_ / "a.csv").string() +
+                            ": covers 0 s to 4.4 s, but -0.5 s to 4 s is needed");
+}
+
 TEST_F(MeasuredSignals, ErrorsNameKeyFileAndRule) {
   const std::string start = "e.yaml:7:3: excitation.F: " + (folder_ / "a.csv").string() + ": ";
   updTable().measured->start = 9.5;

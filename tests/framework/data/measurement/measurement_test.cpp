@@ -31,7 +31,7 @@ Table makeCubicTable(const VectorXd& times) {
 
 VectorXd resampleTable(const Table& table, const ResponseLayout& layout, const MeasurementSpec& spec = {},
                        std::optional<double> interval = {}) {
-  return resample(readMeasurement(table, spec, layout), layout, interval);
+  return resample(readMeasurement(table, spec, layout, spec.start.time), layout, interval);
 }
 
 std::string getResamplingError(const Table& table, const ResponseLayout& layout,
@@ -81,8 +81,8 @@ TEST(Measurement, InterpolatesCubicallyBetweenSamples) {
 TEST(Measurement, ConvertsUnitsTakesColumnsAndShiftsTime) {
   std::istringstream csv("time [ms],enc1 [mm],enc2\n100,1000,90\n150,2000,180\n200,3000,-90\n");
   MeasurementSpec spec;
-  spec.start = 0.1;
-  spec.columns = {{{"y", {}}, {"enc1", {}, {}}}, {{"theta", {}}, {"enc2", "deg", {}}}};
+  spec.start.time = 0.1;
+  spec.columns = {{{"y", {}}, ColumnSpec{"enc1", {}, {}}}, {{"theta", {}}, ColumnSpec{"enc2", "deg", {}}}};
   EXPECT_EQ(listColumns(spec, {"y", "theta"}), (std::vector<std::string>{"t", "time", "enc1", "enc2"}));
   const ResponseLayout layout = makeLayout(makeTimes(3, 0.05));
   const VectorXd response =
@@ -97,7 +97,7 @@ TEST(Measurement, HasTimesByItsSampleRate) {
   table.columns.erase(table.columns.begin());
   MeasurementSpec spec;
   spec.sample_rate = 100.0;
-  spec.start = 0.5;
+  spec.start.time = 0.5;
   const ResponseLayout layout = makeLayout(makeTimes(10, 0.1));
   EXPECT_NEAR(resampleTable(table, layout, spec)[3], std::sin(3.0 * 0.8), 1e-15);
   EXPECT_EQ(getResamplingError(table, layout),
@@ -108,7 +108,7 @@ TEST(Measurement, ErrorsOfUnitsAndColumns) {
   const Table table = makeCubicTable(makeTimes(200, 0.01));
   const ResponseLayout layout = makeLayout(makeTimes(10, 0.1));
   MeasurementSpec spec;
-  spec.columns = {{{"y", {}}, {"z", {}, {}}}};
+  spec.columns = {{{"y", {}}, ColumnSpec{"z", {}, {}}}};
   EXPECT_NE(getResamplingError(table, layout, spec).find("a.csv: has no column 'z'"), std::string::npos);
   Table volts = table;
   volts.columns[1].unit = "V";

@@ -62,6 +62,33 @@ TEST(Csv, SeparatorsLineEndsCommentsAndByteOrderMarks) {
   }
 }
 
+TEST(Csv, DecimalCommasBarsAndBlanks) {
+  for (const char* text : {"t;y\n1;2,5\n3;4,5\n", "t\ty\n1,0\t2,5\n3,0\t4,5\n", "t|y\n1|2.5\n3|4.5\n",
+                           "  t   y\n 1.0  2.5\n3.0\t 4.5 \n", "t y\n1 2,5\n3 4,5\n"}) {
+    const Table table = read(text);
+    ASSERT_EQ(table.columns.size(), 2U) << text;
+    EXPECT_EQ(getColumn(table, "t").values, makeVector({1.0, 3.0})) << text;
+    EXPECT_EQ(getColumn(table, "y").values, makeVector({2.5, 4.5})) << text;
+  }
+  EXPECT_EQ(getColumn(read("x [mm]\n1.5\n2\n"), "x").values, makeVector({1.5, 2.0}));
+}
+
+TEST(Csv, HasItsHeaderBelowABlockOfRemarksAndUnitsBelowThat) {
+  for (const char* text :
+       {"Recorder: bench 7\nDate;2026-11-26\nChannels;2;rate;100\n\nt;enc 1\n1;2,5\n3;4,5\n",
+        "made by hand\nt,enc 1\n1,2.5\n3,4.5\n", "t;enc 1\ns;mm\n1;2,5\n3;4,5\n",
+        "Date;2026-11-26\nFile\nt;enc 1\n[s];(mm)\n1;2,5\n3;4,5\n"}) {
+    const Table table = read(text);
+    ASSERT_EQ(table.columns.size(), 2U) << text;
+    EXPECT_EQ(getColumn(table, "t").values, makeVector({1.0, 3.0})) << text;
+    EXPECT_EQ(getColumn(table, "enc 1").values, makeVector({2.5, 4.5})) << text;
+    const bool states_units = std::string(text).find("mm") != std::string::npos;
+    EXPECT_EQ(getColumn(table, "enc 1").unit.value_or("none"), states_units ? "mm" : "none") << text;
+  }
+  EXPECT_EQ(getCsvError("made by hand\nt,y\n1,2\n1,x\n", {"y"}),
+            "a.csv:4: column 'y' has 'x' which must be a number");
+}
+
 TEST(Csv, KeepsWhatIsWantedAndSkipsWhatIsNoNumber) {
   const std::string text = "Ovld,t,note,y,\n0,0,a,1,\n,1,b,2,\n";
   const Table wanted = read(text, {"t", "time", "y"});
@@ -93,8 +120,12 @@ TEST(Csv, ErrorsNameLineColumnAndRule) {
             "a.csv:2: column 'y' has '-inf' which must be a finite number");
   EXPECT_EQ(getCsvError("t,y\n0,1e999\n", {"y"}),
             "a.csv:2: column 'y' has '1e999' which must be a number from 1e-308 to 1e308");
-  EXPECT_EQ(getCsvError("t;y\n0;1,5\n", {"y"}),
-            "a.csv:2: column 'y' has '1,5' which must be a number with a decimal point, not a comma");
+  EXPECT_EQ(getCsvError("t;y\n0;1.5\n1;1,5\n", {"y"}),
+            "a.csv:3: column 'y' has '1,5' which must be a number with a decimal point, as those before");
+  EXPECT_EQ(getCsvError("t;y\n0;1,5\n1;1.5\n", {"y"}),
+            "a.csv:3: column 'y' has '1.5' which must be a number with a decimal comma, as those before");
+  EXPECT_EQ(getCsvError("t;y\n0;1,500.25\n", {"y"}),
+            "a.csv:2: column 'y' has '1,500.25' which must be a number with a decimal point, not a comma");
 }
 
 TEST(Csv, RefusesWhatIsNoText) {

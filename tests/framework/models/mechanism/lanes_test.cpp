@@ -91,6 +91,14 @@ ModelSpec makeDriven() {
   return model;
 }
 
+/// The same, recorded by a clock that is late by `delay`.
+SignalSpec makeLate(SignalSpec signal, const std::string& delay) {
+  for (TableSpec& table : signal.tables) {
+    table.measured.emplace().delay = ex(delay);
+  }
+  return signal;
+}
+
 std::vector<std::pair<std::string, SignalSpec>> makeSignals() {
   SignalSpec empty;
   empty.name = name("u");
@@ -115,6 +123,9 @@ std::vector<std::pair<std::string, SignalSpec>> makeSignals() {
           {"linear table", linear},
           {"hold table", hold},
           {"cubic table", cubic},
+          {"late linear table", makeLate(linear, "t0 - 0.6")},
+          {"late hold table", makeLate(hold, "t0 - 0.6")},
+          {"late cubic table", makeLate(cubic, "0.3 * a - t0")},
           {"sum", sum}};
 }
 
@@ -125,6 +136,23 @@ TEST(Lanes, FollowEveryExcitation) {
     model.excitation = {signal};
     expectSameResponses(model, makePoints(model, 9), 1e-7);
   }
+}
+
+TEST(Lanes, HaveALateTableEarlier) {
+  const std::vector<double> times{0.1, 0.5, 0.9, 1.3, 2.0, 2.2}, values{0.0, 1.0, -1.0, 2.0, 0.5, 0.0};
+  SignalSpec early;
+  early.name = name("u");
+  early.tables = {{times, values, TableInterpolation::kCubic}};
+  SignalSpec late = early;
+  for (double& t : late.tables[0].times) {
+    t += 0.25;
+  }
+  ModelSpec model = makeDriven();
+  const Eigen::VectorXd at = Eigen::VectorXd::LinSpaced(21, 0.0, 3.0);
+  model.excitation = {makeLate(late, "0.25")};
+  const Eigen::MatrixXd found = runBy(Engine::kLanes, model, at, makePoints(model, 3));
+  model.excitation = {early};
+  EXPECT_LT((found - runBy(Engine::kLanes, model, at, makePoints(model, 3))).cwiseAbs().maxCoeff(), 1e-9);
 }
 
 TEST(Lanes, FollowNuisanceParametersInputsAndConstants) {

@@ -60,7 +60,13 @@ class ExcitationRecorder {
     const int degree = getDegree(table.interpolation), first = excitation_.input_count;
     excitation_.tables.push_back({first, degree, calcTablePieces(table)});
     excitation_.input_count += degree + 2;
-    const Symbol elapsed = recorder_.time() - recorder_.phaseInput(first);
+    Symbol clock = recorder_.time();
+    if (const Expression* delay = table.findDelay()) {
+      const Symbol late = numbers_.names.calc(*delay);
+      clock = clock + late;
+      excitation_.tables.back().zero = addEvent(-late);
+    }
+    const Symbol elapsed = clock - recorder_.phaseInput(first);
     Symbol value = recorder_.phaseInput(first + 1 + degree);
     for (int k = degree; k > 0; --k) {
       value = recorder_.phaseInput(first + k) + elapsed * value;
@@ -77,8 +83,9 @@ class ExcitationRecorder {
     signal_ += select(recorder_.phaseInput(flag), value, 0.0);
   }
 
-  int addEvent(const Expression& time) {
-    excitation_.events.push_back(numbers_.names.calc(time));
+  int addEvent(const Expression& time) { return addEvent(numbers_.names.calc(time)); }
+  int addEvent(const Symbol& time) {
+    excitation_.events.push_back(time);
     return static_cast<int>(excitation_.events.size()) - 1;
   }
 
@@ -88,12 +95,14 @@ class ExcitationRecorder {
   Symbol signal_;
 };
 
-void fillTable(const RecordedExcitation::Table& table, double begin, double* inputs) {
+/// Times are compared as calcBoundaries() computes them, so that a phase begins within its own piece.
+void fillTable(const RecordedExcitation::Table& table, double zero, double begin, double* inputs) {
   double* const own = inputs + table.first_input;
   std::fill_n(own, table.degree + 2, 0.0);
-  const auto after = std::upper_bound(table.pieces.begin(), table.pieces.end(), begin,
-                                      [](double t, const TablePiece& piece) { return t < piece.begin; });
-  if (after != table.pieces.begin() && begin < (after - 1)->end) {
+  const auto after =
+      std::upper_bound(table.pieces.begin(), table.pieces.end(), begin,
+                       [&](double t, const TablePiece& piece) { return t < zero + piece.begin; });
+  if (after != table.pieces.begin() && begin < zero + (after - 1)->end) {
     own[0] = (after - 1)->begin;
     std::copy_n((after - 1)->values.begin(), table.degree + 1, own + 1);
   }
@@ -122,9 +131,10 @@ std::vector<Boundary> calcBoundaries(const RecordedExcitation& excitation, const
     add(events[i], static_cast<int>(i));
   }
   for (const RecordedExcitation::Table& table : excitation.tables) {
+    const double zero = table.getZero(events);
     for (const TablePiece& piece : table.pieces) {
-      add(piece.begin, -1);
-      add(piece.end, -1);
+      add(zero + piece.begin, table.zero);
+      add(zero + piece.end, table.zero);
     }
   }
   boundaries.push_back({0.0, -1});
@@ -143,7 +153,7 @@ void fillPhaseInputs(const RecordedExcitation& excitation, const std::vector<dou
     inputs[term.flag] = on ? 1.0 : 0.0;
   }
   for (const RecordedExcitation::Table& table : excitation.tables) {
-    fillTable(table, begin, inputs);
+    fillTable(table, table.getZero(events), begin, inputs);
   }
 }
 

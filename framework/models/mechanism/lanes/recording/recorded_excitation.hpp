@@ -16,10 +16,16 @@ struct RecordedExcitation {
   struct Term {
     int flag, begin, end;
   };
-  /// The piece's begin and its first `degree` + 1 values are the inputs from `first_input` on.
+  /// The piece's begin and its first `degree` + 1 values are the inputs from `first_input` on. `zero`: the
+  /// event that is the time 0 of the table's own clock; -1: t = 0.
   struct Table {
     int first_input, degree;
-    std::vector<TablePiece> pieces;  ///< by increasing begin
+    std::vector<TablePiece> pieces;  ///< by increasing begin, in times of the table's clock
+    int zero = -1;
+
+    double getZero(const std::vector<double>& event_times) const {
+      return zero < 0 ? 0.0 : event_times[static_cast<std::size_t>(zero)];
+    }
   };
 
   std::vector<program::Symbol> signals;

@@ -1,9 +1,9 @@
-#include "framework/data/measurement/read_hdf5_table.hpp"
+#include "framework/data/measurement/files/read_hdf5_table.hpp"
 
 #include <algorithm>
 
 #include "framework/base/hdf5/hdf5_file.hpp"
-#include "framework/data/measurement/table_builder.hpp"
+#include "framework/data/measurement/files/table_builder.hpp"
 
 namespace twinmap {
 namespace {

@@ -1,4 +1,4 @@
-#include "framework/data/measurement/csv_cells.hpp"
+#include "framework/data/measurement/files/csv_cells.hpp"
 
 #include <algorithm>
 
@@ -29,7 +29,7 @@ std::string_view trimBlanks(std::string_view text) {
 }
 
 char findSeparator(std::string_view header) {
-  constexpr std::string_view kSeparators = ",;\t";
+  constexpr std::string_view kSeparators = ",;\t|";
   std::size_t counts[kSeparators.size()] = {};
   bool quoted = false;
   for (const char c : header) {
@@ -42,6 +42,9 @@ char findSeparator(std::string_view header) {
   return kSeparators[std::max_element(std::begin(counts), std::end(counts)) - std::begin(counts)];
 }
 
+CsvCells::CsvCells(std::string_view line, char separator)
+    : rest_(separator == ' ' ? trimBlanks(line) : line), separator_(separator) {}
+
 bool CsvCells::next(std::string_view& cell) {
   if (!more_) {
     return false;
@@ -49,11 +52,16 @@ bool CsvCells::next(std::string_view& cell) {
   const std::size_t blanks = std::min(rest_.find_first_not_of(' '), rest_.size());
   const bool quoted = blanks < rest_.size() && rest_[blanks] == '"';
   const std::size_t close = quoted ? blanks + findClosingQuote(rest_.substr(blanks)) : 0;
-  const std::size_t end = rest_.find(separator_, close);
+  const std::size_t end =
+      separator_ == ' ' ? rest_.find_first_of(" \t", close) : rest_.find(separator_, close);
   cell = quoted ? rest_.substr(blanks + 1, close - blanks - 1) : rest_.substr(0, end);
   cell = trimBlanks(cell);
   more_ = end != std::string_view::npos;
   rest_.remove_prefix(more_ ? end + 1 : rest_.size());
+  if (separator_ == ' ') {
+    rest_ = trimBlanks(rest_);
+    more_ = !rest_.empty();
+  }
   return true;
 }
 

@@ -1,4 +1,4 @@
-#include "framework/data/measurement/csv_lines.hpp"
+#include "framework/data/measurement/files/csv_lines.hpp"
 
 #include "framework/data/measurement/table.hpp"
 

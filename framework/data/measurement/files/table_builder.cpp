@@ -1,4 +1,4 @@
-#include "framework/data/measurement/table_builder.hpp"
+#include "framework/data/measurement/files/table_builder.hpp"
 
 #include <algorithm>
 #include <cmath>

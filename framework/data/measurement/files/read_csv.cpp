@@ -5,9 +5,11 @@
 #include <cmath>
 #include <limits>
 
-#include "framework/data/measurement/csv_cells.hpp"
-#include "framework/data/measurement/csv_lines.hpp"
-#include "framework/data/measurement/table_builder.hpp"
+#include "framework/data/measurement/files/csv_cells.hpp"
+#include "framework/data/measurement/files/csv_layout.hpp"
+#include "framework/data/measurement/files/csv_lines.hpp"
+#include "framework/data/measurement/files/table_builder.hpp"
+#include "framework/data/measurement/files/time_stamp.hpp"
 #include "framework/experiment/column_spec.hpp"
 
 namespace twinmap {
@@ -25,6 +27,9 @@ const char* parseNumber(std::string_view cell, double& value) {
     return "must be a number from 1e-308 to 1e308";
   }
   if (error != std::errc() || end != last) {
+    if (parseTimeStamp(cell, value)) {
+      return nullptr;
+    }
     return cell.find(',') == std::string_view::npos ? "must be a number"
                                                     : "must be a number with a decimal point, not a comma";
   }
@@ -65,22 +70,55 @@ class CsvReader {
     std::vector<double> values;
   };
 
-  bool nextLine(std::string_view& line) {
+  struct Line {
+    std::string text;
+    std::size_t number;
+  };
+
+  bool nextContent(std::string_view& line) {
     while (lines_.next(line)) {
       const std::string_view content = trimBlanks(line);
       if (!content.empty() && content.front() != '#') {
+        number_ = lines_.getNumber();
         return true;
       }
     }
     return false;
   }
 
-  void readHeader() {
-    std::string_view line, cell;
-    if (!nextLine(line)) {
+  /// The next line that is neither empty nor a comment, of those that were looked at first.
+  bool nextLine(std::string_view& line) {
+    if (next_looked_at_ == looked_at_.size()) {
+      return nextContent(line);
+    }
+    line = looked_at_[next_looked_at_].text;
+    number_ = looked_at_[next_looked_at_].number;
+    ++next_looked_at_;
+    return true;
+  }
+
+  /// Leaves out what stands above the header.
+  CsvLayout lookAhead() {
+    constexpr std::size_t kLines = 200;
+    std::string_view line;
+    std::vector<std::string> texts;
+    while (looked_at_.size() < kLines && nextContent(line)) {
+      looked_at_.push_back({std::string(line), number_});
+      texts.emplace_back(line);
+    }
+    if (texts.empty()) {
       throw MeasurementError(source_ + ": has no line; must have one that names the columns");
     }
-    separator_ = findSeparator(line);
+    const CsvLayout layout = findCsvLayout(texts);
+    next_looked_at_ = layout.header;
+    return layout;
+  }
+
+  void readHeader() {
+    std::string_view line, cell;
+    const CsvLayout layout = lookAhead();
+    nextLine(line);
+    separator_ = layout.separator;
     bool has_name = false;
     double number = 0.0;
     for (CsvCells cells(line, separator_); cells.next(cell);) {
@@ -89,6 +127,24 @@ class CsvReader {
     }
     if (!has_name) {
       fail("must name the columns, in the first line");
+    }
+    if (layout.has_units && nextLine(line)) {
+      readUnits(line);
+    }
+  }
+
+  /// Units below the names, perhaps in brackets; those in the header go before them.
+  void readUnits(std::string_view line) {
+    std::string_view cell;
+    std::size_t column = 0;
+    for (CsvCells cells(line, separator_); cells.next(cell) && column < columns_.size(); ++column) {
+      const bool in_brackets = cell.size() > 2 && ((cell.front() == '[' && cell.back() == ']') ||
+                                                   (cell.front() == '(' && cell.back() == ')'));
+      const std::string_view unit = in_brackets ? cell.substr(1, cell.size() - 2) : cell;
+      std::optional<std::string>& known = columns_[column].header.unit;
+      if (!known && !unit.empty() && unit != "-") {
+        known = std::string(unit);
+      }
     }
   }
 
@@ -127,12 +183,33 @@ class CsvReader {
     }
     if (missing_ == MissingCells::kKeep && isMissing(cell)) {
       value = std::numeric_limits<double>::quiet_NaN();
-    } else if (const char* problem = parseNumber(cell, value)) {
+    } else if (const char* problem = parse(cell, value)) {
       skip(cells, cell, problem);
       return;
     }
     table_.reserve(1);
     cells.values.push_back(value);
+  }
+
+  /// A number with the decimal sign of the whole table: the first that a number has.
+  const char* parse(std::string_view cell, double& value) {
+    const std::size_t sign = separator_ == ',' ? std::string_view::npos : cell.find_first_of(".,");
+    if (sign == std::string_view::npos || parseTimeStamp(cell, value)) {
+      return parseNumber(cell, value);
+    }
+    if (decimal_ == 0 && isCsvNumber(cell)) {
+      decimal_ = cell[sign];
+    }
+    if (decimal_ != ',') {
+      const bool is_other = decimal_ == '.' && cell.find(',') != std::string_view::npos;
+      return is_other ? "must be a number with a decimal point, as those before" : parseNumber(cell, value);
+    }
+    if (cell.find('.') != std::string_view::npos) {
+      return "must be a number with a decimal comma, as those before";
+    }
+    number_text_.assign(cell);
+    std::replace(number_text_.begin(), number_text_.end(), ',', '.');
+    return parseNumber(number_text_, value);
   }
 
   void skip(Cells& cells, std::string_view cell, const char* problem) {
@@ -142,7 +219,7 @@ class CsvReader {
     cells.kept = false;
     cells.values = {};
     table_.skip(cells.header.name, (cell.empty() ? "" : "has " + quoted + "which ") + std::string(problem),
-                lines_.getNumber());
+                number_);
   }
 
   void finish(Cells& cells) {
@@ -159,14 +236,18 @@ class CsvReader {
   }
 
   [[noreturn]] void fail(const std::string& problem) const {
-    throw MeasurementError(source_ + ":" + std::to_string(lines_.getNumber()) + ": " + problem);
+    throw MeasurementError(source_ + ":" + std::to_string(number_) + ": " + problem);
   }
 
   CsvLines lines_;
   const std::string& source_;
   TableBuilder table_;
   const MissingCells missing_;
+  std::vector<Line> looked_at_;  // content lines that were read to find the header
+  std::size_t next_looked_at_ = 0, number_ = 0;
   char separator_ = ',';
+  char decimal_ = 0;  // 0: not known yet
+  std::string number_text_;
   std::vector<Cells> columns_;
 };
 

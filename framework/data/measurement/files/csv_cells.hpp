@@ -7,7 +7,8 @@ namespace twinmap {
 /// The cells of a line, one after another, without blanks and quotes around them.
 class CsvCells {
  public:
-  CsvCells(std::string_view line, char separator) : rest_(line), separator_(separator) {}
+  /// separator: ' ' stands for any number of blanks and tabs.
+  CsvCells(std::string_view line, char separator);
 
   /// The next cell; false after the last one.
   bool next(std::string_view& cell);
@@ -18,7 +19,7 @@ class CsvCells {
   bool more_ = true;
 };
 
-/// The commonest of comma, semicolon and tab outside quotes.
+/// The commonest of comma, semicolon, tab and bar outside quotes.
 char findSeparator(std::string_view header);
 
 /// Without blanks around it.

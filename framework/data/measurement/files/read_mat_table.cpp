@@ -1,4 +1,4 @@
-#include "framework/data/measurement/read_mat_table.hpp"
+#include "framework/data/measurement/files/read_mat_table.hpp"
 
 #include <matio.h>
 
@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "framework/base/hdf5/hdf5_file.hpp"
-#include "framework/data/measurement/table_builder.hpp"
+#include "framework/data/measurement/files/table_builder.hpp"
 
 namespace twinmap {
 namespace {

@@ -1,0 +1,132 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "framework/base/json/json.hpp"
+#include "framework/base/text/number_text.hpp"
+#include "framework/data/measurement/look.hpp"
+
+namespace twinmap {
+namespace {
+
+constexpr int kFewDigits = 4, kTimeDigits = 6;
+
+std::string describeFirst(const FoundSamples& found, const char* what) {
+  return fmt::format("{} {}{} ({}{} s)", found.count, what, found.count == 1 ? "" : "s",
+                     found.count == 1 ? "" : "first at ", toShortText(found.first, kTimeDigits));
+}
+
+/// What is worth a look, a phrase each, with what to do in a recording that is to be inferred from.
+std::vector<std::string> listOddities(const ColumnLook& column) {
+  constexpr double kJitter = 0.01;
+  std::vector<std::string> odd;
+  if (column.is_constant) {
+    odd.emplace_back("the same everywhere");
+  }
+  if (column.missing > 0) {
+    odd.push_back(fmt::format("{} missing", column.missing));
+  }
+  if (column.gaps.count > 0) {
+    odd.push_back(describeFirst(column.gaps, "gap") +
+                  fmt::format(", the longest {} s", toShortText(column.longest_gap, kFewDigits)));
+  }
+  if (column.step_spread > kJitter) {
+    odd.push_back(fmt::format("steps jitter by {} %", toShortText(100.0 * column.step_spread, 2)));
+  }
+  if (column.spikes.count > 0) {
+    odd.push_back(describeFirst(column.spikes, "spike"));
+  }
+  if (column.at_largest.count > 0) {
+    odd.push_back(describeFirst(column.at_largest, "sample") + " at the largest value: clipped?");
+  }
+  if (column.at_least.count > 0) {
+    odd.push_back(describeFirst(column.at_least, "sample") + " at the least value: clipped?");
+  }
+  if (column.turns.count > 0) {
+    odd.push_back(describeFirst(column.turns, "jump") + " by a whole turn: unwrap?");
+  }
+  if (column.resolution > 0.0) {
+    odd.push_back(fmt::format("steps of {}", toShortText(column.resolution, 3)));
+  }
+  return odd;
+}
+
+Json toJson(const FoundSamples& found) {
+  return {{"count", found.count}, {"first", found.count > 0 ? Json(found.first) : Json()}};
+}
+
+Json toJson(const ColumnLook& column) {
+  return {{"name", column.name},
+          {"unit", column.unit ? Json(*column.unit) : Json()},
+          {"samples", column.samples},
+          {"missing", column.missing},
+          {"least", column.least},
+          {"largest", column.largest},
+          {"step", column.step},
+          {"step_spread", column.step_spread},
+          {"gaps", toJson(column.gaps)},
+          {"longest_gap", column.longest_gap},
+          {"spikes", toJson(column.spikes)},
+          {"at_least", toJson(column.at_least)},
+          {"at_largest", toJson(column.at_largest)},
+          {"turns", toJson(column.turns)},
+          {"turn", column.turn},
+          {"noise", column.noise},
+          {"resolution", column.resolution},
+          {"constant", column.is_constant}};
+}
+
+}  // namespace
+
+std::string makeLookText(const TableLook& look) {
+  std::string text = fmt::format("{}: {} rows, {} s to {} s\n", look.source, look.rows,
+                                 toShortText(look.first, kTimeDigits), toShortText(look.last, kTimeDigits));
+  text += look.time.empty()
+              ? "times: by the rate\n"
+              : fmt::format("times: column {}{}\n", look.time,
+                            look.time_was_guessed ? ", the first that increases (--time names another)" : "");
+  for (const std::string& remark : look.remarks) {
+    text += remark + "\n";
+  }
+  std::size_t width = 6;
+  for (const ColumnLook& column : look.columns) {
+    width = std::max(width, column.name.size());
+  }
+  text += fmt::format("\n{:<{}}  {:<8}  {:>8}  {:>9}  {:>10}  {:>10}  {:>9}  {}\n", "column", width, "unit",
+                      "samples", "rate [Hz]", "least", "largest", "noise", "what stands out");
+  for (const ColumnLook& column : look.columns) {
+    text += fmt::format("{:<{}}  {:<8}  {:>8}  {:>9}  {:>10}  {:>10}  {:>9}  {}\n", column.name, width,
+                        column.unit.value_or(""), column.samples,
+                        column.step > 0.0 ? toShortText(1.0 / column.step, kFewDigits) : "",
+                        toShortText(column.least, kFewDigits), toShortText(column.largest, kFewDigits),
+                        toShortText(column.noise, 2), fmt::join(listOddities(column), "; "));
+  }
+  for (const SkippedColumn& column : look.skipped) {
+    text += fmt::format("not read: {}\n", column.reason.empty() ? column.name : column.reason);
+  }
+  return text;
+}
+
+std::string makeLookJson(const TableLook& look) {
+  Json columns = Json::array(), skipped = Json::array();
+  for (const ColumnLook& column : look.columns) {
+    columns.push_back(toJson(column));
+  }
+  for (const SkippedColumn& column : look.skipped) {
+    skipped.push_back({{"name", column.name}, {"reason", column.reason}});
+  }
+  constexpr int kIndent = 2;
+  return formatJson({{"source", look.source},
+                     {"time", look.time.empty() ? Json() : Json(look.time)},
+                     {"rows", look.rows},
+                     {"first", look.first},
+                     {"last", look.last},
+                     {"remarks", look.remarks},
+                     {"columns", columns},
+                     {"skipped", skipped}},
+                    kIndent) +
+         "\n";
+}
+
+}  // namespace twinmap

@@ -1,0 +1,142 @@
+"""Recordings by several recorders: clocks, files, triggers. The oracle is scipy's exact solution of a linear oscillator."""
+import json
+import unittest
+
+import numpy as np
+import scipy.signal
+
+from support import EXPERIMENTS, FolderTestCase, call
+
+MASS, NOISE = 2.0, 5e-5
+TRUE = {"k": 200.0, "d": 1.5, "late": 0.02}
+FREQUENCIES = np.array([0.5, 1, 1.5, 2, 2.5, 3])
+EXPERIMENT = """
+name: recorders
+parameters:
+  k: {bounds: [150, 250], unit: N/m}
+  d: {bounds: [0.5, 3], unit: N s/m}
+  late: {bounds: [-0.05, 0.05], unit: s}
+system:
+  bodies: {cart: {mass: 2, joint: {type: slider, coordinates: [x]}}}
+  springs: [{coordinate: x, stiffness: k}]
+  dampers: [{coordinate: x, damping: d}]
+  force_laws: [{coordinate: x, force: F}]
+excitation:
+  F: {unit: N, tables: [{measured: {file: force.csv, column: F, time: t, delay: DELAY}, interpolation: cubic}]}
+outputs: {x: {coordinate: x}, v: {speed: x}}
+simulation: {duration: 8}
+features: [{samples: {outputs: [x, v], start: 0.1, interval: 0.02, count: 390}}]
+noise: {stddev: {x: 5e-5, v: 5e-4}}
+"""
+
+
+def calc_force(t):
+    """A multisine from t = 0 on, which begins without a jump."""
+    return np.where(t < 0, 0.0, np.sin(2 * np.pi * np.outer(t, FREQUENCIES)).sum(axis=1))
+
+
+class Recorders(FolderTestCase):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        fine = np.arange(0, 9, 1e-4)
+        system = ([[0, 1], [-TRUE["k"] / MASS, -TRUE["d"] / MASS]], [[0], [1 / MASS]], np.eye(2), [[0], [0]])
+        _, states, _ = scipy.signal.lsim(system, calc_force(fine), fine)
+        generator = np.random.default_rng(4)
+        cls.t = fine[::200]
+        cls.x = states[::200, 0] + NOISE * generator.normal(size=len(cls.t))
+        cls.v = states[::200, 1] + 10 * NOISE * generator.normal(size=len(cls.t))
+        clock = np.arange(-100, 1000) * 0.01
+        cls.write("force.csv", {"t": clock, "F": calc_force(clock - TRUE["late"])})
+        cls.write("m.csv", {"t": cls.t, "x": cls.x, "v": cls.v})
+
+    @classmethod
+    def write(cls, name, columns):
+        rows = [",".join(f"{cell:.17g}" for cell in row) for row in zip(*columns.values())]
+        (cls.folder / name).write_text(",".join(columns) + "\n" + "\n".join(rows) + "\n")
+
+    def infer(self, experiment, measurement, *overrides):
+        path = self.folder / "experiment.yaml"
+        path.write_text(experiment)
+        result = call("infer", path, self.folder / measurement, "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return json.loads(result.stdout)
+
+    def assert_right(self, found, names):
+        self.assertEqual(found["statuses"], ["ok"])
+        for name in names:
+            estimate = found["parameters"][name]
+            self.assertLess(abs(estimate["mean"] - TRUE[name]), 4 * estimate["sd"], name)
+
+    def test_a_delay_that_nobody_knows_is_found(self):
+        found = self.infer(EXPERIMENT.replace("DELAY", "late"), "m.csv")
+        self.assert_right(found, TRUE)
+        self.assertLess(found["parameters"]["late"]["sd"], 1e-4)
+
+    def test_a_file_and_a_clock_of_its_own(self):
+        stamps = [f"2026-11-26T10:00:{5 + t:010.7f}Z" for t in self.t]
+        lines = [f"{stamp};{v:.17g}" for stamp, v in zip(stamps, self.v)]
+        (self.folder / "speed.csv").write_text("stamp;speed [m/s]\n" + "\n".join(lines) + "\n")
+        self.write("x.csv", {"ms": 1e3 * (self.t + 3), "x": self.x, "F": calc_force(self.t)})
+        measurement = (
+            "measurement: {time: 'ms [ms]', start: {when: F > 0.01, time: -0.02}, "
+            "columns: {v: {column: speed, file: speed.csv, time: stamp, delay: 1795687202}}}\n"
+        )
+        known = EXPERIMENT.replace("  late: {bounds: [-0.05, 0.05], unit: s}\n", "").replace("DELAY", "0.02")
+        found = self.infer(known + measurement, "x.csv")
+        self.assertAlmostEqual(found["start"], 3.0)
+        self.assert_right(found, ["k", "d"])
+        self.assertEqual(found.get("left_out", []), [])
+
+
+class Modes(FolderTestCase):
+    """The oracle is numpy's eigenvalues of the chain of three masses."""
+
+    EXPERIMENT = EXPERIMENTS / "three_mass_chain/modes.yaml"
+    TRUE = {"k1": 930.0, "k2": 1080.0, "k3": 1010.0, "d": 9.5}
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        springs = np.array([[1, 0, 0], [-1, 1, 0], [0, -1, 1]])  # elongations by displacements
+        stiffness = springs.T @ np.diag([cls.TRUE[name] for name in ("k1", "k2", "k3")]) @ springs
+        damping = cls.TRUE["d"] * springs.T @ springs
+        inverse = np.diag(1 / np.array([2, 1, 0.5]))
+        matrix = np.block([[np.zeros((3, 3)), np.eye(3)], [-inverse @ stiffness, -inverse @ damping]])
+        roots = np.array(sorted((root for root in np.linalg.eigvals(matrix) if root.imag > 0), key=abs))
+        generator = np.random.default_rng(2)
+        cls.frequency_sd, cls.damping_sd = np.array([0.002, 0.02, 0.05]), np.array([2e-4, 2e-3, 1e-3])
+        cls.frequency = abs(roots) / (2 * np.pi) + cls.frequency_sd * generator.normal(size=3)
+        cls.damping = -roots.real / abs(roots) + cls.damping_sd * generator.normal(size=3)
+
+    def infer(self, header, *columns):
+        path = self.folder / "modes.csv"
+        rows = [",".join(map(str, row)) for row in zip(*columns)]
+        path.write_text(header + "\n" + "\n".join(rows) + "\n")
+        result = call("infer", self.EXPERIMENT, path, "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return json.loads(result.stdout)
+
+    def test_a_table_with_its_own_standard_deviations(self):
+        found = self.infer(
+            "frequency [Hz],frequency_sd,damping_ratio,damping_ratio_sd",
+            self.frequency,
+            self.frequency_sd,
+            self.damping,
+            self.damping_sd,
+        )
+        self.assertEqual(found["statuses"], ["ok"])
+        for name, true in self.TRUE.items():
+            estimate = found["parameters"][name]
+            self.assertLess(abs(estimate["mean"] - true), 4 * estimate["sd"], name)
+        # d is 2 w z m of the lowest mode, all but alone: its relative error is that of the ratio
+        ratio_error = self.damping_sd[0] / self.damping[0]
+        self.assertLess(found["parameters"]["d"]["sd"] / self.TRUE["d"], 1.2 * ratio_error)
+
+    def test_modes_that_are_missing_are_left_out(self):
+        found = self.infer("mode,frequency,damping_ratio", [3, 1], self.frequency[[2, 0]], ["", self.damping[0]])
+        self.assertIn("1 of 3 frequencies of modes", found["left_out"])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,108 @@
+#include "framework/data/measurement/look.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// 4 s at 100 Hz of a sine of 1 Hz, with noise of sd .01.
+Table recordSine() {
+  std::mt19937_64 generator(3);
+  std::normal_distribution<double> normal(0.0, 0.01);
+  const VectorXd times = VectorXd::LinSpaced(401, 0.0, 4.0);
+  return {"m.csv",
+          {{"t", {}, times}, {"x", "mm", times.unaryExpr([&](double t) {
+                                return std::sin(6.283185307179586 * t) + normal(generator);
+                              })}},
+          {}};
+}
+
+ColumnLook lookAtSine(const Table& table) {
+  return look(table, {}).columns.at(0);
+}
+
+TEST(Look, FindsRateRangeAndNoise) {
+  const TableLook looked = look(recordSine(), {});
+  EXPECT_EQ(looked.time, "t");
+  EXPECT_EQ(looked.rows, 401);
+  EXPECT_EQ(looked.last, 4.0);
+  const ColumnLook& x = looked.columns.at(0);
+  EXPECT_EQ(x.unit, "mm");
+  EXPECT_NEAR(x.step, 0.01, 1e-12);
+  EXPECT_LT(x.step_spread, 1e-9);
+  EXPECT_NEAR(x.largest, 1.0, 0.05);
+  EXPECT_NEAR(x.noise, 0.01, 0.0015);  // 400 samples
+  EXPECT_EQ(x.missing + x.gaps.count + x.spikes.count + x.at_least.count + x.at_largest.count + x.turns.count,
+            0);
+  EXPECT_EQ(x.resolution, 0.0);
+}
+
+TEST(Look, FindsWhatIsMissing) {
+  Table table = recordSine();
+  table.columns[1].values.segment(200, 3).setConstant(kNone);
+  table.columns[1].values[50] = kNone;
+  const ColumnLook x = lookAtSine(table);
+  EXPECT_EQ(x.missing, 4);
+  EXPECT_EQ(x.gaps.count, 2);
+  EXPECT_NEAR(x.gaps.first, 0.49, 1e-12);
+  EXPECT_NEAR(x.longest_gap, 0.04, 1e-12);
+}
+
+TEST(Look, FindsSpikesClippingAndTurns) {
+  Table table = recordSine();
+  table.columns[1].values[120] += 0.5;
+  table.columns[1].values[300] -= 4.0;
+  EXPECT_EQ(lookAtSine(table).spikes.count, 2);
+  EXPECT_NEAR(lookAtSine(table).spikes.first, 1.2, 1e-12);
+  table = recordSine();
+  table.columns[1].values = table.columns[1].values.cwiseMin(0.8);
+  EXPECT_GT(lookAtSine(table).at_largest.count, 50);
+  EXPECT_EQ(lookAtSine(table).at_least.count, 0);
+  table = recordSine();
+  table.columns[1].unit = "deg";
+  table.columns[1].values =
+      table.columns[0].values.unaryExpr([](double t) { return std::remainder(200.0 * t, 360.0); });
+  EXPECT_EQ(lookAtSine(table).turns.count, 2);
+  EXPECT_EQ(lookAtSine(table).turn, 360.0);
+}
+
+TEST(Look, TakesAnEncoderForWhatItIs) {
+  Table table = recordSine();
+  table.columns[1].values = (table.columns[1].values.array() * 20.0).round() / 20.0;
+  const ColumnLook x = lookAtSine(table);
+  EXPECT_NEAR(x.resolution, 0.05, 1e-12);
+  EXPECT_EQ(x.at_least.count + x.at_largest.count + x.spikes.count, 0);
+}
+
+TEST(Look, GuessesTheTimesAndSortsThem) {
+  Table table = recordSine();
+  table.columns[0].name = "stamp";
+  EXPECT_TRUE(look(table, {}).time_was_guessed);
+  table.columns[0].values.row(7).swap(table.columns[0].values.row(8));
+  EXPECT_THROW(look(table, {}), MeasurementError);
+  const TableLook looked = look(table, {ColumnSpec{"stamp", {}, {}}, {}, 0.0});
+  EXPECT_EQ(looked.remarks.size(), 1U);
+  EXPECT_EQ(look(table, {{}, 50.0, 0.0}).last, 8.0);
+}
+
+TEST(Look, SaysInWordsWhatStandsOut) {
+  Table table = recordSine();
+  table.columns[1].values[300] -= 4.0;
+  table.columns[1].values[50] = kNone;
+  const std::string text = makeLookText(look(table, {}));
+  EXPECT_NE(text.find("m.csv: 401 rows, 0 s to 4 s"), std::string::npos) << text;
+  EXPECT_NE(text.find("1 missing; 1 gap (0.49 s), the longest 0.02 s; 1 spike (3 s)"), std::string::npos)
+      << text;
+}
+
+}  // namespace
+}  // namespace twinmap
