@@ -1,4 +1,4 @@
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -52,6 +52,14 @@ std::vector<std::string> listOddities(const ColumnLook& column) {
   return odd;
 }
 
+std::string joinOddities(const ColumnLook& column) {
+  std::string text;
+  for (const std::string& odd : listOddities(column)) {
+    text += (text.empty() ? "" : "; ") + odd;
+  }
+  return text;
+}
+
 Json toJson(const FoundSamples& found) {
   return {{"count", found.count}, {"first", found.count > 0 ? Json(found.first) : Json()}};
 }
@@ -100,7 +108,7 @@ std::string makeLookText(const TableLook& look) {
                         column.unit.value_or(""), column.samples,
                         column.step > 0.0 ? toShortText(1.0 / column.step, kFewDigits) : "",
                         toShortText(column.least, kFewDigits), toShortText(column.largest, kFewDigits),
-                        toShortText(column.noise, 2), fmt::join(listOddities(column), "; "));
+                        toShortText(column.noise, 2), joinOddities(column));
   }
   for (const SkippedColumn& column : look.skipped) {
     text += fmt::format("not read: {}\n", column.reason.empty() ? column.name : column.reason);

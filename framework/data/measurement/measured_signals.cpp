@@ -34,7 +34,7 @@ std::string describeTime(double t, double start) {
 Bounds calcDelays(const ModelSpec& model, const TableSpec& table) {
   const Expression* delay = table.findDelay();
   if (delay == nullptr) {
-    return {0.0, 0.0};
+    return {0.0, 0.0, {}};
   }
   const std::vector<ParameterSpec> sampled = collectSampled(model);
   ModelNumbers numbers(model);
@@ -44,7 +44,7 @@ Bounds calcDelays(const ModelSpec& model, const TableSpec& table) {
   };
   const VectorXd center = calcBoxCenter(sampled);
   const double middle = calc(center);
-  Bounds delays{middle, middle};
+  Bounds delays{middle, middle, {}};
   for (std::size_t i = 0; i < sampled.size(); ++i) {
     VectorXd below = center, above = center;
     below[static_cast<Index>(i)] = sampled[i].bounds.lower;

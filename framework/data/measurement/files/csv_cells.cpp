@@ -8,9 +8,9 @@ namespace {
 /// Where the quoted text that begins at line[0] ends: its closing quote, or the end of the line. Doubled
 /// quotes stand for one.
 std::size_t findClosingQuote(std::string_view line) {
-  std::size_t close = line.find('"', 1);
-  while (close != std::string_view::npos && close + 1 < line.size() && line[close + 1] == '"') {
-    close = line.find('"', close + 2);
+  std::size_t close = 1;
+  while (close < line.size() && (line[close] != '"' || (close + 1 < line.size() && line[close + 1] == '"'))) {
+    close += line[close] == '"' ? 2 : 1;
   }
   return std::min(close, line.size());
 }
