@@ -213,6 +213,16 @@ std::string makeInferenceJson(const InferredMeasurement& inferred,
   if (estimate.mixture.isGiven()) {
     json["components"] = makeComponents(estimate.mixture, parameters);
   }
+  if (inferred.missing) {
+    const MissingTerm& missing = *inferred.missing;
+    json["missing"] = {{"term", missing.term},
+                       {"meaning", missing.meaning},
+                       {"size", missing.size},
+                       {"sd", missing.stddev},
+                       {"unit", missing.unit},
+                       {"share", missing.share},
+                       {"log_evidence", missing.log_evidence}};
+  }
   const bool was_simulated = inferred.posterior && inferred.posterior->fit;
   if (inferred.trust || was_simulated) {
     json["fault"] = inferred.fault.empty() ? Json(nullptr) : Json(inferred.fault);
