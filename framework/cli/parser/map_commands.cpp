@@ -26,6 +26,22 @@ void addJointInference(CLI::App& command, InferArguments& arguments) {
       ->check(CLI::PositiveNumber);
 }
 
+void addPosterior(CLI::App& command, InferArguments& arguments) {
+  CLI::Option* posterior = command.add_flag(
+      "--posterior{512}", arguments.posterior_draws,
+      "The posterior as well, without a normal approximation: quantiles, from so many draws weighted by "
+      "their likelihood on the simulator, or a surrogate's where that takes long; --posterior=2000 for more "
+      "than 512");
+  command
+      .add_option("--posterior-from", arguments.posterior_from,
+                  "What the posterior's likelihood is computed by: simulator or surrogate")
+      ->check(CLI::IsMember({"simulator", "surrogate"}))
+      ->type_name("SOURCE");
+  command.add_option("--draws", arguments.draws, "File for the posterior's joint draws (CSV)")
+      ->type_name("FILE")
+      ->needs(posterior);
+}
+
 void addInfer(CLI::App& app) {
   const auto arguments = std::make_shared<InferArguments>();
   CLI::App* command = app.add_subcommand("infer", "Estimate the parameters from measurements");
@@ -59,19 +75,7 @@ void addInfer(CLI::App& app) {
           "and print a line of JSON for each at once")
       ->excludes(csv);
   addRefine(*command, arguments->refine);
-  CLI::Option* posterior = command->add_flag(
-      "--posterior{512}", arguments->posterior_draws,
-      "The posterior as well, without a normal approximation: quantiles, from so many draws weighted by "
-      "their likelihood on the simulator, or a surrogate's where that takes long; --posterior=2000 for more "
-      "than 512");
-  command
-      ->add_option("--posterior-from", arguments->posterior_from,
-                   "What the posterior's likelihood is computed by: simulator or surrogate")
-      ->check(CLI::IsMember({"simulator", "surrogate"}))
-      ->type_name("SOURCE");
-  command->add_option("--draws", arguments->draws, "File for the posterior's joint draws (CSV)")
-      ->type_name("FILE")
-      ->needs(posterior);
+  addPosterior(*command, *arguments);
   command
       ->add_flag("--diagnose", arguments->diagnose,
                  "Where the model does not fit, the whole table of what it may lack, as diagnose prints it")
