@@ -40,7 +40,8 @@ std::string joinArguments(int count, char** arguments) {
 /// Headings of the help, in the order in which a user comes to them.
 void groupCommands(CLI::App& app) {
   const std::pair<const char*, std::vector<const char*>> groups[] = {
-      {"From a model to an estimate", {"check", "simulate", "run", "infer", "diagnose", "replay"}},
+      {"From a model to an estimate",
+       {"check", "simulate", "run", "infer", "diagnose", "validate", "select", "replay"}},
       {"Improve the experiment", {"look", "noise", "design"}},
       {"Look after runs", {"plan", "status", "report", "compare", "verify", "store"}},
       {"Take the estimator elsewhere", {"export"}},
@@ -85,6 +86,7 @@ int runCommand(int count, char** arguments) {
                                    static_cast<int>(std::max(1U, std::thread::hardware_concurrency()))};
   cli::addExperimentCommands(app, invocation);
   cli::addMapCommands(app, invocation);
+  cli::addDiagnosisCommands(app);
   cli::addResultCommands(app, invocation);
   cli::addClusterCommands(app, invocation);
   cli::addReferenceCommands(app);

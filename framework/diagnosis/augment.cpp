@@ -51,31 +51,38 @@ AugmentedExperiment addAll(const ExperimentSpec& experiment, const std::vector<T
   for (const TermCandidate& candidate : candidates) {
     const std::string name = makeParameterName(model, "missing." + candidate.term);
     model.parameters.push_back(makeCoefficient(name, candidate, candidate.size));
-    candidate.add(model, name, candidate.own_scale ? toText(candidate.own_scale->value) : "");
+    std::vector<std::string> scales;
+    for (const OwnScale& scale : candidate.own_scales) {
+      scales.push_back(toText(scale.value));
+    }
+    candidate.add(model, name, scales);
   }
   return augmented;
 }
 
 AugmentedExperiment addTerm(const ExperimentSpec& experiment, const TermCandidate& candidate,
                             double largest) {
-  constexpr double kReach = 5.0;  // of an own scale to either side: more than the steps of the scan
   AugmentedExperiment augmented{experiment, 1};
   ModelSpec& model = augmented.experiment.model;
+  std::vector<CandidateSpec>& own_candidates = augmented.experiment.candidates;
+  own_candidates.erase(
+      std::remove_if(own_candidates.begin(), own_candidates.end(),
+                     [&](const CandidateSpec& spec) { return spec.name.text == candidate.term; }),
+      own_candidates.end());
   const std::string name = makeParameterName(model, candidate.term);
   model.parameters.push_back(makeCoefficient(name, candidate, largest));
-  std::string scale;
-  if (candidate.own_scale) {
-    const OwnScale& own = *candidate.own_scale;
-    scale = makeParameterName(model, candidate.term + ".scale");
+  std::vector<std::string> scales;
+  for (const OwnScale& own : candidate.own_scales) {
+    scales.push_back(makeParameterName(model, candidate.term + (scales.empty() ? ".scale" : ".scale2")));
     ParameterSpec parameter;
-    parameter.name = {scale, {}};
-    parameter.bounds = {own.value / kReach, own.value * kReach, {}};
+    parameter.name = {scales.back(), {}};
+    parameter.bounds = {own.value / own.reach, own.value * own.reach, {}};
     parameter.unit = own.unit;
     parameter.description = own.meaning;
     model.parameters.push_back(parameter);
-    augmented.added = 2;
+    ++augmented.added;
   }
-  candidate.add(model, name, scale);
+  candidate.add(model, name, scales);
   return augmented;
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/diagnosis/term_candidate.hpp"
+#include "framework/diagnosis/candidates/term_candidate.hpp"
 #include "framework/experiment/experiment_spec.hpp"
 
 namespace twinmap {
@@ -19,8 +19,8 @@ struct AugmentedExperiment {
 /// All candidates at once, for their derivatives at coefficients of 0: own scales are numbers.
 AugmentedExperiment addAll(const ExperimentSpec& experiment, const std::vector<TermCandidate>& candidates);
 
-/// One term, its own scale a parameter as well. largest: of its coefficient, on either side. The parameters
-/// have the names of makeParameterName().
+/// One term, its own scales parameters as well; no candidate of the experiment any more. largest: of its
+/// coefficient, on either side. The parameters have the names of makeParameterName().
 AugmentedExperiment addTerm(const ExperimentSpec& experiment, const TermCandidate& candidate, double largest);
 
 /// "drag_x" of "drag.x", or with digits behind it where that is taken.

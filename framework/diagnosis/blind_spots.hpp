@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "framework/diagnosis/candidates/term_candidate.hpp"
 #include "framework/diagnosis/recorded_problem.hpp"
-#include "framework/diagnosis/term_candidate.hpp"
 
 namespace twinmap {
 

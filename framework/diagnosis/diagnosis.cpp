@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <stdexcept>
 
+#include "framework/base/log/notice.hpp"
 #include "framework/base/text/nearest_name.hpp"
 #include "framework/diagnosis/scored_candidates.hpp"
 #include "framework/diagnosis/second_test.hpp"
+#include "framework/diagnosis/term_sets.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/sampling/weighted_draws.hpp"
 
@@ -23,19 +24,8 @@ namespace {
 /// large.
 constexpr std::size_t kFittedTerms = 6;
 
-/// An experiment and where it fits the recordings best.
-struct CurrentFit {
-  ExperimentSpec experiment;
-  VectorXd point;
-  double chi_square = 0.0, degrees = 0.0;
-};
-
-/// A finding with what fitted it.
-struct RankedTerm {
-  TermFinding finding;
-  TermScore score;
-  FittedTerm fitted;
-};
+/// Of the level, for pairs of terms: singles have the rest.
+constexpr double kPairShare = 0.1;
 
 ExplainedFit explain(const RecordingsProblem& problem, const MatrixXd& given,
                      const SimulatorPosteriorOptions& options) {
@@ -45,61 +35,6 @@ ExplainedFit explain(const RecordingsProblem& problem, const MatrixXd& given,
   }
   fit.test = testResidual(fit.posterior.residual, fit.posterior.degrees, problem.listInfos());
   return fit;
-}
-
-double calcShare(double before, double after, double degrees) {
-  return before > degrees ? std::clamp((before - after) / (before - degrees), 0.0, 1.0) : 0.0;
-}
-
-/// log of what the sign of a coefficient has for it: friction that drives is rare. With even odds for the
-/// others, 0.
-double calcLogSignEvidence(const TermCandidate& candidate, double estimate) {
-  constexpr double kDriving = 0.05;  // the prior's share of negative coefficients of what dissipates
-  return candidate.dissipates ? std::log(2.0 * (estimate < 0.0 ? kDriving : 1.0 - kDriving)) : 0.0;
-}
-
-TermFinding makeFinding(const ScoredCandidates& scored, std::size_t i, const CurrentFit& current, Index p) {
-  TermFinding finding{scored.candidates[i]};
-  const TermScore& score = scored.scores[i];
-  finding.estimate = score.estimate;
-  finding.stddev = score.stddev;
-  finding.z = score.z;
-  finding.p_value = calcPValue(score.z, scored.tested);
-  finding.log_evidence = calcLogEvidence(score.z * score.z, score.stddev, finding.candidate.size) +
-                         calcLogSignEvidence(finding.candidate, score.estimate);
-  finding.chi_square = current.chi_square - score.z * score.z;
-  finding.share = calcShare(current.chi_square, finding.chi_square, current.degrees);
-  finding.shifts = score.shifts.head(p).cwiseQuotient(scored.stddevs.head(p));
-  return finding;
-}
-
-bool hasMoreEvidence(const RankedTerm& a, const RankedTerm& b) {
-  return a.finding.log_evidence > b.finding.log_evidence;
-}
-
-/// The terms, the best first, each at the best of its own scales. What a scan costs in evidence is that the
-/// other scales are not so good: their mean counts.
-std::vector<RankedTerm> rankTerms(const ScoredCandidates& scored, const CurrentFit& current, Index p) {
-  std::map<std::string, std::vector<RankedTerm>> of_term;
-  for (std::size_t i = 0; i < scored.candidates.size(); ++i) {
-    if (scored.scores[i].visible) {
-      of_term[scored.candidates[i].term].push_back(
-          {makeFinding(scored, i, current, p), scored.scores[i], {}});
-    }
-  }
-  std::vector<RankedTerm> ranked;
-  for (auto& [term, scales] : of_term) {
-    std::stable_sort(scales.begin(), scales.end(), hasMoreEvidence);
-    const double best = scales.front().finding.log_evidence;
-    double sum = 0.0;
-    for (const RankedTerm& one : scales) {
-      sum += std::exp(one.finding.log_evidence - best);
-    }
-    scales.front().finding.log_evidence = best + std::log(sum / static_cast<double>(scales.size()));
-    ranked.push_back(std::move(scales.front()));
-  }
-  std::stable_sort(ranked.begin(), ranked.end(), hasMoreEvidence);
-  return ranked;
 }
 
 /// The first p parameters of several posteriors with weights; nothing where one is not reliable.
@@ -137,10 +72,12 @@ class Diagnoser {
     diagnosis.before = explain(problem, MatrixXd(u, 0), options_.posterior);
     const SimulatorPosterior& before = diagnosis.before.posterior;
     fits_ = {{experiment, before.best, before.chi_square, before.degrees}};
+    is_explained_ = diagnosis.before.isExplained();
     shared_ = static_cast<Index>(experiment.model.parameters.size());
     const std::size_t most =
         options_.accepted.empty() ? static_cast<std::size_t>(options_.max_terms) : options_.accepted.size();
-    while (diagnosis.found < most) {
+    // each step adds a term or two, some drop one: twice as many end a search that would go round
+    while (fits_.back().terms.size() < most && diagnosis.found < 2 * most) {
       diagnosis.steps.push_back(takeStep(diagnosis.found));
       if (!diagnosis.steps.back().found) {
         break;
@@ -161,7 +98,7 @@ class Diagnoser {
     const std::size_t fitted =
         is_given ? takeAccepted(options_.accepted[number], ranked) : countSignificant(ranked);
     for (std::size_t i = 0; i < fitted; ++i) {
-      fitRanked(current, scored, ranked[i]);
+      fitRanked(current, recordings_, scored, shared_, options_.level, ranked[i]);
     }
     std::stable_sort(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(fitted), hasMoreEvidence);
     step.found = fitted > 0 && ranked.front().finding.fitted &&
@@ -172,21 +109,86 @@ class Diagnoser {
     for (const RankedTerm& one : ranked) {
       step.ranked.push_back(one.finding);
     }
-    if (step.found) {
-      if (!is_given) {
-        setTied(current, step);
-      }
-      const FittedTerm& best = ranked.front().fitted;
-      fits_.push_back({best.augmented.experiment, best.point, best.chi_square,
-                       std::max(1.0, current.degrees - static_cast<double>(best.augmented.added))});
-      tied_.emplace_back(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(step.tied));
+    const std::optional<FittedPair> pair =
+        is_given ? std::nullopt : findBetterPair(current, scored, step.found ? &ranked.front() : nullptr);
+    if (pair) {
+      takePair(*pair, step);
+    } else if (step.found) {
+      takeFirst(current, ranked, step);
     }
     return step;
   }
 
+  void takeFirst(const CurrentFit& current, const std::vector<RankedTerm>& ranked, DiagnosisStep& step) {
+    const bool is_given = !options_.accepted.empty();
+    if (!is_given) {
+      setTied(current, step);
+    }
+    CurrentFit next = addFitted(current, ranked.front());
+    if (!is_given) {
+      step.dropped = dropSuperfluous(fits_.front().experiment, recordings_, next);
+    }
+    fits_.push_back(std::move(next));
+    tied_.emplace_back(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(step.tied));
+  }
+
+  void takePair(const FittedPair& pair, DiagnosisStep& step) {
+    step.found = true;
+    const auto same = std::find_if(step.ranked.begin(), step.ranked.end(), [&](const TermFinding& one) {
+      return one.candidate.term == pair.first.candidate.term;
+    });
+    TermFinding first = pair.first;
+    if (same != step.ranked.end()) {
+      first.z = same->z;
+      first.p_value = same->p_value;
+      step.ranked.erase(same);
+    }
+    step.ranked.insert(step.ranked.begin(), first);
+    step.partner = pair.second;
+    fits_.push_back(pair.fit);
+    tied_.emplace_back();
+  }
+
+  /// Two terms that are missing together, where the best single one, if there is one, leaves something
+  /// unexplained and is none of them. They must explain more than it does with any other.
+  std::optional<FittedPair> findBetterPair(const CurrentFit& current, const ScoredCandidates& scored,
+                                           const RankedTerm* single) const {
+    const bool has_room = current.terms.size() + 2 <= static_cast<std::size_t>(options_.max_terms);
+    const bool is_explained =
+        single != nullptr ? isExplainedBy(current, *single) : current.terms.empty() && is_explained_;
+    const std::optional<TermPair> best =
+        has_room && !is_explained ? findPair(scored) : std::optional<TermPair>();
+    if (!best || best->p_value > kPairShare * options_.level) {
+      return {};
+    }
+    std::optional<FittedPair> with_single;
+    if (single != nullptr) {
+      const std::string& term = single->finding.candidate.term;
+      if (scored.candidates[best->first].term == term || scored.candidates[best->second].term == term) {
+        return {};
+      }
+      const std::optional<TermPair> rival = findPair(scored, term);
+      if (rival && best->score.log_evidence - rival->score.log_evidence < kTiedEvidence) {
+        return {};
+      }
+      with_single =
+          rival ? fitPair(current, recordings_, scored, *rival, shared_, options_.level) : with_single;
+    }
+    std::optional<FittedPair> fitted = fitPair(current, recordings_, scored, *best, shared_, options_.level);
+    const double least = std::max(with_single ? with_single->log_evidence : 0.0,
+                                  single != nullptr ? single->finding.log_evidence : 0.0);
+    return fitted && fitted->log_evidence > least + kTiedEvidence ? fitted : std::nullopt;
+  }
+
+  /// Whether chi-square is no more than three standard deviations above its mean with a term.
+  static bool isExplainedBy(const CurrentFit& current, const RankedTerm& single) {
+    return single.finding.chi_square < current.degrees + 3.0 * std::sqrt(2.0 * current.degrees);
+  }
+
   std::size_t countSignificant(const std::vector<RankedTerm>& ranked) const {
     std::size_t count = 0;
-    while (count < std::min(ranked.size(), kFittedTerms) && ranked[count].finding.p_value < options_.level) {
+    while (count < std::min(ranked.size(), kFittedTerms) &&
+           ranked[count].finding.p_value < (1.0 - kPairShare) * options_.level) {
       ++count;
     }
     return count;
@@ -208,35 +210,6 @@ class Diagnoser {
         "' is not a term that these recordings can tell from the parameters; leave --accept out "
         "for a list of those that they can" +
         suggestName(term, names));
-  }
-
-  void fitRanked(const CurrentFit& current, const ScoredCandidates& scored, RankedTerm& ranked) const {
-    const VectorXd stddevs = scored.stddevs.head(shared_);
-    ranked.fitted =
-        fitTerm(current.experiment, recordings_, ranked.finding.candidate, ranked.score, current.point);
-    const FittedTerm& fitted = ranked.fitted;
-    TermFinding& finding = ranked.finding;
-    constexpr double kWorse = 1e-6;  // of chi-square: a term of size 0 fits as well as none, up to rounding
-    if (fitted.point.size() == 0 || !(fitted.chi_square <= (1.0 + kWorse) * current.chi_square)) {
-      finding.log_evidence = -kInfinity;
-      return;
-    }
-    finding.fitted = true;
-    finding.chi_square = fitted.chi_square;
-    finding.estimate = fitted.estimate;
-    finding.stddev = fitted.stddev;
-    finding.share = calcShare(current.chi_square, fitted.chi_square, current.degrees);
-    finding.log_evidence =
-        calcLogEvidence(std::max(0.0, current.chi_square - fitted.chi_square), fitted.stddev,
-                        std::max(finding.candidate.size, std::abs(fitted.estimate))) +
-        fitted.log_evidence_of_scale + calcLogSignEvidence(finding.candidate, fitted.estimate);
-    finding.shifts = (fitted.point.head(shared_) - current.point.head(shared_)).cwiseQuotient(stddevs);
-    finding.holds_cautiously =
-        calcPValue(fitted.estimate / fitted.cautious_stddev, scored.tested) < options_.level;
-    if (finding.candidate.own_scale) {
-      const auto at = static_cast<Index>(current.experiment.model.parameters.size()) + 1;
-      finding.candidate.own_scale->value = fitted.point[at];
-    }
   }
 
   /// Those whose evidence is hardly less than that of the first, and the test that would tell.
@@ -275,6 +248,11 @@ class Diagnoser {
     diagnosis.averaged = mix(posteriors, evidence, shared_);
   }
 
+  /// Whether what was found stands out of what remains, both of a pair.
+  static bool holdsCautiously(const DiagnosisStep& step) {
+    return step.ranked.front().holds_cautiously && (!step.partner || step.partner->holds_cautiously);
+  }
+
   /// Takes the last terms back that stand in for something else, then infers with those that are left.
   void finish(Diagnosis& diagnosis) {
     diagnosis.after = diagnosis.before;
@@ -283,8 +261,7 @@ class Diagnoser {
       const RecordingsProblem problem(last.experiment, recordings_);
       diagnosis.after = explain(problem, last.point, makeFittedOptions());
       DiagnosisStep& step = diagnosis.steps[diagnosis.found - 1];
-      if (!options_.accepted.empty() || diagnosis.after.isExplained() ||
-          step.ranked.front().holds_cautiously) {
+      if (!options_.accepted.empty() || diagnosis.after.isExplained() || holdsCautiously(step)) {
         break;
       }
       step.found = false;
@@ -292,13 +269,21 @@ class Diagnoser {
       diagnosis.after = diagnosis.before;
     }
     diagnosis.corrected = fits_[diagnosis.found].experiment;
+    for (const FoundTerm& term : fits_[diagnosis.found].terms) {
+      diagnosis.terms.push_back(term.candidate.term);
+    }
     average(diagnosis);
+    if (!diagnosis.after.isExplained()) {
+      diagnosis.remainder =
+          findRemainder(diagnosis.corrected, recordings_, diagnosis.after.posterior.best, shared_);
+    }
   }
 
   const RecordedFeatures& recordings_;
   const DiagnosisOptions& options_;
   std::vector<CurrentFit> fits_;               // without a term, then with one more each
   std::vector<std::vector<RankedTerm>> tied_;  // of each step that found one, that one first
+  bool is_explained_ = false;                  // without any term
   Index shared_ = 0;                           // parameters of the machine, before any term
 };
 
@@ -306,6 +291,10 @@ class Diagnoser {
 
 MatrixXd AveragedEstimate::calcQuantiles(const VectorXd& probabilities) const {
   return importance::calcQuantiles({draws, weights}, probabilities);
+}
+
+const char* Diagnosis::getStatus() const {
+  return getNotice(after.isExplained() ? Notice::kOk : Notice::kModelIncomplete).name;
 }
 
 Diagnosis diagnose(const ExperimentSpec& experiment, const RecordedFeatures& recordings,

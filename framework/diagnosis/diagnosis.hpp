@@ -1,11 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "framework/diagnosis/candidates/term_candidate.hpp"
 #include "framework/diagnosis/recorded_problem.hpp"
-#include "framework/diagnosis/term_candidate.hpp"
+#include "framework/diagnosis/remainder.hpp"
 #include "framework/estimation/posterior/residual_test.hpp"
 
 namespace twinmap {
@@ -22,7 +24,7 @@ struct DiagnosisOptions {
 
 /// What is known of a term that the model may lack.
 struct TermFinding {
-  TermCandidate candidate;  ///< its own scale as it was found
+  TermCandidate candidate;  ///< its own scales as they were found
   double estimate = 0.0, stddev = 0.0;
   double z = 0.0;                 ///< of the score test, before any fit with the term
   double p_value = 1.0;           ///< of the largest of all |z| tested, where nothing is missing
@@ -40,6 +42,8 @@ struct DiagnosisStep {
   int tested = 0;                          ///< candidates that the parameters do not take up
   std::vector<TermFinding> ranked;         ///< the largest evidence first
   std::size_t tied = 1;                    ///< so many of the first cannot be told apart
+  std::optional<TermFinding> partner{};    ///< of the first one: the two were found together
+  std::vector<std::string> dropped{};      ///< terms of earlier steps that are superfluous with this one's
   std::string advice{};                    ///< which second test would, where they can be
   bool found = false;                      ///< whether the first one is missing
 };
@@ -69,11 +73,17 @@ struct Diagnosis {
   std::size_t shared = 0;  ///< parameters of the machine before any term, the first of `corrected`
   ExplainedFit before;
   std::vector<DiagnosisStep>
-      steps;                  ///< those that found a term, then the one that found none, if it was made
-  std::size_t found = 0;      ///< of the steps, the first ones: terms of `corrected`
-  ExperimentSpec corrected;   ///< with them, as further parameters
-  AveragedEstimate averaged;  ///< over the terms that are tied with the last one found, it among them
-  ExplainedFit after;         ///< that of `corrected`; `before` where nothing was found
+      steps;                       ///< those that found a term, then the one that found none, if it was made
+  std::size_t found = 0;           ///< of the steps, the first ones, that added terms to `corrected`
+  std::vector<std::string> terms;  ///< those of `corrected`, in their order
+  ExperimentSpec corrected;        ///< with them, as further parameters
+  AveragedEstimate averaged;       ///< over the terms that are tied with the last one found, it among them
+  ExplainedFit after;              ///< that of `corrected`; `before` where nothing was found
+  /// What that leaves unexplained, as a process: where it does, and noise alone has less evidence.
+  std::optional<Remainder> remainder;
+
+  /// "ok", or "model_incomplete" where something is left unexplained.
+  const char* getStatus() const;
 };
 
 /// Terms whose evidences differ by less are tied: 20 to 1.
@@ -81,7 +91,9 @@ constexpr double kTiedEvidence = 3.0;
 
 /// Fits the experiment to the recordings (samplePosterior), tests each candidate by its score (ScoreTest)
 /// with exact derivatives at the fit, fits the best ones, ranks them by their evidence, takes the first and
-/// begins again with it. Ends where none is significant, after options.max_terms, or after those accepted.
+/// begins again with it. Two terms are taken at once where they explain what neither does, or more than the
+/// first with any other. Terms that later ones make superfluous are dropped. Ends where none is significant,
+/// after options.max_terms, or after those accepted.
 /// Terms behind which something unexplained remains are kept only where they stand out of that, too. Throws
 /// ExperimentError as scoreCandidates() does and for an accepted term that is not a candidate or that the
 /// parameters take up, std::runtime_error where nothing can be simulated. Cost: two posteriors and one for

@@ -22,6 +22,14 @@ Json nameShifts(const VectorXd& shifts, const std::vector<ParameterSpec>& parame
   return json;
 }
 
+Json makeScalesJson(const TermCandidate& candidate) {
+  Json json = Json::array();
+  for (const OwnScale& own : candidate.own_scales) {
+    json.push_back({{"meaning", own.meaning}, {"value", own.value}, {"unit", own.unit}});
+  }
+  return json;
+}
+
 Json makeFindingJson(const TermFinding& finding, const std::vector<ParameterSpec>& parameters) {
   Json json{{"term", finding.candidate.term}, {"meaning", finding.candidate.meaning},
             {"size", finding.estimate},       {"sd", finding.stddev},
@@ -32,9 +40,8 @@ Json makeFindingJson(const TermFinding& finding, const std::vector<ParameterSpec
   if (!std::isfinite(finding.log_evidence)) {
     json["log_evidence"] = nullptr;  // the fit with it failed
   }
-  if (finding.candidate.own_scale) {
-    const OwnScale& own = *finding.candidate.own_scale;
-    json["own_scale"] = {{"meaning", own.meaning}, {"value", own.value}, {"unit", own.unit}};
+  if (!finding.candidate.own_scales.empty()) {
+    json["own_scales"] = makeScalesJson(finding.candidate);
   }
   return json;
 }
@@ -46,6 +53,12 @@ Json makeStepJson(const DiagnosisStep& step, const std::vector<ParameterSpec>& p
             {"found", step.found},
             {"tied", step.found ? step.tied : 0},
             {"candidates", Json::array()}};
+  if (step.partner) {
+    json["partner"] = makeFindingJson(*step.partner, parameters);
+  }
+  if (!step.dropped.empty()) {
+    json["dropped"] = step.dropped;
+  }
   if (!step.advice.empty()) {
     json["advice"] = step.advice;
   }
@@ -77,13 +90,29 @@ Json makeFitJson(const ExplainedFit& fit, const std::vector<ParameterSpec>& para
   return json;
 }
 
+Json makeRemainderJson(const Remainder& remainder, const std::vector<ParameterSpec>& parameters) {
+  Json json{{"what", remainder.what},
+            {"sd", remainder.stddev},
+            {"unit", remainder.unit},
+            {"correlation_time", remainder.correlation_time},
+            {"log_evidence", remainder.log_evidence},
+            {"times", std::vector<double>(remainder.times.begin(), remainder.times.end())},
+            {"process", std::vector<double>(remainder.process.begin(), remainder.process.end())}};
+  for (Index i = 0; i < remainder.mean.size(); ++i) {
+    json["parameters"][parameters[static_cast<std::size_t>(i)].name.text] = {{"mean", remainder.mean[i]},
+                                                                             {"sd", remainder.stddevs[i]}};
+  }
+  return json;
+}
+
 }  // namespace
 
 std::string makeDiagnosisJson(const Diagnosis& diagnosis, const std::string& source) {
   const std::vector<ParameterSpec>& parameters = diagnosis.corrected.model.parameters;
   Json json{{"source", source},
+            {"status", diagnosis.getStatus()},
             {"level", diagnosis.level},
-            {"found", Json::array()},
+            {"found", diagnosis.terms},
             {"complete", diagnosis.after.isExplained()},
             {"before", makeFitJson(diagnosis.before, parameters, diagnosis.shared)},
             {"after", makeFitJson(diagnosis.after, parameters, parameters.size())},
@@ -99,10 +128,10 @@ std::string makeDiagnosisJson(const Diagnosis& diagnosis, const std::string& sou
                                                      {"unit", parameters[p].unit}};
     }
   }
+  if (diagnosis.remainder) {
+    json["remainder"] = makeRemainderJson(*diagnosis.remainder, parameters);
+  }
   for (const DiagnosisStep& step : diagnosis.steps) {
-    if (step.found) {
-      json["found"].push_back(step.ranked.front().candidate.term);
-    }
     json["steps"].push_back(makeStepJson(step, parameters));
   }
   return formatJson(json);
@@ -115,12 +144,13 @@ std::string makeDiagnosisCsv(const Diagnosis& diagnosis, const std::string& sour
     const DiagnosisStep& step = diagnosis.steps[s];
     for (std::size_t i = 0; i < step.ranked.size(); ++i) {
       const TermFinding& one = step.ranked[i];
-      const bool has_scale = one.candidate.own_scale.has_value();
+      const bool has_scale = !one.candidate.own_scales.empty();
       rows.push_back({source, std::to_string(s + 1), std::to_string(i + 1), one.candidate.term,
                       toText(one.estimate), toText(one.stddev), one.candidate.unit,
-                      has_scale ? toText(one.candidate.own_scale->value) : "",
-                      has_scale ? one.candidate.own_scale->unit : "", toText(one.z), toText(one.p_value),
-                      toText(one.share), toText(one.log_evidence), one.fitted ? "yes" : "no",
+                      has_scale ? toText(one.candidate.own_scales.front().value) : "",
+                      has_scale ? one.candidate.own_scales.front().unit : "", toText(one.z),
+                      toText(one.p_value), toText(one.share), toText(one.log_evidence),
+                      one.fitted ? "yes" : "no",
                       !step.found     ? ""
                       : i == 0        ? "found"
                       : i < step.tied ? "tied"
@@ -138,10 +168,10 @@ std::string makeBlindSpotCsv(const std::vector<BlindSpot>& spots,
   }
   std::vector<CsvRow> rows{header};
   for (const BlindSpot& spot : spots) {
-    const bool has_scale = spot.candidate.own_scale.has_value(), is_seen = std::isfinite(spot.noticed);
-    rows.push_back({spot.candidate.term, has_scale ? toText(spot.candidate.own_scale->value) : "",
-                    has_scale ? spot.candidate.own_scale->unit : "", is_seen ? toText(spot.noticed) : "",
-                    spot.candidate.unit});
+    const bool has_scale = !spot.candidate.own_scales.empty(), is_seen = std::isfinite(spot.noticed);
+    rows.push_back({spot.candidate.term, has_scale ? toText(spot.candidate.own_scales.front().value) : "",
+                    has_scale ? spot.candidate.own_scales.front().unit : "",
+                    is_seen ? toText(spot.noticed) : "", spot.candidate.unit});
     for (const double shift : spot.shifts) {
       rows.back().push_back(is_seen ? toText(shift) : "");
     }
@@ -157,9 +187,8 @@ std::string makeBlindSpotJson(const std::vector<BlindSpot>& spots,
              {"meaning", spot.candidate.meaning},
              {"unit", spot.candidate.unit},
              {"noticed_from", nullptr}};
-    if (spot.candidate.own_scale) {
-      one["own_scale"] = {{"value", spot.candidate.own_scale->value},
-                          {"unit", spot.candidate.own_scale->unit}};
+    if (!spot.candidate.own_scales.empty()) {
+      one["own_scales"] = makeScalesJson(spot.candidate);
     }
     if (std::isfinite(spot.noticed)) {
       one["noticed_from"] = spot.noticed;

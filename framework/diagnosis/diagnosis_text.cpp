@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "framework/base/log/notice.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/base/text/text_tables.hpp"
 #include "framework/diagnosis/score_test.hpp"
@@ -38,11 +39,13 @@ std::string describeShifts(const VectorXd& shifts, const std::vector<ParameterSp
   return text.empty() ? "none" : text;
 }
 
-std::string describeOwnScale(const TermCandidate& candidate) {
-  return candidate.own_scale
-             ? fmt::format("; {} s = {} {}", candidate.own_scale->meaning,
-                           toShortText(candidate.own_scale->value, 3), candidate.own_scale->unit)
-             : "";
+/// "; speed at which friction sets in s = 0.01 m/s"
+std::string describeOwnScales(const TermCandidate& candidate) {
+  std::string text;
+  for (const OwnScale& scale : candidate.own_scales) {
+    text += fmt::format("; {} {} {}", scale.meaning, toShortText(scale.value, 3), scale.unit);
+  }
+  return text;
 }
 
 /// A row for each of the terms that are tied, and some of those behind them.
@@ -66,10 +69,19 @@ std::string describeStep(const DiagnosisStep& step, std::size_t number,
   std::string text;
   if (step.found) {
     text = fmt::format("{}. missing: {}\n  {}{}\n", number, best.candidate.term, best.candidate.meaning,
-                       describeOwnScale(best.candidate));
+                       describeOwnScales(best.candidate));
+    if (step.partner) {
+      text += fmt::format("  and with it: {}\n  {}{}\n  size {} {} (sd {})\n", step.partner->candidate.term,
+                          step.partner->candidate.meaning, describeOwnScales(step.partner->candidate),
+                          toShortText(step.partner->estimate, kFigureDigits), step.partner->candidate.unit,
+                          toShortText(step.partner->stddev, kStddevFigures));
+    }
+    for (const std::string& term : step.dropped) {
+      text += fmt::format("  superfluous now: {}\n", term);
+    }
     for (std::size_t i = 1; i < step.tied; ++i) {
       text += fmt::format("  or: {}\n  {}{}\n", step.ranked[i].candidate.term,
-                          step.ranked[i].candidate.meaning, describeOwnScale(step.ranked[i].candidate));
+                          step.ranked[i].candidate.meaning, describeOwnScales(step.ranked[i].candidate));
     }
     if (step.tied > 1) {
       text += fmt::format("  These recordings do not tell them apart; {}.\n", step.advice);
@@ -106,6 +118,21 @@ std::string makeParameterRows(const Diagnosis& diagnosis) {
   return alignRows(rows, 2, "  ");
 }
 
+/// What is left, and the parameters with it.
+std::string describeRemainder(const Remainder& remainder, const std::vector<ParameterSpec>& parameters) {
+  std::string text = fmt::format(
+      "  What remains is as {} of sd {} {}, which changes within {} s (log evidence {:.1f}). With it:\n",
+      remainder.what, toShortText(remainder.stddev, kStddevFigures), remainder.unit,
+      toShortText(remainder.correlation_time, kStddevFigures), remainder.log_evidence);
+  std::vector<std::vector<std::string>> rows{{"parameter", "unit", "effective", "sd"}};
+  for (Index i = 0; i < remainder.mean.size(); ++i) {
+    const ParameterSpec& parameter = parameters[static_cast<std::size_t>(i)];
+    rows.push_back({parameter.name.text, parameter.unit, toShortText(remainder.mean[i], kEstimateDigits),
+                    toShortText(remainder.stddevs[i], kStddevFigures + 1)});
+  }
+  return text + alignRows(rows, 2, "  ");
+}
+
 }  // namespace
 
 std::string makeDiagnosisTable(const Diagnosis& diagnosis, const std::string& source) {
@@ -117,7 +144,7 @@ std::string makeDiagnosisTable(const Diagnosis& diagnosis, const std::string& so
     }
   }
   if (diagnosis.found > 0) {
-    text += fmt::format("With {}: {}\n", diagnosis.found > 1 ? "these terms" : "this term",
+    text += fmt::format("With {}: {}\n", diagnosis.terms.size() > 1 ? "these terms" : "this term",
                         describeFit(diagnosis.after));
     if (!diagnosis.after.posterior.isReliable()) {
       text += fmt::format("  No estimate: {}.\n", diagnosis.after.posterior.message);
@@ -130,9 +157,8 @@ std::string makeDiagnosisTable(const Diagnosis& diagnosis, const std::string& so
     }
   }
   if (!diagnosis.after.isExplained()) {
-    text +=
-        "The model is incomplete: no candidate explains what remains. The standard deviations hold for the "
-        "noise alone.\n";
+    text += fmt::format("{}: {}\n", diagnosis.getStatus(), describeNotice(Notice::kModelIncomplete));
+    text += diagnosis.remainder ? describeRemainder(*diagnosis.remainder, parameters) : "";
   }
   return text;
 }
@@ -142,11 +168,10 @@ std::string makeBlindSpotTable(const std::vector<BlindSpot>& spots,
   std::vector<std::vector<std::string>> rows{{"term", "noticed from", "unit", "parameters by then (sd)"}};
   for (const BlindSpot& spot : spots) {
     const bool is_seen = std::isfinite(spot.noticed);
+    const std::vector<OwnScale>& scales = spot.candidate.own_scales;
     const std::string scale =
-        spot.candidate.own_scale
-            ? fmt::format(" (s = {} {})", toShortText(spot.candidate.own_scale->value, 3),
-                          spot.candidate.own_scale->unit)
-            : "";
+        scales.empty() ? ""
+                       : fmt::format(" ({} {})", toShortText(scales.front().value, 3), scales.front().unit);
     rows.push_back({spot.candidate.term + scale, is_seen ? toShortText(spot.noticed, 3) : "never",
                     spot.candidate.unit, is_seen ? describeShifts(spot.shifts, parameters) : "-"});
   }

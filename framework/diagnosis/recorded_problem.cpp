@@ -65,6 +65,30 @@ PosteriorProblem makeRecordedProblem(const SimulatorRefiner& simulator, const Ex
 
 }  // namespace
 
+RecordedFeatures readRecording(const MeasurementReader& reader, const Table& table,
+                               std::optional<double> start, const VectorXd& known) {
+  AvailableFeatures found = reader.readAvailableFeatures(table, start);
+  requireStatedNoise(found.stddev, table.source);
+  return {reader.getLayout(), {std::move(found.features)}, known};
+}
+
+RecordedFeatures readRecordings(const MeasurementReader& reader, const std::vector<std::string>& files,
+                                const std::vector<double>& starts, const std::vector<KnownValue>& known) {
+  RecordedFeatures recordings{
+      reader.getLayout(), {}, collectKnown(reader.getExperiment().model.inputs, known)};
+  std::vector<std::optional<double>> windows(starts.begin(), starts.end());
+  if (windows.empty()) {
+    windows.emplace_back(std::nullopt);
+  }
+  for (const std::string& file : files) {
+    const Table table = readTable(file, reader.listColumns(), MissingCells::kKeep);
+    for (const std::optional<double>& start : windows) {
+      recordings.features.push_back(readRecording(reader, table, start, recordings.known).features.front());
+    }
+  }
+  return recordings;
+}
+
 RecordingsProblem::RecordingsProblem(const ExperimentSpec& experiment, const RecordedFeatures& recordings)
     : simulator_(experiment, recordings.layout) {
   simulator_.requireNoise();

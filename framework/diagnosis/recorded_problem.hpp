@@ -1,8 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
+#include "framework/inference/measurement/known_value.hpp"
 #include "framework/inference/refiner.hpp"
 
 namespace twinmap {
@@ -13,6 +15,16 @@ struct RecordedFeatures {
   std::vector<Eigen::VectorXd> features;  ///< of each recording, NaN where missing
   Eigen::VectorXd known;                  ///< of the inputs
 };
+
+/// One window of a table. start: time in it that is 0 of the model; none: as the experiment says. Throws
+/// MeasurementError.
+RecordedFeatures readRecording(const MeasurementReader& reader, const Table& table,
+                               std::optional<double> start, const Eigen::VectorXd& known);
+
+/// All windows of some files, which start at `starts` in each; without them where the experiment says.
+/// known: values of the inputs. Throws MeasurementError, ExperimentError.
+RecordedFeatures readRecordings(const MeasurementReader& reader, const std::vector<std::string>& files,
+                                const std::vector<double>& starts, const std::vector<KnownValue>& known);
 
 /// A linear model of all recordings at a point: residual(at + step) ~ residual - jacobian step.
 struct LinearizedRecordings {

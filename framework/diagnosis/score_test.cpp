@@ -14,6 +14,9 @@ using Eigen::VectorXd;
 
 namespace {
 
+/// Of two terms: the share of the squared length of one that is left beside the other.
+constexpr double kDistinct = 1e-3;
+
 VectorXd calcLengths(const MatrixXd& columns) {
   return columns.colwise().norm().transpose().unaryExpr([](double x) { return x > 0.0 ? x : 1.0; });
 }
@@ -77,6 +80,55 @@ TermScore ScoreTest::calcScore(Index term, double size) const {
   return score;
 }
 
+ScoreTest::JointScore ScoreTest::calcJointScore(const std::vector<Index>& terms,
+                                                const VectorXd& sizes) const {
+  const MatrixXd columns = terms_(Eigen::all, terms);
+  const MatrixXd gram = columns.transpose() * columns;
+  const VectorXd lengths = gram.diagonal().cwiseSqrt();
+  const VectorXd right = columns.transpose() * residual_;
+  const MatrixXd cosines = lengths.cwiseInverse().asDiagonal() * gram * lengths.cwiseInverse().asDiagonal();
+  JointScore score;
+  const auto k = static_cast<Index>(terms.size());
+  for (Index i = 0; i < k; ++i) {
+    for (Index j = 0; j < i; ++j) {
+      if (!(1.0 - cosines(i, j) * cosines(i, j) > kDistinct)) {
+        return score;
+      }
+    }
+  }
+  const linalg::Cholesky of_terms = linalg::calcCholesky(gram);
+  score.estimates = linalg::solveCholesky(of_terms.lower, right);
+  score.gain = right.dot(score.estimates);
+  const MatrixXd shrunk = MatrixXd::Identity(k, k) + sizes.asDiagonal() * gram * sizes.asDiagonal();
+  const linalg::Cholesky of_prior = linalg::calcCholesky(shrunk);
+  const VectorXd scaled = sizes.cwiseProduct(right);
+  score.log_evidence = 0.5 * scaled.dot(VectorXd(linalg::solveCholesky(of_prior.lower, scaled))) -
+                       of_prior.lower.diagonal().array().log().sum();
+  score.shifts = VectorXd::Zero(taken_up_.rows());
+  for (Index i = 0; i < k; ++i) {
+    score.shifts += calcShifts(terms[static_cast<std::size_t>(i)], score.estimates[i]);
+  }
+  return score;
+}
+
+MatrixXd ScoreTest::calcPairGains() const {
+  const MatrixXd gram = terms_.transpose() * terms_;
+  const VectorXd right = terms_.transpose() * residual_;
+  const Index k = terms_.cols();
+  MatrixXd gains = MatrixXd::Zero(k, k);
+  for (Index j = 0; j < k; ++j) {
+    for (Index i = 0; i < j; ++i) {
+      const double product = gram(i, i) * gram(j, j), distinct = product - gram(i, j) * gram(i, j);
+      if (distinct > kDistinct * product) {
+        gains(i, j) = (right[i] * right[i] * gram(j, j) - 2.0 * right[i] * right[j] * gram(i, j) +
+                       right[j] * right[j] * gram(i, i)) /
+                      distinct;
+      }
+    }
+  }
+  return gains;
+}
+
 double ScoreTest::calcLikeness(Index a, Index b) const {
   const double lengths = terms_.col(a).norm() * terms_.col(b).norm();
   return lengths > 0.0 ? std::abs(terms_.col(a).dot(terms_.col(b))) / lengths : 0.0;
@@ -99,6 +151,10 @@ double ScoreTest::calcCautiousStddev(Index term, const std::vector<Index>& start
 
 double calcPValue(double z, int tests) {
   return std::min(1.0, tests * std::erfc(std::abs(z) / std::sqrt(2.0)));
+}
+
+double calcPairPValue(double gain, double tests) {
+  return std::min(1.0, tests * std::exp(-0.5 * gain));  // chi-square of two degrees of freedom
 }
 
 double calcCriticalZ(double level, int tests) {

@@ -35,6 +35,20 @@ class ScoreTest {
   /// Length of what a term of coefficient 1 does besides the parameters, in noise standard deviations.
   double calcLength(Eigen::Index term) const { return terms_.col(term).norm(); }
 
+  /// What several terms (k) with normal priors about 0 of the standard deviations `sizes` explain together:
+  /// log of their evidence against none, and their estimates. Exact where the model is linear.
+  struct JointScore {
+    double log_evidence = 0.0;
+    double gain = 0.0;          ///< of chi-square, by least squares
+    Eigen::VectorXd estimates;  ///< k, of least squares; empty where the terms are not distinct
+    Eigen::VectorXd shifts;     ///< u: how the parameters move
+  };
+  JointScore calcJointScore(const std::vector<Eigen::Index>& terms, const Eigen::VectorXd& sizes) const;
+
+  /// What each two terms take from chi-square together (k x k, above the diagonal); 0 of those that are
+  /// alike.
+  Eigen::MatrixXd calcPairGains() const;
+
   /// Cosine between what two terms do besides the parameters: 1 where one test cannot tell them apart.
   double calcLikeness(Eigen::Index a, Eigen::Index b) const;
 
@@ -54,6 +68,9 @@ class ScoreTest {
 
 /// Two-sided p-value of a standard normal z; of the largest of `tests`, by Bonferroni's bound.
 double calcPValue(double z, int tests);
+
+/// The p-value of the largest of `tests` gains of chi-square by two coefficients, likewise.
+double calcPairPValue(double gain, double tests);
 
 /// The |z| that the largest of `tests` exceeds with a probability of at most `level` where nothing is
 /// missing.

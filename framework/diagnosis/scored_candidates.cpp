@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "framework/base/text/source_location.hpp"
-#include "framework/diagnosis/term_candidates.hpp"
+#include "framework/diagnosis/candidates/term_candidates.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
@@ -52,8 +52,8 @@ VectorXd calcLinearStddevs(const MatrixXd& jacobian, const std::vector<Parameter
 MatrixXd makeTermStarts(const VectorXd& point, const AugmentedExperiment& augmented, Index p,
                         const TermScore& score, const TermCandidate& candidate) {
   VectorXd added(augmented.added);
-  if (candidate.own_scale) {
-    added[1] = candidate.own_scale->value;
+  for (std::size_t i = 0; i < candidate.own_scales.size(); ++i) {
+    added[static_cast<Index>(i) + 1] = candidate.own_scales[i].value;
   }
   added[0] = 0.0;
   MatrixXd starts(point.size() + added.size(), 2);
@@ -63,21 +63,68 @@ MatrixXd makeTermStarts(const VectorXd& point, const AugmentedExperiment& augmen
   return starts;
 }
 
-/// sd of the coefficient, column `first` of the derivatives, and what its own scale costs.
-void setTermStddevs(const LinearizedRecordings& linear, Index first, double own_scale, FittedTerm& fitted) {
+/// What the freedom of a scale in column `at` of the derivatives costs in evidence: its posterior, which is
+/// normal, against a prior that is uniform in its logarithm.
+double calcScaleEvidence(const LinearizedRecordings& linear, Index at, double value, double reach) {
+  const ScoreTest test(linear.residual,
+                       linear.jacobian(Eigen::all, listOthers(linear.jacobian.cols(), at, 1)),
+                       linear.jacobian.col(at));
+  const TermScore score = test.calcScore(0, kInfinity);
+  return score.visible ? calcLogEvidence(0.0, score.stddev / value, std::log(reach) / std::sqrt(3.0)) : 0.0;
+}
+
+/// sd of the coefficient, column `first` of the derivatives, and what its own scales cost.
+void setTermStddevs(const LinearizedRecordings& linear, Index first, const TermCandidate& candidate,
+                    FittedTerm& fitted) {
   const MatrixXd& jacobian = linear.jacobian;
   const ScoreTest test(linear.residual, jacobian(Eigen::all, listOthers(jacobian.cols(), first, 1)),
                        jacobian.col(first));
   fitted.stddev = test.calcScore(0, kInfinity).stddev;
   fitted.cautious_stddev = test.calcCautiousStddev(0, linear.starts);
-  if (own_scale > 0.0) {
-    constexpr double kPriorStddev = 0.93;  // of the logarithm, uniform from a fifth to fivefold
-    const ScoreTest of_scale(linear.residual, jacobian(Eigen::all, listOthers(jacobian.cols(), first + 1, 1)),
-                             jacobian.col(first + 1));
-    const TermScore score = of_scale.calcScore(0, kInfinity);
-    fitted.log_evidence_of_scale =
-        score.visible ? calcLogEvidence(0.0, score.stddev / own_scale, kPriorStddev) : 0.0;
+  for (std::size_t i = 0; i < candidate.own_scales.size(); ++i) {
+    const Index at = first + 1 + static_cast<Index>(i);
+    fitted.log_evidence_of_scales +=
+        calcScaleEvidence(linear, at, fitted.point[at], candidate.own_scales[i].reach);
   }
+}
+
+/// The derivatives of all residuals along some of the candidates, as columns behind those of `all`; the first
+/// ones bring the residual and the derivatives of the parameters.
+void appendDerivatives(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
+                       const VectorXd& point, const std::vector<TermCandidate>& candidates,
+                       std::vector<ParameterSpec>& unknown, LinearizedRecordings& all, MatrixXd& terms) {
+  const AugmentedExperiment augmented = addAll(experiment, candidates);
+  const auto p = static_cast<Index>(experiment.model.parameters.size());
+  const RecordingsProblem problem(augmented.experiment, recordings);
+  LinearizedRecordings linear = problem.linearize(insertAdded(point, p, VectorXd::Zero(augmented.added)));
+  const Index before = terms.cols();
+  terms.conservativeResize(linear.residual.size(), before + augmented.added);
+  terms.rightCols(augmented.added) = linear.jacobian.middleCols(p, augmented.added);
+  if (before > 0) {
+    return;
+  }
+  const std::vector<Index> parameters = listOthers(linear.jacobian.cols(), p, augmented.added);
+  for (const Index i : parameters) {
+    unknown.push_back(problem.getUnknown()[static_cast<std::size_t>(i)]);
+  }
+  all.residual = linear.residual;
+  all.jacobian = linear.jacobian(Eigen::all, parameters);
+  all.starts = linear.starts;
+}
+
+/// Those without states together, then those with states by a few: each state is integrated with derivatives
+/// along every coefficient, so that the cost would grow with the square of their number.
+std::vector<std::vector<TermCandidate>> splitByStates(const std::vector<TermCandidate>& candidates) {
+  constexpr std::size_t kFew = 6;
+  std::vector<std::vector<TermCandidate>> parts(1);
+  for (const TermCandidate& candidate : candidates) {
+    if (candidate.has_states &&
+        (!parts.back().empty() && (parts.size() == 1 || parts.back().size() >= kFew))) {
+      parts.emplace_back();
+    }
+    parts.back().push_back(candidate);
+  }
+  return parts;
 }
 
 }  // namespace
@@ -95,25 +142,25 @@ void requireSystem(const ExperimentSpec& experiment) {
 }
 
 ScoredCandidates scoreCandidates(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
-                                 const VectorXd& point) {
+                                 const VectorXd& point, CandidateKinds kinds) {
   requireSystem(experiment);
   ScoredCandidates scored;
-  scored.candidates = listCandidates(
-      experiment.model, calcModelSizes(experiment.model, makeSampledPoint(experiment, recordings, point)));
-  const AugmentedExperiment all = addAll(experiment, scored.candidates);
-  const auto p = static_cast<Index>(experiment.model.parameters.size());
-  const RecordingsProblem problem(all.experiment, recordings);
-  const LinearizedRecordings linear = problem.linearize(insertAdded(point, p, VectorXd::Zero(all.added)));
-  const std::vector<Index> parameters = listOthers(linear.jacobian.cols(), p, all.added);
-  std::vector<ParameterSpec> unknown;
-  for (const Index i : parameters) {
-    unknown.push_back(problem.getUnknown()[static_cast<std::size_t>(i)]);
+  scored.candidates =
+      listCandidates(experiment, calcModelSizes(experiment, makeSampledPoint(experiment, recordings, point)));
+  const auto with_states = std::stable_partition(scored.candidates.begin(), scored.candidates.end(),
+                                                 [](const TermCandidate& one) { return !one.has_states; });
+  if (kinds == CandidateKinds::kWithoutStates) {
+    scored.candidates.erase(with_states, scored.candidates.end());
   }
-  const MatrixXd jacobian = linear.jacobian(Eigen::all, parameters);
-  scored.test =
-      std::make_unique<ScoreTest>(linear.residual, jacobian, linear.jacobian.middleCols(p, all.added));
-  scored.stddevs = calcLinearStddevs(jacobian, unknown);
-  for (Index k = 0; k < all.added; ++k) {
+  std::vector<ParameterSpec> unknown;
+  LinearizedRecordings linear;
+  MatrixXd terms;
+  for (const std::vector<TermCandidate>& part : splitByStates(scored.candidates)) {
+    appendDerivatives(experiment, recordings, point, part, unknown, linear, terms);
+  }
+  scored.test = std::make_unique<ScoreTest>(linear.residual, linear.jacobian, terms);
+  scored.stddevs = calcLinearStddevs(linear.jacobian, unknown);
+  for (Index k = 0; k < terms.cols(); ++k) {
     scored.scores.push_back(scored.test->calcScore(k, scored.candidates[static_cast<std::size_t>(k)].size));
     scored.tested += scored.scores.back().visible ? 1 : 0;
   }
@@ -136,8 +183,10 @@ FittedTerm fitTerm(const ExperimentSpec& experiment, const RecordedFeatures& rec
   }
   fitted.chi_square = fit.chi_square;
   fitted.estimate = fit.point[p];
-  setTermStddevs(problem.linearize(fit.point), p, candidate.own_scale ? fit.point[p + 1] : 0.0, fitted);
+  fitted.point = fit.point;
+  setTermStddevs(problem.linearize(fit.point), p, candidate, fitted);
   if (!(fitted.stddev > 0.0)) {
+    fitted.point.resize(0);
     return fitted;  // the parameters, or its own scale, take it up
   }
   const double reach = std::abs(fitted.estimate) + kStddevs * fitted.stddev;
@@ -145,7 +194,6 @@ FittedTerm fitTerm(const ExperimentSpec& experiment, const RecordedFeatures& rec
   if (reach < largest) {
     coefficient.bounds = {-reach, reach, {}};
   }
-  fitted.point = fit.point;
   return fitted;
 }
 

@@ -21,11 +21,14 @@ struct ScoredCandidates {
 /// Throws ExperimentError for a model that is not a system of bodies, or is not simulated in time.
 void requireSystem(const ExperimentSpec& experiment);
 
+/// Which candidates are scored: those with states take most of the time.
+enum class CandidateKinds { kAll, kWithoutStates };
+
 /// point: u, of the unknown parameters (RecordingsProblem). Throws ExperimentError as requireSystem() does,
 /// std::runtime_error where the point cannot be simulated. Cost: one simulation, one with derivatives a
-/// recording.
+/// recording for all candidates without states, and one for each few of those with states.
 ScoredCandidates scoreCandidates(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
-                                 const Eigen::VectorXd& point);
+                                 const Eigen::VectorXd& point, CandidateKinds kinds = CandidateKinds::kAll);
 
 /// A model with the term at its best fit.
 struct FittedTerm {
@@ -34,7 +37,7 @@ struct FittedTerm {
   double chi_square = 0.0;
   double estimate = 0.0, stddev = 0.0;  ///< of the coefficient
   double cautious_stddev = 0.0;         ///< ScoreTest::calcCautiousStddev
-  double log_evidence_of_scale = 0.0;   ///< what the freedom of an own scale costs, at most 0
+  double log_evidence_of_scales = 0.0;  ///< what the freedom of own scales costs, at most 0
 };
 
 /// Searches from `point` (u) without the term and with its score's estimate.

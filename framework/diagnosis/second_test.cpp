@@ -4,8 +4,8 @@
 
 #include "framework/base/text/number_text.hpp"
 #include "framework/diagnosis/augment.hpp"
+#include "framework/diagnosis/candidates/term_candidates.hpp"
 #include "framework/diagnosis/score_test.hpp"
-#include "framework/diagnosis/term_candidates.hpp"
 
 namespace twinmap {
 

@@ -10,6 +10,7 @@
 #include "framework/experiment/gate_spec.hpp"
 #include "framework/experiment/inverse_map_spec.hpp"
 #include "framework/experiment/measurement_spec.hpp"
+#include "framework/experiment/model/candidate_spec.hpp"
 #include "framework/experiment/model/derived_spec.hpp"
 #include "framework/experiment/model/model_spec.hpp"
 #include "framework/experiment/noise_spec.hpp"
@@ -58,6 +59,7 @@ struct ExperimentSpec {
   std::vector<GateSpec> gates;
   MeasurementSpec measurement;  ///< for inferring from files; no simulation depends on it
   ReportSpec report;
+  std::vector<CandidateSpec> candidates;  ///< terms that the model may lack, for a diagnosis
 
   // compiled once (experiment_spec.cpp)
   ExperimentSpec();
@@ -97,6 +99,7 @@ void describe(Fields& f, ExperimentSpec& s) {
   f.optional("gates", s.gates, "acceptance criteria on the metrics; the report says which passed");
   f.optional("measurement", s.measurement, "how files of measurements are read");
   f.optional("report", s.report, "what the report shows");
+  f.optionalMap("candidates", s.candidates, "terms that the model may lack, for diagnose to test");
   f.rule(!s.features.empty(), "must list at least one of features");
 }
 

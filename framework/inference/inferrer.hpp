@@ -16,9 +16,18 @@
 
 namespace twinmap {
 
+/// The term that a model most likely lacks, where it does not explain a measurement (framework/diagnosis).
+struct MissingTerm {
+  std::string term, meaning, unit;
+  double size = 0.0, stddev = 0.0;
+  double share = 0.0;         ///< of the misfit beyond the noise that it takes away
+  double log_evidence = 0.0;  ///< against none
+};
+
 /// What a measurement says about the machine.
 struct InferredMeasurement {
   std::string source;                   ///< the file
+  std::string run{};                    ///< what it was inferred by, as the user calls it; "" if not known
   double start = 0.0;                   ///< time in the file that is 0 of the model, s
   std::vector<std::string> left_out{};  ///< what of the recording is missing and why, a phrase each
   Estimate by_estimator;                ///< not given where there is no trained estimator
@@ -30,6 +39,7 @@ struct InferredMeasurement {
   /// one, or none where the estimator does not look for them.
   Eigen::MatrixXd basins{};
   std::string fault{};  ///< of the measurement, that explains a gross misfit (explainByFault()); "" of none
+  std::optional<MissingTerm> missing{};  ///< where that was asked for, and something was found
   bool coverage_is_short = false;  ///< of the run's refined test samples, where the refinement was accepted
   std::optional<Refined> refined;  ///< on the simulator, where that was tried; accepted or not
   std::optional<PosteriorEstimate> posterior{};  ///< where it was asked for, or taken; reliable or not

@@ -107,8 +107,10 @@ class Study {
     AugmentedExperiment machine = addTerm(experiment_, scored.candidates[chosen], 2.0 * size);
     VectorXd added(machine.added);
     added[0] = size;
-    if (machine.added > 1) {
-      added[1] = scored.candidates[chosen].own_scale->value * std::exp(drawUniform(test, 101) - 0.5);
+    for (Index i = 1; i < machine.added; ++i) {
+      const OwnScale& scale = scored.candidates[chosen].own_scales[static_cast<std::size_t>(i) - 1];
+      const double factor = std::exp(drawUniform(test, 100 + i) - 0.5);
+      added[i] = scale.value * std::clamp(factor, 1.0 / scale.reach, scale.reach);
     }
     point = insertAdded(point, shared_, added);
     return machine;

@@ -16,6 +16,10 @@ const std::vector<NoticeText> kStatuses{
      "Ask what the model lacks: twinmap diagnose RUN FILE.",
      "The model lacks something, a sensor, sign, unit or trigger is wrong, or the noise is larger than "
      "stated."},
+    {Notice::kModelIncomplete, "model_incomplete", true, kMisleading,
+     "no candidate explains what remains; the intervals are those of effective parameters in this test",
+     "Add terms of your own to the experiment file: candidates.",
+     "Something acts on the machine, or on its sensors, that none of the tested terms describes."},
     {Notice::kOutsideTraining, "outside_training", true, kMisleading,
      "the features are {0:.2g} times as far from the training samples as any simulated measurement",
      "Widen the bounds and train again: here the estimator extrapolates.",

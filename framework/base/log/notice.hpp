@@ -15,6 +15,7 @@ namespace twinmap {
 enum class Notice {
   kOk,
   kModelMismatch,
+  kModelIncomplete,
   kOutsideTraining,
   kAtBounds,
   kUninformative,

@@ -120,6 +120,7 @@ struct InferArguments {
   std::string posterior_from;       ///< "simulator", "surrogate"; "": the simulator where that is fast
   std::string draws;                ///< file for them; "": none
   std::string page;                 ///< file for the parameters over the measurements; "": none
+  bool diagnose = false;            ///< of each model_mismatch, say at length what the model lacks
 };
 
 struct DiagnoseArguments {
@@ -130,6 +131,24 @@ struct DiagnoseArguments {
   std::vector<std::string> accepted;  ///< terms to take; empty: those that are found
   std::string out;                    ///< file for the corrected experiment; "": none
   bool json = false, csv = false;     ///< at most one; neither: a table for people
+};
+
+struct ValidateArguments {
+  std::string run;                   ///< as of infer
+  std::vector<std::string> files;    ///< measurements of one machine, which its parameters are inferred from
+  std::vector<std::string> against;  ///< those that are predicted
+  std::vector<std::string> known;    ///< "NAME=VALUE" of the inputs
+  std::vector<double> starts;        ///< as of diagnose, in `files`
+  std::vector<double> against_starts;  ///< in `against`
+  std::optional<double> max_rms;  ///< of a prediction, in noise standard deviations; none: what noise allows
+  bool json = false;
+};
+
+struct SelectArguments {
+  std::vector<std::string> files;  ///< experiment files, then measurements
+  std::vector<std::string> known;  ///< "NAME=VALUE" of the inputs
+  std::vector<double> starts;      ///< as of diagnose
+  bool json = false;
 };
 
 struct ExportArguments {
@@ -245,6 +264,14 @@ void inferJointly(const InferArguments& arguments);
 /// Says which terms a model lacks that is to explain measurements, and writes the corrected experiment; or,
 /// without measurements, what they would not notice.
 void diagnose(const DiagnoseArguments& arguments);
+
+/// Predicts measurements by parameters inferred from others and prints how well. Throws GatesFailed where one
+/// is predicted worse than noise and the parameters' covariance allow, or than by the nominal parameters.
+void validate(const ValidateArguments& arguments);
+
+/// Prints the evidence of several experiments for the same measurements, and how well each predicts those
+/// that it is not fitted to.
+void select(const SelectArguments& arguments);
 
 /// Writes a trained map for other programs. Throws ExperimentError for a run that cannot be exported.
 void exportMap(const ExportArguments& arguments);

@@ -19,6 +19,9 @@ void addExperimentCommands(CLI::App& app, const Invocation& invocation);
 /// infer, replay, export, noise, look.
 void addMapCommands(CLI::App& app, const Invocation& invocation);
 
+/// diagnose, validate, select.
+void addDiagnosisCommands(CLI::App& app);
+
 /// status, compare, report, verify, store.
 void addResultCommands(CLI::App& app, const Invocation& invocation);
 

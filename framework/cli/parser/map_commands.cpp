@@ -80,40 +80,11 @@ void addInfer(CLI::App& app) {
       ->add_option("--page", arguments->page,
                    "File for a page (HTML) that draws the parameters over the measurements and names changes")
       ->type_name("FILE");
+  command
+      ->add_flag("--diagnose", arguments->diagnose,
+                 "Where the model does not fit, the whole table of what it may lack, as diagnose prints it")
+      ->excludes(csv);
   command->callback([arguments] { infer(*arguments); });
-}
-
-void addDiagnose(CLI::App& app) {
-  const auto arguments = std::make_shared<DiagnoseArguments>();
-  CLI::App* command = app.add_subcommand("diagnose", "Say what a model lacks to explain measurements");
-  command->footer(
-      "Tests friction, springs, masses, offsets, gains and delays, and fits the best. Without measurements "
-      "it prints which of them would go unnoticed.");
-  command
-      ->add_option("RUN", arguments->run,
-                   "Folder of a finished run, its maps.h5, or an experiment file (YAML)")
-      ->required()
-      ->option_text(" ");
-  command
-      ->add_option("MEASUREMENT", arguments->files,
-                   "Files of one machine, explained together: CSV, MATLAB or HDF5, as infer takes them")
-      ->option_text(" ");
-  command->add_option("--set", arguments->known, "Value of a known input of the set-up; for each of them")
-      ->type_name("NAME=VALUE");
-  command
-      ->add_option("--start", arguments->starts,
-                   "Time in the file (s) at which the model's time is 0; several are several windows")
-      ->type_name("S");
-  command
-      ->add_option("--accept", arguments->accepted,
-                   "Take these terms, one after the other, instead of those that are found; see --out")
-      ->type_name("TERM,...")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  command->add_option("--out", arguments->out, "File for the corrected experiment (YAML)")->type_name("FILE");
-  CLI::Option* csv = command->add_flag("--csv", arguments->csv, "Print CSV instead of a table");
-  command->add_flag("--json", arguments->json, "Print a line of JSON")->excludes(csv);
-  command->callback([arguments] { diagnose(*arguments); });
 }
 
 void addReplay(CLI::App& app, const Invocation& invocation) {
@@ -227,7 +198,6 @@ void addLook(CLI::App& app) {
 
 void addMapCommands(CLI::App& app, const Invocation& invocation) {
   addInfer(app);
-  addDiagnose(app);
   addReplay(app, invocation);
   addExport(app);
   addNoise(app);

@@ -124,6 +124,7 @@ void checkBesideModel(const ExperimentSpec& experiment) {
   checkName(experiment.name);
   checkDuration(experiment);
   checkDerived(experiment);
+  checkCandidates(experiment);
   checkFeatures(experiment.features, experiment.model);
   checkNoise(experiment);
   checkTransform(experiment);

@@ -16,6 +16,7 @@ void checkBesideModel(const ExperimentSpec& experiment);
 void checkModel(const ModelSpec& model);
 void checkTransform(const ExperimentSpec& experiment);
 void checkDerived(const ExperimentSpec& experiment);
+void checkCandidates(const ExperimentSpec& experiment);
 
 /// Throws ExperimentError unless `name` is one of `known`; `what` says what it should be ("a body").
 void requireKnown(const Name& name, const std::vector<std::string>& known, const std::string& what);

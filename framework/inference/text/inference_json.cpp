@@ -185,6 +185,35 @@ void addRecording(const InferredMeasurement& inferred, Json& json) {
   }
 }
 
+/// The term that the model most likely lacks.
+void addMissing(const InferredMeasurement& inferred, Json& json) {
+  if (inferred.missing) {
+    const MissingTerm& missing = *inferred.missing;
+    json["missing"] = {{"term", missing.term},
+                       {"meaning", missing.meaning},
+                       {"size", missing.size},
+                       {"sd", missing.stddev},
+                       {"unit", missing.unit},
+                       {"share", missing.share},
+                       {"log_evidence", missing.log_evidence}};
+  }
+}
+
+/// The estimates that there are beside the one that was taken.
+void addOrigins(const InferredMeasurement& inferred, const Estimate& estimate,
+                const std::vector<ParameterSpec>& parameters, Json& json) {
+  if (inferred.refined) {
+    json["refined"] = toJson(*inferred.refined, parameters);
+  }
+  if (inferred.refined ||
+      (inferred.by_estimator.isGiven() && estimate.method != inferred.by_estimator.method)) {
+    json["inverse_map"]["parameters"] = toJson(inferred.by_estimator, parameters);
+  }
+  if (inferred.posterior) {
+    json["posterior"] = toJson(*inferred.posterior, parameters);
+  }
+}
+
 }  // namespace
 
 std::string makeInferenceJson(const InferredMeasurement& inferred,
@@ -213,6 +242,7 @@ std::string makeInferenceJson(const InferredMeasurement& inferred,
   if (estimate.mixture.isGiven()) {
     json["components"] = makeComponents(estimate.mixture, parameters);
   }
+  addMissing(inferred, json);
   const bool was_simulated = inferred.posterior && inferred.posterior->fit;
   if (inferred.trust || was_simulated) {
     json["fault"] = inferred.fault.empty() ? Json(nullptr) : Json(inferred.fault);
@@ -222,16 +252,7 @@ std::string makeInferenceJson(const InferredMeasurement& inferred,
   } else if (was_simulated) {
     json["trust"] = toJson(*inferred.posterior->fit);
   }
-  if (inferred.refined) {
-    json["refined"] = toJson(*inferred.refined, parameters);
-  }
-  if (inferred.refined ||
-      (inferred.by_estimator.isGiven() && estimate.method != inferred.by_estimator.method)) {
-    json["inverse_map"]["parameters"] = toJson(inferred.by_estimator, parameters);
-  }
-  if (inferred.posterior) {
-    json["posterior"] = toJson(*inferred.posterior, parameters);
-  }
+  addOrigins(inferred, estimate, parameters, json);
   return formatJson(json);
 }
 

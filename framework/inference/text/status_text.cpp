@@ -109,6 +109,22 @@ double findNoiseFactor(const InferredMeasurement& inferred) {
   return is_noise && factor > 1.0 ? factor : 0.0;
 }
 
+/// "; coulomb.x would explain 93 % of it (dry friction: ...)"
+std::string describeMissing(const InferredMeasurement& inferred) {
+  return inferred.missing ? fmt::format("; {} would explain {:.0f} % of it ({})", inferred.missing->term,
+                                        100.0 * inferred.missing->share, inferred.missing->meaning)
+                          : "";
+}
+
+/// The names of a remedy as the user calls them.
+std::string nameFiles(std::string text, const InferredMeasurement& inferred) {
+  const std::string general = "RUN FILE";
+  const std::size_t at = text.find(general);
+  return inferred.run.empty() || at == std::string::npos
+             ? text
+             : text.replace(at, general.size(), inferred.run + " " + inferred.source);
+}
+
 std::string explainMismatch(const InferredMeasurement& inferred, const std::vector<FeatureInfo>& features) {
   if (!inferred.fault.empty()) {
     return explainBriefly(Notice::kModelMismatch, inferred.fault + " (this explains 99 % of the misfit)");
@@ -120,9 +136,9 @@ std::string explainMismatch(const InferredMeasurement& inferred, const std::vect
             "the residuals look like noise {:.3g} times as large as stated: measure it (twinmap noise)",
             factor));
   }
-  return explainNotice(Notice::kModelMismatch, inferred.trust
-                                                   ? describeAnomaly(*inferred.trust, features)
-                                                   : describeResidual(*inferred.posterior->fit, features));
+  const std::string where = inferred.trust ? describeAnomaly(*inferred.trust, features)
+                                           : describeResidual(*inferred.posterior->fit, features);
+  return nameFiles(explainNotice(Notice::kModelMismatch, where + describeMissing(inferred)), inferred);
 }
 
 /// The samples that are left out, the first of them by name.

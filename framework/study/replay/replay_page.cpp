@@ -70,9 +70,7 @@ Section makeVerdict(const Inferrer& inferrer, const Replay& replay) {
   std::istringstream trust(describeTrust(replay.inferred, parameters, inferrer.getExtractor().getInfos()) +
                            describeMapLimit(replay.inferred, parameters));
   for (std::string line; std::getline(trust, line);) {
-    if (line.find(getNotice(Notice::kModelMismatch).remedy) == std::string::npos) {  // this is the replay
-      section.html += makeParagraph(line, "class=\"lead\"");
-    }
+    section.html += makeParagraph(line, "class=\"lead\"");
   }
   section.html += makeParagraph(describeFits(replay));
   const std::vector<ParameterSpec>& inputs = inferrer.getExperiment().model.inputs;

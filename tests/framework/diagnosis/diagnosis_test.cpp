@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "framework/base/text/source_location.hpp"
 #include "framework/data/features/experiment_features.hpp"
 #include "framework/data/noise/noise.hpp"
@@ -30,8 +32,9 @@ VectorXd measure(const std::string& force, int repeat = 0) {
   return makeExtractor(machine, layout).extract(noisy).col(0);
 }
 
-Diagnosis diagnoseCart(const std::vector<VectorXd>& features, const std::vector<std::string>& accepted = {}) {
-  const ExperimentSpec experiment = loadExperiment(kCart);
+Diagnosis diagnoseCart(const std::vector<VectorXd>& features, const std::vector<std::string>& accepted = {},
+                       const std::vector<std::string>& overrides = {}) {
+  const ExperimentSpec experiment = loadExperiment(kCart, overrides);
   const RecordedFeatures recordings{makeLayout(experiment), features, {}};
   DiagnosisOptions options;
   options.accepted = accepted;
@@ -80,6 +83,40 @@ TEST(Diagnosis, WritesTheCorrectedExperiment) {
   ASSERT_EQ(read.model.parameters.size(), 5U);
   EXPECT_EQ(read.model.parameters[3].name.text, "coulomb_x");
   EXPECT_EQ(read.model.parameters[4].name.text, "coulomb_x_scale");
+}
+
+// Friction, and a sensor that reads 0.4 mm too much.
+TEST(Diagnosis, FindsTwoTerms) {
+  const Diagnosis diagnosis = diagnoseCart({(measure(kWithFriction).array() + 4e-4).matrix()});
+  EXPECT_TRUE(diagnosis.after.isExplained());
+  const std::set<std::string> found(diagnosis.terms.begin(), diagnosis.terms.end());
+  EXPECT_EQ(found, (std::set<std::string>{"coulomb.x", "offset.x"}));
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    EXPECT_NEAR(diagnosis.averaged.mean[i], kTruth[i], 4.0 * diagnosis.averaged.stddev[i]);
+  }
+}
+
+TEST(Diagnosis, TestsTermsOfTheFile) {
+  const std::string force = "F - k3*x^3 + 0.05*sin(9*t^2)";
+  const Diagnosis without = diagnoseCart({measure(force)});
+  EXPECT_STREQ(without.getStatus(), "model_incomplete");
+  const Diagnosis with =
+      diagnoseCart({measure(force)}, {}, {"candidates.sweep={coordinate: x, force: sin(9*t^2), unit: N}"});
+  EXPECT_STREQ(with.getStatus(), "ok");
+  EXPECT_EQ(with.terms, std::vector<std::string>{"sweep"});
+  EXPECT_NEAR(with.steps[0].ranked[0].estimate, 0.05, 4.0 * with.steps[0].ranked[0].stddev);
+  EXPECT_TRUE(with.corrected.candidates.empty());  // it is a parameter now
+}
+
+// What remains is a force, and with it the intervals hold again.
+TEST(Diagnosis, WidensIntervalsByWhatRemains) {
+  const Diagnosis diagnosis = diagnoseCart({measure("F - k3*x^3 + 0.05*sin(9*t^2)")});
+  ASSERT_TRUE(diagnosis.remainder.has_value());
+  EXPECT_GT(diagnosis.remainder->log_evidence, 10.0);
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    EXPECT_GT(diagnosis.remainder->stddevs[i], diagnosis.after.posterior.stddev[i]);
+    EXPECT_NEAR(diagnosis.remainder->mean[i], kTruth[i], 4.0 * diagnosis.remainder->stddevs[i]);
+  }
 }
 
 TEST(Diagnosis, RefusesTermsThatTheParametersTakeUp) {

@@ -71,6 +71,44 @@ TEST_F(Scores, SayWhichTermsAreAlike) {
   EXPECT_LT(ScoreTest(residual_, jacobian_, terms_).calcLikeness(0, 1), 0.5);
 }
 
+// Two terms at once against least squares with both, and against the integral over their prior: the evidence
+// of a normal residual r with covariance I + T S^2 T' is known in closed form.
+TEST_F(Scores, AreThoseOfTwoTermsTogether) {
+  const ScoreTest test(residual_, jacobian_, terms_);
+  const ScoreTest::JointScore joint = test.calcJointScore({0, 1}, Eigen::Vector2d(0.7, 0.3));
+  MatrixXd columns(kResiduals, kParameters + 2);
+  columns << jacobian_, terms_;
+  const VectorXd with = linalg::solveLinear(columns.transpose() * columns, columns.transpose() * residual_);
+  const VectorXd without =
+      linalg::solveLinear(jacobian_.transpose() * jacobian_, jacobian_.transpose() * residual_);
+  const VectorXd left = residual_ - jacobian_ * without;
+  const double gain = left.squaredNorm() - (residual_ - columns * with).squaredNorm();
+  EXPECT_NEAR(joint.estimates[0], with[kParameters], 1e-12);
+  EXPECT_NEAR(joint.estimates[1], with[kParameters + 1], 1e-12);
+  EXPECT_NEAR(joint.gain, gain, 1e-9);
+  EXPECT_NEAR(test.calcPairGains()(0, 1), gain, 1e-9);
+  for (Index j = 0; j < kParameters; ++j) {
+    EXPECT_NEAR(joint.shifts[j], with[j] - without[j], 1e-12);
+  }
+  const MatrixXd beside = terms_ - jacobian_ * linalg::fitLinear(jacobian_, terms_).coefficients;
+  const MatrixXd directions = beside * Eigen::Vector2d(0.7, 0.3).asDiagonal();
+  MatrixXd covariance = directions * directions.transpose();
+  covariance.diagonal().array() += 1.0;
+  const linalg::Cholesky factor = linalg::calcCholesky(covariance);
+  const double evidence = 0.5 * left.squaredNorm() -
+                          0.5 * left.dot(VectorXd(linalg::solveCholesky(factor.lower, left))) -
+                          factor.lower.diagonal().array().log().sum();
+  EXPECT_NEAR(joint.log_evidence, evidence, 1e-9);
+}
+
+TEST_F(Scores, RefusePairsThatAreAlike) {
+  MatrixXd terms(kResiduals, 2);
+  terms << terms_.col(0), 2.0 * terms_.col(0);
+  const ScoreTest test(residual_, jacobian_, terms);
+  EXPECT_EQ(test.calcJointScore({0, 1}, Eigen::Vector2d(1.0, 1.0)).estimates.size(), 0);
+  EXPECT_EQ(test.calcPairGains()(0, 1), 0.0);
+}
+
 TEST_F(Scores, AreNoMoreCertainThanWhatRemains) {
   const ScoreTest white(residual_, jacobian_, terms_);
   const double stated = white.calcScore(0, 1.0).stddev;
@@ -93,6 +131,11 @@ TEST(CautiousStddev, FollowsTheColourOfWhatRemains) {
   const ScoreTest test(noise, alternating, constant);
   const double ratio = test.calcCautiousStddev(0, {0}) / test.calcScore(0, 1.0).stddev;
   EXPECT_NEAR(ratio, std::sqrt((1.0 + kRho) / (1.0 - kRho)), 0.6);
+}
+
+TEST(PairPValue, IsThatOfChiSquareOfTwoDegrees) {
+  EXPECT_NEAR(calcPairPValue(9.210340, 1.0), 0.01, 1e-6);  // tables of chi-square
+  EXPECT_EQ(calcPairPValue(1.0, 100.0), 1.0);
 }
 
 TEST(CriticalZ, IsExceededAtItsLevel) {

@@ -1,4 +1,4 @@
-#include "framework/diagnosis/term_candidates.hpp"
+#include "framework/diagnosis/candidates/term_candidates.hpp"
 
 #include <gtest/gtest.h>
 
@@ -24,8 +24,8 @@ std::string findMechanism(const std::string& name) {
 }
 
 std::vector<TermCandidate> listAtCenter(const ExperimentSpec& experiment) {
-  return listCandidates(experiment.model,
-                        calcModelSizes(experiment.model, calcBoxCenter(collectSampled(experiment.model))));
+  return listCandidates(experiment,
+                        calcModelSizes(experiment, calcBoxCenter(collectSampled(experiment.model))));
 }
 
 const TermCandidate& find(const std::vector<TermCandidate>& candidates, const std::string& term) {
@@ -80,10 +80,10 @@ VectorXd simulateWith(const ExperimentSpec& experiment, const TermCandidate& can
   VectorXd point(augmented.experiment.model.parameters.size());
   point.head(static_cast<Index>(experiment.model.parameters.size())) =
       calcBoxCenter(experiment.model.parameters);
-  const auto p = static_cast<Index>(experiment.model.parameters.size());
+  auto p = static_cast<Index>(experiment.model.parameters.size());
   point[p] = size;
-  if (candidate.own_scale) {
-    point[p + 1] = candidate.own_scale->value;
+  for (const OwnScale& scale : candidate.own_scales) {
+    point[++p] = scale.value;
   }
   MatrixXd response(layout.getRowCount(), 1);
   SampleStatus status;

@@ -12,7 +12,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// 4 s at 100 Hz of a sine of 1 Hz, with noise of sd .01.
 Table recordSine() {
@@ -48,8 +48,8 @@ TEST(Look, FindsRateRangeAndNoise) {
 
 TEST(Look, FindsWhatIsMissing) {
   Table table = recordSine();
-  table.columns[1].values.segment(200, 3).setConstant(kNone);
-  table.columns[1].values[50] = kNone;
+  table.columns[1].values.segment(200, 3).setConstant(kUnknown);
+  table.columns[1].values[50] = kUnknown;
   const ColumnLook x = lookAtSine(table);
   EXPECT_EQ(x.missing, 4);
   EXPECT_EQ(x.gaps.count, 2);
@@ -97,7 +97,7 @@ TEST(Look, GuessesTheTimesAndSortsThem) {
 TEST(Look, SaysInWordsWhatStandsOut) {
   Table table = recordSine();
   table.columns[1].values[300] -= 4.0;
-  table.columns[1].values[50] = kNone;
+  table.columns[1].values[50] = kUnknown;
   const std::string text = makeLookText(look(table, {}));
   EXPECT_NE(text.find("m.csv: 401 rows, 0 s to 4 s"), std::string::npos) << text;
   EXPECT_NE(text.find("1 missing; 1 gap (0.49 s), the longest 0.02 s; 1 spike (3 s)"), std::string::npos)

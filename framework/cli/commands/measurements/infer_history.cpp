@@ -1,4 +1,4 @@
-#include "framework/cli/commands/infer_history.hpp"
+#include "framework/cli/commands/measurements/infer_history.hpp"
 
 #include <algorithm>
 

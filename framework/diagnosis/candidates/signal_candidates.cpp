@@ -4,42 +4,12 @@
 #include <cctype>
 
 #include "framework/base/text/number_text.hpp"
-#include "framework/diagnosis/term_candidates.hpp"
-#include "framework/experiment/expression/output_units.hpp"
+#include "framework/diagnosis/candidates/term_candidates.hpp"
 
 namespace twinmap {
 namespace {
 
-constexpr double kLargeGain = 0.1;
-
-std::vector<TermCandidate> listOutputCandidates(const ModelSpec& model, const ModelSizes& sizes) {
-  std::vector<TermCandidate> candidates;
-  for (std::size_t i = 0; i < model.outputs.size(); ++i) {
-    const std::string& name = model.outputs[i].name.text;
-    TermCandidate offset;
-    offset.term = "offset." + name;
-    offset.meaning = fmt::format("offset c of output {}", name);
-    offset.unit = findOutputUnit(model.outputs[i], model.system);
-    offset.size = kLargeGain * sizes.outputs[i];
-    offset.add = [i](ModelSpec& changed, const std::string& coefficient, const std::string&) {
-      Expression& text = changed.outputs[i].offset;
-      text.text = text.text.empty() ? coefficient : "(" + text.text + ") + " + coefficient;
-    };
-    TermCandidate gain;
-    gain.term = "gain." + name;
-    gain.meaning = fmt::format("gain of output {}, larger by the factor 1 + c", name);
-    gain.size = kLargeGain;
-    gain.add = [i](ModelSpec& changed, const std::string& coefficient, const std::string&) {
-      Expression& text = changed.outputs[i].gain;
-      text.text = (text.text.empty() ? "1" : "(" + text.text + ")*1") + ("*(1 + " + coefficient + ")");
-    };
-    if (offset.size > 0.0) {
-      candidates.push_back(offset);
-      candidates.push_back(gain);
-    }
-  }
-  return candidates;
-}
+constexpr double kLarge = 0.1;
 
 /// Puts `replacement` in the place of a signal, wherever forces, states and named expressions use it.
 void replaceSignal(ModelSpec& model, const std::string& signal, const std::string& replacement) {
@@ -121,32 +91,61 @@ bool canBeDelayed(const SignalSpec& signal) {
   return true;
 }
 
-std::vector<TermCandidate> listExcitationCandidates(const ModelSpec& model) {
-  constexpr double kLongDelay = 0.005;  // of the duration
-  std::vector<TermCandidate> candidates;
-  for (std::size_t i = 0; i < model.excitation.size(); ++i) {
-    const std::string& name = model.excitation[i].name.text;
-    TermCandidate gain;
-    gain.term = "gain." + name;
-    gain.meaning = fmt::format("signal {}, larger by the factor 1 + c", name);
-    gain.size = kLargeGain;
-    gain.add = [name](ModelSpec& changed, const std::string& coefficient, const std::string&) {
-      replaceSignal(changed, name, fmt::format("({0} + {1}*{0})", name, coefficient));
-    };
-    candidates.push_back(gain);
-    if (canBeDelayed(model.excitation[i])) {
-      TermCandidate late;
-      late.term = "delay." + name;
-      late.meaning = fmt::format("signal {} later by c, or all outputs earlier by c", name);
-      late.unit = "s";
-      late.size = kLongDelay * model.simulation.duration;
-      late.add = [i](ModelSpec& changed, const std::string& coefficient, const std::string&) {
-        delaySignal(changed, i, coefficient);
-      };
-      candidates.push_back(late);
+TermCandidate makeGain(const std::string& name) {
+  TermCandidate gain;
+  gain.term = "gain." + name;
+  gain.meaning = fmt::format("signal {}, larger by the factor 1 + c", name);
+  gain.size = kLarge;
+  gain.add = [name](ModelSpec& changed, const std::string& coefficient, const std::vector<std::string>&) {
+    replaceSignal(changed, name, fmt::format("({0} + {1}*{0})", name, coefficient));
+  };
+  return gain;
+}
+
+TermCandidate makeDelay(std::size_t index, const std::string& name, double size) {
+  TermCandidate late;
+  late.term = "delay." + name;
+  late.meaning = fmt::format("signal {} later by c, or all outputs earlier by c", name);
+  late.unit = "s";
+  late.size = size;
+  late.add = [index](ModelSpec& changed, const std::string& coefficient, const std::vector<std::string>&) {
+    delaySignal(changed, index, coefficient);
+  };
+  return late;
+}
+
+/// The value of a signal's tables at the start; other terms begin at 0.
+double calcFirstValue(const SignalSpec& signal) {
+  double value = 0.0;
+  for (const TableSpec& table : signal.tables) {
+    const auto after = std::upper_bound(table.times.begin(), table.times.end(), 0.0);
+    if (after != table.times.begin() && after != table.times.end()) {
+      value += table.values[static_cast<std::size_t>(after - table.times.begin()) - 1];
     }
   }
-  return candidates;
+  return value;
+}
+
+/// A share c of the signal passes a filter of first order, as an amplifier's: all of it where c is 1.
+void addLag(const SignalSpec& signal, double shortest, std::vector<TermCandidate>& candidates) {
+  const std::string name = signal.name.text;
+  TermCandidate lag;
+  lag.term = "lag." + name;
+  lag.meaning = fmt::format("signal {} through a filter, by the share c", name);
+  lag.unit = "1";
+  lag.has_states = true;
+  lag.own_scales = {{"time constant of the filter", "s"}};
+  lag.add = [name, first = toText(calcFirstValue(signal)), unit = signal.unit](
+                ModelSpec& changed, const std::string& coefficient, const std::vector<std::string>& scales) {
+    const std::string state = addState(changed, coefficient + "_lag", first, unit);
+    replaceSignal(changed, name, fmt::format("({0} + {1}*({2} - {0}))", name, coefficient, state));
+    for (StateSpec& one : changed.system.states) {
+      if (one.name.text == state) {
+        one.derivative.text = fmt::format("({} - {})/{}", name, state, scales.front());
+      }
+    }
+  };
+  addScanned(lag, shortest, 4.0, 3, candidates);
 }
 
 }  // namespace
@@ -174,18 +173,17 @@ std::string replaceName(const std::string& text, const std::string& name, const 
   return replaced;
 }
 
-std::vector<TermCandidate> listSignalCandidates(const ModelSpec& model, const ModelSizes& sizes) {
-  std::vector<TermCandidate> candidates = listOutputCandidates(model, sizes);
-  const std::vector<TermCandidate> excitation = listExcitationCandidates(model);
-  candidates.insert(candidates.end(), excitation.begin(), excitation.end());
-  return candidates;
-}
-
-std::vector<TermCandidate> listCandidates(const ModelSpec& model, const ModelSizes& sizes) {
-  std::vector<TermCandidate> candidates = listForceCandidates(sizes);
-  for (const std::vector<TermCandidate>& more :
-       {listBodyCandidates(model, sizes), listSignalCandidates(model, sizes)}) {
-    candidates.insert(candidates.end(), more.begin(), more.end());
+std::vector<TermCandidate> listSignalCandidates(const ModelSpec& model) {
+  constexpr double kLongDelay = 0.005, kShortestLag = 0.002;  // of the duration
+  const double duration = model.simulation.duration;
+  std::vector<TermCandidate> candidates;
+  for (std::size_t i = 0; i < model.excitation.size(); ++i) {
+    const SignalSpec& signal = model.excitation[i];
+    candidates.push_back(makeGain(signal.name.text));
+    if (canBeDelayed(signal)) {
+      candidates.push_back(makeDelay(i, signal.name.text, kLongDelay * duration));
+    }
+    addLag(signal, kShortestLag * duration, candidates);
   }
   return candidates;
 }

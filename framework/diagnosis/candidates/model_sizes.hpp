@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/experiment/model/model_spec.hpp"
+#include "framework/experiment/experiment_spec.hpp"
 
 namespace twinmap {
 
@@ -21,13 +21,16 @@ struct CoordinateSizes {
 struct ModelSizes {
   std::vector<CoordinateSizes> coordinates;  ///< those that move
   std::vector<double> masses;                ///< of the bodies, kg
-  std::vector<double> lengths;  ///< of a body: its centre of mass from its frame, or its gyradius, m
-  std::vector<double> moments;  ///< of a body: its largest moment of inertia, kg m2
+  std::vector<double> lengths;      ///< of a body: its centre of mass from its frame, or its gyradius, m
+  std::vector<double> moments;      ///< of a body: its largest moment of inertia, kg m2
+  double mass = 0.0, moment = 0.0;  ///< of all bodies together
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();
   std::vector<double> outputs;  ///< max |output|
+  /// rms of each of the experiment's candidates with a coefficient of 1, for each value of its scale
+  std::vector<std::vector<double>> own_forces;
 };
 
 /// From one simulation at a point of the sampled box. Throws std::runtime_error where that fails.
-ModelSizes calcModelSizes(const ModelSpec& model, const Eigen::VectorXd& point);
+ModelSizes calcModelSizes(const ExperimentSpec& experiment, const Eigen::VectorXd& point);
 
 }  // namespace twinmap

@@ -2,7 +2,9 @@
 #include <stdexcept>
 
 #include "framework/cli/commands/commands.hpp"
+#include "framework/diagnosis/missing_term.hpp"
 #include "framework/inference/measurement/known_value.hpp"
+#include "framework/inference/select_estimate.hpp"
 #include "framework/inference/text/inference_text.hpp"
 #include "framework/study/replay/replay_files.hpp"
 
@@ -50,11 +52,25 @@ Replay replayMeasurement(const Inferrer& inferrer, const ReplayOptions& options)
   }
 }
 
+/// Says what the model most likely lacks, where it does not fit.
+void nameMissing(const std::string& run, const Inferrer& inferrer, Replay& replay) {
+  InferredMeasurement& inferred = replay.inferred;
+  inferred.run = run;
+  if (inferred.fault.empty() && isMismatch(selectEstimate(inferred).statuses)) {
+    const MeasurementReader& reader = inferrer.getReader();
+    const MeasuredWindow& from = replay.options.from;
+    const Table table = readTable(from.file.string(), reader.listColumns(), MissingCells::kKeep);
+    inferred.missing = findMissingTerm(
+        inferrer.getExperiment(), readRecording(reader, table, from.start, replay.options.known), inferred);
+  }
+}
+
 }  // namespace
 
 void replay(const ReplayArguments& arguments) {
   const Inferrer inferrer(arguments.run);
-  const Replay replay = replayMeasurement(inferrer, chooseOptions(arguments, inferrer));
+  Replay replay = replayMeasurement(inferrer, chooseOptions(arguments, inferrer));
+  nameMissing(arguments.run, inferrer, replay);
   const fs::path folder = chooseFolder(arguments);
   writeReplay(folder, inferrer, replay);
   std::cout << describeTrust(replay.inferred, inferrer.getExperiment().model.parameters,

@@ -12,24 +12,6 @@
 namespace twinmap::cli {
 namespace {
 
-RecordedFeatures readRecordings(const DiagnoseArguments& arguments, const MeasurementReader& reader) {
-  RecordedFeatures recordings{reader.getLayout(), {}, {}};
-  recordings.known = collectKnown(reader.getExperiment().model.inputs, parseKnownValues(arguments.known));
-  std::vector<std::optional<double>> starts(arguments.starts.begin(), arguments.starts.end());
-  if (starts.empty()) {
-    starts.emplace_back(std::nullopt);
-  }
-  for (const std::string& file : arguments.files) {
-    const Table table = readTable(file, reader.listColumns(), MissingCells::kKeep);
-    for (const std::optional<double>& start : starts) {
-      AvailableFeatures found = reader.readAvailableFeatures(table, start);
-      requireStatedNoise(found.stddev, table.source);
-      recordings.features.push_back(std::move(found.features));
-    }
-  }
-  return recordings;
-}
-
 void printBlindSpots(const DiagnoseArguments& arguments, const MeasurementReader& reader,
                      RecordedFeatures recordings) {
   const ExperimentSpec& experiment = reader.getExperiment();
@@ -46,7 +28,8 @@ void printBlindSpots(const DiagnoseArguments& arguments, const MeasurementReader
 void diagnose(const DiagnoseArguments& arguments) {
   const InferenceSource source(arguments.run);
   const MeasurementReader& reader = source.getReader();
-  const RecordedFeatures recordings = readRecordings(arguments, reader);
+  const RecordedFeatures recordings =
+      readRecordings(reader, arguments.files, arguments.starts, parseKnownValues(arguments.known));
   if (arguments.files.empty()) {
     if (!arguments.accepted.empty()) {
       throw ExperimentError("--accept fits a term to measurements; give their files");

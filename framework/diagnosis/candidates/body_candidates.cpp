@@ -1,7 +1,7 @@
 #include <fmt/core.h>
 
 #include "framework/base/text/number_text.hpp"
-#include "framework/diagnosis/term_candidates.hpp"
+#include "framework/diagnosis/candidates/term_candidates.hpp"
 
 namespace twinmap {
 namespace {
@@ -23,7 +23,8 @@ void addCorrection(TermCandidate candidate, std::size_t index, const BodyExpress
   if (!(candidate.size > 0.0)) {
     return;
   }
-  candidate.add = [index, get](ModelSpec& model, const std::string& coefficient, const std::string&) {
+  candidate.add = [index, get](ModelSpec& model, const std::string& coefficient,
+                               const std::vector<std::string>&) {
     Expression& changed = get(model.system.bodies[index]);
     changed = addTo(changed, coefficient);
   };
@@ -40,6 +41,7 @@ void addBody(const BodySpec& body, std::size_t index, const ModelSizes& sizes,
        kMuch * sizes.masses[index],
        false,
        {},
+       false,
        {}},
       index, [](BodySpec& changed) -> Expression& { return changed.mass; }, candidates);
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -50,6 +52,7 @@ void addBody(const BodySpec& body, std::size_t index, const ModelSizes& sizes,
          kMuch * sizes.lengths[index],
          false,
          {},
+         false,
          {}},
         index, [axis](BodySpec& changed) -> Expression& { return changed.center_of_mass[axis]; }, candidates);
     addCorrection(
@@ -59,6 +62,7 @@ void addBody(const BodySpec& body, std::size_t index, const ModelSizes& sizes,
          kMuch * sizes.moments[index],
          false,
          {},
+         false,
          {}},
         index, [axis](BodySpec& changed) -> Expression& { return changed.inertia.moments[axis]; },
         candidates);
@@ -78,7 +82,7 @@ TermCandidate makeTilt(const ModelSizes& sizes, const Eigen::Vector3d& axis, con
   tilt.meaning = fmt::format("gravity turned by c about the ground's {}", name);
   tilt.unit = "rad";
   tilt.size = kLarge;
-  tilt.add = [turned](ModelSpec& model, const std::string& coefficient, const std::string&) {
+  tilt.add = [turned](ModelSpec& model, const std::string& coefficient, const std::vector<std::string>&) {
     for (std::size_t i = 0; i < 3; ++i) {
       const double part = turned[static_cast<Eigen::Index>(i)];
       if (part != 0.0) {

@@ -12,10 +12,13 @@
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/cli/commands/commands.hpp"
 #include "framework/cli/commands/infer_history.hpp"
+#include "framework/diagnosis/diagnosis_text.hpp"
+#include "framework/diagnosis/missing_term.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/inference_source.hpp"
 #include "framework/inference/measurement/known_value.hpp"
 #include "framework/inference/measurement/measurement_stream.hpp"
+#include "framework/inference/select_estimate.hpp"
 #include "framework/inference/text/inference_text.hpp"
 #include "framework/report/history/history_page.hpp"
 
@@ -47,6 +50,9 @@ class InferCommand {
       : source_(arguments.run),
         session_(source_.makeSession(makeOptions(arguments))),
         known_(collectKnown(getModel().inputs, parseKnownValues(arguments.known))),
+        run_(arguments.run),
+        names_missing_(!arguments.follow),
+        diagnoses_(arguments.diagnose),
         format_(chooseFormat(arguments)),
         history_(getModel().parameters),
         page_(arguments.page),
@@ -114,7 +120,15 @@ class InferCommand {
   void inferTable(const Table& table) {
     for (const std::optional<double>& start : starts_) {
       try {
-        print(session_->infer(table, start, known_));
+        InferredMeasurement inferred = session_->infer(table, start, known_);
+        inferred.run = run_;
+        if (names_missing_ && inferred.fault.empty() && isMismatch(selectEstimate(inferred).statuses)) {
+          const RecordedFeatures recording = readRecording(source_.getReader(), table, start, known_);
+          inferred.missing = findMissingTerm(source_.getExperiment(), recording, inferred);
+          print(inferred, diagnoses_ ? &recording : nullptr);
+        } else {
+          print(inferred, nullptr);
+        }
         ++count_;
       } catch (const std::exception& error) {
         reportError(table.source, source_.getReader().getStatedStart(start), error.what());
@@ -134,7 +148,8 @@ class InferCommand {
     return source_.findTrained() != nullptr ? MissingCells::kRefuse : MissingCells::kKeep;
   }
 
-  void print(const InferredMeasurement& inferred) {
+  /// recording: to be diagnosed as well; null: not.
+  void print(const InferredMeasurement& inferred, const RecordedFeatures* recording) {
     const std::vector<ParameterSpec>& parameters = getModel().parameters;
     const std::vector<FeatureInfo>& features = source_.getReader().getExtractor().getInfos();
     history_.add(inferred);
@@ -144,14 +159,26 @@ class InferCommand {
     switch (format_) {
       case Format::kTable:
         std::cout << (count_ > 0 ? "\n" : "") << makeInferenceTable(inferred, parameters, features);
+        if (recording != nullptr) {
+          std::cout << "\n" << makeDiagnosisTable(diagnose(*recording), inferred.source);
+        }
         break;
       case Format::kCsv:
         std::cout << makeInferenceCsvRows(inferred, parameters, session_->samplesPosteriors());
         break;
       case Format::kJson:
         std::cout << makeInferenceJson(inferred, parameters, features) << '\n';
+        if (recording != nullptr) {
+          std::cout << makeDiagnosisJson(diagnose(*recording), inferred.source) << '\n';
+        }
         break;
     }
+  }
+
+  Diagnosis diagnose(const RecordedFeatures& recording) const {
+    DiagnosisOptions options;
+    options.posterior = makePosteriorOptions(source_.getExperiment(), SimulatorPosteriorOptions{}.draws);
+    return twinmap::diagnose(source_.getExperiment(), recording, options);
   }
 
   void reportError(const std::string& source, double start, const std::string& error) {
@@ -167,6 +194,8 @@ class InferCommand {
   const InferenceSource source_;
   const std::unique_ptr<MeasurementInference> session_;
   const Eigen::VectorXd known_;
+  const std::string run_;
+  const bool names_missing_, diagnoses_;
   const Format format_;
   InferHistory history_;
   const std::string page_;

@@ -1,9 +1,11 @@
-#include "framework/diagnosis/model_sizes.hpp"
+#include "framework/diagnosis/candidates/model_sizes.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include "framework/base/text/number_text.hpp"
+#include "framework/diagnosis/candidates/term_candidates.hpp"
 #include "framework/experiment/expression/named_values.hpp"
 #include "framework/experiment/model/joint_type.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
@@ -33,8 +35,22 @@ std::vector<CoordinateSizes> listForcedCoordinates(const SystemSpec& system) {
   return coordinates;
 }
 
-/// The model with each coordinate and its speed as outputs, then those of its own.
-ModelSpec observeCoordinates(const ModelSpec& model, const std::vector<CoordinateSizes>& coordinates) {
+/// The force of a candidate with a coefficient of 1, at each value of its scale.
+std::vector<std::string> listForces(const CandidateSpec& candidate) {
+  if (!candidate.scale) {
+    return {candidate.force.text};
+  }
+  std::vector<std::string> forces;
+  for (const double value : candidate.scale->values) {
+    forces.push_back(replaceName(candidate.force.text, candidate.scale->name.text, toText(value)));
+  }
+  return forces;
+}
+
+/// The model with each coordinate and its speed as outputs, then those of its own, then the forces of
+/// candidates.
+ModelSpec observeSizes(const ExperimentSpec& experiment, const std::vector<CoordinateSizes>& coordinates) {
+  const ModelSpec& model = experiment.model;
   ModelSpec observed = model;
   observed.outputs.clear();
   for (const CoordinateSizes& coordinate : coordinates) {
@@ -48,6 +64,15 @@ ModelSpec observeCoordinates(const ModelSpec& model, const std::vector<Coordinat
     observed.outputs.push_back(output);
   }
   observed.outputs.insert(observed.outputs.end(), model.outputs.begin(), model.outputs.end());
+  for (const CandidateSpec& candidate : experiment.candidates) {
+    for (const std::string& force : listForces(candidate)) {
+      OutputSpec output;
+      output.name = {"force of " + candidate.name.text, {}};
+      output.expression = {force, candidate.force.where};
+      output.unit = "N";
+      observed.outputs.push_back(output);
+    }
+  }
   return observed;
 }
 
@@ -91,25 +116,18 @@ void setBodySizes(const ModelSpec& model, const NamedValues<double>& names, Mode
     sizes.masses.push_back(mass);
     sizes.moments.push_back(moment);
     sizes.lengths.push_back(std::max(calcLargest(names, body.center_of_mass), gyradius));
+    sizes.mass += mass;
+    sizes.moment += moment + mass * sizes.lengths.back() * sizes.lengths.back();
   }
   for (int i = 0; i < 3; ++i) {
     sizes.gravity[i] = names.calc(model.system.gravity[static_cast<std::size_t>(i)]);
   }
 }
 
-}  // namespace
-
-ModelSizes calcModelSizes(const ModelSpec& model, const VectorXd& point) {
-  ModelSizes sizes;
-  setBodySizes(model, nameValues(model, point), sizes);
-  double mass = 0.0, moment = 0.0;
-  for (std::size_t i = 0; i < sizes.masses.size(); ++i) {
-    mass += sizes.masses[i];
-    moment += sizes.moments[i] + sizes.masses[i] * sizes.lengths[i] * sizes.lengths[i];
-  }
-  const std::vector<CoordinateSizes> forced = listForcedCoordinates(model.system);
-  const MatrixXd outputs = simulateOutputs(observeCoordinates(model, forced), point);
-  const double interval = model.simulation.duration / static_cast<double>(kSizeSamples - 1);
+/// Of the coordinates that move; outputs: each one and its speed.
+void setCoordinateSizes(const std::vector<CoordinateSizes>& forced, const MatrixXd& outputs, double duration,
+                        ModelSizes& sizes) {
+  const double interval = duration / static_cast<double>(kSizeSamples - 1);
   for (std::size_t i = 0; i < forced.size(); ++i) {
     CoordinateSizes coordinate = forced[i];
     const auto column = static_cast<Index>(2 * i);
@@ -117,14 +135,33 @@ ModelSizes calcModelSizes(const ModelSpec& model, const VectorXd& point) {
     const VectorXd acceleration = (speed.tail(kSizeSamples - 1) - speed.head(kSizeSamples - 1)) / interval;
     coordinate.reach = outputs.col(column).cwiseAbs().maxCoeff();
     coordinate.speed = speed.cwiseAbs().maxCoeff();
-    coordinate.force = (coordinate.is_angle ? moment : mass) * acceleration.norm() /
+    coordinate.force = (coordinate.is_angle ? sizes.moment : sizes.mass) * acceleration.norm() /
                        std::sqrt(static_cast<double>(kSizeSamples - 1));
     if (coordinate.reach > 0.0 && coordinate.speed > 0.0 && coordinate.force > 0.0) {
       sizes.coordinates.push_back(coordinate);
     }
   }
+}
+
+}  // namespace
+
+ModelSizes calcModelSizes(const ExperimentSpec& experiment, const VectorXd& point) {
+  const ModelSpec& model = experiment.model;
+  ModelSizes sizes;
+  setBodySizes(model, nameValues(model, point), sizes);
+  const std::vector<CoordinateSizes> forced = listForcedCoordinates(model.system);
+  const MatrixXd outputs = simulateOutputs(observeSizes(experiment, forced), point);
+  setCoordinateSizes(forced, outputs, model.simulation.duration, sizes);
+  auto column = static_cast<Index>(2 * forced.size());
   for (std::size_t o = 0; o < model.outputs.size(); ++o) {
-    sizes.outputs.push_back(outputs.col(static_cast<Index>(2 * forced.size() + o)).cwiseAbs().maxCoeff());
+    sizes.outputs.push_back(outputs.col(column++).cwiseAbs().maxCoeff());
+  }
+  for (const CandidateSpec& candidate : experiment.candidates) {
+    sizes.own_forces.emplace_back();
+    for (std::size_t k = 0; k < listForces(candidate).size(); ++k) {
+      sizes.own_forces.back().push_back(outputs.col(column++).norm() /
+                                        std::sqrt(static_cast<double>(kSizeSamples)));
+    }
   }
   return sizes;
 }

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "framework/diagnosis/term_candidates.hpp"
+#include "framework/diagnosis/candidates/term_candidates.hpp"
 
 namespace twinmap {
 namespace {
@@ -108,22 +108,20 @@ TermCandidate makeForceCandidate(const ForceTerm& term, const CoordinateSizes& c
   const int position = term.length + term.time;  // powers that are not of speed are of position
   candidate.size = coordinate.force / (std::pow(coordinate.speed, -term.time) *
                                        std::pow(coordinate.reach, static_cast<double>(position)));
-  candidate.add = [term, name](ModelSpec& model, const std::string& coefficient, const std::string& scale) {
-    addForceLaw(model, name, makeLaw(term, name, coefficient, scale));
+  candidate.add = [term, name](ModelSpec& model, const std::string& coefficient,
+                               const std::vector<std::string>& scales) {
+    addForceLaw(model, name, makeLaw(term, name, coefficient, scales.empty() ? "" : scales.front()));
   };
   return candidate;
 }
 
-void addScanned(const ScannedTerm& scanned, const CoordinateSizes& coordinate,
-                std::vector<TermCandidate>& candidates) {
-  double value = scanned.first * (scanned.scale_is_speed ? coordinate.speed : coordinate.reach);
-  for (int i = 0; i < scanned.count; ++i, value *= scanned.factor) {
-    TermCandidate candidate = makeForceCandidate(scanned.term, coordinate);
-    const std::string length = coordinate.is_angle ? "rad" : "m";
-    candidate.own_scale =
-        OwnScale{scanned.scale_meaning, scanned.scale_is_speed ? length + "/s" : length, value};
-    candidates.push_back(std::move(candidate));
-  }
+void addScannedForce(const ScannedTerm& scanned, const CoordinateSizes& coordinate,
+                     std::vector<TermCandidate>& candidates) {
+  TermCandidate candidate = makeForceCandidate(scanned.term, coordinate);
+  const std::string length = coordinate.is_angle ? "rad" : "m";
+  candidate.own_scales = {{scanned.scale_meaning, scanned.scale_is_speed ? length + "/s" : length}};
+  addScanned(candidate, scanned.first * (scanned.scale_is_speed ? coordinate.speed : coordinate.reach),
+             scanned.factor, scanned.count, candidates);
 }
 
 /// A spring or damper between two coordinates: the force of one on the other and back.
@@ -137,7 +135,7 @@ TermCandidate makeCoupling(const CoordinateSizes& a, const CoordinateSizes& b, b
   candidate.unit = makeUnit({"", "", "", 1, damper ? -1 : 0}, a.is_angle);
   candidate.size = std::sqrt(a.force * b.force / (damper ? a.speed * b.speed : a.reach * b.reach));
   candidate.add = [first = a.name, second = b.name, suffix](ModelSpec& model, const std::string& coefficient,
-                                                            const std::string&) {
+                                                            const std::vector<std::string>&) {
     addForceLaw(model, first, "-" + coefficient + "*" + second + suffix);
     addForceLaw(model, second, "-" + coefficient + "*" + first + suffix);
   };
@@ -153,7 +151,7 @@ std::vector<TermCandidate> listForceCandidates(const ModelSizes& sizes) {
       candidates.push_back(makeForceCandidate(term, coordinate));
     }
     for (const ScannedTerm& scanned : kScannedTerms) {
-      addScanned(scanned, coordinate, candidates);
+      addScannedForce(scanned, coordinate, candidates);
     }
   }
   for (std::size_t a = 0; a < sizes.coordinates.size(); ++a) {

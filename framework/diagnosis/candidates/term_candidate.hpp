@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,10 +8,12 @@
 
 namespace twinmap {
 
-/// A scale of a term's own, such as the speed at which friction sets in.
+/// A scale of a term's own, such as the speed at which friction sets in. A fit keeps it within a factor
+/// `reach` of its value.
 struct OwnScale {
   std::string meaning, unit;
   double value = 0.0;
+  double reach = 5.0;  ///< more than the steps of a scan
 };
 
 /// A term that a model may lack: a coefficient, 0 where it is absent, and what it multiplies.
@@ -23,9 +24,12 @@ struct TermCandidate {
   double size = 1.0;    ///< of a coefficient that matters: the standard deviation of its prior
   /// Whether it takes energy where its coefficient is positive, as friction does.
   bool dissipates = false;
-  std::optional<OwnScale> own_scale;
-  /// Adds it to a model that has the parameter `coefficient`. own_scale: a number, or a parameter.
-  std::function<void(ModelSpec& model, const std::string& coefficient, const std::string& own_scale)> add;
+  std::vector<OwnScale> own_scales;  ///< the first one is scanned, others begin at their value
+  bool has_states = false;           ///< whether it adds states to the model
+  /// Adds it to a model that has the parameter `coefficient`. own_scales: numbers, or parameters.
+  std::function<void(ModelSpec& model, const std::string& coefficient,
+                     const std::vector<std::string>& own_scales)>
+      add;
 };
 
 }  // namespace twinmap

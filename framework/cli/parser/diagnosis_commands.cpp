@@ -1,0 +1,106 @@
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "framework/cli/commands/commands.hpp"
+#include "framework/cli/parser/command_groups.hpp"
+
+namespace twinmap::cli {
+namespace {
+
+void addKnown(CLI::App& command, std::vector<std::string>& known) {
+  command.add_option("--set", known, "Value of a known input of the set-up; for each of them")
+      ->type_name("NAME=VALUE");
+}
+
+void addStarts(CLI::App& command, std::vector<double>& starts) {
+  command
+      .add_option("--start", starts,
+                  "Time in the file (s) at which the model's time is 0; several are several windows")
+      ->type_name("S");
+}
+
+void addDiagnose(CLI::App& app) {
+  const auto arguments = std::make_shared<DiagnoseArguments>();
+  CLI::App* command = app.add_subcommand("diagnose", "Say what a model lacks to explain measurements");
+  command->footer(
+      "Tests friction, springs, masses, hysteresis, hidden modes, sensors and signals, and fits the best. "
+      "Without measurements "
+      "it prints which of them would go unnoticed.");
+  command
+      ->add_option("RUN", arguments->run,
+                   "Folder of a finished run, its maps.h5, or an experiment file (YAML)")
+      ->required()
+      ->option_text(" ");
+  command
+      ->add_option("MEASUREMENT", arguments->files,
+                   "Files of one machine, explained together: CSV, MATLAB or HDF5, as infer takes them")
+      ->option_text(" ");
+  addKnown(*command, arguments->known);
+  addStarts(*command, arguments->starts);
+  command
+      ->add_option("--accept", arguments->accepted,
+                   "Take these terms, one after the other, instead of those that are found; see --out")
+      ->type_name("TERM,...")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command->add_option("--out", arguments->out, "File for the corrected experiment (YAML)")->type_name("FILE");
+  CLI::Option* csv = command->add_flag("--csv", arguments->csv, "Print CSV instead of a table");
+  command->add_flag("--json", arguments->json, "Print a line of JSON")->excludes(csv);
+  command->callback([arguments] { diagnose(*arguments); });
+}
+
+void addValidate(CLI::App& app) {
+  const auto arguments = std::make_shared<ValidateArguments>();
+  CLI::App* command =
+      app.add_subcommand("validate", "Predict measurements by parameters inferred from others");
+  command->footer(
+      "Holds the machine's parameters, fits what each recording leaves unknown besides, and compares the "
+      "residual with the noise and with that of the nominal parameters. The exit status is 3 where a "
+      "prediction fails.");
+  command
+      ->add_option("RUN", arguments->run,
+                   "Folder of a finished run, its maps.h5, or an experiment file (YAML)")
+      ->required()
+      ->option_text(" ");
+  command->add_option("MEASUREMENT", arguments->files, "Files of one machine, to infer its parameters from")
+      ->required()
+      ->option_text(" ");
+  command->add_option("--against", arguments->against, "Files to predict")->required()->type_name("FILE");
+  addKnown(*command, arguments->known);
+  addStarts(*command, arguments->starts);
+  command->add_option("--against-start", arguments->against_starts, "The same of the files to predict")
+      ->type_name("S");
+  command
+      ->add_option("--max-rms", arguments->max_rms,
+                   "Pass up to this rms residual, in noise standard deviations (default: what noise and the "
+                   "parameters' sd leave in 99 % of predictions)")
+      ->check(CLI::PositiveNumber)
+      ->type_name("R");
+  command->add_flag("--json", arguments->json, "Print a line of JSON");
+  command->callback([arguments] { validate(*arguments); });
+}
+
+void addSelect(CLI::App& app) {
+  const auto arguments = std::make_shared<SelectArguments>();
+  CLI::App* command = app.add_subcommand("select", "Compare structures of a model by the same measurements");
+  command->footer(
+      "Prints the evidence of each experiment, relative to the best, and how well it predicts what it is not "
+      "fitted to: each recording by the others, or the last third of a single one.");
+  command->add_option("FILE", arguments->files, "Experiment files (YAML), then files of measurements")
+      ->required()
+      ->option_text(" ");
+  addKnown(*command, arguments->known);
+  addStarts(*command, arguments->starts);
+  command->add_flag("--json", arguments->json, "Print a line of JSON");
+  command->callback([arguments] { select(*arguments); });
+}
+
+}  // namespace
+
+void addDiagnosisCommands(CLI::App& app) {
+  addDiagnose(app);
+  addValidate(app);
+  addSelect(app);
+}
+
+}  // namespace twinmap::cli

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <vector>
+
+#include "framework/diagnosis/candidates/model_sizes.hpp"
+#include "framework/diagnosis/candidates/term_candidate.hpp"
+#include "framework/experiment/experiment_spec.hpp"
+
+namespace twinmap {
+
+/// Forces on each coordinate (damping, friction, springs, stops, a constant force) and between two of a kind.
+std::vector<TermCandidate> listForceCandidates(const ModelSizes& sizes);
+
+/// Forces with states on each coordinate: friction that is a spring before it slips, hysteresis, a mass on a
+/// spring.
+std::vector<TermCandidate> listMemoryCandidates(const ModelSpec& model, const ModelSizes& sizes);
+
+/// Mass, centre of mass and moments of inertia of each body; gravity in another direction.
+std::vector<TermCandidate> listBodyCandidates(const ModelSpec& model, const ModelSizes& sizes);
+
+/// Offset, gain, drift, delay, lag and cross-talk of outputs, and the clock by which they are recorded.
+std::vector<TermCandidate> listOutputCandidates(const ModelSpec& model, const ModelSizes& sizes);
+
+/// Gain, delay and lag of each signal.
+std::vector<TermCandidate> listSignalCandidates(const ModelSpec& model);
+
+/// Those that the experiment names (CandidateSpec).
+std::vector<TermCandidate> listOwnCandidates(const std::vector<CandidateSpec>& candidates,
+                                             const ModelSizes& sizes);
+
+/// All of them, those with a scale of their own once for each value of a grid.
+std::vector<TermCandidate> listCandidates(const ExperimentSpec& experiment, const ModelSizes& sizes);
+
+/// Once for each value of its first own scale, from `first` on, each `factor` times the one before.
+void addScanned(const TermCandidate& candidate, double first, double factor, int count,
+                std::vector<TermCandidate>& candidates);
+
+/// Adds a state to a model, the last one, whose rate is still 0; returns its name, `name` where that is not
+/// taken.
+std::string addState(ModelSpec& model, const std::string& name, const std::string& initial,
+                     const std::string& unit);
+
+/// The initial value of a coordinate or a speed, as an expression.
+std::string findInitial(const std::vector<NamedExpression>& initial, const std::string& name);
+
+/// Multiplies every signal, wherever forces use it.
+void scaleSignals(ModelSpec& model, double factor);
+
+/// Replaces a name of an expression, wherever it stands as a whole word: "x - x0", "x" by "(2*x)" is
+/// "(2*x) - x0".
+std::string replaceName(const std::string& text, const std::string& name, const std::string& replacement);
+
+}  // namespace twinmap

@@ -1,0 +1,105 @@
+#include "framework/diagnosis/structures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "framework/diagnosis/held_out.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
+#include "kernels/linalg/decompositions.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+/// log of the share of the bounds that the posterior takes, as a normal distribution within a wide one of the
+/// bounds' half-widths.
+double calcLogOccupied(const RecordingsProblem& problem, const VectorXd& best) {
+  const VectorXd half_widths = 0.5 * calcWidths(problem.getUnknown());
+  const MatrixXd scaled = problem.linearize(best).jacobian * half_widths.asDiagonal();
+  MatrixXd information = scaled.transpose() * scaled;
+  information.diagonal().array() += kHalfWidthInformation;
+  const double log_determinant = 2.0 * linalg::calcCholesky(information).lower.diagonal().array().log().sum();
+  const auto u = static_cast<double>(best.size());
+  // integral of exp(-d' H d / 2) over the bounds' volume, 2 in each direction
+  return 0.5 * u * std::log(2.0 * M_PI) - 0.5 * log_determinant - u * std::log(2.0);
+}
+
+/// The time from which on the last third of the samples lie.
+double findLastThird(const std::vector<FeatureInfo>& infos) {
+  std::vector<double> times;
+  for (const FeatureInfo& info : infos) {
+    times.push_back(info.time);
+  }
+  std::sort(times.begin(), times.end());
+  const double from = times[2 * times.size() / 3];
+  if (!(from > times.front())) {
+    throw std::runtime_error(
+        "features without times cannot be held out: give two or more recordings, of which each is predicted "
+        "by the others");
+  }
+  return from;
+}
+
+/// Of several recordings: each predicted by the others.
+void holdOutEach(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
+                 const SimulatorPosteriorOptions& options, StructureFit& fit) {
+  double squares = 0.0;
+  for (std::size_t k = 0; k < recordings.features.size(); ++k) {
+    RecordedFeatures others = recordings;
+    others.features.erase(others.features.begin() + static_cast<std::ptrdiff_t>(k));
+    const RecordedFeatures own{recordings.layout, {recordings.features[k]}, recordings.known};
+    const HeldOutPrediction prediction =
+        predictHeldOut(experiment, own, inferMachine(experiment, others, options));
+    squares += prediction.rms * prediction.rms;
+    fit.held_out_p = std::min(fit.held_out_p, prediction.p_value);
+  }
+  fit.held_out_rms = std::sqrt(squares / static_cast<double>(recordings.features.size()));
+}
+
+/// Of a single recording: its last third.
+void holdOutEnd(const ExperimentSpec& experiment, const RecordedFeatures& recording,
+                const std::vector<FeatureInfo>& infos, const SimulatorPosteriorOptions& options,
+                StructureFit& fit) {
+  const double from = findLastThird(infos);
+  RecordedFeatures before = recording;
+  for (std::size_t i = 0; i < infos.size(); ++i) {
+    if (infos[i].time >= from) {
+      before.features.front()[static_cast<Index>(i)] = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  const HeldOutPrediction prediction =
+      predictHeldOut(experiment, recording, inferMachine(experiment, before, options), from);
+  fit.held_out_rms = prediction.rms;
+  fit.held_out_p = prediction.p_value;
+}
+
+}  // namespace
+
+StructureFit calcStructureFit(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
+                              const SimulatorPosteriorOptions& options) {
+  const RecordingsProblem problem(experiment, recordings);
+  const auto u = static_cast<Index>(problem.getUnknown().size());
+  const SimulatorPosterior posterior = samplePosterior(problem.get(), MatrixXd(u, 0), options);
+  if (posterior.best.size() == 0) {
+    throw std::runtime_error(posterior.message);
+  }
+  StructureFit fit;
+  fit.chi_square = posterior.chi_square;
+  fit.degrees = posterior.degrees;
+  fit.log_evidence = -0.5 * posterior.misfit + calcLogOccupied(problem, posterior.best);
+  if (recordings.features.size() > 1) {
+    holdOutEach(experiment, recordings, options, fit);
+  } else {
+    const std::vector<FeatureInfo>& infos = problem.getSimulator().getExtractor().getInfos();
+    holdOutEnd(experiment, recordings, infos, options, fit);
+  }
+  return fit;
+}
+
+}  // namespace twinmap
