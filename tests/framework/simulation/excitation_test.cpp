@@ -175,9 +175,17 @@ TEST(Excitation, SchroederPhasesLowerTheCrestFactor) {
   EXPECT_LT(spread, 0.4 * aligned);
 }
 
+TableSpec makeTable(std::vector<double> times, std::vector<double> values, TableInterpolation interpolation) {
+  TableSpec table;
+  table.times = std::move(times);
+  table.values = std::move(values);
+  table.interpolation = interpolation;
+  return table;
+}
+
 TEST(Excitation, LinearTableInterpolatesAndIsZeroOutside) {
   SignalSpec spec = makeSignal("F");
-  spec.tables = {{{0.5, 1.0, 3.0}, {2.0, 4.0, -2.0}, TableInterpolation::kLinear}};
+  spec.tables = {makeTable({0.5, 1.0, 3.0}, {2.0, 4.0, -2.0}, TableInterpolation::kLinear)};
   OneSignal signal(spec);
   EXPECT_EQ(signal.get().calcEventTimes(5.0), (std::vector<double>{0.5, 1.0, 3.0}));
   EXPECT_EQ(signal.calcAt(0.4), 0.0);
@@ -189,7 +197,7 @@ TEST(Excitation, LinearTableInterpolatesAndIsZeroOutside) {
 
 TEST(Excitation, HoldTableKeepsEachValueUntilTheNextTime) {
   SignalSpec spec = makeSignal("F");
-  spec.tables = {{{0.5, 1.0, 3.0}, {2.0, 4.0, -2.0}, TableInterpolation::kHold}};
+  spec.tables = {makeTable({0.5, 1.0, 3.0}, {2.0, 4.0, -2.0}, TableInterpolation::kHold)};
   OneSignal signal(spec);
   EXPECT_EQ(signal.calcAt(0.9), 2.0);
   EXPECT_EQ(signal.calcAt(1.0), 4.0);
@@ -199,7 +207,7 @@ TEST(Excitation, HoldTableKeepsEachValueUntilTheNextTime) {
 
 TEST(Excitation, CubicTableIsOnePhase) {
   SignalSpec spec = makeSignal("F");
-  spec.tables = {{{0.5, 1.0, 3.0, 3.5}, {2.0, 4.0, -2.0, 0.0}, TableInterpolation::kCubic}};
+  spec.tables = {makeTable({0.5, 1.0, 3.0, 3.5}, {2.0, 4.0, -2.0, 0.0}, TableInterpolation::kCubic)};
   const CubicSpline spline(spec.tables[0].times, spec.tables[0].values);
   OneSignal signal(spec);
   EXPECT_EQ(signal.get().calcEventTimes(5.0), (std::vector<double>{0.5, 3.5}));

@@ -11,7 +11,7 @@
 
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/cli/commands/commands.hpp"
-#include "framework/cli/commands/infer_history.hpp"
+#include "framework/cli/commands/measurements/infer_history.hpp"
 #include "framework/diagnosis/diagnosis_text.hpp"
 #include "framework/diagnosis/missing_term.hpp"
 #include "framework/experiment/model/parameter_box.hpp"

@@ -109,9 +109,9 @@ std::vector<std::pair<std::string, SignalSpec>> makeSignals() {
   log_chirp.chirps = {{ex("a"), ex("0.5"), ex("3"), ex("0"), ex("2.5"), SweepKind::kLogarithmic}};
   multisine.multisines = {{ex("a"), {}, {ex("0.4"), ex("1.1"), ex("2.3")}, {}, ex("0.2"), ex("")}};
   const std::vector<double> times{0.1, 0.5, 0.5, 1.3, 2.0, 2.2}, values{0.0, 1.0, -1.0, 2.0, 0.5, 0.0};
-  linear.tables = {{times, values, TableInterpolation::kLinear}};
-  hold.tables = {{times, values, TableInterpolation::kHold}};
-  cubic.tables = {{{0.1, 0.5, 0.9, 1.3, 2.0, 2.2}, values, TableInterpolation::kCubic}};
+  linear.tables = {tableOf(times, values, TableInterpolation::kLinear)};
+  hold.tables = {tableOf(times, values, TableInterpolation::kHold)};
+  cubic.tables = {tableOf({0.1, 0.5, 0.9, 1.3, 2.0, 2.2}, values, TableInterpolation::kCubic)};
   sum.pulses = {{ex("a"), ex("t0"), ex("t0 + 0.2")}, {ex("-2"), ex("0.5"), ex("1")}};
   sum.sines = sine.sines;
   sum.tables = {linear.tables[0], cubic.tables[0]};
@@ -142,7 +142,7 @@ TEST(Lanes, HaveALateTableEarlier) {
   const std::vector<double> times{0.1, 0.5, 0.9, 1.3, 2.0, 2.2}, values{0.0, 1.0, -1.0, 2.0, 0.5, 0.0};
   SignalSpec early;
   early.name = name("u");
-  early.tables = {{times, values, TableInterpolation::kCubic}};
+  early.tables = {tableOf(times, values, TableInterpolation::kCubic)};
   SignalSpec late = early;
   for (double& t : late.tables[0].times) {
     t += 0.25;

@@ -331,8 +331,8 @@ TEST(Outputs, OfSignalsRatesAreTheirTimeDerivatives) {
   tones.multisines[0].amplitude = ex("0.5");
   tones.multisines[0].frequencies = {ex("1"), ex("3")};
   table.name = name("table");
-  table.tables = {{{0.0, 0.2, 0.5, 0.7, 1.0}, {0.0, 1.0, -1.0, 0.5, 2.0}, TableInterpolation::kCubic},
-                  {{0.0, 0.45, 1.0}, {0.0, 1.0, -1.0}, TableInterpolation::kLinear}};
+  table.tables = {tableOf({0.0, 0.2, 0.5, 0.7, 1.0}, {0.0, 1.0, -1.0, 0.5, 2.0}, TableInterpolation::kCubic),
+                  tableOf({0.0, 0.45, 1.0}, {0.0, 1.0, -1.0}, TableInterpolation::kLinear)};
   model.excitation = {sweep, tones, table};
   model.system.elements.get<ForceLaw>().push_back(
       law("q", "tones_dot"));  // so that the speed is tones - tones(0)

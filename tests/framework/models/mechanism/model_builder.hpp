@@ -90,6 +90,15 @@ inline SignalSpec pulse(const std::string& text, const std::string& amplitude, c
 }
 
 /// A force on a coordinate as a force law.
+inline TableSpec tableOf(std::vector<double> times, std::vector<double> values,
+                         TableInterpolation interpolation) {
+  TableSpec table;
+  table.times = std::move(times);
+  table.values = std::move(values);
+  table.interpolation = interpolation;
+  return table;
+}
+
 inline ForceLaw<Expression> law(const std::string& coordinate, const std::string& force) {
   return {name(coordinate), ex(force)};
 }
