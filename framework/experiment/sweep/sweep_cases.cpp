@@ -130,10 +130,9 @@ std::vector<std::string> makeNames(const SweepSpec& sweep, const std::vector<Cho
 }
 
 /// Sections that no part of the model is read from.
-constexpr std::array kBesideModel = {"seed",   "features",    "transform",   "noise",
-                                     "design", "inverse_map", "evaluation",  "refine",
-                                     "trust",  "gates",       "measurement", "report",
-                                     "candidates"};
+constexpr std::array kBesideModel = {"seed",        "features",   "transform", "noise", "design",
+                                     "inverse_map", "evaluation", "refine",    "trust", "gates",
+                                     "measurement", "report",     "candidates"};
 
 /// What a choice says of the model: equal for cases that have the same.
 Choice selectModelValues(const Choice& choice, const std::vector<SweptKey>& keys) {
