@@ -1,7 +1,7 @@
 """The documents stay short and readable: words in all, words of a page, words of a sentence.
 
-Counted is what people wrote: not code, not pages that begin with "<!-- generated" or say "Written by `", not tables of keys
-that scripts/reference fills in.
+Counted is what people wrote: not code, not pages that begin with "<!-- generated" or say "Written by `", not tables that
+scripts/reference and benchmarks fill in.
 """
 import os
 import re
@@ -22,9 +22,8 @@ def list_pages():
     for page in sorted((SOURCE / "docs").rglob("*.md")):
         text = page.read_text()
         if not is_generated(text):
-            yield str(page.relative_to(SOURCE)), re.sub(
-                r"<!-- keys of .*?<!-- end of keys -->", "", text, flags=re.DOTALL
-            )
+            written = r"<!-- (keys of .*?<!-- end of keys|measured -->.*?<!-- end of what was measured) -->"
+            yield str(page.relative_to(SOURCE)), re.sub(written, "", text, flags=re.DOTALL)
 
 
 def drop_code(text):
