@@ -36,7 +36,9 @@ std::optional<MissingTerm> findMissing(const ExperimentSpec& experiment, const R
   constexpr double kLevel = 0.01;  // DiagnosisOptions::level
   constexpr std::size_t kFitted = 3;
   const CurrentFit current = fitFrom(experiment, recording, inferred);
-  if (current.point.size() == 0) {
+  constexpr double kGross =
+      1e4;  // chi-square a residual: a recording that the model is not about, or a wrong unit
+  if (current.point.size() == 0 || current.chi_square > kGross * current.degrees) {
     return {};
   }
   const ScoredCandidates scored =
