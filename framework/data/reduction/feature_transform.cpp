@@ -1,5 +1,7 @@
 #include "framework/data/reduction/feature_transform.hpp"
 
+#include <algorithm>
+
 #include "framework/data/reduction/partial_least_squares.hpp"
 #include "framework/data/reduction/principal_components.hpp"
 #include "framework/data/reduction/scaling_steps.hpp"
@@ -59,7 +61,23 @@ MatrixXd FeatureTransform::apply(const MatrixXd& features) const {
   return inputs;
 }
 
+bool FeatureTransform::isDiagonal() const {
+  return std::all_of(steps.begin(), steps.end(),
+                     [](const AffineStep& step) { return step.projection.size() == 0; });
+}
+
+Eigen::VectorXd FeatureTransform::calcScale() const {
+  Eigen::VectorXd scale = Eigen::VectorXd::Ones(steps.back().countInputs());
+  for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
+    scale = scale.cwiseQuotient(step->scale);
+  }
+  return scale;
+}
+
 MatrixXd FeatureTransform::calcMatrix() const {
+  if (isDiagonal()) {
+    return calcScale().asDiagonal();
+  }
   MatrixXd matrix;  // of the steps behind; none yet
   Eigen::VectorXd scale =
       Eigen::VectorXd::Ones(steps.back().countInputs());  // from its left, while there is none
@@ -74,7 +92,7 @@ MatrixXd FeatureTransform::calcMatrix() const {
       matrix = matrix * step->scale.cwiseInverse().asDiagonal();
     }
   }
-  return matrix.size() == 0 ? MatrixXd(scale.asDiagonal()) : matrix;
+  return matrix;
 }
 
 NoiseCovariance FeatureTransform::applyToCovariance(const NoiseCovariance& covariance) const {

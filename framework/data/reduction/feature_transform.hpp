@@ -20,6 +20,10 @@ struct FeatureTransform {
   /// M (k x d) of apply(x) = M x + apply(0); needs a step, which knows d.
   Eigen::MatrixXd calcMatrix() const;
 
+  /// Whether no step mixes features, so that M is diagonal; and its diagonal then.
+  bool isDiagonal() const;
+  Eigen::VectorXd calcScale() const;
+
   /// Covariance of features (d x d) -> of inputs (k x k).
   NoiseCovariance applyToCovariance(const NoiseCovariance& covariance) const;
 };

@@ -20,8 +20,9 @@ using ExactProcess = std::shared_ptr<const gp::GaussianProcess>;
 }  // namespace
 
 OnlineProcesses::OnlineProcesses(GpMap map) : map_(std::move(map)), predictor_(map_.processes) {
-  matrix_ = map_.transform.calcMatrix();
-  offset_ = map_.transform.apply(VectorXd::Zero(matrix_.cols()));
+  feature_count_ = map_.transform.steps.front().offset.size();
+  offset_ = map_.transform.apply(VectorXd::Zero(feature_count_));
+  matrix_ = map_.transform.isDiagonal() ? MatrixXd(map_.transform.calcScale()) : map_.transform.calcMatrix();
   noise_variance_.resize(static_cast<Index>(map_.processes.size()));
   for (Index p = 0; p < noise_variance_.size(); ++p) {
     noise_variance_[p] = gp::getNoiseVariance(map_.processes[p]);
@@ -42,7 +43,11 @@ void OnlineProcesses::makeInputs(const Eigen::Ref<const VectorXd>& features,
                                  const Eigen::Ref<const VectorXd>& known, VectorXd& inputs) const {
   auto transformed = inputs.head(offset_.size());
   transformed = offset_;
-  transformed.noalias() += matrix_ * features;
+  if (matrix_.cols() == 1 && feature_count_ > 1) {
+    transformed += matrix_.col(0).cwiseProduct(features);
+  } else {
+    transformed.noalias() += matrix_ * features;
+  }
   inputs.tail(known.size()) = (known - map_.known_inputs.center).cwiseQuotient(map_.known_inputs.half_width);
 }
 

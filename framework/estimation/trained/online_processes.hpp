@@ -15,7 +15,7 @@ class OnlineProcesses {
   explicit OnlineProcesses(GpMap map);
 
   const GpMap& getMap() const { return map_; }
-  Eigen::Index getFeatureCount() const { return matrix_.cols(); }
+  Eigen::Index getFeatureCount() const { return feature_count_; }
 
   /// The buffers of one thread, and the result.
   class Workspace {
@@ -45,7 +45,8 @@ class OnlineProcesses {
                          Eigen::VectorXd& slope) const;
 
   GpMap map_;
-  Eigen::MatrixXd matrix_;  // inputs = matrix features + offset
+  Eigen::Index feature_count_ = 0;
+  Eigen::MatrixXd matrix_;  // inputs = matrix features + offset; one column: a factor for each feature
   Eigen::VectorXd offset_;
   Eigen::VectorXd noise_variance_;
   gp::OnlinePredictor predictor_;

@@ -2,9 +2,13 @@
 
 #include <udunits2.h>
 
+#include <algorithm>
+#include <cctype>
+#include <cmath>
 #include <memory>
 #include <mutex>
-#include <regex>
+
+#include "framework/base/text/number_text.hpp"
 
 namespace twinmap {
 namespace {
@@ -100,22 +104,49 @@ Dimension parseWholePowers(const std::string& text, const std::string& unit, con
   return dimension;
 }
 
+/// "m^1.5", a power that UDUNITS lacks.
+struct BrokenPower {
+  std::string base;
+  double power = 0.0;
+};
+
+/// The first one of a unit, which becomes 1 there; the power is negative behind a "/".
+std::optional<BrokenPower> takeBrokenPower(std::string& unit) {
+  for (std::size_t hat = unit.find('^'); hat != std::string::npos; hat = unit.find('^', hat + 1)) {
+    const std::size_t end = std::min(unit.find_first_not_of("-.0123456789", hat + 1), unit.size());
+    std::size_t begin = hat;
+    while (begin > 0 && std::isalpha(static_cast<unsigned char>(unit[begin - 1])) != 0) {
+      --begin;
+    }
+    double power = 0.0;
+    const std::string number = unit.substr(hat + 1, end - hat - 1);
+    if (begin == hat || number.find('.') == std::string::npos || !parseLiteral(number, power)) {
+      continue;
+    }
+    const std::size_t before = begin == 0 ? std::string::npos : unit.find_last_not_of(' ', begin - 1);
+    const double sign = before != std::string::npos && unit[before] == '/' ? -1.0 : 1.0;
+    const BrokenPower found{unit.substr(begin, hat - begin), sign * power};
+    unit.replace(begin, end - begin, "1");
+    return found;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 Dimension parseUnit(const std::string& unit, const SourceLocation& where) {
   if (unit.empty() || unit == "-") {
     return {};
   }
-  static const std::regex kBrokenPower(R"((/\s*)?([A-Za-z]+)\^(-?\d*\.\d+))");  // which UDUNITS lacks
   const std::lock_guard<std::mutex> guard(udunits);
   Dimension broken;
-  for (std::sregex_iterator found(unit.begin(), unit.end(), kBrokenPower), end; found != end; ++found) {
-    const double power = std::stod((*found)[3].str()) * ((*found)[1].matched ? -1.0 : 1.0);
-    for (const auto& [base, of_one] : parseWholePowers((*found)[2].str(), unit, where)) {
-      broken[base] += power * of_one;
+  std::string whole = unit;
+  while (const std::optional<BrokenPower> found = takeBrokenPower(whole)) {
+    for (const auto& [base, of_one] : parseWholePowers(found->base, unit, where)) {
+      broken[base] += found->power * of_one;
     }
   }
-  Dimension dimension = parseWholePowers(std::regex_replace(unit, kBrokenPower, "$011"), unit, where);
+  Dimension dimension = parseWholePowers(whole, unit, where);
   for (const auto& [base, power] : broken) {
     dimension[base] += power;
     if (dimension[base] == 0.0) {

@@ -76,14 +76,24 @@ double countFeatures(const ExperimentSpec& experiment) {
   return count;
 }
 
-/// Numbers for the features themselves: the covariance of their noise, of training and of test samples, its
-/// factor and its inverse's, eigenvectors and work space. Measured: 7.6 to 8 times the square of 1000 and
-/// 2000 features; a network draws its samples besides, 21000 a feature.
+/// Whether the noise of one feature may go along with another's. That of samples is independent as that of
+/// the response.
+bool isNoiseCoupled(const ExperimentSpec& experiment) {
+  return !experiment.noise.correlation.empty() ||
+         std::any_of(experiment.features.begin(), experiment.features.end(), [](const FeatureSpec& feature) {
+           return !std::holds_alternative<SamplesFeatureSpec>(feature);
+         });
+}
+
+/// Numbers for the features themselves: where their noise is coupled, its covariance, of training and of test
+/// samples, its factor and its inverse's, eigenvectors and work space. Measured: 7.6 to 8 times the square of
+/// 1000 and 2000 features; a network draws its samples besides, 21000 a feature.
 double countFeatureNumbers(const ExperimentSpec& experiment) {
   constexpr double kSquares = 8.0, kNetworkSamples = 21e3;
   const double features = countFeatures(experiment);
   const bool network = experiment.inverse_map.findNetwork() != nullptr;
-  return kSquares * features * features + (network ? kNetworkSamples * features : 0.0);
+  return (isNoiseCoupled(experiment) ? kSquares * features * features : 0.0) +
+         (network ? kNetworkSamples * features : 0.0);
 }
 
 double countSearches(const GpMapSpec& gp) {
@@ -92,8 +102,8 @@ double countSearches(const GpMapSpec& gp) {
 
 /// Windows of a surrogate's features, at least.
 double countWindows(const ExperimentSpec& experiment) {
-  constexpr double kRowsPerWindow = 16.0;
-  return std::ceil(countRows(experiment) / kRowsPerWindow);
+  constexpr double kRowsPerWindow = 16.0, kMost = 64.0;
+  return std::min(kMost, std::ceil(countRows(experiment) / kRowsPerWindow));
 }
 
 double square(double x) {
