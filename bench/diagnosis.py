@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Holds `twinmap diagnose` to its bars on eight mechanisms of different kinds and writes docs/benchmarks/diagnosis.md.
+"""Holds `twinmap diagnose` to its bars on eight mechanisms of different kinds and writes a page.
 
-Usage: bench/diagnosis.py STUDY [--terms N] [--tests N] [--nothing N] [--out FILE]
+Usage: bench/diagnosis.py STUDY [--terms N] [--tests N] [--nothing N] --out FILE
 
 STUDY is the program diagnosis_study (bench/framework/diagnosis). Of each mechanism, N terms that its recordings can show,
 spread evenly over the list of candidates, are missing from the model in turn, by 1.2 to 30 times chi-square; and nothing is.
@@ -83,7 +83,7 @@ def main():
     parser.add_argument("--terms", type=int, default=8)
     parser.add_argument("--tests", type=int, default=2)
     parser.add_argument("--nothing", type=int, default=12)
-    parser.add_argument("--out", type=Path, default=ROOT / "docs/benchmarks/diagnosis.md")
+    parser.add_argument("--out", type=Path, required=True, help="the page, Markdown")
     arguments = parser.parse_args()
     table = "| mechanism | first or tied | nothing found where nothing is missing | coverage before | after | nothing missing | s |\n|---|--:|--:|--:|--:|--:|--:|\n"
     all_missing, all_nothing, missed = [], [], []
