@@ -23,6 +23,14 @@ def use(*arguments):
     )
 
 
+def read_answers(lines):
+    """Without the term that a model may lack, which the command alone looks for."""
+    answers = [json.loads(line) for line in lines.splitlines()]
+    for answer in answers:
+        answer.pop("missing", None)
+    return answers
+
+
 class Library(RunTestCase):
     @classmethod
     def setUpClass(cls):
@@ -39,7 +47,7 @@ class Library(RunTestCase):
             files = [self.measurement, self.heavier]
             expected = call("infer", self.run_folder, *files, "--json", *options).stdout
             result = use("json", self.run_folder, refine, *files)
-            self.assertEqual(result.stdout, expected, result.stderr)
+            self.assertEqual(read_answers(result.stdout), read_answers(expected), result.stderr)
         self.assertEqual([json.loads(line)["status"] for line in expected.splitlines()], ["ok", "model_mismatch"])
 
     def test_tells_what_is_wrong_and_goes_on(self):
