@@ -14,8 +14,9 @@ LaneModes::LaneModes(const LaneModel& model) : model_(model), program_(model.lin
 }
 
 MatrixXd LaneModes::calcMatrix(const Eigen::Ref<const VectorXd>& parameters, const VectorXd& equilibrium) {
-  const Eigen::Index n = model_.coordinate_count, all = model_.counts.states;
-  const VectorXd states = insertSpeeds(equilibrium, VectorXd::Zero(n));
+  const Eigen::Index n = model_.coordinate_count, all = model_.counts.states - model_.hidden_count;
+  VectorXd states = VectorXd::Zero(model_.counts.states);  // the hidden ones take no part
+  states.head(all) = insertSpeeds(equilibrium, VectorXd::Zero(n));
   MatrixXd matrix = MatrixXd::Zero(all, all);
   matrix.block(0, n, n, n).setIdentity();
   matrix.bottomRows(all - n) = program_.calc({parameters, states}).reshaped(all - n, all);
