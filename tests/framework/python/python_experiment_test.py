@@ -47,7 +47,7 @@ class Reading(unittest.TestCase):
         np.testing.assert_allclose(experiment.times, 0.05 * np.arange(1, 101), atol=1e-12)
         self.assertEqual(
             experiment.to_yaml(),
-            "".join(line for line in call("check", TABLE_1).stdout.splitlines(True) if not line.startswith("# solver")),
+            "".join(line for line in call("check", TABLE_1).stdout.splitlines(True) if not line.startswith("#")),
         )
         self.assertIn("k_theta", experiment._repr_html_())
 
