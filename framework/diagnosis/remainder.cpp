@@ -113,6 +113,19 @@ std::vector<ProcessEffect> listEffects(const ExperimentSpec& experiment, const R
   return effects;
 }
 
+/// Of a process of unit variance between its knots.
+MatrixXd calcCorrelation(const VectorXd& knots, double correlation_time) {
+  return MatrixXd::NullaryExpr(knots.size(), knots.size(), [&](Index i, Index j) {
+    return std::exp(-std::abs(knots[i] - knots[j]) / correlation_time);
+  });
+}
+
+MatrixXd joinData(const LinearizedRecordings& linear) {
+  MatrixXd data(linear.residual.size(), 1 + linear.jacobian.cols());
+  data << linear.residual, linear.jacobian;
+  return data;
+}
+
 /// A process of a correlation time, in directions in which its parts are independent: residuals and
 /// derivatives of a recording in them.
 struct IndependentParts {
@@ -122,21 +135,12 @@ struct IndependentParts {
 
 IndependentParts splitProcess(const ProcessEffect& effect, const LinearizedRecordings& linear,
                               double correlation_time) {
-  const Index k = effect.knots.size();
-  MatrixXd covariance(k, k);
-  for (Index i = 0; i < k; ++i) {
-    for (Index j = 0; j < k; ++j) {
-      covariance(i, j) = std::exp(-std::abs(effect.knots[i] - effect.knots[j]) / correlation_time);
-    }
-  }
+  const MatrixXd covariance = calcCorrelation(effect.knots, correlation_time);
   const MatrixXd directions =
       effect.responses * linalg::calcCholesky(covariance).lower.triangularView<Eigen::Lower>();
   const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(directions.transpose() * directions);
-  MatrixXd data(linear.residual.size(), 1 + linear.jacobian.cols());
-  data << linear.residual, linear.jacobian;
-  IndependentParts parts{eigen.values.cwiseMax(0.0),
-                         eigen.vectors.transpose() * (directions.transpose() * data)};
-  return parts;
+  return {eigen.values.cwiseMax(0.0),
+          eigen.vectors.transpose() * (directions.transpose() * joinData(linear))};
 }
 
 /// Sums of one quadratic form [r, J]' V^-1 [r, J] over recordings, in the places of all unknown parameters.
@@ -148,8 +152,7 @@ struct Whitened {
 
 void addRecording(const LinearizedRecordings& linear, const IndependentParts& parts, double variance,
                   const std::vector<Index>& places, Whitened& sum) {
-  MatrixXd data(linear.residual.size(), 1 + linear.jacobian.cols());
-  data << linear.residual, linear.jacobian;
+  const MatrixXd data = joinData(linear);
   // V^-1 = I - H (1/s^2 + H'H)^-1 H'
   const VectorXd weights = (variance / (1.0 + variance * parts.variances.array())).matrix();
   const MatrixXd inner =
@@ -253,18 +256,10 @@ void setEstimate(const std::vector<FittedRecording>& recordings, std::size_t eff
   remainder.mean = point.head(p) + step.head(p);
   remainder.stddevs = covariance.diagonal().head(p).cwiseSqrt();
   const FittedRecording& first = recordings.front();
-  VectorXd own(first.linear.jacobian.cols());
-  own << step.head(own.size());
-  const VectorXd left = first.linear.residual - first.linear.jacobian * own;
+  const VectorXd left =
+      first.linear.residual - first.linear.jacobian * step.head(first.linear.jacobian.cols());
   const ProcessEffect& process = first.effects[effect];
-  const Index k = process.knots.size();
-  MatrixXd prior(k, k);
-  for (Index i = 0; i < k; ++i) {
-    for (Index j = 0; j < k; ++j) {
-      prior(i, j) =
-          best.variance * std::exp(-std::abs(process.knots[i] - process.knots[j]) / best.correlation_time);
-    }
-  }
+  const MatrixXd prior = best.variance * calcCorrelation(process.knots, best.correlation_time);
   // the process given what is left: K G' (I + G K G')^-1 r
   const MatrixXd lower = linalg::calcCholesky(prior).lower.triangularView<Eigen::Lower>();
   const MatrixXd directions = process.responses * lower;

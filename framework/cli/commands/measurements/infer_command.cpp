@@ -51,7 +51,7 @@ class InferCommand {
         session_(source_.makeSession(makeOptions(arguments))),
         known_(collectKnown(getModel().inputs, parseKnownValues(arguments.known))),
         run_(arguments.run),
-        names_missing_(!arguments.follow),
+        names_missing_(!arguments.follow && !arguments.csv),
         diagnoses_(arguments.diagnose),
         format_(chooseFormat(arguments)),
         history_(getModel().parameters),
@@ -96,9 +96,9 @@ class InferCommand {
 
   /// Throws std::runtime_error if a measurement could not be used.
   void finish() {
-    if (const std::string courses = describeCourses(history_.get());
-        format_ == Format::kTable && !courses.empty()) {
-      std::cout << "\n" << courses;
+    if (format_ == Format::kTable) {
+      const std::string courses = describeCourses(history_.get());
+      std::cout << (courses.empty() ? "" : "\n") << courses;
     }
     std::cout.flush();
     if (!page_.empty()) {
@@ -152,7 +152,9 @@ class InferCommand {
   void print(const InferredMeasurement& inferred, const RecordedFeatures* recording) {
     const std::vector<ParameterSpec>& parameters = getModel().parameters;
     const std::vector<FeatureInfo>& features = source_.getReader().getExtractor().getInfos();
-    history_.add(inferred);
+    if (format_ == Format::kTable || !page_.empty()) {  // a stream has no end
+      history_.add(inferred);
+    }
     if (draws_) {
       *draws_ << makeDrawsCsvRows(inferred);
     }
