@@ -65,8 +65,8 @@ twinmap_result inferBy(twinmap_inferrer* inferrer, const Infer& infer) {
 
 twinmap::InferredMeasurement inferTable(twinmap_inferrer& inferrer, const VectorXd& known,
                                         const std::vector<twinmap::NamedColumn>& columns) {
-  const twinmap::Table table =
-      twinmap::makeTable("measurement", columns, inferrer.source.getReader().listColumns());
+  const twinmap::Table table = twinmap::makeTable(
+      "measurement", columns, inferrer.source.getReader().listColumns(), inferrer.session->getMissingCells());
   return inferrer.session->infer(table, inferrer.start, known);
 }
 
@@ -141,8 +141,8 @@ twinmap_result twinmap_infer_columns(twinmap_inferrer* inferrer, const twinmap_c
 
 twinmap_result twinmap_infer_file(twinmap_inferrer* inferrer, const char* path) {
   return inferBy(inferrer, [&](twinmap_inferrer& self, const VectorXd& known) {
-    const twinmap::Table table =
-        twinmap::readTable(&require(path, "path"), self.source.getReader().listColumns());
+    const twinmap::Table table = twinmap::readTable(
+        &require(path, "path"), self.source.getReader().listColumns(), self.session->getMissingCells());
     return self.session->infer(table, self.start, known);
   });
 }

@@ -8,9 +8,9 @@
 
 namespace twinmap {
 
-DirectInference::DirectInference(const MeasurementReader& reader, int draws)
+DirectInference::DirectInference(const MeasurementReader& reader, int draws, SimulatorRefiner::Model model)
     : reader_(reader),
-      simulator_(reader.getExperiment(), reader.getLayout(), SimulatorRefiner::Model::kToBeChecked),
+      simulator_(reader.getExperiment(), reader.getLayout(), model),
       options_(makePosteriorOptions(reader.getExperiment(), draws)),
       quantities_(makeDerivedQuantities(reader.getExperiment())) {
   simulator_.requireNoise();

@@ -11,11 +11,13 @@ class DirectInference final : public MeasurementInference {
  public:
   /// draws: of a round. The reader must outlive the object. Throws ExperimentError where the simulator cannot
   /// be made, a feature has no noise or the draws are fewer than kMinPosteriorDraws.
-  explicit DirectInference(const MeasurementReader& reader, int draws = SimulatorPosteriorOptions{}.draws);
+  explicit DirectInference(const MeasurementReader& reader, int draws = SimulatorPosteriorOptions{}.draws,
+                           SimulatorRefiner::Model model = SimulatorRefiner::Model::kToBeChecked);
 
   const MeasurementReader& getReader() const override { return reader_; }
   bool refines() const override { return false; }
   bool samplesPosteriors() const override { return false; }
+  MissingCells getMissingCells() const override { return MissingCells::kKeep; }
 
   /// Samples that the table lacks are left out of the likelihood (MeasurementReader::readAvailableFeatures);
   /// standard deviations that it states go before the experiment's.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/base/text/number_text.hpp"
 #include "framework/estimation/posterior/noise_candidates.hpp"
 #include "framework/estimation/refined/acceptance.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
@@ -69,6 +70,7 @@ struct TestedResidual {
 /// Without the outliers, which are named.
 TestedResidual takeInliers(const SimulatorPosterior& posterior, const std::vector<FeatureInfo>& infos,
                            std::vector<std::string>& outliers) {
+  constexpr int kDigits = 3;
   const VectorXd& residual = posterior.standardized.residual;
   TestedResidual tested{residual, infos, posterior.standardized.degrees};
   const bool has_weights = posterior.residual_weights.size() == residual.size();
@@ -83,7 +85,7 @@ TestedResidual takeInliers(const SimulatorPosterior& posterior, const std::vecto
       continue;  // beyond what its sensor shows, as it should be
     }
     if (has_weights && posterior.residual_weights[i] < kOutlierWeight) {
-      outliers.push_back(fmt::format("{} ({:.3g} sd)", info.name, std::abs(residual[i])));
+      outliers.push_back(fmt::format("{} ({} sd)", info.name, toShortText(std::abs(residual[i]), kDigits)));
       tested.degrees -= 1.0;
     } else {
       inliers.push_back(i);
@@ -122,9 +124,8 @@ bool NoiseReport::differs() const {
   return isStated() && found.size_was_inferred && std::abs(calcSizeDeviation(found)) > kSignificant;
 }
 
-bool SimulatorFit::isPlausible() const {
-  constexpr double kTooSmallLevel = 1e-3;
-  return test.calcPValue() >= kMismatchLevel && 1.0 - test.chi_square_p >= kTooSmallLevel;
+bool SimulatorFit::isAsStated() const {
+  return outliers.empty() && noise.empty();
 }
 
 double SimulatorFit::getNoiseFactor() const {

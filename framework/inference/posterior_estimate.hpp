@@ -44,9 +44,9 @@ struct SimulatorFit {
   int searches = 0, found_best = 0, simulations = 0;
 
   bool isSimulated() const { return degrees > 0.0; }
-  /// Whether nothing speaks against the noise as it is supposed: neither a test of what is too much, nor a
-  /// sum of squares that is too small, in one of a thousand good measurements.
-  bool isPlausible() const;
+  bool isPlausible() const { return test.isPlausible(); }
+  /// Whether the noise was supposed to be as it is stated.
+  bool isAsStated() const;
   /// Of the noise over that stated, of the output where it differs most; 1 where it does nowhere.
   double getNoiseFactor() const;
   bool isColoured() const;

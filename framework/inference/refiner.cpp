@@ -308,10 +308,12 @@ MatrixXd SimulatorRefiner::listStarts(const InferredMeasurement& inferred, const
 void SimulatorRefiner::sampleAndJudge(const VectorXd& features, const VectorXd& known,
                                       const TrustModel* trust, const SimulatorPosteriorOptions& options,
                                       InferredMeasurement& inferred) const {
-  inferred.posterior =
-      sampleUnder(describeNoise({}), features, known, listStarts(inferred, features, known, trust), options);
+  inferred.posterior = samplePosterior(features, known, describeNoise({}),
+                                       listStarts(inferred, features, known, trust), options);
   const SimulatorFit& fit = *inferred.posterior->fit;
-  if (trust != nullptr && fit.isSimulated()) {
+  if (trust != nullptr && !fit.isAsStated()) {
+    inferred.trust.reset();
+  } else if (trust != nullptr && fit.isSimulated()) {
     const Estimate& estimate = inferred.posterior->estimate;
     inferred.trust = judgeAnew(*trust, *inferred.trust,
                                {fit.residual, fit.chi_square / fit.degrees, fit.degrees, fit.explained,

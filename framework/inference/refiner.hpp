@@ -77,9 +77,10 @@ class SimulatorRefiner {
   /// The least chi-square that 16 searches from all over the bounds find (findLeastChiSquare).
   double findLeastChiSquare(const Eigen::VectorXd& features, const Eigen::VectorXd& known) const;
 
-  /// Under the stated noise, searched from all that is known of the measurement too: the estimator's basins,
-  /// the training simulations of the most similar features, the refined estimate; and what follows for its
-  /// trust (judgeAnew): sets both.
+  /// The posterior (samplePosterior), searched from all that is known of the measurement too: the estimator's
+  /// basins, the training simulations of the most similar features, the refined estimate; and what follows
+  /// for its trust (judgeAnew), which is withdrawn where the noise is not as stated: the simulated
+  /// measurements that it compares with are then none like this one. Sets both.
   void sampleAndJudge(const Eigen::VectorXd& features, const Eigen::VectorXd& known, const TrustModel* trust,
                       const SimulatorPosteriorOptions& options, InferredMeasurement& inferred) const;
 

@@ -21,15 +21,19 @@ bool isAccepted(const InferredMeasurement& inferred) {
   return inferred.refined && inferred.refined->isAccepted();
 }
 
-/// By the trust model, where there is one, else by the residual of the simulator's best point.
+/// By the trust model, where there is one, else by the residual of the simulator's best point. The trust
+/// model does not ask whether neighbours are alike; its false alarms are to stay what they are, so that a
+/// tenth of their level is enough here.
 bool isMismatch(const InferredMeasurement& inferred) {
-  if (inferred.trust) {
-    const std::vector<TrustStatus>& all = inferred.trust->statuses;
-    return std::find(all.begin(), all.end(), TrustStatus::kModelMismatch) != all.end();
-  }
   const PosteriorEstimate* posterior = findSimulated(inferred);
-  return posterior != nullptr && posterior->fit->isSimulated() &&
-         posterior->fit->test.calcPValue() < kMismatchLevel;
+  const bool simulated = posterior != nullptr && posterior->fit->isSimulated();
+  if (inferred.trust) {
+    constexpr double kColouredLevel = 0.1 * kMismatchLevel;
+    const std::vector<TrustStatus>& all = inferred.trust->statuses;
+    return std::find(all.begin(), all.end(), TrustStatus::kModelMismatch) != all.end() ||
+           (simulated && posterior->fit->test.whiteness_p < kColouredLevel);
+  }
+  return simulated && posterior->fit->test.calcPValue() < kMismatchLevel;
 }
 
 /// What the noise has that was not stated.

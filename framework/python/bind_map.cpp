@@ -69,7 +69,8 @@ InferredEstimate inferBy(PythonMap& map, const InferRequest& request, const Infe
 
 InferredEstimate inferFile(PythonMap& map, const std::string& path, const InferRequest& request) {
   return inferBy(map, request, [&](MeasurementInference& session, const Eigen::VectorXd& known) {
-    return session.infer(readTable(path, map.getReader().listColumns()), request.start, known);
+    return session.infer(readTable(path, map.getReader().listColumns(), session.getMissingCells()),
+                         request.start, known);
   });
 }
 
@@ -79,7 +80,8 @@ InferredEstimate inferColumns(PythonMap& map, const NamedVectors& columns, const
     named.push_back({name, viewVector(values, "column '" + name + "'")});
   }
   return inferBy(map, request, [&](MeasurementInference& session, const Eigen::VectorXd& known) {
-    const Table table = makeTable("measurement", named, map.getReader().listColumns());
+    const Table table =
+        makeTable("measurement", named, map.getReader().listColumns(), session.getMissingCells());
     return session.infer(table, request.start, known);
   });
 }

@@ -8,8 +8,8 @@
 namespace twinmap {
 
 Table makeTable(const std::string& source, const std::vector<NamedColumn>& columns,
-                const std::vector<std::string>& wanted) {
-  TableBuilder table(source, wanted);
+                const std::vector<std::string>& wanted, MissingCells missing) {
+  TableBuilder table(source, wanted, missing);
   std::set<std::string> names;
   for (const NamedColumn& column : columns) {
     const ColumnSpec header = parseColumn(column.header);

@@ -11,8 +11,9 @@ struct NamedColumn {
 };
 
 /// The table that a file with these columns would give; `wanted` as of readTable(). Throws MeasurementError
-/// for a name that stands twice, and for a wanted column that is empty or has a number that is not finite.
+/// for a name that stands twice, and for a wanted column that is empty or has a number that is not finite;
+/// NaN is a cell that is missing.
 Table makeTable(const std::string& source, const std::vector<NamedColumn>& columns,
-                const std::vector<std::string>& wanted = {});
+                const std::vector<std::string>& wanted = {}, MissingCells missing = MissingCells::kRefuse);
 
 }  // namespace twinmap

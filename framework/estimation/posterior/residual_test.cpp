@@ -64,6 +64,11 @@ double ResidualTest::calcPValue() const {
   return std::min(1.0, kTests * std::min({chi_square_p, whiteness_p, largest_p}));
 }
 
+bool ResidualTest::isPlausible() const {
+  constexpr double kTooSmallLevel = 1e-3;
+  return calcPValue() >= kMismatchLevel && 1.0 - chi_square_p >= kTooSmallLevel;
+}
+
 ResidualTest testResidual(const VectorXd& residual, double degrees, const std::vector<FeatureInfo>& infos) {
   ResidualTest test;
   test.chi_square_p = calcUpperTail(residual.squaredNorm(), degrees);

@@ -17,6 +17,10 @@ struct ResidualTest {
   /// That of the smallest of three, by Bonferroni's bound: below it in at most as many of the good
   /// measurements.
   double calcPValue() const;
+
+  /// Whether nothing speaks against the noise as it is supposed: neither a test of what is too much, nor a
+  /// sum of squares that is too small, in one of a thousand good measurements.
+  bool isPlausible() const;
 };
 
 /// Below this p-value a measurement is a model_mismatch: of good ones 1 % are called so.

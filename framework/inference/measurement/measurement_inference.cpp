@@ -7,10 +7,18 @@ InferredMeasurement MeasurementInference::infer(const Table& table, std::optiona
   const MeasurementReader& reader = getReader();
   reader.requireExcitation(table, start);
   const Eigen::VectorXd response = reader.readResponse(table, start);
-  InferredMeasurement inferred = infer(extractFeatures(reader.getExtractor(), response, table.source), known);
+  return inferResponse(table, start, response, extractFeatures(reader.getExtractor(), response, table.source),
+                       known);
+}
+
+InferredMeasurement MeasurementInference::inferResponse(const Table& table, std::optional<double> start,
+                                                        const Eigen::VectorXd& response,
+                                                        const Eigen::VectorXd& features,
+                                                        const Eigen::VectorXd& known) {
+  InferredMeasurement inferred = infer(features, known);
   inferred.fault = findFault(response, known, inferred);
   inferred.source = table.source;
-  inferred.start = reader.getStart(table, start);
+  inferred.start = getReader().getStart(table, start);
   return inferred;
 }
 

@@ -26,6 +26,12 @@ struct AvailableFeatures {
   std::vector<std::string> remarks;     ///< what is missing and why, a phrase each
   Eigen::VectorXd response;             ///< rows of the layout, NaN where missing
   Eigen::VectorXd stddev{};  ///< of rows, where the measurement states it; NaN of others; empty: of none
+
+  /// Whether an estimator that was trained on all features and one noise can use them.
+  bool isComplete() const {
+    return static_cast<Eigen::Index>(available.size()) == features.size() && clipped.empty() &&
+           stddev.size() == 0;
+  }
 };
 
 /// Throws MeasurementError where a measurement states standard deviations: for what uses the experiment's.

@@ -5,8 +5,9 @@
 #include "framework/base/text/source_location.hpp"
 #include "framework/estimation/trained/posterior_model.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/inference/direct_inference.hpp"
 #include "framework/inference/measurement/measurement_faults.hpp"
-#include "framework/inference/select_estimate.hpp"
+#include "framework/inference/measurement/posterior_need.hpp"
 
 namespace twinmap {
 namespace {
@@ -19,19 +20,6 @@ PosteriorSampler makeSampler(const Inferrer& inferrer, const SimulatorPosteriorO
         "are too few: give every output noise and train with 'inverse_map: surrogate'");
   }
   return {std::move(*model), options.draws, options.seed};
-}
-
-/// Whether a 95 % interval of a normal distribution ends outside the bounds: it is not the posterior's then.
-bool crossesBounds(const Estimate& estimate, const std::vector<ParameterSpec>& parameters) {
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    const auto i = static_cast<Eigen::Index>(p);
-    const double reach = kNormal95 * estimate.stddev[i];
-    if (estimate.mean[i] - reach < parameters[p].bounds.lower ||
-        estimate.mean[i] + reach > parameters[p].bounds.upper) {
-      return true;
-    }
-  }
-  return false;
 }
 
 }  // namespace
@@ -58,6 +46,8 @@ MeasurementSession::MeasurementSession(const Inferrer& inferrer, const SessionOp
   }
 }
 
+MeasurementSession::~MeasurementSession() = default;
+
 void MeasurementSession::choosePosterior(const SessionOptions& options) {
   samples_always_ = options.posterior_from ? *options.posterior_from == PosteriorSource::kSimulator
                                            : simulator_->samplesFast();
@@ -68,13 +58,20 @@ void MeasurementSession::choosePosterior(const SessionOptions& options) {
   }
 }
 
-bool MeasurementSession::needsPosterior(const InferredMeasurement& inferred) const {
-  if (samples_always_) {
-    return true;
+InferredMeasurement MeasurementSession::infer(const Table& table, std::optional<double> start,
+                                              const Eigen::VectorXd& known) {
+  if (!samplesByNeed()) {
+    return MeasurementInference::infer(table, start, known);
   }
-  return samples_where_needed_ &&
-         (!inferred.refined->isAccepted() || inferred.basins.cols() > 1 || inferred.coverage_is_short ||
-          crossesBounds(selectEstimate(inferred), inferrer_.getExperiment().model.parameters));
+  const AvailableFeatures found = getReader().readAvailableFeatures(table, start);
+  if (found.isComplete()) {
+    return inferResponse(table, start, found.response, found.features, known);
+  }
+  if (!direct_) {
+    direct_ = std::make_unique<DirectInference>(getReader(), posterior_options_.draws,
+                                                SimulatorRefiner::Model::kTrusted);
+  }
+  return direct_->infer(table, start, known);
 }
 
 InferredMeasurement MeasurementSession::infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known) {
@@ -83,7 +80,7 @@ InferredMeasurement MeasurementSession::infer(const Eigen::VectorXd& features, c
   if (refines_) {
     simulator_->refineAndJudge(features, known, trust, inferred);
   }
-  if (needsPosterior(inferred)) {
+  if (samples_always_ || (samples_where_needed_ && needsPosterior(inferrer_, inferred))) {
     simulator_->sampleAndJudge(features, known, trust, posterior_options_, inferred);
   }
   if (sampler_) {

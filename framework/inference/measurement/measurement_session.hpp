@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <tuple>
 
@@ -8,6 +9,8 @@
 #include "framework/inference/refiner.hpp"
 
 namespace twinmap {
+
+class DirectInference;
 
 /// How measurements are inferred.
 struct SessionOptions {
@@ -28,27 +31,33 @@ struct SessionOptions {
 /// Infers one measurement after another by a run, refined or not. The inferrer must outlive it.
 ///
 /// Where estimates are refined, the simulator is fast and the surrogate's posterior was not asked for, its
-/// own takes the place of the refined estimate where least squares may mislead: the refinement was not
-/// accepted, the estimator knows of other basins, an interval crosses a bound, or the refined test samples of
-/// the run had intervals that held less than they say.
+/// own takes the place of the refined estimate where least squares may mislead (needsPosterior), and a
+/// recording that lacks samples is inferred by the simulator alone (DirectInference), as from the experiment
+/// file.
 class MeasurementSession final : public MeasurementInference {
  public:
   /// Throws ExperimentError where the simulator cannot be made, or the posterior that is asked for cannot be
   /// had.
   MeasurementSession(const Inferrer& inferrer, const SessionOptions& options);
+  ~MeasurementSession() override;
 
   const MeasurementReader& getReader() const override { return inferrer_.getReader(); }
   bool refines() const override { return refines_; }
   bool samplesPosteriors() const override { return sampler_.has_value() || samples_always_; }
+  MissingCells getMissingCells() const override {
+    return samplesByNeed() ? MissingCells::kKeep : MissingCells::kRefuse;
+  }
 
-  using MeasurementInference::infer;
+  InferredMeasurement infer(const Table& table, std::optional<double> start,
+                            const Eigen::VectorXd& known) override;
   /// Cost: that of Inferrer::infer() (of a table with a gross misfit 17 an output more),
   /// SimulatorRefiner::refineAndJudge(), sampleAndJudge() and PosteriorSampler::sample().
   InferredMeasurement infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known) override;
 
  private:
   void choosePosterior(const SessionOptions& options);
-  bool needsPosterior(const InferredMeasurement& inferred) const;
+  /// Whether the simulator may be asked for a posterior that replaces what the estimator cannot give.
+  bool samplesByNeed() const { return samples_where_needed_ || samples_always_; }
   /// explainByFault() of a measurement that is a model_mismatch.
   std::string findFault(const Eigen::VectorXd& response, const Eigen::VectorXd& known,
                         const InferredMeasurement& inferred) override;
@@ -57,6 +66,7 @@ class MeasurementSession final : public MeasurementInference {
   Inferrer::Workspace workspace_;
   std::optional<SimulatorRefiner> simulator_;  // where it may be asked
   std::optional<PosteriorSampler> sampler_;    // where the surrogate's posterior was asked for
+  std::unique_ptr<DirectInference> direct_;    // made for the first recording that lacks samples
   SimulatorPosteriorOptions posterior_options_;
   bool refines_ = false;
   bool samples_always_ = false, samples_where_needed_ = false;  // posteriors on the simulator

@@ -9,6 +9,7 @@
 #include "framework/estimation/trained/refinement_starts.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/ensemble.hpp"
+#include "framework/inference/measurement/posterior_need.hpp"
 #include "framework/inference/refiner.hpp"
 #include "framework/inference/select_estimate.hpp"
 #include "framework/simulation/sample_generator.hpp"
@@ -58,7 +59,13 @@ InferredMeasurement infer(const Inferrer& inferrer, const Window& window, const 
   inferred.start = options.from.start;
   if (options.refine.value_or(window.refiner.isWanted())) {
     const std::optional<TrustModel>& trust = inferrer.getTrustModel();
-    window.refiner.refineAndJudge(window.features, options.known, trust ? &*trust : nullptr, inferred);
+    const TrustModel* judged_by = trust ? &*trust : nullptr;
+    window.refiner.refineAndJudge(window.features, options.known, judged_by, inferred);
+    if (window.refiner.samplesFast() && needsPosterior(inferrer, inferred)) {
+      const int draws = SimulatorPosteriorOptions{}.draws;
+      window.refiner.sampleAndJudge(window.features, options.known, judged_by,
+                                    makePosteriorOptions(inferrer.getExperiment(), draws), inferred);
+    }
   }
   return inferred;
 }
@@ -72,7 +79,7 @@ class Replayer {
         replay_(replay),
         estimate_(selectEstimate(replay.inferred)) {
     if (replay.options.measurement == replay.options.from) {
-      explanation_ = estimate_.isRefined() ? replay.inferred.refined->point : replay.inferred.explanation;
+      explanation_ = findExplanation();
     }
   }
 
@@ -94,6 +101,18 @@ class Replayer {
   }
 
  private:
+  /// The point of the sampled box that explains the measurement, by what gave the estimate.
+  VectorXd findExplanation() const {
+    const InferredMeasurement& inferred = replay_.inferred;
+    if (estimate_.method != EstimationMethod::kPosterior) {
+      return estimate_.isRefined() ? inferred.refined->point : inferred.explanation;
+    }
+    const VectorXd &best = inferred.posterior->fit->best, &known = replay_.options.known;
+    VectorXd point(best.size() + known.size());
+    point << best, known;
+    return point;
+  }
+
   void fitNuisance(const VectorXd& parameters, ReplayedModel& model) const {
     const VectorXd start = makePoint(model_, parameters, explanation_, replay_.options.known);
     const Refined fitted = window_.refiner.fitNuisance(start, window_.features);

@@ -73,7 +73,7 @@ class InferCommand {
 
   void inferFile(const std::string& file) {
     try {
-      inferTable(readTable(file, source_.getReader().listColumns(), getMissingCells()));
+      inferTable(readTable(file, source_.getReader().listColumns(), session_->getMissingCells()));
     } catch (const std::exception& error) {
       reportError(file, source_.getReader().getStatedStart(starts_.front()), error.what());
     }
@@ -86,7 +86,7 @@ class InferCommand {
       const std::string source = "measurement " + std::to_string(i);
       try {
         std::istringstream table(text);
-        inferTable(readCsv(table, source, source_.getReader().listColumns(), getMissingCells()));
+        inferTable(readCsv(table, source, source_.getReader().listColumns(), session_->getMissingCells()));
       } catch (const std::exception& error) {
         reportError(source, source_.getReader().getStatedStart(starts_.front()), error.what());
       }
@@ -143,11 +143,6 @@ class InferCommand {
   }
 
   const ModelSpec& getModel() const { return source_.getExperiment().model; }
-  /// A trained estimator needs every feature.
-  MissingCells getMissingCells() const {
-    return source_.findTrained() != nullptr ? MissingCells::kRefuse : MissingCells::kKeep;
-  }
-
   /// recording: to be diagnosed as well; null: not.
   void print(const InferredMeasurement& inferred, const RecordedFeatures* recording) {
     const std::vector<ParameterSpec>& parameters = getModel().parameters;

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "framework/inference/inferrer.hpp"
+
+namespace twinmap {
+
+/// Whether a refined estimate may mislead, so that the posterior on the simulator should take its place: the
+/// refinement was not accepted, the estimator knows of other basins, an interval crosses a bound, the refined
+/// test samples of the run had intervals that held less than they say, or the residual is not of the noise
+/// that is stated. inferred: refined by the inferrer's simulator.
+bool needsPosterior(const Inferrer& inferrer, const InferredMeasurement& inferred);
+
+}  // namespace twinmap
