@@ -6,6 +6,7 @@
 #include <memory>
 #include <numeric>
 
+#include "framework/estimation/posterior/linear_posterior.hpp"
 #include "framework/estimation/posterior/marginal_surface.hpp"
 #include "framework/estimation/posterior/valley.hpp"
 #include "framework/estimation/refined/acceptance.hpp"
@@ -299,6 +300,26 @@ AdaptiveDraws drawFrom(MisfitSurface& surface, const std::vector<Basin>& places,
       [&](int round) -> const RoundNumbers& { return numbers.get(round); }, adaptive);
 }
 
+/// Draws of the first `kept` coordinates: about the only basin of more than kFewUnknown as if the response
+/// were linear, if that is good enough; else of all basins by mixtures, on the floors of valleys too.
+AdaptiveDraws draw(MisfitSurface& surface, const std::vector<Basin>& basins, Index kept,
+                   const SimulatorPosteriorOptions& options, Valleys& valleys) {
+  const bool has_many = kept > kManyUnknown;
+  if (has_many || (surface.getDimensions() > kFewUnknown && basins.size() == 1)) {
+    AdaptiveDraws drawn = sampleLinearized(surface, basins.front(), options.draws, options.seed);
+    const bool is_good = drawn.isReliable() && drawn.effective_sample_size >= kEnough * options.draws &&
+                         drawn.pareto_shape <= importance::AdaptiveOptions().good_pareto_shape;
+    if (has_many || is_good) {
+      drawn.draws.points = MatrixXd(drawn.draws.points.topRows(kept));
+      return drawn;
+    }
+  }
+  valleys = followValleys(surface, basins);
+  std::vector<Basin> places = basins;
+  places.insert(places.end(), valleys.floors.begin(), valleys.floors.end());
+  return drawFrom(surface, places, basins, projectBasins(places, kept), options);
+}
+
 /// Moments, draws and modes, of the first parameters, as many as `projected` has coordinates.
 void setDraws(const AdaptiveDraws& drawn, const std::vector<Basin>& projected, const Valleys& valleys,
               const LogCoordinates& coordinates, SimulatorPosterior& posterior) {
@@ -343,7 +364,8 @@ SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Matrix
   MisfitSurface& surface = whole.upd();
   const LogCoordinates& coordinates = whole.getCoordinates();
   const BasinSearch found =
-      findBasins(surface, toCoordinates(coordinates, given), options.seed, options.search);
+      findBasins(surface, toCoordinates(coordinates, addMedian(given, whole.getPrior(), problem.drawn)),
+                 options.seed, limitSearch(options.search, problem.drawn));
   SimulatorPosterior posterior;
   posterior.starts = found.starts;
   posterior.simulations = surface.getSimulations();
@@ -355,19 +377,19 @@ SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Matrix
   if (problem.trials.size() == 1) {
     posterior.standardized = standardize(surface, problem.trials.front(), found.basins.front().local);
   }
-  const Valleys valleys = followValleys(surface, found.basins);
-  std::vector<Basin> places = found.basins;
-  places.insert(places.end(), valleys.floors.begin(), valleys.floors.end());
-  const std::vector<Basin> projected = projectBasins(found.basins, problem.drawn);
-  const AdaptiveDraws drawn =
-      drawFrom(surface, places, found.basins, projectBasins(places, problem.drawn), options);
+  Valleys valleys;
+  const AdaptiveDraws drawn = draw(surface, found.basins, problem.drawn, options, valleys);
   posterior.simulations = surface.getSimulations();
   posterior.effective_sample_size = drawn.effective_sample_size;
   posterior.pareto_shape = drawn.pareto_shape;
   posterior.message = drawn.findObstacle();
+  if (problem.drawn > kManyUnknown && found.basins.size() > 1) {
+    posterior.message =
+        "several minima of so many parameters explain the measurement, and only one is sampled";
+  }
   if (posterior.isReliable()) {
     const std::vector<ParameterSpec> kept(problem.unknown.begin(), problem.unknown.begin() + problem.drawn);
-    setDraws(drawn, projected, valleys, LogCoordinates(kept), posterior);
+    setDraws(drawn, projectBasins(found.basins, problem.drawn), valleys, LogCoordinates(kept), posterior);
     posterior.prior_stddev = whole.getPrior().calcStddevs().head(problem.drawn);
   }
   return posterior;
