@@ -120,11 +120,18 @@ void MisfitSurface::addPrior(LocalSurface& surface) const {
   if (prior_.isUniform()) {
     return;
   }
-  const PriorMisfit prior = prior_.calcMisfit(coordinates_.toParameters(surface.at));
-  const VectorXd slopes = coordinates_.calcSlopes(surface.at).cwiseProduct(coordinates_.getHalfWidths());
+  const PriorMisfit prior = linearizePrior(surface.at);
   surface.misfit += prior.misfit;
-  surface.information += slopes.asDiagonal() * prior.information * slopes.asDiagonal();
-  surface.descent += slopes.cwiseProduct(prior.descent);
+  surface.information += prior.information;
+  surface.descent += prior.descent;
+}
+
+PriorMisfit MisfitSurface::linearizePrior(const VectorXd& at) const {
+  PriorMisfit prior = prior_.calcMisfit(coordinates_.toParameters(at));
+  const VectorXd slopes = coordinates_.calcSlopes(at).cwiseProduct(coordinates_.getHalfWidths());
+  prior.information = slopes.asDiagonal() * prior.information * slopes.asDiagonal();
+  prior.descent = slopes.cwiseProduct(prior.descent);
+  return prior;
 }
 
 VectorXd MisfitSurface::calcLosses(const MatrixXd& points) {

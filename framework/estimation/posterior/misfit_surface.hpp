@@ -65,6 +65,8 @@ class MisfitSurface {
   /// log of the posterior density (n) in these coordinates, but for a summand: normal noise, -infinity
   /// outside the bounds, where nothing is simulated.
   Eigen::VectorXd calcLogPosteriors(const Eigen::MatrixXd& points);
+  /// The prior's misfit and its linear model at a point, in these coordinates.
+  PriorMisfit linearizePrior(const Eigen::VectorXd& at) const;
   /// log of the prior's density in these coordinates, but for a summand.
   double calcLogPrior(const Eigen::VectorXd& point) const {
     return coordinates_.calcLogUniform(point) + prior_.calcLogDensity(coordinates_.toParameters(point));

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "framework/estimation/informativeness.hpp"
+#include "framework/estimation/posterior/linear_posterior.hpp"
 #include "framework/estimation/posterior/marginal_surface.hpp"
 #include "framework/estimation/posterior/straight_ridge.hpp"
 #include "framework/estimation/refined/acceptance.hpp"
@@ -237,6 +238,25 @@ AdaptiveDraws drawFrom(MisfitSurface& surface, const Landscape& landscape, Index
       [&](int round) -> const RoundNumbers& { return numbers.get(round); }, adaptive);
 }
 
+/// Draws of the first `kept` coordinates: about the only basin of more than kFewUnknown as if the response
+/// were linear, if that is good enough; else of all basins by mixtures, on the floors of valleys too, which
+/// are followed then.
+AdaptiveDraws draw(MisfitSurface& surface, Landscape& landscape, Index kept,
+                   const SimulatorPosteriorOptions& options) {
+  const bool has_many = kept > kManyUnknown;
+  if (has_many || (surface.getDimensions() > kFewUnknown && landscape.basins.size() == 1)) {
+    AdaptiveDraws drawn = sampleLinearized(surface, landscape.basins.front(), options.draws, options.seed);
+    const bool is_good = drawn.isReliable() && drawn.effective_sample_size >= kEnough * options.draws &&
+                         drawn.pareto_shape <= importance::AdaptiveOptions().good_pareto_shape;
+    if (has_many || is_good) {
+      drawn.draws.points = MatrixXd(drawn.draws.points.topRows(kept));
+      return drawn;
+    }
+  }
+  landscape.valleys = followValleys(surface, landscape.basins);
+  return drawFrom(surface, landscape, kept, options);
+}
+
 /// Moments, draws and modes, of the first parameters, as many as `coordinates` has.
 void setDraws(const AdaptiveDraws& drawn, const Landscape& landscape, const LogCoordinates& coordinates,
               SimulatorPosterior& posterior) {
@@ -278,7 +298,8 @@ SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Matrix
   MisfitSurface& surface = whole.upd();
   const LogCoordinates& coordinates = whole.getCoordinates();
   const BasinSearch found =
-      findBasins(surface, toCoordinates(coordinates, given), options.seed, options.search);
+      findBasins(surface, toCoordinates(coordinates, addMedian(given, whole.getPrior(), problem.drawn)),
+                 options.seed, limitSearch(options.search, problem.drawn));
   SimulatorPosterior posterior;
   posterior.starts = found.starts;
   posterior.simulations = surface.getSimulations();
@@ -298,12 +319,15 @@ SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Matrix
     landscape.basins = convertBasins(found.basins, coordinates, straight->upd());
   }
   MisfitSurface& sampled = straight ? straight->upd() : surface;
-  landscape.valleys = followValleys(sampled, landscape.basins);
-  const AdaptiveDraws drawn = drawFrom(sampled, landscape, problem.drawn, options);
+  const AdaptiveDraws drawn = draw(sampled, landscape, problem.drawn, options);
   posterior.simulations = surface.getSimulations() + (straight ? sampled.getSimulations() : 0);
   posterior.effective_sample_size = drawn.effective_sample_size;
   posterior.pareto_shape = drawn.pareto_shape;
   posterior.message = drawn.findObstacle();
+  if (problem.drawn > kManyUnknown && found.basins.size() > 1) {
+    posterior.message =
+        "several minima of so many parameters explain the measurement, and only one is sampled";
+  }
   if (posterior.isReliable()) {
     const std::vector<ParameterSpec> kept(problem.unknown.begin(), problem.unknown.begin() + problem.drawn);
     setDraws(drawn, landscape, LogCoordinates(kept, shape.plain), posterior);

@@ -1,0 +1,101 @@
+#include "framework/estimation/posterior/linear_posterior.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+
+#include "framework/base/random/random.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
+#include "kernels/linalg/decompositions.hpp"
+#include "kernels/sampling/elliptical_slice.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using importance::AdaptiveDraws;
+
+namespace {
+
+/// Numbers of one chain, one after the other; not those of the rounds of mixtures.
+importance::SliceNumbers makeNumbers(const RandomStream& random) {
+  constexpr std::uint64_t kChannel = 2, kReplicate = 1000;
+  auto used = std::make_shared<std::uint64_t>(0);
+  return {[random, used] { return random.calcUniform((*used)++, kChannel); },
+          [random, used](int count) {
+            VectorXd normals(count);
+            random.drawNormals((*used)++, kReplicate, normals.data(), static_cast<std::size_t>(count));
+            return normals;
+          }};
+}
+
+/// The posterior with a likelihood that is normal about a basin's minimum, as the normal distribution of its
+/// covariance times what the prior within the bounds is of its own normal approximation:
+///   log f(at + s) = log prior(at + s) - s' d_prior + s' (H_prior + box) s / 2.
+importance::TiltedNormal makeLinear(const MisfitSurface& surface, const Basin& basin) {
+  const VectorXd& at = basin.local.at;
+  const PriorMisfit prior = surface.linearizePrior(at);
+  MatrixXd information = prior.information;
+  information.diagonal().array() += kHalfWidthInformation;
+  return {at + basin.covariance * basin.local.descent, linalg::calcCholesky(basin.covariance).lower,
+          [&surface, at, prior, information](const VectorXd& point) {
+            if (!(point.cwiseAbs().maxCoeff() <= 1.0)) {
+              return -std::numeric_limits<double>::infinity();
+            }
+            const VectorXd apart = point - at;
+            return surface.calcLogPrior(point) - apart.dot(prior.descent) +
+                   0.5 * apart.dot(information * apart);
+          }};
+}
+
+/// Half of what a linear response adds to the loss at the basin's minimum, at points (u x n) about it.
+VectorXd calcLinearLosses(const MisfitSurface& surface, const Basin& basin, const MatrixXd& points) {
+  const PriorMisfit prior = surface.linearizePrior(basin.local.at);
+  const MatrixXd information = basin.local.information - prior.information;
+  const VectorXd descent = basin.local.descent - prior.descent;
+  const MatrixXd apart = points.colwise() - basin.local.at;
+  return 0.5 * apart.cwiseProduct(information * apart).colwise().sum().transpose() -
+         apart.transpose() * descent;
+}
+
+}  // namespace
+
+AdaptiveDraws sampleLinearized(MisfitSurface& surface, const Basin& basin, int draws, std::uint64_t seed) {
+  constexpr int kSteps = 50;  // a draw: those of a uniform prior in a corner hardly depend on each other
+  const importance::SliceNumbers numbers = makeNumbers(RandomStream(seed, RandomPurpose::kPosterior));
+  const MatrixXd points =
+      importance::sampleEllipticalSlices(makeLinear(surface, basin), basin.local.at, draws, kSteps, numbers);
+  VectorXd log_weights = surface.calcLogPosteriors(points) + calcLinearLosses(surface, basin, points);
+  for (Index i = 0; i < draws; ++i) {
+    log_weights[i] -= surface.calcLogPrior(points.col(i));
+  }
+  AdaptiveDraws drawn;
+  drawn.draws = importance::weigh(points, log_weights);
+  drawn.effective_sample_size = importance::calcEffectiveSampleSize(drawn.draws);
+  drawn.pareto_shape = importance::calcParetoShape(drawn.draws);
+  drawn.rounds = 1;
+  return drawn;
+}
+
+BasinSearchOptions limitSearch(BasinSearchOptions options, Index drawn) {
+  constexpr int kScouts = 3, kStarts = 8;
+  if (drawn > kManyUnknown) {
+    options.scouts = std::min(options.scouts, kScouts);
+    options.probes = std::min(options.probes, kScouts);
+    options.starts = std::min(options.starts, kStarts);
+    options.max_batches = std::min(options.max_batches, 1);
+  }
+  return options;
+}
+
+MatrixXd addMedian(const MatrixXd& given, const Prior& prior, Index drawn) {
+  if (drawn <= kManyUnknown) {
+    return given;
+  }
+  MatrixXd more(given.rows(), given.cols() + 1);
+  more << given, prior.calcPoint(VectorXd::Constant(given.rows(), 0.5));
+  return more;
+}
+
+}  // namespace twinmap

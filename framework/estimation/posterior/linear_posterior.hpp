@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+
+#include "framework/estimation/posterior/basin_search.hpp"
+#include "kernels/sampling/adaptive_importance.hpp"
+
+namespace twinmap {
+
+/// With more unknown parameters than these the posterior of one basin is first tried as one whose response is
+/// linear: mixtures that follow any shape need some ten draws a dimension.
+constexpr Eigen::Index kFewUnknown = 8;
+/// Where more than these are drawn it is tried so alone: no mixture follows so many dimensions.
+constexpr Eigen::Index kManyUnknown = 16;
+
+/// The posterior about the only basin, of any number of parameters. Draws come from the posterior that it
+/// would be if the response were linear about the basin's minimum: a normal likelihood, but the prior and the
+/// bounds as they are, so that what the measurement does not determine keeps its prior exactly
+/// (sampleEllipticalSlices, without a simulation). Each is weighted by its likelihood over the linear one:
+/// the effective sample size and the Pareto shape show where the response is too far from linear for that.
+/// Cost: one simulation a draw, whatever the number of parameters.
+importance::AdaptiveDraws sampleLinearized(MisfitSurface& surface, const Basin& basin, int draws,
+                                           std::uint64_t seed);
+
+/// Few searches where more than kManyUnknown parameters are drawn: no number of them covers the bounds, each
+/// takes a simulation with as many derivatives a step, and a machine of many parameters has priors.
+BasinSearchOptions limitSearch(BasinSearchOptions options, Eigen::Index drawn);
+
+/// Points to search from (u x n), with the prior's median where more than kManyUnknown parameters are drawn.
+Eigen::MatrixXd addMedian(const Eigen::MatrixXd& given, const Prior& prior, Eigen::Index drawn);
+
+}  // namespace twinmap

@@ -1,0 +1,80 @@
+// Posteriors of more parameters than mixtures can follow.
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "framework/estimation/posterior/simulator_posterior.hpp"
+#include "tests/framework/estimation/refined/problem.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using testing::makeMatrix;
+using testing::Problem;
+
+constexpr int kParameters = 30, kSeenParameters = 10, kSampleTimes = 40;
+constexpr double kSampleNoise = 0.05;
+
+SimulatorPosterior sampleMany(Problem& problem, const VectorXd& features, int draws = 4000) {
+  SimulatorPosteriorOptions options;
+  options.draws = draws;
+  return samplePosterior(problem.simulator, problem.model, {}, features, VectorXd::Zero(kParameters),
+                         MatrixXd(kParameters, 0), options);
+}
+
+/// The response sees ten of thirty parameters, and these linearly.
+VectorXd respondToSome(const VectorXd& x) {
+  return makeMatrix(kSampleTimes, kSeenParameters) * x.head(kSeenParameters);
+}
+
+TEST(ManyParameters, AreLeastSquaresWhereSeenAndUniformWhereNot) {
+  Problem problem(kSampleTimes, respondToSome, testing::makeParameters(kParameters, -1.0, 1.0), kSampleNoise);
+  const VectorXd truth = VectorXd::LinSpaced(kParameters, -0.3, 0.3);
+  const VectorXd features = problem.measure(truth, kSampleNoise);
+  const SimulatorPosterior posterior = sampleMany(problem, features);
+  ASSERT_TRUE(posterior.isReliable()) << posterior.message;
+  const MatrixXd matrix = makeMatrix(kSampleTimes, kSeenParameters);
+  const MatrixXd covariance = kSampleNoise * kSampleNoise * MatrixXd((matrix.transpose() * matrix).inverse());
+  const VectorXd mean = covariance * matrix.transpose() * features / (kSampleNoise * kSampleNoise);
+  for (Index j = 0; j < kParameters; ++j) {
+    const double stddev = j < kSeenParameters ? std::sqrt(covariance(j, j)) : 1.0 / std::sqrt(3.0);
+    EXPECT_NEAR(posterior.mean[j], j < kSeenParameters ? mean[j] : 0.0, 0.08 * stddev);
+    EXPECT_NEAR(posterior.stddev[j] / stddev, 1.0, 0.06);
+  }
+  EXPECT_GT(posterior.effective_sample_size, 3900.0);  // the response is linear: all weights are the same
+  EXPECT_LT(posterior.simulations, 4000 + 1500);
+}
+
+TEST(ManyParameters, KeepPriorsOfAnyShape) {
+  std::vector<ParameterSpec> unknown = testing::makeParameters(kParameters, 0.5, 2.0);
+  unknown[20].prior = PriorSpec{NormalPrior{1.0, 0.1}};
+  Problem problem(kSampleTimes, respondToSome, unknown, kSampleNoise);
+  const VectorXd features = problem.measure(VectorXd::Constant(kParameters, 1.1), kSampleNoise);
+  const SimulatorPosterior posterior = sampleMany(problem, features);
+  ASSERT_TRUE(posterior.isReliable()) << posterior.message;
+  EXPECT_NEAR(posterior.mean[20], 1.0, 0.008);
+  EXPECT_NEAR(posterior.stddev[20], 0.1, 0.006);
+  EXPECT_NEAR(posterior.mean[25], 1.25, 0.04);  // uniform in the parameter, though searched in its logarithm
+  EXPECT_NEAR(posterior.stddev[25], 1.5 / std::sqrt(12.0), 0.03);
+}
+
+/// Twenty parameters bend the response by far more than its noise where the prior still allows them.
+TEST(ManyParameters, AreUnreliableWhereTheResponseIsFarFromLinear) {
+  const auto bent = [](const VectorXd& x) {
+    VectorXd response = respondToSome(x);
+    response.head(kSeenParameters) += 3.0 * x.segment(kSeenParameters, kSeenParameters).cwiseAbs2() -
+                                      3.0 * x.tail(kSeenParameters).cwiseAbs2();
+    return response;
+  };
+  Problem problem(kSampleTimes, bent, testing::makeParameters(kParameters, -1.0, 1.0), kSampleNoise);
+  const SimulatorPosterior posterior =
+      sampleMany(problem, problem.measure(VectorXd::Constant(kParameters, 0.4), kSampleNoise), 500);
+  EXPECT_FALSE(posterior.isReliable());
+}
+
+}  // namespace
+}  // namespace twinmap
