@@ -68,7 +68,7 @@ PosteriorProblem makeRecordedProblem(const SimulatorRefiner& simulator, const Ex
 RecordedFeatures readRecording(const MeasurementReader& reader, const Table& table,
                                std::optional<double> start, const VectorXd& known) {
   AvailableFeatures found = reader.readAvailableFeatures(table, start);
-  requireStatedNoise(found.stddev, table.source);
+  requireNoneStated(found.stated, table.source);
   return {reader.getLayout(), {std::move(found.features)}, known};
 }
 

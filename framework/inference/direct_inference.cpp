@@ -20,9 +20,9 @@ InferredMeasurement DirectInference::infer(const Table& table, std::optional<dou
                                            const Eigen::VectorXd& known) {
   const AvailableFeatures found = reader_.readAvailableFeatures(table, start);
   std::optional<SimulatorRefiner> own;  // with the noise that the measurement states
-  if (found.stddev.size() > 0) {
+  if (found.stated.isGiven()) {
     own.emplace(reader_.getExperiment(), reader_.getLayout(), SimulatorRefiner::Model::kTrusted,
-                found.stddev);
+                found.stated);
   }
   const SimulatorRefiner& simulator = own ? *own : simulator_;
   InferredMeasurement inferred = infer(simulator, found.features, known, found.clipped);

@@ -214,7 +214,7 @@ const JointInferrer::Member& JointInferrer::find(const std::string& trial) const
 MeasuredTrial JointInferrer::makeTrial(const Recording& recording) const {
   const Member& member = find(recording.trial);
   const AvailableFeatures found = member.reader->readAvailableFeatures(*recording.table, recording.start);
-  requireStatedNoise(found.stddev, recording.table->source);
+  requireNoneStated(found.stated, recording.table->source);
   MeasuredTrial trial = member.simulator->makeTrial(found.features, member.known);
   trial.noise = member.simulator->describeNoise(found.clipped);
   return trial;

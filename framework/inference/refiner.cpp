@@ -80,14 +80,14 @@ SimulatorPosteriorOptions makePosteriorOptions(const ExperimentSpec& experiment,
 }
 
 SimulatorRefiner::SimulatorRefiner(const ExperimentSpec& experiment, const ResponseLayout& layout,
-                                   Model model, const VectorXd& stddev)
+                                   Model model, const StatedNoise& stated)
     : model_(experiment.model),
       output_noise_(experiment.noise.stddev),
       noise_scale_(experiment.noise.scale),
       extractor_(makeExtractor(experiment, layout)),
       simulator_(model == Model::kTrusted ? makeTrustedSimulator(experiment.model, layout.times, layout.modes)
                                           : makeSimulator(experiment.model, layout.times, layout.modes)),
-      noise_(extractor_, makeNoise(experiment.noise, layout, stddev), experiment.seed),
+      noise_(extractor_, makeNoise(experiment.noise, layout, stated.rows), experiment.seed, stated.features),
       stated_noise_(findUnknownNoise(experiment.noise, layout)),
       wanted_(shouldRefine(experiment.refine, *simulator_, noise_)),
       own_(simulator_->clone()) {}

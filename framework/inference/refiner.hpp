@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "framework/data/noise/feature_noise.hpp"
+#include "framework/data/noise/stated_noise.hpp"
 #include "framework/estimation/refined/refine.hpp"
 #include "framework/inference/inferrer.hpp"
 #include "framework/models/make_simulator.hpp"
@@ -20,10 +21,10 @@ class SimulatorRefiner {
   /// Whether a run has checked the model by Simbody (makeTrustedSimulator), or this is to (makeSimulator).
   enum class Model { kTrusted, kToBeChecked };
 
-  /// `experiment`: that of the run, with the excitation of the measurement where it is measured. stddev: of
-  /// the noise of rows of the response, where a measurement states it (ResponseNoise::replace).
+  /// `experiment`: that of the run, with the excitation of the measurement where it is measured. stated: by
+  /// the measurement (ResponseNoise::replace, FeatureNoise).
   SimulatorRefiner(const ExperimentSpec& experiment, const ResponseLayout& layout,
-                   Model model = Model::kTrusted, const Eigen::VectorXd& stddev = {});
+                   Model model = Model::kTrusted, const StatedNoise& stated = {});
   SimulatorRefiner(const SimulatorRefiner&) = delete;
   SimulatorRefiner& operator=(const SimulatorRefiner&) = delete;
 

@@ -35,7 +35,7 @@ FeatureInfo makeLineInfo(const std::string& before, const ComplexLine& line, con
                          const std::string& unit) {
   char frequency[32];
   std::snprintf(frequency, sizeof frequency, " at %.6g Hz", line.frequency);
-  return {before + line.name + after + frequency, unit, line.output, 0.0};
+  return {before + line.name + after + frequency, unit, line.output, 0.0, line.excitation, line.frequency};
 }
 
 std::vector<FeatureInfo> makeInfos(const std::vector<ComplexLine>& lines, ComplexParts parts) {
@@ -61,16 +61,7 @@ class MagnitudePhaseBlock final : public FeatureBlock {
 
   void extract(const Eigen::Ref<const Eigen::MatrixXd>& responses,
                Eigen::Ref<Eigen::MatrixXd> features) const override {
-    const Eigen::MatrixXd parts = *parts_->findMatrix() * responses;
-    for (Index sample = 0; sample < parts.cols(); ++sample) {
-      for (Index line = 0; 2 * line < parts.rows(); ++line) {
-        const double real = parts(2 * line, sample), imaginary = parts(2 * line + 1, sample);
-        const double magnitude = std::hypot(real, imaginary);
-        features(3 * line, sample) = magnitude;
-        features(3 * line + 1, sample) = real / magnitude;
-        features(3 * line + 2, sample) = imaginary / magnitude;
-      }
-    }
+    convertFromLinearForm(*parts_->findMatrix() * responses, features);
   }
 
   std::shared_ptr<const FeatureBlock> findLinearForm() const override { return parts_; }
@@ -80,6 +71,19 @@ class MagnitudePhaseBlock final : public FeatureBlock {
     for (Index line = 0; 3 * line < features.rows(); ++line) {
       linear.middleRows(2 * line, 2) =
           features.middleRows(3 * line + 1, 2).array().rowwise() * features.row(3 * line).array();
+    }
+  }
+
+  void convertFromLinearForm(const Eigen::Ref<const Eigen::MatrixXd>& parts,
+                             Eigen::Ref<Eigen::MatrixXd> features) const override {
+    for (Index sample = 0; sample < parts.cols(); ++sample) {
+      for (Index line = 0; 2 * line < parts.rows(); ++line) {
+        const double real = parts(2 * line, sample), imaginary = parts(2 * line + 1, sample);
+        const double magnitude = std::hypot(real, imaginary);
+        features(3 * line, sample) = magnitude;
+        features(3 * line + 1, sample) = real / magnitude;
+        features(3 * line + 2, sample) = imaginary / magnitude;
+      }
     }
   }
 

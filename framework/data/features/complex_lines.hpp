@@ -16,7 +16,8 @@ struct ComplexLine {
   std::string name;  ///< "y" or "y/F"
   std::string unit;
   int output = -1;
-  double frequency = 0.0;  ///< Hz
+  double frequency = 0.0;    ///< Hz
+  std::string excitation{};  ///< the signal that it is the response to; empty of a spectrum
   std::vector<Eigen::Index> rows;
   Eigen::VectorXcd weights;
 };

@@ -10,10 +10,12 @@ namespace twinmap {
 
 /// What one feature is.
 struct FeatureInfo {
-  std::string name;   ///< "y(0.05 s)"
-  std::string unit;   ///< of the feature; "" for a number without
-  int output = -1;    ///< index of the output it is made of, or -1
-  double time = 0.0;  ///< s; of a feature that has no time of its own 0
+  std::string name;          ///< "y(0.05 s)"
+  std::string unit;          ///< of the feature; "" for a number without
+  int output = -1;           ///< index of the output it is made of, or -1
+  double time = 0.0;         ///< s; of a feature that has no time of its own 0
+  std::string excitation{};  ///< the signal, of a part of a frequency response; else empty
+  double frequency = 0.0;    ///< Hz, of its line
 };
 
 /// features = matrix * response; one row a feature.
@@ -45,6 +47,9 @@ class FeatureBlock {
   /// From features (infos x n) to those of the linear form (its infos x n), where there is one.
   virtual void convertToLinearForm(const Eigen::Ref<const Eigen::MatrixXd>& /*features*/,
                                    Eigen::Ref<Eigen::MatrixXd> /*linear*/) const {}
+  /// And back.
+  virtual void convertFromLinearForm(const Eigen::Ref<const Eigen::MatrixXd>& /*linear*/,
+                                     Eigen::Ref<Eigen::MatrixXd> /*features*/) const {}
 
  protected:
   explicit FeatureBlock(std::vector<FeatureInfo> infos) : infos_(std::move(infos)) {}

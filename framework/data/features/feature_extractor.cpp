@@ -118,6 +118,24 @@ Eigen::MatrixXd FeatureExtractor::convertToLinearForm(const Eigen::MatrixXd& fea
   return converted.topRows(to);
 }
 
+Eigen::MatrixXd FeatureExtractor::convertFromLinearForm(const Eigen::MatrixXd& linear) const {
+  Eigen::MatrixXd features(getFeatureCount(), linear.cols());
+  Eigen::Index from = 0, to = 0;
+  for (const auto& block : blocks_) {
+    const auto form = block->findLinearForm();
+    const auto rows = static_cast<Eigen::Index>((form ? form : block)->getInfos().size());
+    const auto places = static_cast<Eigen::Index>(block->getInfos().size());
+    if (form) {
+      block->convertFromLinearForm(linear.middleRows(from, rows), features.middleRows(to, places));
+    } else {
+      features.middleRows(to, places) = linear.middleRows(from, rows);
+    }
+    from += rows;
+    to += places;
+  }
+  return features;
+}
+
 Eigen::VectorXd FeatureExtractor::placeLinearForm(const Eigen::VectorXd& linear) const {
   Eigen::VectorXd placed = Eigen::VectorXd::Zero(getFeatureCount());
   Eigen::Index from = 0, to = 0;

@@ -44,6 +44,8 @@ class FeatureExtractor {
   FeatureExtractor makeLinearForm() const;
   /// Features (d x n) -> those of the linear form (d' x n).
   Eigen::MatrixXd convertToLinearForm(const Eigen::MatrixXd& features) const;
+  /// And back: features of the linear form (d' x n) -> features (d x n).
+  Eigen::MatrixXd convertFromLinearForm(const Eigen::MatrixXd& linear) const;
   /// Numbers of the linear form's features (d') in the places (d) of those they stand for; 0 in those left.
   Eigen::VectorXd placeLinearForm(const Eigen::VectorXd& linear) const;
 

@@ -58,7 +58,8 @@ std::shared_ptr<const FeatureBlock> makeFrequencyResponseBlock(const FrequencyRe
       }
       lines.push_back({name.text + "/" + spec.excitation.text,
                        makeRatioUnit(layout.output_units[output], signal.unit), static_cast<int>(output),
-                       frequency.hertz, findRows(layout, output, spec.window), weights / excitation});
+                       frequency.hertz, findRows(layout, output, spec.window), weights / excitation,
+                       spec.excitation.text});
     }
   }
   return makeComplexBlock(lines, spec.parts, layout.getRowCount());

@@ -1,5 +1,7 @@
 #include "framework/data/features/noise_covariance.hpp"
 
+#include <cmath>
+
 namespace twinmap {
 
 using Eigen::Index;
@@ -22,6 +24,22 @@ NoiseCovariance NoiseCovariance::makeIndependent(VectorXd variances) {
 VectorXd NoiseCovariance::col(Index feature) const {
   return isDiagonal() ? VectorXd(variances_[feature] * VectorXd::Unit(size(), feature))
                       : VectorXd(matrix_.col(feature));
+}
+
+NoiseCovariance NoiseCovariance::replace(const VectorXd& stddevs) const {
+  NoiseCovariance replaced = *this;
+  for (Index i = 0; i < stddevs.size(); ++i) {
+    if (std::isnan(stddevs[i])) {
+      continue;
+    }
+    replaced.variances_[i] = stddevs[i] * stddevs[i];
+    if (!isDiagonal()) {
+      replaced.matrix_.row(i).setZero();
+      replaced.matrix_.col(i).setZero();
+      replaced.matrix_(i, i) = replaced.variances_[i];
+    }
+  }
+  return replaced.isDiagonal() ? replaced : NoiseCovariance(std::move(replaced.matrix_));
 }
 
 NoiseCovariance NoiseCovariance::take(const std::vector<Index>& features) const {

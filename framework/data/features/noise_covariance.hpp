@@ -26,6 +26,8 @@ class NoiseCovariance {
     return isDiagonal() ? (row == column ? variances_[row] : 0.0) : matrix_(row, column);
   }
 
+  /// With these standard deviations (d) where they are numbers, independent of all else; NaN: as it is.
+  NoiseCovariance replace(const Eigen::VectorXd& stddevs) const;
   /// That of some features (ascending).
   NoiseCovariance take(const std::vector<Eigen::Index>& features) const;
   /// C right, d x n.

@@ -293,6 +293,17 @@ void addModes(const Table& table, const MeasurementSpec& spec, const ResponseLay
 
 }  // namespace
 
+AvailableResponse readModesBeside(const Table& table, const MeasurementSpec& spec,
+                                  const ResponseLayout& layout) {
+  AvailableResponse available{VectorXd::Constant(layout.getRowCount(), kMissing), {}, 0, {}};
+  if (spec.modes) {
+    addModes(table, spec, layout, available);
+  } else if (layout.modes > 0) {
+    available.remarks.push_back("all modes, as measurement.modes names no table of them");
+  }
+  return available;
+}
+
 AvailableResponse readAvailable(const Table& table, const MeasurementSpec& spec, const ResponseLayout& layout,
                                 double start, std::optional<double> interval) {
   AvailableResponse available{VectorXd::Constant(layout.getRowCount(), kMissing), {}, 0, {}};

@@ -26,6 +26,10 @@ struct AvailableResponse {
   Eigen::VectorXd stddev{};  ///< of rows, where the measurement states it; NaN of others; empty: of none
 };
 
+/// Only the modes, from the table that `spec.modes` names, beside the measurement; all else missing.
+AvailableResponse readModesBeside(const Table& table, const MeasurementSpec& spec,
+                                  const ResponseLayout& layout);
+
 /// The outputs of a layout at its times, `start` (s) being the time of the measurement that is the model's 0,
 /// from a table in which cells may be NaN, rows lost, out of order or doubled, and each column may have a
 /// rate of its own, or a file and a clock of its own; such files are read here. Rows without a time are left

@@ -46,14 +46,16 @@ MatrixXd takeFiniteColumns(const MatrixXd& values) {
 }  // namespace
 
 struct FeatureNoise::LinearForm {
-  LinearForm(const FeatureExtractor& features, const ResponseNoise& response_noise, std::uint64_t seed)
-      : extractor(features.makeLinearForm()), noise(extractor, response_noise, seed) {}
+  LinearForm(const FeatureExtractor& features, const ResponseNoise& response_noise, std::uint64_t seed,
+             const VectorXd& stddevs)
+      : extractor(features.makeLinearForm()), noise(extractor, response_noise, seed, stddevs) {}
 
   FeatureExtractor extractor;
   FeatureNoise noise;
 };
 
-FeatureNoise::FeatureNoise(const FeatureExtractor& extractor, const ResponseNoise& noise, std::uint64_t seed)
+FeatureNoise::FeatureNoise(const FeatureExtractor& extractor, const ResponseNoise& noise, std::uint64_t seed,
+                           const VectorXd& stddevs)
     : extractor_(extractor) {
   Index feature = 0;
   for (const auto& block : extractor.getBlocks()) {
@@ -65,7 +67,9 @@ FeatureNoise::FeatureNoise(const FeatureExtractor& extractor, const ResponseNois
   linear_covariance_ =
       noise.calcCovariance(stackMatrices(extractor, rows, static_cast<Index>(linear_.size())));
   if (extractor.hasLinearForm()) {
-    linear_form_ = std::make_shared<const LinearForm>(extractor, noise, seed);
+    linear_form_ = std::make_shared<const LinearForm>(extractor, noise, seed, stddevs);
+  } else if (stddevs.size() > 0) {
+    linear_covariance_ = linear_covariance_.replace(stddevs(linear_));
   }
   if (!nonlinear_.empty()) {
     draws_ = addNoise(MatrixXd::Zero(rows, kDraws), noise, {seed, RandomPurpose::kNoiseCovariance});

@@ -12,8 +12,10 @@ namespace twinmap {
 /// How the noise of responses propagates into features.
 class FeatureNoise {
  public:
-  /// `extractor` must outlive the object.
-  FeatureNoise(const FeatureExtractor& extractor, const ResponseNoise& noise, std::uint64_t seed);
+  /// `extractor` must outlive the object. stddevs: of the features in their linear form, where a measurement
+  /// states them for features themselves (NoiseCovariance::replace); empty: of none.
+  FeatureNoise(const FeatureExtractor& extractor, const ResponseNoise& noise, std::uint64_t seed,
+               const Eigen::VectorXd& stddevs = {});
 
   const FeatureExtractor& getExtractor() const { return extractor_; }
 

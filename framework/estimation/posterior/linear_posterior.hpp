@@ -22,6 +22,11 @@ constexpr Eigen::Index kManyUnknown = 16;
 importance::AdaptiveDraws sampleLinearized(MisfitSurface& surface, const Basin& basin, int draws,
                                            std::uint64_t seed);
 
+/// Whether the minima are one basin for that: the measurement does not keep them apart, so that they differ
+/// in what it leaves to the prior alone. Nothing keeps them apart that the first one's linear response says
+/// is below five standard deviations of the noise.
+bool areOneBasin(const MisfitSurface& surface, const std::vector<Basin>& basins);
+
 /// Few searches where more than kManyUnknown parameters are drawn: no number of them covers the bounds, each
 /// takes a simulation with as many derivatives a step, and a machine of many parameters has priors.
 BasinSearchOptions limitSearch(BasinSearchOptions options, Eigen::Index drawn);

@@ -238,13 +238,13 @@ AdaptiveDraws drawFrom(MisfitSurface& surface, const Landscape& landscape, Index
       [&](int round) -> const RoundNumbers& { return numbers.get(round); }, adaptive);
 }
 
-/// Draws of the first `kept` coordinates: about the only basin of more than kFewUnknown as if the response
-/// were linear, if that is good enough; else of all basins by mixtures, on the floors of valleys too, which
-/// are followed then.
+/// Draws of the first `kept` coordinates: about the only basin (areOneBasin) of more than kFewUnknown as if
+/// the response were linear, if that is good enough; else of all basins by mixtures, on the floors of valleys
+/// too, which are followed then.
 AdaptiveDraws draw(MisfitSurface& surface, Landscape& landscape, Index kept,
                    const SimulatorPosteriorOptions& options) {
   const bool has_many = kept > kManyUnknown;
-  if (has_many || (surface.getDimensions() > kFewUnknown && landscape.basins.size() == 1)) {
+  if (has_many || (surface.getDimensions() > kFewUnknown && areOneBasin(surface, landscape.basins))) {
     AdaptiveDraws drawn = sampleLinearized(surface, landscape.basins.front(), options.draws, options.seed);
     const bool is_good = drawn.isReliable() && drawn.effective_sample_size >= kEnough * options.draws &&
                          drawn.pareto_shape <= importance::AdaptiveOptions().good_pareto_shape;
@@ -324,7 +324,7 @@ SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Matrix
   posterior.effective_sample_size = drawn.effective_sample_size;
   posterior.pareto_shape = drawn.pareto_shape;
   posterior.message = drawn.findObstacle();
-  if (problem.drawn > kManyUnknown && found.basins.size() > 1) {
+  if (problem.drawn > kManyUnknown && !areOneBasin(sampled, landscape.basins)) {
     posterior.message =
         "several minima of so many parameters explain the measurement, and only one is sampled";
   }

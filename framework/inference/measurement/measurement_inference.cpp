@@ -16,7 +16,9 @@ InferredMeasurement MeasurementInference::inferResponse(const Table& table, std:
                                                         const Eigen::VectorXd& features,
                                                         const Eigen::VectorXd& known) {
   InferredMeasurement inferred = infer(features, known);
-  inferred.fault = findFault(response, known, inferred);
+  if (response.allFinite()) {  // not of features that were measured themselves
+    inferred.fault = findFault(response, known, inferred);
+  }
   inferred.source = table.source;
   inferred.start = getReader().getStart(table, start);
   return inferred;

@@ -7,6 +7,7 @@
 #include "framework/base/log/log.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/data/features/experiment_features.hpp"
+#include "framework/data/measurement/measured_frequency_response.hpp"
 #include "framework/data/measurement/measured_modes.hpp"
 #include "framework/data/measurement/measurement.hpp"
 #include "framework/data/measurement/measurement_start.hpp"
@@ -37,12 +38,12 @@ std::vector<Eigen::Index> findFeaturesOf(const FeatureExtractor& extractor, Eige
 
 }  // namespace
 
-void requireStatedNoise(const Eigen::VectorXd& stddev, const std::string& source) {
-  if (stddev.size() > 0) {
+void requireNoneStated(const StatedNoise& stated, const std::string& source) {
+  if (stated.isGiven()) {
     throw MeasurementError(
         source +
         ": states standard deviations of its own, which only inference of one measurement from "
-        "the experiment file can use; leave these columns out for those of noise.modes");
+        "the experiment file can use; leave these columns out for those of the experiment's noise");
   }
 }
 
@@ -50,12 +51,16 @@ MeasurementReader::MeasurementReader(ExperimentSpec experiment)
     : experiment_(std::move(experiment)),
       layout_(makeLayout(experiment_)),
       sample_interval_(findSampleInterval(experiment_.features)),
-      extractor_(makeExtractor(experiment_, layout_)) {}
+      extractor_(makeExtractor(experiment_, layout_)),
+      linear_(extractor_.makeLinearForm()) {}
 
 std::vector<std::string> MeasurementReader::listColumns() const {
   std::vector<std::string> names = twinmap::listColumns(experiment_.measurement, layout_.output_names);
   const std::vector<std::string> excitation = listExcitationColumns(experiment_);
   names.insert(names.end(), excitation.begin(), excitation.end());
+  const std::vector<std::string> lines =
+      listLineColumns(experiment_.measurement, layout_, linear_.getInfos());
+  names.insert(names.end(), lines.begin(), lines.end());
   if (layout_.modes > 0 && layout_.times.size() == 0) {
     const std::vector<std::string> modes = listModeColumns();
     names.insert(names.end(), modes.begin(), modes.end());
@@ -125,12 +130,44 @@ Eigen::VectorXd MeasurementReader::readWhole(const Table& table, double start) c
                     "without (twinmap infer FILE.yaml MEASUREMENT)",
                     table.source, fmt::join(available.remarks, "; ")));
   }
-  requireStatedNoise(available.stddev, table.source);
+  requireNoneStated({available.stddev, {}}, table.source);
   return available.response;
 }
 
 AvailableFeatures MeasurementReader::readAvailableFeatures(const Table& table,
                                                            std::optional<double> start) const {
+  AvailableFeatures found =
+      isFrequencyResponse(table, linear_.getInfos()) ? readLines(table) : readSamples(table, start);
+  if (found.available.empty()) {
+    throw MeasurementError(table.source + ": no feature can be computed from the samples that are there");
+  }
+  return found;
+}
+
+AvailableFeatures MeasurementReader::readLines(const Table& table) const {
+  AvailableResponse modes = readModesBeside(table, experiment_.measurement, layout_);
+  MeasuredLines lines = readFrequencyResponse(table, experiment_.measurement, layout_, linear_.getInfos());
+  Eigen::VectorXd features = linear_.extract(modes.response);
+  features = lines.features.array().isNaN().select(features, lines.features);
+  AvailableFeatures found{extractor_.convertFromLinearForm(features),
+                          {},
+                          {},
+                          std::move(modes.remarks),
+                          modes.response,
+                          {modes.stddev, {}}};
+  found.remarks.insert(found.remarks.end(), lines.remarks.begin(), lines.remarks.end());
+  if (!lines.stddevs.array().isNaN().all()) {
+    found.stated.features = lines.stddevs;
+  }
+  for (Eigen::Index i = 0; i < found.features.size(); ++i) {
+    if (std::isfinite(found.features[i])) {
+      found.available.push_back(i);
+    }
+  }
+  return found;
+}
+
+AvailableFeatures MeasurementReader::readSamples(const Table& table, std::optional<double> start) const {
   requireExcitation(table, start);
   warnOfJumps(table);
   AvailableResponse response =
@@ -140,7 +177,7 @@ AvailableFeatures MeasurementReader::readAvailableFeatures(const Table& table,
                           {},
                           std::move(response.remarks),
                           response.response,
-                          response.stddev};
+                          {response.stddev, {}}};
   for (const ClippedSample& sample : response.clipped) {
     for (const Eigen::Index feature : findFeaturesOf(extractor_, sample.row)) {
       found.features[feature] = sample.limit;
@@ -155,9 +192,6 @@ AvailableFeatures MeasurementReader::readAvailableFeatures(const Table& table,
       throw MeasurementError(table.source + ": the response has no feature '" +
                              extractor_.getInfos()[static_cast<std::size_t>(i)].name + "'");
     }
-  }
-  if (found.available.empty()) {
-    throw MeasurementError(table.source + ": no feature can be computed from the samples that are there");
   }
   return found;
 }

@@ -8,6 +8,7 @@
 #include "framework/data/features/feature_extractor.hpp"
 #include "framework/data/measurement/available_response.hpp"
 #include "framework/data/measurement/table.hpp"
+#include "framework/data/noise/stated_noise.hpp"
 #include "framework/experiment/experiment_spec.hpp"
 #include "framework/simulation/response_layout.hpp"
 
@@ -25,17 +26,17 @@ struct AvailableFeatures {
   std::vector<ClippedSample> clipped;   ///< features, of value `limit`
   std::vector<std::string> remarks;     ///< what is missing and why, a phrase each
   Eigen::VectorXd response;             ///< rows of the layout, NaN where missing
-  Eigen::VectorXd stddev{};  ///< of rows, where the measurement states it; NaN of others; empty: of none
+  StatedNoise stated{};                 ///< by the measurement
 
   /// Whether an estimator that was trained on all features and one noise can use them.
   bool isComplete() const {
     return static_cast<Eigen::Index>(available.size()) == features.size() && clipped.empty() &&
-           stddev.size() == 0;
+           !stated.isGiven();
   }
 };
 
 /// Throws MeasurementError where a measurement states standard deviations: for what uses the experiment's.
-void requireStatedNoise(const Eigen::VectorXd& stddev, const std::string& source);
+void requireNoneStated(const StatedNoise& stated, const std::string& source);
 
 /// From tables of measurements to the features of an experiment. Immutable.
 class MeasurementReader {
@@ -76,11 +77,16 @@ class MeasurementReader {
   void warnOfJumps(const Table& table) const;
   /// A response of columns with clocks of their own, none missing.
   Eigen::VectorXd readWhole(const Table& table, double start) const;
+  /// From a recording in time, or a table of modes.
+  AvailableFeatures readSamples(const Table& table, std::optional<double> start) const;
+  /// From a table of frequency responses, and the modes that are in another.
+  AvailableFeatures readLines(const Table& table) const;
 
   ExperimentSpec experiment_;
   ResponseLayout layout_;
   std::optional<double> sample_interval_;
   FeatureExtractor extractor_;
+  FeatureExtractor linear_;  // its linear form
 };
 
 }  // namespace twinmap
