@@ -138,5 +138,69 @@ class Modes(FolderTestCase):
         self.assertIn("1 of 3 frequencies of modes", found["left_out"])
 
 
+class FrequencyResponses(FolderTestCase):
+    """The oracle is numpy's solution of the chain's equations at each frequency."""
+
+    EXPERIMENT = EXPERIMENTS / "three_mass_chain/frequency_response.yaml"
+    TRUE = {"k1": 930.0, "k2": 1080.0, "k3": 1010.0, "m2": 0.95, "d2": 9.5}
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.frequencies = np.array([0.5, 1, 1.5, 2, 2.5, 3, 3.5, 4, 4.5, 5, 5.5, 6, 7, 8, 9, 10])
+        springs = np.array([[1, 0, 0], [-1, 1, 0], [0, -1, 1]])  # elongations by displacements
+        mass = np.diag([2, cls.TRUE["m2"], 0.5])
+        stiffness = springs.T @ np.diag([cls.TRUE[name] for name in ("k1", "k2", "k3")]) @ springs
+        damping = springs.T @ np.diag([10, cls.TRUE["d2"], 10]) @ springs
+        generator = np.random.default_rng(3)
+        responses = []
+        for omega in 2 * np.pi * cls.frequencies:
+            responses.append(np.linalg.solve(stiffness + 1j * omega * damping - omega**2 * mass, [0, 0, 1])[[0, 2]])
+        cls.sd = 2e-6
+        noise = generator.normal(size=(2, len(responses), 2))
+        cls.responses = np.array(responses) + cls.sd * (noise[0] + 1j * noise[1])
+
+    def infer(self, columns, *arguments):
+        path = self.folder / "frf.csv"
+        rows = [",".join("" if np.isnan(x) else f"{x:.17g}" for x in row) for row in zip(*columns.values())]
+        path.write_text(",".join(columns) + "\n" + "\n".join(rows) + "\n")
+        result = call("infer", self.EXPERIMENT, path, "--json", *arguments)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return json.loads(result.stdout)
+
+    def make_columns(self):
+        # the model's sines begin at 0: its lines are those of the force times H
+        columns = {"frequency [Hz]": self.frequencies}
+        for i, name in enumerate(("mass1", "mass3")):
+            columns |= {f"{name}_real": self.responses[:, i].real, f"{name}_imaginary": self.responses[:, i].imag}
+            columns[f"{name}_sd"] = np.full(len(self.frequencies), self.sd)
+        return columns
+
+    def assert_right(self, found):
+        self.assertEqual(found["statuses"], ["ok"])
+        for name, true in self.TRUE.items():
+            estimate = found["parameters"][name]
+            self.assertLess(abs(estimate["mean"] - true), 4 * estimate["sd"], name)
+            self.assertLess(estimate["sd"], 0.01 * true, name)
+
+    def test_a_table_of_real_and_imaginary_parts(self):
+        self.assert_right(self.infer(self.make_columns()))
+
+    def test_a_table_of_magnitudes_and_phases(self):
+        columns = self.make_columns()
+        for i, name in enumerate(("mass1", "mass3")):
+            del columns[f"{name}_real"], columns[f"{name}_imaginary"]
+            columns[f"{name}_magnitude [mm/N]"] = 1e3 * abs(self.responses[:, i])
+            columns[f"{name}_phase [deg]"] = np.degrees(np.angle(self.responses[:, i]))
+        self.assert_right(self.infer(columns))
+
+    def test_lines_that_are_missing_are_left_out(self):
+        columns = self.make_columns()
+        columns["mass1_real"] = np.where(self.frequencies == 3, np.nan, columns["mass1_real"])
+        found = self.infer({name: values[1:] for name, values in columns.items()})
+        self.assertEqual(found["left_out"], ["2 of 16 lines of mass1/F", "1 of 16 lines of mass3/F"])
+        self.assert_right(found)
+
+
 if __name__ == "__main__":
     unittest.main()

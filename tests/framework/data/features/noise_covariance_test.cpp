@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "framework/data/noise/noise_whitener.hpp"
 
 namespace twinmap {
@@ -23,6 +25,18 @@ TEST(NoiseCovariance, OfIndependentNoiseIsItsVariances) {
   EXPECT_EQ(independent.toMatrix(), same.toMatrix());
   EXPECT_EQ(independent.take({0, 2}).diagonal(), Eigen::Vector2d(4.0, 16.0));
   EXPECT_EQ(independent.col(1), Vector3d(0.0, 9.0, 0.0));
+}
+
+TEST(NoiseCovariance, TakesOtherStandardDeviationsWhereTheyAreStated) {
+  const Vector3d stated(std::nan(""), 0.5, std::nan(""));
+  Matrix3d expected = makeCoupled();
+  expected.row(1).setZero();
+  expected.col(1).setZero();
+  expected(1, 1) = 0.25;
+  EXPECT_EQ(NoiseCovariance(makeCoupled()).replace(stated).toMatrix(), expected);
+  EXPECT_TRUE(NoiseCovariance(makeCoupled()).replace(stated).isDiagonal());  // no other pair was coupled
+  EXPECT_EQ(NoiseCovariance::makeIndependent(Vector3d(4.0, 9.0, 16.0)).replace(stated).diagonal(),
+            Vector3d(4.0, 0.25, 16.0));
 }
 
 TEST(NoiseCovariance, ActsAsItsMatrixWhateverItStores) {
