@@ -169,7 +169,6 @@ class FrequencyResponses(FolderTestCase):
         return json.loads(result.stdout)
 
     def make_columns(self):
-        # the model's sines begin at 0: its lines are those of the force times H
         columns = {"frequency [Hz]": self.frequencies}
         for i, name in enumerate(("mass1", "mass3")):
             columns |= {f"{name}_real": self.responses[:, i].real, f"{name}_imaginary": self.responses[:, i].imag}

@@ -79,8 +79,8 @@ TEST(MeasuredFrequencyResponse, OfOneResponseNeedsNoNames) {
 TEST(MeasuredFrequencyResponse, IsKnownByItsFrequencies) {
   EXPECT_TRUE(isFrequencyResponse(readLineTable("frequency,real\n5,1\n"), makeLines()));
   EXPECT_FALSE(isFrequencyResponse(readLineTable("t,x\n5,1\n"), makeLines()));
-  EXPECT_FALSE(
-      isFrequencyResponse(readLineTable("frequency,damping_ratio\n5,1\n"), {{"natural frequency 1"}}));
+  EXPECT_FALSE(isFrequencyResponse(readLineTable("frequency,damping_ratio\n5,1\n"),
+                                   {{"natural frequency 1", "Hz", -1, 0.0}}));
 }
 
 TEST(MeasuredFrequencyResponse, ErrorsNameColumnRowAndRule) {
