@@ -8,6 +8,7 @@
 #include "framework/base/text/nearest_name.hpp"
 #include "framework/diagnosis/scored_candidates.hpp"
 #include "framework/diagnosis/second_test.hpp"
+#include "framework/diagnosis/term_exchange.hpp"
 #include "framework/diagnosis/term_sets.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/sampling/weighted_draws.hpp"
@@ -127,9 +128,11 @@ class Diagnoser {
     CurrentFit next = addFitted(current, ranked.front());
     if (!is_given) {
       step.dropped = dropSuperfluous(fits_.front().experiment, recordings_, next);
+      step.exchanged = exchangeTerms(fits_.front().experiment, recordings_, shared_, options_.level, next);
     }
     fits_.push_back(std::move(next));
-    tied_.emplace_back(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(step.tied));
+    const std::size_t averaged = step.exchanged.empty() ? step.tied : 0;  // beside terms that are there still
+    tied_.emplace_back(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(averaged));
   }
 
   void takePair(const FittedPair& pair, DiagnosisStep& step) {

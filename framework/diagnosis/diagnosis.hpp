@@ -36,6 +36,11 @@ struct TermFinding {
   Eigen::VectorXd shifts{};       ///< p: how the machine's parameters move, in their sds without the term
 };
 
+/// A term in the place of another one that stood in for it.
+struct TermExchange {
+  std::string taken_out, put_in;
+};
+
 /// One term after the other: what may be missing beside those that were found before.
 struct DiagnosisStep {
   double chi_square = 0.0, degrees = 0.0;  ///< before
@@ -44,6 +49,7 @@ struct DiagnosisStep {
   std::size_t tied = 1;                    ///< so many of the first cannot be told apart
   std::optional<TermFinding> partner{};    ///< of the first one: the two were found together
   std::vector<std::string> dropped{};      ///< terms of earlier steps that are superfluous with this one's
+  std::vector<TermExchange> exchanged{};   ///< terms of earlier steps for which others stand now
   std::string advice{};                    ///< which second test would, where they can be
   bool found = false;                      ///< whether the first one is missing
 };
@@ -92,12 +98,13 @@ constexpr double kTiedEvidence = 3.0;
 /// Fits the experiment to the recordings (samplePosterior), tests each candidate by its score (ScoreTest)
 /// with exact derivatives at the fit, fits the best ones, ranks them by their evidence, takes the first and
 /// begins again with it. Two terms are taken at once where they explain what neither does, or more than the
-/// first with any other. Terms that later ones make superfluous are dropped. Ends where none is significant,
-/// after options.max_terms, or after those accepted.
-/// Terms behind which something unexplained remains are kept only where they stand out of that, too. Throws
-/// ExperimentError as scoreCandidates() does and for an accepted term that is not a candidate or that the
-/// parameters take up, std::runtime_error where nothing can be simulated. Cost: two posteriors and one for
-/// each tied term; a simulation with derivatives for all candidates a step, and some 40 for the fits.
+/// first with any other. Terms that later ones make superfluous are dropped, and those that stood in for
+/// others are exchanged (exchangeTerms). Ends where none is significant, after options.max_terms, or after
+/// those accepted. Terms behind which something unexplained remains are kept only where they stand out of
+/// that, too. Throws ExperimentError as scoreCandidates() does and for an accepted term that is not a
+/// candidate or that the parameters take up, std::runtime_error where nothing can be simulated. Cost: two
+/// posteriors and one for each tied term; a simulation with derivatives for all candidates a step, and some
+/// 40 for the fits.
 Diagnosis diagnose(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                    const DiagnosisOptions& options);
 

@@ -59,6 +59,9 @@ Json makeStepJson(const DiagnosisStep& step, const std::vector<ParameterSpec>& p
   if (!step.dropped.empty()) {
     json["dropped"] = step.dropped;
   }
+  for (const TermExchange& one : step.exchanged) {
+    json["exchanged"].push_back({{"taken_out", one.taken_out}, {"put_in", one.put_in}});
+  }
   if (!step.advice.empty()) {
     json["advice"] = step.advice;
   }

@@ -79,6 +79,9 @@ std::string describeStep(const DiagnosisStep& step, std::size_t number,
     for (const std::string& term : step.dropped) {
       text += fmt::format("  superfluous now: {}\n", term);
     }
+    for (const TermExchange& one : step.exchanged) {
+      text += fmt::format("  {} takes the place of {}\n", one.put_in, one.taken_out);
+    }
     for (std::size_t i = 1; i < step.tied; ++i) {
       text += fmt::format("  or: {}\n  {}{}\n", step.ranked[i].candidate.term,
                           step.ranked[i].candidate.meaning, describeOwnScales(step.ranked[i].candidate));

@@ -52,35 +52,6 @@ double calcTermEvidence(const LinearizedRecordings& linear, const CurrentFit& fi
          calcLogSignEvidence(term.candidate, estimate);
 }
 
-/// The fit without its term number `out`.
-CurrentFit fitWithout(const ExperimentSpec& without_terms, const RecordedFeatures& recordings,
-                      const CurrentFit& fit, std::size_t out) {
-  CurrentFit next{without_terms, {}, 0.0, 0.0, {}};
-  std::vector<double> values(fit.point.begin(),
-                             fit.point.begin() + static_cast<Index>(without_terms.model.parameters.size()));
-  double freed = 0.0;
-  for (std::size_t i = 0; i < fit.terms.size(); ++i) {
-    const FoundTerm& term = fit.terms[i];
-    const auto count = static_cast<Index>(term.candidate.own_scales.size()) + 1;
-    if (i == out) {
-      freed = static_cast<double>(count);
-      continue;
-    }
-    const Bounds& bounds = fit.experiment.model.parameters[static_cast<std::size_t>(term.first)].bounds;
-    next.terms.push_back({term.candidate, static_cast<Index>(next.experiment.model.parameters.size())});
-    next.experiment = addTerm(next.experiment, term.candidate, bounds.upper).experiment;
-    values.insert(values.end(), fit.point.begin() + term.first, fit.point.begin() + term.first + count);
-  }
-  const auto all = static_cast<Index>(fit.experiment.model.parameters.size());
-  values.insert(values.end(), fit.point.begin() + all, fit.point.end());
-  const MatrixXd start = Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size()));
-  const RecordingFit found = RecordingsProblem(next.experiment, recordings).fit(start);
-  next.point = found.point;
-  next.chi_square = found.chi_square;
-  next.degrees = fit.degrees + freed;
-  return next;
-}
-
 /// The coefficient and the own scales of a term as they are at the start of a fit.
 VectorXd listStartValues(const TermCandidate& candidate, double coefficient) {
   VectorXd values(1 + static_cast<Index>(candidate.own_scales.size()));
@@ -209,6 +180,34 @@ std::optional<FittedPair> fitPair(const CurrentFit& current, const RecordedFeatu
   both.fit.terms.push_back({scored.candidates[other], all + augmented.added});
   describePair(current, recordings, scored, p, level, both);
   return both;
+}
+
+CurrentFit fitWithout(const ExperimentSpec& without_terms, const RecordedFeatures& recordings,
+                      const CurrentFit& fit, std::size_t out) {
+  CurrentFit next{without_terms, {}, 0.0, 0.0, {}};
+  std::vector<double> values(fit.point.begin(),
+                             fit.point.begin() + static_cast<Index>(without_terms.model.parameters.size()));
+  double freed = 0.0;
+  for (std::size_t i = 0; i < fit.terms.size(); ++i) {
+    const FoundTerm& term = fit.terms[i];
+    const auto count = static_cast<Index>(term.candidate.own_scales.size()) + 1;
+    if (i == out) {
+      freed = static_cast<double>(count);
+      continue;
+    }
+    const Bounds& bounds = fit.experiment.model.parameters[static_cast<std::size_t>(term.first)].bounds;
+    next.terms.push_back({term.candidate, static_cast<Index>(next.experiment.model.parameters.size())});
+    next.experiment = addTerm(next.experiment, term.candidate, bounds.upper).experiment;
+    values.insert(values.end(), fit.point.begin() + term.first, fit.point.begin() + term.first + count);
+  }
+  const auto all = static_cast<Index>(fit.experiment.model.parameters.size());
+  values.insert(values.end(), fit.point.begin() + all, fit.point.end());
+  const MatrixXd start = Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size()));
+  const RecordingFit found = RecordingsProblem(next.experiment, recordings).fit(start);
+  next.point = found.point;
+  next.chi_square = found.chi_square;
+  next.degrees = fit.degrees + freed;
+  return next;
 }
 
 std::vector<std::string> dropSuperfluous(const ExperimentSpec& without_terms,

@@ -32,6 +32,10 @@ std::optional<FittedPair> fitPair(const CurrentFit& current, const RecordedFeatu
                                   const ScoredCandidates& scored, const TermPair& pair, Eigen::Index p,
                                   double level);
 
+/// The fit without its term number `out`; no point where that fails. Cost: that of a fit.
+CurrentFit fitWithout(const ExperimentSpec& without_terms, const RecordedFeatures& recordings,
+                      const CurrentFit& fit, std::size_t out);
+
 /// Takes out each term but the last that the others have made superfluous: the fit without it has the larger
 /// evidence. Returns the names of those taken out. Cost: one simulation with derivatives a recording, and a
 /// fit for each term taken out.

@@ -96,6 +96,14 @@ TEST(Diagnosis, FindsTwoTerms) {
   }
 }
 
+// Friction and a spring of fifth order: alone, a friction with a bristle explains some of both.
+TEST(Diagnosis, ExchangesATermThatStoodInForOthers) {
+  const Diagnosis diagnosis = diagnoseCart({measure("F - k3*x^3 - 0.03*tanh(x_dot/0.01) - 4e5*x^5")});
+  EXPECT_TRUE(diagnosis.after.isExplained());
+  const std::set<std::string> found(diagnosis.terms.begin(), diagnosis.terms.end());
+  EXPECT_EQ(found, (std::set<std::string>{"coulomb.x", "quintic_spring.x"}));
+}
+
 TEST(Diagnosis, TestsTermsOfTheFile) {
   const std::string force = "F - k3*x^3 + 0.05*sin(9*t^2)";
   const Diagnosis without = diagnoseCart({measure(force)});
