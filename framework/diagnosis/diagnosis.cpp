@@ -128,10 +128,12 @@ class Diagnoser {
     CurrentFit next = addFitted(current, ranked.front());
     if (!is_given) {
       step.dropped = dropSuperfluous(fits_.front().experiment, recordings_, next);
-      step.exchanged = exchangeTerms(fits_.front().experiment, recordings_, shared_, options_.level, next);
+      step.rivals = exchangeTerms(fits_.front().experiment, recordings_, shared_, options_.level, next);
     }
     fits_.push_back(std::move(next));
-    const std::size_t averaged = step.exchanged.empty() ? step.tied : 0;  // beside terms that are there still
+    const bool is_same = std::none_of(step.rivals.begin(), step.rivals.end(),
+                                      [](const TermRival& rival) { return rival.took_over; });
+    const std::size_t averaged = is_same ? step.tied : 0;  // fitted beside terms that are there still
     tied_.emplace_back(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(averaged));
   }
 

@@ -36,9 +36,10 @@ struct TermFinding {
   Eigen::VectorXd shifts{};       ///< p: how the machine's parameters move, in their sds without the term
 };
 
-/// A term in the place of another one that stood in for it.
-struct TermExchange {
-  std::string taken_out, put_in;
+/// A candidate in the place of a term of an earlier step, beside the terms found since.
+struct TermRival {
+  std::string term, rival;
+  bool took_over = false;  ///< whether the term stood in for it; else they cannot be told apart
 };
 
 /// One term after the other: what may be missing beside those that were found before.
@@ -49,7 +50,7 @@ struct DiagnosisStep {
   std::size_t tied = 1;                    ///< so many of the first cannot be told apart
   std::optional<TermFinding> partner{};    ///< of the first one: the two were found together
   std::vector<std::string> dropped{};      ///< terms of earlier steps that are superfluous with this one's
-  std::vector<TermExchange> exchanged{};   ///< terms of earlier steps for which others stand now
+  std::vector<TermRival> rivals{};         ///< of terms of earlier steps
   std::string advice{};                    ///< which second test would, where they can be
   bool found = false;                      ///< whether the first one is missing
 };

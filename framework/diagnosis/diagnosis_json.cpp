@@ -59,8 +59,8 @@ Json makeStepJson(const DiagnosisStep& step, const std::vector<ParameterSpec>& p
   if (!step.dropped.empty()) {
     json["dropped"] = step.dropped;
   }
-  for (const TermExchange& one : step.exchanged) {
-    json["exchanged"].push_back({{"taken_out", one.taken_out}, {"put_in", one.put_in}});
+  for (const TermRival& one : step.rivals) {
+    json["rivals"].push_back({{"term", one.term}, {"rival", one.rival}, {"took_over", one.took_over}});
   }
   if (!step.advice.empty()) {
     json["advice"] = step.advice;

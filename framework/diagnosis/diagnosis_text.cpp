@@ -79,8 +79,11 @@ std::string describeStep(const DiagnosisStep& step, std::size_t number,
     for (const std::string& term : step.dropped) {
       text += fmt::format("  superfluous now: {}\n", term);
     }
-    for (const TermExchange& one : step.exchanged) {
-      text += fmt::format("  {} takes the place of {}\n", one.put_in, one.taken_out);
+    for (const TermRival& one : step.rivals) {
+      text +=
+          fmt::format(one.took_over ? "  {} takes the place of {}\n"
+                                    : "  or {} in the place of {}: these recordings do not tell them apart\n",
+                      one.rival, one.term);
     }
     for (std::size_t i = 1; i < step.tied; ++i) {
       text += fmt::format("  or: {}\n  {}{}\n", step.ranked[i].candidate.term,

@@ -12,8 +12,7 @@ namespace twinmap {
 /// has clearly more evidence (kTiedEvidence) than the one that was there and explains no less. The last term
 /// stays where it is. p: parameters of the machine before any term; level: of what holds cautiously. Cost:
 /// for each term a fit without it, the scores of all candidates, and kExchangeFits fits.
-std::vector<TermExchange> exchangeTerms(const ExperimentSpec& without_terms,
-                                        const RecordedFeatures& recordings, Eigen::Index p, double level,
-                                        CurrentFit& fit);
+std::vector<TermRival> exchangeTerms(const ExperimentSpec& without_terms, const RecordedFeatures& recordings,
+                                     Eigen::Index p, double level, CurrentFit& fit);
 
 }  // namespace twinmap

@@ -16,10 +16,10 @@ struct ComplexLine {
   std::string name;  ///< "y" or "y/F"
   std::string unit;
   int output = -1;
-  double frequency = 0.0;    ///< Hz
-  std::string excitation{};  ///< the signal that it is the response to; empty of a spectrum
+  double frequency = 0.0;  ///< Hz
   std::vector<Eigen::Index> rows;
   Eigen::VectorXcd weights;
+  std::string excitation{};  ///< the signal that it is the response to; empty of a spectrum
 };
 
 /// Weights of a line of the discrete Fourier transform, of t = 0 and scaled by amplitude:
