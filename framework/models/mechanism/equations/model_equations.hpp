@@ -5,7 +5,7 @@
 
 #include "framework/experiment/model/model_spec.hpp"
 #include "framework/models/mechanism/equations/calc_system_values.hpp"
-#include "framework/models/mechanism/equations/constrained_motion.hpp"
+#include "framework/models/mechanism/equations/switches.hpp"
 #include "framework/models/mechanism/varying_expressions.hpp"
 
 namespace twinmap::equations {
@@ -26,6 +26,7 @@ struct ModelState {
   std::vector<S> signals{};       ///< of the excitation
   std::vector<S> signal_rates{};  ///< empty where no expression uses them
   std::vector<Prescribed<S>> prescribed{};
+  std::vector<S> modes{};  ///< of switches (switches.hpp); empty: none, and what switches exerts nothing
 };
 
 /// What follows from a state.
@@ -36,6 +37,7 @@ struct ModelMotion {
   std::vector<S> state_rates;
   std::vector<S> pivots;  ///< all positive, or the mass matrix or a loop is singular
   std::vector<BodyMotion<S>> bodies;
+  std::vector<S> held{};  ///< forces with which switches hold their coordinates
 };
 
 /// The values that expressions of a state may use.
@@ -73,7 +75,7 @@ Loads<S> calcLoads(const SystemSpec& spec, const SystemValues<S>& values,
                    const std::vector<S>& rates, const Named& named) {
   Loads<S> loads{std::vector<Spatial<S>>(motions.size()), std::vector<S>(state.coordinates.size(), S(0.0)),
                  std::vector<S>(state.states.size(), S(0.0))};
-  ForceSum<S, Named> sum(motions, state.coordinates, rates, state.states, named, loads);
+  ForceSum<S, Named> sum(motions, state.coordinates, rates, state.states, named, loads, &state.modes);
   for (std::size_t i = 1; i < motions.size(); ++i) {
     sum.addGravity(static_cast<int>(i), values.gravity, values.bodies[i].mass, values.bodies[i].center);
   }
@@ -112,8 +114,14 @@ ModelMotion<S> calcModelMotion(const ModelSpec& model, const SystemNames& system
   LinearSystem<S> equations =
       calcEquationsOfMotion(values, motion.bodies, loads.on_bodies, std::move(loads.on_speeds));
   prescribe(state.prescribed, equations);
-  ConstrainedMotion<S> solution =
-      solveConstrained(std::move(equations), calcClosureTerms(values, motion.bodies, state.coordinates));
+  auto conditions = calcClosureTerms(values, motion.bodies, state.coordinates);
+  const std::size_t closures = conditions.size();
+  ConstrainedMotion<S> solution = state.modes.empty() ? solveConstrained(std::move(equations), conditions)
+                                                      : solveHeld(std::move(equations), std::move(conditions),
+                                                                  listHeld(values.elements, state.modes));
+  for (std::size_t i = closures; i < solution.forces.size(); ++i) {
+    motion.held.push_back(-solution.forces[i]);
+  }
   motion.accelerations = std::move(solution.accelerations);
   motion.pivots = std::move(solution.pivots);
   return motion;
