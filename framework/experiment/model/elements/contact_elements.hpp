@@ -57,6 +57,7 @@ struct Stop {
   CoordinateOf<S> coordinate{};
   std::optional<S> above{}, below{};
   ContactLaw<S> law{};
+  OwnNameOf<S> name{};
 };
 
 template <class Fields, class S>
@@ -65,6 +66,7 @@ void describe(Fields& f, Stop<S>& s) {
   f.optional("above", s.above, "where it begins, towards larger values", Unit{"m", "rad"});
   f.optional("below", s.below, "where it begins, towards smaller values", Unit{"m", "rad"});
   describe(f, s.law);
+  describeName(f, s.name);
   f.rule(s.above.has_value() != s.below.has_value(), "must give either 'above' or 'below'");
 }
 
@@ -87,6 +89,7 @@ struct Backlash {
   OtherCoordinateOf<S> against{};
   S gap{};
   ContactLaw<S> law{};
+  OwnNameOf<S> name{};
 };
 
 template <class Fields, class S>
@@ -96,6 +99,7 @@ void describe(Fields& f, Backlash<S>& s) {
              Reference::kForcedCoordinate);
   f.required("gap", s.gap, "the whole play", Unit{"m", "rad"});
   describe(f, s.law);
+  describeName(f, s.name);
 }
 
 template <class S, class Sum>
@@ -114,41 +118,16 @@ void addForces(const Backlash<S>& s, Sum& sum) {
   }
 }
 
-/// A plane fixed to a body; `normal` points to the side that is free.
-template <class S>
-struct Plane {
-  BodyOf<S> body = makeGround();
-  VectorOf<S> point{}, normal{};
-
- private:
-  static BodyOf<S> makeGround() {
-    if constexpr (kIsFile<S>) {
-      return {"ground", {}};
-    } else {
-      return 0;
-    }
-  }
-};
-
-template <class S>
-inline constexpr bool kIsPart<Plane<S>> = true;
-
-template <class Fields, class S>
-void describe(Fields& f, Plane<S>& s) {
-  f.optional("body", s.body, "the body that has the plane; default: ground", Reference::kBody);
-  f.optional("point", s.point, "of the plane, in its body's frame", Unit{"m"});
-  f.required("normal", s.normal, "towards the free side, of any length", kNoUnit);
-}
-
 /// A point of a body against a plane of another, with friction mu N tanh(v / onset_speed) against the
 /// sliding speed v.
 template <class S>
 struct Contact {
-  static constexpr ElementKind kKind{"contacts", "contact", "points of bodies against planes"};
+  static constexpr ElementKind kKind{"contacts", "contact", "points of bodies against planes", {true, true}};
   Station<S> station;
   Plane<S> plane;
   ContactLaw<S> law{};
   std::optional<S> friction{}, onset_speed{};
+  OwnNameOf<S> name{};
 };
 
 template <class Fields, class S>
@@ -159,6 +138,7 @@ void describe(Fields& f, Contact<S>& s) {
   describe(f, s.law);
   f.optional("friction", s.friction, "coefficient of friction mu", Unit{"1"});
   f.optional("onset_speed", s.onset_speed, "of friction: mu N tanh(v / onset_speed)", Unit{"m/s"});
+  describeName(f, s.name);
   f.rule(s.friction.has_value() == s.onset_speed.has_value(),
          "must give 'friction' and 'onset_speed' together");
 }

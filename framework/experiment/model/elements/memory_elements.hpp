@@ -85,6 +85,7 @@ struct Friction {
   std::optional<Stribeck<S>> stribeck{};
   std::optional<Bristle<S>> bristle{};
   std::optional<S> onset_speed{};
+  OwnNameOf<S> name{};
 };
 
 template <class Fields, class S>
@@ -98,6 +99,7 @@ void describe(Fields& f, Friction<S>& s) {
   f.optional("stribeck", s.stribeck, "a higher level at rest");
   f.optional("bristle", s.bristle, "of lugre");
   f.optional("onset_speed", s.onset_speed, "of regularised: tanh(v / onset_speed)", Unit{"m/s", "rad/s"});
+  describeName(f, s.name);
   f.rule((s.model == FrictionModel::kLugre) == s.bristle.has_value(),
          "must give 'bristle' with 'model: lugre', and only there");
   f.rule((s.model == FrictionModel::kRegularised) == s.onset_speed.has_value(),
@@ -170,12 +172,14 @@ struct Hysteresis {
   static constexpr ElementKind kKind{"hysteresis", "hysteresis", "springs that yield, on coordinates"};
   CoordinateOf<S> coordinate{};
   BoucWen<S> bouc_wen{};
+  OwnNameOf<S> name{};
 };
 
 template <class Fields, class S>
 void describe(Fields& f, Hysteresis<S>& s) {
   f.required("coordinate", s.coordinate, "the coordinate it acts on", Reference::kForcedCoordinate);
   f.required("bouc_wen", s.bouc_wen, "the model of Bouc and Wen");
+  describeName(f, s.name);
 }
 
 template <class S, class Sum>
