@@ -99,6 +99,19 @@ void prescribe(const std::vector<Prescribed<S>>& known, LinearSystem<S>& equatio
   }
 }
 
+/// The same of conditions: what known accelerations do to them becomes part of their bias, and their forces
+/// do not act on those coordinates.
+template <class S>
+void prescribe(const std::vector<Prescribed<S>>& known, std::vector<ClosureTerms<S>>& closures) {
+  for (ClosureTerms<S>& closure : closures) {
+    for (const Prescribed<S>& one : known) {
+      S& slope = closure.row[one.coordinate];
+      closure.bias = closure.bias + slope * one.acceleration;
+      slope = S(0.0);
+    }
+  }
+}
+
 /// The equations of motion of a model. `names`: its parameters and constants, `values`: calcSystemValues of
 /// them.
 template <class S>
@@ -113,8 +126,9 @@ ModelMotion<S> calcModelMotion(const ModelSpec& model, const SystemNames& system
   LinearSystem<S> equations =
       calcEquationsOfMotion(values, motion.bodies, loads.on_bodies, std::move(loads.on_speeds));
   prescribe(state.prescribed, equations);
-  ConstrainedMotion<S> solution =
-      solveConstrained(std::move(equations), calcClosureTerms(values, motion.bodies, state.coordinates));
+  std::vector<ClosureTerms<S>> closures = calcClosureTerms(values, motion.bodies, state.coordinates);
+  prescribe(state.prescribed, closures);
+  ConstrainedMotion<S> solution = solveConstrained(std::move(equations), closures);
   motion.loads = std::move(loads.on_bodies);
   motion.closure_forces = std::move(solution.forces);
   motion.accelerations = std::move(solution.accelerations);
