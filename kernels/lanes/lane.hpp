@@ -13,6 +13,7 @@ enum class Mode {
   kBegin,    ///< a step of size 0, whose last slopes are those at the phase's begin
   kRestart,  ///< once more, since the sensitivities have jumped there
   kJump,     ///< nothing yet: the states jump before (LanePacket::doJumps)
+  kEvent,    ///< nothing yet: an event is due (LanePacket::doEvents)
   kStep,
 };
 
@@ -26,12 +27,25 @@ struct Lane {
   std::vector<OutputRecorder::KeptTime> kept;  ///< in their order
   int next_output = 0;                         ///< first of them not yet kept
   std::chrono::steady_clock::time_point start{};
+  int event = kNoEvent;              ///< the guard of the event that is due
+  std::vector<double> event_slopes;  ///< d its time / d parameter; empty: nothing moves it
+  std::vector<char> crossing;        ///< guards that the step's end, found by them, no longer leaves positive
+  std::vector<char> fired;           ///< guards whose event has been at this time
+  double event_time = 0.0;           ///< of the last event found in a step, s
+  int events_at_once = 0;            ///< without progress in time
+
+  static constexpr int kNoEvent = -2, kStartEvent = -1;
 
   const Phase& getPhase() const { return sample.phases[phase]; }
   bool isInLastPhase() const { return phase + 1 == static_cast<int>(sample.phases.size()); }
   double getPhaseEnd() const { return isInLastPhase() ? sample.end : sample.phases[phase + 1].begin; }
   /// Whether the phase's begin moves with a parameter, so that the sensitivities jump.
   bool hasJump() const { return phase > 0 && !getPhase().begin_slopes.empty(); }
+  /// How the time of what jumps moves with each parameter; null: not at all.
+  const std::vector<double>* findJumpSlopes() const {
+    const std::vector<double>& slopes = mode == Mode::kEvent ? event_slopes : getPhase().begin_slopes;
+    return slopes.empty() || (mode != Mode::kEvent && phase == 0) ? nullptr : &slopes;
+  }
   void fail(Outcome outcome) {
     result.outcome = outcome;
     mode = Mode::kIdle;

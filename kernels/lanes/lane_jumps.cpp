@@ -5,19 +5,26 @@
 
 namespace twinmap::lanes {
 
+void LanePacket::doJumps() {
+  const unsigned lanes = std::exchange(jumping_, 0u);
+  jumpBy(*jumps_, lanes);
+  forEach(lanes, [this](int lane) { openPhase(lane); });
+}
+
 /// Where the jump's time moves with a parameter the states before it go on by f- dt, and those behind it came
 /// by f+ dt less (saltation): s+ = dh/dy (s- + f- dt) + dh/dt dt + dh/dp - f+ dt. Unlike the begin of other
 /// phases it costs one evaluation of f, two where it moves, and the steps keep their size.
-void LanePacket::doJumps() {
-  const unsigned lanes = std::exchange(jumping_, 0u);
-  forEach(lanes, [this](int lane) { prepareJump(lane); });
-  jumps_->calcParameters();
-  jumps_->calcPhase();
-  jumps_->calcOutputs();
-  forEach(lanes, [this](int lane) { takeJump(lane); });
+void LanePacket::jumpBy(program::Interpreter& program, unsigned lanes) {
+  forEach(lanes, [&](int lane) { prepareJump(lane, program); });
+  program.calcParameters();
+  program.calcPhase();
+  program.calcOutputs();
+  forEach(lanes, [&](int lane) { takeJump(lane, program); });
   evaluateAt(lanes);
   unsigned moving = 0;
-  forEach(lanes, [&](int lane) { moving |= lanes_[lane].hasJump() && directions_ > 0 ? 1u << lane : 0u; });
+  forEach(lanes, [&](int lane) {
+    moving |= lanes_[lane].findJumpSlopes() != nullptr && directions_ > 0 ? 1u << lane : 0u;
+  });
   if (moving != 0) {
     forEach(moving, [this](int lane) { moveBack(lane); });
     evaluateAt(moving);
@@ -25,32 +32,35 @@ void LanePacket::doJumps() {
   forEach(lanes, [this](int lane) { beginAfterJump(lane); });
 }
 
-void LanePacket::prepareJump(int lane) {
+void LanePacket::prepareJump(int lane, program::Interpreter& program) {
   const Lane& l = lanes_[lane];
   const std::vector<double>& inputs = l.getPhase().inputs;
-  const std::vector<double>& slopes = l.getPhase().begin_slopes;
-  jumps_->updTime()[lane] = arrays_.time[lane];
+  const std::vector<double>* const slopes = l.findJumpSlopes();
+  program.updTime()[lane] = arrays_.time[lane];
   for (int i = 0; i < parameters_; ++i) {
-    jumps_->updParameter(i)[lane] = l.sample.parameters[i];
+    program.updParameter(i)[lane] = l.sample.parameters[i];
   }
   for (int i = 0; i < phase_inputs_; ++i) {
-    jumps_->updPhaseInput(i)[lane] = inputs[i];
+    program.updPhaseInput(i)[lane] = inputs[i];
+  }
+  if (l.mode == Mode::kEvent) {
+    program.updPhaseInput(events_->getEventInput())[lane] = 1.0 + l.event;
   }
   for (int row = 0; row < arrays_.rows; ++row) {
-    jumps_->updState(row)[lane] = arrays_.state[row * count_ + lane];
+    program.updState(row)[lane] = arrays_.state[row * count_ + lane];
   }
   for (int j = 0; j < directions_; ++j) {
-    const double slope = l.hasJump() ? slopes[j] : 0.0;
-    jumps_->updPhaseInput(phase_inputs_ + j)[lane] = slope;
+    const double slope = slopes != nullptr ? (*slopes)[j] : 0.0;
+    program.updPhaseInput(phase_inputs_ + j)[lane] = slope;
     for (int i = 0; i < states_ && slope != 0.0; ++i) {
-      jumps_->updState((1 + j) * states_ + i)[lane] += slope * arrays_.slopes[1][i * count_ + lane];
+      program.updState((1 + j) * states_ + i)[lane] += slope * arrays_.slopes[1][i * count_ + lane];
     }
   }
 }
 
-void LanePacket::takeJump(int lane) {
+void LanePacket::takeJump(int lane, const program::Interpreter& program) {
   for (int row = 0; row < arrays_.rows; ++row) {
-    arrays_.state[row * count_ + lane] = jumps_->getOutput(row)[lane];
+    arrays_.state[row * count_ + lane] = program.getOutput(row)[lane];
   }
 }
 
@@ -78,7 +88,7 @@ void LanePacket::evaluateAt(unsigned lanes) {
 }
 
 void LanePacket::moveBack(int lane) {
-  const std::vector<double>& slopes = lanes_[lane].getPhase().begin_slopes;
+  const std::vector<double>& slopes = *lanes_[lane].findJumpSlopes();
   for (int j = 0; j < directions_; ++j) {
     for (int i = 0; i < states_; ++i) {
       const int at = i * count_ + lane;
@@ -102,7 +112,7 @@ void LanePacket::beginAfterJump(int lane) {
   if (std::isnan(sum)) {
     return l.fail(Outcome::kNonFinite);
   }
-  if (arrays_.proposed[lane] > 0.0 && l.phase > 0) {
+  if (arrays_.proposed[lane] > 0.0 && (l.phase > 0 || l.mode == Mode::kEvent)) {
     l.mode = Mode::kStep;
   } else {
     beginSteps(lane);

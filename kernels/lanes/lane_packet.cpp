@@ -1,6 +1,7 @@
 // Which samples the lanes hold.
 #include "kernels/lanes/lane_packet.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <chrono>
 #include <limits>
@@ -29,6 +30,11 @@ LanePacket::LanePacket(const Problem& problem, const std::vector<double>& times,
       lanes_(count_) {
   if (!problem.jump.outputs.empty()) {
     jumps_.emplace(problem.jump, engine.program);
+  }
+  if (problem.guard_count > 0) {
+    events_.emplace(problem, engine.program);
+    brackets_.resize(count_);
+    event_times_.resize(count_);
   }
   if (!problem.projection.outputs.empty()) {
     projection_.emplace(problem, engine.program);
@@ -114,6 +120,11 @@ bool LanePacket::load(int lane, SampleStream& stream) {
   if (projection_) {
     projection_->setSample(lane, l.sample);
   }
+  if (events_) {
+    events_->setSample(lane, l.sample);
+    l.event_time = -kInfinity;
+    l.crossing.assign(events_->getCount(), 0);
+  }
   l.result = {};
   l.start = std::chrono::steady_clock::now();
   arrays_.next_check[lane] = 0.0;
@@ -155,6 +166,13 @@ void LanePacket::beginPhase(int lane, int phase) {
   phase_changed_ = true;
   if (projection_) {
     projection_->setPhase(lane, l.getPhase());
+  }
+  if (events_) {
+    events_->setPhase(lane, l.getPhase());
+    l.events_at_once = 0;
+    l.fired.assign(events_->getCount(), 0);
+    std::fill(l.crossing.begin(), l.crossing.end(), 0);
+    l.event_slopes = phase > 0 ? l.getPhase().begin_slopes : std::vector<double>{};
   }
   assert(static_cast<int>(l.getPhase().inputs.size()) == phase_inputs_ &&
          l.getPhase().begin < l.getPhaseEnd());

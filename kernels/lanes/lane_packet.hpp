@@ -4,6 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include "kernels/lanes/event_bracket.hpp"
+#include "kernels/lanes/event_programs.hpp"
 #include "kernels/lanes/integrator.hpp"
 #include "kernels/lanes/lane.hpp"
 #include "kernels/lanes/program/aligned_buffer.hpp"
@@ -33,11 +35,21 @@ class LanePacket {
   void judge(int lane);
   void jump(int lane);
   void doJumps();
-  void prepareJump(int lane);
-  void takeJump(int lane);
+  void jumpBy(program::Interpreter& program, unsigned lanes);
+  void prepareJump(int lane, program::Interpreter& program);
+  void takeJump(int lane, const program::Interpreter& program);
   void evaluateAt(unsigned lanes);
   void beginAfterJump(int lane);
   void moveBack(int lane);
+  unsigned findEvents();
+  void calcGuardsWithin();
+  void narrow(unsigned lanes);
+  void endStepAtEvent(int lane);
+  void startEvent(int lane, int event);
+  void openPhase(int lane);
+  void doEvents();
+  void settle(unsigned lanes);
+  void findEventSlopes(int lane);
   void keepOutputs(unsigned lanes);
   void advance(int lane);
   void beginSteps(int lane);
@@ -64,6 +76,11 @@ class LanePacket {
   OutputRecorder outputs_;
   std::optional<program::Interpreter> jumps_;
   unsigned jumping_ = 0;  ///< lanes whose states jump before the next step
+  std::optional<EventPrograms> events_;
+  unsigned firing_ = 0;    ///< lanes with an event due
+  unsigned settling_ = 0;  ///< lanes in which events may be due
+  std::vector<EventBracket> brackets_;
+  std::vector<double> event_times_;
   std::optional<StateProjection> projection_;
   std::vector<const double*> derivatives_, pivots_;
   std::vector<double> absolute_, relative_;

@@ -14,11 +14,19 @@ constexpr int kStepsBetweenClocks = 64;  // reading the clock costs as much as s
 }  // namespace
 
 void LanePacket::doRound() {
-  if (jumping_ != 0) {
-    doJumps();
+  while ((jumping_ | firing_ | settling_) != 0) {
+    if (jumping_ != 0) {
+      doJumps();
+    }
+    if ((firing_ | settling_) != 0) {
+      doEvents();
+    }
   }
-  const unsigned attention = doStep();
+  unsigned attention = doStep();
   forEach(attention, [this](int lane) { judge(lane); });
+  if (events_) {
+    attention |= findEvents();
+  }
   keepOutputs(attention);
   if (projection_) {
     // the slopes stay those of the state before, which is as near as the step's error: they enter the next
@@ -96,10 +104,14 @@ void LanePacket::keepOutputs(unsigned lanes) {
 
 void LanePacket::advance(int lane) {
   Lane& l = lanes_[lane];
+  if (l.mode == Mode::kEvent) {
+    return;
+  }
   if (l.mode == Mode::kBegin && l.hasJump()) {
     l.mode = Mode::kRestart;
   } else if (l.mode != Mode::kStep) {
     beginSteps(lane);
+    openPhase(lane);
   } else if (arrays_.time[lane] == arrays_.phase_end[lane]) {
     endPhase(lane);
   } else {

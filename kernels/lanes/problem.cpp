@@ -112,9 +112,10 @@ void appendSensitivities(Recorder& recorder, const Equations& equations, const s
   }
 }
 
-program::Program compileJump(Recorder& recorder, const Equations& equations,
+/// `jumps`: those of the equations, or their transitions.
+program::Program compileJump(Recorder& recorder, const Equations& equations, const std::vector<Symbol>& jumps,
                              const std::vector<int>& directions, program::InputCounts counts) {
-  std::vector<Symbol> rows = equations.jumps;
+  std::vector<Symbol> rows = jumps;
   if (rows.empty()) {
     return {};
   }
@@ -124,10 +125,27 @@ program::Program compileJump(Recorder& recorder, const Equations& equations,
     for (const Passed& passed : equations.passed) {
       seeds.push_back({passed.value, calcTangents({passed.as}, seeds)[0]});
     }
-    append(calcTangents(equations.jumps, seeds), rows);
+    append(calcTangents(jumps, seeds), rows);
   }
   counts.phase_inputs += static_cast<int>(directions.size());
   return compile(recorder, rows, counts);
+}
+
+void compileEvents(Recorder& recorder, const Equations& equations, const std::vector<int>& directions,
+                   const program::InputCounts& counts, Problem& problem) {
+  problem.guard_count = static_cast<int>(equations.guards.size());
+  problem.event_input = equations.event_input;
+  std::vector<Seed> flow{{recorder.time(), 1.0}};
+  for (int i = 0; i < equations.counts.states; ++i) {
+    flow.push_back({recorder.state(i), equations.derivatives[i]});
+  }
+  std::vector<Symbol> changes = calcTangents(equations.guards, flow);
+  for (int j = 0; j < static_cast<int>(directions.size()); ++j) {
+    append(calcTangents(equations.guards, makeSeeds(recorder, equations, directions, j)), changes);
+  }
+  problem.guard = compile(recorder, equations.guards, equations.counts);
+  problem.guard_change = compile(recorder, changes, counts);
+  problem.transition = compileJump(recorder, equations, equations.transitions, directions, counts);
 }
 
 }  // namespace
@@ -151,7 +169,10 @@ Problem makeProblem(Recorder& recorder, const Equations& equations, const std::v
   problem.output = compile(recorder, outputs, counts);
   problem.output_delays = equations.output_delays;
   problem.delay_count = static_cast<int>(equations.delays.size());
-  problem.jump = compileJump(recorder, equations, directions, counts);
+  problem.jump = compileJump(recorder, equations, equations.jumps, directions, counts);
+  if (!equations.guards.empty()) {
+    compileEvents(recorder, equations, directions, counts, problem);
+  }
   problem.projection = compile(recorder, projection, counts);
   return problem;
 }

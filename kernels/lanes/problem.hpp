@@ -27,6 +27,11 @@ struct Equations {
   /// Values within the jumps that change as others do, which come before them: what a quantiser makes of
   /// them.
   std::vector<Passed> passed{};
+  /// Events whose time depends on the solution: guard k is positive, and where it no longer is the states
+  /// become `transitions`, at which the phase input `event_input` is 1 + k; at the start, before all else, it
+  /// is 0. At most one event at a time; those that it causes follow at the same time.
+  std::vector<program::Symbol> guards{}, transitions{};
+  int event_input = -1;  ///< 0 in all phases
   /// Where solutions satisfy conditions that steps leave by their error: the states near y that satisfy them,
   /// one a state. Empty: there are none.
   std::vector<program::Symbol> projection{};
@@ -47,6 +52,10 @@ struct Problem {
   /// Without outputs: none.
   program::Program jump{};
   program::Program projection{};  ///< of all rows; without outputs where there is none
+  int guard_count = 0, event_input = -1;
+  program::Program guard{};         ///< of the states alone
+  program::Program guard_change{};  ///< their rates along the solution, then their changes by direction
+  program::Program transition{};    ///< all rows behind an event; inputs as those of `jump`
 
   int getRowCount() const { return counts.states * (1 + static_cast<int>(directions.size())); }
 };

@@ -31,6 +31,7 @@ enum class Outcome {
   kNonFinite,     ///< state or derivative
   kStepTooSmall,  ///< for the numbers to tell its end from its begin
   kSingular,      ///< a pivot was not positive
+  kEventsStuck,   ///< events followed one another without progress in time
 };
 
 struct Result {
@@ -38,6 +39,7 @@ struct Result {
   double time = 0.0;  ///< s; where it ended. At a failure the outputs of the sample are not written.
   int steps = 0;      ///< tried, including rejected ones
   int rejected = 0;
+  int events = 0;  ///< whose time depends on the solution
 };
 
 struct Options {

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/check/check_pairs.hpp"
 #include "framework/experiment/check/check_sampled.hpp"
 #include "framework/experiment/check/check_scope.hpp"
 #include "framework/experiment/expression/output_units.hpp"
@@ -230,7 +231,7 @@ class ModelCheck {
     declareDynamics();
     checkJoints();
     fields_.checkAll(model_.system);
-    checkPairs();
+    checkPairs(model_);
     checkConstraints();
     checkNames();
     checkExcitation();
@@ -353,18 +354,6 @@ class ModelCheck {
         });
       }
     });
-  }
-
-  /// What slides against each other must move alike.
-  void checkPairs() const {
-    for (const auto& friction : model_.system.elements.get<Friction>()) {
-      if (friction.against && findUnit(*friction.against) != findUnit(friction.coordinate)) {
-        throw ExperimentError(friction.against->where, friction.against->text,
-                              "is in " + findUnit(*friction.against) + ", but '" + friction.coordinate.text +
-                                  "' in " + findUnit(friction.coordinate) +
-                                  ": friction acts between two lengths or two angles");
-      }
-    }
   }
 
   void checkConstraints() const {

@@ -15,6 +15,20 @@ void addStill(SystemSpec& system, const Name& name, const Expression& initial, c
   }
 }
 
+template <class Items, class Rule>
+void removeIf(Items& items, Rule rule) {
+  items.erase(std::remove_if(items.begin(), items.end(), rule), items.end());
+}
+
+/// Of the first that satisfies a rule, "system.stops[1].restitution"; "" if none does.
+template <class Items, class Rule>
+std::string findElementKey(const Items& items, Rule rule, const char* key, const char* value) {
+  const auto found = std::find_if(items.begin(), items.end(), rule);
+  return found == items.end()
+             ? ""
+             : std::string("system.") + key + "[" + std::to_string(found - items.begin()) + "]" + value;
+}
+
 }  // namespace
 
 int findSignal(const ModelSpec& model, const Name& signal) {
@@ -51,6 +65,8 @@ ModelSpec removeSampled(ModelSpec model) {
   for (OutputSpec& output : model.outputs) {
     output.sensor.reset();
   }
+  removeIf(model.system.elements.get<Stop>(), [](const auto& stop) { return stop.isRigid(); });
+  removeIf(model.system.elements.get<Friction>(), [](const auto& friction) { return friction.switches(); });
   return model;
 }
 
@@ -63,7 +79,16 @@ std::string findSampledKey(const ModelSpec& model) {
   }
   const auto found = std::find_if(model.outputs.begin(), model.outputs.end(),
                                   [](const OutputSpec& output) { return output.sensor.has_value(); });
-  return found == model.outputs.end() ? "" : "outputs." + found->name.text + ".sensor";
+  if (found != model.outputs.end()) {
+    return "outputs." + found->name.text + ".sensor";
+  }
+  const ForceElements<Expression>& elements = model.system.elements;
+  const std::string stop = findElementKey(
+      elements.get<Stop>(), [](const auto& one) { return one.isRigid(); }, "stops", ".restitution");
+  return !stop.empty() ? stop
+                       : findElementKey(
+                             elements.get<Friction>(), [](const auto& one) { return one.switches(); },
+                             "friction", ".model: coulomb");
 }
 
 }  // namespace twinmap

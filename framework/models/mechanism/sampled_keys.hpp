@@ -13,8 +13,9 @@ int findSignal(const ModelSpec& model, const Name& signal);
 /// still: what expressions see of a controller. Once, however often it is called.
 ModelSpec addControllerStates(ModelSpec model);
 
-/// The model without what only lanes simulate: sensors that remember, round or clip, prescribed motions and
-/// controllers, whose states stand still. `model`: of addControllerStates().
+/// The model without what only lanes simulate: sensors that remember, round or clip, prescribed motions,
+/// controllers, whose states stand still, and what switches: rigid stops and friction that sticks. `model`:
+/// of addControllerStates().
 ModelSpec removeSampled(ModelSpec model);
 
 /// The first key that removeSampled() takes out, such as "outputs.q.sensor"; "" if there is none.

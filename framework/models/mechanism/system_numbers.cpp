@@ -8,6 +8,7 @@
 #include "framework/models/mechanism/constraint_numbers.hpp"
 #include "framework/models/mechanism/load_numbers.hpp"
 #include "framework/models/mechanism/model_context.hpp"
+#include "framework/models/mechanism/switch_numbers.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -303,6 +304,7 @@ void checkNumbers(ModelContext& context) {
     calcOutputNumbers(output, context.names, numbers);
   }
   checkSampledNumbers(context.model, numbers);
+  checkSwitchNumbers(system, numbers);
   calcInitialValues(context);
 }
 

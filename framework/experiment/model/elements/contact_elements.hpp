@@ -9,7 +9,8 @@
 
 // Elements that push while something is pressed in, and never pull. Their forces have no jump, so that
 // derivatives of the response are exact without events: what loses energy is in proportion to the depth (Hunt
-// and Crossley, J. Applied Mechanics 42, 1975, p. 440), not a damper that acts from the first touch on.
+// and Crossley, J. Applied Mechanics 42, 1975, p. 440), not a damper that acts from the first touch on. Stops
+// with a restitution are rigid: they switch (models/mechanism/equations/switches.hpp).
 
 namespace twinmap {
 
@@ -50,35 +51,59 @@ S calcContactForce(const ContactLaw<S>& law, const S& depth, const S& rate) {
   return elastic * max(one + law.dissipation * rate, zero);
 }
 
-/// A one-sided stop of a coordinate, which pushes it back from beyond `above` or `below`.
+/// A one-sided stop of a coordinate, or of its difference to another, beyond `above` or `below`. An elastic
+/// one pushes it back; a rigid one, which has a `restitution` e, throws it back at e times its speed.
 template <class S>
 struct Stop {
-  static constexpr ElementKind kKind{"stops", "stop", "elastic one-sided stops of coordinates"};
+  static constexpr ElementKind kKind{"stops", "stop", "one-sided stops of coordinates"};
   CoordinateOf<S> coordinate{};
+  OtherCoordinateOf<S> against{};
   std::optional<S> above{}, below{};
-  ContactLaw<S> law{};
+  std::optional<S> stiffness{}, exponent{}, dissipation{};
+  std::optional<S> restitution{};
   OwnNameOf<S> name{};
+
+  bool isRigid() const { return restitution.has_value(); }
 };
 
 template <class Fields, class S>
 void describe(Fields& f, Stop<S>& s) {
   f.required("coordinate", s.coordinate, "the coordinate that is stopped", Reference::kForcedCoordinate);
+  f.optional("against", s.against, "a coordinate that it meets: the stop is of their difference",
+             Reference::kForcedCoordinate);
   f.optional("above", s.above, "where it begins, towards larger values", Unit{"m", "rad"});
   f.optional("below", s.below, "where it begins, towards smaller values", Unit{"m", "rad"});
-  describe(f, s.law);
+  f.optional("stiffness", s.stiffness,
+             "of an elastic stop: force for each unit of depth to the power `exponent`",
+             Unit{"N/m", "N m/rad", false, false, readLengthPower(s.exponent)});
+  f.optional("exponent", s.exponent, "of the depth; 1.5 for spheres (Hertz); default 1", Unit{"1"});
+  f.optional("dissipation", s.dissipation, "share of the force for each unit of speed; default 0",
+             Unit{"s/m", "s/rad"});
+  f.optional("restitution", s.restitution, "of a rigid stop: speed behind an impact for that before, 0 to 1",
+             Unit{"1"});
   describeName(f, s.name);
   f.rule(s.above.has_value() != s.below.has_value(), "must give either 'above' or 'below'");
+  f.rule(s.stiffness.has_value() != s.restitution.has_value(),
+         "must give either 'stiffness' (an elastic stop) or 'restitution' (a rigid one)");
+  f.rule(!s.restitution || (!s.exponent && !s.dissipation),
+         "must not give 'exponent' or 'dissipation' with 'restitution': they are of an elastic stop");
+}
+
+/// How far a coordinate is from the stop: positive where it is free.
+template <class S>
+S calcStopGap(const Stop<S>& s, const S& place) {
+  return s.above ? *s.above - place : place - *s.below;
 }
 
 template <class S, class Sum>
 void addForces(const Stop<S>& s, Sum& sum) {
-  const S& q = sum.getCoordinate(s.coordinate);
-  const S& rate = sum.getRate(s.coordinate);
-  if (s.above) {
-    sum.addOnCoordinate(s.coordinate, -calcContactForce(s.law, S(q - *s.above), rate));
-  } else {
-    sum.addOnCoordinate(s.coordinate, calcContactForce(s.law, S(*s.below - q), S(-rate)));
+  if (s.isRigid()) {
+    return;
   }
+  const S apart = sum.calcDifference(s.coordinate, s.against), rate = sum.calcSlip(s.coordinate, s.against);
+  const ContactLaw<S> law{*s.stiffness, s.dissipation ? *s.dissipation : S(0.0), s.exponent};
+  const S force = calcContactForce(law, S(-calcStopGap(s, apart)), s.above ? rate : S(-rate));
+  sum.addBetween(s.coordinate, s.against, s.above ? S(-force) : force);
 }
 
 /// Play of a coordinate: no force over the width `gap`, whose middle is at 0, a spring on either side.
@@ -104,18 +129,11 @@ void describe(Fields& f, Backlash<S>& s) {
 
 template <class S, class Sum>
 void addForces(const Backlash<S>& s, Sum& sum) {
-  S apart = sum.getCoordinate(s.coordinate), rate = sum.getRate(s.coordinate);
-  if (s.against) {
-    apart = apart - sum.getCoordinate(*s.against);
-    rate = rate - sum.getRate(*s.against);
-  }
+  const S apart = sum.calcDifference(s.coordinate, s.against), rate = sum.calcSlip(s.coordinate, s.against);
   const S half = S(0.5) * s.gap;
   const S force =
       calcContactForce(s.law, S(-apart - half), S(-rate)) - calcContactForce(s.law, S(apart - half), rate);
-  sum.addOnCoordinate(s.coordinate, force);
-  if (s.against) {
-    sum.addOnCoordinate(*s.against, -force);
-  }
+  sum.addBetween(s.coordinate, s.against, force);
 }
 
 /// A point of a body against a plane of another, with friction mu N tanh(v / onset_speed) against the

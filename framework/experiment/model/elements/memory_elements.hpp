@@ -63,18 +63,22 @@ void describe(Fields& f, Stribeck<S>& s) {
   f.optional("exponent", s.exponent, "of the speed", Unit{"1"});
 }
 
-enum class FrictionModel { kLugre, kRegularised };
+enum class FrictionModel { kLugre, kRegularised, kCoulomb };
 
 template <>
 struct EnumNames<FrictionModel> {
   static constexpr EnumName<FrictionModel> values[] = {{"lugre", FrictionModel::kLugre},
-                                                       {"regularised", FrictionModel::kRegularised}};
+                                                       {"regularised", FrictionModel::kRegularised},
+                                                       {"coulomb", FrictionModel::kCoulomb}};
 };
 
-/// Friction on a coordinate, or between two, with g(v) the Coulomb or Stribeck level at the sliding speed v.
+/// Friction on a coordinate, or between two, with g(v) the Coulomb or Stribeck level at the sliding speed v,
+/// the coordinate's rate less that of the other and of the surface.
 /// - lugre (IEEE Trans. Automatic Control 40, 1995, p. 419): dz/dt = v - s0 |v| z / g(v), force
 ///   -(s0 z + s1 dz/dt + viscous v), with stiffness s0 and damping s1 of the bristle;
-/// - regularised: force -(g(v) tanh(v / onset_speed) + viscous v), which creeps under any load.
+/// - regularised: force -(g(v) tanh(v / onset_speed) + viscous v), which creeps under any load;
+/// - coulomb: it sticks while that takes at most g(0), else force -(g(v) sign(v) + viscous v). It switches
+///   (models/mechanism/equations/switches.hpp).
 template <class S>
 struct Friction {
   static constexpr ElementKind kKind{"friction", "friction", "friction on coordinates"};
@@ -84,8 +88,11 @@ struct Friction {
   S coulomb{}, viscous{};
   std::optional<Stribeck<S>> stribeck{};
   std::optional<Bristle<S>> bristle{};
-  std::optional<S> onset_speed{};
+  std::optional<S> onset_speed{}, surface_speed{};
   OwnNameOf<S> name{};
+  int mode = -1;  ///< of coulomb: its place among the modes of switches
+
+  bool switches() const { return model == FrictionModel::kCoulomb; }
 };
 
 template <class Fields, class S>
@@ -93,12 +100,15 @@ void describe(Fields& f, Friction<S>& s) {
   f.required("coordinate", s.coordinate, "the coordinate that slides", Reference::kForcedCoordinate);
   f.optional("against", s.against, "the coordinate that it slides against; default: what does not move",
              Reference::kForcedCoordinate);
-  f.required("model", s.model, "lugre: a bristle that sticks and slips; regularised: tanh");
+  f.required("model", s.model,
+             "lugre: a bristle that sticks and slips; regularised: tanh; coulomb: exact sticking");
   f.required("coulomb", s.coulomb, "level of friction while sliding", Unit{"N", "N m"});
   f.optional("viscous", s.viscous, "force for each unit of speed", Unit{"N s/m", "N m s/rad"});
   f.optional("stribeck", s.stribeck, "a higher level at rest");
   f.optional("bristle", s.bristle, "of lugre");
   f.optional("onset_speed", s.onset_speed, "of regularised: tanh(v / onset_speed)", Unit{"m/s", "rad/s"});
+  f.optional("surface_speed", s.surface_speed, "of what it slides on, as of a belt; default 0",
+             Unit{"m/s", "rad/s"});
   describeName(f, s.name);
   f.rule((s.model == FrictionModel::kLugre) == s.bristle.has_value(),
          "must give 'bristle' with 'model: lugre', and only there");
@@ -120,21 +130,27 @@ S calcSlidingLevel(const Friction<S>& s, const S& speed) {
 template <class S, class Sum>
 void addForces(const Friction<S>& s, Sum& sum) {
   using namespace program::real;
-  const S v = s.against ? S(sum.getRate(s.coordinate) - sum.getRate(*s.against)) : sum.getRate(s.coordinate);
+  const S rate = sum.calcSlip(s.coordinate, s.against);
+  const S v = s.surface_speed ? S(rate - *s.surface_speed) : rate;
   const S speed = abs(v), level = calcSlidingLevel(s, speed);
   S friction = s.viscous * v;
   if (s.bristle) {
     const S& deflection = sum.getState(s.bristle->state);
-    const S rate = v - s.bristle->stiffness * speed * deflection / level;
-    sum.setStateRate(s.bristle->state, rate);
-    friction = s.bristle->stiffness * deflection + s.bristle->damping * rate + friction;
+    const S change = v - s.bristle->stiffness * speed * deflection / level;
+    sum.setStateRate(s.bristle->state, change);
+    friction = s.bristle->stiffness * deflection + s.bristle->damping * change + friction;
+  } else if (s.switches()) {
+    friction = sum.calcSided(s.mode, level) + friction;
   } else {
     friction = level * tanh(v / *s.onset_speed) + friction;
   }
-  sum.addOnCoordinate(s.coordinate, -friction);
-  if (s.against) {
-    sum.addOnCoordinate(*s.against, friction);
-  }
+  sum.addBetween(s.coordinate, s.against, S(-friction));
+}
+
+/// The level that it holds at rest.
+template <class S>
+const S& getStaticLevel(const Friction<S>& s) {
+  return s.stribeck ? s.stribeck->level : s.coulomb;
 }
 
 /// A spring of which part yields (Bouc 1967, Wen 1976), on a coordinate q. The state z has no unit:

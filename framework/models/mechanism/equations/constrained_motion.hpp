@@ -63,6 +63,26 @@ struct ConstrainedMotion {
   std::vector<S> pivots;  ///< of the mass matrix, then of the conditions
 };
 
+/// A coordinate whose acceleration is known.
+template <class S>
+struct Prescribed {
+  int coordinate;
+  S acceleration;
+};
+
+/// What known accelerations do to conditions becomes part of their bias, and their forces do not act on those
+/// coordinates.
+template <class S>
+void prescribe(const std::vector<Prescribed<S>>& known, std::vector<ClosureTerms<S>>& closures) {
+  for (ClosureTerms<S>& closure : closures) {
+    for (const Prescribed<S>& one : known) {
+      S& slope = closure.row[one.coordinate];
+      closure.bias = closure.bias + slope * one.acceleration;
+      slope = S(0.0);
+    }
+  }
+}
+
 /// M u' + G' l = f and G u' + bias = 0, by elimination of u'.
 template <class S>
 ConstrainedMotion<S> solveConstrained(LinearSystem<S> equations,

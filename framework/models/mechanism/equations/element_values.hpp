@@ -161,6 +161,19 @@ void placeOwnStates(ForceElements<S>& elements, int first) {
   });
 }
 
+/// Tells friction that sticks its place among the modes of switches (switches.hpp), of which rigid stops come
+/// first.
+template <class S>
+void placeSwitches(ForceElements<S>& elements) {
+  int place = 0;
+  for (const Stop<S>& stop : elements.template get<Stop>()) {
+    place += stop.isRigid() ? 1 : 0;
+  }
+  for (Friction<S>& friction : elements.template get<Friction>()) {
+    friction.mode = friction.switches() ? place++ : -1;
+  }
+}
+
 /// The numbers of all force elements. `numbers`: calc(expression, owner, key, unit) gives an S, or throws.
 /// The numbers refer to expressions of `spec`, which must outlive them. Throws ExperimentError for unknown
 /// names and for a force on a coordinate that takes none. `first_state`: how many states are not elements'
@@ -180,6 +193,7 @@ ForceElements<S> calcElements(const ForceElements<Expression>& spec, const Syste
     }
   });
   placeOwnStates(elements, first_state);
+  placeSwitches(elements);
   return elements;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -55,19 +56,38 @@ Vec3<S> calcAngles(const Mat33<S>& r) {
 template <class S, class Named>
 class ForceSum {
  public:
-  /// All must outlive the sum. `rates`: time derivatives of the coordinates; `states`: of first order.
+  /// All must outlive the sum. `rates`: time derivatives of the coordinates; `states`: of first order;
+  /// `modes`: of switches, or null where they are not known.
   ForceSum(const std::vector<BodyMotion<S>>& motions, const std::vector<S>& coordinates,
-           const std::vector<S>& rates, const std::vector<S>& states, const Named& named, Loads<S>& loads)
+           const std::vector<S>& rates, const std::vector<S>& states, const Named& named, Loads<S>& loads,
+           const std::vector<S>* modes = nullptr)
       : motions_(motions),
         coordinates_(coordinates),
         rates_(rates),
         states_(states),
         named_(named),
-        loads_(loads) {}
+        loads_(loads),
+        modes_(modes) {}
 
   const S& getCoordinate(int coordinate) const { return coordinates_[coordinate]; }
   const S& getRate(int coordinate) const { return rates_[coordinate]; }
   const S& getState(int state) const { return states_[state]; }
+  /// Of a coordinate and another, or nothing; and of their rates.
+  S calcDifference(int coordinate, const std::optional<int>& against) const {
+    return against ? S(coordinates_[coordinate] - coordinates_[*against]) : coordinates_[coordinate];
+  }
+  S calcSlip(int coordinate, const std::optional<int>& against) const {
+    return against ? S(rates_[coordinate] - rates_[*against]) : rates_[coordinate];
+  }
+  /// `level` with the sign of a mode, which is -1, 0 or 1; 0 where modes are not known.
+  S calcSided(int mode, const S& level) const {
+    using namespace program::real;
+    if (modes_ == nullptr || modes_->empty()) {
+      return S(0.0);
+    }
+    const S& side = (*modes_)[mode];
+    return select(equal(side, S(1.0)), level, select(equal(side, S(-1.0)), S(-level), S(0.0)));
+  }
   S calc(const Expression& expression) const { return named_.calc(expression); }
   /// Components in ground axes.
   Vec3<S> calcInGround(const Expression3& components, ForceFrame frame, int body) const {
@@ -100,6 +120,13 @@ class ForceSum {
       on_coordinate_ = true;
     }
     loads_.on_speeds[coordinate] = loads_.on_speeds[coordinate] + force;
+  }
+
+  void addBetween(int coordinate, const std::optional<int>& against, const S& force) {
+    addOnCoordinate(coordinate, force);
+    if (against) {
+      addOnCoordinate(*against, -force);
+    }
   }
 
   void setStateRate(int state, const S& rate) { loads_.state_rates[state] = rate; }
@@ -178,6 +205,7 @@ class ForceSum {
   const std::vector<S>&coordinates_, &rates_, &states_;
   const Named& named_;
   Loads<S>& loads_;
+  const std::vector<S>* modes_;
   Exerted<S> exerted_;
   bool on_coordinate_ = false;
 };

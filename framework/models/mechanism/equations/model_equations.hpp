@@ -5,17 +5,10 @@
 
 #include "framework/experiment/model/model_spec.hpp"
 #include "framework/models/mechanism/equations/calc_system_values.hpp"
-#include "framework/models/mechanism/equations/constrained_motion.hpp"
+#include "framework/models/mechanism/equations/switches.hpp"
 #include "framework/models/mechanism/varying_expressions.hpp"
 
 namespace twinmap::equations {
-
-/// A coordinate whose acceleration is known.
-template <class S>
-struct Prescribed {
-  int coordinate;
-  S acceleration;
-};
 
 /// A model's state over a scalar, in the order of SystemNames: coordinates, speeds as Simbody has them, and
 /// states of first order.
@@ -26,6 +19,7 @@ struct ModelState {
   std::vector<S> signals{};       ///< of the excitation
   std::vector<S> signal_rates{};  ///< empty where no expression uses them
   std::vector<Prescribed<S>> prescribed{};
+  std::vector<S> modes{};  ///< of switches (switches.hpp); empty: none, and what switches exerts nothing
 };
 
 /// What follows from a state.
@@ -38,6 +32,7 @@ struct ModelMotion {
   std::vector<BodyMotion<S>> bodies;
   std::vector<Spatial<S>> loads;  ///< on bodies: gravity and force elements
   std::vector<S> closure_forces;  ///< of the conditions: they act as -G' times these
+  std::vector<S> held{};          ///< forces with which switches hold their coordinates
 };
 
 /// The values that expressions of a state may use.
@@ -74,7 +69,7 @@ Loads<S> calcLoads(const SystemSpec& spec, const SystemValues<S>& values,
                    const std::vector<BodyMotion<S>>& motions, const ModelState<S>& state,
                    const std::vector<S>& rates, const Named& named) {
   Loads<S> loads = makeLoads<S>(motions.size(), state.coordinates.size(), state.states.size());
-  ForceSum<S, Named> sum(motions, state.coordinates, rates, state.states, named, loads);
+  ForceSum<S, Named> sum(motions, state.coordinates, rates, state.states, named, loads, &state.modes);
   for (std::size_t i = 1; i < motions.size(); ++i) {
     sum.addGravity(static_cast<int>(i), values.gravity, values.bodies[i].mass, values.bodies[i].center);
   }
@@ -99,19 +94,6 @@ void prescribe(const std::vector<Prescribed<S>>& known, LinearSystem<S>& equatio
   }
 }
 
-/// The same of conditions: what known accelerations do to them becomes part of their bias, and their forces
-/// do not act on those coordinates.
-template <class S>
-void prescribe(const std::vector<Prescribed<S>>& known, std::vector<ClosureTerms<S>>& closures) {
-  for (ClosureTerms<S>& closure : closures) {
-    for (const Prescribed<S>& one : known) {
-      S& slope = closure.row[one.coordinate];
-      closure.bias = closure.bias + slope * one.acceleration;
-      slope = S(0.0);
-    }
-  }
-}
-
 /// The equations of motion of a model. `names`: its parameters and constants, `values`: calcSystemValues of
 /// them.
 template <class S>
@@ -127,8 +109,17 @@ ModelMotion<S> calcModelMotion(const ModelSpec& model, const SystemNames& system
       calcEquationsOfMotion(values, motion.bodies, loads.on_bodies, std::move(loads.on_speeds));
   prescribe(state.prescribed, equations);
   std::vector<ClosureTerms<S>> closures = calcClosureTerms(values, motion.bodies, state.coordinates);
+  const std::size_t closure_count = closures.size();
   prescribe(state.prescribed, closures);
-  ConstrainedMotion<S> solution = solveConstrained(std::move(equations), closures);
+  ConstrainedMotion<S> solution = state.modes.empty()
+                                      ? solveConstrained(std::move(equations), closures)
+                                      : solveHeld(std::move(equations), std::move(closures), state.prescribed,
+                                                  listHeld(values.elements, state.modes));
+  const auto first_held = solution.forces.begin() + static_cast<std::ptrdiff_t>(closure_count);
+  for (auto force = first_held; force != solution.forces.end(); ++force) {
+    motion.held.push_back(-*force);
+  }
+  solution.forces.erase(first_held, solution.forces.end());
   motion.loads = std::move(loads.on_bodies);
   motion.closure_forces = std::move(solution.forces);
   motion.accelerations = std::move(solution.accelerations);

@@ -29,9 +29,12 @@ void LaneEngine::simulateWithDerivatives(const Eigen::Ref<const MatrixXd>& param
   }
 }
 
-/// None where outputs are of the past, which the implicit method does not keep.
+/// None where outputs are of the past, which the implicit method does not keep, or where there are events
+/// that it does not look for.
 std::vector<Index> LaneEngine::keepRetried(std::vector<Index> columns) const {
-  return programs_.getValues().sampling.output_delays.empty() ? std::move(columns) : std::vector<Index>{};
+  const LaneModel& model = programs_.getValues();
+  const bool can = model.sampling.output_delays.empty() && !model.hasEvents();
+  return can ? std::move(columns) : std::vector<Index>{};
 }
 
 StiffRetry& LaneEngine::updStiffRetry() {

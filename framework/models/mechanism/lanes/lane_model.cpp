@@ -65,7 +65,7 @@ LaneModel compileModel(const RecordedModel& recorded, bool with_derivatives) {
   const Symbols parameters = getParameters(recorded, with_derivatives);
   LaneModel model;
   model.coordinate_count = recorded.coordinate_count;
-  model.hidden_count = static_cast<int>(recorded.sampling.hidden_rates.size());
+  model.hidden_count = recorded.mode_count + static_cast<int>(recorded.sampling.hidden_rates.size());
   model.counts = {countStates(recorded), recorded.parameter_count, recorded.sampling.input_count};
   model.excitation = recorded.excitation;
   model.sampling = recorded.sampling;
@@ -80,7 +80,8 @@ LaneModel compileModel(const RecordedModel& recorded, bool with_derivatives) {
   model.problem = lanes::makeProblem(
       recorder,
       {model.counts, recorded.derivatives, recorded.pivots, sampling.outputs, output_delays,
-       sampling.output_delays, sampling.jumps, sampling.passed, recorded.projected},
+       sampling.output_delays, sampling.jumps, sampling.passed, recorded.events.guards,
+       recorded.events.transitions, recorded.events.input, recorded.projected},
       directions);
   model.start = program::compile(recorder, collectStart(recorded, parameters), model.counts);
   model.rest = program::compile(recorder, collectRest(recorded, parameters), model.counts);

@@ -12,7 +12,7 @@ namespace twinmap {
 struct LaneModel {
   program::InputCounts counts;
   int coordinate_count = 0;
-  int hidden_count = 0;           ///< states of sensors and controllers
+  int hidden_count = 0;           ///< states of sensors and controllers, and modes of switches
   RecordedExcitation excitation;  ///< its symbols are not to be used
   RecordedSampling sampling;      ///< likewise
   lanes::Problem problem;         ///< the motion and its outputs
@@ -28,6 +28,7 @@ struct LaneModel {
   std::shared_ptr<const LoopModel> loops;  ///< null: none
 
   int getFirstOrderCount() const { return counts.states - 2 * coordinate_count - hidden_count; }
+  bool hasEvents() const { return problem.guard_count > 0; }
   int getClosureCount() const { return loops ? static_cast<int>(loops->plan.rows.size()) : 0; }
 };
 

@@ -1,5 +1,7 @@
 #include "framework/models/mechanism/lanes/lane_runner.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,6 +12,7 @@
 #include "framework/models/mechanism/lanes/lane_modes.hpp"
 #include "framework/models/mechanism/lanes/lane_start.hpp"
 #include "framework/models/mechanism/readings.hpp"
+#include "framework/models/mechanism/switch_numbers.hpp"
 #include "framework/simulation/integration/integration.hpp"
 #include "kernels/lanes/integrator.hpp"
 
@@ -29,7 +32,7 @@ constexpr double kStepsOfInstant = 10.0;
 
 int getMaxSteps(const ModelSpec& spec, const LaneModel& model) {
   const int given = spec.simulation.max_steps;
-  if (model.getFirstOrderCount() == 0) {
+  if (model.getFirstOrderCount() == 0 || model.hasEvents()) {  // not tried again
     return given;
   }
   double instants = 0.0;
@@ -52,18 +55,24 @@ lanes::Options makeOptions(const ModelSpec& spec, const LaneModel& model) {
   return options;
 }
 
+std::string describeEvents(const lanes::Result& result) {
+  return result.events == 0 ? "" : fmt::format(", behind {} impacts and changes of friction", result.events);
+}
+
 std::string describeOutcome(const lanes::Result& result, const ModelSpec& spec, const LaneModel& model) {
   switch (result.outcome) {
     case lanes::Outcome::kDone:
       return "";
     case lanes::Outcome::kStepLimit:
-      return describeStepLimit(getMaxSteps(spec, model), result.time);
+      return describeStepLimit(getMaxSteps(spec, model), result.time) + describeEvents(result);
     case lanes::Outcome::kWallTime:
       return describeWallTime(spec.simulation.max_wall_time, result.time);
     case lanes::Outcome::kNonFinite:
       return describeAt("state became non-finite", result.time);
     case lanes::Outcome::kStepTooSmall:
       return describeAt("step size became too small", result.time);
+    case lanes::Outcome::kEventsStuck:
+      return describeAt("impacts, sticking and sliding follow one another without end", result.time);
     case lanes::Outcome::kSingular:
       return model.loops ? describeAt(getSingularReason(model), result.time) : getSingularReason(model);
   }
@@ -148,6 +157,8 @@ class LaneRunner::Impl : public lanes::SampleStream {
       checkNumbers(*context_);
       fillModes(column, point);
       start_.fill(point, sample);
+      requireWithinStops(*context_,
+                         Eigen::Map<const VectorXd>(sample.initial.data(), model_.coordinate_count));
     } catch (const SimulationFailure& failure) {
       return failure.what();
     }

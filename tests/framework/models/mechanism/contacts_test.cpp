@@ -24,7 +24,7 @@ TEST(Stops, ThrowBackAfterHalfAPeriodOfTheirSpring) {
   Stop<Expression> stop;
   stop.coordinate = name("x");
   stop.below = ex("0");
-  stop.law = makeLaw("800");
+  stop.stiffness = ex("800");
   model.system.elements.get<Stop>() = {stop};
   start(model, "x", "0.5", "-1");
   const double w = 20.0, leaves = 0.5 + M_PI / w;
@@ -55,8 +55,9 @@ TEST(Stops, AboveAreTheMirrorImageOfBelow) {
     Stop<Expression> stop;
     stop.coordinate = name("x");
     (above ? stop.above : stop.below) = ex(above ? "0.1" : "-0.1");
-    stop.law = makeLaw("800", "0.2");
-    stop.law.exponent = ex("1.5");
+    stop.stiffness = ex("800");
+    stop.dissipation = ex("0.2");
+    stop.exponent = ex("1.5");
     model.system.elements.get<Stop>() = {stop};
     start(model, "x", "0", above ? "1" : "-1");
     EXPECT_NEAR((above ? -1.0 : 1.0) * runModel(model, Eigen::VectorXd::Constant(1, 1.0))(0, 1),
@@ -70,8 +71,9 @@ TEST(Stops, LoseWhatHuntAndCrossleyState) {
     Stop<Expression> stop;
     stop.coordinate = name("x");
     stop.below = ex("0");
-    stop.law = makeLaw("2000", "0.3");
-    stop.law.exponent = ex(exponent);
+    stop.stiffness = ex("2000");
+    stop.dissipation = ex("0.3");
+    stop.exponent = ex(exponent);
     model.system.elements.get<Stop>() = {stop};
     start(model, "x", "0.1", "-1.2");
     EXPECT_NEAR(runModel(model, Eigen::VectorXd::Constant(1, 1.0))(0, 1), calcRebound(1.2, 0.3), 1e-7)

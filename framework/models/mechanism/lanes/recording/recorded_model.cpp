@@ -35,6 +35,7 @@ class ModelRecorder {
         uses_rates_(usesSignalRates(model)) {
     values_ = recordParameters(model, *recorder_);
     system_ = equations::calcSystemValues(model.system, names, values_);
+    mode_count_ = equations::countSwitches(system_.elements);
     keepIndependent();
   }
 
@@ -43,14 +44,16 @@ class ModelRecorder {
     recorded.parameter_count = static_cast<int>(countSampled(model_));
     recorded.coordinate_count = system_.coordinate_count;
     recorded.state_count = system_.state_count;
+    recorded.mode_count = mode_count_;
     recorded.excitation = recordExcitation(model_.excitation, *recorder_, values_);
     signals_ = recorded.excitation.signals;
     signal_rates_ = calcRates(signals_);
     recordMotion(recorded);
     recordOutputs(recorded);
+    recordSwitches(recorded);
     recordRest(recorded);
     recorded.initial = recordInitial();
-    recorded.initial.resize(recorded.initial.size() + recorded.sampling.hidden_rates.size(), Symbol(0.0));
+    recorded.initial.resize(recorded.derivatives.size(), Symbol(0.0));
     recorded.loops = loops_;
     recorded.prescribed = findPrescribed();
     recorded.recorder = std::move(recorder_);
@@ -68,6 +71,8 @@ class ModelRecorder {
   Symbols getCoordinates() { return getStates(0, system_.coordinate_count); }
   Symbols getSpeeds() { return getStates(system_.coordinate_count, system_.coordinate_count); }
   Symbols getFirstOrder() { return getStates(2 * system_.coordinate_count, system_.state_count); }
+  int countKnown() const { return 2 * system_.coordinate_count + system_.state_count; }
+  Symbols getModes() { return getStates(countKnown(), mode_count_); }
 
   ModelMotion<Symbol> calcMotion(const ModelState<Symbol>& state) {
     return equations::calcModelMotion(model_, names_, values_, system_, state);
@@ -134,19 +139,35 @@ class ModelRecorder {
     return all;
   }
 
-  /// The hidden states of sensors and controllers stand behind all others, and no condition concerns them.
+  /// The modes of switches and the hidden states of sensors and controllers stand behind all others, and no
+  /// condition concerns them. What is sampled changes no mode.
   void recordOutputs(RecordedModel& recorded) {
-    const int known = 2 * system_.coordinate_count + system_.state_count;
-    recorded.sampling = recordSampling(
-        {model_, names_, values_, *recorder_, getStates(0, known), makeState(getFirstOrder()).coordinates,
-         signals_, recorded.excitation.input_count,
-         [this](const Symbols& first_order) { return calcQuantities(makeState(first_order)); }});
-    const Symbols& hidden_rates = recorded.sampling.hidden_rates;
-    append(hidden_rates, recorded.derivatives);
+    recorded.sampling =
+        recordSampling({model_, names_, values_, *recorder_, getStates(0, countKnown() + mode_count_),
+                        makeState(getFirstOrder()).coordinates, signals_, recorded.excitation.input_count,
+                        [this](Symbols first_order) {
+                          first_order.resize(system_.state_count);
+                          return calcQuantities(makeState(std::move(first_order)));
+                        }});
+    Symbols rates(mode_count_, Symbol(0.0));
+    append(recorded.sampling.hidden_rates, rates);
+    append(rates, recorded.derivatives);
     if (!recorded.projected.empty()) {
-      append(getStates(known, static_cast<int>(hidden_rates.size())), recorded.projected);
-      append(hidden_rates, recorded.relaxed);
+      append(getStates(countKnown(), static_cast<int>(rates.size())), recorded.projected);
+      append(rates, recorded.relaxed);
     }
+  }
+
+  void recordSwitches(RecordedModel& recorded) {
+    if (mode_count_ == 0) {
+      return;
+    }
+    const int input = recorded.sampling.input_count++, hidden = countKnown() + mode_count_;
+    recorded.events = recordEvents({system_, makeState(getFirstOrder()),
+                                    getStates(hidden, static_cast<int>(recorded.derivatives.size()) - hidden),
+                                    recorder_->phaseInput(input), model_.simulation.duration,
+                                    [this](const ModelState<Symbol>& state) { return calcMotion(state); }});
+    recorded.events.input = input;
   }
 
   Symbols calcQuantities(const ModelState<Symbol>& given) {
@@ -183,6 +204,7 @@ class ModelRecorder {
       state.speeds[i] = program::calcTangents({signal}, in_time)[0];
       state.prescribed.push_back({i, program::calcTangents({state.speeds[i]}, in_time)[0]});
     }
+    state.modes = getModes();
     return state;
   }
 
@@ -305,6 +327,7 @@ class ModelRecorder {
   NamedValues<Symbol> values_;
   SystemValues<Symbol> system_;
   Symbols signals_, signal_rates_;
+  int mode_count_ = 0;
   const bool uses_rates_;
 };
 

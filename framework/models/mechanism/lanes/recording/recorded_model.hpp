@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "framework/models/mechanism/equations/model_equations.hpp"
+#include "framework/models/mechanism/lanes/recording/recorded_events.hpp"
 #include "framework/models/mechanism/lanes/recording/recorded_excitation.hpp"
 #include "framework/models/mechanism/lanes/recording/recorded_sampling.hpp"
 #include "framework/models/mechanism/loops/loop_model.hpp"
@@ -15,17 +16,20 @@ namespace twinmap {
 
 /// A model written down once for all parameter sets. Parameters are those of collectSampled(); states the
 /// coordinates in the order of SystemNames, then their speeds (Simbody's: see equations::JointMotion), then
-/// the states of first order, and last those of sensors and controllers that no expression sees.
+/// the states of first order, the modes of switches, and last the states of sensors and controllers that no
+/// expression sees.
 struct RecordedModel {
   using Symbols = std::vector<program::Symbol>;
 
   std::unique_ptr<program::Recorder> recorder;
   int parameter_count = 0, coordinate_count = 0;
-  int state_count = 0;  ///< of first order, without the hidden ones
+  int state_count = 0;  ///< of first order, without modes and hidden ones
+  int mode_count = 0;
   RecordedExcitation excitation;
   Symbols derivatives;        ///< of the states with respect to time
   Symbols pivots;             ///< not positive where the mass matrix or a loop is singular
   RecordedSampling sampling;  ///< with the outputs; only the rates of its states are also in `derivatives`
+  RecordedEvents events;
   Symbols initial;     ///< states at t = 0; of parameters alone, and what is prescribed of the first phase's
                        ///< inputs; without equilibrium. With loops as the file gives them, and rates of
                        ///< coordinates in the place of speeds: Assembly's

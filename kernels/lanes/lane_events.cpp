@@ -1,0 +1,180 @@
+// Events whose time depends on the solution: where they are within a step, and what they change.
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/lanes/lane_packet.hpp"
+
+namespace twinmap::lanes {
+namespace {
+
+/// Where a step is looked at, in parts of it. A guard that dips below 0 and returns between two of them is
+/// missed; the error control keeps steps well below the times in which a solution bends.
+constexpr double kLookedAt[] = {0.25, 0.5, 0.75, 1.0};
+constexpr int kMostTries = 300;     // 100 of them halve the bracket, beyond what a double resolves
+constexpr int kMostAtOnce = 100;    // far more than elements that meet at one time
+constexpr double kWidth = 0x1p-51;  // of a bracket, in parts of the time: two units in the last place
+
+}  // namespace
+
+/// Before accepted steps are taken: those with an event end there. Returns their lanes.
+unsigned LanePacket::findEvents() {
+  unsigned looking = 0, found = 0;
+  for (int lane = 0; lane < count_; ++lane) {
+    const bool stepped = lanes_[lane].mode == Mode::kStep && arrays_.accepted[lane] != 0.0;
+    looking |= stepped ? 1u << lane : 0u;
+    brackets_[lane] = {};
+  }
+  for (const double fraction : kLookedAt) {
+    forEach(looking, [&](int lane) { arrays_.fraction[lane] = fraction; });
+    calcGuardsWithin();
+    forEach(looking, [&](int lane) {
+      EventBracket& bracket = brackets_[lane];
+      const double smallest = events_->calcSmallest(lane);
+      found |= smallest <= 0.0 ? 1u << lane : 0u;
+      (smallest <= 0.0 ? bracket.high : bracket.low) = fraction;
+      (smallest <= 0.0 ? bracket.at_high : bracket.at_low) = smallest;
+    });
+    looking &= ~found;
+    if (looking == 0) {
+      break;
+    }
+  }
+  if (found != 0) {
+    narrow(found);
+    forEach(found, [this](int lane) { endStepAtEvent(lane); });
+  }
+  return found;
+}
+
+/// At each lane's fraction of its step.
+void LanePacket::calcGuardsWithin() {
+  engine_.interpolate(arrays_);
+  for (int lane = 0; lane < count_; ++lane) {
+    event_times_[lane] = arrays_.time[lane] + arrays_.fraction[lane] * arrays_.step[lane];
+  }
+  events_->calcGuards(event_times_.data(), arrays_.interpolated);
+}
+
+/// Leaves guards and states at the brackets' upper ends.
+void LanePacket::narrow(unsigned lanes) {
+  unsigned open = lanes;
+  for (int attempt = 0; attempt < kMostTries; ++attempt) {
+    forEach(open, [&](int lane) {
+      const EventBracket& bracket = brackets_[lane];
+      const double time = std::max(std::abs(arrays_.end[lane]), kSmallestTime);
+      const bool is_narrow = (bracket.high - bracket.low) * arrays_.step[lane] <= kWidth * time;
+      open &= is_narrow ? ~(1u << lane) : ~0u;
+      arrays_.fraction[lane] = bracket.choose(attempt);
+    });
+    if (open == 0) {
+      break;
+    }
+    calcGuardsWithin();
+    forEach(open,
+            [&](int lane) { brackets_[lane].update(arrays_.fraction[lane], events_->calcSmallest(lane)); });
+  }
+  forEach(lanes, [&](int lane) { arrays_.fraction[lane] = brackets_[lane].high; });
+  calcGuardsWithin();
+}
+
+/// The next step is no longer than the time since the last event, so that flights between impacts that follow
+/// ever faster are seen.
+void LanePacket::endStepAtEvent(int lane) {
+  Lane& l = lanes_[lane];
+  for (int row = 0; row < arrays_.rows; ++row) {
+    arrays_.stage_state[row * count_ + lane] = arrays_.interpolated[row * count_ + lane];
+  }
+  const double time = std::min(event_times_[lane], arrays_.end[lane]);
+  const double smallest = kSmallestStep * std::max(std::abs(time), kSmallestTime);
+  const double apart = time - l.event_time;
+  l.events_at_once = apart > smallest ? 0 : l.events_at_once;
+  arrays_.proposed[lane] = std::min(arrays_.proposed[lane], std::max(apart, 2.0 * smallest));
+  arrays_.end[lane] = l.event_time = time;
+  std::fill(l.fired.begin(), l.fired.end(), 0);
+  int due = 0;
+  for (int k = events_->getCount() - 1; k >= 0; --k) {
+    l.crossing[k] = events_->getGuard(k, lane) <= 0.0 ? 1 : 0;
+    due = l.crossing[k] != 0 ? k : due;
+  }
+  startEvent(lane, due);
+}
+
+void LanePacket::startEvent(int lane, int event) {
+  Lane& l = lanes_[lane];
+  ++l.result.events;
+  if (++l.events_at_once > kMostAtOnce) {
+    arrays_.proposed[lane] = 0.0;
+    return l.fail(Outcome::kEventsStuck);
+  }
+  l.event = event;
+  l.fired[event] = 1;
+  l.mode = Mode::kEvent;
+  firing_ |= 1u << lane;
+}
+
+/// Where steps of a phase begin: its inputs may make events due.
+void LanePacket::openPhase(int lane) {
+  Lane& l = lanes_[lane];
+  if (!events_ || l.mode != Mode::kStep) {
+    return;
+  }
+  if (l.phase > 0) {
+    settling_ |= 1u << lane;
+    return;
+  }
+  l.event = Lane::kStartEvent;
+  l.mode = Mode::kEvent;
+  firing_ |= 1u << lane;
+}
+
+void LanePacket::doEvents() {
+  settle(std::exchange(settling_, 0u));
+  const unsigned lanes = std::exchange(firing_, 0u);
+  if (lanes == 0) {
+    return;
+  }
+  evaluateAt(lanes);
+  if (directions_ > 0) {
+    events_->calcChanges(arrays_.time, arrays_.state);
+    forEach(lanes, [this](int lane) { findEventSlopes(lane); });
+  }
+  jumpBy(events_->updTransitions(), lanes);
+  settling_ |= lanes;
+}
+
+/// Events that are due where others have been, or where a phase begins. An event that has just been waits
+/// until its guard has been positive.
+void LanePacket::settle(unsigned lanes) {
+  if (lanes == 0) {
+    return;
+  }
+  events_->calcGuards(arrays_.time, arrays_.state);
+  forEach(lanes, [this](int lane) {
+    const Lane& l = lanes_[lane];
+    for (int k = 0; k < events_->getCount(); ++k) {
+      if (events_->getGuard(k, lane) <= 0.0 && l.fired[k] == 0) {
+        return startEvent(lane, k);
+      }
+    }
+    if (arrays_.time[lane] == arrays_.phase_end[lane]) {
+      endPhase(lane);
+    }
+  });
+}
+
+/// The guard stays 0 at the event's time as a parameter changes: dg/dp + dg/dt dt/dp = 0, along the solution.
+/// An event that another one caused, or the begin of a phase, moves with that.
+void LanePacket::findEventSlopes(int lane) {
+  Lane& l = lanes_[lane];
+  if (l.event == Lane::kStartEvent || l.crossing[l.event] == 0) {
+    return;
+  }
+  l.crossing[l.event] = 0;
+  l.event_slopes.resize(directions_);
+  for (int j = 0; j < directions_; ++j) {
+    const double change = events_->getChange(l.event, j, lane);
+    l.event_slopes[j] = change == 0.0 ? 0.0 : -change / events_->getRate(l.event, lane);
+  }
+}
+
+}  // namespace twinmap::lanes
