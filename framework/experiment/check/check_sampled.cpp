@@ -50,13 +50,6 @@ class MotionCheck {
 
   void run() const {
     std::vector<std::string> moved;
-    if (!model_.system.motions.empty() && !model_.system.constraints.empty()) {
-      const Name& coordinate = model_.system.motions.front().coordinate;
-      throw ExperimentError(
-          coordinate.where, coordinate.text,
-          "cannot be prescribed in a system with 'constraints'; lead it by a stiff spring and "
-          "damper to the signal instead");
-    }
     for (const MotionSpec& motion : model_.system.motions) {
       if (std::find(moved.begin(), moved.end(), motion.coordinate.text) != moved.end()) {
         throw ExperimentError(motion.coordinate.where, motion.coordinate.text,

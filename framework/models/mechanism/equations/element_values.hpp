@@ -98,6 +98,8 @@ class ElementFiller {
       field = names_.findForcedCoordinate(*name);
     }
   }
+  /// Numbers have no name.
+  void fill(const char*, Nameless&) { sources_.take<std::optional<Name>>(); }
   /// The place of an element's own state follows when all elements are there.
   void fill(const char*, int&) { sources_.take<std::optional<Name>>(); }
   void fill(const char* key, std::optional<S>& field, const Unit& unit) {
