@@ -79,7 +79,7 @@ class RidgeWalk {
   /// simulated together cost little more than one. Where the ridge bends too much for that, the next ones
   /// start from the last that settled.
   bool walk(double step) {
-    constexpr std::size_t kMost = 192;  // and those under way
+    constexpr std::size_t kMost = 192;    // and those under way
     constexpr double kNegligible = 18.0;  // exp(-18) of the weight
     RidgePiece last = pieces_.front();
     while (pieces_.size() < kMost) {
