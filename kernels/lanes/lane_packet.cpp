@@ -70,7 +70,7 @@ void LanePacket::placeArrays(const Problem& problem) {
     a.slopes[j] = takeRows(rows);
   }
   a.interpolated = takeRows(rows);
-  for (double** row : {&a.fraction, &a.time, &a.step, &a.end, &a.smallest_pivot, &a.error, &a.accepted,
+  for (double** row : {&a.wanted, &a.time, &a.step, &a.end, &a.smallest_pivot, &a.error, &a.accepted,
                        &a.proposed, &a.growth, &a.phase_end, &a.next_output, &a.steps, &a.next_check}) {
     *row = takeRows(1);
   }

@@ -38,7 +38,7 @@ class LanePacket {
   void evaluateAt(unsigned lanes);
   void beginAfterJump(int lane);
   void moveBack(int lane);
-  void keepOutputs(unsigned lanes);
+  void keepOutputs(int lane);
   void advance(int lane);
   void beginSteps(int lane);
   void endPhase(int lane);

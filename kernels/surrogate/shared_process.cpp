@@ -95,8 +95,16 @@ SharedProcessParts SharedProcess::getParts() const {
 
 namespace {
 
+void requireSlopes(const MatrixXd& points, const MatrixXd& values, const SlopeData& slopes) {
+  if (slopes.countPoints() < 1 || slopes.countPoints() > points.cols() || slopes.variables > points.rows() ||
+      slopes.values.cols() != values.cols()) {
+    throw std::invalid_argument("SharedProcess: slopes of all functions, at some of the points");
+  }
+}
+
 JointFit fitOrThrow(const MatrixXd& points, const MatrixXd& values, const SlopeData& slopes,
                     const SharedStructure& structure, const SharedHyperparameters& hyperparameters) {
+  requireSlopes(points, values, slopes);
   JointFit fit;
   if (!fitJointly(structure, hyperparameters, points, values, slopes, fit)) {
     throw std::runtime_error("a surrogate's joint covariance of values and slopes is not positive definite");
@@ -120,10 +128,7 @@ SharedProcess::SharedProcess(const MatrixXd& points, const SlopeData& slopes, Jo
       weights_(std::move(fit.weights)),
       coefficients_(std::move(fit.coefficients)) {
   requireSizes(points, fit.residual);
-  if (slope_points_ < 1 || slope_points_ > points.cols() || slope_variables_ > points.rows() ||
-      slopes.values.cols() != fit.residual.cols()) {
-    throw std::invalid_argument("SharedProcess: slopes of all functions, at some of the points");
-  }
+  requireSlopes(points, fit.residual, slopes);
   scaled_points_ = points.transpose() * hyperparameters_.length_scales.cwiseInverse().asDiagonal();
   leaveOutLocally(points, fit.residual);
   updateLeftOutRatio();
