@@ -34,7 +34,9 @@ LanePacket::LanePacket(const Problem& problem, const std::vector<double>& times,
   if (problem.guard_count > 0) {
     events_.emplace(problem, engine.program);
     brackets_.resize(count_);
+    fractions_.resize(count_);
     event_times_.resize(count_);
+    states_within_.resize(static_cast<std::size_t>(problem.getRowCount()) * count_);
   }
   if (!problem.projection.outputs.empty()) {
     projection_.emplace(problem, engine.program);
@@ -76,7 +78,7 @@ void LanePacket::placeArrays(const Problem& problem) {
     a.slopes[j] = takeRows(rows);
   }
   a.interpolated = takeRows(rows);
-  for (double** row : {&a.fraction, &a.time, &a.step, &a.end, &a.smallest_pivot, &a.error, &a.accepted,
+  for (double** row : {&a.wanted, &a.time, &a.step, &a.end, &a.smallest_pivot, &a.error, &a.accepted,
                        &a.proposed, &a.growth, &a.phase_end, &a.next_output, &a.steps, &a.next_check}) {
     *row = takeRows(1);
   }
