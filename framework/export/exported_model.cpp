@@ -36,6 +36,13 @@ const ForwardSurrogate* ExportedModel::findForward() const {
   return online.trust ? online.trust->forward.get() : nullptr;
 }
 
+const BoxPrior* ExportedModel::findPrior() const {
+  if (const Surrogate* surrogate = findSurrogate()) {
+    return &surrogate->prior;
+  }
+  return online.trust ? &online.trust->prior : nullptr;
+}
+
 Index ExportedModel::countParameters() const {
   return static_cast<Index>(experiment.model.parameters.size());
 }

@@ -28,6 +28,9 @@ struct ExportedModel {
   /// The processes from parameters to scores, of the map or else of the trust model; or null.
   const ForwardSurrogate* findForward() const;
 
+  /// What is known of the unknowns before, as that of the map or else of the trust model has it; or null.
+  const BoxPrior* findPrior() const;
+
   Eigen::Index countParameters() const;
   Eigen::Index countKnown() const;             ///< inputs of the set-up
   Eigen::Index countUnknown() const;           ///< of the sampled box, nuisance parameters included

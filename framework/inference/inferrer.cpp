@@ -30,7 +30,8 @@ Inferrer::Inferrer(TrainedFile loaded)
     : reader_(readResolved(loaded.experiment)),
       map_(std::move(loaded.model.map)),
       trust_(std::move(loaded.model.trust)),
-      quantities_(makeDerivedQuantities(reader_.getExperiment())) {}
+      quantities_(makeDerivedQuantities(reader_.getExperiment())),
+      prior_(findStatedPrior(reader_.getExperiment().model)) {}
 
 Inferrer::Workspace::Workspace(const Inferrer& inferrer) : map(inferrer.getMap()) {
   if (inferrer.getTrustModel()) {
@@ -42,6 +43,7 @@ InferredMeasurement Inferrer::infer(const Eigen::VectorXd& features, const Eigen
                                     Workspace& workspace) const {
   InferredMeasurement inferred;
   inferred.quantities = quantities_;
+  inferred.prior = prior_;
   inferred.by_estimator = map_.infer(features, known, workspace.map);
   inferred.estimator_is_calibrated = isCalibrated(map_, trust_ ? &*trust_ : nullptr);
   inferred.basins = map_.listBasins(workspace.map);

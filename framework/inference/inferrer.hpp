@@ -12,6 +12,7 @@
 #include "framework/estimation/trained/online_model.hpp"
 #include "framework/inference/measurement/measurement_reader.hpp"
 #include "framework/inference/posterior_estimate.hpp"
+#include "framework/inference/stated_prior.hpp"
 #include "framework/store/trained_file.hpp"
 
 namespace twinmap {
@@ -44,6 +45,7 @@ struct InferredMeasurement {
   std::optional<Refined> refined;  ///< on the simulator, where that was tried; accepted or not
   std::optional<PosteriorEstimate> posterior{};  ///< where it was asked for, or taken; reliable or not
   std::shared_ptr<const DerivedQuantities> quantities{};  ///< of the experiment, if it derives any
+  std::shared_ptr<const StatedPrior> prior{};             ///< of the experiment; null where all is uniform
   std::vector<Ridge> ridges{};  ///< of the simulator's posterior, where that alone was sampled
 };
 
@@ -87,6 +89,7 @@ class Inferrer {
   OnlineMap map_;
   std::optional<TrustModel> trust_;
   std::shared_ptr<const DerivedQuantities> quantities_;  // none where nothing is derived
+  std::shared_ptr<const StatedPrior> prior_;             // null where all is uniform
 };
 
 }  // namespace twinmap

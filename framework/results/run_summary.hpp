@@ -163,6 +163,7 @@ struct Evaluation {
   std::vector<MethodSummary> methods;  ///< empty where nothing was refined
   std::vector<MapComparison> maps;
   std::optional<DerivedEvaluation> derived;  ///< where the experiment derives quantities
+  Eigen::VectorXd prior_stddev{};            ///< p, within the bounds; empty where all are uniform
 };
 
 /// Everything that the tables of one run show.

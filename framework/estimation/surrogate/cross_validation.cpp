@@ -80,9 +80,10 @@ Surrogate fitSimilar(const Surrogate& whole, const ForwardSamples& samples, cons
   surrogate.half_width = whole.half_width;
   surrogate.parameters = whole.parameters;
   surrogate.unknown = whole.unknown;
+  surrogate.prior = whole.prior;
   surrogate.validation.stddev_scale = VectorXd::Ones(whole.parameters);
   surrogate.validation.limit_scale =
-      calcLimitScale(*surrogate.forward, samples, whole.unknown).head(whole.parameters);
+      calcLimitScale(*surrogate.forward, samples, whole.prior).head(whole.parameters);
   return surrogate;
 }
 

@@ -111,7 +111,8 @@ TrustModel fitTrustModel(const TrustTraining& training, std::shared_ptr<const Fo
   model.cloud = makeCloud(map, training, training.points.bottomRows(training.known.rows()));
   model.center = calcBoxCenter(training.sampled);
   model.half_width = 0.5 * calcWidths(training.sampled);
-  model.unknown = training.unknown;
+  model.unknown = training.prior.count();
+  model.prior = training.prior;
   model.level = level;
   const Index residuals = model.space.directions.rows();
   model.runs = collectRuns(training.infos, residuals);

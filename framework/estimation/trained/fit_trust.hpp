@@ -16,7 +16,7 @@ namespace twinmap {
 /// What a trust model is fitted to.
 struct TrustTraining {
   std::vector<ParameterSpec> sampled;  ///< the box: unknown parameters, then known inputs
-  Eigen::Index unknown = 0;            ///< how many a measurement leaves open
+  BoxPrior prior;                      ///< of those that a measurement leaves open
   std::vector<FeatureInfo> infos;      ///< d
   Eigen::MatrixXd points;              ///< m x n, of the training simulations
   Eigen::MatrixXd clean_features;      ///< d x n

@@ -20,7 +20,7 @@ class OnlineSurrogate {
   class Workspace {
    public:
     explicit Workspace(const OnlineSurrogate& map)
-        : inversion(*map.surrogate_->forward, map.surrogate_->unknown) {
+        : inversion(*map.surrogate_->forward, map.surrogate_->prior) {
       estimate.method = EstimationMethod::kSurrogate;
       estimate.correlation = map.surrogate_->validation.residual_correlation;
     }

@@ -2,17 +2,17 @@
 
 namespace twinmap {
 
-std::optional<PosteriorModel> findPosteriorModel(const OnlineMap& map,
-                                                 const std::optional<TrustModel>& trust) {
+std::optional<PosteriorModel> findPosteriorModel(const OnlineMap& map, const std::optional<TrustModel>& trust,
+                                                 const ModelSpec& model) {
   if (const Surrogate* surrogate = map.findSurrogate()) {
-    return makePosteriorModel(*surrogate);
+    return makePosteriorModel(*surrogate, findPrior(model));
   }
   if (!trust) {
     return std::nullopt;
   }
   const Eigen::Index p = map.getResidualCorrelation().rows();
-  return PosteriorModel{trust->forward, trust->center,           trust->half_width, p,
-                        trust->unknown, Eigen::VectorXd::Ones(p)};
+  return PosteriorModel{trust->forward,           trust->center,   trust->half_width, p, trust->prior,
+                        Eigen::VectorXd::Ones(p), findPrior(model)};
 }
 
 }  // namespace twinmap

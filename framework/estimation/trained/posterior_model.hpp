@@ -10,8 +10,8 @@ namespace twinmap {
 
 /// What posteriors of measurements are computed from: the map where it is a surrogate, calibrated by its
 /// cross-validation, else the surrogate by which measurements are judged, whose own errors nothing has
-/// scaled. None where there is neither.
-std::optional<PosteriorModel> findPosteriorModel(const OnlineMap& map,
-                                                 const std::optional<TrustModel>& trust);
+/// scaled, under the prior of the experiment's model. None where there is neither.
+std::optional<PosteriorModel> findPosteriorModel(const OnlineMap& map, const std::optional<TrustModel>& trust,
+                                                 const ModelSpec& model);
 
 }  // namespace twinmap

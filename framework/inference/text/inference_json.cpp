@@ -226,6 +226,9 @@ std::string makeInferenceJson(const InferredMeasurement& inferred,
     json["statuses"] = estimate.statuses;
   }
   json["method"] = toString(estimate.method);
+  if (inferred.prior) {
+    json["prior"] = inferred.prior->text;
+  }
   addRecording(inferred, json);
   if (estimate.isGiven()) {
     json["parameters"] = toJson(estimate, parameters);

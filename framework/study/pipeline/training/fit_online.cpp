@@ -75,7 +75,7 @@ TrustTraining makeTrustTraining(const Study& study, const PreparedData& data) {
   TrustTraining training;
   training.seed = experiment.seed;
   training.sampled = collectSampled(experiment.model);
-  training.unknown = static_cast<Index>(collectUnknown(experiment.model).size());
+  training.prior = makeBoxPrior(experiment.model);
   training.infos = study.extractor.getInfos();
   training.points = train.parameters(Eigen::all, samples);
   training.clean_features = study.extractor.extract(train.responses(Eigen::all, samples));

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "framework/estimation/refined/acceptance.hpp"
-#include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -15,10 +14,9 @@ using Eigen::VectorXd;
 /// What parameters take up of whitened residuals: J (J'J + prior)^-1 J', J per half-width.
 class Absorption {
  public:
-  explicit Absorption(MatrixXd jacobian) : jacobian_(std::move(jacobian)) {
-    hessian_ = jacobian_.transpose() * jacobian_;
-    hessian_.diagonal().array() += kHalfWidthInformation;
-  }
+  Absorption(MatrixXd jacobian, const BoxPrior& prior)
+      : jacobian_(std::move(jacobian)),
+        hessian_(jacobian_.transpose() * jacobian_ + prior.calcInformation()) {}
 
   VectorXd remove(const VectorXd& residual) const {
     return residual - jacobian_ * linalg::solvePositiveDefinite(hessian_, jacobian_.transpose() * residual);
@@ -43,7 +41,7 @@ class SurrogateJudge final : public PowerJudge {
   SurrogateJudge(const OnlineMap& map, const TrustModel& trust, const Stencil& at)
       : trust_(trust),
         explanation_(explain(map, trust, at)),
-        absorption_(explanation_.jacobian),
+        absorption_(explanation_.jacobian, trust.prior),
         centered_(at.features - trust.forward->center) {}
 
   double calcPValue(const VectorXd& moved) const override {
@@ -77,7 +75,7 @@ class RefinedJudge final : public PowerJudge {
   RefinedJudge(const OnlineMap& map, const TrustModel& trust, const NoiseWhitener& noise, const Stencil& at)
       : trust_(trust),
         noise_(noise),
-        absorption_(noise.apply(at.sensitivities)),
+        absorption_(noise.apply(at.sensitivities), trust.prior),
         degrees_(absorption_.calcDegrees()),
         limit_(calcChiSquareLimit(degrees_)),
         surrogate_(map, trust, at) {}

@@ -95,7 +95,7 @@ struct Oscillation {
   TrustTraining makeTrustTraining() const {
     TrustTraining training;
     training.sampled = parameters;
-    training.unknown = 2;
+    training.prior = makeUniformPrior(2);
     training.infos = makeInfos();
     training.points = samplePoints(150, 1);
     training.clean_features = calcClean(training.points);

@@ -101,7 +101,7 @@ TEST_F(TrustTest, TakesOverTheExplanationThatASurrogatesOwnSearchFound) {
   const ForwardSurrogate& surrogate = *model_->forward;
   const MatrixXd scores = surrogate.calcScores(
       Oscillation::addNoise(Oscillation::calcClean(Oscillation::samplePoints(20, 21)), 22));
-  ScoreInversion inferring(surrogate, 2), searching(surrogate, 2);
+  ScoreInversion inferring(surrogate, makeUniformPrior(2)), searching(surrogate, makeUniformPrior(2));
   for (Eigen::Index i = 0; i < scores.cols(); ++i) {
     inferring.infer(scores.col(i), VectorXd(0));
     ASSERT_NE(inferring.findExplanation(), nullptr);
