@@ -63,8 +63,11 @@ Limits calcLimits(const Study& study, const PreparedData& data, const std::vecto
   }
   if (!columns.empty()) {
     const MatrixXd points = data.labelled.test.collectPoints()(Eigen::all, columns);
-    const InformationLimit limit =
-        calcInformationLimit(calcLocalModels(study, points), study.noise, parameters);
+    const Prior prior(collectUnknown(study.experiment.model), study.experiment.model.priors);
+    const MatrixXd unknown =
+        points.topRows(static_cast<Index>(collectUnknown(study.experiment.model).size()));
+    const InformationLimit limit = calcInformationLimit(calcLocalModels(study, points), study.noise,
+                                                        parameters, prior.calcInformation(unknown));
     limits.parameters(Eigen::all, columns) = limit.stddev;
     limits.derived(Eigen::all, columns) = calcDerivedLimit(DerivedQuantities(study.experiment), parameters,
                                                            points.topRows(truth.rows()), limit);
