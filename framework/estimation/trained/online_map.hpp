@@ -4,9 +4,9 @@
 #include <memory>
 #include <variant>
 
-#include "framework/estimation/trained/online_network.hpp"
-#include "framework/estimation/trained/online_processes.hpp"
-#include "framework/estimation/trained/online_surrogate.hpp"
+#include "framework/estimation/gp/online_processes.hpp"
+#include "framework/estimation/network/online_network.hpp"
+#include "framework/estimation/surrogate/online_surrogate.hpp"
 
 namespace twinmap {
 

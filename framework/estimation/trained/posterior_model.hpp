@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "framework/estimation/surrogate/posterior_sampler.hpp"
+#include "framework/estimation/surrogate/posterior/posterior_sampler.hpp"
 #include "framework/estimation/trained/online_map.hpp"
 #include "framework/estimation/trained/trust_model.hpp"
 

@@ -1,4 +1,4 @@
-#include "framework/estimation/surrogate/posterior_sampler.hpp"
+#include "framework/estimation/surrogate/posterior/posterior_sampler.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "framework/base/random/random.hpp"
-#include "framework/estimation/surrogate/score_likelihood.hpp"
+#include "framework/estimation/surrogate/posterior/score_likelihood.hpp"
 #include "tests/framework/support/linear_simulator.hpp"
 
 namespace twinmap {

@@ -1,4 +1,4 @@
-#include "framework/estimation/trained/online_processes.hpp"
+#include "framework/estimation/gp/online_processes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "framework/estimation/trained/online_network.hpp"
+#include "framework/estimation/network/online_network.hpp"
 
 namespace twinmap {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "framework/estimation/surrogate/posterior/score_likelihood.hpp"
 #include "framework/estimation/surrogate/score_inversion.hpp"
-#include "framework/estimation/surrogate/score_likelihood.hpp"
 #include "framework/estimation/surrogate/surrogate.hpp"
 #include "kernels/sampling/adaptive_importance.hpp"
 

@@ -1,4 +1,4 @@
-#include "framework/estimation/surrogate/posterior_sampler.hpp"
+#include "framework/estimation/surrogate/posterior/posterior_sampler.hpp"
 
 #include <algorithm>
 #include <cmath>

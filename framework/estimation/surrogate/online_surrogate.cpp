@@ -1,4 +1,4 @@
-#include "framework/estimation/trained/online_surrogate.hpp"
+#include "framework/estimation/surrogate/online_surrogate.hpp"
 
 namespace twinmap {
 
