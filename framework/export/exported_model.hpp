@@ -20,7 +20,7 @@ struct ExportedModel {
   OnlineModel online;
 
   /// Null where the map is of another kind.
-  const GpMap* findProcesses() const { return std::get_if<GpMap>(&online.map); }
+  const GpMap* findProcesses() const;
   const Surrogate* findSurrogate() const;
   const NetworkMap* findNetwork() const;
   /// What is known of the errors of a surrogate or a network; else null.

@@ -2,51 +2,62 @@
 
 #include <memory>
 
-#include "framework/estimation/estimate.hpp"
+#include "framework/estimation/estimator.hpp"
 #include "framework/estimation/surrogate/score_inversion.hpp"
 #include "framework/estimation/surrogate/surrogate.hpp"
 
 namespace twinmap {
 
+class Hdf5Reader;
+
 /// A surrogate made ready for one measurement after another. Estimates are those of the surrogate, bit for
 /// bit. Immutable.
-class OnlineSurrogate {
+class OnlineSurrogate final : public Estimator {
  public:
   explicit OnlineSurrogate(std::shared_ptr<const Surrogate> surrogate) : surrogate_(std::move(surrogate)) {}
 
   const Surrogate& getSurrogate() const { return *surrogate_; }
 
-  /// The buffers of one thread, and the result.
-  class Workspace {
+  class Workspace final : public Estimator::Workspace {
    public:
     explicit Workspace(const OnlineSurrogate& map)
         : inversion(*map.surrogate_->forward, map.surrogate_->prior) {
-      estimate.method = EstimationMethod::kSurrogate;
+      estimate.estimator = map.getKind();
       estimate.correlation = map.surrogate_->validation.residual_correlation;
     }
-    Estimate estimate;
-    const ScoreExplanation* findExplanation() const { return inversion.findExplanation(); }
+    const ScoreExplanation* findExplanation() const override { return inversion.findExplanation(); }
 
    private:
     friend class OnlineSurrogate;
     ScoreInversion inversion;
   };
 
-  /// features: d, finite; known: the inputs of the set-up (q). The result, whose inputs are the scores and
-  /// the normalised known inputs, lies in the workspace until its next use. Cost: that of
+  const char* getKind() const override { return "surrogate"; }
+  Eigen::Index countFeatures() const override { return surrogate_->forward->center.size(); }
+  Eigen::Index countKnown() const override { return surrogate_->center.size() - surrogate_->unknown; }
+  const Eigen::MatrixXd& getResidualCorrelation() const override {
+    return surrogate_->validation.residual_correlation;
+  }
+  bool isCalibrated() const override { return surrogate_->validation.status == SurrogateStatus::kOk; }
+  std::shared_ptr<const ForwardSurrogate> findForward() const override { return surrogate_->forward; }
+  std::unique_ptr<Estimator::Workspace> makeWorkspace() const override {
+    return std::make_unique<Workspace>(*this);
+  }
+  /// The inputs of the result are the scores and the normalised known inputs. Cost: that of
   /// ScoreInversion::infer().
   const Estimate& infer(const Eigen::Ref<const Eigen::VectorXd>& features,
-                        const Eigen::Ref<const Eigen::VectorXd>& known, Workspace& workspace) const;
-
-  /// The minima of the last inference (u x n, in the parameters' units), the likeliest first, those of less
-  /// than a thousandth of the evidence left out.
-  Eigen::MatrixXd listBasins(const Workspace& workspace) const;
-
-  /// What the inferences' inputs are for features (d x n) and known inputs (q x n).
-  Eigen::MatrixXd makeInputs(const Eigen::MatrixXd& features, const Eigen::MatrixXd& known) const;
+                        const Eigen::Ref<const Eigen::VectorXd>& known,
+                        Estimator::Workspace& workspace) const override;
+  /// The minima of the last inference.
+  Eigen::MatrixXd listBasins(const Estimator::Workspace& workspace) const override;
+  Eigen::MatrixXd makeInputs(const Eigen::MatrixXd& features, const Eigen::MatrixXd& known) const override;
+  void save(Hdf5Writer& file, const std::string& group) const override;
 
  private:
   std::shared_ptr<const Surrogate> surrogate_;
 };
+
+/// Reads what save() wrote. Errors as of readSurrogate().
+std::shared_ptr<const Estimator> loadSurrogate(const Hdf5Reader& file, const std::string& group);
 
 }  // namespace twinmap

@@ -32,6 +32,6 @@ struct TrustTraining {
 /// simulated measurements. The result does not depend on the threads. Cost: that of s inferences. Throws
 /// gp::Stopped.
 TrustModel fitTrustModel(const TrustTraining& training, std::shared_ptr<const ForwardSurrogate> surrogate,
-                         const OnlineMap& map, double level, const TrainingControl& control);
+                         const Estimator& map, double level, const TrainingControl& control);
 
 }  // namespace twinmap

@@ -1,11 +1,13 @@
 #include "framework/estimation/trained/posterior_model.hpp"
 
+#include "framework/estimation/surrogate/online_surrogate.hpp"
+
 namespace twinmap {
 
-std::optional<PosteriorModel> findPosteriorModel(const OnlineMap& map, const std::optional<TrustModel>& trust,
+std::optional<PosteriorModel> findPosteriorModel(const Estimator& map, const std::optional<TrustModel>& trust,
                                                  const ModelSpec& model) {
-  if (const Surrogate* surrogate = map.findSurrogate()) {
-    return makePosteriorModel(*surrogate, findPrior(model));
+  if (const auto* surrogate = dynamic_cast<const OnlineSurrogate*>(&map)) {
+    return makePosteriorModel(surrogate->getSurrogate(), findPrior(model));
   }
   if (!trust) {
     return std::nullopt;

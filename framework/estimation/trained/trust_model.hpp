@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "framework/estimation/estimator.hpp"
 #include "framework/estimation/surrogate/score_inversion.hpp"
 #include "framework/estimation/trained/anomaly.hpp"
 #include "framework/estimation/trained/coverage_record.hpp"
-#include "framework/estimation/trained/online_map.hpp"
 #include "framework/estimation/trained/residual_space.hpp"
 
 namespace twinmap {
@@ -96,7 +96,7 @@ struct TrustWorkspace {
 };
 
 /// Judges an estimate from features (d, finite) and known inputs (q), by the point of the box that explains
-/// them best according to the surrogate: `explained`, where the map found it (OnlineMap::Workspace), else
+/// them best according to the surrogate: `explained`, where the map found it (Estimator::Workspace), else
 /// searched from the estimate. Cost: that of one pass over the training cloud, and of the search, about 1 ms
 /// for 200 features.
 Trust judge(const TrustModel& model, const Eigen::Ref<const Eigen::VectorXd>& features,

@@ -225,7 +225,7 @@ std::string makeInferenceJson(const InferredMeasurement& inferred,
   if (!estimate.statuses.empty()) {
     json["statuses"] = estimate.statuses;
   }
-  json["method"] = toString(estimate.method);
+  json["method"] = estimate.getMethod();
   if (inferred.prior) {
     json["prior"] = inferred.prior->text;
   }

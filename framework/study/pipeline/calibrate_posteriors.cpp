@@ -134,7 +134,7 @@ CalibratedPosteriors calibratePosteriors(const Study& study, const PreparedData&
                                          const TrainedMap& map) {
   CalibratedPosteriors result;
   const std::optional<PosteriorModel> model =
-      findPosteriorModel(OnlineMap(map.online.map), map.online.trust, study.experiment.model);
+      findPosteriorModel(*map.online.map, map.online.trust, study.experiment.model);
   if (!model) {
     result.notes.warn(makeWarning(Notice::kNoCalibration, "the run has no surrogate"));
     return result;

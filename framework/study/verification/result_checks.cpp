@@ -9,6 +9,7 @@
 #include "framework/base/hdf5/sealed_file.hpp"
 #include "framework/data/features/experiment_features.hpp"
 #include "framework/data/sensitivity/fisher_information.hpp"
+#include "framework/estimation/gp/online_processes.hpp"
 #include "framework/estimation/gp/train_gp_map.hpp"
 #include "framework/experiment/check/check_experiment.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
@@ -78,14 +79,15 @@ Limits calcLimits(const Study& study, const PreparedData& data, const std::vecto
 /// Processes are fitted at the hyperparameters of the file, without a search; a surrogate is trained again.
 TrainedMap trainAgain(const Study& study, const PreparedData& data, const std::filesystem::path& file) {
   const TrainedFile stored = readTrainedFile(file, Hdf5Seal::kNone);  // differences are named below
-  const GpMap* processes = std::get_if<GpMap>(&stored.model.map);
+  const auto* processes = dynamic_cast<const OnlineProcesses*>(stored.model.map.get());
   if (processes == nullptr) {
     return trainChosenMap(study, data);
   }
   const ExperimentSpec& experiment = study.experiment;
   const LabelledFeatures& train = data.labelled.train;
-  GpMapTraining fitted = refitGpMap(*processes, *experiment.inverse_map.findProcesses(), experiment.transform,
-                                    train, study.control.threads, experiment.model.inputs);
+  GpMapTraining fitted =
+      refitGpMap(processes->getMap(), *experiment.inverse_map.findProcesses(), experiment.transform, train,
+                 study.control.threads, experiment.model.inputs);
   return makeTrainedMap(study, data, makeTraining(experiment, train, std::move(fitted)));
 }
 

@@ -38,7 +38,7 @@ class Absorption {
 /// part of what is judged.
 class SurrogateJudge final : public PowerJudge {
  public:
-  SurrogateJudge(const OnlineMap& map, const TrustModel& trust, const Stencil& at)
+  SurrogateJudge(const Estimator& map, const TrustModel& trust, const Stencil& at)
       : trust_(trust),
         explanation_(explain(map, trust, at)),
         absorption_(explanation_.jacobian, trust.prior),
@@ -55,11 +55,11 @@ class SurrogateJudge final : public PowerJudge {
   }
 
  private:
-  static ScoreExplanation explain(const OnlineMap& map, const TrustModel& trust, const Stencil& at) {
-    OnlineMap::Workspace inferring(map);
+  static ScoreExplanation explain(const Estimator& map, const TrustModel& trust, const Stencil& at) {
+    const std::unique_ptr<Estimator::Workspace> inferring = map.makeWorkspace();
     TrustWorkspace judging(trust);
-    const Estimate& estimate = map.inferMean(at.features, at.known, inferring);
-    judge(trust, at.features, at.known, estimate, inferring.findExplanation(), judging);
+    const Estimate& estimate = map.inferMean(at.features, at.known, *inferring);
+    judge(trust, at.features, at.known, estimate, inferring->findExplanation(), judging);
     return *judging.explanation;
   }
 
@@ -72,7 +72,7 @@ class SurrogateJudge final : public PowerJudge {
 /// By what the simulator leaves; by the surrogate where that does not decide.
 class RefinedJudge final : public PowerJudge {
  public:
-  RefinedJudge(const OnlineMap& map, const TrustModel& trust, const NoiseWhitener& noise, const Stencil& at)
+  RefinedJudge(const Estimator& map, const TrustModel& trust, const NoiseWhitener& noise, const Stencil& at)
       : trust_(trust),
         noise_(noise),
         absorption_(noise.apply(at.sensitivities), trust.prior),
@@ -101,7 +101,7 @@ class RefinedJudge final : public PowerJudge {
 
 }  // namespace
 
-std::unique_ptr<PowerJudge> makePowerJudge(const OnlineMap& map, const TrustModel& trust,
+std::unique_ptr<PowerJudge> makePowerJudge(const Estimator& map, const TrustModel& trust,
                                            const NoiseWhitener& noise, const Stencil& at) {
   if (trust.refinement.tried > 0) {
     return std::make_unique<RefinedJudge>(map, trust, noise, at);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "framework/base/random/random.hpp"
+#include "framework/estimation/gp/online_processes.hpp"
 #include "framework/estimation/gp/train_gp_map.hpp"
 #include "framework/estimation/surrogate/fit_forward.hpp"
 #include "framework/estimation/trained/fit_trust.hpp"
