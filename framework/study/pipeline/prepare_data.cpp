@@ -84,11 +84,11 @@ std::vector<Eigen::MatrixXd> calcTrainingSensitivities(const Study& study, const
   return sensitivities;
 }
 
-MatrixXd calcMeanPriorInformation(const ModelSpec& model, const LabelledFeatures& samples) {
+Eigen::MatrixXd calcMeanPriorInformation(const ModelSpec& model, const LabelledFeatures& samples) {
   const Prior prior(collectUnknown(model), model.priors);
-  MatrixXd sum;
-  for (const MatrixXd& one : prior.calcInformation(samples.collectUnknown())) {
-    sum = sum.size() == 0 ? one : MatrixXd(sum + one);
+  Eigen::MatrixXd sum;
+  for (const Eigen::MatrixXd& one : prior.calcInformation(samples.collectUnknown())) {
+    sum = sum.size() == 0 ? one : Eigen::MatrixXd(sum + one);
   }
   return sum / static_cast<double>(samples.parameters.cols());
 }
