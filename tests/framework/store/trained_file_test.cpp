@@ -29,7 +29,14 @@ void writeFile(const std::filesystem::path& path, const std::string& bytes) {
 constexpr int kFeatures = Oscillation::kSamples;
 
 std::shared_ptr<const Surrogate> makeSurrogate(std::shared_ptr<const ForwardSurrogate> forward) {
-  Surrogate surrogate{std::move(forward), Eigen::Vector2d(0.2, 2.5), Eigen::Vector2d(0.1, 0.5), 2, 2, {}};
+  BoxPrior prior = makeUniformPrior(2);  // but for the first, which is normal
+  prior.mean[0] = 0.1;
+  prior.relative(0, 0) = 4.0;
+  prior.within(0, 0) = 12.0;
+  prior.shift[0] = 1.2;
+  prior.stddev[0] = 0.28;
+  Surrogate surrogate{
+      std::move(forward), Eigen::Vector2d(0.2, 2.5), Eigen::Vector2d(0.1, 0.5), 2, 2, prior, {}};
   surrogate.validation.stddev_scale = surrogate.validation.limit_scale = VectorXd::Ones(2);
   surrogate.validation.coverage95 = surrogate.validation.limit_ratio = VectorXd::Ones(2);
   surrogate.validation.residual_correlation = MatrixXd::Identity(2, 2);
