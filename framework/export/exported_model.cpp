@@ -1,9 +1,6 @@
 #include "framework/export/exported_model.hpp"
 
 #include "framework/data/features/experiment_features.hpp"
-#include "framework/estimation/gp/online_processes.hpp"
-#include "framework/estimation/network/online_network.hpp"
-#include "framework/estimation/surrogate/online_surrogate.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/inferrer.hpp"

@@ -5,6 +5,9 @@
 #include <vector>
 
 #include "framework/data/features/feature_block.hpp"
+#include "framework/estimation/gp/online_processes.hpp"
+#include "framework/estimation/network/online_network.hpp"
+#include "framework/estimation/surrogate/online_surrogate.hpp"
 #include "framework/estimation/trained/online_model.hpp"
 #include "framework/experiment/experiment_spec.hpp"
 #include "framework/simulation/response_layout.hpp"

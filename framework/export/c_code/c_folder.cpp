@@ -5,7 +5,6 @@
 #include <ostream>
 
 #include "framework/base/files/atomic_file.hpp"
-#include "framework/estimation/gp/online_processes.hpp"
 #include "framework/export/c_code/c_readme.hpp"
 #include "framework/export/compress_map.hpp"
 #include "framework/export/runtime_sources.hpp"
