@@ -145,7 +145,7 @@ int twinmap_is_refined(const twinmap_inferrer* inferrer) {
 
 const char* twinmap_get_method(const twinmap_inferrer* inferrer) {
   const twinmap::Estimate* estimate = findEstimate(inferrer);
-  return estimate != nullptr ? toString(estimate->method) : nullptr;
+  return estimate != nullptr ? estimate->getMethod() : nullptr;
 }
 
 size_t twinmap_count_statuses(const twinmap_inferrer* inferrer) {

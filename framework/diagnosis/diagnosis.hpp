@@ -7,7 +7,7 @@
 
 #include "framework/diagnosis/candidates/term_candidate.hpp"
 #include "framework/diagnosis/recorded_problem.hpp"
-#include "framework/diagnosis/remainder.hpp"
+#include "framework/diagnosis/remainder/remainder.hpp"
 #include "framework/estimation/posterior/residual_test.hpp"
 
 namespace twinmap {

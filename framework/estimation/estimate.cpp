@@ -22,12 +22,8 @@ Intervals clampTo(double lower, double upper, Intervals intervals) {
 
 const char* toString(EstimationMethod method) {
   switch (method) {
-    case EstimationMethod::kGp:
-      return "gp";
-    case EstimationMethod::kSurrogate:
-      return "surrogate";
-    case EstimationMethod::kNetwork:
-      return "network";
+    case EstimationMethod::kEstimator:
+      return "estimator";
     case EstimationMethod::kPosterior:
       return "posterior";
     case EstimationMethod::kRefined:

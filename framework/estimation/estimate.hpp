@@ -10,11 +10,10 @@
 
 namespace twinmap {
 
-/// What made an estimate: the trained estimator by its kind, a refinement on the simulator, or draws of the
-/// posterior.
-enum class EstimationMethod { kGp, kSurrogate, kNetwork, kRefined, kPosterior };
+/// What made an estimate: a trained estimator, a refinement on the simulator, or draws of the posterior.
+enum class EstimationMethod { kEstimator, kRefined, kPosterior };
 
-/// "gp", "surrogate", "network", "refined", "posterior".
+/// "estimator", "refined", "posterior".
 const char* toString(EstimationMethod method);
 
 /// The probability of an interval.
@@ -41,9 +40,15 @@ struct Estimate {
   /// are those of each parameter. What is derived from several follows from it.
   Mixture ridge{};
   EstimationMethod method{};
+  const char* estimator = "";           ///< Estimator::getKind() of a trained one
   std::vector<std::string> statuses{};  ///< listStatuses(); empty where nobody has judged
   /// k, the features and known inputs as the estimator sees them, for a trust model; empty where refined.
   Eigen::VectorXd inputs{};
+
+  /// "gp", "surrogate", "network", ...; "refined", "posterior".
+  const char* getMethod() const {
+    return method == EstimationMethod::kEstimator ? estimator : toString(method);
+  }
 
   bool isGiven() const { return mean.size() > 0; }
   /// Whether several values that lie apart fit.
@@ -73,7 +78,7 @@ struct Estimate {
 struct Estimates {
   Eigen::MatrixXd mean, stddev;
   /// p x p, of the errors: one for all measurements, or one for each; empty where the estimator's own
-  /// (OnlineMap::getResidualCorrelation) holds.
+  /// (Estimator::getResidualCorrelation) holds.
   std::vector<Eigen::MatrixXd> correlations{};
   /// Of each measurement, where the estimator gives mixtures; else empty.
   std::vector<Mixture> mixtures{};

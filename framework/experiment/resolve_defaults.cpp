@@ -8,7 +8,7 @@
 #include "framework/experiment/expression/curve.hpp"
 #include "framework/experiment/network_size.hpp"
 #include "framework/experiment/noise_correlation.hpp"
-#include "framework/experiment/points/prior.hpp"
+#include "framework/experiment/points/prior_marginal.hpp"
 
 namespace twinmap {
 namespace {

@@ -11,14 +11,19 @@ namespace twinmap {
 using Eigen::Index;
 using Eigen::VectorXd;
 
+const GpMap* ExportedModel::findProcesses() const {
+  const auto* processes = dynamic_cast<const OnlineProcesses*>(online.map.get());
+  return processes == nullptr ? nullptr : &processes->getMap();
+}
+
 const Surrogate* ExportedModel::findSurrogate() const {
-  const auto* surrogate = std::get_if<std::shared_ptr<const Surrogate>>(&online.map);
-  return surrogate == nullptr ? nullptr : surrogate->get();
+  const auto* surrogate = dynamic_cast<const OnlineSurrogate*>(online.map.get());
+  return surrogate == nullptr ? nullptr : &surrogate->getSurrogate();
 }
 
 const NetworkMap* ExportedModel::findNetwork() const {
-  const auto* network = std::get_if<std::shared_ptr<const NetworkMap>>(&online.map);
-  return network == nullptr ? nullptr : network->get();
+  const auto* network = dynamic_cast<const OnlineNetwork*>(online.map.get());
+  return network == nullptr ? nullptr : &network->getMap();
 }
 
 const SurrogateValidation* ExportedModel::findValidation() const {
@@ -30,10 +35,17 @@ const SurrogateValidation* ExportedModel::findValidation() const {
 }
 
 const ForwardSurrogate* ExportedModel::findForward() const {
-  if (const Surrogate* surrogate = findSurrogate()) {
-    return surrogate->forward.get();
+  if (const auto forward = online.map->findForward()) {
+    return forward.get();
   }
   return online.trust ? online.trust->forward.get() : nullptr;
+}
+
+const BoxPrior* ExportedModel::findPrior() const {
+  if (const Surrogate* surrogate = findSurrogate()) {
+    return &surrogate->prior;
+  }
+  return online.trust ? &online.trust->prior : nullptr;
 }
 
 Index ExportedModel::countParameters() const {
@@ -49,8 +61,7 @@ Index ExportedModel::countUnknown() const {
 }
 
 Eigen::MatrixXd ExportedModel::getCorrelation() const {
-  const SurrogateValidation* validation = findValidation();
-  return validation != nullptr ? validation->residual_correlation : findProcesses()->residual_correlation;
+  return online.map->getResidualCorrelation();
 }
 
 VectorXd ExportedModel::getIntervalFactors() const {
@@ -77,6 +88,10 @@ ExportedModel loadExportedModel(const std::filesystem::path& run_or_maps) {
   model.features = makeExtractor(model.experiment, model.layout).getInfos();
   model.online = std::move(stored.model);
   const NetworkMap* network = model.findNetwork();
+  if (network == nullptr && model.findProcesses() == nullptr && model.findSurrogate() == nullptr) {
+    throw std::runtime_error(findMaps(run_or_maps).string() + ": an estimator of the kind " +
+                             model.online.map->getKind() + " cannot be exported");
+  }
   if (network != nullptr && network->countComponents() > 1) {
     throw std::runtime_error(
         findMaps(run_or_maps).string() +

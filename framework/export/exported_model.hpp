@@ -5,6 +5,9 @@
 #include <vector>
 
 #include "framework/data/features/feature_block.hpp"
+#include "framework/estimation/gp/online_processes.hpp"
+#include "framework/estimation/network/online_network.hpp"
+#include "framework/estimation/surrogate/online_surrogate.hpp"
 #include "framework/estimation/trained/online_model.hpp"
 #include "framework/experiment/experiment_spec.hpp"
 #include "framework/simulation/response_layout.hpp"
@@ -20,13 +23,16 @@ struct ExportedModel {
   OnlineModel online;
 
   /// Null where the map is of another kind.
-  const GpMap* findProcesses() const { return std::get_if<GpMap>(&online.map); }
+  const GpMap* findProcesses() const;
   const Surrogate* findSurrogate() const;
   const NetworkMap* findNetwork() const;
   /// What is known of the errors of a surrogate or a network; else null.
   const SurrogateValidation* findValidation() const;
   /// The processes from parameters to scores, of the map or else of the trust model; or null.
   const ForwardSurrogate* findForward() const;
+
+  /// What is known of the unknowns before, as that of the map or else of the trust model has it; or null.
+  const BoxPrior* findPrior() const;
 
   Eigen::Index countParameters() const;
   Eigen::Index countKnown() const;             ///< inputs of the set-up

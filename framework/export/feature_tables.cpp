@@ -101,15 +101,13 @@ class Blocks {
   }
 
   void addStatistics(const StatisticsFeatureSpec& spec) {
-    constexpr const char* kNames[] = {
-        "", "STATISTIC_STDDEV", "STATISTIC_RMS", "STATISTIC_MIN", "STATISTIC_MAX", "STATISTIC_PEAK_TO_PEAK"};
     for (const Name& output : spec.outputs) {
       for (const Statistic statistic : spec.quantities) {
         if (statistic != Statistic::kMean) {
           statistics_ = true;
-          entries_.push_back(fmt::format("BLOCK_STATISTIC, {}, {}, {}, 0, 0, 0, 0.0, 0.0, 0.0",
-                                         kNames[static_cast<int>(statistic)],
-                                         addWindow(output.text, spec.window), spec.window.count));
+          entries_.push_back(fmt::format("BLOCK_STATISTIC, STATISTIC_{}, {}, {}, 0, 0, 0, 0.0, 0.0, 0.0",
+                                         toUpper(getEnumText(statistic)), addWindow(output.text, spec.window),
+                                         spec.window.count));
         }
       }
     }

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "framework/base/text/escape.hpp"
-#include "framework/experiment/model/parameter_box.hpp"
+#include "framework/estimation/box_prior.hpp"
 #include "framework/export/c_code/c_tables.hpp"
 
 namespace twinmap {
@@ -41,9 +41,11 @@ void addInputVariables(const ExportedModel& model, std::vector<FmuVariable>& var
 void addEstimates(const ExportedModel& model, const char* group, const char* meaning,
                   std::vector<FmuVariable>& variables) {
   const std::string kind = group;
+  const PriorMoments prior = calcPriorMoments(model.experiment.model);
+  Eigen::Index p = 0;
   for (const ParameterSpec& parameter : model.experiment.model.parameters) {
-    const double width = parameter.bounds.upper - parameter.bounds.lower;
-    const double mean = 0.5 * (parameter.bounds.lower + parameter.bounds.upper), sd = kUniformStddev * width;
+    const double mean = prior.mean[p], sd = prior.stddev[p];
+    ++p;
     const double start = kind == "mean" ? mean
                          : kind == "sd" ? sd
                                         : mean + (kind == "lower" ? -1 : 1) * kNormal95 * sd;

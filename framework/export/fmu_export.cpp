@@ -6,7 +6,7 @@
 
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/base/files/temporary_folder.hpp"
-#include "framework/experiment/model/parameter_box.hpp"
+#include "framework/estimation/box_prior.hpp"
 #include "framework/export/c_code/c_source.hpp"
 #include "framework/export/fmu_description.hpp"
 #include "framework/export/runtime_sources.hpp"
@@ -51,15 +51,16 @@ std::string listNumbers(const VectorXd& values, const char* none = "0.0") {
 
 /// fmu.c with what it starts from.
 std::string makeBlock(const ExportedModel& model) {
-  const VectorXd center = model.getBoxCenter(), half_width = model.getBoxHalfWidth();
+  const VectorXd center = model.getBoxCenter();
+  const PriorMoments prior = calcPriorMoments(model.experiment.model);
   const Eigen::Index p = model.countParameters(), q = model.countKnown();
   VectorXd starts = VectorXd::Zero(model.layout.getOutputCount() + q);
   starts.tail(q) = center.tail(q);
   std::string text(getRuntimeSource("fmu.c"));
   text = fillSlot(std::move(text), "@WINDOW_END@", toC(model.layout.times[model.layout.times.size() - 1]));
   text = fillSlot(std::move(text), "@INPUT_STARTS@", listNumbers(starts));
-  text = fillSlot(std::move(text), "@MEAN_STARTS@", listNumbers(center.head(p)));
-  return fillSlot(std::move(text), "@SD_STARTS@", listNumbers(2.0 * kUniformStddev * half_width.head(p)));
+  text = fillSlot(std::move(text), "@MEAN_STARTS@", listNumbers(prior.mean.head(p)));
+  return fillSlot(std::move(text), "@SD_STARTS@", listNumbers(prior.stddev.head(p)));
 }
 
 std::vector<ArchiveFile> makeSources(const ExportedModel& model, int version, FmuIdentity& identity) {

@@ -100,8 +100,8 @@ class EstimatorUnderTest {
   explicit EstimatorUnderTest(const ExportedModel& model)
       : model_(model),
         extractor_(makeExtractor(model.experiment, model.layout)),
-        map_(model.online.map),
-        workspace_(map_) {
+        map_(*model.online.map),
+        workspace_(map_.makeWorkspace()) {
     if (model.online.trust) {
       trust_.emplace(*model.online.trust);
     }
@@ -120,11 +120,11 @@ class EstimatorUnderTest {
 
   InferredMeasurement infer(const VectorXd& features, const VectorXd& known) {
     InferredMeasurement inferred;
-    inferred.by_estimator = map_.infer(features, known, workspace_);
+    inferred.by_estimator = map_.infer(features, known, *workspace_);
     inferred.estimator_is_calibrated = isCalibrated(map_, trust_ ? &*model_.online.trust : nullptr);
     if (trust_) {
       inferred.trust = judge(*model_.online.trust, features, known, inferred.by_estimator,
-                             workspace_.findExplanation(), *trust_);
+                             workspace_->findExplanation(), *trust_);
     }
     return inferred;
   }
@@ -152,8 +152,8 @@ class EstimatorUnderTest {
  private:
   const ExportedModel& model_;
   FeatureExtractor extractor_;
-  OnlineMap map_;
-  OnlineMap::Workspace workspace_;
+  const Estimator& map_;
+  std::unique_ptr<Estimator::Workspace> workspace_;
   std::optional<TrustWorkspace> trust_;
 };
 

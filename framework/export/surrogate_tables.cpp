@@ -66,6 +66,13 @@ void addScores(const ExportedModel& model, CTables& tables, CSizes& sizes) {
   tables.addWide("box_center", model.getBoxCenter(),
                  "Middle of the bounds: parameters, nuisance, known inputs.");
   tables.addWide("box_half_width", model.getBoxHalfWidth(), "Half of their width, in their units.");
+  const BoxPrior& prior = *model.findPrior();
+  tables.addWide("prior_mean", prior.mean, "Mean of what is known before, in half widths from the middle.");
+  tables.addWide("prior_relative", flattenColumns(prior.relative),
+                 "Its information over that of a uniform distribution within the bounds.");
+  const Index p = model.countParameters();
+  tables.addWide("prior_sd", model.getBoxHalfWidth().head(p).cwiseProduct(prior.stddev.head(p)),
+                 "Its standard deviation within the bounds, in the parameters' units.");
   sizes.push_back(
       {"SCORES", static_cast<long>(forward.getScoreCount()), "numbers that stand for the features"});
   sizes.push_back(
@@ -107,6 +114,11 @@ void addWindows(const ExportedModel& model, CTables& tables, CSizes& sizes) {
 }
 
 void addSurrogateMap(const Surrogate& surrogate, CTables& tables, CSizes& sizes) {
+  tables.addWide("prior_within", flattenColumns(surrogate.prior.within),
+                 "Information of the prior beside that of the bounds, per half width squared.");
+  tables.addWide("prior_shift", surrogate.prior.shift, "That times its mean.");
+  tables.addWide("prior_center", surrogate.calcPriorCenter(),
+                 "Mean of the prior, within the bounds, in the parameters' units.");
   tables.addWide("stddev_scale", surrogate.validation.stddev_scale,
                  "By which standard deviations are multiplied (cross-validation).");
   tables.addWide("limit_scale", surrogate.validation.limit_scale,

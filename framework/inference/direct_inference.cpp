@@ -12,7 +12,8 @@ DirectInference::DirectInference(const MeasurementReader& reader, int draws, Sim
     : reader_(reader),
       simulator_(reader.getExperiment(), reader.getLayout(), model),
       options_(makePosteriorOptions(reader.getExperiment(), draws)),
-      quantities_(makeDerivedQuantities(reader.getExperiment())) {
+      quantities_(makeDerivedQuantities(reader.getExperiment())),
+      prior_(findStatedPrior(reader.getExperiment().model)) {
   simulator_.requireNoise();
 }
 
@@ -61,6 +62,7 @@ InferredMeasurement DirectInference::infer(const SimulatorRefiner& simulator, co
       simulator.samplePosterior(features, known, simulator.describeNoise(clipped), {}, options_);
   inferred.ridges = simulator.findRidges(inferred.posterior->estimate.draws, known);
   inferred.quantities = quantities_;
+  inferred.prior = prior_;
   return inferred;
 }
 

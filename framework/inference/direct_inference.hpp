@@ -38,6 +38,7 @@ class DirectInference final : public MeasurementInference {
   const SimulatorRefiner simulator_;
   SimulatorPosteriorOptions options_;
   std::shared_ptr<const DerivedQuantities> quantities_;  // none where nothing is derived
+  std::shared_ptr<const StatedPrior> prior_;             // null where all is uniform
 };
 
 }  // namespace twinmap

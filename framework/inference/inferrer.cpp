@@ -20,7 +20,7 @@ fs::path findMaps(const fs::path& run_or_maps) {
   return file;
 }
 
-bool isCalibrated(const OnlineMap& map, const TrustModel* trust) {
+bool isCalibrated(const Estimator& map, const TrustModel* trust) {
   return map.isCalibrated() && (trust == nullptr || !trust->coverage.isShort());
 }
 
@@ -30,9 +30,10 @@ Inferrer::Inferrer(TrainedFile loaded)
     : reader_(readResolved(loaded.experiment)),
       map_(std::move(loaded.model.map)),
       trust_(std::move(loaded.model.trust)),
-      quantities_(makeDerivedQuantities(reader_.getExperiment())) {}
+      quantities_(makeDerivedQuantities(reader_.getExperiment())),
+      prior_(findStatedPrior(reader_.getExperiment().model)) {}
 
-Inferrer::Workspace::Workspace(const Inferrer& inferrer) : map(inferrer.getMap()) {
+Inferrer::Workspace::Workspace(const Inferrer& inferrer) : map(inferrer.getMap().makeWorkspace()) {
   if (inferrer.getTrustModel()) {
     trust.emplace(*inferrer.getTrustModel());
   }
@@ -42,11 +43,12 @@ InferredMeasurement Inferrer::infer(const Eigen::VectorXd& features, const Eigen
                                     Workspace& workspace) const {
   InferredMeasurement inferred;
   inferred.quantities = quantities_;
-  inferred.by_estimator = map_.infer(features, known, workspace.map);
-  inferred.estimator_is_calibrated = isCalibrated(map_, trust_ ? &*trust_ : nullptr);
-  inferred.basins = map_.listBasins(workspace.map);
+  inferred.prior = prior_;
+  inferred.by_estimator = map_->infer(features, known, *workspace.map);
+  inferred.estimator_is_calibrated = isCalibrated(*map_, trust_ ? &*trust_ : nullptr);
+  inferred.basins = map_->listBasins(*workspace.map);
   if (trust_) {
-    inferred.trust = judge(*trust_, features, known, inferred.by_estimator, workspace.map.findExplanation(),
+    inferred.trust = judge(*trust_, features, known, inferred.by_estimator, workspace.map->findExplanation(),
                            *workspace.trust);
     inferred.explanation = trust_->makeSampledPoint(workspace.trust->explanation->point);
     inferred.covariance = workspace.trust->explanation->calcCovariance();

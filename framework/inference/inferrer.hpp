@@ -8,10 +8,10 @@
 #include "framework/estimation/derived/derived_quantities.hpp"
 #include "framework/estimation/refined/refined.hpp"
 #include "framework/estimation/ridges/identified_combinations.hpp"
-#include "framework/estimation/trained/online_map.hpp"
 #include "framework/estimation/trained/online_model.hpp"
 #include "framework/inference/measurement/measurement_reader.hpp"
 #include "framework/inference/posterior_estimate.hpp"
+#include "framework/inference/stated_prior.hpp"
 #include "framework/store/trained_file.hpp"
 
 namespace twinmap {
@@ -44,6 +44,7 @@ struct InferredMeasurement {
   std::optional<Refined> refined;  ///< on the simulator, where that was tried; accepted or not
   std::optional<PosteriorEstimate> posterior{};  ///< where it was asked for, or taken; reliable or not
   std::shared_ptr<const DerivedQuantities> quantities{};  ///< of the experiment, if it derives any
+  std::shared_ptr<const StatedPrior> prior{};             ///< of the experiment; null where all is uniform
   std::vector<Ridge> ridges{};  ///< of the simulator's posterior, where that alone was sampled
 };
 
@@ -53,7 +54,7 @@ std::filesystem::path findMaps(const std::filesystem::path& run_or_maps);
 
 /// Whether nothing is known against a map's standard deviations: neither by its cross-validation nor by the
 /// run's test samples.
-bool isCalibrated(const OnlineMap& map, const TrustModel* trust);
+bool isCalibrated(const Estimator& map, const TrustModel* trust);
 
 /// A finished run made ready for measurements. Immutable; its workspaces are for one thread each.
 class Inferrer {
@@ -66,17 +67,17 @@ class Inferrer {
   const ExperimentSpec& getExperiment() const { return reader_.getExperiment(); }
   const ResponseLayout& getLayout() const { return reader_.getLayout(); }
   const FeatureExtractor& getExtractor() const { return reader_.getExtractor(); }
-  const OnlineMap& getMap() const { return map_; }
+  const Estimator& getMap() const { return *map_; }
   const std::optional<TrustModel>& getTrustModel() const { return trust_; }
 
   struct Workspace {
     explicit Workspace(const Inferrer& inferrer);
-    OnlineMap::Workspace map;
+    std::unique_ptr<Estimator::Workspace> map;
     std::optional<TrustWorkspace> trust;
   };
 
   /// Infers and judges. features: d, finite; known: the inputs of the set-up (q). Cost: that of
-  /// OnlineMap::infer() and judge().
+  /// Estimator::infer() and judge().
   InferredMeasurement infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
                             Workspace& workspace) const;
 
@@ -84,9 +85,10 @@ class Inferrer {
   explicit Inferrer(TrainedFile loaded);
 
   MeasurementReader reader_;
-  OnlineMap map_;
+  std::shared_ptr<const Estimator> map_;
   std::optional<TrustModel> trust_;
   std::shared_ptr<const DerivedQuantities> quantities_;  // none where nothing is derived
+  std::shared_ptr<const StatedPrior> prior_;             // null where all is uniform
 };
 
 }  // namespace twinmap

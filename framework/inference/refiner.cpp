@@ -330,7 +330,8 @@ Refined SimulatorRefiner::fitNuisance(const VectorXd& point, const VectorXd& fea
     held.point = point;
     return held;
   }
-  return twinmap::refine(*own_, getModel(), {features, {{"given", point}}, nuisance, false});
+  return twinmap::refine(*own_, getModel(),
+                         {features, {{"given", point}}, nuisance, false, {}, findPrior(model_)});
 }
 
 }  // namespace twinmap

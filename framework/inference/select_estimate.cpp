@@ -110,6 +110,9 @@ Estimate selectEstimate(const InferredMeasurement& inferred) {
   if (!estimate.isGiven()) {
     estimate.method = EstimationMethod::kPosterior;
   }
+  if (inferred.prior && estimate.isGiven()) {
+    estimate.prior_stddev = inferred.prior->stddev.head(estimate.mean.size());
+  }
   estimate.statuses = listStatuses(inferred);
   return estimate;
 }

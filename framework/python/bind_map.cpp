@@ -183,7 +183,7 @@ void bindEstimate(py::module_& module) {
       .def_property_readonly("components",
                              [](const Inferred& i) { return listComponents(i.estimate.mixture); })
       .def_property_readonly("statuses", [](const Inferred& i) { return i.estimate.statuses; })
-      .def_property_readonly("method", [](const Inferred& i) { return toString(i.estimate.method); })
+      .def_property_readonly("method", [](const Inferred& i) { return i.estimate.getMethod(); })
       .def_property_readonly("posterior", [](const Inferred& i) { return i.measurement.posterior; });
   py::class_<InferRequest>(module, "InferRequest")
       .def(py::init(&makeRequest), py::arg("known"), py::arg("start"), py::arg("refine"),

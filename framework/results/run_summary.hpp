@@ -165,6 +165,7 @@ struct Evaluation {
   std::vector<MapComparison> maps;
   std::optional<DerivedEvaluation> derived;  ///< where the experiment derives quantities
   CurveEstimates curves;                     ///< of some samples, where the model has curves
+  Eigen::VectorXd prior_stddev{};            ///< p, within the bounds; empty where all are uniform
 };
 
 /// Everything that the tables of one run show.

@@ -139,14 +139,16 @@ bool isUndetermined(const RunSummary& run, std::size_t p) {
   return run.evaluation.identifiability && run.evaluation.identifiability->isUndetermined(Index(p));
 }
 
-/// Inferred standard deviations close to that of the box: nothing was learnt.
+/// Inferred standard deviations close to that of the prior: nothing was learnt.
 void appendUninformed(const RunSummary& run, std::vector<Warning>& warnings) {
   constexpr double kUninformed = 0.7, kPercent = 100.0;
   const auto share = [&](std::size_t p) {
     const auto stddev = run.evaluation.predictions.stddev.row(Index(p));
     const Bounds& bounds = run.parameters[p].bounds;
-    return std::sqrt(stddev.squaredNorm() / double(stddev.size())) /
-           (kUniformStddev * (bounds.upper - bounds.lower));
+    const double before = run.evaluation.prior_stddev.size() > 0
+                              ? run.evaluation.prior_stddev[Index(p)]
+                              : kUniformStddev * (bounds.upper - bounds.lower);
+    return std::sqrt(stddev.squaredNorm() / double(stddev.size())) / before;
   };
   std::vector<std::string> uninformed;
   for (std::size_t p = 0; p < run.parameters.size(); ++p) {

@@ -70,9 +70,13 @@ double calcLocalFactor(const smooth_process& process, const double* ratios, cons
 void calcInformation(int r, int u, const double* jacobian, double* information) {
   c::calc_information(r, u, jacobian, information);
 }
-bool solveStep(int u, const double* information, const double* unknown, double damping, double* small,
-               double* step) {
-  return c::solve_step(u, information, unknown, damping, small, step) != 0;
+void calcPull(int u, const double* relative, const double* mean, const double* x, double* offset,
+              double* pull) {
+  c::calc_pull(u, relative, mean, x, offset, pull);
+}
+bool solveStep(int u, const double* information, const double* relative, const double* pull, double damping,
+               double* small, double* step) {
+  return c::solve_step(u, information, relative, pull, damping, small, step) != 0;
 }
 bool isMisfit(double chi_square, int count) {
   return c::is_misfit(chi_square, count) != 0;

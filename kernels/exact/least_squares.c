@@ -15,15 +15,32 @@ static void calc_information(int r, int u, const double *jacobian, double *infor
   }
 }
 
-/* The step, in place of J'residual; 0 where the damped information is not positive definite. small: u x u. */
-static int solve_step(int u, const double *information, const double *unknown, double damping, double *small,
-                      double *step)
+/* What a normal prior draws x with, over half_width_information: its relative information, u x u, times the
+   offset of x from its mean. */
+static void calc_pull(int u, const wide_t *relative, const wide_t *mean, const double *x, double *offset, double *pull)
 {
   int v;
-  memcpy(small, information, sizeof(double) * (size_t)(u * u));
   for (v = 0; v < u; ++v) {
-    small[v * u + v] += multiply_add(damping, small[v * u + v], half_width_information);
-    step[v] = multiply_add(-half_width_information, unknown[v], step[v]);
+    offset[v] = x[v] - mean[v];
+  }
+  for (v = 0; v < u; ++v) {
+    pull[v] = dot(u, relative + v * u, offset);
+  }
+}
+
+/* The step, in place of J'residual, under a prior of relative information (u x u) that draws with `pull`; 0
+   where the damped information is not positive definite. small: u x u. */
+static int solve_step(int u, const double *information, const wide_t *relative, const double *pull, double damping,
+                      double *small, double *step)
+{
+  int v, i;
+  for (v = 0; v < u; ++v) {
+    for (i = 0; i < u; ++i) {
+      const double known = information[v * u + i];
+      const double prior = half_width_information * relative[v * u + i];
+      small[v * u + i] = known + (i == v ? multiply_add(damping, known, prior) : prior);
+    }
+    step[v] = multiply_add(-half_width_information, pull[v], step[v]);
   }
   if (!factorise_small(u, small, small)) {
     return 0;

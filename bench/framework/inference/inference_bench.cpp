@@ -30,10 +30,10 @@ Eigen::MatrixXd measure(const Inferrer& inferrer, const std::filesystem::path& r
 void benchInference(const Inferrer& inferrer, const Eigen::MatrixXd& measured) {
   const Eigen::VectorXd known;
   benchmark::RegisterBenchmark("infer", [&](benchmark::State& state) {
-    OnlineMap::Workspace workspace(inferrer.getMap());
+    const std::unique_ptr<Estimator::Workspace> workspace = inferrer.getMap().makeWorkspace();
     Eigen::Index i = 0;
     for (auto _ : state) {
-      benchmark::DoNotOptimize(inferrer.getMap().infer(measured.col(i), known, workspace).mean.data());
+      benchmark::DoNotOptimize(inferrer.getMap().infer(measured.col(i), known, *workspace).mean.data());
       i = (i + 1) % measured.cols();
     }
   })->Unit(benchmark::kMicrosecond);

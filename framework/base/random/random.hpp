@@ -36,6 +36,8 @@ enum class RandomPurpose : std::uint64_t {
   kAgreement = 30,       // errors that the disagreement of measurements is compared with
   kPriorPoints = 31,     // test points in place of those that bounds cut off
   kCourse = 32,          // errors that a change over measurements is compared with
+  kPriorTraining = 40,   // training points in place of those that bounds cut off
+  kPriorPool = 41,       // and points of a surrogate's pool
 };
 
 /// Counter-based random numbers (Philox 4x64-10, Salmon et al. 2011): a number depends on

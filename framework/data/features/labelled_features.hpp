@@ -31,8 +31,9 @@ struct LabelledFeatures {
   /// points of the box, in features per width of the parameters' bounds; only where a selection by
   /// information needs them.
   std::vector<Eigen::MatrixXd> sensitivities;
-  Eigen::MatrixXd nuisance{};  ///< u - p x n, parameters that are not inferred; may be empty
-  Eigen::MatrixXd inputs{};    ///< q x n, known; may be empty
+  Eigen::MatrixXd nuisance{};           ///< u - p x n, parameters that are not inferred; may be empty
+  Eigen::MatrixXd inputs{};             ///< q x n, known; may be empty
+  Eigen::MatrixXd prior_information{};  ///< u x u, per width, mean over the samples; empty: uniform
 
   Eigen::MatrixXd collectUnknown() const { return stackRows(parameters, nuisance); }  ///< u x n
   Eigen::MatrixXd collectPoints() const { return stackRows(collectUnknown(), inputs); }

@@ -54,31 +54,13 @@ class StatisticsBlock final : public FeatureBlock {
   std::vector<Quantity> quantities_;
 };
 
-const char* getText(Statistic statistic) {
-  switch (statistic) {
-    case Statistic::kMean:
-      return "mean";
-    case Statistic::kStddev:
-      return "stddev";
-    case Statistic::kRms:
-      return "rms";
-    case Statistic::kMin:
-      return "min";
-    case Statistic::kMax:
-      return "max";
-    case Statistic::kPeakToPeak:
-      break;
-  }
-  return "peak_to_peak";
-}
-
 /// "mean y(0.1 s to 2 s)"
 FeatureInfo makeStatisticInfo(Statistic statistic, const ResponseLayout& layout, Index output,
                               const WindowSpec& window) {
   char span[64];
   std::snprintf(span, sizeof span, "(%.6g s to %.6g s)", calcSampleTime(window, 0),
                 calcSampleTime(window, window.count - 1));
-  return {std::string(getText(statistic)) + " " + layout.output_names[output] + span,
+  return {std::string(getEnumText(statistic)) + " " + layout.output_names[output] + span,
           layout.output_units[output], static_cast<int>(output), 0.0};
 }
 

@@ -19,11 +19,12 @@ using Eigen::VectorXd;
 /// features' noise predicts, updated like the columns of a pivoted Cholesky factor.
 class GreedySelection {
  public:
-  GreedySelection(const NoiseCovariance& covariance, const std::vector<MatrixXd>& sensitivities, Index most)
+  GreedySelection(const NoiseCovariance& covariance, const std::vector<MatrixXd>& sensitivities,
+                  const MatrixXd& prior, Index most)
       : covariance_(covariance), variance_(covariance.diagonal()), factor_(covariance.size(), most) {
     for (const MatrixXd& sensitivity : sensitivities) {
-      const MatrixXd prior = MatrixXd::Identity(sensitivity.cols(), sensitivity.cols());
-      points_.push_back({sensitivity, kUniformInformation * prior});
+      const MatrixXd uniform = MatrixXd::Identity(sensitivity.cols(), sensitivity.cols());
+      points_.push_back({sensitivity, prior.size() > 0 ? prior : kUniformInformation * uniform});
     }
   }
 
@@ -74,12 +75,13 @@ class GreedySelection {
 
 std::vector<Index> selectByFisherInformation(const FisherInformationSpec& spec,
                                              const NoiseCovariance& noise_covariance,
-                                             const std::vector<MatrixXd>& sensitivities) {
+                                             const std::vector<MatrixXd>& sensitivities,
+                                             const MatrixXd& prior) {
   if (sensitivities.empty() || !(noise_covariance.diagonal().minCoeff() > 0.0)) {
     throw std::invalid_argument(
         "select by fisher_information needs sensitivities, and noise on every feature");
   }
-  GreedySelection selection(noise_covariance, sensitivities, spec.count);
+  GreedySelection selection(noise_covariance, sensitivities, prior, spec.count);
   for (int k = 0; k < spec.count; ++k) {
     Index best = 0;
     if (!std::isfinite(selection.calcGains().maxCoeff(&best))) {

@@ -98,7 +98,8 @@ std::vector<Index> selectBy(const MutualInformationSpec& spec, const LabelledFea
   return selectByMutualInformation(spec, samples);
 }
 std::vector<Index> selectBy(const FisherInformationSpec& spec, const LabelledFeatures& samples) {
-  return selectByFisherInformation(spec, samples.noise_covariance, samples.sensitivities);
+  return selectByFisherInformation(spec, samples.noise_covariance, samples.sensitivities,
+                                   samples.prior_information);
 }
 
 }  // namespace

@@ -22,13 +22,15 @@ std::vector<Eigen::Index> selectByMutualInformation(const MutualInformationSpec&
                                                     const LabelledFeatures& samples);
 
 /// Greedy D-optimal selection: each feature in turn increases most the sum over the points with sensitivities
-/// J of log det(J_S' C_SS^-1 J_S + 12 1), the information of the selected features S in units of the bounds'
-/// widths, with noise covariance C and the box's own information. Features whose noise is a combination of
-/// that of those selected are passed over. Throws std::invalid_argument where no more can be selected, for a
-/// feature without noise, and without sensitivities. Cost: count d (count + m p^2) flops for m points.
+/// J of log det(J_S' C_SS^-1 J_S + P), the information of the selected features S in units of the bounds'
+/// widths, with noise covariance C and the prior's own information P (empty: 12 1, the box's). Features whose
+/// noise is a combination of that of those selected are passed over. Throws std::invalid_argument where no
+/// more can be selected, for a feature without noise, and without sensitivities. Cost: count d (count + m
+/// p^2) flops for m points.
 std::vector<Eigen::Index> selectByFisherInformation(const FisherInformationSpec& spec,
                                                     const NoiseCovariance& noise_covariance,
-                                                    const std::vector<Eigen::MatrixXd>& sensitivities);
+                                                    const std::vector<Eigen::MatrixXd>& sensitivities,
+                                                    const Eigen::MatrixXd& prior = {});
 
 /// What only the list of features shows, before anything is simulated: throws ExperimentError for selected
 /// names that are no features, and for a step that asks for more than there can be.

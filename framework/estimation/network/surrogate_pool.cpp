@@ -6,6 +6,7 @@
 #include "framework/data/reduction/principal_components.hpp"
 #include "framework/data/reduction/scaling_steps.hpp"
 #include "framework/estimation/run_tasks.hpp"
+#include "framework/experiment/points/experiment_points.hpp"
 #include "kernels/linalg/decompositions.hpp"
 #include "kernels/linalg/paired_matrix.hpp"
 
@@ -22,11 +23,17 @@ struct PooledScores {
   MatrixXd mean, stddev;  // r x n
 };
 
-MatrixXd drawPoints(Index variables, Index n, std::uint64_t seed) {
+/// Draws of the prior, normalised.
+MatrixXd drawPoints(const Surrogate& surrogate, const ModelSpec& model, Index n, std::uint64_t seed) {
   const RandomStream random(seed, RandomPurpose::kNetworkPool);
-  return MatrixXd::NullaryExpr(variables, n, [&](Index i, Index j) {
-    return 2.0 * random.calcUniform(static_cast<std::uint64_t>(j), static_cast<std::uint64_t>(i)) - 1.0;
+  const MatrixXd unit = MatrixXd::NullaryExpr(surrogate.center.size(), n, [&](Index i, Index j) {
+    return random.calcUniform(static_cast<std::uint64_t>(j), static_cast<std::uint64_t>(i));
   });
+  if (surrogate.prior.isUniform()) {
+    return 2.0 * unit.array() - 1.0;
+  }
+  return surrogate.half_width.cwiseInverse().asDiagonal() *
+         (placeInPrior(model, unit, seed, RandomPurpose::kPriorPool).colwise() - surrogate.center);
 }
 
 PooledScores calcScores(const ForwardSurrogate& forward, const MatrixXd& points,
@@ -78,10 +85,10 @@ MatrixXd calcLeftOutScores(const ForwardSurrogate& forward) {
 
 }  // namespace
 
-SurrogatePool makeSurrogatePool(const Surrogate& surrogate, Index n, std::uint64_t seed,
-                                const TrainingControl& control) {
+SurrogatePool makeSurrogatePool(const Surrogate& surrogate, const ModelSpec& model, Index n,
+                                std::uint64_t seed, const TrainingControl& control) {
   const ForwardSurrogate& forward = *surrogate.forward;
-  const MatrixXd normalised = drawPoints(surrogate.center.size(), n, seed);
+  const MatrixXd normalised = drawPoints(surrogate, model, n, seed);
   PooledScores scores = calcScores(forward, normalised, control);
   const MatrixXd error_factor = linalg::calcCholesky(forward.error_correlation).lower;
   const MatrixXd drawn = drawScores(scores, error_factor, seed);

@@ -19,11 +19,11 @@ struct SurrogatePool {
   NormalInputs left_out;
 };
 
-/// n points, uniform in the box. The inputs are the principal components of the noisy scores that stand above
+/// n draws of the prior. The inputs are the principal components of the noisy scores that stand above
 /// the noise, and the known inputs. The result does not depend on the threads. Throws gp::Stopped. Cost: n
 /// evaluations of the surrogate's processes and their variance. The surrogate's processes must know what they
 /// left out (gp::SharedProcess::getLeftOut()), as those just fitted do.
-SurrogatePool makeSurrogatePool(const Surrogate& surrogate, Eigen::Index n, std::uint64_t seed,
-                                const TrainingControl& control);
+SurrogatePool makeSurrogatePool(const Surrogate& surrogate, const ModelSpec& model, Eigen::Index n,
+                                std::uint64_t seed, const TrainingControl& control);
 
 }  // namespace twinmap

@@ -52,7 +52,7 @@ int countTrainings(const NetworkMapSpec& spec, int simulations);
 NetworkMapTraining trainNetworkMap(const NetworkTask& task, const NetworkSimulations& simulations,
                                    const TrainingControl& control);
 
-/// Trains a network on points of the box, whose scores a surrogate makes up: a normal distribution of its
+/// Trains a network on draws of the prior, whose scores a surrogate makes up: a normal distribution of its
 /// mean, its own error and the noise. Standard deviations are multiplied by the larger of what samples held
 /// out say and what the surrogate's simulations do, with the errors that it makes where each is left out.
 /// Cost: a training.

@@ -14,29 +14,23 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-namespace {
-
-/// residual: whitened, k; jacobian: of the features, whitened, k x s.
-LocalMisfit combine(const SampleStatus& status, const VectorXd& at, const VectorXd& residual,
-                    const MatrixXd& jacobian) {
-  const double chi_square = residual.squaredNorm();
-  return {status,
-          at,
-          chi_square,
-          chi_square + kHalfWidthInformation * at.squaredNorm(),
-          residual.size(),
-          jacobian.transpose() * jacobian,
-          jacobian.transpose() * residual - kHalfWidthInformation * at,
-          residual,
-          jacobian};
+MatrixXd LocalMisfit::calcHessian() const {
+  MatrixXd hessian = calcInformationWithin();
+  if (box.size() == 0) {
+    hessian.diagonal().array() += kHalfWidthInformation;
+  } else {
+    hessian.diagonal() += box;
+  }
+  return hessian;
 }
 
-}  // namespace
+VectorXd LocalMisfit::calcDescentWithin() const {
+  return box.size() == 0 ? VectorXd(descent + kHalfWidthInformation * at)
+                         : VectorXd(descent + box.cwiseProduct(at));
+}
 
-MatrixXd LocalMisfit::calcHessian() const {
-  MatrixXd hessian = information;
-  hessian.diagonal().array() += kHalfWidthInformation;
-  return hessian;
+MatrixXd LocalMisfit::calcInformationWithin() const {
+  return beside.information.size() == 0 ? information : MatrixXd(information + beside.information);
 }
 
 MatrixXd LocalMisfit::calcCovariance() const {
@@ -50,12 +44,65 @@ double LocalMisfit::calcDegrees() const {
 }
 
 Misfit::Misfit(Simulator& simulator, const RefinementModel& model, const SearchBox& box,
-               const VectorXd& measured)
+               const VectorXd& measured, const Prior* prior)
     : simulator_(simulator),
       model_(model),
       box_(box),
       measured_(model.convert(measured)),
-      window_(&model.getWhole()) {}
+      prior_(prior),
+      box_information_(VectorXd::Constant(box.getSearched().count, kHalfWidthInformation)),
+      window_(&model.getWhole()) {
+  for (Index j = 0; j < box_information_.size() && prior_ != nullptr; ++j) {
+    if (prior_->hasRange(box.getSearched().first + j)) {
+      box_information_[j] = 0.0;
+    }
+  }
+}
+
+/// Of the searched parameters, the others held.
+PriorMisfit Misfit::calcBeside(const VectorXd& at) const {
+  const SearchedParameters& searched = box_.getSearched();
+  const auto chosen = Eigen::seqN(searched.first, searched.count);
+  const auto unknown = static_cast<Index>(model_.getUnknown().size());
+  const PriorMisfit whole = prior_->calcMisfit(box_.makePoint(at).head(unknown));
+  const VectorXd& scale = box_.getHalfWidths();
+  return {whole.misfit, scale.cwiseProduct(whole.descent(chosen)),
+          scale.asDiagonal() * whole.information(chosen, chosen) * scale.asDiagonal()};
+}
+
+/// residual: whitened, k; jacobian: of the features, whitened, k x s.
+LocalMisfit Misfit::combine(const SampleStatus& status, const VectorXd& at, const VectorXd& residual,
+                            const MatrixXd& jacobian) const {
+  const double chi_square = residual.squaredNorm();
+  LocalMisfit local{status,
+                    at,
+                    chi_square,
+                    chi_square + kHalfWidthInformation * at.squaredNorm(),
+                    residual.size(),
+                    jacobian.transpose() * jacobian,
+                    jacobian.transpose() * residual - kHalfWidthInformation * at,
+                    residual,
+                    jacobian};
+  if (prior_ != nullptr) {
+    local.box = box_information_;
+    local.beside = calcBeside(at);
+    local.misfit = local.calcMisfitWithin() + at.dot(local.box.cwiseProduct(at));
+    local.descent = jacobian.transpose() * residual + local.beside.descent - local.box.cwiseProduct(at);
+  }
+  return local;
+}
+
+/// Misfits from chi-squares at the columns of `points`.
+VectorXd Misfit::addPrior(VectorXd chi_squares, const MatrixXd& points) const {
+  if (prior_ == nullptr) {
+    return chi_squares + kHalfWidthInformation * points.colwise().squaredNorm().transpose();
+  }
+  for (Index i = 0; i < points.cols(); ++i) {
+    const VectorXd at = points.col(i);
+    chi_squares[i] += calcBeside(at).misfit + at.dot(box_information_.cwiseProduct(at));
+  }
+  return chi_squares;
+}
 
 void Misfit::setWindow(const GrowingWindow& window) {
   window_ = &window;
@@ -135,16 +182,13 @@ ProbedMisfit Misfit::probe(const VectorXd& at, const MatrixXd& ways) {
       along * ways.colwise().squaredNorm().cwiseInverse().asDiagonal() * ways.transpose();
   probed.local = combine({}, at, residuals.col(2 * s), jacobian);
   probed.ways = ways;
-  probed.misfits = (residuals.leftCols(2 * s).colwise().squaredNorm() +
-                    kHalfWidthInformation * points.leftCols(2 * s).colwise().squaredNorm())
-                       .transpose();
+  probed.misfits = addPrior(residuals.leftCols(2 * s).colwise().squaredNorm(), points.leftCols(2 * s));
   return probed;
 }
 
 VectorXd Misfit::evaluate(const MatrixXd& points) {
   std::vector<SampleStatus> statuses;
-  VectorXd misfits = simulateResiduals(points, statuses).colwise().squaredNorm();
-  misfits += kHalfWidthInformation * points.colwise().squaredNorm().transpose();
+  VectorXd misfits = addPrior(simulateResiduals(points, statuses).colwise().squaredNorm(), points);
   for (Index i = 0; i < points.cols(); ++i) {
     if (!statuses[static_cast<std::size_t>(i)].ok || !std::isfinite(misfits[i])) {
       misfits[i] = std::numeric_limits<double>::infinity();

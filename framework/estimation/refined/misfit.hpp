@@ -5,6 +5,7 @@
 #include "framework/data/sensitivity/feature_sensitivities.hpp"
 #include "framework/estimation/refined/refinement_model.hpp"
 #include "framework/estimation/refined/search_box.hpp"
+#include "framework/experiment/points/prior.hpp"
 #include "framework/simulation/simulator.hpp"
 
 namespace twinmap {
@@ -12,22 +13,30 @@ namespace twinmap {
 /// The misfit and its linear model at a point `at` (s, half-widths): with the whitened residual r and its
 /// derivatives -J,
 ///   misfit(at + step) ~ misfit - 2 step' descent + step' (information + prior) step.
+/// The prior is that of the box, as a normal distribution of its variance (3 |at|^2), but for parameters
+/// whose distribution ends by itself (Prior::hasRange), and what else is known (BesideBounds).
 struct LocalMisfit {
   SampleStatus status;  ///< if not ok, the rest is empty
   Eigen::VectorXd at;
   double chi_square = 0.0;      ///< |r|^2
-  double misfit = 0.0;          ///< chi_square + 3 |at|^2, the box as a normal distribution of its variance
+  double misfit = 0.0;          ///< chi_square + that of the prior
   Eigen::Index residuals = 0;   ///< k
   Eigen::MatrixXd information;  ///< J'J, s x s
-  Eigen::VectorXd descent;      ///< J'r - 3 at
+  Eigen::VectorXd descent;      ///< J'r and that of the prior
   Eigen::VectorXd residual;     ///< r, k
   Eigen::MatrixXd jacobian;     ///< J, k x s
+  Eigen::VectorXd box{};        ///< s, information of the bounds; empty: 3 each
+  PriorMisfit beside{};         ///< of the prior but for the bounds, in half-widths; sizes 0: uniform
 
   /// Degrees of freedom: residuals less the parameters that they, not the box, determine (trace of
   /// J'J (J'J + prior)^-1), at least one.
   double calcDegrees() const;
 
-  Eigen::MatrixXd calcHessian() const;     ///< information + prior
+  Eigen::MatrixXd calcHessian() const;  ///< information + prior
+  /// The same without the bounds, where these are taken into account by themselves.
+  double calcMisfitWithin() const { return chi_square + beside.misfit; }
+  Eigen::VectorXd calcDescentWithin() const;
+  Eigen::MatrixXd calcInformationWithin() const;
   Eigen::MatrixXd calcCovariance() const;  ///< its inverse, in half-widths
 };
 
@@ -41,9 +50,10 @@ struct ProbedMisfit {
 /// How badly the simulator explains measured features, in units of their noise. One measurement, one thread.
 class Misfit {
  public:
-  /// measured: the experiment's features. Simulator, model and box must outlive the object.
+  /// measured: the experiment's features. prior: of all unknown; null: uniform. All but these must outlive
+  /// the object.
   Misfit(Simulator& simulator, const RefinementModel& model, const SearchBox& box,
-         const Eigen::VectorXd& measured);
+         const Eigen::VectorXd& measured, const Prior* prior = nullptr);
 
   const SearchBox& getBox() const { return box_; }
   int getSimulations() const { return simulations_; }
@@ -76,13 +86,19 @@ class Misfit {
 
  private:
   const NoiseWhitener& getWhitener() const;
+  PriorMisfit calcBeside(const Eigen::VectorXd& at) const;
+  LocalMisfit combine(const SampleStatus& status, const Eigen::VectorXd& at, const Eigen::VectorXd& residual,
+                      const Eigen::MatrixXd& jacobian) const;
+  Eigen::VectorXd addPrior(Eigen::VectorXd chi_squares, const Eigen::MatrixXd& points) const;
   Eigen::MatrixXd makePoints(const Eigen::MatrixXd& points) const;
   LocalMisfit makeLocalMisfit(const Eigen::VectorXd& at, const LocalModel& local);
 
   Simulator& simulator_;
   const RefinementModel& model_;
   const SearchBox& box_;
-  const Eigen::VectorXd measured_;  // converted
+  const Eigen::VectorXd measured_;   // converted
+  const Prior* prior_;               // null: uniform
+  Eigen::VectorXd box_information_;  // s
   const GrowingWindow* window_;
   std::optional<NoiseWhitener> whitener_;  // where the noise depends on the response
   int simulations_ = 0;

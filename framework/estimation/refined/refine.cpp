@@ -30,7 +30,7 @@ class Refinement {
         model_(model),
         task_(task),
         box_(model.getUnknown(), task.searched, task.starts.front().point),
-        misfit_(simulator, model, box_, task.features) {
+        misfit_(simulator, model, box_, task.features, task.prior.get()) {
     best_.point = task.starts.front().point;
   }
 
@@ -123,7 +123,7 @@ class Refinement {
     if (!precise_) {
       precise_ = simulator_.clonePrecisely();
       if (precise_) {
-        precise_misfit_.emplace(*precise_, model_, box_, task_.features);
+        precise_misfit_.emplace(*precise_, model_, box_, task_.features, task_.prior.get());
       }
     }
     return precise_ != nullptr;

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "framework/estimation/refined/refined.hpp"
 #include "framework/estimation/refined/refinement_model.hpp"
 #include "framework/estimation/refined/search_box.hpp"
+#include "framework/experiment/points/prior.hpp"
 #include "framework/simulation/simulator.hpp"
 
 namespace twinmap {
@@ -26,6 +28,7 @@ struct RefinementTask {
   /// Of the searched parameters (s x s, half-widths) around the first start, as the map sees it: an answer is
   /// first sought at that distance (confirm()); empty: unknown.
   Eigen::MatrixXd covariance{};
+  std::shared_ptr<const Prior> prior{};  ///< of all unknown parameters; null: uniform within their bounds
 };
 
 /// Least squares on the simulator from one start after another, until an answer is accepted (search,

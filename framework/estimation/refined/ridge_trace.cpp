@@ -23,7 +23,8 @@ namespace {
 constexpr double kFlatInformation = 9.0;
 
 Index countFlat(const LocalMisfit& minimum) {
-  return (linalg::calcSymmetricEigenvalues(minimum.information).array() < kFlatInformation).count();
+  return (linalg::calcSymmetricEigenvalues(minimum.calcInformationWithin()).array() < kFlatInformation)
+      .count();
 }
 
 /// One piece of a ridge.
@@ -38,7 +39,7 @@ struct RidgePiece {
 class RidgeWalk {
  public:
   RidgeWalk(Misfit& misfit, const LocalMisfit& minimum) : misfit_(misfit) {
-    const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(minimum.information);
+    const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(minimum.calcInformationWithin());
     along_ = eigen.vectors.col(0);
     across_ = eigen.vectors.rightCols(eigen.vectors.cols() - 1);
     constexpr double kPieces = 16.0, kFar = 10.0;
@@ -118,9 +119,8 @@ class RidgeWalk {
   }
 
   AcrossStep calcStep(const LocalMisfit& local) const {
-    const MatrixXd information = across_.transpose() * local.information * across_;
-    const VectorXd descent =
-        across_.transpose() * (local.descent + kHalfWidthInformation * local.at);  // of chi-square alone
+    const MatrixXd information = across_.transpose() * local.calcInformationWithin() * across_;
+    const VectorXd descent = across_.transpose() * local.calcDescentWithin();
     const VectorXd step = linalg::solvePositiveDefinite(information, descent);
     return {misfit_.getBox().clamp(local.at + across_ * step), std::sqrt(step.dot(information * step))};
   }
@@ -154,9 +154,10 @@ class RidgeWalk {
 
   /// Whether any of the piece there is within the box.
   bool add(const LocalMisfit& local) {
-    const MatrixXd information = across_.transpose() * local.information * across_;
+    const MatrixXd whole = local.calcInformationWithin();
+    const MatrixXd information = across_.transpose() * whole * across_;
     const linalg::Cholesky factor = linalg::calcCholesky(information);
-    const VectorXd coupling = across_.transpose() * local.information * along_;
+    const VectorXd coupling = across_.transpose() * whole * along_;
     RidgePiece piece{local, along_ - across_ * linalg::solveCholesky(factor.lower, coupling), {}, 0.0, 0.0,
                      0.0};
     piece.covariance =
@@ -165,7 +166,7 @@ class RidgeWalk {
     if (!cutAtBounds(piece)) {
       return false;
     }
-    piece.log_weight = -0.5 * local.chi_square - factor.lower.diagonal().array().log().sum() +
+    piece.log_weight = -0.5 * local.calcMisfitWithin() - factor.lower.diagonal().array().log().sum() +
                        std::log(piece.to - piece.from) + calcLogWithin(piece);
     pieces_.push_back(piece);
     return true;

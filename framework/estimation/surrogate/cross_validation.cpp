@@ -66,9 +66,10 @@ Surrogate makeSimilar(const Surrogate& whole, ForwardSurrogate forward, const Fo
   surrogate.half_width = whole.half_width;
   surrogate.parameters = whole.parameters;
   surrogate.unknown = whole.unknown;
+  surrogate.prior = whole.prior;
   surrogate.validation.stddev_scale = VectorXd::Ones(whole.parameters);
   surrogate.validation.limit_scale =
-      calcLimitScale(*surrogate.forward, samples, whole.unknown).head(whole.parameters);
+      calcLimitScale(*surrogate.forward, samples, whole.prior).head(whole.parameters);
   return surrogate;
 }
 

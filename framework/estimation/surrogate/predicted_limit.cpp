@@ -1,6 +1,5 @@
 #include "framework/estimation/surrogate/predicted_limit.hpp"
 
-#include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -27,24 +26,26 @@ MatrixXd calcNoiseInformation(const ForwardSurrogate& surrogate, const VectorXd&
 
 }  // namespace
 
-VectorXd calcScoreLimit(const MatrixXd& information) {
+VectorXd calcScoreLimit(const MatrixXd& information, const BoxPrior& prior) {
   const Index u = information.rows();
   const MatrixXd identity = MatrixXd::Identity(u, u);
-  const MatrixXd lower = linalg::calcCholesky(information + kHalfWidthInformation * identity).lower;
+  const MatrixXd lower = linalg::calcCholesky(information + prior.calcInformation()).lower;
   return linalg::solveCholesky(lower, identity).diagonal().cwiseSqrt();
 }
 
-VectorXd calcLimitScale(const ForwardSurrogate& surrogate, const ForwardSamples& samples, Index unknown) {
+VectorXd calcLimitScale(const ForwardSurrogate& surrogate, const ForwardSamples& samples,
+                        const BoxPrior& prior) {
   constexpr int kMax = 64;  // both means vary alike over the box, so that few suffice for their ratio
   const NoiseWhitener noise(samples.noise_covariance);
+  const Index unknown = prior.count();
   VectorXd of_simulator = VectorXd::Zero(unknown), of_scores = VectorXd::Zero(unknown);
   int count = 0;
   for (std::size_t i = 0; i < samples.slopes.size() && count < kMax; ++i) {
     if (samples.slopes[i].size() > 0) {
       const MatrixXd slopes = noise.apply(samples.slopes[i]);
       const VectorXd point = samples.points.col(static_cast<Index>(i));
-      of_simulator += calcScoreLimit(slopes.transpose() * slopes).cwiseAbs2();
-      of_scores += calcScoreLimit(calcNoiseInformation(surrogate, point, unknown)).cwiseAbs2();
+      of_simulator += calcScoreLimit(slopes.transpose() * slopes, prior).cwiseAbs2();
+      of_scores += calcScoreLimit(calcNoiseInformation(surrogate, point, unknown), prior).cwiseAbs2();
       ++count;
     }
   }

@@ -39,9 +39,8 @@ gp::Moments mix(const std::vector<gp::Moments>& parts, const VectorXd& weights) 
 
 MatrixXd ScoreExplanation::calcCovariance() const {
   const Index u = jacobian.cols();
-  const MatrixXd identity = MatrixXd::Identity(u, u);
-  const MatrixXd information = jacobian.transpose() * jacobian + kHalfWidthInformation * identity;
-  return linalg::solveCholesky(linalg::calcCholesky(information).lower, identity);
+  const MatrixXd information = jacobian.transpose() * jacobian + prior;
+  return linalg::solveCholesky(linalg::calcCholesky(information).lower, MatrixXd::Identity(u, u));
 }
 
 VectorXd ScoreExplanation::whiten(VectorXd scores) const {
@@ -49,21 +48,25 @@ VectorXd ScoreExplanation::whiten(VectorXd scores) const {
   return scores;
 }
 
-ScoreInversion::ScoreInversion(const ForwardSurrogate& surrogate, Index unknown)
+ScoreInversion::ScoreInversion(const ForwardSurrogate& surrogate, BoxPrior prior)
     : surrogate_(surrogate),
-      unknown_(unknown),
+      prior_(std::move(prior)),
+      unknown_(prior_.count()),
       workspaces_(surrogate.windows.size()),
       widening_(surrogate.windows.size(), 1.0),
       point_(surrogate.points.rows()),
       values_(VectorXd::Zero(surrogate.getScoreCount())),
       stddev_(surrogate.getScoreCount()),
-      gradient_(unknown),
-      step_(unknown),
-      jacobian_(MatrixXd::Zero(surrogate.getScoreCount(), unknown)),
-      normal_(unknown, unknown),
-      small_(unknown, unknown) {
+      gradient_(unknown_),
+      step_(unknown_),
+      offset_(unknown_),
+      pull_(unknown_),
+      jacobian_(MatrixXd::Zero(surrogate.getScoreCount(), unknown_)),
+      normal_(unknown_, unknown_),
+      small_(unknown_, unknown_) {
   rough_.weights = calcRoughWeights(surrogate);
-  LeadingScores leading = findLeadingScores(surrogate, unknown);
+  explanation_.prior = prior_.calcInformation();
+  LeadingScores leading = findLeadingScores(surrogate, unknown_);
   leading_.weights = std::move(leading.weights);
   leading_.counts = std::move(leading.counts);
 }
@@ -114,8 +117,15 @@ double ScoreInversion::calcObjective(const Metric& metric, const VectorXd& unkno
   } else {
     exact::solveColumns(size(residual_), metric.lower.data(), residual_.data());
   }
+  calcPull(unknown);
   return exact::dot(size(residual_), residual_.data(), residual_.data()) +
-         kHalfWidthInformation * exact::dot(size(unknown), unknown.data(), unknown.data());
+         kHalfWidthInformation * exact::dot(size(offset_), offset_.data(), pull_.data());
+}
+
+/// Into offset_ and pull_.
+void ScoreInversion::calcPull(const VectorXd& unknown) {
+  exact::calcPull(size(unknown), prior_.relative.data(), prior_.mean.data(), unknown.data(), offset_.data(),
+                  pull_.data());
 }
 
 /// At the point evaluated last.
@@ -138,7 +148,9 @@ void ScoreInversion::makeNormalEquations(const Metric& metric) {
 /// Into step_.
 bool ScoreInversion::solveStep(const VectorXd& unknown, double damping) {
   step_ = gradient_;
-  return exact::solveStep(size(step_), normal_.data(), unknown.data(), damping, small_.data(), step_.data());
+  calcPull(unknown);
+  return exact::solveStep(size(step_), normal_.data(), prior_.relative.data(), pull_.data(), damping,
+                          small_.data(), step_.data());
 }
 
 bool ScoreInversion::step(const Metric& metric, VectorXd& unknown, Descent& descent) {
@@ -177,7 +189,7 @@ bool ScoreInversion::advance(const Metric& metric, VectorXd& unknown, Descent& d
 
 /// Of an undamped step that no bound stops.
 double ScoreInversion::predictGain(const VectorXd& unknown) {
-  return solveStep(unknown, 0.0) ? (gradient_ - kHalfWidthInformation * unknown).dot(step_)
+  return solveStep(unknown, 0.0) ? (gradient_ - kHalfWidthInformation * pull_).dot(step_)
                                  : std::numeric_limits<double>::infinity();
 }
 
@@ -287,7 +299,7 @@ void ScoreInversion::refine(Minimum& minimum, bool may_widen) {
   }
   minimum.widening = widening_;
   makeNormalEquations(metric);
-  minimum.information = normal_;
+  minimum.information = normal_ + prior_.within;
   const int u = size(gradient_);
   minimum.noise_information.resize(unknown_, unknown_);
   exact::calcInformation(size(residual_), u, jacobian_.data(), minimum.noise_information.data());
@@ -295,7 +307,8 @@ void ScoreInversion::refine(Minimum& minimum, bool may_widen) {
   for (Index v = 0; v < unknown_; ++v) {
     minimum.shift(v) += exact::dot(u, normal_.col(v).data(), minimum.point.data());
   }
-  const MatrixXd posterior = normal_ + kHalfWidthInformation * MatrixXd::Identity(unknown_, unknown_);
+  minimum.shift += prior_.shift;
+  const MatrixXd posterior = normal_ + prior_.calcInformation();
   minimum.jacobian = scaled_jacobian_;
   minimum.lower = std::move(metric.lower);
   minimum.objective +=
@@ -360,8 +373,9 @@ gp::Moments ScoreInversion::infer(const Eigen::Ref<const VectorXd>& scores,
     noise_shift(v) =
         exact::dot(size(noise_shift), likeliest.noise_information.col(v).data(), likeliest.point.data());
   }
-  noise_stddev_ =
-      gp::calcBoxMoments(likeliest.noise_information, noise_shift).covariance.diagonal().cwiseSqrt();
+  noise_stddev_ = gp::calcBoxMoments(likeliest.noise_information + prior_.within, noise_shift + prior_.shift)
+                      .covariance.diagonal()
+                      .cwiseSqrt();
   explained_ = !likeliest.widened;
   if (explained_) {
     keepExplanation(likeliest);

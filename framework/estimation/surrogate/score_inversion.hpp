@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "framework/estimation/box_prior.hpp"
 #include "framework/estimation/surrogate/leading_scores.hpp"
 #include "kernels/surrogate/box_moments.hpp"
 
@@ -14,8 +15,9 @@ struct ScoreExplanation {
   Eigen::VectorXd innovation;  ///< L^-1 r with L L' = C: independent, of unit variance, if all is right
   Eigen::VectorXd lower;       ///< L, packed, as in kernels/exact
   Eigen::MatrixXd jacobian;    ///< L^-1 ds / dx, r x u
+  Eigen::MatrixXd prior;       ///< u x u, information of the prior as a normal distribution
 
-  /// Of the unknowns, the box as a normal distribution of its variance: (J'J + 3)^-1, u x u.
+  /// Of the unknowns: (J'J + prior)^-1, u x u.
   Eigen::MatrixXd calcCovariance() const;
   /// L^-1 of scores (r).
   Eigen::VectorXd whiten(Eigen::VectorXd scores) const;
@@ -28,15 +30,15 @@ struct ScoreMode {
   std::vector<double> widening;  ///< of each window's standard deviations, 1 where they explain the residuals
 };
 
-/// Infers normalised unknowns (the first u variables of a point) from scores, under a uniform prior over the
-/// box.
+/// Infers normalised unknowns (the first u variables of a point) from scores, under the prior within the box.
 ///
 /// Levenberg and Marquardt's method searches, from the training simulations of most similar scores, the least
-///   r' C^-1 r + log det C + 3 |x|^2,   r = scores - s(x),   C = 1 + D R D,
-/// first with the mean error variances alone for C and the scores that say most, then twice with C at the
-/// point reached, held, and again while the residuals are beyond it, the errors of the windows to blame
-/// enlarged to them. 3 is the precision of the box; it keeps the search where the linearisation is worth
-/// something. The likelihood, linearised there and without that prior, is then restricted to the box
+///   r' C^-1 r + log det C + 3 (x - m)' P (x - m),   r = scores - s(x),   C = 1 + D R D,
+/// with mean m and relative information P of the prior (BoxPrior; 3 |x|^2 where it is uniform), first with
+/// the mean error variances alone for C and the scores that say most, then twice with C at the point reached,
+/// held, and again while the residuals are beyond it, the errors of the windows to blame enlarged to them. 3
+/// is the precision of the box; it keeps the search where the linearisation is worth something. The
+/// likelihood, linearised there, with what the prior says beside the bounds, is then restricted to the box
 /// (gp::calcBoxMoments). Distinct minima are mixed by their evidence, in Laplace's approximation.
 ///
 /// What decides where the search looks is computed by kernels/exact, so that exported C looks there, too.
@@ -44,8 +46,8 @@ struct ScoreMode {
 /// One object a thread: it holds the buffers.
 class ScoreInversion {
  public:
-  /// `surrogate` must outlive the object.
-  ScoreInversion(const ForwardSurrogate& surrogate, Eigen::Index unknown);
+  /// `surrogate` must outlive the object. prior: of the unknowns.
+  ScoreInversion(const ForwardSurrogate& surrogate, BoxPrior prior);
 
   /// Mean (u) and covariance (u x u) given scores (r) and normalised known variables (m - u). Cost: some 15
   /// evaluations of the processes, and per minimum two of their variances and of r^3 / 3 flops.
@@ -53,7 +55,7 @@ class ScoreInversion {
                     const Eigen::Ref<const Eigen::VectorXd>& known);
 
   /// Standard deviations (u) that the last infer() would have found at the minimum of most evidence, were
-  /// there no error but the noise: of the box moments of J'J, J = ds / dx.
+  /// there no error but the noise: of the box moments of J'J, J = ds / dx, and the prior.
   const Eigen::VectorXd& getNoiseStddev() const { return noise_stddev_; }
 
   /// The distinct minima that the last infer() mixed, the likeliest first.
@@ -111,6 +113,7 @@ class ScoreInversion {
   void makeNormalEquations(const Metric& metric);
   bool step(const Metric& metric, Eigen::VectorXd& unknown, Descent& descent);
   bool advance(const Metric& metric, Eigen::VectorXd& unknown, Descent& descent);
+  void calcPull(const Eigen::VectorXd& unknown);
   double predictGain(const Eigen::VectorXd& unknown);
   bool solveStep(const Eigen::VectorXd& unknown, double damping);
   double improve(const Metric& metric, int steps, Eigen::VectorXd& unknown);
@@ -124,13 +127,14 @@ class ScoreInversion {
   static bool hasEarlierTwin(const std::vector<Minimum>& minima, std::size_t index);
 
   const ForwardSurrogate& surrogate_;
-  Eigen::Index unknown_;
+  const BoxPrior prior_;
+  const Eigen::Index unknown_;
   Metric rough_, leading_;
   Evaluated evaluated_ = Evaluated::kNone;
   std::vector<gp::SharedProcess::Workspace> workspaces_;
   std::vector<double> widening_;  ///< of each window's standard deviations
   Eigen::VectorXd scores_, point_, values_, residual_, stddev_, gradient_, noise_stddev_;
-  Eigen::VectorXd step_;
+  Eigen::VectorXd step_, offset_, pull_;
   Eigen::MatrixXd jacobian_, scaled_jacobian_, normal_, small_;
   ScoreExplanation explanation_;
   std::vector<ScoreMode> modes_;

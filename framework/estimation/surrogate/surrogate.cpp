@@ -5,7 +5,6 @@
 
 #include "framework/estimation/run_tasks.hpp"
 #include "framework/estimation/surrogate/score_inversion.hpp"
-#include "framework/experiment/model/parameter_box.hpp"
 
 namespace twinmap {
 
@@ -25,8 +24,13 @@ void Surrogate::convertMoments(const gp::Moments& normalised, VectorXd& mean, Ve
 }
 
 void Surrogate::shrinkToPrior(Eigen::Ref<VectorXd> mean, Eigen::Ref<VectorXd> stddev) const {
-  const VectorXd prior = 2.0 * kUniformStddev * half_width.head(parameters);
-  shrinkToBounds(center.head(parameters), prior, mean, stddev);
+  const VectorXd before = prior.stddev.head(parameters).cwiseProduct(half_width.head(parameters));
+  shrinkToBounds(calcPriorCenter(), before, mean, stddev);
+}
+
+VectorXd Surrogate::calcPriorCenter() const {
+  const auto within = prior.mean.head(parameters).cwiseMax(-1.0).cwiseMin(1.0);
+  return center.head(parameters) + half_width.head(parameters).cwiseProduct(within);
 }
 
 VectorXd Surrogate::calcLimit(const VectorXd& noise_stddev) const {
@@ -45,7 +49,7 @@ Estimates Surrogate::invert(const MatrixXd& features, const MatrixXd& inputs, in
   Estimates estimates{MatrixXd(parameters, n), MatrixXd(parameters, n)};
   estimates.limit_stddev.resize(parameters, n);
   runTasks(threads, static_cast<std::size_t>((n + kChunk - 1) / kChunk), [&](std::size_t chunk) {
-    ScoreInversion inversion(*forward, unknown);
+    ScoreInversion inversion(*forward, prior);
     VectorXd mean, stddev;
     const Index first = static_cast<Index>(chunk) * kChunk;
     for (Index i = first; i < std::min(n, first + kChunk); ++i) {

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <memory>
 
+#include "framework/estimation/box_prior.hpp"
 #include "framework/estimation/estimate.hpp"
 #include "framework/estimation/surrogate/forward_surrogate.hpp"
 #include "kernels/surrogate/box_moments.hpp"
@@ -37,15 +38,19 @@ struct Surrogate {
   Eigen::VectorXd center, half_width;  ///< m, of the sampled box
   Eigen::Index parameters = 0;         ///< p: the first variables of a point, which are reported
   Eigen::Index unknown = 0;            ///< u: with the nuisance parameters, which are marginalised
+  BoxPrior prior;                      ///< of the unknowns
   SurrogateValidation validation;
 
   /// Mean and standard deviation (p) of the parameters, in their units, for moments of normalised unknowns.
   void convertMoments(const gp::Moments& normalised, Eigen::VectorXd& mean, Eigen::VectorXd& stddev) const;
 
-  /// What is inferred that is less certain than the bounds alone, because two answers far apart fit or the
-  /// factor of standard deviations is large, is drawn towards the middle of the bounds until it is as certain
+  /// What is inferred that is less certain than the prior alone, because two answers far apart fit or the
+  /// factor of standard deviations is large, is drawn towards its mean until it is as certain
   /// (shrinkToBounds): an interval of it still holds what it says, as it reaches over the bounds.
   void shrinkToPrior(Eigen::Ref<Eigen::VectorXd> mean, Eigen::Ref<Eigen::VectorXd> stddev) const;
+
+  /// The prior's mean (p, in the parameters' units), moved within the bounds.
+  Eigen::VectorXd calcPriorCenter() const;
 
   /// The standard deviations (p, in the parameters' units) that a measurement allows, from those that the
   /// noise of the scores leaves of normalised unknowns (u): times validation.limit_scale, for what other

@@ -226,12 +226,39 @@ ForwardSurrogate readForward(const Hdf5Reader& file, const std::string& group) {
   return surrogate;
 }
 
+void writePrior(Hdf5Writer& file, const std::string& group, const BoxPrior& prior) {
+  if (!prior.isUniform()) {
+    file.write(group + "/mean", prior.mean);
+    file.writeSamples(group + "/relative", prior.relative);
+    file.writeSamples(group + "/within", prior.within);
+    file.write(group + "/shift", prior.shift);
+    file.write(group + "/stddev", prior.stddev);
+  }
+}
+
+BoxPrior readPrior(const Hdf5Reader& file, const std::string& group, Index unknown) {
+  if (!file.contains(group + "/mean")) {
+    return makeUniformPrior(unknown);
+  }
+  BoxPrior prior{file.readVector(group + "/mean"), file.readSamples(group + "/relative"),
+                 file.readSamples(group + "/within"), file.readVector(group + "/shift"),
+                 file.readVector(group + "/stddev")};
+  const auto is_square = [&](const MatrixXd& matrix) {
+    return matrix.rows() == unknown && matrix.cols() == unknown;
+  };
+  requireFit(prior.count() == unknown && is_square(prior.relative) && is_square(prior.within) &&
+                 prior.shift.size() == unknown && prior.stddev.size() == unknown,
+             file, group);
+  return prior;
+}
+
 void writeSurrogate(Hdf5Writer& file, const std::string& group, const Surrogate& surrogate) {
   writeForward(file, group + "/forward", *surrogate.forward);
   file.write(group + "/box/center", surrogate.center);
   file.write(group + "/box/half_width", surrogate.half_width);
   file.write(group + "/parameters", static_cast<double>(surrogate.parameters));
   file.write(group + "/unknown", static_cast<double>(surrogate.unknown));
+  writePrior(file, group + "/prior", surrogate.prior);
   writeValidation(file, group + "/validation", surrogate.validation);
 }
 
@@ -244,6 +271,7 @@ Surrogate readSurrogate(const Hdf5Reader& file, const std::string& group) {
   surrogate.unknown = file.readCount(group + "/unknown");
   surrogate.validation = readValidation(file, group + "/validation");
   requireFit(fitsTogether(surrogate), file, group);
+  surrogate.prior = readPrior(file, group + "/prior", surrogate.unknown);
   return surrogate;
 }
 

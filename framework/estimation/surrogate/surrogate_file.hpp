@@ -15,6 +15,11 @@ void writeForward(Hdf5Writer& file, const std::string& group, const ForwardSurro
 /// names, std::invalid_argument for sizes that do not fit each other.
 ForwardSurrogate readForward(const Hdf5Reader& file, const std::string& group);
 
+/// A prior of the unknowns below `group`; nothing where it is uniform. Reading throws std::runtime_error for
+/// another number of unknowns.
+void writePrior(Hdf5Writer& file, const std::string& group, const BoxPrior& prior);
+BoxPrior readPrior(const Hdf5Reader& file, const std::string& group, Eigen::Index unknown);
+
 /// A surrogate as a map: its forward part, the box and the validation. Errors as above.
 void writeSurrogate(Hdf5Writer& file, const std::string& group, const Surrogate& surrogate);
 Surrogate readSurrogate(const Hdf5Reader& file, const std::string& group);

@@ -85,6 +85,7 @@ SurrogateTraining trainSurrogate(const ModelSpec& model, const SurrogateSamples&
   surrogate.half_width = 0.5 * calcWidths(sampled);
   surrogate.parameters = static_cast<Index>(model.parameters.size());
   surrogate.unknown = surrogate.parameters + static_cast<Index>(model.nuisance.size());
+  surrogate.prior = makeBoxPrior(model);
   const MatrixXd normalized =
       surrogate.half_width.cwiseInverse().asDiagonal() * (samples.points.colwise() - surrogate.center);
   ForwardSamples forward{samples.infos, normalized, samples.clean_features, samples.noise_covariance};
@@ -96,7 +97,7 @@ SurrogateTraining trainSurrogate(const ModelSpec& model, const SurrogateSamples&
   HeldOut held_out = crossValidate(surrogate, samples, forward, std::move(fit.folds), control);
   surrogate.validation = validate(held_out);
   surrogate.validation.limit_scale =
-      calcLimitScale(*surrogate.forward, forward, surrogate.unknown).head(surrogate.parameters);
+      calcLimitScale(*surrogate.forward, forward, surrogate.prior).head(surrogate.parameters);
   training.gain = calcSimulationGain(surrogate, samples, forward, fit.choices, held_out, control);
   training.held_out = std::move(held_out.predictions);
   training.held_out_truth = std::move(held_out.truth);

@@ -31,7 +31,7 @@ std::vector<ResidualRun> collectRuns(const std::vector<FeatureInfo>& infos, Inde
   return runs;
 }
 
-TrainingCloud makeCloud(const OnlineMap& map, const TrustTraining& training, const MatrixXd& known) {
+TrainingCloud makeCloud(const Estimator& map, const TrustTraining& training, const MatrixXd& known) {
   constexpr Index kMax = 1000;
   const Index n = std::min(training.points.cols(), kMax);
   TrainingCloud cloud;
@@ -47,21 +47,21 @@ void sort(VectorXd& values) {
 
 /// The statistics of the simulated measurements, by a model whose references are still empty. None depends on
 /// the inferred standard deviation.
-void fitReferences(const TrustTraining& training, const OnlineMap& map, const TrainingControl& control,
+void fitReferences(const TrustTraining& training, const Estimator& map, const TrainingControl& control,
                    TrustModel& model) {
   constexpr Index kChunk = 16;  // measurements that share buffers
   const Index count = training.measured.cols();
   VectorXd chi_squares(count), anomalies(count), distances(count);
   const auto judge_chunk = [&](std::size_t chunk) {
     gp::throwIfStopped(control.stop);
-    OnlineMap::Workspace inferring(map);
+    const std::unique_ptr<Estimator::Workspace> inferring = map.makeWorkspace();
     TrustWorkspace judging(model);
     const Index first = static_cast<Index>(chunk) * kChunk;
     for (Index i = first; i < std::min(count, first + kChunk); ++i) {
       const auto features = training.measured.col(i);
       const auto known = training.known.col(i);
-      const Estimate& estimate = map.inferMean(features, known, inferring);
-      const Trust trust = judge(model, features, known, estimate, inferring.findExplanation(), judging);
+      const Estimate& estimate = map.inferMean(features, known, *inferring);
+      const Trust trust = judge(model, features, known, estimate, inferring->findExplanation(), judging);
       chi_squares[i] = trust.chi_square;
       anomalies[i] = trust.anomaly.score;
       distances[i] = trust.distance;
@@ -100,7 +100,7 @@ ReferenceDistribution calcNoiseAnomalys(const std::vector<ResidualRun>& runs, In
 }  // namespace
 
 TrustModel fitTrustModel(const TrustTraining& training, std::shared_ptr<const ForwardSurrogate> surrogate,
-                         const OnlineMap& map, double level, const TrainingControl& control) {
+                         const Estimator& map, double level, const TrainingControl& control) {
   if (training.measured.cols() == 0) {
     throw std::invalid_argument("a trust model needs simulated measurements");
   }
@@ -111,7 +111,8 @@ TrustModel fitTrustModel(const TrustTraining& training, std::shared_ptr<const Fo
   model.cloud = makeCloud(map, training, training.points.bottomRows(training.known.rows()));
   model.center = calcBoxCenter(training.sampled);
   model.half_width = 0.5 * calcWidths(training.sampled);
-  model.unknown = training.unknown;
+  model.unknown = training.prior.count();
+  model.prior = training.prior;
   model.level = level;
   const Index residuals = model.space.directions.rows();
   model.runs = collectRuns(training.infos, residuals);

@@ -16,7 +16,7 @@ namespace twinmap {
 /// What a trust model is fitted to.
 struct TrustTraining {
   std::vector<ParameterSpec> sampled;  ///< the box: unknown parameters, then known inputs
-  Eigen::Index unknown = 0;            ///< how many a measurement leaves open
+  BoxPrior prior;                      ///< of those that a measurement leaves open
   std::vector<FeatureInfo> infos;      ///< d
   Eigen::MatrixXd points;              ///< m x n, of the training simulations
   Eigen::MatrixXd clean_features;      ///< d x n
@@ -32,6 +32,6 @@ struct TrustTraining {
 /// simulated measurements. The result does not depend on the threads. Cost: that of s inferences. Throws
 /// gp::Stopped.
 TrustModel fitTrustModel(const TrustTraining& training, std::shared_ptr<const ForwardSurrogate> surrogate,
-                         const OnlineMap& map, double level, const TrainingControl& control);
+                         const Estimator& map, double level, const TrainingControl& control);
 
 }  // namespace twinmap

@@ -1,16 +1,17 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 
-#include "framework/estimation/trained/online_map.hpp"
+#include "framework/estimation/estimator.hpp"
 #include "framework/estimation/trained/trust_model.hpp"
 
 namespace twinmap {
 
 /// All that is needed to infer from a measurement and to judge that.
 struct OnlineModel {
-  AnyMap map;                       ///< processes compressed; a surrogate is that of the trust model
-  std::optional<TrustModel> trust;  ///< none where a feature has no noise or the simulations are too few
+  std::shared_ptr<const Estimator> map;  ///< processes compressed; a surrogate is that of the trust model
+  std::optional<TrustModel> trust;       ///< none where a feature has no noise or the simulations are too few
 };
 
 }  // namespace twinmap

@@ -18,7 +18,7 @@ constexpr std::size_t kTrainingStarts = 4;
 
 VectorXd makePoint(const ModelSpec& model, const VectorXd& parameters, const VectorXd& explanation,
                    const VectorXd& known) {
-  VectorXd point = explanation.size() > 0 ? explanation : calcBoxCenter(collectSampled(model));
+  VectorXd point = explanation.size() > 0 ? explanation : calcPriorCenter(model);
   point.head(parameters.size()) = parameters;
   point.tail(known.size()) = known;
   return point;
@@ -29,6 +29,7 @@ RefinementTask makeRefinementTask(const ModelSpec& model, const TrustModel* trus
   RefinementTask task;
   task.features = features;
   task.searched = {0, static_cast<Index>(collectUnknown(model).size())};
+  task.prior = findPrior(model);
   task.starts.push_back({"inverse_map", makePoint(model, initial.mean, initial.explanation, initial.known)});
   if (trust == nullptr) {
     task.starts.push_back({"box_center", makePoint(model, {}, {}, initial.known)});

@@ -17,7 +17,7 @@ struct InitialEstimate {
 };
 
 /// A point of the sampled box: the given parameters, the nuisance parameters of `explanation` (a point of the
-/// box, or empty: their centre), the known inputs.
+/// box, or empty: the prior's), the known inputs.
 Eigen::VectorXd makePoint(const ModelSpec& model, const Eigen::VectorXd& parameters,
                           const Eigen::VectorXd& explanation, const Eigen::VectorXd& known);
 

@@ -86,6 +86,7 @@ void writeTrustModel(Hdf5Writer& file, const std::string& group, const TrustMode
   file.write(group + "/box/center", trust.center);
   file.write(group + "/box/half_width", trust.half_width);
   file.write(group + "/unknown", static_cast<double>(trust.unknown));
+  writePrior(file, group + "/prior", trust.prior);
   file.write(group + "/level", trust.level);
 }
 
@@ -115,6 +116,7 @@ TrustModel readTrustModel(const Hdf5Reader& file, const std::string& group,
   if (!fitsTogether(trust)) {
     throw std::runtime_error(file.getPath() + ": " + group + " has parts that do not fit each other");
   }
+  trust.prior = readPrior(file, group + "/prior", trust.unknown);
   return trust;
 }
 

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "framework/estimation/informativeness.hpp"
-#include "framework/experiment/model/parameter_box.hpp"
 
 namespace twinmap {
 
@@ -23,7 +22,7 @@ bool liesBeyondBounds(const TrustModel& model, const VectorXd& mean) {
 }
 
 VectorXd calcPriorStddev(const TrustModel& model, Index p) {
-  return 2.0 * kUniformStddev * model.half_width.head(p);
+  return model.prior.stddev.head(p).cwiseProduct(model.half_width.head(p));
 }
 
 /// All that apply to an estimate, by the p-value and the distance found.
@@ -112,7 +111,7 @@ void replaceStatuses(const TrustModel& model, const SimulatorResidual& found, Tr
   trust.statuses = kept.empty() ? std::vector<TrustStatus>{TrustStatus::kOk} : kept;
 }
 
-/// The inferred parameters, or the likeliest of several, the middle of the nuisance parameters' box, the
+/// The inferred parameters, or the likeliest of several, the prior's mean of the nuisance parameters, the
 /// known inputs; normalised.
 void makeStart(const TrustModel& model, const Eigen::Ref<const VectorXd>& known, const Estimate& estimate,
                VectorXd& start) {
@@ -120,6 +119,8 @@ void makeStart(const TrustModel& model, const Eigen::Ref<const VectorXd>& known,
   start.head(estimate.mean.size()) = estimate.takeLikeliest().mean;
   start.tail(known.size()) = known;
   start = (start - model.center).cwiseQuotient(model.half_width);
+  const Index nuisance = model.unknown - estimate.mean.size();
+  start.segment(estimate.mean.size(), nuisance) = model.prior.mean.tail(nuisance);
 }
 
 const ScoreExplanation& explain(const TrustModel& model, const Eigen::Ref<const VectorXd>& known,

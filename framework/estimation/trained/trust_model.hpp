@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "framework/estimation/estimator.hpp"
 #include "framework/estimation/surrogate/score_inversion.hpp"
 #include "framework/estimation/trained/anomaly.hpp"
 #include "framework/estimation/trained/coverage_record.hpp"
-#include "framework/estimation/trained/online_map.hpp"
 #include "framework/estimation/trained/residual_space.hpp"
 
 namespace twinmap {
@@ -18,7 +18,7 @@ enum class TrustStatus {
   kModelMismatch,    ///< no point of the box explains the features within their noise
   kOutsideTraining,  ///< the features are far from all the map was trained on
   kAtBounds,         ///< a parameter lies beyond its bounds
-  kUninformative,    ///< a parameter's standard deviation is close to that of the box
+  kUninformative,    ///< a parameter's standard deviation is close to that of the prior
   kOk
 };
 
@@ -74,6 +74,7 @@ struct TrustModel {
   TrainingCloud cloud;
   Eigen::VectorXd center, half_width;  ///< m, of the sampled box
   Eigen::Index unknown = 0;            ///< leading variables of a point that a measurement leaves open
+  BoxPrior prior;                      ///< of them
   double level = 0.01;                 ///< false alarms of model_mismatch
 
   /// The point of the sampled box that a normalised one stands for.
@@ -84,7 +85,7 @@ struct TrustModel {
 
 /// The buffers of one thread; the model must outlive them.
 struct TrustWorkspace {
-  explicit TrustWorkspace(const TrustModel& model) : inversion(*model.forward, model.unknown) {}
+  explicit TrustWorkspace(const TrustModel& model) : inversion(*model.forward, model.prior) {}
   TrustWorkspace(const TrustWorkspace&) = delete;
   TrustWorkspace& operator=(const TrustWorkspace&) = delete;
 
@@ -95,7 +96,7 @@ struct TrustWorkspace {
 };
 
 /// Judges an estimate from features (d, finite) and known inputs (q), by the point of the box that explains
-/// them best according to the surrogate: `explained`, where the map found it (OnlineMap::Workspace), else
+/// them best according to the surrogate: `explained`, where the map found it (Estimator::Workspace), else
 /// searched from the estimate. Cost: that of one pass over the training cloud, and of the search, about 1 ms
 /// for 200 features.
 Trust judge(const TrustModel& model, const Eigen::Ref<const Eigen::VectorXd>& features,

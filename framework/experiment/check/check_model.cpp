@@ -1,13 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <filesystem>
 
 #include "framework/experiment/check/check_experiment.hpp"
 #include "framework/experiment/check/check_pairs.hpp"
 #include "framework/experiment/check/check_sampled.hpp"
-#include "framework/experiment/check/check_scope.hpp"
+#include "framework/experiment/check/check_variables.hpp"
+#include "framework/experiment/check/field_check.hpp"
 #include "framework/experiment/expression/output_units.hpp"
 #include "framework/experiment/model/joint_type.hpp"
 #include "framework/experiment/model/named_forces.hpp"
@@ -16,13 +15,6 @@
 
 namespace twinmap {
 namespace {
-
-/// A coordinate of the system, its unit, and whether forces may act on it directly.
-struct Coordinate {
-  Name name;
-  std::string unit;
-  bool takes_forces;
-};
 
 void checkRelativeTo(const ParameterSpec& parameter) {
   const Bounds& bounds = parameter.bounds;
@@ -43,28 +35,6 @@ void checkPriors(const ModelSpec& model) {
   Prior(collectUnknown(model), model.priors);
 }
 
-std::vector<Coordinate> collectCoordinates(const SystemSpec& system) {
-  std::vector<Coordinate> coordinates;
-  for (const BodySpec& body : system.bodies) {
-    const JointCoordinates& expected = getJointCoordinates(body.joint.type);
-    if (body.joint.coordinates.size() != expected.size()) {
-      throw ExperimentError(
-          body.name.where, body.name.text,
-          fmt::format("has {} names in joint.coordinates, but its type of joint has {} coordinates",
-                      body.joint.coordinates.size(), expected.size()));
-    }
-    for (std::size_t i = 0; i < expected.size(); ++i) {
-      coordinates.push_back({body.joint.coordinates[i], getUnit(expected[i].kind), expected[i].takes_forces});
-    }
-  }
-  return coordinates;
-}
-
-/// "" for "".
-std::string makeRateUnit(const std::string& unit) {
-  return unit.empty() ? "" : unit == "-" ? "1/s" : "(" + unit + ")/s";
-}
-
 /// "slider, pin, screw and cylinder"
 std::string listJointsWithAxis() {
   std::vector<std::string> names;
@@ -77,145 +47,6 @@ std::string listJointsWithAxis() {
   names.pop_back();
   return fmt::format("{} and {}", fmt::join(names, ", "), last);
 }
-
-/// Checks the fields of descriptions (fields/fields.hpp) against the names declared before: expressions know
-/// their names and come out in their units, names refer to something.
-class FieldCheck {
- public:
-  std::vector<std::string> bodies{"ground"};
-  std::vector<Coordinate> coordinates;
-  CheckScope constants;  ///< parameters and constants
-  CheckScope dynamics;   ///< with coordinates, speeds, signals and time
-  std::string own_unit;  ///< what kOwnUnit stands for
-
-  template <class T, class... Rule>
-  void required(const char*, const T& field, const char*, const Rule&... rule) {
-    check(field, rule...);
-  }
-  template <class T, class... Rule>
-  void optional(const char*, const T& field, const char*, const Rule&... rule) {
-    check(field, rule...);
-  }
-  template <class T>
-  void requiredMap(const char*, const std::vector<T>& fields, const char*) {
-    for (const T& field : fields) {
-      check(field);
-      declare(field);
-    }
-  }
-  /// States, and named expressions, which are checked where they are declared.
-  void optionalMap(const char*, const std::vector<StateSpec>& states, const char*) {
-    for (const StateSpec& state : states) {
-      constants.check(state.initial, state.unit);
-      dynamics.check(state.derivative, makeRateUnit(state.unit));
-    }
-  }
-  void optionalMap(const char*, const std::vector<NamedExpression>&, const char*) {}
-  /// checkCurves() does.
-  void optionalMap(const char*, const std::vector<CurveSpec>&, const char*) {}
-  /// checkSampled() does.
-  void optionalMap(const char*, const std::vector<ControllerSpec>&, const char*) {}
-  template <class... Choices>
-  void oneOf(const char*, Choices... choices) {
-    (std::apply([&](const auto&... rule) { check(std::as_const(choices.value), rule...); }, choices.rules),
-     ...);
-  }
-  void rule(bool, const char*) const {}
-  void scalarIsValueOf(const char*) const {}
-  void location(const SourceLocation&) const {}
-
-  /// All fields of a struct, which are read only.
-  template <class T>
-  void checkAll(const T& described) {
-    describe(*this, const_cast<T&>(described));
-  }
-
-  const Coordinate& find(const Name& name) const {
-    std::vector<std::string> names;
-    for (const Coordinate& coordinate : coordinates) {
-      if (coordinate.name.text == name.text) {
-        return coordinate;
-      }
-      names.push_back(coordinate.name.text);
-    }
-    requireKnown(name, names, "a coordinate");
-    throw std::logic_error("a coordinate is known by name, but not listed");
-  }
-
- private:
-  void check(const Bounds&) {}
-  void check(const Expression& expression, const Unit& unit) { check(expression, unit, on_angle_); }
-  void check(const Expression& expression, const Unit& unit, bool on_angle) {
-    if (!expression.text.empty()) {
-      const CheckScope& scope = unit.varies ? dynamics : constants;
-      scope.check(expression, unit.own ? own_unit : makeUnit(unit, on_angle));
-    }
-  }
-  static std::string makeUnit(const Unit& unit, bool on_angle) {
-    const std::string text = on_angle && unit.rotation != nullptr ? unit.rotation : unit.text;
-    return unit.power == 1.0 ? text : std::isnan(unit.power) ? "" : text + "^" + toText(unit.power);
-  }
-  void check(const SixOf<Expression>& expressions, const Unit& unit) {
-    constexpr std::size_t kRotations = 3;
-    for (std::size_t i = 0; i < expressions.size(); ++i) {
-      check(expressions[i], unit, i < kRotations);
-    }
-  }
-  void check(const Name& name, Reference reference) {
-    switch (reference) {
-      case Reference::kBody:
-        return requireKnown(name, bodies, "a body or ground");
-      case Reference::kEarlierBody:
-        return requireKnown(name, bodies, "ground or a body declared before");
-      case Reference::kForcedCoordinate:
-        requireForced(find(name), name);
-        [[fallthrough]];
-      case Reference::kCoordinate:
-        on_angle_ = find(name).unit != "m";
-    }
-  }
-  template <class T, std::size_t N>
-  void check(const std::array<T, N>& fields, const Unit& unit) {
-    for (const T& field : fields) {
-      check(field, unit);
-    }
-  }
-  template <class T, class... Rule>
-  void check(const std::vector<T>& fields, const Rule&... rule) {
-    for (const T& field : fields) {
-      check(field, rule...);
-    }
-  }
-  void check(const std::vector<Expression>& fields, const ListRule&, const Unit& unit) {
-    check(fields, unit);
-  }
-  template <class T, class... Rule>
-  void check(const std::optional<T>& field, const Rule&... rule) {
-    if (field) {
-      check(*field, rule...);
-    }
-  }
-  /// What has no unit and refers to nothing, or a struct.
-  template <class T, class... Rule>
-  void check(const T& field, const Rule&...) {
-    if constexpr (std::is_class_v<T> && !std::is_same_v<T, std::string> && !std::is_same_v<T, Name>) {
-      checkAll(field);
-    }
-  }
-
-  void declare(const BodySpec& body) { bodies.push_back(body.name.text); }
-
-  static void requireForced(const Coordinate& coordinate, const Name& name) {
-    if (!coordinate.takes_forces) {
-      throw ExperimentError(
-          name.where, name.text,
-          "is an angle of a ball or free joint, whose speeds are an angular velocity; use a "
-          "bushing or an applied moment instead");
-    }
-  }
-
-  bool on_angle_ = false;  ///< whether the coordinate that was referred to last is an angle
-};
 
 /// Checks every part of the model against the names declared before it.
 class ModelCheck {
@@ -237,7 +68,7 @@ class ModelCheck {
     checkExcitation();
     checkInitial();
     checkOutputs();
-    checkVariables();
+    checkVariables(model_);
     checkSampled(model_, fields_.constants);
   }
 
@@ -509,63 +340,6 @@ class ModelCheck {
     for (const OutputSpec& output : model_.outputs) {
       fields_.own_unit = findOutputUnit(output, model_.system);
       fields_.checkAll(output);
-    }
-  }
-
-  void checkSourceFiles(const SourceSpec& source) const {
-    std::error_code ignored;
-    if (source.fmu && !std::filesystem::is_regular_file(source.fmu->file.text, ignored)) {
-      throw ExperimentError(source.fmu->file.where, source.fmu->file.text, "is not a file");
-    }
-    if (!source.program) {
-      return;
-    }
-    const std::filesystem::path folder = source.program->working_folder;
-    const SourceLocation where{model_.parameters.front().name.where.file, 0, 0, "model.program"};
-    if (!std::filesystem::is_directory(folder, ignored)) {
-      throw ExperimentError(where, folder.string(), "is not a folder");
-    }
-    for (const std::string& file : source.program->depends_on) {
-      if (!std::filesystem::is_regular_file(folder / file, ignored)) {
-        throw ExperimentError(where, file, "is not a file that it could depend on");
-      }
-    }
-  }
-
-  /// Variables are those of a model from elsewhere, which has no coordinates.
-  void checkVariables() const {
-    const bool elsewhere = model_.source.has_value();
-    for (const OutputSpec& output : model_.outputs) {
-      if (output.variable.has_value() != elsewhere) {
-        throw ExperimentError(output.name.where, output.name.text,
-                              elsewhere ? "must give the variable of the model that it is"
-                                        : "is a variable, which only an FMU or a program has");
-      }
-      if (!elsewhere && output.expression.text.empty() && !output.unit.empty()) {
-        throw ExperimentError(output.name.where, output.name.text,
-                              "has the unit of what it measures; state none");
-      }
-      CheckScope::readUnit(output.unit, output.name.where);
-    }
-    const auto refuse = [&](const auto& items) {
-      for (const auto& item : items) {
-        if (item.variable && !elsewhere) {
-          throw ExperimentError(item.variable->where, item.variable->text,
-                                "is a variable, which only an FMU or a program has");
-        }
-      }
-    };
-    refuse(collectSampled(model_));
-    refuse(model_.constants);
-    refuse(model_.excitation);
-    if (elsewhere) {
-      checkSourceFiles(*model_.source);
-    }
-    const InitialSpec& initial = model_.initial;
-    if (elsewhere && (!initial.coordinates.empty() || !initial.speeds.empty() || initial.equilibrium)) {
-      throw ExperimentError(
-          {model_.parameters.front().name.where.file, 0, 0, "initial"}, "",
-          "is for a system; set the start values of a model from elsewhere by constants with a variable");
     }
   }
 

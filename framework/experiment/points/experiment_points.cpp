@@ -30,30 +30,39 @@ VectorXd chooseUnitPoint(const Prior& prior, VectorXd unit, const RandomStream& 
 
 }  // namespace
 
-MatrixXd sampleTrainPoints(const ExperimentSpec& experiment) {
-  if (experiment.inverse_map.isNone()) {
-    return MatrixXd(countSampled(experiment.model), 0);
+MatrixXd placeInPrior(const ModelSpec& model, const MatrixXd& unit, std::uint64_t seed,
+                      RandomPurpose purpose) {
+  const std::vector<ParameterSpec> unknown = collectUnknown(model);
+  MatrixXd points = scaleToBounds(unit, collectSampled(model));
+  const Prior prior(unknown, model.priors);
+  if (!prior.isUniform()) {
+    const auto u = static_cast<Index>(unknown.size());
+    const RandomStream random(seed, purpose);
+    for (Index i = 0; i < points.cols(); ++i) {
+      points.col(i).head(u) =
+          prior.calcPoint(chooseUnitPoint(prior, unit.col(i).head(u), random, static_cast<std::uint64_t>(i)));
+    }
   }
-  return samplePoints(experiment.design.train, collectSampled(experiment.model), experiment.seed,
-                      RandomPurpose::kTrainDesign);
+  return points;
+}
+
+MatrixXd sampleTrainPoints(const ExperimentSpec& experiment) {
+  const auto count = static_cast<int>(countSampled(experiment.model));
+  if (experiment.inverse_map.isNone()) {
+    return MatrixXd(count, 0);
+  }
+  return placeInPrior(
+      experiment.model,
+      sampleUnitCube(experiment.design.train, count, experiment.seed, RandomPurpose::kTrainDesign),
+      experiment.seed, RandomPurpose::kPriorTraining);
 }
 
 MatrixXd sampleTestPoints(const ExperimentSpec& experiment) {
-  const std::vector<ParameterSpec> unknown = collectUnknown(experiment.model);
-  const Prior prior(unknown, experiment.model.priors);
-  MatrixXd points = samplePoints(experiment.design.test, collectSampled(experiment.model), experiment.seed,
-                                 RandomPurpose::kTestDesign);
-  if (prior.isUniform()) {
-    return points;
-  }
-  const MatrixXd unit = sampleUnitCube(experiment.design.test, static_cast<int>(points.rows()),
-                                       experiment.seed, RandomPurpose::kTestDesign);
-  const RandomStream random(experiment.seed, RandomPurpose::kPriorPoints);
-  for (Index i = 0; i < points.cols(); ++i) {
-    points.col(i).head(static_cast<Index>(unknown.size())) = prior.calcPoint(chooseUnitPoint(
-        prior, unit.col(i).head(static_cast<Index>(unknown.size())), random, static_cast<std::uint64_t>(i)));
-  }
-  return points;
+  const auto count = static_cast<int>(countSampled(experiment.model));
+  return placeInPrior(
+      experiment.model,
+      sampleUnitCube(experiment.design.test, count, experiment.seed, RandomPurpose::kTestDesign),
+      experiment.seed, RandomPurpose::kPriorPoints);
 }
 
 }  // namespace twinmap

@@ -59,15 +59,18 @@ MatrixXd sampleUnitCube(const PointSetSpec& spec, int dimensions, std::uint64_t 
   return sampleUniform(dimensions, spec.samples, random);
 }
 
+MatrixXd scaleToBounds(MatrixXd unit, const std::vector<ParameterSpec>& parameters) {
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const Bounds& bounds = parameters[p].bounds;
+    auto row = unit.row(static_cast<Eigen::Index>(p)).array();
+    row = bounds.lower + (bounds.upper - bounds.lower) * row;
+  }
+  return unit;
+}
+
 MatrixXd samplePoints(const PointSetSpec& spec, const std::vector<ParameterSpec>& parameters,
                       std::uint64_t seed, RandomPurpose purpose) {
-  const int count = static_cast<int>(parameters.size());
-  MatrixXd points = sampleUnitCube(spec, count, seed, purpose);
-  for (int p = 0; p < count; ++p) {
-    const Bounds& bounds = parameters[p].bounds;
-    points.row(p).array() = bounds.lower + (bounds.upper - bounds.lower) * points.row(p).array();
-  }
-  return points;
+  return scaleToBounds(sampleUnitCube(spec, static_cast<int>(parameters.size()), seed, purpose), parameters);
 }
 
 bool isExtendedBy(const PointSetSpec& small, const PointSetSpec& large) {

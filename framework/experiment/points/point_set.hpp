@@ -18,7 +18,10 @@ namespace twinmap {
 Eigen::MatrixXd sampleUnitCube(const PointSetSpec& spec, int dimensions, std::uint64_t seed,
                                RandomPurpose purpose);
 
-/// The same, scaled to the parameters' bounds (parameters x points).
+/// Points of the unit cube scaled to the parameters' bounds (parameters x points).
+Eigen::MatrixXd scaleToBounds(Eigen::MatrixXd unit, const std::vector<ParameterSpec>& parameters);
+
+/// Both.
 Eigen::MatrixXd samplePoints(const PointSetSpec& spec, const std::vector<ParameterSpec>& parameters,
                              std::uint64_t seed, RandomPurpose purpose);
 

@@ -3,11 +3,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <boost/math/distributions/beta.hpp>
-#include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
-#include <limits>
 
+#include "framework/experiment/points/prior_marginal.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -18,83 +15,10 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// s of a beta distribution; its derivatives are infinite at the bounds themselves.
-double calcShare(const Bounds& bounds, double x) {
-  constexpr double kNearest = 1e-9;
-  return std::clamp((x - bounds.lower) / (bounds.upper - bounds.lower), kNearest, 1.0 - kNearest);
-}
-
-/// The quantile of a continuous distribution that is cut off at the bounds.
-template <class Distribution>
-double calcTruncatedQuantile(const Distribution& distribution, double lower, double upper,
-                             double probability) {
-  const double below = boost::math::cdf(distribution, lower), until = boost::math::cdf(distribution, upper);
-  if (below > 0.5) {  // its upper tail keeps its digits by its complement
-    const double above = boost::math::cdf(boost::math::complement(distribution, lower));
-    const double beyond = boost::math::cdf(boost::math::complement(distribution, upper));
-    const double tail = above - probability * (above - beyond);
-    return tail > 0.0
-               ? std::clamp(boost::math::quantile(boost::math::complement(distribution, tail)), lower, upper)
-               : upper;
-  }
-  const double share = below + probability * (until - below);
-  return share > 0.0 ? std::clamp(boost::math::quantile(distribution, share), lower, upper) : lower;
-}
-
-/// How much of a standard normal distribution lies between.
-double calcNormalShare(double lower, double upper) {
-  const boost::math::normal_distribution<> standard;
-  return lower > 0.0 ? boost::math::cdf(boost::math::complement(standard, lower)) -
-                           boost::math::cdf(boost::math::complement(standard, upper))
-                     : boost::math::cdf(standard, upper) - boost::math::cdf(standard, lower);
-}
-
 /// Of values in columns, each row by itself.
 VectorXd calcRowStddevs(const MatrixXd& values) {
   const VectorXd mean = values.rowwise().mean();
   return ((values.colwise() - mean).rowwise().squaredNorm() / static_cast<double>(values.cols())).cwiseSqrt();
-}
-
-/// misfit, half its negative slope, half its curvature where that is positive.
-struct MarginalMisfit {
-  double misfit, descent, information;
-};
-
-/// -2 log density in the parameter; log-uniform in the logarithm, where it is level.
-MarginalMisfit calcMarginal(const PriorSpec& prior, const Bounds& bounds, double x) {
-  if (const auto* beta = std::get_if<BetaPrior>(&prior.kind)) {
-    const double s = calcShare(bounds, x), width = bounds.upper - bounds.lower;
-    const double a = beta->alpha - 1.0, b = beta->beta - 1.0;
-    return {-2.0 * (a * std::log(s) + b * std::log1p(-s)), (a / s - b / (1.0 - s)) / width,
-            (std::max(a, 0.0) / (s * s) + std::max(b, 0.0) / ((1.0 - s) * (1.0 - s))) / (width * width)};
-  }
-  if (const auto* student = std::get_if<StudentPrior>(&prior.kind)) {
-    const double t = (x - student->location) / student->scale, n = student->degrees;
-    const double weight = (n + 1.0) / (n + t * t);  // that of the same distance from a normal distribution
-    return {(n + 1.0) * std::log1p(t * t / n), -weight * t / student->scale,
-            weight / (student->scale * student->scale)};
-  }
-  return {0.0, 0.0, 0.0};
-}
-
-double calcLogMarginal(const PriorSpec& prior, const Bounds& bounds, double x) {
-  const double log_jacobian =
-      std::holds_alternative<LogUniformPrior>(prior.kind) ? -std::log(std::abs(x)) : 0.0;
-  return -0.5 * calcMarginal(prior, bounds, x).misfit + log_jacobian;
-}
-
-double calcMarginalQuantile(const PriorSpec& prior, const Bounds& bounds, double probability) {
-  if (const auto* beta = std::get_if<BetaPrior>(&prior.kind)) {
-    const boost::math::beta_distribution<> distribution(beta->alpha, beta->beta);
-    return bounds.lower + (bounds.upper - bounds.lower) * boost::math::quantile(distribution, probability);
-  }
-  if (const auto* student = std::get_if<StudentPrior>(&prior.kind)) {
-    const boost::math::students_t_distribution<> distribution(student->degrees);
-    const auto standardize = [&](double x) { return (x - student->location) / student->scale; };
-    return student->location + student->scale * calcTruncatedQuantile(distribution, standardize(bounds.lower),
-                                                                      standardize(bounds.upper), probability);
-  }
-  return bounds.lower * std::pow(bounds.upper / bounds.lower, probability);
 }
 
 Index findParameter(const std::vector<ParameterSpec>& unknown, const Name& name) {
@@ -213,7 +137,8 @@ PriorMisfit Prior::calcMisfit(const VectorXd& x) const {
   }
   for (const Other& other : others_) {
     const Index j = other.parameter;
-    const MarginalMisfit marginal = calcMarginal(other.prior, bounds_[static_cast<std::size_t>(j)], x[j]);
+    const MarginalMisfit marginal =
+        calcMarginalMisfit(other.prior, bounds_[static_cast<std::size_t>(j)], x[j]);
     prior.misfit += marginal.misfit;
     prior.descent[j] += marginal.descent;
     prior.information(j, j) += marginal.information;
@@ -230,12 +155,11 @@ Prior::Conditional Prior::condition(Index k, const VectorXd& independent) const 
 }
 
 VectorXd Prior::drawIndependent(const VectorXd& unit) const {
-  const boost::math::normal_distribution<> standard;
   VectorXd independent(static_cast<Index>(normals_.size()));
   for (Index k = 0; k < independent.size(); ++k) {
     const Conditional given = condition(k, independent);
-    independent[k] = calcTruncatedQuantile(standard, given.lower, given.upper,
-                                           unit[normals_[static_cast<std::size_t>(k)].parameter]);
+    independent[k] =
+        calcNormalQuantile(given.lower, given.upper, unit[normals_[static_cast<std::size_t>(k)].parameter]);
   }
   return independent;
 }
@@ -286,6 +210,10 @@ MatrixXd Prior::listQuantiles() const {
   return points;
 }
 
+VectorXd Prior::calcMeans() const {
+  return listQuantiles().rowwise().mean();
+}
+
 VectorXd Prior::calcStddevs() const {
   return calcRowStddevs(listQuantiles());
 }
@@ -297,6 +225,34 @@ bool Prior::isOfLogarithm(Index parameter) const {
   };
   return std::any_of(normals_.begin(), normals_.end(), is_normal) ||
          std::any_of(others_.begin(), others_.end(), is_other);
+}
+
+bool Prior::hasRange(Index parameter) const {
+  return std::any_of(normals_.begin(), normals_.end(),
+                     [&](const Normal& one) { return one.parameter == parameter; }) ||
+         std::any_of(others_.begin(), others_.end(),
+                     [&](const Other& one) { return one.parameter == parameter && one.prior.hasRange(); });
+}
+
+NormalForm Prior::calcNormalForm() const {
+  const MatrixXd quantiles = listQuantiles();
+  const VectorXd mean = quantiles.rowwise().mean(), stddev = calcRowStddevs(quantiles);
+  const auto n = static_cast<Index>(normals_.size()), all = n + static_cast<Index>(others_.size());
+  NormalForm form{{}, VectorXd(all), VectorXd(all), MatrixXd::Identity(all, all)};
+  form.correlation.topLeftCorner(n, n) = correlation_;
+  for (const Normal& normal : normals_) {
+    const auto k = static_cast<Index>(form.parameters.size());
+    form.mean[k] = normal.of_logarithm ? mean[normal.parameter] : normal.mean;
+    form.stddev[k] = normal.of_logarithm ? stddev[normal.parameter] : normal.stddev;
+    form.parameters.push_back(normal.parameter);
+  }
+  for (const Other& other : others_) {
+    const auto k = static_cast<Index>(form.parameters.size());
+    form.mean[k] = mean[other.parameter];
+    form.stddev[k] = stddev[other.parameter];
+    form.parameters.push_back(other.parameter);
+  }
+  return form;
 }
 
 std::vector<MatrixXd> Prior::calcInformation(const MatrixXd& points) const {
@@ -335,21 +291,6 @@ std::vector<MatrixXd> Prior::calcInformation(const MatrixXd& points) const {
     informations.push_back(std::move(information));
   }
   return informations;
-}
-
-Bounds calcPriorRange(const PriorSpec& prior) {
-  constexpr double kTail = 0.5e-4, kNormal = 3.8905918864131;  // of the standard normal distribution
-  if (const auto* normal = std::get_if<NormalPrior>(&prior.kind)) {
-    return {normal->mean - kNormal * normal->stddev, normal->mean + kNormal * normal->stddev, {}};
-  }
-  if (const auto* lognormal = std::get_if<LognormalPrior>(&prior.kind)) {
-    const double factor = std::pow(lognormal->factor, kNormal);
-    return {lognormal->median / factor, lognormal->median * factor, {}};
-  }
-  const StudentPrior& student = std::get<StudentPrior>(prior.kind);
-  const double reach = boost::math::quantile(
-      boost::math::complement(boost::math::students_t_distribution<>(student.degrees), kTail));
-  return {student.location - reach * student.scale, student.location + reach * student.scale, {}};
 }
 
 }  // namespace twinmap

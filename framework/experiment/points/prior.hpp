@@ -17,6 +17,13 @@ struct PriorMisfit {
   Eigen::MatrixXd information;  ///< u x u, positive semidefinite
 };
 
+/// The parameters whose priors are not uniform (k) as jointly normal, without their bounds.
+struct NormalForm {
+  std::vector<Eigen::Index> parameters;  ///< their places among the unknown
+  Eigen::VectorXd mean, stddev;          ///< k, in the parameters' units
+  Eigen::MatrixXd correlation;           ///< k x k
+};
+
 /// What is known of the unknown parameters before a measurement: a distribution of each within its bounds,
 /// some of them jointly normal (or their logarithms). Immutable.
 class Prior {
@@ -27,6 +34,10 @@ class Prior {
 
   /// Whether every parameter is uniform within its bounds.
   bool isUniform() const { return others_.empty() && normals_.empty(); }
+
+  /// Whether a parameter's distribution ends by itself, as normal, lognormal and Student's do; the others,
+  /// uniform ones among them, are what their bounds make them.
+  bool hasRange(Eigen::Index parameter) const;
 
   /// log of the density at x (u, within the bounds, in the parameters' units), but for a summand.
   double calcLogDensity(const Eigen::VectorXd& x) const;
@@ -45,8 +56,13 @@ class Prior {
   /// calcPoint() times it. 1 but for rounding where bounds cut off nothing.
   double calcShareWithin(const Eigen::VectorXd& unit) const;
 
-  /// Standard deviation of each parameter (u) within its bounds.
+  /// Mean and standard deviation of each parameter (u) within its bounds.
+  Eigen::VectorXd calcMeans() const;
   Eigen::VectorXd calcStddevs() const;
+
+  /// Mean and standard deviation of normal priors, and their correlation, as stated; of the others those
+  /// within the bounds, and the correlation of their logarithms for lognormal ones.
+  NormalForm calcNormalForm() const;
 
   /// The prior as information beside that of a measurement, at each of the points (u x n; u x u each, per
   /// width of the bounds): that of a normal distribution of the same variance, which is the logarithm's for
@@ -89,9 +105,5 @@ class Prior {
   Eigen::MatrixXd correlation_;  ///< of the standardized normal ones
   Eigen::MatrixXd lower_;        ///< its Cholesky factor
 };
-
-/// The central interval of probability .9999: the bounds of a parameter that states none. Of a normal,
-/// lognormal or Student prior, which have a range of their own (PriorSpec::hasRange).
-Bounds calcPriorRange(const PriorSpec& prior);
 
 }  // namespace twinmap

@@ -22,7 +22,7 @@ std::string compressModel(const std::filesystem::path& run, const CFolderOptions
   constexpr double kMaxLoss = 0.02;  // of a standard deviation
   if (model.findProcesses() == nullptr) {
     throw ExperimentError(fmt::format("export --compress: the map is a {}, which has no inducing inputs",
-                                      model.findNetwork() != nullptr ? "network" : "surrogate"));
+                                      model.online.map->getKind()));
   }
   const auto measurements = makeTestedMeasurements(run, model, {kMeasurements, CNumber::kDouble, false});
   CompressionTest test{Eigen::MatrixXd(model.features.size(), measurements.size()),
@@ -33,7 +33,7 @@ std::string compressModel(const std::filesystem::path& run, const CFolderOptions
   }
   CompressedMap compressed =
       compressMap(options.make_exact(model.experiment, *model.findProcesses()), test, kMaxLoss);
-  model.online.map = std::move(compressed.map);
+  model.online.map = std::make_shared<const OnlineProcesses>(std::move(compressed.map));
   return fmt::format(
       "Compressed: on {} simulated measurements means move by {:.2g} sd (root mean square) and standard "
       "deviations "

@@ -12,12 +12,6 @@
 namespace twinmap {
 namespace {
 
-std::string toUpper(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  return text;
-}
-
 void requireIdentifier(const std::string& prefix) {
   const auto fits = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
   if (prefix.empty() || !std::all_of(prefix.begin(), prefix.end(), fits) ||

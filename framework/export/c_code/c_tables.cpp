@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <stdexcept>
 
@@ -34,6 +36,12 @@ std::string toC(double value, CNumber number) {
     text += ".0";
   }
   return single ? text + "f" : text;
+}
+
+std::string toUpper(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return text;
 }
 
 std::string quoteC(const std::string& text) {

@@ -43,6 +43,8 @@ class CTables {
 
 /// A literal that reads back as the same bits.
 std::string toC(double value, CNumber number = CNumber::kDouble);
+/// In capitals, as enumerators and macros are.
+std::string toUpper(std::string text);
 /// A string literal.
 std::string quoteC(const std::string& text);
 /// All numbers of a matrix, column by column, or row by row.

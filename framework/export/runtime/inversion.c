@@ -1,6 +1,7 @@
-/* The unknown parameters that explain scores, under a uniform prior over the box (normalised, -1 to 1).
+/* The unknown parameters that explain scores, under the prior within the box (normalised, -1 to 1).
    Levenberg and Marquardt's method searches the least of
-     r' C^-1 r + log det C + 3 |x|^2,   r = scores - s(x),   C = 1 + D R D,
+     r' C^-1 r + log det C + 3 (x - m)' P (x - m),   r = scores - s(x),   C = 1 + D R D,
+   m and P the prior's mean and relative information (0 and 1 where it is uniform within the bounds),
    D the standard deviations of the processes and R the correlation of their errors: first with mean error
    variances and the scores that say most, then with C at the point reached, held. */
 enum { MOST_STARTS = 4, R = TWINMAP_SCORES, U = TWINMAP_UNKNOWN };
@@ -56,7 +57,8 @@ static double calc_objective(twinmap_state *state, int metric, const double *unk
       state->residual[i] *= weights[i];
     }
   }
-  return dot(R, state->residual, state->residual) + half_width_information * dot(U, unknown, unknown);
+  calc_pull(U, prior_relative, prior_mean, unknown, state->offset, state->pull);
+  return dot(R, state->residual, state->residual) + half_width_information * dot(U, state->offset, state->pull);
 }
 
 /* At the point evaluated last. */
@@ -89,7 +91,8 @@ static int take_step(twinmap_state *state, int metric, double *unknown, double *
   for (; *damping < most; *damping *= factor) {
     double tried;
     memcpy(state->step, state->descent, sizeof state->step);
-    if (!solve_step(U, state->normal, unknown, *damping, state->small, state->step)) {
+    calc_pull(U, prior_relative, prior_mean, unknown, state->offset, state->pull);
+    if (!solve_step(U, state->normal, prior_relative, state->pull, *damping, state->small, state->step)) {
       continue;
     }
     for (v = 0; v < U; ++v) {
@@ -112,11 +115,12 @@ static double predicted_gain(twinmap_state *state, const double *unknown)
   double gain = 0.0;
   int v;
   memcpy(state->step, state->descent, sizeof state->step);
-  if (!solve_step(U, state->normal, unknown, 0.0, state->small, state->step)) {
+  calc_pull(U, prior_relative, prior_mean, unknown, state->offset, state->pull);
+  if (!solve_step(U, state->normal, prior_relative, state->pull, 0.0, state->small, state->step)) {
     return HUGE_VAL;
   }
   for (v = 0; v < U; ++v) {
-    gain += (state->descent[v] - half_width_information * unknown[v]) * state->step[v];
+    gain += (state->descent[v] - half_width_information * state->pull[v]) * state->step[v];
   }
   return gain;
 }
@@ -274,7 +278,7 @@ static void refine_minimum(twinmap_state *state, int index, int may_widen)
 {
   const double stays = 0.01; /* in half widths: errors vary over some tenths */
   double *point = state->minima[index].point, before[U], objective;
-  int i, v, w;
+  int i, v, a, w;
   for (w = 0; w < TWINMAP_WINDOWS; ++w) {
     state->widening[w] = 1.0;
   }
@@ -297,7 +301,11 @@ static void refine_minimum(twinmap_state *state, int index, int may_widen)
   calc_information(R, U, state->jacobian, state->minima[index].noise_information);
   for (v = 0; v < U; ++v) {
     state->minima[index].shift[v] = state->descent[v] + dot(U, state->normal + v * U, point);
-    state->normal[v * U + v] += half_width_information;
+  }
+  for (v = 0; v < U; ++v) {
+    for (a = 0; a < U; ++a) {
+      state->normal[v * U + a] += half_width_information * prior_relative[v * U + a];
+    }
   }
   state->minima[index].objective =
       objective + (state->log_determinant + calc_small_log_determinant(U, state->normal, state->small));

@@ -38,6 +38,18 @@ static void mix_minima(twinmap_state *state, const double *weight)
   }
 }
 
+/* Adds what is known beside the bounds to the information of a normal density and to its shift. */
+static void add_prior_within(double *information, double *shift)
+{
+  int a, b;
+  for (a = 0; a < U; ++a) {
+    shift[a] += prior_shift[a];
+    for (b = 0; b < U; ++b) {
+      information[a * U + b] += prior_within[a * U + b];
+    }
+  }
+}
+
 /* Mixed mean and covariance of the unknowns, and what the noise alone would leave. */
 static void invert_scores(twinmap_state *state)
 {
@@ -47,6 +59,7 @@ static void invert_scores(twinmap_state *state)
   search_roughly(state, find_starts(state, 3, start), start);
   for (i = 0; i < state->minimum_count; ++i) {
     refine_minimum(state, i, 1);
+    add_prior_within(state->minima[i].information, state->minima[i].shift);
     calc_box_moments(U, state->minima[i].information, state->minima[i].shift, state->box_buffer,
                      state->minima[i].mean, state->minima[i].covariance);
     least = fmin(least, state->minima[i].objective);
@@ -68,6 +81,7 @@ static void invert_scores(twinmap_state *state)
   for (a = 0; a < U; ++a) {
     state->trial[a] = dot(U, state->minima[best].noise_information + a * U, state->minima[best].point);
   }
+  add_prior_within(state->minima[best].noise_information, state->trial);
   calc_box_moments(U, state->minima[best].noise_information, state->trial, state->box_buffer, state->noise_stddev,
                    state->normal);
   for (a = 0; a < U; ++a) {
@@ -77,10 +91,9 @@ static void invert_scores(twinmap_state *state)
   keep_explanation(state, best);
 }
 
-/* What is less certain than the bounds alone is drawn towards their middle until it is as certain. */
-static void shrink_to_prior(double half_width, double center, double *mean, double *sd)
+/* What is less certain than the prior is drawn towards its mean until it is as certain. */
+static void shrink_to_prior(double prior, double center, double *mean, double *sd)
 {
-  const double prior = 0.57735026918962573 * half_width; /* of a uniform distribution */
   if (*sd > prior) {
     *mean = multiply_add(prior / *sd, *mean - center, center);
     *sd = prior;
@@ -101,7 +114,7 @@ static void infer_by_map(twinmap_state *state, const double *known, twinmap_resu
     const double width = box_half_width[p];
     result->mean[p] = multiply_add(width, state->mixed_mean[p], box_center[p]);
     result->sd[p] = stddev_scale[p] * width * sqrt(state->mixed_covariance[p * U + p]);
-    shrink_to_prior(width, box_center[p], &result->mean[p], &result->sd[p]);
+    shrink_to_prior(prior_sd[p], prior_center[p], &result->mean[p], &result->sd[p]);
     result->ratio_to_limit[p] = result->sd[p] / (limit_scale[p] * width * state->noise_stddev[p]);
   }
 }

@@ -177,7 +177,7 @@ static unsigned find_statuses(const twinmap_result *result)
     if (fabs(result->mean[p] - box_center[p]) > half_width) {
       statuses |= TWINMAP_STATUS_AT_BOUNDS;
     }
-    if (sd > share_of_prior * (2.0 * 0.28867513459481287 * half_width)) { /* a uniform distribution's sd */
+    if (sd > share_of_prior * prior_sd[p]) {
       statuses |= TWINMAP_STATUS_UNINFORMATIVE;
     }
   }
@@ -189,8 +189,7 @@ static void judge(twinmap_state *state, const double *known, twinmap_result *res
   double inferred[U];
   int i;
   for (i = 0; i < U; ++i) {
-    const double value = i < TWINMAP_PARAMETERS ? result->mean[i] : box_center[i];
-    inferred[i] = (value - box_center[i]) / box_half_width[i];
+    inferred[i] = i < TWINMAP_PARAMETERS ? (result->mean[i] - box_center[i]) / box_half_width[i] : prior_mean[i];
   }
   for (i = 0; i < TWINMAP_FEATURES; ++i) {
     state->centered[i] = state->features[i] - feature_center[i];

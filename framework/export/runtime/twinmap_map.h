@@ -103,6 +103,7 @@ typedef struct {
   double mixed_mean[TWINMAP_UNKNOWN], mixed_covariance[TWINMAP_UNKNOWN * TWINMAP_UNKNOWN];
   double box_buffer[TWINMAP_UNKNOWN * (TWINMAP_UNKNOWN + 3)];
   double small[TWINMAP_UNKNOWN * TWINMAP_UNKNOWN], trial[TWINMAP_UNKNOWN], step[TWINMAP_UNKNOWN];
+  double offset[TWINMAP_UNKNOWN], pull[TWINMAP_UNKNOWN];
 #endif
 #if TWINMAP_TRUST
   double centered[TWINMAP_FEATURES], leftover[TWINMAP_RESIDUALS];

@@ -13,7 +13,8 @@ namespace twinmap {
 namespace {
 
 PosteriorSampler makeSampler(const Inferrer& inferrer, const SimulatorPosteriorOptions& options) {
-  std::optional<PosteriorModel> model = findPosteriorModel(inferrer.getMap(), inferrer.getTrustModel());
+  std::optional<PosteriorModel> model =
+      findPosteriorModel(inferrer.getMap(), inferrer.getTrustModel(), inferrer.getExperiment().model);
   if (!model) {
     throw ExperimentError(
         "this run has no surrogate to compute posteriors from, for a feature has no noise or the simulations "

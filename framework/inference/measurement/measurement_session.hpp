@@ -4,7 +4,7 @@
 #include <optional>
 #include <tuple>
 
-#include "framework/estimation/surrogate/posterior_sampler.hpp"
+#include "framework/estimation/surrogate/posterior/posterior_sampler.hpp"
 #include "framework/inference/measurement/measurement_inference.hpp"
 #include "framework/inference/refiner.hpp"
 

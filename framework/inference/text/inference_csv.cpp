@@ -77,7 +77,7 @@ std::string makeDerivedRows(const InferredMeasurement& inferred, const Estimate&
         fmt::format("{},{},{},{},{},{},{},{},{},{},{}", escapeCsv(inferred.source), toText(inferred.start),
                     escapeCsv(found[k].name), escapeCsv(found[k].unit), toText(found[k].mean),
                     toText(found[k].stddev), toText(found[k].lower95), toText(found[k].upper95),
-                    joinStatuses(estimate.statuses, " "), makePValue(inferred), toString(estimate.method));
+                    joinStatuses(estimate.statuses, " "), makePValue(inferred), estimate.getMethod());
     if (inferred.refined) {
       const bool accepted = inferred.refined->isAccepted();
       const Estimate refined = accepted ? makeEstimate(*inferred.refined, estimate.mean.size()) : Estimate{};
@@ -119,7 +119,7 @@ std::string makeInferenceCsvRows(const InferredMeasurement& inferred,
     text += fmt::format("{},{},{},{},{},{},{},{}", escapeCsv(inferred.source), toText(inferred.start),
                         escapeCsv(parameters[p].name.text), escapeCsv(parameters[p].unit),
                         makeMoments(estimate, bounds, i), joinStatuses(estimate.statuses, " "),
-                        makePValue(inferred), toString(estimate.method));
+                        makePValue(inferred), estimate.getMethod());
     if (inferred.refined) {
       text += makeRefinedCells(inferred, estimate, i);
     }

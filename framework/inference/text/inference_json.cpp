@@ -225,7 +225,10 @@ std::string makeInferenceJson(const InferredMeasurement& inferred,
   if (!estimate.statuses.empty()) {
     json["statuses"] = estimate.statuses;
   }
-  json["method"] = toString(estimate.method);
+  json["method"] = estimate.getMethod();
+  if (inferred.prior) {
+    json["prior"] = inferred.prior->text;
+  }
   addRecording(inferred, json);
   if (estimate.isGiven()) {
     json["parameters"] = toJson(estimate, parameters);

@@ -159,6 +159,9 @@ std::string makeInferenceTable(const InferredMeasurement& inferred,
   if (inferred.posterior && inferred.posterior->fit) {
     text += describeInferredNoise(*inferred.posterior->fit);
   }
+  if (inferred.prior) {
+    text += "  prior: " + inferred.prior->text + "\n";
+  }
   for (const std::string& missing : inferred.left_out) {
     text += "  left out: " + missing + "\n";
   }

@@ -123,31 +123,20 @@ void addSensitivities(const RunFolder& run, const std::vector<FeaturePlace>& pla
             section);
 }
 
-/// Rows of the last projection, and what scaled the features before it.
-const Eigen::MatrixXd* findProjection(const RunFolder& run) {
-  const Eigen::MatrixXd* projection = nullptr;
-  if (const auto* processes = std::get_if<GpMap>(&run.map->model.map)) {
-    for (const AffineStep& step : processes->transform.steps) {
-      projection = step.projection.size() > 0 ? &step.projection : projection;
-    }
-  }
-  return projection;
-}
-
 void addLoadings(const RunFolder& run, const std::vector<FeaturePlace>& places, Section& section,
                  Page& page) {
   constexpr Eigen::Index kMaxComponents = 6;
-  const Eigen::MatrixXd* projection = run.map ? findProjection(run) : nullptr;
-  if (projection == nullptr || projection->cols() != static_cast<Eigen::Index>(places.size())) {
+  const Eigen::MatrixXd projection = run.map ? run.map->model.map->getProjection() : Eigen::MatrixXd();
+  if (projection.size() == 0 || projection.cols() != static_cast<Eigen::Index>(places.size())) {
     return;
   }
-  const Eigen::Index shown = std::min(projection->rows(), kMaxComponents);
+  const Eigen::Index shown = std::min(projection.rows(), kMaxComponents);
   std::vector<std::string> names;
   SeriesTable table;
   for (Eigen::Index k = 0; k < shown; ++k) {
     names.push_back(fmt::format("component {}", k + 1));
-    for (Eigen::Index f = 0; f < projection->cols(); ++f) {
-      table.add(places[static_cast<std::size_t>(f)], names.back(), (*projection)(k, f));
+    for (Eigen::Index f = 0; f < projection.cols(); ++f) {
+      table.add(places[static_cast<std::size_t>(f)], names.back(), projection(k, f));
     }
   }
   page.tables["loadings"] = table.make("component", "loading");
@@ -158,7 +147,7 @@ void addLoadings(const RunFolder& run, const std::vector<FeaturePlace>& places, 
             "loadings", "Loadings of the components",
             fmt::format("What the estimator sees of a response: each component is the sum of the scaled "
                         "features weighted by these loadings ({} of {} components are drawn).",
-                        shown, projection->rows()),
+                        shown, projection.rows()),
             outputs, "components", names),
         section);
   }

@@ -6,23 +6,9 @@
 
 namespace twinmap {
 
-namespace {
-
-/// Of each process, where the map is one of processes.
-std::vector<Eigen::VectorXd> collectLengthScales(const RunFolder& run) {
-  std::vector<Eigen::VectorXd> scales;
-  const auto* map = run.map ? std::get_if<GpMap>(&run.map->model.map) : nullptr;
-  for (std::size_t p = 0; map != nullptr && p < map->processes.size(); ++p) {
-    scales.push_back(std::visit(
-        [](const auto& process) { return process->getHyperparameters().length_scales; }, map->processes[p]));
-  }
-  return scales;
-}
-
-}  // namespace
-
 void addRelevance(const RunFolder& run, Section& section, Page& page) {
-  const std::vector<Eigen::VectorXd> length_scales = collectLengthScales(run);
+  const std::vector<Eigen::VectorXd> length_scales =
+      run.map ? run.map->model.map->listLengthScales() : std::vector<Eigen::VectorXd>();
   if (length_scales.empty() || length_scales[0].size() < 2) {
     return;
   }

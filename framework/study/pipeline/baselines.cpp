@@ -6,6 +6,7 @@
 #include "framework/analysis/least_squares.hpp"
 #include "framework/analysis/linear_map.hpp"
 #include "framework/data/sensitivity/fisher_information.hpp"
+#include "framework/estimation/box_prior.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/simulation/simulator_team.hpp"
 
@@ -33,9 +34,9 @@ VectorXd findNearest(const NoiseWhitener& noise, const LabelledFeatures& train, 
   return train.collectUnknown().col(nearest);
 }
 
-BaselineResult runPriorMean(const std::vector<ParameterSpec>& parameters, const LabelledFeatures& test) {
+BaselineResult runPriorMean(const ModelSpec& model, const LabelledFeatures& test) {
   const auto samples = test.features.cols();
-  return {"prior_mean", static_cast<int>(samples), predictPriorMean(parameters, samples)};
+  return {"prior_mean", static_cast<int>(samples), predictPriorMean(model, samples)};
 }
 
 BaselineResult runLinearRegression(const FeatureTransform& transform, const LabelledSets& sets) {
@@ -78,15 +79,16 @@ BaselineResult runLeastSquares(const LeastSquaresSpec& spec, const Study& study,
 
 }  // namespace
 
-Estimates predictPriorMean(const std::vector<ParameterSpec>& parameters, Index samples) {
-  return {calcBoxCenter(parameters).replicate(1, samples),
-          (kUniformStddev * calcWidths(parameters)).replicate(1, samples)};
+Estimates predictPriorMean(const ModelSpec& model, Index samples) {
+  const PriorMoments prior = calcPriorMoments(model);
+  const auto p = static_cast<Index>(model.parameters.size());
+  return {prior.mean.head(p).replicate(1, samples), prior.stddev.head(p).replicate(1, samples)};
 }
 
 BaselineResult runBaseline(const BaselineSpec& spec, const Study& study, const LabelledSets& samples,
                            const FeatureTransform& transform) {
   if (std::holds_alternative<PriorMeanSpec>(spec)) {
-    return runPriorMean(study.experiment.model.parameters, samples.test);
+    return runPriorMean(study.experiment.model, samples.test);
   }
   if (std::holds_alternative<LinearRegressionSpec>(spec)) {
     return runLinearRegression(transform, samples);

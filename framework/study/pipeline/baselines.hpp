@@ -19,13 +19,14 @@ struct BaselineResult {
   int unconverged = 0;              ///< samples whose search did not end at a minimum
 };
 
-/// The middle of the box and a uniform distribution's standard deviation, whatever was measured.
-Estimates predictPriorMean(const std::vector<ParameterSpec>& parameters, Eigen::Index samples);
+/// Mean and standard deviation of the prior within the bounds, whatever was measured.
+Estimates predictPriorMean(const ModelSpec& model, Eigen::Index samples);
 
 /// Runs one baseline on the test samples. `transform`: what a linear regression sees of the features. Least
 /// squares searches all that is unknown, with the inputs of each sample; it compares features in units of
 /// their mean noise (labelled sets' covariance); its standard deviations are those of the Fisher information
-/// at its solution, with the box as in calcLimitCovariance. All but the time is independent of the threads.
+/// at its solution, with the box as in calcLimitCovariance; it knows no other priors. All but the time is
+/// independent of the threads.
 BaselineResult runBaseline(const BaselineSpec& spec, const Study& study, const LabelledSets& samples,
                            const FeatureTransform& transform);
 

@@ -133,7 +133,8 @@ void calibrate(const RankedMeasurements& ranked, const std::vector<ParameterSpec
 CalibratedPosteriors calibratePosteriors(const Study& study, const PreparedData& data,
                                          const TrainedMap& map) {
   CalibratedPosteriors result;
-  const std::optional<PosteriorModel> model = findPosteriorModel(OnlineMap(map.online.map), map.online.trust);
+  const std::optional<PosteriorModel> model =
+      findPosteriorModel(*map.online.map, map.online.trust, study.experiment.model);
   if (!model) {
     result.notes.warn(makeWarning(Notice::kNoCalibration, "the run has no surrogate"));
     return result;

@@ -10,6 +10,7 @@
 #include "framework/base/log/notice.hpp"
 #include "framework/base/log/stage_timer.hpp"
 #include "framework/data/sensitivity/fisher_information.hpp"
+#include "framework/estimation/box_prior.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/points/prior.hpp"
 #include "framework/study/pipeline/baselines.hpp"
@@ -26,6 +27,13 @@ using Eigen::VectorXd;
 
 const std::vector<ParameterSpec>& getParameters(const Study& study) {
   return study.experiment.model.parameters;
+}
+
+/// Empty where all is uniform.
+VectorXd calcPriorStddev(const Study& study) {
+  const auto p = static_cast<Index>(getParameters(study).size());
+  const std::shared_ptr<const Prior> prior = findPrior(study.experiment.model);
+  return prior ? VectorXd(prior->calcStddevs().head(p)) : VectorXd();
 }
 
 /// The limit, if the experiment has one.
@@ -211,6 +219,7 @@ MapEvaluation evaluateMap(const Study& study, const PreparedData& data, const Tr
   result.notes.append(tests.notes);
   const Estimates estimates = selectEstimates(predictions, map.residual_correlation, refined);
   result.evaluation = evaluateEstimates(parameters, test.parameters, estimates, limit_stddev);
+  result.evaluation.prior_stddev = calcPriorStddev(study);
   result.evaluation.derived = evaluateDerivedOf(study, test, estimates, limit);
   result.evaluation.curves = estimateCurves(study.experiment, test.parameters, estimates);
   result.evaluation.methods =
@@ -253,6 +262,7 @@ PosteriorEvaluation evaluatePosteriors(const Study& study, PreparedData& data) {
   evaluation =
       evaluateEstimates(parameters, choose(test.parameters), reliable.estimates, choose(limit_stddev));
   evaluation.curves = estimateCurves(study.experiment, choose(test.parameters), reliable.estimates);
+  evaluation.prior_stddev = calcPriorStddev(study);
   evaluation.methods = {summarizePosteriors(parameters, test.parameters, exact, limit_stddev)};
   if (limit) {
     addLimit(study, test, *limit, result.evaluated);

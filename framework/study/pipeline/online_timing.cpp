@@ -27,8 +27,7 @@ OnlineTimes timeUpdates(Eigen::Index samples, const Update& update) {
 }  // namespace
 
 OnlineTimes timeOnlineUpdates(const OnlineModel& model, const LabelledFeatures& testing) {
-  const OnlineMap map(model.map);
-  OnlineMap::Workspace inferring(map);
+  const std::unique_ptr<Estimator::Workspace> inferring = model.map->makeWorkspace();
   std::optional<TrustWorkspace> judging;
   if (model.trust) {
     judging.emplace(*model.trust);
@@ -36,9 +35,9 @@ OnlineTimes timeOnlineUpdates(const OnlineModel& model, const LabelledFeatures& 
   return timeUpdates(testing.features.cols(), [&](Eigen::Index i) {
     const auto features = testing.features.col(i);
     const auto known = testing.inputs.col(i);
-    const Estimate& inferred = map.infer(features, known, inferring);
+    const Estimate& inferred = model.map->infer(features, known, *inferring);
     if (model.trust) {
-      judge(*model.trust, features, known, inferred, inferring.findExplanation(), *judging);
+      judge(*model.trust, features, known, inferred, inferring->findExplanation(), *judging);
     }
   });
 }

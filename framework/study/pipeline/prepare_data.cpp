@@ -6,6 +6,7 @@
 
 #include "framework/data/noise/noise.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/experiment/points/prior.hpp"
 #include "framework/study/samples/stencils.hpp"
 
 namespace twinmap {
@@ -83,6 +84,15 @@ std::vector<Eigen::MatrixXd> calcTrainingSensitivities(const Study& study, const
   return sensitivities;
 }
 
+Eigen::MatrixXd calcMeanPriorInformation(const ModelSpec& model, const LabelledFeatures& samples) {
+  const Prior prior(collectUnknown(model), model.priors);
+  Eigen::MatrixXd sum;
+  for (const Eigen::MatrixXd& one : prior.calcInformation(samples.collectUnknown())) {
+    sum = sum.size() == 0 ? one : Eigen::MatrixXd(sum + one);
+  }
+  return sum / static_cast<double>(samples.parameters.cols());
+}
+
 }  // namespace
 
 SimulatedSets failIncompleteSamples(const ExperimentSpec& experiment, const FeatureExtractor& extractor,
@@ -117,6 +127,10 @@ PreparedData prepareData(const Study& study, SimulatedSets sets) {
   data.test_indices = findSuccessful(data.sets.test);
   data.labelled = makeLabelledSets(study.experiment, data.sets, study.extractor, study.noise);
   data.labelled.train.sensitivities = calcTrainingSensitivities(study, data.sets.train);
+  if (!data.labelled.train.sensitivities.empty()) {
+    data.labelled.train.prior_information =
+        calcMeanPriorInformation(study.experiment.model, data.labelled.train);
+  }
   return data;
 }
 

@@ -31,8 +31,7 @@ struct RefinementTasks {
 /// From what the online map and its trust model say.
 RefinementTasks makeTasks(const Study& study, const PreparedData& data, const OnlineModel& online) {
   const LabelledFeatures& test = data.labelled.test;
-  const OnlineMap map(online.map);
-  OnlineMap::Workspace inferring(map);
+  const std::unique_ptr<Estimator::Workspace> inferring = online.map->makeWorkspace();
   const TrustModel* trust = online.trust ? &*online.trust : nullptr;
   std::optional<TrustWorkspace> judging;
   if (trust != nullptr) {
@@ -42,10 +41,10 @@ RefinementTasks makeTasks(const Study& study, const PreparedData& data, const On
   for (Index i = 0; i < test.features.cols(); ++i) {
     InitialEstimate initial;
     initial.known = getKnown(test, i);
-    const Estimate& estimate = map.infer(test.features.col(i), initial.known, inferring);
+    const Estimate& estimate = online.map->infer(test.features.col(i), initial.known, *inferring);
     initial.mean = estimate.takeLikeliest().mean;
     if (trust != nullptr) {
-      judge(*trust, test.features.col(i), initial.known, estimate, inferring.findExplanation(), *judging);
+      judge(*trust, test.features.col(i), initial.known, estimate, inferring->findExplanation(), *judging);
       initial.explanation = trust->makeSampledPoint(judging->explanation->point);
       initial.covariance = judging->explanation->calcCovariance();
     }

@@ -9,6 +9,7 @@
 #include "framework/base/hdf5/sealed_file.hpp"
 #include "framework/data/features/experiment_features.hpp"
 #include "framework/data/sensitivity/fisher_information.hpp"
+#include "framework/estimation/gp/online_processes.hpp"
 #include "framework/estimation/gp/train_gp_map.hpp"
 #include "framework/experiment/check/check_experiment.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
@@ -63,8 +64,11 @@ Limits calcLimits(const Study& study, const PreparedData& data, const std::vecto
   }
   if (!columns.empty()) {
     const MatrixXd points = data.labelled.test.collectPoints()(Eigen::all, columns);
-    const InformationLimit limit =
-        calcInformationLimit(calcLocalModels(study, points), study.noise, parameters);
+    const Prior prior(collectUnknown(study.experiment.model), study.experiment.model.priors);
+    const MatrixXd unknown =
+        points.topRows(static_cast<Index>(collectUnknown(study.experiment.model).size()));
+    const InformationLimit limit = calcInformationLimit(calcLocalModels(study, points), study.noise,
+                                                        parameters, prior.calcInformation(unknown));
     limits.parameters(Eigen::all, columns) = limit.stddev;
     limits.derived(Eigen::all, columns) = calcDerivedLimit(DerivedQuantities(study.experiment), parameters,
                                                            points.topRows(truth.rows()), limit);
@@ -75,14 +79,15 @@ Limits calcLimits(const Study& study, const PreparedData& data, const std::vecto
 /// Processes are fitted at the hyperparameters of the file, without a search; a surrogate is trained again.
 TrainedMap trainAgain(const Study& study, const PreparedData& data, const std::filesystem::path& file) {
   const TrainedFile stored = readTrainedFile(file, Hdf5Seal::kNone);  // differences are named below
-  const GpMap* processes = std::get_if<GpMap>(&stored.model.map);
+  const auto* processes = dynamic_cast<const OnlineProcesses*>(stored.model.map.get());
   if (processes == nullptr) {
     return trainChosenMap(study, data);
   }
   const ExperimentSpec& experiment = study.experiment;
   const LabelledFeatures& train = data.labelled.train;
-  GpMapTraining fitted = refitGpMap(*processes, *experiment.inverse_map.findProcesses(), experiment.transform,
-                                    train, study.control.threads, experiment.model.inputs);
+  GpMapTraining fitted =
+      refitGpMap(processes->getMap(), *experiment.inverse_map.findProcesses(), experiment.transform, train,
+                 study.control.threads, experiment.model.inputs);
   return makeTrainedMap(study, data, makeTraining(experiment, train, std::move(fitted)));
 }
 

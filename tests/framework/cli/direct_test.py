@@ -9,6 +9,18 @@ from support import EXPERIMENTS, MIRROR, FolderTestCase, call, read_csv, write_c
 CART = EXPERIMENTS / "duffing/cart.yaml"
 TRUE = {"k": 95.0, "d": 1.2, "k3": 2500.0}
 POINT = [f"parameters.{name}={value}" for name, value in TRUE.items()]
+# With so much noise they count.
+PRIORS = [
+    "parameters.k.prior={normal: {mean: 95, stddev: 1}}",
+    "parameters.d.prior={lognormal: {median: 1.1, factor: 1.15}}",
+    "priors=[{correlated: {names: [k, d], correlation: -0.5}}]",
+    "noise.scale=20",
+]
+ESTIMATORS = {
+    "gp": "gp",
+    "surrogate": "surrogate",
+    "network": "{network: {surrogate_samples: 4000, steps: 400, hidden: [16]}}",
+}
 
 
 class Direct(FolderTestCase):
@@ -263,14 +275,8 @@ class Direct(FolderTestCase):
 
     def test_a_run_without_a_map_takes_priors(self):
         run = self.folder / "priors"
-        priors = [
-            "parameters.k.prior={normal: {mean: 95, stddev: 1}}",
-            "parameters.d.prior={lognormal: {median: 1.1, factor: 1.15}}",
-            "priors=[{correlated: {names: [k, d], correlation: -0.5}}]",
-            "noise.scale=20",
-        ]
         chosen = ["inverse_map=none", "design.test.samples=60", "evaluation.calibration=sbc"]
-        result = call("run", CART, *priors, *chosen, "--out", run)
+        result = call("run", CART, *PRIORS, *chosen, "--out", run)
         self.assertEqual(result.returncode, 0, result.stderr)
         rows = read_csv(run / "predictions.csv")
         truth = [np.array([float(row["true"]) for row in rows if row["parameter"] == name]) for name in TRUE]
@@ -287,9 +293,24 @@ class Direct(FolderTestCase):
         for row in ranks:
             self.assertGreater(float(row["p_value"]), 1e-4, row)
         self.assertEqual(call("verify", run).returncode, 0)
-        result = call("run", CART, *priors, "--out", self.folder / "trained")
-        self.assertEqual(result.returncode, 2)
-        self.assertIn("set 'inverse_map: none'", result.stderr)
+
+    def test_estimators_learn_priors(self):
+        for name, kind in ESTIMATORS.items():
+            run = self.folder / f"prior {name}"
+            chosen = ["design.test.samples=200", "evaluation.baselines=[prior_mean]", f"inverse_map={kind}"]
+            calibration = ["evaluation.calibration=sbc"] if name == "surrogate" else []
+            result = call("run", CART, *PRIORS, *chosen, *calibration, "--out", run)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            for row in read_csv(run / "metrics.csv"):
+                with self.subTest(estimator=name, parameter=row["parameter"]):
+                    self.assertGreater(float(row["coverage95"]), 0.9)
+                    self.assertTrue(0.8 < float(row["ratio_to_limit"]) < 1.3, row)
+            before = [row for row in read_csv(run / "baselines.csv") if row["method"] == "prior_mean"]
+            self.assertTrue(all(float(row["coverage95"]) > 0.9 for row in before), before)
+            self.assertIn("  prior: k normal 95 +- 1", self.stdout("infer", run, self.measured))
+            if name == "surrogate":
+                self.assertTrue(all(float(row["p_value"]) > 1e-4 for row in read_csv(run / "sbc.csv")))
+                self.assertEqual(call("verify", run).returncode, 0)
 
     def test_without_a_map_sweeps_and_plans_work(self):
         sweep = self.folder / "sweep"

@@ -124,19 +124,7 @@ class Network(OwnFolderTestCase):
             self.assertEqual(filecmp.cmpfiles(one, three, names, shallow=False), (names, [], []))
 
     def test_infers_measurements_from_its_file_alone(self):
-        run = self.run_experiment("run", TAUGHT)
-        measured = self.folder / "measured.csv"
-        given = {"k_y": 8.0, "k_theta": 0.04}
-        overrides = [f"parameters.{name}={value}" for name, value in given.items()]
-        self.assertEqual(call("simulate", BEST, *overrides, "--csv", measured).returncode, 0)
-        (run / "maps.h5").rename(self.folder / "maps.h5")
-        result = call("infer", self.folder / "maps.h5", measured, "--json")
-        self.assertEqual(result.returncode, 0, result.stderr)
-        answer = json.loads(result.stdout)
-        self.assertEqual(answer["status"], "ok")
-        for name, value in given.items():
-            found = answer["parameters"][name]
-            self.assertLess(abs(found["mean"] - value), 4 * found["sd"], name)
+        self.expect_inference_from_the_file_alone(self.run_experiment("run", TAUGHT), BEST, sds=4)
 
     def test_learns_from_simulations_and_is_verified_by_training_it_again(self):
         run = self.run_experiment("run", DIRECT)

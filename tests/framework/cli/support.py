@@ -2,6 +2,7 @@
 import csv
 import functools
 import io
+import json
 import os
 import subprocess
 import tempfile
@@ -111,6 +112,21 @@ class OwnFolderTestCase(unittest.TestCase):
         folder = tempfile.TemporaryDirectory(prefix="twinmap_test_")
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
+
+    def expect_inference_from_the_file_alone(self, run, experiment, sds):
+        """The maps.h5 of a run of the two beams, moved away, finds the parameters that were simulated."""
+        measured = self.folder / "measured.csv"
+        given = {"k_y": 8.0, "k_theta": 0.04}
+        overrides = [f"parameters.{name}={value}" for name, value in given.items()]
+        self.assertEqual(call("simulate", experiment, *overrides, "--csv", measured).returncode, 0)
+        (run / "maps.h5").rename(self.folder / "maps.h5")
+        result = call("infer", self.folder / "maps.h5", measured, "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        answer = json.loads(result.stdout)
+        self.assertEqual(answer["status"], "ok")
+        for name, value in given.items():
+            found = answer["parameters"][name]
+            self.assertLess(abs(found["mean"] - value), sds * found["sd"], name)
 
 
 class RunTestCase(FolderTestCase):

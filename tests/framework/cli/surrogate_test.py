@@ -1,6 +1,5 @@
 """A run whose map is a surrogate: what it leaves, and what is inferred with it."""
 import filecmp
-import json
 import re
 import unittest
 
@@ -34,19 +33,7 @@ class Surrogate(OwnFolderTestCase):
         self.assertEqual(filecmp.cmpfiles(one, three, names, shallow=False), (names, [], []))
 
     def test_infers_measurements_from_its_file_alone(self):
-        run = self.run_experiment("run")
-        measured = self.folder / "measured.csv"
-        given = {"k_y": 8.0, "k_theta": 0.04}
-        overrides = [f"parameters.{name}={value}" for name, value in given.items()]
-        self.assertEqual(call("simulate", TABLE1, *overrides, "--csv", measured).returncode, 0)
-        (run / "maps.h5").rename(self.folder / "maps.h5")
-        result = call("infer", self.folder / "maps.h5", measured, "--json")
-        self.assertEqual(result.returncode, 0, result.stderr)
-        answer = json.loads(result.stdout)
-        self.assertEqual(answer["status"], "ok")
-        for name, value in given.items():
-            found = answer["parameters"][name]
-            self.assertLess(abs(found["mean"] - value), 3 * found["sd"], name)
+        self.expect_inference_from_the_file_alone(self.run_experiment("run"), TABLE1, sds=3)
 
     def test_is_verified_by_training_it_again(self):
         result = call("verify", self.run_experiment("run"))

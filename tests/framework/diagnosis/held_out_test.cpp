@@ -4,7 +4,7 @@
 
 #include "framework/data/features/experiment_features.hpp"
 #include "framework/data/noise/noise.hpp"
-#include "framework/diagnosis/remainder.hpp"
+#include "framework/diagnosis/remainder/remainder.hpp"
 #include "framework/diagnosis/structures.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/models/make_simulator.hpp"

@@ -7,6 +7,8 @@
 
 #include "framework/experiment/points/experiment_points.hpp"
 #include "framework/experiment/points/point_set.hpp"
+#include "framework/experiment/points/prior_marginal.hpp"
+#include "framework/experiment/points/prior_text.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -228,6 +230,37 @@ TEST(Prior, TestPointsOfUniformParametersKeepTheirBits) {
   experiment.design.test.samples = 40;
   EXPECT_EQ(sampleTestPoints(experiment),
             samplePoints(experiment.design.test, unknown, experiment.seed, RandomPurpose::kTestDesign));
+}
+
+TEST(Prior, TrainingPointsAreItsQuantilesAtThoseOfTheDesign) {
+  ExperimentSpec experiment;
+  experiment.model.parameters = {makeParameter("a", -4.0, 4.0, {NormalPrior{0.5, 1.0}}),
+                                 makeUniform("b", 5.0, 7.0)};
+  experiment.inverse_map.kind = GpMapSpec{};
+  experiment.design.train.method = DesignMethod::kLatinHypercube;
+  experiment.design.train.samples = 400;
+  const MatrixXd points = sampleTrainPoints(experiment);
+  const MatrixXd unit =
+      sampleUnitCube(experiment.design.train, 2, experiment.seed, RandomPurpose::kTrainDesign);
+  EXPECT_NEAR(points.row(0).mean(), 0.5, 0.01);
+  EXPECT_EQ(points.row(1), scaleToBounds(unit, experiment.model.parameters).row(1));
+  const Prior prior(experiment.model.parameters, {});
+  EXPECT_EQ(points.col(7), prior.calcPoint(unit.col(7)));
+}
+
+TEST(Prior, IsStatedInWords) {
+  ModelSpec model;
+  model.parameters = {makeParameter("k", 100.0, 300.0, {NormalPrior{200.0, 5.0}}),
+                      makeParameter("m", 1.0, 3.0, {LognormalPrior{2.0, 1.1}}), makeUniform("d", 0.0, 1.0)};
+  model.parameters[0].unit = "N/m";
+  EXPECT_EQ(describePriors(model),
+            "k normal 200 +- 5 N/m, m lognormal 2 within a factor of 1.1; the others uniform within their "
+            "bounds");
+  model.priors = {{CorrelatedPriors{{{"k", {}}, {"m", {}}}, 0.5}, {}}};
+  model.parameters.pop_back();
+  EXPECT_EQ(describePriors(model),
+            "k normal 200 +- 5 N/m, m lognormal 2 within a factor of 1.1, correlation of k and m 0.5");
+  EXPECT_EQ(describePriors(ModelSpec()), "");
 }
 
 TEST(Prior, RangeHoldsAllButATenThousandth) {

@@ -9,6 +9,8 @@
 
 #include "framework/base/files/temporary_folder.hpp"
 #include "framework/base/hdf5/sealed_file.hpp"
+#include "framework/estimation/network/online_network.hpp"
+#include "framework/estimation/surrogate/online_surrogate.hpp"
 #include "kernels/linalg/decompositions.hpp"
 #include "tests/framework/estimation/trained/oscillation.hpp"
 #include "tests/framework/test_folder.hpp"
@@ -27,7 +29,14 @@ void writeFile(const std::filesystem::path& path, const std::string& bytes) {
 constexpr int kFeatures = Oscillation::kSamples;
 
 std::shared_ptr<const Surrogate> makeSurrogate(std::shared_ptr<const ForwardSurrogate> forward) {
-  Surrogate surrogate{std::move(forward), Eigen::Vector2d(0.2, 2.5), Eigen::Vector2d(0.1, 0.5), 2, 2, {}};
+  BoxPrior prior = makeUniformPrior(2);  // but for the first, which is normal
+  prior.mean[0] = 0.1;
+  prior.relative(0, 0) = 4.0;
+  prior.within(0, 0) = 12.0;
+  prior.shift[0] = 1.2;
+  prior.stddev[0] = 0.28;
+  Surrogate surrogate{
+      std::move(forward), Eigen::Vector2d(0.2, 2.5), Eigen::Vector2d(0.1, 0.5), 2, 2, prior, {}};
   surrogate.validation.stddev_scale = surrogate.validation.limit_scale = VectorXd::Ones(2);
   surrogate.validation.coverage95 = surrogate.validation.limit_ratio = VectorXd::Ones(2);
   surrogate.validation.residual_correlation = MatrixXd::Identity(2, 2);
@@ -60,17 +69,17 @@ std::shared_ptr<const NetworkMap> makeNetwork() {
 std::vector<double> inferAll(const TrainedFile& stored) {
   const MatrixXd measured =
       Oscillation::addNoise(Oscillation::calcClean(Oscillation::samplePoints(3, 11)), 12);
-  const OnlineMap map(stored.model.map);
-  OnlineMap::Workspace inferring(map);
+  const Estimator& map = *stored.model.map;
+  const std::unique_ptr<Estimator::Workspace> inferring = map.makeWorkspace();
   std::vector<double> numbers;
   for (Eigen::Index i = 0; i < measured.cols(); ++i) {
-    const Estimate& estimate = map.infer(measured.col(i), VectorXd(0), inferring);
+    const Estimate& estimate = map.infer(measured.col(i), VectorXd(0), *inferring);
     numbers.insert(numbers.end(), {estimate.mean[0], estimate.mean[1], estimate.stddev[0], estimate.stddev[1],
                                    estimate.interval_factors.get(1).of95});
     if (stored.model.trust) {
       TrustWorkspace judging(*stored.model.trust);
       const Trust trust = judge(*stored.model.trust, measured.col(i), VectorXd(0), estimate,
-                                inferring.findExplanation(), judging);
+                                inferring->findExplanation(), judging);
       numbers.insert(numbers.end(), {trust.p_value, trust.anomaly.score, trust.distance});
     }
   }
@@ -84,21 +93,21 @@ class TrainedFileTest : public ::testing::TestWithParam<const char*> {
     training.measured = training.measured.leftCols(50).eval();
     training.known.resize(0, 50);
     const auto forward = std::make_shared<const ForwardSurrogate>(Oscillation::fitSurrogate(training));
-    const auto store = [&](const char* kind, AnyMap map) {
+    const auto store = [&](const char* kind, std::shared_ptr<const Estimator> map) {
       TrainedFile stored;
       stored.parameters = Oscillation().parameters;
       for (const FeatureInfo& info : Oscillation::makeInfos()) {
         stored.feature_names.push_back(info.name);
       }
-      stored.model.trust = fitTrustModel(training, forward, OnlineMap(map), 0.01, {1});
+      stored.model.trust = fitTrustModel(training, forward, *map, 0.01, {1});
       stored.model.map = std::move(map);
       stored.experiment = "name: oscillation\n";
       writeTrainedFile(getFile(kind), stored);
       expected_[kind] = inferAll(stored);
     };
-    store("gp", compressMap(Oscillation().trainMap()));
-    store("surrogate", makeSurrogate(forward));
-    store("network", makeNetwork());
+    store("gp", std::make_shared<const OnlineProcesses>(compressMap(Oscillation().trainMap())));
+    store("surrogate", std::make_shared<const OnlineSurrogate>(makeSurrogate(forward)));
+    store("network", std::make_shared<const OnlineNetwork>(makeNetwork()));
   }
 
   static std::filesystem::path getFile(const char* name) {
@@ -245,12 +254,13 @@ TEST(MapsFile, RestoresProcessesOfEveryKind) {
     stored.parameters = Oscillation().parameters;
     stored.inputs = {input};
     const GpMap map = trainGpMap(spec, transform, {"d", "w"}, samples, {1}, {input}).map;
-    stored.model.map = map;
+    stored.model.map = std::make_shared<const OnlineProcesses>(map);
     writeTrainedFile(folder / "maps.h5", stored);
     const TrainedFile read = readTrainedFile(folder / "maps.h5");
     EXPECT_EQ(read.inputs.at(0).name.text, "load");
     const Estimates expected = map.predict(features, samples.inputs);
-    const Estimates restored = std::get<GpMap>(read.model.map).predict(features, samples.inputs);
+    const Estimates restored =
+        dynamic_cast<const OnlineProcesses&>(*read.model.map).getMap().predict(features, samples.inputs);
     EXPECT_EQ(restored.mean, expected.mean);
     EXPECT_EQ(restored.stddev, expected.stddev);
   }

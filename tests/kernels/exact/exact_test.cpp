@@ -65,27 +65,42 @@ TEST(Exact, FactorsSolveAndDeterminantsAreThoseOfCholesky) {
   }
 }
 
-TEST(Exact, AStepIsTheDampedOneUnderTheBoxAsPrior) {
+TEST(Exact, AStepIsTheDampedOneUnderItsPrior) {
+  const MatrixXd root = randomMatrix(3, 3, 6), relative = root * root.transpose();
+  const VectorXd mean = (VectorXd(3) << 0.1, 0.3, -0.2).finished();
   const MatrixXd jacobian = randomMatrix(20, 3, 4);
   MatrixXd information(3, 3), room(3, 3);
   exact::calcInformation(20, 3, jacobian.data(), information.data());
   EXPECT_LT((information - jacobian.transpose() * jacobian).cwiseAbs().maxCoeff(), 1e-13);
   const VectorXd unknown = (VectorXd(3) << 0.2, -0.7, 0.4).finished(), gradient = randomMatrix(3, 1, 5);
-  VectorXd step = gradient;
-  ASSERT_TRUE(exact::solveStep(3, information.data(), unknown.data(), 0.5, room.data(), step.data()));
+  VectorXd step = gradient, offset(3), pull(3);
+  exact::calcPull(3, relative.data(), mean.data(), unknown.data(), offset.data(), pull.data());
+  EXPECT_LT((pull - relative * (unknown - mean)).cwiseAbs().maxCoeff(), 1e-14);
+  ASSERT_TRUE(
+      exact::solveStep(3, information.data(), relative.data(), pull.data(), 0.5, room.data(), step.data()));
   MatrixXd damped = information;
   damped.diagonal() *= 1.5;
-  damped.diagonal().array() += 3.0;
-  EXPECT_LT((step - linalg::solvePositiveDefinite(damped, gradient - 3.0 * unknown)).cwiseAbs().maxCoeff(),
+  damped += 3.0 * relative;
+  EXPECT_LT((step - linalg::solvePositiveDefinite(damped, gradient - 3.0 * pull)).cwiseAbs().maxCoeff(),
             1e-13);
+}
+
+TEST(Exact, TheBoxPullsWithTheUnknownsThemselves) {
+  const MatrixXd box = MatrixXd::Identity(3, 3);
+  const VectorXd middle = VectorXd::Zero(3), unknown = randomMatrix(3, 1, 7);
+  VectorXd offset(3), pull(3);
+  exact::calcPull(3, box.data(), middle.data(), unknown.data(), offset.data(), pull.data());
+  EXPECT_EQ(pull, unknown);
 }
 
 TEST(Exact, AStepWithoutPositiveInformationIsRefused) {
   const MatrixXd information = -10.0 * MatrixXd::Identity(2, 2);
-  const VectorXd unknown = VectorXd::Zero(2);
+  const MatrixXd box = MatrixXd::Identity(2, 2);
+  const VectorXd pull = VectorXd::Zero(2);
   MatrixXd room(2, 2);
   VectorXd step = VectorXd::Ones(2);
-  EXPECT_FALSE(exact::solveStep(2, information.data(), unknown.data(), 0.0, room.data(), step.data()));
+  EXPECT_FALSE(
+      exact::solveStep(2, information.data(), box.data(), pull.data(), 0.0, room.data(), step.data()));
 }
 
 TEST(Exact, ErrorsAreEnlargedToTheResidualsOnlyWhereTheseAreBeyondThem) {

@@ -16,18 +16,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const char* getKindName(const InverseMapSpec& map) {
-  if (map.isAutomatic()) {
-    return "automatic";
-  }
-  return map.findGp() != nullptr ? "gp" : map.findNetwork() != nullptr ? "network" : "surrogate";
-}
-
 /// The kind of each, with a number behind those that are not the first of their kind: "network", "network_2".
 std::vector<std::string> nameMaps(const std::vector<InverseMapSpec>& maps) {
   std::vector<std::string> kinds, names;
   for (const InverseMapSpec& map : maps) {
-    kinds.emplace_back(getKindName(map));
+    kinds.emplace_back(getEstimatorKind(map));
     const auto same = std::count(kinds.begin(), kinds.end(), kinds.back());
     names.push_back(same > 1 ? fmt::format("{}_{}", kinds.back(), same) : kinds.back());
   }

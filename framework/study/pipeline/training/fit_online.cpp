@@ -75,7 +75,7 @@ TrustTraining makeTrustTraining(const Study& study, const PreparedData& data) {
   TrustTraining training;
   training.seed = experiment.seed;
   training.sampled = collectSampled(experiment.model);
-  training.unknown = static_cast<Index>(collectUnknown(experiment.model).size());
+  training.prior = makeBoxPrior(experiment.model);
   training.infos = study.extractor.getInfos();
   training.points = train.parameters(Eigen::all, samples);
   training.clean_features = study.extractor.extract(train.responses(Eigen::all, samples));
@@ -93,11 +93,14 @@ ForwardSurrogate fitSurrogate(const TrustTraining& training, const TrainingContr
       .surrogate;
 }
 
-/// Adds a trust model to a map that measurements are inferred with. Without a forward surrogate one is
-/// fitted.
-OnlineFit fitTrust(const Study& study, const PreparedData& data, AnyMap map,
-                   std::shared_ptr<const ForwardSurrogate> forward) {
+}  // namespace
+
+OnlineFit fitOnline(const Study& study, const PreparedData& data, std::shared_ptr<const Estimator> map,
+                    std::shared_ptr<const ForwardSurrogate> forward) {
   OnlineFit fit{{std::move(map), {}}};
+  if (forward == nullptr) {
+    forward = fit.model.map->findForward();
+  }
   try {
     const TrustTraining training = makeTrustTraining(study, data);
     fit.model.trust = trainInterruptibly([&] {
@@ -105,7 +108,7 @@ OnlineFit fitTrust(const Study& study, const PreparedData& data, AnyMap map,
         forward =
             std::make_shared<const ForwardSurrogate>(fitSurrogate(training, study.getTrainingControl()));
       }
-      return fitTrustModel(training, forward, OnlineMap(fit.model.map), study.experiment.trust.level,
+      return fitTrustModel(training, forward, *fit.model.map, study.experiment.trust.level,
                            study.getTrainingControl());
     });
   } catch (const std::invalid_argument& error) {
@@ -114,26 +117,10 @@ OnlineFit fitTrust(const Study& study, const PreparedData& data, AnyMap map,
   return fit;
 }
 
-}  // namespace
-
 int countReferences(const ExperimentSpec& experiment) {
   const int responses =
       std::min<int>(experiment.design.test.samples, calcMostReferences(experiment.trust.level));
   return responses * countDraws(experiment.design.train.samples, responses);
-}
-
-OnlineFit fitOnline(const Study& study, const PreparedData& data, const GpMap& map) {
-  return fitTrust(study, data, compressMap(map), nullptr);
-}
-
-OnlineFit fitOnline(const Study& study, const PreparedData& data,
-                    std::shared_ptr<const Surrogate> surrogate) {
-  return fitTrust(study, data, surrogate, surrogate->forward);
-}
-
-OnlineFit fitOnline(const Study& study, const PreparedData& data, std::shared_ptr<const NetworkMap> map,
-                    std::shared_ptr<const ForwardSurrogate> forward) {
-  return fitTrust(study, data, std::move(map), std::move(forward));
 }
 
 }  // namespace twinmap

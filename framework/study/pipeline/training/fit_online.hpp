@@ -17,20 +17,14 @@ struct OnlineFit {
 /// of false alarms deserve.
 int countReferences(const ExperimentSpec& experiment);
 
-/// Compresses a map of processes and fits its trust model: a forward surrogate to the clean responses of at
-/// most the first 500 training samples (its size and the time of a judgement grow with their number squared),
-/// the reference distributions to 1000 simulated measurements (fewer below 100 training samples) or as many
-/// as there are test responses, up to 2000 at a level of 1 % of false alarms: test responses with noise drawn
-/// for that alone. Does not depend on the threads. Cost: that of fitForward() and some 2000 inferences of
-/// some ms. Throws Interrupted.
-OnlineFit fitOnline(const Study& study, const PreparedData& data, const GpMap& map);
-
-/// The same of a surrogate, which is its own trust model's.
-OnlineFit fitOnline(const Study& study, const PreparedData& data, std::shared_ptr<const Surrogate> surrogate);
-
-/// The same of a network. `forward`: a surrogate that it learnt from, which is then the trust model's; null
-/// to fit one.
-OnlineFit fitOnline(const Study& study, const PreparedData& data, std::shared_ptr<const NetworkMap> map,
-                    std::shared_ptr<const ForwardSurrogate> forward);
+/// Fits an estimator's trust model: a forward surrogate to the clean responses of at most the first 500
+/// training samples (its size and the time of a judgement grow with their number squared), where neither
+/// `forward` is one that it learnt from nor it has one of its own (Estimator::findForward); the reference
+/// distributions to 1000 simulated measurements (fewer below 100 training samples) or as many as there are
+/// test responses, up to 2000 at a level of 1 % of false alarms: test responses with noise drawn for that
+/// alone. Does not depend on the threads. Cost: that of fitForward() and some 2000 inferences of some ms.
+/// Throws Interrupted.
+OnlineFit fitOnline(const Study& study, const PreparedData& data, std::shared_ptr<const Estimator> map,
+                    std::shared_ptr<const ForwardSurrogate> forward = nullptr);
 
 }  // namespace twinmap

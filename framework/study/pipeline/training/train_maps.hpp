@@ -18,6 +18,9 @@ TrainedMap makeTrainedMap(const Study& study, const PreparedData& data, Training
 /// is stopped, std::runtime_error where the experiment does not fit the map.
 TrainedMap trainChosenMap(const Study& study, const PreparedData& data);
 
+/// "gp", "surrogate", ...: what an experiment asks for, which has a map.
+const char* getEstimatorKind(const InverseMapSpec& spec);
+
 /// Prepares a surrogate for measurements that was trained on these samples.
 TrainedMap makeTrainedMap(const Study& study, const PreparedData& data, SurrogateMapTraining training);
 

@@ -109,6 +109,7 @@ LabelledFeatures takeFirst(const LabelledFeatures& samples) {
                          samples.sensitivities};
   first.nuisance = samples.nuisance.leftCols(kMax);
   first.inputs = samples.inputs.leftCols(kMax);
+  first.prior_information = samples.prior_information;
   return first;
 }
 
@@ -134,8 +135,9 @@ NetworkMapTraining teach(const Study& study, const SurrogatePool& pool, NetworkS
 /// A small network, or a medium one where that has not learnt all that the surrogate could teach it, unless a
 /// size is given or there would be five of them.
 NetworkMapTraining trainOnSurrogate(const Study& study, const SurrogateMapTraining& teacher) {
-  const SurrogatePool pool = makeSurrogatePool(teacher.surrogate, getSpec(study).surrogate_samples,
-                                               study.experiment.seed, study.getTrainingControl());
+  const SurrogatePool pool =
+      makeSurrogatePool(teacher.surrogate, study.experiment.model, getSpec(study).surrogate_samples,
+                        study.experiment.seed, study.getTrainingControl());
   NetworkMapTraining small = teach(study, pool, NetworkSize::kSmall);
   const double excess = calcExcess(small, teacher).maxCoeff();
   if (excess <= kMuchExcess || hasSize(getSpec(study)) || getSpec(study).bayesian != NetworkBayes::kNone) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "framework/estimation/refined/acceptance.hpp"
-#include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -15,10 +14,9 @@ using Eigen::VectorXd;
 /// What parameters take up of whitened residuals: J (J'J + prior)^-1 J', J per half-width.
 class Absorption {
  public:
-  explicit Absorption(MatrixXd jacobian) : jacobian_(std::move(jacobian)) {
-    hessian_ = jacobian_.transpose() * jacobian_;
-    hessian_.diagonal().array() += kHalfWidthInformation;
-  }
+  Absorption(MatrixXd jacobian, const BoxPrior& prior)
+      : jacobian_(std::move(jacobian)),
+        hessian_(jacobian_.transpose() * jacobian_ + prior.calcInformation()) {}
 
   VectorXd remove(const VectorXd& residual) const {
     return residual - jacobian_ * linalg::solvePositiveDefinite(hessian_, jacobian_.transpose() * residual);
@@ -40,10 +38,10 @@ class Absorption {
 /// part of what is judged.
 class SurrogateJudge final : public PowerJudge {
  public:
-  SurrogateJudge(const OnlineMap& map, const TrustModel& trust, const Stencil& at)
+  SurrogateJudge(const Estimator& map, const TrustModel& trust, const Stencil& at)
       : trust_(trust),
         explanation_(explain(map, trust, at)),
-        absorption_(explanation_.jacobian),
+        absorption_(explanation_.jacobian, trust.prior),
         centered_(at.features - trust.forward->center) {}
 
   double calcPValue(const VectorXd& moved) const override {
@@ -57,11 +55,11 @@ class SurrogateJudge final : public PowerJudge {
   }
 
  private:
-  static ScoreExplanation explain(const OnlineMap& map, const TrustModel& trust, const Stencil& at) {
-    OnlineMap::Workspace inferring(map);
+  static ScoreExplanation explain(const Estimator& map, const TrustModel& trust, const Stencil& at) {
+    const std::unique_ptr<Estimator::Workspace> inferring = map.makeWorkspace();
     TrustWorkspace judging(trust);
-    const Estimate& estimate = map.inferMean(at.features, at.known, inferring);
-    judge(trust, at.features, at.known, estimate, inferring.findExplanation(), judging);
+    const Estimate& estimate = map.inferMean(at.features, at.known, *inferring);
+    judge(trust, at.features, at.known, estimate, inferring->findExplanation(), judging);
     return *judging.explanation;
   }
 
@@ -74,10 +72,10 @@ class SurrogateJudge final : public PowerJudge {
 /// By what the simulator leaves; by the surrogate where that does not decide.
 class RefinedJudge final : public PowerJudge {
  public:
-  RefinedJudge(const OnlineMap& map, const TrustModel& trust, const NoiseWhitener& noise, const Stencil& at)
+  RefinedJudge(const Estimator& map, const TrustModel& trust, const NoiseWhitener& noise, const Stencil& at)
       : trust_(trust),
         noise_(noise),
-        absorption_(noise.apply(at.sensitivities)),
+        absorption_(noise.apply(at.sensitivities), trust.prior),
         degrees_(absorption_.calcDegrees()),
         limit_(calcChiSquareLimit(degrees_)),
         surrogate_(map, trust, at) {}
@@ -103,7 +101,7 @@ class RefinedJudge final : public PowerJudge {
 
 }  // namespace
 
-std::unique_ptr<PowerJudge> makePowerJudge(const OnlineMap& map, const TrustModel& trust,
+std::unique_ptr<PowerJudge> makePowerJudge(const Estimator& map, const TrustModel& trust,
                                            const NoiseWhitener& noise, const Stencil& at) {
   if (trust.refinement.tried > 0) {
     return std::make_unique<RefinedJudge>(map, trust, noise, at);

@@ -17,7 +17,7 @@ class PowerJudge {
 
 /// By what the simulator leaves where the run's test samples were refined, else by what the surrogate leaves;
 /// parameters take up what they can, linearly. All but the stencil must outlive it.
-std::unique_ptr<PowerJudge> makePowerJudge(const OnlineMap& map, const TrustModel& trust,
+std::unique_ptr<PowerJudge> makePowerJudge(const Estimator& map, const TrustModel& trust,
                                            const NoiseWhitener& noise, const Stencil& at);
 
 }  // namespace twinmap

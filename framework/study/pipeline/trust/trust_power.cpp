@@ -102,7 +102,7 @@ bool areUsable(const std::vector<VectorXd>& directions) {
 PowerCases makeCases(const Study& study, const OnlineModel& online, const NoiseWhitener& noise,
                      const NoiseCovariance& noise_covariance, const std::vector<Stencil>& around) {
   const TrustModel& trust = *online.trust;
-  const OnlineMap map(online.map);
+  const Estimator& map = *online.map;
   PowerCases cases;
   cases.level = trust.level;
   for (const Stencil& at : around) {

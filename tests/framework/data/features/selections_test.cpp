@@ -73,6 +73,15 @@ TEST(FisherSelection, ByHandTakesTheOtherParameterSecond) {
             (std::vector<Index>{0, 2}));  // 28/12 > 193/112
 }
 
+TEST(FisherSelection, PrefersWhatThePriorDoesNotKnow) {
+  MatrixXd sensitivity(2, 2), prior = 12.0 * MatrixXd::Identity(2, 2);
+  sensitivity << 10, 0, 0, 9;
+  EXPECT_EQ(selectByFisherInformation({1}, MatrixXd::Identity(2, 2), {sensitivity}), std::vector<Index>{0});
+  prior(0, 0) = 1000.0;
+  EXPECT_EQ(selectByFisherInformation({1}, MatrixXd::Identity(2, 2), {sensitivity}, prior),
+            std::vector<Index>{1});
+}
+
 TEST(FisherSelection, PassesOverRepeatedFeatures) {
   MatrixXd covariance = MatrixXd::Identity(3, 3), sensitivity(3, 1);
   covariance(0, 1) = covariance(1, 0) = 1.0;

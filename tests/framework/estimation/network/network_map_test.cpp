@@ -102,7 +102,8 @@ SurrogateTraining trainTeacher(const Oscillation& oscillation) {
 
 NetworkMapTraining trainOnPool(const Oscillation& oscillation, const SurrogateTraining& teacher,
                                const NetworkMapSpec& spec, int threads) {
-  const SurrogatePool pool = makeSurrogatePool(teacher.surrogate, spec.surrogate_samples, 3, {threads});
+  const SurrogatePool pool =
+      makeSurrogatePool(teacher.surrogate, oscillation.model, spec.surrogate_samples, 3, {threads});
   return trainNetworkMap({oscillation.model, spec, 3}, pool, {threads});
 }
 
@@ -145,7 +146,8 @@ TEST(NetworkMap, MakesUpForErrorsOfItsTeacherWhoseShapeIsNotToBlame) {
   const SurrogateTraining teacher = trainTeacher(oscillation);
   NetworkMapSpec spec = makeSpec(200);
   spec.surrogate_samples = 5000;
-  SurrogatePool pool = makeSurrogatePool(teacher.surrogate, spec.surrogate_samples, 3, {2});
+  SurrogatePool pool =
+      makeSurrogatePool(teacher.surrogate, oscillation.model, spec.surrogate_samples, 3, {2});
   const NetworkMapTraining calibrated = trainNetworkMap({oscillation.model, spec, 3}, pool, {2});
   pool.left_out.factor *= 2.0;  // as if the teacher left out most of what is in a measurement
   const NetworkMapTraining taught = trainNetworkMap({oscillation.model, spec, 3}, pool, {2});
@@ -159,7 +161,7 @@ TEST(NetworkMap, MakesUpForErrorsOfItsTeacherWhoseShapeIsNotToBlame) {
 TEST(SurrogatePool, HasTheSimulationsAsWrongAsTheSurrogateIsWithoutThem) {
   const Oscillation oscillation;
   const SurrogateTraining teacher = trainTeacher(oscillation);
-  const SurrogatePool pool = makeSurrogatePool(teacher.surrogate, 1000, 3, {2});
+  const SurrogatePool pool = makeSurrogatePool(teacher.surrogate, oscillation.model, 1000, 3, {2});
   const ForwardSurrogate& forward = *teacher.surrogate.forward;
   ASSERT_EQ(pool.left_out_points.cols(), 120);
   const MatrixXd clean = oscillation.extractor.extract(oscillation.respond(pool.left_out_points));

@@ -36,6 +36,34 @@ TEST(Refine, FindsTheExactPosteriorOfALinearModel) {
               1e-9);
 }
 
+// a: normal, b: uniform, c: normal, correlated with a
+TEST(Refine, TakesPriorsAsMeasurementsMore) {
+  constexpr double kNoise = 2.0, kOfA = 0.1, kOfC = 0.2, kCorrelation = 0.6;
+  const MatrixXd matrix = makeMatrix(30, 3);
+  std::vector<ParameterSpec> unknown = testing::makeParameters(3, -1.0, 1.0);
+  unknown[0].prior = PriorSpec{NormalPrior{0.2, kOfA}};
+  unknown[2].prior = PriorSpec{NormalPrior{-0.1, kOfC}};
+  Problem problem(
+      30, [&](const VectorXd& x) { return VectorXd(matrix * x); }, unknown, kNoise);
+  const VectorXd features = problem.measure(makeVector({0.3, -0.4, 0.1}), kNoise);
+  const std::vector<PriorGroupSpec> groups{
+      {CorrelatedPriors{{unknown[0].name, unknown[2].name}, kCorrelation}, {}}};
+  RefinementTask task{features, {{"map", makeVector({0.0, 0.0, 0.0})}}, {0, 3}};
+  task.prior = std::make_shared<const Prior>(unknown, groups);
+  const Refined refined = refine(problem.simulator, problem.model, task);
+
+  Eigen::Matrix2d of_both;
+  of_both << kOfA * kOfA, kCorrelation * kOfA * kOfC, kCorrelation * kOfA * kOfC, kOfC * kOfC;
+  MatrixXd prior = 3.0 * MatrixXd::Identity(3, 3);
+  prior({0, 2}, {0, 2}) = test::calcInverse(of_both);
+  const MatrixXd covariance = test::calcInverse(matrix.transpose() * matrix / (kNoise * kNoise) + prior);
+  const VectorXd mean =
+      covariance * (matrix.transpose() * features / (kNoise * kNoise) + prior * makeVector({0.2, 0.0, -0.1}));
+  ASSERT_EQ(refined.status, RefinementStatus::kAccepted) << refined.message;
+  EXPECT_LT((refined.covariance - covariance).norm(), 1e-6 * covariance.norm());
+  EXPECT_LT(((refined.point - mean).array() / refined.stddev.array()).abs().maxCoeff(), 0.03);
+}
+
 TEST(Refine, MarginalisesTheNuisanceAndHoldsWhatIsNotSearched) {
   constexpr double kNoise = 0.3;
   const MatrixXd matrix = makeMatrix(30, 3);

@@ -1,4 +1,4 @@
-#include "framework/estimation/surrogate/posterior_sampler.hpp"
+#include "framework/estimation/surrogate/posterior/posterior_sampler.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,8 @@
 #include <functional>
 
 #include "framework/base/random/random.hpp"
-#include "framework/estimation/surrogate/score_likelihood.hpp"
+#include "framework/estimation/surrogate/posterior/score_likelihood.hpp"
+#include "tests/framework/support/linear_simulator.hpp"
 
 namespace twinmap {
 namespace {
@@ -48,8 +49,8 @@ std::shared_ptr<const ForwardSurrogate> makeForward(Index variables, const Score
 
 PosteriorModel makeModel(std::shared_ptr<const ForwardSurrogate> forward, Index parameters) {
   const Index m = forward->points.rows();
-  return {std::move(forward),        VectorXd::Zero(m), VectorXd::Ones(m), parameters, m,
-          VectorXd::Ones(parameters)};
+  return {std::move(forward), VectorXd::Zero(m),   VectorXd::Ones(m),
+          parameters,         makeUniformPrior(m), VectorXd::Ones(parameters)};
 }
 
 /// Of two variables in the box, by the midpoint rule: the cumulative distribution of the first, its mean and
@@ -116,6 +117,37 @@ TEST(PosteriorSampler, AgreesWithQuadratureOfALinearModelWithinTheBox) {
   EXPECT_EQ(posterior.evaluations, kDraws);
 }
 
+/// Two parameters within [-1, 1], the first normal about 0.1.
+ModelSpec makeModelWithPrior(double stddev) {
+  ModelSpec model;
+  model.parameters = testing::makeParameters(2, -1.0, 1.0);
+  model.parameters[0].prior = PriorSpec{NormalPrior{0.1, stddev}};
+  return model;
+}
+
+TEST(PosteriorSampler, TakesANormalPriorAsAMeasurementMore) {
+  constexpr double kStddev = 0.05;
+  const ModelSpec spec = makeModelWithPrior(kStddev);
+  PosteriorModel model = makeModel(makeForward(2, calcThreeFeatures), 2);
+  model.prior = makeBoxPrior(spec);
+  model.density = findPrior(spec);
+  PosteriorSampler sampler(model, kDraws, 1);
+  const VectorXd scores = calcThreeFeatures(Vector2d(0.3, -0.2)) + Eigen::Vector3d(0.5, -0.8, 0.3);
+  const SurrogatePosterior posterior = sampler.sample(scores, VectorXd());
+
+  const auto with_prior = [&](const VectorXd& x) -> VectorXd {
+    VectorXd features(4);
+    features << calcThreeFeatures(x), x[0] / kStddev;
+    return features;
+  };
+  VectorXd measured(4);
+  measured << scores, 0.1 / kStddev;
+  const Quadrature exact = integrate(with_prior, measured);
+  expectAgreement(posterior, exact);
+  EXPECT_NEAR(posterior.normal_mean[0], exact.mean, 0.02 * exact.stddev);
+  EXPECT_NEAR(std::sqrt(posterior.normal_covariance(0, 0)), exact.stddev, 0.02 * exact.stddev);
+}
+
 TEST(PosteriorSampler, LeansOnTheBoundsAsThePosteriorDoes) {
   PosteriorSampler sampler(makeModel(makeForward(2, calcThreeFeatures), 2), kDraws, 1);
   const VectorXd scores = calcThreeFeatures(Vector2d(0.98, -0.9)) + Eigen::Vector3d(0.7, 0.2, -0.4);
@@ -149,7 +181,7 @@ TEST(PosteriorSampler, MarginalisesNuisanceParametersAndHoldsKnownInputs) {
     return Vector2d(5.0 * x[0] + 2.0 * x[1] + 3.0 * x[2], 4.0 * x[1]);
   };
   PosteriorModel model = makeModel(makeForward(3, forward), 1);
-  model.unknown = 2;
+  model.prior = makeUniformPrior(2);
   PosteriorSampler sampler(model, kDraws, 1);
   const double known = 0.5;
   const VectorXd scores = Vector2d(2.0, -0.6);

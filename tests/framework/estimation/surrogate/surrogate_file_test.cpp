@@ -47,7 +47,7 @@ TEST(SurrogateFile, GivesASurrogateThatInfersTheSameBits) {
   const ForwardSurrogate read = readForward(Hdf5Reader(path), "/some/surrogate");
   ASSERT_EQ(read.windows.size(), surrogate.windows.size());
   EXPECT_EQ(read.projection, surrogate.projection);
-  ScoreInversion before(surrogate, 2), after(read, 2);
+  ScoreInversion before(surrogate, makeUniformPrior(2)), after(read, makeUniformPrior(2));
   for (Index i = 0; i < 10; ++i) {
     const VectorXd scores = surrogate.scores.col(4 * i).array() + 0.3;
     const gp::Moments expected = before.infer(scores, VectorXd(0)), found = after.infer(scores, VectorXd(0));

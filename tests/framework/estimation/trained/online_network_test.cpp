@@ -1,8 +1,8 @@
-#include "framework/estimation/trained/online_network.hpp"
+#include "framework/estimation/network/online_network.hpp"
 
 #include <gtest/gtest.h>
 
-#include "framework/estimation/trained/online_map.hpp"
+#include "framework/estimation/estimator.hpp"
 #include "kernels/linalg/decompositions.hpp"
 #include "kernels/linalg/paired_matrix.hpp"
 
@@ -44,8 +44,8 @@ NetworkMap makeBayesianExample() {
 
 /// Of measurements so many times as far away as the map's own.
 void expectThePredictionsOf(const std::shared_ptr<const NetworkMap>& map, double far = 1.0) {
-  const OnlineMap online{AnyMap(map)};
-  OnlineMap::Workspace workspace(online);
+  const OnlineNetwork online(map);
+  OnlineNetwork::Workspace workspace(online);
   const MatrixXd features = far * MatrixXd::Random(5, 3), known = MatrixXd::Random(1, 3);
   const Estimates expected = map->predict(features, known);
   const MatrixXd inputs = online.makeInputs(features, known);
@@ -67,8 +67,8 @@ TEST(OnlineNetwork, InfersWhatTheMapPredicts) {
 TEST(OnlineNetwork, SaysHowFarIntervalsReach) {
   NetworkMap map = makeExample();
   map.validation.interval_factors = {Eigen::Vector2d(0.8, 0.7), Eigen::Vector2d(1.6, 2.0)};
-  const OnlineMap online{AnyMap(std::make_shared<const NetworkMap>(map))};
-  OnlineMap::Workspace workspace(online);
+  const OnlineNetwork online(std::make_shared<const NetworkMap>(map));
+  OnlineNetwork::Workspace workspace(online);
   const MatrixXd features = MatrixXd::Random(5, 3), known = MatrixXd::Random(1, 3);
   EXPECT_EQ(online.infer(features.col(0), known.col(0), workspace).interval_factors.get(0).of95, 1.6);
   for (const Estimates& all : {online.predict(features, known, 2), map.predict(features, known)}) {

@@ -1,4 +1,4 @@
-#include "framework/estimation/trained/online_processes.hpp"
+#include "framework/estimation/gp/online_processes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -42,15 +42,15 @@ TEST(OnlineProcesses, ACompressedMapPredictsAsTheExactOne) {
   EXPECT_LT((actual.stddev.cwiseQuotient(expected.stddev).array() - 1.0).abs().maxCoeff(), 0.005);
 }
 
-TEST(OnlineMap, PredictsEachColumnAsItInfersIt) {
+TEST(Estimator, PredictsEachColumnAsItInfersIt) {
   const MatrixXd features =
       Oscillation::addNoise(Oscillation::calcClean(Oscillation::samplePoints(150, 5)), 5);
-  const OnlineMap map(Oscillation().trainMap());
+  const OnlineProcesses map(Oscillation().trainMap());
   const Estimates alone = map.predict(features, MatrixXd(), 1),
                   together = map.predict(features, MatrixXd(), 3);
   EXPECT_EQ(alone.mean, together.mean);
   EXPECT_EQ(alone.stddev, together.stddev);
-  OnlineMap::Workspace workspace(map);
+  OnlineProcesses::Workspace workspace(map);
   for (Eigen::Index i = 0; i < features.cols(); ++i) {
     const Estimate& inferred = map.infer(features.col(i), VectorXd(0), workspace);
     EXPECT_EQ(alone.mean.col(i), inferred.mean);
@@ -58,8 +58,8 @@ TEST(OnlineMap, PredictsEachColumnAsItInfersIt) {
   }
 }
 
-TEST(OnlineMap, RefusesToPredictFromOtherSizes) {
-  const OnlineMap map(Oscillation().trainMap());
+TEST(Estimator, RefusesToPredictFromOtherSizes) {
+  const OnlineProcesses map(Oscillation().trainMap());
   EXPECT_EQ(map.predict(MatrixXd(Oscillation::kSamples, 0), MatrixXd(), 1).mean.cols(), 0);
   EXPECT_THROW(map.predict(MatrixXd::Zero(Oscillation::kSamples - 1, 2), MatrixXd(), 1),
                std::invalid_argument);

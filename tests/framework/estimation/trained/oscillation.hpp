@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "framework/base/random/random.hpp"
+#include "framework/estimation/gp/online_processes.hpp"
 #include "framework/estimation/gp/train_gp_map.hpp"
 #include "framework/estimation/surrogate/fit_forward.hpp"
 #include "framework/estimation/trained/fit_trust.hpp"
@@ -95,7 +96,7 @@ struct Oscillation {
   TrustTraining makeTrustTraining() const {
     TrustTraining training;
     training.sampled = parameters;
-    training.unknown = 2;
+    training.prior = makeUniformPrior(2);
     training.infos = makeInfos();
     training.points = samplePoints(150, 1);
     training.clean_features = calcClean(training.points);

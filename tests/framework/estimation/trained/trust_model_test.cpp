@@ -21,7 +21,7 @@ class TrustTest : public ::testing::Test {
   }
 
   static void SetUpTestSuite() {
-    map_ = new OnlineMap(compressMap(Oscillation().trainMap()));
+    map_ = new OnlineProcesses(compressMap(Oscillation().trainMap()));
     const TrustTraining training = Oscillation().makeTrustTraining();
     model_ = new TrustModel(fitTrustModel(training, shareSurrogate(training), *map_, 0.01, {2}));
   }
@@ -31,7 +31,7 @@ class TrustTest : public ::testing::Test {
   }
 
   static Trust judgeFeatures(const VectorXd& features) {
-    OnlineMap::Workspace inferring(*map_);
+    OnlineProcesses::Workspace inferring(*map_);
     TrustWorkspace judging(*model_);
     return judge(*model_, features, VectorXd(0), map_->infer(features, VectorXd(0), inferring), nullptr,
                  judging);
@@ -51,11 +51,11 @@ class TrustTest : public ::testing::Test {
     return static_cast<double>(count) / n;
   }
 
-  static OnlineMap* map_;
+  static OnlineProcesses* map_;
   static TrustModel* model_;
 };
 
-OnlineMap* TrustTest::map_ = nullptr;
+OnlineProcesses* TrustTest::map_ = nullptr;
 TrustModel* TrustTest::model_ = nullptr;
 
 TEST_F(TrustTest, FalseAlarmsAreAtTheLevel) {
@@ -89,7 +89,7 @@ TEST_F(TrustTest, SaysWhereItIsUninformed) {
   Estimate inference;
   inference.mean = (VectorXd(2) << 0.2, 2.5).finished();
   inference.stddev = (VectorXd(2) << 0.056, 0.01).finished();  // the box has 0.0577 and 0.29
-  OnlineMap::Workspace workspace(*map_);
+  OnlineProcesses::Workspace workspace(*map_);
   const VectorXd features = Oscillation::calcClean(0.2, 2.5);
   inference.inputs = map_->infer(features, VectorXd(0), workspace).inputs;
   TrustWorkspace judging(*model_);
@@ -101,7 +101,7 @@ TEST_F(TrustTest, TakesOverTheExplanationThatASurrogatesOwnSearchFound) {
   const ForwardSurrogate& surrogate = *model_->forward;
   const MatrixXd scores = surrogate.calcScores(
       Oscillation::addNoise(Oscillation::calcClean(Oscillation::samplePoints(20, 21)), 22));
-  ScoreInversion inferring(surrogate, 2), searching(surrogate, 2);
+  ScoreInversion inferring(surrogate, makeUniformPrior(2)), searching(surrogate, makeUniformPrior(2));
   for (Eigen::Index i = 0; i < scores.cols(); ++i) {
     inferring.infer(scores.col(i), VectorXd(0));
     ASSERT_NE(inferring.findExplanation(), nullptr);

@@ -1,4 +1,6 @@
-#include "framework/estimation/trained/online_surrogate.hpp"
+#include "framework/estimation/surrogate/online_surrogate.hpp"
+
+#include "framework/estimation/surrogate/surrogate_file.hpp"
 
 namespace twinmap {
 
@@ -7,7 +9,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 const Estimate& OnlineSurrogate::infer(const Eigen::Ref<const VectorXd>& features,
-                                       const Eigen::Ref<const VectorXd>& known, Workspace& workspace) const {
+                                       const Eigen::Ref<const VectorXd>& known,
+                                       Estimator::Workspace& buffers) const {
+  auto& workspace = static_cast<Workspace&>(buffers);
   Estimate& estimate = workspace.estimate;
   estimate.inputs = makeInputs(features, known);
   const Index r = surrogate_->forward->getScoreCount();
@@ -19,7 +23,8 @@ const Estimate& OnlineSurrogate::infer(const Eigen::Ref<const VectorXd>& feature
   return estimate;
 }
 
-MatrixXd OnlineSurrogate::listBasins(const Workspace& workspace) const {
+MatrixXd OnlineSurrogate::listBasins(const Estimator::Workspace& buffers) const {
+  const auto& workspace = static_cast<const Workspace&>(buffers);
   constexpr double kMinShare = 1e-3;  // 1000 to 1 is certain
   const Index u = surrogate_->unknown;
   MatrixXd basins(u, 0);
@@ -31,6 +36,15 @@ MatrixXd OnlineSurrogate::listBasins(const Workspace& workspace) const {
     }
   }
   return basins;
+}
+
+void OnlineSurrogate::save(Hdf5Writer& file, const std::string& group) const {
+  writeSurrogate(file, group, *surrogate_);
+}
+
+std::shared_ptr<const Estimator> loadSurrogate(const Hdf5Reader& file, const std::string& group) {
+  return std::make_shared<const OnlineSurrogate>(
+      std::make_shared<const Surrogate>(readSurrogate(file, group)));
 }
 
 MatrixXd OnlineSurrogate::makeInputs(const MatrixXd& features, const MatrixXd& known) const {

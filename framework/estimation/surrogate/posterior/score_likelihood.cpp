@@ -1,4 +1,4 @@
-#include "framework/estimation/surrogate/score_likelihood.hpp"
+#include "framework/estimation/surrogate/posterior/score_likelihood.hpp"
 
 #include <limits>
 

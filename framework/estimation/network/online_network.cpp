@@ -1,4 +1,6 @@
-#include "framework/estimation/trained/online_network.hpp"
+#include "framework/estimation/network/online_network.hpp"
+
+#include "framework/estimation/network/network_file.hpp"
 
 namespace twinmap {
 
@@ -6,7 +8,7 @@ using Eigen::VectorXd;
 
 OnlineNetwork::Workspace::Workspace(const OnlineNetwork& map)
     : predicting(map.predictor_), centered(map.map_->inputs.center.size()) {
-  estimate.method = EstimationMethod::kNetwork;
+  estimate.estimator = map.getKind();
   estimate.mean.resize(map.map_->center.size());
   estimate.stddev.resize(map.map_->center.size());
   estimate.inputs.resize(map.map_->inputs.countInputs());
@@ -24,7 +26,9 @@ void OnlineNetwork::setMixture(const network::Predictor::Workspace& predicted, E
 }
 
 const Estimate& OnlineNetwork::infer(const Eigen::Ref<const VectorXd>& features,
-                                     const Eigen::Ref<const VectorXd>& known, Workspace& workspace) const {
+                                     const Eigen::Ref<const VectorXd>& known,
+                                     Estimator::Workspace& buffers) const {
+  auto& workspace = static_cast<Workspace&>(buffers);
   const NetworkInputs& inputs = map_->inputs;
   Estimate& estimate = workspace.estimate;
   workspace.centered = features - inputs.center;
@@ -43,6 +47,15 @@ const Estimate& OnlineNetwork::infer(const Eigen::Ref<const VectorXd>& features,
   }
   shrinkToBounds(map_->center, map_->half_width, estimate.mean, estimate.stddev);
   return estimate;
+}
+
+void OnlineNetwork::save(Hdf5Writer& file, const std::string& group) const {
+  writeNetworkMap(file, group, *map_);
+}
+
+std::shared_ptr<const Estimator> loadNetwork(const Hdf5Reader& file, const std::string& group) {
+  return std::make_shared<const OnlineNetwork>(
+      std::make_shared<const NetworkMap>(readNetworkMap(file, group)));
 }
 
 }  // namespace twinmap

@@ -1,10 +1,11 @@
-#include "framework/estimation/trained/online_processes.hpp"
+#include "framework/estimation/gp/online_processes.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <vector>
 
+#include "framework/estimation/gp/gp_file.hpp"
 #include "kernels/gp/sparse/compression.hpp"
 
 namespace twinmap {
@@ -31,7 +32,7 @@ OnlineProcesses::OnlineProcesses(GpMap map) : map_(std::move(map)), predictor_(m
 
 OnlineProcesses::Workspace::Workspace(const OnlineProcesses& map) : predictor(map.predictor_) {
   const auto parameters = static_cast<Index>(map.map_.processes.size());
-  estimate.method = EstimationMethod::kGp;
+  estimate.estimator = map.getKind();
   estimate.correlation = map.map_.residual_correlation;
   estimate.mean.setZero(parameters);
   estimate.stddev.setZero(parameters);
@@ -39,8 +40,8 @@ OnlineProcesses::Workspace::Workspace(const OnlineProcesses& map) : predictor(ma
   slope.setZero(map.map_.noise.directions.cols());
 }
 
-void OnlineProcesses::makeInputs(const Eigen::Ref<const VectorXd>& features,
-                                 const Eigen::Ref<const VectorXd>& known, VectorXd& inputs) const {
+void OnlineProcesses::setInputs(const Eigen::Ref<const VectorXd>& features,
+                                const Eigen::Ref<const VectorXd>& known, VectorXd& inputs) const {
   auto transformed = inputs.head(offset_.size());
   transformed = offset_;
   if (matrix_.cols() == 1 && feature_count_ > 1) {
@@ -52,9 +53,11 @@ void OnlineProcesses::makeInputs(const Eigen::Ref<const VectorXd>& features,
 }
 
 const Estimate& OnlineProcesses::infer(const Eigen::Ref<const VectorXd>& features,
-                                       const Eigen::Ref<const VectorXd>& known, Workspace& workspace) const {
+                                       const Eigen::Ref<const VectorXd>& known,
+                                       Estimator::Workspace& buffers) const {
+  auto& workspace = static_cast<Workspace&>(buffers);
   Estimate& estimate = workspace.estimate;
-  makeInputs(features, known, estimate.inputs);
+  setInputs(features, known, estimate.inputs);
   if (map_.noise.isConstant()) {
     predictor_.predict(estimate.inputs, workspace.predictor);
   } else {
@@ -72,9 +75,10 @@ const Estimate& OnlineProcesses::infer(const Eigen::Ref<const VectorXd>& feature
 
 const Estimate& OnlineProcesses::inferMean(const Eigen::Ref<const VectorXd>& features,
                                            const Eigen::Ref<const VectorXd>& known,
-                                           Workspace& workspace) const {
+                                           Estimator::Workspace& buffers) const {
+  auto& workspace = static_cast<Workspace&>(buffers);
   Estimate& estimate = workspace.estimate;
-  makeInputs(features, known, estimate.inputs);
+  setInputs(features, known, estimate.inputs);
   predictor_.predictMean(estimate.inputs, workspace.predictor);
   estimate.mean = map_.target_offset + map_.target_scale.cwiseProduct(workspace.predictor.values.mean);
   estimate.stddev.setZero();
@@ -89,6 +93,31 @@ double OnlineProcesses::calcNoiseFactor(Index parameter, const Eigen::Ref<const 
   }
   slope.noalias() = noise.directions.transpose() * gradient.head(noise.directions.rows());
   return std::max(slope.squaredNorm() / noise.mean_of_slope[parameter], NoiseProfile::kSmallestFactor);
+}
+
+std::vector<VectorXd> OnlineProcesses::listLengthScales() const {
+  std::vector<VectorXd> scales;
+  for (const gp::Process& process : map_.processes) {
+    scales.push_back(
+        std::visit([](const auto& kind) { return kind->getHyperparameters().length_scales; }, process));
+  }
+  return scales;
+}
+
+MatrixXd OnlineProcesses::getProjection() const {
+  MatrixXd projection;
+  for (const AffineStep& step : map_.transform.steps) {
+    projection = step.projection.size() > 0 ? step.projection : projection;
+  }
+  return projection;
+}
+
+void OnlineProcesses::save(Hdf5Writer& file, const std::string& group) const {
+  writeGpMap(file, group, map_);
+}
+
+std::shared_ptr<const Estimator> loadProcesses(const Hdf5Reader& file, const std::string& group) {
+  return std::make_shared<const OnlineProcesses>(readGpMap(file, group));
 }
 
 GpMap compressMap(const GpMap& map) {

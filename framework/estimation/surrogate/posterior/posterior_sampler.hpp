@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "framework/estimation/surrogate/posterior/score_likelihood.hpp"
 #include "framework/estimation/surrogate/score_inversion.hpp"
-#include "framework/estimation/surrogate/score_likelihood.hpp"
 #include "framework/estimation/surrogate/surrogate.hpp"
 #include "kernels/sampling/adaptive_importance.hpp"
 
@@ -18,14 +18,16 @@ struct PosteriorModel {
   std::shared_ptr<const ForwardSurrogate> forward;
   Eigen::VectorXd center, half_width;  ///< m, of the sampled box
   Eigen::Index parameters = 0;         ///< p: the first variables of a point, which are reported
-  Eigen::Index unknown = 0;            ///< u: with the nuisance parameters
+  BoxPrior prior;                      ///< of the u unknown: with the nuisance parameters
   /// p, at least 1: by which a cross-validation found the likelihood too narrow about its maximum.
   Eigen::VectorXd stddev_scale;
+  /// The prior itself, by which draws weigh; null where it is uniform.
+  std::shared_ptr<const Prior> density{};
 };
 
 /// That of a surrogate. Where its cross-validation makes standard deviations smaller, the likelihood stays as
 /// it is: what was too wide is the normal distribution that a map answers with.
-PosteriorModel makePosteriorModel(const Surrogate& surrogate);
+PosteriorModel makePosteriorModel(const Surrogate& surrogate, std::shared_ptr<const Prior> density);
 
 /// The posterior of the parameters given one measurement, without a normal approximation; p parameters in
 /// their units. Only the diagnostics are there where it is not reliable.
@@ -44,7 +46,7 @@ struct SurrogatePosterior {
   bool isReliable() const { return message.empty(); }
 };
 
-/// Importance sampling under a uniform prior in the box and the ScoreLikelihood, stretched about the nearest
+/// Importance sampling under the prior within the box and the ScoreLikelihood, stretched about the nearest
 /// mode by PosteriorModel::stddev_scale. The proposal is what ScoreInversion finds, each mode as a normal
 /// distribution and one of twice its width, and the box, so that weights are bounded. Where the effective
 /// sample size is below a fifth of the draws or the Pareto shape above 0.5, rounds of as many more follow, of
@@ -72,6 +74,7 @@ class PosteriorSampler {
  private:
   const importance::RoundNumbers& getNumbers(int round, std::uint64_t sample);
   importance::BoxMixture proposeFirst() const;
+  Eigen::VectorXd calcLogs(const Eigen::MatrixXd& points);
   Eigen::VectorXd stretch(const Eigen::VectorXd& point) const;
   Eigen::MatrixXd stretchAll(const Eigen::MatrixXd& points) const;
   SurrogatePosterior summarize(const importance::AdaptiveDraws& drawn, const gp::Moments& normal,

@@ -1,4 +1,4 @@
-#include "framework/estimation/surrogate/posterior_sampler.hpp"
+#include "framework/estimation/surrogate/posterior/posterior_sampler.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -23,16 +23,17 @@ VectorXd clampToBox(const VectorXd& point) {
 
 }  // namespace
 
-PosteriorModel makePosteriorModel(const Surrogate& surrogate) {
-  return {surrogate.forward,    surrogate.center,  surrogate.half_width,
-          surrogate.parameters, surrogate.unknown, surrogate.validation.stddev_scale.cwiseMax(1.0)};
+PosteriorModel makePosteriorModel(const Surrogate& surrogate, std::shared_ptr<const Prior> density) {
+  return {surrogate.forward,    surrogate.center, surrogate.half_width,
+          surrogate.parameters, surrogate.prior,  surrogate.validation.stddev_scale.cwiseMax(1.0),
+          std::move(density)};
 }
 
 PosteriorSampler::PosteriorSampler(PosteriorModel model, int draws, std::uint64_t seed)
     : model_(std::move(model)),
       draws_(draws),
       seed_(seed),
-      inversion_(*model_.forward, model_.unknown),
+      inversion_(*model_.forward, model_.prior),
       likelihood_(*model_.forward) {}
 
 SurrogatePosterior PosteriorSampler::sampleFeatures(const Eigen::Ref<const VectorXd>& features,
@@ -53,7 +54,7 @@ SurrogatePosterior PosteriorSampler::sample(const Eigen::Ref<const VectorXd>& sc
     mode_factors_.push_back(linalg::calcCholesky(mode.moments.covariance).lower);
   }
   const importance::AdaptiveDraws drawn = importance::sampleAdaptively(
-      [&](const MatrixXd& points) { return likelihood_.calcLogs(stretchAll(points)); }, proposeFirst(),
+      [&](const MatrixXd& points) { return calcLogs(points); }, proposeFirst(),
       [&](int round) -> const importance::RoundNumbers& { return getNumbers(round, sample); });
   return summarize(drawn, normal, sample);
 }
@@ -73,7 +74,7 @@ const importance::RoundNumbers& PosteriorSampler::getNumbers(int round, std::uin
       return random.calcNormal(draw(i), static_cast<std::uint64_t>(k) + 1, sample);
     };
     numbers_.push_back({VectorXd::NullaryExpr(draws_, calc_pick),
-                        MatrixXd::NullaryExpr(model_.unknown, draws_, calc_normal),
+                        MatrixXd::NullaryExpr(model_.prior.count(), draws_, calc_normal),
                         drawUniforms(kCenters, kCenterChannel + static_cast<int>(numbers_.size()), sample)});
   }
   return numbers_[static_cast<std::size_t>(round)];
@@ -86,6 +87,21 @@ VectorXd PosteriorSampler::drawUniforms(Index count, int channel, std::uint64_t 
   });
 }
 
+/// Of likelihood, where it is calibrated, and prior.
+VectorXd PosteriorSampler::calcLogs(const MatrixXd& points) {
+  VectorXd logs = likelihood_.calcLogs(stretchAll(points));
+  if (model_.density != nullptr) {
+    const auto center = model_.center.head(model_.prior.count()),
+               half_width = model_.half_width.head(model_.prior.count());
+    for (Index i = 0; i < points.cols(); ++i) {
+      if (std::isfinite(logs[i])) {
+        logs[i] += model_.density->calcLogDensity(center + half_width.cwiseProduct(points.col(i)));
+      }
+    }
+  }
+  return logs;
+}
+
 /// Most draws are as far from the modes as they are said to be, few twice as far, and few anywhere.
 BoxMixture PosteriorSampler::proposeFirst() const {
   constexpr double kNear = 0.75, kFar = 0.2;
@@ -93,7 +109,7 @@ BoxMixture PosteriorSampler::proposeFirst() const {
   std::vector<importance::NormalPart> parts;
   for (std::size_t k = 0; k < mode_factors_.size(); ++k) {
     const ScoreMode& mode = inversion_.getModes()[k];
-    VectorXd scale = VectorXd::Ones(model_.unknown);
+    VectorXd scale = VectorXd::Ones(model_.prior.count());
     scale.head(model_.parameters) = model_.stddev_scale;
     const MatrixXd lower = scale.asDiagonal() * mode_factors_[k];
     parts.push_back({kNear * mode.share, mode.moments.mean, lower});
@@ -135,7 +151,7 @@ MatrixXd PosteriorSampler::stretchAll(const MatrixXd& points) const {
 SurrogatePosterior PosteriorSampler::summarize(const importance::AdaptiveDraws& drawn,
                                                const gp::Moments& normal, std::uint64_t sample) const {
   constexpr int kDrawChannel = 0;
-  const Index p = model_.parameters, u = model_.unknown;
+  const Index p = model_.parameters, u = model_.prior.count();
   const WeightedDraws& draws = drawn.draws;
   SurrogatePosterior posterior;
   posterior.evaluations = static_cast<int>(draws.points.cols());
